@@ -1,0 +1,106 @@
+#include "hybrid/hybrid_system.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <stdexcept>
+
+#include "hybrid/difference_derivatives.hpp"
+
+namespace tchat {
+
+namespace {
+
+void require(bool condition, const std::string& what) {
+  if (!condition) throw std::invalid_argument(what);
+}
+
+std::string name_or(const char* const* names, int count, int k, const char* fallback) {
+  if (names != nullptr && k >= 1 && k <= count && names[k - 1] != nullptr) return names[k - 1];
+  return fmt::format(fmt::runtime(fallback), k);
+}
+
+}  // namespace
+
+HybridSystem::HybridSystem(const tchat_problem& table) : table_(&table) {
+  require(table.abi_version == TCHAT_PROBLEM_ABI,
+          fmt::format("its interface version is {}, this tchat reads version {}", table.abi_version,
+                      TCHAT_PROBLEM_ABI));
+  require(table.struct_size == sizeof(tchat_problem),
+          fmt::format("its table has {} bytes, this tchat expects {}", table.struct_size, sizeof(tchat_problem)));
+  require(table.name != nullptr, "its table has no name");
+  require(table.dimension >= 1 && table.dimension <= 1000,
+          fmt::format("its dimension is {}, allowed are 1..1000", table.dimension));
+  require(table.parameters >= 0 && table.parameters <= 60,
+          fmt::format("it has {} parameters, allowed are 0..60", table.parameters));
+  require(table.fields >= 1 && table.events >= 1 && table.jumps >= 1,
+          fmt::format("it has {} fields, {} events and {} jumps, at least one of each is needed", table.fields,
+                      table.events, table.jumps));
+  require(table.value != nullptr, "its table has no function `value`");
+  require(table.derivative_order < 1 || table.first != nullptr, "its table has no function `first`");
+  require(table.derivative_order < 2 || table.second != nullptr, "its table has no function `second`");
+  require(table.user_values == 0 || (table.user_values > 0 && table.user_value != nullptr),
+          "its table has no function `user_value`");
+}
+
+int HybridSystem::count(FunctionKind kind) const {
+  switch (kind) {
+    case FunctionKind::field:
+      return table_->fields;
+    case FunctionKind::event:
+      return table_->events;
+    default:
+      return table_->jumps;
+  }
+}
+
+std::string HybridSystem::state_name(int k) const { return name_or(table_->state_names, dimension(), k, "U({})"); }
+
+std::string HybridSystem::parameter_name(int k) const {
+  return name_or(table_->parameter_names, parameters(), k, "PAR({})");
+}
+
+std::string HybridSystem::function_name(FunctionKind kind, int index) const {
+  switch (kind) {
+    case FunctionKind::field:
+      return name_or(table_->field_names, table_->fields, index, "field {}");
+    case FunctionKind::event:
+      return name_or(table_->event_names, table_->events, index, "event {}");
+    default:
+      return name_or(table_->jump_names, table_->jumps, index, "jump {}");
+  }
+}
+
+int HybridSystem::parameter_index(const std::string& name) const {
+  for (int k = 1; k <= parameters(); ++k)
+    if (table_->parameter_names != nullptr && name == table_->parameter_names[k - 1]) return k;
+  return 0;
+}
+
+void HybridSystem::first(FunctionKind kind, int index, const double* x, const double* par, std::span<const int> active,
+                         double* out, double* dx, double* dp) const {
+  if (table_->derivative_order >= 1)
+    table_->first(table_->self, static_cast<int>(kind), index, x, par, active.data(), static_cast<int>(active.size()),
+                  out, dx, dp);
+  else
+    difference_first(*this, kind, index, x, par, active, out, dx, dp);
+}
+
+void HybridSystem::second(FunctionKind kind, int index, const double* x, const double* par, std::span<const int> active,
+                          const double* direction, double* out, double* dx, double* dp) const {
+  if (table_->derivative_order >= 2)
+    table_->second(table_->self, static_cast<int>(kind), index, x, par, active.data(), static_cast<int>(active.size()),
+                   direction, out, dx, dp);
+  else
+    difference_second(*this, kind, index, x, par, active, direction, out, dx, dp);
+}
+
+bool all_finite(const double* values, int count) {
+  // The sum of x - x is zero exactly when every entry is finite; one pass without branches.
+  double sum = 0.0;
+  for (int i = 0; i < count; ++i) sum += values[i] - values[i];
+  return sum == 0.0;
+}
+
+}  // namespace tchat

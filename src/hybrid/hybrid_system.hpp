@@ -1,0 +1,66 @@
+/// A hybrid dynamical system as the rest of tchat sees it: fields f_i, event functions h_j and jumps g_k with their
+/// derivatives, over a problem table (plugin, or a class compiled into a test).
+///
+/// Indices count from 1. x has `dimension()` entries, par is a ParameterVector's data (parameter_length entries).
+/// Matrices are column-major. Evaluation never allocates and never throws; a function that cannot be evaluated gives
+/// entries that are not finite, which callers check (`all_finite`).
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "hybrid/index_vector.hpp"
+#include "tchat/problem.h"
+
+namespace tchat {
+
+enum class FunctionKind { field = TCHAT_FIELD, event = TCHAT_EVENT, jump = TCHAT_JUMP };
+
+class HybridSystem {
+ public:
+  /// A view of a table that outlives this object. Throws std::invalid_argument when the table is not usable
+  /// (ABI version, sizes out of range, missing functions).
+  explicit HybridSystem(const tchat_problem& table);
+
+  int dimension() const { return table_->dimension; }
+  int parameters() const { return table_->parameters; }
+  /// How many functions of a kind there are.
+  int count(FunctionKind kind) const;
+  const tchat_problem& table() const { return *table_; }
+
+  std::string name() const { return table_->name; }
+  /// User's name or "U(k)", "PAR(k)", "field i", ... ; k counts from 1.
+  std::string state_name(int k) const;
+  std::string parameter_name(int k) const;
+  std::string function_name(FunctionKind kind, int index) const;
+  /// 1-based index of a parameter by its name; 0 if there is none.
+  int parameter_index(const std::string& name) const;
+
+  /// out = F(x, p): 1 entry for an event function, dimension() otherwise.
+  void value(FunctionKind kind, int index, const double* x, const double* par, double* out) const {
+    table_->value(table_->self, static_cast<int>(kind), index, x, par, out);
+  }
+  double event(int j, const double* x, const double* par) const {
+    double h = 0.0;
+    value(FunctionKind::event, j, x, par, &h);
+    return h;
+  }
+
+  /// F, F_x (rows x dimension) and F_p (rows x active.size()); `active` lists PAR indices from 1. Central differences
+  /// where the table has no derivatives.
+  void first(FunctionKind kind, int index, const double* x, const double* par, std::span<const int> active, double* out,
+             double* dx, double* dp) const;
+
+  /// D = F_x v + F_p w and its derivatives by x and the active parameters; direction = (v, w).
+  void second(FunctionKind kind, int index, const double* x, const double* par, std::span<const int> active,
+              const double* direction, double* out, double* dx, double* dp) const;
+
+ private:
+  const tchat_problem* table_;
+};
+
+/// True when no entry is NaN or infinite.
+bool all_finite(const double* values, int count);
+
+}  // namespace tchat

@@ -1,0 +1,22 @@
+/// PAR: the problem's parameters and the segment durations in one vector, as users and files number them.
+#pragma once
+
+#include <Eigen/Core>
+
+namespace tchat {
+
+/// PAR(1..60) belong to the user; the duration of segment s (s = 1..) is PAR(60 + s).
+inline constexpr int first_duration = 61;
+inline constexpr int parameter_length = 256;
+inline constexpr int max_segments = 64;
+
+/// PAR(k) is par(k - 1); always parameter_length entries, unused ones zero.
+using ParameterVector = Eigen::VectorXd;
+
+/// True when PAR(k) is a duration of an orbit of `segments` segments.
+constexpr bool is_duration(int k, int segments) { return k >= first_duration && k < first_duration + segments; }
+
+/// The segment (0-based) whose duration PAR(k) is.
+constexpr int duration_segment(int k) { return k - first_duration; }
+
+}  // namespace tchat

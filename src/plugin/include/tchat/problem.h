@@ -1,0 +1,87 @@
+/* The binary interface between tchat and a problem plugin, for any language that can fill a C struct.
+ *
+ * A plugin is a shared library that exports
+ *
+ *     const tchat_problem* tchat_problem_table(void);
+ *
+ * The table and everything it points to live as long as the library is loaded and never change. C++ authors do not
+ * write this table: they include <tchat/problem.hpp>.
+ *
+ * A problem is three families of smooth functions, numbered from 1:
+ *     fields f_i(x, p) in R^n,   events h_j(x, p) in R (the system lives in h >= 0),   jumps g_k(x, p) in R^n.
+ *
+ * Shapes. x has `dimension` entries. par has at least TCHAT_PAR_LENGTH entries: par[k-1] is PAR(k), of which the first
+ * `parameters` are the problem's own and par[60], par[61], ... are the segment durations. Matrices are column-major.
+ * A function of kind TCHAT_EVENT has 1 row, the other kinds have `dimension` rows.
+ *
+ * A function that cannot be evaluated at a point returns NaN there; tchat then shortens its step.
+ */
+#ifndef TCHAT_PROBLEM_H
+#define TCHAT_PROBLEM_H
+
+#include <stdint.h>
+
+#define TCHAT_PROBLEM_ABI 1
+#define TCHAT_PAR_LENGTH 256
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+enum { TCHAT_FIELD = 0, TCHAT_EVENT = 1, TCHAT_JUMP = 2 };
+
+typedef struct tchat_problem {
+  uint32_t abi_version; /* TCHAT_PROBLEM_ABI */
+  uint32_t struct_size; /* sizeof(tchat_problem) */
+
+  int32_t dimension;  /* n >= 1 */
+  int32_t parameters; /* 0..60 */
+  int32_t fields;     /* number of fields, 1.. */
+  int32_t events;     /* number of event functions, 1.. */
+  int32_t jumps;      /* number of jump functions, 1.. */
+
+  /* Highest order of exact derivatives that the table supplies: 0 (`value` only), 1 (`first` too), 2 (`second` too).
+   * tchat replaces what is missing by central differences. */
+  int32_t derivative_order;
+
+  const char* name;                   /* never NULL */
+  const char* const* state_names;     /* `dimension` strings or NULL; likewise below */
+  const char* const* parameter_names; /* `parameters` strings or NULL */
+  const char* const* field_names;
+  const char* const* event_names;
+  const char* const* jump_names;
+  const double* initial_parameters; /* `parameters` values or NULL */
+
+  const void* self; /* handed back as first argument of every function below */
+
+  /* out = F(x, par) */
+  void (*value)(const void* self, int32_t kind, int32_t index, const double* x, const double* par, double* out);
+
+  /* out = F, dx (rows x dimension) = dF/dx, dp (rows x active_count) = dF/dPAR(active[.]); active counts from 1. */
+  void (*first)(const void* self, int32_t kind, int32_t index, const double* x, const double* par,
+                const int32_t* active, int32_t active_count, double* out, double* dx, double* dp);
+
+  /* The directional derivative D = F_x v + F_p w, with direction = (v, w) of length dimension + active_count, and its
+   * own derivatives: out = D, dx = dD/dx, dp = dD/dPAR(active[.]). */
+  void (*second)(const void* self, int32_t kind, int32_t index, const double* x, const double* par,
+                 const int32_t* active, int32_t active_count, const double* direction, double* out, double* dx,
+                 double* dp);
+
+  /* Index jump function iota: writes at most `capacity` index vectors (i, j, k) that may follow `from`, three integers
+   * each, and returns how many there are. NULL when the problem does not say. */
+  int32_t (*successors)(const void* self, const int32_t from[3], int32_t* to, int32_t capacity);
+
+  /* User functions (PVLS) of the state x_1(0), added to the output: `user_values` numbers. */
+  int32_t user_values;
+  const char* const* user_value_names; /* `user_values` strings or NULL */
+  void (*user_value)(const void* self, const double* x, const double* par, double* out);
+} tchat_problem;
+
+typedef const tchat_problem* (*tchat_problem_entry)(void);
+#define TCHAT_PROBLEM_ENTRY "tchat_problem_table"
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
