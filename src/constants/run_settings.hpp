@@ -39,54 +39,54 @@ struct StopRule {
 
 /// One segment of the orbit and the event functions monitored along it.
 struct SegmentSettings {
-  int type = 1;             ///< GCSEGTYP: 0 identity jump, 1 other jump, 2 ends in grazing contact
-  IndexVector index;        ///< GCFIND, GCHIND, GCGIND
-  std::vector<int> monitor; ///< GCHNO, GCHGRZIND
+  int type = 1;              ///< GCSEGTYP: 0 identity jump, 1 other jump, 2 ends in grazing contact
+  IndexVector index;         ///< GCFIND, GCHIND, GCGIND
+  std::vector<int> monitor;  ///< GCHNO, GCHGRZIND
 };
 
 struct RunSettings {
-  int dimension = 1;                   ///< NDIM, of one segment
-  int problem_type = 180;              ///< IPS
-  StartLabel start;                    ///< IRS
-  int detect_folds = 1;                ///< ILP
-  std::vector<int> free_parameters;    ///< ICP, as given
-  int mesh_intervals = 50;             ///< NTST
-  int collocation_points = 4;          ///< NCOL
-  int adapt_mesh_every = 3;            ///< IAD
-  int detect_bifurcations = 2;         ///< ISP
-  int branch_mode = 1;                 ///< ISW
-  int measure = 0;                     ///< IPLT
-  int boundary_conditions = 0;         ///< NBC, kept
-  int integral_conditions = 0;         ///< NINT, kept
-  int max_points = 100;                ///< NMX
+  int dimension = 1;                                     ///< NDIM, of one segment
+  int problem_type = 180;                                ///< IPS
+  StartLabel start;                                      ///< IRS
+  int detect_folds = 1;                                  ///< ILP
+  std::vector<int> free_parameters;                      ///< ICP, as given
+  int mesh_intervals = 50;                               ///< NTST
+  int collocation_points = 4;                            ///< NCOL
+  int adapt_mesh_every = 3;                              ///< IAD
+  int detect_bifurcations = 2;                           ///< ISP
+  int branch_mode = 1;                                   ///< ISW
+  int measure = 0;                                       ///< IPLT
+  int boundary_conditions = 0;                           ///< NBC, kept
+  int integral_conditions = 0;                           ///< NINT, kept
+  int max_points = 100;                                  ///< NMX
   double parameter_min = -1e300, parameter_max = 1e300;  ///< RL0, RL1
   double measure_min = -1e300, measure_max = 1e300;      ///< A0, A1
-  int print_every = 0;                 ///< NPR
-  int max_bifurcations = 0;            ///< MXBF, kept
-  int diagnostics_level = 2;           ///< IID
-  int max_location_iterations = 9;     ///< ITMX
-  int max_newton = 8;                  ///< ITNW
-  int full_newton = 3;                 ///< NWTN
-  int jacobian = 0;                    ///< JAC, kept
-  double tolerance_parameters = 1e-7;  ///< EPSL
-  double tolerance_states = 1e-7;      ///< EPSU
-  double tolerance_special = 1e-7;     ///< EPSS
-  double step = 0.01;                  ///< DS
-  double step_min = 0.0;               ///< DSMIN
-  double step_max = 0.1;               ///< DSMAX
-  int adapt_step_every = 1;            ///< IADS
-  std::vector<IndexedValue> parameter_weights;  ///< THL
-  std::vector<IndexedValue> state_weights;      ///< THU
-  std::vector<UserValue> user_values;           ///< UZR
-  int grazing_start = 0;               ///< GCISTART, kept
-  int derivative_order = 1;            ///< GCIDIFF
-  std::vector<int> test_functions;     ///< GCIPSI
-  std::vector<int> fixed;              ///< GCIFIXED, kept
+  int print_every = 0;                                   ///< NPR
+  int max_bifurcations = 0;                              ///< MXBF, kept
+  int diagnostics_level = 2;                             ///< IID
+  int max_location_iterations = 9;                       ///< ITMX
+  int max_newton = 8;                                    ///< ITNW
+  int full_newton = 3;                                   ///< NWTN
+  int jacobian = 0;                                      ///< JAC, kept
+  double tolerance_parameters = 1e-7;                    ///< EPSL
+  double tolerance_states = 1e-7;                        ///< EPSU
+  double tolerance_special = 1e-7;                       ///< EPSS
+  double step = 0.01;                                    ///< DS
+  double step_min = 0.0;                                 ///< DSMIN
+  double step_max = 0.1;                                 ///< DSMAX
+  int adapt_step_every = 1;                              ///< IADS
+  std::vector<IndexedValue> parameter_weights;           ///< THL
+  std::vector<IndexedValue> state_weights;               ///< THU
+  std::vector<UserValue> user_values;                    ///< UZR
+  int grazing_start = 0;                                 ///< GCISTART, kept
+  int derivative_order = 1;                              ///< GCIDIFF
+  std::vector<int> test_functions;                       ///< GCIPSI
+  std::vector<int> fixed;                                ///< GCIFIXED, kept
   std::vector<SegmentSettings> segments;
 
-  bool stop_at_grazing = true;         ///< GRSTOP
-  int grazing_jump = 1;                ///< GRJUMP
-  std::vector<StopRule> stop_rules;    ///< STOP
+  bool stop_at_grazing = true;       ///< GRSTOP
+  int grazing_jump = 1;              ///< GRJUMP
+  std::vector<StopRule> stop_rules;  ///< STOP
 
   /// PAR(k) = v given on the command line, by index or by the problem's own name.
   struct ParameterValue {

@@ -24,9 +24,9 @@ std::string name_or(const char* const* names, int count, int k, const char* fall
 }  // namespace
 
 HybridSystem::HybridSystem(const tchat_problem& table) : table_(&table) {
-  require(table.abi_version == TCHAT_PROBLEM_ABI,
-          fmt::format("its interface version is {}, this tchat reads version {}", table.abi_version,
-                      TCHAT_PROBLEM_ABI));
+  require(
+      table.abi_version == TCHAT_PROBLEM_ABI,
+      fmt::format("its interface version is {}, this tchat reads version {}", table.abi_version, TCHAT_PROBLEM_ABI));
   require(table.struct_size == sizeof(tchat_problem),
           fmt::format("its table has {} bytes, this tchat expects {}", table.struct_size, sizeof(tchat_problem)));
   require(table.name != nullptr, "its table has no name");

@@ -30,22 +30,22 @@ struct UserPointKind {
 
 struct LabelledSolution {
   int branch = 1;
-  int point = 1;      ///< point number, positive
-  int type = 0;       ///< type number as in the file, tens digit included
+  int point = 1;  ///< point number, positive
+  int type = 0;   ///< type number as in the file, tens digit included
   int label = 1;
-  int branch_mode = 1;    ///< ISW of the run
-  int problem_type = 180; ///< IPS; 0 in files of the older generation (12 integers)
-  int dimension = 0;      ///< n of one segment; 0 in files of the older generation
+  int branch_mode = 1;     ///< ISW of the run
+  int problem_type = 180;  ///< IPS; 0 in files of the older generation (12 integers)
+  int dimension = 0;       ///< n of one segment; 0 in files of the older generation
   int mesh_intervals = 0;
   int collocation_points = 0;
 
-  std::vector<double> tau;       ///< NTPL = mesh_intervals * collocation_points + 1 values from 0 to 1
-  Eigen::MatrixXd states;        ///< (n m) x NTPL, segment 1's states first
-  std::vector<int> free_parameters;        ///< ICP really used, durations included
-  std::vector<double> parameter_direction; ///< d PAR(free_parameters[i]) / ds; empty without direction
-  Eigen::MatrixXd state_direction;         ///< like states; 0 x 0 without direction
-  std::vector<double> parameters;          ///< PAR(1..NPAR - NPARI)
-  UserPointKind kind;                      ///< from the NPARI internal values
+  std::vector<double> tau;                  ///< NTPL = mesh_intervals * collocation_points + 1 values from 0 to 1
+  Eigen::MatrixXd states;                   ///< (n m) x NTPL, segment 1's states first
+  std::vector<int> free_parameters;         ///< ICP really used, durations included
+  std::vector<double> parameter_direction;  ///< d PAR(free_parameters[i]) / ds; empty without direction
+  Eigen::MatrixXd state_direction;          ///< like states; 0 x 0 without direction
+  std::vector<double> parameters;           ///< PAR(1..NPAR - NPARI)
+  UserPointKind kind;                       ///< from the NPARI internal values
 
   bool has_direction() const { return state_direction.size() > 0; }
 };

@@ -21,10 +21,14 @@ struct Dual {
   std::array<Base, N> derivative{};
 
   Dual() = default;
+
+  // Constants convert without being asked, so that formulas read as with doubles.
+  // NOLINTBEGIN(google-explicit-constructor)
   template <class S, class = std::enable_if_t<std::is_arithmetic_v<S>>>
   Dual(S constant) : value(static_cast<double>(constant)) {}
   template <class B = Base, class = std::enable_if_t<!std::is_arithmetic_v<B>>>
   Dual(const Base& constant) : value(constant) {}
+  // NOLINTEND(google-explicit-constructor)
 
   Dual& operator+=(const Dual& b) {
     value += b.value;
@@ -111,16 +115,16 @@ double plain(const Dual<N, B>& a) {
 
 // The functions below are found by argument-dependent lookup: a problem writes `using std::sin; sin(x[0])`, or just
 // `sin(x[0])` inside a template.
-#define TCHAT_DUAL_FUNCTION(NAME, VALUE, SLOPE)                                                                        \
-  template <int N, class B>                                                                                            \
-  Dual<N, B> NAME(const Dual<N, B>& a) {                                                                               \
-    using std::sin, std::cos, std::tan, std::exp, std::log, std::sqrt, std::sinh, std::cosh, std::tanh, std::asin,     \
-        std::acos, std::atan, std::expm1, std::log1p, std::cbrt, std::asinh, std::acosh, std::atanh, std::log10,       \
-        std::log2, std::exp2;                                                                                          \
-    const B& x = a.value;                                                                                              \
-    const B y = VALUE;                                                                                                 \
-    const B slope = SLOPE;                                                                                             \
-    return Dual<N, B>::chain(a, y, slope);                                                                             \
+#define TCHAT_DUAL_FUNCTION(NAME, VALUE, SLOPE)                                                                    \
+  template <int N, class B>                                                                                        \
+  Dual<N, B> NAME(const Dual<N, B>& a) {                                                                           \
+    using std::sin, std::cos, std::tan, std::exp, std::log, std::sqrt, std::sinh, std::cosh, std::tanh, std::asin, \
+        std::acos, std::atan, std::expm1, std::log1p, std::cbrt, std::asinh, std::acosh, std::atanh, std::log10,   \
+        std::log2, std::exp2;                                                                                      \
+    const B& x = a.value;                                                                                          \
+    const B y = VALUE;                                                                                             \
+    const B slope = SLOPE;                                                                                         \
+    return Dual<N, B>::chain(a, y, slope);                                                                         \
   }
 
 TCHAT_DUAL_FUNCTION(sin, sin(x), cos(x))
@@ -208,14 +212,14 @@ template <int N, class B>
 Dual<N, B> max(const Dual<N, B>& a, const Dual<N, B>& b) {
   return a < b ? b : a;
 }
-#define TCHAT_DUAL_MIXED(NAME)                                                                                         \
-  template <int N, class B>                                                                                            \
-  Dual<N, B> NAME(const Dual<N, B>& a, double b) {                                                                     \
-    return NAME(a, Dual<N, B>(b));                                                                                     \
-  }                                                                                                                    \
-  template <int N, class B>                                                                                            \
-  Dual<N, B> NAME(double a, const Dual<N, B>& b) {                                                                     \
-    return NAME(Dual<N, B>(a), b);                                                                                     \
+#define TCHAT_DUAL_MIXED(NAME)                     \
+  template <int N, class B>                        \
+  Dual<N, B> NAME(const Dual<N, B>& a, double b) { \
+    return NAME(a, Dual<N, B>(b));                 \
+  }                                                \
+  template <int N, class B>                        \
+  Dual<N, B> NAME(double a, const Dual<N, B>& b) { \
+    return NAME(Dual<N, B>(a), b);                 \
   }
 TCHAT_DUAL_MIXED(atan2)
 TCHAT_DUAL_MIXED(hypot)

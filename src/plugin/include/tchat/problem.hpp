@@ -6,7 +6,7 @@
 ///       static constexpr int fields = 1, events = 1, jumps = 1;
 ///       template <class T> void field(int i, const T* x, const T* par, T* f) const { f[0] = x[1]; f[1] = -par[0]; }
 ///       template <class T> T    event(int j, const T* x, const T* par) const { return x[0]; }
-///       template <class T> void jump (int k, const T* x, const T* par, T* g) const { g[0] = x[0]; g[1] = -par[1] * x[1]; }
+///       template <class T> void jump(int k, const T* x, const T* par, T* g) const { g[0] = x[0]; g[1] = -par[1] * x[1]; }
 ///     };
 ///     TCHAT_PROBLEM(BouncingBall)
 ///
@@ -222,10 +222,10 @@ class ProblemTable {
     if constexpr (requires(const Problem& p) { p.successors(std::array<int, 3>{}); }) table.successors = &successors;
     if constexpr (requires { Problem::user_values; }) table.user_values = Problem::user_values;
 
-#define TCHAT_OPTIONAL_ARRAY(MEMBER, LENGTH)                                                    \
-  if constexpr (requires { Problem::MEMBER; }) {                                                \
+#define TCHAT_OPTIONAL_ARRAY(MEMBER, LENGTH)                                                             \
+  if constexpr (requires { Problem::MEMBER; }) {                                                         \
     static_assert(std::size(Problem::MEMBER) == LENGTH, "tchat: " #MEMBER " needs " #LENGTH " entries"); \
-    table.MEMBER = std::data(Problem::MEMBER);                                                  \
+    table.MEMBER = std::data(Problem::MEMBER);                                                           \
   }
     TCHAT_OPTIONAL_ARRAY(state_names, n)
     TCHAT_OPTIONAL_ARRAY(parameter_names, q)
@@ -242,7 +242,7 @@ class ProblemTable {
 }  // namespace tchat
 
 /// Makes the class PROBLEM the problem of this shared library. Once per library, at namespace scope.
-#define TCHAT_PROBLEM(PROBLEM)                                                                                    \
-  extern "C" __attribute__((visibility("default"))) const tchat_problem* tchat_problem_table(void) {             \
-    return ::tchat::ProblemTable<PROBLEM>::get(#PROBLEM);                                                         \
+#define TCHAT_PROBLEM(PROBLEM)                                                                       \
+  extern "C" __attribute__((visibility("default"))) const tchat_problem* tchat_problem_table(void) { \
+    return ::tchat::ProblemTable<PROBLEM>::get(#PROBLEM);                                            \
   }
