@@ -6,13 +6,16 @@
 ///       static constexpr int fields = 1, events = 1, jumps = 1;
 ///       template <class T> void field(int i, const T* x, const T* par, T* f) const { f[0] = x[1]; f[1] = -par[0]; }
 ///       template <class T> T    event(int j, const T* x, const T* par) const { return x[0]; }
-///       template <class T> void jump(int k, const T* x, const T* par, T* g) const { g[0] = x[0]; g[1] = -par[1] * x[1]; }
+///       template <class T> void jump (int k, const T* x, const T* par, T* g) const {
+///         g[0] = x[0], g[1] = -par[1] * x[1];
+///       }
 ///     };
 ///     TCHAT_PROBLEM(BouncingBall)
 ///
 /// The indices i, j, k count from 1; x[0] is U(1) and par[0] is PAR(1); par has `parameters` entries. T is double or a
 /// dual number, so constants and local variables that depend on x or par must be of type T (or auto), and the usual
-/// mathematical functions are called unqualified: sin(x[0]), pow(x[1], 3).
+/// mathematical functions are called unqualified: sin(x[0]), pow(x[1], 3). Where a function cannot be evaluated it
+/// gives NaN or throws; an output left unset is NaN.
 ///
 /// Optional members of the class:
 ///     static constexpr const char* state_names[]      = {"x", "v"};      // and parameter_names, field_names,
@@ -21,7 +24,7 @@
 ///     std::vector<std::array<int, 3>> successors(std::array<int, 3> from) const;      // index jump function iota
 ///     static constexpr int user_values = 1;                               // PVLS, with user_value_names if wanted
 ///     void user_value(const double* x, const double* par, double* out) const;         // x is x_1(0)
-///     // hand-written first derivatives instead of automatic ones, column-major:
+///     // hand-written first derivatives instead of automatic ones, column-major, zero before the call:
 ///     void field_derivatives(int i, const double* x, const double* par, double* dfdx, double* dfdp) const;
 ///     void event_derivatives(int j, const double* x, const double* par, double* dhdx, double* dhdp) const;
 ///     void jump_derivatives (int k, const double* x, const double* par, double* dgdx, double* dgdp) const;
@@ -73,15 +76,21 @@ class ProblemTable {
 
   static constexpr int rows(std::int32_t kind) { return kind == TCHAT_EVENT ? 1 : n; }
 
+  /// F(x, par), rows preset to NaN by the caller. A problem may throw where it cannot be evaluated: the callers are C
+  /// code, so the exception ends here as NaN.
   template <class T>
   static void evaluate(const void* self, std::int32_t kind, int index, const T* x, const T* par, T* out) {
     const Problem& problem = object(self);
-    if (kind == TCHAT_FIELD)
-      problem.field(index, x, par, out);
-    else if (kind == TCHAT_EVENT)
-      out[0] = problem.event(index, x, par);
-    else
-      problem.jump(index, x, par, out);
+    try {
+      if (kind == TCHAT_FIELD)
+        problem.field(index, x, par, out);
+      else if (kind == TCHAT_EVENT)
+        out[0] = problem.event(index, x, par);
+      else
+        problem.jump(index, x, par, out);
+    } catch (...) {
+      std::fill(out, out + rows(kind), T(NAN));
+    }
   }
 
   static void value(const void* self, std::int32_t kind, std::int32_t index, const double* x, const double* par,
@@ -171,6 +180,7 @@ class ProblemTable {
     std::array<double, static_cast<std::size_t>(n * (q > 0 ? q : 1))> all{};
     const Problem& problem = object(self);
     bool given = false;
+    std::fill(dx, dx + rows(kind) * n, 0.0);
     if constexpr (requires { problem.field_derivatives(index, x, par, dx, dp); })
       if (kind == TCHAT_FIELD) problem.field_derivatives(index, x, par, dx, all.data()), given = true;
     if constexpr (requires { problem.event_derivatives(index, x, par, dx, dp); })
