@@ -1,0 +1,15 @@
+# What `cmake --install` puts where: the program, the plugin headers (the program looks for them in ../include beside
+# its own folder), the problems with their constants, and a package so that find_package(tchat) gives tchat::plugin.
+include(CMakePackageConfigHelpers)
+
+install(TARGETS tchat)
+install(TARGETS tchat_plugin EXPORT tchatConfig FILE_SET HEADERS)
+install(DIRECTORY problems constants DESTINATION "${CMAKE_INSTALL_DATADIR}/tchat"
+        PATTERN "*.so" EXCLUDE PATTERN "*.o" EXCLUDE PATTERN "*~" EXCLUDE)
+
+# tchat::plugin depends on nothing, so that its exported targets serve as the package's configuration.
+set(package_folder "${CMAKE_INSTALL_DATADIR}/cmake/tchat")
+install(EXPORT tchatConfig NAMESPACE tchat:: DESTINATION "${package_folder}")
+write_basic_package_version_file("${PROJECT_BINARY_DIR}/tchatConfigVersion.cmake" COMPATIBILITY SameMajorVersion
+                                 ARCH_INDEPENDENT)
+install(FILES "${PROJECT_BINARY_DIR}/tchatConfigVersion.cmake" DESTINATION "${package_folder}")
