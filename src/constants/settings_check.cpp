@@ -1,0 +1,140 @@
+#include "constants/settings_check.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "hybrid/parameter_vector.hpp"
+
+namespace tchat {
+
+namespace {
+
+using PlaceOf = std::function<Place(std::string_view)>;
+
+/// The checks of one run's settings, in the order of the table.
+class SettingsCheck {
+ public:
+  SettingsCheck(const RunSettings& settings, const PlaceOf& place) : settings_(settings), place_(place) {}
+
+  void free_parameters() const {
+    const std::vector<int>& list = settings_.free_parameters;
+    if (list.empty()) refuse_constant("ICP", "ICP", "an empty list", "at least one parameter");
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      const std::string name = fmt::format("ICP({})", i + 1);
+      parameter_index("ICP", name, list[i], segments());
+      if (std::find(list.begin(), list.begin() + static_cast<std::ptrdiff_t>(i), list[i]) !=
+          list.begin() + static_cast<std::ptrdiff_t>(i))
+        refuse_constant("ICP", name, fmt::format("{} twice", in_quotes(std::to_string(list[i]))),
+                        "each parameter once");
+    }
+    const bool two = settings_.problem_type == 150 || settings_.branch_mode == 2;
+    const auto of_problem = std::count_if(list.begin(), list.end(), [](int k) { return k < first_duration; });
+    if (of_problem < (two ? 2 : 1))
+      refuse_constant("ICP", "ICP", fmt::format("{} parameters that are not durations", of_problem),
+                      fmt::format("at least {} with IPS = {}, ISW = {}; durations are free in any case", two ? 2 : 1,
+                                  settings_.problem_type, settings_.branch_mode));
+  }
+
+  void bounds(std::string_view low_keyword, double low, std::string_view high_keyword, double high) const {
+    if (low < high) return;
+    refuse_constant(high_keyword, std::string(high_keyword), in_quotes(fmt::format("{}", high)),
+                    fmt::format("a number greater than {} = {}", low_keyword, low));
+  }
+
+  void steps() const {
+    if (settings_.adapt_step_every > 0 && settings_.step_max == 0.0)
+      refuse_constant("DSMAX", "DSMAX", "'0'", "a finite number > 0 (0 only with IADS = 0)");
+  }
+
+  void weights() const {
+    for (const IndexedValue& weight : settings_.parameter_weights)
+      parameter_index("THL", "ITHL", weight.index, segments_of_run());
+    for (const IndexedValue& weight : settings_.state_weights)
+      if (weight.index < 1 || weight.index > settings_.dimension)
+        refuse_constant("THU", "ITHU", in_quotes(std::to_string(weight.index)),
+                        fmt::format("a state, 1 to NDIM = {}", settings_.dimension));
+  }
+
+  void user_values() const {
+    for (const UserValue& value : settings_.user_values)
+      parameter_index("UZR", "IUZR", value.parameter, segments_of_run());
+  }
+
+  void test_functions() const {
+    if (settings_.problem_type != 180) return;
+    std::size_t monitored = 0;
+    for (const SegmentSettings& segment : settings_.segments) monitored += segment.monitor.size();
+    for (std::size_t i = 0; i < settings_.test_functions.size(); ++i)
+      if (settings_.test_functions[i] > static_cast<int>(monitored))
+        refuse_constant("GCIPSI", fmt::format("GCIPSI({})", i + 1),
+                        in_quotes(std::to_string(settings_.test_functions[i])),
+                        monitored == 0 ? "none, for the GCHGRZIND lists are empty"
+                                       : fmt::format("1 to {}, counted through the GCHGRZIND lists", monitored));
+  }
+
+  void grazing_segment() const {
+    const auto grazing = std::count_if(settings_.segments.begin(), settings_.segments.end(),
+                                       [](const SegmentSettings& segment) { return segment.type == 2; });
+    if (settings_.problem_type == 150 && grazing > 1)
+      refuse_constant("GCSEGTYP", "GCSEGTYP", fmt::format("{} segments that end in grazing contact", grazing),
+                      "one segment of type 2 with IPS = 150");
+  }
+
+  void parameter_values() const {
+    for (const RunSettings::ParameterValue& value : settings_.parameter_values)
+      if (const auto index = parse_integer(value.name))
+        parameter_index("PAR", fmt::format("PAR({})", value.name), *index, segments_of_run());
+  }
+
+ private:
+  int segments() const { return static_cast<int>(settings_.segments.size()); }
+
+  /// A switch to a period-doubled orbit doubles the segments.
+  int segments_of_run() const { return settings_.branch_mode == -1 ? 2 * segments() : segments(); }
+
+  void parameter_index(std::string_view keyword, const std::string& name, int k, int segment_count) const {
+    if (k >= 1 && k < first_duration + segment_count) return;
+    const std::string durations = segment_count == 1
+                                      ? fmt::format("{} (the duration of the segment)", first_duration)
+                                      : fmt::format("{} to {} (durations of the {} segments)", first_duration,
+                                                    first_duration + segment_count - 1, segment_count);
+    refuse_constant(keyword, name, in_quotes(std::to_string(k)),
+                    fmt::format("1 to {} (parameters of the problem) or {}", first_duration - 1, durations));
+  }
+
+  [[noreturn]] void refuse_constant(std::string_view keyword, const std::string& name, const std::string& found,
+                                    const std::string& allowed) const {
+    refuse(*find_constant(keyword), name, place_(keyword), found, allowed);
+  }
+
+  const RunSettings& settings_;
+  const PlaceOf& place_;
+};
+
+}  // namespace
+
+void check_settings(const RunSettings& settings, const PlaceOf& place) {
+  const SettingsCheck check(settings, place);
+  check.free_parameters();
+  check.bounds("RL0", settings.parameter_min, "RL1", settings.parameter_max);
+  check.bounds("A0", settings.measure_min, "A1", settings.measure_max);
+  check.steps();
+  check.weights();
+  check.user_values();
+  check.test_functions();
+  check.grazing_segment();
+  check.parameter_values();
+}
+
+std::vector<std::string> settings_warnings(const RunSettings& settings, const std::string& source) {
+  std::vector<std::string> sentences;
+  for (std::size_t s = 0; s < settings.segments.size(); ++s)
+    if (settings.problem_type == 180 && settings.segments[s].type == 2)
+      sentences.push_back(
+          fmt::format("{}: GCSEGTYP({}) = 2 (grazing contact) has no effect with IPS = 180; it belongs to IPS = 150",
+                      source, s + 1));
+  return sentences;
+}
+
+}  // namespace tchat

@@ -1,0 +1,23 @@
+/// What must hold between several constants, whatever text they came from. Each constant's own limits are in the table.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "constants/constant_value.hpp"
+#include "constants/run_settings.hpp"
+
+namespace tchat {
+
+/// Checks: ICP not empty, without repetition, with the free parameters that problem type and branch mode need; indices
+/// of ICP, THL, UZR, PAR either 1..60 or a duration 61..60+m (THL and UZR up to 60+2m for the doubled orbit of a branch
+/// switch); THU <= NDIM; RL0 < RL1; A0 < A1; DSMAX > 0 unless IADS = 0; GCIPSI within the GCHGRZIND lists (IPS 180);
+/// one grazing segment (IPS 150). Throws UserError; `place` tells where a constant was given.
+void check_settings(const RunSettings& settings, const std::function<Place(std::string_view keyword)>& place);
+
+/// What is accepted without effect, in sentences beginning with `source`.
+std::vector<std::string> settings_warnings(const RunSettings& settings, const std::string& source);
+
+}  // namespace tchat

@@ -1,0 +1,82 @@
+// Damaged files either parse or are refused with a UserError; nothing else may happen.
+#include <catch2/catch.hpp>
+#include <random>
+
+#include "constants/constants_file.hpp"
+#include "constants/constants_writer.hpp"
+#include "constants/sample_files.hpp"
+#include "constants/user_error.hpp"
+
+using namespace tchat;
+
+namespace {
+
+/// True when the text parses; UserError counts as refused, anything else ends the test.
+bool parses(const std::string& text) {
+  try {
+    read_constants_text(text, "gc.damaged");
+    return true;
+  } catch (const UserError& error) {
+    if (std::string(error.what()).find("gc.damaged") != 0) FAIL("no place: " << error.what());
+    return false;
+  }
+}
+
+std::vector<std::string> good_files() {
+  const std::string positional = testing::appendix_b();
+  RunSettings settings = read_constants_text(positional, "gc.test");
+  apply_overrides(settings, std::vector<std::string>{"UZR={1: [2.5, 3], -2: 4}", "STOP=[PD1, GR1]", "THU={2: 0.5}"});
+  return {positional, positional_text(settings), keyword_text(settings)};
+}
+
+}  // namespace
+
+TEST_CASE("Files cut off at any byte", "[constants][fuzz]") {
+  for (const std::string& text : good_files()) {
+    int accepted = 0;
+    for (std::size_t length = 0; length <= text.size(); ++length) accepted += parses(text.substr(0, length)) ? 1 : 0;
+    CHECK(accepted >= 1);
+  }
+  // Of Appendix B all values up to the last are needed: "2 2 1" begins 53 bytes before the end.
+  const std::string text = testing::appendix_b();
+  const std::size_t last_value = text.rfind("2 2 1") + 4;
+  for (std::size_t length = 0; length <= text.size(); ++length) {
+    CAPTURE(length);
+    REQUIRE(parses(text.substr(0, length)) == (length > last_value));
+  }
+}
+
+TEST_CASE("Files with flipped bits and exchanged bytes", "[constants][fuzz]") {
+  std::mt19937 random(20061215);
+  const std::string spice = "0159+-.,/*={}[]:#'\"()eEdD \t\n\r\\xNIG_";
+  for (const std::string& text : good_files()) {
+    int refused = 0;
+    for (int round = 0; round < 4000; ++round) {
+      std::string damaged = text;
+      for (unsigned i = 0, flips = 1 + random() % 4; i < flips; ++i) {
+        char& byte = damaged[random() % damaged.size()];
+        byte = random() % 2 == 0 ? static_cast<char>(byte ^ (1 << random() % 8)) : spice[random() % spice.size()];
+      }
+      refused += parses(damaged) ? 0 : 1;
+    }
+    CHECK(refused > 0);
+  }
+}
+
+TEST_CASE("Overrides of random characters", "[constants][fuzz]") {
+  std::mt19937 random(12);
+  const std::vector<std::string> parts{"ICP", "=",   "[",   "]",         "{",    "}",       ":",      ",",    "1", "61",
+                                       "-2",  "1e5", "PAR", "(",         ")",    "UZR",     "THL",    "'",    "#", " ",
+                                       "PD1", "\n",  ".",   "GCHGRZIND", "STOP", "GCNOSEG", "GCFIND", "GCHNO"};
+  const RunSettings original = read_constants_text(testing::appendix_b(), "gc.test");
+  for (int round = 0; round < 20000; ++round) {
+    std::string text = parts[random() % parts.size()] + "=";
+    for (unsigned i = 0, count = random() % 8; i < count; ++i) text += parts[random() % parts.size()];
+    RunSettings settings = original;
+    try {
+      apply_override(settings, text);
+    } catch (const UserError&) {
+      REQUIRE(testing::same_constants(settings, original));
+    }
+  }
+}

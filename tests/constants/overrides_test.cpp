@@ -1,0 +1,94 @@
+#include <catch2/catch.hpp>
+
+#include "constants/constants_file.hpp"
+#include "constants/sample_files.hpp"
+#include "constants/user_error.hpp"
+
+using namespace tchat;
+using Ints = std::vector<int>;
+
+namespace {
+
+RunSettings appendix() { return read_constants_text(testing::appendix_b(), "gc.test"); }
+
+RunSettings with(const std::vector<std::string>& overrides) {
+  RunSettings s = appendix();
+  apply_overrides(s, overrides);
+  return s;
+}
+
+}  // namespace
+
+TEST_CASE("Overrides replace one constant and leave the rest", "[constants]") {
+  RunSettings expected = appendix();
+  expected.step = -0.01;
+  CHECK(testing::same_constants(with({"DS=-0.01"}), expected));
+  CHECK(testing::same_constants(with({"ds = -1d-2"}), expected));
+  expected.max_points = 50;
+  CHECK(testing::same_constants(with({"DS=-0.01", "NMX=50"}), expected));
+  CHECK(testing::same_constants(with({"NMX=70", "DS=-0.01, NMX=50"}), expected));
+  RunSettings one = appendix();
+  apply_override(one, "NTST=80");
+  CHECK(one.mesh_intervals == 80);
+}
+
+TEST_CASE("Overrides of lists", "[constants]") {
+  CHECK(with({"ICP=[2,61]"}).free_parameters == Ints{2, 61});
+  CHECK(with({"ICP=2,61"}).free_parameters == Ints{2, 61});
+  CHECK(with({"ICP=2 61"}).free_parameters == Ints{2, 61});
+  CHECK(with({"ICP=2"}).free_parameters == Ints{2});
+  CHECK(with({"ICP=[2,61]", "NICP=2"}).free_parameters == Ints{2, 61});
+  const RunSettings s = with({"UZR={1: [2.5, 3.0], -2: 4}", "THL={61: 0}"});
+  REQUIRE(s.user_values.size() == 3);
+  CHECK(s.user_values[1].value == 3.0);
+  CHECK(s.user_values[2].parameter == 2);
+  CHECK(s.user_values[2].stop);
+  REQUIRE(s.parameter_weights.size() == 1);
+  CHECK(s.parameter_weights[0].index == 61);
+  CHECK(with({"THL={}"}).parameter_weights.empty());
+  CHECK(with({"GCIPSI=[]"}).test_functions.empty());
+}
+
+TEST_CASE("Overrides of start and stop", "[constants]") {
+  const RunSettings s = with({"IRS=PD1", "STOP=[PD1,GR2]"});
+  CHECK(s.start.type == "PD");
+  CHECK(s.start.number == 1);
+  REQUIRE(s.stop_rules.size() == 2);
+  CHECK(s.stop_rules[1].type == "GR");
+  CHECK(s.stop_rules[1].count == 2);
+  CHECK(with({"STOP=PD1"}).stop_rules.size() == 1);
+  CHECK(with({"IRS=0"}).start.from_data());
+  CHECK_FALSE(with({"GRSTOP=0"}).stop_at_grazing);
+}
+
+TEST_CASE("Parameter values go by index or by name", "[constants]") {
+  const RunSettings s = with({"PAR(2)=0.8", "PAR( omega )=-1d-1", "par(061)=3.5"});
+  REQUIRE(s.parameter_values.size() == 3);
+  CHECK(s.parameter_values[0].name == "2");
+  CHECK(s.parameter_values[0].value == 0.8);
+  CHECK(s.parameter_values[1].name == "omega");
+  CHECK(s.parameter_values[1].value == -0.1);
+  CHECK(s.parameter_values[2].name == "61");
+  CHECK(with({"PAR={1: 0.5, omega: 2}"}).parameter_values.size() == 2);
+}
+
+TEST_CASE("A new signature comes as lists in any order", "[constants]") {
+  const RunSettings s = with(
+      {"GCGIND=[4]", "ICP=[1,61]", "THL={61: 0}", "GCFIND=[3]", "GCHIND=[2]", "GCSEGTYP=2", "GCHGRZIND=[5, 6, 7]"});
+  REQUIRE(s.segments.size() == 1);
+  CHECK(s.segments[0].index == IndexVector{3, 2, 4});
+  CHECK(s.segments[0].type == 2);
+  CHECK(s.segments[0].monitor == Ints{5, 6, 7});
+  const RunSettings t = with({"GCGIND=[4, 3]"});
+  REQUIRE(t.segments.size() == 2);
+  CHECK(t.segments[0].index == IndexVector{1, 1, 4});
+  CHECK(t.segments[1].index == IndexVector{2, 2, 3});
+  CHECK(t.segments[1].monitor == Ints{2, 1});
+}
+
+TEST_CASE("Settings stay as they were when an override is refused", "[constants]") {
+  RunSettings s = appendix();
+  const std::vector<std::string> overrides{"NMX=5", "DS=0"};
+  CHECK_THROWS_AS(apply_overrides(s, overrides), UserError);
+  CHECK(testing::same_constants(s, appendix()));
+}
