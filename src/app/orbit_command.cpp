@@ -1,0 +1,64 @@
+#include "app/orbit_command.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "constants/constant_value.hpp"
+#include "constants/user_error.hpp"
+#include "output/solution_tables.hpp"
+#include "start/solution_file_reader.hpp"
+
+namespace tchat {
+
+namespace {
+
+struct OrbitArguments {
+  std::string path;
+  std::string label;
+  int dimension = 0;
+};
+
+StartLabel read_label(const std::string& text) {
+  if (const auto number = parse_integer(text); number && *number >= 0) return {"", *number};
+  if (const auto typed = parse_typed_label(text)) return *typed;
+  throw UserError(
+      fmt::format("{} is no label; a number or a type with its count is needed, such as 5 or PD1", in_quotes(text)));
+}
+
+int print_orbit(const OrbitArguments& arguments) {
+  const StartLabel label = read_label(arguments.label);
+  const std::string path = resolve_solution_path(arguments.path);
+  const SolutionFile file = read_solution_file(path);
+  for (const std::string& warning : file.warnings) fmt::print(stderr, "Warning: {}\n", warning);
+  const LabelledSolution& solution = find_solution(file.solutions, label, path);
+  const std::string name = std::filesystem::path(path).filename().string();
+  fmt::print("{}", format_orbit_table(solution, name, arguments.dimension));
+  return 0;
+}
+
+}  // namespace
+
+void add_orbit_command(CLI::App& app, std::function<int()>& chosen) {
+  CLI::App* command = app.add_subcommand("orbit", "One orbit of a q-file in physical time, all segments, as a table");
+  command->footer(
+      "Lines: number of the segment, tau in [0,1], time t since the start of segment 1, states.\n"
+      "A # begins the heading, an empty line separates segments.\n"
+      "Example: tchat orbit q.mems PD1 > orbit.txt");
+  const auto arguments = std::make_shared<OrbitArguments>();
+  command->add_option("FILE", arguments->path, "q-file; `mems` is taken for q.mems when there is no file mems")
+      ->required();
+  command->add_option("LABEL", arguments->label, "label number, or a type with its count: PD1, LP2, GR1, UZ1")
+      ->required();
+  command
+      ->add_option("--dimension", arguments->dimension,
+                   "number of states of one segment, for older files that do not say it")
+      ->check(CLI::PositiveNumber);
+  command->callback([&chosen, arguments] { chosen = [arguments] { return print_orbit(*arguments); }; });
+}
+
+}  // namespace tchat

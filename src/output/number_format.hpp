@@ -1,0 +1,35 @@
+/// Numbers and columns as AUTO's files have them.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace tchat {
+
+/// Stands for values that are not finite: files never hold NaN or inf, which AUTO's programs cannot read.
+inline constexpr double capped_value = 1e99;
+
+/// `value`, +-capped_value for +-inf, capped_value for NaN, 0 for -0.
+double finite(double value);
+
+/// 19 columns: `  1.2345678901E+000`, ten decimals and three exponent digits. Not finite: capped.
+std::string e19(double value);
+void append_e19(std::string& line, double value);
+
+/// `width` columns with four or more decimals as Fortran's ESw.d prints them: `  1.0000E-01`, `-1.7976+308`.
+std::string es(double value, int width, int decimals);
+
+/// Right-justified in `width` columns with at least one blank before it, so that neighbours never touch.
+std::string integer_field(int value, int width);
+
+/// The point number that files show: 1, ..., 9999, 1, ...
+int wrapped_point(int point);
+
+/// `name` as a heading of a column `width` wide: right-justified two columns before its end, cut to leave a blank,
+/// every character outside printable ASCII replaced by '_'.
+std::string heading_field(std::string_view name, int width);
+
+/// `name` without quotes and unprintable characters, for `names = {1: 'alpha'}` in headers.
+std::string plain_name(std::string_view name);
+
+}  // namespace tchat

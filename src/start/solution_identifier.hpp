@@ -1,0 +1,59 @@
+/// The first line of a solution in a q-file: 16 integers, 12 in files of the older generation.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <string>
+
+namespace tchat {
+
+/// How many internal values at the end of PAR say what a UZ label is: kind, segment, index, tau.
+inline constexpr int kind_values = 4;
+
+/// The integers in the order of the file; the last four are zero in the older generation.
+struct SolutionIdentifier {
+  std::array<int, 16> values{};
+  std::size_t count = 0;
+
+  int branch() const { return magnitude(values[0]); }
+  int point() const { return magnitude(values[1]); }
+  int type() const { return values[2]; }
+  int label() const { return values[3]; }
+  std::int64_t free_parameters() const { return values[4]; }       ///< NFPR
+  int branch_mode() const { return values[5]; }                    ///< ISW
+  std::int64_t time_points() const { return values[6]; }           ///< NTPL
+  std::int64_t numbers_per_point() const { return values[7]; }     ///< NAR = 1 + number of states
+  std::int64_t lines() const { return values[8]; }                 ///< NROWPR, lines after this one
+  std::int64_t mesh_intervals() const { return values[9]; }        ///< NTST
+  std::int64_t collocation_points() const { return values[10]; }   ///< NCOL
+  std::int64_t parameters() const { return values[11]; }           ///< NPAR
+  std::int64_t internal_parameters() const { return values[12]; }  ///< NPARI, the last of the NPAR
+  int dimension() const { return values[13]; }                     ///< NDIM, of one segment
+  int problem_type() const { return values[14]; }                  ///< IPS
+
+  std::int64_t states() const { return numbers_per_point() - 1; }
+  /// A line that only carries the largest branch and label.
+  bool is_empty_entry() const { return time_points() == 0 && lines() == 0; }
+  /// Problem types of this program.
+  bool is_ours() const { return problem_type() == 180 || problem_type() == 150; }
+  bool has_kind() const { return is_ours() && internal_parameters() == kind_values; }
+
+  /// How many numbers the solution has after this line, and how many lines they take in AUTO's layout.
+  std::int64_t numbers(bool direction) const;
+  std::int64_t standard_lines(bool direction) const;
+
+ private:
+  static int magnitude(int value) { return value < 0 ? -(value + (value < -2147483647 ? 1 : 0)) : value; }
+};
+
+/// Throws UserError, with `place` (path:line) before the message, when the counts are out of range or contradict each
+/// other.
+void check_counts(const SolutionIdentifier& id, const std::string& place);
+
+/// For a solution of which the file has fewer lines than announced: throws UserError when the number of lines does not
+/// follow from the other counts, so that it is the line that is wrong and not the end of the file that is missing.
+void check_line_count(const SolutionIdentifier& id, const std::string& place);
+
+}  // namespace tchat
