@@ -1,0 +1,33 @@
+/// Is a solution of the boundary value problem an orbit of the model? (Fig. 5.10)
+///
+/// Checked with a tolerance of 1e-9, scaled: T_s >= 0; h >= 0 at the stored points of every event function monitored
+/// on a segment; h_x f <= 0 at every terminal point. Pinned ends are left out: the segment's own terminal event at its
+/// end, and a start on the event surface just left (h = 0 there, and h o g has a gradient parallel to that of the
+/// previous terminal event).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "bvp/orbit.hpp"
+#include "hybrid/hybrid_system.hpp"
+
+namespace tchat {
+
+struct Violation {
+  enum Kind { negative_duration, event_crossed, leaving_terminal_surface };
+  Kind kind;
+  int segment = 1;     ///< from 1
+  int event = 0;       ///< of an event function
+  double tau = 0.0;    ///< where it is worst
+  double value = 0.0;  ///< T_s, h, or h_x f
+};
+
+/// `monitored[s]` lists the event functions monitored on segment s.
+std::vector<Violation> inadmissibilities(const HybridSystem& system, const Signature& signature,
+                                         const std::vector<std::vector<int>>& monitored, const Orbit& x);
+
+/// "segment 1: h1 (wall) = -0.02 at tau = 0.31"
+std::string describe(const Violation& violation, const HybridSystem& system);
+
+}  // namespace tchat

@@ -1,0 +1,85 @@
+#include "bvp/collocation_rule.hpp"
+
+#include <algorithm>
+#include <boost/math/special_functions/legendre.hpp>
+#include <cmath>
+
+namespace tchat {
+
+namespace {
+
+struct GaussRule {
+  Eigen::VectorXd points;   // on [0, 1], rising
+  Eigen::VectorXd weights;  // of unit sum
+};
+
+GaussRule gauss_rule(int order) {
+  GaussRule rule{Eigen::VectorXd(order), Eigen::VectorXd(order)};
+  const std::vector<double> zeros = boost::math::legendre_p_zeros<double>(order);  // the zeros in [0, 1)
+  int filled = 0;
+  const auto add = [&](double z) {
+    const double slope = boost::math::legendre_p_prime(order, z);
+    rule.points(filled) = 0.5 * (1.0 + z);
+    rule.weights(filled) = 1.0 / ((1.0 - z * z) * slope * slope);
+    ++filled;
+  };
+  for (auto z = zeros.rbegin(); z != zeros.rend(); ++z)
+    if (*z > 0.0) add(-*z);
+  for (const double z : zeros) add(z);
+  return rule;
+}
+
+}  // namespace
+
+CollocationRule::CollocationRule(int points)
+    : value(points, points + 1),
+      slope(points, points + 1),
+      mass(Eigen::MatrixXd::Zero(points + 1, points + 1)),
+      integral(Eigen::VectorXd::Zero(points + 1)),
+      highest(points + 1),
+      points_(points),
+      barycentric_(points + 1) {
+  const int nodes = points + 1;
+  for (int i = 0; i < nodes; ++i) {
+    double product = 1.0;
+    for (int k = 0; k < nodes; ++k)
+      if (k != i) product *= static_cast<double>(i - k) / points;
+    barycentric_(i) = 1.0 / product;
+    // The leading coefficient of l_i is its barycentric weight; its c-th derivative is that times c!.
+    highest(i) = std::tgamma(points + 1.0) / product;
+  }
+
+  gauss = gauss_rule(points).points;
+  Eigen::VectorXd values(nodes);
+  Eigen::VectorXd slopes(nodes);
+  for (int j = 0; j < points; ++j) {
+    basis(gauss(j), values.data(), slopes.data());
+    value.row(j) = values.transpose();
+    slope.row(j) = slopes.transpose();
+  }
+
+  const GaussRule exact = gauss_rule(nodes);  // exact to degree 2c + 1, the products have 2c
+  for (int j = 0; j < nodes; ++j) {
+    basis(exact.points(j), values.data(), nullptr);
+    mass += exact.weights(j) * values * values.transpose();
+    integral += exact.weights(j) * values;
+  }
+}
+
+void CollocationRule::basis(double sigma, double* values, double* slopes) const {
+  const int nodes = points_ + 1;
+  for (int i = 0; i < nodes; ++i) {
+    double product = barycentric_(i);
+    double sum = 0.0;  // derivative of the product of (sigma - node_k)
+    for (int k = 0; k < nodes; ++k) {
+      if (k == i) continue;
+      const double factor = sigma - static_cast<double>(k) / points_;
+      sum = sum * factor + product;
+      product *= factor;
+    }
+    if (values != nullptr) values[i] = product;
+    if (slopes != nullptr) slopes[i] = sum;
+  }
+}
+
+}  // namespace tchat

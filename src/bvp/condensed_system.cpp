@@ -1,0 +1,467 @@
+#include "bvp/condensed_system.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+#include "linear_algebra/partial_lu.hpp"
+
+namespace tchat {
+
+namespace {
+
+double largest_of(const std::vector<double>& values, double so_far) {
+  for (const double v : values) so_far = std::max(so_far, std::abs(v));
+  return so_far;
+}
+
+int total_end_conditions(const DefiningSystem& system) {
+  int total = 0;
+  for (int s = 0; s < system.segments(); ++s) total += system.end_conditions(s);
+  return total;
+}
+
+int most_end_conditions(const DefiningSystem& system) {
+  int most = 0;
+  for (int s = 0; s < system.segments(); ++s) most = std::max(most, system.end_conditions(s));
+  return most;
+}
+
+std::vector<double> zeros(int count) { return std::vector<double>(static_cast<std::size_t>(count), 0.0); }
+
+/// Rows are numbered as they are met; repeated calls keep a running position in the triplet list.
+struct PatternBuilder {
+  std::vector<int>& rows;
+  std::vector<int>& columns;
+  void dense(int row, int row_count, int column, int column_count) {
+    for (int a = 0; a < row_count; ++a)
+      for (int b = 0; b < column_count; ++b) rows.push_back(row + a), columns.push_back(column + b);
+  }
+  void diagonal(int row, int column, int count) {
+    for (int a = 0; a < count; ++a) rows.push_back(row + a), columns.push_back(column + a);
+  }
+};
+
+}  // namespace
+
+double OrbitResidual::largest() const { return largest_of(connection, largest_of(end, largest_of(collocation, 0.0))); }
+
+bool OrbitResidual::finite() const {
+  const auto good = [](const std::vector<double>& v) { return all_finite(v.data(), static_cast<int>(v.size())); };
+  return good(collocation) && good(end) && good(connection);
+}
+
+CondensedSystem::CondensedSystem(const DefiningSystem& system, const OrbitShape& shape, int border_rows)
+    : system_(system),
+      shape_(shape),
+      n_(shape.dimension),
+      globals_(system.free_count()),
+      scalars_(1 + globals_),
+      border_(border_rows),
+      rule_(shape.collocation),
+      interval_(interval_kernel(n_, shape.collocation, scalars_)),
+      chain_(chain_kernel(n_, scalars_)),
+      lu_(make_sparse()) {
+  assert(shape.segments + globals_ == total_end_conditions(system) + border_rows);
+  const int blocks = shape.segments * shape.intervals;
+  const int interval_rows = interval_.rows() + border_;
+  const int chain_rows = chain_.rows() + border_;
+  interval_blocks_ = zeros(blocks * interval_rows * interval_.width());
+  interval_swaps_.resize(index(blocks * interval_.pivots()));
+  chain_blocks_ = zeros(blocks * chain_rows * chain_.width());
+  chain_swaps_.resize(index(blocks * chain_.pivots()));
+  interval_rhs_ = zeros(blocks * interval_rows);
+  chain_rhs_ = zeros(blocks * chain_rows);
+  first_blocks_ = zeros(shape.segments * n_ * n_);
+  last_blocks_ = first_blocks_;
+  scalar_blocks_ = zeros(shape.segments * n_ * scalars_);
+  border_blocks_ = zeros(shape.segments * border_ * (2 * n_ + scalars_));
+  segment_rhs_ = zeros(shape.segments * (n_ + border_));
+  signs_.assign(index(shape.segments), 1);
+  triplet_values_.resize(triplet_rows_.size());
+  rhs_ = zeros(lu_.size());
+  solution_ = rhs_;
+
+  const int conditions = most_end_conditions(system);
+  x_ = slope_ = f_ = zeros(n_);
+  fx_ = zeros(n_ * n_);
+  fp_ = zeros(n_ * globals_);
+  local_ = zeros(interval_.pivots() + 2 * n_ + scalars_);
+  h_ = zeros(conditions);
+  hx_ = zeros(conditions * n_);
+  hp_ = zeros(conditions * globals_);
+  zero_ = make_residual();
+}
+
+SparseLu CondensedSystem::make_sparse() {
+  PatternBuilder pattern{triplet_rows_, triplet_columns_};
+  const int m = shape_.segments;
+  int row = 0;
+  for (int s = 0; s < m; ++s) {
+    const int conditions = system_.end_conditions(s);
+    pattern.dense(row, n_, start_unknown(s), 2 * n_ + 1);
+    pattern.dense(row, n_, global_unknown(0), globals_);
+    row += n_;
+    pattern.dense(row, conditions, end_unknown(s), n_);
+    pattern.dense(row, conditions, global_unknown(0), globals_);
+    row += conditions;
+    pattern.diagonal(row, start_unknown((s + 1) % m), n_);
+    pattern.dense(row, n_, end_unknown(s), n_);
+    pattern.dense(row, n_, global_unknown(0), globals_);
+    row += n_;
+  }
+  pattern.dense(row, border_, 0, global_unknown(globals_));
+  row += border_;
+  return {row, triplet_rows_, triplet_columns_};
+}
+
+OrbitResidual CondensedSystem::make_residual() const {
+  OrbitResidual r;
+  r.collocation = zeros(shape_.segments * shape_.intervals * shape_.collocation * n_);
+  r.end = zeros(total_end_conditions(system_));
+  r.connection = zeros(shape_.segments * n_);
+  return r;
+}
+
+// ---- residual -------------------------------------------------------------------------------------------------------
+
+void CondensedSystem::interpolate(const Orbit& x, int s, int j, int gauss_point) {
+  std::fill(x_.begin(), x_.end(), 0.0);
+  std::fill(slope_.begin(), slope_.end(), 0.0);
+  for (int i = 0; i <= shape_.collocation; ++i) {
+    const double* u = x.node(s, j * shape_.collocation + i);
+    const double value = rule_.value(gauss_point, i);
+    const double slope = rule_.slope(gauss_point, i);
+    for (int a = 0; a < n_; ++a) {
+      x_[index(a)] += value * u[a];
+      slope_[index(a)] += slope * u[a];
+    }
+  }
+}
+
+void CondensedSystem::evaluate(const Orbit& x, OrbitResidual& residual) {
+  const HybridSystem& hybrid = system_.system();
+  const double* par = x.par.data();
+  double* collocation = residual.collocation.data();
+  double* end = residual.end.data();
+  for (int s = 0; s < shape_.segments; ++s) {
+    const IndexVector& v = system_.signature()[index(s)];
+    for (int j = 0; j < shape_.intervals; ++j) {
+      const double scale = (x.mesh[index(j + 1)] - x.mesh[index(j)]) * x.duration(s);
+      for (int g = 0; g < shape_.collocation; ++g, collocation += n_) {
+        interpolate(x, s, j, g);
+        hybrid.value(FunctionKind::field, v.field, x_.data(), par, collocation);
+        for (int a = 0; a < n_; ++a) collocation[a] = slope_[index(a)] - scale * collocation[a];
+      }
+    }
+    system_.end_values(s, x.end(s), par, end);
+    end += system_.end_conditions(s);
+    double* connection = &residual.connection[index(s * n_)];
+    hybrid.value(FunctionKind::jump, v.jump, x.end(s), par, connection);
+    const double* next = x.start((s + 1) % shape_.segments);
+    for (int a = 0; a < n_; ++a) connection[a] = next[a] - connection[a];
+  }
+}
+
+// ---- linearisation --------------------------------------------------------------------------------------------------
+
+bool CondensedSystem::linearize(const Orbit& x, std::span<const OrbitVector> rows, OrbitResidual& residual) {
+  double* collocation = residual.collocation.data();
+  for (int s = 0; s < shape_.segments; ++s) {
+    if (!condense_segment(x, s, rows, collocation)) return false;
+    collocation += shape_.intervals * shape_.collocation * n_;
+  }
+  return assemble(x, rows, residual) && lu_.factorize(triplet_values_);
+}
+
+bool CondensedSystem::condense_segment(const Orbit& x, int s, std::span<const OrbitVector> rows, double* collocation) {
+  const int block_size = (interval_.rows() + border_) * interval_.width();
+  int sign = 1;
+  for (int j = 0; j < shape_.intervals; ++j) {
+    double* a = &interval_blocks_[index(block(s, j) * block_size)];
+    if (!fill_interval(x, s, j, a, collocation + j * shape_.collocation * n_)) return false;
+    fill_border(s, j, rows, a);
+    const int interval_sign = interval_.eliminate(a, border_, &interval_swaps_[index(block(s, j) * interval_.pivots())]);
+    if (interval_sign == 0) return false;
+    sign *= interval_sign;
+  }
+  signs_[index(s)] = sign;
+  for (int j = 1; j < shape_.intervals; ++j)
+    if (!join(s, j)) return false;
+  const int p = interval_.pivots();
+  if (shape_.intervals == 1) {
+    keep_segment_blocks(s, &interval_blocks_[index(block(s, 0) * block_size)], interval_.width(), p, p + n_, p + 2 * n_,
+                        p, interval_.rows());
+  } else {
+    const int chain_size = (chain_.rows() + border_) * chain_.width();
+    keep_segment_blocks(s, &chain_blocks_[index(block(s, shape_.intervals - 1) * chain_size)], chain_.width(), n_,
+                        2 * n_, 3 * n_, n_, chain_.rows());
+  }
+  return true;
+}
+
+/// Collocation rows of one interval: slope - h T f at the Gauss points, columns (interior | left | right | T, p).
+bool CondensedSystem::fill_interval(const Orbit& x, int s, int j, double* block, double* collocation) {
+  const int c = shape_.collocation;
+  const int width = interval_.width();
+  const int left = interval_.pivots();
+  const int duration = left + 2 * n_;
+  const double h = x.mesh[index(j + 1)] - x.mesh[index(j)];
+  const double scale = h * x.duration(s);
+  const int field = system_.signature()[index(s)].field;
+  double finite = 0.0;
+  for (int g = 0; g < c; ++g) {
+    interpolate(x, s, j, g);
+    system_.system().first(FunctionKind::field, field, x_.data(), x.par.data(), system_.free_parameters(), f_.data(),
+                           fx_.data(), fp_.data());
+    for (int b = 0; b < n_ * n_; ++b) finite += fx_[index(b)] - fx_[index(b)];
+    for (int a = 0; a < n_; ++a) {
+      double* row = block + (g * n_ + a) * width;
+      const double f = f_[index(a)];
+      finite += f - f;
+      collocation[g * n_ + a] = slope_[index(a)] - scale * f;
+      for (int i = 0; i <= c; ++i) {
+        // The nodes 1..c-1 come first, then node 0 and node c.
+        double* entry = row + (i == 0 ? left : i == c ? left + n_ : (i - 1) * n_);
+        const double weight = -scale * rule_.value(g, i);
+        for (int b = 0; b < n_; ++b) entry[b] = weight * fx_[index(b * n_ + a)];
+        entry[a] += rule_.slope(g, i);
+      }
+      row[duration] = -h * f;
+      for (int k = 0; k < globals_; ++k) row[duration + 1 + k] = -scale * fp_[index(k * n_ + a)];
+    }
+  }
+  return finite == 0.0;
+}
+
+/// Border rows of one interval: the interior nodes and the left mesh node; the right one belongs to the next interval,
+/// except at the end of the segment. The scalars' own weights are added when the segments are assembled.
+void CondensedSystem::fill_border(int s, int j, std::span<const OrbitVector> rows, double* block) const {
+  const int c = shape_.collocation;
+  const int width = interval_.width();
+  const int left = interval_.pivots();
+  for (int r = 0; r < border_; ++r) {
+    double* row = block + (interval_.rows() + r) * width;
+    const Eigen::MatrixXd& weights = rows[index(r)].states;
+    const int column = s * shape_.nodes() + j * c;
+    const auto copy = [&](int node, double* to) { std::copy_n(weights.col(column + node).data(), n_, to); };
+    for (int i = 1; i < c; ++i) copy(i, row + (i - 1) * n_);
+    copy(0, row + left);
+    std::fill(row + left + n_, row + width, 0.0);
+    if (j == shape_.intervals - 1) copy(c, row + left + n_);
+  }
+}
+
+/// Eliminates the mesh node between everything left of interval j and interval j:
+/// columns (middle | first | last | scalars), rows (what came before; interval j; border).
+bool CondensedSystem::join(int s, int j) {
+  const int wi = interval_.width();
+  const int wc = chain_.width();
+  const int p = interval_.pivots();
+  const int interval_size = (interval_.rows() + border_) * wi;
+  const int chain_size = (chain_.rows() + border_) * wc;
+  double* target = &chain_blocks_[index(block(s, j) * chain_size)];
+  std::fill(target, target + chain_size, 0.0);
+
+  const double* own = &interval_blocks_[index(block(s, j) * interval_size)];
+  const auto put_own = [&](int from_row, int to_row) {
+    const double* from = own + from_row * wi + p;
+    double* to = target + to_row * wc;
+    for (int a = 0; a < n_; ++a) to[a] += from[a];
+    for (int a = 0; a < n_ + scalars_; ++a) to[2 * n_ + a] += from[n_ + a];
+  };
+  const bool opening = j == 1;
+  const double* before = opening ? own - interval_size : target - chain_size;
+  const auto put_before = [&](int from_row, int to_row) {
+    double* to = target + to_row * wc;
+    const double* from = before + from_row * (opening ? wi : wc) + (opening ? p : n_);  // (first | last | scalars)
+    for (int a = 0; a < n_; ++a) {
+      to[a] += from[n_ + a];
+      to[n_ + a] += from[a];
+    }
+    for (int a = 0; a < scalars_; ++a) to[3 * n_ + a] += from[2 * n_ + a];
+  };
+  for (int a = 0; a < n_; ++a) {
+    put_before((opening ? p : n_) + a, a);
+    put_own(p + a, n_ + a);
+  }
+  for (int r = 0; r < border_; ++r) {
+    put_before((opening ? interval_.rows() : chain_.rows()) + r, chain_.rows() + r);
+    put_own(interval_.rows() + r, chain_.rows() + r);
+  }
+  const int sign = chain_.eliminate(target, border_, &chain_swaps_[index(block(s, j) * chain_.pivots())]);
+  signs_[index(s)] *= sign;
+  return sign != 0;
+}
+
+void CondensedSystem::keep_segment_blocks(int s, const double* block, int width, int first, int last, int scalars,
+                                          int row, int border_row) {
+  for (int a = 0; a < n_; ++a) {
+    const double* from = block + (row + a) * width;
+    std::copy_n(from + first, n_, &first_blocks_[index((s * n_ + a) * n_)]);
+    std::copy_n(from + last, n_, &last_blocks_[index((s * n_ + a) * n_)]);
+    std::copy_n(from + scalars, scalars_, &scalar_blocks_[index((s * n_ + a) * scalars_)]);
+  }
+  const int length = 2 * n_ + scalars_;
+  for (int r = 0; r < border_; ++r) {
+    const double* from = block + (border_row + r) * width;
+    double* to = &border_blocks_[index((s * border_ + r) * length)];
+    std::copy_n(from + first, n_, to);
+    std::copy_n(from + last, n_, to + n_);
+    std::copy_n(from + scalars, scalars_, to + 2 * n_);
+  }
+}
+
+/// The matrix that UMFPACK sees, in the order of make_sparse().
+bool CondensedSystem::assemble(const Orbit& x, std::span<const OrbitVector> rows, OrbitResidual& residual) {
+  const HybridSystem& hybrid = system_.system();
+  const double* par = x.par.data();
+  double* value = triplet_values_.data();
+  double* end = residual.end.data();
+  for (int s = 0; s < shape_.segments; ++s) {
+    const double* scalars = &scalar_blocks_[index(s * n_ * scalars_)];
+    for (int a = 0; a < n_; ++a) {
+      value = std::copy_n(first_block(s) + a * n_, n_, value);
+      value = std::copy_n(last_block(s) + a * n_, n_, value);
+      *value++ = scalars[a * scalars_];
+    }
+    for (int a = 0; a < n_; ++a) value = std::copy_n(scalars + a * scalars_ + 1, globals_, value);
+
+    const int conditions = system_.end_conditions(s);
+    system_.end_derivatives(s, x.end(s), par, end, hx_.data(), hp_.data());
+    end += conditions;
+    for (int r = 0; r < conditions; ++r)
+      for (int b = 0; b < n_; ++b) *value++ = hx_[index(b * conditions + r)];
+    for (int r = 0; r < conditions; ++r)
+      for (int g = 0; g < globals_; ++g) *value++ = hp_[index(g * conditions + r)];
+
+    hybrid.first(FunctionKind::jump, system_.signature()[index(s)].jump, x.end(s), par, system_.free_parameters(),
+                 f_.data(), fx_.data(), fp_.data());
+    const double* next = x.start((s + 1) % shape_.segments);
+    for (int a = 0; a < n_; ++a) residual.connection[index(s * n_ + a)] = next[a] - f_[index(a)];
+    value = std::fill_n(value, n_, 1.0);
+    for (int a = 0; a < n_; ++a)
+      for (int b = 0; b < n_; ++b) *value++ = -fx_[index(b * n_ + a)];
+    for (int a = 0; a < n_; ++a)
+      for (int g = 0; g < globals_; ++g) *value++ = -fp_[index(g * n_ + a)];
+  }
+  const int length = 2 * n_ + scalars_;
+  for (int r = 0; r < border_; ++r) {
+    double* globals = value + shape_.segments * (2 * n_ + 1);
+    std::copy_n(rows[index(r)].globals.data(), globals_, globals);
+    for (int s = 0; s < shape_.segments; ++s) {
+      const double* from = &border_blocks_[index((s * border_ + r) * length)];
+      value = std::copy_n(from, 2 * n_ + 1, value);
+      value[-1] += rows[index(r)].durations(s);
+      for (int g = 0; g < globals_; ++g) globals[g] += from[2 * n_ + 1 + g];
+    }
+    value += globals_;
+  }
+  return residual.finite();
+}
+
+// ---- solution -------------------------------------------------------------------------------------------------------
+
+void CondensedSystem::solve(std::span<const double> border, OrbitVector& dx) { solve(zero_, border, dx); }
+
+void CondensedSystem::solve(const OrbitResidual& residual, std::span<const double> border, OrbitVector& dx) {
+  double* rhs = rhs_.data();
+  double* border_rhs = rhs_.data() + lu_.size() - border_;
+  std::copy_n(border.data(), border_, border_rhs);
+  const double* end = residual.end.data();
+  for (int s = 0; s < shape_.segments; ++s) {
+    condense_right_hand_side(residual, s);
+    const double* condensed = &segment_rhs_[index(s * (n_ + border_))];
+    rhs = std::copy_n(condensed, n_, rhs);
+    for (int r = 0; r < system_.end_conditions(s); ++r) *rhs++ = -*end++;
+    for (int a = 0; a < n_; ++a) *rhs++ = -residual.connection[index(s * n_ + a)];
+    for (int r = 0; r < border_; ++r) border_rhs[r] += condensed[n_ + r];
+  }
+  lu_.solve(rhs_.data(), solution_.data());
+  for (int s = 0; s < shape_.segments; ++s) expand_segment(s, dx);
+  for (int g = 0; g < globals_; ++g) dx.globals(g) = solution_[index(global_unknown(g))];
+}
+
+void CondensedSystem::condense_right_hand_side(const OrbitResidual& residual, int s) {
+  const int rows = interval_.rows();
+  const int p = interval_.pivots();
+  const double* collocation = &residual.collocation[index(block(s, 0) * rows)];
+  double* result = &segment_rhs_[index(s * (n_ + border_))];
+  for (int j = 0; j < shape_.intervals; ++j, collocation += rows) {
+    const int b = block(s, j);
+    double* r = &interval_rhs_[index(b * (rows + border_))];
+    for (int i = 0; i < rows; ++i) r[i] = -collocation[i];
+    std::fill_n(r + rows, border_, 0.0);
+    interval_.forward(&interval_blocks_[index(b * (rows + border_) * interval_.width())], border_,
+                      &interval_swaps_[index(b * p)], r);
+    if (j == 0) {
+      std::copy_n(r + p, n_, result);
+      std::copy_n(r + rows, border_, result + n_);
+      continue;
+    }
+    double* chain = &chain_rhs_[index(b * (2 * n_ + border_))];
+    std::copy_n(result, n_, chain);
+    std::copy_n(r + p, n_, chain + n_);
+    for (int k = 0; k < border_; ++k) chain[2 * n_ + k] = result[n_ + k] + r[rows + k];
+    chain_.forward(&chain_blocks_[index(b * (2 * n_ + border_) * chain_.width())], border_,
+                   &chain_swaps_[index(b * n_)], chain);
+    std::copy_n(chain + n_, n_ + border_, result);
+  }
+}
+
+/// From the ends of a segment back to its mesh nodes, right to left, and on to the interior nodes.
+void CondensedSystem::expand_segment(int s, OrbitVector& dx) {
+  const int c = shape_.collocation;
+  const int p = interval_.pivots();
+  const int rows = interval_.rows();
+  const double* start = &solution_[index(start_unknown(s))];
+  const double* end = &solution_[index(end_unknown(s))];
+  const double duration = solution_[index(duration_unknown(s))];
+  const double* globals = solution_.data() + global_unknown(0);
+  dx.durations(s) = duration;
+  const auto node = [&](int k) { return dx.states.col(s * shape_.nodes() + k).data(); };
+  std::copy_n(start, n_, node(0));
+  std::copy_n(end, n_, node(shape_.nodes() - 1));
+  double* local = local_.data();
+  for (int j = shape_.intervals - 1; j >= 0; --j) {
+    const int b = block(s, j);
+    if (j > 0) {
+      std::copy_n(start, n_, local + n_);
+      std::copy_n(node((j + 1) * c), n_, local + 2 * n_);
+      local[3 * n_] = duration;
+      std::copy_n(globals, globals_, local + 3 * n_ + 1);
+      chain_.backward(&chain_blocks_[index(b * (2 * n_ + border_) * chain_.width())],
+                      &chain_rhs_[index(b * (2 * n_ + border_))], local, 3 * n_ + scalars_);
+      std::copy_n(local, n_, node(j * c));
+    }
+    std::copy_n(node(j * c), n_, local + p);
+    std::copy_n(node((j + 1) * c), n_, local + p + n_);
+    local[p + 2 * n_] = duration;
+    std::copy_n(globals, globals_, local + p + 2 * n_ + 1);
+    interval_.backward(&interval_blocks_[index(b * (rows + border_) * interval_.width())],
+                       &interval_rhs_[index(b * (rows + border_))], local, p + 2 * n_ + scalars_);
+    std::copy_n(local, p, node(j * c + 1));
+  }
+}
+
+int CondensedSystem::determinant_sign() const {
+  int sign = lu_.determinant_sign();
+  for (const int s : signs_) sign *= s;
+  return sign;
+}
+
+CondensedSystem::Singularity CondensedSystem::singularity() const {
+  const SparseLu::Condition condition = lu_.condition();
+  Singularity result{condition.reciprocal, make_vector()};
+  if (condition.null_direction.empty()) return result;
+  const double* direction = condition.null_direction.data();
+  for (int s = 0; s < shape_.segments; ++s) {
+    std::copy_n(direction + start_unknown(s), n_, result.direction.states.col(s * shape_.nodes()).data());
+    std::copy_n(direction + end_unknown(s), n_, result.direction.states.col((s + 1) * shape_.nodes() - 1).data());
+    result.direction.durations(s) = direction[duration_unknown(s)];
+  }
+  for (int g = 0; g < globals_; ++g) result.direction.globals(g) = direction[global_unknown(g)];
+  return result;
+}
+
+}  // namespace tchat

@@ -1,0 +1,128 @@
+/// The linearised boundary value problem of an orbit, condensed and factored.
+///
+/// At an orbit x the linearisation of the collocation equations (5.29), end conditions and connectivity, bordered by
+/// b rows, reads J dx = -F. It is reduced in two sweeps that touch every mesh interval once:
+///   1. interval: the c - 1 interior nodes are eliminated from the c n collocation rows; n rows in (left, right) remain;
+///   2. chain: mesh nodes are eliminated from left to right with pivoting, until n rows per segment remain,
+///          A_s x_s(0) + C_s x_s(1) + B_s (T_s, p) = r_s                                   (5.48-5.49 with C_s kept)
+/// and UMFPACK solves what is left, 2 n m + m + q unknowns that couple only neighbouring segments. Work and memory
+/// are linear in m and N. All arrays are allocated when the object is made.
+///
+/// Border rows are general linear functionals of the unknowns, given as dual vectors.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "bvp/collocation_rule.hpp"
+#include "bvp/defining_system.hpp"
+#include "bvp/orbit.hpp"
+#include "linear_algebra/block_kernel.hpp"
+#include "linear_algebra/sparse_lu.hpp"
+
+namespace tchat {
+
+/// F at an orbit, border rows excepted.
+struct OrbitResidual {
+  std::vector<double> collocation;  ///< m N c n: segment, interval, Gauss point, component; scaled by the interval
+  std::vector<double> end;          ///< end conditions, segment by segment
+  std::vector<double> connection;   ///< n m: x_{s+1}(0) - g(x_s(1))
+
+  double largest() const;
+  bool finite() const;
+};
+
+class CondensedSystem {
+ public:
+  /// `border_rows` = b. The defining system must outlive this object and satisfy m + q = E + b.
+  CondensedSystem(const DefiningSystem& system, const OrbitShape& shape, int border_rows);
+
+  const DefiningSystem& system() const { return system_; }
+  const OrbitShape& shape() const { return shape_; }
+  const CollocationRule& rule() const { return rule_; }
+  OrbitResidual make_residual() const;
+  OrbitVector make_vector() const { return OrbitVector(shape_, system_.free_count()); }
+
+  /// F(x). The result may hold entries that are not finite.
+  void evaluate(const Orbit& x, OrbitResidual& residual);
+
+  /// J(x) bordered by `rows` (b dual vectors), factored; F(x) on the way. False when J is not finite or is exactly
+  /// singular; the factors are then gone.
+  bool linearize(const Orbit& x, std::span<const OrbitVector> rows, OrbitResidual& residual);
+
+  /// The solution of J dx = -F, rows dx = border. `border` has b entries.
+  void solve(const OrbitResidual& residual, std::span<const double> border, OrbitVector& dx);
+  /// The same with F = 0.
+  void solve(std::span<const double> border, OrbitVector& dx);
+
+  /// Row-major n x n blocks A_s and C_s: on every segment a flow perturbation satisfies A_s v(0) + C_s v(1) = 0.
+  const double* first_block(int s) const { return &first_blocks_[index(s * n_ * n_)]; }
+  const double* last_block(int s) const { return &last_blocks_[index(s * n_ * n_)]; }
+
+  /// Sign of the determinant of the bordered J; comparable between points of one mesh.
+  int determinant_sign() const;
+
+  /// Scaled reciprocal condition of the factored matrix and its null direction, of which only the ends of segments,
+  /// durations and globals are filled in. Allocates.
+  struct Singularity {
+    double reciprocal_condition = 0.0;
+    OrbitVector direction;
+  };
+  Singularity singularity() const;
+
+ private:
+  static std::size_t index(int i) { return static_cast<std::size_t>(i); }
+  int block(int s, int j) const { return s * shape_.intervals + j; }
+  int start_unknown(int s) const { return s * (2 * n_ + 1); }
+  int end_unknown(int s) const { return start_unknown(s) + n_; }
+  int duration_unknown(int s) const { return start_unknown(s) + 2 * n_; }
+  int global_unknown(int g) const { return shape_.segments * (2 * n_ + 1) + g; }
+
+  SparseLu make_sparse();
+  void interpolate(const Orbit& x, int s, int j, int gauss_point);
+  bool condense_segment(const Orbit& x, int s, std::span<const OrbitVector> rows, double* collocation);
+  bool fill_interval(const Orbit& x, int s, int j, double* block, double* collocation);
+  void fill_border(int s, int j, std::span<const OrbitVector> rows, double* block) const;
+  bool join(int s, int j);
+  void keep_segment_blocks(int s, const double* block, int width, int first, int last, int scalars, int row,
+                           int border_row);
+  bool assemble(const Orbit& x, std::span<const OrbitVector> rows, OrbitResidual& residual);
+  void condense_right_hand_side(const OrbitResidual& residual, int s);
+  void expand_segment(int s, OrbitVector& dx);
+
+  const DefiningSystem& system_;
+  OrbitShape shape_;
+  int n_;
+  int globals_;  // q
+  int scalars_;  // duration and globals: 1 + q columns
+  int border_;   // b
+  CollocationRule rule_;
+  BlockKernel interval_;
+  BlockKernel chain_;
+
+  std::vector<double> interval_blocks_;  // per interval (c n + b) x width
+  std::vector<int> interval_swaps_;
+  std::vector<double> chain_blocks_;  // per interval (2 n + b) x width
+  std::vector<int> chain_swaps_;
+  std::vector<double> interval_rhs_;
+  std::vector<double> chain_rhs_;
+  std::vector<double> first_blocks_;   // m n x n
+  std::vector<double> last_blocks_;    // m n x n
+  std::vector<double> scalar_blocks_;  // m n x scalars
+  std::vector<double> border_blocks_;  // m b x (2 n + scalars): first | last | scalars
+  std::vector<double> segment_rhs_;    // m (n + b)
+  std::vector<int> signs_;             // per segment, of all pivots
+
+  std::vector<int> triplet_rows_;  // before lu_, whose constructor needs them
+  std::vector<int> triplet_columns_;
+  std::vector<double> triplet_values_;
+  SparseLu lu_;
+  std::vector<double> rhs_;
+  std::vector<double> solution_;
+
+  // scratch of one collocation point or one end of a segment
+  std::vector<double> x_, slope_, f_, fx_, fp_, local_, h_, hx_, hp_;
+  OrbitResidual zero_;
+};
+
+}  // namespace tchat

@@ -1,0 +1,49 @@
+/// What a problem type adds to collocation: the conditions that tie the segments of an orbit together.
+///
+/// Every problem type continues orbits of a signature I_1..I_m: on each segment the collocated field (5.29), between
+/// segments the connectivity x_{s+1}(0) = g_{k_s}(x_s(1)) (cyclic, so the last one is periodicity, 5.5-5.7). A problem
+/// type says which scalar conditions hold at the end of each segment, and which problem parameters are free.
+///
+/// Count. Unknowns: n m functions, m durations, q free problem parameters. Conditions: n m boundary conditions of
+/// connectivity, E = sum of end conditions, b border conditions (pseudo-arclength and any others). Well posed when
+/// m + q = E + b.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "hybrid/hybrid_system.hpp"
+
+namespace tchat {
+
+class DefiningSystem {
+ public:
+  /// `free_parameters`: PAR indices of the free problem parameters, durations not among them.
+  DefiningSystem(const HybridSystem& system, Signature signature, std::vector<int> free_parameters)
+      : system_(system), signature_(std::move(signature)), free_parameters_(std::move(free_parameters)) {}
+  virtual ~DefiningSystem() = default;
+
+  const HybridSystem& system() const { return system_; }
+  const Signature& signature() const { return signature_; }
+  const std::vector<int>& free_parameters() const { return free_parameters_; }
+  int dimension() const { return system_.dimension(); }
+  int segments() const { return static_cast<int>(signature_.size()); }
+  int free_count() const { return static_cast<int>(free_parameters_.size()); }
+
+  /// Number of scalar conditions on x_s(1), s = 0..m-1.
+  virtual int end_conditions(int s) const = 0;
+  /// Their values (end_conditions(s) numbers), each zero on an orbit.
+  virtual void end_values(int s, const double* x, const double* par, double* values) const = 0;
+  /// Values with derivatives: dx is end_conditions(s) x n, dp is end_conditions(s) x free_count(), column-major.
+  virtual void end_derivatives(int s, const double* x, const double* par, double* values, double* dx,
+                               double* dp) const = 0;
+  /// What condition r at the end of segment s says, for messages.
+  virtual std::string end_condition_name(int s, int r) const = 0;
+
+ private:
+  HybridSystem system_;
+  Signature signature_;
+  std::vector<int> free_parameters_;
+};
+
+}  // namespace tchat

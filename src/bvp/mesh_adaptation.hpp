@@ -1,0 +1,28 @@
+/// Meshes that follow the solution: equidistribution of the estimated local error, and transfer between meshes.
+///
+/// The (c+1)-th derivative of the exact solution is estimated by differencing the c-th derivatives of the polynomials
+/// of neighbouring intervals. The monitor is the sum over components and segments of |u^(c+1)|^(1/(c+1)); one mesh in
+/// tau serves all segments. Segments of zero duration have no weight.
+#pragma once
+
+#include "bvp/collocation_rule.hpp"
+#include "bvp/orbit.hpp"
+
+namespace tchat {
+
+/// The mesh of `intervals` intervals that equidistributes the monitor of x. Uniform when all derivatives vanish.
+std::vector<double> equidistributed_mesh(const Orbit& x, const CollocationRule& rule, int intervals);
+
+/// The old mesh's density at another number of intervals.
+std::vector<double> resampled_mesh(const std::vector<double>& mesh, int intervals);
+
+/// States evaluated on another mesh, possibly of other N and c (`shape` has the same n and m).
+Eigen::MatrixXd interpolate_states(const Eigen::MatrixXd& states, const OrbitShape& from,
+                                   const std::vector<double>& from_mesh, const OrbitShape& to,
+                                   const std::vector<double>& to_mesh);
+
+/// Estimated largest error of the states between mesh points, relative to 1 + max |u|: h^(c+1) |u^(c+1)| times the
+/// interpolation constant, the largest over intervals and components.
+double estimated_error(const Orbit& x, const CollocationRule& rule);
+
+}  // namespace tchat

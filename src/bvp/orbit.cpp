@@ -1,0 +1,66 @@
+#include "bvp/orbit.hpp"
+
+namespace tchat {
+
+double Orbit::tau(int k) const {
+  const int c = shape.collocation;
+  const int j = k / c;
+  const int i = k % c;
+  if (i == 0) return mesh[static_cast<std::size_t>(j)];
+  const double left = mesh[static_cast<std::size_t>(j)];
+  const double right = mesh[static_cast<std::size_t>(j + 1)];
+  return left + (right - left) * i / c;
+}
+
+std::vector<double> Orbit::node_times() const {
+  std::vector<double> times(static_cast<std::size_t>(shape.nodes()));
+  for (int k = 0; k < shape.nodes(); ++k) times[static_cast<std::size_t>(k)] = tau(k);
+  return times;
+}
+
+std::vector<double> uniform_mesh(int intervals) {
+  std::vector<double> mesh(static_cast<std::size_t>(intervals) + 1);
+  for (int j = 0; j <= intervals; ++j) mesh[static_cast<std::size_t>(j)] = static_cast<double>(j) / intervals;
+  return mesh;
+}
+
+OrbitVector::OrbitVector(const OrbitShape& shape, int global_count)
+    : states(Eigen::MatrixXd::Zero(shape.dimension, shape.columns())),
+      durations(Eigen::VectorXd::Zero(shape.segments)),
+      globals(Eigen::VectorXd::Zero(global_count)) {}
+
+void OrbitVector::set_zero() {
+  states.setZero();
+  durations.setZero();
+  globals.setZero();
+}
+
+void OrbitVector::scale(double factor) {
+  states *= factor;
+  durations *= factor;
+  globals *= factor;
+}
+
+double dot(const OrbitVector& row, const OrbitVector& v) {
+  return row.states.cwiseProduct(v.states).sum() + row.durations.dot(v.durations) + row.globals.dot(v.globals);
+}
+
+void advance(Orbit& x, double step, const OrbitVector& v, const std::vector<int>& free_parameters) {
+  x.states += step * v.states;
+  for (int s = 0; s < x.shape.segments; ++s) x.duration(s) += step * v.durations(s);
+  for (std::size_t g = 0; g < free_parameters.size(); ++g)
+    x.par(free_parameters[g] - 1) += step * v.globals(static_cast<Eigen::Index>(g));
+}
+
+double dot_difference(const OrbitVector& row, const Orbit& x, const Orbit& base,
+                      const std::vector<int>& free_parameters) {
+  double sum = row.states.cwiseProduct(x.states - base.states).sum();
+  for (int s = 0; s < x.shape.segments; ++s) sum += row.durations(s) * (x.duration(s) - base.duration(s));
+  for (std::size_t g = 0; g < free_parameters.size(); ++g) {
+    const int k = free_parameters[g] - 1;
+    sum += row.globals(static_cast<Eigen::Index>(g)) * (x.par(k) - base.par(k));
+  }
+  return sum;
+}
+
+}  // namespace tchat

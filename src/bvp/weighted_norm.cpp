@@ -1,0 +1,36 @@
+#include "bvp/weighted_norm.hpp"
+
+namespace tchat {
+
+WeightedNorm::WeightedNorm(Eigen::VectorXd state_weights, Eigen::VectorXd parameter_weights)
+    : state_weights_(std::move(state_weights)), parameter_weights_(std::move(parameter_weights)) {}
+
+WeightedNorm WeightedNorm::unit(int dimension) {
+  return {Eigen::VectorXd::Ones(dimension), Eigen::VectorXd::Ones(parameter_length)};
+}
+
+void WeightedNorm::dual(const Orbit& x, const CollocationRule& rule, const std::vector<int>& free_parameters,
+                        const OrbitVector& v, OrbitVector& row) const {
+  const int c = x.shape.collocation;
+  const int n = x.shape.dimension;
+  row.states.setZero();
+  for (int s = 0; s < x.shape.segments; ++s) {
+    for (int j = 0; j < x.shape.intervals; ++j) {
+      const double h = x.mesh[static_cast<std::size_t>(j + 1)] - x.mesh[static_cast<std::size_t>(j)];
+      const int column = s * x.shape.nodes() + j * c;
+      for (int i = 0; i <= c; ++i)
+        for (int k = 0; k <= c; ++k) {
+          const double weight = h * rule.mass(i, k);
+          for (int a = 0; a < n; ++a)
+            row.states(a, column + i) += weight * state_weights_(a) * v.states(a, column + k);
+        }
+    }
+    row.durations(s) = parameter_weights_(first_duration - 1 + s) * v.durations(s);
+  }
+  for (std::size_t g = 0; g < free_parameters.size(); ++g) {
+    const auto i = static_cast<Eigen::Index>(g);
+    row.globals(i) = parameter_weights_(free_parameters[g] - 1) * v.globals(i);
+  }
+}
+
+}  // namespace tchat

@@ -1,0 +1,32 @@
+/// The inner product of pseudo-arclength continuation (5.50),
+///
+///     <a, b> = sum_s integral_0^1 sum_i theta_i a_i b_i dtau + sum_s theta_T a_T b_T + sum_g theta_g a_g b_g,
+///
+/// with weights theta from THU (states) and THL (durations and free parameters). Integrals are exact for the
+/// polynomials. For several segments the sum grows with their number, as in AUTO's multi-segment problems.
+#pragma once
+
+#include <vector>
+
+#include "bvp/collocation_rule.hpp"
+#include "bvp/orbit.hpp"
+
+namespace tchat {
+
+class WeightedNorm {
+ public:
+  /// `state_weights` has n entries, `parameter_weights` those of PAR(1..parameter_length), all >= 0.
+  WeightedNorm(Eigen::VectorXd state_weights, Eigen::VectorXd parameter_weights);
+  /// All weights 1.
+  static WeightedNorm unit(int dimension);
+
+  /// The dual vector <v, .> on the mesh of x, written to `row`.
+  void dual(const Orbit& x, const CollocationRule& rule, const std::vector<int>& free_parameters, const OrbitVector& v,
+            OrbitVector& row) const;
+
+ private:
+  Eigen::VectorXd state_weights_;
+  Eigen::VectorXd parameter_weights_;
+};
+
+}  // namespace tchat

@@ -1,0 +1,67 @@
+/// What continuation produces: the points of a branch, handed one by one to whoever writes them, and a summary.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "bvp/admissibility.hpp"
+#include "continuation/path_follower.hpp"
+#include "special_points/test_function.hpp"
+#include "stability/floquet_multipliers.hpp"
+
+namespace tchat {
+
+struct TestValue {
+  std::string name;
+  std::optional<double> value;
+};
+
+/// A computed point of the branch, complete. References are valid during the call that hands it over.
+struct BranchPoint {
+  int number = 1;                       ///< 1, 2, ...
+  SpecialPoint special;                 ///< type ordinary: an unlabelled point
+  const PathPoint& path;
+  const FloquetMultipliers& multipliers;
+  const std::vector<Violation>& violations;  ///< empty: admissible
+  double measure = 0.0;                 ///< by IPLT
+  double estimated_error = 0.0;         ///< of the states between mesh points, relative
+  int newton_iterations = 0;
+  std::vector<NewtonIteration> newton;  ///< of the step that reached it
+  double step = 0.0;                    ///< ds of that step, 0 at the start
+  std::vector<TestValue> tests;
+  bool labelled() const { return special.type != PointType::ordinary; }
+};
+
+/// Receives a branch as it grows.
+class BranchSink {
+ public:
+  virtual ~BranchSink() = default;
+  virtual void point(const BranchPoint& point) = 0;
+  /// The step that will be tried next from the last point.
+  virtual void next_step(int point_number, double ds) = 0;
+  /// Something worth a line in the d-file, about the point being computed.
+  virtual void note(int point_number, const std::string& text) = 0;
+};
+
+enum class EndReason {
+  max_points,
+  parameter_bound,
+  measure_bound,
+  special_point,
+  interrupted,
+  no_convergence,
+  first_step_failed
+};
+
+struct BranchSummary {
+  EndReason reason = EndReason::max_points;
+  std::string detail;            ///< which bound, which special point, what was tried
+  int points = 0;
+  int inadmissible_points = 0;
+  int unstable_points = 0;
+  bool multipliers_computed = false;
+  double worst_structural = 0.0;      ///< largest structural multiplier
+  double worst_estimated_error = 0.0;
+};
+
+}  // namespace tchat

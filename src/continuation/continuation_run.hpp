@@ -1,0 +1,89 @@
+/// One branch from a converged start: step, evaluate test functions, locate special points, record, adapt, stop.
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include "continuation/branch.hpp"
+#include "continuation/step_size.hpp"
+
+namespace tchat {
+
+struct ContinuationSettings {
+  StepSettings step;
+  int max_points = 100;              ///< NMX; the start counts
+  int principal = 1;                 ///< PAR index of ICP(1)
+  double parameter_min = -1e300, parameter_max = 1e300;  ///< RL0, RL1
+  double measure_min = -1e300, measure_max = 1e300;      ///< A0, A1
+  int measure = 0;                   ///< IPLT
+  Eigen::VectorXd state_weights;     ///< THU, n entries
+  int print_every = 0;               ///< NPR
+  int adapt_mesh_every = 0;          ///< IAD
+  bool multipliers = true;           ///< ISP > 0
+  double location_tolerance = 1e-7;  ///< EPSS
+  int max_location = 10;             ///< ITMX
+  bool label_start = true;           ///< false at a restart: the first point is known already
+  /// Called for every labelled point; true ends the branch there (STOP).
+  std::function<bool(const SpecialPoint&)> stop_at;
+  std::vector<std::vector<int>> monitored;  ///< event functions monitored on each segment
+  std::function<bool()> interrupted;        ///< asked after every point
+};
+
+class ContinuationRun {
+ public:
+  ContinuationRun(PathFollower& follower, const DefiningSystem& system, ContinuationSettings settings,
+                  std::vector<std::unique_ptr<TestFunction>> tests, BranchSink& sink);
+
+  /// `start` is converged, with its tangent oriented for DS > 0, and follower.condensed() is its linearisation.
+  BranchSummary run(PathPoint start);
+
+ private:
+  /// A zero of test function `test` on the step from here_.
+  struct Zero {
+    std::size_t test;
+    double ds;
+    int sign_after;   // of the function beyond the zero
+    bool converged;
+  };
+
+  bool take_step();
+  void evaluate(const PathPoint& at);
+  TestedPoint tested(const PathPoint& at) const { return {at.orbit, at.tangent, follower_.condensed(), multipliers_}; }
+  int sign_of(std::size_t test) const;
+  std::optional<Zero> first_zero();
+  Zero locate(std::size_t test);
+  SpecialPoint move_to(const Zero& zero);
+  SpecialPoint end_conditions(SpecialPoint special);
+  void record(const SpecialPoint& special);
+  void end(EndReason reason, std::string detail);
+  void prepare_next_step();
+  void give_up();
+
+  PathFollower& follower_;
+  const DefiningSystem& system_;
+  ContinuationSettings settings_;
+  std::vector<std::unique_ptr<TestFunction>> tests_;
+  BranchSink& sink_;
+
+  FloquetSolver floquet_;
+  StepSize step_;
+  PathPoint here_;        // the last accepted point
+  PathPoint next_;        // the point being computed
+  NewtonResult newton_;   // of the step to next_
+  double ds_taken_ = 0.0; // length of that step
+  int number_ = 1;        // of the last accepted point
+
+  // At the point evaluated last:
+  FloquetMultipliers multipliers_;
+  std::vector<std::optional<double>> values_;
+  std::vector<double> zero_levels_;
+  double measure_ = 0.0;
+
+  std::vector<std::optional<double>> here_values_;  // of the test functions at here_
+  std::vector<int> signs_;                          // their signs there; 0: none
+
+  bool ended_ = false;
+  BranchSummary summary_;
+};
+
+}  // namespace tchat

@@ -1,0 +1,156 @@
+#include "continuation/path_follower.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "bvp/mesh_adaptation.hpp"
+
+namespace tchat {
+
+namespace {
+
+/// Factors older than this (relative change of the point since) are renewed before anything is read off them.
+constexpr double current_enough = 1e-10;
+constexpr std::array<double, 1> zero{0.0};
+constexpr std::array<double, 1> one{1.0};
+
+}  // namespace
+
+PathFollower::PathFollower(const DefiningSystem& system, const OrbitShape& shape, WeightedNorm norm,
+                           const NewtonSettings& settings, int principal)
+    : system_(system),
+      norm_(std::move(norm)),
+      principal_(principal),
+      condensed_(system, shape, 1),
+      newton_(condensed_, settings),
+      settings_(settings),
+      rows_{condensed_.make_vector()} {}
+
+PathPoint PathFollower::make_point(Orbit orbit) const {
+  return {std::move(orbit), condensed_.make_vector(), condensed_.make_vector()};
+}
+
+OrbitVector PathFollower::principal_row() const {
+  OrbitVector row = condensed_.make_vector();
+  if (is_duration(principal_, system_.segments())) {
+    row.durations(duration_segment(principal_)) = 1.0;
+  } else {
+    const auto& free = system_.free_parameters();
+    row.globals(std::find(free.begin(), free.end(), principal_) - free.begin()) = 1.0;
+  }
+  return row;
+}
+
+double PathFollower::principal_direction(const OrbitVector& v) const { return dot(principal_row(), v); }
+
+bool PathFollower::linearize(const Orbit& x, const OrbitVector& row) {
+  if (&row != &rows_[0]) rows_[0] = row;
+  return condensed_.linearize(x, rows_, newton_.residual());
+}
+
+void PathFollower::normalise(const Orbit& x, OrbitVector& tangent, OrbitVector& dual) const {
+  norm_.dual(x, condensed_.rule(), system_.free_parameters(), tangent, dual);
+  const double length = std::sqrt(std::abs(dot(dual, tangent)));
+  if (!(length > 0.0)) return;
+  tangent.scale(1.0 / length);
+  dual.scale(1.0 / length);
+}
+
+/// From the current factors: the vector that every condition but the border annihilates.
+bool PathFollower::find_tangent(const Orbit& x, OrbitVector& tangent, OrbitVector& dual) {
+  condensed_.solve(one, tangent);
+  if (!tangent.states.allFinite() || !tangent.durations.allFinite() || !tangent.globals.allFinite()) return false;
+  normalise(x, tangent, dual);
+  return true;
+}
+
+/// Newton on the border in rows_, then the tangent at the result.
+NewtonResult PathFollower::correct_and_orient(PathPoint& point, const Orbit& base, double target) {
+  const std::array<double, 1> targets{target};
+  NewtonResult result = newton_.correct(point.orbit, rows_, base, targets);
+  if (!result.converged()) return result;
+  const bool current = result.change_since_factorization <= current_enough;
+  if ((!current && !linearize(point.orbit, rows_[0])) || !find_tangent(point.orbit, point.tangent, point.dual))
+    result.status = NewtonStatus::singular;
+  return result;
+}
+
+NewtonResult PathFollower::step(const PathPoint& from, double ds, PathPoint& to) {
+  to.orbit.mesh = from.orbit.mesh;
+  to.orbit.states = from.orbit.states;
+  to.orbit.par = from.orbit.par;
+  advance(to.orbit, ds, from.tangent, system_.free_parameters());
+  rows_[0].states = from.dual.states;
+  rows_[0].durations = from.dual.durations;
+  rows_[0].globals = from.dual.globals;
+  return correct_and_orient(to, from.orbit, ds);
+}
+
+/// The first component of the tangent that is not negligible decides: the principal parameter's when it varies.
+void PathFollower::orient(PathPoint& point) const {
+  constexpr double negligible = 1e-8;
+  double direction = principal_direction(point.tangent);
+  for (Eigen::Index g = 0; std::abs(direction) < negligible && g < point.tangent.globals.size(); ++g)
+    direction = point.tangent.globals(g);
+  for (Eigen::Index s = 0; std::abs(direction) < negligible && s < point.tangent.durations.size(); ++s)
+    direction = point.tangent.durations(s);
+  if (direction < 0.0) reverse(point);
+}
+
+NewtonResult PathFollower::start_at_fixed_parameter(PathPoint& point) {
+  rows_[0] = principal_row();
+  const Orbit base = point.orbit;
+  NewtonResult result = correct_and_orient(point, base, 0.0);
+  if (result.converged()) orient(point);
+  return result;
+}
+
+NewtonResult PathFollower::start_along(PathPoint& point, const OrbitVector& direction) {
+  point.tangent = direction;
+  normalise(point.orbit, point.tangent, point.dual);
+  rows_[0] = point.dual;
+  const Orbit base = point.orbit;
+  return correct_and_orient(point, base, 0.0);
+}
+
+NewtonResult PathFollower::start_by_minimum_norm(PathPoint& point) {
+  // Any border that is not orthogonal to the null vector will do to find it the first time.
+  rows_[0].states.setZero();
+  for (Eigen::Index i = 0; i < rows_[0].states.size(); ++i)
+    rows_[0].states.data()[i] = std::cos(1.0 + 0.37 * static_cast<double>(i));
+  rows_[0].durations.setOnes();
+  rows_[0].globals.setOnes();
+  NewtonResult result;
+  result.status = NewtonStatus::singular;
+  if (!linearize(point.orbit, rows_[0]) || !find_tangent(point.orbit, point.tangent, point.dual)) return result;
+  // A few Gauss-Newton steps with a fresh null vector each, then the ordinary iteration across the last one.
+  for (int iteration = 0; iteration < settings_.max_iterations; ++iteration) {
+    rows_[0] = point.dual;
+    const Orbit base = point.orbit;
+    result = correct_and_orient(point, base, 0.0);
+    if (result.converged() || result.status == NewtonStatus::not_finite) break;
+    if (!linearize(point.orbit, rows_[0]) || !find_tangent(point.orbit, point.tangent, point.dual)) return result;
+  }
+  if (result.converged()) orient(point);
+  return result;
+}
+
+void PathFollower::change_mesh(PathPoint& point, const std::vector<double>& mesh) const {
+  const OrbitShape& shape = point.orbit.shape;
+  point.orbit.states = interpolate_states(point.orbit.states, shape, point.orbit.mesh, shape, mesh);
+  point.tangent.states = interpolate_states(point.tangent.states, shape, point.orbit.mesh, shape, mesh);
+  point.orbit.mesh = mesh;
+  normalise(point.orbit, point.tangent, point.dual);
+}
+
+void PathFollower::reverse(PathPoint& point) const {
+  point.tangent.scale(-1.0);
+  point.dual.scale(-1.0);
+}
+
+CondensedSystem::Singularity PathFollower::singularity(const PathPoint& point) {
+  if (!linearize(point.orbit, point.dual) && !newton_.residual().finite()) return {1.0, {}};
+  return condensed_.singularity();
+}
+
+}  // namespace tchat

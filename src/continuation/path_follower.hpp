@@ -1,0 +1,71 @@
+/// Pseudo-arclength continuation of a defining system: starting, predicting along the tangent, correcting (5.50-5.55).
+///
+/// A path point carries its unit tangent in the weighted norm, oriented along the branch. A step of length ds predicts
+/// x + ds v and corrects with <v, x_new - x> = ds; the tangent at the new point comes from the factors of its
+/// linearisation, which stay available for multipliers and test functions.
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "bvp/weighted_norm.hpp"
+#include "corrector/newton_chord.hpp"
+
+namespace tchat {
+
+struct PathPoint {
+  Orbit orbit;
+  OrbitVector tangent;  ///< unit length
+  OrbitVector dual;     ///< <tangent, .> on the orbit's mesh
+};
+
+class PathFollower {
+ public:
+  /// `principal` is the PAR index of the continuation parameter, a free problem parameter or a duration.
+  PathFollower(const DefiningSystem& system, const OrbitShape& shape, WeightedNorm norm, const NewtonSettings& settings,
+               int principal);
+
+  PathPoint make_point(Orbit orbit) const;
+
+  /// Corrects point.orbit with the principal parameter fixed; then the tangent along which it grows.
+  NewtonResult start_at_fixed_parameter(PathPoint& point);
+  /// Corrects point.orbit orthogonally to the given direction and takes over its orientation.
+  NewtonResult start_along(PathPoint& point, const OrbitVector& direction);
+  /// Corrects point.orbit by minimum-norm steps with the principal parameter free, where fixing it gives a singular
+  /// matrix (folds, codimension-two points); then the tangent along which the principal parameter grows.
+  NewtonResult start_by_minimum_norm(PathPoint& point);
+
+  /// One step of signed length ds; `to` must come from make_point or be a former path point.
+  NewtonResult step(const PathPoint& from, double ds, PathPoint& to);
+
+  /// Moves the point to a new mesh of the same size: states and tangent are interpolated, the tangent renormalised.
+  void change_mesh(PathPoint& point, const std::vector<double>& mesh) const;
+  void reverse(PathPoint& point) const;
+
+  /// The linearisation at the last point that start_... or step returned, current to about 1e-10.
+  CondensedSystem& condensed() { return condensed_; }
+  const CondensedSystem& condensed() const { return condensed_; }
+  const NewtonChord& newton() const { return newton_; }
+  double principal_direction(const OrbitVector& v) const;
+
+  /// Condition of the system bordered by the tangent, at the last point (2).
+  CondensedSystem::Singularity singularity(const PathPoint& point);
+
+ private:
+  NewtonResult correct_and_orient(PathPoint& point, const Orbit& base, double target);
+  bool linearize(const Orbit& x, const OrbitVector& row);
+  bool find_tangent(const Orbit& x, OrbitVector& tangent, OrbitVector& dual);
+  void normalise(const Orbit& x, OrbitVector& tangent, OrbitVector& dual) const;
+  void orient(PathPoint& point) const;
+  OrbitVector principal_row() const;
+
+  const DefiningSystem& system_;
+  WeightedNorm norm_;
+  int principal_;
+  CondensedSystem condensed_;
+  NewtonChord newton_;
+  NewtonSettings settings_;
+  std::array<OrbitVector, 1> rows_;
+};
+
+}  // namespace tchat

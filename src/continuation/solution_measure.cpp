@@ -1,0 +1,56 @@
+#include "continuation/solution_measure.hpp"
+
+#include <cmath>
+
+namespace tchat {
+
+namespace {
+
+/// The share of segment s in the period.
+double time_share(const Orbit& x, int s) {
+  double total = 0.0;
+  for (int r = 0; r < x.shape.segments; ++r) total += std::abs(x.duration(r));
+  return total > 0.0 ? std::abs(x.duration(s)) / total : 1.0 / x.shape.segments;
+}
+
+/// Time mean over the period of what `integrand` gives for the nodes (n x (c+1)) of one interval scaled to length 1.
+template <class Integrand>
+double time_mean(const Orbit& x, const Integrand& integrand) {
+  const int c = x.shape.collocation;
+  double mean = 0.0;
+  for (int s = 0; s < x.shape.segments; ++s) {
+    double segment = 0.0;
+    for (int j = 0; j < x.shape.intervals; ++j) {
+      const double h = x.mesh[static_cast<std::size_t>(j + 1)] - x.mesh[static_cast<std::size_t>(j)];
+      segment += h * integrand(x.states.middleCols(s * x.shape.nodes() + j * c, c + 1));
+    }
+    mean += time_share(x, s) * segment;
+  }
+  return mean;
+}
+
+}  // namespace
+
+double l2_norm(const Orbit& x, const CollocationRule& rule, const Eigen::VectorXd& state_weights) {
+  return std::sqrt(time_mean(x, [&](const auto& nodes) {
+    double sum = 0.0;
+    for (Eigen::Index i = 0; i < nodes.rows(); ++i)
+      sum += state_weights(i) * nodes.row(i).dot(nodes.row(i) * rule.mass);
+    return sum;
+  }));
+}
+
+double maximum_of(const Orbit& x, int k) { return x.states.row(k - 1).maxCoeff(); }
+double minimum_of(const Orbit& x, int k) { return x.states.row(k - 1).minCoeff(); }
+
+double solution_measure(const Orbit& x, const CollocationRule& rule, const Eigen::VectorXd& state_weights, int iplt) {
+  const int n = x.shape.dimension;
+  if (iplt == 0 || iplt < -n || iplt > 3 * n) return l2_norm(x, rule, state_weights);
+  if (iplt < 0) return minimum_of(x, -iplt);
+  if (iplt <= n) return maximum_of(x, iplt);
+  const int k = (iplt - 1) % n;
+  if (iplt <= 2 * n) return time_mean(x, [&](const auto& nodes) { return nodes.row(k).dot(rule.integral); });
+  return std::sqrt(time_mean(x, [&](const auto& nodes) { return nodes.row(k).dot(nodes.row(k) * rule.mass); }));
+}
+
+}  // namespace tchat

@@ -1,0 +1,106 @@
+#include "corrector/newton_chord.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tchat {
+
+namespace {
+
+constexpr double divergence_factor = 20.0;
+/// Residuals below this times 1 + max |u| are rounding.
+constexpr double rounding_residual = 200 * std::numeric_limits<double>::epsilon();
+/// A stalled iteration is accepted at rounding-level residual when its corrections are about sqrt(rounding) or less.
+constexpr double stalled_change = 1e-6;
+
+}  // namespace
+
+std::string describe(NewtonStatus status) {
+  switch (status) {
+    case NewtonStatus::converged:
+      return "converged";
+    case NewtonStatus::too_many_iterations:
+      return "no convergence within ITNW iterations";
+    case NewtonStatus::diverging:
+      return "the Newton corrections grow";
+    case NewtonStatus::not_finite:
+      return "a function of the problem is not finite";
+    default:
+      return "the Newton matrix is singular";
+  }
+}
+
+NewtonChord::NewtonChord(CondensedSystem& condensed, const NewtonSettings& settings)
+    : condensed_(condensed),
+      settings_(settings),
+      dx_(condensed.make_vector()),
+      residual_(condensed.make_residual()),
+      border_(8) {
+  history_.reserve(static_cast<std::size_t>(settings.max_iterations) + 2);
+}
+
+NewtonResult NewtonChord::correct(Orbit& x, std::span<const OrbitVector> rows, const Orbit& base,
+                                  std::span<const double> targets) {
+  NewtonResult result;
+  history_.clear();
+  const std::vector<int>& free_parameters = condensed_.system().free_parameters();
+  double first_change = 0.0;
+  for (int iteration = 1; iteration <= settings_.max_iterations; ++iteration) {
+    const bool full = iteration <= std::max(settings_.full_iterations, 1);
+    if (full) {
+      if (!condensed_.linearize(x, rows, residual_)) {
+        result.status = residual_.finite() ? NewtonStatus::singular : NewtonStatus::not_finite;
+        return result;
+      }
+      result.change_since_factorization = 0.0;
+    } else {
+      condensed_.evaluate(x, residual_);
+    }
+    result.residual = residual_.largest();
+    for (std::size_t r = 0; r < rows.size(); ++r)
+      border_[r] = targets[r] - dot_difference(rows[r], x, base, free_parameters);
+    condensed_.solve(residual_, std::span(border_.data(), rows.size()), dx_);
+    const Change change = apply(x);
+    const double larger = std::max(change.parameters, change.states);
+    result.iterations = iteration;
+    history_.push_back({iteration, change.parameters, change.states, result.residual});
+    if (!std::isfinite(larger)) {
+      result.status = NewtonStatus::not_finite;
+      return result;
+    }
+    result.change_since_factorization += larger;
+    if (change.parameters <= settings_.tolerance_parameters && change.states < settings_.tolerance_states) {
+      result.status = NewtonStatus::converged;
+      return result;
+    }
+    if (iteration == 1) first_change = larger;
+    if (iteration > 1 && larger > divergence_factor * first_change) {
+      result.status = NewtonStatus::diverging;
+      return result;
+    }
+    const double size = 1.0 + x.states.cwiseAbs().maxCoeff();
+    if (iteration > 2 && larger < stalled_change && result.residual < rounding_residual * size) {
+      result.status = NewtonStatus::converged;
+      return result;
+    }
+  }
+  result.status = NewtonStatus::too_many_iterations;
+  return result;
+}
+
+/// x += dx; the relative sizes of the correction as AUTO measures them.
+NewtonChord::Change NewtonChord::apply(Orbit& x) const {
+  const std::vector<int>& free_parameters = condensed_.system().free_parameters();
+  advance(x, 1.0, dx_, free_parameters);
+  Change change{0.0, dx_.states.cwiseAbs().maxCoeff() / (1.0 + x.states.cwiseAbs().maxCoeff())};
+  for (int s = 0; s < x.shape.segments; ++s)
+    change.parameters = std::max(change.parameters, std::abs(dx_.durations(s)) / (1.0 + std::abs(x.duration(s))));
+  for (std::size_t g = 0; g < free_parameters.size(); ++g)
+    change.parameters = std::max(change.parameters, std::abs(dx_.globals(static_cast<Eigen::Index>(g))) /
+                                                        (1.0 + std::abs(x.par(free_parameters[g] - 1))));
+  if (!dx_.states.allFinite()) change.states = std::numeric_limits<double>::quiet_NaN();
+  return change;
+}
+
+}  // namespace tchat

@@ -1,0 +1,75 @@
+/// Newton-chord iteration for an orbit on a border: F(x) = 0 and row_r (x - base) = target_r (5.50-5.55).
+///
+/// The first `full_iterations` (NWTN) iterations use a new Jacobian each, later ones the last one (chord), up to
+/// `max_iterations` (ITNW). Converged when, for the correction just applied,
+///     |dp| / (1 + |p|) <= tolerance_parameters  for durations and free parameters (EPSL), and
+///     max |du| / (1 + max |u|) < tolerance_states                                (EPSU).
+/// Given up at once when the larger of the two exceeds 20 times its value at the first iteration. Near a branch point
+/// Newton stalls at |du| of the order of the square root of rounding: a residual at rounding level is accepted there.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "bvp/condensed_system.hpp"
+
+namespace tchat {
+
+struct NewtonSettings {
+  int max_iterations = 8;
+  int full_iterations = 3;
+  double tolerance_parameters = 1e-7;
+  double tolerance_states = 1e-7;
+};
+
+enum class NewtonStatus { converged, too_many_iterations, diverging, not_finite, singular };
+
+/// One line of the Newton history; iteration 0 is the predictor.
+struct NewtonIteration {
+  int number = 0;
+  double parameter_change = 0.0;  ///< largest |dp| / (1 + |p|)
+  double state_change = 0.0;      ///< max |du| / (1 + max |u|)
+  double residual = 0.0;          ///< largest residual before the correction
+};
+
+struct NewtonResult {
+  NewtonStatus status = NewtonStatus::too_many_iterations;
+  int iterations = 0;
+  double residual = 0.0;  ///< largest, at the last evaluation
+  /// How far x has moved, in the measures of the convergence test, since the factors were computed.
+  double change_since_factorization = 0.0;
+  bool converged() const { return status == NewtonStatus::converged; }
+};
+
+std::string describe(NewtonStatus status);
+
+class NewtonChord {
+ public:
+  /// Allocates all work space.
+  NewtonChord(CondensedSystem& condensed, const NewtonSettings& settings);
+
+  /// Corrects x in place. `rows` are the border's dual vectors and `targets` the wanted values of row_r (x - base).
+  NewtonResult correct(Orbit& x, std::span<const OrbitVector> rows, const Orbit& base,
+                       std::span<const double> targets);
+
+  const std::vector<NewtonIteration>& history() const { return history_; }
+  const OrbitResidual& residual() const { return residual_; }
+  OrbitResidual& residual() { return residual_; }
+
+ private:
+  struct Change {
+    double parameters;
+    double states;
+  };
+  Change apply(Orbit& x) const;
+
+  CondensedSystem& condensed_;
+  NewtonSettings settings_;
+  OrbitVector dx_;
+  OrbitResidual residual_;
+  std::vector<double> border_;
+  std::vector<NewtonIteration> history_;
+};
+
+}  // namespace tchat

@@ -1,0 +1,45 @@
+/// partial_lu.hpp behind one type: a block size chosen at run time, with compiled-in code for the common ones.
+#pragma once
+
+namespace tchat {
+
+class BlockKernel {
+ public:
+  /// rows x width block whose first `pivots` columns are eliminated; width must be a multiple of row_padding.
+  BlockKernel(int rows, int pivots, int width);
+
+  int rows() const { return rows_; }
+  int pivots() const { return pivots_; }
+  int width() const { return width_; }
+
+  /// See partial_lu.hpp.
+  int eliminate(double* a, int border, int* swaps) const { return eliminate_(*this, a, border, swaps); }
+  void forward(const double* a, int border, const int* swaps, double* rhs) const {
+    forward_(*this, a, border, swaps, rhs);
+  }
+  void backward(const double* a, const double* rhs, double* x, int columns) const {
+    backward_(*this, a, rhs, x, columns);
+  }
+
+ private:
+  template <class Choice>
+  void use();
+  template <int N, int C>
+  bool try_sizes();
+
+  int rows_;
+  int pivots_;
+  int width_;
+  int (*eliminate_)(const BlockKernel&, double*, int, int*);
+  void (*forward_)(const BlockKernel&, const double*, int, const int*, double*);
+  void (*backward_)(const BlockKernel&, const double*, const double*, double*, int);
+};
+
+/// The kernel that condenses one mesh interval of c collocation points in dimension n with k scalar unknowns
+/// (duration and free parameters): rows c n, columns (interior nodes | left node | right node | scalars).
+BlockKernel interval_kernel(int n, int c, int scalars);
+
+/// The kernel that joins two neighbouring condensed blocks: 2n rows, columns (middle | first | last | scalars).
+BlockKernel chain_kernel(int n, int scalars);
+
+}  // namespace tchat

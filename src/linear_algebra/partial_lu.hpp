@@ -1,0 +1,123 @@
+/// Partial LU elimination of a small dense row-major block, the kernel of condensation (5.30-5.47).
+///
+/// A block has `rows` + `border` rows and `width` columns. The first `pivots` columns are eliminated with partial
+/// pivoting among the first `rows` rows; border rows (integral conditions, the pseudo-arclength row) are eliminated
+/// too but never chosen as pivot rows. In place: afterwards the first `pivots` rows hold U and what it couples to, the
+/// multipliers stand below the diagonal, and the remaining rows hold the Schur complement.
+///
+/// The sizes are a template parameter, so that small common sizes compile to unrolled code: FixedSizes, or
+/// DynamicSizes for all others. Columns are updated four pivots at a time, so that every entry right of the pivots is
+/// read and written once per four pivots.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+namespace tchat {
+
+template <int Rows, int Pivots, int Width>
+struct FixedSizes {
+  static constexpr int rows = Rows, pivots = Pivots, width = Width;
+};
+
+struct DynamicSizes {
+  int rows, pivots, width;
+};
+
+/// Row lengths are rounded up to this many doubles.
+inline constexpr int row_padding = 4;
+constexpr int padded(int columns) { return (columns + row_padding - 1) / row_padding * row_padding; }
+
+namespace detail {
+
+inline constexpr int panel = 4;
+
+/// target[from..width) -= sum over r < Count of l[r] * source_r[from..width).
+template <int Count, class Sizes>
+inline void subtract_rows(const Sizes& sizes, double* __restrict target, const double* l, const double* __restrict source,
+                          int from) {
+  const int width = sizes.width;
+  double factor[Count];
+  for (int r = 0; r < Count; ++r) factor[r] = l[r];
+  for (int j = from; j < width; ++j) {
+    double sum = factor[0] * source[j];
+    for (int r = 1; r < Count; ++r) sum += factor[r] * source[r * width + j];
+    target[j] -= sum;
+  }
+}
+
+}  // namespace detail
+
+/// Eliminates; swaps[k] is the row exchanged with row k. Returns the sign of the product of the pivots times that of
+/// the permutation; 0 when a pivot is zero or not finite, the block is then useless.
+template <class Sizes>
+int eliminate(const Sizes& sizes, double* a, int border, int* swaps) {
+  const int rows = sizes.rows, pivots = sizes.pivots, width = sizes.width;
+  const int all_rows = rows + border;
+  int sign = 1;
+  for (int k0 = 0; k0 < pivots; k0 += detail::panel) {
+    const int k1 = std::min(k0 + detail::panel, pivots);
+    for (int k = k0; k < k1; ++k) {
+      int pivot_row = k;
+      double largest = std::abs(a[k * width + k]);
+      for (int i = k + 1; i < rows; ++i) {
+        const double candidate = std::abs(a[i * width + k]);
+        if (candidate > largest) largest = candidate, pivot_row = i;
+      }
+      if (!(largest > 0.0) || !std::isfinite(largest)) return 0;
+      swaps[k] = pivot_row;
+      if (pivot_row != k) {
+        std::swap_ranges(a + k * width, a + (k + 1) * width, a + pivot_row * width);
+        sign = -sign;
+      }
+      const double pivot = a[k * width + k];
+      if (pivot < 0.0) sign = -sign;
+      const double inverse = 1.0 / pivot;
+      for (int i = k + 1; i < all_rows; ++i) {
+        const double l = (a[i * width + k] *= inverse);
+        for (int j = k + 1; j < k1; ++j) a[i * width + j] -= l * a[k * width + j];
+      }
+    }
+    for (int k = k0 + 1; k < k1; ++k)
+      for (int r = k0; r < k; ++r)
+        detail::subtract_rows<1>(sizes, a + k * width, a + k * width + r, a + r * width, k1);
+    if (k1 - k0 == detail::panel) {
+      for (int i = k1; i < all_rows; ++i)
+        detail::subtract_rows<detail::panel>(sizes, a + i * width, a + i * width + k0, a + k0 * width, k1);
+    } else {
+      for (int i = k1; i < all_rows; ++i)
+        for (int r = k0; r < k1; ++r)
+          detail::subtract_rows<1>(sizes, a + i * width, a + i * width + r, a + r * width, k1);
+    }
+  }
+  return sign;
+}
+
+/// Applies the exchanges and multipliers of an eliminated block to a right-hand side of rows + border entries: the
+/// first `pivots` entries become those of U, the others the condensed right-hand side.
+template <class Sizes>
+void forward(const Sizes& sizes, const double* a, int border, const int* swaps, double* rhs) {
+  const int pivots = sizes.pivots, width = sizes.width;
+  const int all_rows = sizes.rows + border;
+  for (int k = 0; k < pivots; ++k) std::swap(rhs[k], rhs[swaps[k]]);
+  for (int i = 1; i < all_rows; ++i) {
+    const double* row = a + i * width;
+    double sum = 0.0;
+    for (int k = 0; k < std::min(i, pivots); ++k) sum += row[k] * rhs[k];
+    rhs[i] -= sum;
+  }
+}
+
+/// Back-substitution: x[0..pivots) from rhs[0..pivots) and the known x[pivots..columns).
+template <class Sizes>
+void backward(const Sizes& sizes, const double* a, const double* rhs, double* x, int columns) {
+  const int width = sizes.width;
+  for (int k = sizes.pivots - 1; k >= 0; --k) {
+    const double* row = a + k * width;
+    double sum = rhs[k];
+    for (int j = k + 1; j < columns; ++j) sum -= row[j] * x[j];
+    x[k] = sum / row[k];
+  }
+}
+
+}  // namespace tchat

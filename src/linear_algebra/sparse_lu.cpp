@@ -1,0 +1,176 @@
+#include "linear_algebra/sparse_lu.hpp"
+
+#include <umfpack.h>
+
+#include <Eigen/Dense>
+#include <Eigen/SparseCore>
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace tchat {
+
+namespace {
+
+using SparseMatrix = Eigen::SparseMatrix<double, Eigen::ColMajor, int>;
+
+void check(int status, const char* what) {
+  if (status != UMFPACK_OK) throw std::invalid_argument(std::string("UMFPACK: ") + what);
+}
+
+}  // namespace
+
+struct SparseLu::State {
+  SparseMatrix matrix;
+  std::vector<int> position;  // where entry k of the triplets goes in matrix.valuePtr()
+  void* symbolic = nullptr;
+  void* numeric = nullptr;
+  double control[UMFPACK_CONTROL];
+  double info[UMFPACK_INFO];
+  std::vector<int> integer_work;
+  std::vector<double> real_work;
+
+  State() { umfpack_di_defaults(control); }
+  State(const State&) = delete;
+  State& operator=(const State&) = delete;
+  ~State() {
+    umfpack_di_free_symbolic(&symbolic);
+    umfpack_di_free_numeric(&numeric);
+  }
+  void solve(int system, const double* b, double* x) {
+    umfpack_di_wsolve(system, matrix.outerIndexPtr(), matrix.innerIndexPtr(), matrix.valuePtr(), x, b, numeric, control,
+                      info, integer_work.data(), real_work.data());
+  }
+};
+
+SparseLu::SparseLu(int size, const std::vector<int>& rows, const std::vector<int>& columns)
+    : state_(std::make_unique<State>()) {
+  const int entries = static_cast<int>(rows.size());
+  State& st = *state_;
+  st.matrix.resize(size, size);
+  st.position.resize(rows.size());
+  std::vector<int> starts(static_cast<std::size_t>(size) + 1);
+  std::vector<int> indices(rows.size());
+  std::vector<double> values(rows.size());
+  const std::vector<double> ones(rows.size(), 1.0);
+  check(umfpack_di_triplet_to_col(size, size, entries, rows.data(), columns.data(), ones.data(), starts.data(),
+                                  indices.data(), values.data(), st.position.data()),
+        "the pattern is out of range");
+  st.matrix = Eigen::Map<const SparseMatrix>(size, size, starts.back(), starts.data(), indices.data(), values.data());
+  check(umfpack_di_symbolic(size, size, st.matrix.outerIndexPtr(), st.matrix.innerIndexPtr(), nullptr, &st.symbolic,
+                            st.control, st.info),
+        "the pattern is structurally singular");
+  st.integer_work.resize(static_cast<std::size_t>(size));
+  st.real_work.resize(static_cast<std::size_t>(size) * 5);
+}
+
+SparseLu::~SparseLu() = default;
+SparseLu::SparseLu(SparseLu&&) noexcept = default;
+SparseLu& SparseLu::operator=(SparseLu&&) noexcept = default;
+
+int SparseLu::size() const { return static_cast<int>(state_->matrix.rows()); }
+
+bool SparseLu::factorize(const std::vector<double>& values) {
+  State& st = *state_;
+  double* entries = st.matrix.valuePtr();
+  std::fill(entries, entries + st.matrix.nonZeros(), 0.0);
+  double finite = 0.0;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    entries[st.position[k]] += values[k];
+    finite += values[k] - values[k];
+  }
+  umfpack_di_free_numeric(&st.numeric);
+  if (finite != 0.0) return false;
+  const int status = umfpack_di_numeric(st.matrix.outerIndexPtr(), st.matrix.innerIndexPtr(), entries, st.symbolic,
+                                        &st.numeric, st.control, st.info);
+  return status == UMFPACK_OK;
+}
+
+void SparseLu::solve(const double* b, double* x) { state_->solve(UMFPACK_A, b, x); }
+void SparseLu::solve_transposed(const double* b, double* x) { state_->solve(UMFPACK_At, b, x); }
+
+int SparseLu::determinant_sign() const {
+  if (state_->numeric == nullptr) return 0;
+  double mantissa = 0.0;
+  double exponent = 0.0;
+  double info[UMFPACK_INFO];
+  umfpack_di_get_determinant(&mantissa, &exponent, state_->numeric, info);
+  return (mantissa > 0.0) - (mantissa < 0.0);
+}
+
+SparseLu::Condition SparseLu::condition() const {
+  // Equilibrate a copy by alternating scaling to unit largest entries, then find the smallest singular value by
+  // inverse iteration on (D_r A D_c)^T (D_r A D_c) with a factorisation of the scaled copy.
+  const int n = size();
+  SparseMatrix scaled = state_->matrix;
+  Eigen::VectorXd column_scale = Eigen::VectorXd::Ones(n);
+  for (int sweep = 0; sweep < 4; ++sweep) {
+    Eigen::VectorXd row_size = Eigen::VectorXd::Zero(n);
+    for (int c = 0; c < n; ++c)
+      for (SparseMatrix::InnerIterator it(scaled, c); it; ++it)
+        row_size(it.row()) = std::max(row_size(it.row()), std::abs(it.value()));
+    for (int c = 0; c < n; ++c) {
+      double column_size = 0.0;
+      for (SparseMatrix::InnerIterator it(scaled, c); it; ++it) {
+        if (row_size(it.row()) > 0.0) it.valueRef() /= row_size(it.row());
+        column_size = std::max(column_size, std::abs(it.value()));
+      }
+      if (column_size == 0.0) continue;
+      for (SparseMatrix::InnerIterator it(scaled, c); it; ++it) it.valueRef() /= column_size;
+      column_scale(c) /= column_size;
+    }
+  }
+
+  Condition result;
+  State work;
+  void* symbolic = nullptr;
+  const int analysed = umfpack_di_symbolic(n, n, scaled.outerIndexPtr(), scaled.innerIndexPtr(), scaled.valuePtr(),
+                                           &symbolic, work.control, work.info);
+  work.symbolic = symbolic;
+  if (analysed != UMFPACK_OK) return result;
+  // Exactly singular matrices are moved by less than rounding, so that the iteration below can name the null vector.
+  SparseMatrix moved = scaled;
+  int status = umfpack_di_numeric(moved.outerIndexPtr(), moved.innerIndexPtr(), moved.valuePtr(), work.symbolic,
+                                  &work.numeric, work.control, work.info);
+  for (int attempt = 1; status != UMFPACK_OK && attempt < 8; ++attempt) {
+    umfpack_di_free_numeric(&work.numeric);
+    for (Eigen::Index k = 0; k < moved.nonZeros(); ++k)
+      moved.valuePtr()[k] += 1e-15 * std::sin(1.0 + static_cast<double>(k * (attempt + 1)));
+    status = umfpack_di_numeric(moved.outerIndexPtr(), moved.innerIndexPtr(), moved.valuePtr(), work.symbolic,
+                                &work.numeric, work.control, work.info);
+  }
+  if (status != UMFPACK_OK) return result;
+  work.matrix = moved;
+  work.integer_work.resize(static_cast<std::size_t>(n));
+  work.real_work.resize(static_cast<std::size_t>(n) * 5);
+
+  Eigen::VectorXd v(n);
+  for (int i = 0; i < n; ++i) v(i) = std::sin(1.0 + i);
+  Eigen::VectorXd u(n);
+  Eigen::VectorXd w(n);
+  double largest = 0.0;
+  double smallest = 0.0;
+  for (int iteration = 0; iteration < 20; ++iteration) {  // power iteration for the largest singular value
+    v.normalize();
+    w = scaled.transpose() * (scaled * v);
+    largest = std::sqrt(w.norm());
+    v = w;
+  }
+  for (int i = 0; i < n; ++i) v(i) = std::cos(1.0 + 2.0 * i);
+  for (int iteration = 0; iteration < 6; ++iteration) {
+    v.normalize();
+    work.solve(UMFPACK_At, v.data(), u.data());
+    work.solve(UMFPACK_A, u.data(), w.data());
+    const double growth = w.norm();
+    if (!std::isfinite(growth) || growth == 0.0) break;
+    smallest = 1.0 / std::sqrt(growth);
+    v = w;
+  }
+  v.normalize();
+  const Eigen::VectorXd direction = column_scale.cwiseProduct(v);
+  result.reciprocal = largest > 0.0 ? smallest / largest : 0.0;
+  result.null_direction.assign(direction.data(), direction.data() + n);
+  return result;
+}
+
+}  // namespace tchat

@@ -1,0 +1,44 @@
+/// UMFPACK for a sequence of square sparse matrices of one pattern: the symbolic analysis is made once, the numeric
+/// factorisation once per matrix.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+namespace tchat {
+
+class SparseLu {
+ public:
+  /// The pattern: entry k of the values given to `factorize` stands at (row[k], column[k]); repeated positions add up.
+  /// Throws std::invalid_argument when the pattern is structurally singular or out of range.
+  SparseLu(int size, const std::vector<int>& rows, const std::vector<int>& columns);
+  ~SparseLu();
+  SparseLu(SparseLu&&) noexcept;
+  SparseLu& operator=(SparseLu&&) noexcept;
+
+  int size() const;
+
+  /// False when the matrix is exactly singular or not finite; then nothing may be solved.
+  bool factorize(const std::vector<double>& values);
+
+  /// x = A^-1 b, or A^-T b. x and b are different arrays of size() entries.
+  void solve(const double* b, double* x);
+  void solve_transposed(const double* b, double* x);
+
+  /// Sign of the determinant (0 when singular).
+  int determinant_sign() const;
+
+  /// Estimate of the reciprocal 2-norm condition of the matrix scaled to rows and columns of unit size, with the
+  /// right singular direction (in the unscaled unknowns) that goes with the smallest singular value. Allocates.
+  struct Condition {
+    double reciprocal = 0.0;
+    std::vector<double> null_direction;
+  };
+  Condition condition() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace tchat

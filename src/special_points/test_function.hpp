@@ -1,0 +1,46 @@
+/// Functions whose zeros along a branch are special points.
+///
+/// All share one mechanism (continuation_run): they are evaluated at each accepted point, a change of sign over a step
+/// brackets a zero, the zero is located on the arclength of that step (locator.hpp), classified, labelled and written.
+/// A new kind of special point is one new class. Test functions are pure: the same point gives the same value.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bvp/condensed_system.hpp"
+#include "stability/floquet_multipliers.hpp"
+#include "start/labelled_solution.hpp"
+
+namespace tchat {
+
+/// What a test function may look at: a converged point and its linearisation.
+struct TestedPoint {
+  const Orbit& orbit;
+  const OrbitVector& tangent;
+  const CondensedSystem& condensed;
+  const FloquetMultipliers& multipliers;
+};
+
+/// What a zero of a test function is.
+struct SpecialPoint {
+  PointType type = PointType::user;
+  UserPointKind kind;        ///< for PointType::user
+  bool ends_branch = false;
+  std::string description;   ///< one line for the d-file
+};
+
+class TestFunction {
+ public:
+  virtual ~TestFunction() = default;
+  virtual std::string name() const = 0;
+  /// Nothing where the function is not defined; an undefined value cannot change sign.
+  virtual std::optional<double> value(const TestedPoint& point) const = 0;
+  /// |value| up to this counts as zero.
+  virtual double zero_level(const TestedPoint& point) const = 0;
+  /// The special point at a located zero; `rising` says which way the function went through it.
+  virtual SpecialPoint classify(const TestedPoint& point, bool rising) const = 0;
+};
+
+}  // namespace tchat

@@ -1,0 +1,120 @@
+#include "stability/floquet_multipliers.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+namespace tchat {
+
+namespace {
+
+using Matrix = Eigen::MatrixXd;
+using Vector = Eigen::VectorXd;
+using RowMajorBlock = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>;
+
+constexpr double stability_tolerance = 1e-5;
+/// h_x f / (|h_x| |f|) below this is zero to rounding.
+constexpr double grazing_level = 1e-12;
+
+/// Orthonormal basis of the complement of v, n x (n - 1); of the first unit vector's complement when v = 0.
+Matrix complement(const Vector& v) {
+  const Eigen::Index n = v.size();
+  if (v.norm() == 0.0) return Matrix::Identity(n, n).rightCols(n - 1);
+  Vector essential(n > 1 ? n - 1 : 0);
+  double tau = 0.0;
+  double beta = 0.0;
+  v.makeHouseholder(essential, tau, beta);
+  Matrix q = Matrix::Identity(n, n);
+  Vector work(n);
+  q.applyHouseholderOnTheLeft(essential, tau, work.data());
+  return q.rightCols(n - 1);
+}
+
+}  // namespace
+
+bool FloquetMultipliers::stable() const { return valid && stable_count() == static_cast<int>(values.size()); }
+
+int FloquetMultipliers::stable_count() const {
+  return static_cast<int>(std::count_if(values.begin(), values.end(),
+                                        [](const auto& mu) { return std::abs(mu) <= 1.0 + stability_tolerance; }));
+}
+
+/// What the end of one segment contributes.
+struct FloquetSolver::SegmentEnd {
+  Matrix tangent;        // Z_s: n x (n - 1)
+  Matrix jump_tangent;   // g_x Z_s: n x (n - 1)
+  Matrix projection;     // F_s: n x (n - 1)
+  double transversality; // h_x f / (|h_x| |f|)
+  double flow_defect;
+};
+
+FloquetSolver::FloquetSolver(const OrbitShape& shape) : shape_(shape), qz_(shape.dimension - 1, shape.segments) {}
+
+FloquetMultipliers FloquetSolver::compute(const CondensedSystem& condensed, const Orbit& x) {
+  const int n = shape_.dimension;
+  const int m = shape_.segments;
+  const HybridSystem& system = condensed.system().system();
+  const double* par = x.par.data();
+  std::vector<SegmentEnd> ends(static_cast<std::size_t>(m));
+  double structural = 0.0;
+  double least_transversality = 1.0;
+  for (int s = 0; s < m; ++s) {
+    const IndexVector& v = condensed.system().signature()[static_cast<std::size_t>(s)];
+    SegmentEnd& end = ends[static_cast<std::size_t>(s)];
+    double h = 0.0;
+    Vector hx(n);
+    Vector f0(n);
+    Vector f1(n);
+    Vector g(n);
+    Matrix gx(n, n);
+    system.value(FunctionKind::field, v.field, x.start(s), par, f0.data());
+    system.value(FunctionKind::field, v.field, x.end(s), par, f1.data());
+    system.first(FunctionKind::event, v.event, x.end(s), par, {}, &h, hx.data(), nullptr);
+    system.first(FunctionKind::jump, v.jump, x.end(s), par, {}, g.data(), gx.data(), nullptr);
+    const RowMajorBlock first(condensed.first_block(s), n, n);
+    const RowMajorBlock last(condensed.last_block(s), n, n);
+    end.tangent = complement(hx);
+    end.jump_tangent = gx * end.tangent;
+    end.projection = complement(last * f1);
+    const double sizes = hx.norm() * f1.norm();
+    end.transversality = sizes > 0.0 ? hx.dot(f1) / sizes : 0.0;
+    const Vector defect = Matrix(last).partialPivLu().solve(first * f0 + last * f1);
+    end.flow_defect = f1.norm() > 0.0 ? defect.norm() / f1.norm() : defect.norm();
+    structural = std::max(structural, end.flow_defect);
+    least_transversality = std::min(least_transversality, std::abs(end.transversality));
+  }
+  for (int s = 0; s < m; ++s) {
+    const SegmentEnd& end = ends[static_cast<std::size_t>(s)];
+    const SegmentEnd& before = ends[static_cast<std::size_t>((s + m - 1) % m)];
+    const RowMajorBlock first(condensed.first_block(s), n, n);
+    const RowMajorBlock last(condensed.last_block(s), n, n);
+    const Matrix a = -end.projection.transpose() * (first * before.jump_tangent);
+    const Matrix e = end.projection.transpose() * (last * end.tangent);
+    for (int i = 0; i < n - 1; ++i)
+      for (int j = 0; j < n - 1; ++j) {
+        qz_.a(s, i, j) = a(i, j);
+        qz_.e(s, i, j) = e(i, j);
+      }
+  }
+
+  FloquetMultipliers result;
+  result.structural = std::isfinite(structural) ? std::min(structural, infinite_multiplier) : infinite_multiplier;
+  result.valid = qz_.compute();
+  if (!result.valid) return result;
+  for (const ScaledComplex& mu : qz_.eigenvalues()) result.values.push_back(mu.value(infinite_multiplier));
+  conjugate_pairs(result.values);
+  if (least_transversality < grazing_level && !result.values.empty()) {
+    const auto by_size = [](const auto& a, const auto& b) { return std::abs(a) < std::abs(b); };
+    *std::max_element(result.values.begin(), result.values.end(), by_size) = infinite_multiplier;
+  }
+  result.values.emplace_back(result.structural);
+
+  const auto nearest_one = [](const auto& a, const auto& b) { return std::abs(a - 1.0) < std::abs(b - 1.0); };
+  std::iter_swap(result.values.begin(), std::min_element(result.values.begin(), result.values.end(), nearest_one));
+  std::stable_sort(result.values.begin() + 1, result.values.end(), [](const auto& a, const auto& b) {
+    return std::abs(std::abs(a) - 1.0) < std::abs(std::abs(b) - 1.0);
+  });
+  return result;
+}
+
+}  // namespace tchat

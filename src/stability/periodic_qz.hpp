@@ -1,0 +1,74 @@
+/// Eigenvalues of a formal product of matrix pairs by the periodic QZ algorithm,
+///
+///     M = E_m^-1 A_m ... E_2^-1 A_2 E_1^-1 A_1,
+///
+/// without forming any product or inverse: every factor is transformed by unitary matrices only, so that eigenvalues of
+/// very different size, and infinite ones of singular E_s, come out with errors of the order of rounding in each factor.
+/// Cost O(m n^3), memory O(m n^2), all allocated when the object is made.
+///
+/// Method: Bojanczyk, Golub & Van Dooren's periodic Schur form in complex arithmetic. A_1 is reduced to Hessenberg form
+/// and all other factors to triangular form, then implicit single-shift steps chase a bulge round the cycle until A_1
+/// is triangular as well. Zeros on the diagonal of a triangular factor are replaced by rounding-level numbers, a
+/// perturbation that the method commits anyway, so no case needs deflation of its own.
+#pragma once
+
+#include <complex>
+#include <vector>
+
+namespace tchat {
+
+/// mantissa * 2^exponent: a product of many factors need not fit into a double.
+struct ScaledComplex {
+  std::complex<double> mantissa;
+  long exponent = 0;
+  /// As a plain number; moduli above `cap` are cut back to it, keeping the direction; underflow gives 0.
+  std::complex<double> value(double cap) const;
+};
+
+class PeriodicQz {
+ public:
+  using Scalar = std::complex<double>;
+
+  /// `size` = n >= 0, `factors` = m >= 1.
+  PeriodicQz(int size, int factors);
+
+  /// Entries of A_s and E_s, s = 0..m-1, to be filled before compute(), which overwrites them.
+  Scalar& a(int s, int row, int column) { return a_[at(s, row, column)]; }
+  Scalar& e(int s, int row, int column) { return e_[at(s, row, column)]; }
+
+  /// False when the iteration does not converge (then the eigenvalues are useless) or the input is not finite.
+  bool compute();
+  /// n eigenvalues of M. A real problem's come in conjugate pairs to rounding; see conjugate_pairs().
+  const std::vector<ScaledComplex>& eigenvalues() const { return eigenvalues_; }
+
+ private:
+  struct Rotation;
+  struct Active;
+  std::size_t at(int s, int row, int column) const {
+    return static_cast<std::size_t>((s * n_ + column) * n_ + row);
+  }
+  bool finite() const;
+  void normalise();
+  void triangularise();
+  void hessenberg();
+  void chase(int k);
+  void regularise();
+  bool iterate();
+  void single_step(int low, int high, int iteration);
+  void deflate(int k);
+  void rotate_rows(std::vector<Scalar>& matrix, int s, int k, const Rotation& r);
+  void rotate_columns(std::vector<Scalar>& matrix, int s, int k, const Rotation& r);
+
+  int n_;
+  int m_;
+  std::vector<Scalar> a_;
+  std::vector<Scalar> e_;
+  std::vector<long> scale_;  // powers of two taken out of the factors
+  std::vector<ScaledComplex> eigenvalues_;
+};
+
+/// The eigenvalues of a real problem cleaned of rounding: each is paired with the nearest conjugate, possibly itself
+/// (then it is real), and the two are averaged.
+void conjugate_pairs(std::vector<std::complex<double>>& values);
+
+}  // namespace tchat
