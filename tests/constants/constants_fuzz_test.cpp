@@ -37,7 +37,7 @@ TEST_CASE("Files cut off at any byte", "[constants][fuzz]") {
     for (std::size_t length = 0; length <= text.size(); ++length) accepted += parses(text.substr(0, length)) ? 1 : 0;
     CHECK(accepted >= 1);
   }
-  // Of Appendix B all values up to the last are needed: "2 2 1" begins 53 bytes before the end.
+  // Of Appendix B all values up to the last, the 1 of "2 2 1", are needed.
   const std::string text = testing::appendix_b();
   const std::size_t last_value = text.rfind("2 2 1") + 4;
   for (std::size_t length = 0; length <= text.size(); ++length) {

@@ -133,7 +133,7 @@ TEST_CASE("Malformed positional files", "[constants]") {
       {appendix_b() + "1 1\n", {"gc.bad:22: found '1 1'", "after the last record"}},
       {appendix_b() + "GRSTOP 0\n", {"gc.bad:22: found 'GRSTOP 0'", "KEY = value"}},
       {appendix_b() + "GRSTP = 0\n", {"gc.bad:22: found 'GRSTP'", "did you mean: GRSTOP"}},
-      {appendix_b() + "GRSTOP = 2\n", {"gc.bad:22: GRSTOP (", "found '2'", "0, 1"}},
+      {appendix_b() + "GRSTOP = 2\n", {"gc.bad:22: GRSTOP (", "found '2'", "0 (go on) or 1"}},
       {appendix_b() + "\nGRJUMP = 0\n", {"gc.bad:23: GRJUMP (", "found '0'"}},
       {appendix_b() + "STOP = [PD1, QQ1]\n", {"gc.bad:22: STOP (", "found 'QQ1'"}},
       {appendix_b() + "STOP = [PD1, GR1\n", {"gc.bad:22: ", "closing ']'"}},
