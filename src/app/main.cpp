@@ -1,1 +1,62 @@
-int main() { return 0; }
+// The executable only parses the command line, calls the library, and turns errors into messages and exit statuses.
+#include <fmt/format.h>
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <functional>
+#include <iostream>
+#include <new>
+
+#include "app/check_command.hpp"
+#include "app/dat_command.hpp"
+#include "app/labels_command.hpp"
+#include "app/orbit_command.hpp"
+#include "app/run_command.hpp"
+#include "constants/user_error.hpp"
+
+namespace {
+
+constexpr int computation_failed = 1;
+constexpr int bad_input = 2;
+
+int report(const std::string& message, int status) {
+  std::cout << std::flush;
+  std::cerr << "tchat: " << message << '\n';
+  return status;
+}
+
+int run_command(const std::function<int()>& command) {
+  try {
+    return command();
+  } catch (const tchat::UserError& error) {
+    return report(error.what(), bad_input);
+  } catch (const tchat::ComputationError& error) {
+    return report(error.what(), computation_failed);
+  } catch (const std::bad_alloc&) {
+    return report("out of memory; use a smaller NTST, NCOL or number of segments", bad_input);
+  } catch (const std::exception& error) {
+    return report(fmt::format("internal error: {}", error.what()), computation_failed);
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"tchat: numerical continuation of periodic orbits of hybrid dynamical systems", "tchat"};
+  app.set_version_flag("--version", "tchat " TCHAT_VERSION);
+  app.require_subcommand(1);
+  app.footer("tchat COMMAND --help explains a command.");
+  std::function<int()> chosen;
+  tchat::add_run_command(app, chosen);
+  tchat::add_labels_command(app, chosen);
+  tchat::add_orbit_command(app, chosen);
+  tchat::add_check_command(app, chosen);
+  tchat::add_dat_command(app, chosen);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error, std::cout, std::cerr) == 0 ? 0 : bad_input;
+  }
+  return run_command(chosen);
+}

@@ -53,10 +53,10 @@ std::vector<Violation> inadmissibilities(const HybridSystem& system, const Signa
 
     for (const int event : monitored[index]) {
       Violation worst{Violation::event_crossed, s + 1, event, 0.0, 0.0};
-      const int first = start_is_pinned(system, signature[static_cast<std::size_t>(before)], event, x.end(before),
-                                        x.start(s), par)
-                            ? 1
-                            : 0;
+      const int first =
+          start_is_pinned(system, signature[static_cast<std::size_t>(before)], event, x.end(before), x.start(s), par)
+              ? 1
+              : 0;
       for (int k = first; k <= (event == v.event ? last - 1 : last); ++k) {
         const double h = system.event(event, x.node(s, k), par);
         if (h < worst.value) worst.value = h, worst.tau = x.tau(k);
@@ -82,9 +82,8 @@ std::string describe(const Violation& violation, const HybridSystem& system) {
       return fmt::format("segment {}: h{} ({}) = {:.4g} at tau = {:.4g}", violation.segment, violation.event,
                          system.function_name(FunctionKind::event, violation.event), violation.value, violation.tau);
     default:
-      return fmt::format("segment {}: h_x f = {:.4g} > 0 at its end, h{} ({}) is crossed from below",
-                         violation.segment, violation.value, violation.event,
-                         system.function_name(FunctionKind::event, violation.event));
+      return fmt::format("segment {}: h_x f = {:.4g} > 0 at its end, h{} ({}) is crossed from below", violation.segment,
+                         violation.value, violation.event, system.function_name(FunctionKind::event, violation.event));
   }
 }
 

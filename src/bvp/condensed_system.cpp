@@ -181,7 +181,8 @@ bool CondensedSystem::condense_segment(const Orbit& x, int s, std::span<const Or
     double* a = &interval_blocks_[index(block(s, j) * block_size)];
     if (!fill_interval(x, s, j, a, collocation + j * shape_.collocation * n_)) return false;
     fill_border(s, j, rows, a);
-    const int interval_sign = interval_.eliminate(a, border_, &interval_swaps_[index(block(s, j) * interval_.pivots())]);
+    const int interval_sign =
+        interval_.eliminate(a, border_, &interval_swaps_[index(block(s, j) * interval_.pivots())]);
     if (interval_sign == 0) return false;
     sign *= interval_sign;
   }

@@ -2,7 +2,8 @@
 ///
 /// At an orbit x the linearisation of the collocation equations (5.29), end conditions and connectivity, bordered by
 /// b rows, reads J dx = -F. It is reduced in two sweeps that touch every mesh interval once:
-///   1. interval: the c - 1 interior nodes are eliminated from the c n collocation rows; n rows in (left, right) remain;
+///   1. interval: the c - 1 interior nodes are eliminated from the c n collocation rows; n rows in (left, right)
+///   remain;
 ///   2. chain: mesh nodes are eliminated from left to right with pivoting, until n rows per segment remain,
 ///          A_s x_s(0) + C_s x_s(1) + B_s (T_s, p) = r_s                                   (5.48-5.49 with C_s kept)
 /// and UMFPACK solves what is left, 2 n m + m + q unknowns that couple only neighbouring segments. Work and memory

@@ -32,25 +32,6 @@ Eigen::MatrixXd highest_derivatives(const Orbit& x, const CollocationRule& rule,
   return result;
 }
 
-/// The piecewise linear cumulative integral of a piecewise constant density, inverted at equal parts.
-std::vector<double> equal_parts(const std::vector<double>& mesh, const Eigen::VectorXd& density, int parts) {
-  const int intervals = static_cast<int>(mesh.size()) - 1;
-  std::vector<double> cumulative(mesh.size(), 0.0);
-  for (int j = 0; j < intervals; ++j)
-    cumulative[index(j + 1)] = cumulative[index(j)] + density(j) * length(mesh, j);
-  std::vector<double> result(index(parts + 1));
-  int j = 0;
-  for (int k = 1; k < parts; ++k) {
-    const double wanted = cumulative.back() * k / parts;
-    while (j < intervals - 1 && cumulative[index(j + 1)] < wanted) ++j;
-    const double share = (wanted - cumulative[index(j)]) / (cumulative[index(j + 1)] - cumulative[index(j)]);
-    result[index(k)] = mesh[index(j)] + share * length(mesh, j);
-  }
-  result.front() = 0.0;
-  result.back() = 1.0;
-  return result;
-}
-
 /// Norm of prod (sigma - node_i) / (c+1)! over the interval, for the interpolation error of the collocation polynomial
 /// between mesh points; that of c + 1 equally spaced nodes is a good measure.
 double interpolation_constant(int c) {
@@ -64,6 +45,23 @@ double interpolation_constant(int c) {
 }
 
 }  // namespace
+
+std::vector<double> equal_parts(const std::vector<double>& mesh, const Eigen::VectorXd& density, int parts) {
+  const int intervals = static_cast<int>(mesh.size()) - 1;
+  std::vector<double> cumulative(mesh.size(), 0.0);
+  for (int j = 0; j < intervals; ++j) cumulative[index(j + 1)] = cumulative[index(j)] + density(j) * length(mesh, j);
+  std::vector<double> result(index(parts + 1));
+  int j = 0;
+  for (int k = 1; k < parts; ++k) {
+    const double wanted = cumulative.back() * k / parts;
+    while (j < intervals - 1 && cumulative[index(j + 1)] < wanted) ++j;
+    const double share = (wanted - cumulative[index(j)]) / (cumulative[index(j + 1)] - cumulative[index(j)]);
+    result[index(k)] = mesh[index(j)] + share * length(mesh, j);
+  }
+  result.front() = 0.0;
+  result.back() = 1.0;
+  return result;
+}
 
 std::vector<double> equidistributed_mesh(const Orbit& x, const CollocationRule& rule, int intervals) {
   const double power = 1.0 / (x.shape.collocation + 1);

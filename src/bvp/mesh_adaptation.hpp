@@ -16,6 +16,9 @@ std::vector<double> equidistributed_mesh(const Orbit& x, const CollocationRule& 
 /// The old mesh's density at another number of intervals.
 std::vector<double> resampled_mesh(const std::vector<double>& mesh, int intervals);
 
+/// Splits [0, 1] into `parts` intervals of equal share of a density that is constant on each interval of `mesh`, > 0.
+std::vector<double> equal_parts(const std::vector<double>& mesh, const Eigen::VectorXd& density, int parts);
+
 /// States evaluated on another mesh, possibly of other N and c (`shape` has the same n and m).
 Eigen::MatrixXd interpolate_states(const Eigen::MatrixXd& states, const OrbitShape& from,
                                    const std::vector<double>& from_mesh, const OrbitShape& to,

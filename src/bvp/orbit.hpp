@@ -14,10 +14,10 @@ namespace tchat {
 
 /// The sizes of an orbit.
 struct OrbitShape {
-  int dimension = 1;     ///< n
-  int segments = 1;      ///< m
-  int intervals = 1;     ///< N = NTST
-  int collocation = 4;   ///< c = NCOL
+  int dimension = 1;    ///< n
+  int segments = 1;     ///< m
+  int intervals = 1;    ///< N = NTST
+  int collocation = 4;  ///< c = NCOL
 
   int nodes() const { return intervals * collocation + 1; }  ///< of one segment
   int columns() const { return segments * nodes(); }
@@ -36,8 +36,8 @@ struct Orbit {
 
   const double* node(int s, int k) const { return states.col(s * shape.nodes() + k).data(); }
   double* node(int s, int k) { return states.col(s * shape.nodes() + k).data(); }
-  const double* start(int s) const { return node(s, 0); }                    ///< x_s(0)
-  const double* end(int s) const { return node(s, shape.nodes() - 1); }      ///< x_s(1)
+  const double* start(int s) const { return node(s, 0); }                ///< x_s(0)
+  const double* end(int s) const { return node(s, shape.nodes() - 1); }  ///< x_s(1)
 
   /// tau of node k.
   double tau(int k) const;
@@ -51,9 +51,9 @@ std::vector<double> uniform_mesh(int intervals);
 /// A vector of the unknowns' space: a tangent, a Newton correction, or (as a dual vector) a row of conditions on them.
 /// `globals` belong to the free problem parameters, in the order of the defining system.
 struct OrbitVector {
-  Eigen::MatrixXd states;      ///< like Orbit::states
-  Eigen::VectorXd durations;   ///< m
-  Eigen::VectorXd globals;     ///< free problem parameters
+  Eigen::MatrixXd states;     ///< like Orbit::states
+  Eigen::VectorXd durations;  ///< m
+  Eigen::VectorXd globals;    ///< free problem parameters
 
   OrbitVector() = default;
   OrbitVector(const OrbitShape& shape, int global_count);

@@ -10,8 +10,8 @@ void PeriodicOrbitSystem::end_values(int s, const double* x, const double* par, 
 
 void PeriodicOrbitSystem::end_derivatives(int s, const double* x, const double* par, double* values, double* dx,
                                           double* dp) const {
-  system().first(FunctionKind::event, signature()[static_cast<std::size_t>(s)].event, x, par, free_parameters(),
-                 values, dx, dp);
+  system().first(FunctionKind::event, signature()[static_cast<std::size_t>(s)].event, x, par, free_parameters(), values,
+                 dx, dp);
 }
 
 std::string PeriodicOrbitSystem::end_condition_name(int s, int) const {

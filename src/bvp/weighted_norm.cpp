@@ -21,8 +21,7 @@ void WeightedNorm::dual(const Orbit& x, const CollocationRule& rule, const std::
       for (int i = 0; i <= c; ++i)
         for (int k = 0; k <= c; ++k) {
           const double weight = h * rule.mass(i, k);
-          for (int a = 0; a < n; ++a)
-            row.states(a, column + i) += weight * state_weights_(a) * v.states(a, column + k);
+          for (int a = 0; a < n; ++a) row.states(a, column + i) += weight * state_weights_(a) * v.states(a, column + k);
         }
     }
     row.durations(s) = parameter_weights_(first_duration - 1 + s) * v.durations(s);

@@ -18,13 +18,13 @@ struct TestValue {
 
 /// A computed point of the branch, complete. References are valid during the call that hands it over.
 struct BranchPoint {
-  int number = 1;                       ///< 1, 2, ...
-  SpecialPoint special;                 ///< type ordinary: an unlabelled point
+  int number = 1;        ///< 1, 2, ...
+  SpecialPoint special;  ///< type ordinary: an unlabelled point
   const PathPoint& path;
   const FloquetMultipliers& multipliers;
   const std::vector<Violation>& violations;  ///< empty: admissible
-  double measure = 0.0;                 ///< by IPLT
-  double estimated_error = 0.0;         ///< of the states between mesh points, relative
+  double measure = 0.0;                      ///< by IPLT
+  double estimated_error = 0.0;              ///< of the states between mesh points, relative
   int newton_iterations = 0;
   std::vector<NewtonIteration> newton;  ///< of the step that reached it
   double step = 0.0;                    ///< ds of that step, 0 at the start
@@ -55,12 +55,12 @@ enum class EndReason {
 
 struct BranchSummary {
   EndReason reason = EndReason::max_points;
-  std::string detail;            ///< which bound, which special point, what was tried
+  std::string detail;  ///< which bound, which special point, what was tried
   int points = 0;
   int inadmissible_points = 0;
   int unstable_points = 0;
   bool multipliers_computed = false;
-  double worst_structural = 0.0;      ///< largest structural multiplier
+  double worst_structural = 0.0;  ///< largest structural multiplier
   double worst_estimated_error = 0.0;
 };
 

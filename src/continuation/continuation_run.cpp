@@ -28,6 +28,7 @@ ContinuationRun::ContinuationRun(PathFollower& follower, const DefiningSystem& s
 BranchSummary ContinuationRun::run(PathPoint start) {
   here_ = std::move(start);
   next_ = here_;
+  follower_.linearize_at(here_);
   evaluate(here_);
   for (std::size_t i = 0; i < tests_.size(); ++i) signs_[i] = sign_of(i);
   here_values_ = values_;
@@ -160,9 +161,17 @@ SpecialPoint ContinuationRun::end_conditions(SpecialPoint special) {
 void ContinuationRun::record(const SpecialPoint& special) {
   const std::vector<Violation> violations =
       inadmissibilities(system_.system(), system_.signature(), settings_.monitored, here_.orbit);
-  BranchPoint point{number_, special, here_, multipliers_, violations, measure_,
+  BranchPoint point{number_,
+                    special,
+                    here_,
+                    multipliers_,
+                    violations,
+                    measure_,
                     estimated_error(here_.orbit, follower_.condensed().rule()),
-                    newton_.iterations, follower_.newton().history(), number_ > 1 ? ds_taken_ : 0.0, {}};
+                    newton_.iterations,
+                    follower_.newton().history(),
+                    number_ > 1 ? ds_taken_ : 0.0,
+                    {}};
   for (std::size_t i = 0; i < tests_.size(); ++i) point.tests.push_back({tests_[i]->name(), values_[i]});
   summary_.points = number_;
   summary_.inadmissible_points += !violations.empty();
@@ -182,8 +191,8 @@ void ContinuationRun::end(EndReason reason, std::string detail) {
 /// A new mesh where it is due, and the step length for the d-file.
 void ContinuationRun::prepare_next_step() {
   if (settings_.adapt_mesh_every > 0 && number_ % settings_.adapt_mesh_every == 0)
-    follower_.change_mesh(here_, equidistributed_mesh(here_.orbit, follower_.condensed().rule(),
-                                                      here_.orbit.shape.intervals));
+    follower_.change_mesh(here_,
+                          equidistributed_mesh(here_.orbit, follower_.condensed().rule(), here_.orbit.shape.intervals));
   sink_.next_step(number_, step_.value());
 }
 
@@ -192,7 +201,7 @@ void ContinuationRun::give_up() {
   end(number_ == 1 ? EndReason::first_step_failed : EndReason::no_convergence,
       fmt::format("{}, with steps down to {:.3e}", describe(newton_.status), std::abs(ds_taken_)));
   sink_.note(number_ + 1, settings_.step.adapt_every == 0 ? "No convergence with fixed step size"
-                                                           : "No convergence using minimum step size");
+                                                          : "No convergence using minimum step size");
   ++number_;
   SpecialPoint special;
   special.type = PointType::no_convergence;

@@ -11,18 +11,18 @@ namespace tchat {
 
 struct ContinuationSettings {
   StepSettings step;
-  int max_points = 100;              ///< NMX; the start counts
-  int principal = 1;                 ///< PAR index of ICP(1)
+  int max_points = 100;                                  ///< NMX; the start counts
+  int principal = 1;                                     ///< PAR index of ICP(1)
   double parameter_min = -1e300, parameter_max = 1e300;  ///< RL0, RL1
   double measure_min = -1e300, measure_max = 1e300;      ///< A0, A1
-  int measure = 0;                   ///< IPLT
-  Eigen::VectorXd state_weights;     ///< THU, n entries
-  int print_every = 0;               ///< NPR
-  int adapt_mesh_every = 0;          ///< IAD
-  bool multipliers = true;           ///< ISP > 0
-  double location_tolerance = 1e-7;  ///< EPSS
-  int max_location = 10;             ///< ITMX
-  bool label_start = true;           ///< false at a restart: the first point is known already
+  int measure = 0;                                       ///< IPLT
+  Eigen::VectorXd state_weights;                         ///< THU, n entries
+  int print_every = 0;                                   ///< NPR
+  int adapt_mesh_every = 0;                              ///< IAD
+  bool multipliers = true;                               ///< ISP > 0
+  double location_tolerance = 1e-7;                      ///< EPSS
+  int max_location = 10;                                 ///< ITMX
+  bool label_start = true;                               ///< false at a restart: the first point is known already
   /// Called for every labelled point; true ends the branch there (STOP).
   std::function<bool(const SpecialPoint&)> stop_at;
   std::vector<std::vector<int>> monitored;  ///< event functions monitored on each segment
@@ -34,7 +34,7 @@ class ContinuationRun {
   ContinuationRun(PathFollower& follower, const DefiningSystem& system, ContinuationSettings settings,
                   std::vector<std::unique_ptr<TestFunction>> tests, BranchSink& sink);
 
-  /// `start` is converged, with its tangent oriented for DS > 0, and follower.condensed() is its linearisation.
+  /// `start` is converged, with its tangent oriented for DS > 0.
   BranchSummary run(PathPoint start);
 
  private:
@@ -42,7 +42,7 @@ class ContinuationRun {
   struct Zero {
     std::size_t test;
     double ds;
-    int sign_after;   // of the function beyond the zero
+    int sign_after;  // of the function beyond the zero
     bool converged;
   };
 
@@ -67,11 +67,11 @@ class ContinuationRun {
 
   FloquetSolver floquet_;
   StepSize step_;
-  PathPoint here_;        // the last accepted point
-  PathPoint next_;        // the point being computed
-  NewtonResult newton_;   // of the step to next_
-  double ds_taken_ = 0.0; // length of that step
-  int number_ = 1;        // of the last accepted point
+  PathPoint here_;         // the last accepted point
+  PathPoint next_;         // the point being computed
+  NewtonResult newton_;    // of the step to next_
+  double ds_taken_ = 0.0;  // length of that step
+  int number_ = 1;         // of the last accepted point
 
   // At the point evaluated last:
   FloquetMultipliers multipliers_;

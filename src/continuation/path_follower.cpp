@@ -43,6 +43,13 @@ OrbitVector PathFollower::principal_row() const {
 
 double PathFollower::principal_direction(const OrbitVector& v) const { return dot(principal_row(), v); }
 
+double PathFollower::alignment(const PathPoint& point, const OrbitVector& direction) const {
+  OrbitVector v = direction;
+  OrbitVector dual = condensed_.make_vector();
+  normalise(point.orbit, v, dual);
+  return dot(dual, point.tangent);
+}
+
 bool PathFollower::linearize(const Orbit& x, const OrbitVector& row) {
   if (&row != &rows_[0]) rows_[0] = row;
   return condensed_.linearize(x, rows_, newton_.residual());

@@ -42,11 +42,16 @@ class PathFollower {
   void change_mesh(PathPoint& point, const std::vector<double>& mesh) const;
   void reverse(PathPoint& point) const;
 
-  /// The linearisation at the last point that start_... or step returned, current to about 1e-10.
+  /// Makes condensed() the linearisation at a converged point. False when it is singular.
+  bool linearize_at(const PathPoint& point) { return linearize(point.orbit, point.dual); }
+
+  /// The linearisation at the last point that start_..., step or linearize_at was given, current to about 1e-10.
   CondensedSystem& condensed() { return condensed_; }
   const CondensedSystem& condensed() const { return condensed_; }
   const NewtonChord& newton() const { return newton_; }
   double principal_direction(const OrbitVector& v) const;
+  /// Cosine of the angle between the point's tangent and a direction, in the weighted norm.
+  double alignment(const PathPoint& point, const OrbitVector& direction) const;
 
   /// Condition of the system bordered by the tangent, at the last point (2).
   CondensedSystem::Singularity singularity(const PathPoint& point);

@@ -64,7 +64,8 @@ NewtonResult NewtonChord::correct(Orbit& x, std::span<const OrbitVector> rows, c
     const Change change = apply(x);
     const double larger = std::max(change.parameters, change.states);
     result.iterations = iteration;
-    history_.push_back({iteration, change.parameters, change.states, result.residual});
+    const double parameter = free_parameters.empty() ? 0.0 : x.par(free_parameters.front() - 1);
+    history_.push_back({iteration, parameter, change.parameters, change.states, result.residual});
     if (!std::isfinite(larger)) {
       result.status = NewtonStatus::not_finite;
       return result;

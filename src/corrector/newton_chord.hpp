@@ -25,9 +25,10 @@ struct NewtonSettings {
 
 enum class NewtonStatus { converged, too_many_iterations, diverging, not_finite, singular };
 
-/// One line of the Newton history; iteration 0 is the predictor.
+/// One line of the Newton history.
 struct NewtonIteration {
   int number = 0;
+  double parameter = 0.0;         ///< the first free problem parameter after the correction
   double parameter_change = 0.0;  ///< largest |dp| / (1 + |p|)
   double state_change = 0.0;      ///< max |du| / (1 + max |u|)
   double residual = 0.0;          ///< largest residual before the correction
@@ -50,8 +51,7 @@ class NewtonChord {
   NewtonChord(CondensedSystem& condensed, const NewtonSettings& settings);
 
   /// Corrects x in place. `rows` are the border's dual vectors and `targets` the wanted values of row_r (x - base).
-  NewtonResult correct(Orbit& x, std::span<const OrbitVector> rows, const Orbit& base,
-                       std::span<const double> targets);
+  NewtonResult correct(Orbit& x, std::span<const OrbitVector> rows, const Orbit& base, std::span<const double> targets);
 
   const std::vector<NewtonIteration>& history() const { return history_; }
   const OrbitResidual& residual() const { return residual_; }

@@ -53,9 +53,7 @@ BlockKernel::BlockKernel(int rows, int pivots, int width) : rows_(rows), pivots_
   static_cast<void>(fixed);
 }
 
-BlockKernel interval_kernel(int n, int c, int scalars) {
-  return {c * n, (c - 1) * n, padded((c + 1) * n + scalars)};
-}
+BlockKernel interval_kernel(int n, int c, int scalars) { return {c * n, (c - 1) * n, padded((c + 1) * n + scalars)}; }
 
 BlockKernel chain_kernel(int n, int scalars) { return {2 * n, n, padded(3 * n + scalars)}; }
 

@@ -34,8 +34,8 @@ inline constexpr int panel = 4;
 
 /// target[from..width) -= sum over r < Count of l[r] * source_r[from..width).
 template <int Count, class Sizes>
-inline void subtract_rows(const Sizes& sizes, double* __restrict target, const double* l, const double* __restrict source,
-                          int from) {
+inline void subtract_rows(const Sizes& sizes, double* __restrict target, const double* l,
+                          const double* __restrict source, int from) {
   const int width = sizes.width;
   double factor[Count];
   for (int r = 0; r < Count; ++r) factor[r] = l[r];
@@ -79,8 +79,7 @@ int eliminate(const Sizes& sizes, double* a, int border, int* swaps) {
       }
     }
     for (int k = k0 + 1; k < k1; ++k)
-      for (int r = k0; r < k; ++r)
-        detail::subtract_rows<1>(sizes, a + k * width, a + k * width + r, a + r * width, k1);
+      for (int r = k0; r < k; ++r) detail::subtract_rows<1>(sizes, a + k * width, a + k * width + r, a + r * width, k1);
     if (k1 - k0 == detail::panel) {
       for (int i = k1; i < all_rows; ++i)
         detail::subtract_rows<detail::panel>(sizes, a + i * width, a + i * width + k0, a + k0 * width, k1);

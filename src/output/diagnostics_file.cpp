@@ -36,10 +36,10 @@ std::string harmless(std::string_view text) {
 std::string format_bar() { return std::string(47, '=') + '\n'; }
 
 std::string format_newton_history(int branch, int point, const std::vector<NewtonLine>& iterations) {
-  std::string text = "  BR    PT  IT     PARAMETER       MEASURE      PAR. STEP     STATE STEP\n";
+  std::string text = "  BR    PT  IT     PARAMETER      RESIDUAL      PAR. STEP     STATE STEP\n";
   for (const NewtonLine& line : iterations) {
     text += prefix(branch, point) + integer_field(line.iteration, 4);
-    text += fmt::format("{:14.5E}{:14.5E}", finite(line.parameter), finite(line.measure));
+    text += fmt::format("{:14.5E}{:14.5E}", finite(line.parameter), finite(line.residual));
     if (line.iteration > 0)
       text += fmt::format("{:14.5E}{:15.5E}", finite(line.step_parameters), finite(line.step_states));
     text += '\n';

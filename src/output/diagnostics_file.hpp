@@ -18,8 +18,8 @@ namespace tchat {
 /// One Newton iteration; iteration 0 is the predictor and has no steps.
 struct NewtonLine {
   int iteration = 0;
-  double parameter = 0.0;        ///< value of the first free parameter
-  double measure = 0.0;          ///< solution measure
+  double parameter = 0.0;        ///< the first free problem parameter after the iteration
+  double residual = 0.0;         ///< largest residual before the iteration
   double step_parameters = 0.0;  ///< largest |dp| / (1 + |p|)
   double step_states = 0.0;      ///< max |du| / (1 + max |u|)
 };

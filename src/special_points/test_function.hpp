@@ -23,12 +23,12 @@ struct TestedPoint {
   const FloquetMultipliers& multipliers;
 };
 
-/// What a zero of a test function is.
+/// What a point of the branch is; for a zero of a test function, what it found.
 struct SpecialPoint {
-  PointType type = PointType::user;
-  UserPointKind kind;        ///< for PointType::user
+  PointType type = PointType::ordinary;
+  UserPointKind kind;  ///< for PointType::user
   bool ends_branch = false;
-  std::string description;   ///< one line for the d-file
+  std::string description;  ///< one line for the d-file
 };
 
 class TestFunction {

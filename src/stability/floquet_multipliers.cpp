@@ -41,10 +41,10 @@ int FloquetMultipliers::stable_count() const {
 
 /// What the end of one segment contributes.
 struct FloquetSolver::SegmentEnd {
-  Matrix tangent;        // Z_s: n x (n - 1)
-  Matrix jump_tangent;   // g_x Z_s: n x (n - 1)
-  Matrix projection;     // F_s: n x (n - 1)
-  double transversality; // h_x f / (|h_x| |f|)
+  Matrix tangent;         // Z_s: n x (n - 1)
+  Matrix jump_tangent;    // g_x Z_s: n x (n - 1)
+  Matrix projection;      // F_s: n x (n - 1)
+  double transversality;  // h_x f / (|h_x| |f|)
   double flow_defect;
 };
 

@@ -10,8 +10,8 @@
 ///
 ///     E_s c_s = A'_s c_{s-1},   E_s = F_s^T C_s Z_s,   A'_s = -F_s^T A_s g_{s-1,x} Z_{s-1}      ((n-1) x (n-1))
 ///
-/// and the n - 1 nontrivial multipliers are the eigenvalues of the product of E_s^-1 A'_s (periodic QZ). E_s is singular
-/// exactly at grazing, h_x f = 0, where one multiplier is infinite and the others remain what they are.
+/// and the n - 1 nontrivial multipliers are the eigenvalues of the product of E_s^-1 A'_s (periodic QZ). E_s is
+/// singular exactly at grazing, h_x f = 0, where one multiplier is infinite and the others remain what they are.
 ///
 /// The projection removes the structural zero multiplier. What is printed in its place is its size as the
 /// discretisation sees it: how far Phi_s f(x_s(0)) misses f(x_s(1)), relatively, on the worst segment. It is 0 for the

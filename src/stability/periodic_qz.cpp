@@ -224,8 +224,8 @@ void PeriodicQz::single_step(int low, int high, int iteration) {
   const Scalar half_difference = 0.5 * (trailing.x[0] - trailing.x[3]);
   const Scalar off = trailing.x[1] * trailing.x[2];
   const Scalar root = std::sqrt(half_difference * half_difference + off);
-  const Scalar larger = size1(half_difference + root) > size1(half_difference - root) ? half_difference + root
-                                                                                        : half_difference - root;
+  const Scalar larger =
+      size1(half_difference + root) > size1(half_difference - root) ? half_difference + root : half_difference - root;
   Scalar shift = larger == 0.0 ? trailing.x[3] : trailing.x[3] - off / larger;
   if (iteration % 10 == 9) shift = size1(trailing.x[2]) + size1(trailing.x[3]);  // exceptional
 

@@ -3,8 +3,8 @@
 ///     M = E_m^-1 A_m ... E_2^-1 A_2 E_1^-1 A_1,
 ///
 /// without forming any product or inverse: every factor is transformed by unitary matrices only, so that eigenvalues of
-/// very different size, and infinite ones of singular E_s, come out with errors of the order of rounding in each factor.
-/// Cost O(m n^3), memory O(m n^2), all allocated when the object is made.
+/// very different size, and infinite ones of singular E_s, come out with errors of the order of rounding in each
+/// factor. Cost O(m n^3), memory O(m n^2), all allocated when the object is made.
 ///
 /// Method: Bojanczyk, Golub & Van Dooren's periodic Schur form in complex arithmetic. A_1 is reduced to Hessenberg form
 /// and all other factors to triangular form, then implicit single-shift steps chase a bulge round the cycle until A_1
@@ -44,9 +44,7 @@ class PeriodicQz {
  private:
   struct Rotation;
   struct Active;
-  std::size_t at(int s, int row, int column) const {
-    return static_cast<std::size_t>((s * n_ + column) * n_ + row);
-  }
+  std::size_t at(int s, int row, int column) const { return static_cast<std::size_t>((s * n_ + column) * n_ + row); }
   bool finite() const;
   void normalise();
   void triangularise();

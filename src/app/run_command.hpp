@@ -1,0 +1,13 @@
+/// `tchat run NAME`: one branch.
+#pragma once
+
+#include <CLI/App.hpp>
+#include <functional>
+
+namespace tchat {
+
+/// Adds the subcommand. When the user chooses it, `chosen` becomes the call that does the run and returns the exit
+/// status (0, 1, or 128 + the signal after Ctrl-C or SIGTERM).
+void add_run_command(CLI::App& app, std::function<int()>& chosen);
+
+}  // namespace tchat

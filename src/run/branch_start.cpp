@@ -1,0 +1,123 @@
+#include "run/branch_start.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "constants/user_error.hpp"
+
+namespace tchat {
+
+namespace {
+
+/// A matrix with a smaller scaled reciprocal condition leaves some direction undetermined.
+constexpr double singular_condition = 1e-12;
+/// The stored direction is a tangent when its angle to the tangent is smaller than about 2 degrees.
+constexpr double parallel = 0.999;
+
+std::string state_label(const HybridSystem& system, int component, int s, bool at_end) {
+  return fmt::format("{} at the {} of segment {}", system.state_name(component), at_end ? "end" : "start", s + 1);
+}
+
+/// The residual of each boundary condition of the uncorrected start, largest collocation defect included.
+std::string residual_report(CondensedSystem& condensed, const DefiningSystem& defining, const Orbit& start) {
+  OrbitResidual residual = condensed.make_residual();
+  condensed.evaluate(start, residual);
+  const HybridSystem& system = defining.system();
+  const int n = defining.dimension();
+  const int m = defining.segments();
+  std::string text;
+  std::size_t end = 0;
+  const std::size_t per_segment = residual.collocation.size() / static_cast<std::size_t>(m);
+  for (int s = 0; s < m; ++s) {
+    double defect = 0.0;
+    for (std::size_t i = 0; i < per_segment; ++i)
+      defect = std::max(defect, std::abs(residual.collocation[static_cast<std::size_t>(s) * per_segment + i]));
+    text += fmt::format("\n  {:11.4e}  differential equations on segment {} (largest defect)", defect, s + 1);
+    for (int r = 0; r < defining.end_conditions(s); ++r)
+      text += fmt::format("\n  {:11.4e}  {}", residual.end[end++], defining.end_condition_name(s, r));
+    for (int a = 0; a < n; ++a)
+      text += fmt::format(
+          "\n  {:11.4e}  {} minus jump {} ({}) of the end of segment {}",
+          residual.connection[static_cast<std::size_t>(s * n + a)], state_label(system, a + 1, (s + 1) % m, false),
+          defining.signature()[static_cast<std::size_t>(s)].jump,
+          system.function_name(FunctionKind::jump, defining.signature()[static_cast<std::size_t>(s)].jump), s + 1);
+  }
+  return text;
+}
+
+/// The largest entries of the null direction, each as a share of the largest.
+std::string undetermined(const HybridSystem& system, const DefiningSystem& defining, const OrbitVector& direction,
+                         const OrbitShape& shape) {
+  struct Entry {
+    double size;
+    std::string name;
+  };
+  std::vector<Entry> entries;
+  for (int s = 0; s < shape.segments; ++s) {
+    for (int a = 0; a < shape.dimension; ++a) {
+      const double start = std::abs(direction.states(a, s * shape.nodes()));
+      const double end = std::abs(direction.states(a, (s + 1) * shape.nodes() - 1));
+      entries.push_back({std::max(start, end), fmt::format("{} on segment {}", system.state_name(a + 1), s + 1)});
+    }
+    entries.push_back({std::abs(direction.durations(s)), fmt::format("the duration of segment {}", s + 1)});
+  }
+  for (std::size_t g = 0; g < defining.free_parameters().size(); ++g)
+    entries.push_back({std::abs(direction.globals(static_cast<Eigen::Index>(g))),
+                       system.parameter_name(defining.free_parameters()[g])});
+  double largest = 0.0;
+  for (const Entry& e : entries) largest = std::max(largest, e.size);
+  std::string text;
+  for (const Entry& e : entries)
+    if (e.size > 0.1 * largest) text += fmt::format("{}{}", text.empty() ? "" : ", ", e.name);
+  return text;
+}
+
+void refuse_singular(PathFollower& follower, const DefiningSystem& defining, const PathPoint& point) {
+  const CondensedSystem::Singularity singularity = follower.singularity(point);
+  if (singularity.reciprocal_condition >= singular_condition) return;
+  throw ComputationError(fmt::format(
+      "the boundary value problem is singular (scaled reciprocal condition {:.1e}): it leaves {} undetermined, so that "
+      "Newton converges only by luck; pin that direction, for instance by a jump that sets the state, or free another "
+      "parameter",
+      singularity.reciprocal_condition,
+      undetermined(defining.system(), defining, singularity.direction, point.orbit.shape)));
+}
+
+}  // namespace
+
+PathPoint first_point(PathFollower& follower, const DefiningSystem& system, const SelectedStart& selected,
+                      const RunSettings& settings) {
+  const OrbitStart& start = selected.start;
+  PathPoint point = follower.make_point(start.orbit);
+  NewtonResult result;
+  const bool fitting_direction =
+      start.direction && (selected.problem_type == 0 || selected.problem_type == settings.problem_type);
+  bool along = false;
+  if (fitting_direction && !selected.parameters_changed) {
+    result = follower.start_along(point, *start.direction);
+    along = result.converged() && std::abs(follower.alignment(point, *start.direction)) > parallel;
+  }
+  if (!along) {
+    point = follower.make_point(start.orbit);
+    result = follower.start_at_fixed_parameter(point);
+    const std::string first_trouble = describe(result.status);
+    if (!result.converged()) {
+      point = follower.make_point(start.orbit);
+      result = follower.start_by_minimum_norm(point);
+    }
+    if (!result.converged()) {
+      throw ComputationError(fmt::format(
+          "no convergence at the first point, from {}: {} with ICP(1) fixed, {} by minimum-norm steps with it free. "
+          "Residuals of the start, condition by condition:{}\n  The largest ones say which part of the start, of the "
+          "parameters or of the signature is wrong; a better start, a larger NTST or ITNW may help.",
+          selected.source, first_trouble, describe(result.status),
+          residual_report(follower.condensed(), system, start.orbit)));
+    }
+    if (fitting_direction && follower.alignment(point, *start.direction) < -parallel) follower.reverse(point);
+  }
+  refuse_singular(follower, system, point);
+  return point;
+}
+
+}  // namespace tchat

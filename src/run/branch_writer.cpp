@@ -1,0 +1,158 @@
+#include "run/branch_writer.hpp"
+
+#include <fmt/format.h>
+
+#include "continuation/solution_measure.hpp"
+#include "output/diagnostics_file.hpp"
+#include "output/number_format.hpp"
+#include "output/screen_table.hpp"
+#include "output/solution_file.hpp"
+#include "run/problem_setup.hpp"
+#include "start/orbit_start.hpp"
+#include "start/point_type.hpp"
+
+namespace tchat {
+
+BranchWriter::BranchWriter(const HybridSystem& system, const CollocationRule& rule, Setup setup, RunFiles& files,
+                           std::ostream* screen)
+    : system_(system),
+      rule_(rule),
+      setup_(std::move(setup)),
+      files_(files),
+      screen_(screen),
+      names_(ProblemNames::of(system)),
+      columns_(point_columns(setup_.settings, names_)),
+      weights_(state_weights(setup_.settings)) {}
+
+void BranchWriter::begin_section(int branch) {
+  setup_.branch = branch;
+  files_.write_points(
+      format_point_header({setup_.settings, setup_.active_parameters, names_, setup_.curve_type}, columns_));
+  if (screen_ != nullptr) *screen_ << format_table_heading(columns_) << std::flush;
+}
+
+std::vector<double> BranchWriter::column_values(const BranchPoint& point) const {
+  const Orbit& x = point.path.orbit;
+  const int n = x.shape.dimension;
+  std::vector<double> user(static_cast<std::size_t>(system_.table().user_values));
+  if (!user.empty()) system_.table().user_value(system_.table().self, x.start(0), x.par.data(), user.data());
+  std::vector<double> values;
+  for (const PointColumn& column : columns_) {
+    using Kind = PointColumn::Kind;
+    switch (column.kind) {
+      case Kind::parameter:
+        values.push_back(x.par(column.index - 1));
+        break;
+      case Kind::l2_norm:
+        values.push_back(l2_norm(x, rule_, weights_));
+        break;
+      case Kind::maximum:
+        values.push_back(maximum_of(x, column.index));
+        break;
+      case Kind::minimum:
+        values.push_back(minimum_of(x, column.index));
+        break;
+      case Kind::integral:
+        values.push_back(solution_measure(x, rule_, weights_, n + column.index));
+        break;
+      case Kind::component_l2_norm:
+        values.push_back(solution_measure(x, rule_, weights_, 2 * n + column.index));
+        break;
+      case Kind::user_function:
+        values.push_back(user[static_cast<std::size_t>(column.index - 1)]);
+        break;
+      case Kind::period:
+        values.push_back(x.period());
+        break;
+    }
+  }
+  return values;
+}
+
+void BranchWriter::point(const BranchPoint& point) {
+  PointLine line;
+  line.branch = setup_.branch;
+  line.point = point.number;
+  line.stable = setup_.curve_type == 0 && point.multipliers.stable();
+  const int basic = static_cast<int>(point.special.type);
+  line.type = basic < 0 ? basic - 10 * setup_.curve_type : basic > 0 ? basic + 10 * setup_.curve_type : 0;
+  line.kind = point.special.kind;
+  line.admissible = point.violations.empty();
+  line.values = column_values(point);
+  if (point.labelled()) line.label = ++setup_.last_label;
+
+  if (point.labelled()) write_solution(point, line);
+  files_.write_points(format_point(line));
+  write_diagnostics(point, line);
+  if (screen_ != nullptr) show(point, line);
+  if (point.labelled())
+    labels_.push_back({line.label, type_name(line.type, line.kind), line.values.front(), point.special.description});
+}
+
+/// Labelled points, the first one, and where orbits become inadmissible (with what is violated) or admissible again.
+void BranchWriter::show(const BranchPoint& point, const PointLine& line) {
+  const bool change = point.number > 1 && line.admissible != last_admissible_;
+  if (point.labelled() || point.number == 1 || change) *screen_ << format_table_line(line);
+  if (!line.admissible && (change || point.number == 1))
+    for (const Violation& violation : point.violations) *screen_ << "       " << describe(violation, system_) << '\n';
+  last_admissible_ = line.admissible;
+  *screen_ << std::flush;
+}
+
+void BranchWriter::write_solution(const BranchPoint& point, const PointLine& line) {
+  const Orbit& x = point.path.orbit;
+  const std::vector<int> free_parameters = [&] {
+    std::vector<int> list;
+    for (const int k : setup_.active_parameters)
+      if (!is_duration(k, x.shape.segments)) list.push_back(k);
+    return list;
+  }();
+  LabelledSolution solution = labelled_solution(x, point.path.tangent, free_parameters, setup_.active_parameters);
+  solution.branch = line.branch;
+  solution.point = line.point;
+  solution.type = line.type;
+  solution.label = line.label;
+  solution.branch_mode = setup_.settings.branch_mode;
+  solution.problem_type = setup_.settings.problem_type;
+  solution.kind = line.kind;
+  files_.write_solution(format_solution(solution));
+}
+
+void BranchWriter::write_diagnostics(const BranchPoint& point, const PointLine& line) {
+  const int level = setup_.settings.diagnostics_level;
+  if (level <= 0 && !point.labelled()) return;
+  std::string text;
+  if (level >= 2 && point.number > 1 && !point.newton.empty()) {
+    std::vector<NewtonLine> lines;
+    for (const NewtonIteration& it : point.newton)
+      lines.push_back({it.number, it.parameter, it.residual, it.parameter_change, it.state_change});
+    text += format_newton_history(line.branch, line.point, lines);
+  }
+  text += format_diagnostics_point(line, columns_);
+  if (!point.special.description.empty()) text += format_note(line.branch, line.point, point.special.description);
+  for (const Violation& violation : point.violations)
+    text += format_note(line.branch, line.point, "Inadmissible: " + describe(violation, system_));
+  if (point.multipliers.valid) text += format_multipliers(point.multipliers.values);
+  if (level >= 2) {
+    std::vector<TestFunctionLine> tests;
+    for (const TestValue& test : point.tests)
+      tests.push_back({test.name, test.value.value_or(0.0), test.value.has_value()});
+    text += format_test_functions(tests);
+    text += fmt::format("{:4}{:6}  Structural multiplier {:.3e}   estimated error between mesh points {:.3e}\n",
+                        line.branch, wrapped_point(line.point), point.multipliers.structural, point.estimated_error);
+  }
+  text += fmt::format("{:4}{:6}  Iterations   : {}\n", line.branch, wrapped_point(line.point), point.newton_iterations);
+  files_.write_diagnostics(text);
+}
+
+void BranchWriter::next_step(int point_number, double ds) {
+  if (setup_.settings.diagnostics_level <= 0) return;
+  files_.write_diagnostics(
+      fmt::format("{:4}{:6}  Next Step    : {:.5e}\n", setup_.branch, wrapped_point(point_number), ds) + format_bar());
+}
+
+void BranchWriter::note(int point_number, const std::string& text) {
+  files_.write_diagnostics(format_note(setup_.branch, point_number, text));
+}
+
+}  // namespace tchat

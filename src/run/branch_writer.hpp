@@ -1,0 +1,63 @@
+/// Writes a branch as it grows: p-, q- and d-file and the table on the screen.
+#pragma once
+
+#include <map>
+#include <ostream>
+#include <vector>
+
+#include "continuation/branch.hpp"
+#include "output/point_columns.hpp"
+#include "output/point_file.hpp"
+#include "output/run_files.hpp"
+
+namespace tchat {
+
+class BranchWriter final : public BranchSink {
+ public:
+  struct Setup {
+    RunSettings settings;
+    std::vector<int> active_parameters;
+    int curve_type = 0;  ///< tens digit of type numbers on two-parameter curves
+    int branch = 1;
+    int last_label = 0;
+  };
+
+  /// `files` are open; `screen` may be null (quiet).
+  BranchWriter(const HybridSystem& system, const CollocationRule& rule, Setup setup, RunFiles& files,
+               std::ostream* screen);
+
+  /// The header of a section; `branch` counts sections that continue in other directions.
+  void begin_section(int branch);
+  void point(const BranchPoint& point) override;
+  void next_step(int point_number, double ds) override;
+  void note(int point_number, const std::string& text) override;
+
+  struct Labelled {
+    int label;
+    std::string type;
+    double parameter;
+    std::string description;
+  };
+  /// The labels written so far, in order.
+  const std::vector<Labelled>& labels() const { return labels_; }
+  int last_label() const { return setup_.last_label; }
+
+ private:
+  std::vector<double> column_values(const BranchPoint& point) const;
+  void show(const BranchPoint& point, const PointLine& line);
+  void write_diagnostics(const BranchPoint& point, const PointLine& line);
+  void write_solution(const BranchPoint& point, const PointLine& line);
+
+  const HybridSystem& system_;
+  const CollocationRule& rule_;
+  Setup setup_;
+  RunFiles& files_;
+  std::ostream* screen_;
+  ProblemNames names_;
+  std::vector<PointColumn> columns_;
+  Eigen::VectorXd weights_;
+  std::vector<Labelled> labels_;
+  bool last_admissible_ = true;
+};
+
+}  // namespace tchat

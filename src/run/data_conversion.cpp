@@ -1,0 +1,62 @@
+#include "run/data_conversion.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "constants/constants_file.hpp"
+#include "constants/user_error.hpp"
+#include "output/block_file.hpp"
+#include "output/solution_file.hpp"
+#include "plugin/exit_guard.hpp"
+#include "plugin/plugin_build.hpp"
+#include "plugin/problem_library.hpp"
+#include "run/problem_setup.hpp"
+#include "run/problem_types.hpp"
+#include "run/start_selection.hpp"
+
+namespace tchat {
+
+namespace {
+
+/// Writes the whole file under another name first, so that no moment has half a file.
+void replace_file(const std::string& path, const std::string& text) {
+  namespace fs = std::filesystem;
+  const std::string temporary = path + ".new";
+  {
+    BlockFile file(temporary, BlockFile::Mode::replace);
+    file.write(text);
+    file.close();
+  }
+  std::error_code error;
+  if (fs::exists(path, error)) fs::rename(path, path + "~", error);
+  fs::rename(temporary, path, error);
+  if (error) throw ComputationError(fmt::format("{} cannot be written: {}", path, error.message()));
+}
+
+}  // namespace
+
+std::string convert_data(const RunRequest& request) {
+  const std::string constants = constants_path(request.constants.value_or(request.name));
+  RunSettings settings = read_constants_file(constants);
+  apply_overrides(settings, request.overrides);
+  settings.start = {};
+  const std::string plugin = resolve_plugin(request.problem.value_or(request.name));
+  const ExitGuard guard(plugin);
+  const ProblemLibrary library(plugin);
+  check_settings_against(library.system(), settings, constants);
+
+  RunRequest from_data = request;
+  from_data.data = request.data.value_or(request.name);
+  from_data.start.reset();
+  const SelectedStart selected = select_start(from_data, settings, library.system(), {});
+  LabelledSolution solution = labelled_solution(selected.start.orbit, {}, {}, {});
+  solution.type = static_cast<int>(PointType::end);
+  solution.problem_type = settings.problem_type;
+  solution.branch_mode = settings.branch_mode;
+  const std::string path = default_solution_path(request.output.value_or(request.name));
+  replace_file(path, format_solution(solution));
+  return path;
+}
+
+}  // namespace tchat

@@ -1,0 +1,65 @@
+#include "run/problem_types.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "bvp/periodic_orbit_system.hpp"
+#include "constants/user_error.hpp"
+#include "hybrid/parameter_vector.hpp"
+
+namespace tchat {
+
+namespace {
+
+template <class System>
+std::unique_ptr<DefiningSystem> make(const HybridSystem& system, const RunSettings& settings,
+                                     std::vector<int> free_parameters) {
+  return std::make_unique<System>(system, settings.signature(), std::move(free_parameters));
+}
+
+constexpr std::array<ProblemType, 1> types{{
+    {180, 1, "periodic orbits in one parameter", 1, &make<PeriodicOrbitSystem>},
+}};
+
+bool contains(const std::vector<int>& list, int k) { return std::find(list.begin(), list.end(), k) != list.end(); }
+
+int segment_count(const RunSettings& settings) { return static_cast<int>(settings.segments.size()); }
+
+}  // namespace
+
+const ProblemType& problem_type(const RunSettings& settings) {
+  std::string list;
+  for (const ProblemType& type : types) {
+    if (type.number == settings.problem_type && type.branch_mode == settings.branch_mode) return type;
+    list += fmt::format("\n  IPS = {}, ISW = {}: {}", type.number, type.branch_mode, type.name);
+  }
+  throw UserError(fmt::format("IPS = {} with ISW = {} is not a problem that tchat solves; there are:{}",
+                              settings.problem_type, settings.branch_mode, list));
+}
+
+std::vector<int> free_problem_parameters(const ProblemType& type, const RunSettings& settings) {
+  std::vector<int> result;
+  for (const int k : settings.free_parameters)
+    if (!is_duration(k, segment_count(settings)) && static_cast<int>(result.size()) < type.free_parameters)
+      result.push_back(k);
+  if (static_cast<int>(result.size()) < type.free_parameters)
+    throw UserError(fmt::format(
+        "ICP lists {} problem parameters, IPS = {} with ISW = {} needs {}: durations are free in any case, so name the "
+        "parameters to vary, for example ICP = [1, 61]",
+        result.size(), settings.problem_type, settings.branch_mode, type.free_parameters));
+  return result;
+}
+
+std::vector<int> active_parameters(const ProblemType& type, const RunSettings& settings) {
+  const std::vector<int> problem_parameters = free_problem_parameters(type, settings);
+  std::vector<int> result;
+  for (const int k : settings.free_parameters)
+    if (is_duration(k, segment_count(settings)) || contains(problem_parameters, k)) result.push_back(k);
+  for (int s = 0; s < segment_count(settings); ++s)
+    if (!contains(result, first_duration + s)) result.push_back(first_duration + s);
+  return result;
+}
+
+}  // namespace tchat

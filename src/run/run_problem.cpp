@@ -1,0 +1,136 @@
+#include "run/run_problem.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+#include <map>
+
+#include "constants/constants_file.hpp"
+#include "constants/constants_writer.hpp"
+#include "constants/user_error.hpp"
+#include "continuation/continuation_run.hpp"
+#include "plugin/exit_guard.hpp"
+#include "plugin/plugin_build.hpp"
+#include "plugin/problem_library.hpp"
+#include "run/branch_start.hpp"
+#include "run/branch_writer.hpp"
+#include "run/problem_setup.hpp"
+#include "run/problem_types.hpp"
+#include "run/run_summary.hpp"
+#include "run/start_selection.hpp"
+#include "special_points/user_value_test.hpp"
+#include "start/point_type.hpp"
+
+namespace tchat {
+
+namespace {
+
+std::vector<std::unique_ptr<TestFunction>> make_tests(const HybridSystem& system, const RunSettings& settings) {
+  std::vector<std::unique_ptr<TestFunction>> tests;
+  for (const UserValue& u : settings.user_values)
+    tests.push_back(std::make_unique<UserValueTest>(u.parameter, u.value, u.stop, system.parameter_name(u.parameter)));
+  return tests;
+}
+
+/// STOP: true at the n-th labelled point of a type.
+std::function<bool(const SpecialPoint&)> make_stop_rule(const RunSettings& settings) {
+  return [rules = settings.stop_rules, seen = std::map<std::string, int>{}](const SpecialPoint& special) mutable {
+    const std::string type = type_name(static_cast<int>(special.type), special.kind);
+    const int count = ++seen[type];
+    for (const StopRule& rule : rules)
+      if (rule.type == type && rule.count == count) return true;
+    return false;
+  };
+}
+
+bool same_file(const std::string& a, const std::string& b) {
+  std::error_code error;
+  return std::filesystem::equivalent(a, b, error) && !error;
+}
+
+void refuse_to_replace_start(const RunRequest& request, const SelectedStart& start, const std::string& output) {
+  if (request.output || request.append || !same_file(output_path('q', output), start.source)) return;
+  throw UserError(
+      fmt::format("the output q.{} would replace the file that the run starts from; say -o {} if that is "
+                  "meant, or give the output another name",
+                  output, output));
+}
+
+}  // namespace
+
+int run_problem(const RunRequest& request, std::ostream& screen, std::ostream& warnings,
+                const std::function<bool()>& interrupted) {
+  const auto warn = [&](const std::vector<std::string>& texts) {
+    for (const std::string& text : texts) warnings << "tchat: warning: " << text << '\n';
+  };
+
+  // Constants.
+  Warnings constant_warnings;
+  const std::string constants = constants_path(request.constants.value_or(request.name));
+  RunSettings settings = read_constants_file(constants, &constant_warnings);
+  apply_overrides(settings, request.overrides, &constant_warnings);
+  warn(constant_warnings);
+  const ProblemType& type = problem_type(settings);
+  const std::vector<int> free_parameters = free_problem_parameters(type, settings);
+
+  // Plugin.
+  const std::string plugin = resolve_plugin(request.problem.value_or(request.name));
+  const ExitGuard guard(plugin);
+  const ProblemLibrary library(plugin);
+  const HybridSystem& system = library.system();
+  warn(check_settings_against(system, settings, constants));
+  const std::unique_ptr<DefiningSystem> defining = type.make(system, settings, free_parameters);
+
+  // Start.
+  SelectedStart selected = select_start(request, settings, system, free_parameters);
+  warn(selected.warnings);
+  const std::string output = request.output.value_or(request.name);
+  refuse_to_replace_start(request, selected, output);
+  RunFiles files(output, request.append ? RunFiles::Mode::append : RunFiles::Mode::replace);
+  files.check_writable();
+  const OrbitShape shape = selected.start.orbit.shape;
+  check_memory(shape, defining->free_count());
+
+  // Discretisation and first point.
+  ContinuationSettings continuation = continuation_settings(settings);
+  PathFollower follower(*defining, shape, weighted_norm(settings), newton_settings(settings), continuation.principal);
+  const PathPoint start = first_point(follower, *defining, selected, settings);
+
+  // Files are touched only now.
+  files.open(positional_text(settings));
+  std::ostream* table = request.quiet ? nullptr : &screen;
+  const int last_label = request.append ? std::max(files.last_label(), 0) : selected.last_label;
+  BranchWriter writer(system, follower.condensed().rule(),
+                      {settings, active_parameters(type, settings), 0, selected.branch, last_label}, files, table);
+  continuation.label_start = selected.label_start;
+  continuation.interrupted = interrupted;
+
+  int status = 0;
+  int branch = request.append ? std::max(files.last_branch() + 1, 1) : selected.branch;
+  const int directions = request.both_directions ? 2 : 1;
+  for (int direction = 0; direction < directions; ++direction, ++branch) {
+    if (direction == 1) {
+      if (interrupted && interrupted()) break;
+      continuation.step.initial = -continuation.step.initial;
+      continuation.label_start = false;
+    }
+    continuation.stop_at = make_stop_rule(settings);
+    writer.begin_section(branch);
+    const std::size_t labels_before = writer.labels().size();
+    ContinuationRun run(follower, *defining, continuation, make_tests(system, settings), writer);
+    const BranchSummary summary = run.run(start);
+    const std::vector<BranchWriter::Labelled> labels(
+        writer.labels().begin() + static_cast<std::ptrdiff_t>(labels_before), writer.labels().end());
+    if (table != nullptr)
+      *table << summary_text(summary, labels, system.parameter_name(continuation.principal), output) << std::flush;
+    if (summary.reason == EndReason::first_step_failed) {
+      status = 1;
+      warnings << "tchat: the first step failed: " << summary.detail << '\n';
+    }
+  }
+  files.finish();
+  return status;
+}
+
+}  // namespace tchat

@@ -1,0 +1,58 @@
+#include "run/run_request.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "constants/user_error.hpp"
+
+namespace tchat {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_file(const fs::path& path) {
+  std::error_code ignored;
+  return fs::exists(path, ignored) && !fs::is_directory(path, ignored);
+}
+
+}  // namespace
+
+std::string constants_path(const std::string& c) {
+  const fs::path path(c);
+  const fs::path prefixed = path.parent_path() / ("gc." + path.filename().string());
+  if (is_file(prefixed)) return prefixed.string();
+  const bool named_in_full = path.filename().string().rfind("gc.", 0) == 0;
+  if (is_file(path) && (named_in_full || path.extension().empty() || path.has_parent_path())) return path.string();
+  throw UserError(
+      fmt::format("there is no constants file {}{}; give its name with -c, or write one (README, "
+                  "\"Constants files\")",
+                  prefixed.string(), path == prefixed ? "" : " or " + path.string()));
+}
+
+std::string data_path(const std::string& d) {
+  const fs::path path(d);
+  const fs::path with_suffix = d + ".dat";
+  if (is_file(with_suffix)) return with_suffix.string();
+  if (is_file(path)) return path.string();
+  throw UserError(
+      fmt::format("there is no starting data {} or {}; give its name with -d, or a q-file with -s and a "
+                  "label with IRS=",
+                  with_suffix.string(), path.string()));
+}
+
+std::string default_solution_path(const std::string& s) {
+  const fs::path path(s);
+  return (path.parent_path() / ("q." + path.filename().string())).string();
+}
+
+std::string solution_path(const std::string& s) {
+  const std::string prefixed = default_solution_path(s);
+  if (is_file(prefixed)) return prefixed;
+  if (is_file(s)) return s;
+  throw UserError(
+      fmt::format("there is no q-file {} to restart from; give the name of an earlier run's output with -s", prefixed));
+}
+
+}  // namespace tchat

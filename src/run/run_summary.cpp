@@ -1,0 +1,76 @@
+#include "run/run_summary.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace tchat {
+
+namespace {
+
+std::string reason_text(const BranchSummary& summary, const std::string& parameter) {
+  switch (summary.reason) {
+    case EndReason::max_points:
+      return fmt::format("the number of points asked for was reached ({})", summary.detail);
+    case EndReason::parameter_bound:
+      return fmt::format("{} left the bounds RL0, RL1: {}", parameter, summary.detail);
+    case EndReason::measure_bound:
+      return fmt::format("the solution measure left the bounds A0, A1: {}", summary.detail);
+    case EndReason::special_point:
+      return fmt::format("stop requested at {}", summary.detail);
+    case EndReason::interrupted:
+      return "interrupted; all files are complete up to the last point";
+    case EndReason::no_convergence:
+      return fmt::format("no convergence (MX): {}", summary.detail);
+    default:
+      return fmt::format("the first step failed (MX): {}", summary.detail);
+  }
+}
+
+/// What was tried at an abnormal end, and what a user might change.
+std::string advice(const BranchSummary& summary) {
+  if (summary.reason != EndReason::no_convergence && summary.reason != EndReason::first_step_failed) return "";
+  return "  tried: halving the step down to DSMIN, Newton with ITNW iterations, NWTN of them with a new Jacobian.\n"
+         "  you might: lower DSMIN (0 goes to 1e-10 DSMAX); raise NTST, NCOL or ITNW, NWTN; adapt the mesh more often\n"
+         "  (IAD = 1); lower DSMAX; loosen EPSL and EPSU if they are near rounding; look at the last orbit\n"
+         "  (tchat orbit) for an event that the signature misses.\n";
+}
+
+std::string trust(const BranchSummary& summary) {
+  std::string text = fmt::format("  trust: estimated relative error between mesh points at most {:.1e}",
+                                 summary.worst_estimated_error);
+  if (summary.multipliers_computed)
+    text += fmt::format(", structural multiplier (0 for the exact orbit) at most {:.1e}", summary.worst_structural);
+  text += "\n";
+  if (summary.worst_structural > 1e-3 || summary.worst_estimated_error > 1e-3)
+    text += "  the mesh is too coarse for this orbit: raise NTST or NCOL, or adapt it (IAD = 1)\n";
+  if (summary.inadmissible_points > 0)
+    text += fmt::format("  {} of {} points violate the model (inadmissible): see the d-file for what is violated\n",
+                        summary.inadmissible_points, summary.points);
+  return text;
+}
+
+bool is_special(const BranchWriter::Labelled& label) {
+  return label.type != "EP" && label.type != "RG" && !label.type.empty();
+}
+
+}  // namespace
+
+std::string summary_text(const BranchSummary& summary, const std::vector<BranchWriter::Labelled>& labels,
+                         const std::string& parameter, const std::string& output) {
+  std::string text = fmt::format("\n{} points", summary.points);
+  if (summary.multipliers_computed)
+    text +=
+        fmt::format(", {} stable and {} unstable", summary.points - summary.unstable_points, summary.unstable_points);
+  if (!labels.empty())
+    text += fmt::format("; labels {} to {} in q.{}", labels.front().label, labels.back().label, output);
+  text += ".\n";
+  for (const BranchWriter::Labelled& label : labels)
+    if (is_special(label))
+      text += fmt::format("  {} label {} at {} = {:.10g}{}{}\n", label.type, label.label, parameter, label.parameter,
+                          label.description.empty() ? "" : ": ", label.description);
+  text += fmt::format("  stopped: {}\n", reason_text(summary, parameter));
+  return text + advice(summary) + trust(summary);
+}
+
+}  // namespace tchat

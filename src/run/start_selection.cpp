@@ -1,0 +1,138 @@
+#include "run/start_selection.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "constants/user_error.hpp"
+#include "run/problem_setup.hpp"
+#include "start/point_type.hpp"
+#include "start/solution_file_reader.hpp"
+
+namespace tchat {
+
+namespace {
+
+int segment_count(const RunSettings& settings) { return static_cast<int>(settings.segments.size()); }
+
+OrbitShape shape_of(const RunSettings& settings) {
+  return {settings.dimension, segment_count(settings), settings.mesh_intervals, settings.collocation_points};
+}
+
+ParameterVector initial_parameters(const HybridSystem& system) {
+  ParameterVector par = ParameterVector::Zero(parameter_length);
+  if (system.table().initial_parameters != nullptr)
+    for (int i = 0; i < system.parameters(); ++i) par(i) = system.table().initial_parameters[i];
+  return par;
+}
+
+/// The command line's values, the last word. True when any differs from what was there.
+bool apply_command_line(const HybridSystem& system, const RunSettings& settings, ParameterVector& par) {
+  bool changed = false;
+  for (const RunSettings::ParameterValue& value : settings.parameter_values) {
+    double& target = par(parameter_index(system, value.name, "command line") - 1);
+    changed = changed || target != value.value;
+    target = value.value;
+  }
+  return changed;
+}
+
+bool given_on_command_line(const HybridSystem& system, const RunSettings& settings, int k) {
+  for (const RunSettings::ParameterValue& value : settings.parameter_values)
+    if (parameter_index(system, value.name, "command line") == k) return true;
+  return false;
+}
+
+SelectedStart start_from_data(const std::string& path, const RunSettings& settings, const HybridSystem& system) {
+  const int m = segment_count(settings);
+  const DatFile data = read_dat_file(path, settings.dimension, m);
+  ParameterVector par = initial_parameters(system);
+  std::vector<bool> given(static_cast<std::size_t>(m), false);
+  const auto set = [&](int k, double value) {
+    par(k - 1) = value;
+    if (is_duration(k, m)) given[static_cast<std::size_t>(duration_segment(k))] = true;
+  };
+  for (const auto& [k, value] : data.parameters) set(k, value);
+  for (const auto& [name, value] : data.named_parameters) set(parameter_index(system, name, path), value);
+  apply_command_line(system, settings, par);
+  for (int s = 0; s < m; ++s) {
+    if (given[static_cast<std::size_t>(s)] || given_on_command_line(system, settings, first_duration + s)) continue;
+    if (m > 1)
+      throw UserError(fmt::format(
+          "{}: the duration of segment {} is not given; with several segments every one is needed, add a line "
+          "`# PAR({}) = value` to the file or PAR({})=value to the command line",
+          path, s + 1, first_duration + s, first_duration + s));
+    par(first_duration - 1) = data.span;
+  }
+  SelectedStart selected;
+  selected.source = path;
+  selected.start.orbit = orbit_from_data(data, shape_of(settings), par);
+  selected.label_start = settings.start.from_data();
+  selected.last_label = selected.label_start ? 0 : 1;
+  return selected;
+}
+
+SelectedStart start_from_solution(const std::string& path, const RunSettings& settings, const HybridSystem& system,
+                                  const std::vector<int>& free_parameters) {
+  const SolutionFile file = read_solution_file(path);
+  const LabelledSolution& solution = find_solution(file.solutions, settings.start, path);
+  SelectedStart selected;
+  selected.source = path;
+  selected.from_solution = true;
+  selected.label_start = false;
+  selected.start = orbit_from_solution(solution, shape_of(settings), free_parameters, path);
+  selected.parameters_changed = apply_command_line(system, settings, selected.start.orbit.par);
+  selected.branch = std::max(solution.branch, 1);
+  selected.last_label = file.last_label;
+  selected.problem_type = solution.problem_type;
+  selected.warnings = file.warnings;
+  return selected;
+}
+
+bool exists(const std::string& path) {
+  std::error_code ignored;
+  return std::filesystem::exists(path, ignored);
+}
+
+[[noreturn]] void refuse_solution_without_label(const std::string& path) {
+  const SolutionFile file = read_solution_file(path);
+  std::string labels;
+  for (const LabelledSolution& s : file.solutions)
+    labels += fmt::format("{}{}{}", labels.empty() ? "" : ", ", s.label,
+                          type_name(s).empty() ? "" : fmt::format(" ({})", type_name(s)));
+  throw UserError(
+      fmt::format("-s {}: IRS is 0, so no label is chosen; add IRS=LABEL, or IRS=PD1 and the like; labels: {}", path,
+                  labels.empty() ? "none" : labels));
+}
+
+}  // namespace
+
+SelectedStart select_start(const RunRequest& request, const RunSettings& settings, const HybridSystem& system,
+                           const std::vector<int>& free_parameters) {
+  const StartLabel& label = settings.start;
+  if (request.data && request.start)
+    throw UserError("-d and -s are both given; a run starts from data (-d, IRS = 0) or from a label of a q-file (-s)");
+  if (request.start) {
+    const std::string path = solution_path(*request.start);
+    if (label.from_data()) refuse_solution_without_label(path);
+    return start_from_solution(path, settings, system, free_parameters);
+  }
+  const bool is_first_label = label.type.empty() && label.number <= 1;
+  if (request.data || label.from_data()) {
+    if (!is_first_label)
+      throw UserError(
+          fmt::format("IRS = {}{}, but starting data count as label 1; use IRS=0 or 1, or name a q-file with "
+                      "-s",
+                      label.type, label.number));
+    return start_from_data(data_path(request.data.value_or(request.name)), settings, system);
+  }
+  const std::string solutions = default_solution_path(request.name);
+  if (exists(solutions)) return start_from_solution(solutions, settings, system, free_parameters);
+  if (is_first_label) return start_from_data(data_path(request.name), settings, system);
+  throw UserError(
+      fmt::format("IRS = {}{}, but there is no q.{} to restart from; name a q-file with -s, or use IRS=0 "
+                  "with starting data",
+                  label.type, label.number, request.name));
+}
+
+}  // namespace tchat

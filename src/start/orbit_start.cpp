@@ -1,0 +1,169 @@
+#include "start/orbit_start.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "bvp/mesh_adaptation.hpp"
+#include "constants/user_error.hpp"
+
+namespace tchat {
+
+namespace {
+
+std::size_t index(int i) { return static_cast<std::size_t>(i); }
+
+/// Half of the mesh density follows time, half the arclength of the data with every component scaled by its range.
+std::vector<double> mesh_of_data(const DatFile& data, int intervals) {
+  const Eigen::Index rows = data.states.cols();
+  const Eigen::VectorXd range = data.states.rowwise().maxCoeff() - data.states.rowwise().minCoeff();
+  Eigen::VectorXd length(rows - 1);
+  for (Eigen::Index j = 0; j + 1 < rows; ++j) {
+    double sum = 0.0;
+    for (Eigen::Index i = 0; i < range.size(); ++i)
+      if (range(i) > 0.0) sum += std::pow((data.states(i, j + 1) - data.states(i, j)) / range(i), 2);
+    length(j) = std::sqrt(sum);
+  }
+  const double total = length.sum();
+  Eigen::VectorXd density(rows - 1);
+  for (Eigen::Index j = 0; j + 1 < rows; ++j) {
+    const double dt = data.tau[static_cast<std::size_t>(j + 1)] - data.tau[static_cast<std::size_t>(j)];
+    density(j) = 1.0 + (total > 0.0 ? length(j) / (total * dt) : 0.0);
+  }
+  return equal_parts(data.tau, density, intervals);
+}
+
+/// Lagrange interpolation through the (at most) four rows around tau.
+Eigen::VectorXd interpolate(const DatFile& data, double tau) {
+  const int rows = static_cast<int>(data.tau.size());
+  const int right = static_cast<int>(std::upper_bound(data.tau.begin(), data.tau.end(), tau) - data.tau.begin());
+  const int count = std::min(rows, 4);
+  const int first = std::clamp(right - 2, 0, rows - count);
+  Eigen::VectorXd result = Eigen::VectorXd::Zero(data.states.rows());
+  for (int i = first; i < first + count; ++i) {
+    double weight = 1.0;
+    for (int k = first; k < first + count; ++k)
+      if (k != i) weight *= (tau - data.tau[index(k)]) / (data.tau[index(i)] - data.tau[index(k)]);
+    result += weight * data.states.col(i);
+  }
+  return result;
+}
+
+/// (n m) x NTPL stacked segments to n x (m NTPL), and back.
+Eigen::MatrixXd unstack(const Eigen::MatrixXd& stacked, int n) {
+  const Eigen::Index m = stacked.rows() / n;
+  Eigen::MatrixXd result(n, m * stacked.cols());
+  for (Eigen::Index s = 0; s < m; ++s)
+    result.middleCols(s * stacked.cols(), stacked.cols()) = stacked.middleRows(s * n, n);
+  return result;
+}
+
+Eigen::MatrixXd stack(const Eigen::MatrixXd& states, const OrbitShape& shape) {
+  Eigen::MatrixXd result(shape.dimension * shape.segments, shape.nodes());
+  for (int s = 0; s < shape.segments; ++s)
+    result.middleRows(s * shape.dimension, shape.dimension) = states.middleCols(s * shape.nodes(), shape.nodes());
+  return result;
+}
+
+/// The stored direction on the stored mesh; nothing when it belongs to other free parameters.
+std::optional<OrbitVector> stored_direction(const LabelledSolution& solution, const OrbitShape& stored,
+                                            const std::vector<int>& free_parameters) {
+  if (!solution.has_direction()) return std::nullopt;
+  OrbitVector direction(stored, static_cast<int>(free_parameters.size()));
+  std::size_t found = 0;
+  for (std::size_t i = 0; i < solution.free_parameters.size() && i < solution.parameter_direction.size(); ++i) {
+    const int k = solution.free_parameters[i];
+    if (is_duration(k, stored.segments)) {
+      direction.durations(duration_segment(k)) = solution.parameter_direction[i];
+      continue;
+    }
+    const auto at = std::find(free_parameters.begin(), free_parameters.end(), k);
+    if (at == free_parameters.end()) return std::nullopt;
+    direction.globals(at - free_parameters.begin()) = solution.parameter_direction[i];
+    ++found;
+  }
+  if (found != free_parameters.size()) return std::nullopt;
+  direction.states = unstack(solution.state_direction, stored.dimension);
+  return direction;
+}
+
+}  // namespace
+
+Orbit orbit_from_data(const DatFile& data, const OrbitShape& shape, const ParameterVector& par) {
+  Orbit orbit{shape, mesh_of_data(data, shape.intervals), Eigen::MatrixXd(shape.dimension, shape.columns()), par};
+  Eigen::MatrixXd stacked(data.states.rows(), shape.nodes());
+  for (int k = 0; k < shape.nodes(); ++k) stacked.col(k) = interpolate(data, orbit.tau(k));
+  orbit.states = unstack(stacked, shape.dimension);
+  return orbit;
+}
+
+OrbitStart orbit_from_solution(const LabelledSolution& solution, const OrbitShape& shape,
+                               const std::vector<int>& free_parameters, const std::string& source) {
+  const int rows = static_cast<int>(solution.states.rows());
+  const bool other_dimension = solution.dimension > 0 && solution.dimension != shape.dimension;
+  if (rows != shape.dimension * shape.segments || other_dimension)
+    throw UserError(fmt::format(
+        "{}: label {} has {} states at each time ({}), the constants ask for {} segments of {} states; restart with "
+        "the "
+        "signature and dimension of the label, or make new starting data where the number of segments changes",
+        source, solution.label, rows,
+        solution.dimension > 0 ? fmt::format("{} segments of {}", rows / solution.dimension, solution.dimension)
+                               : "dimension of a segment not recorded",
+        shape.segments, shape.dimension));
+  if (solution.collocation_points < 1 || solution.collocation_points > 7 || solution.mesh_intervals < 1)
+    throw UserError(
+        fmt::format("{}: label {} has {} collocation points on {} mesh intervals, not an orbit; restart "
+                    "from another label",
+                    source, solution.label, solution.collocation_points, solution.mesh_intervals));
+
+  const OrbitShape stored{shape.dimension, shape.segments, solution.mesh_intervals, solution.collocation_points};
+  std::vector<double> mesh;
+  for (int j = 0; j <= stored.intervals; ++j) mesh.push_back(solution.tau[index(j * stored.collocation)]);
+  for (std::size_t j = 1; j < mesh.size(); ++j)
+    if (!(mesh[j] > mesh[j - 1]))
+      throw UserError(fmt::format("{}: the mesh of label {} does not rise at interval {}; restart from another label",
+                                  source, solution.label, j));
+
+  OrbitStart start;
+  start.direction = stored_direction(solution, stored, free_parameters);
+  start.orbit = {stored, mesh, unstack(solution.states, shape.dimension), ParameterVector::Zero(parameter_length)};
+  for (std::size_t k = 0; k < solution.parameters.size() && k < static_cast<std::size_t>(parameter_length); ++k)
+    start.orbit.par(static_cast<Eigen::Index>(k)) = solution.parameters[k];
+  if (stored == shape) return start;
+
+  const std::vector<double> new_mesh = resampled_mesh(mesh, shape.intervals);
+  start.orbit.states = interpolate_states(start.orbit.states, stored, mesh, shape, new_mesh);
+  if (start.direction)
+    start.direction->states = interpolate_states(start.direction->states, stored, mesh, shape, new_mesh);
+  start.orbit.mesh = new_mesh;
+  start.orbit.shape = shape;
+  return start;
+}
+
+LabelledSolution labelled_solution(const Orbit& orbit, const OrbitVector& direction,
+                                   const std::vector<int>& free_parameters, const std::vector<int>& listed) {
+  const OrbitShape& shape = orbit.shape;
+  LabelledSolution solution;
+  solution.dimension = shape.dimension;
+  solution.mesh_intervals = shape.intervals;
+  solution.collocation_points = shape.collocation;
+  solution.tau = orbit.node_times();
+  solution.states = stack(orbit.states, shape);
+  if (direction.states.size() > 0) solution.state_direction = stack(direction.states, shape);
+  solution.free_parameters = listed;
+  for (const int k : listed) {
+    if (is_duration(k, shape.segments)) {
+      solution.parameter_direction.push_back(direction.durations(duration_segment(k)));
+      continue;
+    }
+    const auto at = std::find(free_parameters.begin(), free_parameters.end(), k);
+    solution.parameter_direction.push_back(
+        at == free_parameters.end() ? 0.0 : direction.globals(at - free_parameters.begin()));
+  }
+  const int used = std::max(100, first_duration - 1 + shape.segments);
+  solution.parameters.assign(orbit.par.data(), orbit.par.data() + used);
+  return solution;
+}
+
+}  // namespace tchat

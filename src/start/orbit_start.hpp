@@ -1,0 +1,34 @@
+/// From starting data or a labelled solution to an orbit on the mesh of the run.
+#pragma once
+
+#include <optional>
+
+#include "bvp/orbit.hpp"
+#include "start/dat_file.hpp"
+#include "start/labelled_solution.hpp"
+
+namespace tchat {
+
+/// Where a branch begins: an orbit that still has to be corrected, and the direction stored with it, if any.
+struct OrbitStart {
+  Orbit orbit;
+  std::optional<OrbitVector> direction;
+};
+
+/// Fits a mesh to the rows of a .dat file (intervals of equal share of time and of arclength of the scaled states) and
+/// interpolates the states by cubics through four neighbouring rows. `par` holds the parameters and the durations.
+Orbit orbit_from_data(const DatFile& data, const OrbitShape& shape, const ParameterVector& par);
+
+/// The labelled solution on a mesh of shape.intervals and shape.collocation: its own where they agree, otherwise one of
+/// the same density. The direction is kept when it has one and its free problem parameters are `free_parameters`, in
+/// any order. Throws UserError (naming `source`) when the number of states is not n m.
+OrbitStart orbit_from_solution(const LabelledSolution& solution, const OrbitShape& shape,
+                               const std::vector<int>& free_parameters, const std::string& source);
+
+/// The other way: an orbit with its direction as an entry of a q-file. Branch, point, label and type are left to the
+/// caller. An empty direction is left out. `free_parameters`: those of the direction's globals; `listed`: all free PAR
+/// indices in the order to print.
+LabelledSolution labelled_solution(const Orbit& orbit, const OrbitVector& direction,
+                                   const std::vector<int>& free_parameters, const std::vector<int>& listed);
+
+}  // namespace tchat
