@@ -165,30 +165,33 @@ void CondensedSystem::evaluate(const Orbit& x, OrbitResidual& residual) {
 
 // ---- linearisation --------------------------------------------------------------------------------------------------
 
-bool CondensedSystem::linearize(const Orbit& x, std::span<const OrbitVector> rows, OrbitResidual& residual) {
+Linearization CondensedSystem::linearize(const Orbit& x, std::span<const OrbitVector> rows, OrbitResidual& residual) {
   double* collocation = residual.collocation.data();
   for (int s = 0; s < shape_.segments; ++s) {
-    if (!condense_segment(x, s, rows, collocation)) return false;
+    const Linearization outcome = condense_segment(x, s, rows, collocation);
+    if (outcome != Linearization::ready) return outcome;
     collocation += shape_.intervals * shape_.collocation * n_;
   }
-  return assemble(x, rows, residual) && lu_.factorize(triplet_values_);
+  if (!assemble(x, rows, residual)) return Linearization::not_finite;
+  return lu_.factorize(triplet_values_) ? Linearization::ready : Linearization::singular;
 }
 
-bool CondensedSystem::condense_segment(const Orbit& x, int s, std::span<const OrbitVector> rows, double* collocation) {
+Linearization CondensedSystem::condense_segment(const Orbit& x, int s, std::span<const OrbitVector> rows,
+                                                double* collocation) {
   const int block_size = (interval_.rows() + border_) * interval_.width();
   int sign = 1;
   for (int j = 0; j < shape_.intervals; ++j) {
     double* a = &interval_blocks_[index(block(s, j) * block_size)];
-    if (!fill_interval(x, s, j, a, collocation + j * shape_.collocation * n_)) return false;
+    if (!fill_interval(x, s, j, a, collocation + j * shape_.collocation * n_)) return Linearization::not_finite;
     fill_border(s, j, rows, a);
     const int interval_sign =
         interval_.eliminate(a, border_, &interval_swaps_[index(block(s, j) * interval_.pivots())]);
-    if (interval_sign == 0) return false;
+    if (interval_sign == 0) return Linearization::singular;
     sign *= interval_sign;
   }
   signs_[index(s)] = sign;
   for (int j = 1; j < shape_.intervals; ++j)
-    if (!join(s, j)) return false;
+    if (!join(s, j)) return Linearization::singular;
   const int p = interval_.pivots();
   if (shape_.intervals == 1) {
     keep_segment_blocks(s, &interval_blocks_[index(block(s, 0) * block_size)], interval_.width(), p, p + n_, p + 2 * n_,
@@ -198,7 +201,7 @@ bool CondensedSystem::condense_segment(const Orbit& x, int s, std::span<const Or
     keep_segment_blocks(s, &chain_blocks_[index(block(s, shape_.intervals - 1) * chain_size)], chain_.width(), n_,
                         2 * n_, 3 * n_, n_, chain_.rows());
   }
-  return true;
+  return Linearization::ready;
 }
 
 /// Collocation rows of one interval: slope - h T f at the Gauss points, columns (interior | left | right | T, p).

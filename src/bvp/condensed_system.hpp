@@ -33,6 +33,9 @@ struct OrbitResidual {
   bool finite() const;
 };
 
+/// Outcome of a linearisation; factors exist only when it is `ready`.
+enum class Linearization { ready, not_finite, singular };
+
 class CondensedSystem {
  public:
   /// `border_rows` = b. The defining system must outlive this object and satisfy m + q = E + b.
@@ -47,9 +50,8 @@ class CondensedSystem {
   /// F(x). The result may hold entries that are not finite.
   void evaluate(const Orbit& x, OrbitResidual& residual);
 
-  /// J(x) bordered by `rows` (b dual vectors), factored; F(x) on the way. False when J is not finite or is exactly
-  /// singular; the factors are then gone.
-  bool linearize(const Orbit& x, std::span<const OrbitVector> rows, OrbitResidual& residual);
+  /// J(x) bordered by `rows` (b dual vectors), factored; F(x) on the way.
+  Linearization linearize(const Orbit& x, std::span<const OrbitVector> rows, OrbitResidual& residual);
 
   /// The solution of J dx = -F, rows dx = border. `border` has b entries.
   void solve(const OrbitResidual& residual, std::span<const double> border, OrbitVector& dx);
@@ -81,7 +83,7 @@ class CondensedSystem {
 
   SparseLu make_sparse();
   void interpolate(const Orbit& x, int s, int j, int gauss_point);
-  bool condense_segment(const Orbit& x, int s, std::span<const OrbitVector> rows, double* collocation);
+  Linearization condense_segment(const Orbit& x, int s, std::span<const OrbitVector> rows, double* collocation);
   bool fill_interval(const Orbit& x, int s, int j, double* block, double* collocation);
   void fill_border(int s, int j, std::span<const OrbitVector> rows, double* block) const;
   bool join(int s, int j);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bvp/evaluation_failure.hpp"
 #include "bvp/mesh_adaptation.hpp"
 #include "continuation/solution_measure.hpp"
 #include "special_points/locator.hpp"
@@ -198,8 +199,13 @@ void ContinuationRun::prepare_next_step() {
 
 /// The branch ends abnormally: the last converged point is written once more, as MX.
 void ContinuationRun::give_up() {
+  std::string trouble = describe(newton_.status);
+  if (newton_.status == NewtonStatus::not_finite) {
+    const std::string where = evaluation_failure(system_, follower_.condensed().rule(), next_.orbit);
+    if (!where.empty()) trouble = where;
+  }
   end(number_ == 1 ? EndReason::first_step_failed : EndReason::no_convergence,
-      fmt::format("{}, with steps down to {:.3e}", describe(newton_.status), std::abs(ds_taken_)));
+      fmt::format("{}; steps down to {:.3e} were tried", trouble, std::abs(ds_taken_)));
   sink_.note(number_ + 1, settings_.step.adapt_every == 0 ? "No convergence with fixed step size"
                                                           : "No convergence using minimum step size");
   ++number_;

@@ -52,7 +52,7 @@ double PathFollower::alignment(const PathPoint& point, const OrbitVector& direct
 
 bool PathFollower::linearize(const Orbit& x, const OrbitVector& row) {
   if (&row != &rows_[0]) rows_[0] = row;
-  return condensed_.linearize(x, rows_, newton_.residual());
+  return condensed_.linearize(x, rows_, newton_.residual()) == Linearization::ready;
 }
 
 void PathFollower::normalise(const Orbit& x, OrbitVector& tangent, OrbitVector& dual) const {
@@ -156,7 +156,8 @@ void PathFollower::reverse(PathPoint& point) const {
 }
 
 CondensedSystem::Singularity PathFollower::singularity(const PathPoint& point) {
-  if (!linearize(point.orbit, point.dual) && !newton_.residual().finite()) return {1.0, {}};
+  rows_[0] = point.dual;
+  if (condensed_.linearize(point.orbit, rows_, newton_.residual()) == Linearization::not_finite) return {1.0, {}};
   return condensed_.singularity();
 }
 

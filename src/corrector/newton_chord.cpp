@@ -49,8 +49,9 @@ NewtonResult NewtonChord::correct(Orbit& x, std::span<const OrbitVector> rows, c
   for (int iteration = 1; iteration <= settings_.max_iterations; ++iteration) {
     const bool full = iteration <= std::max(settings_.full_iterations, 1);
     if (full) {
-      if (!condensed_.linearize(x, rows, residual_)) {
-        result.status = residual_.finite() ? NewtonStatus::singular : NewtonStatus::not_finite;
+      const Linearization outcome = condensed_.linearize(x, rows, residual_);
+      if (outcome != Linearization::ready) {
+        result.status = outcome == Linearization::singular ? NewtonStatus::singular : NewtonStatus::not_finite;
         return result;
       }
       result.change_since_factorization = 0.0;

@@ -13,6 +13,8 @@ class SparseLu {
   /// Throws std::invalid_argument when the pattern is structurally singular or out of range.
   SparseLu(int size, const std::vector<int>& rows, const std::vector<int>& columns);
   ~SparseLu();
+  SparseLu(const SparseLu&) = delete;
+  SparseLu& operator=(const SparseLu&) = delete;
   SparseLu(SparseLu&&) noexcept;
   SparseLu& operator=(SparseLu&&) noexcept;
 

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "bvp/evaluation_failure.hpp"
 #include "constants/user_error.hpp"
 
 namespace tchat {
@@ -107,6 +108,10 @@ PathPoint first_point(PathFollower& follower, const DefiningSystem& system, cons
       result = follower.start_by_minimum_norm(point);
     }
     if (!result.converged()) {
+      const std::string failure = evaluation_failure(system, follower.condensed().rule(), start.orbit);
+      if (!failure.empty())
+        throw ComputationError(
+            fmt::format("the starting solution from {} cannot be evaluated: {}", selected.source, failure));
       throw ComputationError(fmt::format(
           "no convergence at the first point, from {}: {} with ICP(1) fixed, {} by minimum-norm steps with it free. "
           "Residuals of the start, condition by condition:{}\n  The largest ones say which part of the start, of the "

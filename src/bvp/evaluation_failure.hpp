@@ -1,0 +1,16 @@
+/// Which function of the problem could not be evaluated on an orbit, for messages.
+#pragma once
+
+#include <string>
+
+#include "bvp/collocation_rule.hpp"
+#include "bvp/defining_system.hpp"
+#include "bvp/orbit.hpp"
+
+namespace tchat {
+
+/// The first field, event function or jump whose value or derivatives are not finite at a point where the boundary
+/// value problem evaluates it, with its index, place and state; empty when there is none.
+std::string evaluation_failure(const DefiningSystem& system, const CollocationRule& rule, const Orbit& x);
+
+}  // namespace tchat
