@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <iterator>
 
@@ -11,6 +12,7 @@ namespace {
 
 constexpr std::size_t e19_width = 19;
 constexpr int largest_point = 9999;
+constexpr double largest_es = 1.7976e308;  ///< rounded up in its last decimal a larger one is read as infinity
 
 bool continues_character(char c) { return (static_cast<unsigned char>(c) & 0xC0) == 0x80; }  // of UTF-8
 
@@ -41,7 +43,8 @@ std::string e19(double value) {
 }
 
 std::string es(double value, int width, int decimals) {
-  std::string text = fmt::format("{:.{}E}", finite(value), decimals);
+  const double bounded = std::clamp(finite(value), -largest_es, largest_es);
+  std::string text = fmt::format("{:.{}E}", bounded, decimals);
   const auto letter = text.find('E');
   if (text.size() - letter > 4) text.erase(letter, 1);  // a three-digit exponent takes the letter's place
   return fmt::format("{:>{}}", text, width);

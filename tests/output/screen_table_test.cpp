@@ -1,0 +1,45 @@
+#include "output/screen_table.hpp"
+
+#include <catch2/catch.hpp>
+#include <vector>
+
+using namespace tchat;
+
+namespace {
+
+std::vector<PointColumn> columns(const std::vector<std::string>& names) {
+  std::vector<PointColumn> result;
+  for (const std::string& name : names) result.push_back({PointColumn::Kind::parameter, 1, name});
+  return result;
+}
+
+}  // namespace
+
+TEST_CASE("The table on screen by hand", "[output]") {
+  CHECK(format_table_heading(columns({"alpha", "L2-NORM", "a name that is too long"})) ==
+        "  BR    PT  TY  LAB       alpha       L2-NORM  a name that\n");
+  CHECK(format_table_line({1, 1, true, 9, 1, {3.0, -1.25}}) == "   1    -1  EP    1   3.00000E+00  -1.25000E+00\n");
+  CHECK(format_table_line({1, 20, false, 4, 2, {1e-100}}) == "   1    20        2  1.00000E-100\n");
+  CHECK(format_table_line({2, 3, false, 0, 0, {0.5}}) == "   2     3        0   5.00000E-01\n");
+  CHECK(format_table_line({1, 7, false, 54, 3, {}}) == "   1     7        3\n");
+}
+
+TEST_CASE("Types in letters, GR and XI by what the point is", "[output]") {
+  CHECK(format_table_line({1, 5, false, -4, 3, {}, {UserPointKind::contact, 1, 2, 0.5}}) == "   1     5  GR    3\n");
+  CHECK(format_table_line({1, 5, false, -4, 3, {}, {UserPointKind::xi, 1, 2, 0.0}}) == "   1     5  XI    3\n");
+  CHECK(format_table_line({1, 5, false, -54, 3, {}, {UserPointKind::user_value, 0, 2, 0.0}}) ==
+        "   1     5  UZ    3\n");
+  CHECK(format_table_line({1, 5, false, -59, 3, {}}) == "   1     5  MX    3\n");
+}
+
+TEST_CASE("Inadmissible points are marked", "[output]") {
+  CHECK(format_table_line({1, 5, false, 0, 0, {1.0}, {}, false}) ==
+        "   1     5        0   1.00000E+00  inadmissible\n");
+}
+
+TEST_CASE("At most seven columns", "[output]") {
+  const std::string line = format_table_line({1, 5, false, 0, 0, std::vector<double>(12, 1.0)});
+  CHECK(line.size() == 19 + 7 * 14 + 1);
+  const auto many = columns(std::vector<std::string>(12, "P"));
+  CHECK(format_table_heading(many).size() == 19 + 7 * 14 - 2 + 1);
+}

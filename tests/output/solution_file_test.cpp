@@ -1,0 +1,261 @@
+#include "output/solution_file.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "output/sample_orbits.hpp"
+#include "start/solution_file_reader.hpp"
+
+using namespace tchat;
+using test_support::sample_orbit;
+
+namespace {
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::size_t begin = 0;
+  while (begin < text.size()) {
+    const auto end = text.find('\n', begin);
+    REQUIRE(end != std::string::npos);  // the last line ends too
+    lines.push_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return lines;
+}
+
+int integer_at(const std::string& line, std::size_t begin, std::size_t width) {
+  const std::string field = line.substr(begin, width);
+  REQUIRE(field.find_first_not_of(" -0123456789") == std::string::npos);
+  REQUIRE(field[0] == ' ');
+  return std::stoi(field);
+}
+
+/// A reader of one entry by columns, as its format is described: 6I6, I8, I6, I8, 7I5; 4X,7E19; 20I5.
+class FixedColumns {
+ public:
+  explicit FixedColumns(const std::string& text) : lines_(lines_of(text)) {
+    const std::string& first = lines_.at(0);
+    REQUIRE(first.size() == 93);
+    const std::vector<std::size_t> widths = {6, 6, 6, 6, 6, 6, 8, 6, 8, 5, 5, 5, 5, 5, 5, 5};
+    std::size_t begin = 0;
+    for (const std::size_t width : widths) {
+      identifier.push_back(integer_at(first, begin, width));
+      begin += width;
+    }
+  }
+
+  std::vector<double> numbers(int count) {
+    std::vector<double> values;
+    for (int k = 0; k < count; ++k) {
+      if (k % 7 == 0) {
+        REQUIRE(next_ < lines_.size());
+        REQUIRE(lines_[next_].size() == 4 + 19 * static_cast<std::size_t>(std::min(7, count - k)));
+        REQUIRE(lines_[next_].substr(0, 4) == "    ");
+        ++next_;
+      }
+      const std::string field = lines_[next_ - 1].substr(4 + 19 * static_cast<std::size_t>(k % 7), 19);
+      REQUIRE(field[0] == ' ');
+      REQUIRE(field[14] == 'E');
+      REQUIRE(field[3] == '.');
+      values.push_back(std::stod(field));
+    }
+    return values;
+  }
+
+  std::vector<int> integers(int count) {
+    std::vector<int> values;
+    for (int k = 0; k < count; ++k) {
+      if (k % 20 == 0) {
+        REQUIRE(lines_.at(next_).size() == 5 * static_cast<std::size_t>(std::min(20, count - k)));
+        ++next_;
+      }
+      values.push_back(integer_at(lines_[next_ - 1], 5 * static_cast<std::size_t>(k % 20), 5));
+    }
+    return values;
+  }
+
+  bool at_end() const { return next_ == lines_.size(); }
+  int lines_after_first() const { return static_cast<int>(lines_.size()) - 1; }
+
+  std::vector<int> identifier;
+
+ private:
+  std::vector<std::string> lines_;
+  std::size_t next_ = 1;
+};
+
+/// Every number of the entry against the orbit it was made from.
+void check_entry(const LabelledSolution& orbit) {
+  const int states = static_cast<int>(orbit.states.rows());
+  const int points = static_cast<int>(orbit.states.cols());
+  const int segments = states / orbit.dimension;
+  const int free = static_cast<int>(orbit.free_parameters.size());
+  const int parameters = std::max(100, 60 + segments) + 4;
+  FixedColumns entry(format_solution(orbit));
+  const std::vector<int> expected = {orbit.branch,
+                                     (orbit.point - 1) % 9999 + 1,
+                                     orbit.type,
+                                     orbit.label,
+                                     free,
+                                     orbit.branch_mode,
+                                     points,
+                                     states + 1,
+                                     entry.lines_after_first(),
+                                     orbit.mesh_intervals,
+                                     orbit.collocation_points,
+                                     parameters,
+                                     4,
+                                     orbit.dimension,
+                                     orbit.problem_type,
+                                     0};
+  CHECK(entry.identifier == expected);
+  for (int p = 0; p < points; ++p) {
+    const auto record = entry.numbers(states + 1);
+    REQUIRE(record[0] == Approx(orbit.tau[static_cast<std::size_t>(p)]).epsilon(1e-10));
+    for (int r = 0; r < states; ++r)
+      REQUIRE(record[static_cast<std::size_t>(r) + 1] == Approx(orbit.states(r, p)).epsilon(1e-10));
+  }
+  if (orbit.has_direction()) {
+    REQUIRE(entry.integers(free) == orbit.free_parameters);
+    const auto rates = entry.numbers(free);
+    for (std::size_t k = 0; k < rates.size(); ++k) REQUIRE(rates[k] == Approx(orbit.parameter_direction[k]));
+    for (int p = 0; p < points; ++p) {
+      const auto record = entry.numbers(states);
+      for (int r = 0; r < states; ++r)
+        REQUIRE(record[static_cast<std::size_t>(r)] == Approx(orbit.state_direction(r, p)).epsilon(1e-10));
+    }
+  }
+  const auto par = entry.numbers(parameters);
+  for (std::size_t k = 0; k + 4 < par.size(); ++k)
+    REQUIRE(par[k] == (k < orbit.parameters.size() ? orbit.parameters[k] : 0.0));
+  CHECK(par[par.size() - 4] == orbit.kind.kind);
+  CHECK(par[par.size() - 3] == orbit.kind.segment);
+  CHECK(par[par.size() - 2] == orbit.kind.index);
+  CHECK(par[par.size() - 1] == orbit.kind.tau);
+  CHECK(entry.at_end());
+}
+
+}  // namespace
+
+TEST_CASE("An entry written by hand, byte for byte", "[output]") {
+  LabelledSolution orbit;
+  orbit.branch = 1;
+  orbit.point = 10001;
+  orbit.type = -4;
+  orbit.label = 12;
+  orbit.dimension = 1;
+  orbit.mesh_intervals = 1;
+  orbit.collocation_points = 2;
+  orbit.tau = {0.0, 0.5, 1.0};
+  orbit.states.resize(1, 3);
+  orbit.states << 1.0, -0.25, 1e-100;
+  orbit.free_parameters = {2, 61};
+  orbit.parameter_direction = {1.0, -2.0};
+  orbit.state_direction.resize(1, 3);
+  orbit.state_direction << 0.5, 0.0, 3.0;
+  orbit.parameters = {3.14159265358979, 2.0};
+  orbit.kind = {UserPointKind::contact, 1, 2, 0.75};
+  const std::string zeros =
+      "      0.0000000000E+000  0.0000000000E+000  0.0000000000E+000  0.0000000000E+000  0.0000000000E+000"
+      "  0.0000000000E+000  0.0000000000E+000\n";
+  std::string expected =
+      "     1     2    -4    12     2     1       3     2      23    1    2  104    4    1  180    0\n"
+      "      0.0000000000E+000  1.0000000000E+000\n"
+      "      5.0000000000E-001 -2.5000000000E-001\n"
+      "      1.0000000000E+000  1.0000000000E-100\n"
+      "    2   61\n"
+      "      1.0000000000E+000 -2.0000000000E+000\n"
+      "      5.0000000000E-001\n"
+      "      0.0000000000E+000\n"
+      "      3.0000000000E+000\n"
+      "      3.1415926536E+000  2.0000000000E+000  0.0000000000E+000  0.0000000000E+000  0.0000000000E+000"
+      "  0.0000000000E+000  0.0000000000E+000\n";
+  for (int line = 0; line < 13; ++line) expected += zeros;
+  expected +=
+      "      0.0000000000E+000  0.0000000000E+000  2.0000000000E+000  1.0000000000E+000  2.0000000000E+000"
+      "  7.5000000000E-001\n";
+  CHECK(format_solution(orbit) == expected);
+}
+
+TEST_CASE("Columns, counts and numbers of entries of many sizes", "[output]") {
+  for (const int n : {1, 2, 3, 5, 6, 7, 8, 13, 14})
+    for (const int segments : {1, 2, 3, 7})
+      for (const bool direction : {true, false}) {
+        CAPTURE(n, segments, direction);
+        LabelledSolution orbit = sample_orbit(n, segments, 3, 4);
+        if (!direction) {
+          orbit.state_direction.resize(0, 0);
+          orbit.parameter_direction.clear();
+        }
+        check_entry(orbit);
+      }
+}
+
+TEST_CASE("The largest number of segments: more free parameters than fit a line, NPAR beyond 100", "[output]") {
+  LabelledSolution orbit = sample_orbit(2, 64, 2, 2);
+  orbit.kind = {UserPointKind::xi, 1, 5, 0.0};
+  orbit.type = -74;
+  orbit.branch_mode = 2;
+  check_entry(orbit);
+}
+
+TEST_CASE("A parameter vector of full length is written when its unused end is zero", "[output]") {
+  LabelledSolution orbit = sample_orbit(2, 1, 2, 2);
+  const std::string text = format_solution(orbit);
+  orbit.parameters.resize(256, 0.0);
+  CHECK(format_solution(orbit) == text);
+  orbit.parameters[200] = 1.0;
+  CHECK_THROWS_AS(format_solution(orbit), std::invalid_argument);
+}
+
+TEST_CASE("Parts that do not fit together are refused", "[output]") {
+  LabelledSolution orbit = sample_orbit(2, 1, 2, 2);
+  orbit.mesh_intervals = 3;
+  CHECK_THROWS_AS(format_solution(orbit), std::invalid_argument);
+  orbit = sample_orbit(2, 1, 2, 2);
+  orbit.parameter_direction.pop_back();
+  CHECK_THROWS_AS(format_solution(orbit), std::invalid_argument);
+  orbit = sample_orbit(3, 1, 2, 2);
+  orbit.dimension = 2;
+  CHECK_THROWS_AS(format_solution(orbit), std::invalid_argument);
+  orbit = sample_orbit(2, 1, 2, 2);
+  orbit.state_direction.resize(2, 4);
+  CHECK_THROWS_AS(format_solution(orbit), std::invalid_argument);
+}
+
+TEST_CASE("No NaN or inf reaches the file", "[output]") {
+  LabelledSolution orbit = sample_orbit(2, 1, 2, 2);
+  orbit.states(0, 1) = std::nan("");
+  orbit.state_direction(1, 1) = std::numeric_limits<double>::infinity();
+  const std::string text = format_solution(orbit);
+  CHECK(text.find("nan") == std::string::npos);
+  CHECK(text.find("NAN") == std::string::npos);
+  CHECK(text.find("INF") == std::string::npos);
+  const SolutionFile file = parse_solution_file(text, "q.x");
+  CHECK(file.solutions.at(0).states(0, 1) == 1e99);
+  CHECK(file.solutions.at(0).state_direction(1, 1) == 1e99);
+}
+
+TEST_CASE("What is written is read back, to ten decimals", "[output]") {
+  LabelledSolution first = sample_orbit(4, 2, 5, 3);
+  LabelledSolution second = sample_orbit(4, 1, 7, 2);
+  second.label = 6;
+  second.type = -4;
+  second.kind = {UserPointKind::impact_velocity, 1, 1, 1.0};
+  const SolutionFile file = parse_solution_file(format_solution(first) + format_solution(second), "q.x");
+  REQUIRE(file.solutions.size() == 2);
+  CHECK(file.warnings.empty());
+  CHECK((file.solutions[0].states - first.states).cwiseAbs().maxCoeff() < 1e-10);
+  CHECK((file.solutions[0].state_direction - first.state_direction).cwiseAbs().maxCoeff() < 1e-13);
+  CHECK(file.solutions[0].free_parameters == first.free_parameters);
+  CHECK(segment_count(file.solutions[0]) == 2);
+  CHECK(period(file.solutions[0]) == 3.5);
+  CHECK(type_name(file.solutions[1]) == "GR");
+  CHECK(file.solutions[1].kind.tau == 1.0);
+  CHECK(file.last_label == 6);
+  CHECK(file.last_branch == 2);
+}
