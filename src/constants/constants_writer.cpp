@@ -181,7 +181,7 @@ std::string constants_markdown() {
   for (const Constant& constant : constants_table()) {
     const std::string value = default_text(constant);
     text += fmt::format("| {} | {} | {} | {} | {} |\n", constant.keyword, constant.meaning, value,
-                        allowed_text(constant), constant.effect.empty() ? "as its meaning says" : constant.effect);
+                        allowed_text(constant), constant.effect.empty() ? "in use" : constant.effect);
   }
   return text;
 }
