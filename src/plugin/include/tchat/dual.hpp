@@ -183,7 +183,8 @@ Dual<N, B> pow(const Dual<N, B>& a, const Dual<N, B>& b) {
   using std::log, std::pow;
   Dual<N, B> c;
   c.value = pow(a.value, b.value);
-  const B by_base = b.value * pow(a.value, b.value - 1.0);
+  const bool constant = plain(a) == 0.0 && plain(b) == 0.0;  // 0 * 0^-1 below, where the derivative is 0
+  const B by_base = constant ? B(0.0) : b.value * pow(a.value, b.value - 1.0);
   const bool has_log = plain(a) > 0.0;
   const B by_exponent = has_log ? c.value * log(a.value) : B(0.0);
   for (int k = 0; k < N; ++k) c.derivative[k] = by_base * a.derivative[k] + by_exponent * b.derivative[k];

@@ -1,0 +1,113 @@
+#include "app/check_command.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <charconv>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "constants/user_error.hpp"
+#include "hybrid/derivative_check.hpp"
+#include "hybrid/parameter_vector.hpp"
+#include "plugin/exit_guard.hpp"
+#include "plugin/plugin_build.hpp"
+#include "plugin/problem_library.hpp"
+
+namespace tchat {
+
+namespace {
+
+struct CheckArguments {
+  std::string name;
+  std::string plugin;
+  std::vector<std::string> states;
+  std::vector<std::string> parameters;
+  int random_states = 5;
+};
+
+double read_number(const std::string& text, const std::string& context) {
+  double value = 0.0;
+  const char* const begin = text.data() + (text.starts_with('+') ? 1 : 0);
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(begin, end, value);
+  if (error != std::errc() || stop != end || !std::isfinite(value))
+    throw UserError(fmt::format("'{}' in {} is not a number.\n  Example: 0.25 or 2.5e-1", text, context));
+  return value;
+}
+
+/// "1,0.5,-2"
+Eigen::VectorXd read_state(const std::string& text) {
+  std::vector<double> numbers;
+  std::size_t begin = 0;
+  while (true) {
+    const std::size_t comma = text.find(',', begin);
+    numbers.push_back(read_number(text.substr(begin, comma - begin), fmt::format("--state {}", text)));
+    if (comma == std::string::npos) break;
+    begin = comma + 1;
+  }
+  return Eigen::Map<const Eigen::VectorXd>(numbers.data(), static_cast<Eigen::Index>(numbers.size()));
+}
+
+int find_parameter(const HybridSystem& system, const std::string& key) {
+  if (const int k = system.parameter_index(key); k > 0) return k;
+  for (int k = 1; k <= system.parameters(); ++k)
+    if (key == std::to_string(k)) return k;
+  std::string names;
+  for (int k = 1; k <= system.parameters(); ++k)
+    names += fmt::format("{}{}", k > 1 ? ", " : "", system.parameter_name(k));
+  throw UserError(fmt::format("{} has no parameter '{}'.\n  It has: {} (or 1..{}).", system.name(), key, names,
+                              system.parameters()));
+}
+
+/// Starting values of the problem with "PAR(omega)=2" or "PAR(2)=2" put in.
+Eigen::VectorXd read_parameters(const HybridSystem& system, const std::vector<std::string>& settings) {
+  Eigen::VectorXd par(system.parameters());
+  const double* const initial = system.table().initial_parameters;
+  for (int k = 0; k < system.parameters(); ++k) par(k) = initial != nullptr ? initial[k] : 1.0;
+  for (const std::string& setting : settings) {
+    const std::size_t close = setting.find(")=");
+    if (!setting.starts_with("PAR(") || close == std::string::npos)
+      throw UserError(
+          fmt::format("'{}' is not understood.\n  After NAME come parameter values, as 'PAR(2)=0.8'.", setting));
+    const int k = find_parameter(system, setting.substr(4, close - 4));
+    par(k - 1) = read_number(setting.substr(close + 2), setting);
+  }
+  return par;
+}
+
+int check_problem(const CheckArguments& arguments) {
+  const std::string path = resolve_plugin(arguments.plugin.empty() ? arguments.name : arguments.plugin);
+  const ExitGuard guard(path);
+  const ProblemLibrary library(path);
+  DerivativeCheckOptions options;
+  for (const std::string& state : arguments.states) options.states.push_back(read_state(state));
+  options.parameters = read_parameters(library.system(), arguments.parameters);
+  options.random_states = arguments.random_states;
+  const DerivativeCheck check = check_derivatives(library.system(), options);
+  fmt::print("{}", to_text(library.system(), check));
+  return check.fine() ? 0 : 1;
+}
+
+}  // namespace
+
+void add_check_command(CLI::App& app, std::function<int()>& chosen) {
+  const auto arguments = std::make_shared<CheckArguments>();
+  CLI::App* const command =
+      app.add_subcommand("check", "Compare a problem's derivatives with finite differences; exit status 1 on a fault");
+  command->add_option("NAME", arguments->name, "problem: NAME.cpp or NAME.so")->required();
+  command->add_option("values", arguments->parameters, "parameter values, as 'PAR(2)=0.8'");
+  command->add_option("-p,--problem", arguments->plugin, "plugin, when it is not NAME: P.so, P.cpp or P");
+  command
+      ->add_option("--state", arguments->states,
+                   "a state to check at, as 1,0.5,0,1 (may be repeated); also random states near it")
+      ->allow_extra_args(false);
+  command->add_option("--random", arguments->random_states, "number of random states near each given one")
+      ->check(CLI::Range(0, 10000))
+      ->capture_default_str();
+  command->callback([arguments, &chosen] { chosen = [arguments] { return check_problem(*arguments); }; });
+}
+
+}  // namespace tchat

@@ -1,0 +1,284 @@
+#include "hybrid/derivative_check.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <set>
+
+#include "constants/user_error.hpp"
+#include "hybrid/checked_function.hpp"
+#include "hybrid/parameter_vector.hpp"
+
+namespace tchat {
+
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double consistency_factor = 1e-11;  // between two exact evaluations
+constexpr int many_variables = 16;            // from here on random directions instead of every variable
+
+/// Keeps the messages of one function: the worst entry, and the first fault of each sort.
+class FunctionChecker {
+ public:
+  FunctionChecker(const HybridSystem& system, FunctionKind kind, int index, const std::vector<TestPoint>& points,
+                  unsigned seed)
+      : system_(system), function_(system, kind, index), points_(points), random_(seed) {
+    check_.kind = kind;
+    check_.index = index;
+  }
+
+  FunctionCheck run() {
+    check_values();
+    check_bounds();
+    if (!check_.faults.empty()) return check_;
+    if (system_.table().derivative_order >= 1)
+      for (const TestPoint& at : evaluable_) check_first(at);
+    if (system_.table().derivative_order >= 2)
+      for (const TestPoint& at : evaluable_) check_second(at);
+    if (first_.at_fault) check_.faults.push_back(text(first_, check_.worst_first, first_at_));
+    if (second_.at_fault) check_.faults.push_back(text(second_, check_.worst_second, second_at_));
+    return check_;
+  }
+
+ private:
+  void check_values() {
+    const int rows = function_.rows();
+    std::vector<int> failures(static_cast<std::size_t>(rows), 0);
+    for (const TestPoint& at : points_) {
+      const VectorXd f = function_.value(at);
+      for (int r = 0; r < rows; ++r) failures[static_cast<std::size_t>(r)] += std::isfinite(f(r)) ? 0 : 1;
+      if (f.allFinite()) evaluable_.push_back(at);
+      if (!f.allFinite() && !at.is_random) fault_at_given_state(f, at);
+      if (f.allFinite() && function_.value(at) != f)
+        add_fault("changes",
+                  fmt::format("{} changes from call to call at the same point: it must depend on x and par only",
+                              function_.row_name(0)));
+    }
+    const int all = static_cast<int>(points_.size());
+    for (int r = 0; r < rows; ++r) {
+      if (failures[static_cast<std::size_t>(r)] == all)
+        add_fault(fmt::format("NaN {}", function_.row_name(r)),
+                  fmt::format("{} is NaN or infinite at every state tried: is it left unset?", function_.row_name(r)));
+    }
+    if (evaluable_.size() < points_.size() && !evaluable_.empty())
+      check_.notes.push_back(fmt::format("not evaluable at {} of {} states", points_.size() - evaluable_.size(), all));
+  }
+
+  void fault_at_given_state(const VectorXd& f, const TestPoint& at) {
+    for (int r = 0; r < function_.rows(); ++r)
+      if (!std::isfinite(f(r)))
+        add_fault(fmt::format("NaN {}", function_.row_name(r)),
+                  fmt::format("{} is {} at {}", function_.row_name(r), f(r), point_text(at)));
+  }
+
+  /// Writing behind the outputs, reading behind the states and parameters.
+  void check_bounds() {
+    if (evaluable_.empty()) return;
+    const TestPoint& at = evaluable_.front();
+    const int n = system_.dimension();
+    constexpr int guard = 16;
+    constexpr double untouched = -7.25e77;
+    VectorXd x = VectorXd::Constant(n + guard, NAN);
+    x.head(n) = at.x;
+    VectorXd par = VectorXd::Constant(parameter_length, NAN);
+    par.head(system_.parameters()) = at.par.head(system_.parameters());
+    VectorXd out = VectorXd::Constant(function_.rows() + n + guard, untouched);
+    system_.value(check_.kind, check_.index, x.data(), par.data(), out.data());
+    if (!out.head(function_.rows()).allFinite())
+      add_fault("reads",
+                fmt::format("{} reads beyond its {} states or {} parameters: are `dimension` and `parameters` right?",
+                            system_.function_name(check_.kind, check_.index), n, system_.parameters()));
+    const auto behind = out.tail(n + guard);
+    if ((behind.array() != untouched).any())
+      add_fault("writes", fmt::format("{} writes more than {} outputs: is `dimension` right?",
+                                      system_.function_name(check_.kind, check_.index), function_.rows()));
+  }
+
+  void check_first(const TestPoint& at) {
+    VectorXd value;
+    const MatrixXd derivative = function_.first(at, value);
+    const VectorXd expected = function_.value(at);
+    if (!((value - expected).norm() <= consistency_factor * (1.0 + expected.norm())))
+      add_fault("value", fmt::format("the value of {} with derivatives differs from its value alone at {}",
+                                     system_.function_name(check_.kind, check_.index), point_text(at)));
+    const WorstEntry worst = compare_with_differences(function_, at, derivative,
+                                                      [this](const TestPoint& near) { return function_.value(near); });
+    if (worst.excess <= first_.excess) return;
+    first_ = worst;
+    first_at_ = point_text(at);
+    check_.first_error = worst.relative;
+    check_.worst_first =
+        fmt::format("d {} / d {}", function_.row_name(worst.row), function_.variable_name(worst.column));
+  }
+
+  void check_second(const TestPoint& at) {
+    const int variables = function_.variables();
+    const bool every_variable = variables <= many_variables;
+    for (int k = 0; k < (every_variable ? variables : 4); ++k)
+      check_along(at, every_variable ? VectorXd(VectorXd::Unit(variables, k)) : random_direction(),
+                  every_variable ? function_.variable_name(k) : "a random direction");
+  }
+
+  void check_along(const TestPoint& at, const VectorXd& direction, const std::string& name) {
+    VectorXd along;
+    const MatrixXd derivative = function_.second(at, direction, along);
+    check_agreement(at, direction, along, name);
+    const WorstEntry worst =
+        compare_with_differences(function_, at, derivative, [this, &direction](const TestPoint& near) {
+          VectorXd d;
+          function_.second(near, direction, d);
+          return d;
+        });
+    if (worst.excess <= second_.excess) return;
+    second_ = worst;
+    second_at_ = point_text(at);
+    check_.second_error = worst.relative;
+    check_.worst_second =
+        fmt::format("d2 {} / d {} d {}", function_.row_name(worst.row), name, function_.variable_name(worst.column));
+  }
+
+  /// The directional derivative that comes with second derivatives is exact too; a difference is a first derivative's
+  /// fault, reported already when the differences saw it.
+  void check_agreement(const TestPoint& at, const VectorXd& direction, const VectorXd& along, const std::string& name) {
+    VectorXd value;
+    const MatrixXd first = function_.first(at, value);
+    const VectorXd expected = first * direction;
+    const double scale = 1.0 + first.lpNorm<Eigen::Infinity>() + value.lpNorm<Eigen::Infinity>();
+    for (int r = 0; r < function_.rows(); ++r) {
+      const bool agrees = std::abs(along(r) - expected(r)) <= consistency_factor * scale;
+      if (agrees || first_.at_fault) continue;
+      add_fault(fmt::format("agreement {}", function_.row_name(r)),
+                fmt::format("d {} / d {} is {:.13g} from the first derivatives but {:.13g} from the second ones at {}",
+                            function_.row_name(r), name, expected(r), along(r), point_text(at)));
+    }
+  }
+
+  VectorXd random_direction() {
+    std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+    return VectorXd::NullaryExpr(function_.variables(), [&] { return uniform(random_); });
+  }
+
+  static std::string text(const WorstEntry& worst, const std::string& entry, const std::string& at) {
+    return fmt::format("{} is {:.10g}, differences give {:.10g}, at {}", entry, worst.supplied, worst.difference, at);
+  }
+
+  /// One message of a sort is enough: the same fault shows at every state.
+  void add_fault(const std::string& sort, const std::string& message) {
+    if (sorts_.insert(sort).second) check_.faults.push_back(message);
+  }
+
+  const HybridSystem& system_;
+  CheckedFunction function_;
+  const std::vector<TestPoint>& points_;
+  std::mt19937 random_;
+  FunctionCheck check_;
+  std::vector<TestPoint> evaluable_;
+  WorstEntry first_, second_;
+  std::string first_at_, second_at_;
+  std::set<std::string> sorts_;  // of the faults found
+};
+
+VectorXd base_parameters(const HybridSystem& system, const VectorXd& given) {
+  if (given.size() > parameter_length || !given.allFinite())
+    throw UserError(fmt::format("{} parameter values were given, allowed are at most {} finite ones.", given.size(),
+                                parameter_length));
+  VectorXd par = VectorXd::Zero(parameter_length);
+  const double* const initial = system.table().initial_parameters;
+  for (int k = 0; k < system.parameters(); ++k) par(k) = initial != nullptr ? initial[k] : 1.0;
+  par.head(given.size()) = given;
+  return par;
+}
+
+std::vector<TestPoint> test_points(const HybridSystem& system, const DerivativeCheckOptions& options) {
+  const VectorXd par = base_parameters(system, options.parameters);
+  std::mt19937 random(options.seed);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  std::vector<VectorXd> bases = options.states;
+  if (bases.empty()) bases.push_back(VectorXd::Zero(system.dimension()));
+
+  const int random_states = std::max(options.random_states, options.states.empty() ? 1 : 0);
+  std::vector<TestPoint> points;
+  for (const VectorXd& base : bases) {
+    if (base.size() != system.dimension() || !base.allFinite())
+      throw UserError(fmt::format("A state with {} entries was given; {} needs {} finite numbers.", base.size(),
+                                  system.name(), system.dimension()));
+    if (!options.states.empty()) points.push_back({base, par, false});
+    for (int k = 0; k < random_states; ++k) {
+      TestPoint point{base, par, true};
+      for (double& x : point.x) x += options.spread * (1.0 + std::abs(x)) * uniform(random);
+      for (double& p : point.par.head(system.parameters()))
+        p += 0.1 * options.spread * (1.0 + std::abs(p)) * uniform(random);
+      points.push_back(point);
+    }
+  }
+  return points;
+}
+
+std::vector<std::string> check_names(const HybridSystem& system) {
+  std::vector<std::string> faults;
+  std::set<std::string> names;
+  for (int k = 1; k <= system.parameters(); ++k)
+    if (!names.insert(system.parameter_name(k)).second)
+      faults.push_back(fmt::format("the parameter name '{}' is used twice", system.parameter_name(k)));
+  names.clear();
+  for (int k = 1; k <= system.dimension(); ++k)
+    if (!names.insert(system.state_name(k)).second)
+      faults.push_back(fmt::format("the state name '{}' is used twice", system.state_name(k)));
+  const double* const initial = system.table().initial_parameters;
+  for (int k = 1; initial != nullptr && k <= system.parameters(); ++k)
+    if (!std::isfinite(initial[k - 1]))
+      faults.push_back(fmt::format("the starting value of {} is not finite", system.parameter_name(k)));
+  return faults;
+}
+
+std::string function_line(const HybridSystem& system, const FunctionCheck& check, int order) {
+  static constexpr const char* kinds[] = {"field", "event", "jump"};
+  const std::string name = system.function_name(check.kind, check.index);
+  std::string line = fmt::format("  {:<5} {:<2} {:<20}", kinds[static_cast<int>(check.kind)], check.index, name);
+  if (order >= 1) line += fmt::format("  first {:.1e}", check.first_error);
+  if (order >= 2) line += fmt::format("  second {:.1e}", check.second_error);
+  line += check.faults.empty() ? "  ok" : "  FAULT";
+  for (const std::string& note : check.notes) line += fmt::format("  ({})", note);
+  return line + "\n";
+}
+
+}  // namespace
+
+bool DerivativeCheck::fine() const {
+  const auto is_fine = [](const FunctionCheck& check) { return check.faults.empty(); };
+  return faults.empty() && std::all_of(functions.begin(), functions.end(), is_fine);
+}
+
+DerivativeCheck check_derivatives(const HybridSystem& system, const DerivativeCheckOptions& options) {
+  const std::vector<TestPoint> points = test_points(system, options);
+  DerivativeCheck check;
+  check.faults = check_names(system);
+  for (const FunctionKind kind : {FunctionKind::field, FunctionKind::event, FunctionKind::jump})
+    for (int index = 1; index <= system.count(kind); ++index)
+      check.functions.push_back(FunctionChecker(system, kind, index, points, options.seed).run());
+  return check;
+}
+
+std::string to_text(const HybridSystem& system, const DerivativeCheck& check) {
+  const int order = system.table().derivative_order;
+  std::string text = fmt::format("{}: dimension {}, parameters {}, fields {}, events {}, jumps {}\n", system.name(),
+                                 system.dimension(), system.parameters(), system.count(FunctionKind::field),
+                                 system.count(FunctionKind::event), system.count(FunctionKind::jump));
+  text += "  states    ";
+  for (int k = 1; k <= system.dimension(); ++k) text += fmt::format(" {}", system.state_name(k));
+  text += "\n  parameters";
+  for (int k = 1; k <= system.parameters(); ++k) text += fmt::format(" {}", system.parameter_name(k));
+  text += fmt::format("\nSupplied derivatives of order {}; relative distance from finite differences:\n", order);
+  if (order == 0) text += "  (none: tchat differentiates the values itself)\n";
+  for (const FunctionCheck& function : check.functions) text += function_line(system, function, order);
+  for (const std::string& fault : check.faults) text += fmt::format("fault: {}\n", fault);
+  for (const FunctionCheck& function : check.functions)
+    for (const std::string& fault : function.faults) text += fmt::format("fault: {}\n", fault);
+  return text + (check.fine() ? "No fault found.\n" : "");
+}
+
+}  // namespace tchat

@@ -1,0 +1,191 @@
+#include "plugin/compiler.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <sstream>
+
+#include "constants/user_error.hpp"
+
+extern char** environ;
+
+namespace tchat {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string environment(const char* name) {
+  const char* const value = std::getenv(name);
+  return value != nullptr ? value : "";
+}
+
+std::vector<std::string> split_words(const std::string& text) {
+  std::istringstream in(text);
+  std::vector<std::string> words;
+  for (std::string word; in >> word;) words.push_back(word);
+  return words;
+}
+
+/// The program that `word` would start, searched along PATH; empty when there is none.
+std::string find_program(const std::string& word) {
+  std::error_code failed;
+  if (word.find('/') != std::string::npos) return access(word.c_str(), X_OK) == 0 ? word : "";
+  std::istringstream folders(environment("PATH"));
+  for (std::string folder; std::getline(folders, folder, ':');) {
+    const std::string path = folder + "/" + word;
+    if (fs::is_regular_file(path, failed) && access(path.c_str(), X_OK) == 0) return path;
+  }
+  return "";
+}
+
+struct ProcessResult {
+  int spawn_error = 0;  // errno of starting the program
+  int status = 0;       // as waitpid gives it
+  std::string output;   // standard output and standard error together
+};
+
+std::string read_all(int descriptor) {
+  std::string text;
+  std::array<char, 4096> buffer;
+  while (true) {
+    const ssize_t count = read(descriptor, buffer.data(), buffer.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) return text;
+    text.append(buffer.data(), static_cast<std::size_t>(count));
+  }
+}
+
+ProcessResult run_process(const std::vector<std::string>& words) {
+  ProcessResult result;
+  int ends[2];
+  if (pipe2(ends, O_CLOEXEC) != 0) {
+    result.spawn_error = errno;
+    return result;
+  }
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+  posix_spawn_file_actions_adddup2(&actions, ends[1], STDOUT_FILENO);
+  posix_spawn_file_actions_adddup2(&actions, ends[1], STDERR_FILENO);
+  std::vector<char*> arguments;
+  for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
+  arguments.push_back(nullptr);
+
+  pid_t child = 0;
+  result.spawn_error = posix_spawnp(&child, arguments[0], &actions, nullptr, arguments.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  close(ends[1]);
+  if (result.spawn_error == 0) {
+    result.output = read_all(ends[0]);
+    while (waitpid(child, &result.status, 0) < 0 && errno == EINTR) {
+    }
+  }
+  close(ends[0]);
+  return result;
+}
+
+/// The first lines of a compiler's output: one mistake in a template can give hundreds.
+std::string first_lines(const std::string& text, int count) {
+  std::size_t end = 0;
+  for (int line = 0; line < count && end != std::string::npos; ++line) end = text.find('\n', end == 0 ? 0 : end + 1);
+  if (end == std::string::npos || end + 1 >= text.size()) return text;
+  return text.substr(0, end + 1) + "[the rest of the compiler's output is left out]\n";
+}
+
+[[noreturn]] void refuse_missing_compiler(const std::vector<std::string>& command, const std::string& source,
+                                          int error) {
+  throw UserError(
+      fmt::format("No C++ compiler to compile {}: '{}' cannot be started ({}).\n"
+                  "  Install one (Debian: apt install g++), or name yours in the environment variable CXX, or compile "
+                  "the plugin on another computer and give the .so file.",
+                  source, command[0], std::strerror(error)));
+}
+
+void require_success(const ProcessResult& result, const std::vector<std::string>& command, const std::string& source) {
+  if (WIFEXITED(result.status) && WEXITSTATUS(result.status) == 0) return;
+  const std::string ending = WIFSIGNALED(result.status)
+                                 ? fmt::format("it was ended by signal {}", WTERMSIG(result.status))
+                                 : fmt::format("exit status {}", WEXITSTATUS(result.status));
+  throw UserError(fmt::format("The compiler refused {} ({}). It says:\n\n{}\n  The command was: {}", source, ending,
+                              first_lines(result.output, 60), fmt::join(command, " ")));
+}
+
+/// -fno-gnu-unique keeps a reloaded plugin from sharing its statics with an earlier one; only g++ knows it.
+bool is_clang(const std::vector<std::string>& command) {
+  std::vector<std::string> words = command;
+  words.emplace_back("--version");
+  return run_process(words).output.find("clang") != std::string::npos;
+}
+
+bool has_interface(const std::string& folder) {
+  std::error_code failed;
+  return !folder.empty() && fs::exists(folder + "/tchat/problem.hpp", failed);
+}
+
+}  // namespace
+
+Compiler::Compiler(const PluginBuildOptions& options) : command_(split_words(options.compiler)) {
+  if (command_.empty()) command_ = split_words(environment("CXX"));
+  if (command_.empty()) command_ = {"c++"};
+}
+
+std::string Compiler::identity() const {
+  if (find_program(command_[0]).empty()) return "";
+  std::string text;
+  for (const std::string& word : command_) {
+    text += word + "\n";
+    const std::string program = word[0] == '-' ? "" : find_program(word);
+    if (program.empty()) continue;
+    std::error_code failed;
+    const fs::path file = fs::canonical(program, failed);
+    text += fmt::format("{} {} {}\n", file.string(), fs::file_size(file, failed),
+                        fs::last_write_time(file, failed).time_since_epoch().count());
+  }
+  return text;
+}
+
+void Compiler::compile(const std::string& source, const std::string& library, const std::string& dependencies,
+                       const std::string& include_folder) const {
+  std::vector<std::string> words = command_;
+  for (const char* flag : {"-std=c++20", "-O2", "-fPIC", "-shared", "-fvisibility=hidden"}) words.emplace_back(flag);
+  if (!is_clang(command_)) words.emplace_back("-fno-gnu-unique");
+  words.push_back("-I" + include_folder);
+  for (const std::string& word :
+       {std::string("-MMD"), std::string("-MF"), dependencies, std::string("-o"), library, source})
+    words.push_back(word);
+  const ProcessResult result = run_process(words);
+  if (result.spawn_error != 0) refuse_missing_compiler(command_, source, result.spawn_error);
+  require_success(result, words, source);
+}
+
+std::string find_include_folder(const PluginBuildOptions& options) {
+  const std::string wanted = !options.include_folder.empty() ? options.include_folder : environment("TCHAT_INCLUDE");
+  if (has_interface(wanted)) return wanted;
+  if (!wanted.empty())
+    throw UserError(
+        fmt::format("There is no tchat/problem.hpp in {}, the folder that TCHAT_INCLUDE names.\n"
+                    "  Set it to the folder that contains tchat/problem.hpp, or unset it.",
+                    wanted));
+  std::error_code failed;
+  const fs::path program = fs::read_symlink("/proc/self/exe", failed);
+  const std::string installed = (program.parent_path().parent_path() / "include").string();
+  if (has_interface(installed)) return installed;
+  if (has_interface(TCHAT_SOURCE_INCLUDE)) return TCHAT_SOURCE_INCLUDE;
+  throw UserError(
+      fmt::format("The header tchat/problem.hpp that plugins are compiled with is not at {}.\n"
+                  "  Set the environment variable TCHAT_INCLUDE to the folder that contains "
+                  "tchat/problem.hpp, or install tchat again.",
+                  installed));
+}
+
+}  // namespace tchat

@@ -1,0 +1,185 @@
+#include "plugin/plugin_build.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <ctime>
+#include <filesystem>
+#include <optional>
+
+#include "constants/user_error.hpp"
+#include "plugin/build_stamp.hpp"
+#include "plugin/file_lock.hpp"
+
+namespace tchat {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array<const char*, 3> source_suffixes = {".cpp", ".cc", ".cxx"};
+
+bool is_source(const fs::path& path) {
+  for (const char* suffix : source_suffixes)
+    if (path.extension() == suffix) return true;
+  return false;
+}
+
+bool is_file(const fs::path& path) {
+  std::error_code failed;
+  return fs::is_regular_file(path, failed);
+}
+
+/// A file that is removed again unless it was renamed away.
+class TemporaryFile {
+ public:
+  explicit TemporaryFile(std::string path) : path_(std::move(path)) {}
+  ~TemporaryFile() { unlink(path_.c_str()); }
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
+bool not_newer(const std::string& file, const timespec& time) {
+  struct stat at {};
+  if (stat(file.c_str(), &at) != 0) return false;
+  return at.st_mtim.tv_sec < time.tv_sec || (at.st_mtim.tv_sec == time.tv_sec && at.st_mtim.tv_nsec <= time.tv_nsec);
+}
+
+bool same_compiler(const BuildStamp& stamp, const Compiler& compiler) {
+  const std::string identity = compiler.identity();
+  return identity.empty() || stamp.compiler == hash_text(identity);  // without a compiler, what there is must do
+}
+
+/// One source and everything that decides whether its library is up to date.
+struct Build {
+  fs::path source;
+  std::string include_folder;
+  Compiler compiler;
+
+  /// The files that a library compiled elsewhere is compared with.
+  std::vector<std::string> known_inputs() const {
+    std::vector<std::string> files = {source.string()};
+    for (const char* header : {"dual.hpp", "problem.h", "problem.hpp"})
+      files.push_back(include_folder + "/tchat/" + header);
+    return files;
+  }
+
+  bool is_current(const fs::path& library) const {
+    struct stat at {};
+    if (stat(library.c_str(), &at) != 0 || !S_ISREG(at.st_mode)) return false;
+    const std::optional<BuildStamp> stamp = read_stamp(library.string());
+    for (const std::string& file : stamp ? stamp->files : known_inputs())
+      if (!not_newer(file, at.st_mtim)) return false;
+    if (!stamp) return true;
+    return same_compiler(*stamp, compiler) && stamp->contents == hash_files(stamp->files);
+  }
+
+  /// Compiles to a temporary name in the library's folder and renames. The lock is the caller's.
+  void make(const fs::path& library) const {
+    const std::string temporary_name =
+        fmt::format("{}/.{}.{}", library.parent_path().string(), library.filename().string(), getpid());
+    const TemporaryFile temporary(temporary_name);
+    const TemporaryFile dependencies(temporary_name + ".d");
+    timespec begun{};
+    timespec_get(&begun, TIME_UTC);
+    compiler.compile(source.string(), temporary.path(), dependencies.path(), include_folder);
+    const std::vector<std::string> files = read_dependencies(dependencies.path());
+    const BuildStamp stamp{hash_text(compiler.identity()), hash_files(files), files};
+    const bool written = append_stamp(temporary.path(), stamp);
+    // The library is as old as the begin of its compilation: a source saved meanwhile is newer.
+    const std::array<timespec, 2> times = {begun, begun};
+    utimensat(AT_FDCWD, temporary.path().c_str(), times.data(), 0);
+    if (!written || std::rename(temporary.path().c_str(), library.c_str()) != 0)
+      throw UserError(
+          fmt::format("The compiled plugin cannot be stored as {} ({}).\n"
+                      "  Make room, or make the folder writable.",
+                      library.string(), std::strerror(errno)));
+  }
+};
+
+/// $XDG_CACHE_HOME/tchat or ~/.cache/tchat, created; file names carry the source's path so that equal names differ.
+fs::path cached_library(const fs::path& source) {
+  const char* const xdg = std::getenv("XDG_CACHE_HOME");
+  const char* const home = std::getenv("HOME");
+  const bool has_xdg = xdg != nullptr && xdg[0] == '/';
+  if (!has_xdg && (home == nullptr || home[0] != '/'))
+    throw UserError(
+        fmt::format("{} must be compiled, but its folder cannot be written and there is no cache folder.\n"
+                    "  Copy the source to a folder of your own, or set XDG_CACHE_HOME or HOME.",
+                    source.string()));
+  const fs::path folder = (has_xdg ? fs::path(xdg) : fs::path(home) / ".cache") / "tchat";
+  std::error_code failed;
+  fs::create_directories(folder, failed);
+  if (failed)
+    throw UserError(
+        fmt::format("{} must be compiled, but its folder cannot be written, and neither can the cache "
+                    "folder {} be made ({}).\n  Copy the source to a folder of your own, or set "
+                    "XDG_CACHE_HOME to a folder that you can write.",
+                    source.string(), folder.string(), failed.message()));
+  return folder / fmt::format("{}-{}.so", source.stem().string(), hash_text(fs::absolute(source).string()));
+}
+
+/// Makes the library unless another process did so while we waited. Returns 0, or the errno of creating the lock file.
+int make_under_lock(const Build& build, const fs::path& library) {
+  const FileLock lock(fmt::format("{}/.{}.lock", library.parent_path().string(), library.filename().string()));
+  if (lock.error() == 0 && !build.is_current(library)) build.make(library);
+  return lock.error();
+}
+
+bool is_read_only(int error) { return error == EACCES || error == EROFS || error == EPERM; }
+
+std::string build_source(const fs::path& given, const PluginBuildOptions& options) {
+  const fs::path source = fs::absolute(given);
+  const Build build{source, find_include_folder(options), Compiler(options)};
+  fs::path library = fs::path(source).replace_extension(".so");
+  if (build.is_current(library)) return library.string();
+
+  int error = make_under_lock(build, library);
+  if (is_read_only(error)) {
+    library = cached_library(source);
+    if (build.is_current(library)) return library.string();
+    error = make_under_lock(build, library);
+  }
+  if (error != 0)
+    throw UserError(fmt::format("The plugin {} cannot be compiled to {}: {}.\n  Make the folder writable.",
+                                given.string(), library.string(), std::strerror(error)));
+  return library.string();
+}
+
+[[noreturn]] void refuse_missing(const std::string& name) {
+  std::error_code failed;
+  const bool folder = fs::is_directory(name, failed);
+  const std::string inside = (fs::path(name) / fs::path(name).filename()).string();
+  throw UserError(fmt::format("There is no plugin {0}: neither {0}.cpp nor {0}.so exists.\n  {1}", name,
+                              folder ? fmt::format("{} is a folder: the plugin in it would be {}.", name, inside)
+                                     : "Give its path with -p: P.cpp, P.so, or P for either of them."));
+}
+
+}  // namespace
+
+std::string resolve_plugin(const std::string& name_or_path, const PluginBuildOptions& options) {
+  if (name_or_path.empty()) throw UserError("The plugin's name is empty.\n  Give -p P for P.cpp or P.so.");
+  const fs::path given(name_or_path);
+  if (given.extension() == ".so" || is_source(given)) {
+    if (!is_file(given))
+      throw UserError(fmt::format("There is no plugin file {}.\n  Give the path of an existing P.cpp or P.so with -p.",
+                                  name_or_path));
+    return is_source(given) ? build_source(given, options) : name_or_path;
+  }
+  for (const char* suffix : source_suffixes)
+    if (is_file(name_or_path + suffix)) return build_source(name_or_path + suffix, options);
+  if (is_file(name_or_path + ".so")) return name_or_path + ".so";
+  refuse_missing(name_or_path);
+}
+
+}  // namespace tchat

@@ -1,0 +1,24 @@
+/// From what the user names to a shared library that can be loaded: P.so as it is, or P.cpp compiled when needed.
+///
+/// Searching order for P, which may contain folders (dir/P):
+///   1. P ends in .so: that file as it is.
+///   2. P ends in .cpp, .cc or .cxx: that source; the library is the same name with .so.
+///   3. otherwise P.cpp, P.cc, P.cxx, then P.so.
+///
+/// A source is compiled when its library is missing, or when the source, a header that it includes (tchat's interface
+/// among them) or the compiler has changed since. The library is compiled to a temporary name under a lock and then
+/// renamed, so that several processes may ask for one plugin at the same time and none ever sees half a file. Where
+/// the source's folder cannot be written, the library goes to $XDG_CACHE_HOME/tchat, else ~/.cache/tchat.
+#pragma once
+
+#include <string>
+
+#include "plugin/compiler.hpp"
+
+namespace tchat {
+
+/// Path of a shared library that is up to date. Throws UserError: nothing there under that name, no compiler, the
+/// compiler's own message, no folder to write to.
+std::string resolve_plugin(const std::string& name_or_path, const PluginBuildOptions& options = {});
+
+}  // namespace tchat

@@ -1,0 +1,102 @@
+#include "plugin/problem_library.hpp"
+
+#include <dlfcn.h>
+#include <fmt/format.h>
+
+#include <exception>
+#include <filesystem>
+#include <stdexcept>
+#include <string_view>
+
+#include "constants/user_error.hpp"
+#include "plugin/exit_guard.hpp"
+
+namespace tchat {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void refuse(const std::string& path, const std::string& what, const std::string& cure) {
+  throw UserError(fmt::format("Plugin {}: {}.\n  {}", path, what, cure));
+}
+
+std::string load_cure(std::string_view said) {
+  if (said.find("undefined symbol") != std::string_view::npos)
+    return "Something it calls is declared but not defined: define it in the source, or link the library that has it.";
+  if (said.find("invalid ELF header") != std::string_view::npos ||
+      said.find("file too short") != std::string_view::npos)
+    return "It is not a shared library: give the .cpp source, or delete the file so that it is compiled again.";
+  if (said.find("wrong ELF class") != std::string_view::npos || said.find("cannot open") != std::string_view::npos)
+    return "It, or a library it needs, is missing, unreadable or for another machine: compile it here.";
+  return "Compile it again from its source; a shared library is made with -shared -fPIC.";
+}
+
+void require_file(const std::string& path) {
+  std::error_code failed;
+  const fs::file_status status = fs::status(path, failed);
+  if (!fs::exists(status))
+    refuse(path, "there is no such file",
+           "Give the path of P.so or P.cpp with -p, or run tchat in the plugin's folder.");
+  if (fs::is_directory(status))
+    refuse(path, "this is a folder", "Give the plugin inside it: the path of its .so or .cpp file.");
+  if (!fs::is_regular_file(status)) refuse(path, "this is not a regular file", "Give the path of a .so or .cpp file.");
+}
+
+void* open_library(const std::string& path) {
+  require_file(path);
+  const ExitGuard guard(path);
+  // An absolute path keeps dlopen from searching the system's library folders for a name without a slash.
+  void* const handle = dlopen(fs::absolute(path).c_str(), RTLD_NOW | RTLD_LOCAL);
+  if (handle != nullptr) return handle;
+  const char* const said = dlerror();
+  const std::string text = said != nullptr ? said : "no reason was given";
+  refuse(path, fmt::format("it cannot be loaded; the loader says: {}", text), load_cure(text));
+}
+
+/// Calls the entry point, which runs the problem class's constructor.
+const tchat_problem* call_entry(const std::string& path, tchat_problem_entry entry) {
+  const std::string cure = "The problem class's constructor must not fail: open no files there, compute only.";
+  const ExitGuard guard(path);
+  try {
+    return entry();
+  } catch (const std::exception& error) {
+    refuse(path, fmt::format("its entry point threw an exception: {}", error.what()), cure);
+  } catch (...) {
+    refuse(path, "its entry point threw an exception", cure);
+  }
+}
+
+/// The table of a C++ or C plugin. A further kind of plugin (other entry symbols) would be recognised here.
+const tchat_problem* find_table(const std::string& path, void* handle) {
+  void* const symbol = dlsym(handle, TCHAT_PROBLEM_ENTRY);
+  if (symbol == nullptr)
+    refuse(path, "it does not export " TCHAT_PROBLEM_ENTRY,
+           "End the source with TCHAT_PROBLEM(YourClass), once, outside any namespace.");
+  const tchat_problem* const table = call_entry(path, reinterpret_cast<tchat_problem_entry>(symbol));
+  if (table == nullptr)
+    refuse(path, TCHAT_PROBLEM_ENTRY " returned no table",
+           "The entry point must return the address of a tchat_problem that lives as long as the library.");
+  return table;
+}
+
+HybridSystem checked_system(const std::string& path, void* handle) {
+  const tchat_problem* const table = find_table(path, handle);
+  try {
+    return HybridSystem(*table);
+  } catch (const std::invalid_argument& error) {
+    const bool version = table->abi_version != TCHAT_PROBLEM_ABI || table->struct_size != sizeof(tchat_problem);
+    refuse(path, fmt::format("its problem table cannot be used: {}", error.what()),
+           version ? "It was compiled for another tchat: delete it and give its source, which is then compiled anew."
+                   : "Correct the numbers of the problem class (or of the table) and compile it again.");
+  }
+}
+
+}  // namespace
+
+void ProblemLibrary::Close::operator()(void* handle) const { dlclose(handle); }
+
+ProblemLibrary::ProblemLibrary(const std::string& path)
+    : path_(path), handle_(open_library(path)), system_(checked_system(path, handle_.get())) {}
+
+}  // namespace tchat

@@ -1,0 +1,115 @@
+#include "simulation/segment_flow.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "constants/user_error.hpp"
+#include "hybrid/parameter_vector.hpp"
+#include "simulation/cvodes_flow.hpp"
+
+namespace tchat {
+
+namespace {
+
+using Eigen::RowVectorXd;
+using Eigen::VectorXd;
+
+void require(bool condition, const std::string& what) {
+  if (!condition) throw UserError("Integration: " + what);
+}
+
+void require_index(const HybridSystem& system, FunctionKind kind, int index, const char* what) {
+  const int count = system.count(kind);
+  require(index >= 1 && index <= count,
+          fmt::format("{} {} does not exist, {} has 1..{}.", what, index, system.name(), count));
+}
+
+VectorXd checked_parameters(const HybridSystem& system, int field, const VectorXd& x0, const VectorXd& par,
+                            const FlowOptions& options) {
+  require_index(system, FunctionKind::field, field, "field");
+  require(x0.size() == system.dimension(),
+          fmt::format("the state has {} entries, {} has dimension {}.", x0.size(), system.name(), system.dimension()));
+  require(x0.allFinite(), "the state at the start is not finite.");
+  for (const int k : options.active)
+    require(k >= 1 && k < first_duration, fmt::format("PAR({}) is no parameter, allowed are 1..60.", k));
+  return full_parameters(system, par);
+}
+
+/// h, h_x and h_x f at a point.
+struct EventAt {
+  double value = 0.0;
+  RowVectorXd gradient;
+  double velocity = 0.0;
+
+  EventAt(const HybridSystem& system, const IndexVector& index, const VectorXd& x, const VectorXd& par)
+      : gradient(system.dimension()) {
+    VectorXd f(system.dimension());
+    double no_parameters = 0.0;
+    system.value(FunctionKind::field, index.field, x.data(), par.data(), f.data());
+    system.first(FunctionKind::event, index.event, x.data(), par.data(), {}, &value, gradient.data(), &no_parameters);
+    velocity = gradient.dot(f);
+  }
+};
+
+/// Until when a falling zero is the start itself: h0 at rounding level is used up by the velocity at the start.
+double end_of_start(const EventAt& start, const VectorXd& x0, double tolerance) {
+  const double scale = 1.0 + start.gradient.norm() * x0.norm();
+  const bool leaves_downwards = start.velocity < 0.0 && start.value >= 0.0 && start.value <= tolerance * scale;
+  return leaves_downwards ? 2.0 * start.value / -start.velocity : -1.0;
+}
+
+SegmentFlow result_at(const CvodesFlow& flow, FlowStatus status) {
+  SegmentFlow result;
+  result.status = status;
+  if (status == FlowStatus::failed) result.message = flow.message();
+  result.duration = flow.time();
+  result.end_state = flow.state();
+  result.jacobian = flow.jacobian();
+  result.parameter_derivative = flow.parameter_derivative();
+  return result;
+}
+
+}  // namespace
+
+VectorXd full_parameters(const HybridSystem& system, const VectorXd& par) {
+  require(par.size() >= system.parameters() && par.size() <= parameter_length,
+          fmt::format("{} parameter values given, {} needs {} (at most {}).", par.size(), system.name(),
+                      system.parameters(), parameter_length));
+  require(par.allFinite(), "a parameter value is not finite.");
+  VectorXd full = VectorXd::Zero(parameter_length);
+  full.head(par.size()) = par;
+  return full;
+}
+
+SegmentFlow integrate_segment(const HybridSystem& system, const IndexVector& index, const VectorXd& x0,
+                              const VectorXd& par_given, const FlowOptions& options) {
+  const VectorXd par = checked_parameters(system, index.field, x0, par_given, options);
+  require_index(system, FunctionKind::event, index.event, "event function");
+  const double start_ends = end_of_start(EventAt(system, index, x0, par), x0, options.surface_tolerance);
+
+  CvodesFlow flow(system, index.field, x0, par, options);
+  flow.watch(index.event);
+  Progress progress = flow.advance(options.max_duration);
+  if (progress == Progress::root && flow.time() <= start_ends) progress = flow.advance(options.max_duration);
+
+  if (progress == Progress::failed) return result_at(flow, FlowStatus::failed);
+  SegmentFlow result =
+      result_at(flow, progress == Progress::root ? FlowStatus::event_reached : FlowStatus::time_reached);
+  result.event_velocity = EventAt(system, index, result.end_state, par).velocity;
+  if (result.status == FlowStatus::time_reached)
+    result.message = fmt::format("{} did not fall to zero within time {:g}",
+                                 system.function_name(FunctionKind::event, index.event), options.max_duration);
+  return result;
+}
+
+SegmentFlow integrate_for(const HybridSystem& system, int field, const VectorXd& x0, const VectorXd& par_given,
+                          double duration, const FlowOptions& options) {
+  const VectorXd par = checked_parameters(system, field, x0, par_given, options);
+  require(std::isfinite(duration), "the duration is not finite.");
+  CvodesFlow flow(system, field, x0, par, options);
+  const Progress progress = flow.advance(duration);
+  return result_at(flow, progress == Progress::failed ? FlowStatus::failed : FlowStatus::time_reached);
+}
+
+}  // namespace tchat
