@@ -87,8 +87,8 @@ void refuse_singular(PathFollower& follower, const DefiningSystem& defining, con
 
 }  // namespace
 
-PathPoint first_point(PathFollower& follower, const DefiningSystem& system, const SelectedStart& selected,
-                      const RunSettings& settings) {
+FirstPoint first_point(PathFollower& follower, const DefiningSystem& system, const SelectedStart& selected,
+                       const RunSettings& settings) {
   const OrbitStart& start = selected.start;
   PathPoint point = follower.make_point(start.orbit);
   NewtonResult result;
@@ -121,8 +121,9 @@ PathPoint first_point(PathFollower& follower, const DefiningSystem& system, cons
     }
     if (fitting_direction && follower.alignment(point, *start.direction) < -parallel) follower.reverse(point);
   }
-  refuse_singular(follower, system, point);
-  return point;
+  FirstPoint first{std::move(point), follower.newton().history()};
+  refuse_singular(follower, system, first.point);
+  return first;
 }
 
 }  // namespace tchat

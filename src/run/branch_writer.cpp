@@ -24,8 +24,9 @@ BranchWriter::BranchWriter(const HybridSystem& system, const CollocationRule& ru
       columns_(point_columns(setup_.settings, names_)),
       weights_(state_weights(setup_.settings)) {}
 
-void BranchWriter::begin_section(int branch) {
+void BranchWriter::begin_section(int branch, std::vector<NewtonIteration> correction) {
   setup_.branch = branch;
+  start_correction_ = std::move(correction);
   files_.write_points(
       format_point_header({setup_.settings, setup_.active_parameters, names_, setup_.curve_type}, columns_));
   if (screen_ != nullptr) *screen_ << format_table_heading(columns_) << std::flush;
@@ -121,10 +122,12 @@ void BranchWriter::write_solution(const BranchPoint& point, const PointLine& lin
 void BranchWriter::write_diagnostics(const BranchPoint& point, const PointLine& line) {
   const int level = setup_.settings.diagnostics_level;
   if (level <= 0 && !point.labelled()) return;
+  const std::vector<NewtonIteration>& newton = point.number > 1 ? point.newton : start_correction_;
+  const int iterations = point.number > 1 ? point.newton_iterations : static_cast<int>(newton.size());
   std::string text;
-  if (level >= 2 && point.number > 1 && !point.newton.empty()) {
+  if (level >= 2 && !newton.empty()) {
     std::vector<NewtonLine> lines;
-    for (const NewtonIteration& it : point.newton)
+    for (const NewtonIteration& it : newton)
       lines.push_back({it.number, it.parameter, it.residual, it.parameter_change, it.state_change});
     text += format_newton_history(line.branch, line.point, lines);
   }
@@ -141,7 +144,7 @@ void BranchWriter::write_diagnostics(const BranchPoint& point, const PointLine& 
     text += fmt::format("{:4}{:6}  Structural multiplier {:.3e}   estimated error between mesh points {:.3e}\n",
                         line.branch, wrapped_point(line.point), point.multipliers.structural, point.estimated_error);
   }
-  text += fmt::format("{:4}{:6}  Iterations   : {}\n", line.branch, wrapped_point(line.point), point.newton_iterations);
+  text += fmt::format("{:4}{:6}  Iterations   : {}\n", line.branch, wrapped_point(line.point), iterations);
   files_.write_diagnostics(text);
 }
 

@@ -26,8 +26,9 @@ class BranchWriter final : public BranchSink {
   BranchWriter(const HybridSystem& system, const CollocationRule& rule, Setup setup, RunFiles& files,
                std::ostream* screen);
 
-  /// The header of a section; `branch` counts sections that continue in other directions.
-  void begin_section(int branch);
+  /// The header of a section; `branch` counts sections that continue in other directions, `correction` is how Newton
+  /// came to the first point.
+  void begin_section(int branch, std::vector<NewtonIteration> correction);
   void point(const BranchPoint& point) override;
   void next_step(int point_number, double ds) override;
   void note(int point_number, const std::string& text) override;
@@ -57,6 +58,7 @@ class BranchWriter final : public BranchSink {
   std::vector<PointColumn> columns_;
   Eigen::VectorXd weights_;
   std::vector<Labelled> labels_;
+  std::vector<NewtonIteration> start_correction_;  // of the first point of the section
   bool last_admissible_ = true;
 };
 

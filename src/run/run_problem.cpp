@@ -95,7 +95,7 @@ int run_problem(const RunRequest& request, std::ostream& screen, std::ostream& w
   // Discretisation and first point.
   ContinuationSettings continuation = continuation_settings(settings);
   PathFollower follower(*defining, shape, weighted_norm(settings), newton_settings(settings), continuation.principal);
-  const PathPoint start = first_point(follower, *defining, selected, settings);
+  const FirstPoint start = first_point(follower, *defining, selected, settings);
 
   // Files are touched only now.
   files.open(positional_text(settings));
@@ -116,10 +116,10 @@ int run_problem(const RunRequest& request, std::ostream& screen, std::ostream& w
       continuation.label_start = false;
     }
     continuation.stop_at = make_stop_rule(settings);
-    writer.begin_section(branch);
+    writer.begin_section(branch, direction == 0 ? start.correction : std::vector<NewtonIteration>{});
     const std::size_t labels_before = writer.labels().size();
     ContinuationRun run(follower, *defining, continuation, make_tests(system, settings), writer);
-    const BranchSummary summary = run.run(start);
+    const BranchSummary summary = run.run(start.point);
     const std::vector<BranchWriter::Labelled> labels(
         writer.labels().begin() + static_cast<std::ptrdiff_t>(labels_before), writer.labels().end());
     if (table != nullptr)

@@ -23,8 +23,7 @@ std::string constants_path(const std::string& c) {
   const fs::path path(c);
   const fs::path prefixed = path.parent_path() / ("gc." + path.filename().string());
   if (is_file(prefixed)) return prefixed.string();
-  const bool named_in_full = path.filename().string().rfind("gc.", 0) == 0;
-  if (is_file(path) && (named_in_full || path.extension().empty() || path.has_parent_path())) return path.string();
+  if (is_file(path)) return path.string();
   throw UserError(
       fmt::format("there is no constants file {}{}; give its name with -c, or write one (README, "
                   "\"Constants files\")",
