@@ -1,10 +1,13 @@
 #include "plugin/problem_library.hpp"
 
 #include <dlfcn.h>
+#include <elf.h>
 #include <fmt/format.h>
 
+#include <cstring>
 #include <exception>
 #include <filesystem>
+#include <fstream>
 #include <stdexcept>
 #include <string_view>
 
@@ -43,8 +46,30 @@ void require_file(const std::string& path) {
   if (!fs::is_regular_file(status)) refuse(path, "this is not a regular file", "Give the path of a .so or .cpp file.");
 }
 
+/// True when a 64-bit ELF file ends before the parts that its header announces. The loader maps such a file and dies
+/// by a signal when it touches the missing part.
+bool is_truncated(const std::string& path) {
+  std::ifstream in(path, std::ios::binary | std::ios::ate);
+  const std::streamoff size = in.tellg();
+  Elf64_Ehdr header{};
+  in.seekg(0);
+  if (!in.read(reinterpret_cast<char*>(&header), sizeof header)) return false;  // no ELF file, the loader says so
+  if (std::memcmp(header.e_ident, ELFMAG, SELFMAG) != 0 || header.e_ident[EI_CLASS] != ELFCLASS64) return false;
+  in.seekg(static_cast<std::streamoff>(header.e_phoff));
+  for (int k = 0; k < header.e_phnum; ++k) {
+    Elf64_Phdr segment{};
+    if (!in.read(reinterpret_cast<char*>(&segment), sizeof segment)) return true;
+    const Elf64_Off room = static_cast<Elf64_Off>(size);
+    if (segment.p_type == PT_LOAD && (segment.p_filesz > room || segment.p_offset > room - segment.p_filesz))
+      return true;
+  }
+  return false;
+}
+
 void* open_library(const std::string& path) {
   require_file(path);
+  if (is_truncated(path))
+    refuse(path, "the file is incomplete", "Delete it, so that it is compiled again, or copy it again.");
   const ExitGuard guard(path);
   // An absolute path keeps dlopen from searching the system's library folders for a name without a slash.
   void* const handle = dlopen(fs::absolute(path).c_str(), RTLD_NOW | RTLD_LOCAL);

@@ -1,0 +1,210 @@
+#include "plugin/problem_library.hpp"
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <vector>
+
+#include "constants/user_error.hpp"
+#include "plugin/exit_guard.hpp"
+#include "plugin_folder.hpp"
+
+using namespace tchat;
+using Catch::Matchers::Contains;
+
+namespace {
+
+const PluginBuildOptions build_options = {"", TCHAT_TEST_INCLUDE};
+
+struct BadPlugin {
+  const char* source;
+  std::vector<const char*> message;  // parts of it
+};
+
+struct Ended {
+  int status;
+  std::string error_output;
+};
+
+/// Runs `action` in a process of its own that then ends normally with status 0.
+template <class Action>
+Ended in_process(const PluginFolder& folder, const Action& action) {
+  const pid_t child = fork();
+  if (child == 0) {
+    if (freopen((folder / "stderr").c_str(), "w", stderr) == nullptr) _exit(99);
+    action();
+    _exit(0);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, folder.read("stderr")};
+}
+
+}  // namespace
+
+TEST_CASE("a C++ plugin is compiled, loaded and evaluated") {
+  const PluginFolder folder;
+  const std::string source = folder.write("ball.cpp", R"(#include <tchat/problem.hpp>
+struct Ball {
+  static constexpr int dimension = 2, parameters = 2, fields = 1, events = 1, jumps = 1;
+  template <class T> void field(int, const T* x, const T* par, T* f) const { f[0] = x[1]; f[1] = -par[0]; }
+  template <class T> T event(int, const T* x, const T*) const { return x[0]; }
+  template <class T> void jump(int, const T* x, const T* par, T* g) const { g[0] = x[0]; g[1] = -par[1] * x[1]; }
+};
+TCHAT_PROBLEM(Ball)
+)");
+  const ProblemLibrary library(resolve_plugin(source, build_options));
+  const HybridSystem& system = library.system();
+  CHECK(system.name() == "Ball");
+  CHECK(system.dimension() == 2);
+  const double x[] = {0.5, -3.0}, par[256] = {9.81, 0.8};
+  double g[2], gx[4], gp[2];
+  const int active[] = {2};
+  system.first(FunctionKind::jump, 1, x, par, active, g, gx, gp);
+  CHECK(g[1] == Approx(2.4));
+  CHECK(gx[3] == Approx(-0.8));
+  CHECK(gp[1] == Approx(3.0));
+}
+
+TEST_CASE("a small C plugin is loaded; its derivatives are differences") {
+  const PluginFolder folder;
+  const ProblemLibrary library(resolve_plugin(folder.write("small.cpp", small_plugin()), build_options));
+  const double x[] = {0.5, -3.0}, par[256] = {2.0};
+  double f[2], fx[4];
+  library.system().first(FunctionKind::field, 1, x, par, {}, f, fx, nullptr);
+  CHECK(f[0] == 1.0);
+  CHECK(std::abs(fx[0] - 2.0) < 1e-9);
+}
+
+TEST_CASE("two plugins of the same class name live side by side") {
+  const PluginFolder folder;
+  const ProblemLibrary two(resolve_plugin(folder.write("a.cpp", small_plugin()), build_options));
+  const ProblemLibrary three(
+      resolve_plugin(folder.write("b.cpp", small_plugin("table.dimension = 3;")), build_options));
+  CHECK(two.system().dimension() == 2);
+  CHECK(three.system().dimension() == 3);
+}
+
+TEST_CASE("files that are no plugins") {
+  const PluginFolder folder;
+  CHECK_THROWS_WITH(ProblemLibrary(folder / "none.so"), Contains("none.so") && Contains("no such file"));
+  CHECK_THROWS_WITH(ProblemLibrary(folder / "."), Contains("this is a folder"));
+  CHECK_THROWS_WITH(ProblemLibrary(folder.write("text.so", std::string(200, 'x'))),
+                    Contains("text.so") && Contains("invalid ELF header") && Contains("not a shared library"));
+  CHECK_THROWS_WITH(ProblemLibrary(folder.write("empty.so", "")), Contains("file too short"));
+  CHECK_THROWS_WITH(ProblemLibrary("/dev/null"), Contains("not a regular file"));
+  CHECK_THROWS_AS(ProblemLibrary(folder / "none.so"), UserError);
+
+  const std::string whole = resolve_plugin(folder.write("small.cpp", small_plugin()), build_options);
+  const std::string contents = folder.read("small.so");
+  for (const std::size_t length : {contents.size() / 2, contents.size() / 5, std::size_t{100}, std::size_t{10}})
+    CHECK_THROWS_AS(ProblemLibrary(folder.write("part.so", contents.substr(0, length))), UserError);
+}
+
+TEST_CASE("libraries that are no usable plugins") {
+  const std::vector<BadPlugin> cases = {
+      {"int answer = 42;", {"does not export tchat_problem_table", "TCHAT_PROBLEM(YourClass)"}},
+      {R"(void elsewhere(); extern "C" void* tchat_problem_table() { elsewhere(); return 0; })",
+       {"undefined symbol", "elsewhere", "not defined"}},
+      {R"(extern "C" __attribute__((visibility("default"))) void* tchat_problem_table() { return 0; })",
+       {"returned no table"}},
+      {R"(#include <stdexcept>
+          extern "C" __attribute__((visibility("default"))) void* tchat_problem_table() {
+            throw std::runtime_error("table.txt is missing"); })",
+       {"threw an exception: table.txt is missing", "constructor"}},
+      {R"(extern "C" __attribute__((visibility("default"))) void* tchat_problem_table() { throw 1; })",
+       {"threw an exception"}},
+  };
+  const PluginFolder folder;
+  int number = 0;
+  for (const BadPlugin& bad : cases) {
+    const std::string name = "bad" + std::to_string(++number);
+    const std::string library = resolve_plugin(folder.write(name + ".cpp", bad.source), build_options);
+    for (const char* part : bad.message) CHECK_THROWS_WITH(ProblemLibrary(library), Contains(part) && Contains(name));
+    CHECK_THROWS_AS(ProblemLibrary(library), UserError);
+  }
+}
+
+TEST_CASE("tables that cannot be used") {
+  const std::vector<BadPlugin> cases = {
+      {"table.abi_version = 77;", {"interface version is 77", "another tchat", "delete it"}},
+      {"table.struct_size = 8;", {"table has 8 bytes", "another tchat"}},
+      {"table.dimension = 0;", {"dimension is 0", "allowed are 1..1000"}},
+      {"table.dimension = 2000000000;", {"dimension is 2000000000"}},
+      {"table.parameters = 61;", {"61 parameters", "allowed are 0..60"}},
+      {"table.fields = 0;", {"0 fields", "at least one of each"}},
+      {"table.name = 0;", {"no name"}},
+      {"table.value = 0;", {"no function `value`"}},
+      {"table.derivative_order = 1;", {"no function `first`"}},
+      {"table.user_values = 2;", {"no function `user_value`"}},
+  };
+  const PluginFolder folder;
+  int number = 0;
+  for (const BadPlugin& bad : cases) {
+    const std::string name = "table" + std::to_string(++number);
+    const std::string library = resolve_plugin(folder.write(name + ".cpp", small_plugin(bad.source)), build_options);
+    for (const char* part : bad.message) CHECK_THROWS_WITH(ProblemLibrary(library), Contains(part) && Contains(name));
+    CHECK_THROWS_AS(ProblemLibrary(library), UserError);
+  }
+}
+
+TEST_CASE("a plugin that writes NaN is seen by its values") {
+  const PluginFolder folder;
+  const std::string source = folder.write(
+      "nan.cpp", small_plugin("table.value = [](const void*, int32_t, int32_t, const double*, const double*, "
+                              "double* out) { out[0] = 0.0 / 0.0; };"));
+  const ProblemLibrary library(resolve_plugin(source, build_options));
+  const double x[] = {0.5, -3.0}, par[256] = {};
+  CHECK(std::isnan(library.system().event(1, x, par)));
+}
+
+TEST_CASE("a plugin that ends the process is named, status 2") {
+  const PluginFolder folder;
+  const std::string when_called = resolve_plugin(
+      folder.write("stops.cpp", "#include <stdlib.h>\n" +
+                                    small_plugin("table.value = [](const void*, int32_t, int32_t, const double*, "
+                                                 "const double*, double*) { exit(0); };")),
+      build_options);
+  const std::string when_loaded = resolve_plugin(
+      folder.write("early.cpp", "#include <stdlib.h>\nstatic int now = (exit(0), 1);\n" + small_plugin()),
+      build_options);
+  const std::string at_entry =
+      resolve_plugin(folder.write("entry.cpp", "#include <stdlib.h>\n" + small_plugin("exit(7);")), build_options);
+  const double x[] = {0.5, -3.0}, par[256] = {};
+
+  const Ended called = in_process(folder, [&] {
+    const ProblemLibrary library(when_called);
+    const ExitGuard guard(when_called);
+    library.system().event(1, x, par);
+  });
+  CHECK(called.status == 2);
+  CHECK_THAT(called.error_output, Contains("stops.so ended the process") && Contains("returns NaN"));
+
+  const Ended loaded = in_process(folder, [&] { const ProblemLibrary library(when_loaded); });
+  CHECK(loaded.status == 2);
+  CHECK_THAT(loaded.error_output, Contains("early.so ended the process"));
+
+  const Ended entered = in_process(folder, [&] { const ProblemLibrary library(at_entry); });
+  CHECK(entered.status == 2);
+  CHECK_THAT(entered.error_output, Contains("entry.so ended the process"));
+}
+
+TEST_CASE("an exit while no guard lives is left alone; guards nest") {
+  const PluginFolder folder;
+  const Ended free = in_process(folder, [] {
+    { const ExitGuard guard("plugin.so"); }
+    std::quick_exit(5);
+  });
+  CHECK(free.status == 5);
+  CHECK(free.error_output.empty());
+  const Ended nested = in_process(folder, [] {
+    const ExitGuard outer("outer.so");
+    { const ExitGuard inner("inner.so"); }
+    std::quick_exit(5);
+  });
+  CHECK(nested.status == 2);
+  CHECK_THAT(nested.error_output, Contains("outer.so"));
+}
