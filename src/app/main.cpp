@@ -4,6 +4,7 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
+#include <csignal>
 #include <functional>
 #include <iostream>
 #include <new>
@@ -43,6 +44,7 @@ int run_command(const std::function<int()>& command) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a file size limit is then an error of the write, reported like a full disk
   CLI::App app{"tchat: numerical continuation of periodic orbits of hybrid dynamical systems", "tchat"};
   app.set_version_flag("--version", "tchat " TCHAT_VERSION);
   app.require_subcommand(1);

@@ -77,7 +77,6 @@ CondensedSystem::CondensedSystem(const DefiningSystem& system, const OrbitShape&
   scalar_blocks_ = zeros(shape.segments * n_ * scalars_);
   border_blocks_ = zeros(shape.segments * border_ * (2 * n_ + scalars_));
   segment_rhs_ = zeros(shape.segments * (n_ + border_));
-  signs_.assign(index(shape.segments), 1);
   triplet_values_.resize(triplet_rows_.size());
   rhs_ = zeros(lu_.size());
   solution_ = rhs_;
@@ -179,17 +178,13 @@ Linearization CondensedSystem::linearize(const Orbit& x, std::span<const OrbitVe
 Linearization CondensedSystem::condense_segment(const Orbit& x, int s, std::span<const OrbitVector> rows,
                                                 double* collocation) {
   const int block_size = (interval_.rows() + border_) * interval_.width();
-  int sign = 1;
   for (int j = 0; j < shape_.intervals; ++j) {
     double* a = &interval_blocks_[index(block(s, j) * block_size)];
     if (!fill_interval(x, s, j, a, collocation + j * shape_.collocation * n_)) return Linearization::not_finite;
     fill_border(s, j, rows, a);
-    const int interval_sign =
-        interval_.eliminate(a, border_, &interval_swaps_[index(block(s, j) * interval_.pivots())]);
-    if (interval_sign == 0) return Linearization::singular;
-    sign *= interval_sign;
+    if (!interval_.eliminate(a, border_, &interval_swaps_[index(block(s, j) * interval_.pivots())]))
+      return Linearization::singular;
   }
-  signs_[index(s)] = sign;
   for (int j = 1; j < shape_.intervals; ++j)
     if (!join(s, j)) return Linearization::singular;
   const int p = interval_.pivots();
@@ -293,9 +288,7 @@ bool CondensedSystem::join(int s, int j) {
     put_before((opening ? interval_.rows() : chain_.rows()) + r, chain_.rows() + r);
     put_own(interval_.rows() + r, chain_.rows() + r);
   }
-  const int sign = chain_.eliminate(target, border_, &chain_swaps_[index(block(s, j) * chain_.pivots())]);
-  signs_[index(s)] *= sign;
-  return sign != 0;
+  return chain_.eliminate(target, border_, &chain_swaps_[index(block(s, j) * chain_.pivots())]);
 }
 
 void CondensedSystem::keep_segment_blocks(int s, const double* block, int width, int first, int last, int scalars,
@@ -448,10 +441,28 @@ void CondensedSystem::expand_segment(int s, OrbitVector& dx) {
   }
 }
 
-int CondensedSystem::determinant_sign() const {
-  int sign = lu_.determinant_sign();
-  for (const int s : signs_) sign *= s;
-  return sign;
+CondensedSystem::Determinant CondensedSystem::determinant() const {
+  SparseLu::Determinant product = lu_.determinant();
+  const auto multiply = [&](const BlockKernel& kernel, const double* block, const int* swaps) {
+    double mantissa = 1.0;
+    for (int k = 0; k < kernel.pivots(); ++k) {
+      mantissa *= block[k * kernel.width() + k] * (swaps[k] == k ? 1.0 : -1.0);
+      int exponent = 0;
+      mantissa = std::frexp(mantissa, &exponent);
+      product.log2_size += exponent;
+    }
+    product.sign *= (mantissa > 0.0) - (mantissa < 0.0);
+    product.log2_size += std::log2(std::abs(mantissa));
+  };
+  const int blocks = shape_.segments * shape_.intervals;
+  const int interval_size = (interval_.rows() + border_) * interval_.width();
+  const int chain_size = (chain_.rows() + border_) * chain_.width();
+  for (int b = 0; b < blocks; ++b) {
+    multiply(interval_, &interval_blocks_[index(b * interval_size)], &interval_swaps_[index(b * interval_.pivots())]);
+    if (b % shape_.intervals != 0)
+      multiply(chain_, &chain_blocks_[index(b * chain_size)], &chain_swaps_[index(b * chain_.pivots())]);
+  }
+  return {product.sign, product.log2_size};
 }
 
 CondensedSystem::Singularity CondensedSystem::singularity() const {

@@ -62,8 +62,13 @@ class CondensedSystem {
   const double* first_block(int s) const { return &first_blocks_[index(s * n_ * n_)]; }
   const double* last_block(int s) const { return &last_blocks_[index(s * n_ * n_)]; }
 
-  /// Sign of the determinant of the bordered J; comparable between points of one mesh.
-  int determinant_sign() const;
+  /// The determinant of the bordered J as sign * 2^log2_size; sign 0 when it is singular. Its sign does not depend on
+  /// the mesh, its size does.
+  struct Determinant {
+    int sign = 0;
+    double log2_size = 0.0;
+  };
+  Determinant determinant() const;
 
   /// Scaled reciprocal condition of the factored matrix and its null direction, of which only the ends of segments,
   /// durations and globals are filled in. Allocates.
@@ -114,7 +119,6 @@ class CondensedSystem {
   std::vector<double> scalar_blocks_;  // m n x scalars
   std::vector<double> border_blocks_;  // m b x (2 n + scalars): first | last | scalars
   std::vector<double> segment_rhs_;    // m (n + b)
-  std::vector<int> signs_;             // per segment, of all pivots
 
   std::vector<int> triplet_rows_;  // before lu_, whose constructor needs them
   std::vector<int> triplet_columns_;

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "continuation/branch.hpp"
+#include "continuation/special_point_search.hpp"
 #include "continuation/step_size.hpp"
 
 namespace tchat {
@@ -38,21 +39,7 @@ class ContinuationRun {
   BranchSummary run(PathPoint start);
 
  private:
-  /// A zero of test function `test` on the step from here_.
-  struct Zero {
-    std::size_t test;
-    double ds;
-    int sign_after;  // of the function beyond the zero
-    bool converged;
-  };
-
   bool take_step();
-  void evaluate(const PathPoint& at);
-  TestedPoint tested(const PathPoint& at) const { return {at.orbit, at.tangent, follower_.condensed(), multipliers_}; }
-  int sign_of(std::size_t test) const;
-  std::optional<Zero> first_zero();
-  Zero locate(std::size_t test);
-  SpecialPoint move_to(const Zero& zero);
   SpecialPoint end_conditions(SpecialPoint special);
   void record(const SpecialPoint& special);
   void end(EndReason reason, std::string detail);
@@ -62,26 +49,15 @@ class ContinuationRun {
   PathFollower& follower_;
   const DefiningSystem& system_;
   ContinuationSettings settings_;
-  std::vector<std::unique_ptr<TestFunction>> tests_;
   BranchSink& sink_;
-
-  FloquetSolver floquet_;
+  SpecialPointSearch search_;
   StepSize step_;
   PathPoint here_;         // the last accepted point
   PathPoint next_;         // the point being computed
-  NewtonResult newton_;    // of the step to next_
+  NewtonResult newton_;    // of the step to it
   double ds_taken_ = 0.0;  // length of that step
-  int number_ = 1;         // of the last accepted point
-
-  // At the point evaluated last:
-  FloquetMultipliers multipliers_;
-  std::vector<std::optional<double>> values_;
-  std::vector<double> zero_levels_;
-  double measure_ = 0.0;
-
-  std::vector<std::optional<double>> here_values_;  // of the test functions at here_
-  std::vector<int> signs_;                          // their signs there; 0: none
-
+  double measure_ = 0.0;   // at here_
+  int number_ = 1;         // of here_
   bool ended_ = false;
   BranchSummary summary_;
 };

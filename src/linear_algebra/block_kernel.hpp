@@ -13,7 +13,7 @@ class BlockKernel {
   int width() const { return width_; }
 
   /// See partial_lu.hpp.
-  int eliminate(double* a, int border, int* swaps) const { return eliminate_(*this, a, border, swaps); }
+  bool eliminate(double* a, int border, int* swaps) const { return eliminate_(*this, a, border, swaps); }
   void forward(const double* a, int border, const int* swaps, double* rhs) const {
     forward_(*this, a, border, swaps, rhs);
   }
@@ -30,7 +30,7 @@ class BlockKernel {
   int rows_;
   int pivots_;
   int width_;
-  int (*eliminate_)(const BlockKernel&, double*, int, int*);
+  bool (*eliminate_)(const BlockKernel&, double*, int, int*);
   void (*forward_)(const BlockKernel&, const double*, int, const int*, double*);
   void (*backward_)(const BlockKernel&, const double*, const double*, double*, int);
 };

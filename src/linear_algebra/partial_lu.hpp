@@ -48,13 +48,12 @@ inline void subtract_rows(const Sizes& sizes, double* __restrict target, const d
 
 }  // namespace detail
 
-/// Eliminates; swaps[k] is the row exchanged with row k. Returns the sign of the product of the pivots times that of
-/// the permutation; 0 when a pivot is zero or not finite, the block is then useless.
+/// Eliminates; swaps[k] is the row exchanged with row k. False when a pivot is zero or not finite: the block is then
+/// useless.
 template <class Sizes>
-int eliminate(const Sizes& sizes, double* a, int border, int* swaps) {
+bool eliminate(const Sizes& sizes, double* a, int border, int* swaps) {
   const int rows = sizes.rows, pivots = sizes.pivots, width = sizes.width;
   const int all_rows = rows + border;
-  int sign = 1;
   for (int k0 = 0; k0 < pivots; k0 += detail::panel) {
     const int k1 = std::min(k0 + detail::panel, pivots);
     for (int k = k0; k < k1; ++k) {
@@ -64,15 +63,10 @@ int eliminate(const Sizes& sizes, double* a, int border, int* swaps) {
         const double candidate = std::abs(a[i * width + k]);
         if (candidate > largest) largest = candidate, pivot_row = i;
       }
-      if (!(largest > 0.0) || !std::isfinite(largest)) return 0;
+      if (!(largest > 0.0) || !std::isfinite(largest)) return false;
       swaps[k] = pivot_row;
-      if (pivot_row != k) {
-        std::swap_ranges(a + k * width, a + (k + 1) * width, a + pivot_row * width);
-        sign = -sign;
-      }
-      const double pivot = a[k * width + k];
-      if (pivot < 0.0) sign = -sign;
-      const double inverse = 1.0 / pivot;
+      if (pivot_row != k) std::swap_ranges(a + k * width, a + (k + 1) * width, a + pivot_row * width);
+      const double inverse = 1.0 / a[k * width + k];
       for (int i = k + 1; i < all_rows; ++i) {
         const double l = (a[i * width + k] *= inverse);
         for (int j = k + 1; j < k1; ++j) a[i * width + j] -= l * a[k * width + j];
@@ -89,7 +83,7 @@ int eliminate(const Sizes& sizes, double* a, int border, int* swaps) {
           detail::subtract_rows<1>(sizes, a + i * width, a + i * width + r, a + r * width, k1);
     }
   }
-  return sign;
+  return true;
 }
 
 /// Applies the exchanges and multipliers of an eliminated block to a right-hand side of rows + border entries: the

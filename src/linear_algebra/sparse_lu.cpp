@@ -89,13 +89,14 @@ bool SparseLu::factorize(const std::vector<double>& values) {
 void SparseLu::solve(const double* b, double* x) { state_->solve(UMFPACK_A, b, x); }
 void SparseLu::solve_transposed(const double* b, double* x) { state_->solve(UMFPACK_At, b, x); }
 
-int SparseLu::determinant_sign() const {
-  if (state_->numeric == nullptr) return 0;
+SparseLu::Determinant SparseLu::determinant() const {
+  if (state_->numeric == nullptr) return {};
   double mantissa = 0.0;
-  double exponent = 0.0;
+  double exponent = 0.0;  // of ten
   double info[UMFPACK_INFO];
   umfpack_di_get_determinant(&mantissa, &exponent, state_->numeric, info);
-  return (mantissa > 0.0) - (mantissa < 0.0);
+  if (mantissa == 0.0 || !std::isfinite(mantissa)) return {};
+  return {mantissa > 0.0 ? 1 : -1, std::log2(std::abs(mantissa)) + exponent * std::log2(10.0)};
 }
 
 SparseLu::Condition SparseLu::condition() const {

@@ -27,8 +27,12 @@ class SparseLu {
   void solve(const double* b, double* x);
   void solve_transposed(const double* b, double* x);
 
-  /// Sign of the determinant (0 when singular).
-  int determinant_sign() const;
+  /// sign * 2^log2_size; sign 0 when singular.
+  struct Determinant {
+    int sign = 0;
+    double log2_size = 0.0;
+  };
+  Determinant determinant() const;
 
   /// Estimate of the reciprocal 2-norm condition of the matrix scaled to rows and columns of unit size, with the
   /// right singular direction (in the unscaled unknowns) that goes with the smallest singular value. Allocates.

@@ -19,21 +19,6 @@ void check_index(const HybridSystem& system, FunctionKind kind, int index, const
                               keyword, s, index, system.name(), system.count(kind), what, system.count(kind)));
 }
 
-/// Is jump k the identity? Tried at two states that no jump of practice leaves alone by accident.
-bool is_identity(const HybridSystem& system, int k) {
-  const int n = system.dimension();
-  ParameterVector par = ParameterVector::Zero(parameter_length);
-  for (int i = 0; i < system.parameters(); ++i) par(i) = 0.37 + 0.11 * i;
-  Eigen::VectorXd x(n);
-  Eigen::VectorXd g(n);
-  for (int trial = 0; trial < 2; ++trial) {
-    for (int i = 0; i < n; ++i) x(i) = std::sin(1.3 + i + 2.1 * trial);
-    system.value(FunctionKind::jump, k, x.data(), par.data(), g.data());
-    if ((g - x).cwiseAbs().maxCoeff() > 1e-12) return false;
-  }
-  return true;
-}
-
 /// Bytes that the system could still give; 0 when it does not say.
 double available_memory() {
   std::ifstream file("/proc/meminfo");
@@ -63,7 +48,7 @@ std::vector<std::string> check_settings_against(const HybridSystem& system, cons
     check_index(system, FunctionKind::jump, segment.index.jump, "GCGIND", "jump functions", s, constants_name);
     for (const int event : segment.monitor)
       check_index(system, FunctionKind::event, event, "GCHGRZIND", "event functions", s, constants_name);
-    const bool identity = is_identity(system, segment.index.jump);
+    const bool identity = is_identity_jump(system, segment.index.jump);
     if ((segment.type == 0 && !identity) || (segment.type == 1 && identity))
       warnings.push_back(
           fmt::format("{}: GCSEGTYP of segment {} is {} ({} jump), but jump {} ({}) is {}the identity; "
@@ -77,6 +62,20 @@ std::vector<std::string> check_settings_against(const HybridSystem& system, cons
       warnings.push_back(fmt::format("{}: ICP lists PAR({}), but problem {} has {} parameters", constants_name, k,
                                      system.name(), system.parameters()));
   return warnings;
+}
+
+bool is_identity_jump(const HybridSystem& system, int k) {
+  const int n = system.dimension();
+  ParameterVector par = ParameterVector::Zero(parameter_length);
+  for (int i = 0; i < system.parameters(); ++i) par(i) = 0.37 + 0.11 * i;
+  Eigen::VectorXd x(n);
+  Eigen::VectorXd g(n);
+  for (int trial = 0; trial < 2; ++trial) {
+    for (int i = 0; i < n; ++i) x(i) = std::sin(1.3 + i + 2.1 * trial);
+    system.value(FunctionKind::jump, k, x.data(), par.data(), g.data());
+    if ((g - x).cwiseAbs().maxCoeff() > 1e-12) return false;
+  }
+  return true;
 }
 
 int parameter_index(const HybridSystem& system, const std::string& name, const std::string& where) {

@@ -18,6 +18,9 @@ namespace tchat {
 std::vector<std::string> check_settings_against(const HybridSystem& system, const RunSettings& settings,
                                                 const std::string& constants_name);
 
+/// Is jump k the identity map? Tried at two generic states.
+bool is_identity_jump(const HybridSystem& system, int k);
+
 /// PAR index of a name given by the user: a number, or one of the problem's names. Throws UserError listing the names.
 int parameter_index(const HybridSystem& system, const std::string& name, const std::string& where);
 

@@ -19,19 +19,12 @@
 #include "run/problem_types.hpp"
 #include "run/run_summary.hpp"
 #include "run/start_selection.hpp"
-#include "special_points/user_value_test.hpp"
+#include "run/test_selection.hpp"
 #include "start/point_type.hpp"
 
 namespace tchat {
 
 namespace {
-
-std::vector<std::unique_ptr<TestFunction>> make_tests(const HybridSystem& system, const RunSettings& settings) {
-  std::vector<std::unique_ptr<TestFunction>> tests;
-  for (const UserValue& u : settings.user_values)
-    tests.push_back(std::make_unique<UserValueTest>(u.parameter, u.value, u.stop, system.parameter_name(u.parameter)));
-  return tests;
-}
 
 /// STOP: true at the n-th labelled point of a type.
 std::function<bool(const SpecialPoint&)> make_stop_rule(const RunSettings& settings) {
@@ -118,7 +111,7 @@ int run_problem(const RunRequest& request, std::ostream& screen, std::ostream& w
     continuation.stop_at = make_stop_rule(settings);
     writer.begin_section(branch, direction == 0 ? start.correction : std::vector<NewtonIteration>{});
     const std::size_t labels_before = writer.labels().size();
-    ContinuationRun run(follower, *defining, continuation, make_tests(system, settings), writer);
+    ContinuationRun run(follower, *defining, continuation, select_tests(*defining, settings), writer);
     const BranchSummary summary = run.run(start.point);
     const std::vector<BranchWriter::Labelled> labels(
         writer.labels().begin() + static_cast<std::ptrdiff_t>(labels_before), writer.labels().end());

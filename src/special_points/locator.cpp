@@ -9,6 +9,9 @@ namespace tchat {
 
 namespace {
 
+/// Values at a zero, bracketed this finely, are a smaller share of those at the ends.
+constexpr double jump_share = 0.05;
+
 /// Leaves Boost's iteration when a trial step fails; never seen outside this file.
 struct StepFailed : std::exception {};
 
@@ -17,6 +20,7 @@ struct StepFailed : std::exception {};
 LocatedZero locate_zero(const std::function<std::optional<double>(double)>& function, double ds, double f0, double f1,
                         double tolerance, double rounding_level, int max_evaluations) {
   LocatedZero best{0.0, f0, 0, false};
+  if (!(f0 * f1 < 0.0)) return best;
   if (std::abs(f1) < std::abs(f0)) best = {ds, f1, 0, false};
   const auto trial = [&](double at) {
     const std::optional<double> value = function(at);
@@ -33,7 +37,10 @@ LocatedZero locate_zero(const std::function<std::optional<double>(double)>& func
     const double f_low = ds > 0.0 ? f0 : f1;
     const double f_high = ds > 0.0 ? f1 : f0;
     const auto bracket = boost::math::tools::toms748_solve(trial, low, high, f_low, f_high, done, evaluations);
-    best.converged = done(bracket.first, bracket.second);
+    // A jump also changes sign, but its values do not shrink with the bracket.
+    const bool is_zero = std::abs(best.value) <= jump_share * std::min(std::abs(f0), std::abs(f1)) ||
+                         std::abs(best.value) <= rounding_level;
+    best.converged = is_zero && done(bracket.first, bracket.second);
   } catch (const StepFailed&) {
     best.converged = false;
   }

@@ -1,0 +1,50 @@
+#include "run/test_selection.hpp"
+
+#include <cstdlib>
+
+#include "run/problem_setup.hpp"
+#include "special_points/bifurcation_tests.hpp"
+#include "special_points/user_value_test.hpp"
+
+namespace tchat {
+
+namespace {
+
+using Tests = std::vector<std::unique_ptr<TestFunction>>;
+
+void add_user_values(Tests& tests, const HybridSystem& system, const RunSettings& settings) {
+  for (const UserValue& u : settings.user_values)
+    tests.push_back(std::make_unique<UserValueTest>(u.parameter, u.value, u.stop, system.parameter_name(u.parameter)));
+}
+
+/// ILP and ISP: |ISP| = 2 all, 3 branch points only, 4 all but branch points; negative: stop at the first.
+void add_bifurcations(Tests& tests, const DefiningSystem& system, const RunSettings& settings) {
+  const int kind = std::abs(settings.detect_bifurcations);
+  const bool stop = settings.detect_bifurcations < 0;
+  if (settings.detect_folds != 0)
+    tests.push_back(std::make_unique<FoldTest>(settings.free_parameters.front(), system.free_parameters(),
+                                               system.segments(), settings.detect_folds < 0));
+  if (kind == 2 || kind == 3) tests.push_back(std::make_unique<BranchPointTest>(stop));
+  if (kind == 2 || kind == 4) {
+    tests.push_back(std::make_unique<PeriodDoublingTest>(stop));
+    tests.push_back(std::make_unique<TorusTest>(stop));
+  }
+}
+
+void add_impact_velocities(Tests& tests, const DefiningSystem& system, const RunSettings& settings) {
+  for (int s = 0; s < system.segments(); ++s)
+    if (!is_identity_jump(system.system(), system.signature()[static_cast<std::size_t>(s)].jump))
+      tests.push_back(std::make_unique<ImpactVelocityTest>(system, s, settings.stop_at_grazing));
+}
+
+}  // namespace
+
+std::vector<std::unique_ptr<TestFunction>> select_tests(const DefiningSystem& system, const RunSettings& settings) {
+  Tests tests;
+  add_user_values(tests, system.system(), settings);
+  add_impact_velocities(tests, system, settings);
+  add_bifurcations(tests, system, settings);
+  return tests;
+}
+
+}  // namespace tchat

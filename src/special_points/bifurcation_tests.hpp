@@ -1,0 +1,90 @@
+/// Test functions of the bifurcations of orbits: fold, branch point, period doubling, torus (7).
+///
+/// None has a pole where an impact velocity a_s = h_x f goes through zero and a multiplier through infinity: the
+/// product over (1 + mu) is multiplied by the product of the a_s. The branch point's function is the determinant of the
+/// boundary value problem bordered by the tangent, regular at a_s = 0 and of constant sign through folds.
+#pragma once
+
+#include "special_points/test_function.hpp"
+
+namespace tchat {
+
+/// LP: the component of the tangent along the principal parameter.
+class FoldTest final : public TestFunction {
+ public:
+  /// `parameter` is a PAR index; `free_parameters` those of the tangent's globals.
+  FoldTest(int parameter, const std::vector<int>& free_parameters, int segments, bool stop);
+  std::string name() const override { return "fold"; }
+  std::optional<double> value(const TestedPoint& point) const override;
+  double zero_level(const TestedPoint&) const override { return 1e-10; }
+  SpecialPoint classify(const TestedPoint& point, bool rising) const override;
+
+ private:
+  bool is_duration_;
+  Eigen::Index index_;
+  bool stop_;
+};
+
+/// BP: the bordered determinant.
+class BranchPointTest final : public TestFunction {
+ public:
+  explicit BranchPointTest(bool stop) : stop_(stop) {}
+  std::string name() const override { return "branch point"; }
+  std::optional<double> value(const TestedPoint& point) const override { return point.determinant; }
+  double zero_level(const TestedPoint&) const override { return 1e-9; }
+  SpecialPoint classify(const TestedPoint& point, bool rising) const override;
+
+ private:
+  bool stop_;
+};
+
+/// PD: product of 1 + mu over the multipliers times the product of the scaled a_s. Undefined while the structural
+/// multiplier is off by more than 5e-2 and where an a_s is zero to rounding.
+class PeriodDoublingTest final : public TestFunction {
+ public:
+  explicit PeriodDoublingTest(bool stop) : stop_(stop) {}
+  std::string name() const override { return "period doubling"; }
+  std::optional<double> value(const TestedPoint& point) const override;
+  double zero_level(const TestedPoint& point) const override;
+  SpecialPoint classify(const TestedPoint& point, bool rising) const override;
+
+ private:
+  bool stop_;
+};
+
+/// TR: |mu| - 1 of the complex pair nearest to the unit circle; undefined without one.
+class TorusTest final : public TestFunction {
+ public:
+  explicit TorusTest(bool stop) : stop_(stop) {}
+  std::string name() const override { return "torus"; }
+  std::optional<double> value(const TestedPoint& point) const override;
+  double zero_level(const TestedPoint&) const override { return 1e-9; }
+  SpecialPoint classify(const TestedPoint& point, bool rising) const override;
+
+ private:
+  bool stop_;
+};
+
+/// a_s = h_x f at the end of a segment: the impact velocity through zero, birth of an impacting orbit at grazing.
+class ImpactVelocityTest final : public TestFunction {
+ public:
+  /// `segment` counts from 0. Beyond a rising zero the orbit violates the model: `stop` ends the branch there.
+  ImpactVelocityTest(const DefiningSystem& system, int segment, bool stop);
+  std::string name() const override;
+  std::optional<double> value(const TestedPoint& point) const override;
+  double zero_level(const TestedPoint&) const override { return 1e-9; }
+  SpecialPoint classify(const TestedPoint& point, bool rising) const override;
+
+ private:
+  const DefiningSystem& system_;
+  int segment_;
+  bool stop_;
+};
+
+/// h_x f / (|h_x| |f|) at the end of segment s (from 0), 0 when h_x or f vanishes.
+double transversality(const DefiningSystem& system, const Orbit& x, int s);
+
+/// "x1 = 1, x2 = 0, ..."
+std::string state_text(const HybridSystem& system, const double* x);
+
+}  // namespace tchat
