@@ -1,0 +1,17 @@
+/// Table (c): the same k-segment problem, step length, mesh and tolerances in AUTO-07p, IPS = 4.
+///
+/// Time per step is the difference of two run lengths of AUTO's program, in processor time, so that its start-up drops
+/// out; on our side it is the median of as many measurements, taken in turn with AUTO's. To show that both compute the
+/// same branch, our orbit is corrected at the alpha of AUTO's last solution and the states are compared.
+#pragma once
+
+#include <vector>
+
+namespace tchat::benchmark {
+
+/// False, after a message that says what to install, when AUTO-07p or gfortran is not there.
+bool auto_is_installed();
+
+void print_auto_comparison(const std::vector<int>& segments, bool quick);
+
+}  // namespace tchat::benchmark

@@ -1,0 +1,43 @@
+/// AUTO-07p of the Debian package, linked with one problem of ours and run as a program of its own in a temporary
+/// folder.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "benchmark/auto_problem.hpp"
+
+namespace tchat::benchmark {
+
+/// The folder of AUTO's object files, from AUTO_DIR or from the Debian package; empty when it is not installed.
+std::filesystem::path auto_objects();
+
+/// The last solution that AUTO stored.
+struct AutoSolution {
+  double alpha = 0.0;
+  std::vector<double> start;  ///< 4k states at tau = 0
+};
+
+struct AutoRun {
+  double processor_seconds = 0.0;
+  int iterations = 0;  ///< of Newton, in all steps; 0 unless details were asked for
+  AutoSolution last;
+};
+
+class AutoProgram {
+ public:
+  /// Writes the problem to a new folder and compiles it with gfortran. Throws std::runtime_error when that fails.
+  AutoProgram(int segments, int intervals);
+  ~AutoProgram();
+  AutoProgram(const AutoProgram&) = delete;
+  AutoProgram& operator=(const AutoProgram&) = delete;
+
+  /// Continuation to point number `points`. Throws std::runtime_error when AUTO fails or stops before.
+  AutoRun run(int points, bool details) const;
+
+ private:
+  std::filesystem::path folder_;
+  AutoSettings settings_;
+};
+
+}  // namespace tchat::benchmark

@@ -1,0 +1,58 @@
+#include "benchmark/impacting_orbit.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include "hybrid/linear_oscillator.hpp"
+
+namespace tchat::benchmark {
+
+namespace {
+
+/// The state at time t after the impact.
+Eigen::Vector4d state(const ImpactData& p, double t) {
+  const double detuning = 1.0 - p.omega * p.omega;
+  const double damping = 2.0 * p.zeta * p.omega;
+  const double amplitude = p.alpha / (detuning * detuning + damping * damping);
+  const double a = amplitude * detuning;
+  const double b = amplitude * damping;
+  const double natural = std::sqrt(1.0 - p.zeta * p.zeta);
+  const double c = 1.0 - (a * p.y2 + b * p.y1);
+  const double start_velocity = -p.restitution * p.velocity - p.omega * (b * p.y2 - a * p.y1);
+  const double d = (start_velocity + p.zeta * c) / natural;
+
+  const double sine = std::sin(p.omega * t);
+  const double cosine = std::cos(p.omega * t);
+  const double y1 = p.y1 * cosine + p.y2 * sine;
+  const double y2 = p.y2 * cosine - p.y1 * sine;
+  const double decay = std::exp(-p.zeta * t);
+  const double s = std::sin(natural * t);
+  const double k = std::cos(natural * t);
+  const double free = decay * (c * k + d * s);
+  const double free_velocity = decay * natural * (d * k - c * s) - p.zeta * free;
+  return {a * y2 + b * y1 + free, p.omega * (b * y2 - a * y1) + free_velocity, y1, y2};
+}
+
+}  // namespace
+
+HybridSystem oscillator() { return HybridSystem(*ProblemTable<LinearOscillator>::get("LinearOscillator")); }
+
+Signature impacting_signature(int segments) { return Signature(static_cast<std::size_t>(segments), {1, 1, 1}); }
+
+Orbit impacting_orbit(const OrbitShape& shape) {
+  const ImpactData data;
+  Orbit x;
+  x.shape = shape;
+  x.mesh = uniform_mesh(shape.intervals);
+  x.states.resize(shape.dimension, shape.columns());
+  x.par = ParameterVector::Zero(parameter_length);
+  x.par.head(4) << data.alpha, data.omega, data.zeta, data.restitution;
+  const double period = 2.0 * std::numbers::pi / data.omega;
+  for (int s = 0; s < shape.segments; ++s) {
+    x.duration(s) = period;
+    for (int k = 0; k < shape.nodes(); ++k) x.states.col(s * shape.nodes() + k) = state(data, period * x.tau(k));
+  }
+  return x;
+}
+
+}  // namespace tchat::benchmark

@@ -1,0 +1,209 @@
+#include "benchmark/matrix_times.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <functional>
+#include <random>
+#include <string>
+
+#include "benchmark/branch_walk.hpp"
+#include "benchmark/timing.hpp"
+#include "linear_algebra/block_kernel.hpp"
+#include "linear_algebra/partial_lu.hpp"
+
+namespace tchat::benchmark {
+
+namespace {
+
+constexpr int n = 4;
+constexpr int intervals = 50;
+constexpr int scalars = 2;  // duration and alpha
+constexpr int border = 1;
+
+std::vector<double> random_numbers(std::size_t count) {
+  std::mt19937 generator(1);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  std::vector<double> values(count);
+  for (double& v : values) v = uniform(generator);
+  return values;
+}
+
+/// Random blocks that an elimination kernel is let loose on, one after the other.
+class RandomBlocks {
+ public:
+  RandomBlocks(int blocks, int rows, int pivots, int width)
+      : blocks_(blocks),
+        size_((rows + border) * width),
+        pristine_(random_numbers(static_cast<std::size_t>(blocks * size_))),
+        work_(pristine_),
+        swaps_(static_cast<std::size_t>(pivots)) {}
+
+  void copy() {
+    run([](double*, int*) {});
+  }
+  template <class Eliminate>
+  void run(Eliminate&& eliminate) {
+    for (int b = 0; b < blocks_; ++b) {
+      double* block = work_.data() + b * size_;
+      std::copy_n(pristine_.data() + b * size_, size_, block);
+      eliminate(block, swaps_.data());
+      keep(*block);
+    }
+  }
+
+ private:
+  int blocks_;
+  int size_;
+  std::vector<double> pristine_;
+  std::vector<double> work_;
+  std::vector<int> swaps_;
+};
+
+/// A matrix with the pattern that is left for UMFPACK at m = 1: rows (segment | event | connection | border), columns
+/// (start | end | duration | alpha).
+class Remainder {
+ public:
+  Remainder() : lu_(make()), b_(random_numbers(size)), x_(size) { factorize(); }
+  void factorize() { lu_.factorize(values_); }
+  void solve() {
+    lu_.solve(b_.data(), x_.data());
+    keep(x_);
+  }
+
+ private:
+  static constexpr int size = 2 * n + scalars;
+  SparseLu make() {
+    std::vector<int> rows;
+    std::vector<int> columns;
+    const auto dense = [&](int row, int from, int to) {
+      for (int column = from; column < to; ++column) rows.push_back(row), columns.push_back(column);
+    };
+    for (int a = 0; a < n; ++a) dense(a, 0, size);
+    dense(n, n, 2 * n);
+    dense(n, 2 * n + 1, size);
+    for (int a = 0; a < n; ++a) {
+      dense(n + 1 + a, a, a + 1);
+      dense(n + 1 + a, n, 2 * n);
+      dense(n + 1 + a, 2 * n + 1, size);
+    }
+    dense(2 * n + 1, 0, size);
+    values_ = random_numbers(rows.size());
+    return {size, rows, columns};
+  }
+  std::vector<double> values_;
+  SparseLu lu_;
+  std::vector<double> b_;
+  std::vector<double> x_;
+};
+
+/// A part of the work: how to do it once, and its measured times.
+struct Part {
+  std::function<void()> work;
+  std::vector<double> times = {};
+};
+
+void print_line(const std::string& what, double units, double unit_seconds) {
+  fmt::print("  {:<66}{:>8.2f}{:>12.1f}\n", what, units, 1e6 * units * unit_seconds);
+}
+
+}  // namespace
+
+void print_matrix_times(int rounds) {
+  BranchWalk walk(walk_shape(1, intervals));
+  walk.step();
+  CondensedSystem& condensed = walk.follower().condensed();
+  const Orbit& x = walk.point().orbit;
+  const HybridSystem& system = walk.system().system();
+  const std::vector<OrbitVector> rows{walk.point().dual};
+  const std::vector<double> targets{0.0};
+  OrbitResidual residual = condensed.make_residual();
+  OrbitVector dx = condensed.make_vector();
+  FloquetSolver floquet(x.shape);
+  std::vector<double> f(n);
+  std::vector<double> fx(n * n);
+  std::vector<double> fp(n);
+
+  RandomBlocks interval_blocks(intervals, 16, 12, 24);
+  const BlockKernel chain = chain_kernel(n, scalars);
+  RandomBlocks chain_blocks(intervals - 1, chain.rows(), chain.pivots(), chain.width());
+  Remainder remainder;
+
+  const auto eliminate_interval = [](double* a, int* swaps) {
+    keep(eliminate(FixedSizes<16, 12, 24>{}, a, border, swaps));
+  };
+  const auto eliminate_chain = [&](double* a, int* swaps) { keep(chain.eliminate(a, border, swaps)); };
+  const auto derivatives = [&] {
+    for (int k = 0; k + 1 < x.shape.nodes(); ++k)
+      system.first(FunctionKind::field, 1, x.node(0, k), x.par.data(), walk.system().free_parameters(), f.data(),
+                   fx.data(), fp.data());
+  };
+
+  enum {
+    unit,
+    unit_copy,
+    linearization,
+    solution,
+    derivative,
+    chain_work,
+    chain_copy,
+    factors,
+    sparse_solve,
+    residuals,
+    multipliers,
+    part_count
+  };
+  std::vector<Part> parts(part_count);
+  parts[unit].work = [&] { interval_blocks.run(eliminate_interval); };
+  parts[unit_copy].work = [&] { interval_blocks.copy(); };
+  parts[linearization].work = [&] { keep(condensed.linearize(x, rows, residual)); };
+  parts[solution].work = [&] { condensed.solve(residual, targets, dx); };
+  parts[derivative].work = derivatives;
+  parts[chain_work].work = [&] { chain_blocks.run(eliminate_chain); };
+  parts[chain_copy].work = [&] { chain_blocks.copy(); };
+  parts[factors].work = [&] { remainder.factorize(); };
+  parts[sparse_solve].work = [&] { remainder.solve(); };
+  parts[residuals].work = [&] { condensed.evaluate(x, residual); };
+  parts[multipliers].work = [&] { keep(floquet.compute(condensed, x)); };
+  for (int round = 0; round < rounds; ++round)
+    for (Part& part : parts) part.times.push_back(seconds(part.work));
+
+  std::vector<double> units(parts[unit].times);
+  for (std::size_t i = 0; i < units.size(); ++i) units[i] -= parts[unit_copy].times[i];
+  const auto in_units = [&](const std::vector<int>& plus, int minus = -1) {
+    std::vector<double> ratios(units.size(), 0.0);
+    for (std::size_t i = 0; i < ratios.size(); ++i) {
+      for (const int p : plus) ratios[i] += parts[static_cast<std::size_t>(p)].times[i];
+      if (minus >= 0) ratios[i] -= parts[static_cast<std::size_t>(minus)].times[i];
+      ratios[i] /= units[i];
+    }
+    return median(ratios);
+  };
+  const double second = median(units);
+  const double linearize_units = in_units({linearization});
+  const double solve_units = in_units({solution});
+  const double derivative_units = in_units({derivative});
+  const double chain_units = in_units({chain_work}, chain_copy);
+  const double factor_units = in_units({factors});
+  const double sparse_units = in_units({sparse_solve});
+
+  fmt::print("(b) One Newton matrix: m = 1, n = 4, NTST = {}, NCOL = 4\n\n", intervals);
+  fmt::print("  {:<66}{:>8}{:>12}\n", "", "units", "time [us]");
+  print_line("unit: local eliminations on random blocks, copying taken off", 1.0, second);
+  print_line("one Newton matrix, evaluation to correction (at most 3)", in_units({linearization, solution}), second);
+  print_line("  linearize", linearize_units, second);
+  print_line("    derivatives of the field at the collocation points", derivative_units, second);
+  print_line("    local eliminations (1 by definition)", 1.0, second);
+  print_line("    chain of mesh nodes: its eliminations, on random blocks", chain_units, second);
+  print_line("    UMFPACK: factors of a matrix of the same pattern", factor_units, second);
+  print_line("    the rest: interpolation, filling, gathering",
+             linearize_units - derivative_units - 1.0 - chain_units - factor_units, second);
+  print_line("  solve", solve_units, second);
+  print_line("    UMFPACK: forward and back-substitution", sparse_units, second);
+  print_line("    the rest: forward sweep, back-substitution to all nodes", solve_units - sparse_units, second);
+  print_line("multipliers (at most 1)", in_units({multipliers}), second);
+  print_line("for comparison: residual without derivatives (a chord iteration)", in_units({residuals}), second);
+  fmt::print("\n");
+}
+
+}  // namespace tchat::benchmark

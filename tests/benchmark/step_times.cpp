@@ -1,0 +1,61 @@
+#include "benchmark/step_times.hpp"
+
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "benchmark/branch_walk.hpp"
+#include "benchmark/timing.hpp"
+
+namespace tchat::benchmark {
+
+namespace {
+
+/// One size under measurement.
+struct Candidate {
+  explicit Candidate(const OrbitShape& shape) : walk(std::make_unique<BranchWalk>(shape)) {}
+  void measure() {
+    const double step_time = processor_seconds([&] { walk->step(); });
+    const double multiplier_time = processor_seconds([&] { keep(walk->multipliers()); });
+    steps.push_back(step_time);
+    multipliers.push_back(multiplier_time);
+    both.push_back(step_time + multiplier_time);
+  }
+  std::unique_ptr<BranchWalk> walk;
+  std::vector<double> steps, multipliers, both;
+};
+
+/// Measures all sizes in turn, round by round, so that a slow moment of the machine meets all of them.
+void print_table(const char* what, const std::vector<int>& sizes, const std::vector<OrbitShape>& shapes, int rounds) {
+  std::vector<Candidate> candidates;
+  for (const OrbitShape& shape : shapes) candidates.emplace_back(shape);
+  for (int round = 0; round < rounds; ++round)
+    for (Candidate& candidate : candidates) candidate.measure();
+
+  fmt::print("{:>8}{:>14}{:>18}{:>12}{:>22}{:>18}\n", what, "step [us]", "multipliers [us]", "both [us]",
+             "Newton iterations", "Newton matrices");
+  std::vector<double> both;
+  for (std::size_t i = 0; i < sizes.size(); ++i) {
+    const Candidate& c = candidates[i];
+    both.push_back(median(c.both));
+    fmt::print("{:>8}{:>14.1f}{:>18.1f}{:>12.1f}{:>22.2f}{:>18.2f}\n", sizes[i], 1e6 * median(c.steps),
+               1e6 * median(c.multipliers), 1e6 * both.back(), c.walk->iterations_per_step(),
+               c.walk->matrices_per_step());
+  }
+  fmt::print("  time of step and multipliers grows like {}^{:.3f}   (wanted: at most 1.15)\n\n", what,
+             fitted_exponent(sizes, both));
+}
+
+}  // namespace
+
+void print_step_times(const StepSizes& sizes) {
+  fmt::print("(a) Time per continuation step with multipliers, medians\n\n");
+  std::vector<OrbitShape> shapes;
+  for (const int m : sizes.segments) shapes.push_back(walk_shape(m, sizes.intervals_for_segments));
+  print_table("m", sizes.segments, shapes, sizes.rounds);
+  shapes.clear();
+  for (const int intervals : sizes.intervals) shapes.push_back(walk_shape(1, intervals));
+  print_table("NTST", sizes.intervals, shapes, sizes.rounds);
+}
+
+}  // namespace tchat::benchmark
