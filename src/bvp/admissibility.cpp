@@ -21,22 +21,22 @@ Vector event_gradient(const HybridSystem& system, int event, const double* x, co
   return gradient;
 }
 
-/// Does the jump from segment `before` land on the surface h_event = 0 by structure?
-bool start_is_pinned(const HybridSystem& system, const IndexVector& before, int event, const double* end_before,
-                     const double* start, const double* par) {
-  const double h = system.event(event, start, par);
-  if (std::abs(h) > structural_tolerance) return false;
+}  // namespace
+
+bool is_pinned_start(const HybridSystem& system, const Signature& signature, const Orbit& x, int s, int event) {
+  const int before = (s + x.shape.segments - 1) % x.shape.segments;
+  const IndexVector& v = signature[static_cast<std::size_t>(before)];
+  const double* par = x.par.data();
+  if (std::abs(system.event(event, x.start(s), par)) > structural_tolerance) return false;
   const int n = system.dimension();
   Vector g(n);
   Eigen::MatrixXd gx(n, n);
-  system.first(FunctionKind::jump, before.jump, end_before, par, {}, g.data(), gx.data(), nullptr);
-  const Vector composed = gx.transpose() * event_gradient(system, event, start, par);
-  const Vector terminal = event_gradient(system, before.event, end_before, par);
+  system.first(FunctionKind::jump, v.jump, x.end(before), par, {}, g.data(), gx.data(), nullptr);
+  const Vector composed = gx.transpose() * event_gradient(system, event, x.start(s), par);
+  const Vector terminal = event_gradient(system, v.event, x.end(before), par);
   const double sizes = composed.norm() * terminal.norm();
   return sizes > 0.0 && std::abs(std::abs(composed.dot(terminal)) / sizes - 1.0) < structural_tolerance;
 }
-
-}  // namespace
 
 std::vector<Violation> inadmissibilities(const HybridSystem& system, const Signature& signature,
                                          const std::vector<std::vector<int>>& monitored, const Orbit& x) {
@@ -47,16 +47,12 @@ std::vector<Violation> inadmissibilities(const HybridSystem& system, const Signa
   for (int s = 0; s < m; ++s) {
     const auto index = static_cast<std::size_t>(s);
     const IndexVector& v = signature[index];
-    const int before = (s + m - 1) % m;
     if (x.duration(s) < -tolerance * (1.0 + std::abs(x.period())))
       result.push_back({Violation::negative_duration, s + 1, 0, 0.0, x.duration(s)});
 
     for (const int event : monitored[index]) {
       Violation worst{Violation::event_crossed, s + 1, event, 0.0, 0.0};
-      const int first =
-          start_is_pinned(system, signature[static_cast<std::size_t>(before)], event, x.end(before), x.start(s), par)
-              ? 1
-              : 0;
+      const int first = is_pinned_start(system, signature, x, s, event) ? 1 : 0;
       for (int k = first; k <= (event == v.event ? last - 1 : last); ++k) {
         const double h = system.event(event, x.node(s, k), par);
         if (h < worst.value) worst.value = h, worst.tau = x.tau(k);

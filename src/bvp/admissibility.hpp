@@ -27,6 +27,10 @@ struct Violation {
 std::vector<Violation> inadmissibilities(const HybridSystem& system, const Signature& signature,
                                          const std::vector<std::vector<int>>& monitored, const Orbit& x);
 
+/// Is the start of segment s (from 0) pinned for an event function: does the jump before it land on the surface h = 0
+/// by structure (h = 0 there, gradient of h o g parallel to that of the previous terminal event)?
+bool is_pinned_start(const HybridSystem& system, const Signature& signature, const Orbit& x, int s, int event);
+
 /// "segment 1: h1 (wall) = -0.02 at tau = 0.31"
 std::string describe(const Violation& violation, const HybridSystem& system);
 

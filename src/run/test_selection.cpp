@@ -1,9 +1,11 @@
 #include "run/test_selection.hpp"
 
+#include <algorithm>
 #include <cstdlib>
 
 #include "run/problem_setup.hpp"
 #include "special_points/bifurcation_tests.hpp"
+#include "special_points/contact_test.hpp"
 #include "special_points/user_value_test.hpp"
 
 namespace tchat {
@@ -37,11 +39,21 @@ void add_impact_velocities(Tests& tests, const DefiningSystem& system, const Run
       tests.push_back(std::make_unique<ImpactVelocityTest>(system, s, settings.stop_at_grazing));
 }
 
+/// GCIPSI counts through the monitored events of all segments in order.
+void add_contacts(Tests& tests, const DefiningSystem& system, const RunSettings& settings) {
+  int k = 0;
+  for (int s = 0; s < system.segments(); ++s)
+    for (const int event : settings.segments[static_cast<std::size_t>(s)].monitor)
+      if (const auto& chosen = settings.test_functions; std::find(chosen.begin(), chosen.end(), ++k) != chosen.end())
+        tests.push_back(std::make_unique<ContactTest>(system, s, event, settings.stop_at_grazing));
+}
+
 }  // namespace
 
 std::vector<std::unique_ptr<TestFunction>> select_tests(const DefiningSystem& system, const RunSettings& settings) {
   Tests tests;
   add_user_values(tests, system.system(), settings);
+  add_contacts(tests, system, settings);
   add_impact_velocities(tests, system, settings);
   add_bifurcations(tests, system, settings);
   return tests;

@@ -1,0 +1,185 @@
+#include "special_points/contact_test.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <boost/math/tools/toms748_solve.hpp>
+#include <boost/numeric/odeint.hpp>
+#include <cmath>
+
+#include "bvp/admissibility.hpp"
+#include "special_points/bifurcation_tests.hpp"
+
+namespace tchat {
+
+namespace {
+
+using Vector = Eigen::VectorXd;
+
+/// One event function along one segment's collocation polynomials.
+class EventAlongSegment {
+ public:
+  EventAlongSegment(const DefiningSystem& system, const CollocationRule& rule, const Orbit& x, int s, int event)
+      : defining_(system), rule_(rule), x_(x), s_(s), event_(event) {}
+
+  double length(int j) const { return x_.mesh[static_cast<std::size_t>(j + 1)] - x_.mesh[static_cast<std::size_t>(j)]; }
+
+  /// d h / d tau at sigma in [0, 1] of interval j, from the polynomial.
+  double slope(int j, double sigma) const {
+    const int c = x_.shape.collocation;
+    Vector values(c + 1);
+    Vector slopes(c + 1);
+    rule_.basis(sigma, values.data(), slopes.data());
+    const auto nodes = x_.states.middleCols(s_ * x_.shape.nodes() + j * c, c + 1);
+    const Vector u = nodes * values;
+    return gradient(u).dot(nodes * slopes) / length(j);
+  }
+
+  Contact at_node(int k) const {
+    const double* u = x_.node(s_, k);
+    return {x_.tau(k), system().event(event_, u, par()), Eigen::Map<const Vector>(u, x_.shape.dimension)};
+  }
+
+  /// The minimum near sigma of interval j, by the flow from the interval's left mesh point; the small rest of h_x f
+  /// there is removed by one Newton step on the time.
+  Contact polished(int j, double sigma) const {
+    const double time = sigma * length(j) * x_.duration(s_);
+    Vector u = flow(x_.node(s_, j * x_.shape.collocation), time);
+    const int n = x_.shape.dimension;
+    const int field = defining_.signature()[static_cast<std::size_t>(s_)].field;
+    Vector f(n);
+    Eigen::MatrixXd fx(n, n);
+    system().first(FunctionKind::field, field, u.data(), par(), {}, f.data(), fx.data(), nullptr);
+    double rate = 0.0;  // h_x f
+    Vector curvature(n);
+    system().second(FunctionKind::event, event_, u.data(), par(), {}, f.data(), &rate, curvature.data(), nullptr);
+    const double rate_slope = curvature.dot(f) + gradient(u).dot(fx * f);  // of h_x f along the flow
+    const double correction = rate_slope > 0.0 ? -rate / rate_slope : 0.0;
+    const double value = system().event(event_, u.data(), par()) + 0.5 * rate * correction;
+    u += correction * f;
+    const double tau = x_.mesh[static_cast<std::size_t>(j)] + sigma * length(j) + correction / x_.duration(s_);
+    return {std::clamp(tau, 0.0, 1.0), value, u};
+  }
+
+ private:
+  const HybridSystem& system() const { return defining_.system(); }
+  const double* par() const { return x_.par.data(); }
+
+  Vector gradient(const Vector& u) const {
+    Vector result(u.size());
+    double h = 0.0;
+    system().first(FunctionKind::event, event_, u.data(), par(), {}, &h, result.data(), nullptr);
+    return result;
+  }
+
+  Vector flow(const double* from, double time) const {
+    namespace odeint = boost::numeric::odeint;
+    using State = std::vector<double>;
+    State u(from, from + x_.shape.dimension);
+    const int field = defining_.signature()[static_cast<std::size_t>(s_)].field;
+    const auto rhs = [&](const State& y, State& dydt, double) {
+      system().value(FunctionKind::field, field, y.data(), par(), dydt.data());
+    };
+    if (time > 0.0)
+      odeint::integrate_adaptive(odeint::make_controlled<odeint::runge_kutta_fehlberg78<State>>(1e-14, 1e-13), rhs, u,
+                                 0.0, time, time);
+    return Eigen::Map<const Vector>(u.data(), x_.shape.dimension);
+  }
+
+  const DefiningSystem& defining_;
+  const CollocationRule& rule_;
+  const Orbit& x_;
+  int s_;
+  int event_;
+};
+
+/// A place where h turns from falling to rising: inside interval j at sigma.
+struct Minimum {
+  int interval;
+  double sigma;
+};
+
+/// All interior minima in order. `rises_before` and `falls_after` tell for the first and the last one whether h rises
+/// anywhere before, falls anywhere after it: if not, the minimum hangs on the segment's end.
+struct Minima {
+  std::vector<Minimum> list;
+  bool first_hangs_on_start = false;
+  bool last_hangs_on_end = false;
+};
+
+Minima find_minima(const EventAlongSegment& along, int intervals, int c) {
+  Minima result;
+  bool risen = false;
+  double before = 0.0;
+  for (int j = 0; j < intervals; ++j) {
+    for (int i = 0; i <= c; ++i) {
+      const double sigma = static_cast<double>(i) / c;
+      const double slope = along.slope(j, sigma);
+      const bool turns = before < 0.0 && slope >= 0.0;
+      if (turns) {
+        if (result.list.empty()) result.first_hangs_on_start = !risen;
+        double at = sigma;
+        if (i > 0 && slope > 0.0) {
+          std::uintmax_t iterations = 50;
+          const auto bracket = boost::math::tools::toms748_solve(
+              [&](double t) { return along.slope(j, t); }, static_cast<double>(i - 1) / c, sigma, before, slope,
+              boost::math::tools::eps_tolerance<double>(40), iterations);
+          at = 0.5 * (bracket.first + bracket.second);
+        }
+        result.list.push_back({j, at});
+        result.last_hangs_on_end = true;
+      }
+      if (slope < 0.0) result.last_hangs_on_end = false;
+      risen = risen || slope > 0.0;
+      before = slope;
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+std::optional<Contact> least_value(const DefiningSystem& system, const CollocationRule& rule, const Orbit& x, int s,
+                                   int event) {
+  const EventAlongSegment along(system, rule, x, s, event);
+  const bool start_pinned = is_pinned_start(system.system(), system.signature(), x, s, event);
+  const bool end_pinned = system.signature()[static_cast<std::size_t>(s)].event == event;
+  std::optional<Contact> least;
+  const auto offer = [&](const Contact& candidate) {
+    if (!least || candidate.value < least->value) least = candidate;
+  };
+  if (!start_pinned) offer(along.at_node(0));
+  if (!end_pinned) offer(along.at_node(x.shape.nodes() - 1));
+  if (!(x.duration(s) > 0.0)) return least;
+  const Minima minima = find_minima(along, x.shape.intervals, x.shape.collocation);
+  for (std::size_t i = 0; i < minima.list.size(); ++i) {
+    if (i == 0 && start_pinned && minima.first_hangs_on_start) continue;
+    if (i + 1 == minima.list.size() && end_pinned && minima.last_hangs_on_end) continue;
+    offer(along.polished(minima.list[i].interval, minima.list[i].sigma));
+  }
+  return least;
+}
+
+ContactTest::ContactTest(const DefiningSystem& system, int segment, int event, bool stop)
+    : system_(system), segment_(segment), event_(event), stop_(stop) {}
+
+std::string ContactTest::name() const { return fmt::format("least h{} on segment {}", event_, segment_ + 1); }
+
+std::optional<double> ContactTest::value(const TestedPoint& point) const {
+  const auto contact = least_value(system_, point.condensed.rule(), point.orbit, segment_, event_);
+  if (!contact) return std::nullopt;
+  return contact->value;
+}
+
+SpecialPoint ContactTest::classify(const TestedPoint& point, bool rising) const {
+  const Contact contact =
+      least_value(system_, point.condensed.rule(), point.orbit, segment_, event_).value_or(Contact{});
+  return {PointType::user,
+          {UserPointKind::contact, segment_ + 1, event_, contact.tau},
+          stop_ && !rising,
+          fmt::format("grazing: contact with event {} ({}) inside segment {}, tau = {:.10g}, {}", event_,
+                      system_.system().function_name(FunctionKind::event, event_), segment_ + 1, contact.tau,
+                      state_text(system_.system(), contact.state.data()))};
+}
+
+}  // namespace tchat
