@@ -1,0 +1,65 @@
+// The command line itself.
+#include "end_to_end/bad_input.hpp"
+
+using namespace test_support;
+
+TEST_CASE("commands and options that do not exist or lack something") {
+  const Workspace workspace;
+  for (const char* arguments :
+       {"", "nosuch", "run", "run linosc --nosuch", "run linosc -c", "run linosc -x 3", "labels", "orbit",
+        "orbit q.branch", "check", "dat", "labels q.a q.b q.c", "orbit q.branch 1 --dimension -3",
+        "orbit q.branch 1 --dimension x", "check linosc --random -5"}) {
+    INFO("tchat " << arguments);
+    const Outcome outcome = workspace.tchat(arguments);
+    check_refused(outcome, {"--help"});
+  }
+}
+
+TEST_CASE("--help and --version") {
+  const Workspace workspace;
+  for (const char* arguments :
+       {"--help", "run --help", "labels --help", "orbit --help", "check --help", "dat --help"}) {
+    const Outcome outcome = workspace.tchat(arguments);
+    CHECK(outcome.status == 0);
+    CHECK(outcome.err.empty());
+    CHECK(contains(outcome.out, "tchat"));
+  }
+  const Outcome version = workspace.tchat("--version");
+  CHECK(version.status == 0);
+  CHECK(version.out.compare(0, 6, "tchat ") == 0);
+}
+
+TEST_CASE("files that are missing or of another kind are named") {
+  const Workspace workspace;
+  workspace.run("-c impacting -d impacting -o branch NMX=2 NTST=10");
+  struct BadName {
+    std::string arguments;
+    std::vector<std::string> expected;
+  };
+  for (const BadName& bad : {
+           BadName{"run nosuch -c impacting -d impacting", {"nosuch.cpp", "nosuch.so"}},
+           BadName{"run linosc -c impacting -d nosuch", {"nosuch.dat", "-d"}},
+           BadName{"run linosc -c impacting -s nosuch IRS=1", {"q.nosuch", "-s"}},
+           BadName{"run linosc -c impacting -d impacting -p nosuch", {"nosuch.cpp"}},
+           BadName{"run linosc -c impacting -d .", {"."}},
+           BadName{"run linosc -c . -d impacting", {"gc."}},
+           BadName{"run linosc -c impacting", {"linosc.dat", "-d"}},
+           BadName{"run linosc -d impacting", {"gc.linosc", "-c"}},
+           BadName{"run linosc -c impacting -d impacting -o nowhere/x", {"nowhere", "-o"}},
+           BadName{"run linosc -c impacting -d impacting -o x/", {"-o"}},
+           BadName{"labels q.nosuch", {"q.nosuch"}},
+           BadName{"labels .", {"directory"}},
+           BadName{"labels impacting.dat", {"impacting.dat:1"}},
+           BadName{"orbit q.branch 99", {"q.branch", "99", "1 (EP)"}},
+           BadName{"orbit q.branch PD1", {"q.branch", "PD1", "1 (EP)"}},
+           BadName{"orbit q.branch first", {"'first'", "PD1"}},
+           BadName{"check nosuch", {"nosuch.cpp"}},
+           BadName{"check linosc --state 1,2", {"4"}},
+           BadName{"check linosc --state 1,2,x,4", {"'x'", "number"}},
+           BadName{"check linosc PAR(nosuch)=2", {"nosuch", "alpha"}},
+           BadName{"dat linosc -c impacting -d nosuch", {"nosuch.dat"}},
+       }) {
+    INFO("tchat " << bad.arguments);
+    check_refused(workspace.tchat(bad.arguments), bad.expected);
+  }
+}

@@ -1,0 +1,136 @@
+// Runs that are stopped from outside: what they leave can be read, and what was there before is not lost.
+#include <signal.h>
+
+#include <catch2/catch.hpp>
+#include <thread>
+
+#include "end_to_end/workspace.hpp"
+
+using namespace test_support;
+
+namespace {
+
+// A branch that takes far longer than any test waits.
+const std::string endless =
+    "run linosc -c impacting -d impacting -o branch NMX=1000000 DS=1e-6 DSMAX=1e-6 NPR=3 NTST=100 UZR={}";
+
+void wait_for_points(const Workspace& workspace, Process& process, std::size_t bytes) {
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+  while (!workspace.has("q.branch") || workspace.read("q.branch").size() < bytes) {
+    REQUIRE_FALSE(process.ended());
+    REQUIRE(std::chrono::steady_clock::now() < deadline);
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+}
+
+constexpr std::size_t some_solutions = 400'000;
+
+/// The part of a file that a strict reader takes: without what follows the last complete solution.
+std::vector<SolutionEntry> complete_solutions(const Workspace& workspace, const std::string& name) {
+  const Outcome labels = workspace.tchat("labels q." + name);
+  INFO(labels.text());
+  REQUIRE(labels.status == 0);
+  return read_solutions(workspace.read("q." + name));
+}
+
+bool is_complete(const std::string& diagnostics) {
+  return diagnostics.size() > 11 && diagnostics.compare(diagnostics.size() - 11, 11, "end of run\n") == 0;
+}
+
+}  // namespace
+
+TEST_CASE("Ctrl-C and SIGTERM end the branch with EP and complete files") {
+  struct Stop {
+    int signal, status;
+  };
+  for (const Stop& stop : {Stop{SIGINT, 130}, Stop{SIGTERM, 143}}) {
+    const Workspace workspace;
+    const auto process = workspace.start_tchat(endless);
+    wait_for_points(workspace, *process, some_solutions);
+    process->send(stop.signal);
+    const Outcome outcome = process->wait(std::chrono::seconds(30));
+    CHECK_FALSE(outcome.timed_out);
+    CHECK(outcome.signal == 0);
+    CHECK(outcome.status == stop.status);
+    CHECK(outcome.out.find("interrupted") != std::string::npos);
+    const auto sections = workspace.points("branch");
+    const auto solutions = workspace.solutions("branch");
+    CHECK(sections.front().rows.back().type == 9);
+    CHECK(solutions.back().type == 9);
+    CHECK(labels_of(sections) == labels_of(solutions));
+    CHECK(is_complete(workspace.read("d.branch")));
+    workspace.run("-c impacting -s branch -o on NMX=3 NTST=100 IRS=" + std::to_string(solutions.back().label));
+  }
+}
+
+TEST_CASE("--both stops in both directions at once") {
+  const Workspace workspace;
+  const auto process = workspace.start_tchat(endless + " --both");
+  wait_for_points(workspace, *process, some_solutions);
+  process->send(SIGINT);
+  CHECK(process->wait(std::chrono::seconds(30)).status == 130);
+  CHECK(workspace.points("branch").size() == 1);
+}
+
+TEST_CASE("after SIGKILL the files load, an incomplete set never replaces a complete one") {
+  const Workspace workspace;
+  workspace.run("-c impacting -d impacting -o branch NMX=5");
+  const std::string complete = workspace.read("q.branch");
+  for (int attempt = 0; attempt < 2; ++attempt) {
+    const auto process = workspace.start_tchat(endless);
+    wait_for_points(workspace, *process, some_solutions);
+    process->send(SIGKILL);
+    CHECK(process->wait(std::chrono::seconds(30)).signal == SIGKILL);
+    CHECK_FALSE(is_complete(workspace.read("d.branch")));
+    const auto solutions = complete_solutions(workspace, "branch");
+    CHECK(solutions.size() > 3);
+    // The p-file is complete up to its last line, and behind the q-file by at most one point.
+    const auto labels = labels_of(workspace.points("branch"));
+    CHECK(labels.size() + 1 >= solutions.size());
+    CHECK(workspace.read("q.branch~") == complete);
+  }
+  workspace.run("-c impacting -s branch -o on NMX=3 NTST=100 IRS=2");
+  workspace.run("-c impacting -d impacting -o branch NMX=4");
+  CHECK(workspace.read("q.branch~") == complete);
+  workspace.run("-c impacting -d impacting -o branch NMX=3");
+  CHECK(workspace.read("q.branch~") != complete);
+}
+
+TEST_CASE("a q-file cut anywhere in its last solution gives a warning and the solutions before") {
+  const Workspace workspace;
+  workspace.run("-c impacting -d impacting -o branch NMX=9 NPR=4 NTST=10");
+  const std::string whole = workspace.read("q.branch");
+  const auto solutions = workspace.solutions("branch");
+  REQUIRE(solutions.size() >= 3);
+  for (const std::size_t lost : {1u, 2u, 40u, 500u, 3000u}) {
+    INFO(lost << " bytes lost");
+    workspace.write("q.cut", whole.substr(0, whole.size() - lost));
+    const Outcome outcome = workspace.tchat("labels q.cut");
+    CHECK(outcome.status == 0);
+    const Outcome run = workspace.tchat("run linosc -c impacting -s cut -o on NTST=10 NMX=2 IRS=2");
+    CHECK(run.status == 0);
+    if (lost > 1) CHECK(outcome.err.find("q.cut") != std::string::npos);
+    if (lost > 1) CHECK(run.err.find("warning") != std::string::npos);
+  }
+}
+
+TEST_CASE("appending to an incomplete set mends it first") {
+  const Workspace workspace;
+  workspace.run("-c impacting -d impacting -o branch NMX=9 NPR=4 NTST=10");
+  for (const char* name : {"p.branch", "q.branch", "d.branch"}) {
+    const std::string text = workspace.read(name);
+    workspace.write(name, text.substr(0, text.size() - 30));
+  }
+  workspace.run("-c impacting -d impacting -o branch --append NMX=9 NPR=4 NTST=10");
+  const auto sections = workspace.points("branch");
+  CHECK(sections.size() == 2);
+  const auto labels = labels_of(workspace.solutions("branch"));
+  for (std::size_t k = 1; k < labels.size(); ++k) CHECK(labels[k] > labels[k - 1]);
+}
+
+TEST_CASE("a folder that cannot be written is refused before anything is computed") {
+  const Workspace workspace;
+  const Outcome missing = workspace.tchat("run linosc -c impacting -d impacting -o nowhere/branch");
+  CHECK(missing.status == 2);
+  CHECK(missing.err.find("nowhere/p.branch") != std::string::npos);
+}

@@ -1,0 +1,72 @@
+// A plugin's source is compiled when it is needed, once, also when two runs need it at the same time.
+#include <catch2/catch.hpp>
+#include <filesystem>
+
+#include "end_to_end/workspace.hpp"
+
+using namespace test_support;
+namespace fs = std::filesystem;
+
+namespace {
+
+const std::string quick = "-c impacting -d impacting NTST=20 NMX=3 ";
+
+/// Moves a file's time: a source saved after its library was made.
+void age(const Workspace& workspace, const std::string& name, std::chrono::seconds by) {
+  fs::last_write_time(workspace.file(name), fs::last_write_time(workspace.file(name)) + by);
+}
+
+}  // namespace
+
+TEST_CASE("a plugin is compiled at the first run and not again until its source changes") {
+  const Workspace workspace(Workspace::Plugin::source);
+  CHECK_FALSE(workspace.has("linosc.so"));
+  workspace.run(quick + "-o one");
+  REQUIRE(workspace.has("linosc.so"));
+  const auto made = fs::last_write_time(workspace.file("linosc.so"));
+  workspace.run(quick + "-o two");
+  CHECK(fs::last_write_time(workspace.file("linosc.so")) == made);
+  CHECK(workspace.read("p.one") == workspace.read("p.two"));
+
+  workspace.edit("linosc.cpp", "{3.0, 2.0, 0.05, 0.8}", "{3.0, 2.0, 0.05, 0.7}");
+  age(workspace, "linosc.cpp", std::chrono::seconds(2));
+  workspace.run("-c nonimpacting_alpha -d nonimpacting NMX=1 -o three");
+  CHECK(fs::last_write_time(workspace.file("linosc.so")) != made);
+}
+
+TEST_CASE("two runs that need the same plugin at once") {
+  const Workspace workspace(Workspace::Plugin::source);
+  const auto one = workspace.start_tchat("run linosc -o one " + quick);
+  const auto two = workspace.start_tchat("run linosc -o two " + quick);
+  const Outcome first = one->wait(std::chrono::seconds(120));
+  const Outcome second = two->wait(std::chrono::seconds(120));
+  INFO(first.text() << second.text());
+  CHECK(first.status == 0);
+  CHECK(second.status == 0);
+  CHECK(workspace.read("p.one") == workspace.read("p.two"));
+  // Nothing is left over but the library.
+  for (const auto& entry : fs::directory_iterator(workspace.file(""))) {
+    const std::string name = entry.path().filename().string();
+    INFO(name);
+    CHECK((name[0] != '.' || name == ".linosc.so.lock"));
+  }
+}
+
+TEST_CASE("-p names a source or a library") {
+  const Workspace workspace(Workspace::Plugin::source);
+  fs::rename(workspace.file("linosc.cpp"), workspace.file("other.cpp"));
+  CHECK(workspace.tchat("run linosc " + quick).status == 2);
+  workspace.run("-p other.cpp -o one " + quick);
+  workspace.run("-p other.so -o two " + quick);
+  workspace.run("-p ./other -o three " + quick);
+  CHECK(workspace.read("p.one") == workspace.read("p.three"));
+  const Outcome check = workspace.tchat("check linosc -p other");
+  CHECK(check.status == 0);
+}
+
+TEST_CASE("tchat check passes the oscillator and finds a wrong derivative") {
+  const Workspace workspace(Workspace::Plugin::source);
+  const Outcome fine = workspace.tchat("check linosc PAR(omega)=2.5 --state 0.3,-0.5,0.6,0.8");
+  INFO(fine.text());
+  CHECK(fine.status == 0);
+}

@@ -1,0 +1,234 @@
+// From a label of a q-file: the same point again, other meshes, other parameters, direction, the older file form.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <sstream>
+
+#include "end_to_end/closed_forms.hpp"
+#include "end_to_end/workspace.hpp"
+
+using namespace test_support;
+
+namespace {
+
+constexpr double zeta = 0.05;
+constexpr double restitution = 0.8;
+
+/// Number of Newton iterations that the d-file tells of the first point.
+int first_iterations(const Workspace& workspace, const std::string& name) {
+  const std::string text = workspace.read("d." + name);
+  const auto at = text.find("Iterations   :");
+  REQUIRE(at != std::string::npos);
+  return std::stoi(text.substr(at + 14));
+}
+
+/// Largest difference of states on equal meshes, of time points and of parameters.
+double difference(const SolutionEntry& a, const SolutionEntry& b) {
+  REQUIRE(a.t.size() == b.t.size());
+  double largest = 0.0;
+  for (std::size_t k = 0; k < a.t.size(); ++k) {
+    largest = std::max(largest, std::abs(a.t[k] - b.t[k]));
+    for (std::size_t i = 0; i < a.states[k].size(); ++i)
+      largest = std::max(largest, std::abs(a.states[k][i] - b.states[k][i]) / (1.0 + std::abs(a.states[k][i])));
+  }
+  for (std::size_t k = 0; k < a.par.size(); ++k)
+    largest = std::max(largest, std::abs(a.par[k] - b.par[k]) / (1.0 + std::abs(a.par[k])));
+  return largest;
+}
+
+/// The first point of a run that makes no step.
+SolutionEntry restarted_point(const Workspace& workspace, const std::string& arguments) {
+  workspace.run(arguments + " NMX=1 -o again");
+  const auto solutions = workspace.solutions("again");
+  REQUIRE(solutions.size() == 1);
+  return solutions.front();
+}
+
+void check_every_label(const Workspace& workspace, const std::string& constants, const std::string& start) {
+  for (const SolutionEntry& stored : workspace.solutions(start)) {
+    INFO("label " << stored.label);
+    const SolutionEntry again =
+        restarted_point(workspace, "-c " + constants + " -s " + start + " IRS=" + std::to_string(stored.label));
+    CHECK(first_iterations(workspace, "again") <= 1);
+    CHECK(difference(stored, again) < 2e-10);  // the file has ten decimals
+    CHECK(again.label > stored.label);
+  }
+}
+
+double velocity(const SolutionEntry& solution) { return -solution.states.front()[1] / restitution; }
+
+/// The 12-integer form of AUTO's older generation, two exponent digits, no type of problem or dimension.
+std::string older_form(const SolutionEntry& entry) {
+  std::ostringstream out;
+  char buffer[64];
+  const auto real = [&](double value) {
+    std::snprintf(buffer, sizeof buffer, "%19.10E", value);
+    return std::string(buffer);
+  };
+  const auto lines = [&](const std::vector<double>& values) {
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      if (k % 7 == 0) out << (k > 0 ? "\n    " : "    ");
+      out << real(values[k]);
+    }
+    out << '\n';
+  };
+  const int states = static_cast<int>(entry.states.front().size());
+  const int points = static_cast<int>(entry.t.size());
+  const int free = static_cast<int>(entry.free_parameters.size());
+  const int rows = (states / 7 + 1) * points + (100 + 6) / 7 + 1 + 1 + (states + 6) / 7 * points;
+  for (const int value : {entry.branch, entry.point, entry.type, entry.label, free, 1}) {
+    std::snprintf(buffer, sizeof buffer, "%6d", value);
+    out << buffer;
+  }
+  std::snprintf(buffer, sizeof buffer, "%8d%6d%8d%5d%5d%5d\n", points, states + 1, rows, entry.intervals,
+                entry.collocation, 100);
+  out << buffer;
+  for (std::size_t k = 0; k < entry.t.size(); ++k) {
+    std::vector<double> record{entry.t[k]};
+    record.insert(record.end(), entry.states[k].begin(), entry.states[k].end());
+    lines(record);
+  }
+  for (const int k : entry.free_parameters) {
+    std::snprintf(buffer, sizeof buffer, "%5d", k);
+    out << buffer;
+  }
+  out << '\n';
+  lines(entry.parameter_direction);
+  for (const auto& record : entry.direction) lines(record);
+  lines(std::vector<double>(entry.par.begin(), entry.par.begin() + 100));
+  return out.str();
+}
+
+}  // namespace
+
+TEST_CASE("restart at every label of a branch: one Newton step at most, the same point") {
+  const Workspace workspace;
+  workspace.run("-c impacting -d impacting -o impacting --both GRSTOP=0");
+  check_every_label(workspace, "impacting", "impacting");
+  workspace.run("-c nonimpacting_omega -d nonimpacting -o smooth");
+  check_every_label(workspace, "nonimpacting_omega", "smooth");
+}
+
+TEST_CASE("restart of an orbit entered as two segments") {
+  const Workspace workspace;
+  workspace.run({"-c", "impacting", "-d", "impacting", "-o", "one", "NMX=3"});
+  // Twice the signature, from the same data twice.
+  std::istringstream rows(workspace.read("impacting.dat"));
+  std::string twice =
+      "# PAR(1) = 3.048525879392131\n# PAR(2) = 2.0072\n# PAR(61) = 3.1303234889689\n"
+      "# PAR(62) = 3.1303234889689\n";
+  for (std::string line; std::getline(rows, line);) {
+    const auto first = line.find_first_not_of(' ');
+    if (first == std::string::npos || line[first] == '#') continue;
+    const auto state = line.find(' ', first);
+    twice += line + line.substr(state) + "\n";
+  }
+  workspace.write("twice.dat", twice);
+  const std::vector<std::string> signature{"GCNOSEG=2",    "GCSEGTYP=[1,1]",      "GCFIND=[1,1]",  "GCHIND=[1,1]",
+                                           "GCGIND=[1,1]", "GCHGRZIND=[[1],[1]]", "ICP=[1,61,62]", "THL={61:0,62:0}"};
+  std::vector<std::string> words{"-c", "impacting", "-d", "twice", "-o", "two"};
+  words.insert(words.end(), signature.begin(), signature.end());
+  workspace.run(words);
+  for (const SolutionEntry& stored : workspace.solutions("two")) {
+    INFO("label " << stored.label);
+    REQUIRE(stored.states.front().size() == 8);
+    // Both segments are the one-impact orbit.
+    const ImpactingOrbit orbit(velocity(stored), 2.0072, zeta, restitution);
+    for (std::size_t k = 0; k < stored.t.size(); k += 4)
+      for (std::size_t i = 0; i < 8; ++i)
+        CHECK(std::abs(stored.states[k][i] - orbit.at(stored.t[k] * orbit.period())[i % 4]) < 1e-9);
+    std::vector<std::string> again{"-c", "impacting", "-s",    "two",
+                                   "-o", "again",     "NMX=1", "IRS=" + std::to_string(stored.label)};
+    again.insert(again.end(), signature.begin(), signature.end());
+    workspace.run(again);
+    CHECK(first_iterations(workspace, "again") <= 1);
+    CHECK(difference(stored, workspace.solutions("again").front()) < 2e-10);
+  }
+  // The constants that were used say the same.
+  workspace.run("-c r.two -s two -o again IRS=2 NMX=1");
+  CHECK(first_iterations(workspace, "again") <= 1);
+}
+
+TEST_CASE("restart on another mesh") {
+  const Workspace workspace;
+  workspace.run("-c impacting -d impacting -o impacting");
+  const SolutionEntry stored = with_label(workspace.solutions("impacting"), 3);
+  struct Mesh {
+    const char* constants;
+    int intervals, collocation;
+    double accuracy;  // of the coarser of the two meshes, which the orbits agree to
+  };
+  for (const Mesh& mesh : {Mesh{"NTST=80", 80, 4, 1e-9}, Mesh{"NCOL=3", 50, 3, 1e-8},
+                           Mesh{"NTST=80 NCOL=3", 80, 3, 1e-8}, Mesh{"NTST=20 NCOL=5", 20, 5, 1e-7}}) {
+    INFO(mesh.constants);
+    const SolutionEntry again =
+        restarted_point(workspace, std::string("-c impacting -s impacting IRS=3 ") + mesh.constants);
+    CHECK(again.intervals == mesh.intervals);
+    CHECK(again.collocation == mesh.collocation);
+    CHECK(again.parameter(1) == Approx(stored.parameter(1)).epsilon(1e-6));
+    const ImpactingOrbit orbit(velocity(again), 2.0072, zeta, restitution);
+    CHECK(std::abs(again.parameter(1) - orbit.alpha()) < mesh.accuracy);
+    for (std::size_t k = 0; k < again.t.size(); k += static_cast<std::size_t>(mesh.collocation))
+      for (std::size_t i = 0; i < 4; ++i)
+        CHECK(std::abs(again.states[k][i] - orbit.at(again.t[k] * orbit.period())[i]) < mesh.accuracy);
+    workspace.run(std::string("-c impacting -s impacting IRS=3 -o longer ") + mesh.constants);
+    CHECK(workspace.points("longer").front().rows.size() > 5);
+  }
+}
+
+TEST_CASE("restart with another value of a fixed parameter keeps ICP(1) at the first point") {
+  const Workspace workspace;
+  workspace.run("-c impacting -d impacting -o impacting");
+  const SolutionEntry stored = with_label(workspace.solutions("impacting"), 3);
+  for (const char* change : {"PAR(zeta)=0.06", "PAR(3)=0.06"}) {
+    const SolutionEntry again = restarted_point(workspace, std::string("-c impacting -s impacting IRS=3 ") + change);
+    CHECK(std::abs(again.parameter(1) - stored.parameter(1)) < 1e-10);
+    CHECK(again.parameter(3) == 0.06);
+    const ImpactingOrbit orbit(velocity(again), 2.0072, 0.06, restitution);
+    CHECK(again.parameter(1) == Approx(orbit.alpha()).epsilon(1e-9));
+  }
+}
+
+TEST_CASE("DS > 0 goes on in the stored direction, or where ICP(1) grows when the free parameter is another") {
+  const Workspace workspace;
+  workspace.run("-c impacting -d impacting -o back DS=-0.02 GRSTOP=0");
+  // The branch has turned: alpha rises again where the impact velocity is negative.
+  const auto solutions = workspace.solutions("back");
+  const SolutionEntry* turned = nullptr;
+  for (const SolutionEntry& solution : solutions)
+    if (velocity(solution) < -1.0 && turned == nullptr) turned = &solution;
+  REQUIRE(turned != nullptr);
+  REQUIRE(turned->parameter_direction.front() < 0.0);  // towards DS > 0, back to where the branch came from
+  const std::string restart = "-c impacting -s back -o on NMX=4 GRSTOP=0 IRS=" + std::to_string(turned->label);
+  workspace.run(restart + " DS=0.02");
+  auto rows = workspace.points("on").front().rows;
+  CHECK(rows[1].values.front() < rows[0].values.front());
+  workspace.run(restart + " DS=-0.02");
+  rows = workspace.points("on").front().rows;
+  CHECK(rows[1].values.front() > rows[0].values.front());
+
+  for (const char* label : {"EP1", "2", "EP2"}) {
+    workspace.run(std::string("-c impacting -s back -o other NMX=3 GRSTOP=0 RL0=1 DS=0.001 ICP=[2,61] IRS=") + label);
+    rows = workspace.points("other").front().rows;
+    CHECK(rows[1].values.front() > rows[0].values.front());
+    CHECK(workspace.points("other").front().names.front() == "omega");
+  }
+}
+
+TEST_CASE("restart from a q-file of the older generation") {
+  const Workspace workspace;
+  workspace.run("-c impacting -d impacting -o impacting");
+  const auto solutions = workspace.solutions("impacting");
+  std::string text;
+  for (const SolutionEntry& solution : solutions) text += older_form(solution);
+  workspace.write("q.old", text);
+  const Outcome table = workspace.tchat("labels q.old");
+  REQUIRE(table.status == 0);
+  for (const SolutionEntry& solution : solutions) {
+    INFO("label " << solution.label);
+    const SolutionEntry again = restarted_point(workspace, "-c impacting -s old IRS=" + std::to_string(solution.label));
+    CHECK(difference(solution, again) < 2e-10);
+    CHECK(first_iterations(workspace, "again") <= 1);
+  }
+  workspace.run("-c impacting -s old -o by_type IRS=UZ1 NMX=1");
+  CHECK(workspace.solutions("by_type").front().parameter(1) == Approx(3.2).epsilon(1e-9));
+}

@@ -1,0 +1,112 @@
+// What a run starts from: IRS, -d, -s and their defaults; what it may replace; where it ends.
+#include <catch2/catch.hpp>
+
+#include "end_to_end/workspace.hpp"
+
+using namespace test_support;
+
+namespace {
+
+bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+/// Short branches: few points, a coarse mesh.
+const std::string quick = " NTST=20 NMX=12 NPR=4 ";
+
+void check_refused(const Outcome& outcome, const std::vector<std::string>& parts) {
+  INFO(outcome.text());
+  CHECK(outcome.signal == 0);
+  CHECK(outcome.status == 2);
+  for (const std::string& part : parts) {
+    INFO("expected: " << part);
+    CHECK(contains(outcome.err, part));
+  }
+}
+
+}  // namespace
+
+TEST_CASE("IRS chooses a label by number or by type and count") {
+  const Workspace workspace;
+  workspace.run("-c impacting -d impacting -o branch NTST=20");
+  const auto solutions = workspace.solutions("branch");
+  const auto alpha_at = [&](const std::string& label) {
+    workspace.run("-c impacting -s branch -o chosen NTST=20 NMX=1 IRS=" + label);
+    return workspace.solutions("chosen").front().parameter(1);
+  };
+  CHECK(alpha_at("UZ1") == Approx(3.2).epsilon(1e-9));
+  CHECK(alpha_at("EP1") == Approx(solutions.front().parameter(1)).epsilon(1e-9));
+  CHECK(alpha_at("EP2") == Approx(solutions.back().parameter(1)).epsilon(1e-9));
+  CHECK(alpha_at("RG1") == Approx(with_label(solutions, 2).parameter(1)).epsilon(1e-9));
+  CHECK(alpha_at("2") == Approx(with_label(solutions, 2).parameter(1)).epsilon(1e-9));
+
+  for (const char* missing : {"77", "PD1", "UZ2", "EP3"}) {
+    INFO(missing);
+    const Outcome refused = workspace.tchat("run linosc -c impacting -s branch -o none IRS=" + std::string(missing));
+    check_refused(refused, {"q.branch", missing, "1 (EP)", "2 (RG)", "4 (UZ)"});
+    CHECK_FALSE(workspace.has("p.none"));
+  }
+}
+
+TEST_CASE("-d, -s and IRS that contradict each other") {
+  const Workspace workspace;
+  workspace.run("-c impacting -d impacting -o branch" + quick);
+  check_refused(workspace.tchat("run linosc -c impacting -d impacting -o none IRS=2"), {"IRS = 2", "label 1"});
+  check_refused(workspace.tchat("run linosc -c impacting -d impacting -o none IRS=UZ1"), {"UZ1", "label 1"});
+  check_refused(workspace.tchat("run linosc -c impacting -s branch -o none"), {"q.branch", "IRS", "1 (EP)", "2 (RG)"});
+  check_refused(workspace.tchat("run linosc -c impacting -s branch -d impacting -o none IRS=1"), {"-d", "-s"});
+  check_refused(workspace.tchat("run linosc -c impacting -o none IRS=3"), {"IRS = 3", "q.linosc"});
+  CHECK_FALSE(workspace.has("p.none"));
+  // As label 1 the data are a restart: the first point has no label, counting goes on from 1.
+  workspace.run("-c impacting -d impacting -o data IRS=1" + quick);
+  CHECK(workspace.points("data").front().rows.front().label == 0);
+  CHECK(labels_of(workspace.points("data")).front() == 2);
+}
+
+TEST_CASE("without -d and -s: q.NAME when IRS > 0 and it exists, else NAME.dat") {
+  const Workspace workspace;
+  workspace.write("linosc.dat", workspace.read("impacting.dat"));
+  workspace.write("gc.linosc", workspace.read("gc.impacting"));
+  workspace.run("NTST=20 IRS=1 NMX=1 -o from_data");
+  CHECK(workspace.solutions("from_data").front().parameter(1) == Approx(3.048525879).epsilon(1e-8));
+  workspace.run("NTST=20");
+  CHECK(labels_of(workspace.points("linosc")).front() == 1);
+  workspace.run("NTST=20 IRS=UZ1 NMX=1 -o from_label");
+  CHECK(workspace.solutions("from_label").front().parameter(1) == Approx(3.2).epsilon(1e-9));
+  workspace.run("NTST=20 IRS=0 NMX=1 -o from_data");
+  CHECK(workspace.solutions("from_data").front().parameter(1) == Approx(3.048525879).epsilon(1e-8));
+}
+
+TEST_CASE("the start file is replaced only where -o says so, and its predecessor is kept") {
+  const Workspace workspace;
+  workspace.write("linosc.dat", workspace.read("impacting.dat"));
+  workspace.write("gc.linosc", workspace.read("gc.impacting"));
+  workspace.run(quick);
+  const std::string before = workspace.read("q.linosc");
+  check_refused(workspace.tchat("run linosc IRS=2" + quick), {"q.linosc", "-o linosc"});
+  check_refused(workspace.tchat("run linosc -s linosc IRS=2" + quick), {"q.linosc", "-o linosc"});
+  CHECK(workspace.read("q.linosc") == before);
+  CHECK_FALSE(workspace.has("q.linosc~"));
+  workspace.run("-s linosc -o linosc IRS=2" + quick);
+  CHECK(workspace.read("q.linosc~") == before);
+  CHECK(workspace.solutions("linosc").front().label == labels_of(read_solutions(before)).back() + 1);
+}
+
+TEST_CASE("paths name constants, data and start files") {
+  const Workspace workspace;
+  workspace.run("-c ./gc.impacting -d ./impacting.dat -o branch" + quick);
+  workspace.run("-c gc.impacting -s ./q.branch -o again IRS=2" + quick);
+  workspace.run("-c ./impacting -s " + workspace.file("q.branch") + " -o absolute IRS=2" + quick);
+  CHECK(workspace.read("p.again") == workspace.read("p.absolute"));
+}
+
+TEST_CASE("r.O as constants of the next run") {
+  const Workspace workspace;
+  workspace.run({"-c", "impacting", "-d", "impacting", "-o", "one", "NTST=20", "NMX=9", "DS=0.03",
+                 "UZR={1:[3.06,3.07]}", "STOP=[UZ2]", "IPLT=2", "THU={3: 0.5}"});
+  workspace.run("-c r.one -d impacting -o two");
+  CHECK(workspace.read("p.one") == workspace.read("p.two"));
+  CHECK(workspace.read("q.one") == workspace.read("q.two"));
+  CHECK(workspace.read("r.one") == workspace.read("r.two"));
+  workspace.run("-c impacting -s one -o three IRS=UZ1 NTST=20 NMX=5");
+  workspace.run("-c r.three -s one -o four");
+  CHECK(workspace.read("p.three") == workspace.read("p.four"));
+}

@@ -1,0 +1,56 @@
+/// A fresh folder with the linear oscillator (plugin, constants, data), in which the executable is run.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "end_to_end/point_file_reader.hpp"
+#include "end_to_end/process.hpp"
+#include "end_to_end/solution_entry_reader.hpp"
+#include "start/temporary_folder.hpp"
+
+namespace test_support {
+
+class Workspace {
+ public:
+  enum class Plugin { compiled, source };
+  explicit Workspace(Plugin plugin = Plugin::compiled);
+
+  /// tchat with these arguments (separated by blanks: none of ours contains one, but see `words`), to its end.
+  Outcome tchat(const std::string& arguments) const;
+  Outcome tchat(const std::vector<std::string>& words) const;
+  std::unique_ptr<Process> start_tchat(const std::string& arguments) const;
+
+  /// tchat run linosc ...; fails the test unless the exit status is 0.
+  Outcome run(const std::string& arguments) const;
+  Outcome run(const std::vector<std::string>& words) const;
+
+  /// p.NAME, q.NAME read strictly: a file that breaks the format fails the test.
+  std::vector<PointSection> points(const std::string& name) const;
+  std::vector<SolutionEntry> solutions(const std::string& name) const;
+
+  std::string file(const std::string& name) const { return folder_.file(name); }
+  std::string read(const std::string& name) const { return folder_.read(name); }
+  bool has(const std::string& name) const { return folder_.has(name); }
+  void write(const std::string& name, const std::string& text) const { folder_.write(name, text); }
+  /// Replaces the one place where `old` stands in a file.
+  void edit(const std::string& name, const std::string& old, const std::string& text) const;
+
+ private:
+  TemporaryFolder folder_;
+  TemporaryFolder logs_;
+  mutable int runs_ = 0;
+};
+
+/// "a b  c" -> {"a", "b", "c"}
+std::vector<std::string> words_of(const std::string& text);
+
+/// All rows of all sections.
+std::vector<PointRow> rows_of(const std::vector<PointSection>& sections);
+std::vector<int> labels_of(const std::vector<PointSection>& sections);
+std::vector<int> labels_of(const std::vector<SolutionEntry>& entries);
+const SolutionEntry& with_label(const std::vector<SolutionEntry>& entries, int label);
+const PointRow& with_label(const std::vector<PointSection>& sections, int label);
+
+}  // namespace test_support
