@@ -4,6 +4,7 @@
 
 #include <CLI/Validators.hpp>
 #include <csignal>
+#include <exception>
 #include <iostream>
 #include <memory>
 
@@ -26,7 +27,14 @@ void remember_signal(int signal) {
 int do_run(const RunRequest& request) {
   std::signal(SIGINT, &remember_signal);
   std::signal(SIGTERM, &remember_signal);
-  const int status = run_problem(request, std::cout, std::cerr, [] { return caught_signal != 0; });
+  int status = 0;
+  try {
+    status = run_problem(request, std::cout, std::cerr, [] { return caught_signal != 0; });
+  } catch (const std::exception& error) {
+    if (caught_signal == 0) throw;
+    // The failure may be the signal's doing, such as that of a compiler that it ended too.
+    std::cerr << "tchat: interrupted: " << error.what() << '\n';
+  }
   if (caught_signal == 0) return status;
   return 128 + static_cast<int>(caught_signal);
 }

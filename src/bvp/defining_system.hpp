@@ -39,6 +39,9 @@ class DefiningSystem {
                                double* dp) const = 0;
   /// What condition r at the end of segment s says, for messages.
   virtual std::string end_condition_name(int s, int r) const = 0;
+  /// Gradient (n) of the section that ends segment s, on which its part of the return map is taken: that of the
+  /// terminal event, unless the problem type says otherwise.
+  virtual void section_gradient(int s, const double* x, const double* par, double* gradient) const;
 
  private:
   HybridSystem system_;

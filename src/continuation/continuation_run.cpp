@@ -58,9 +58,13 @@ bool ContinuationRun::take_step() {
   for (;;) {
     newton_ = follower_.step(here_, step_.value(), next_);
     ds_taken_ = step_.value();
-    if (newton_.converged()) return true;
-    if (!step_.failed()) return false;
-    sink_.note(number_ + 1, fmt::format("Retrying step ({}): ds = {:.4e}", describe(newton_.status), step_.value()));
+    const bool converged = newton_.converged();
+    if (converged && (step_.is_short() || search_.resolved(next_, ds_taken_))) return true;
+    if (!step_.failed()) return converged;
+    sink_.note(number_ + 1,
+               fmt::format("Retrying step ({}): ds = {:.4e}",
+                           converged ? "a test function may have changed sign twice" : describe(newton_.status),
+                           step_.value()));
   }
 }
 

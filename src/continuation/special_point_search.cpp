@@ -13,6 +13,30 @@ namespace {
 
 /// Functions that have fallen to this share of their change over the step vanish together with the one located.
 constexpr double together = 1e-5;
+/// An oscillating function is followed when it misses its extrapolation by no more than this share of its size.
+constexpr double unexpected = 0.3;
+constexpr std::size_t history_length = 12;
+
+/// Value at `at` of the parabola through the last point and two earlier ones at least `spacing` apart (the line when
+/// there is only one such point); nothing when there is none.
+struct Node {
+  double at;
+  double value;
+};
+std::optional<double> extrapolate(const std::vector<Node>& nodes, double at, double spacing) {
+  std::vector<Node> chosen;
+  for (auto node = nodes.rbegin(); node != nodes.rend() && chosen.size() < 3; ++node)
+    if (chosen.empty() || std::abs(node->at - chosen.back().at) >= spacing) chosen.push_back(*node);
+  if (chosen.size() < 2) return std::nullopt;
+  double result = 0.0;
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    double weight = 1.0;
+    for (std::size_t k = 0; k < chosen.size(); ++k)
+      if (k != i) weight *= (at - chosen[k].at) / (chosen[i].at - chosen[k].at);
+    result += weight * chosen[i].value;
+  }
+  return result;
+}
 
 }  // namespace
 
@@ -60,6 +84,34 @@ void SpecialPointSearch::begin(const PathPoint& start) {
   determinant_unit_.reset();
   evaluate(start);
   for (std::size_t i = 0; i < tests_.size(); ++i) signs_[i] = sign_of(data_, i);
+  history_.clear();
+  remember(0.0);
+}
+
+void SpecialPointSearch::remember(double ds) {
+  const double arclength = history_.empty() ? 0.0 : history_.back().arclength + std::abs(ds);
+  if (history_.size() == history_length) history_.erase(history_.begin());
+  history_.push_back({arclength, data_.values});
+}
+
+bool SpecialPointSearch::resolved(const PathPoint& next, double ds) {
+  const auto oscillates = [](const auto& test) { return test->oscillates(); };
+  if (std::none_of(tests_.begin(), tests_.end(), oscillates)) return true;
+  evaluate(next);
+  const double at = history_.back().arclength + std::abs(ds);
+  for (std::size_t i = 0; i < tests_.size(); ++i) {
+    if (!tests_[i]->oscillates() || !data_.values[i]) continue;
+    std::vector<Node> nodes;
+    double size = std::abs(*data_.values[i]);
+    for (const Past& past : history_) {
+      if (!past.values[i]) continue;
+      nodes.push_back({past.arclength, *past.values[i]});
+      size = std::max(size, std::abs(*past.values[i]));
+    }
+    const std::optional<double> expected = extrapolate(nodes, at, 0.2 * std::abs(ds));
+    if (expected && std::abs(*expected - *data_.values[i]) > unexpected * size) return false;
+  }
+  return true;
 }
 
 /// Test functions that had a sign at the start of the step and have another, or none, at its end.
@@ -104,6 +156,7 @@ std::optional<SpecialPoint> SpecialPointSearch::advance(const PathPoint& here, P
   for (std::size_t i = 0; i < tests_.size(); ++i)
     if (!first || i != first->test)
       if (const int sign = sign_of(data_, i); sign != 0) signs_[i] = sign;
+  remember(ds);
   return special;
 }
 
@@ -127,20 +180,27 @@ SpecialPointSearch::Zero SpecialPointSearch::locate(std::size_t test, const Path
   return {test, zero.ds, zero.converged};
 }
 
-/// What the zero is; functions that vanish with it are named in its description, and none of them is looked for again.
+/// What the zero is. Functions that vanish together make one special point, of the first one's type, and none of them
+/// is looked for again.
 SpecialPoint SpecialPointSearch::classify(const Zero& zero, const PathPoint& at, const PointData& end) {
-  const bool rising = signs_[zero.test] < 0;
-  SpecialPoint special = tests_[zero.test]->classify(tested(at), rising);
-  for (const std::size_t i : changed(end)) {
-    if (i == zero.test || !data_.values[i] || std::abs(*data_.values[i]) > together * std::abs(*end.values[i]))
-      continue;
-    const SpecialPoint other = tests_[i]->classify(tested(at), signs_[i] < 0);
-    special.description += "; " + other.description;
-    special.ends_branch = special.ends_branch || other.ends_branch;
+  std::vector<std::size_t> group;
+  for (const std::size_t i : changed(end))
+    if (i == zero.test || (data_.values[i] && std::abs(*data_.values[i]) <= together * std::abs(*end.values[i])))
+      group.push_back(i);
+  SpecialPoint special;
+  for (const std::size_t i : group) {
+    const SpecialPoint found = tests_[i]->classify(tested(at), signs_[i] < 0);
+    if (i == group.front()) {
+      special = found;
+    } else {
+      special.description += "; " + found.description;
+      special.ends_branch = special.ends_branch || found.ends_branch;
+    }
+  }
+  for (const std::size_t i : group) {
     signs_[i] = sign_of(end, i);
     data_.values[i] = 0.0;
   }
-  signs_[zero.test] = sign_of(end, zero.test);
   return special;
 }
 

@@ -42,6 +42,10 @@ class SpecialPointSearch {
   /// Evaluates at the start of a branch. Functions that vanish there take their sign from the next point.
   void begin(const PathPoint& start);
 
+  /// Are the oscillating test functions resolved by a converged step of length ds to `next`? False when one of them is
+  /// far from what its last values let expect: it may have changed sign twice, a shorter step will tell.
+  bool resolved(const PathPoint& next, double ds);
+
   /// `next` is a converged step of length ds from `here`, whose linearisation the follower holds. When test functions
   /// change sign on the way, `next`, `ds` and `newton` are moved to their first zero, and what it is is returned.
   /// Afterwards data() belongs to `next`, which becomes the new `here`.
@@ -61,6 +65,7 @@ class SpecialPointSearch {
   std::vector<std::size_t> changed(const PointData& end) const;
   Zero locate(std::size_t test, const PathPoint& here, PathPoint& trial, double ds, double end_value);
   SpecialPoint classify(const Zero& zero, const PathPoint& at, const PointData& end);
+  void remember(double ds);
 
   PathFollower& follower_;
   const DefiningSystem& system_;
@@ -69,7 +74,12 @@ class SpecialPointSearch {
   FloquetSolver floquet_;
   PointData data_;
   std::optional<double> determinant_unit_;  // log2 of its size at the start of the branch
-  std::vector<int> signs_;                  // of the test functions at the last accepted point; 0: none yet
+  struct Past {
+    double arclength;
+    std::vector<std::optional<double>> values;
+  };
+  std::vector<Past> history_;  // the last accepted points, for resolved()
+  std::vector<int> signs_;     // of the test functions at the last accepted point; 0: none yet
 };
 
 }  // namespace tchat

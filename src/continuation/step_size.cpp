@@ -11,6 +11,10 @@ double StepSize::smallest() const {
   return std::max(settings_.minimum, 1e-10 * std::max(std::abs(settings_.initial), settings_.maximum));
 }
 
+bool StepSize::is_short() const {
+  return settings_.adapt_every == 0 || std::abs(ds_) < 1e-2 * std::min(std::abs(settings_.initial), settings_.maximum);
+}
+
 void StepSize::converged(int iterations, int point) {
   if (settings_.adapt_every == 0 || point % settings_.adapt_every != 0) return;
   double factor = 1.0;

@@ -19,6 +19,8 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double consistency_factor = 1e-11;  // between two exact evaluations
+constexpr int guard = 16;                     // entries of room behind arguments and outputs
+constexpr double untouched = -7.25e77;        // what the room behind the outputs holds
 constexpr int many_variables = 16;            // from here on random directions instead of every variable
 
 /// Keeps the messages of one function: the worst entry, and the first fault of each sort.
@@ -32,8 +34,8 @@ class FunctionChecker {
   }
 
   FunctionCheck run() {
-    check_values();
-    check_bounds();
+    check_bounds();  // first: a function that writes too much would spoil memory in what follows
+    if (check_.faults.empty()) check_values();
     if (!check_.faults.empty()) return check_;
     if (system_.table().derivative_order >= 1)
       for (const TestPoint& at : evaluable_) check_first(at);
@@ -77,25 +79,33 @@ class FunctionChecker {
 
   /// Writing behind the outputs, reading behind the states and parameters.
   void check_bounds() {
-    if (evaluable_.empty()) return;
-    const TestPoint& at = evaluable_.front();
+    const std::string name = system_.function_name(check_.kind, check_.index);
+    for (const TestPoint& at : points_) {
+      const VectorXd plain = guarded_value(at, 0.0);
+      const VectorXd spoilt = guarded_value(at, NAN);
+      if (has_finite_values(plain) && !has_finite_values(spoilt))
+        add_fault("reads",
+                  fmt::format("{} reads beyond its {} states or {} parameters: are `dimension` and `parameters` right?",
+                              name, system_.dimension(), system_.parameters()));
+      if ((plain.tail(plain.size() - function_.rows()).array() != untouched).any())
+        add_fault("writes",
+                  fmt::format("{} writes more than {} outputs: is `dimension` right?", name, function_.rows()));
+    }
+  }
+
+  bool has_finite_values(const VectorXd& out) const { return out.head(function_.rows()).allFinite(); }
+
+  /// The function evaluated with room behind its arguments, filled with `padding`, and behind its outputs, `untouched`.
+  VectorXd guarded_value(const TestPoint& at, double padding) const {
     const int n = system_.dimension();
-    constexpr int guard = 16;
-    constexpr double untouched = -7.25e77;
-    VectorXd x = VectorXd::Constant(n + guard, NAN);
+    const int q = system_.parameters();
+    VectorXd x = VectorXd::Constant(n + guard, padding);
     x.head(n) = at.x;
-    VectorXd par = VectorXd::Constant(parameter_length, NAN);
-    par.head(system_.parameters()) = at.par.head(system_.parameters());
+    VectorXd par = VectorXd::Constant(parameter_length, padding);
+    par.head(q) = at.par.head(q);
     VectorXd out = VectorXd::Constant(function_.rows() + n + guard, untouched);
     system_.value(check_.kind, check_.index, x.data(), par.data(), out.data());
-    if (!out.head(function_.rows()).allFinite())
-      add_fault("reads",
-                fmt::format("{} reads beyond its {} states or {} parameters: are `dimension` and `parameters` right?",
-                            system_.function_name(check_.kind, check_.index), n, system_.parameters()));
-    const auto behind = out.tail(n + guard);
-    if ((behind.array() != untouched).any())
-      add_fault("writes", fmt::format("{} writes more than {} outputs: is `dimension` right?",
-                                      system_.function_name(check_.kind, check_.index), function_.rows()));
+    return out;
   }
 
   void check_first(const TestPoint& at) {

@@ -15,6 +15,8 @@ namespace {
 constexpr double singular_condition = 1e-12;
 /// The stored direction is a tangent when its angle to the tangent is smaller than about 2 degrees.
 constexpr double parallel = 0.999;
+/// An orbit whose period is a smaller part of its start's is the empty orbit that every event surface has.
+constexpr double vanishing_period = 1e-5;
 
 std::string state_label(const HybridSystem& system, int component, int s, bool at_end) {
   return fmt::format("{} at the {} of segment {}", system.state_name(component), at_end ? "end" : "start", s + 1);
@@ -85,6 +87,16 @@ void refuse_singular(PathFollower& follower, const DefiningSystem& defining, con
       undetermined(defining.system(), defining, singularity.direction, point.orbit.shape)));
 }
 
+/// x_s(0) = x_s(1) with T_s = 0 for all s satisfies every condition where h = 0 and g(x) = x: no orbit.
+void refuse_empty_orbit(const Orbit& found, const Orbit& start, const std::string& source) {
+  if (std::abs(found.period()) > vanishing_period * std::abs(start.period())) return;
+  throw ComputationError(
+      fmt::format("Newton left the start from {}, of period {:.6g}, for an orbit of period {:.1e}: a point, no orbit; "
+                  "the start is too far from an orbit of this signature or the mesh too coarse, so improve the start "
+                  "or raise NTST",
+                  source, start.period(), found.period()));
+}
+
 }  // namespace
 
 FirstPoint first_point(PathFollower& follower, const DefiningSystem& system, const SelectedStart& selected,
@@ -119,8 +131,11 @@ FirstPoint first_point(PathFollower& follower, const DefiningSystem& system, con
           selected.source, first_trouble, describe(result.status),
           residual_report(follower.condensed(), system, start.orbit)));
     }
-    if (fitting_direction && follower.alignment(point, *start.direction) < -parallel) follower.reverse(point);
+    // Another parameter value turns the tangent somewhat; without one, another signature has made the direction new.
+    const double least = selected.parameters_changed ? 0.0 : parallel;
+    if (fitting_direction && follower.alignment(point, *start.direction) < -least) follower.reverse(point);
   }
+  refuse_empty_orbit(point.orbit, start.orbit, selected.source);
   FirstPoint first{std::move(point), follower.newton().history()};
   refuse_singular(follower, system, first.point);
   return first;

@@ -16,8 +16,9 @@ struct FirstPoint {
 /// From data: Newton at fixed ICP(1), by minimum-norm steps where that matrix is singular. From a label with its
 /// direction: orthogonally to the direction, unless a parameter was changed or the direction is no tangent of this
 /// problem (another signature); then as from data. DS > 0 goes on in the stored direction when there is one that fits,
-/// otherwise ICP(1) grows. Throws ComputationError with the residual of every boundary condition when no way converges,
-/// and when the bordered matrix is singular, naming the undetermined direction.
+/// otherwise ICP(1) grows; a changed parameter value keeps the side that the stored direction points to. Throws
+/// ComputationError with the residual of every boundary condition when no way converges, when Newton arrives at a point
+/// instead of an orbit, and when the bordered matrix is singular, naming the undetermined direction.
 FirstPoint first_point(PathFollower& follower, const DefiningSystem& system, const SelectedStart& selected,
                        const RunSettings& settings);
 

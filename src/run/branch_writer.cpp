@@ -24,9 +24,10 @@ BranchWriter::BranchWriter(const HybridSystem& system, const CollocationRule& ru
       columns_(point_columns(setup_.settings, names_)),
       weights_(state_weights(setup_.settings)) {}
 
-void BranchWriter::begin_section(int branch, std::vector<NewtonIteration> correction) {
-  setup_.branch = branch;
-  start_correction_ = std::move(correction);
+void BranchWriter::begin_section(Section section) {
+  setup_.branch = section.branch;
+  setup_.settings.step = section.step;
+  start_correction_ = std::move(section.correction);
   files_.write_points(
       format_point_header({setup_.settings, setup_.active_parameters, names_, setup_.curve_type}, columns_));
   if (screen_ != nullptr) *screen_ << format_table_heading(columns_) << std::flush;

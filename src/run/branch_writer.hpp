@@ -26,9 +26,13 @@ class BranchWriter final : public BranchSink {
   BranchWriter(const HybridSystem& system, const CollocationRule& rule, Setup setup, RunFiles& files,
                std::ostream* screen);
 
-  /// The header of a section; `branch` counts sections that continue in other directions, `correction` is how Newton
-  /// came to the first point.
-  void begin_section(int branch, std::vector<NewtonIteration> correction);
+  struct Section {
+    int branch = 1;                           ///< counts sections that continue in other directions
+    double step = 0.0;                        ///< DS, with its sign in this section
+    std::vector<NewtonIteration> correction;  ///< how Newton came to the first point
+  };
+  /// Writes the header of a section; points that follow belong to it.
+  void begin_section(Section section);
   void point(const BranchPoint& point) override;
   void next_step(int point_number, double ds) override;
   void note(int point_number, const std::string& text) override;
@@ -58,7 +62,7 @@ class BranchWriter final : public BranchSink {
   std::vector<PointColumn> columns_;
   Eigen::VectorXd weights_;
   std::vector<Labelled> labels_;
-  std::vector<NewtonIteration> start_correction_;  // of the first point of the section
+  std::vector<NewtonIteration> start_correction_;  // how Newton came to the section's first point
   bool last_admissible_ = true;
 };
 

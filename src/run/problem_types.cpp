@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 
+#include "bvp/grazing_orbit_system.hpp"
 #include "bvp/periodic_orbit_system.hpp"
 #include "constants/user_error.hpp"
 #include "hybrid/parameter_vector.hpp"
@@ -19,8 +20,18 @@ std::unique_ptr<DefiningSystem> make(const HybridSystem& system, const RunSettin
   return std::make_unique<System>(system, settings.signature(), std::move(free_parameters));
 }
 
-constexpr std::array<ProblemType, 1> types{{
+/// The segment marked by GCSEGTYP = 2, else the first one.
+std::unique_ptr<DefiningSystem> make_grazing(const HybridSystem& system, const RunSettings& settings,
+                                             std::vector<int> free_parameters) {
+  const auto marked = std::find_if(settings.segments.begin(), settings.segments.end(),
+                                   [](const SegmentSettings& segment) { return segment.type == 2; });
+  const int grazing = marked == settings.segments.end() ? 0 : static_cast<int>(marked - settings.segments.begin());
+  return std::make_unique<GrazingOrbitSystem>(system, settings.signature(), std::move(free_parameters), grazing);
+}
+
+constexpr std::array<ProblemType, 2> types{{
     {180, 1, "periodic orbits in one parameter", 1, &make<PeriodicOrbitSystem>},
+    {150, 1, "periodic orbits in grazing contact, in two parameters", 2, &make_grazing},
 }};
 
 bool contains(const std::vector<int>& list, int k) { return std::find(list.begin(), list.end(), k) != list.end(); }

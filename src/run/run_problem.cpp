@@ -109,7 +109,8 @@ int run_problem(const RunRequest& request, std::ostream& screen, std::ostream& w
       continuation.label_start = false;
     }
     continuation.stop_at = make_stop_rule(settings);
-    writer.begin_section(branch, direction == 0 ? start.correction : std::vector<NewtonIteration>{});
+    writer.begin_section(
+        {branch, continuation.step.initial, direction == 0 ? start.correction : std::vector<NewtonIteration>{}});
     const std::size_t labels_before = writer.labels().size();
     ContinuationRun run(follower, *defining, continuation, select_tests(*defining, settings), writer);
     const BranchSummary summary = run.run(start.point);

@@ -6,6 +6,7 @@
 #include "run/problem_setup.hpp"
 #include "special_points/bifurcation_tests.hpp"
 #include "special_points/contact_test.hpp"
+#include "special_points/grazing_curve_tests.hpp"
 #include "special_points/user_value_test.hpp"
 
 namespace tchat {
@@ -48,9 +49,26 @@ void add_contacts(Tests& tests, const DefiningSystem& system, const RunSettings&
         tests.push_back(std::make_unique<ContactTest>(system, s, event, settings.stop_at_grazing));
 }
 
+/// On a grazing curve: xi_n by GCIPSI, branch points, multipliers +1 and -1 of the smooth orbit, impact velocities of
+/// the other segments. A fold in the principal parameter means nothing there.
+Tests tests_on_grazing_curve(const GrazingOrbitSystem& system, const RunSettings& settings) {
+  Tests tests;
+  add_user_values(tests, system.system(), settings);
+  add_impact_velocities(tests, system, settings);
+  for (const int n : settings.test_functions)
+    tests.push_back(std::make_unique<XiTest>(system, settings.grazing_jump, n));
+  const int kind = std::abs(settings.detect_bifurcations);
+  if (kind == 2 || kind == 3) tests.push_back(std::make_unique<BranchPointTest>(settings.detect_bifurcations < 0));
+  if (kind == 2 || kind == 4)
+    for (const int target : {1, -1}) tests.push_back(std::make_unique<SmoothMultiplierTest>(target));
+  return tests;
+}
+
 }  // namespace
 
 std::vector<std::unique_ptr<TestFunction>> select_tests(const DefiningSystem& system, const RunSettings& settings) {
+  if (const auto* grazing = dynamic_cast<const GrazingOrbitSystem*>(&system))
+    return tests_on_grazing_curve(*grazing, settings);
   Tests tests;
   add_user_values(tests, system.system(), settings);
   add_contacts(tests, system, settings);

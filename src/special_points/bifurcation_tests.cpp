@@ -44,9 +44,8 @@ double transversality(const DefiningSystem& defining, const Orbit& x, int s) {
   const int n = system.dimension();
   Eigen::VectorXd f(n);
   Eigen::VectorXd gradient(n);
-  double h = 0.0;
   system.value(FunctionKind::field, v.field, x.end(s), x.par.data(), f.data());
-  system.first(FunctionKind::event, v.event, x.end(s), x.par.data(), {}, &h, gradient.data(), nullptr);
+  defining.section_gradient(s, x.end(s), x.par.data(), gradient.data());
   const double sizes = gradient.norm() * f.norm();
   return sizes > 0.0 ? gradient.dot(f) / sizes : 0.0;
 }

@@ -81,7 +81,8 @@ class ImpactVelocityTest final : public TestFunction {
   bool stop_;
 };
 
-/// h_x f / (|h_x| |f|) at the end of segment s (from 0), 0 when h_x or f vanishes.
+/// h_x f / (|h_x| |f|) at the end of segment s (from 0), with h_x the gradient of the section there; 0 when h_x or f
+/// vanishes.
 double transversality(const DefiningSystem& system, const Orbit& x, int s);
 
 /// "x1 = 1, x2 = 0, ..."

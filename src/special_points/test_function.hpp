@@ -41,6 +41,9 @@ class TestFunction {
   virtual std::optional<double> value(const TestedPoint& point) const = 0;
   /// |value| up to this counts as zero.
   virtual double zero_level(const TestedPoint& point) const = 0;
+  /// True for functions that may change sign twice within a step that is otherwise fine; such a step is then shortened
+  /// until their trend is followed.
+  virtual bool oscillates() const { return false; }
   /// The special point at a located zero; `rising` says which way the function went through it.
   virtual SpecialPoint classify(const TestedPoint& point, bool rising) const = 0;
 };

@@ -61,7 +61,6 @@ FloquetMultipliers FloquetSolver::compute(const CondensedSystem& condensed, cons
   for (int s = 0; s < m; ++s) {
     const IndexVector& v = condensed.system().signature()[static_cast<std::size_t>(s)];
     SegmentEnd& end = ends[static_cast<std::size_t>(s)];
-    double h = 0.0;
     Vector hx(n);
     Vector f0(n);
     Vector f1(n);
@@ -69,7 +68,7 @@ FloquetMultipliers FloquetSolver::compute(const CondensedSystem& condensed, cons
     Matrix gx(n, n);
     system.value(FunctionKind::field, v.field, x.start(s), par, f0.data());
     system.value(FunctionKind::field, v.field, x.end(s), par, f1.data());
-    system.first(FunctionKind::event, v.event, x.end(s), par, {}, &h, hx.data(), nullptr);
+    condensed.system().section_gradient(s, x.end(s), par, hx.data());
     system.first(FunctionKind::jump, v.jump, x.end(s), par, {}, g.data(), gx.data(), nullptr);
     const RowMajorBlock first(condensed.first_block(s), n, n);
     const RowMajorBlock last(condensed.last_block(s), n, n);

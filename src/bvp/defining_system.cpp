@@ -1,0 +1,10 @@
+#include "bvp/defining_system.hpp"
+
+namespace tchat {
+
+void DefiningSystem::section_gradient(int s, const double* x, const double* par, double* gradient) const {
+  double h = 0.0;
+  system_.first(FunctionKind::event, signature_[static_cast<std::size_t>(s)].event, x, par, {}, &h, gradient, nullptr);
+}
+
+}  // namespace tchat

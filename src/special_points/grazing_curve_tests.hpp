@@ -1,0 +1,54 @@
+/// Test functions on grazing curves (problem type 150): xi_n, grazing-fold, grazing-flip (2.111-2.112, 4.22,
+/// corrected).
+///
+/// With x* the grazing point, h_D the event, h_P = h_{D,x} f, a* = h_{P,x} f > 0 and A the derivative of the smooth
+/// orbit's return map from x* to x* on h_P = 0:
+///
+///     beta = (Id - f h_{P,x} / a*) g_{D,x} f,     xi_n = -h_{D,x} A^n beta.
+///
+/// xi_n > 0: no new impact n returns after one of low velocity. g_D is the jump that contact would bring (GRJUMP).
+#pragma once
+
+#include "bvp/grazing_orbit_system.hpp"
+#include "special_points/test_function.hpp"
+
+namespace tchat {
+
+/// a* and xi_1..xi_count at a point whose linearisation is in `condensed`.
+struct GrazingUnfolding {
+  double acceleration = 0.0;  ///< a*
+  std::vector<double> xi;
+};
+GrazingUnfolding grazing_unfolding(const GrazingOrbitSystem& system, const CondensedSystem& condensed, const Orbit& x,
+                                   int jump, int count);
+
+class XiTest final : public TestFunction {
+ public:
+  XiTest(const GrazingOrbitSystem& system, int jump, int n) : system_(system), jump_(jump), n_(n) {}
+  std::string name() const override;
+  std::optional<double> value(const TestedPoint& point) const override;
+  double zero_level(const TestedPoint&) const override { return 1e-9; }
+  bool oscillates() const override { return true; }
+  SpecialPoint classify(const TestedPoint& point, bool rising) const override;
+
+ private:
+  const GrazingOrbitSystem& system_;
+  int jump_;
+  int n_;
+};
+
+/// Multiplier +1 (grazing-fold) or -1 (grazing-flip) of the smooth return map.
+class SmoothMultiplierTest final : public TestFunction {
+ public:
+  /// `target` is 1 or -1.
+  explicit SmoothMultiplierTest(int target) : target_(target) {}
+  std::string name() const override { return target_ > 0 ? "grazing-fold" : "grazing-flip"; }
+  std::optional<double> value(const TestedPoint& point) const override;
+  double zero_level(const TestedPoint&) const override { return 1e-10; }
+  SpecialPoint classify(const TestedPoint& point, bool rising) const override;
+
+ private:
+  int target_;
+};
+
+}  // namespace tchat
