@@ -13,11 +13,15 @@ namespace {
 long allocations = 0;
 }  // namespace
 
-// Counts the allocations of this test program; the pairs must match, so both are replaced.
+// Counts the allocations of this test program; what is allocated and freed must match, so all are replaced.
 void* operator new(std::size_t size) {
   ++allocations;
   if (void* memory = std::malloc(size)) return memory;
   throw std::bad_alloc();
+}
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
+  ++allocations;
+  return std::malloc(size);
 }
 void operator delete(void* memory) noexcept { std::free(memory); }
 void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
