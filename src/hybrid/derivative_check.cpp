@@ -249,8 +249,9 @@ std::string function_line(const HybridSystem& system, const FunctionCheck& check
   static constexpr const char* kinds[] = {"field", "event", "jump"};
   const std::string name = system.function_name(check.kind, check.index);
   std::string line = fmt::format("  {:<5} {:<2} {:<20}", kinds[static_cast<int>(check.kind)], check.index, name);
-  if (order >= 1) line += fmt::format("  first {:.1e}", check.first_error);
-  if (order >= 2) line += fmt::format("  second {:.1e}", check.second_error);
+  const bool was_compared = check.faults.empty() || !check.worst_first.empty();
+  if (order >= 1 && was_compared) line += fmt::format("  first {:.1e}", check.first_error);
+  if (order >= 2 && was_compared) line += fmt::format("  second {:.1e}", check.second_error);
   line += check.faults.empty() ? "  ok" : "  FAULT";
   for (const std::string& note : check.notes) line += fmt::format("  ({})", note);
   return line + "\n";

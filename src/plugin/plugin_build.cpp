@@ -139,7 +139,7 @@ int make_under_lock(const Build& build, const fs::path& library) {
 bool is_read_only(int error) { return error == EACCES || error == EROFS || error == EPERM; }
 
 std::string build_source(const fs::path& given, const PluginBuildOptions& options) {
-  const fs::path source = fs::absolute(given);
+  const fs::path source = given.has_parent_path() ? given : "." / given;  // messages show the path as it was given
   const Build build{source, find_include_folder(options), Compiler(options)};
   fs::path library = fs::path(source).replace_extension(".so");
   if (build.is_current(library)) return library.string();

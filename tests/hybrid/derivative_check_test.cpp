@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <functional>
 
+#include "../plugin/plugin_folder.hpp"
 #include "app/check_command.hpp"
 #include "constants/user_error.hpp"
 #include "hand_differentiated.hpp"
@@ -219,7 +220,9 @@ TEST_CASE("wrong states and parameters are refused") {
 }
 
 TEST_CASE("tchat check") {
-  const std::string linosc = TCHAT_TEST_PROBLEMS "/linosc/linosc";
+  const PluginFolder folder;
+  std::filesystem::copy(TCHAT_TEST_PROBLEMS "/linosc/linosc.cpp", folder / "linosc.cpp");
+  const std::string linosc = folder / "linosc";
   CHECK(run_check({linosc}) == 0);
   CHECK(run_check({linosc, "PAR(omega)=2.1", "PAR(1)=3", "--state", "1,-0.4,0.1,-0.99", "--random", "2"}) == 0);
   CHECK(run_check({"anything", "-p", linosc + ".cpp", "--state=1,0,0,1", "--state=0,0,0,1"}) == 0);
