@@ -72,6 +72,14 @@ TEST_CASE("no convergence at the first point: the residual of every condition by
   for (const char* file : {"p.branch", "q.branch", "d.branch", "r.branch"}) CHECK_FALSE(workspace.has(file));
 }
 
+TEST_CASE("Newton that falls to an orbit of zero period is no start") {
+  const Workspace workspace;
+  const Outcome outcome = workspace.tchat("run linosc -c impacting -d impacting -o branch NTST=1 NCOL=2");
+  CHECK(outcome.status == 1);
+  check_contains(outcome.err, {"impacting.dat", "period", "NTST"});
+  CHECK_FALSE(workspace.has("p.branch"));
+}
+
 TEST_CASE("a function that loses its value on the way is named where the branch ends") {
   const Workspace workspace(Workspace::Plugin::source);
   write_variant(workspace, "cliff", "const T radius2", "if (alpha > 3.1) { f[0] = NAN; return; }");

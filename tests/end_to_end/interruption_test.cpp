@@ -128,6 +128,29 @@ TEST_CASE("appending to an incomplete set mends it first") {
   for (std::size_t k = 1; k < labels.size(); ++k) CHECK(labels[k] > labels[k - 1]);
 }
 
+TEST_CASE("a full disk ends the run with status 1 and files that load") {
+  const Workspace workspace;
+  const Outcome outcome = workspace.tchat_on_small_disk(200, "run linosc -c impacting -d impacting -o branch NPR=2");
+  INFO(outcome.text());
+  CHECK(outcome.signal == 0);
+  CHECK(outcome.status == 1);
+  CHECK(outcome.err.find("q.branch") != std::string::npos);
+  CHECK(outcome.err.find("cannot be written") != std::string::npos);
+  const auto solutions = workspace.solutions("branch");
+  CHECK(solutions.size() >= 2);
+  CHECK_FALSE(is_complete(workspace.read("d.branch")));
+  workspace.run("-c impacting -s branch -o on NMX=2 IRS=" + std::to_string(solutions.back().label));
+}
+
+TEST_CASE("Ctrl-C while the plugin is compiled") {
+  const Workspace workspace(Workspace::Plugin::source);
+  const auto process = workspace.start_tchat(endless);
+  const auto begun = [&] { return workspace.has(".linosc.so.lock"); };
+  for (int k = 0; k < 5000 && !begun(); ++k) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  process->send(SIGINT);
+  CHECK(process->wait(std::chrono::seconds(60)).status == 130);
+}
+
 TEST_CASE("a folder that cannot be written is refused before anything is computed") {
   const Workspace workspace;
   const Outcome missing = workspace.tchat("run linosc -c impacting -d impacting -o nowhere/branch");

@@ -1,6 +1,7 @@
 // What the constants say about limits, labels, measures and files, seen in the files.
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <filesystem>
 #include <sstream>
 
 #include "end_to_end/workspace.hpp"
@@ -65,9 +66,62 @@ TEST_CASE("--both computes the two directions into one set of files") {
   CHECK(sections[0].rows[1].values.front() > sections[0].rows[0].values.front());
   CHECK(sections[1].rows[1].values.front() < sections[1].rows[0].values.front());
   CHECK(sections[0].rows.front().branch != sections[1].rows.front().branch);
+  CHECK(sections[0].real("DS") == 0.02);
+  CHECK(sections[1].real("DS") == -0.02);
   const auto labels = labels_of(sections);
   CHECK(labels == labels_of(workspace.solutions("branch")));
   for (std::size_t k = 0; k < labels.size(); ++k) CHECK(labels[k] == static_cast<int>(k) + 1);
+}
+
+TEST_CASE("-o may name a folder") {
+  const Workspace workspace;
+  std::filesystem::create_directory(workspace.file("results"));
+  workspace.run("-c impacting -d impacting -o results/branch NMX=3");
+  for (const char letter : {'p', 'q', 'd', 'r'}) CHECK(workspace.has(std::string("results/") + letter + ".branch"));
+  workspace.run("-c results/r.branch -s results/branch -o results/on IRS=1 NMX=3");
+  CHECK(workspace.has("results/p.on"));
+}
+
+TEST_CASE("durations that ICP leaves out are free all the same") {
+  const Workspace workspace;
+  workspace.run(impacting + "NMX=6");
+  const auto listed = workspace.points("branch");
+  workspace.run(impacting + "NMX=6 ICP=[1]");
+  const auto sections = workspace.points("branch");
+  CHECK(sections.front().names.size() + 1 == listed.front().names.size());
+  CHECK(sections.front().rows.back().values.front() == listed.front().rows.back().values.front());
+  CHECK(sections.front().rows.back().values.back() == listed.front().rows.back().values.back());
+  CHECK(workspace.solutions("branch").front().free_parameters == std::vector<int>{1, 61});
+}
+
+TEST_CASE("a GCSEGTYP that contradicts the jump warns and changes nothing") {
+  const Workspace workspace;
+  workspace.run(impacting + "NMX=6");
+  const auto rows = workspace.points("branch").front().rows;
+  const Outcome outcome = workspace.run(impacting + "NMX=6 GCSEGTYP=[0]");
+  CHECK(outcome.err.find("warning") != std::string::npos);
+  CHECK(outcome.err.find("GCSEGTYP") != std::string::npos);
+  CHECK(workspace.points("branch").front().rows.back().values == rows.back().values);
+}
+
+TEST_CASE("user functions of a plugin are columns") {
+  const Workspace workspace(Workspace::Plugin::source);
+  workspace.edit("linosc.cpp", "  template <class T>\n  T event",
+                 "  static constexpr int user_values = 2;\n"
+                 "  static constexpr const char* user_value_names[] = {\"energy\", \"ratio\"};\n"
+                 "  void user_value(const double* x, const double* par, double* out) const {\n"
+                 "    out[0] = 0.5 * (x[0] * x[0] + x[1] * x[1]);\n    out[1] = par[0] / par[1];\n  }\n\n"
+                 "  template <class T>\n  T event");
+  workspace.run(impacting + "NMX=6 NPR=2");
+  const auto sections = workspace.points("branch");
+  for (const SolutionEntry& solution : workspace.solutions("branch")) {
+    const PointRow& row = with_label(sections, solution.label);
+    const auto& start = solution.states.front();
+    CHECK(row.values[sections.front().column("energy")] ==
+          Approx(0.5 * (square(start[0]) + square(start[1]))).epsilon(1e-9));
+    CHECK(row.values[sections.front().column("ratio")] ==
+          Approx(solution.parameter(1) / solution.parameter(2)).epsilon(1e-9));
+  }
 }
 
 TEST_CASE("-q prints nothing") {

@@ -69,4 +69,16 @@ TEST_CASE("tchat check passes the oscillator and finds a wrong derivative") {
   const Outcome fine = workspace.tchat("check linosc PAR(omega)=2.5 --state 0.3,-0.5,0.6,0.8");
   INFO(fine.text());
   CHECK(fine.status == 0);
+
+  workspace.edit("linosc.cpp", "  template <class T>\n  T event",
+                 "  void event_derivatives(int j, const double*, const double*, double* dhdx, double*) const {\n"
+                 "    if (j == 1) dhdx[0] = -1.0;\n    if (j == 2) dhdx[1] = 1.0;\n"
+                 "    if (j == 3) dhdx[1] = 1.0;  // should be -1\n  }\n\n"
+                 "  template <class T>\n  T event");
+  age(workspace, "linosc.cpp", std::chrono::seconds(2));
+  const Outcome wrong = workspace.tchat("check linosc");
+  INFO(wrong.text());
+  CHECK(wrong.status == 1);
+  CHECK(wrong.out.find("minimum of x1") != std::string::npos);
+  CHECK(wrong.out.find("x2") != std::string::npos);
 }

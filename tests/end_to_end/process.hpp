@@ -19,7 +19,8 @@ struct Outcome {
 
 class Process {
  public:
-  /// Starts `words` (program first) in `folder`; what it prints goes to two files named `log`.out and `log`.err.
+  /// Starts `words` (program with its path first) in `folder`; what it prints goes to two files named `log`.out and
+  /// `log`.err.
   Process(const std::vector<std::string>& words, const std::string& folder, const std::string& log);
   /// A program that still runs is killed.
   ~Process();

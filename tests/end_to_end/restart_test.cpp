@@ -206,11 +206,37 @@ TEST_CASE("DS > 0 goes on in the stored direction, or where ICP(1) grows when th
   rows = workspace.points("on").front().rows;
   CHECK(rows[1].values.front() > rows[0].values.front());
 
+  workspace.run(restart + " DS=0.02 PAR(zeta)=0.052");
+  rows = workspace.points("on").front().rows;
+  CHECK(rows[1].values.front() < rows[0].values.front());
+
   for (const char* label : {"EP1", "2", "EP2"}) {
     workspace.run(std::string("-c impacting -s back -o other NMX=3 GRSTOP=0 RL0=1 DS=0.001 ICP=[2,61] IRS=") + label);
     rows = workspace.points("other").front().rows;
     CHECK(rows[1].values.front() > rows[0].values.front());
     CHECK(workspace.points("other").front().names.front() == "omega");
+  }
+}
+
+TEST_CASE("a user value where the branch restarts is not met again at once") {
+  const Workspace workspace;
+  workspace.run("-c impacting -d impacting -o impacting");
+  workspace.run("-c impacting -s impacting -o on IRS=UZ1 NMX=5");
+  for (const PointRow& row : rows_of(workspace.points("on"))) CHECK(row.type != -4);
+}
+
+TEST_CASE("the grazing orbit restarts with another signature") {
+  const Workspace workspace;
+  // Impact velocity 0: the orbit that ends with an impact and the one that ends at the maximum are the same.
+  workspace.run("-c grazing -d grazing -o grazing NMX=1");
+  const SolutionEntry grazing = workspace.solutions("grazing").front();
+  workspace.run("-c nonimpacting_alpha -s grazing -o smooth IRS=1 NMX=4 DS=-0.01 RL1=4 UZR={}");
+  const auto rows = workspace.points("smooth").front().rows;
+  CHECK(rows.front().values.front() == Approx(grazing.parameter(1)).epsilon(1e-9));
+  for (const PointRow& row : rows) {
+    const double reached = amplitude(row.values.front(), 2.0072, zeta);
+    CHECK(row.values[2] == Approx(reached).epsilon(1e-9));
+    CHECK(reached < 1.0 + 1e-9);
   }
 }
 

@@ -42,6 +42,13 @@ std::unique_ptr<Process> Workspace::start_tchat(const std::string& arguments) co
   return std::make_unique<Process>(all, file(""), logs_.file(std::to_string(++runs_)));
 }
 
+Outcome Workspace::tchat_on_small_disk(int blocks, const std::string& arguments) const {
+  // Without the trap the system would end the program before it is told that its file is full.
+  const std::string script =
+      "trap '' XFSZ; ulimit -f " + std::to_string(blocks) + "; exec '" TCHAT_EXECUTABLE "' " + arguments;
+  return Process({"/bin/sh", "-c", script}, file(""), logs_.file(std::to_string(++runs_))).wait(time_limit);
+}
+
 Outcome Workspace::run(const std::vector<std::string>& words) const {
   std::vector<std::string> all{"run", "linosc"};
   all.insert(all.end(), words.begin(), words.end());
