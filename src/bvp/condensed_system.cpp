@@ -90,6 +90,7 @@ CondensedSystem::CondensedSystem(const DefiningSystem& system, const OrbitShape&
   hx_ = zeros(conditions * n_);
   hp_ = zeros(conditions * globals_);
   zero_ = make_residual();
+  zero_rhs_ = zeros(std::max(interval_rows, chain_rows));
 }
 
 SparseLu CondensedSystem::make_sparse() {
@@ -375,7 +376,8 @@ void CondensedSystem::solve(const OrbitResidual& residual, std::span<const doubl
     for (int r = 0; r < border_; ++r) border_rhs[r] += condensed[n_ + r];
   }
   lu_.solve(rhs_.data(), solution_.data());
-  for (int s = 0; s < shape_.segments; ++s) expand_segment(s, dx);
+  const double* globals = solution_.data() + global_unknown(0);
+  for (int s = 0; s < shape_.segments; ++s) expand_segment(s, &solution_[index(start_unknown(s))], globals, false, dx);
   for (int g = 0; g < globals_; ++g) dx.globals(g) = solution_[index(global_unknown(g))];
 }
 
@@ -407,14 +409,14 @@ void CondensedSystem::condense_right_hand_side(const OrbitResidual& residual, in
 }
 
 /// From the ends of a segment back to its mesh nodes, right to left, and on to the interior nodes.
-void CondensedSystem::expand_segment(int s, OrbitVector& dx) {
+void CondensedSystem::expand_segment(int s, const double* ends, const double* globals, bool homogeneous,
+                                     OrbitVector& dx) {
   const int c = shape_.collocation;
   const int p = interval_.pivots();
   const int rows = interval_.rows();
-  const double* start = &solution_[index(start_unknown(s))];
-  const double* end = &solution_[index(end_unknown(s))];
-  const double duration = solution_[index(duration_unknown(s))];
-  const double* globals = solution_.data() + global_unknown(0);
+  const double* start = ends;
+  const double* end = ends + n_;
+  const double duration = ends[2 * n_];
   dx.durations(s) = duration;
   const auto node = [&](int k) { return dx.states.col(s * shape_.nodes() + k).data(); };
   std::copy_n(start, n_, node(0));
@@ -428,7 +430,8 @@ void CondensedSystem::expand_segment(int s, OrbitVector& dx) {
       local[3 * n_] = duration;
       std::copy_n(globals, globals_, local + 3 * n_ + 1);
       chain_.backward(&chain_blocks_[index(b * (2 * n_ + border_) * chain_.width())],
-                      &chain_rhs_[index(b * (2 * n_ + border_))], local, 3 * n_ + scalars_);
+                      homogeneous ? zero_rhs_.data() : &chain_rhs_[index(b * (2 * n_ + border_))], local,
+                      3 * n_ + scalars_);
       std::copy_n(local, n_, node(j * c));
     }
     std::copy_n(node(j * c), n_, local + p);
@@ -436,8 +439,43 @@ void CondensedSystem::expand_segment(int s, OrbitVector& dx) {
     local[p + 2 * n_] = duration;
     std::copy_n(globals, globals_, local + p + 2 * n_ + 1);
     interval_.backward(&interval_blocks_[index(b * (rows + border_) * interval_.width())],
-                       &interval_rhs_[index(b * (rows + border_))], local, p + 2 * n_ + scalars_);
+                       homogeneous ? zero_rhs_.data() : &interval_rhs_[index(b * (rows + border_))], local,
+                       p + 2 * n_ + scalars_);
     std::copy_n(local, p, node(j * c + 1));
+  }
+}
+
+void CondensedSystem::duration_block(int s, double* column) const {
+  for (int a = 0; a < n_; ++a) column[a] = scalar_blocks_[index((s * n_ + a) * scalars_)];
+}
+
+void CondensedSystem::extend(const double* small, OrbitVector& dx) {
+  for (int s = 0; s < shape_.segments; ++s) expand_segment(s, small + s * (2 * n_ + 1), zero_rhs_.data(), true, dx);
+  dx.globals.setZero();
+}
+
+void CondensedSystem::extend_adjoint(const double* weights, std::vector<double>& collocation) {
+  const int p = interval_.pivots();
+  const int rows = interval_.rows();
+  double* chain = chain_rhs_.data();  // scratch: right-hand sides are no longer needed
+  for (int s = 0; s < shape_.segments; ++s) {
+    std::copy_n(weights + s * n_, n_, chain + n_);
+    for (int j = shape_.intervals - 1; j >= 0; --j) {
+      const int b = block(s, j);
+      double* own = &collocation[index(b * rows)];
+      std::fill_n(own, rows, 0.0);
+      if (j > 0) {
+        std::fill_n(chain, n_, 0.0);
+        chain_.forward_transposed(&chain_blocks_[index(b * (2 * n_ + border_) * chain_.width())],
+                                  &chain_swaps_[index(b * n_)], chain);
+        std::copy_n(chain + n_, n_, own + p);
+        std::copy_n(chain, n_, chain + n_);
+      } else {
+        std::copy_n(chain + n_, n_, own + p);
+      }
+      interval_.forward_transposed(&interval_blocks_[index(b * (rows + border_) * interval_.width())],
+                                   &interval_swaps_[index(b * p)], own);
+    }
   }
 }
 

@@ -62,6 +62,17 @@ class CondensedSystem {
   const double* first_block(int s) const { return &first_blocks_[index(s * n_ * n_)]; }
   const double* last_block(int s) const { return &last_blocks_[index(s * n_ * n_)]; }
 
+  /// Effect (n) of the duration's change on the condensed rows of segment s: A_s v(0) + C_s v(1) + duration_block
+  /// sigma.
+  void duration_block(int s, double* column) const;
+
+  /// From the ends of segments to all nodes: `small` has v_s(0), v_s(1), sigma_s of every segment (m (2n + 1) numbers);
+  /// dx becomes the vector that has these ends, satisfies the linearised collocation equations, and has globals 0.
+  void extend(const double* small, OrbitVector& dx);
+  /// The adjoint: `weights` (m n) of the condensed rows to weights of all collocation rows (as OrbitResidual orders
+  /// them), so that the weighted sum of the latter is that of the former for every vector that `extend` gives.
+  void extend_adjoint(const double* weights, std::vector<double>& collocation);
+
   /// The determinant of the bordered J as sign * 2^log2_size; sign 0 when it is singular. Its sign does not depend on
   /// the mesh, its size does.
   struct Determinant {
@@ -96,7 +107,7 @@ class CondensedSystem {
                            int border_row);
   bool assemble(const Orbit& x, std::span<const OrbitVector> rows, OrbitResidual& residual);
   void condense_right_hand_side(const OrbitResidual& residual, int s);
-  void expand_segment(int s, OrbitVector& dx);
+  void expand_segment(int s, const double* ends, const double* globals, bool homogeneous, OrbitVector& dx);
 
   const DefiningSystem& system_;
   OrbitShape shape_;
@@ -130,6 +141,7 @@ class CondensedSystem {
   // scratch of one collocation point or one end of a segment
   std::vector<double> x_, slope_, f_, fx_, fp_, local_, h_, hx_, hp_;
   OrbitResidual zero_;
+  std::vector<double> zero_rhs_;  // of one block
 };
 
 }  // namespace tchat

@@ -11,27 +11,25 @@ namespace {
 
 /// Factors older than this (relative change of the point since) are renewed before anything is read off them.
 constexpr double current_enough = 1e-10;
-constexpr std::array<double, 1> zero{0.0};
-constexpr std::array<double, 1> one{1.0};
 
 }  // namespace
 
 PathFollower::PathFollower(const DefiningSystem& system, const OrbitShape& shape, WeightedNorm norm,
-                           const NewtonSettings& settings, int principal)
+                           const NewtonSettings& settings, int principal, std::unique_ptr<OrbitCondition> condition)
     : system_(system),
       norm_(std::move(norm)),
       principal_(principal),
-      condensed_(system, shape, 1),
-      newton_(condensed_, settings),
+      problem_(system, shape, std::move(condition)),
+      newton_(problem_, settings),
       settings_(settings),
-      rows_{condensed_.make_vector()} {}
+      row_(condensed().make_vector()) {}
 
 PathPoint PathFollower::make_point(Orbit orbit) const {
-  return {std::move(orbit), condensed_.make_vector(), condensed_.make_vector()};
+  return {std::move(orbit), condensed().make_vector(), condensed().make_vector()};
 }
 
 OrbitVector PathFollower::principal_row() const {
-  OrbitVector row = condensed_.make_vector();
+  OrbitVector row = condensed().make_vector();
   if (is_duration(principal_, system_.segments())) {
     row.durations(duration_segment(principal_)) = 1.0;
   } else {
@@ -45,18 +43,18 @@ double PathFollower::principal_direction(const OrbitVector& v) const { return do
 
 double PathFollower::alignment(const PathPoint& point, const OrbitVector& direction) const {
   OrbitVector v = direction;
-  OrbitVector dual = condensed_.make_vector();
+  OrbitVector dual = condensed().make_vector();
   normalise(point.orbit, v, dual);
   return dot(dual, point.tangent);
 }
 
 bool PathFollower::linearize(const Orbit& x, const OrbitVector& row) {
-  if (&row != &rows_[0]) rows_[0] = row;
-  return condensed_.linearize(x, rows_, newton_.residual()) == Linearization::ready;
+  if (&row != &row_) row_ = row;
+  return problem_.linearize(x, row_, newton_.residual()) == Linearization::ready;
 }
 
 void PathFollower::normalise(const Orbit& x, OrbitVector& tangent, OrbitVector& dual) const {
-  norm_.dual(x, condensed_.rule(), system_.free_parameters(), tangent, dual);
+  norm_.dual(x, condensed().rule(), system_.free_parameters(), tangent, dual);
   const double length = std::sqrt(std::abs(dot(dual, tangent)));
   if (!(length > 0.0)) return;
   tangent.scale(1.0 / length);
@@ -65,7 +63,7 @@ void PathFollower::normalise(const Orbit& x, OrbitVector& tangent, OrbitVector& 
 
 /// From the current factors: the vector that every condition but the border annihilates.
 bool PathFollower::find_tangent(const Orbit& x, OrbitVector& tangent, OrbitVector& dual) {
-  condensed_.solve(one, tangent);
+  problem_.solve(1.0, tangent);
   if (!tangent.states.allFinite() || !tangent.durations.allFinite() || !tangent.globals.allFinite()) return false;
   normalise(x, tangent, dual);
   return true;
@@ -73,11 +71,10 @@ bool PathFollower::find_tangent(const Orbit& x, OrbitVector& tangent, OrbitVecto
 
 /// Newton on the border in rows_, then the tangent at the result.
 NewtonResult PathFollower::correct_and_orient(PathPoint& point, const Orbit& base, double target) {
-  const std::array<double, 1> targets{target};
-  NewtonResult result = newton_.correct(point.orbit, rows_, base, targets);
+  NewtonResult result = newton_.correct(point.orbit, row_, base, target);
   if (!result.converged()) return result;
   const bool current = result.change_since_factorization <= current_enough;
-  if ((!current && !linearize(point.orbit, rows_[0])) || !find_tangent(point.orbit, point.tangent, point.dual))
+  if ((!current && !linearize(point.orbit, row_)) || !find_tangent(point.orbit, point.tangent, point.dual))
     result.status = NewtonStatus::singular;
   return result;
 }
@@ -87,9 +84,9 @@ NewtonResult PathFollower::step(const PathPoint& from, double ds, PathPoint& to)
   to.orbit.states = from.orbit.states;
   to.orbit.par = from.orbit.par;
   advance(to.orbit, ds, from.tangent, system_.free_parameters());
-  rows_[0].states = from.dual.states;
-  rows_[0].durations = from.dual.durations;
-  rows_[0].globals = from.dual.globals;
+  row_.states = from.dual.states;
+  row_.durations = from.dual.durations;
+  row_.globals = from.dual.globals;
   return correct_and_orient(to, from.orbit, ds);
 }
 
@@ -105,7 +102,7 @@ void PathFollower::orient(PathPoint& point) const {
 }
 
 NewtonResult PathFollower::start_at_fixed_parameter(PathPoint& point) {
-  rows_[0] = principal_row();
+  row_ = principal_row();
   const Orbit base = point.orbit;
   NewtonResult result = correct_and_orient(point, base, 0.0);
   if (result.converged()) orient(point);
@@ -115,28 +112,28 @@ NewtonResult PathFollower::start_at_fixed_parameter(PathPoint& point) {
 NewtonResult PathFollower::start_along(PathPoint& point, const OrbitVector& direction) {
   point.tangent = direction;
   normalise(point.orbit, point.tangent, point.dual);
-  rows_[0] = point.dual;
+  row_ = point.dual;
   const Orbit base = point.orbit;
   return correct_and_orient(point, base, 0.0);
 }
 
 NewtonResult PathFollower::start_by_minimum_norm(PathPoint& point) {
   // Any border that is not orthogonal to the null vector will do to find it the first time.
-  rows_[0].states.setZero();
-  for (Eigen::Index i = 0; i < rows_[0].states.size(); ++i)
-    rows_[0].states.data()[i] = std::cos(1.0 + 0.37 * static_cast<double>(i));
-  rows_[0].durations.setOnes();
-  rows_[0].globals.setOnes();
+  row_.states.setZero();
+  for (Eigen::Index i = 0; i < row_.states.size(); ++i)
+    row_.states.data()[i] = std::cos(1.0 + 0.37 * static_cast<double>(i));
+  row_.durations.setOnes();
+  row_.globals.setOnes();
   NewtonResult result;
   result.status = NewtonStatus::singular;
-  if (!linearize(point.orbit, rows_[0]) || !find_tangent(point.orbit, point.tangent, point.dual)) return result;
+  if (!linearize(point.orbit, row_) || !find_tangent(point.orbit, point.tangent, point.dual)) return result;
   // A few Gauss-Newton steps with a fresh null vector each, then the ordinary iteration across the last one.
   for (int iteration = 0; iteration < settings_.max_iterations; ++iteration) {
-    rows_[0] = point.dual;
+    row_ = point.dual;
     const Orbit base = point.orbit;
     result = correct_and_orient(point, base, 0.0);
     if (result.converged() || result.status == NewtonStatus::not_finite) break;
-    if (!linearize(point.orbit, rows_[0]) || !find_tangent(point.orbit, point.tangent, point.dual)) return result;
+    if (!linearize(point.orbit, row_) || !find_tangent(point.orbit, point.tangent, point.dual)) return result;
   }
   if (result.converged()) orient(point);
   return result;
@@ -156,9 +153,9 @@ void PathFollower::reverse(PathPoint& point) const {
 }
 
 CondensedSystem::Singularity PathFollower::singularity(const PathPoint& point) {
-  rows_[0] = point.dual;
-  if (condensed_.linearize(point.orbit, rows_, newton_.residual()) == Linearization::not_finite) return {1.0, {}};
-  return condensed_.singularity();
+  row_ = point.dual;
+  if (problem_.linearize(point.orbit, row_, newton_.residual()) == Linearization::not_finite) return {1.0, {}};
+  return condensed().singularity();
 }
 
 }  // namespace tchat

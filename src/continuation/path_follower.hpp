@@ -5,8 +5,7 @@
 /// linearisation, which stay available for multipliers and test functions.
 #pragma once
 
-#include <array>
-#include <optional>
+#include <memory>
 
 #include "bvp/weighted_norm.hpp"
 #include "corrector/newton_chord.hpp"
@@ -22,8 +21,9 @@ struct PathPoint {
 class PathFollower {
  public:
   /// `principal` is the PAR index of the continuation parameter, a free problem parameter or a duration.
+  /// `condition` is the further scalar condition of a two-parameter curve, null for none.
   PathFollower(const DefiningSystem& system, const OrbitShape& shape, WeightedNorm norm, const NewtonSettings& settings,
-               int principal);
+               int principal, std::unique_ptr<OrbitCondition> condition = nullptr);
 
   PathPoint make_point(Orbit orbit) const;
 
@@ -41,13 +41,16 @@ class PathFollower {
   /// Moves the point to a new mesh of the same size: states and tangent are interpolated, the tangent renormalised.
   void change_mesh(PathPoint& point, const std::vector<double>& mesh) const;
   void reverse(PathPoint& point) const;
+  /// Makes the tangent one of unit length and the dual its own.
+  void renormalise(PathPoint& point) const { normalise(point.orbit, point.tangent, point.dual); }
 
   /// Makes condensed() the linearisation at a converged point. False when it is singular.
   bool linearize_at(const PathPoint& point) { return linearize(point.orbit, point.dual); }
 
   /// The linearisation at the last point that start_..., step or linearize_at was given, current to about 1e-10.
-  CondensedSystem& condensed() { return condensed_; }
-  const CondensedSystem& condensed() const { return condensed_; }
+  CondensedSystem& condensed() { return problem_.condensed(); }
+  const CondensedSystem& condensed() const { return problem_.condensed(); }
+  OrbitCondition* condition() { return problem_.condition(); }
   const NewtonChord& newton() const { return newton_; }
   double principal_direction(const OrbitVector& v) const;
   /// Cosine of the angle between the point's tangent and a direction, in the weighted norm.
@@ -67,10 +70,10 @@ class PathFollower {
   const DefiningSystem& system_;
   WeightedNorm norm_;
   int principal_;
-  CondensedSystem condensed_;
+  BorderedProblem problem_;
   NewtonChord newton_;
   NewtonSettings settings_;
-  std::array<OrbitVector, 1> rows_;
+  OrbitVector row_;  // the branch's row of the last linearisation
 };
 
 }  // namespace tchat

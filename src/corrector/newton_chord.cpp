@@ -31,37 +31,34 @@ std::string describe(NewtonStatus status) {
   }
 }
 
-NewtonChord::NewtonChord(CondensedSystem& condensed, const NewtonSettings& settings)
-    : condensed_(condensed),
+NewtonChord::NewtonChord(BorderedProblem& problem, const NewtonSettings& settings)
+    : problem_(problem),
       settings_(settings),
-      dx_(condensed.make_vector()),
-      residual_(condensed.make_residual()),
-      border_(8) {
+      dx_(problem.condensed().make_vector()),
+      residual_(problem.condensed().make_residual()) {
   history_.reserve(static_cast<std::size_t>(settings.max_iterations) + 2);
 }
 
-NewtonResult NewtonChord::correct(Orbit& x, std::span<const OrbitVector> rows, const Orbit& base,
-                                  std::span<const double> targets) {
+NewtonResult NewtonChord::correct(Orbit& x, const OrbitVector& row, const Orbit& base, double target) {
   NewtonResult result;
   history_.clear();
-  const std::vector<int>& free_parameters = condensed_.system().free_parameters();
+  const std::vector<int>& free_parameters = problem_.system().free_parameters();
+  const int full_iterations =
+      problem_.allows_chord() ? std::max(settings_.full_iterations, 1) : settings_.max_iterations;
   double first_change = 0.0;
   for (int iteration = 1; iteration <= settings_.max_iterations; ++iteration) {
-    const bool full = iteration <= std::max(settings_.full_iterations, 1);
-    if (full) {
-      const Linearization outcome = condensed_.linearize(x, rows, residual_);
+    if (iteration <= full_iterations) {
+      const Linearization outcome = problem_.linearize(x, row, residual_);
       if (outcome != Linearization::ready) {
         result.status = outcome == Linearization::singular ? NewtonStatus::singular : NewtonStatus::not_finite;
         return result;
       }
       result.change_since_factorization = 0.0;
     } else {
-      condensed_.evaluate(x, residual_);
+      problem_.evaluate(x, residual_);
     }
-    result.residual = residual_.largest();
-    for (std::size_t r = 0; r < rows.size(); ++r)
-      border_[r] = targets[r] - dot_difference(rows[r], x, base, free_parameters);
-    condensed_.solve(residual_, std::span(border_.data(), rows.size()), dx_);
+    result.residual = problem_.residual_size(residual_);
+    problem_.solve(residual_, target - dot_difference(row, x, base, free_parameters), dx_);
     const Change change = apply(x);
     const double larger = std::max(change.parameters, change.states);
     result.iterations = iteration;
@@ -93,7 +90,7 @@ NewtonResult NewtonChord::correct(Orbit& x, std::span<const OrbitVector> rows, c
 
 /// x += dx; the relative sizes of the correction as AUTO measures them.
 NewtonChord::Change NewtonChord::apply(Orbit& x) const {
-  const std::vector<int>& free_parameters = condensed_.system().free_parameters();
+  const std::vector<int>& free_parameters = problem_.system().free_parameters();
   advance(x, 1.0, dx_, free_parameters);
   Change change{0.0, dx_.states.cwiseAbs().maxCoeff() / (1.0 + x.states.cwiseAbs().maxCoeff())};
   for (int s = 0; s < x.shape.segments; ++s)

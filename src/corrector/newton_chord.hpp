@@ -1,18 +1,19 @@
-/// Newton-chord iteration for an orbit on a border: F(x) = 0 and row_r (x - base) = target_r (5.50-5.55).
+/// Newton-chord iteration for a point of a branch: F(x) = 0, G(x) = 0 if there is a condition, row (x - base) = target
+/// (5.50-5.55).
 ///
 /// The first `full_iterations` (NWTN) iterations use a new Jacobian each, later ones the last one (chord), up to
-/// `max_iterations` (ITNW). Converged when, for the correction just applied,
+/// `max_iterations` (ITNW). With a condition every iteration is a full one. Converged when, for the correction just
+/// applied,
 ///     |dp| / (1 + |p|) <= tolerance_parameters  for durations and free parameters (EPSL), and
 ///     max |du| / (1 + max |u|) < tolerance_states                                (EPSU).
 /// Given up at once when the larger of the two exceeds 20 times its value at the first iteration. Near a branch point
 /// Newton stalls at |du| of the order of the square root of rounding: a residual at rounding level is accepted there.
 #pragma once
 
-#include <span>
 #include <string>
 #include <vector>
 
-#include "bvp/condensed_system.hpp"
+#include "bvp/bordered_problem.hpp"
 
 namespace tchat {
 
@@ -48,10 +49,10 @@ std::string describe(NewtonStatus status);
 class NewtonChord {
  public:
   /// Allocates all work space.
-  NewtonChord(CondensedSystem& condensed, const NewtonSettings& settings);
+  NewtonChord(BorderedProblem& problem, const NewtonSettings& settings);
 
-  /// Corrects x in place. `rows` are the border's dual vectors and `targets` the wanted values of row_r (x - base).
-  NewtonResult correct(Orbit& x, std::span<const OrbitVector> rows, const Orbit& base, std::span<const double> targets);
+  /// Corrects x in place, with the dual vector `row` (x - base) = target.
+  NewtonResult correct(Orbit& x, const OrbitVector& row, const Orbit& base, double target);
 
   const std::vector<NewtonIteration>& history() const { return history_; }
   const OrbitResidual& residual() const { return residual_; }
@@ -64,11 +65,10 @@ class NewtonChord {
   };
   Change apply(Orbit& x) const;
 
-  CondensedSystem& condensed_;
+  BorderedProblem& problem_;
   NewtonSettings settings_;
   OrbitVector dx_;
   OrbitResidual residual_;
-  std::vector<double> border_;
   std::vector<NewtonIteration> history_;
 };
 

@@ -25,6 +25,9 @@ void BlockKernel::use() {
   forward_ = [](const BlockKernel& k, const double* a, int border, const int* swaps, double* rhs) {
     tchat::forward(Choice::sizes(k), a, border, swaps, rhs);
   };
+  forward_transposed_ = [](const BlockKernel& k, const double* a, const int* swaps, double* weights) {
+    tchat::forward_transposed(Choice::sizes(k), a, swaps, weights);
+  };
   backward_ = [](const BlockKernel& k, const double* a, const double* rhs, double* x, int columns) {
     tchat::backward(Choice::sizes(k), a, rhs, x, columns);
   };

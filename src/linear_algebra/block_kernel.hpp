@@ -17,6 +17,9 @@ class BlockKernel {
   void forward(const double* a, int border, const int* swaps, double* rhs) const {
     forward_(*this, a, border, swaps, rhs);
   }
+  void forward_transposed(const double* a, const int* swaps, double* weights) const {
+    forward_transposed_(*this, a, swaps, weights);
+  }
   void backward(const double* a, const double* rhs, double* x, int columns) const {
     backward_(*this, a, rhs, x, columns);
   }
@@ -32,6 +35,7 @@ class BlockKernel {
   int width_;
   bool (*eliminate_)(const BlockKernel&, double*, int, int*);
   void (*forward_)(const BlockKernel&, const double*, int, const int*, double*);
+  void (*forward_transposed_)(const BlockKernel&, const double*, const int*, double*);
   void (*backward_)(const BlockKernel&, const double*, const double*, double*, int);
 };
 

@@ -101,6 +101,18 @@ void forward(const Sizes& sizes, const double* a, int border, const int* swaps, 
   }
 }
 
+/// The transpose of `forward` without border rows: weights of the condensed rows (entries pivots..rows; the first
+/// `pivots` entries are zero) become the weights of the original rows, so that weighted sums agree.
+template <class Sizes>
+void forward_transposed(const Sizes& sizes, const double* a, const int* swaps, double* weights) {
+  const int pivots = sizes.pivots, width = sizes.width;
+  for (int i = sizes.rows - 1; i > 0; --i) {
+    const double* row = a + i * width;
+    for (int k = 0; k < std::min(i, pivots); ++k) weights[k] -= row[k] * weights[i];
+  }
+  for (int k = pivots - 1; k >= 0; --k) std::swap(weights[k], weights[swaps[k]]);
+}
+
 /// Back-substitution: x[0..pivots) from rhs[0..pivots) and the known x[pivots..columns).
 template <class Sizes>
 void backward(const Sizes& sizes, const double* a, const double* rhs, double* x, int columns) {

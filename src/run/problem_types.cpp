@@ -29,8 +29,10 @@ std::unique_ptr<DefiningSystem> make_grazing(const HybridSystem& system, const R
   return std::make_unique<GrazingOrbitSystem>(system, settings.signature(), std::move(free_parameters), grazing);
 }
 
-constexpr std::array<ProblemType, 2> types{{
-    {180, 1, "periodic orbits in one parameter", 1, &make<PeriodicOrbitSystem>},
+constexpr std::array<ProblemType, 3> types{{
+    {180, 1, "periodic orbits in one parameter (ISW = -1: the branch that bifurcates at a PD or BP label)", 1,
+     &make<PeriodicOrbitSystem>},
+    {180, 2, "folds or period doublings of periodic orbits in two parameters", 2, &make<PeriodicOrbitSystem>},
     {150, 1, "periodic orbits in grazing contact, in two parameters", 2, &make_grazing},
 }};
 
@@ -41,9 +43,10 @@ int segment_count(const RunSettings& settings) { return static_cast<int>(setting
 }  // namespace
 
 const ProblemType& problem_type(const RunSettings& settings) {
+  const int mode = settings.branch_mode == -1 ? 1 : settings.branch_mode;
   std::string list;
   for (const ProblemType& type : types) {
-    if (type.number == settings.problem_type && type.branch_mode == settings.branch_mode) return type;
+    if (type.number == settings.problem_type && type.branch_mode == mode) return type;
     list += fmt::format("\n  IPS = {}, ISW = {}: {}", type.number, type.branch_mode, type.name);
   }
   throw UserError(fmt::format("IPS = {} with ISW = {} is not a problem that tchat solves; there are:{}",

@@ -13,7 +13,7 @@
 #include "plugin/exit_guard.hpp"
 #include "plugin/plugin_build.hpp"
 #include "plugin/problem_library.hpp"
-#include "run/branch_start.hpp"
+#include "run/branch_setup.hpp"
 #include "run/branch_writer.hpp"
 #include "run/problem_setup.hpp"
 #include "run/problem_types.hpp"
@@ -64,8 +64,7 @@ int run_problem(const RunRequest& request, std::ostream& screen, std::ostream& w
   RunSettings settings = read_constants_file(constants, &constant_warnings);
   apply_overrides(settings, request.overrides, &constant_warnings);
   warn(constant_warnings);
-  const ProblemType& type = problem_type(settings);
-  const std::vector<int> free_parameters = free_problem_parameters(type, settings);
+  const std::vector<int> free_parameters = free_problem_parameters(problem_type(settings), settings);
 
   // Plugin.
   const std::string plugin = resolve_plugin(request.problem.value_or(request.name));
@@ -73,7 +72,6 @@ int run_problem(const RunRequest& request, std::ostream& screen, std::ostream& w
   const ProblemLibrary library(plugin);
   const HybridSystem& system = library.system();
   warn(check_settings_against(system, settings, constants));
-  const std::unique_ptr<DefiningSystem> defining = type.make(system, settings, free_parameters);
 
   // Start.
   SelectedStart selected = select_start(request, settings, system, free_parameters);
@@ -82,20 +80,21 @@ int run_problem(const RunRequest& request, std::ostream& screen, std::ostream& w
   refuse_to_replace_start(request, selected, output);
   RunFiles files(output, request.append ? RunFiles::Mode::append : RunFiles::Mode::replace);
   files.check_writable();
-  const OrbitShape shape = selected.start.orbit.shape;
-  check_memory(shape, defining->free_count());
 
   // Discretisation and first point.
+  const BranchSetup setup = set_up_branch(system, settings, selected);
+  settings = setup.settings;
+  PathFollower& follower = *setup.follower;
   ContinuationSettings continuation = continuation_settings(settings);
-  PathFollower follower(*defining, shape, weighted_norm(settings), newton_settings(settings), continuation.principal);
-  const FirstPoint start = first_point(follower, *defining, selected, settings);
 
   // Files are touched only now.
   files.open(positional_text(settings));
   std::ostream* table = request.quiet ? nullptr : &screen;
   const int last_label = request.append ? std::max(files.last_label(), 0) : selected.last_label;
-  BranchWriter writer(system, follower.condensed().rule(),
-                      {settings, active_parameters(type, settings), 0, selected.branch, last_label}, files, table);
+  BranchWriter writer(
+      system, follower.condensed().rule(),
+      {settings, active_parameters(problem_type(settings), settings), setup.curve_type, selected.branch, last_label},
+      files, table);
   continuation.label_start = selected.label_start;
   continuation.interrupted = interrupted;
 
@@ -110,10 +109,11 @@ int run_problem(const RunRequest& request, std::ostream& screen, std::ostream& w
     }
     continuation.stop_at = make_stop_rule(settings);
     writer.begin_section(
-        {branch, continuation.step.initial, direction == 0 ? start.correction : std::vector<NewtonIteration>{}});
+        {branch, continuation.step.initial, direction == 0 ? setup.start.correction : std::vector<NewtonIteration>{}});
     const std::size_t labels_before = writer.labels().size();
-    ContinuationRun run(follower, *defining, continuation, select_tests(*defining, settings), writer);
-    const BranchSummary summary = run.run(start.point);
+    ContinuationRun run(follower, *setup.defining, continuation,
+                        select_tests(*setup.defining, settings, follower.condition(), setup.curve_type), writer);
+    const BranchSummary summary = run.run(setup.start.point);
     const std::vector<BranchWriter::Labelled> labels(
         writer.labels().begin() + static_cast<std::ptrdiff_t>(labels_before), writer.labels().end());
     if (table != nullptr)

@@ -85,6 +85,9 @@ SelectedStart start_from_solution(const std::string& path, const RunSettings& se
   selected.branch = std::max(solution.branch, 1);
   selected.last_label = file.last_label;
   selected.problem_type = solution.problem_type;
+  selected.label = solution.label;
+  selected.type = solution.type;
+  selected.kind = solution.kind;
   selected.warnings = file.warnings;
   return selected;
 }

@@ -6,6 +6,7 @@
 #include "run/problem_setup.hpp"
 #include "special_points/bifurcation_tests.hpp"
 #include "special_points/contact_test.hpp"
+#include "special_points/curve_tests.hpp"
 #include "special_points/grazing_curve_tests.hpp"
 #include "special_points/user_value_test.hpp"
 
@@ -49,6 +50,12 @@ void add_contacts(Tests& tests, const DefiningSystem& system, const RunSettings&
         tests.push_back(std::make_unique<ContactTest>(system, s, event, settings.stop_at_grazing));
 }
 
+void add_codimension_two(Tests& tests, const CriticalMultiplier& condition, int curve_type) {
+  const bool fold = curve_type == static_cast<int>(PointType::fold);
+  if (fold) tests.push_back(std::make_unique<CuspTest>(condition));
+  tests.push_back(std::make_unique<ResonanceTest>(condition, fold ? PointType::resonance_1 : PointType::resonance_2));
+}
+
 /// On a grazing curve: xi_n by GCIPSI, branch points, multipliers +1 and -1 of the smooth orbit, impact velocities of
 /// the other segments. A fold in the principal parameter means nothing there.
 Tests tests_on_grazing_curve(const GrazingOrbitSystem& system, const RunSettings& settings) {
@@ -66,14 +73,18 @@ Tests tests_on_grazing_curve(const GrazingOrbitSystem& system, const RunSettings
 
 }  // namespace
 
-std::vector<std::unique_ptr<TestFunction>> select_tests(const DefiningSystem& system, const RunSettings& settings) {
+std::vector<std::unique_ptr<TestFunction>> select_tests(const DefiningSystem& system, const RunSettings& settings,
+                                                        OrbitCondition* condition, int curve_type) {
   if (const auto* grazing = dynamic_cast<const GrazingOrbitSystem*>(&system))
     return tests_on_grazing_curve(*grazing, settings);
   Tests tests;
   add_user_values(tests, system.system(), settings);
   add_contacts(tests, system, settings);
   add_impact_velocities(tests, system, settings);
-  add_bifurcations(tests, system, settings);
+  if (const auto* critical = dynamic_cast<const CriticalMultiplier*>(condition))
+    add_codimension_two(tests, *critical, curve_type);
+  else
+    add_bifurcations(tests, system, settings);
   return tests;
 }
 

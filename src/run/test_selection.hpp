@@ -4,12 +4,14 @@
 #include <memory>
 #include <vector>
 
-#include "bvp/defining_system.hpp"
+#include "bvp/bordered_problem.hpp"
 #include "constants/run_settings.hpp"
 #include "special_points/test_function.hpp"
 
 namespace tchat {
 
-std::vector<std::unique_ptr<TestFunction>> select_tests(const DefiningSystem& system, const RunSettings& settings);
+/// `condition` is that of a two-parameter curve, null for none; `curve_type` as in BranchSetup.
+std::vector<std::unique_ptr<TestFunction>> select_tests(const DefiningSystem& system, const RunSettings& settings,
+                                                        OrbitCondition* condition, int curve_type);
 
 }  // namespace tchat

@@ -16,7 +16,10 @@ enum class PointType {
   period_doubling = 7,
   torus = 8,
   end = 9,
-  no_convergence = -9
+  no_convergence = -9,
+  cusp = -2,         ///< on fold curves
+  resonance_1 = -5,  ///< 1:1, on fold curves
+  resonance_2 = -6   ///< 1:2, on period-doubling curves
 };
 
 /// What a UZ label is: the last PAR entries of a q-file entry (NPARI = 4 internal values).

@@ -1,0 +1,62 @@
+/// The square problem that Newton's method solves for a point of a branch: the defining system, at most one scalar
+/// condition on the whole orbit (a critical multiplier), and one row of the branch (pseudo-arclength, or a fixed
+/// parameter).
+///
+///     J dx = -F,    grad G . dx = -G,    row . dx = target                 (n m N c + ... + m + q equations)
+///
+/// The gradient of G is known only after J has been condensed. So J is condensed with a stand-in for it, the gradient
+/// of the last linearisation, and the true gradient enters by a rank-one correction: one more solution of the same
+/// factors.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "bvp/condensed_system.hpp"
+
+namespace tchat {
+
+/// A scalar G of the orbit, durations and free parameters with its gradient.
+class OrbitCondition {
+ public:
+  virtual ~OrbitCondition() = default;
+  /// G and its gradient at x, whose linearisation is in `condensed`. False when they cannot be found.
+  virtual bool evaluate(CondensedSystem& condensed, const Orbit& x) = 0;
+  virtual double value() const = 0;
+  virtual const OrbitVector& gradient() const = 0;
+};
+
+class BorderedProblem {
+ public:
+  /// `condition` may be null. The defining system must outlive this object; it has m + q = E + 1 end conditions, or
+  /// E + 2 with a condition.
+  BorderedProblem(const DefiningSystem& system, const OrbitShape& shape, std::unique_ptr<OrbitCondition> condition);
+
+  CondensedSystem& condensed() { return condensed_; }
+  const CondensedSystem& condensed() const { return condensed_; }
+  const DefiningSystem& system() const { return condensed_.system(); }
+  OrbitCondition* condition() { return condition_.get(); }
+
+  /// Old factors may be used for another point: not with a condition, whose value comes with the factors.
+  bool allows_chord() const { return condition_ == nullptr; }
+
+  Linearization linearize(const Orbit& x, const OrbitVector& row, OrbitResidual& residual);
+  void evaluate(const Orbit& x, OrbitResidual& residual) { condensed_.evaluate(x, residual); }
+  /// Newton's correction: all conditions to zero, row . dx = target.
+  void solve(const OrbitResidual& residual, double target, OrbitVector& dx);
+  /// All conditions unchanged, row . dx = target.
+  void solve(double target, OrbitVector& dx);
+  /// Largest residual, the condition's included.
+  double residual_size(const OrbitResidual& residual) const;
+
+ private:
+  void correct(double condition_target, OrbitVector& dx) const;
+
+  CondensedSystem condensed_;
+  std::unique_ptr<OrbitCondition> condition_;
+  std::vector<OrbitVector> rows_;  // the branch's row and the stand-in for the gradient
+  OrbitVector response_;           // solution for a unit in the stand-in's row
+  double response_slope_ = 1.0;    // grad G . response
+};
+
+}  // namespace tchat

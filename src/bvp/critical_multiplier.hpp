@@ -1,0 +1,66 @@
+/// Defining condition of fold and period-doubling curves: the orbit has the multiplier mu = +1 or -1 (5.11-5.22).
+///
+/// The augmented hybrid system asks for v with v' = T f_x v + sigma f on each segment, h_x v_s(1) = 0,
+/// v_{s+1}(0) = g_x v_s(1) and mu v_1(0) = g_x v_m(1) at the end: sigma_s, the change of the duration, replaces the
+/// division by h_x f of (5.13), so that nothing is singular at grazing. Instead of continuing v as n m further
+/// functions, G(x) is the bordered solution of the same linear problem condensed to the ends of segments,
+///
+///     [ S  b ] [v]   [0]          [ S^T  c ] [w]   [0]
+///     [ c' 0 ] [G] = [1],         [ b'   0 ] [G] = [1],            G = 0 exactly when S is singular,
+///
+/// and its gradient is -w^T (dS) v, where dS comes from second derivatives of f, h and g along the extended vectors.
+/// S shares the condensed blocks of the Newton matrix: a curve costs one more small sparse factorisation, two solutions
+/// and one sweep of second derivatives for each Newton matrix.
+#pragma once
+
+#include <optional>
+
+#include "bvp/bordered_problem.hpp"
+
+namespace tchat {
+
+class CriticalMultiplier final : public OrbitCondition {
+ public:
+  /// `multiplier` is 1 or -1.
+  CriticalMultiplier(const DefiningSystem& system, const OrbitShape& shape, int multiplier);
+
+  bool evaluate(CondensedSystem& condensed, const Orbit& x) override;
+  double value() const override { return value_; }
+  const OrbitVector& gradient() const override { return gradient_; }
+
+  /// The null vector v with the sigma_s as durations, of unit size at the ends of segments.
+  const OrbitVector& null_vector() const { return v_; }
+  /// w_1(0)-row times v_1(0): zero where the multiplier is a double one (1:1 and 1:2 resonance).
+  double multiplicity_function() const { return multiplicity_; }
+  /// dG in the direction of the null vector: zero at a cusp of a fold curve.
+  double cusp_function() const { return dot(gradient_, v_); }
+
+ private:
+  std::size_t at(int s) const { return static_cast<std::size_t>(s * (2 * n_ + 1)); }
+  void assemble(const CondensedSystem& condensed, const Orbit& x);
+  bool solve_bordered();
+  void differentiate(CondensedSystem& condensed, const Orbit& x);
+  void add_interval(const CondensedSystem& condensed, const Orbit& x, int s, int j, const double* weights);
+  void add_ends(const Orbit& x, int s, const double* weights);
+
+  const DefiningSystem& system_;
+  OrbitShape shape_;
+  int n_;
+  int size_;  // of S: m (2n + 1)
+  int multiplier_;
+  SparseLu lu_;  // of the bordered S
+  std::vector<double> values_;
+  std::vector<double> column_;  // b
+  std::vector<double> row_;     // c
+  std::vector<double> small_v_;
+  std::vector<double> small_w_;
+  std::vector<double> rhs_;
+  bool started_ = false;
+  double value_ = 0.0;
+  double multiplicity_ = 0.0;
+  OrbitVector v_;
+  OrbitVector gradient_;
+  std::vector<double> collocation_weights_;
+};
+
+}  // namespace tchat

@@ -1,0 +1,123 @@
+#include "run/branch_switch.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "bvp/critical_multiplier.hpp"
+#include "constants/user_error.hpp"
+#include "run/problem_setup.hpp"
+#include "start/point_type.hpp"
+
+namespace tchat {
+
+namespace {
+
+/// The orbit where the branch bifurcates and the direction of the new branch there.
+struct Bifurcation {
+  Orbit orbit;
+  OrbitVector direction;
+};
+
+RunSettings once(RunSettings settings) {
+  settings.branch_mode = 1;
+  return settings;
+}
+
+RunSettings doubled(RunSettings settings) {
+  const std::size_t m = settings.segments.size();
+  if (2 * m > static_cast<std::size_t>(max_segments))
+    throw UserError(fmt::format("the doubled orbit has {} segments, at most {} are allowed", 2 * m, max_segments));
+  const std::vector<SegmentSettings> segments = settings.segments;
+  settings.segments.insert(settings.segments.end(), segments.begin(), segments.end());
+  // The k-th monitored event of the first half is watched in the second half too.
+  int monitored = 0;
+  for (const SegmentSettings& segment : segments) monitored += static_cast<int>(segment.monitor.size());
+  const std::vector<int> tests = settings.test_functions;
+  for (const int k : tests) settings.test_functions.push_back(k + monitored);
+  return settings;
+}
+
+std::unique_ptr<DefiningSystem> make_system(const HybridSystem& system, const RunSettings& settings) {
+  const ProblemType& type = problem_type(settings);
+  return type.make(system, settings, free_problem_parameters(type, settings));
+}
+
+std::unique_ptr<PathFollower> make_follower(const DefiningSystem& defining, const OrbitShape& shape,
+                                            const RunSettings& settings) {
+  return std::make_unique<PathFollower>(defining, shape, weighted_norm(settings), newton_settings(settings),
+                                        settings.free_parameters.front());
+}
+
+/// The orbit twice over; the critical vector changes sign after one period (5.21).
+Bifurcation double_at(PathFollower& follower, const DefiningSystem& defining, const PathPoint& point) {
+  const Orbit& x = point.orbit;
+  CriticalMultiplier critical(defining, x.shape, -1);
+  if (!critical.evaluate(follower.condensed(), x))
+    throw ComputationError("the critical vector of the period doubling was not found");
+  const OrbitVector& v = critical.null_vector();
+  OrbitShape shape = x.shape;
+  shape.segments *= 2;
+  Bifurcation result{{shape, x.mesh, Eigen::MatrixXd(shape.dimension, shape.columns()), x.par},
+                     OrbitVector(shape, defining.free_count())};
+  const int m = x.shape.segments;
+  result.orbit.states << x.states, x.states;
+  result.direction.states << v.states, -v.states;
+  result.direction.durations << v.durations, -v.durations;
+  for (int s = 0; s < m; ++s) result.orbit.duration(m + s) = x.duration(s);
+  return result;
+}
+
+/// The null vector of the problem bordered by the tangent of the known branch: any right-hand side brings it out of the
+/// nearly singular matrix.
+Bifurcation branch_at(PathFollower& follower, const PathPoint& point) {
+  CondensedSystem& condensed = follower.condensed();
+  OrbitResidual residual = condensed.make_residual();
+  for (std::size_t i = 0; i < residual.collocation.size(); ++i)
+    residual.collocation[i] = std::sin(1.0 + 0.83 * static_cast<double>(i));
+  for (std::size_t i = 0; i < residual.connection.size(); ++i)
+    residual.connection[i] = std::cos(0.4 + 1.7 * static_cast<double>(i));
+  OrbitVector v = condensed.make_vector();
+  condensed.solve(residual, std::vector<double>{0.0}, v);
+  return {point.orbit, v};
+}
+
+}  // namespace
+
+BranchSetup switch_branch(const HybridSystem& system, const RunSettings& settings, const SelectedStart& selected) {
+  const int type = std::abs(selected.type) % 10;
+  const bool doubling = selected.from_solution && type == static_cast<int>(PointType::period_doubling);
+  if (!doubling && !(selected.from_solution && type == static_cast<int>(PointType::branch_point)))
+    throw UserError(
+        fmt::format("{}: ISW = -1 switches at a period doubling (PD) or a branch point (BP), but the run does "
+                    "not start from such a label; name one, for example IRS=PD1",
+                    selected.source));
+
+  const RunSettings before = once(settings);
+  const std::unique_ptr<DefiningSystem> known = make_system(system, before);
+  const OrbitShape& shape = selected.start.orbit.shape;
+  const std::unique_ptr<PathFollower> along_known = make_follower(*known, shape, before);
+  const FirstPoint at = first_point(*along_known, *known, selected, before);
+  along_known->linearize_at(at.point);
+  const Bifurcation bifurcation =
+      doubling ? double_at(*along_known, *known, at.point) : branch_at(*along_known, at.point);
+
+  BranchSetup setup{doubling ? doubled(before) : before, nullptr, nullptr, {}, 0};
+  setup.defining = make_system(system, setup.settings);
+  check_memory(bifurcation.orbit.shape, setup.defining->free_count());
+  setup.follower = make_follower(*setup.defining, bifurcation.orbit.shape, setup.settings);
+  PathPoint from = setup.follower->make_point(bifurcation.orbit);
+  from.tangent = bifurcation.direction;
+  setup.follower->renormalise(from);
+  PathPoint first = from;
+  StepSize step(continuation_settings(settings).step);
+  NewtonResult result = setup.follower->step(from, step.value(), first);
+  while (!result.converged() && step.failed()) result = setup.follower->step(from, step.value(), first);
+  if (!result.converged())
+    throw ComputationError(fmt::format("no step onto the branch that bifurcates at label {} of {}: {}; try another DS",
+                                       selected.label, selected.source, describe(result.status)));
+  setup.start = {std::move(first), setup.follower->newton().history()};
+  return setup;
+}
+
+}  // namespace tchat

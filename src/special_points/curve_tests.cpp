@@ -1,0 +1,17 @@
+#include "special_points/curve_tests.hpp"
+
+#include <cmath>
+
+namespace tchat {
+
+std::optional<double> ResonanceTest::value(const TestedPoint& point) const {
+  constexpr double grazing_level = 1e-6;
+  double result = condition_.multiplicity_function();
+  for (const double a : point.transversalities) {
+    if (std::abs(a) < grazing_level) return std::nullopt;
+    result *= a;
+  }
+  return result;
+}
+
+}  // namespace tchat

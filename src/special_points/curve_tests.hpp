@@ -1,0 +1,39 @@
+/// Codimension-two points on fold and period-doubling curves: cusp, 1:1 and 1:2 resonance.
+#pragma once
+
+#include "bvp/critical_multiplier.hpp"
+#include "special_points/test_function.hpp"
+
+namespace tchat {
+
+/// The curve's null vector and the gradient of its condition are orthogonal: a cusp of a fold curve.
+class CuspTest final : public TestFunction {
+ public:
+  /// The condition belongs to the follower; it is current wherever a test function is evaluated.
+  explicit CuspTest(const CriticalMultiplier& condition) : condition_(condition) {}
+  std::string name() const override { return "cusp"; }
+  std::optional<double> value(const TestedPoint&) const override { return condition_.cusp_function(); }
+  double zero_level(const TestedPoint&) const override { return 1e-9; }
+  SpecialPoint classify(const TestedPoint&, bool) const override { return {PointType::cusp, {}, false, "cusp"}; }
+
+ private:
+  const CriticalMultiplier& condition_;
+};
+
+/// The critical multiplier is a double one: 1:1 resonance on fold curves, 1:2 on period-doubling curves. The
+/// condition's function goes through zero with every a_s, which says nothing of the kind: it is multiplied by them once
+/// more, and undefined where one is about zero.
+class ResonanceTest final : public TestFunction {
+ public:
+  ResonanceTest(const CriticalMultiplier& condition, PointType type) : condition_(condition), type_(type) {}
+  std::string name() const override { return type_ == PointType::resonance_1 ? "1:1 resonance" : "1:2 resonance"; }
+  std::optional<double> value(const TestedPoint& point) const override;
+  double zero_level(const TestedPoint&) const override { return 1e-9; }
+  SpecialPoint classify(const TestedPoint&, bool) const override { return {type_, {}, false, name()}; }
+
+ private:
+  const CriticalMultiplier& condition_;
+  PointType type_;
+};
+
+}  // namespace tchat
