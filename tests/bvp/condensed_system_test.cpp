@@ -1,0 +1,169 @@
+// The condensed linearisation against finite differences of the residual and against the integrated flow.
+#include <Eigen/Dense>
+#include <catch2/catch.hpp>
+#include <random>
+
+#include "bvp/condensed_system.hpp"
+#include "bvp/periodic_orbit_system.hpp"
+#include "support/linear_oscillator.hpp"
+#include "support/three_modes.hpp"
+
+using namespace tchat;
+using namespace tchat::test;
+
+namespace {
+
+OrbitVector random_vector(const CondensedSystem& condensed, unsigned seed) {
+  std::mt19937 generator(seed);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  OrbitVector v = condensed.make_vector();
+  for (double& entry : v.states.reshaped()) entry = uniform(generator);
+  for (double& entry : v.durations) entry = uniform(generator);
+  for (double& entry : v.globals) entry = uniform(generator);
+  return v;
+}
+
+/// dF/d(step along v) by central differences of fourth order.
+OrbitResidual directional_derivative(CondensedSystem& condensed, const Orbit& x, const OrbitVector& v) {
+  const double h = 1e-3;
+  OrbitResidual sum = condensed.make_residual(), part = condensed.make_residual();
+  const auto add = [&](double at, double weight) {
+    Orbit moved = x;
+    advance(moved, at, v, condensed.system().free_parameters());
+    condensed.evaluate(moved, part);
+    for (std::size_t i = 0; i < part.collocation.size(); ++i) sum.collocation[i] += weight * part.collocation[i];
+    for (std::size_t i = 0; i < part.end.size(); ++i) sum.end[i] += weight * part.end[i];
+    for (std::size_t i = 0; i < part.connection.size(); ++i) sum.connection[i] += weight * part.connection[i];
+  };
+  add(h, 8 / (12 * h)), add(-h, -8 / (12 * h)), add(2 * h, -1 / (12 * h)), add(-2 * h, 1 / (12 * h));
+  return sum;
+}
+
+void negate(OrbitResidual& r) {
+  for (std::vector<double>* part : {&r.collocation, &r.end, &r.connection})
+    for (double& entry : *part) entry = -entry;
+}
+
+double largest_difference(const OrbitVector& a, const OrbitVector& b) {
+  return std::max({(a.states - b.states).cwiseAbs().maxCoeff(), (a.durations - b.durations).cwiseAbs().maxCoeff(),
+                   (a.globals - b.globals).cwiseAbs().maxCoeff()});
+}
+
+/// An orbit that solves nothing: smooth states of size 1, uneven mesh.
+Orbit any_orbit(const OrbitShape& shape, const ParameterVector& par) {
+  Orbit x{shape, uniform_mesh(shape.intervals), Eigen::MatrixXd(shape.dimension, shape.columns()), par};
+  for (std::size_t j = 1; j + 1 < x.mesh.size(); ++j) x.mesh[j] = std::pow(x.mesh[j], 1.3);
+  for (Eigen::Index k = 0; k < x.states.cols(); ++k)
+    for (Eigen::Index i = 0; i < x.states.rows(); ++i)
+      x.states(i, k) = std::sin(0.3 + 0.9 * static_cast<double>(i) + 0.11 * static_cast<double>(k));
+  for (int s = 0; s < shape.segments; ++s) x.duration(s) = 0.7 + 0.2 * s;
+  return x;
+}
+
+struct Case {
+  int intervals, collocation;
+  std::vector<int> free_parameters;
+};
+
+}  // namespace
+
+TEST_CASE("solving with the differences of the residual along a direction gives the direction back") {
+  // N = 1 has no chain; two free parameters need two border rows; c = 6 has no compiled-in kernel.
+  const Case c = GENERATE(Case{1, 3, {1}}, Case{2, 2, {2}}, Case{7, 4, {1}}, Case{5, 6, {2, 1}}, Case{3, 7, {1, 2}});
+  CAPTURE(c.intervals, c.collocation, c.free_parameters.size());
+  const PeriodicOrbitSystem system(system_of<ThreeModes>(), ThreeModes::signature(), c.free_parameters);
+  const OrbitShape shape{3, 3, c.intervals, c.collocation};
+  const Orbit x = any_orbit(shape, ThreeModes::par());
+  CondensedSystem condensed(system, shape, static_cast<int>(c.free_parameters.size()));
+  std::vector<OrbitVector> rows;
+  std::vector<double> border;
+  const OrbitVector v = random_vector(condensed, 1);
+  for (unsigned b = 0; b < c.free_parameters.size(); ++b) {
+    rows.push_back(random_vector(condensed, 10 + b));
+    border.push_back(dot(rows.back(), v));
+  }
+  OrbitResidual residual = condensed.make_residual(), evaluated = condensed.make_residual();
+  REQUIRE(condensed.linearize(x, rows, residual) == Linearization::ready);
+  condensed.evaluate(x, evaluated);
+  CHECK(residual.collocation == evaluated.collocation);
+  CHECK(residual.end == evaluated.end);
+  CHECK(residual.connection == evaluated.connection);
+
+  OrbitResidual change = directional_derivative(condensed, x, v);
+  negate(change);
+  OrbitVector found = condensed.make_vector();
+  condensed.solve(change, border, found);
+  // Differences are accurate to 1e-10; the condition of these matrices is below 1e4.
+  CHECK(largest_difference(found, v) < 1e-6);
+}
+
+TEST_CASE("solving with zero residual: the border's answer is linear in the border and annihilated by J") {
+  const PeriodicOrbitSystem system(system_of<ThreeModes>(), ThreeModes::signature(), {1});
+  const OrbitShape shape{3, 3, 6, 4};
+  const Orbit x = any_orbit(shape, ThreeModes::par());
+  CondensedSystem condensed(system, shape, 1);
+  const std::vector<OrbitVector> rows{random_vector(condensed, 3)};
+  OrbitResidual residual = condensed.make_residual();
+  REQUIRE(condensed.linearize(x, rows, residual) == Linearization::ready);
+  OrbitVector one = condensed.make_vector(), two = condensed.make_vector();
+  condensed.solve(std::vector<double>{1.0}, one);
+  condensed.solve(std::vector<double>{2.0}, two);
+  CHECK(dot(rows[0], one) == Approx(1.0).epsilon(1e-9));
+  one.scale(2.0);
+  CHECK(largest_difference(one, two) < 1e-12 * two.states.cwiseAbs().maxCoeff());
+  one.scale(0.5 / one.states.cwiseAbs().maxCoeff());
+  CHECK(directional_derivative(condensed, x, one).largest() < 1e-9);
+}
+
+TEST_CASE("the determinant's sign follows the border and is comparable between neighbouring orbits") {
+  const PeriodicOrbitSystem system(system_of<ThreeModes>(), ThreeModes::signature(), {1});
+  const OrbitShape shape{3, 3, 6, 4};
+  Orbit x = any_orbit(shape, ThreeModes::par());
+  CondensedSystem condensed(system, shape, 1);
+  std::vector<OrbitVector> rows{random_vector(condensed, 3)};
+  OrbitResidual residual = condensed.make_residual();
+  REQUIRE(condensed.linearize(x, rows, residual) == Linearization::ready);
+  const int sign = condensed.determinant().sign;
+  CHECK(std::abs(sign) == 1);
+  advance(x, 1e-6, random_vector(condensed, 4), system.free_parameters());
+  REQUIRE(condensed.linearize(x, rows, residual) == Linearization::ready);
+  CHECK(condensed.determinant().sign == sign);
+  rows[0].scale(-1.0);
+  REQUIRE(condensed.linearize(x, rows, residual) == Linearization::ready);
+  CHECK(condensed.determinant().sign == -sign);
+}
+
+TEST_CASE("segment blocks are the flow Jacobian: A + C Phi = 0") {
+  const ParameterVector par = ThreeModes::par();
+  const PeriodicOrbit reference = ThreeModes::orbit(par);
+  REQUIRE(reference.converged);
+  const PeriodicOrbitSystem system(system_of<ThreeModes>(), ThreeModes::signature(), {1});
+  const Orbit x =
+      sampled_orbit(pieces_of(system_of<ThreeModes>(), ThreeModes::signature(), reference.map, par), 3, 30, 4, par);
+  CondensedSystem condensed(system, x.shape, 1);
+  const std::vector<OrbitVector> rows{random_vector(condensed, 3)};
+  OrbitResidual residual = condensed.make_residual();
+  REQUIRE(condensed.linearize(x, rows, residual) == Linearization::ready);
+  using Block = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>;
+  for (int s = 0; s < 3; ++s) {
+    const Eigen::Matrix3d first = Block(condensed.first_block(s)), last = Block(condensed.last_block(s));
+    const Eigen::Matrix3d flow = -last.partialPivLu().solve(first);
+    CHECK((flow - reference.map.segments[static_cast<std::size_t>(s)].flow_jacobian).cwiseAbs().maxCoeff() < 1e-9);
+  }
+}
+
+TEST_CASE("a residual that is not finite is said to be so, and linearize refuses it") {
+  const PeriodicOrbitSystem system(linosc(), {{1, 1, 1}}, {1});
+  const OrbitShape shape{4, 1, 5, 4};
+  Orbit x = any_orbit(shape, parameters({3.0, 2.0, 0.05, 0.8}));
+  CondensedSystem condensed(system, shape, 1);
+  const std::vector<OrbitVector> rows{random_vector(condensed, 3)};
+  OrbitResidual residual = condensed.make_residual();
+  x.states(2, 7) = NAN;
+  condensed.evaluate(x, residual);
+  CHECK_FALSE(residual.finite());
+  CHECK(condensed.linearize(x, rows, residual) == Linearization::not_finite);
+  x.states(2, 7) = 0.1;
+  CHECK(condensed.linearize(x, rows, residual) == Linearization::ready);
+  CHECK(residual.finite());
+}

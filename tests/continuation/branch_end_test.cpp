@@ -1,0 +1,146 @@
+// How branches end, and which points are labelled.
+#include <catch2/catch.hpp>
+
+#include "special_points/user_value_test.hpp"
+#include "support/branch_fixture.hpp"
+#include "support/linear_oscillator.hpp"
+
+using namespace tchat;
+using namespace tchat::test;
+using Catch::Matchers::Contains;
+
+namespace {
+
+/// The impacting branch at omega = 2.0072 from v = 0.5, alpha growing.
+struct Branch {
+  PeriodicOrbits orbits{linosc(), {{1, 1, 1}}, 1, {4, 1, 30, 4}};
+  ContinuationSettings settings = branch_settings({4, 1, 30, 4}, 1, 0.05, 0.2, 12);
+  std::vector<std::unique_ptr<TestFunction>> tests;
+  KeepingSink sink;
+
+  BranchSummary run() {
+    const OscillatorOrbit orbit = one_impact_orbit(2.0072, 0.5);
+    const PathPoint point =
+        orbits.corrected(sampled_orbit({orbit.piece(0, orbit.constants.period())}, 4, 30, 4, orbit.par()));
+    REQUIRE(orbits.result.converged());
+    ContinuationRun continuation(orbits.follower, orbits.system, settings, std::move(tests), sink);
+    return continuation.run(point);
+  }
+  std::vector<int> labelled() const {
+    std::vector<int> numbers;
+    for (const KeptPoint& p : sink.points)
+      if (p.special.type != PointType::ordinary) numbers.push_back(p.number);
+    return numbers;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("a branch ends after NMX points, the first and the last labelled EP, every NPR-th labelled") {
+  Branch branch;
+  branch.settings.print_every = 4;
+  const BranchSummary summary = branch.run();
+  CHECK(summary.reason == EndReason::max_points);
+  CHECK(summary.points == 12);
+  CHECK(branch.labelled() == std::vector<int>{1, 4, 8, 12});
+  CHECK(branch.sink.points.front().special.type == PointType::end);
+  CHECK(branch.sink.points[3].special.type == PointType::regular);
+  CHECK(branch.sink.points.back().special.type == PointType::end);
+  for (std::size_t k = 0; k < branch.sink.points.size(); ++k)
+    CHECK(branch.sink.points[k].number == static_cast<int>(k) + 1);
+}
+
+TEST_CASE("a restart does not label its first point again") {
+  Branch branch;
+  branch.settings.label_start = false;
+  branch.run();
+  CHECK(branch.labelled() == std::vector<int>{12});
+}
+
+TEST_CASE("bounds on the parameter and on the measure end a branch at the first point beyond") {
+  Branch by_parameter;
+  by_parameter.settings.parameter_max = 3.06;
+  CHECK(by_parameter.run().reason == EndReason::parameter_bound);
+  const std::vector<KeptPoint>& points = by_parameter.sink.points;
+  CHECK(points.back().orbit.par(0) > 3.06);
+  CHECK(points[points.size() - 2].orbit.par(0) <= 3.06);
+
+  Branch by_measure;
+  by_measure.settings.measure = 2;  // max x2
+  by_measure.settings.measure_max = 2.2;
+  by_measure.settings.max_points = 60;
+  CHECK(by_measure.run().reason == EndReason::measure_bound);
+  CHECK(by_measure.sink.points.back().measure > 2.2);
+}
+
+TEST_CASE("a stop condition, a user value that stops, an interruption") {
+  Branch stopped;
+  stopped.tests.push_back(std::make_unique<UserValueTest>(1, 3.05, false, "alpha"));
+  stopped.tests.push_back(std::make_unique<UserValueTest>(1, 3.055, true, "alpha"));
+  stopped.settings.max_points = 100;
+  CHECK(stopped.run().reason == EndReason::special_point);
+  REQUIRE(stopped.labelled().size() == 3);
+  const KeptPoint& first = stopped.sink.points[static_cast<std::size_t>(stopped.labelled()[1] - 1)];
+  CHECK(first.special.type == PointType::user);
+  CHECK(first.orbit.par(0) == Approx(3.05).epsilon(1e-7));
+  CHECK(stopped.sink.points.back().orbit.par(0) == Approx(3.055).epsilon(1e-7));
+
+  Branch counted;
+  counted.tests.push_back(std::make_unique<UserValueTest>(1, 3.05, false, "alpha"));
+  counted.settings.stop_at = [](const SpecialPoint& special) { return special.type == PointType::user; };
+  CHECK(counted.run().reason == EndReason::special_point);
+
+  Branch interrupted;
+  interrupted.settings.interrupted = [&] { return interrupted.sink.points.size() >= 4; };
+  const BranchSummary summary = interrupted.run();
+  CHECK(summary.reason == EndReason::interrupted);
+  CHECK(summary.points == 5);
+  CHECK(interrupted.sink.points.back().special.type == PointType::end);
+}
+
+TEST_CASE("two user values within one step are both found, in the order of the branch") {
+  Branch branch;
+  branch.settings.step.initial = 0.2;
+  branch.tests.push_back(std::make_unique<UserValueTest>(1, 3.0530, false, "alpha"));
+  branch.tests.push_back(std::make_unique<UserValueTest>(1, 3.0525, false, "alpha"));
+  branch.run();
+  std::vector<double> found;
+  for (const KeptPoint& p : branch.sink.points)
+    if (p.special.type == PointType::user) found.push_back(p.orbit.par(0));
+  REQUIRE(found.size() == 2);
+  CHECK(found[0] == Approx(3.0525).epsilon(1e-8));
+  CHECK(found[1] == Approx(3.0530).epsilon(1e-8));
+}
+
+TEST_CASE("no convergence ends a branch with MX and says what was tried") {
+  Branch branch;
+  branch.settings.step.initial = 0.05;
+  branch.settings.step.maximum = 1e6;
+  branch.settings.step.adapt_every = 0;
+  branch.settings.step.initial = 1e5;  // no orbit of this signature is anywhere near
+  const BranchSummary summary = branch.run();
+  CHECK(summary.reason == EndReason::first_step_failed);
+  CHECK_FALSE(summary.detail.empty());
+  CHECK(branch.sink.points.back().special.type == PointType::no_convergence);
+  REQUIRE_FALSE(branch.sink.notes.empty());
+  CHECK_THAT(branch.sink.notes.back(), Contains("fixed step size"));
+}
+
+TEST_CASE("the summary counts unstable and inadmissible points") {
+  Branch branch;
+  branch.settings.step.initial = -0.05;
+  branch.settings.monitored = {{1}};
+  branch.settings.max_points = 30;
+  const BranchSummary summary = branch.run();
+  int unstable = 0, inadmissible = 0;
+  for (const KeptPoint& p : branch.sink.points) {
+    const double v = p.orbit.end(0)[1];
+    unstable += !p.multipliers.stable();
+    inadmissible += v < -1e-9;
+  }
+  CHECK(summary.unstable_points == unstable);
+  CHECK(summary.inadmissible_points == inadmissible);
+  CHECK(inadmissible > 0);
+  CHECK(unstable > 0);
+  CHECK(summary.worst_structural < 1e-6);
+}

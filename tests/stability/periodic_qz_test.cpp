@@ -1,0 +1,190 @@
+// The periodic QZ algorithm alone: random products, factors with known eigenvalues, singular factors.
+#include <Eigen/Dense>
+#include <catch2/catch.hpp>
+#include <random>
+
+#include "stability/periodic_qz.hpp"
+#include "support/multiplier_sets.hpp"
+
+using namespace tchat;
+using namespace tchat::test;
+using Eigen::MatrixXd;
+
+namespace {
+
+struct Product {
+  std::vector<MatrixXd> a, e;
+};
+
+MatrixXd random_matrix(std::mt19937& generator, int rows, int columns) {
+  std::normal_distribution<double> normal;
+  return MatrixXd::NullaryExpr(rows, columns, [&] { return normal(generator); });
+}
+
+MatrixXd random_orthogonal(std::mt19937& generator, int n) {
+  return random_matrix(generator, n, n).householderQr().householderQ();
+}
+
+Product random_product(std::mt19937& generator, int n, int m) {
+  Product p;
+  for (int s = 0; s < m; ++s) {
+    p.a.push_back(random_matrix(generator, n, n));
+    p.e.push_back(random_matrix(generator, n, n));
+  }
+  return p;
+}
+
+Multipliers periodic_qz(const Product& p, double cap = 1e99) {
+  const int n = static_cast<int>(p.a[0].rows()), m = static_cast<int>(p.a.size());
+  PeriodicQz qz(n, m);
+  for (int s = 0; s < m; ++s)
+    for (int i = 0; i < n; ++i)
+      for (int j = 0; j < n; ++j) {
+        qz.a(s, i, j) = p.a[static_cast<std::size_t>(s)](i, j);
+        qz.e(s, i, j) = p.e[static_cast<std::size_t>(s)](i, j);
+      }
+  REQUIRE(qz.compute());
+  Multipliers values;
+  for (const ScaledComplex& mu : qz.eigenvalues()) values.push_back(mu.value(cap));
+  return values;
+}
+
+/// lambda E_s c_s = A_s c_{s-1} (s cyclic) as one pencil of size n m: each eigenvalue's m-th power is an eigenvalue of
+/// the product, and each of those comes m times. Values of E-singular directions are infinite and left out.
+Multipliers block_cyclic_qz(const Product& p) {
+  const Eigen::Index n = p.a[0].rows(), m = static_cast<Eigen::Index>(p.a.size());
+  MatrixXd a = MatrixXd::Zero(n * m, n * m), e = a;
+  for (Eigen::Index s = 0; s < m; ++s) {
+    a.block(s * n, (s + m - 1) % m * n, n, n) = p.a[static_cast<std::size_t>(s)];
+    e.block(s * n, s * n, n, n) = p.e[static_cast<std::size_t>(s)];
+  }
+  const Eigen::GeneralizedEigenSolver<MatrixXd> solver(a, e, false);
+  Multipliers values;
+  for (Eigen::Index k = 0; k < n * m; ++k)
+    if (std::abs(solver.betas()(k)) > 1e-10 * std::abs(solver.alphas()(k)))
+      values.push_back(std::pow(solver.alphas()(k) / solver.betas()(k), static_cast<int>(m)));
+  return values;
+}
+
+double distance_to_nearest(const std::complex<double>& mu, const Multipliers& values) {
+  double nearest = INFINITY;
+  for (const auto& value : values) nearest = std::min(nearest, std::abs(value - mu));
+  return nearest / (1e-3 + std::abs(mu));
+}
+
+/// E_s^-1 A_s = X_s D_s X_{s-1}^-1 with D_s diagonal: the eigenvalues are the products of the diagonals.
+Product product_with(std::mt19937& generator, const std::vector<std::vector<double>>& diagonals) {
+  const int m = static_cast<int>(diagonals.size()), n = static_cast<int>(diagonals[0].size());
+  std::vector<MatrixXd> x;
+  for (int s = 0; s < m; ++s) x.push_back(random_orthogonal(generator, n));
+  Product p;
+  for (int s = 0; s < m; ++s) {
+    const auto index = static_cast<std::size_t>(s);
+    const MatrixXd left = random_orthogonal(generator, n);
+    const Eigen::Map<const Eigen::VectorXd> d(diagonals[index].data(), n);
+    p.e.push_back(left * x[index].transpose());
+    p.a.push_back(left * d.asDiagonal() * x[static_cast<std::size_t>((s + m - 1) % m)].transpose());
+  }
+  return p;
+}
+
+}  // namespace
+
+TEST_CASE("periodic QZ agrees with the block-cyclic QZ on random products") {
+  std::mt19937 generator(1);
+  for (const int n : {1, 2, 3, 4, 6, 9})
+    for (const int m : {1, 2, 3, 5, 8}) {
+      CAPTURE(n, m);
+      const Product p = random_product(generator, n, m);
+      const Multipliers found = periodic_qz(p), reference = block_cyclic_qz(p);
+      REQUIRE(reference.size() == static_cast<std::size_t>(n * m));
+      // Eigenvalues of a random product are moderately conditioned: 1e-8 leaves room for condition numbers of 1e6.
+      for (const auto& mu : found) CHECK(distance_to_nearest(mu, reference) < 1e-8);
+      for (const auto& mu : reference) CHECK(distance_to_nearest(mu, found) < 1e-8);
+    }
+}
+
+TEST_CASE("periodic QZ of one factor is the eigenvalue problem of a matrix, of any size") {
+  std::mt19937 generator(2);
+  for (const int n : {1, 2, 5, 12, 30}) {
+    Product p{{random_matrix(generator, n, n)}, {MatrixXd::Identity(n, n)}};
+    const Eigen::VectorXcd exact = p.a[0].eigenvalues();
+    CHECK(mixed_distance(periodic_qz(p), {exact.begin(), exact.end()}) < 1e-10);
+  }
+  CHECK(PeriodicQz(0, 3).compute());
+}
+
+TEST_CASE("periodic QZ keeps eigenvalues from 1e-200 to 1e80 apart, each to nearly full relative accuracy") {
+  std::mt19937 generator(3);
+  const int m = 40;
+  std::vector<std::vector<double>> diagonals;
+  for (int s = 0; s < m; ++s) diagonals.push_back({1e-5, 0.3, -0.9, 1.1, 1e2});
+  const Multipliers expected{1e-200, std::pow(0.3, m), std::pow(-0.9, m), std::pow(1.1, m), 1e80};
+  // Rounding in 40 factors, as seen from eigenvalues that differ by a factor of 1e7 in each.
+  CHECK(relative_distance(periodic_qz(product_with(generator, diagonals)), expected) < 1e-8);
+}
+
+TEST_CASE("periodic QZ: growth and decay in turns cancel without loss") {
+  std::mt19937 generator(4);
+  std::vector<std::vector<double>> diagonals;
+  for (int s = 0; s < 8; ++s)
+    diagonals.push_back(s % 2 == 0 ? std::vector<double>{1e3, 1e-3, 2.0} : std::vector<double>{1e-3, 1e3, 0.25});
+  const Multipliers found = periodic_qz(product_with(generator, diagonals));
+  // The eigenvalue 1 is double; rounding splits it at first order, as the eigenvectors are orthogonal.
+  CHECK(relative_distance(found, {1.0, 1.0, 1.0 / 16}) < 1e-7);
+}
+
+TEST_CASE("periodic QZ with singular factors: zero and infinite eigenvalues, the finite ones unharmed") {
+  std::mt19937 generator(5);
+  std::vector<std::vector<double>> diagonals{{2.0, -3.0, 0.5}, {1.5, 1.0, 0.25}, {-1.0, 2.0, 4.0}};
+  const Multipliers regular{-3.0, -6.0, 0.5};
+  SECTION("A_2 singular: one eigenvalue zero") {
+    diagonals[1][1] = 0.0;
+    CHECK(absolute_distance(periodic_qz(product_with(generator, diagonals)), {-3.0, 0.0, 0.5}) < 1e-13);
+  }
+  SECTION("A_1 singular") {
+    diagonals[0][2] = 0.0;
+    CHECK(absolute_distance(periodic_qz(product_with(generator, diagonals)), {-3.0, -6.0, 0.0}) < 1e-13);
+  }
+  SECTION("an E singular: one eigenvalue infinite to rounding") {
+    // M^-1 is the product of the pairs (E_s, A_s) in reverse order: a zero of M is an infinite eigenvalue of it.
+    diagonals[1][1] = 0.0;
+    const Product p = product_with(generator, diagonals);
+    const Product inverse{{p.e.rbegin(), p.e.rend()}, {p.a.rbegin(), p.a.rend()}};
+    Multipliers found = periodic_qz(inverse);
+    const auto smaller = [](const auto& x, const auto& y) { return std::abs(x) < std::abs(y); };
+    const auto largest = std::max_element(found.begin(), found.end(), smaller);
+    CHECK(std::abs(*largest) > 1e12);
+    found.erase(largest);
+    CHECK(absolute_distance(found, {-1.0 / 3.0, 2.0}) < 1e-12);
+    Multipliers reference = block_cyclic_qz(inverse);
+    for (const auto& mu : found) CHECK(distance_to_nearest(mu, reference) < 1e-6);
+  }
+  SECTION("all regular") { CHECK(absolute_distance(periodic_qz(product_with(generator, diagonals)), regular) < 1e-12); }
+}
+
+TEST_CASE("periodic QZ: values beyond the cap are cut back to it, input that is not finite is refused") {
+  Product p{{MatrixXd::Constant(1, 1, -1e200), MatrixXd::Constant(1, 1, 1e200)},
+            {MatrixXd::Identity(1, 1), MatrixXd::Identity(1, 1)}};
+  CHECK(std::abs(periodic_qz(p)[0] - std::complex<double>(-1e99)) < 1e85);
+  p.a[1](0, 0) = 1e-300;
+  p.a[0](0, 0) = 1e-300;
+  CHECK(periodic_qz(p)[0] == 0.0);
+  PeriodicQz qz(1, 1);
+  qz.a(0, 0, 0) = NAN;
+  qz.e(0, 0, 0) = 1.0;
+  CHECK_FALSE(qz.compute());
+}
+
+TEST_CASE("conjugate pairs are made exact, real values real") {
+  Multipliers values{{0.3, 1e-17}, {0.5, 0.7}, {-2.0, -3e-16}, {0.5 + 1e-15, -0.7}, {1e-12, 2e-3}, {1e-12, -2e-3}};
+  conjugate_pairs(values);
+  CHECK(values[0].imag() == 0.0);
+  CHECK(values[2].imag() == 0.0);
+  CHECK(values[1] == std::conj(values[3]));
+  CHECK(values[4] == std::conj(values[5]));
+  CHECK(std::abs(values[1] - std::complex<double>(0.5, 0.7)) < 1e-15);
+  Multipliers none;
+  conjugate_pairs(none);
+  CHECK(none.empty());
+}
