@@ -8,14 +8,14 @@
 ///     [ S  b ] [v]   [0]          [ S^T  c ] [w]   [0]
 ///     [ c' 0 ] [G] = [1],         [ b'   0 ] [G] = [1],            G = 0 exactly when S is singular,
 ///
-/// and its gradient is -w^T (dS) v, where dS comes from second derivatives of f, h and g along the extended vectors.
-/// S shares the condensed blocks of the Newton matrix: a curve costs one more small sparse factorisation, two solutions
-/// and one sweep of second derivatives for each Newton matrix.
+/// and its gradient is -w^T (dS) v. S shares the condensed blocks of the Newton matrix: a curve costs one more small
+/// sparse factorisation, two solutions and one sweep of second derivatives for each Newton matrix.
 #pragma once
 
-#include <optional>
+#include <vector>
 
 #include "bvp/bordered_problem.hpp"
+#include "bvp/condensed_return_map.hpp"
 
 namespace tchat {
 
@@ -36,31 +36,23 @@ class CriticalMultiplier final : public OrbitCondition {
   double cusp_function() const { return dot(gradient_, v_); }
 
  private:
-  std::size_t at(int s) const { return static_cast<std::size_t>(s * (2 * n_ + 1)); }
-  void assemble(const CondensedSystem& condensed, const Orbit& x);
-  bool solve_bordered();
-  void differentiate(CondensedSystem& condensed, const Orbit& x);
-  void add_interval(const CondensedSystem& condensed, const Orbit& x, int s, int j, const double* weights);
-  void add_ends(const Orbit& x, int s, const double* weights);
+  bool solve_bordered(const CondensedSystem& condensed, const Orbit& x);
+  void follow_null_vectors();
 
-  const DefiningSystem& system_;
-  OrbitShape shape_;
-  int n_;
-  int size_;  // of S: m (2n + 1)
   int multiplier_;
+  CondensedReturnMap map_;
   SparseLu lu_;  // of the bordered S
   std::vector<double> values_;
-  std::vector<double> column_;  // b
-  std::vector<double> row_;     // c
-  std::vector<double> small_v_;
-  std::vector<double> small_w_;
+  std::vector<double> column_;   // b
+  std::vector<double> row_;      // c
+  std::vector<double> small_v_;  // v and G
+  std::vector<double> small_w_;  // w and G
   std::vector<double> rhs_;
   bool started_ = false;
   double value_ = 0.0;
   double multiplicity_ = 0.0;
   OrbitVector v_;
   OrbitVector gradient_;
-  std::vector<double> collocation_weights_;
 };
 
 }  // namespace tchat

@@ -113,6 +113,7 @@ void ContinuationRun::record(const SpecialPoint& special) {
   summary_.points = number_;
   summary_.inadmissible_points += !violations.empty();
   summary_.multipliers_computed = settings_.multipliers;
+  summary_.critical_curve = follower_.condition() != nullptr;
   summary_.unstable_points += settings_.multipliers && !search_.data().multipliers.stable();
   summary_.worst_structural = std::max(summary_.worst_structural, search_.data().multipliers.structural);
   summary_.worst_estimated_error = std::max(summary_.worst_estimated_error, point.estimated_error);

@@ -5,9 +5,12 @@
 #include <cmath>
 
 #include "bvp/critical_multiplier.hpp"
+#include "bvp/critical_pair.hpp"
+#include "bvp/periodic_orbit_system.hpp"
 #include "constants/user_error.hpp"
 #include "run/branch_switch.hpp"
 #include "run/problem_setup.hpp"
+#include "stability/floquet_multipliers.hpp"
 #include "start/point_type.hpp"
 
 namespace tchat {
@@ -16,20 +19,47 @@ namespace {
 
 constexpr int fold = static_cast<int>(PointType::fold);
 constexpr int period_doubling = static_cast<int>(PointType::period_doubling);
+constexpr int torus = static_cast<int>(PointType::torus);
 
 /// The curve that a label lies on: of its own type, or the one that it was computed on (tens digit).
 int curve_through(const SelectedStart& selected) {
   const int tens = std::abs(selected.type) / 10;
   const int type = tens > 0 ? tens : selected.type;
-  if (type == fold || type == period_doubling) return type;
+  if (type == fold || type == period_doubling || type == torus) return type;
   throw UserError(fmt::format(
-      "{}: ISW = 2 follows the curve of a fold (LP) or a period doubling (PD) in two parameters, but the run starts "
+      "{}: ISW = 2 follows the curve of a fold (LP), period doubling (PD) or torus bifurcation (TR) in two parameters, "
+      "but the run starts "
       "from {}; name such a label, for example IRS=LP1",
       selected.source,
       selected.from_solution ? fmt::format("a label of type {}", type_name(selected.type, selected.kind).empty()
                                                                      ? "none"
                                                                      : type_name(selected.type, selected.kind))
                              : "data"));
+}
+
+/// The complex multiplier of the uncorrected start that is nearest to the unit circle.
+std::complex<double> pair_at(const DefiningSystem& defining, const SelectedStart& selected) {
+  const Orbit& x = selected.start.orbit;
+  const PeriodicOrbitSystem plain(defining.system(), defining.signature(), {defining.free_parameters().front()});
+  CondensedSystem condensed(plain, x.shape, 1);
+  OrbitResidual residual = condensed.make_residual();
+  std::vector<OrbitVector> row{condensed.make_vector()};
+  row.front().globals(0) = 1.0;
+  std::complex<double> nearest = 0.0;
+  if (condensed.linearize(x, row, residual) == Linearization::ready)
+    for (const auto& mu : FloquetSolver(x.shape).compute(condensed, x).values)
+      if (mu.imag() > 0.0 && std::abs(std::abs(mu) - 1.0) < std::abs(std::abs(nearest) - 1.0)) nearest = mu;
+  if (nearest == 0.0)
+    throw UserError(fmt::format("{}: label {} has no complex pair of multipliers, so no torus curve begins there",
+                                selected.source, selected.label));
+  return nearest;
+}
+
+std::unique_ptr<OrbitCondition> make_condition(const DefiningSystem& defining, const SelectedStart& selected,
+                                               int curve_type) {
+  const OrbitShape& shape = selected.start.orbit.shape;
+  if (curve_type == torus) return std::make_unique<CriticalPair>(defining, shape, pair_at(defining, selected));
+  return std::make_unique<CriticalMultiplier>(defining, shape, curve_type == fold ? 1 : -1);
 }
 
 }  // namespace
@@ -44,7 +74,7 @@ BranchSetup set_up_branch(const HybridSystem& system, const RunSettings& setting
   std::unique_ptr<OrbitCondition> condition;
   if (settings.branch_mode == 2) {
     setup.curve_type = curve_through(selected);
-    condition = std::make_unique<CriticalMultiplier>(*setup.defining, shape, setup.curve_type == fold ? 1 : -1);
+    condition = make_condition(*setup.defining, selected, setup.curve_type);
   }
   setup.follower =
       std::make_unique<PathFollower>(*setup.defining, shape, weighted_norm(settings), newton_settings(settings),

@@ -14,4 +14,9 @@ std::optional<double> ResonanceTest::value(const TestedPoint& point) const {
   return result;
 }
 
+std::optional<double> AngleTest::value(const TestedPoint&) const {
+  constexpr double pi = 3.14159265358979323846;
+  return std::arg(condition_.multiplier()) - (type_ == PointType::resonance_3 ? 2.0 * pi / 3.0 : pi / 2.0);
+}
+
 }  // namespace tchat

@@ -1,7 +1,8 @@
-/// Codimension-two points on fold and period-doubling curves: cusp, 1:1 and 1:2 resonance.
+/// Codimension-two points on fold, period-doubling and torus curves: cusp and resonances.
 #pragma once
 
 #include "bvp/critical_multiplier.hpp"
+#include "bvp/critical_pair.hpp"
 #include "special_points/test_function.hpp"
 
 namespace tchat {
@@ -33,6 +34,20 @@ class ResonanceTest final : public TestFunction {
 
  private:
   const CriticalMultiplier& condition_;
+  PointType type_;
+};
+
+/// The angle of the critical pair on a torus curve: 1:3 and 1:4 resonance.
+class AngleTest final : public TestFunction {
+ public:
+  AngleTest(const CriticalPair& condition, PointType type) : condition_(condition), type_(type) {}
+  std::string name() const override { return type_ == PointType::resonance_3 ? "1:3 resonance" : "1:4 resonance"; }
+  std::optional<double> value(const TestedPoint& point) const override;
+  double zero_level(const TestedPoint&) const override { return 1e-9; }
+  SpecialPoint classify(const TestedPoint&, bool) const override { return {type_, {}, false, name()}; }
+
+ private:
+  const CriticalPair& condition_;
   PointType type_;
 };
 

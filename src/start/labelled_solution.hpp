@@ -19,7 +19,9 @@ enum class PointType {
   no_convergence = -9,
   cusp = -2,         ///< on fold curves
   resonance_1 = -5,  ///< 1:1, on fold curves
-  resonance_2 = -6   ///< 1:2, on period-doubling curves
+  resonance_2 = -6,  ///< 1:2, on period-doubling curves
+  resonance_3 = -7,  ///< 1:3, on torus curves
+  resonance_4 = -8   ///< 1:4, on torus curves
 };
 
 /// What a UZ label is: the last PAR entries of a q-file entry (NPARI = 4 internal values).

@@ -1,0 +1,140 @@
+#include "bvp/condensed_return_map.hpp"
+
+#include <algorithm>
+
+namespace tchat {
+
+namespace {
+
+using Vector = Eigen::VectorXd;
+using Matrix = Eigen::MatrixXd;
+
+}  // namespace
+
+CondensedReturnMap::CondensedReturnMap(const DefiningSystem& system, const OrbitShape& shape)
+    : system_(system),
+      shape_(shape),
+      n_(shape.dimension),
+      size_(shape.segments * (2 * shape.dimension + 1)),
+      condensed_weights_(static_cast<std::size_t>(shape.segments * shape.dimension)),
+      collocation_weights_(
+          static_cast<std::size_t>(shape.segments * shape.intervals * shape.collocation * shape.dimension)) {
+  const int block = 2 * n_ + 1;
+  const auto dense = [&](int row, int row_count, int column, int column_count) {
+    for (int a = 0; a < row_count; ++a)
+      for (int b = 0; b < column_count; ++b) rows_.push_back(row + a), columns_.push_back(column + b);
+  };
+  for (int s = 0; s < shape.segments; ++s) {
+    const int at = s * block;
+    dense(at, n_, at, block);
+    dense(at + n_, 1, at + n_, n_);
+    for (int a = 0; a < n_; ++a) {
+      if (s + 1 == shape.segments) factor_positions_.push_back(rows_.size());
+      rows_.push_back(at + n_ + 1 + a);
+      columns_.push_back((s + 1) % shape.segments * block + a);
+    }
+    dense(at + n_ + 1, n_, at + n_, n_);
+  }
+}
+
+void CondensedReturnMap::values(const CondensedSystem& condensed, const Orbit& x, double mu,
+                                std::vector<double>& values) {
+  const HybridSystem& hybrid = system_.system();
+  const double* par = x.par.data();
+  Vector f(n_);
+  Vector duration(n_);
+  Vector gradient(n_);
+  Matrix gx(n_, n_);
+  values.clear();
+  for (int s = 0; s < shape_.segments; ++s) {
+    const IndexVector& v = system_.signature()[static_cast<std::size_t>(s)];
+    condensed.duration_block(s, duration.data());
+    for (int a = 0; a < n_; ++a) {
+      values.insert(values.end(), condensed.first_block(s) + a * n_, condensed.first_block(s) + (a + 1) * n_);
+      values.insert(values.end(), condensed.last_block(s) + a * n_, condensed.last_block(s) + (a + 1) * n_);
+      values.push_back(duration(a));
+    }
+    system_.section_gradient(s, x.end(s), par, gradient.data());
+    values.insert(values.end(), gradient.data(), gradient.data() + n_);
+    hybrid.first(FunctionKind::jump, v.jump, x.end(s), par, {}, f.data(), gx.data(), nullptr);
+    values.insert(values.end(), static_cast<std::size_t>(n_), s + 1 == shape_.segments ? mu : 1.0);
+    for (int a = 0; a < n_; ++a)
+      for (int b = 0; b < n_; ++b) values.push_back(-gx(a, b));
+  }
+}
+
+void CondensedReturnMap::subtract_derivative(CondensedSystem& condensed, const Orbit& x, const double* v,
+                                             const double* w, OrbitVector& extended, OrbitVector& gradient) {
+  const int block = 2 * n_ + 1;
+  condensed.extend(v, extended);
+  for (int s = 0; s < shape_.segments; ++s)
+    std::copy_n(w + s * block, n_, condensed_weights_.begin() + static_cast<std::ptrdiff_t>(s) * n_);
+  condensed.extend_adjoint(condensed_weights_.data(), collocation_weights_);
+  const double* weights = collocation_weights_.data();
+  for (int s = 0; s < shape_.segments; ++s) {
+    for (int j = 0; j < shape_.intervals; ++j, weights += shape_.collocation * n_)
+      add_interval(condensed, x, s, j, weights, extended, gradient);
+    add_ends(x, s, w + s * block, extended, gradient);
+  }
+}
+
+/// Collocation rows: slope v - h T f_x v - h sigma f.
+void CondensedReturnMap::add_interval(const CondensedSystem& condensed, const Orbit& x, int s, int j,
+                                      const double* weights, const OrbitVector& v, OrbitVector& gradient) const {
+  const HybridSystem& hybrid = system_.system();
+  const CollocationRule& rule = condensed.rule();
+  const std::vector<int>& free = system_.free_parameters();
+  const int c = shape_.collocation;
+  const int q = system_.free_count();
+  const int field = system_.signature()[static_cast<std::size_t>(s)].field;
+  const double h = x.mesh[static_cast<std::size_t>(j + 1)] - x.mesh[static_cast<std::size_t>(j)];
+  const double duration = x.duration(s);
+  const double sigma = v.durations(s);
+  const int column = s * shape_.nodes() + j * c;
+  Vector f(n_), d(n_), point(n_);
+  Vector direction = Vector::Zero(n_ + q);
+  Matrix fx(n_, n_), dx(n_, n_), fp(n_, q), dp(n_, q);
+  for (int g = 0; g < c; ++g, weights += n_) {
+    const Eigen::Map<const Vector> w(weights, n_);
+    point.noalias() = x.states.middleCols(column, c + 1) * rule.value.row(g).transpose();
+    direction.head(n_).noalias() = v.states.middleCols(column, c + 1) * rule.value.row(g).transpose();
+    hybrid.first(FunctionKind::field, field, point.data(), x.par.data(), free, f.data(), fx.data(), fp.data());
+    hybrid.second(FunctionKind::field, field, point.data(), x.par.data(), free, direction.data(), d.data(), dx.data(),
+                  dp.data());
+    const Vector by_state = h * (duration * (dx.transpose() * w) + sigma * (fx.transpose() * w));
+    for (int i = 0; i <= c; ++i) gradient.states.col(column + i) += rule.value(g, i) * by_state;
+    gradient.durations(s) += h * w.dot(d);
+    gradient.globals += h * (duration * (dp.transpose() * w) + sigma * (fp.transpose() * w));
+  }
+}
+
+/// Event row h_x v and connectivity rows mu v_next - g_x v of segment s; `weights` are those of its rows of S.
+void CondensedReturnMap::add_ends(const Orbit& x, int s, const double* weights, const OrbitVector& v,
+                                  OrbitVector& gradient) const {
+  const HybridSystem& hybrid = system_.system();
+  const std::vector<int>& free = system_.free_parameters();
+  const IndexVector& index = system_.signature()[static_cast<std::size_t>(s)];
+  const int q = system_.free_count();
+  const int end = (s + 1) * shape_.nodes() - 1;
+  Vector direction = Vector::Zero(n_ + q);
+  direction.head(n_) = v.states.col(end);
+
+  double rate = 0.0;
+  Vector hx(n_);
+  Vector hp(q);
+  hybrid.second(FunctionKind::event, index.event, x.end(s), x.par.data(), free, direction.data(), &rate, hx.data(),
+                hp.data());
+  gradient.states.col(end) -= weights[n_] * hx;
+  gradient.globals -= weights[n_] * hp;
+
+  const Eigen::Map<const Vector> w(weights + n_ + 1, n_);
+  Vector d(n_);
+  Matrix dx(n_, n_);
+  Matrix dp(n_, q);
+  hybrid.second(FunctionKind::jump, index.jump, x.end(s), x.par.data(), free, direction.data(), d.data(), dx.data(),
+                dp.data());
+  gradient.states.col(end) += dx.transpose() * w;
+  gradient.globals += dp.transpose() * w;
+}
+
+}  // namespace tchat

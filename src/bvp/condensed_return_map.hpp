@@ -1,0 +1,54 @@
+/// The linear problem of the return map, condensed to the ends of segments, and its derivative along the orbit.
+///
+/// With v_s(0), w_s = v_s(1) and sigma_s (change of the duration) of every segment as unknowns,
+///
+///     S(mu):   A_s v_s(0) + C_s w_s + B_s sigma_s = 0,   h_x w_s = 0,   v_{s+1}(0) = g_x w_s,   mu v_1(0) = g_x w_m,
+///
+/// is singular exactly when mu is a multiplier: sigma_s replaces the division by h_x f of (5.13), so nothing is special
+/// at grazing. A_s, C_s, B_s are the blocks of the condensed Newton matrix.
+#pragma once
+
+#include <vector>
+
+#include "bvp/condensed_system.hpp"
+
+namespace tchat {
+
+class CondensedReturnMap {
+ public:
+  CondensedReturnMap(const DefiningSystem& system, const OrbitShape& shape);
+
+  /// m (2n + 1): rows by segment (n condensed, 1 event, n connectivity), unknowns by segment (v_s(0), w_s, sigma_s).
+  int size() const { return size_; }
+  /// Positions of the values that `values` writes; those of the factor mu are the entries `factor_positions`.
+  const std::vector<int>& rows() const { return rows_; }
+  const std::vector<int>& columns() const { return columns_; }
+  const std::vector<std::size_t>& factor_positions() const { return factor_positions_; }
+  /// First row of the last connectivity, whose left side is mu v_1(0).
+  int last_connectivity_row() const { return size_ - n_; }
+
+  /// S at x, whose linearisation is in `condensed`, with the factor `mu`.
+  void values(const CondensedSystem& condensed, const Orbit& x, double mu, std::vector<double>& values);
+
+  /// gradient -= w^T (dS) v for changes of the orbit, the durations and the free parameters; `v` and `w` have size()
+  /// entries. Second derivatives of f, h and g along v extended to all nodes, which `extended` keeps.
+  void subtract_derivative(CondensedSystem& condensed, const Orbit& x, const double* v, const double* w,
+                           OrbitVector& extended, OrbitVector& gradient);
+
+ private:
+  void add_interval(const CondensedSystem& condensed, const Orbit& x, int s, int j, const double* weights,
+                    const OrbitVector& v, OrbitVector& gradient) const;
+  void add_ends(const Orbit& x, int s, const double* weights, const OrbitVector& v, OrbitVector& gradient) const;
+
+  const DefiningSystem& system_;
+  OrbitShape shape_;
+  int n_;
+  int size_;
+  std::vector<int> rows_;
+  std::vector<int> columns_;
+  std::vector<std::size_t> factor_positions_;
+  std::vector<double> condensed_weights_;
+  std::vector<double> collocation_weights_;
+};
+
+}  // namespace tchat
