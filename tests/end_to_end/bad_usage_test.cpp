@@ -15,7 +15,7 @@ TEST_CASE("commands and options that do not exist or lack something") {
   }
 }
 
-TEST_CASE("--help and --version") {
+TEST_CASE("options --help and --version") {
   const Workspace workspace;
   for (const char* arguments :
        {"--help", "run --help", "labels --help", "orbit --help", "check --help", "dat --help"}) {

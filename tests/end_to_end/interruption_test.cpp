@@ -63,7 +63,7 @@ TEST_CASE("Ctrl-C and SIGTERM end the branch with EP and complete files") {
   }
 }
 
-TEST_CASE("--both stops in both directions at once") {
+TEST_CASE("a signal stops --both in both directions at once") {
   const Workspace workspace;
   const auto process = workspace.start_tchat(endless + " --both");
   wait_for_points(workspace, *process, some_solutions);

@@ -36,7 +36,7 @@ double square(double x) { return x * x; }
 
 }  // namespace
 
-TEST_CASE("--append adds a section, labels go on counting") {
+TEST_CASE("with --append a run adds a section, labels go on counting") {
   const Workspace workspace;
   workspace.run(impacting + "NMX=11 NPR=5");
   const std::string first_points = workspace.read("p.branch");
@@ -57,7 +57,7 @@ TEST_CASE("--append adds a section, labels go on counting") {
   CHECK(labels_of(workspace.points("fresh")).front() == 1);
 }
 
-TEST_CASE("--both computes the two directions into one set of files") {
+TEST_CASE("with --both a run computes the two directions into one set of files") {
   const Workspace workspace;
   workspace.run(impacting + "NMX=12 NPR=5 --both");
   const auto sections = workspace.points("branch");
@@ -73,7 +73,7 @@ TEST_CASE("--both computes the two directions into one set of files") {
   for (std::size_t k = 0; k < labels.size(); ++k) CHECK(labels[k] == static_cast<int>(k) + 1);
 }
 
-TEST_CASE("-o may name a folder") {
+TEST_CASE("option -o may name a folder") {
   const Workspace workspace;
   std::filesystem::create_directory(workspace.file("results"));
   workspace.run("-c impacting -d impacting -o results/branch NMX=3");
@@ -124,7 +124,7 @@ TEST_CASE("user functions of a plugin are columns") {
   }
 }
 
-TEST_CASE("-q prints nothing") {
+TEST_CASE("with -q a run prints nothing") {
   const Workspace workspace;
   const Outcome outcome = workspace.run(impacting + "-q NMX=5");
   CHECK(outcome.out.empty());

@@ -52,7 +52,7 @@ TEST_CASE("two runs that need the same plugin at once") {
   }
 }
 
-TEST_CASE("-p names a source or a library") {
+TEST_CASE("option -p names a source or a library") {
   const Workspace workspace(Workspace::Plugin::source);
   fs::rename(workspace.file("linosc.cpp"), workspace.file("other.cpp"));
   CHECK(workspace.tchat("run linosc " + quick).status == 2);

@@ -1,4 +1,4 @@
-// Orbits of several segments: the one-impact orbit entered as two, three-word errors about durations.
+// Orbits of several segments: the one-impact orbit repeated or cut, and what happens when a duration is missing.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -46,7 +46,7 @@ TEST_CASE("IRS chooses a label by number or by type and count") {
   }
 }
 
-TEST_CASE("-d, -s and IRS that contradict each other") {
+TEST_CASE("options -d, -s and IRS that contradict each other") {
   const Workspace workspace;
   workspace.run("-c impacting -d impacting -o branch" + quick);
   check_refused(workspace.tchat("run linosc -c impacting -d impacting -o none IRS=2"), {"IRS = 2", "label 1"});
