@@ -1,0 +1,150 @@
+// No heap allocation by our own code inside the Newton loop after the first step. Every allocation of the program goes
+// through the counters below; what UMFPACK asks for is counted apart, as SuiteSparse lets its allocator be replaced.
+#include <SuiteSparse_config.h>
+
+#include <atomic>
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <new>
+
+#include "support/branch_fixture.hpp"
+#include "support/linear_oscillator.hpp"
+#include "support/three_modes.hpp"
+
+extern "C" void* __libc_malloc(std::size_t);
+extern "C" void* __libc_calloc(std::size_t, std::size_t);
+extern "C" void* __libc_realloc(void*, std::size_t);
+extern "C" void* __libc_memalign(std::size_t, std::size_t);
+
+namespace {
+
+std::atomic<bool> counting{false};
+std::atomic<long> ours{0};
+std::atomic<long> solver{0};
+
+void count() {
+  if (counting) ++ours;
+}
+
+struct CountedScope {
+  CountedScope() {
+    ours = 0;
+    solver = 0;
+    counting = true;
+  }
+  ~CountedScope() { counting = false; }
+};
+
+}  // namespace
+
+// Eigen and the C library's users go through malloc, operator new does too.
+extern "C" void* malloc(std::size_t size) {
+  count();
+  return __libc_malloc(size);
+}
+extern "C" void* calloc(std::size_t number, std::size_t size) {
+  count();
+  return __libc_calloc(number, size);
+}
+extern "C" void* realloc(void* p, std::size_t size) {
+  count();
+  return __libc_realloc(p, size);
+}
+extern "C" void* aligned_alloc(std::size_t alignment, std::size_t size) {
+  count();
+  return __libc_memalign(alignment, size);
+}
+
+using namespace tchat;
+using namespace tchat::test;
+
+namespace {
+
+void* solver_malloc(std::size_t size) {
+  if (counting) ++solver;
+  return __libc_malloc(size);
+}
+void* solver_calloc(std::size_t number, std::size_t size) {
+  if (counting) ++solver;
+  return __libc_calloc(number, size);
+}
+void* solver_realloc(void* p, std::size_t size) {
+  if (counting) ++solver;
+  return __libc_realloc(p, size);
+}
+
+void give_solver_its_own_allocator() {
+#if SUITESPARSE_VERSION >= SUITESPARSE_VER_CODE(6, 0)
+  SuiteSparse_config_malloc_func_set(solver_malloc);
+  SuiteSparse_config_calloc_func_set(solver_calloc);
+  SuiteSparse_config_realloc_func_set(solver_realloc);
+#else
+  SuiteSparse_config.malloc_func = solver_malloc;
+  SuiteSparse_config.calloc_func = solver_calloc;
+  SuiteSparse_config.realloc_func = solver_realloc;
+#endif
+}
+
+struct Counts {
+  long ours, solver;
+  int newton_iterations;
+};
+
+Counts steps_after_the_first(PeriodicOrbits& orbits, const Orbit& start, double ds) {
+  PathPoint here = orbits.corrected(start);
+  REQUIRE(orbits.result.converged());
+  PathPoint next = here;
+  REQUIRE(orbits.follower.step(here, ds, next).converged());
+  std::swap(here, next);
+  Counts counts{0, 0, 0};
+  const CountedScope scope;
+  for (int k = 0; k < 5; ++k) {
+    const NewtonResult result = orbits.follower.step(here, ds, next);
+    if (!result.converged()) break;
+    counts.newton_iterations += result.iterations;
+    std::swap(here, next);
+  }
+  counts.ours = ours;
+  counts.solver = solver;
+  return counts;
+}
+
+}  // namespace
+
+TEST_CASE("the counters count") {
+  give_solver_its_own_allocator();
+  long mine = 0;
+  {
+    const CountedScope scope;
+    const std::vector<double> v(100, 1.0);
+    const Eigen::VectorXd w = Eigen::VectorXd::Constant(50, v[3]);
+    mine = w(7) > 0.0 ? ours.load() : -1;
+  }
+  CHECK(mine == 2);
+}
+
+TEST_CASE("no allocation of our own in continuation steps after the first") {
+  give_solver_its_own_allocator();
+  const int copies = GENERATE(1, 4);
+  const OscillatorOrbit orbit = one_impact_orbit(2.0072, 0.5);
+  const std::vector<Piece> pieces(static_cast<std::size_t>(copies), orbit.piece(0, orbit.constants.period()));
+  const Orbit start = sampled_orbit(pieces, 4, 50, 4, orbit.par());
+  PeriodicOrbits orbits(linosc(), Signature(static_cast<std::size_t>(copies), {1, 1, 1}), 1, start.shape,
+                        {8, 2, 1e-9, 1e-9});
+  const Counts counts = steps_after_the_first(orbits, start, 0.05);
+  CHECK(counts.newton_iterations >= 10);
+  CHECK(counts.ours == 0);
+  CHECK(counts.solver > 0);  // UMFPACK's factors: its allocator was indeed replaced
+}
+
+TEST_CASE("no allocation with kernels of run-time size, several fields and jumps") {
+  give_solver_its_own_allocator();
+  const PeriodicOrbit reference = ThreeModes::orbit(ThreeModes::par());
+  const Orbit start =
+      sampled_orbit(pieces_of(system_of<ThreeModes>(), ThreeModes::signature(), reference.map, ThreeModes::par()), 3,
+                    20, 6, ThreeModes::par());
+  PeriodicOrbits orbits(system_of<ThreeModes>(), ThreeModes::signature(), 1, start.shape, {8, 2, 1e-9, 1e-9});
+  const Counts counts = steps_after_the_first(orbits, start, 0.02);
+  CHECK(counts.newton_iterations >= 5);
+  CHECK(counts.ours == 0);
+}
