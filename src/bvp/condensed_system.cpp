@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <type_traits>
 
 #include "linear_algebra/partial_lu.hpp"
 
@@ -41,6 +42,34 @@ struct PatternBuilder {
     for (int a = 0; a < count; ++a) rows.push_back(row + a), columns.push_back(column + a);
   }
 };
+
+/// Calls work with the dimension as a compile-time number where that is a common one: the loops over states are the
+/// innermost ones and short.
+template <class Work>
+auto with_dimension(int n, Work&& work) {
+  switch (n) {
+    case 2:
+      return work(std::integral_constant<int, 2>{});
+    case 3:
+      return work(std::integral_constant<int, 3>{});
+    case 4:
+      return work(std::integral_constant<int, 4>{});
+    case 5:
+      return work(std::integral_constant<int, 5>{});
+    case 6:
+      return work(std::integral_constant<int, 6>{});
+    default:
+      return work(n);
+  }
+}
+
+/// One node's columns of the rows of a Gauss point: value * jacobian (row by row) + slope * identity.
+template <class Dimension>
+void put_node(Dimension n, double* __restrict columns, int width, double value, double slope,
+              const double* __restrict jacobian) {
+  for (int a = 0; a < n; ++a, columns += width, jacobian += n)
+    for (int b = 0; b < n; ++b) columns[b] = value * jacobian[b] + (a == b ? slope : 0.0);
+}
 
 }  // namespace
 
@@ -83,9 +112,10 @@ CondensedSystem::CondensedSystem(const DefiningSystem& system, const OrbitShape&
 
   const int conditions = most_end_conditions(system);
   x_ = slope_ = f_ = zeros(n_);
-  fx_ = zeros(n_ * n_);
+  fx_ = scaled_ = zeros(n_ * n_);
   fp_ = zeros(n_ * globals_);
-  local_ = zeros(interval_.pivots() + 2 * n_ + scalars_);
+  local_ = zeros(interval_.width());
+  chain_local_ = zeros(chain_.width());
   h_ = zeros(conditions);
   hx_ = zeros(conditions * n_);
   hp_ = zeros(conditions * globals_);
@@ -125,17 +155,20 @@ OrbitResidual CondensedSystem::make_residual() const {
 
 // ---- residual -------------------------------------------------------------------------------------------------------
 
-void CondensedSystem::interpolate(const Orbit& x, int s, int j, int gauss_point) {
-  std::fill(x_.begin(), x_.end(), 0.0);
-  std::fill(slope_.begin(), slope_.end(), 0.0);
-  for (int i = 0; i <= shape_.collocation; ++i) {
-    const double* u = x.node(s, j * shape_.collocation + i);
-    const double value = rule_.value(gauss_point, i);
-    const double slope = rule_.slope(gauss_point, i);
-    for (int a = 0; a < n_; ++a) {
-      x_[index(a)] += value * u[a];
-      slope_[index(a)] += slope * u[a];
+template <class Dimension>
+void CondensedSystem::interpolate(Dimension n, const Orbit& x, int s, int j, int gauss_point) {
+  const double* u = x.node(s, j * shape_.collocation);
+  double* const value = x_.data();
+  double* const slope = slope_.data();
+  for (int a = 0; a < n; ++a) {
+    double sum = 0.0;
+    double slope_sum = 0.0;
+    for (int i = 0; i <= shape_.collocation; ++i) {
+      sum += rule_.value(gauss_point, i) * u[i * n + a];
+      slope_sum += rule_.slope(gauss_point, i) * u[i * n + a];
     }
+    value[a] = sum;
+    slope[a] = slope_sum;
   }
 }
 
@@ -149,7 +182,7 @@ void CondensedSystem::evaluate(const Orbit& x, OrbitResidual& residual) {
     for (int j = 0; j < shape_.intervals; ++j) {
       const double scale = (x.mesh[index(j + 1)] - x.mesh[index(j)]) * x.duration(s);
       for (int g = 0; g < shape_.collocation; ++g, collocation += n_) {
-        interpolate(x, s, j, g);
+        with_dimension(n_, [&](auto n) { interpolate(n, x, s, j, g); });
         hybrid.value(FunctionKind::field, v.field, x_.data(), par, collocation);
         for (int a = 0; a < n_; ++a) collocation[a] = slope_[index(a)] - scale * collocation[a];
       }
@@ -202,33 +235,43 @@ Linearization CondensedSystem::condense_segment(const Orbit& x, int s, std::span
 
 /// Collocation rows of one interval: slope - h T f at the Gauss points, columns (interior | left | right | T, p).
 bool CondensedSystem::fill_interval(const Orbit& x, int s, int j, double* block, double* collocation) {
+  return with_dimension(n_, [&](auto n) { return fill_interval_of(n, x, s, j, block, collocation); });
+}
+
+template <class Dimension>
+bool CondensedSystem::fill_interval_of(Dimension n, const Orbit& x, int s, int j, double* block, double* collocation) {
   const int c = shape_.collocation;
   const int width = interval_.width();
   const int left = interval_.pivots();
-  const int duration = left + 2 * n_;
+  const int duration = left + 2 * n;
   const double h = x.mesh[index(j + 1)] - x.mesh[index(j)];
   const double scale = h * x.duration(s);
   const int field = system_.signature()[index(s)].field;
   double finite = 0.0;
   for (int g = 0; g < c; ++g) {
-    interpolate(x, s, j, g);
+    interpolate(n, x, s, j, g);
     system_.system().first(FunctionKind::field, field, x_.data(), x.par.data(), system_.free_parameters(), f_.data(),
                            fx_.data(), fp_.data());
-    for (int b = 0; b < n_ * n_; ++b) finite += fx_[index(b)] - fx_[index(b)];
-    for (int a = 0; a < n_; ++a) {
-      double* row = block + (g * n_ + a) * width;
+    double* const rows = block + g * n * width;
+    double* const by_rows = scaled_.data();  // -h T f_x, row by row
+    for (int a = 0; a < n; ++a)
+      for (int b = 0; b < n; ++b) {
+        const double entry = fx_[index(b * n + a)];
+        finite += entry - entry;
+        by_rows[a * n + b] = -scale * entry;
+      }
+    for (int i = 0; i <= c; ++i) {
+      // The nodes 1..c-1 come first, then node 0 and node c.
+      double* const columns = rows + (i == 0 ? left : i == c ? left + n : (i - 1) * n);
+      put_node(n, columns, width, rule_.value(g, i), rule_.slope(g, i), by_rows);
+    }
+    for (int a = 0; a < n; ++a) {
       const double f = f_[index(a)];
       finite += f - f;
-      collocation[g * n_ + a] = slope_[index(a)] - scale * f;
-      for (int i = 0; i <= c; ++i) {
-        // The nodes 1..c-1 come first, then node 0 and node c.
-        double* entry = row + (i == 0 ? left : i == c ? left + n_ : (i - 1) * n_);
-        const double weight = -scale * rule_.value(g, i);
-        for (int b = 0; b < n_; ++b) entry[b] = weight * fx_[index(b * n_ + a)];
-        entry[a] += rule_.slope(g, i);
-      }
-      row[duration] = -h * f;
-      for (int k = 0; k < globals_; ++k) row[duration + 1 + k] = -scale * fp_[index(k * n_ + a)];
+      collocation[g * n + a] = slope_[index(a)] - scale * f;
+      double* const row = rows + a * width + duration;
+      row[0] = -h * f;
+      for (int k = 0; k < globals_; ++k) row[1 + k] = -scale * fp_[index(k * n + a)];
     }
   }
   return finite == 0.0;
@@ -422,25 +465,24 @@ void CondensedSystem::expand_segment(int s, const double* ends, const double* gl
   std::copy_n(start, n_, node(0));
   std::copy_n(end, n_, node(shape_.nodes() - 1));
   double* local = local_.data();
+  double* chain_local = chain_local_.data();
   for (int j = shape_.intervals - 1; j >= 0; --j) {
     const int b = block(s, j);
     if (j > 0) {
-      std::copy_n(start, n_, local + n_);
-      std::copy_n(node((j + 1) * c), n_, local + 2 * n_);
-      local[3 * n_] = duration;
-      std::copy_n(globals, globals_, local + 3 * n_ + 1);
+      std::copy_n(start, n_, chain_local + n_);
+      std::copy_n(node((j + 1) * c), n_, chain_local + 2 * n_);
+      chain_local[3 * n_] = duration;
+      std::copy_n(globals, globals_, chain_local + 3 * n_ + 1);
       chain_.backward(&chain_blocks_[index(b * (2 * n_ + border_) * chain_.width())],
-                      homogeneous ? zero_rhs_.data() : &chain_rhs_[index(b * (2 * n_ + border_))], local,
-                      3 * n_ + scalars_);
-      std::copy_n(local, n_, node(j * c));
+                      homogeneous ? zero_rhs_.data() : &chain_rhs_[index(b * (2 * n_ + border_))], chain_local);
+      std::copy_n(chain_local, n_, node(j * c));
     }
     std::copy_n(node(j * c), n_, local + p);
     std::copy_n(node((j + 1) * c), n_, local + p + n_);
     local[p + 2 * n_] = duration;
     std::copy_n(globals, globals_, local + p + 2 * n_ + 1);
     interval_.backward(&interval_blocks_[index(b * (rows + border_) * interval_.width())],
-                       homogeneous ? zero_rhs_.data() : &interval_rhs_[index(b * (rows + border_))], local,
-                       p + 2 * n_ + scalars_);
+                       homogeneous ? zero_rhs_.data() : &interval_rhs_[index(b * (rows + border_))], local);
     std::copy_n(local, p, node(j * c + 1));
   }
 }
@@ -487,10 +529,10 @@ CondensedSystem::Determinant CondensedSystem::determinant() const {
       mantissa *= block[k * kernel.width() + k] * (swaps[k] == k ? 1.0 : -1.0);
       int exponent = 0;
       mantissa = std::frexp(mantissa, &exponent);
-      product.log2_size += exponent;
+      product.log2_size -= exponent;  // the blocks hold reciprocal pivots
     }
     product.sign *= (mantissa > 0.0) - (mantissa < 0.0);
-    product.log2_size += std::log2(std::abs(mantissa));
+    product.log2_size -= std::log2(std::abs(mantissa));
   };
   const int blocks = shape_.segments * shape_.intervals;
   const int interval_size = (interval_.rows() + border_) * interval_.width();

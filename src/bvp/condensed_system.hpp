@@ -98,7 +98,10 @@ class CondensedSystem {
   int global_unknown(int g) const { return shape_.segments * (2 * n_ + 1) + g; }
 
   SparseLu make_sparse();
-  void interpolate(const Orbit& x, int s, int j, int gauss_point);
+  template <class Dimension>
+  void interpolate(Dimension n, const Orbit& x, int s, int j, int gauss_point);
+  template <class Dimension>
+  bool fill_interval_of(Dimension n, const Orbit& x, int s, int j, double* block, double* collocation);
   Linearization condense_segment(const Orbit& x, int s, std::span<const OrbitVector> rows, double* collocation);
   bool fill_interval(const Orbit& x, int s, int j, double* block, double* collocation);
   void fill_border(int s, int j, std::span<const OrbitVector> rows, double* block) const;
@@ -139,7 +142,7 @@ class CondensedSystem {
   std::vector<double> solution_;
 
   // scratch of one collocation point or one end of a segment
-  std::vector<double> x_, slope_, f_, fx_, fp_, local_, h_, hx_, hp_;
+  std::vector<double> x_, slope_, f_, fx_, scaled_, fp_, local_, chain_local_, h_, hx_, hp_;
   OrbitResidual zero_;
   std::vector<double> zero_rhs_;  // of one block
 };

@@ -28,8 +28,8 @@ void BlockKernel::use() {
   forward_transposed_ = [](const BlockKernel& k, const double* a, const int* swaps, double* weights) {
     tchat::forward_transposed(Choice::sizes(k), a, swaps, weights);
   };
-  backward_ = [](const BlockKernel& k, const double* a, const double* rhs, double* x, int columns) {
-    tchat::backward(Choice::sizes(k), a, rhs, x, columns);
+  backward_ = [](const BlockKernel& k, const double* a, const double* rhs, double* x) {
+    tchat::backward(Choice::sizes(k), a, rhs, x);
   };
 }
 

@@ -20,9 +20,7 @@ class BlockKernel {
   void forward_transposed(const double* a, const int* swaps, double* weights) const {
     forward_transposed_(*this, a, swaps, weights);
   }
-  void backward(const double* a, const double* rhs, double* x, int columns) const {
-    backward_(*this, a, rhs, x, columns);
-  }
+  void backward(const double* a, const double* rhs, double* x) const { backward_(*this, a, rhs, x); }
 
  private:
   template <class Choice>
@@ -36,7 +34,7 @@ class BlockKernel {
   bool (*eliminate_)(const BlockKernel&, double*, int, int*);
   void (*forward_)(const BlockKernel&, const double*, int, const int*, double*);
   void (*forward_transposed_)(const BlockKernel&, const double*, const int*, double*);
-  void (*backward_)(const BlockKernel&, const double*, const double*, double*, int);
+  void (*backward_)(const BlockKernel&, const double*, const double*, double*);
 };
 
 /// The kernel that condenses one mesh interval of c collocation points in dimension n with k scalar unknowns

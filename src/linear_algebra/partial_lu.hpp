@@ -48,8 +48,8 @@ inline void subtract_rows(const Sizes& sizes, double* __restrict target, const d
 
 }  // namespace detail
 
-/// Eliminates; swaps[k] is the row exchanged with row k. False when a pivot is zero or not finite: the block is then
-/// useless.
+/// Eliminates; swaps[k] is the row exchanged with row k. The diagonal then holds the reciprocal pivots. False when a
+/// pivot is zero or not finite: the block is then useless.
 template <class Sizes>
 bool eliminate(const Sizes& sizes, double* a, int border, int* swaps) {
   const int rows = sizes.rows, pivots = sizes.pivots, width = sizes.width;
@@ -66,7 +66,7 @@ bool eliminate(const Sizes& sizes, double* a, int border, int* swaps) {
       if (!(largest > 0.0) || !std::isfinite(largest)) return false;
       swaps[k] = pivot_row;
       if (pivot_row != k) std::swap_ranges(a + k * width, a + (k + 1) * width, a + pivot_row * width);
-      const double inverse = 1.0 / a[k * width + k];
+      const double inverse = a[k * width + k] = 1.0 / a[k * width + k];
       for (int i = k + 1; i < all_rows; ++i) {
         const double l = (a[i * width + k] *= inverse);
         for (int j = k + 1; j < k1; ++j) a[i * width + j] -= l * a[k * width + j];
@@ -86,6 +86,20 @@ bool eliminate(const Sizes& sizes, double* a, int border, int* swaps) {
   return true;
 }
 
+namespace detail {
+
+/// Sum of a[j] b[j] in four running sums: strict order would make every term wait for the one before.
+inline double dot(const double* a, const double* b, int count) {
+  double sum[4] = {0.0, 0.0, 0.0, 0.0};
+  int j = 0;
+  for (; j + 4 <= count; j += 4)
+    for (int l = 0; l < 4; ++l) sum[l] += a[j + l] * b[j + l];
+  for (; j < count; ++j) sum[0] += a[j] * b[j];
+  return (sum[0] + sum[2]) + (sum[1] + sum[3]);
+}
+
+}  // namespace detail
+
 /// Applies the exchanges and multipliers of an eliminated block to a right-hand side of rows + border entries: the
 /// first `pivots` entries become those of U, the others the condensed right-hand side.
 template <class Sizes>
@@ -93,12 +107,12 @@ void forward(const Sizes& sizes, const double* a, int border, const int* swaps, 
   const int pivots = sizes.pivots, width = sizes.width;
   const int all_rows = sizes.rows + border;
   for (int k = 0; k < pivots; ++k) std::swap(rhs[k], rhs[swaps[k]]);
-  for (int i = 1; i < all_rows; ++i) {
-    const double* row = a + i * width;
-    double sum = 0.0;
-    for (int k = 0; k < std::min(i, pivots); ++k) sum += row[k] * rhs[k];
-    rhs[i] -= sum;
+  // Column by column, so that no entry waits for the others of its row.
+  for (int k = 0; k < pivots; ++k) {
+    const double known = rhs[k];
+    for (int i = k + 1; i < pivots; ++i) rhs[i] -= a[i * width + k] * known;
   }
+  for (int i = pivots; i < all_rows; ++i) rhs[i] -= detail::dot(a + i * width, rhs, pivots);
 }
 
 /// The transpose of `forward` without border rows: weights of the condensed rows (entries pivots..rows; the first
@@ -113,15 +127,15 @@ void forward_transposed(const Sizes& sizes, const double* a, const int* swaps, d
   for (int k = pivots - 1; k >= 0; --k) std::swap(weights[k], weights[swaps[k]]);
 }
 
-/// Back-substitution: x[0..pivots) from rhs[0..pivots) and the known x[pivots..columns).
+/// Back-substitution: x[0..pivots) from rhs[0..pivots) and the known x[pivots..width); x beyond the block's own columns
+/// must be zero.
 template <class Sizes>
-void backward(const Sizes& sizes, const double* a, const double* rhs, double* x, int columns) {
-  const int width = sizes.width;
-  for (int k = sizes.pivots - 1; k >= 0; --k) {
-    const double* row = a + k * width;
-    double sum = rhs[k];
-    for (int j = k + 1; j < columns; ++j) sum -= row[j] * x[j];
-    x[k] = sum / row[k];
+void backward(const Sizes& sizes, const double* a, const double* __restrict rhs, double* __restrict x) {
+  const int pivots = sizes.pivots, width = sizes.width;
+  for (int k = 0; k < pivots; ++k) x[k] = rhs[k] - detail::dot(a + k * width + pivots, x + pivots, width - pivots);
+  for (int k = pivots - 1; k >= 0; --k) {
+    const double known = x[k] *= a[k * width + k];
+    for (int i = 0; i < k; ++i) x[i] -= a[i * width + k] * known;
   }
 }
 
