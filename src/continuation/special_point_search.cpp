@@ -15,18 +15,29 @@ namespace {
 constexpr double together = 1e-5;
 /// An oscillating function is followed when it misses its extrapolation by no more than this share of its size.
 constexpr double unexpected = 0.3;
+/// It may have changed sign twice when the parabola through its values falls below this share of those at the ends.
+constexpr double dip = 0.25;
+/// To find where a function has the sign that it brought into the step.
+constexpr int most_halvings = 12;
 constexpr std::size_t history_length = 12;
 
-/// Value at `at` of the parabola through the last point and two earlier ones at least `spacing` apart (the line when
-/// there is only one such point); nothing when there is none.
 struct Node {
   double at;
   double value;
 };
-std::optional<double> extrapolate(const std::vector<Node>& nodes, double at, double spacing) {
+
+/// The last node with the last one before it that is at least `spacing` away, and so on; at most `most`, latest first.
+std::vector<Node> apart(const std::vector<Node>& nodes, double spacing, std::size_t most) {
   std::vector<Node> chosen;
-  for (auto node = nodes.rbegin(); node != nodes.rend() && chosen.size() < 3; ++node)
+  for (auto node = nodes.rbegin(); node != nodes.rend() && chosen.size() < most; ++node)
     if (chosen.empty() || std::abs(node->at - chosen.back().at) >= spacing) chosen.push_back(*node);
+  return chosen;
+}
+
+/// Value at `at` of the parabola through the last point and two earlier ones at least `spacing` apart (the line when
+/// there is only one such point); nothing when there is none.
+std::optional<double> extrapolate(const std::vector<Node>& nodes, double at, double spacing) {
+  const std::vector<Node> chosen = apart(nodes, spacing, 3);
   if (chosen.size() < 2) return std::nullopt;
   double result = 0.0;
   for (std::size_t i = 0; i < chosen.size(); ++i) {
@@ -36,6 +47,23 @@ std::optional<double> extrapolate(const std::vector<Node>& nodes, double at, dou
     result += weight * chosen[i].value;
   }
   return result;
+}
+
+/// Does the parabola through the last two values and the new one turn back between the last one and the new one, of
+/// the same sign, near zero or beyond it?
+bool turns_at_zero(const std::vector<Node>& nodes, const Node& next, double spacing) {
+  const std::vector<Node> past = apart(nodes, spacing, 2);
+  if (past.size() < 2 || !(past[0].value * next.value > 0.0)) return false;
+  // Newton's form on past[0], next, past[1] in t = at - past[0].at.
+  const double length = next.at - past[0].at;
+  const double slope = (next.value - past[0].value) / length;
+  const double before = (past[0].value - past[1].value) / (past[0].at - past[1].at);
+  const double curvature = (slope - before) / (next.at - past[1].at);
+  const double turn = 0.5 * (length - slope / curvature);
+  if (!(turn > 0.0 && turn < length)) return false;
+  const double value = past[0].value + slope * turn + curvature * turn * (turn - length);
+  const double sign = next.value > 0.0 ? 1.0 : -1.0;
+  return sign * value < dip * std::min(std::abs(past[0].value), std::abs(next.value));
 }
 
 }  // namespace
@@ -52,6 +80,7 @@ SpecialPointSearch::SpecialPointSearch(PathFollower& follower, const DefiningSys
   data_.transversalities.resize(static_cast<std::size_t>(system.segments()));
   data_.values.resize(tests_.size());
   data_.zero_levels.resize(tests_.size());
+  data_.signs.resize(tests_.size());
 }
 
 TestedPoint SpecialPointSearch::tested(const PathPoint& at) const {
@@ -70,12 +99,14 @@ void SpecialPointSearch::evaluate(const PathPoint& at) {
   for (std::size_t i = 0; i < tests_.size(); ++i) {
     data_.values[i] = tests_[i]->value(point);
     data_.zero_levels[i] = tests_[i]->zero_level(point);
+    data_.signs[i] = sign_at(point, i);
   }
 }
 
-int SpecialPointSearch::sign_of(const PointData& data, std::size_t test) {
-  const std::optional<double>& value = data.values[test];
-  if (!value || !(std::abs(*value) > data.zero_levels[test])) return 0;
+int SpecialPointSearch::sign_at(const TestedPoint& point, std::size_t test) const {
+  const std::optional<double>& value = data_.values[test];
+  if (!value) return tests_[test]->sign_where_undefined(point);
+  if (!(std::abs(*value) > data_.zero_levels[test])) return 0;
   return *value > 0.0 ? 1 : -1;
 }
 
@@ -83,7 +114,7 @@ void SpecialPointSearch::begin(const PathPoint& start) {
   follower_.linearize_at(start);
   determinant_unit_.reset();
   evaluate(start);
-  for (std::size_t i = 0; i < tests_.size(); ++i) signs_[i] = sign_of(data_, i);
+  signs_ = data_.signs;
   history_.clear();
   remember(0.0);
 }
@@ -110,6 +141,7 @@ bool SpecialPointSearch::resolved(const PathPoint& next, double ds) {
     }
     const std::optional<double> expected = extrapolate(nodes, at, 0.2 * std::abs(ds));
     if (expected && std::abs(*expected - *data_.values[i]) > unexpected * size) return false;
+    if (turns_at_zero(nodes, {at, *data_.values[i]}, 0.2 * std::abs(ds))) return false;
   }
   return true;
 }
@@ -118,7 +150,7 @@ bool SpecialPointSearch::resolved(const PathPoint& next, double ds) {
 std::vector<std::size_t> SpecialPointSearch::changed(const PointData& end) const {
   std::vector<std::size_t> result;
   for (std::size_t i = 0; i < tests_.size(); ++i)
-    if (end.values[i] && signs_[i] != 0 && sign_of(end, i) != signs_[i]) result.push_back(i);
+    if (end.values[i] && signs_[i] != 0 && end.signs[i] != signs_[i]) result.push_back(i);
   return result;
 }
 
@@ -130,7 +162,7 @@ std::optional<SpecialPoint> SpecialPointSearch::advance(const PathPoint& here, P
   bool moved = false;
   const double negligible = 10.0 * settings_.tolerance;
   for (const std::size_t i : changed(end)) {
-    const bool at_end = sign_of(end, i) == 0;
+    const bool at_end = end.signs[i] == 0;
     const Zero zero = at_end ? Zero{i, ds, true} : locate(i, here, next, ds, *end.values[i]);
     moved = moved || !at_end;
     if (!zero.converged)
@@ -155,29 +187,42 @@ std::optional<SpecialPoint> SpecialPointSearch::advance(const PathPoint& here, P
   if (first) special = classify(*first, next, end);
   for (std::size_t i = 0; i < tests_.size(); ++i)
     if (!first || i != first->test)
-      if (const int sign = sign_of(data_, i); sign != 0) signs_[i] = sign;
+      if (data_.signs[i] != 0) signs_[i] = data_.signs[i];
   remember(ds);
   return special;
 }
 
+/// Between the start of the step, evaluated again with the border and the mesh of the trial steps, and its end. At a
+/// zero located before, or where it is undefined, the function lacks the sign that the branch had there: the point
+/// where it has it is found by bisection.
 SpecialPointSearch::Zero SpecialPointSearch::locate(std::size_t test, const PathPoint& here, PathPoint& trial,
                                                     double ds, double end_value) {
-  const auto value_at = [&](const PathPoint& at) {
-    evaluate(at);
-    return data_.values[test];
+  const auto arrive = [&](double length) {
+    const bool at_start = length == 0.0;
+    if (!(at_start ? follower_.linearize_at(here) : follower_.step(here, length, trial).converged())) return false;
+    evaluate(at_start ? here : trial);
+    return true;
   };
-  // Again at the start of the step: with the border and the mesh of the trial steps.
-  std::optional<double> start_value;
-  if (follower_.linearize_at(here)) start_value = value_at(here);
-  if (!start_value || !(*start_value * end_value < 0.0)) return {test, 0.0, false};
-  const auto at = [&](double length) -> std::optional<double> {
-    if (!follower_.step(here, length, trial).converged()) return std::nullopt;
-    return value_at(trial);
-  };
+  const std::optional<double>& value = data_.values[test];
+  const auto has_sign = [&] { return value && data_.signs[test] == signs_[test]; };
+  double low = 0.0;
+  double high = ds;
+  bool arrived = arrive(low);
+  for (int halving = 0; arrived && !has_sign() && halving < most_halvings; ++halving) {
+    const double middle = 0.5 * (low + high);
+    arrived = arrive(middle);
+    if (value && data_.signs[test] == -signs_[test])
+      high = middle, end_value = *value;
+    else
+      low = middle;
+  }
+  if (!arrived || !has_sign()) return {test, 0.0, false};
+  const auto at = [&](double length) { return arrive(low + length) ? value : std::nullopt; };
   const double rounding = 1e-5 * data_.zero_levels[test];
+  const double start_value = *value;
   const LocatedZero zero =
-      locate_zero(at, ds, *start_value, end_value, settings_.tolerance, rounding, settings_.max_evaluations);
-  return {test, zero.ds, zero.converged};
+      locate_zero(at, high - low, start_value, end_value, settings_.tolerance, rounding, settings_.max_evaluations);
+  return {test, low + zero.ds, zero.converged};
 }
 
 /// What the zero is. Functions that vanish together make one special point, of the first one's type, and none of them
@@ -198,7 +243,7 @@ SpecialPoint SpecialPointSearch::classify(const Zero& zero, const PathPoint& at,
     }
   }
   for (const std::size_t i : group) {
-    signs_[i] = sign_of(end, i);
+    signs_[i] = end.signs[i];
     data_.values[i] = 0.0;
   }
   return special;

@@ -20,6 +20,7 @@ struct PointData {
   double determinant = 1.0;                   ///< as in TestedPoint
   std::vector<std::optional<double>> values;  ///< of the test functions
   std::vector<double> zero_levels;
+  std::vector<int> signs;  ///< of the values; 0 for those up to the zero level
 };
 
 struct LocationSettings {
@@ -43,7 +44,8 @@ class SpecialPointSearch {
   void begin(const PathPoint& start);
 
   /// Are the oscillating test functions resolved by a converged step of length ds to `next`? False when one of them is
-  /// far from what its last values let expect: it may have changed sign twice, a shorter step will tell.
+  /// far from what its last values let expect, or when they let expect that it has come near to zero in between: it may
+  /// have changed sign twice, a shorter step will tell.
   bool resolved(const PathPoint& next, double ds);
 
   /// `next` is a converged step of length ds from `here`, whose linearisation the follower holds. When test functions
@@ -61,7 +63,7 @@ class SpecialPointSearch {
 
   void evaluate(const PathPoint& at);
   TestedPoint tested(const PathPoint& at) const;
-  static int sign_of(const PointData& data, std::size_t test);
+  int sign_at(const TestedPoint& point, std::size_t test) const;
   std::vector<std::size_t> changed(const PointData& end) const;
   Zero locate(std::size_t test, const PathPoint& here, PathPoint& trial, double ds, double end_value);
   SpecialPoint classify(const Zero& zero, const PathPoint& at, const PointData& end);

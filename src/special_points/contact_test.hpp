@@ -29,6 +29,8 @@ class ContactTest final : public TestFunction {
   ContactTest(const DefiningSystem& system, int segment, int event, bool stop);
   std::string name() const override;
   std::optional<double> value(const TestedPoint& point) const override;
+  /// Between pinned ends h may have no minimum, and then no contact: positive where h is.
+  int sign_where_undefined(const TestedPoint& point) const override;
   double zero_level(const TestedPoint&) const override { return 1e-9; }
   SpecialPoint classify(const TestedPoint& point, bool rising) const override;
 

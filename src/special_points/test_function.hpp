@@ -39,6 +39,8 @@ class TestFunction {
   virtual std::string name() const = 0;
   /// Nothing where the function is not defined; an undefined value cannot change sign.
   virtual std::optional<double> value(const TestedPoint& point) const = 0;
+  /// The sign that an undefined value stands for; 0: none.
+  virtual int sign_where_undefined(const TestedPoint&) const { return 0; }
   /// |value| up to this counts as zero.
   virtual double zero_level(const TestedPoint& point) const = 0;
   /// True for functions that may change sign twice within a step that is otherwise fine; such a step is then shortened
