@@ -75,7 +75,7 @@ void BranchWriter::point(const BranchPoint& point) {
   PointLine line;
   line.branch = setup_.branch;
   line.point = point.number;
-  line.stable = setup_.curve_type == 0 && point.multipliers.stable();
+  line.stable = shown_stable(point);
   const int basic = static_cast<int>(point.special.type);
   line.type = basic < 0 ? basic - 10 * setup_.curve_type : basic > 0 ? basic + 10 * setup_.curve_type : 0;
   line.kind = point.special.kind;
@@ -89,6 +89,17 @@ void BranchWriter::point(const BranchPoint& point) {
   if (screen_ != nullptr) show(point, line);
   if (point.labelled())
     labels_.push_back({line.label, type_name(line.type, line.kind), line.values.front(), point.special.description});
+}
+
+/// At a bifurcation a multiplier is on the unit circle; as in AUTO's files the sign is that of the point before, so
+/// that stability changes on the line after it. On two-parameter curves stability says nothing.
+bool BranchWriter::shown_stable(const BranchPoint& point) {
+  if (setup_.curve_type != 0) return false;
+  const PointType type = point.special.type;
+  const bool bifurcation = type == PointType::fold || type == PointType::branch_point ||
+                           type == PointType::period_doubling || type == PointType::torus;
+  if (!(bifurcation && point.number > 1)) last_stable_ = point.multipliers.stable();
+  return last_stable_;
 }
 
 /// Labelled points, the first one, and where orbits become inadmissible (with what is violated) or admissible again.

@@ -49,6 +49,7 @@ class BranchWriter final : public BranchSink {
 
  private:
   std::vector<double> column_values(const BranchPoint& point) const;
+  bool shown_stable(const BranchPoint& point);
   void show(const BranchPoint& point, const PointLine& line);
   void write_diagnostics(const BranchPoint& point, const PointLine& line);
   void write_solution(const BranchPoint& point, const PointLine& line);
@@ -64,6 +65,7 @@ class BranchWriter final : public BranchSink {
   std::vector<Labelled> labels_;
   std::vector<NewtonIteration> start_correction_;  // how Newton came to the section's first point
   bool last_admissible_ = true;
+  bool last_stable_ = false;
 };
 
 }  // namespace tchat

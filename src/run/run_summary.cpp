@@ -17,7 +17,7 @@ std::string reason_text(const BranchSummary& summary, const std::string& paramet
     case EndReason::measure_bound:
       return fmt::format("the solution measure left the bounds A0, A1: {}", summary.detail);
     case EndReason::special_point:
-      return fmt::format("stop requested at {}", summary.detail);
+      return "at the last special point above, where the run was to end";
     case EndReason::interrupted:
       return "interrupted; all files are complete up to the last point";
     case EndReason::no_convergence:
