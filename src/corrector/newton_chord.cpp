@@ -74,12 +74,15 @@ NewtonResult NewtonChord::correct(Orbit& x, const OrbitVector& row, const Orbit&
       return result;
     }
     if (iteration == 1) first_change = larger;
+    const double size = 1.0 + x.states.cwiseAbs().maxCoeff();
+    const bool rounding = result.residual < rounding_residual * size;
     if (iteration > 1 && larger > divergence_factor * first_change) {
-      result.status = NewtonStatus::diverging;
+      // Very near a branch point rounding grows to corrections of any size: the point before this one was the answer.
+      if (rounding) advance(x, -1.0, dx_, free_parameters);
+      result.status = rounding ? NewtonStatus::converged : NewtonStatus::diverging;
       return result;
     }
-    const double size = 1.0 + x.states.cwiseAbs().maxCoeff();
-    if (iteration > 2 && larger < stalled_change && result.residual < rounding_residual * size) {
+    if (iteration > 2 && larger < stalled_change && rounding) {
       result.status = NewtonStatus::converged;
       return result;
     }

@@ -42,7 +42,8 @@ LocatedZero locate_zero(const std::function<std::optional<double>(double)>& func
                          std::abs(best.value) <= rounding_level;
     best.converged = is_zero && done(bracket.first, bracket.second);
   } catch (const StepFailed&) {
-    best.converged = false;
+    // Close to a branch point no step converges; the best value may already be near enough, judged by the mean slope.
+    best.converged = best.evaluations > 0 && std::abs(best.value * ds) <= tolerance * std::abs(f1 - f0);
   }
   return best;
 }
