@@ -1,0 +1,110 @@
+#include "published/chain.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <sstream>
+
+namespace test_support {
+
+namespace {
+
+bool is_number(const std::string& word) { return !word.empty() && std::isdigit(static_cast<unsigned char>(word[0])); }
+
+/// "   2    -3  PD   46   3.0E+00 ..." with or without the type.
+DiagnosticPoint read_point(const std::string& line) {
+  const std::vector<std::string> words = words_of(line);
+  REQUIRE(words.size() > 4);
+  const std::size_t typed = is_number(words[2]) ? 0 : 1;
+  return {
+      std::stoi(words[0]), std::stoi(words[1]), std::stoi(words[2 + typed]), typed == 1 ? words[2] : "", {}, {}, {}};
+}
+
+/// "   h_x f at the end of segment 1:    -7.5E-003"; undefined values are no numbers and left out.
+void read_test(const std::string& line, DiagnosticPoint& point) {
+  const auto colon = line.find(": ");
+  if (line.compare(0, 3, "   ") != 0 || colon == std::string::npos) return;
+  const std::vector<std::string> value = words_of(line.substr(colon + 1));
+  if (value.size() == 1 && value[0].find("E") != std::string::npos)
+    point.tests[line.substr(3, colon - 3)] = std::stod(value[0]);
+}
+
+}  // namespace
+
+void run_to_grazing_curve(const Workspace& workspace) {
+  workspace.run("-c to_grazing -d nonimpacting -o grazing");
+  workspace.run("-c grazing_curve -s grazing -o grazing_curve --both");
+}
+
+void run_impacting(const Workspace& workspace, const std::string& omega) {
+  run_to_grazing_curve(workspace);
+  workspace.run("-c impacting_" + omega + " -s grazing_curve -o impacting_" + omega);
+}
+
+std::vector<DiagnosticPoint> read_diagnostics(const std::string& text) {
+  std::vector<DiagnosticPoint> points;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) {
+    if (line.compare(0, 20, "  BR    PT  TY  LAB ") == 0 && std::getline(in, line))
+      points.push_back(read_point(line));
+    else if (points.empty())
+      continue;
+    else if (line.compare(0, 13, "   Multiplier") == 0)
+      points.back().multipliers.emplace_back(std::stod(words_of(line).at(2)), std::stod(words_of(line).at(3)));
+    else if (const auto note = line.find("NOTE: "); note != std::string::npos)
+      points.back().notes.push_back(line.substr(note + 6));
+    else
+      read_test(line, points.back());
+  }
+  return points;
+}
+
+const DiagnosticPoint& with_label(const std::vector<DiagnosticPoint>& points, int label) {
+  for (const DiagnosticPoint& point : points)
+    if (point.label == label) return point;
+  FAIL("no label " << label << " in the d-file");
+  return points.front();
+}
+
+std::vector<DiagnosticPoint> of_type(const std::vector<DiagnosticPoint>& points, const std::string& type) {
+  std::vector<DiagnosticPoint> found;
+  std::copy_if(points.begin(), points.end(), std::back_inserter(found),
+               [&](const DiagnosticPoint& point) { return point.type == type; });
+  return found;
+}
+
+SolutionEntry only(const Workspace& workspace, const std::string& name, const std::string& type) {
+  const auto found = of_type(read_diagnostics(workspace.read("d." + name)), type);
+  INFO(type << " in d." << name);
+  REQUIRE(found.size() == 1);
+  return with_label(workspace.solutions(name), found.front().label);
+}
+
+double distance_to(const std::vector<std::complex<double>>& multipliers, std::complex<double> value) {
+  REQUIRE_FALSE(multipliers.empty());
+  double nearest = std::abs(multipliers.front() - value);
+  for (const auto& mu : multipliers) nearest = std::min(nearest, std::abs(mu - value));
+  return nearest;
+}
+
+int first_iterations(const std::string& diagnostics) {
+  const auto at = diagnostics.find("Iterations   :");
+  REQUIRE(at != std::string::npos);
+  return std::stoi(diagnostics.substr(at + 14));
+}
+
+double difference(const SolutionEntry& a, const SolutionEntry& b) {
+  REQUIRE(a.t.size() == b.t.size());
+  REQUIRE(a.par.size() == b.par.size());
+  const auto relative = [](double x, double y) { return std::abs(x - y) / (1.0 + std::abs(x)); };
+  double largest = 0.0;
+  for (std::size_t k = 0; k < a.t.size(); ++k) {
+    largest = std::max(largest, std::abs(a.t[k] - b.t[k]));
+    for (std::size_t i = 0; i < a.states[k].size(); ++i)
+      largest = std::max(largest, relative(a.states[k][i], b.states[k].at(i)));
+  }
+  for (std::size_t k = 0; k < a.par.size(); ++k) largest = std::max(largest, relative(a.par[k], b.par[k]));
+  return largest;
+}
+
+}  // namespace test_support

@@ -1,0 +1,71 @@
+// The chain of problems/linosc as a user runs it: make -j2, every label restarts, equal runs write equal files.
+#include <catch2/catch.hpp>
+#include <filesystem>
+
+#include "published/chain.hpp"
+
+using namespace test_support;
+namespace fs = std::filesystem;
+
+namespace {
+
+const std::vector<std::string> branches{"grazing",    "grazing_curve",         "impacting_20072", "impacting_18901",
+                                        "unphysical", "period_doubling_curve", "fold_curve",      "doubled"};
+
+void run_chain(const Workspace& workspace, const std::string& changes) {
+  run_impacting(workspace, "20072");
+  workspace.run("-c impacting_18901 -s grazing_curve -o impacting_18901");
+  workspace.run("-c unphysical -s grazing_curve -o unphysical");
+  workspace.run("-c period_doubling_curve -s impacting_20072 -o period_doubling_curve --both" + changes);
+  workspace.run("-c fold_curve -s impacting_18901 -o fold_curve --both" + changes);
+  workspace.run("-c doubled -s impacting_20072 -o doubled" + changes);
+}
+
+void check_restarts(const Workspace& workspace) {
+  for (const std::string& name : branches)
+    for (const SolutionEntry& stored : workspace.solutions(name)) {
+      INFO(name << " label " << stored.label << " type " << stored.type);
+      workspace.run("-c r." + name + " -s " + name + " -o again NMX=1 IRS=" + std::to_string(stored.label));
+      CHECK(first_iterations(workspace.read("d.again")) <= 1);
+      CHECK(difference(stored, workspace.solutions("again").front()) < 2e-10);
+    }
+}
+
+}  // namespace
+
+TEST_CASE("every label of every file restarts with at most one Newton step") {
+  const Workspace workspace;
+  run_chain(workspace, "");
+  check_restarts(workspace);
+}
+
+TEST_CASE("every label restarts where the curves run on into inadmissible orbits") {
+  const Workspace workspace;
+  run_chain(workspace, " GRSTOP=0");
+  check_restarts(workspace);
+}
+
+TEST_CASE("make -j2 in problems/linosc: the files of the chain, twice the same") {
+  const TemporaryFolder project, logs;
+  fs::create_directories(project.file("problems"));
+  fs::create_directories(project.file("constants"));
+  fs::copy(PROBLEMS "/linosc", project.file("problems/linosc"));
+  fs::copy(CONSTANTS "/linosc", project.file("constants/linosc"));
+  const std::string tchat = TCHAT_EXECUTABLE;
+  for (const char* out : {"first", "second"}) {
+    const Outcome outcome = Process({"/usr/bin/env", "make", "-j2", "-C", project.file("problems/linosc"),
+                                     "TCHAT=" + tchat, "OUT=" + project.file(out)},
+                                    project.file(""), logs.file(out))
+                                .wait(std::chrono::seconds(100));
+    INFO(outcome.text());
+    REQUIRE(outcome.status == 0);
+  }
+  for (const std::string& name : branches)
+    for (const char* letter : {"/p.", "/q.", "/d.", "/r."}) {
+      INFO(letter << name);
+      CHECK(project.read("first" + (letter + name)).size() > 100);
+      CHECK(project.read("first" + (letter + name)) == project.read("second" + (letter + name)));
+    }
+  for (const char* orbit : {"orbit_5_7a", "orbit_5_7b", "orbit_5_8a", "orbit_5_8b", "orbit_5_10"})
+    CHECK(project.read(std::string("first/") + orbit).size() > 100);
+}
