@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "bvp/critical_multiplier.hpp"
@@ -35,6 +36,14 @@ RunSettings doubled(RunSettings settings) {
   for (const SegmentSettings& segment : segments) monitored += static_cast<int>(segment.monitor.size());
   const std::vector<int> tests = settings.test_functions;
   for (const int k : tests) settings.test_functions.push_back(k + monitored);
+  // A duration of the second half weighs as much as that of the first half, unless a weight of its own was given.
+  const std::vector<IndexedValue> weights = settings.parameter_weights;
+  for (const IndexedValue& w : weights) {
+    const int repeated = w.index + static_cast<int>(m);
+    const bool given =
+        std::any_of(weights.begin(), weights.end(), [&](const IndexedValue& other) { return other.index == repeated; });
+    if (is_duration(w.index, static_cast<int>(m)) && !given) settings.parameter_weights.push_back({repeated, w.value});
+  }
   return settings;
 }
 
