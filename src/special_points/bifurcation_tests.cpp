@@ -19,11 +19,13 @@ bool trusted(const FloquetMultipliers& multipliers) {
   return multipliers.valid && multipliers.structural <= structural_limit;
 }
 
+bool is_upper(const std::complex<double>& mu) { return mu.imag() > complex_level * std::abs(mu); }
+
 /// The complex multiplier (upper half plane) nearest to the unit circle; null without one.
 const std::complex<double>* nearest_pair(const FloquetMultipliers& multipliers) {
   const std::complex<double>* nearest = nullptr;
   for (const auto& mu : multipliers.values) {
-    if (mu.imag() <= complex_level * std::abs(mu)) continue;
+    if (!is_upper(mu)) continue;
     if (nearest == nullptr || std::abs(std::abs(mu) - 1.0) < std::abs(std::abs(*nearest) - 1.0)) nearest = &mu;
   }
   return nearest;
@@ -92,9 +94,12 @@ SpecialPoint PeriodDoublingTest::classify(const TestedPoint&, bool) const {
 
 std::optional<double> TorusTest::value(const TestedPoint& point) const {
   if (!trusted(point.multipliers)) return std::nullopt;
-  const std::complex<double>* mu = nearest_pair(point.multipliers);
-  if (mu == nullptr) return std::nullopt;
-  return std::abs(*mu) - 1.0;
+  const std::complex<double>* nearest = nearest_pair(point.multipliers);
+  if (nearest == nullptr) return std::nullopt;
+  double sign = 1.0;
+  for (const auto& mu : point.multipliers.values)
+    if (is_upper(mu) && std::abs(mu) < 1.0) sign = -sign;
+  return sign * std::abs(std::abs(*nearest) - 1.0);
 }
 
 SpecialPoint TorusTest::classify(const TestedPoint& point, bool) const {

@@ -52,7 +52,8 @@ class PeriodDoublingTest final : public TestFunction {
   bool stop_;
 };
 
-/// TR: |mu| - 1 of the complex pair nearest to the unit circle; undefined without one.
+/// TR: distance of the nearest complex pair from the unit circle, negative when an odd number of pairs is inside;
+/// undefined without a pair.
 class TorusTest final : public TestFunction {
  public:
   explicit TorusTest(bool stop) : stop_(stop) {}
