@@ -158,6 +158,8 @@ std::optional<SpecialPoint> SpecialPointSearch::advance(const PathPoint& here, P
                                                         NewtonResult& newton, const Note& note) {
   evaluate(next);
   const PointData end = data_;
+  const OrbitVector end_tangent = next.tangent;
+  const double whole = ds;
   std::optional<Zero> first;
   bool moved = false;
   const double negligible = 10.0 * settings_.tolerance;
@@ -185,6 +187,16 @@ std::optional<SpecialPoint> SpecialPointSearch::advance(const PathPoint& here, P
   }
   std::optional<SpecialPoint> special;
   if (first) special = classify(*first, next, end);
+  if (special && special->type == PointType::branch_point) {
+    // The null space has two dimensions there: go on along the tangents of the ends of the step, which are certain.
+    const double share = end.signs[first->test] == 0 ? 0.0 : first->ds / whole;
+    next.tangent = here.tangent;
+    next.tangent.scale(1.0 - share);
+    next.tangent.states += share * end_tangent.states;
+    next.tangent.durations += share * end_tangent.durations;
+    next.tangent.globals += share * end_tangent.globals;
+    follower_.renormalise(next);
+  }
   for (std::size_t i = 0; i < tests_.size(); ++i)
     if (!first || i != first->test)
       if (data_.signs[i] != 0) signs_[i] = data_.signs[i];

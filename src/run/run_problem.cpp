@@ -82,9 +82,9 @@ int run_problem(const RunRequest& request, std::ostream& screen, std::ostream& w
   files.check_writable();
 
   // Discretisation and first point.
-  const BranchSetup setup = set_up_branch(system, settings, selected);
+  const RunSettings asked = settings;
+  const BranchSetup setup = set_up_branch(system, asked, selected);
   settings = setup.settings;
-  PathFollower& follower = *setup.follower;
   ContinuationSettings continuation = continuation_settings(settings);
 
   // Files are touched only now.
@@ -92,7 +92,7 @@ int run_problem(const RunRequest& request, std::ostream& screen, std::ostream& w
   std::ostream* table = request.quiet ? nullptr : &screen;
   const int last_label = request.append ? std::max(files.last_label(), 0) : selected.last_label;
   BranchWriter writer(
-      system, follower.condensed().rule(),
+      system, setup.follower->condensed().rule(),
       {settings, active_parameters(problem_type(settings), settings), setup.curve_type, selected.branch, last_label},
       files, table);
   continuation.label_start = selected.label_start;
@@ -101,19 +101,27 @@ int run_problem(const RunRequest& request, std::ostream& screen, std::ostream& w
   int status = 0;
   int branch = request.append ? std::max(files.last_branch() + 1, 1) : selected.branch;
   const int directions = request.both_directions ? 2 : 1;
+  const BranchSetup* side = &setup;
+  BranchSetup other_side;
   for (int direction = 0; direction < directions; ++direction, ++branch) {
     if (direction == 1) {
       if (interrupted && interrupted()) break;
       continuation.step.initial = -continuation.step.initial;
       continuation.label_start = false;
+      if (asked.branch_mode == -1) {  // the two sides of a bifurcation are different branches
+        RunSettings reversed = asked;
+        reversed.step = -asked.step;
+        other_side = set_up_branch(system, reversed, selected);
+        side = &other_side;
+      }
     }
     continuation.stop_at = make_stop_rule(settings);
-    writer.begin_section(
-        {branch, continuation.step.initial, direction == 0 ? setup.start.correction : std::vector<NewtonIteration>{}});
+    writer.begin_section({branch, continuation.step.initial,
+                          side == &setup && direction == 1 ? std::vector<NewtonIteration>{} : side->start.correction});
     const std::size_t labels_before = writer.labels().size();
-    ContinuationRun run(follower, *setup.defining, continuation,
-                        select_tests(*setup.defining, settings, follower.condition(), setup.curve_type), writer);
-    const BranchSummary summary = run.run(setup.start.point);
+    ContinuationRun run(*side->follower, *side->defining, continuation,
+                        select_tests(*side->defining, settings, side->follower->condition(), side->curve_type), writer);
+    const BranchSummary summary = run.run(side->start.point);
     const std::vector<BranchWriter::Labelled> labels(
         writer.labels().begin() + static_cast<std::ptrdiff_t>(labels_before), writer.labels().end());
     if (table != nullptr)
