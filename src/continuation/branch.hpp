@@ -60,7 +60,7 @@ struct BranchSummary {
   int inadmissible_points = 0;
   int unstable_points = 0;
   bool multipliers_computed = false;
-  bool critical_curve = false;        ///< every point has a critical multiplier, so stability says nothing
+  bool critical_curve = false;    ///< every point has a critical multiplier, so stability says nothing
   double worst_structural = 0.0;  ///< largest structural multiplier
   double worst_estimated_error = 0.0;
 };

@@ -10,7 +10,8 @@ namespace tchat {
 class SparseLu {
  public:
   /// The pattern: entry k of the values given to `factorize` stands at (row[k], column[k]); repeated positions add up.
-  /// Throws std::invalid_argument when a position is out of range. A structurally singular pattern shows in factorize().
+  /// Throws std::invalid_argument when a position is out of range. A structurally singular pattern shows in
+  /// factorize().
   SparseLu(int size, const std::vector<int>& rows, const std::vector<int>& columns);
   ~SparseLu();
   SparseLu(const SparseLu&) = delete;
