@@ -175,8 +175,8 @@ int ContactTest::sign_where_undefined(const TestedPoint& point) const {
   const Orbit& x = point.orbit;
   if (!(x.duration(segment_) > 0.0)) return 0;
   for (int k = 1; k + 1 < x.shape.nodes(); ++k)
-    if (!(system_.system().event(event_, x.node(segment_, k), x.par.data()) > 0.0)) return 0;
-  return 1;
+    if (system_.system().event(event_, x.node(segment_, k), x.par.data()) > 0.0) return 1;
+  return 0;
 }
 
 SpecialPoint ContactTest::classify(const TestedPoint& point, bool rising) const {

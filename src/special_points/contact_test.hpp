@@ -29,7 +29,7 @@ class ContactTest final : public TestFunction {
   ContactTest(const DefiningSystem& system, int segment, int event, bool stop);
   std::string name() const override;
   std::optional<double> value(const TestedPoint& point) const override;
-  /// Between pinned ends h may have no minimum, and then no contact: positive where h is.
+  /// Between pinned ends h may rise and fall without a minimum in between: no contact, positive.
   int sign_where_undefined(const TestedPoint& point) const override;
   double zero_level(const TestedPoint&) const override { return 1e-9; }
   SpecialPoint classify(const TestedPoint& point, bool rising) const override;

@@ -1,0 +1,142 @@
+// Test functions on grazing curves: xi_n of the linear oscillator in closed form, multipliers of the smooth return map.
+#include "special_points/grazing_curve_tests.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "impacting_orbits.hpp"
+#include "normal_forms.hpp"
+#include "recorded_branch.hpp"
+#include "special_points/bifurcation_tests.hpp"
+
+using namespace tchat;
+using namespace tchat::test;
+
+namespace {
+
+RecordedBranch continued(const GrazingOrbitSystem& system, const Orbit& start, double ds, double largest_step,
+                         int points, Tests tests) {
+  const int principal = system.free_parameters().front();
+  PathFollower follower(system, start.shape, WeightedNorm::unit(start.shape.dimension), tight_newton(), principal);
+  PathPoint point = follower.make_point(start);
+  REQUIRE(follower.start_at_fixed_parameter(point).converged());
+  ContinuationSettings settings = branch_settings(start.shape, principal, ds, largest_step, points);
+  settings.location_tolerance = 1e-10;
+  settings.max_location = 25;
+  settings.adapt_mesh_every = 3;
+  return record(follower, system, point, settings, std::move(tests));
+}
+
+/// (1 + r) omega^2 exp(-zeta n T) sin(n omega_d T) / omega_d
+double exact_xi(int n, double omega) {
+  const double damped = std::sqrt(1 - 0.05 * 0.05);
+  const double time = n * 2 * pi / omega;
+  return 1.8 * omega * omega * std::exp(-0.05 * time) * std::sin(damped * time) / damped;
+}
+
+/// {(1,1,2)} from omega on; PAR(2) first, so that omega is the principal parameter.
+RecordedBranch grazing_oscillator(double omega, double ds, double largest_step, int points, int most) {
+  const double alpha = std::abs(OscillatorConstants{omega}.stiffness());
+  const OscillatorOrbit orbit = nonimpacting_orbit(omega, alpha);
+  const Orbit start = sampled_orbit({orbit.piece(0, orbit.constants.period())}, 4, 50, 4, orbit.par());
+  const GrazingOrbitSystem system(linosc(), {{1, 1, 2}}, {2, 1}, 0);
+  Tests tests;
+  for (int n = 1; n <= most; ++n) tests.push_back(std::make_unique<XiTest>(system, 1, n));
+  for (const int target : {1, -1}) tests.push_back(std::make_unique<SmoothMultiplierTest>(target));
+  return continued(system, start, ds, largest_step, points, std::move(tests));
+}
+
+}  // namespace
+
+TEST_CASE("xi_n: closed form agrees with the published values") {
+  CHECK(exact_xi(1, 1.5) == Approx(-2.83954739661).epsilon(1e-11));
+  CHECK(exact_xi(1, 3.0) == Approx(12.669656605).epsilon(1e-10));
+  CHECK(exact_xi(2, 2.0) == Approx(-0.0413804785294).epsilon(1e-10));
+}
+
+TEST_CASE("xi_n and the smooth multipliers of the linear oscillator along the grazing curve") {
+  const RecordedBranch branch = grazing_oscillator(2.0, 0.05, 0.1, 15, 5);
+  for (const RecordedPoint& p : branch.points) {
+    const double omega = p.orbit.par(1);
+    CAPTURE(p.number, omega);
+    CHECK(p.orbit.par(0) == Approx(std::abs(OscillatorConstants{omega}.stiffness())).epsilon(1e-10));
+    for (int n = 1; n <= 5; ++n) {
+      CAPTURE(n);
+      const auto value = p.values[static_cast<std::size_t>(n - 1)];
+      REQUIRE(value);
+      CHECK(*value == Approx(exact_xi(n, omega)).margin(1e-8));
+    }
+    for (const int target : {1, -1}) {
+      std::complex<double> product = 1.0;
+      for (const auto& mu : nonimpacting_multipliers(omega)) product *= static_cast<double>(target) - mu;
+      CHECK(*p.values[target == 1 ? 5 : 6] == Approx(product.real()).epsilon(1e-7));
+    }
+  }
+}
+
+TEST_CASE("xi_n vanish at omega = 2 n omega_d / k, every one of them, one label for those that coincide") {
+  const double damped = std::sqrt(1 - 0.05 * 0.05);
+  constexpr double low = 0.8, high = 2.3;
+  constexpr int most = 5;
+  for (const double largest_step : {0.02, 0.3}) {
+    CAPTURE(largest_step);
+    const RecordedBranch branch = grazing_oscillator(low, 0.02, largest_step, 900, most);
+    REQUIRE(branch.points.back().orbit.par(1) > high);
+    std::vector<double> zeros;
+    for (int n = 1; n <= most; ++n)
+      for (int k = 1; k <= 40; ++k)
+        if (const double omega = 2 * n * damped / k; omega > low && omega < high) zeros.push_back(omega);
+    std::sort(zeros.begin(), zeros.end());
+    zeros.erase(std::unique(zeros.begin(), zeros.end(), [](double a, double b) { return std::abs(a - b) < 1e-9; }),
+                zeros.end());
+    std::vector<double> found;
+    for (const RecordedPoint* p : branch.special())
+      if (p->orbit.par(1) < high) found.push_back(p->orbit.par(1));
+    REQUIRE(found.size() == zeros.size());
+    for (std::size_t i = 0; i < zeros.size(); ++i) CHECK(found[i] == Approx(zeros[i]).margin(1e-7));
+    CHECK(branch.notes.size() ==
+          static_cast<std::size_t>(std::count_if(branch.notes.begin(), branch.notes.end(),
+                                                 [](const std::string& note) { return note.find("Retrying") == 0; })));
+  }
+  // All of xi_1 .. xi_5 at 2 omega_d.
+  const RecordedBranch branch = grazing_oscillator(1.98, 0.01, 0.05, 12, most);
+  REQUIRE(!branch.special().empty());
+  const std::string text = branch.special()[0]->special.description;
+  for (int n = 1; n <= most; ++n) CHECK(text.find("xi_" + std::to_string(n)) != std::string::npos);
+}
+
+TEST_CASE("grazing-fold and grazing-flip of the normal forms") {
+  // Wall p = 1 + z touched at theta = 0, followed in (mu, p).
+  SECTION("fold: multiplier exp(-4 pi z), not along the principal parameter p = 1 + z") {
+    const GrazingOrbitSystem system(system_of<NormalForms>(), {{2, 2, 1}}, {2, 1}, 0);
+    const RecordedBranch branch =
+        continued(system, NormalForms::orbit(0.0, 0.3, 0.09, 1.3), -0.03, 0.1, 14, one_test<SmoothMultiplierTest>(1));
+    REQUIRE(branch.special().size() == 1);
+    CHECK(branch.special()[0]->special.kind.kind == UserPointKind::grazing_codimension_two);
+    CHECK(branch.special()[0]->special.description.find("grazing-fold") != std::string::npos);
+    CHECK(branch.special()[0]->orbit.par(1) == Approx(1.0).margin(1e-8));
+    for (const RecordedPoint& p : branch.points) {
+      const double z = p.orbit.par(1) - 1;
+      const double expected = (1 - std::exp(-4 * pi)) * (1 - std::exp(-4 * pi * z));
+      CHECK(*p.values[0] == Approx(expected).epsilon(1e-5).margin(1e-7));
+    }
+  }
+  SECTION("flip: multiplier -exp(2 pi mu)") {
+    const GrazingOrbitSystem system(system_of<NormalForms>(), {{1, 2, 2}}, {1, 2}, 0);
+    const RecordedBranch branch =
+        continued(system, NormalForms::orbit(0.0, 0.0, -0.2, 1.0), 0.03, 0.1, 8, one_test<SmoothMultiplierTest>(-1));
+    REQUIRE(branch.special().size() == 1);
+    CHECK(branch.special()[0]->special.description.find("grazing-flip") != std::string::npos);
+    CHECK(branch.special()[0]->orbit.par(0) == Approx(0.0).margin(1e-8));
+  }
+  SECTION("symmetry breaking is a branch point, not a grazing-fold") {
+    const GrazingOrbitSystem system(system_of<NormalForms>(), {{1, 2, 1}}, {1, 2}, 0);
+    Tests tests;
+    tests.push_back(std::make_unique<BranchPointTest>(false));
+    tests.push_back(std::make_unique<SmoothMultiplierTest>(1));
+    const RecordedBranch branch =
+        continued(system, NormalForms::orbit(0.0, 0.0, -0.2, 1.0), 0.03, 0.1, 8, std::move(tests));
+    REQUIRE(branch.special().size() == 1);
+    CHECK(branch.special()[0]->special.type == PointType::branch_point);
+    CHECK(branch.special()[0]->orbit.par(0) == Approx(0.0).margin(1e-8));
+  }
+}
