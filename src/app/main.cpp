@@ -10,8 +10,10 @@
 #include <new>
 
 #include "app/check_command.hpp"
+#include "app/constants_command.hpp"
 #include "app/dat_command.hpp"
 #include "app/labels_command.hpp"
+#include "app/new_command.hpp"
 #include "app/orbit_command.hpp"
 #include "app/run_command.hpp"
 #include "constants/user_error.hpp"
@@ -55,6 +57,8 @@ int main(int argc, char** argv) {
   tchat::add_orbit_command(app, chosen);
   tchat::add_check_command(app, chosen);
   tchat::add_dat_command(app, chosen);
+  tchat::add_constants_command(app, chosen);
+  tchat::add_new_command(app, chosen);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -64,6 +64,13 @@ void refuse_binary(std::string_view text, const std::string& name) {
                               1 + std::count(text.begin(), found, '\n'), static_cast<int>(*found), two_forms));
 }
 
+ConstantsForm form_of(std::string_view text, const std::string& name) {
+  const std::size_t first = text.find_first_not_of(" \t\n\f\v\x1a");
+  if (first == std::string_view::npos) throw UserError(fmt::format("{}: found an empty file; {}", name, two_forms));
+  const bool number = std::string_view("0123456789+-.").find(text[first]) != std::string_view::npos;
+  return number ? ConstantsForm::positional : ConstantsForm::keyword;
+}
+
 /// A file of `KEY = value` lines; each constant at most once.
 void read_keyword_form(std::string_view text, const std::string& name, SettingsDraft& draft) {
   std::map<std::string_view, int> lines;
@@ -94,15 +101,15 @@ void assign_override(SettingsDraft& draft, const Assignment& assignment) {
 RunSettings read_constants_text(std::string_view given, const std::string& name, Warnings* warnings) {
   refuse_binary(given, name);
   const std::string text = with_newlines(given);
-  const std::size_t first = text.find_first_not_of(" \t\n\f\v\x1a");
-  if (first == std::string::npos) throw UserError(fmt::format("{}: found an empty file; {}", name, two_forms));
   SettingsDraft draft(RunSettings{}, name);
-  if (std::string_view("0123456789+-.").find(text[first]) != std::string_view::npos)
+  if (form_of(text, name) == ConstantsForm::positional)
     read_positional_form(text, name, draft, warnings);
   else
     read_keyword_form(text, name, draft);
   return draft.finish(warnings);
 }
+
+ConstantsForm constants_form(const std::string& path) { return form_of(with_newlines(file_contents(path)), path); }
 
 RunSettings read_constants_file(const std::string& path, Warnings* warnings) {
   return read_constants_text(file_contents(path), path, warnings);

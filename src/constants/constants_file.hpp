@@ -17,6 +17,11 @@ namespace tchat {
 /// `warnings`, if not null, receives sentences about what is accepted without effect.
 RunSettings read_constants_file(const std::string& path, Warnings* warnings = nullptr);
 
+enum class ConstantsForm { positional, keyword };
+
+/// The form of a file that can be read. Throws UserError when it is empty or cannot be read.
+ConstantsForm constants_form(const std::string& path);
+
 /// The same from memory; `name` stands for the path in messages.
 RunSettings read_constants_text(std::string_view text, const std::string& name, Warnings* warnings = nullptr);
 

@@ -8,7 +8,7 @@ TEST_CASE("commands and options that do not exist or lack something") {
   for (const char* arguments :
        {"", "nosuch", "run", "run linosc --nosuch", "run linosc -c", "run linosc -x 3", "labels", "orbit",
         "orbit q.branch", "check", "dat", "labels q.a q.b q.c", "orbit q.branch 1 --dimension -3",
-        "orbit q.branch 1 --dimension x", "check linosc --random -5"}) {
+        "orbit q.branch 1 --dimension x", "check linosc --random -5", "new", "new a b", "constants linosc -e -k"}) {
     INFO("tchat " << arguments);
     const Outcome outcome = workspace.tchat(arguments);
     check_refused(outcome, {"--help"});
@@ -17,8 +17,8 @@ TEST_CASE("commands and options that do not exist or lack something") {
 
 TEST_CASE("options --help and --version") {
   const Workspace workspace;
-  for (const char* arguments :
-       {"--help", "run --help", "labels --help", "orbit --help", "check --help", "dat --help"}) {
+  for (const char* arguments : {"--help", "run --help", "labels --help", "orbit --help", "check --help", "dat --help",
+                                "new --help", "constants --help"}) {
     const Outcome outcome = workspace.tchat(arguments);
     CHECK(outcome.status == 0);
     CHECK(outcome.err.empty());

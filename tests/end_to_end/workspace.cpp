@@ -49,6 +49,12 @@ Outcome Workspace::tchat_on_small_disk(int blocks, const std::string& arguments)
   return Process({"/bin/sh", "-c", script}, file(""), logs_.file(std::to_string(++runs_))).wait(time_limit);
 }
 
+Outcome Workspace::make(const std::string& folder, const std::string& targets) const {
+  std::vector<std::string> words{"/usr/bin/env", "make", "-C", folder, "TCHAT=" TCHAT_EXECUTABLE};
+  for (const std::string& target : words_of(targets)) words.push_back(target);
+  return Process(words, file(""), logs_.file(std::to_string(++runs_))).wait(time_limit);
+}
+
 Outcome Workspace::run(const std::vector<std::string>& words) const {
   std::vector<std::string> all{"run", "linosc"};
   all.insert(all.end(), words.begin(), words.end());

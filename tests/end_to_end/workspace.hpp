@@ -24,6 +24,9 @@ class Workspace {
   /// As tchat(), with files of at most so many blocks of 512 bytes, as on a full disk.
   Outcome tchat_on_small_disk(int blocks, const std::string& arguments) const;
 
+  /// make -C FOLDER TARGETS, with this tchat.
+  Outcome make(const std::string& folder, const std::string& targets) const;
+
   /// tchat run linosc ...; fails the test unless the exit status is 0.
   Outcome run(const std::string& arguments) const;
   Outcome run(const std::vector<std::string>& words) const;

@@ -1,0 +1,64 @@
+#include "app/constants_command.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "constants/constants_file.hpp"
+#include "constants/constants_guide.hpp"
+#include "constants/constants_writer.hpp"
+#include "run/run_request.hpp"
+
+namespace tchat {
+
+namespace {
+
+struct ConstantsArguments {
+  std::string name;
+  std::vector<std::string> overrides;
+  bool explain = false;
+  bool keyword = false;
+  bool positional = false;
+};
+
+int print_constants(const ConstantsArguments& arguments) {
+  if (arguments.name.empty()) {
+    fmt::print("{}", constants_guide());
+    return 0;
+  }
+  Warnings warnings;
+  const std::string path = constants_path(arguments.name);
+  RunSettings settings = read_constants_file(path, &warnings);
+  apply_overrides(settings, arguments.overrides, &warnings);
+  for (const std::string& warning : warnings) fmt::print(stderr, "tchat: warning: {}\n", warning);
+  const bool to_keyword =
+      arguments.keyword || (!arguments.positional && constants_form(path) == ConstantsForm::positional);
+  if (arguments.explain)
+    fmt::print("{}", explained_text(settings));
+  else
+    fmt::print("{}", to_keyword ? keyword_text(settings) : positional_text(settings));
+  return 0;
+}
+
+}  // namespace
+
+void add_constants_command(CLI::App& app, std::function<int()>& chosen) {
+  CLI::App* command = app.add_subcommand("constants", "a constants file in the other form, or explained");
+  const auto arguments = std::make_shared<ConstantsArguments>();
+  command->add_option("NAME", arguments->name, "reads gc.NAME (a path is also accepted); without it, all constants");
+  command->add_option("KEY=VALUE", arguments->overrides, "changes before it is printed, as for tchat run");
+  CLI::Option* explain = command->add_flag("-e,--explain", arguments->explain, "what the file asks for, in words");
+  CLI::Option* keyword = command->add_flag("-k,--keyword", arguments->keyword, "print the form KEY = value");
+  CLI::Option* positional = command->add_flag("-p,--positional", arguments->positional, "print the positional form");
+  keyword->excludes(explain)->excludes(positional);
+  positional->excludes(explain);
+  command->footer(
+      "Prints on the screen: tchat constants mems > gc.other, tchat constants mems NTST=80 DS=-0.01 -p > gc.mems2\n"
+      "Comments of the original are not kept.");
+  command->callback([&chosen, arguments] { chosen = [arguments] { return print_constants(*arguments); }; });
+}
+
+}  // namespace tchat

@@ -1,0 +1,77 @@
+#include "new_problem/problem_template.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+#include "constants/user_error.hpp"
+#include "new_problem/template_files.hpp"
+
+namespace tchat {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
+bool is_word_character(char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == '_'; }
+
+void require_name(const std::string& name) {
+  if (!name.empty() && is_letter(name[0]) && std::all_of(name.begin(), name.end(), is_word_character)) return;
+  throw UserError(
+      fmt::format("'{}' cannot be the name of a problem; needed is a letter followed by letters, digits and "
+                  "underscores, for example: tchat new two_walls",
+                  name));
+}
+
+/// two_walls -> TwoWalls
+std::string class_name(const std::string& name) {
+  std::string result;
+  bool capital = true;
+  for (const char c : name) {
+    if (c != '_') result += capital && c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+    capital = c == '_';
+  }
+  return result;
+}
+
+std::string filled(std::string text, const std::string& mark, const std::string& value) {
+  for (std::size_t at = text.find(mark); at != std::string::npos; at = text.find(mark, at + value.size()))
+    text.replace(at, mark.size(), value);
+  return text;
+}
+
+void write_new(const fs::path& path, const std::string& text) {
+  std::ofstream out(path, std::ios::binary);
+  out << text << std::flush;
+  if (!out)
+    throw UserError(fmt::format("{} cannot be written; is the folder writable and the disk not full?", path.string()));
+}
+
+}  // namespace
+
+std::vector<NewFile> problem_template(const std::string& name) {
+  require_name(name);
+  std::vector<NewFile> files{{name + ".cpp", template_files::problem},
+                             {name + ".dat", template_files::start},
+                             {"gc." + name, template_files::constants},
+                             {"Makefile", template_files::makefile}};
+  for (NewFile& file : files) file.text = filled(filled(file.text, "@NAME@", name), "@CLASS@", class_name(name));
+  return files;
+}
+
+std::vector<NewFile> create_problem(const std::string& path) {
+  const fs::path folder = fs::path(path).has_filename() ? fs::path(path) : fs::path(path).parent_path();
+  const std::vector<NewFile> files = problem_template(folder.filename().string());
+  std::error_code failed;
+  if (fs::exists(folder, failed) && !(fs::is_directory(folder, failed) && fs::is_empty(folder, failed)))
+    throw UserError(fmt::format("{} exists already and is left as it is; choose another name", folder.string()));
+  fs::create_directories(folder, failed);
+  if (failed) throw UserError(fmt::format("the folder {} cannot be made: {}", folder.string(), failed.message()));
+  for (const NewFile& file : files) write_new(folder / file.name, file.text);
+  return files;
+}
+
+}  // namespace tchat

@@ -1,0 +1,22 @@
+/// A problem to start from: plugin, starting data, constants and Makefile that run as they are.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace tchat {
+
+struct NewFile {
+  std::string name;  ///< inside the problem's folder
+  std::string text;
+};
+
+/// The files of a new problem. Throws UserError unless `name` is a letter followed by letters, digits and underscores:
+/// it becomes a class name and part of file names and Makefile rules.
+std::vector<NewFile> problem_template(const std::string& name);
+
+/// Writes them into the new folder `path`, whose last part is the problem's name. Throws UserError when the folder has
+/// files already or cannot be written; what is there is never touched.
+std::vector<NewFile> create_problem(const std::string& path);
+
+}  // namespace tchat
