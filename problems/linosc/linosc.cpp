@@ -38,6 +38,9 @@ struct LinearOscillator {
     for (int i = 0; i < 4; ++i) g[i] = x[i];
     if (k == 1) g[1] = -par[3] * x[1];
   }
+
+  /// For simulation: after everything comes the wall or, cutting an orbit that misses it, a maximum of x1.
+  std::vector<std::array<int, 3>> successors(std::array<int, 3>) const { return {{1, 1, 1}, {1, 2, 2}}; }
 };
 
 TCHAT_PROBLEM(LinearOscillator)

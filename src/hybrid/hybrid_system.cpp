@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <stdexcept>
 
 #include "hybrid/difference_derivatives.hpp"
@@ -76,6 +78,26 @@ int HybridSystem::parameter_index(const std::string& name) const {
   for (int k = 1; k <= parameters(); ++k)
     if (table_->parameter_names != nullptr && name == table_->parameter_names[k - 1]) return k;
   return 0;
+}
+
+std::optional<std::vector<IndexVector>> HybridSystem::successors(const IndexVector& from, const double* x,
+                                                                 const double* par) const {
+  const std::array<std::int32_t, 3> last{from.field, from.event, from.jump};
+  std::vector<std::int32_t> to(3 * 64);
+  const auto ask = [&] {
+    return table_->successors(table_->self, last.data(), x, par, to.data(), static_cast<int>(to.size() / 3));
+  };
+  std::int32_t count = ask();
+  if (static_cast<std::size_t>(std::max(count, 0)) > to.size() / 3) {
+    if (count > 10000) return std::nullopt;
+    to.resize(3 * static_cast<std::size_t>(count));
+    count = std::min(ask(), count);
+  }
+  if (count < 0) return std::nullopt;
+  std::vector<IndexVector> next;
+  for (std::size_t v = 0; v < static_cast<std::size_t>(count); ++v)
+    next.push_back({to[3 * v], to[3 * v + 1], to[3 * v + 2]});
+  return next;
 }
 
 void HybridSystem::first(FunctionKind kind, int index, const double* x, const double* par, std::span<const int> active,

@@ -6,6 +6,7 @@
 /// entries that are not finite, which callers check (`all_finite`).
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -46,6 +47,12 @@ class HybridSystem {
     value(FunctionKind::event, j, x, par, &h);
     return h;
   }
+
+  /// Does the problem have an index jump function?
+  bool has_successors() const { return table_->successors != nullptr; }
+  /// The index vectors that may follow a segment `from` that ends, before its jump, at x; from = (0, 0, 0): those at a
+  /// start x. The one with priority first. Nothing when the function cannot be evaluated.
+  std::optional<std::vector<IndexVector>> successors(const IndexVector& from, const double* x, const double* par) const;
 
   /// F, F_x (rows x dimension) and F_p (rows x active.size()); `active` lists PAR indices from 1. Central differences
   /// where the table has no derivatives.

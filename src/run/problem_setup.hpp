@@ -9,6 +9,7 @@
 #include "continuation/continuation_run.hpp"
 #include "corrector/newton_chord.hpp"
 #include "hybrid/hybrid_system.hpp"
+#include "hybrid/identity_jump.hpp"
 
 namespace tchat {
 
@@ -17,9 +18,6 @@ namespace tchat {
 /// contradicts the jump).
 std::vector<std::string> check_settings_against(const HybridSystem& system, const RunSettings& settings,
                                                 const std::string& constants_name);
-
-/// Is jump k the identity map? Tried at two generic states.
-bool is_identity_jump(const HybridSystem& system, int k);
 
 /// PAR index of a name given by the user: a number, or one of the problem's names. Throws UserError listing the names.
 int parameter_index(const HybridSystem& system, const std::string& name, const std::string& where);

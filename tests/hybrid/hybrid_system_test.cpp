@@ -171,6 +171,53 @@ TEST_CASE("an output left unset, or an exception, becomes NaN") {
   CHECK_FALSE(all_finite(f.data(), 2));
 }
 
+namespace {
+
+/// A ball that sticks when it lands slowly: what follows the impact depends on the velocity after it.
+struct Landing {
+  static constexpr int dimension = 2, parameters = 1, fields = 2, events = 1, jumps = 1;
+  template <class T>
+  void field(int i, const T* x, const T*, T* f) const {
+    f[0] = i == 1 ? x[1] : T(0.0), f[1] = T(i == 1 ? -1.0 : 0.0);
+  }
+  template <class T>
+  T event(int, const T* x, const T*) const {
+    return x[0];
+  }
+  template <class T>
+  void jump(int, const T* x, const T* p, T* g) const {
+    g[0] = x[0], g[1] = -p[0] * x[1];
+  }
+  std::vector<std::array<int, 3>> successors(std::array<int, 3> from, const double* x, const double* par) const {
+    if (from[0] == 0) return {};
+    if (std::isnan(x[1])) throw 1;
+    if (from[0] == 3) return std::vector<std::array<int, 3>>(100, from);
+    double g[2];
+    jump(from[2], x, par, g);
+    if (g[1] > 0.1) return {{1, 1, 1}};
+    return {{2, 1, 1}, {1, 1, 1}};
+  }
+};
+
+}  // namespace
+
+TEST_CASE("index jump function of the state, and of the index vector alone") {
+  const HybridSystem landing(*ProblemTable<Landing>::get("landing"));
+  const double par[] = {0.5}, fast[] = {0.0, -1.0}, slow[] = {0.0, -0.1}, broken[] = {0.0, NAN};
+  REQUIRE(landing.has_successors());
+  using Next = std::vector<IndexVector>;
+  CHECK(landing.successors({1, 1, 1}, fast, par) == Next{{1, 1, 1}});
+  CHECK(landing.successors({1, 1, 1}, slow, par) == Next{{2, 1, 1}, {1, 1, 1}});
+  CHECK(landing.successors({0, 0, 0}, fast, par) == Next{});
+  CHECK(landing.successors({3, 1, 1}, fast, par) == Next(100, {3, 1, 1}));
+  CHECK_FALSE(landing.successors({1, 1, 1}, broken, par).has_value());
+
+  const HybridSystem linosc(linosc_table());
+  const double x[] = {1.0, 0.5, 0.0, 1.0};
+  CHECK(linosc.successors({1, 1, 1}, x, par) == Next{{1, 1, 1}, {1, 2, 2}});
+  CHECK_FALSE(HybridSystem(nonlinear_table()).has_successors());
+}
+
 TEST_CASE("all_finite") {
   const double values[] = {1.0, 1e308, 1e308, -1e308, INFINITY, NAN, -INFINITY};
   CHECK(all_finite(values, 4));

@@ -21,7 +21,7 @@
 
 #include <stdint.h>
 
-#define TCHAT_PROBLEM_ABI 1
+#define TCHAT_PROBLEM_ABI 2
 #define TCHAT_PAR_LENGTH 256
 
 #ifdef __cplusplus
@@ -67,9 +67,13 @@ typedef struct tchat_problem {
                  const int32_t* active, int32_t active_count, const double* direction, double* out, double* dx,
                  double* dp);
 
-  /* Index jump function iota: writes at most `capacity` index vectors (i, j, k) that may follow `from`, three integers
-   * each, and returns how many there are. NULL when the problem does not say. */
-  int32_t (*successors)(const void* self, const int32_t from[3], int32_t* to, int32_t capacity);
+  /* Index jump function iota: writes at most `capacity` index vectors (i, j, k) that may follow the segment `from`,
+   * three integers each, the one with priority first, and returns how many there are. x is the state at the end of that
+   * segment, before the jump. from = (0, 0, 0) asks for those at the start of a simulation, where x is the start itself;
+   * none: the problem leaves that to the user. A negative count: cannot be evaluated at x. NULL when the problem does
+   * not say what follows what. */
+  int32_t (*successors)(const void* self, const int32_t from[3], const double* x, const double* par, int32_t* to,
+                        int32_t capacity);
 
   /* User functions (PVLS) of the state x_1(0), added to the output: `user_values` numbers. */
   int32_t user_values;

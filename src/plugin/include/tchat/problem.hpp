@@ -21,7 +21,10 @@
 ///     static constexpr const char* state_names[]      = {"x", "v"};      // and parameter_names, field_names,
 ///                                                                        // event_names, jump_names
 ///     static constexpr double initial_parameters[]    = {9.81, 0.8};
-///     std::vector<std::array<int, 3>> successors(std::array<int, 3> from) const;      // index jump function iota
+///     // index jump function iota, for `tchat simulate`: the index vectors that may follow the segment `from`, whose
+///     last
+///     // state, before the jump, is x; from = {0, 0, 0}: those at a start x. x and par may be left out.
+///     std::vector<std::array<int, 3>> successors(std::array<int, 3> from, const double* x, const double* par) const;
 ///     static constexpr int user_values = 1;                               // PVLS, with user_value_names if wanted
 ///     void user_value(const double* x, const double* par, double* out) const;         // x is x_1(0)
 ///     // hand-written first derivatives instead of automatic ones, column-major, zero before the call:
@@ -195,16 +198,35 @@ class ProblemTable {
     return true;
   }
 
-  static std::int32_t successors(const void* self, const std::int32_t from[3], std::int32_t* to,
-                                 std::int32_t capacity) {
+  using IndexVectors = std::vector<std::array<int, 3>>;
+  static constexpr bool names_successors = requires { &Problem::successors; };
+  static constexpr bool successors_of_state = requires(const Problem& p, const double* v) {
+    IndexVectors(p.successors(std::array<int, 3>{}, v, v));
+  };
+  static constexpr bool successors_alone = requires(const Problem& p) {
+    IndexVectors(p.successors(std::array<int, 3>{}));
+  };
+  static_assert(!names_successors || successors_of_state || successors_alone,
+                "tchat: write std::vector<std::array<int, 3>> successors(std::array<int, 3> from, const double* x, "
+                "const double* par) const");
+
+  static std::int32_t successors(const void* self, const std::int32_t from[3], const double* x, const double* par,
+                                 std::int32_t* to, std::int32_t capacity) {
     std::int32_t count = 0;
-    if constexpr (requires(const Problem& p) { p.successors(std::array<int, 3>{}); }) {
-      const auto next = object(self).successors(std::array<int, 3>{from[0], from[1], from[2]});
+    try {
+      const std::array<int, 3> last{from[0], from[1], from[2]};
+      IndexVectors next;
+      if constexpr (successors_of_state)
+        next = object(self).successors(last, x, par);
+      else if constexpr (successors_alone)
+        next = object(self).successors(last);
       for (const auto& index_vector : next) {
         if (count < capacity)
           for (int k = 0; k < 3; ++k) to[3 * count + k] = index_vector[static_cast<std::size_t>(k)];
         ++count;
       }
+    } catch (...) {
+      return -1;
     }
     return count;
   }
@@ -229,7 +251,7 @@ class ProblemTable {
     table.first = &first;
     table.second = &second;
     table.user_value = &user_value;
-    if constexpr (requires(const Problem& p) { p.successors(std::array<int, 3>{}); }) table.successors = &successors;
+    if constexpr (successors_of_state || successors_alone) table.successors = &successors;
     if constexpr (requires { Problem::user_values; }) table.user_values = Problem::user_values;
 
 #define TCHAT_OPTIONAL_ARRAY(MEMBER, LENGTH)                                                             \
