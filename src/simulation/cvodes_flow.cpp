@@ -7,8 +7,12 @@
 #include <sunlinsol/sunlinsol_dense.h>
 #include <sunmatrix/sunmatrix_dense.h>
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "hybrid/parameter_vector.hpp"
@@ -44,22 +48,29 @@ constexpr int not_evaluable = 1;  // tells CVODES to try a smaller step
 struct CvodesFlow::Implementation {
   const HybridSystem& system;
   int field;
-  int event = 0;  // watched, 0 for none
-  bool look_for_minima = true;
   int n;
   int columns;  // of [Phi, X]
   VectorXd par;
   FlowOptions options;
   std::string message;
-  double time = 0.0;
+  std::string not_evaluated;  // which function, and where
+  double time = 0.0;          // of the flow as callers see it
+  double reached = 0.0;       // by the integrator; the flow from `time` to here is still to be looked at
+  long steps = 0;
+  std::vector<int> events;
+  std::optional<EventWatch> watch;
+  bool finds_roots = false;  // CVODES does
+  std::vector<int> is_root;  // what it located at `reached`
+  int fallen = 0;
+  std::function<bool(double, double)> observer;
 
   // Values of the field and its derivatives at the point last asked for.
   VectorXd f;
   MatrixXd fx, fp;
-  Eigen::RowVectorXd hx;
 
   Context context = make_context();
   Vector x;
+  Vector dense;  // what was last asked of the dense output
   std::vector<Vector> sensitivities;
   std::vector<N_Vector> sensitivity_pointers;
   Matrix matrix;
@@ -76,8 +87,8 @@ struct CvodesFlow::Implementation {
         f(n),
         fx(n, n),
         fp(n, std::max<Eigen::Index>(1, static_cast<Eigen::Index>(o.active.size()))),
-        hx(n),
         x(N_VNew_Serial(n, context.get()), &N_VDestroy),
+        dense(N_VNew_Serial(n, context.get()), &N_VDestroy),
         matrix(SUNDenseMatrix(n, n, context.get()), &SUNMatDestroy),
         linear_solver(SUNLinSol_Dense(x.get(), matrix.get(), context.get()), &SUNLinSolFree),
         integrator(CVodeCreate(o.method == IntegrationMethod::adams ? CV_ADAMS : CV_BDF, context.get())) {
@@ -95,7 +106,6 @@ struct CvodesFlow::Implementation {
     CVodeSetUserData(cvode(), this);
     CVodeSetLinearSolver(cvode(), linear_solver.get(), matrix.get());
     CVodeSetJacFn(cvode(), &jacobian);
-    CVodeSetMaxNumSteps(cvode(), options.max_steps);
   }
 
   void start_sensitivities() {
@@ -124,7 +134,9 @@ struct CvodesFlow::Implementation {
     Implementation& flow = self(user_data);
     double* const out = N_VGetArrayPointer(derivative);
     flow.system.value(FunctionKind::field, flow.field, N_VGetArrayPointer(at), flow.par.data(), out);
-    return all_finite(out, flow.n) ? 0 : not_evaluable;
+    if (all_finite(out, flow.n)) return 0;
+    flow.remember_trouble(FunctionKind::field, flow.field, at);
+    return not_evaluable;
   }
 
   static int jacobian(double, N_Vector at, N_Vector, SUNMatrix out, void* user_data, N_Vector, N_Vector, N_Vector) {
@@ -147,81 +159,122 @@ struct CvodesFlow::Implementation {
     return 0;
   }
 
-  double event_at(const double* at) const { return system.event(event, at, par.data()); }
-
-  /// h_P = h_x f: zero where h is least. 1 where it is not looked for, or cannot be evaluated.
-  double event_velocity(const double* at) {
-    if (!look_for_minima) return 1.0;
-    double h = 0.0;
-    system.value(FunctionKind::field, field, at, par.data(), f.data());
-    system.first(FunctionKind::event, event, at, par.data(), {}, &h, hx.data(), nullptr);
-    const double velocity = hx.dot(f);
-    return all_finite(&velocity, 1) ? velocity : 1.0;
-  }
-
   static int root_functions(double, N_Vector at, double* out, void* user_data) {
     Implementation& flow = self(user_data);
-    out[0] = flow.event_at(N_VGetArrayPointer(at));
-    out[1] = flow.event_velocity(N_VGetArrayPointer(at));
-    return all_finite(out, 1) ? 0 : not_evaluable;
+    return flow.watch->roots(N_VGetArrayPointer(at), out) ? 0 : not_evaluable;
   }
 
-  /// One call of CVODES; goes on without minima where it finds a root of h_P too close to another.
-  int step_to(double end_time) {
-    int flag = CVode(cvode(), end_time, x.get(), &time, CV_NORMAL);
-    if (flag == CV_ILL_INPUT && event > 0 && look_for_minima) {  // what CVODES returns for roots too close
-      look_for_minima = false;
-      flag = CVode(cvode(), end_time, x.get(), &time, CV_NORMAL);
-    }
-    return flag;
+  void remember_trouble(FunctionKind kind, int index, N_Vector at) {
+    const double* const state = N_VGetArrayPointer(at);
+    not_evaluated = fmt::format("{} has no finite value at x = ({:.6g})", system.function_name(kind, index),
+                                fmt::join(state, state + n, ", "));
   }
 
-  double event_on_step(double at_time) {
-    CVodeGetDky(cvode(), at_time, 0, x.get());
-    return event_at(N_VGetArrayPointer(x.get()));
+  const double* dense_output(double t) {
+    CVodeGetDky(cvode(), t, 0, dense.get());
+    return N_VGetArrayPointer(dense.get());
   }
 
-  /// At a root of h or h_P: whether h fell through zero, at `time` or inside the step before it. Then time and x are
-  /// those of the crossing.
-  bool find_crossing() {
-    int found[2] = {0, 0};
-    CVodeGetRootInfo(cvode(), found);
-    if (found[0] != 0) return true;
+  double current_time() {
     double current = 0.0;
-    double length = 0.0;
     CVodeGetCurrentTime(cvode(), &current);
-    CVodeGetLastStep(cvode(), &length);
-    double above = current - length;
-    double below = time;
-    const double at_minimum = event_on_step(below);
-    if (!(at_minimum < 0.0 && event_on_step(above) > 0.0)) return false;
-    for (int halving = 0; halving < 60; ++halving) {
-      const double middle = 0.5 * (above + below);
-      (event_on_step(middle) > 0.0 ? above : below) = middle;
+    return current;
+  }
+
+  void start_roots() {
+    const int count = watch->count();
+    CVodeRootInit(cvode(), 2 * count, &Implementation::root_functions);
+    std::vector<int> directions(static_cast<std::size_t>(2 * count), -1);
+    std::fill(directions.begin() + count, directions.end(), +1);
+    CVodeSetRootDirection(cvode(), directions.data());
+    CVodeSetNoInactiveRootWarn(cvode());
+    is_root.assign(directions.size(), 0);
+    finds_roots = true;
+  }
+
+  /// One step of CVODES, or the part of it up to the next root. Roots too close to each other (CV_ILL_INPUT) end its
+  /// search for roots; that of the watch goes on. False when the integration failed.
+  bool step(double end_time) {
+    int flag = CVode(cvode(), end_time, x.get(), &reached, CV_ONE_STEP);
+    if (flag == CV_ILL_INPUT && finds_roots) {
+      CVodeRootInit(cvode(), 0, nullptr);
+      finds_roots = false;
+      const double behind = std::exchange(reached, current_time());
+      if (reached == behind) flag = CVode(cvode(), end_time, x.get(), &reached, CV_ONE_STEP);
     }
-    time = below;
-    event_on_step(below);
-    return true;
+    std::fill(is_root.begin(), is_root.end(), 0);
+    if (flag == CV_ROOT_RETURN) CVodeGetRootInfo(cvode(), is_root.data());
+    if (flag < 0 && message.empty()) message = fmt::format("CVODES gave up with code {}", flag);
+    if (flag >= 0 && ++steps > options.max_steps) {
+      message = fmt::format("more than {} steps", options.max_steps);
+      return false;
+    }
+    return flag >= 0;
+  }
+
+  /// Looks for falls up to where the integrator is.
+  bool look() {
+    if (!watch) {
+      time = reached;
+      return false;
+    }
+    const DenseOutput output = [this](double t) { return dense_output(t); };
+    const std::optional<EventWatch::Fall> fall = watch->look(reached, output, finds_roots ? is_root.data() : nullptr);
+    time = fall ? fall->time : reached;
+    fallen = fall ? fall->event : 0;
+    if (fall) polish_fall();
+    return fall.has_value();
   }
 
   /// Newton's method for h = 0 on the dense output: CVODES locates roots to 100 units of rounding in time, which a
   /// small velocity of h turns into much larger errors of what depends on it.
-  void polish_crossing() {
-    double current = 0.0;
+  void polish_fall() {
     double length = 0.0;
-    CVodeGetCurrentTime(cvode(), &current);
     CVodeGetLastStep(cvode(), &length);
-    double h = event_on_step(time);
+    const double current = current_time();
+    double h = watch->value(fallen, dense_output(time));
     for (int iteration = 0; iteration < 3; ++iteration) {
-      const double moved = time - h / event_velocity(N_VGetArrayPointer(x.get()));
+      const double moved = time - h / watch->rate(fallen, dense_output(time));
       const bool is_small = std::abs(moved - time) <= 1e-10 * (1.0 + std::abs(time));
       if (!is_small || moved > current || moved < current - length) break;
-      const double h_moved = event_on_step(moved);
+      const double h_moved = watch->value(fallen, dense_output(moved));
       if (std::abs(h_moved) >= std::abs(h)) break;
       time = moved;
       h = h_moved;
     }
-    event_on_step(time);
+  }
+
+  Progress fail() {
+    message =
+        fmt::format("integration of {} failed at time {:.6g}: {}", system.function_name(FunctionKind::field, field),
+                    reached, not_evaluated.empty() ? message : not_evaluated);
+    return Progress::failed;
+  }
+
+  Progress advance(double end_time) {
+    CVodeSetStopTime(cvode(), end_time);
+    while (time != end_time) {
+      const double from = time;
+      not_evaluated.clear();
+      if (time == reached && !step(end_time)) return fail();
+      if (watch && !is_evaluable_at_end()) return fail();
+      const bool has_fallen = look();
+      const bool goes_on = !observer || observer(from, time);
+      if (has_fallen) return Progress::root;
+      if (!goes_on) return Progress::stopped;
+    }
+    return Progress::end_time;
+  }
+
+  bool is_evaluable_at_end() {
+    const double* const at = dense_output(reached);
+    for (const int event : events) {
+      const double h = watch->value(event, at);
+      if (all_finite(&h, 1)) continue;
+      remember_trouble(FunctionKind::event, event, dense.get());
+      return false;
+    }
+    return true;
   }
 
   static void keep_message(int, const char*, const char*, char* text, void* user_data) {
@@ -235,32 +288,39 @@ CvodesFlow::CvodesFlow(const HybridSystem& system, int field, const VectorXd& x0
 
 CvodesFlow::~CvodesFlow() = default;
 
-void CvodesFlow::watch(int event) {
-  p_->event = event;
-  CVodeRootInit(p_->cvode(), 2, &Implementation::root_functions);
-  int directions[2] = {-1, +1};
-  CVodeSetRootDirection(p_->cvode(), directions);
-  CVodeSetNoInactiveRootWarn(p_->cvode());
+void CvodesFlow::watch(std::vector<int> events) {
+  p_->events = events;
+  p_->watch.emplace(p_->system, p_->field, std::move(events), p_->par, N_VGetArrayPointer(p_->x.get()),
+                    p_->options.surface_tolerance);
+  p_->start_roots();
 }
+
+void CvodesFlow::on_piece(std::function<bool(double, double)> observer) { p_->observer = std::move(observer); }
 
 Progress CvodesFlow::advance(double end_time) {
   if (end_time == p_->time) return Progress::end_time;
-  CVodeSetStopTime(p_->cvode(), end_time);
-  int flag = p_->step_to(end_time);
-  while (flag == CV_ROOT_RETURN && !p_->find_crossing()) flag = p_->step_to(end_time);
-  if (flag < 0) {
-    p_->message = fmt::format("integration of {} failed at time {:.6g}: {}",
-                              p_->system.function_name(FunctionKind::field, p_->field), p_->time, p_->message);
-    return Progress::failed;
-  }
-  if (flag == CV_ROOT_RETURN) p_->polish_crossing();
-  if (p_->columns > 0) CVodeGetSensDky(p_->cvode(), p_->time, 0, p_->sensitivity_pointers.data());
-  return flag == CV_ROOT_RETURN ? Progress::root : Progress::end_time;
+  const Progress progress = p_->advance(end_time);
+  if (progress != Progress::failed && p_->columns > 0)
+    CVodeGetSensDky(p_->cvode(), p_->time, 0, p_->sensitivity_pointers.data());
+  return progress;
 }
+
+int CvodesFlow::fallen() const { return p_->fallen; }
+
+std::vector<EventWatch::Contact> CvodesFlow::take_contacts() {
+  return p_->watch ? p_->watch->take_contacts() : std::vector<EventWatch::Contact>{};
+}
+
+bool CvodesFlow::is_armed(int event) const { return p_->watch && p_->watch->is_armed(event); }
+
+VectorXd CvodesFlow::state_at(double t) const { return Eigen::Map<const VectorXd>(p_->dense_output(t), p_->n); }
 
 double CvodesFlow::time() const { return p_->time; }
 
-VectorXd CvodesFlow::state() const { return Eigen::Map<const VectorXd>(N_VGetArrayPointer(p_->x.get()), p_->n); }
+VectorXd CvodesFlow::state() const {
+  if (p_->time == 0.0) return Eigen::Map<const VectorXd>(N_VGetArrayPointer(p_->x.get()), p_->n);
+  return state_at(p_->time);
+}
 
 MatrixXd CvodesFlow::jacobian() const {
   if (p_->columns == 0) return {};

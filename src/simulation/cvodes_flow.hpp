@@ -1,4 +1,4 @@
-/// One initial value problem x' = f_i(x, p), x(0) = x0, integrated by CVODES with root finding on one event function.
+/// One initial value problem x' = f_i(x, p), x(0) = x0, integrated by CVODES with root finding on event functions.
 ///
 /// With it, if wanted, the variational equations Phi' = f_x Phi, Phi(0) = Id, and X' = f_x X + f_p, X(0) = 0, as
 /// forward sensitivities under the same error control. The integrator's linear systems are dense, n x n.
@@ -6,15 +6,18 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "hybrid/hybrid_system.hpp"
+#include "simulation/event_watch.hpp"
 #include "simulation/flow_options.hpp"
 
 namespace tchat {
 
-enum class Progress { root, end_time, failed };
+enum class Progress { root, end_time, stopped, failed };
 
 class CvodesFlow {
  public:
@@ -23,12 +26,24 @@ class CvodesFlow {
              const FlowOptions& options);
   ~CvodesFlow();
 
-  /// Stop where event function j falls through zero (from + to -). Once, before the first advance(). The zeros of
-  /// h_P = h_x f where h is least are found too, and the sign of h there is looked at (2.57-2.60), so that a pair of
-  /// crossings inside one step, near grazing, is not missed.
-  void watch(int event);
-  /// Integrates on to `end_time` exactly, or to the next root.
+  /// Stop where one of these event functions falls through zero (event_watch.hpp says what counts). Once, before the
+  /// first advance(). CVODES finds the zeros of h and of h_P = h_x f; the watch looks at every step it takes, so that a
+  /// pair of crossings inside one step, near grazing, is not missed, and zeros that CVODES finds too close are no harm.
+  void watch(std::vector<int> events);
+  /// Called for every piece of the flow that has been passed, from one time to the next; state_at() is valid in it.
+  /// False stops the flow (Progress::stopped).
+  void on_piece(std::function<bool(double from, double to)> observer);
+  /// Integrates on to `end_time` exactly, or to the next fall.
   Progress advance(double end_time);
+
+  /// Which event function fell at the last Progress::root.
+  int fallen() const;
+  /// Least values of watched functions that did not reach zero, since the last call.
+  std::vector<EventWatch::Contact> take_contacts();
+  /// Has h_j been positive, so that it can fall?
+  bool is_armed(int event) const;
+  /// x(t) on the piece passed last.
+  Eigen::VectorXd state_at(double t) const;
 
   double time() const;
   Eigen::VectorXd state() const;

@@ -36,27 +36,15 @@ VectorXd checked_parameters(const HybridSystem& system, int field, const VectorX
   return full_parameters(system, par);
 }
 
-/// h, h_x and h_x f at a point.
-struct EventAt {
-  double value = 0.0;
-  RowVectorXd gradient;
-  double velocity = 0.0;
-
-  EventAt(const HybridSystem& system, const IndexVector& index, const VectorXd& x, const VectorXd& par)
-      : gradient(system.dimension()) {
-    VectorXd f(system.dimension());
-    double no_parameters = 0.0;
-    system.value(FunctionKind::field, index.field, x.data(), par.data(), f.data());
-    system.first(FunctionKind::event, index.event, x.data(), par.data(), {}, &value, gradient.data(), &no_parameters);
-    velocity = gradient.dot(f);
-  }
-};
-
-/// Until when a falling zero is the start itself: h0 at rounding level is used up by the velocity at the start.
-double end_of_start(const EventAt& start, const VectorXd& x0, double tolerance) {
-  const double scale = 1.0 + start.gradient.norm() * x0.norm();
-  const bool leaves_downwards = start.velocity < 0.0 && start.value >= 0.0 && start.value <= tolerance * scale;
-  return leaves_downwards ? 2.0 * start.value / -start.velocity : -1.0;
+/// h_x f of the terminal event function at x.
+double event_velocity(const HybridSystem& system, const IndexVector& index, const VectorXd& x, const VectorXd& par) {
+  VectorXd f(system.dimension());
+  RowVectorXd gradient(system.dimension());
+  double h = 0.0;
+  double no_parameters = 0.0;
+  system.value(FunctionKind::field, index.field, x.data(), par.data(), f.data());
+  system.first(FunctionKind::event, index.event, x.data(), par.data(), {}, &h, gradient.data(), &no_parameters);
+  return gradient.dot(f);
 }
 
 SegmentFlow result_at(const CvodesFlow& flow, FlowStatus status) {
@@ -86,17 +74,13 @@ SegmentFlow integrate_segment(const HybridSystem& system, const IndexVector& ind
                               const VectorXd& par_given, const FlowOptions& options) {
   const VectorXd par = checked_parameters(system, index.field, x0, par_given, options);
   require_index(system, FunctionKind::event, index.event, "event function");
-  const double start_ends = end_of_start(EventAt(system, index, x0, par), x0, options.surface_tolerance);
-
   CvodesFlow flow(system, index.field, x0, par, options);
-  flow.watch(index.event);
-  Progress progress = flow.advance(options.max_duration);
-  if (progress == Progress::root && flow.time() <= start_ends) progress = flow.advance(options.max_duration);
-
+  flow.watch({index.event});
+  const Progress progress = flow.advance(options.max_duration);
   if (progress == Progress::failed) return result_at(flow, FlowStatus::failed);
   SegmentFlow result =
       result_at(flow, progress == Progress::root ? FlowStatus::event_reached : FlowStatus::time_reached);
-  result.event_velocity = EventAt(system, index, result.end_state, par).velocity;
+  result.event_velocity = event_velocity(system, index, result.end_state, par);
   if (result.status == FlowStatus::time_reached)
     result.message = fmt::format("{} did not fall to zero within time {:g}",
                                  system.function_name(FunctionKind::event, index.event), options.max_duration);

@@ -1,0 +1,229 @@
+#include "simulation/hybrid_simulation.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "constants/user_error.hpp"
+#include "simulation/cvodes_flow.hpp"
+
+namespace tchat {
+
+namespace {
+
+using Eigen::RowVectorXd;
+using Eigen::VectorXd;
+
+constexpr int points_of_piece = 4;  // kept of each integration step, before thinning
+
+bool contains(const std::vector<int>& events, int event) {
+  return std::find(events.begin(), events.end(), event) != events.end();
+}
+
+/// Every second sample, first and last included.
+void halve(std::vector<Sample>& samples) {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < samples.size(); i += 2) samples[kept++] = std::move(samples[i]);
+  samples.resize(kept);
+}
+
+/// At most `count` samples, spread evenly over what there is, first and last included.
+void thin(std::vector<Sample>& samples, std::size_t count) {
+  if (samples.size() <= count || count < 2) return;
+  std::vector<Sample> kept;
+  for (std::size_t i = 0; i < count; ++i) kept.push_back(std::move(samples[i * (samples.size() - 1) / (count - 1)]));
+  samples = std::move(kept);
+}
+
+void require_state(const HybridSystem& system, const VectorXd& x) {
+  if (x.size() != system.dimension())
+    throw UserError(fmt::format("the start has {} states, {} has {}", x.size(), system.name(), system.dimension()));
+  if (!x.allFinite()) throw UserError(fmt::format("the start {} is not finite", state_text(x)));
+}
+
+}  // namespace
+
+HybridSimulation::HybridSimulation(ModeRule rule, const VectorXd& x0, const VectorXd& par, SimulationSettings settings)
+    : rule_(std::move(rule)), system_(rule_.system()), par_(par), settings_(std::move(settings)), x_(x0) {
+  require_state(system_, x0);
+  settings_.flow.variational = false;
+  mode_ = rule_.first(x0, par_);
+}
+
+HybridSimulation::Surface HybridSimulation::surface(int field, int event, const VectorXd& x) const {
+  Surface at;
+  VectorXd f(x.size());
+  RowVectorXd gradient(x.size());
+  double no_parameters = 0.0;
+  system_.value(FunctionKind::field, field, x.data(), par_.data(), f.data());
+  system_.first(FunctionKind::event, event, x.data(), par_.data(), {}, &at.h, gradient.data(), &no_parameters);
+  at.rate = gradient.dot(f);
+  at.is_near = std::abs(at.h) <= settings_.flow.surface_tolerance * (1.0 + gradient.norm() * x.norm());
+  return at;
+}
+
+/// Does the jump send the flow back from the surface, as an impact does?
+bool HybridSimulation::is_wall(const IndexVector& index, const VectorXd& x) const {
+  if (walls_.contains(index.event)) return true;
+  VectorXd g(x.size());
+  system_.value(FunctionKind::jump, index.jump, x.data(), par_.data(), g.data());
+  const double before = surface(index.field, index.event, x).rate;
+  const double after = surface(index.field, index.event, g).rate;
+  return before * after < 0.0;
+}
+
+SimulatedSegment HybridSimulation::next() {
+  SimulatedSegment segment = begin_segment();
+  if (segment.ended_by != SegmentEnd::event) return segment;
+  if (sticks_at_start(segment)) return segment;
+  mark_walls_behind(segment);
+  if (const std::vector<int> due = due_at_start(segment); !due.empty())
+    end_by(segment, due);
+  else
+    integrate(segment);
+  return segment;
+}
+
+SimulatedSegment HybridSimulation::begin_segment() {
+  SimulatedSegment segment;
+  segment.number = ++segments_;
+  segment.start_time = time_;
+  segment.start = segment.end = x_;
+  if (last_.field != 0) mode_ = rule_.next(last_, std::exchange(before_jump_, {}), par_);
+  segment.mode = mode_;
+  if (mode_.index_vectors.empty()) stop(segment, SegmentEnd::failed, rule_.fault());
+  if (settings_.samples > 0) segment.samples.push_back({time_, x_});
+  return segment;
+}
+
+void HybridSimulation::stop(SimulatedSegment& segment, SegmentEnd why, std::string message) const {
+  segment.ended_by = why;
+  segment.message = std::move(message);
+}
+
+/// The event that has just ended a segment with an impact, and now the flow goes into h < 0 all the same.
+bool HybridSimulation::sticks_at_start(SimulatedSegment& segment) const {
+  if (!contains(mode_.terminal_events(), last_.event) || contains(pending_, last_.event)) return false;
+  const Surface at = surface(mode_.field(), last_.event, x_);
+  const bool is_thrown_back_to_rest = last_rate_ < 0.0 && at.rate >= 1e-3 * last_rate_;
+  if (!at.is_near || at.rate > 0.0 || !(walls_.contains(last_.event) || is_thrown_back_to_rest)) return false;
+  stop(segment, SegmentEnd::sticks,
+       fmt::format("after the jump the flow goes on through {} at once, at x = {}: the contact lasts, and the problem "
+                   "has no mode for that",
+                   system_.function_name(FunctionKind::event, last_.event), state_text(x_)));
+  return true;
+}
+
+void HybridSimulation::mark_walls_behind(SimulatedSegment& segment) const {
+  for (const IndexVector& index : mode_.index_vectors) {
+    const Surface at = surface(index.field, index.event, x_);
+    if (at.h < 0.0 && !at.is_near && is_wall(index, x_))
+      segment.marks.push_back({SegmentMark::Kind::beyond, index.event, time_, at.h, at.rate, x_});
+  }
+}
+
+/// Events that happen at the very start: they came together with the last one, or the start lies on a wall and moves
+/// into it.
+std::vector<int> HybridSimulation::due_at_start(const SimulatedSegment& segment) const {
+  std::vector<int> due;
+  for (const IndexVector& index : segment.mode.index_vectors) {
+    const bool is_pending = contains(pending_, index.event);
+    if ((!is_pending && index.event == last_.event) || contains(due, index.event)) continue;
+    const Surface at = surface(index.field, index.event, x_);
+    if (at.is_near && at.rate < 0.0 && (is_pending || is_wall(index, x_))) due.push_back(index.event);
+  }
+  return due;
+}
+
+bool HybridSimulation::pass_piece(SimulatedSegment& segment, const CvodesFlow& flow, double from, double to) {
+  const VectorXd x = flow.state_at(to);
+  for (const int event : segment.mode.all_events()) {
+    double& largest = largest_[event];
+    largest = std::max(largest, system_.event(event, x.data(), par_.data()));
+  }
+  if (settings_.samples > 0) {
+    for (int k = 1; k <= points_of_piece; ++k) {
+      const double t = k == points_of_piece ? to : from + (to - from) * k / points_of_piece;
+      segment.samples.push_back({segment.start_time + t, flow.state_at(t)});
+    }
+    if (segment.samples.size() > 50 * settings_.samples) halve(segment.samples);
+  }
+  return !(settings_.interrupted && settings_.interrupted());
+}
+
+void HybridSimulation::note_contacts(SimulatedSegment& segment, CvodesFlow& flow) const {
+  for (const EventWatch::Contact& contact : flow.take_contacts()) {
+    const auto largest = largest_.find(contact.event);
+    if (largest == largest_.end() || contact.h > settings_.contact * largest->second) continue;
+    segment.marks.push_back(
+        {SegmentMark::Kind::contact, contact.event, segment.start_time + contact.time, contact.h, 0.0, contact.state});
+  }
+}
+
+void HybridSimulation::integrate(SimulatedSegment& segment) {
+  CvodesFlow flow(system_, mode_.field(), x_, par_, settings_.flow);
+  flow.watch(mode_.all_events());
+  flow.on_piece([&](double from, double to) { return pass_piece(segment, flow, from, to); });
+  const std::vector<int> terminal = mode_.terminal_events();
+  const double left = settings_.end_time - time_;
+  const double until = std::min(left, settings_.flow.max_duration);
+  Progress progress = until > 0.0 ? flow.advance(until) : Progress::end_time;
+  while (progress == Progress::root && !contains(terminal, flow.fallen())) {
+    const VectorXd x = flow.state();
+    const Surface at = surface(mode_.field(), flow.fallen(), x);
+    segment.marks.push_back({SegmentMark::Kind::violation, flow.fallen(), time_ + flow.time(), at.h, at.rate, x});
+    progress = flow.advance(until);
+  }
+  segment.duration = flow.time();
+  segment.end = flow.state();
+  note_contacts(segment, flow);
+  if (settings_.samples > 0) thin(segment.samples, settings_.samples);
+  std::sort(segment.marks.begin(), segment.marks.end(), [](const auto& a, const auto& b) { return a.time < b.time; });
+
+  if (progress == Progress::stopped) return stop(segment, SegmentEnd::interrupted, "interrupted");
+  if (progress == Progress::failed) return stop(segment, SegmentEnd::failed, flow.message());
+  if (progress == Progress::end_time && left <= settings_.flow.max_duration)
+    return stop(segment, SegmentEnd::end_time, "");
+  if (progress == Progress::end_time)
+    return stop(segment, SegmentEnd::no_event,
+                fmt::format("no event within {:g} time units after t = {:.10g}", settings_.flow.max_duration, time_));
+
+  std::vector<int> together{flow.fallen()};
+  for (const int event : terminal) {
+    if (event == flow.fallen() || !flow.is_armed(event)) continue;
+    const Surface at = surface(mode_.field(), event, segment.end);
+    if (at.is_near && at.rate < 0.0) together.push_back(event);
+  }
+  end_by(segment, together);
+}
+
+void HybridSimulation::end_by(SimulatedSegment& segment, const std::vector<int>& together) {
+  // The first in the mode's order has priority.
+  for (const IndexVector& index : mode_.index_vectors) {
+    if (!contains(together, index.event)) continue;
+    if (segment.index.field == 0)
+      segment.index = index;
+    else if (index.event != segment.index.event)
+      segment.simultaneous.push_back(index);
+  }
+  segment.after.resize(segment.end.size());
+  system_.value(FunctionKind::jump, segment.index.jump, segment.end.data(), par_.data(), segment.after.data());
+  const int ended = segment.index.event;
+  segment.event_velocity = surface(mode_.field(), ended, segment.end).rate;
+  if (!segment.after.allFinite())
+    return stop(segment, SegmentEnd::failed,
+                fmt::format("{} has no finite value at x = {}",
+                            system_.function_name(FunctionKind::jump, segment.index.jump), state_text(segment.end)));
+  if (segment.event_velocity < 0.0 && surface(mode_.field(), ended, segment.after).rate > 0.0) walls_.insert(ended);
+  pending_.clear();
+  for (const IndexVector& other : segment.simultaneous) pending_.push_back(other.event);
+  last_ = segment.index;
+  last_rate_ = segment.event_velocity;
+  before_jump_ = segment.end;
+  x_ = segment.after;
+  time_ = segment.end_time();
+}
+
+}  // namespace tchat

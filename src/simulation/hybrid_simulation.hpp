@@ -1,0 +1,126 @@
+/// A hybrid system run forward in time, one segment after the other.
+///
+///     x' = f_i(x, p) until the first h_j of the current mode falls to zero,   x -> g_k(x, p),   next mode
+///
+/// What decides the next mode is in mode_rule.hpp. When two event functions come to zero together the first in the
+/// mode's order ends the segment and the other one, if the flow still goes through it after the jump, a segment of zero
+/// duration (likewise an event on whose surface the start lies, with an impact and moving into it). Trouble is a value:
+/// an integration that fails, an event after whose jump the flow leaves the region h >= 0 again at once (it sticks).
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "simulation/flow_options.hpp"
+#include "simulation/mode_rule.hpp"
+
+namespace tchat {
+
+class CvodesFlow;
+
+struct SimulationSettings {
+  FlowOptions flow;           ///< max_duration: give up waiting for an event after this time
+  double end_time = 1e300;    ///< of the whole simulation
+  double contact = 1e-3;      ///< a least value of h below this share of its largest value is a near-grazing contact
+  std::size_t samples = 200;  ///< at most so many states are kept of each segment; 0 none
+  std::function<bool()> interrupted;
+};
+
+enum class SegmentEnd {
+  event,
+  end_time,  ///< of the simulation
+  no_event,  ///< within max_duration
+  sticks,    ///< the flow would leave through the event that has just ended a segment
+  failed,    ///< a function cannot be evaluated, the integrator or iota gave up
+  interrupted,
+};
+
+struct Sample {
+  double time = 0.0;
+  Eigen::VectorXd state;
+};
+
+/// Something seen on the way that ended nothing.
+struct SegmentMark {
+  enum class Kind {
+    contact,    ///< h nearly zero at a minimum
+    violation,  ///< a monitored h fell below zero: no orbit of the model any more
+    beyond,     ///< h < 0 at the start of the segment, of an event with an impact
+  };
+  Kind kind = Kind::contact;
+  int event = 0;
+  double time = 0.0;
+  double h = 0.0;
+  double rate = 0.0;  ///< h_x f
+  Eigen::VectorXd state;
+};
+
+struct SimulatedSegment {
+  long number = 1;
+  Mode mode;
+  double start_time = 0.0;
+  double duration = 0.0;
+  Eigen::VectorXd start;
+  Eigen::VectorXd end;  ///< before the jump
+  SegmentEnd ended_by = SegmentEnd::event;
+  IndexVector index{0, 0, 0};             ///< the one whose event ended it
+  Eigen::VectorXd after;                  ///< g(end)
+  double event_velocity = 0.0;            ///< h_x f at the end
+  std::vector<IndexVector> simultaneous;  ///< others whose events came at the same time
+  std::vector<Sample> samples;            ///< start and end included
+  std::vector<SegmentMark> marks;
+  std::string message;  ///< why it did not end in an event
+
+  double end_time() const { return start_time + duration; }
+};
+
+class HybridSimulation {
+ public:
+  /// par has parameter_length entries. The system behind `rule` outlives this object. Throws UserError for a state of
+  /// the wrong length or not finite, and when there is no first mode.
+  HybridSimulation(ModeRule rule, const Eigen::VectorXd& x0, const Eigen::VectorXd& par, SimulationSettings settings);
+
+  /// The next segment. When one has not ended in an event there is nothing to go on with.
+  SimulatedSegment next();
+
+ private:
+  /// h_j and h_x f under field i at x.
+  struct Surface {
+    double h = 0.0, rate = 0.0;
+    bool is_near = false;  // |h| within the tolerance for starts
+  };
+  Surface surface(int field, int event, const Eigen::VectorXd& x) const;
+  bool is_wall(const IndexVector& index, const Eigen::VectorXd& x) const;
+
+  SimulatedSegment begin_segment();
+  std::vector<int> due_at_start(const SimulatedSegment& segment) const;
+  bool sticks_at_start(SimulatedSegment& segment) const;
+  void mark_walls_behind(SimulatedSegment& segment) const;
+  void integrate(SimulatedSegment& segment);
+  bool pass_piece(SimulatedSegment& segment, const CvodesFlow& flow, double from, double to);
+  void note_contacts(SimulatedSegment& segment, CvodesFlow& flow) const;
+  void end_by(SimulatedSegment& segment, const std::vector<int>& together);
+  void stop(SimulatedSegment& segment, SegmentEnd why, std::string message) const;
+
+  ModeRule rule_;
+  const HybridSystem& system_;
+  Eigen::VectorXd par_;
+  SimulationSettings settings_;
+
+  Mode mode_;
+  Eigen::VectorXd x_;
+  double time_ = 0.0;
+  long segments_ = 0;
+  IndexVector last_{0, 0, 0};      // that ended the segment before
+  double last_rate_ = 0.0;         // h_x f there
+  Eigen::VectorXd before_jump_;    // the state there
+  std::vector<int> pending_;       // events that came together with it
+  std::set<int> walls_;            // events whose jumps have been seen to reverse h_x f
+  std::map<int, double> largest_;  // value of each event function so far
+};
+
+}  // namespace tchat

@@ -1,0 +1,89 @@
+#include "simulation/mode_rule.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "constants/user_error.hpp"
+
+namespace tchat {
+
+namespace {
+
+using Eigen::VectorXd;
+
+void add_once(std::vector<int>& events, int event) {
+  if (std::find(events.begin(), events.end(), event) == events.end()) events.push_back(event);
+}
+
+std::string one(const IndexVector& v) { return fmt::format("({},{},{})", v.field, v.event, v.jump); }
+
+}  // namespace
+
+std::string state_text(const VectorXd& x) { return fmt::format("({:.6g})", fmt::join(x.begin(), x.end(), ", ")); }
+
+std::vector<int> Mode::terminal_events() const {
+  std::vector<int> events;
+  for (const IndexVector& v : index_vectors) add_once(events, v.event);
+  return events;
+}
+
+std::vector<int> Mode::all_events() const {
+  std::vector<int> events = terminal_events();
+  for (const int event : monitored) add_once(events, event);
+  return events;
+}
+
+const IndexVector& Mode::ended_by(int event) const {
+  return *std::find_if(index_vectors.begin(), index_vectors.end(), [&](const auto& v) { return v.event == event; });
+}
+
+std::string fault_of(const HybridSystem& system, const std::vector<IndexVector>& index_vectors) {
+  if (index_vectors.empty()) return "no index vector at all";
+  const auto limit = [&](const char* what, int index, FunctionKind kind, const IndexVector& v) -> std::string {
+    if (index >= 1 && index <= system.count(kind)) return "";
+    return fmt::format("{}: {} {} does not exist, {} has 1..{}", one(v), what, index, system.name(),
+                       system.count(kind));
+  };
+  for (const IndexVector& v : index_vectors) {
+    for (const std::string& fault :
+         {limit("field", v.field, FunctionKind::field, v), limit("event function", v.event, FunctionKind::event, v),
+          limit("jump", v.jump, FunctionKind::jump, v)})
+      if (!fault.empty()) return fault;
+    if (v.field != index_vectors.front().field)
+      return fmt::format("{} and {}: index vectors watched together must have the same field",
+                         one(index_vectors.front()), one(v));
+  }
+  return "";
+}
+
+Mode ModeRule::first(const VectorXd& x, const VectorXd& par) {
+  position_ = 0;
+  if (is_cyclic()) return cycle_.front();
+  const auto start = system_.successors({0, 0, 0}, x.data(), par.data());
+  if (!start || start->empty())
+    throw UserError(
+        fmt::format("{} does not say in which mode a simulation starts (its successors of (0,0,0) at the start); say "
+                    "which index vectors to watch, as in --mode 1,2,1 or --mode '1,2,1;1,3,2'",
+                    system_.name()));
+  if (const std::string fault = fault_of(system_, *start); !fault.empty())
+    throw UserError(
+        fmt::format("the successors that {} gives for a start, (0,0,0), cannot be watched: {}", system_.name(), fault));
+  return {*start, {}};
+}
+
+Mode ModeRule::next(const IndexVector& from, const VectorXd& x, const VectorXd& par) {
+  if (is_cyclic()) {
+    position_ = (position_ + 1) % cycle_.size();
+    return cycle_[position_];
+  }
+  const auto next = system_.successors(from, x.data(), par.data());
+  const std::string fault = next ? fault_of(system_, *next) : "it cannot be evaluated";
+  if (fault.empty()) return {*next, {}};
+  fault_ = fmt::format("the index jump function (successors) of {} at the end of {}, x = {}: {}", system_.name(),
+                       one(from), state_text(x), fault);
+  return {};
+}
+
+}  // namespace tchat

@@ -1,0 +1,64 @@
+/// What a simulation watches next: the set of index vectors of the current segment, all with the same field. Whichever
+/// of their event functions falls first ends the segment and decides the jump and the next set.
+///
+/// With the problem's index jump function iota the next set is iota_I(x). Without it the index vectors of a signature
+/// follow each other cyclically, one at a time; the event functions monitored on each segment are looked at as well,
+/// but end nothing.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "hybrid/hybrid_system.hpp"
+#include "hybrid/index_vector.hpp"
+
+namespace tchat {
+
+struct Mode {
+  std::vector<IndexVector> index_vectors;  ///< not empty; priority of the first when two events come together
+  std::vector<int> monitored;              ///< events that end nothing
+  bool operator==(const Mode&) const = default;
+
+  int field() const { return index_vectors.front().field; }
+  /// Event functions that can end the segment, each once, in order.
+  std::vector<int> terminal_events() const;
+  /// Those and the monitored ones.
+  std::vector<int> all_events() const;
+  /// The first index vector with this event function.
+  const IndexVector& ended_by(int event) const;
+};
+
+class ModeRule {
+ public:
+  /// By the problem's index jump function.
+  explicit ModeRule(const HybridSystem& system) : system_(system) {}
+  /// Cyclically through modes of one index vector each.
+  ModeRule(const HybridSystem& system, std::vector<Mode> cycle) : system_(system), cycle_(std::move(cycle)) {}
+
+  const HybridSystem& system() const { return system_; }
+  bool is_cyclic() const { return !cycle_.empty(); }
+
+  /// The mode at a start x: the first of the cycle, or what iota says of a start. Throws UserError when it says
+  /// nothing.
+  Mode first(const Eigen::VectorXd& x, const Eigen::VectorXd& par);
+  /// The mode after a segment `from` that ends, before its jump, at x; without index vectors, and the reason in
+  /// fault(), when iota cannot be evaluated or gives nothing that can be simulated.
+  Mode next(const IndexVector& from, const Eigen::VectorXd& x, const Eigen::VectorXd& par);
+  const std::string& fault() const { return fault_; }
+
+ private:
+  const HybridSystem& system_;
+  std::vector<Mode> cycle_;
+  std::string fault_;
+  std::size_t position_ = 0;
+};
+
+/// "" when the index vectors exist in the problem and have one field; otherwise what is wrong with them.
+std::string fault_of(const HybridSystem& system, const std::vector<IndexVector>& index_vectors);
+
+/// "(0.1, 2)", the digits that tell states apart for people.
+std::string state_text(const Eigen::VectorXd& x);
+
+}  // namespace tchat

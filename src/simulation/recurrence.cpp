@@ -1,0 +1,87 @@
+#include "simulation/recurrence.hpp"
+
+#include <cmath>
+
+namespace tchat {
+
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+bool is_ignored(const std::vector<bool>& ignorable, Eigen::Index i) {
+  const auto k = static_cast<std::size_t>(i);
+  return k < ignorable.size() && ignorable[k];
+}
+
+/// Clears the flags of the states that a function depends on; a jump may only pass a state on.
+void keep_independent(const HybridSystem& system, FunctionKind kind, const VectorXd& x, const VectorXd& par,
+                      std::vector<bool>& flags) {
+  const int n = system.dimension();
+  const int rows = kind == FunctionKind::event ? 1 : n;
+  for (int index = 1; index <= system.count(kind); ++index) {
+    VectorXd value(rows);
+    MatrixXd dx(rows, n);
+    double no_parameters = 0.0;
+    system.first(kind, index, x.data(), par.data(), {}, value.data(), dx.data(), &no_parameters);
+    if (kind == FunctionKind::jump) dx -= MatrixXd::Identity(n, n);
+    for (int c = 0; c < n; ++c)
+      if (!(dx.col(c).lpNorm<Eigen::Infinity>() <= 1e-12)) flags[static_cast<std::size_t>(c)] = false;
+  }
+}
+
+}  // namespace
+
+void Recurrence::add(const SimulatedSegment& segment) {
+  End end{segment.index, segment.after, segment.start.cwiseMin(segment.end), segment.start.cwiseMax(segment.end)};
+  for (const Sample& sample : segment.samples) {
+    end.low = end.low.cwiseMin(sample.state);
+    end.high = end.high.cwiseMax(sample.state);
+  }
+  ends_.push_back(std::move(end));
+  if (ends_.size() > 2 * static_cast<std::size_t>(max_period_)) ends_.pop_front();
+}
+
+std::optional<int> Recurrence::period() const {
+  for (std::size_t p = 1; 2 * p <= ends_.size(); ++p)
+    if (repeats(p)) return static_cast<int>(p);
+  return std::nullopt;
+}
+
+VectorXd Recurrence::scale(std::size_t segments) const {
+  VectorXd low = back(0).low;
+  VectorXd high = back(0).high;
+  for (std::size_t i = 1; i < segments; ++i) {
+    low = low.cwiseMin(back(i).low);
+    high = high.cwiseMax(back(i).high);
+  }
+  const VectorXd range = high - low;
+  double largest = 0.0;
+  for (Eigen::Index i = 0; i < range.size(); ++i)
+    if (!is_ignored(ignorable_, i)) largest = std::max(largest, range(i));
+  // States that hardly move are compared on the scale of the others.
+  return range.array() + 1e-3 * largest;
+}
+
+bool Recurrence::repeats(std::size_t period) const {
+  for (std::size_t i = 0; i < period; ++i)
+    if (back(i).index != back(i + period).index) return false;
+  const VectorXd scale = this->scale(2 * period);
+  for (std::size_t i = 0; i < period; ++i)
+    for (Eigen::Index k = 0; k < scale.size(); ++k)
+      if (!is_ignored(ignorable_, k) &&
+          !(std::abs(back(i).after(k) - back(i + period).after(k)) <= tolerance_ * scale(k)))
+        return false;
+  return scale.maxCoeff() > 0.0;
+}
+
+std::vector<bool> ignorable_states(const HybridSystem& system, const std::vector<VectorXd>& points,
+                                   const VectorXd& par) {
+  std::vector<bool> flags(static_cast<std::size_t>(system.dimension()), !points.empty());
+  for (const VectorXd& x : points)
+    for (const FunctionKind kind : {FunctionKind::field, FunctionKind::event, FunctionKind::jump})
+      keep_independent(system, kind, x, par, flags);
+  return flags;
+}
+
+}  // namespace tchat
