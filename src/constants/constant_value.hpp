@@ -27,16 +27,23 @@ struct Token {
   Place place;
 };
 
+struct RawPair;
+
 /// A value in any of its shapes: one token; a list; or pairs (index: value or list of values).
 struct RawValue {
   enum class Shape { scalar, list, pairs };
   Shape shape = Shape::scalar;
   Token token;  ///< the scalar; for the other shapes the text of the whole
   std::vector<RawValue> items;
-  std::vector<std::pair<Token, RawValue>> pairs;
+  std::vector<RawPair> pairs;
 
   static RawValue scalar(Token token);
   static RawValue list(const std::vector<Token>& tokens, Place place);
+};
+
+struct RawPair {
+  Token index;
+  RawValue value;
 };
 
 /// The number in a token (blanks and a sign allowed; exponent letters e, E, d, D); nothing when it is none, not finite

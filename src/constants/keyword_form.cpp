@@ -189,7 +189,7 @@ class AssignmentParser {
       if (peek() != ':' || at_end()) fail(fmt::format("no ':' after {}", in_quotes(key.text)), "index: value");
       advance();
       skip_between(false);
-      dictionary.pairs.emplace_back(std::move(key), item(depth + 1));
+      dictionary.pairs.push_back({std::move(key), item(depth + 1)});
     }
     advance();
     dictionary.token.text = std::string(text_.substr(begin, position_ - begin));

@@ -181,7 +181,7 @@ class PositionalForm {
       Token index = reader_.next(constant, fmt::format("I{}({})", constant.keyword, i));
       Token value = reader_.next(constant, fmt::format("{}({})", constant.keyword, i));
       pairs.token.place = index.place;
-      pairs.pairs.emplace_back(std::move(index), RawValue::scalar(std::move(value)));
+      pairs.pairs.push_back({std::move(index), RawValue::scalar(std::move(value))});
       draft_.assign(constant, pairs);  // each time, so that the first wrong pair is the one that is reported
       reader_.end_record(constant);
     }

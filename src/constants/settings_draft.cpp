@@ -32,7 +32,7 @@ std::vector<int> integers_of(const Constant& constant, const RawValue& value) {
 }
 
 /// The pairs of a dictionary; an empty list counts as none.
-const std::vector<std::pair<Token, RawValue>>& pairs_of(const Constant& constant, const RawValue& value) {
+const std::vector<RawPair>& pairs_of(const Constant& constant, const RawValue& value) {
   if (value.shape == Shape::pairs || (value.shape == Shape::list && value.items.empty())) return value.pairs;
   refuse(constant, std::string(constant.keyword), value.token.place, in_quotes(value.token.text),
          "pairs of an index and a value");

@@ -16,8 +16,6 @@
 
 #include "constants/user_error.hpp"
 
-extern char** environ;
-
 namespace tchat {
 
 namespace {
