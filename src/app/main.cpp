@@ -15,6 +15,7 @@
 #include "app/labels_command.hpp"
 #include "app/new_command.hpp"
 #include "app/orbit_command.hpp"
+#include "app/resegment_command.hpp"
 #include "app/run_command.hpp"
 #include "constants/user_error.hpp"
 
@@ -53,6 +54,7 @@ int main(int argc, char** argv) {
   app.footer("tchat COMMAND --help explains a command.");
   std::function<int()> chosen;
   tchat::add_run_command(app, chosen);
+  tchat::add_resegment_command(app, chosen);
   tchat::add_labels_command(app, chosen);
   tchat::add_orbit_command(app, chosen);
   tchat::add_check_command(app, chosen);

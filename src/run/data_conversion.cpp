@@ -1,13 +1,9 @@
 #include "run/data_conversion.hpp"
 
-#include <fmt/format.h>
-
-#include <filesystem>
-
 #include "constants/constants_file.hpp"
 #include "constants/user_error.hpp"
-#include "output/block_file.hpp"
 #include "output/solution_file.hpp"
+#include "output/whole_file.hpp"
 #include "plugin/exit_guard.hpp"
 #include "plugin/plugin_build.hpp"
 #include "plugin/problem_library.hpp"
@@ -16,25 +12,6 @@
 #include "run/start_selection.hpp"
 
 namespace tchat {
-
-namespace {
-
-/// Writes the whole file under another name first, so that no moment has half a file.
-void replace_file(const std::string& path, const std::string& text) {
-  namespace fs = std::filesystem;
-  const std::string temporary = path + ".new";
-  {
-    BlockFile file(temporary, BlockFile::Mode::replace);
-    file.write(text);
-    file.close();
-  }
-  std::error_code error;
-  if (fs::exists(path, error)) fs::rename(path, path + "~", error);
-  fs::rename(temporary, path, error);
-  if (error) throw ComputationError(fmt::format("{} cannot be written: {}", path, error.message()));
-}
-
-}  // namespace
 
 std::string convert_data(const RunRequest& request) {
   const std::string constants = constants_path(request.constants.value_or(request.name));
@@ -55,7 +32,7 @@ std::string convert_data(const RunRequest& request) {
   solution.problem_type = settings.problem_type;
   solution.branch_mode = settings.branch_mode;
   const std::string path = default_solution_path(request.output.value_or(request.name));
-  replace_file(path, format_solution(solution));
+  write_whole_file(path, format_solution(solution));
   return path;
 }
 

@@ -1,0 +1,63 @@
+#include "app/resegment_command.hpp"
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <map>
+#include <memory>
+
+#include "resegment/resegment.hpp"
+
+namespace tchat {
+
+namespace {
+
+int do_resegment(const ResegmentRequest& request) {
+  for (const std::string& warning : resegment(request, std::cout)) std::cerr << "tchat: warning: " << warning << '\n';
+  return 0;
+}
+
+}  // namespace
+
+void add_resegment_command(CLI::App& app, std::function<int()>& chosen) {
+  CLI::App* command = app.add_subcommand(
+      "resegment", "starting data and constants where the signature changes: at grazing, rotated, doubled");
+  const auto request = std::make_shared<ResegmentRequest>();
+  const std::map<std::string, ResegmentKind> kinds{{"grazing-curve", ResegmentKind::grazing_curve},
+                                                   {"impacting", ResegmentKind::impacting},
+                                                   {"rotate", ResegmentKind::rotate},
+                                                   {"double", ResegmentKind::repeat}};
+  command->add_option("FILE", request->solutions, "q-file; `mems` is taken for q.mems when there is no file mems")
+      ->required();
+  command->add_option("LABEL", request->label, "label number, or a type with its count: GR1, UZ2, PD1")->required();
+  command->add_option("--to", request->kind, "what the new run is to continue")
+      ->required()
+      ->transform(
+          CLI::CheckedTransformer(kinds, CLI::ignore_case).description("grazing-curve|impacting|rotate|double"));
+  command->add_option("-o,--output", request->output, "write q.O and gc.O")->required();
+  command->add_option("-p,--problem", request->problem, "plugin P.so, or P.cpp (default: the name of the q-file)");
+  command->add_option("-c,--constants", request->constants,
+                      "constants of the run that wrote the label (default: its r-file)");
+  command->add_option("--signature", request->signature,
+                      "index vectors of the new orbit, as \"1,1,1;2,2,2\"; those beyond the segments that there are "
+                      "are segments of zero duration after the contact");
+  command->add_option("--jump", request->jump,
+                      "jump at the contact (default: the identity on a grazing curve, GRJUMP for impacting orbits)");
+  command->add_option("--by", request->rotation, "segments that --to rotate moves from the beginning to the end")
+      ->capture_default_str();
+  command->add_flag("--dat", request->data, "write O.dat instead of q.O");
+  command->add_option("KEY=VALUE", request->overrides, "constants for gc.O, e.g. ICP=[1,61,62] DS=0.01 NMX=50");
+  command->footer(
+      "From a grazing point (label GR, or any label of a grazing curve):\n"
+      "  --to grazing-curve   the segment is cut at the contact and ends there (IPS 150)\n"
+      "  --to impacting       it ends there in the event's own jump; what must follow an impact at once becomes "
+      "segments\n"
+      "                       of zero duration (--signature, or the problem's index jump function)\n"
+      "A Poincare section that the contact lies on is replaced. From any label:\n"
+      "  --to rotate          the cyclic order of segments: another one first\n"
+      "  --to double          the signature twice; from a PD label the run switches to the doubled orbit\n"
+      "Example: tchat resegment q.to_grazing GR1 --to impacting -o born -p mems ICP=[1,61,62]\n"
+      "         tchat run mems -c born -s born -o impacting");
+  command->callback([&chosen, request] { chosen = [request] { return do_resegment(*request); }; });
+}
+
+}  // namespace tchat

@@ -1,0 +1,14 @@
+/// An orbit as a NAME.dat file: parameter values and durations in comments, then rows of the states at the mesh points
+/// and between them.
+#pragma once
+
+#include <string>
+
+#include "bvp/orbit.hpp"
+#include "hybrid/hybrid_system.hpp"
+
+namespace tchat {
+
+std::string data_text(const Orbit& x, const HybridSystem& system);
+
+}  // namespace tchat

@@ -1,0 +1,80 @@
+#include "resegment/new_settings.hpp"
+
+#include <algorithm>
+
+#include "constants/user_error.hpp"
+#include "hybrid/parameter_vector.hpp"
+#include "run/problem_setup.hpp"
+
+namespace tchat {
+
+namespace {
+
+int segment_type(const HybridSystem& system, const NewSegment& segment) {
+  if (segment.grazes) return 2;
+  return is_identity_jump(system, segment.index.jump) ? 0 : 1;
+}
+
+std::vector<int> new_free_parameters(const RunSettings& old, std::size_t segments, const NewProblem& problem,
+                                     const HybridSystem& system) {
+  std::vector<int> list;
+  for (const int k : old.free_parameters)
+    if (!is_duration(k, static_cast<int>(old.segments.size()))) list.push_back(k);
+  const std::size_t needed = problem.problem_type == 150 || problem.branch_mode == 2 ? 2 : 1;
+  for (int k = 1; k <= system.parameters() && list.size() < needed; ++k)
+    if (std::find(list.begin(), list.end(), k) == list.end()) list.push_back(k);
+  if (list.size() < needed)
+    throw UserError("a grazing curve has two free parameters, but the problem has only one parameter");
+  for (std::size_t s = 0; s < segments; ++s) list.push_back(first_duration + static_cast<int>(s));
+  return list;
+}
+
+std::vector<IndexedValue> new_weights(const RunSettings& old, const SegmentList& segments) {
+  const int m = static_cast<int>(old.segments.size());
+  std::vector<IndexedValue> weights;
+  for (const IndexedValue& w : old.parameter_weights)
+    if (!is_duration(w.index, m)) weights.push_back(w);
+  for (std::size_t s = 0; s < segments.size(); ++s)
+    for (const IndexedValue& w : old.parameter_weights)
+      if (is_duration(w.index, m) && duration_segment(w.index) == segments[s].piece.segment)
+        weights.push_back({first_duration + static_cast<int>(s), w.value});
+  return weights;
+}
+
+std::vector<int> new_test_functions(const SegmentList& segments, int problem_type) {
+  if (problem_type == 150) return {1, 2, 3, 4, 5};
+  std::vector<int> tests;
+  int counted = 0;
+  for (const NewSegment& segment : segments)
+    for (const WatchedEvent& watched : segment.watched) {
+      ++counted;
+      if (watched.located) tests.push_back(counted);
+    }
+  return tests;
+}
+
+}  // namespace
+
+RunSettings new_settings(const RunSettings& old, const SegmentList& segments, const NewProblem& problem,
+                         const HybridSystem& system) {
+  const int m = static_cast<int>(old.segments.size());
+  RunSettings settings = old;
+  settings.problem_type = problem.problem_type;
+  settings.branch_mode = problem.branch_mode;
+  settings.grazing_jump = problem.grazing_jump;
+  settings.start = {"", 1};
+  settings.segments.clear();
+  for (const NewSegment& segment : segments) {
+    SegmentSettings next{segment_type(system, segment), segment.index, {}};
+    for (const WatchedEvent& watched : segment.watched) next.monitor.push_back(watched.event);
+    settings.segments.push_back(next);
+  }
+  settings.free_parameters = new_free_parameters(old, segments.size(), problem, system);
+  settings.parameter_weights = new_weights(old, segments);
+  settings.test_functions = new_test_functions(segments, problem.problem_type);
+  std::erase_if(settings.user_values, [&](const UserValue& value) { return is_duration(value.parameter, m); });
+  settings.stop_rules.clear();
+  return settings;
+}
+
+}  // namespace tchat

@@ -1,0 +1,24 @@
+/// The constants of a run that starts from a resegmented orbit: those of the run that found the label, with what the
+/// new signature changes.
+#pragma once
+
+#include "constants/run_settings.hpp"
+#include "hybrid/hybrid_system.hpp"
+#include "resegment/segment_list.hpp"
+
+namespace tchat {
+
+struct NewProblem {
+  int problem_type = 180;  ///< IPS
+  int branch_mode = 1;     ///< ISW
+  int grazing_jump = 1;    ///< GRJUMP
+};
+
+/// Free parameters: the problem's own in their order (a second one is added where the problem type needs it), then all
+/// durations. Weights of durations go with the pieces; user values of durations and rules to stop are dropped. Test
+/// functions: xi_1..xi_5 on a grazing curve, otherwise the located ones of the watched events. Throws UserError when
+/// the problem has no second parameter.
+RunSettings new_settings(const RunSettings& old, const SegmentList& segments, const NewProblem& problem,
+                         const HybridSystem& system);
+
+}  // namespace tchat

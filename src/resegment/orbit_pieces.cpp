@@ -1,0 +1,97 @@
+#include "resegment/orbit_pieces.hpp"
+
+#include <algorithm>
+
+#include "bvp/mesh_adaptation.hpp"
+
+namespace tchat {
+
+namespace {
+
+std::size_t index(int i) { return static_cast<std::size_t>(i); }
+
+/// Density of the old mesh at tau: intervals per unit of tau.
+double density_at(const std::vector<double>& mesh, double tau) {
+  const auto right = std::clamp<std::ptrdiff_t>(std::upper_bound(mesh.begin(), mesh.end(), tau) - mesh.begin(), 1,
+                                                static_cast<std::ptrdiff_t>(mesh.size()) - 1);
+  return 1.0 / (mesh[static_cast<std::size_t>(right)] - mesh[static_cast<std::size_t>(right - 1)]);
+}
+
+/// N intervals that follow the old mesh on every piece of positive duration.
+std::vector<double> mesh_for(const Orbit& x, const std::vector<OrbitPiece>& pieces) {
+  const int fine = 4 * x.shape.intervals;
+  const std::vector<double> grid = uniform_mesh(fine);
+  Eigen::VectorXd density = Eigen::VectorXd::Constant(fine, 1e-3);
+  for (const OrbitPiece& piece : pieces)
+    for (int j = 0; j < fine && !piece.empty(); ++j) {
+      const double middle = 0.5 * (grid[index(j)] + grid[index(j + 1)]);
+      density(j) += density_at(x.mesh, piece.from + (piece.to - piece.from) * middle) * (piece.to - piece.from);
+    }
+  return equal_parts(grid, density, x.shape.intervals);
+}
+
+/// Whole segments in another order, or repeated: of states, or of a direction's.
+Eigen::MatrixXd copy_segments(const Eigen::MatrixXd& states, int nodes, const std::vector<OrbitPiece>& pieces) {
+  Eigen::MatrixXd result(states.rows(), nodes * static_cast<Eigen::Index>(pieces.size()));
+  for (std::size_t p = 0; p < pieces.size(); ++p)
+    result.middleCols(static_cast<Eigen::Index>(p) * nodes, nodes) =
+        states.middleCols(pieces[p].segment * nodes, nodes);
+  return result;
+}
+
+Eigen::MatrixXd resample(const Orbit& x, const std::vector<OrbitPiece>& pieces, const Orbit& target) {
+  const CollocationRule rule(x.shape.collocation);
+  Eigen::MatrixXd result(target.shape.dimension, target.shape.columns());
+  for (std::size_t p = 0; p < pieces.size(); ++p) {
+    const OrbitPiece& piece = pieces[p];
+    for (int k = 0; k < target.shape.nodes(); ++k)
+      result.col(static_cast<Eigen::Index>(p) * target.shape.nodes() + k) =
+          state_at(x, rule, piece.segment, piece.from + (piece.to - piece.from) * target.tau(k));
+  }
+  return result;
+}
+
+/// PAR(61..) of the new orbit; what the old one had beyond is zero.
+void set_durations(const Orbit& x, const std::vector<OrbitPiece>& pieces, Orbit& target) {
+  target.par.tail(parameter_length - first_duration + 1).setZero();
+  for (std::size_t p = 0; p < pieces.size(); ++p)
+    target.duration(static_cast<int>(p)) = (pieces[p].to - pieces[p].from) * x.duration(pieces[p].segment);
+}
+
+}  // namespace
+
+Eigen::VectorXd state_at(const Orbit& x, const CollocationRule& rule, int s, double tau) {
+  const auto right = std::upper_bound(x.mesh.begin(), x.mesh.end(), tau) - x.mesh.begin();
+  const int j = std::clamp(static_cast<int>(right) - 1, 0, x.shape.intervals - 1);
+  const int c = x.shape.collocation;
+  Eigen::VectorXd basis(c + 1);
+  rule.basis((tau - x.mesh[index(j)]) / (x.mesh[index(j + 1)] - x.mesh[index(j)]), basis.data(), nullptr);
+  return x.states.middleCols(s * x.shape.nodes() + j * c, c + 1) * basis;
+}
+
+OrbitStart assemble(const OrbitStart& old, const std::vector<OrbitPiece>& pieces) {
+  const Orbit& x = old.orbit;
+  OrbitStart result;
+  result.orbit.shape = x.shape;
+  result.orbit.shape.segments = static_cast<int>(pieces.size());
+  result.orbit.par = x.par;
+  set_durations(x, pieces, result.orbit);
+  const bool whole = std::all_of(pieces.begin(), pieces.end(), [](const OrbitPiece& piece) { return piece.whole(); });
+  if (!whole) {
+    result.orbit.mesh = mesh_for(x, pieces);
+    result.orbit.states = resample(x, pieces, result.orbit);
+    return result;
+  }
+  result.orbit.mesh = x.mesh;
+  result.orbit.states = copy_segments(x.states, x.shape.nodes(), pieces);
+  if (!old.direction) return result;
+  OrbitVector direction(result.orbit.shape, static_cast<int>(old.direction->globals.size()));
+  direction.states = copy_segments(old.direction->states, x.shape.nodes(), pieces);
+  direction.globals = old.direction->globals;
+  for (std::size_t p = 0; p < pieces.size(); ++p)
+    direction.durations(static_cast<Eigen::Index>(p)) = old.direction->durations(pieces[p].segment);
+  result.direction = std::move(direction);
+  return result;
+}
+
+}  // namespace tchat

@@ -1,0 +1,37 @@
+/// `tchat resegment`: from a labelled orbit to starting data and constants of the next run, where the signature changes
+/// (5.1.1, 5.3; README, "Where the signature changes").
+#pragma once
+
+#include <optional>
+#include <ostream>
+#include <string>
+#include <vector>
+
+namespace tchat {
+
+enum class ResegmentKind {
+  grazing_curve,  ///< the segment ends in grazing contact, IPS 150
+  impacting,      ///< it ends in the event with the event's own jump, IPS 180
+  rotate,         ///< another segment first
+  repeat,         ///< the signature twice
+};
+
+struct ResegmentRequest {
+  std::string solutions;  ///< q-file, by path or by the name of its run
+  std::string label;
+  ResegmentKind kind = ResegmentKind::grazing_curve;
+  int rotation = 1;                      ///< of `rotate`: segments that move from the beginning to the end
+  std::optional<std::string> constants;  ///< -c; default r.S of the run that wrote the label
+  std::optional<std::string> problem;    ///< -p; default the name of the q-file
+  std::string output;                    ///< -o
+  std::optional<std::string> signature;  ///< of the new orbit, "1,1,1;2,2,2"
+  std::optional<int> jump;               ///< at the contact
+  bool data = false;                     ///< O.dat instead of q.O
+  std::vector<std::string> overrides;    ///< KEY=VALUE, for gc.O
+};
+
+/// Writes q.O (or O.dat) and gc.O and tells on `screen` what they hold; returns warnings. Throws UserError when label,
+/// signature, constants and problem do not go together.
+std::vector<std::string> resegment(const ResegmentRequest& request, std::ostream& screen);
+
+}  // namespace tchat

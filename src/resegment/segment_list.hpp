@@ -1,0 +1,58 @@
+/// The segments of a new orbit while they are put together: which piece of the old orbit, which index vector, which
+/// event functions to monitor.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "constants/run_settings.hpp"
+#include "hybrid/hybrid_system.hpp"
+#include "resegment/contact_point.hpp"
+#include "resegment/orbit_pieces.hpp"
+
+namespace tchat {
+
+struct WatchedEvent {
+  int event = 1;
+  bool located = true;  ///< a test function of the run (GCIPSI), not only checked for admissibility
+};
+
+struct NewSegment {
+  OrbitPiece piece;
+  IndexVector index;
+  bool grazes = false;  ///< ends in grazing contact (IPS = 150)
+  std::vector<WatchedEvent> watched;
+};
+
+using SegmentList = std::vector<NewSegment>;
+
+/// The old orbit's own segments, whole.
+SegmentList segments_of(const RunSettings& settings);
+
+/// Segments K+1, K+2, ..., 1, ..., K; K any integer.
+SegmentList rotated(const SegmentList& segments, int k);
+
+/// All segments once more. Throws UserError beyond the largest number of segments.
+SegmentList repeated(const SegmentList& segments);
+
+/// The signature cut at the contact, and the position (from 0) of the segment that now ends there.
+struct CutList {
+  SegmentList segments;
+  std::size_t contact = 0;
+};
+
+/// Segment contact.segment now ends in the contact's event with jump `jump`; the rest of a segment cut inside follows
+/// with its own event and jump. A section that the contact lies on is replaced.
+CutList cut_at(SegmentList segments, const ContactPoint& contact, int jump);
+
+/// Without the segments of no duration (of orbit x) that follow the contact: those of an impact of velocity zero.
+CutList without_empty_segments(CutList cut, const Orbit& x);
+
+/// With `count` segments of zero duration after the contact, constant there; index vectors are still to be set.
+CutList with_empty_segments(CutList cut, int count, int event);
+
+/// "1,1,1;2,2,2" (blanks and parentheses are ignored, braces too). Throws UserError when it is no list of triples.
+Signature parse_signature(std::string_view text);
+
+}  // namespace tchat
