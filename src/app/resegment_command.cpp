@@ -1,17 +1,32 @@
 #include "app/resegment_command.hpp"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <iostream>
 #include <map>
 #include <memory>
 
+#include "constants/constant_value.hpp"
+#include "constants/user_error.hpp"
 #include "resegment/resegment.hpp"
 
 namespace tchat {
 
 namespace {
 
-int do_resegment(const ResegmentRequest& request) {
+ResegmentKind kind_of(const std::string& text) {
+  const std::map<std::string, ResegmentKind> kinds{{"grazing-curve", ResegmentKind::grazing_curve},
+                                                   {"impacting", ResegmentKind::impacting},
+                                                   {"rotate", ResegmentKind::rotate},
+                                                   {"double", ResegmentKind::repeat}};
+  if (const auto found = kinds.find(text); found != kinds.end()) return found->second;
+  throw UserError(fmt::format("--to {}: there is no such kind; allowed: grazing-curve, impacting, rotate, double",
+                              in_quotes(text)));
+}
+
+int do_resegment(ResegmentRequest request, const std::string& kind) {
+  request.kind = kind_of(kind);
   for (const std::string& warning : resegment(request, std::cout)) std::cerr << "tchat: warning: " << warning << '\n';
   return 0;
 }
@@ -22,17 +37,12 @@ void add_resegment_command(CLI::App& app, std::function<int()>& chosen) {
   CLI::App* command = app.add_subcommand(
       "resegment", "starting data and constants where the signature changes: at grazing, rotated, doubled");
   const auto request = std::make_shared<ResegmentRequest>();
-  const std::map<std::string, ResegmentKind> kinds{{"grazing-curve", ResegmentKind::grazing_curve},
-                                                   {"impacting", ResegmentKind::impacting},
-                                                   {"rotate", ResegmentKind::rotate},
-                                                   {"double", ResegmentKind::repeat}};
+  const auto kind = std::make_shared<std::string>();
   command->add_option("FILE", request->solutions, "q-file; `mems` is taken for q.mems when there is no file mems")
       ->required();
   command->add_option("LABEL", request->label, "label number, or a type with its count: GR1, UZ2, PD1")->required();
-  command->add_option("--to", request->kind, "what the new run is to continue")
-      ->required()
-      ->transform(
-          CLI::CheckedTransformer(kinds, CLI::ignore_case).description("grazing-curve|impacting|rotate|double"));
+  command->add_option("--to", *kind, "what the new run is to continue: grazing-curve, impacting, rotate or double")
+      ->required();
   command->add_option("-o,--output", request->output, "write q.O and gc.O")->required();
   command->add_option("-p,--problem", request->problem, "plugin P.so, or P.cpp (default: the name of the q-file)");
   command->add_option("-c,--constants", request->constants,
@@ -57,7 +67,7 @@ void add_resegment_command(CLI::App& app, std::function<int()>& chosen) {
       "  --to double          the signature twice; from a PD label the run switches to the doubled orbit\n"
       "Example: tchat resegment q.to_grazing GR1 --to impacting -o born -p mems ICP=[1,61,62]\n"
       "         tchat run mems -c born -s born -o impacting");
-  command->callback([&chosen, request] { chosen = [request] { return do_resegment(*request); }; });
+  command->callback([&chosen, request, kind] { chosen = [request, kind] { return do_resegment(*request, *kind); }; });
 }
 
 }  // namespace tchat

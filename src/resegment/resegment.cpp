@@ -43,7 +43,7 @@ struct Target {
   SegmentList segments;
   NewProblem problem;
   int type = static_cast<int>(PointType::end);
-  UserPointKind kind;
+  UserPointKind kind = {};
 };
 
 StartLabel read_label(const std::string& text) {

@@ -6,6 +6,7 @@
 
 #include "bvp/evaluation_failure.hpp"
 #include "constants/user_error.hpp"
+#include "start/point_type.hpp"
 
 namespace tchat {
 
@@ -87,6 +88,10 @@ void refuse_singular(PathFollower& follower, const DefiningSystem& defining, con
       undetermined(defining.system(), defining, singularity.direction, point.orbit.shape)));
 }
 
+bool start_is_branch_point(const SelectedStart& selected) {
+  return selected.from_solution && basic_type(selected.type) == static_cast<int>(PointType::branch_point);
+}
+
 /// x_s(0) = x_s(1) with T_s = 0 for all s satisfies every condition where h = 0 and g(x) = x: no orbit.
 void refuse_empty_orbit(const Orbit& found, const Orbit& start, const std::string& source) {
   if (std::abs(found.period()) > vanishing_period * std::abs(start.period())) return;
@@ -137,7 +142,8 @@ FirstPoint first_point(PathFollower& follower, const DefiningSystem& system, con
   }
   refuse_empty_orbit(point.orbit, start.orbit, selected.source);
   FirstPoint first{std::move(point), follower.newton().history()};
-  refuse_singular(follower, system, first.point);
+  // A branch point is where the matrix is singular.
+  if (!start_is_branch_point(selected)) refuse_singular(follower, system, first.point);
   return first;
 }
 
