@@ -15,6 +15,7 @@
 #include "app/labels_command.hpp"
 #include "app/new_command.hpp"
 #include "app/orbit_command.hpp"
+#include "app/plot_command.hpp"
 #include "app/resegment_command.hpp"
 #include "app/run_command.hpp"
 #include "constants/user_error.hpp"
@@ -57,6 +58,7 @@ int main(int argc, char** argv) {
   tchat::add_resegment_command(app, chosen);
   tchat::add_labels_command(app, chosen);
   tchat::add_orbit_command(app, chosen);
+  tchat::add_plot_command(app, chosen);
   tchat::add_check_command(app, chosen);
   tchat::add_dat_command(app, chosen);
   tchat::add_constants_command(app, chosen);

@@ -1,0 +1,149 @@
+#include "app/plot_arguments.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <filesystem>
+#include <fstream>
+
+#include "constants/constant_value.hpp"
+#include "constants/user_error.hpp"
+#include "plot/picture_styles.hpp"
+#include "start/fortran_number.hpp"
+#include "start/point_file_reader.hpp"
+
+namespace tchat {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_file(const std::string& path) {
+  std::error_code error;
+  return fs::exists(path, error) && !fs::is_directory(path, error);
+}
+
+bool is_label(const std::string& word) {
+  return (parse_integer(word) && *parse_integer(word) >= 0) || parse_typed_label(word) || word == "all";
+}
+
+std::string beside(const std::string& word, char letter) {
+  const fs::path path(word);
+  return (path.parent_path() / (std::string(1, letter) + "." + path.filename().string())).string();
+}
+
+/// The file that a word names; "" when there is none.
+std::string file_of(const std::string& word, bool label_follows) {
+  if (is_file(word)) return word;
+  const std::array<char, 3> letters = label_follows ? std::array{'q', 'p', 'd'} : std::array{'p', 'q', 'd'};
+  for (const char letter : letters)
+    if (is_file(beside(word, letter))) return beside(word, letter);
+  return "";
+}
+
+std::string first_line(const std::string& path) {
+  std::ifstream file(path);
+  std::string line;
+  std::getline(file, line);
+  return line;
+}
+
+/// By the first line: of a q-file it holds 12 or 16 integers, of a p-file it is a header line or a point.
+PlotItem::Kind kind_of(const std::string& path) {
+  const std::string line = first_line(path);
+  const auto words = split_words(line);
+  const bool integers =
+      std::all_of(words.begin(), words.end(), [](std::string_view word) { return parse_integer(word).has_value(); });
+  if (integers && (words.size() == 12 || words.size() == 16)) return PlotItem::Kind::solutions;
+  if (looks_like_point_file(line)) return PlotItem::Kind::points;
+  const std::string name = fs::path(path).filename().string();
+  if (name.starts_with("d.") || name == "fort.9") return PlotItem::Kind::diagnostics;
+  if (name.starts_with("q.") || name.starts_with("s.")) return PlotItem::Kind::solutions;
+  return PlotItem::Kind::points;
+}
+
+}  // namespace
+
+std::vector<PlotItem> read_plot_items(const std::vector<std::string>& words) {
+  std::vector<PlotItem> items;
+  for (std::size_t k = 0; k < words.size(); ++k) {
+    const bool label_follows = k + 1 < words.size() && is_label(words[k + 1]) && !is_file(words[k + 1]);
+    const std::string path = file_of(words[k], label_follows);
+    if (!path.empty()) {
+      items.push_back({kind_of(path), path, {}});
+    } else if (is_label(words[k]) && !items.empty()) {
+      items.back().labels.push_back(words[k]);
+    } else {
+      throw UserError(fmt::format(
+          "{} is no file{}; give p-files (branches), or a q-file and its labels, as in tchat plot q.mems GR1 PD1",
+          in_quotes(words[k]),
+          is_label(words[k]) ? ", and labels come after the q-file that has them" : " and no label"));
+    }
+  }
+  return items;
+}
+
+PlotRange read_plot_range(const std::string& text, const char* option) {
+  PlotRange range;
+  if (text.empty()) return range;
+  const auto refuse = [&](const std::string& what) {
+    throw UserError(fmt::format("{} {}: {}; a range is low:high, as in {} 0.5:2, and either end may be left out",
+                                option, text, what, option));
+  };
+  const std::size_t colon = text.find(':');
+  if (colon == std::string::npos) refuse("there is no colon");
+  const auto end = [&](const std::string& part) -> std::optional<double> {
+    if (part.empty() || part == "*") return std::nullopt;
+    const auto value = parse_real(part);
+    if (!value) refuse(fmt::format("{} is no number", in_quotes(part)));
+    return value;
+  };
+  range.low = end(text.substr(0, colon));
+  range.high = end(text.substr(colon + 1));
+  if (range.low && range.high && !(*range.low < *range.high)) refuse("the first number must be the smaller one");
+  return range;
+}
+
+PlotSize read_plot_size(const std::string& text) {
+  if (text.empty()) return {};
+  const std::size_t cross = text.find_first_of("xX");
+  const auto pixels = [](const std::string& part) { return parse_integer(part).value_or(0); };
+  const PlotSize size{pixels(text.substr(0, cross)), cross == std::string::npos ? 0 : pixels(text.substr(cross + 1))};
+  if (std::min(size.width, size.height) < 100 || std::max(size.width, size.height) > 10000)
+    throw UserError(fmt::format(
+        "--size {}: a size is width and height from 100 to 10000 pixels, as in --size 1200x900", in_quotes(text)));
+  return size;
+}
+
+LabelSelection read_label_selection(const PlotArguments& arguments) {
+  LabelSelection selection;
+  selection.numbers = arguments.numbers;
+  selection.all = arguments.labels == "all";
+  selection.defaults = arguments.labels.empty() && !arguments.no_labels;
+  if (arguments.labels.empty() || arguments.no_labels || selection.all || arguments.labels == "none") return selection;
+  const std::vector<std::string> known = all_point_types();
+  for (std::string type : split_at_commas(arguments.labels)) {
+    std::transform(type.begin(), type.end(), type.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+    if (std::find(known.begin(), known.end(), type) == known.end())
+      throw UserError(fmt::format("--labels {}: {} is no type of point; there are {}, or all, or none",
+                                  arguments.labels, in_quotes(type), fmt::join(known, ", ")));
+    selection.types.push_back(type);
+  }
+  return selection;
+}
+
+std::vector<std::string> split_at_commas(const std::string& text) {
+  std::vector<std::string> parts;
+  for (std::size_t begin = 0; begin <= text.size() && !text.empty();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    parts.push_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return parts;
+}
+
+}  // namespace tchat

@@ -1,0 +1,188 @@
+#include "app/plot_pictures.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "constants/constant_value.hpp"
+#include "constants/user_error.hpp"
+#include "plot/branch_figure.hpp"
+#include "plot/multiplier_figure.hpp"
+#include "plot/orbit_figure.hpp"
+#include "plot/problem_finder.hpp"
+#include "start/diagnostics_file_reader.hpp"
+#include "start/solution_file_reader.hpp"
+
+namespace tchat {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+StartLabel read_label(const std::string& word) {
+  if (const auto number = parse_integer(word)) return {"", *number};
+  return *parse_typed_label(word);  // only labels were taken for labels
+}
+
+bool has_all(const PlotItem& item) {
+  return std::find(item.labels.begin(), item.labels.end(), "all") != item.labels.end();
+}
+
+void check_legend(const PlotArguments& arguments, std::size_t count, const char* what) {
+  if (arguments.legend.size() > count)
+    throw UserError(fmt::format("--legend is given {} times for {} {}{}", arguments.legend.size(), count, what,
+                                count == 1 ? "" : "s"));
+}
+
+NamedFigure branches(const std::vector<PlotItem>& items, const PlotArguments& arguments) {
+  NamedFigure result;
+  std::vector<BranchFile> files;
+  for (const PlotItem& item : items) {
+    if (!item.labels.empty())
+      throw UserError(fmt::format("{} holds branches, labels such as {} belong to orbits: tchat plot {} {}", item.path,
+                                  item.labels.front(), sibling_path(item.path, 'q'), item.labels.front()));
+    files.push_back(read_branch_file(item.path));
+    for (const std::string& warning : files.back().warnings) result.warnings.push_back(warning);
+  }
+  check_legend(arguments, files.size(), "file");
+  result.figure = branch_figure(files, {arguments.x, arguments.y, read_label_selection(arguments), arguments.legend});
+  result.name = files.front().name;
+  return result;
+}
+
+struct Orbits {
+  std::vector<OrbitTrace> traces;
+  std::vector<std::string> warnings;
+};
+
+void add_orbits(const PlotItem& item, bool several_files, int dimension, Orbits& orbits) {
+  const SolutionFile file = read_solution_file(item.path);
+  for (const std::string& warning : file.warnings) orbits.warnings.push_back(warning);
+  const auto add = [&](const LabelledSolution& solution, const std::string& word) {
+    const std::string name = several_files ? fmt::format("{} {}", run_name(item.path), word) : word;
+    orbits.traces.push_back(orbit_trace(solution, name, dimension, item.path));
+  };
+  if (item.labels.empty() && !file.solutions.empty()) {
+    std::string list;
+    for (const LabelledSolution& solution : file.solutions)
+      list += fmt::format("{}{} ({})", list.empty() ? "" : ", ", solution.label, type_name(solution));
+    throw UserError(fmt::format(
+        "{}: which orbits? Give labels after it, by number or by type (PD1), or all; there are {}", item.path, list));
+  }
+  if (has_all(item)) {
+    for (const LabelledSolution& solution : file.solutions)
+      add(solution, fmt::format("{} {}", type_name(solution), solution.label));
+    return;
+  }
+  for (const std::string& word : item.labels) {
+    const LabelledSolution& solution = find_solution(file.solutions, read_label(word), item.path);
+    const bool number = parse_integer(word).has_value();
+    add(solution, number ? fmt::format("{} {}", type_name(solution), solution.label) : word);
+  }
+}
+
+NamedFigure orbit_picture(const std::vector<PlotItem>& items, const PlotArguments& arguments) {
+  Orbits orbits;
+  for (const PlotItem& item : items) {
+    if (item.kind != PlotItem::Kind::solutions)
+      throw UserError(
+          fmt::format("{} is no q-file; one picture shows either branches (p-files) or orbits (a q-file with "
+                      "labels)",
+                      item.path));
+    add_orbits(item, items.size() > 1, arguments.dimension, orbits);
+  }
+  if (orbits.traces.empty()) throw UserError(fmt::format("{}: there are no solutions in it", items.front().path));
+  check_legend(arguments, orbits.traces.size(), "orbit");
+
+  ProblemChoice choice = find_problem(items.front().path, arguments.plugin, orbits.traces.front().dimension());
+  OrbitFigureOptions options;
+  options.states = choice.states;
+  options.parameters = choice.parameters;
+  options.x = arguments.x;
+  options.y = split_at_commas(arguments.y);
+  options.one_panel = arguments.one_panel;
+  options.legend = arguments.legend;
+  options.surfaces = arguments.surfaces != "none";
+  options.system = choice.system();
+  if (options.surfaces) {
+    for (const std::string& word : split_at_commas(arguments.surfaces)) {
+      const auto event = parse_integer(word);
+      if (!event)
+        throw UserError(
+            fmt::format("--surfaces {}: {} is no number; give the numbers of event functions, as in "
+                        "--surfaces 1,3, or none",
+                        arguments.surfaces, in_quotes(word)));
+      options.events.push_back(*event);
+    }
+    if (!options.events.empty() && options.system == nullptr)
+      throw UserError(
+          fmt::format("--surfaces {}: the problem's plugin is needed; give it with -p", arguments.surfaces));
+  }
+  NamedFigure result;
+  result.figure = arguments.time ? time_series(orbits.traces, options) : phase_portrait(orbits.traces, options);
+  result.name = run_name(items.front().path) + (arguments.time ? "_time" : "_orbits");
+  result.warnings = orbits.warnings;
+  if (!choice.warning.empty()) result.warnings.push_back(choice.warning);
+  return result;
+}
+
+/// The points of a d-file that have these labels; types count in file order.
+std::vector<DiagnosticPoint> labelled(const std::vector<DiagnosticPoint>& points, const PlotItem& item,
+                                      const std::string& path) {
+  std::vector<DiagnosticPoint> result;
+  for (const std::string& word : item.labels) {
+    const StartLabel label = read_label(word);
+    int left = std::max(label.number, 1);
+    const auto found = std::find_if(points.begin(), points.end(), [&](const DiagnosticPoint& point) {
+      if (label.type.empty()) return point.label > 0 && point.label == label.number;
+      return point.type == label.type && --left == 0;
+    });
+    if (found == points.end()) throw UserError(fmt::format("{}: no point {}", path, word));
+    result.push_back(*found);
+  }
+  return result;
+}
+
+NamedFigure multipliers(const std::vector<PlotItem>& items, const PlotArguments& arguments) {
+  std::vector<MultiplierSeries> series;
+  MultiplierFigureOptions options;
+  for (const PlotItem& item : items) {
+    const std::string sibling = sibling_path(item.path, 'd');
+    const std::string path = sibling.empty() ? item.path : sibling;
+    const auto points = read_diagnostics_file(path);
+    if (item.labels.empty() || has_all(item)) {
+      series.push_back({run_name(path), points});
+      continue;
+    }
+    options.labelled_points = true;
+    for (const DiagnosticPoint& point : labelled(points, item, path)) {
+      const std::string& word = item.labels[static_cast<std::size_t>(series.size()) % item.labels.size()];
+      series.push_back({items.size() > 1 ? run_name(path) + " " + word : word, {point}});
+    }
+  }
+  check_legend(arguments, series.size(), "series");
+  options.legend = arguments.legend;
+  NamedFigure result;
+  result.figure = multiplier_figure(series, options);
+  result.name = run_name(items.front().path) + "_multipliers";
+  return result;
+}
+
+}  // namespace
+
+NamedFigure make_figure(const std::vector<PlotItem>& items, const PlotArguments& arguments) {
+  if (arguments.multipliers) return multipliers(items, arguments);
+  const bool orbits = std::any_of(items.begin(), items.end(),
+                                  [](const PlotItem& item) { return item.kind == PlotItem::Kind::solutions; });
+  if (!orbits && arguments.time)
+    throw UserError("--time shows orbits: give a q-file and labels, as in tchat plot --time q.mems PD1");
+  for (const PlotItem& item : items)
+    if (item.kind == PlotItem::Kind::diagnostics)
+      throw UserError(fmt::format("{} holds multipliers: tchat plot --multipliers {}", item.path, item.path));
+  return orbits ? orbit_picture(items, arguments) : branches(items, arguments);
+}
+
+}  // namespace tchat

@@ -1,0 +1,115 @@
+#include "plot/axis_scale.hpp"
+
+#include <fmt/format.h>
+#include <fmt/printf.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "constants/user_error.hpp"
+
+namespace tchat {
+
+namespace {
+
+constexpr double infinity_in_files = 1e90;
+constexpr double margin = 0.04;
+
+struct Range {
+  double low = std::numeric_limits<double>::infinity();
+  double high = -std::numeric_limits<double>::infinity();
+
+  bool is_empty() const { return !(low <= high); }
+};
+
+Range range_of(const std::vector<double>& values, bool positive) {
+  Range range;
+  for (const double value : values) {
+    if (!can_be_shown(value) || (positive && value <= 0.0)) continue;
+    range.low = std::min(range.low, value);
+    range.high = std::max(range.high, value);
+  }
+  return range;
+}
+
+/// Wider than the data; a constant, up to rounding, gets a range around it.
+Range widened(Range range) {
+  const double size = std::max(std::abs(range.low), std::abs(range.high));
+  const double span = range.high - range.low;
+  if (span <= 1e-8 * size || span == 0.0) {
+    const double half = size > 0.0 ? 0.05 * size : 1.0;
+    return {range.low - half, range.high + half};
+  }
+  return {range.low - margin * span, range.high + margin * span};
+}
+
+double round_step(double step) {
+  const double power = std::pow(10.0, std::floor(std::log10(step)));
+  const double leading = step / power;
+  if (leading <= 1.0) return power;
+  if (leading <= 2.0) return 2.0 * power;
+  return leading <= 5.0 ? 5.0 * power : 10.0 * power;
+}
+
+std::string tic_format(double step, double largest) {
+  if (largest >= 1e6 || largest < 1e-4) return "%g";
+  const int decimals = std::max(0, static_cast<int>(-std::floor(std::log10(step) + 1e-9)));
+  return fmt::format("%.{}f", decimals);
+}
+
+void set_linear_tics(AxisScale& scale, int tics) {
+  const double low = std::min(scale.low, scale.high);
+  const double high = std::max(scale.low, scale.high);
+  scale.tic_step = round_step((high - low) / tics);
+  scale.first_tic = std::ceil(low / scale.tic_step - 1e-9) * scale.tic_step;
+  if (std::abs(scale.first_tic) < 1e-9 * scale.tic_step) scale.first_tic = 0.0;
+  scale.format = tic_format(scale.tic_step, std::max(std::abs(low), std::abs(high)));
+  scale.widest_number = 0.0;
+  for (double tic = scale.first_tic; tic <= high + 1e-9 * scale.tic_step; tic += scale.tic_step)
+    scale.widest_number = std::max(scale.widest_number, text_width({fmt::sprintf(scale.format, tic), false}));
+}
+
+}  // namespace
+
+bool can_be_shown(double value) { return std::isfinite(value) && std::abs(value) < infinity_in_files; }
+
+double AxisScale::fraction(double value) const {
+  if (!can_be_shown(value) || (logarithmic && value <= 0.0)) return std::numeric_limits<double>::quiet_NaN();
+  if (logarithmic) return std::log(value / low) / std::log(high / low);
+  return (value - low) / (high - low);
+}
+
+AxisScale choose_scale(const AxisSettings& settings, const std::vector<double>& values, int tics) {
+  AxisScale scale;
+  scale.logarithmic = settings.logarithmic;
+  Range range = range_of(values, settings.logarithmic);
+  if (settings.logarithmic) {
+    if (range.is_empty() && !(settings.low && settings.high))
+      throw UserError("a logarithmic axis can show positive values only, and there are none; leave --logx, --logy out");
+    if (!range.is_empty()) {
+      const double factor = range.high > range.low ? std::pow(range.high / range.low, margin) : 2.0;
+      range = {range.low / factor, range.high * factor};
+    }
+    if ((settings.low && *settings.low <= 0.0) || (settings.high && *settings.high <= 0.0))
+      throw UserError("the range of a logarithmic axis must be positive, as in --xrange 0.1:10");
+  } else if (!range.is_empty()) {
+    range = widened(range);
+  } else {
+    range = {0.0, 1.0};
+  }
+  scale.low = settings.low.value_or(range.low);
+  scale.high = settings.high.value_or(range.high);
+  if (!settings.high && scale.high <= scale.low) scale.high = scale.low + std::max(1.0, std::abs(scale.low));
+  if (!settings.low && scale.low >= scale.high)
+    scale.low = settings.logarithmic ? scale.high / 10.0 : scale.high - std::max(1.0, std::abs(scale.high));
+  if (scale.logarithmic) {
+    scale.format = "10^{%L}";
+    scale.widest_number = 2.5;
+  } else {
+    set_linear_tics(scale, tics);
+  }
+  return scale;
+}
+
+}  // namespace tchat

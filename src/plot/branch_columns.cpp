@@ -1,0 +1,121 @@
+#include "plot/branch_columns.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cctype>
+#include <regex>
+
+#include "constants/constant_value.hpp"
+#include "constants/user_error.hpp"
+#include "start/fortran_number.hpp"
+
+namespace tchat {
+
+namespace {
+
+std::string lower(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+/// One blank between words.
+std::string normal(std::string_view text) { return fmt::format("{}", fmt::join(split_words(text), " ")); }
+
+std::optional<std::size_t> column_of_heading(const PointSection& section, const std::string& wanted) {
+  for (std::size_t k = 0; k < section.columns.size(); ++k)
+    if (normal(section.columns[k]) == wanted) return k;
+  for (std::size_t k = 0; k < section.columns.size(); ++k)
+    if (lower(normal(section.columns[k])) == lower(wanted)) return k;
+  return std::nullopt;
+}
+
+/// "PAR(2)" -> "omega", "MAX U(1)" -> "MAX x1".
+std::string with_names(const PointSection& section, const std::string& wanted) {
+  static const std::regex pattern("(.*)\\b(PAR|U)\\(([0-9]{1,6})\\)", std::regex::icase);
+  std::smatch found;
+  if (!std::regex_match(wanted, found, pattern)) return wanted;
+  const int k = std::stoi(found[3].str());
+  return found[1].str() + (lower(found[2].str()) == "u" ? section.state_name(k) : section.parameter_name(k));
+}
+
+std::optional<std::size_t> column_of_last_word(const PointSection& section, const std::string& wanted) {
+  for (std::size_t k = 0; k < section.columns.size(); ++k)
+    if (lower(normal(section.columns[k])).ends_with(" " + lower(wanted))) return k;
+  return std::nullopt;
+}
+
+std::optional<int> parameter_index(const PointSection& section, const std::string& wanted) {
+  for (const auto& [k, name] : section.parameters)
+    if (name == wanted) return k;
+  static const std::regex pattern("PAR\\(([0-9]{1,6})\\)", std::regex::icase);
+  if (std::smatch found; std::regex_match(wanted, found, pattern)) return std::stoi(found[1].str());
+  return std::nullopt;
+}
+
+std::optional<std::size_t> column_index(const PointSection& section, const std::string& wanted) {
+  if (const auto number = parse_integer(wanted); number && *number >= 1)
+    return static_cast<std::size_t>(*number) <= section.columns.size()
+               ? std::optional(static_cast<std::size_t>(*number) - 1)
+               : std::nullopt;
+  if (const auto column = column_of_heading(section, wanted)) return column;
+  if (const auto column = column_of_heading(section, with_names(section, wanted))) return column;
+  return column_of_last_word(section, wanted);
+}
+
+std::vector<std::string> free_names(const PointSection& section) {
+  std::vector<std::string> names;
+  for (const int k : section.free_problem_parameters()) names.push_back(section.parameter_name(k));
+  return names;
+}
+
+/// The names of free problem parameters that all sections of all files have, in the first section's order.
+std::vector<std::string> shared_free_parameters(const std::vector<BranchFile>& files) {
+  std::vector<std::string> shared = free_names(files.front().sections.front());
+  for (const BranchFile& file : files) {
+    for (const PointSection& section : file.sections) {
+      const std::vector<std::string> names = free_names(section);
+      std::erase_if(shared, [&names](const std::string& name) {
+        return std::find(names.begin(), names.end(), name) == names.end();
+      });
+    }
+  }
+  return shared;
+}
+
+}  // namespace
+
+ColumnSource find_column(const BranchFile& file, std::size_t section, const std::string& wanted, const char* option) {
+  const PointSection& s = file.sections[section];
+  const std::string name = normal(wanted);
+  ColumnSource source;
+  if (const auto column = column_index(s, name)) {
+    source.column = *column;
+    source.name = s.columns[*column];
+    return source;
+  }
+  if (const auto k = parameter_index(s, name)) {
+    const auto& values = file.parameters[section];
+    if (const auto found = values.find(*k); found != values.end()) {
+      source.constant = found->second;
+      source.name = s.parameter_name(*k);
+      return source;
+    }
+  }
+  throw UserError(fmt::format("{}: no column {} for {}; its columns are {} (or numbers 1..{})", file.path,
+                              in_quotes(wanted), option, fmt::join(s.columns, ", "), s.columns.size()));
+}
+
+AxisColumns default_columns(const std::vector<BranchFile>& files) {
+  bool curves_only = true;
+  for (const BranchFile& file : files)
+    for (const PointSection& section : file.sections) curves_only = curves_only && section.is_two_parameter_curve();
+  const auto shared = shared_free_parameters(files);
+  if (curves_only && shared.size() >= 2) return {shared[0], shared[1]};
+  const PointSection& first = files.front().sections.front();
+  return {first.columns[0], first.columns.size() > 1 ? first.columns[1] : first.columns[0]};
+}
+
+}  // namespace tchat

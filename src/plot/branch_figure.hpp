@@ -1,0 +1,39 @@
+/// Bifurcation diagrams: branches of one or several p-files in one picture.
+///
+/// A branch against one parameter is solid where the orbits are stable and dashed where they are not (sign of PT); the
+/// line from a point to the next is that of the next point, for at a located bifurcation the sign of the point before
+/// is written. Inadmissible orbits are thin and dotted. A curve in two parameters has the line of its kind (grazing,
+/// fold, period doubling, torus) and no stability.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "plot/branch_file.hpp"
+#include "plot/figure.hpp"
+
+namespace tchat {
+
+struct LabelSelection {
+  bool all = false;
+  bool defaults = true;            ///< the types that are labelled when the user says nothing
+  std::vector<std::string> types;  ///< these types, when neither
+  bool numbers = false;            ///< with the number of the label
+
+  bool includes(const std::string& type) const;
+};
+
+struct BranchFigureOptions {
+  std::string x, y;  ///< columns; empty: default_columns
+  LabelSelection labels;
+  std::vector<std::string> legend;  ///< a text for each file; empty: chosen here
+};
+
+/// Throws UserError for columns that a file does not have.
+Figure branch_figure(const std::vector<BranchFile>& files, const BranchFigureOptions& options);
+
+/// How the line from point k - 1 to point k of a branch is drawn.
+enum class LineKind { stable, unstable, inadmissible };
+LineKind line_kind(const BranchFile& file, std::size_t section, std::size_t row);
+
+}  // namespace tchat

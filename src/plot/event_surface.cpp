@@ -1,0 +1,157 @@
+#include "plot/event_surface.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "constants/user_error.hpp"
+#include "plot/zero_contour.hpp"
+
+namespace tchat {
+
+namespace {
+
+constexpr double tolerance = 1e-9;
+constexpr int cells = 160;
+constexpr Eigen::Index samples = 60;  // of a segment
+
+/// Calls what(state, parameters) at points of all orbits.
+template <class What>
+void for_samples(const std::vector<OrbitTrace>& orbits, const std::vector<std::vector<double>>& parameters, What what) {
+  for (std::size_t o = 0; o < orbits.size(); ++o)
+    for (const TraceSegment& segment : orbits[o].segments) {
+      const Eigen::Index step = std::max<Eigen::Index>(1, segment.states.cols() / samples);
+      for (Eigen::Index k = 0; k < segment.states.cols(); k += step) {
+        const Eigen::VectorXd x = segment.states.col(k);
+        what(x, parameters[o].data());
+      }
+    }
+}
+
+Eigen::VectorXd gradient(const HybridSystem& system, int event, const Eigen::VectorXd& x, const double* par) {
+  Eigen::VectorXd result(x.size());
+  double h = 0.0;
+  system.first(FunctionKind::event, event, x.data(), par, {}, &h, result.data(), nullptr);
+  return result;
+}
+
+/// A root of a function that changes sign between low and high.
+template <class Function>
+double bisected(Function f, double low, double high) {
+  const bool negative = f(low) < 0.0;
+  for (int k = 0; k < 60; ++k) {
+    const double middle = 0.5 * (low + high);
+    ((f(middle) < 0.0) == negative ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+}  // namespace
+
+EventSurfaces::EventSurfaces(const HybridSystem& system, const std::vector<OrbitTrace>& orbits,
+                             const std::vector<int>& events)
+    : system_(system), orbits_(orbits) {
+  for (const OrbitTrace& orbit : orbits) {
+    parameters_.push_back(orbit.parameters);
+    parameters_.back().resize(TCHAT_PAR_LENGTH, 0.0);
+  }
+  const int count = system.count(FunctionKind::event);
+  for (const int event : events)
+    if (event < 1 || event > count)
+      throw UserError(
+          fmt::format("--surfaces {}: problem {} has the event functions 1..{}", event, system.name(), count));
+  events_ = events;
+  if (events.empty())
+    for (int event = 1; event <= count; ++event)
+      if (!is_section(event)) events_.push_back(event);
+}
+
+bool EventSurfaces::depends_only_on(int event, const std::vector<int>& states) const {
+  double largest = 0.0, others = 0.0;
+  bool finite = true;
+  for_samples(orbits_, parameters_, [&](const Eigen::VectorXd& x, const double* par) {
+    const Eigen::VectorXd h = gradient(system_, event, x, par);
+    finite = finite && h.allFinite();
+    for (Eigen::Index i = 0; i < h.size(); ++i) {
+      largest = std::max(largest, std::abs(h(i)));
+      if (std::find(states.begin(), states.end(), i) == states.end()) others = std::max(others, std::abs(h(i)));
+    }
+  });
+  return finite && largest > 0.0 && others <= tolerance * largest;
+}
+
+/// h_j = c h_i,x f along all orbits, for some other event function i and some field.
+bool EventSurfaces::is_section(int event) const {
+  for (int other = 1; other <= system_.count(FunctionKind::event); ++other) {
+    for (int field = 1; other != event && field <= system_.count(FunctionKind::field); ++field) {
+      double product = 0.0, slope_square = 0.0, square = 0.0;
+      for_samples(orbits_, parameters_, [&](const Eigen::VectorXd& x, const double* par) {
+        Eigen::VectorXd f(x.size());
+        system_.value(FunctionKind::field, field, x.data(), par, f.data());
+        const double slope = gradient(system_, other, x, par).dot(f);
+        const double h = system_.event(event, x.data(), par);
+        product += h * slope;
+        slope_square += slope * slope;
+        square += h * h;
+      });
+      const bool parallel = square > 0.0 && slope_square > 0.0 &&
+                            std::abs(product * product - square * slope_square) <= 1e-10 * square * slope_square;
+      if (parallel) return true;
+    }
+  }
+  return false;
+}
+
+double EventSurfaces::value(int event, const OrbitTrace& orbit, int a, double x, int b, double y) const {
+  Eigen::VectorXd state = orbit.segments.front().states.col(0);
+  state(a) = x;
+  if (b >= 0) state(b) = y;
+  const auto index = static_cast<std::size_t>(&orbit - orbits_.data());
+  return system_.event(event, state.data(), parameters_[index].data());
+}
+
+std::vector<EventSurfaces::Line> EventSurfaces::in_plane(int a, int b, const StateWindow& window) const {
+  std::vector<Line> lines;
+  for (const int event : events_) {
+    if (!depends_only_on(event, {a, b})) continue;
+    Line line{event, system_.function_name(FunctionKind::event, event), {}};
+    for (const OrbitTrace& orbit : orbits_)
+      for (auto& piece : zero_contour([&](double x, double y) { return value(event, orbit, a, x, b, y); },
+                                      {window.low_x, window.low_y}, {window.high_x, window.high_y}, cells)) {
+        const bool known = std::any_of(line.pieces.begin(), line.pieces.end(), [&piece](const auto& other) {
+          return other.size() == piece.size() && other.front().x == piece.front().x &&
+                 other.front().y == piece.front().y && other.back().x == piece.back().x &&
+                 other.back().y == piece.back().y;
+        });
+        if (!known) line.pieces.push_back(std::move(piece));
+      }
+    if (!line.pieces.empty()) lines.push_back(std::move(line));
+  }
+  return lines;
+}
+
+std::vector<EventSurfaces::Level> EventSurfaces::of_state(int a, double low, double high) const {
+  constexpr int steps = 400;
+  std::vector<Level> levels;
+  for (const int event : events_) {
+    if (!depends_only_on(event, {a})) continue;
+    Level level{event, system_.function_name(FunctionKind::event, event), {}};
+    for (const OrbitTrace& orbit : orbits_) {
+      const auto h = [&](double x) { return value(event, orbit, a, x, -1, 0.0); };
+      for (int k = 0; k < steps; ++k) {
+        const double left = low + (high - low) * k / steps, right = low + (high - low) * (k + 1) / steps;
+        if ((h(left) < 0.0) == (h(right) < 0.0)) continue;
+        const double root = bisected(h, left, right);
+        const bool known = std::any_of(level.values.begin(), level.values.end(), [&](double other) {
+          return std::abs(other - root) <= tolerance * (high - low);
+        });
+        if (!known) level.values.push_back(root);
+      }
+    }
+    if (!level.values.empty()) levels.push_back(std::move(level));
+  }
+  return levels;
+}
+
+}  // namespace tchat

@@ -1,0 +1,56 @@
+/// Event surfaces in pictures of orbits: the lines h_j = 0 in the plane of two states, where h_j depends on these two
+/// alone, and the values of one state where h_j = 0, where it depends on that one alone.
+///
+/// On which states h_j depends is judged by its derivatives along the orbits shown. Event functions that are but the
+/// time derivative of another one, up to a factor (sections through maxima), are no surfaces of the model and left out
+/// unless asked for.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "hybrid/hybrid_system.hpp"
+#include "plot/figure.hpp"
+#include "plot/orbit_trace.hpp"
+
+namespace tchat {
+
+/// A rectangle of two states.
+struct StateWindow {
+  double low_x = 0.0, high_x = 1.0;
+  double low_y = 0.0, high_y = 1.0;
+};
+
+class EventSurfaces {
+ public:
+  /// `events`: indices from 1; empty: all that are no sections. The system outlives this object.
+  EventSurfaces(const HybridSystem& system, const std::vector<OrbitTrace>& orbits, const std::vector<int>& events);
+
+  struct Line {
+    int event = 0;
+    std::string name;                               ///< "wall"
+    std::vector<std::vector<PicturePoint>> pieces;  ///< polylines
+  };
+  /// h_j = 0 in the plane of states a and b (from 0), for every orbit's own parameters.
+  std::vector<Line> in_plane(int a, int b, const StateWindow& window) const;
+
+  struct Level {
+    int event = 0;
+    std::string name;
+    std::vector<double> values;
+  };
+  /// h_j = 0 for state a alone, between low and high.
+  std::vector<Level> of_state(int a, double low, double high) const;
+
+ private:
+  bool depends_only_on(int event, const std::vector<int>& states) const;
+  bool is_section(int event) const;
+  double value(int event, const OrbitTrace& orbit, int a, double x, int b, double y) const;
+
+  const HybridSystem& system_;
+  const std::vector<OrbitTrace>& orbits_;
+  std::vector<std::vector<double>> parameters_;  // of each orbit, as long as functions expect
+  std::vector<int> events_;
+};
+
+}  // namespace tchat

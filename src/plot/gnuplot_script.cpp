@@ -1,0 +1,288 @@
+#include "plot/gnuplot_script.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <tuple>
+
+#include "plot/key_placement.hpp"
+
+namespace tchat {
+
+namespace {
+
+std::string quoted(const LabelText& text) {
+  return gnuplot_quoted(text.text) + (text.markup ? " enhanced" : " noenhanced");
+}
+
+const char* dash_pattern(Dash dash) {
+  switch (dash) {
+    case Dash::solid:
+      return "solid";
+    case Dash::dashed:
+      return "(14,8)";
+    case Dash::dash_dot:
+      return "(16,6,3,6)";
+    case Dash::dotted:
+      return "(3,5)";
+    default:
+      return "(2,5)";
+  }
+}
+
+/// gnuplot's number of a filled symbol, of the open one beneath it.
+int point_type(Symbol symbol, bool filled) {
+  const int open = [symbol] {
+    switch (symbol) {
+      case Symbol::square:
+        return 4;
+      case Symbol::triangle:
+        return 8;
+      case Symbol::reversed_triangle:
+        return 10;
+      case Symbol::diamond:
+        return 12;
+      case Symbol::pentagon:
+        return 14;
+      default:
+        return 6;
+    }
+  }();
+  return filled || symbol == Symbol::dot ? open + 1 : open;
+}
+
+/// Triangles and diamonds look smaller than squares and circles of the same nominal size.
+double shape_factor(Symbol symbol) {
+  switch (symbol) {
+    case Symbol::triangle:
+    case Symbol::reversed_triangle:
+    case Symbol::diamond:
+      return 1.2;
+    case Symbol::dot:
+      return 0.5;
+    default:
+      return 1.0;
+  }
+}
+
+class ScriptWriter {
+ public:
+  ScriptWriter(const Figure& figure, const FigureLayout& layout, const PictureTarget& target)
+      : figure_(figure), layout_(layout), target_(target), units_(terminal_units(target.format, figure.width)) {}
+
+  std::string write() {
+    head();
+    for (std::size_t k = 0; k < figure_.panels.size(); ++k) data(figure_.panels[k], k);
+    texts_of_figure();
+    key();
+    if (figure_.panels.size() > 1) line("set multiplot");
+    for (std::size_t k = 0; k < figure_.panels.size(); ++k) panel(k);
+    if (figure_.panels.size() > 1) line("unset multiplot");
+    if (target_.format != PictureFormat::window) line("unset output");
+    return std::move(text_);
+  }
+
+ private:
+  void line(const std::string& command) { text_ += command + '\n'; }
+
+  std::string stroke(const Stroke& s) const {
+    return fmt::format("dt {} lw {:.3g} lc rgb '{}'", dash_pattern(s.dash), s.width * units_.line_width, s.colour);
+  }
+
+  double point_size(const Marker& marker) const {
+    return marker.size * marker_radius * layout_.font * units_.point_size * shape_factor(marker.symbol);
+  }
+
+  std::string points(const Marker& marker, bool filled, const std::string& colour) const {
+    return fmt::format("pt {} ps {:.3g} lw {:.3g} lc rgb '{}'", point_type(marker.symbol, filled), point_size(marker),
+                       2.0 * units_.line_width, colour);
+  }
+
+  /// White beneath a symbol: an open one hides the curve, a filled one stays apart from its neighbours.
+  std::string background(Marker marker) const {
+    if (marker.filled) marker.size *= 1.25;
+    return points(marker, true, "#ffffff");
+  }
+
+  /// Places on the paper as gnuplot's screen coordinates.
+  std::string screen(double x, double y) const {
+    return fmt::format("screen {:.5f}, screen {:.5f}", x / figure_.width, y / figure_.height);
+  }
+
+  double font_size(double ratio) const { return layout_.font * ratio * units_.font; }
+
+  void head() {
+    line("# Written by tchat plot: `gnuplot THIS_FILE` draws the picture again.");
+    line("set encoding utf8");
+    line("set minussign");
+    line(terminal_line(target_.format, target_.window, figure_.width, figure_.height, layout_.font));
+    if (target_.format != PictureFormat::window) line("set output " + gnuplot_quoted(target_.path));
+    line("");
+  }
+
+  // Data ---------------------------------------------------------------------------------------------------------
+
+  void data(const Panel& panel, std::size_t number) {
+    int count = 0;
+    for (const Curve& curve : panel.curves) {
+      line(fmt::format("$curve{}_{} << END", number + 1, ++count));
+      for (const PicturePoint& p : curve.points)
+        line(std::isfinite(p.x) && std::isfinite(p.y) ? fmt::format("{:.10g} {:.10g}", p.x, p.y) : "");
+      line("END");
+    }
+    count = 0;
+    for (const auto& [style, group] : marker_groups(panel)) {
+      line(fmt::format("$points{}_{} << END", number + 1, ++count));
+      for (const Marker* marker : group) line(fmt::format("{:.10g} {:.10g}", marker->at.x, marker->at.y));
+      line("END");
+    }
+    line("");
+  }
+
+  using MarkerStyle = std::tuple<Symbol, bool, double, std::string>;
+
+  /// Markers that look alike are drawn together.
+  static std::map<MarkerStyle, std::vector<const Marker*>> marker_groups(const Panel& panel) {
+    std::map<MarkerStyle, std::vector<const Marker*>> groups;
+    for (const Marker& marker : panel.markers)
+      groups[{marker.symbol, marker.filled, marker.size, marker.colour}].push_back(&marker);
+    return groups;
+  }
+
+  // What belongs to the whole figure -----------------------------------------------------------------------------
+
+  void texts_of_figure() {
+    double y = figure_.height - 1.1 * layout_.font;
+    if (!figure_.title.empty()) {
+      line(fmt::format("set label {} at {} center font ',{:.1f}'", quoted(figure_.title),
+                       screen(0.5 * figure_.width, y), font_size(1.1)));
+      y -= 1.4 * layout_.font;
+    }
+    if (!figure_.note.empty())
+      line(fmt::format("set label {} at {} center font ',{:.1f}'", quoted(figure_.note), screen(0.5 * figure_.width, y),
+                       font_size(label_font_ratio)));
+  }
+
+  void key() {
+    if (!layout_.key || figure_.key.empty()) {
+      line("unset key");
+      return;
+    }
+    const KeyPlace& place = *layout_.key;
+    const std::string style =
+        fmt::format("Left reverse samplen 2.8 spacing 1.25 font ',{:.1f}'", font_size(label_font_ratio));
+    if (place.inside) {
+      line(fmt::format("set key at {} left top vertical {}", screen(place.box.left, place.box.top), style));
+      return;
+    }
+    const int columns = KeySize(figure_.key, layout_.font).columns(place.box.width());
+    line(fmt::format("set key at {} center bottom horizontal maxcols {} {}",
+                     screen(0.5 * (place.box.left + place.box.right), place.box.bottom), columns, style));
+  }
+
+  // Panels -------------------------------------------------------------------------------------------------------
+
+  void panel(std::size_t k) {
+    const Panel& panel = figure_.panels[k];
+    const PanelLayout& place = layout_.panels[k];
+    const bool lowest = k + 1 == figure_.panels.size();
+    line(fmt::format("set lmargin at screen {:.5f}", place.frame.left / figure_.width));
+    line(fmt::format("set rmargin at screen {:.5f}", place.frame.right / figure_.width));
+    line(fmt::format("set bmargin at screen {:.5f}", place.frame.bottom / figure_.height));
+    line(fmt::format("set tmargin at screen {:.5f}", place.frame.top / figure_.height));
+    line("set clip two");
+    line(fmt::format("set border 15 lw {:.3g}", 1.5 * units_.line_width));
+    axis('x', place.x, panel.x.label, lowest);
+    axis('y', place.y, panel.y.label, true);
+    arrows(panel, place);
+    labels(panel, place);
+    plot(panel, k);
+    if (!lowest) line("unset key\nunset label\nunset arrow\n");
+  }
+
+  void axis(char name, const AxisScale& scale, const LabelText& label, bool numbered) {
+    line(fmt::format("set {}range [{:.10g}:{:.10g}]", name, scale.low, scale.high));
+    if (scale.logarithmic) line(fmt::format("set logscale {}", name));
+    line(numbered && !label.empty() ? fmt::format("set {}label {}", name, quoted(label))
+                                    : fmt::format("unset {}label", name));
+    if (scale.logarithmic)
+      line(fmt::format("set {}tics in scale 1,0.5", name));
+    else
+      line(fmt::format("set {0}tics {1:.10g},{2:.10g}\nset {0}tics in scale 1,0.5\nset m{0}tics 2", name,
+                       scale.first_tic, scale.tic_step));
+    line(fmt::format("set format {} '{}'", name, numbered ? scale.format : ""));
+  }
+
+  void arrows(const Panel& panel, const PanelLayout& place) {
+    for (const Arrow& arrow : panel.arrows)
+      line(
+          fmt::format("set arrow from {:.10g},{:.10g} to {:.10g},{:.10g} head filled size screen {:.4f},18 fixed lw "
+                      "{:.3g} lc rgb '{}'",
+                      arrow.from.x, arrow.from.y, arrow.to.x, arrow.to.y, 0.9 * layout_.font / figure_.width,
+                      1.5 * units_.line_width, arrow.colour));
+    for (std::size_t k = 0; k < panel.markers.size(); ++k) {
+      if (k >= place.labels.size() || !place.labels[k] || !place.labels[k]->far) continue;
+      const Box& box = place.labels[k]->box;
+      const PicturePoint at = place.on_paper(panel.markers[k].at);
+      const double x = std::clamp(at.x, box.left, box.right), y = std::clamp(at.y, box.bottom, box.top);
+      line(fmt::format("set arrow from {} to {} nohead lw {:.3g} lc rgb '#606060'", screen(at.x, at.y), screen(x, y),
+                       1.0 * units_.line_width));
+    }
+  }
+
+  void labels(const Panel& panel, const PanelLayout& place) {
+    for (std::size_t k = 0; k < panel.markers.size(); ++k) {
+      if (k >= place.labels.size() || !place.labels[k]) continue;
+      const PicturePoint centre = place.labels[k]->box.centre();
+      line(fmt::format("set label {} at {} center front font ',{:.1f}'", quoted(panel.markers[k].label),
+                       screen(centre.x, centre.y), font_size(label_font_ratio)));
+    }
+  }
+
+  void plot(const Panel& panel, std::size_t number) {
+    std::vector<std::string> elements;
+    for (std::size_t c = 0; c < panel.curves.size(); ++c)
+      elements.push_back(
+          fmt::format("$curve{}_{} with lines {} notitle", number + 1, c + 1, stroke(panel.curves[c].stroke)));
+    int count = 0;
+    for (const auto& [style, group] : marker_groups(panel)) {
+      const Marker& marker = *group.front();
+      const std::string block = fmt::format("$points{}_{}", number + 1, ++count);
+      elements.push_back(fmt::format("{} with points {} notitle", block, background(marker)));
+      elements.push_back(fmt::format("{} with points {} notitle", block, points(marker, marker.filled, marker.colour)));
+    }
+    if (number == 0)
+      for (const KeyEntry& entry : figure_.key) elements.push_back(key_entry(entry));
+    if (elements.empty()) elements.emplace_back("NaN notitle");
+    line(fmt::format("plot {}", fmt::join(elements, ", \\\n     ")));
+  }
+
+  std::string key_entry(const KeyEntry& entry) const {
+    std::string style = "lines";
+    if (entry.stroke && entry.marker)
+      style = fmt::format("linespoints {} pt {} ps {:.3g}", stroke(*entry.stroke),
+                          point_type(entry.marker->symbol, entry.marker->filled), point_size(*entry.marker));
+    else if (entry.stroke)
+      style = "lines " + stroke(*entry.stroke);
+    else if (entry.marker)
+      style = "points " + points(*entry.marker, entry.marker->filled, entry.marker->colour);
+    return fmt::format("keyentry with {} title {}", style, quoted(entry.text));
+  }
+
+  const Figure& figure_;
+  const FigureLayout& layout_;
+  const PictureTarget& target_;
+  TerminalUnits units_;
+  std::string text_;
+};
+
+}  // namespace
+
+std::string gnuplot_script(const Figure& figure, const FigureLayout& layout, const PictureTarget& target) {
+  return ScriptWriter(figure, layout, target).write();
+}
+
+}  // namespace tchat

@@ -1,0 +1,22 @@
+/// A figure as a gnuplot script with its data inline: it needs no other file, can be edited and run again.
+///
+/// Equal figures give equal scripts, byte for byte. Texts stand in single quotes, where gnuplot substitutes nothing.
+#pragma once
+
+#include <string>
+
+#include "plot/figure.hpp"
+#include "plot/layout.hpp"
+#include "plot/picture_format.hpp"
+
+namespace tchat {
+
+struct PictureTarget {
+  PictureFormat format = PictureFormat::png;
+  std::string path;    ///< of a file
+  std::string window;  ///< terminal of a window
+};
+
+std::string gnuplot_script(const Figure& figure, const FigureLayout& layout, const PictureTarget& target);
+
+}  // namespace tchat

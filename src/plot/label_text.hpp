@@ -1,0 +1,34 @@
+/// Texts in pictures: names of the problem set as mathematics (alpha, x1, MAX x1), everything else as it is.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace tchat {
+
+/// A text and whether it is gnuplot's markup (subscripts) or to be shown as it is.
+struct LabelText {
+  std::string text;
+  bool markup = false;
+
+  bool empty() const { return text.empty(); }
+};
+
+/// A text of the user: control characters become blanks.
+LabelText plain_text(std::string_view text);
+
+/// The name of a parameter, state or column as mathematics: Greek names become letters and numbers at the end of a
+/// name subscripts (omega -> Greek omega, x1 -> x with subscript 1, "MAX x1" -> "max x" with subscript 1, L2-NORM ->
+/// L with subscript 2, norm). What is no such name stays as it is.
+LabelText mathematical_name(std::string_view name);
+
+/// The two one after the other.
+LabelText joined(const LabelText& first, const LabelText& second);
+
+/// Width of the text in units of the font's size, from the widths of characters of a common sans-serif font.
+double text_width(const LabelText& text);
+
+/// The text in gnuplot's single quotes, in which nothing is special but the quote itself.
+std::string gnuplot_quoted(std::string_view text);
+
+}  // namespace tchat

@@ -1,0 +1,155 @@
+#include "plot/layout.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "plot/key_placement.hpp"
+
+namespace tchat {
+
+namespace {
+
+constexpr double font_for_1200_pixels = 27.0;
+constexpr double least_font = 9.0;
+
+struct Values {
+  std::vector<double> x, y;
+};
+
+void add_values(const Panel& panel, Values& values) {
+  for (const Curve& curve : panel.curves) {
+    if (curve.background) continue;
+    for (const PicturePoint& p : curve.points) values.x.push_back(p.x), values.y.push_back(p.y);
+  }
+  for (const Marker& marker : panel.markers) values.x.push_back(marker.at.x), values.y.push_back(marker.at.y);
+}
+
+/// What lies within the other axis's range, so that a chosen --xrange gives a fitting y-range.
+std::vector<double> visible(const std::vector<double>& values, const std::vector<double>& others,
+                            const AxisSettings& other) {
+  std::vector<double> result;
+  for (std::size_t k = 0; k < values.size(); ++k)
+    if (!(other.low && others[k] < *other.low) && !(other.high && others[k] > *other.high)) result.push_back(values[k]);
+  return result.empty() ? values : result;
+}
+
+/// Widens one axis so that a unit is as long on both.
+void equalise(PanelLayout& panel) {
+  const double unit_x = (panel.x.high - panel.x.low) / panel.frame.width();
+  const double unit_y = (panel.y.high - panel.y.low) / panel.frame.height();
+  AxisScale& scale = unit_x < unit_y ? panel.x : panel.y;
+  const double factor = unit_x < unit_y ? unit_y / unit_x : unit_x / unit_y;
+  const double middle = 0.5 * (scale.low + scale.high);
+  AxisSettings wider;
+  wider.low = middle + factor * (scale.low - middle);
+  wider.high = middle + factor * (scale.high - middle);
+  scale = choose_scale(wider, {}, 6);
+}
+
+Obstacles obstacles_of(const Panel& panel, const PanelLayout& layout, const std::optional<KeyPlace>& key, double font) {
+  Obstacles obstacles;
+  obstacles.frame = layout.frame.grown(-0.2 * font);
+  for (const Curve& curve : panel.curves) {
+    std::vector<PicturePoint> points;
+    for (const PicturePoint& p : curve.points) points.push_back(layout.on_paper(p));
+    obstacles.curves.push_back(std::move(points));
+  }
+  for (const Marker& marker : panel.markers) {
+    const PicturePoint at = layout.on_paper(marker.at);
+    const double radius = marker.size * marker_radius * font;
+    obstacles.markers.push_back({at.x - radius, at.x + radius, at.y - radius, at.y + radius});
+  }
+  if (key && key->inside) obstacles.forbidden.push_back(key->box);
+  return obstacles;
+}
+
+void place_marker_labels(const Panel& panel, PanelLayout& layout, const Obstacles& obstacles, double font) {
+  std::vector<LabelRequest> requests;
+  std::vector<std::size_t> owners;
+  for (std::size_t k = 0; k < panel.markers.size(); ++k) {
+    const Marker& marker = panel.markers[k];
+    const PicturePoint at = layout.on_paper(marker.at);
+    if (marker.label.empty() || !layout.frame.contains(at)) continue;
+    const double size = label_font_ratio * font;
+    const LabelRequest request{at, text_width(marker.label) * size, 0.95 * size,
+                               (marker.size * marker_radius + 0.22) * font};
+    const bool crowded = std::any_of(owners.begin(), owners.end(), [&](const std::size_t& owner) {
+      const PicturePoint other = requests[static_cast<std::size_t>(&owner - owners.data())].at;
+      return panel.markers[owner].label.text == marker.label.text && std::abs(other.x - at.x) < 1.2 * request.width &&
+             std::abs(other.y - at.y) < 1.2 * request.height;
+    });
+    if (crowded) continue;  // equal points side by side: one label stands for all
+    requests.push_back(request);
+    owners.push_back(k);
+  }
+  const auto places = place_labels(requests, obstacles);
+  layout.labels.assign(panel.markers.size(), std::nullopt);
+  for (std::size_t k = 0; k < owners.size(); ++k) layout.labels[owners[k]] = places[k];
+}
+
+}  // namespace
+
+PicturePoint PanelLayout::on_paper(const PicturePoint& p) const {
+  return {frame.left + x.fraction(p.x) * frame.width(), frame.bottom + y.fraction(p.y) * frame.height()};
+}
+
+PicturePoint PanelLayout::in_data(const PicturePoint& p) const {
+  const auto value = [](const AxisScale& scale, double fraction) {
+    return scale.logarithmic ? scale.low * std::pow(scale.high / scale.low, fraction)
+                             : scale.low + fraction * (scale.high - scale.low);
+  };
+  return {value(x, (p.x - frame.left) / frame.width()), value(y, (p.y - frame.bottom) / frame.height())};
+}
+
+FigureLayout lay_out(const Figure& figure) {
+  FigureLayout layout;
+  const double scale = std::min(figure.width / 1200.0, figure.height / 700.0);
+  layout.font = std::max(least_font, font_for_1200_pixels * scale);
+  const double font = layout.font;
+  const auto panels = static_cast<int>(figure.panels.size());
+
+  Values shared;
+  for (const Panel& panel : figure.panels) add_values(panel, shared);
+  double widest = 0.0;
+  for (const Panel& panel : figure.panels) {
+    Values own;
+    add_values(panel, own);
+    PanelLayout place;
+    place.x = choose_scale(panel.x, visible(shared.x, shared.y, panels == 1 ? panel.y : AxisSettings{}), 6);
+    place.y = choose_scale(panel.y, visible(own.y, own.x, panel.x), panels > 1 ? 4 : 6);
+    widest = std::max(widest, place.y.widest_number);
+    layout.panels.push_back(place);
+  }
+
+  const double above = (figure.title.empty() ? 0.0 : 1.7) + (figure.note.empty() ? 0.0 : 1.3);
+  Box inner{(widest + 3.0) * font, figure.width - 1.5 * font, 3.7 * font, figure.height - (0.8 + above) * font};
+  const KeySize key(figure.key, font);
+  const bool may_be_inside = panels == 1;
+  if (!may_be_inside && !key.empty()) inner.top -= key.rows_height(inner.width());
+
+  const double gap = 0.7 * font;
+  const double height = (inner.height() - gap * (panels - 1)) / panels;
+  for (int k = 0; k < panels; ++k) {
+    const double top = inner.top - k * (height + gap);
+    PanelLayout& place = layout.panels[static_cast<std::size_t>(k)];
+    place.frame = {inner.left, inner.right, top - height, top};
+    if (figure.panels[static_cast<std::size_t>(k)].equal_scales) equalise(place);
+  }
+  if (!key.empty() && may_be_inside) {
+    const Obstacles obstacles = obstacles_of(figure.panels[0], layout.panels[0], std::nullopt, font);
+    layout.key = key.place_inside(obstacles);
+    if (!layout.key) {
+      PanelLayout& place = layout.panels[0];
+      place.frame.top -= key.rows_height(inner.width());
+      if (figure.panels[0].equal_scales) equalise(place);
+    }
+  }
+  if (!key.empty() && !layout.key) layout.key = key.place_above(layout.panels[0].frame);
+  for (std::size_t k = 0; k < layout.panels.size(); ++k)
+    place_marker_labels(figure.panels[k], layout.panels[k],
+                        obstacles_of(figure.panels[k], layout.panels[k], layout.key, font), font);
+  return layout;
+}
+
+}  // namespace tchat

@@ -1,0 +1,44 @@
+/// Where everything of a figure stands on the paper: frames of the panels, scales of the axes, places of labels and of
+/// the key. Pixels of the picture, y upwards from its lower edge.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "plot/axis_scale.hpp"
+#include "plot/figure.hpp"
+#include "plot/label_placement.hpp"
+
+namespace tchat {
+
+struct PanelLayout {
+  Box frame;
+  AxisScale x;
+  AxisScale y;
+  std::vector<std::optional<PlacedLabel>> labels;  ///< one for each marker; nothing where there is no label to show
+
+  PicturePoint on_paper(const PicturePoint& p) const;
+  /// The point of the data at a place on the paper.
+  PicturePoint in_data(const PicturePoint& p) const;
+};
+
+struct KeyPlace {
+  Box box;
+  bool inside = true;  ///< inside the first panel; otherwise above it, in rows
+};
+
+struct FigureLayout {
+  double font = 27.0;  ///< size of the axes' font; that of labels at points is label_font_ratio times this
+  std::vector<PanelLayout> panels;
+  std::optional<KeyPlace> key;
+};
+
+inline constexpr double label_font_ratio = 0.85;
+
+/// Markers of a size of 1 have this radius, in units of the font's size.
+inline constexpr double marker_radius = 0.25;
+
+/// Throws UserError for axes that cannot show the data (see choose_scale).
+FigureLayout lay_out(const Figure& figure);
+
+}  // namespace tchat

@@ -1,0 +1,42 @@
+/// Pictures of labelled orbits: phase portraits, and time series in panels one below the other or in one.
+///
+/// Jumps are thin dashed lines, from a filled circle (before) to an open one (after). An arrowhead shows the direction
+/// of time. Event surfaces are grey lines.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "hybrid/hybrid_system.hpp"
+#include "plot/figure.hpp"
+#include "plot/orbit_trace.hpp"
+
+namespace tchat {
+
+struct OrbitFigureOptions {
+  std::vector<std::string> states;      ///< names, element k - 1 of state k; U(k) for what is missing
+  std::vector<std::string> parameters;  ///< likewise PAR(k)
+  std::string x;                        ///< state along x of a phase portrait: name, U(k) or number; empty: the first
+  std::vector<std::string> y;  ///< states along y; one for a phase portrait; empty: the second, or the first two
+  bool one_panel = false;      ///< time series of all states in one panel
+  const HybridSystem* system = nullptr;  ///< for event surfaces
+  bool surfaces = true;
+  std::vector<int> events;          ///< these event surfaces; empty: chosen, see EventSurfaces
+  std::vector<std::string> legend;  ///< a text for each orbit; empty: label and free parameters
+};
+
+/// Throws UserError for states that there are not, and for orbits of different dimensions.
+Figure phase_portrait(const std::vector<OrbitTrace>& orbits, const OrbitFigureOptions& options);
+Figure time_series(const std::vector<OrbitTrace>& orbits, const OrbitFigureOptions& options);
+
+/// State (from 0) by its name, as U(k) or as a number.
+int find_state(const std::string& wanted, int dimension, const OrbitFigureOptions& options, const char* option);
+std::string state_name(int state, const OrbitFigureOptions& options);
+
+/// The key's entry of an orbit: "PD1: alpha = 3.0362".
+LabelText orbit_name(const std::vector<OrbitTrace>& orbits, std::size_t k, const OrbitFigureOptions& options);
+
+/// Key entry of an event surface, the number-th in the picture (from 0).
+KeyEntry surface_entry(const std::string& name, std::size_t number);
+
+}  // namespace tchat

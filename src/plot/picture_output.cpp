@@ -1,0 +1,118 @@
+#include "plot/picture_output.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cctype>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "constants/user_error.hpp"
+#include "plot/gnuplot.hpp"
+#include "plot/gnuplot_script.hpp"
+
+namespace tchat {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A file beside its final name, removed unless it is moved there.
+class UnfinishedFile {
+ public:
+  explicit UnfinishedFile(const std::string& path) : path_(path) {
+    const fs::path final_path(path);
+    name_ = (final_path.parent_path() / fmt::format(".{}.{}", final_path.filename().string(), getpid())).string();
+    std::ofstream file(name_);
+    if (!file)
+      throw UserError(
+          fmt::format("{}: cannot be written ({}); give a file in a folder that is there and writable, or "
+                      "make it",
+                      path, std::strerror(errno)));
+  }
+  ~UnfinishedFile() { std::remove(name_.c_str()); }
+  UnfinishedFile(const UnfinishedFile&) = delete;
+  UnfinishedFile& operator=(const UnfinishedFile&) = delete;
+
+  const std::string& name() const { return name_; }
+
+  void write(const std::string& text) const {
+    std::ofstream file(name_, std::ios::binary);
+    file << text << std::flush;
+    if (!file) throw ComputationError(fmt::format("{}: cannot be written ({})", path_, std::strerror(errno)));
+  }
+
+  void finish() const {
+    if (std::rename(name_.c_str(), path_.c_str()) != 0)
+      throw UserError(fmt::format("{}: cannot be written ({})", path_, std::strerror(errno)));
+  }
+
+ private:
+  std::string path_;
+  std::string name_;
+};
+
+void write_text(const std::string& path, const std::string& text) {
+  const UnfinishedFile file(path);
+  file.write(text);
+  file.finish();
+}
+
+/// A PDF says when it was made: digits of these dates become a fixed day, so that lengths stay.
+void remove_dates(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::string text((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+  in.close();
+  for (const std::string key : {"/CreationDate", "/ModDate"}) {
+    const std::size_t at = text.find(key);
+    if (at == std::string::npos) continue;
+    const std::string day = "20000101000000";
+    std::size_t digit = 0;
+    for (std::size_t k = text.find('(', at); k < text.size() && text[k] != ')'; ++k)
+      if (std::isdigit(static_cast<unsigned char>(text[k])) != 0) text[k] = digit < day.size() ? day[digit++] : '0';
+  }
+  std::ofstream(path, std::ios::binary) << text;
+}
+
+void draw_to_file(const Figure& figure, const FigureLayout& layout, const std::string& path) {
+  const PictureFormat format = picture_format(path);
+  const UnfinishedFile file(path);
+  run_gnuplot(gnuplot_script(figure, layout, {format, file.name(), ""}));
+  std::error_code error;
+  if (fs::file_size(file.name(), error) == 0 || error)
+    throw ComputationError(fmt::format("{}: gnuplot drew nothing; is the disk full?", path));
+  if (format == PictureFormat::pdf) remove_dates(file.name());
+  file.finish();
+}
+
+}  // namespace
+
+std::string output_picture(const Figure& figure, const PictureWish& wish) {
+  const FigureLayout layout = lay_out(figure);
+  const auto keep_script = [&](const PictureTarget& target) {
+    if (!wish.script.empty()) write_text(wish.script, gnuplot_script(figure, layout, target));
+  };
+  if (!wish.output.empty()) {
+    keep_script({picture_format(wish.output), wish.output, ""});
+    draw_to_file(figure, layout, wish.output);
+    return "";
+  }
+  const std::string window = has_display() ? window_terminal(gnuplot_terminals()) : "";
+  if (!window.empty()) {
+    const PictureTarget target{PictureFormat::window, "", window};
+    keep_script(target);
+    run_gnuplot(gnuplot_script(figure, layout, target), true);
+    return "";
+  }
+  const std::string path = wish.name + ".png";
+  keep_script({PictureFormat::png, path, ""});
+  draw_to_file(figure, layout, path);
+  return fmt::format("{} (there is no {} for a window; -o FILE chooses another name or form)", path,
+                     has_display() ? "window terminal in this gnuplot" : "display");
+}
+
+}  // namespace tchat

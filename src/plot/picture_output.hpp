@@ -1,0 +1,21 @@
+/// A figure to where it is wanted: a file, a window, a script.
+#pragma once
+
+#include <string>
+
+#include "plot/figure.hpp"
+
+namespace tchat {
+
+struct PictureWish {
+  std::string output;  ///< FILE.png, .svg, .pdf; empty: a window, or NAME.png without a display
+  std::string script;  ///< where the script is kept; empty: nowhere
+  std::string name;    ///< NAME
+};
+
+/// Draws the figure; returns what the user is told ("" when it is in the file asked for). A file appears complete or
+/// not at all, and without dates: equal figures give equal files. With a script and without an output, and no display,
+/// only the script is written. Throws UserError (no gnuplot, a folder that cannot be written), ComputationError.
+std::string output_picture(const Figure& figure, const PictureWish& wish);
+
+}  // namespace tchat

@@ -1,0 +1,105 @@
+#include "plot/picture_styles.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace tchat {
+
+namespace {
+
+struct PointStyle {
+  const char* type;
+  Symbol symbol;
+  bool filled;
+  bool by_default;
+};
+
+constexpr std::array<PointStyle, 26> point_styles = {{
+    {"LP", Symbol::square, true, true},
+    {"PD", Symbol::triangle, true, true},
+    {"TR", Symbol::diamond, true, true},
+    {"BP", Symbol::pentagon, true, true},
+    {"HB", Symbol::reversed_triangle, true, true},
+    {"GR", Symbol::circle, false, true},
+    {"XI", Symbol::circle, true, true},
+    {"GC", Symbol::diamond, false, true},
+    {"CP", Symbol::square, false, true},
+    {"R1", Symbol::reversed_triangle, false, true},
+    {"R2", Symbol::triangle, false, true},
+    {"R3", Symbol::pentagon, false, true},
+    {"R4", Symbol::diamond, false, true},
+    {"BT", Symbol::reversed_triangle, false, true},
+    {"ZH", Symbol::pentagon, false, true},
+    {"GH", Symbol::diamond, false, true},
+    {"LTR", Symbol::square, false, true},
+    {"LPD", Symbol::square, false, true},
+    {"PTR", Symbol::triangle, false, true},
+    {"TTR", Symbol::diamond, false, true},
+    {"UZ", Symbol::circle, true, false},
+    {"RG", Symbol::dot, true, false},
+    {"EP", Symbol::dot, true, false},
+    {"MX", Symbol::reversed_triangle, true, false},
+    {"FP", Symbol::square, true, true},
+    {"", Symbol::dot, true, false},
+}};
+
+const PointStyle& style_of(const std::string& type) {
+  const auto found = std::find_if(point_styles.begin(), point_styles.end(),
+                                  [&type](const PointStyle& style) { return type == style.type; });
+  return found != point_styles.end() ? *found : point_styles.back();
+}
+
+}  // namespace
+
+std::string series_colour(std::size_t k) {
+  static constexpr std::array<const char*, 7> colours = {"#000000", "#0060a8", "#c04000", "#4a9a6a",
+                                                         "#9a5aa0", "#808080", "#b08a00"};
+  return colours[k % colours.size()];
+}
+
+Dash series_dash(std::size_t k) {
+  static constexpr std::array<Dash, 4> dashes = {Dash::solid, Dash::dashed, Dash::dash_dot, Dash::dotted};
+  return dashes[k % dashes.size()];
+}
+
+Marker special_point_marker(const std::string& type, const PicturePoint& at) {
+  const PointStyle& style = style_of(type);
+  Marker marker;
+  marker.at = at;
+  marker.symbol = style.symbol;
+  marker.filled = style.filled;
+  marker.size = type == "XI" ? 0.8 : 1.0;  // there are many of them
+  marker.label = plain_text(type);
+  return marker;
+}
+
+bool is_labelled_by_default(const std::string& type) { return style_of(type).by_default; }
+
+std::vector<std::string> all_point_types() {
+  std::vector<std::string> types;
+  for (const PointStyle& style : point_styles)
+    if (*style.type != '\0' && std::string(style.type) != "FP") types.emplace_back(style.type);
+  return types;
+}
+
+CurveKind curve_kind(int curve_type, bool grazing) {
+  if (grazing) return {"grazing", {Dash::solid, 2.6, "#000000"}};
+  switch (curve_type) {
+    case 2:
+    case 5:
+      return {"fold", {Dash::dashed, 2.6, "#0060a8"}};
+    case 7:
+      return {"period doubling", {Dash::dash_dot, 2.6, "#c04000"}};
+    case 8:
+      return {"torus", {Dash::dotted, 3.2, "#3a7a4a"}};
+    case 3:
+      return {"Hopf", {Dash::dash_dot, 2.6, "#9a5aa0"}};
+    case 1:
+    case 6:
+      return {"branch points", {Dash::dotted, 3.2, "#808080"}};
+    default:
+      return {"two-parameter curve", {Dash::solid, 2.6, "#000000"}};
+  }
+}
+
+}  // namespace tchat

@@ -1,0 +1,107 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "plot/event_surface.hpp"
+#include "plot/orbit_figure.hpp"
+#include "plot/picture_styles.hpp"
+
+namespace tchat {
+
+namespace {
+
+/// One state of one orbit over a period.
+void add_series(Panel& panel, const OrbitTrace& orbit, int state, const Stroke& stroke) {
+  for (std::size_t s = 0; s < orbit.segments.size(); ++s) {
+    const TraceSegment& segment = orbit.segments[s];
+    Curve curve;
+    curve.stroke = stroke;
+    for (std::size_t k = 0; k < segment.times.size(); ++k)
+      curve.points.push_back({segment.times[k], segment.states(state, static_cast<Eigen::Index>(k))});
+    panel.curves.push_back(std::move(curve));
+    if (!orbit.jumps_after(s)) continue;
+    const PicturePoint before{segment.times.back(), orbit.end_of(s)(state)};
+    const PicturePoint after{segment.times.back(), orbit.start_after(s)(state)};
+    panel.curves.push_back({{before, after}, {Dash::dashed, 1.3, stroke.colour}, false});
+    for (const bool filled : {false, true}) {
+      Marker marker;
+      marker.at = filled ? before : after;
+      marker.filled = filled;
+      marker.size = 0.7;
+      marker.colour = stroke.colour;
+      panel.markers.push_back(marker);
+    }
+  }
+}
+
+/// A little more than what the orbits cover.
+std::pair<double, double> range_of(const std::vector<OrbitTrace>& orbits, int state) {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const OrbitTrace& orbit : orbits)
+    for (const TraceSegment& segment : orbit.segments) {
+      low = std::min(low, segment.states.row(state).minCoeff());
+      high = std::max(high, segment.states.row(state).maxCoeff());
+    }
+  const double more = high > low ? 0.5 * (high - low) : std::max(1.0, std::abs(high));
+  return {low - more, high + more};
+}
+
+void add_levels(Figure& figure, Panel& panel, const EventSurfaces& surfaces, const std::vector<OrbitTrace>& orbits,
+                int state, double duration) {
+  const auto [low, high] = range_of(orbits, state);
+  for (const EventSurfaces::Level& level : surfaces.of_state(state, low, high)) {
+    std::size_t number = 0;
+    auto known = std::find_if(figure.key.begin(), figure.key.end(),
+                              [&level](const KeyEntry& entry) { return entry.text.text == level.name; });
+    if (known == figure.key.end()) {
+      for (const KeyEntry& entry : figure.key) number += entry.stroke->colour == surface_entry("", 0).stroke->colour;
+      figure.key.push_back(surface_entry(level.name, number));
+      known = figure.key.end() - 1;
+    }
+    for (const double value : level.values)
+      panel.curves.push_back({{{-duration, value}, {2.0 * duration, value}}, *known->stroke, true});
+  }
+}
+
+}  // namespace
+
+Figure time_series(const std::vector<OrbitTrace>& orbits, const OrbitFigureOptions& options) {
+  const int n = orbits.front().dimension();
+  std::vector<int> states;
+  for (const std::string& name : options.y) states.push_back(find_state(name, n, options, "-y"));
+  if (states.empty())
+    for (int k = 0; k < std::min(n, 2); ++k) states.push_back(k);
+  double duration = 0.0;
+  for (const OrbitTrace& orbit : orbits) duration = std::max(duration, orbit.period());
+
+  Figure figure;
+  LabelText all_names;
+  const bool one_panel = options.one_panel || states.size() == 1;
+  figure.panels.resize(one_panel ? 1 : states.size());
+  for (std::size_t k = 0; k < orbits.size(); ++k)
+    if (!one_panel || states.size() == 1)
+      figure.key.push_back(
+          {orbit_name(orbits, k, options), Stroke{series_dash(k), 2.5, series_colour(k)}, std::nullopt});
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    Panel& panel = figure.panels[one_panel ? 0 : i];
+    const LabelText name = mathematical_name(state_name(states[i], options));
+    all_names = all_names.empty() ? name : joined(joined(all_names, plain_text(", ")), name);
+    panel.y.label = one_panel ? all_names : name;
+    panel.x.label = plain_text("time");
+    if (options.system != nullptr && options.surfaces)
+      add_levels(figure, panel, EventSurfaces(*options.system, orbits, options.events), orbits, states[i], duration);
+    for (std::size_t k = 0; k < orbits.size(); ++k) {
+      // Several states in one panel: a colour a state, a dash an orbit.
+      const bool by_state = one_panel && states.size() > 1;
+      const Stroke stroke{series_dash(k), 2.5, series_colour(by_state ? i : k)};
+      add_series(panel, orbits[k], states[i], stroke);
+      if (by_state)
+        figure.key.push_back(
+            {orbits.size() > 1 ? joined(joined(name, plain_text(", ")), orbit_name(orbits, k, options)) : name, stroke,
+             std::nullopt});
+    }
+  }
+  return figure;
+}
+
+}  // namespace tchat

@@ -1,0 +1,104 @@
+#include "start/diagnostics_file_reader.hpp"
+
+#include <algorithm>
+#include <optional>
+
+#include "constants/constant_value.hpp"
+#include "start/fortran_number.hpp"
+#include "start/text_file.hpp"
+
+namespace tchat {
+
+namespace {
+
+using Words = std::vector<std::string_view>;
+
+bool is_bar(const Words& words) { return words.size() == 1 && words[0] == std::string_view(std::string(47, '=')); }
+
+bool is_heading(const Words& words) {
+  return words.size() >= 4 && words[0] == "BR" && words[1] == "PT" && words[2] == "TY" && words[3] == "LAB";
+}
+
+/// `BR PT [TY] LAB ...`: an ordinary point has no letters.
+std::optional<DiagnosticPoint> read_point(const Words& words) {
+  if (words.size() < 4) return std::nullopt;
+  const auto branch = parse_integer(words[0]);
+  const auto point = parse_integer(words[1]);
+  const auto third = parse_integer(words[2]);
+  const auto label = third ? third : parse_integer(words[3]);
+  if (!branch || !point || !label) return std::nullopt;
+  DiagnosticPoint result;
+  result.branch = *branch;
+  result.point = *point;
+  result.type = third ? "" : std::string(words[2]);
+  result.label = *label;
+  result.admissible = words.back() != "inadmissible";
+  return result;
+}
+
+/// The multipliers of a block may stand before or after its point.
+class Blocks {
+ public:
+  void read(std::string_view line) {
+    const Words words = split_words(line);
+    if (words.empty()) return;
+    if (after_heading_)
+      take_point(words);
+    else if (is_bar(words))
+      close();
+    else if (words[0] == "Multipliers:")
+      multipliers_.clear();
+    else if (words[0] == "Multiplier" && words.size() >= 4)
+      take_multiplier(words);
+    after_heading_ = is_heading(words);
+  }
+
+  std::vector<DiagnosticPoint> finish() {
+    close();
+    return std::move(points_);
+  }
+
+ private:
+  void take_point(const Words& words) {
+    const auto point = read_point(words);
+    if (!point) return;
+    if (open_) close();
+    points_.push_back(*point);
+    open_ = true;
+  }
+
+  void take_multiplier(const Words& words) {
+    const auto real = parse_fortran_real(words[2]);
+    const auto imaginary = parse_fortran_real(words[3]);
+    if (real && imaginary) multipliers_.emplace_back(*real, *imaginary);
+  }
+
+  void close() {
+    if (open_) points_.back().multipliers = std::move(multipliers_);
+    multipliers_.clear();
+    open_ = false;
+  }
+
+  std::vector<DiagnosticPoint> points_;
+  std::vector<std::complex<double>> multipliers_;
+  bool after_heading_ = false;
+  bool open_ = false;  // the last point's block goes on
+};
+
+}  // namespace
+
+std::vector<DiagnosticPoint> parse_diagnostics(std::string_view text) {
+  Blocks blocks;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    blocks.read(without_carriage_return(text.substr(begin, end - begin)));
+    begin = end + 1;
+  }
+  return blocks.finish();
+}
+
+std::vector<DiagnosticPoint> read_diagnostics_file(const std::string& path) {
+  return parse_diagnostics(read_text_file(path, "diagnostics of a run", "a run writes them to d.NAME"));
+}
+
+}  // namespace tchat

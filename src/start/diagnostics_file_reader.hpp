@@ -1,0 +1,30 @@
+/// Reads d-files (fort.9) for what the p-file does not hold: the multipliers of every point, the letters of its type
+/// and whether the orbit is one of the model.
+///
+/// Only what AUTO's own readers rely on is looked at: the bars of 47 `=` between blocks, the line below a
+/// `BR PT TY LAB` heading, lines `Multiplier k re im`; and the word `inadmissible` of this program.
+#pragma once
+
+#include <complex>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tchat {
+
+struct DiagnosticPoint {
+  int branch = 0;
+  int point = 0;     ///< signed: negative when stable
+  std::string type;  ///< letters, "" for an ordinary point
+  int label = 0;
+  bool admissible = true;
+  std::vector<std::complex<double>> multipliers;
+};
+
+/// The points in file order; lines that are not understood are skipped. Throws UserError when the file cannot be read.
+std::vector<DiagnosticPoint> read_diagnostics_file(const std::string& path);
+
+/// The same for text already read.
+std::vector<DiagnosticPoint> parse_diagnostics(std::string_view text);
+
+}  // namespace tchat

@@ -1,0 +1,263 @@
+#include "start/point_file_reader.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <regex>
+
+#include "constants/constant_value.hpp"
+#include "constants/user_error.hpp"
+#include "hybrid/parameter_vector.hpp"
+#include "start/fortran_number.hpp"
+#include "start/text_file.hpp"
+
+namespace tchat {
+
+namespace {
+
+constexpr std::size_t prefix_words = 4;  // BR PT TY LAB
+constexpr std::size_t most_values = 1000;
+constexpr std::size_t longest_header_line = 10000;
+
+/// NaN, Infinity and fields of stars (a number too large for its width): there is a number that cannot be shown.
+bool is_gap(std::string_view word) {
+  std::string lower;
+  for (const char c : word)
+    if (c != '+' && c != '-') lower += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return lower == "nan" || lower == "inf" || lower == "infinity" ||
+         (!word.empty() && word.find_first_not_of('*') == std::string_view::npos);
+}
+
+/// What the lines of a header say; kept for sections that have none of their own.
+class Header {
+ public:
+  void read(std::string_view line) {
+    if (line.size() > longest_header_line) line = line.substr(0, longest_header_line);  // std::regex is recursive
+    const std::string text(line);
+    integer(text, "IPS", section_.problem_type);
+    integer(text, "ISW", section_.branch_mode);
+    integer(text, "ISP", section_.detect_bifurcations);
+    integer(text, "NDIM", section_.dimension);
+    integer(text, "NSEG", section_.segments);
+    names(text, "unames", section_.states);
+    names(text, "parnames", section_.parameters);
+    static const std::regex branch_type("Branch +type: *([0-9]+)");
+    if (std::smatch found; std::regex_search(text, found, branch_type))
+      section_.curve_type = parse_integer(found[1].str()).value_or(0);
+    static const std::regex active("Active continuation parameters?(?:\\(s\\))?:(.*)");
+    if (std::smatch found; std::regex_search(text, found, active)) read_active(found[1].str());
+    headings_ = text;
+  }
+  const PointSection& section() const { return section_; }
+  /// The last header line: headings of the columns, or nothing of use.
+  const std::string& headings() const { return headings_; }
+
+ private:
+  static void integer(const std::string& text, const char* key, int& value) {
+    const std::regex pattern(fmt::format("(?:^|[ ,]){} *= *(-?[0-9]+)", key));
+    if (std::smatch found; std::regex_search(text, found, pattern))
+      value = parse_integer(found[1].str()).value_or(value);
+  }
+
+  static void names(const std::string& text, const char* key, std::map<int, std::string>& result) {
+    const std::regex dictionary(fmt::format("{} *= *\\{{([^}}]*)\\}}", key));
+    std::smatch found;
+    if (!std::regex_search(text, found, dictionary)) return;
+    result.clear();
+    static const std::regex entry("([0-9]+) *: *['\"]([^'\"]*)['\"]");
+    const std::string list = found[1].str();
+    for (std::sregex_iterator it(list.begin(), list.end(), entry), end; it != end; ++it)
+      if (const auto index = parse_integer((*it)[1].str())) result[*index] = (*it)[2].str();
+  }
+
+  void read_active(std::string list) {
+    section_.active_parameters.clear();
+    std::replace(list.begin(), list.end(), '\'', ' ');
+    for (const std::string_view word : split_words(list)) {
+      if (const auto index = parse_integer(word)) section_.active_parameters.push_back(*index);
+      for (const auto& [index, name] : section_.parameters)
+        if (name == word) section_.active_parameters.push_back(index);
+    }
+  }
+
+  PointSection section_;
+  std::string headings_;
+};
+
+/// The heading above each number of `line`: headings begin one column to the right of the numbers' fields.
+std::vector<std::string> headings_above(std::string_view line, const std::vector<std::string_view>& words,
+                                        const std::string& headings) {
+  std::vector<std::string> names;
+  const bool there = headings.find(" PT ") != std::string::npos;
+  const auto end_of = [line](std::string_view word) {
+    return static_cast<std::size_t>(word.data() - line.data()) + word.size();
+  };
+  for (std::size_t k = prefix_words; k < words.size(); ++k) {
+    const std::size_t begin = end_of(words[k - 1]) + 1;
+    const std::size_t end = k + 1 == words.size() ? std::string::npos : end_of(words[k]) + 1;
+    std::string name = there && begin < headings.size() ? headings.substr(begin, end - begin) : "";
+    name.erase(0, std::min(name.find_first_not_of(" \r"), name.size()));
+    name.erase(name.find_last_not_of(" \r") + 1);
+    names.push_back(name.empty() ? fmt::format("COLUMN({})", k - prefix_words + 1) : name);
+  }
+  return names;
+}
+
+class PointFileReader {
+ public:
+  PointFileReader(std::string_view text, const std::string& path) : text_(text), path_(path) {}
+
+  PointFile read() {
+    while (position_ < text_.size()) {
+      const std::string_view line = next_line();
+      const auto words = split_words(line);
+      if (words.empty()) continue;
+      if (words[0] == "0")
+        read_header_line(line);
+      else
+        read_point(line, words);
+    }
+    if (gaps_ > 0)
+      file_.warnings.push_back(fmt::format("{}: {} number{} not finite {} left out", path_, gaps_,
+                                           gaps_ == 1 ? "" : "s", gaps_ == 1 ? "is" : "are"));
+    if (file_.sections.empty())
+      throw UserError(fmt::format("{}: no point in it; a run writes points to p.NAME (fort.7)", path_));
+    return std::move(file_);
+  }
+
+ private:
+  std::string_view next_line() {
+    const auto end = text_.find('\n', position_);
+    ended_ = end != std::string_view::npos;
+    const auto line = text_.substr(position_, ended_ ? end - position_ : std::string_view::npos);
+    position_ = ended_ ? end + 1 : text_.size();
+    ++line_;
+    return without_carriage_return(line);
+  }
+
+  void read_header_line(std::string_view line) {
+    if (!in_header_) header_ = Header();
+    in_header_ = true;
+    header_.read(line);
+  }
+
+  void read_point(std::string_view line, const std::vector<std::string_view>& words) {
+    const bool first = in_header_ || file_.sections.empty();
+    if (!ended_ && !is_whole(words, first)) {
+      file_.warnings.push_back(
+          fmt::format("{}:{}: the last line is not complete and is left out (the run that wrote it was interrupted?)",
+                      path_, line_));
+      return;
+    }
+    PointRow row = read_row(words);
+    if (first) {
+      file_.sections.push_back(header_.section());
+      file_.sections.back().columns = headings_above(line, words, header_.headings());
+      in_header_ = false;
+    }
+    PointSection& section = file_.sections.back();
+    if (row.values.size() != section.columns.size())
+      refuse(fmt::format("{} values after BR, PT, TY and LAB, but the points before have {}; the file is damaged",
+                         row.values.size(), section.columns.size()));
+    section.rows.push_back(std::move(row));
+  }
+
+  /// The last line, without its newline: does it have all the values that the line before has, in full?
+  bool is_whole(const std::vector<std::string_view>& words, bool first) const {
+    if (first) return false;
+    const auto& section = file_.sections.back();
+    if (words.size() != section.columns.size() + prefix_words) return false;
+    const std::string_view last = words.back();
+    return is_gap(last) ||
+           (last.size() > 3 && parse_fortran_real(last) && last.find_first_of("EeDd") < last.size() - 2);
+  }
+
+  PointRow read_row(const std::vector<std::string_view>& words) {
+    if (words.size() <= prefix_words || words.size() > prefix_words + most_values)
+      refuse(fmt::format("a point has BR, PT, TY, LAB and at least one value, found {} word{}; this is no p-file",
+                         words.size(), words.size() == 1 ? "" : "s"));
+    PointRow row;
+    int* const integers[] = {&row.branch, &row.point, &row.type, &row.label};
+    static constexpr const char* names[] = {"BR", "PT", "TY", "LAB"};
+    for (std::size_t k = 0; k < prefix_words; ++k) {
+      const auto value = parse_integer(words[k]);
+      if (!value)
+        refuse(fmt::format("{} is no integer ({} is needed here); this is no p-file", in_quotes(words[k]), names[k]));
+      *integers[k] = *value;
+    }
+    for (std::size_t k = prefix_words; k < words.size(); ++k) row.values.push_back(value_of(words[k]));
+    return row;
+  }
+
+  double value_of(std::string_view word) {
+    if (const auto value = parse_fortran_real(word)) return *value;
+    if (!is_gap(word)) refuse(fmt::format("{} is not a number; the file is damaged", in_quotes(word)));
+    ++gaps_;
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+
+  [[noreturn]] void refuse(const std::string& message) const {
+    throw UserError(fmt::format("{}:{}: {}", path_, line_, message));
+  }
+
+  std::string_view text_;
+  std::string path_;
+  std::size_t position_ = 0;
+  int line_ = 0;
+  bool ended_ = true;
+  bool in_header_ = false;
+  Header header_;
+  int gaps_ = 0;
+  PointFile file_;
+};
+
+std::string name_in(const std::map<int, std::string>& names, int k, const char* symbol) {
+  const auto found = names.find(k);
+  return found != names.end() ? found->second : fmt::format("{}({})", symbol, k);
+}
+
+}  // namespace
+
+std::string PointSection::parameter_name(int k) const { return name_in(parameters, k, "PAR"); }
+std::string PointSection::state_name(int k) const { return name_in(states, k, "U"); }
+
+std::vector<int> PointSection::free_problem_parameters() const {
+  const bool ours = problem_type == 180 || problem_type == 150;
+  constexpr int auto_period = 11;
+  std::vector<int> result;
+  for (const int k : active_parameters) {
+    const bool not_own = ours ? is_duration(k, segments > 0 ? segments : max_segments) : k == auto_period;
+    if (!not_own) result.push_back(k);
+  }
+  return result;
+}
+
+bool PointSection::is_two_parameter_curve() const {
+  return problem_type == 150 || branch_mode == 2 || branch_mode == -2 || curve_type != 0;
+}
+
+bool PointSection::has_stability() const { return detect_bifurcations != 0 && problem_type != 4; }
+
+PointFile parse_point_file(std::string_view text, const std::string& path) {
+  return PointFileReader(text, path).read();
+}
+
+PointFile read_point_file(const std::string& path) {
+  return parse_point_file(read_text_file(path, "points of branches", "a run writes them to p.NAME"), path);
+}
+
+bool looks_like_point_file(std::string_view text) {
+  const auto words = split_words(text.substr(0, std::min(text.find('\n'), text.size())));
+  if (words.empty()) return false;
+  if (words[0] == "0") return true;
+  if (words.size() <= prefix_words) return false;
+  const bool integers = std::all_of(words.begin(), words.begin() + prefix_words,
+                                    [](std::string_view word) { return parse_integer(word).has_value(); });
+  return integers && std::any_of(words.begin() + prefix_words, words.end(),
+                                 [](std::string_view word) { return word.find('.') != std::string_view::npos; });
+}
+
+}  // namespace tchat
