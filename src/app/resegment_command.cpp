@@ -6,6 +6,7 @@
 #include <iostream>
 #include <map>
 #include <memory>
+#include <sstream>
 
 #include "constants/constant_value.hpp"
 #include "constants/user_error.hpp"
@@ -25,9 +26,11 @@ ResegmentKind kind_of(const std::string& text) {
                               in_quotes(text)));
 }
 
-int do_resegment(ResegmentRequest request, const std::string& kind) {
+int do_resegment(ResegmentRequest request, const std::string& kind, bool quiet) {
   request.kind = kind_of(kind);
-  for (const std::string& warning : resegment(request, std::cout)) std::cerr << "tchat: warning: " << warning << '\n';
+  std::ostringstream unseen;
+  std::ostream& screen = quiet ? static_cast<std::ostream&>(unseen) : std::cout;
+  for (const std::string& warning : resegment(request, screen)) std::cerr << "tchat: warning: " << warning << '\n';
   return 0;
 }
 
@@ -38,6 +41,7 @@ void add_resegment_command(CLI::App& app, std::function<int()>& chosen) {
       "resegment", "starting data and constants where the signature changes: at grazing, rotated, doubled");
   const auto request = std::make_shared<ResegmentRequest>();
   const auto kind = std::make_shared<std::string>();
+  const auto quiet = std::make_shared<bool>(false);
   command->add_option("FILE", request->solutions, "q-file; `mems` is taken for q.mems when there is no file mems")
       ->required();
   command->add_option("LABEL", request->label, "label number, or a type with its count: GR1, UZ2, PD1")->required();
@@ -54,6 +58,7 @@ void add_resegment_command(CLI::App& app, std::function<int()>& chosen) {
                       "jump at the contact (default: the identity on a grazing curve, GRJUMP for impacting orbits)");
   command->add_option("--by", request->rotation, "segments that --to rotate moves from the beginning to the end")
       ->capture_default_str();
+  command->add_flag("-q,--quiet", *quiet, "no summary on the screen");
   command->add_flag("--dat", request->data, "write O.dat instead of q.O");
   command->add_option("KEY=VALUE", request->overrides, "constants for gc.O, e.g. ICP=[1,61,62] DS=0.01 NMX=50");
   command->footer(
@@ -67,7 +72,9 @@ void add_resegment_command(CLI::App& app, std::function<int()>& chosen) {
       "  --to double          the signature twice; from a PD label the run switches to the doubled orbit\n"
       "Example: tchat resegment q.to_grazing GR1 --to impacting -o born -p mems ICP=[1,61,62]\n"
       "         tchat run mems -c born -s born -o impacting");
-  command->callback([&chosen, request, kind] { chosen = [request, kind] { return do_resegment(*request, *kind); }; });
+  command->callback([&chosen, request, kind, quiet] {
+    chosen = [request, kind, quiet] { return do_resegment(*request, *kind, *quiet); };
+  });
 }
 
 }  // namespace tchat

@@ -79,8 +79,9 @@ std::vector<std::unique_ptr<TestFunction>> select_tests(const DefiningSystem& sy
     return tests_on_grazing_curve(*grazing, settings);
   Tests tests;
   add_user_values(tests, system.system(), settings);
-  add_contacts(tests, system, settings);
+  // Where an impact vanishes the contact that it brings does too: the label is to say the former, so it comes first.
   add_impact_velocities(tests, system, settings);
+  add_contacts(tests, system, settings);
   if (const auto* critical = dynamic_cast<const CriticalMultiplier*>(condition))
     add_codimension_two(tests, *critical, curve_type);
   else if (const auto* pair = dynamic_cast<const CriticalPair*>(condition))
