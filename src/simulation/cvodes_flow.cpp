@@ -199,8 +199,9 @@ struct CvodesFlow::Implementation {
     if (flag == CV_ILL_INPUT && finds_roots) {
       CVodeRootInit(cvode(), 0, nullptr);
       finds_roots = false;
+      message.clear();
       const double behind = std::exchange(reached, current_time());
-      if (reached == behind) flag = CVode(cvode(), end_time, x.get(), &reached, CV_ONE_STEP);
+      flag = reached == behind ? CVode(cvode(), end_time, x.get(), &reached, CV_ONE_STEP) : CV_SUCCESS;
     }
     std::fill(is_root.begin(), is_root.end(), 0);
     if (flag == CV_ROOT_RETURN) CVodeGetRootInfo(cvode(), is_root.data());
