@@ -77,6 +77,20 @@ Bifurcation double_at(PathFollower& follower, const DefiningSystem& defining, co
   return result;
 }
 
+/// Turns the direction so that DS > 0 has a meaning: the first free parameter, else duration, else state at the start
+/// of the orbit, that changes along it grows.
+void orient(const Orbit& x, OrbitVector& v) {
+  constexpr double rounding = 1e-4;  // of the largest one: a branch point is known to about the root of rounding
+  std::vector<double> changes(v.globals.begin(), v.globals.end());
+  changes.insert(changes.end(), v.durations.begin(), v.durations.end());
+  for (int a = 0; a < x.shape.dimension; ++a) changes.push_back(v.states(a, 0));
+  double largest = 0.0;
+  for (const double c : changes) largest = std::max(largest, std::abs(c));
+  const auto first =
+      std::find_if(changes.begin(), changes.end(), [&](double c) { return std::abs(c) > rounding * largest; });
+  if (first != changes.end() && *first < 0.0) v.scale(-1.0);
+}
+
 /// The null vector of the problem bordered by the tangent of the known branch: any right-hand side brings it out of the
 /// nearly singular matrix.
 Bifurcation branch_at(PathFollower& follower, const PathPoint& point) {
@@ -88,6 +102,7 @@ Bifurcation branch_at(PathFollower& follower, const PathPoint& point) {
     residual.connection[i] = std::cos(0.4 + 1.7 * static_cast<double>(i));
   OrbitVector v = condensed.make_vector();
   condensed.solve(residual, std::vector<double>{0.0}, v);
+  orient(point.orbit, v);
   return {point.orbit, v};
 }
 
