@@ -66,6 +66,20 @@ bool turns_at_zero(const std::vector<Node>& nodes, const Node& next, double spac
   return sign * value < dip * std::min(std::abs(past[0].value), std::abs(next.value));
 }
 
+/// A multiplier +1 where the bordered determinant changes sign is a branch point, no grazing-fold.
+bool is_the_same(const SpecialPoint& special, const SpecialPoint& other) {
+  return special.type == PointType::branch_point && other.kind.kind == UserPointKind::grazing_codimension_two &&
+         other.kind.index == 1;
+}
+
+/// What to add to the description "KIND: WHAT" for a further one, without repeating an equal KIND.
+std::string joined(const std::string& description, const std::string& further) {
+  const std::size_t kind = further.find(": ");
+  if (kind != std::string::npos && description.compare(0, kind + 2, further, 0, kind + 2) == 0)
+    return ", " + further.substr(kind + 2);
+  return "; " + further;
+}
+
 }  // namespace
 
 SpecialPointSearch::SpecialPointSearch(PathFollower& follower, const DefiningSystem& system,
@@ -249,8 +263,8 @@ SpecialPoint SpecialPointSearch::classify(const Zero& zero, const PathPoint& at,
     const SpecialPoint found = tests_[i]->classify(tested(at), signs_[i] < 0);
     if (i == group.front()) {
       special = found;
-    } else {
-      special.description += "; " + found.description;
+    } else if (!is_the_same(special, found)) {
+      special.description += joined(special.description, found.description);
       special.ends_branch = special.ends_branch || found.ends_branch;
     }
   }

@@ -56,14 +56,15 @@ void add_codimension_two(Tests& tests, const CriticalMultiplier& condition, int 
   tests.push_back(std::make_unique<ResonanceTest>(condition, fold ? PointType::resonance_1 : PointType::resonance_2));
 }
 
-/// On a grazing curve: xi_n by GCIPSI, branch points, multipliers +1 and -1 of the smooth orbit, impact velocities of
-/// the other segments. A fold in the principal parameter means nothing there.
+/// On a grazing curve: xi_n by GCIPSI, a*, branch points, multipliers +1 and -1 of the smooth orbit, impact velocities
+/// of the other segments. A fold in the principal parameter means nothing there.
 Tests tests_on_grazing_curve(const GrazingOrbitSystem& system, const RunSettings& settings) {
   Tests tests;
   add_user_values(tests, system.system(), settings);
   add_impact_velocities(tests, system, settings);
   for (const int n : settings.test_functions)
     tests.push_back(std::make_unique<XiTest>(system, settings.grazing_jump, n));
+  tests.push_back(std::make_unique<AccelerationTest>(system, settings.grazing_jump));
   const int kind = std::abs(settings.detect_bifurcations);
   if (kind == 2 || kind == 3) tests.push_back(std::make_unique<BranchPointTest>(settings.detect_bifurcations < 0));
   if (kind == 2 || kind == 4)

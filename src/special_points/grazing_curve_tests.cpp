@@ -81,12 +81,22 @@ std::optional<double> XiTest::value(const TestedPoint& point) const {
   return grazing_unfolding(system_, point.condensed, point.orbit, jump_, n_).xi.back();
 }
 
-SpecialPoint XiTest::classify(const TestedPoint& point, bool) const {
-  const GrazingUnfolding unfolding = grazing_unfolding(system_, point.condensed, point.orbit, jump_, n_);
+SpecialPoint XiTest::classify(const TestedPoint&, bool) const {
   return {PointType::user,
           {UserPointKind::xi, system_.grazing_segment() + 1, n_, 1.0},
           false,
-          fmt::format("codimension two: xi_{} = 0, a* = {:.10g}", n_, unfolding.acceleration)};
+          fmt::format("codimension two: xi_{} = 0", n_)};
+}
+
+std::optional<double> AccelerationTest::value(const TestedPoint& point) const {
+  return grazing_unfolding(system_, point.condensed, point.orbit, jump_, 0).acceleration;
+}
+
+SpecialPoint AccelerationTest::classify(const TestedPoint&, bool) const {
+  return {PointType::user,
+          {UserPointKind::grazing_codimension_two, system_.grazing_segment() + 1, 0, 1.0},
+          false,
+          "codimension two: a* = 0, h is no longer least at the contact"};
 }
 
 std::optional<double> SmoothMultiplierTest::value(const TestedPoint& point) const {

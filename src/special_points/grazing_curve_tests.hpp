@@ -1,4 +1,4 @@
-/// Test functions on grazing curves (problem type 150): xi_n, grazing-fold, grazing-flip (2.111-2.112, 4.22,
+/// Test functions on grazing curves (problem type 150): xi_n, a*, grazing-fold, grazing-flip (2.111-2.112, 4.22,
 /// corrected).
 ///
 /// With x* the grazing point, h_D the event, h_P = h_{D,x} f, a* = h_{P,x} f > 0 and A the derivative of the smooth
@@ -35,6 +35,20 @@ class XiTest final : public TestFunction {
   const GrazingOrbitSystem& system_;
   int jump_;
   int n_;
+};
+
+/// a* = h_{P,x} f at the contact: positive where h has a minimum there, shown at every point.
+class AccelerationTest final : public TestFunction {
+ public:
+  AccelerationTest(const GrazingOrbitSystem& system, int jump) : system_(system), jump_(jump) {}
+  std::string name() const override { return "a*"; }
+  std::optional<double> value(const TestedPoint& point) const override;
+  double zero_level(const TestedPoint&) const override { return 1e-9; }
+  SpecialPoint classify(const TestedPoint& point, bool rising) const override;
+
+ private:
+  const GrazingOrbitSystem& system_;
+  int jump_;
 };
 
 /// Multiplier +1 (grazing-fold) or -1 (grazing-flip) of the smooth return map.
