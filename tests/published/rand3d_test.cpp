@@ -1,0 +1,319 @@
+// The three-dimensional oscillator (5.73)-(5.75) by the real executable, as problems/rand3d/Makefile runs it: published
+// states, multipliers and bifurcations, and the branch point and codimension-two points of its grazing curves against
+// shooting.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <filesystem>
+
+#include "published/chain.hpp"
+#include "simulation/orbit_flow.hpp"
+#include "support/test_system.hpp"
+
+using namespace test_support;
+
+namespace {
+
+/// Reference values, by shooting; v is x1' before the impact.
+struct Grazing {
+  const char* m;
+  double mu, x2, x3, period, acceleration;
+  std::complex<double> larger, smaller;
+  double xi_1, xi_2;
+};
+const Grazing at_028{"028",          -0.798146332928, 0.274740619469,  0.624223368742, 6.725184221523,
+                     0.600629246036, 0.539641978337,  0.0239214365814, -0.0230671242,  -0.0129997873};
+const Grazing at_039{"039",          -0.827105485379, -0.0722726568477, 0.302619782935, 8.063881592814,
+                     0.780543653594, 0.191866575221,  0.0239300510589,  0.0274746760,   0.0059289424};
+
+struct Impacting {
+  double mu, v;
+  std::complex<double> larger, smaller;
+};
+
+/// A folder with rand3d's plugin and constants, and the runs of the pipeline.
+class Pipeline {
+ public:
+  Pipeline() {
+    namespace fs = std::filesystem;
+    fs::copy_file(RAND3D_LIBRARY, workspace.file("rand3d.so"));
+    for (const auto& entry : fs::directory_iterator(CONSTANTS "/rand3d"))
+      fs::copy_file(entry.path(), workspace.file(entry.path().filename().string()),
+                    fs::copy_options::overwrite_existing);
+  }
+  void run(const std::string& arguments) const {
+    const Outcome outcome = workspace.tchat("run rand3d " + arguments);
+    INFO(outcome.text());
+    REQUIRE(outcome.status == 0);
+  }
+  void to_grazing(const std::string& m) const { run("-c to_grazing -d nonimpacting_" + m + " -o grazing_" + m); }
+  void to_asymmetric_grazing_curve() const {
+    to_grazing("028");
+    run("-c grazing_curve -s grazing_028 -o grazing_curve");
+    run("-c asymmetric_grazing_curve -s grazing_curve -o asymmetric_grazing_curve");
+  }
+  std::vector<DiagnosticPoint> diagnostics(const std::string& name) const {
+    return read_diagnostics(workspace.read("d." + name));
+  }
+
+  Workspace workspace;
+};
+
+/// x1' at the end of the orbit.
+double impact_velocity(const SolutionEntry& solution) {
+  const auto& x = solution.states.back();
+  return (solution.parameter(2) - x[2]) * x[0] - x[1];
+}
+
+void check_multipliers(const DiagnosticPoint& point, std::complex<double> larger, std::complex<double> smaller,
+                       double tolerance) {
+  REQUIRE(point.multipliers.size() == 3);
+  CHECK(distance_to(point.multipliers, larger) < tolerance);
+  CHECK(distance_to(point.multipliers, smaller) < tolerance);
+  CHECK(distance_to(point.multipliers, 0.0) < tolerance);
+}
+
+void check_contact(const SolutionEntry& solution, const Grazing& expected) {
+  CHECK(std::abs(solution.parameter(1) - expected.mu) < 1e-9);
+  CHECK(std::abs(solution.parameter(61) - expected.period) < 1e-9);
+  for (const auto& x : {solution.states.front(), solution.states.back()}) {
+    CHECK(std::abs(x[0] - expected.mu) < 1e-9);
+    CHECK(std::abs(x[1] - expected.x2) < 1e-9);
+    CHECK(std::abs(x[2] - expected.x3) < 1e-9);
+  }
+}
+
+void check_unfolding(const DiagnosticPoint& point, const Grazing& expected) {
+  CHECK(std::abs(point.tests.at("a*") - expected.acceleration) < 1e-9);
+  CHECK(std::abs(point.tests.at("xi_1") - expected.xi_1) < 1e-9);
+  CHECK(std::abs(point.tests.at("xi_2") - expected.xi_2) < 1e-9);
+  check_multipliers(point, expected.larger, expected.smaller, 1e-9);
+}
+
+/// The labelled point of that type near mu, v.
+void check_impacting(const Pipeline& pipeline, const std::string& name, const std::string& type,
+                     const Impacting& expected) {
+  INFO(type << " at mu = " << expected.mu << ", v = " << expected.v);
+  const auto solutions = pipeline.workspace.solutions(name);
+  int found = 0;
+  for (const DiagnosticPoint& point : of_type(pipeline.diagnostics(name), type)) {
+    const SolutionEntry& solution = with_label(solutions, point.label);
+    if (std::abs(impact_velocity(solution) - expected.v) > 1e-3) continue;
+    ++found;
+    CHECK(std::abs(solution.parameter(1) - expected.mu) < 1e-9);
+    // At a fold v is as uncertain as the root of mu.
+    CHECK(std::abs(impact_velocity(solution) - expected.v) < (type == "LP" ? 1e-7 : 1e-9));
+    check_multipliers(point, expected.larger, expected.smaller, type == "LP" ? 1e-6 : 1e-8);
+  }
+  CHECK(found == 1);
+}
+
+/// (5.73), (5.74) once more, with half of a symmetric orbit: to the maximum of x1 (event 3), then mirrored (jump 3).
+/// PAR: mu, m, r.
+struct MirroredOscillator {
+  static constexpr int dimension = 3, parameters = 3, fields = 1, events = 3, jumps = 3;
+  template <class T>
+  void field(int, const T* x, const T* p, T* f) const {
+    f[0] = p[1] * x[0] - x[1] - x[0] * x[2];
+    f[1] = p[1] * x[1] + x[0];
+    f[2] = -x[2] + x[1] * x[1] + x[0] * x[0] * x[2];
+  }
+  template <class T>
+  T event(int j, const T* x, const T* p) const {
+    const T velocity = p[1] * x[0] - x[1] - x[0] * x[2];
+    if (j == 1) return x[0] - p[0];
+    return j == 2 ? -velocity : velocity;
+  }
+  template <class T>
+  void jump(int k, const T* x, const T* p, T* g) const {
+    const double sign = k == 3 ? -1.0 : 1.0;
+    g[0] = sign * x[0], g[1] = sign * x[1], g[2] = x[2];
+    if (k == 1) g[1] = (p[1] - x[2]) * x[0] - p[2] * (x[1] - x[0] * (p[1] - x[2]));
+  }
+};
+
+/// From the start of a solution, put on the section x1' = 0.
+tchat::PeriodicOrbit shoot_from(const SolutionEntry& solution, const tchat::IndexVector& index, double m) {
+  const auto& x = solution.states.front();
+  tchat::ShootingOptions options;
+  options.flow.relative_tolerance = 1e-13;
+  options.flow.absolute_tolerance = 1e-14;
+  const tchat::PeriodicOrbit orbit =
+      tchat::shoot(tchat::test::system_of<MirroredOscillator>(), {index},
+                   Eigen::Vector3d(x[0], (m - x[2]) * x[0], x[2]), Eigen::Vector3d(-2.0, m, 0.8), options);
+  CAPTURE(m);
+  INFO(orbit.message);
+  REQUIRE(orbit.converged);
+  return orbit;
+}
+
+/// xi_1 of the smooth orbit cut at its minimum: -(first row of M) beta, beta = (Id - f h_Px / a*) g_Dx f.
+double xi_1(const tchat::PeriodicOrbit& orbit, double m) {
+  const tchat::HybridSystem& system = tchat::test::system_of<MirroredOscillator>();
+  const Eigen::VectorXd par = tchat::full_parameters(system, Eigen::Vector3d(-2.0, m, 0.8));
+  Eigen::Vector3d f, g;
+  Eigen::RowVector3d section;
+  Eigen::Matrix3d impact;
+  double h = 0.0;
+  using tchat::FunctionKind;
+  system.value(FunctionKind::field, 1, orbit.start.data(), par.data(), f.data());
+  system.first(FunctionKind::event, 2, orbit.start.data(), par.data(), {}, &h, section.data(), nullptr);
+  system.first(FunctionKind::jump, 1, orbit.start.data(), par.data(), {}, g.data(), impact.data(), nullptr);
+  Eigen::Vector3d beta = impact * f;
+  beta -= f * (section.dot(beta) / section.dot(f));
+  return -orbit.map.derivative.row(0).dot(beta);
+}
+
+/// Zero of a smooth function near `guess`, by secants.
+template <class Function>
+double root(const Function& function, double guess) {
+  double a = guess - 1e-4, b = guess + 1e-4, fa = function(a), fb = function(b);
+  for (int i = 0; i < 12 && std::abs(b - a) > 1e-13; ++i) {
+    const double c = b - fb * (b - a) / (fb - fa);
+    a = b, fa = fb, b = c, fb = function(c);
+  }
+  return b;
+}
+
+const tchat::IndexVector nonimpacting{1, 2, 2}, half_orbit{1, 3, 3};
+
+/// The labels of that curve where xi_1 vanishes.
+std::vector<SolutionEntry> zeros_of_xi_1(const Pipeline& pipeline, const std::string& name) {
+  std::vector<SolutionEntry> zeros;
+  const auto solutions = pipeline.workspace.solutions(name);
+  for (const DiagnosticPoint& point : of_type(pipeline.diagnostics(name), "XI"))
+    if (point.notes.back().find("xi_1 = 0") != std::string::npos) zeros.push_back(with_label(solutions, point.label));
+  return zeros;
+}
+
+}  // namespace
+
+TEST_CASE("rand3d: both nonimpacting orbits graze at the published states") {
+  const Pipeline pipeline;
+  for (const Grazing& expected : {at_028, at_039}) {
+    INFO("m = " << expected.m);
+    pipeline.to_grazing(expected.m);
+    const std::string name = std::string("grazing_") + expected.m;
+    const SolutionEntry contact = only(pipeline.workspace, name, "GR");
+    check_contact(contact, expected);
+    // The grazing curve's first point tells a*, xi_n and the smooth multipliers.
+    pipeline.run("-c grazing_curve -s " + name + " -o curve NMX=1");
+    check_unfolding(pipeline.diagnostics("curve").front(), expected);
+  }
+}
+
+TEST_CASE("rand3d: the grazing curve changes branch where its symmetry breaks and leads to m = 0.39") {
+  const Pipeline pipeline;
+  pipeline.to_asymmetric_grazing_curve();
+  // The multiplier +1 of the symmetric orbit is a branch point and nothing else.
+  const auto symmetric = pipeline.diagnostics("grazing_curve");
+  CHECK(of_type(symmetric, "GC").empty());
+  CHECK(of_type(symmetric, "LP").empty());
+  const SolutionEntry branch_point = only(pipeline.workspace, "grazing_curve", "BP");
+  // There the half map, mirrored, has the multiplier -1.
+  const double m_branch = root(
+      [&](double m) {
+        const auto orbit = shoot_from(branch_point, half_orbit, m);
+        double nearest = 10.0;
+        for (const auto& mu : orbit.map.multipliers)
+          if (std::abs(mu + 1.0) < std::abs(nearest)) nearest = mu.real() + 1.0;
+        return nearest;
+      },
+      branch_point.parameter(2));
+  CHECK(m_branch == Approx(0.31503).margin(1e-5));
+  CHECK(std::abs(branch_point.parameter(2) - m_branch) < 1e-7);
+
+  // mu rises at first on the side that DS > 0 picks and falls on the other one; both leave the symmetric curve.
+  pipeline.run("-c asymmetric_grazing_curve -s grazing_curve -o mirrored_grazing_curve DS=-0.01");
+  const auto column = [&](const std::string& name, const std::string& of) {
+    std::vector<double> values;
+    for (const PointSection& section : pipeline.workspace.points(name))
+      for (const PointRow& row : section.rows) values.push_back(row.values[section.column(of)]);
+    return values;
+  };
+  const auto rising = column("asymmetric_grazing_curve", "mu");
+  const auto falling = column("mirrored_grazing_curve", "mu");
+  for (std::size_t i = 0; i < 5; ++i) {
+    CHECK(rising[i] > (i > 0 ? rising[i - 1] : branch_point.parameter(1)));
+    CHECK(falling[i] < (i > 0 ? falling[i - 1] : branch_point.parameter(1)));
+  }
+  for (const std::string name : {"asymmetric_grazing_curve", "mirrored_grazing_curve"}) {
+    CHECK(column(name, "m").front() < m_branch + 1e-3);
+    CHECK(column(name, "m").back() > 0.39);
+    for (const DiagnosticPoint& point : pipeline.diagnostics(name))
+      CHECK(distance_to(point.multipliers, 1.0) > 1e-6);  // no way back to the branch point
+  }
+
+  // m = 0.39 is the published orbit.
+  const auto solutions = pipeline.workspace.solutions("asymmetric_grazing_curve");
+  const auto user_values = of_type(pipeline.diagnostics("asymmetric_grazing_curve"), "UZ");
+  REQUIRE(user_values.size() == 2);
+  const SolutionEntry& at_end = with_label(solutions, user_values[1].label);
+  CHECK(std::abs(at_end.parameter(2) - 0.39) < 1e-9);
+  check_contact(at_end, at_039);
+  check_unfolding(user_values[1], at_039);
+
+  // One point between where all xi_n vanish: there beta's image is in the wall's tangent plane.
+  const auto zeros = zeros_of_xi_1(pipeline, "asymmetric_grazing_curve");
+  REQUIRE(zeros.size() == 1);
+  const double m_zero = root([&](double m) { return xi_1(shoot_from(zeros[0], nonimpacting, m), m); }, 0.3805);
+  const auto orbit = shoot_from(zeros[0], nonimpacting, m_zero);
+  CHECK(std::abs(zeros[0].parameter(2) - m_zero) < 1e-9);
+  CHECK(std::abs(zeros[0].parameter(1) - orbit.start(0)) < 1e-9);
+  CHECK(std::abs(zeros[0].parameter(61) - orbit.map.period) < 1e-9);
+  const auto labelled = of_type(pipeline.diagnostics("asymmetric_grazing_curve"), "XI");
+  const auto all = std::find_if(labelled.begin(), labelled.end(),
+                                [&](const DiagnosticPoint& p) { return p.label == zeros[0].label; });
+  for (int n = 1; n <= 5; ++n) CHECK(std::abs(all->tests.at("xi_" + std::to_string(n))) < 1e-9);
+}
+
+TEST_CASE("rand3d: impacting orbits from grazing, their fold and period doubling (Fig. 5.17)") {
+  const Pipeline pipeline;
+  pipeline.to_asymmetric_grazing_curve();
+  pipeline.run("-c impacting_028 -s grazing_028 -o impacting_028");
+  check_impacting(pipeline, "impacting_028", "LP", {-0.7999350433, -0.0423746328, 1.0, 0.0086577939});
+  check_impacting(pipeline, "impacting_028", "UZ", {-0.799, -0.0116208376, 2.4782211189, 0.0033750689});
+  check_impacting(pipeline, "impacting_028", "UZ", {-0.799, -0.0740432259, 0.7238408760, 0.0124287087});
+  pipeline.run("-c impacting_039 -s asymmetric_grazing_curve -o impacting_039");
+  check_impacting(pipeline, "impacting_039", "PD", {-0.8255929488, -0.0240827939, -1.0, -0.0030555370});
+  check_impacting(pipeline, "impacting_039", "UZ", {-0.825, -0.0309474007, -0.7389207535, -0.0041874659});
+  for (const std::string name : {"impacting_028", "impacting_039"}) {
+    INFO(name);
+    // Unstable from grazing to the bifurcation, stable after it; the user value in the p-file is the impact velocity.
+    const bool fold = name == "impacting_028";
+    const double bifurcation = fold ? -0.0423746328 : -0.0240827939;
+    for (const PointSection& section : pipeline.workspace.points(name))
+      for (const PointRow& row : section.rows) {
+        const double v = row.values[section.column("velocity")];
+        CHECK(v < 1e-9);
+        if (std::abs(v - bifurcation) > 1e-6) CHECK((row.point < 0) == (v < bifurcation));
+      }
+  }
+}
+
+TEST_CASE("rand3d: fold and period-doubling curves end where the grazing curves have xi_n = 0") {
+  const Pipeline pipeline;
+  pipeline.to_asymmetric_grazing_curve();
+  pipeline.run("-c asymmetric_grazing_curve -s grazing_curve -o mirrored_grazing_curve DS=-0.01");
+  pipeline.run("-c impacting_028 -s grazing_028 -o impacting_028");
+  for (const std::string name : {"impacting_037", "impacting_039"})
+    pipeline.run("-c " + name + " -s asymmetric_grazing_curve -o " + name);
+  pipeline.run("-c fold_curve -s impacting_028 -o fold_curve_028 --both");
+  pipeline.run("-c fold_curve -s impacting_037 -o fold_curve_037 --both");
+  pipeline.run("-c period_doubling_curve -s impacting_039 -o period_doubling_curve --both");
+  const auto ends_at = [&](const std::string& name, const SolutionEntry& zero) {
+    INFO(name);
+    const SolutionEntry end = only(pipeline.workspace, name, "GR");
+    CHECK(std::abs(end.parameter(2) - zero.parameter(2)) < 1e-7);
+    CHECK(std::abs(end.parameter(1) - zero.parameter(1)) < 1e-7);
+    CHECK(std::abs(impact_velocity(end)) < 1e-8);
+  };
+  const auto zero = zeros_of_xi_1(pipeline, "asymmetric_grazing_curve").at(0);
+  ends_at("fold_curve_037", zero);
+  ends_at("period_doubling_curve", zero);
+  // The folds from m = 0.28 lead to the curve of the other orbit of the pair.
+  const auto mirrored = zeros_of_xi_1(pipeline, "mirrored_grazing_curve").at(0);
+  const double m = root([&](double at) { return xi_1(shoot_from(mirrored, nonimpacting, at), at); }, 0.3243);
+  CHECK(std::abs(mirrored.parameter(2) - m) < 1e-9);
+  ends_at("fold_curve_028", mirrored);
+}
