@@ -102,10 +102,6 @@ void refuse_empty_orbit(const Orbit& found, const Orbit& start, const std::strin
                   source, start.period(), found.period()));
 }
 
-bool at_branch_point(const SelectedStart& selected) {
-  return selected.type > 0 && selected.type % 10 == static_cast<int>(PointType::branch_point);
-}
-
 }  // namespace
 
 FirstPoint first_point(PathFollower& follower, const DefiningSystem& system, const SelectedStart& selected,
@@ -118,7 +114,7 @@ FirstPoint first_point(PathFollower& follower, const DefiningSystem& system, con
   bool along = false;
   if (fitting_direction && !selected.parameters_changed) {
     result = follower.start_along(point, *start.direction);
-    if (result.converged() && at_branch_point(selected)) {
+    if (result.converged() && start_is_branch_point(selected)) {
       // Two tangents there, and the computed one is any mixture of them: the stored one belongs to the branch.
       point.tangent = *start.direction;
       follower.renormalise(point);
