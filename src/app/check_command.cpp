@@ -9,12 +9,14 @@
 #include <string>
 #include <vector>
 
+#include "constants/constants_file.hpp"
 #include "constants/user_error.hpp"
 #include "hybrid/derivative_check.hpp"
 #include "hybrid/parameter_vector.hpp"
 #include "plugin/exit_guard.hpp"
 #include "plugin/plugin_build.hpp"
 #include "plugin/problem_library.hpp"
+#include "run/run_request.hpp"
 
 namespace tchat {
 
@@ -23,6 +25,7 @@ namespace {
 struct CheckArguments {
   std::string name;
   std::string plugin;
+  std::string constants;
   std::vector<std::string> states;
   std::vector<std::string> parameters;
   int random_states = 5;
@@ -81,7 +84,10 @@ Eigen::VectorXd read_parameters(const HybridSystem& system, const std::vector<st
 int check_problem(const CheckArguments& arguments) {
   const std::string path = resolve_plugin(arguments.plugin.empty() ? arguments.name : arguments.plugin);
   const ExitGuard guard(path);
-  const ProblemLibrary library(path);
+  const ProblemLibrary library(path, [&arguments] {
+    const std::string constants = arguments.constants.empty() ? arguments.name : arguments.constants;
+    return problem_sizes(read_constants_file(constants_path(constants)));
+  });
   DerivativeCheckOptions options;
   for (const std::string& state : arguments.states) options.states.push_back(read_state(state));
   options.parameters = read_parameters(library.system(), arguments.parameters);
@@ -97,9 +103,11 @@ void add_check_command(CLI::App& app, std::function<int()>& chosen) {
   const auto arguments = std::make_shared<CheckArguments>();
   CLI::App* const command =
       app.add_subcommand("check", "Compare a problem's derivatives with finite differences; exit status 1 on a fault");
-  command->add_option("NAME", arguments->name, "problem: NAME.cpp or NAME.so")->required();
+  command->add_option("NAME", arguments->name, "problem: NAME.cpp, NAME.f or NAME.so")->required();
   command->add_option("values", arguments->parameters, "parameter values, as 'PAR(2)=0.8'");
-  command->add_option("-p,--problem", arguments->plugin, "plugin, when it is not NAME: P.so, P.cpp or P");
+  command->add_option("-p,--problem", arguments->plugin, "plugin, when it is not NAME: P.so, P.cpp, P.f or P");
+  command->add_option("-c,--constants", arguments->constants,
+                      "gc.C of a Fortran plugin, which does not say its sizes itself (default: gc.NAME)");
   command
       ->add_option("--state", arguments->states,
                    "a state to check at, as 1,0.5,0,1 (may be repeated); also random states near it")

@@ -12,34 +12,90 @@ namespace tchat {
 
 namespace {
 
+constexpr std::size_t max_dimension = 1000;
+using Column = std::array<double, max_dimension>;
+
+constexpr double first_step = 2e-3;  // truncation (h^6) and rounding (1/h) are then of a size
+constexpr double reduction = 1.0 / 16.0;
+constexpr int step_sizes = 4;
+
+/// Relative errors of a function's values, generously: one that is computed, one that is a difference itself.
+constexpr double computed = 1e3 * std::numeric_limits<double>::epsilon();
+constexpr double differenced = 1e-8;
+
 /// A copy of the point that differences may move, on the stack.
 struct MovablePoint {
-  static constexpr int max_dimension = 1000;
-  std::array<double, max_dimension> x;
+  Column x;
   std::array<double, parameter_length> par;
 
   MovablePoint(const double* x0, int n, const double* par0) {
     std::copy(x0, x0 + n, x.begin());
     std::copy(par0, par0 + parameter_length, par.begin());
   }
+  double& variable(int c, int n, std::span<const int> active) {
+    return c < n ? x[static_cast<std::size_t>(c)]
+                 : par[static_cast<std::size_t>(active[static_cast<std::size_t>(c - n)] - 1)];
+  }
 };
 
-double difference_step(double at) { return std::cbrt(std::numeric_limits<double>::epsilon()) * (1.0 + std::abs(at)); }
+/// phi'(0) of sixth order from phi(+-h), phi(+-2h), phi(+-3h). True when the fourth-order value agrees.
+template <class Function>
+bool difference_with_step(const Function& phi, double error, double h, int rows, double* derivative) {
+  std::array<Column, 3> odd;  // phi(kh) - phi(-kh)
+  Column size{};
+  Column value;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double t = h * static_cast<double>(k + 1);
+    phi(t, odd[k].data());
+    phi(-t, value.data());
+    for (std::size_t i = 0; i < static_cast<std::size_t>(rows); ++i) {
+      size[i] = std::max(size[i], std::abs(value[i]));
+      odd[k][i] -= value[i];
+    }
+  }
+  bool agrees = true;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(rows); ++i) {
+    const double sixth = (45.0 * odd[0][i] - 9.0 * odd[1][i] + odd[2][i]) / (60.0 * h);
+    const double fourth = (8.0 * odd[0][i] - odd[1][i]) / (12.0 * h);
+    derivative[i] = sixth;
+    agrees = agrees && std::abs(sixth - fourth) <= 1e-7 * std::abs(sixth) + error * size[i] / h;
+  }
+  return agrees;
+}
 
-/// column = (F(variable + h) - F(variable - h)) / 2h, F(point, out) writing `rows` numbers.
+/// phi'(0), phi(t, out) writing `rows` numbers with relative error `error` and varying on the scale `unit` of t.
+template <class Function>
+void difference(const Function& phi, double error, double unit, int rows, double* derivative) {
+  double h = first_step * unit;
+  for (int k = 0; k < step_sizes; ++k, h *= reduction)
+    if (difference_with_step(phi, error, h, rows, derivative)) return;
+}
+
+/// F(point, out) itself.
+class Value {
+ public:
+  static constexpr double error = computed;
+  Value(const HybridSystem& system, FunctionKind kind, int index) : system_(system), kind_(kind), index_(index) {}
+  void operator()(const MovablePoint& at, double* f) const {
+    system_.value(kind_, index_, at.x.data(), at.par.data(), f);
+  }
+
+ private:
+  const HybridSystem& system_;
+  FunctionKind kind_;
+  int index_;
+};
+
+/// Derivative of F(point, out) by one variable of the point.
 template <class Function>
 void difference_column(const Function& function, MovablePoint& point, double& variable, int rows, double* column) {
-  std::array<double, MovablePoint::max_dimension> below;
   const double at = variable;
-  const double h = difference_step(at);
-  variable = at + h;
-  const double upper = variable;
-  function(point, column);
-  variable = at - h;
-  const double lower = variable;
-  function(point, below.data());
+  const auto moved = [&](double t, double* out) {
+    variable = at + t;
+    function(point, out);
+  };
+  difference(moved, Function::error, 1.0 + std::abs(at), rows, column);
   variable = at;
-  for (int i = 0; i < rows; ++i) column[i] = (column[i] - below[static_cast<std::size_t>(i)]) / (upper - lower);
 }
 
 template <class Function>
@@ -47,44 +103,113 @@ void difference_columns(const Function& function, const HybridSystem& system, in
                         const double* par, std::span<const int> active, double* dx, double* dp) {
   const int n = system.dimension();
   MovablePoint point(x, n, par);
-  for (int c = 0; c < n; ++c)
-    difference_column(function, point, point.x[static_cast<std::size_t>(c)], rows, dx + c * rows);
-  for (std::size_t a = 0; a < active.size(); ++a)
-    difference_column(function, point, point.par[static_cast<std::size_t>(active[a] - 1)], rows,
-                      dp + static_cast<int>(a) * rows);
+  for (int c = 0; c < n + static_cast<int>(active.size()); ++c)
+    difference_column(function, point, point.variable(c, n, active), rows, c < n ? dx + c * rows : dp + (c - n) * rows);
+}
+
+/// D = F_x v + F_p w from the table's first derivatives.
+class SuppliedDirectional {
+ public:
+  static constexpr double error = computed;
+  SuppliedDirectional(const HybridSystem& system, FunctionKind kind, int index, int rows, std::span<const int> active,
+                      const double* direction)
+      : system_(system),
+        kind_(kind),
+        index_(index),
+        rows_(static_cast<std::size_t>(rows)),
+        active_(active),
+        direction_(direction),
+        f_(rows_),
+        first_(rows_ * (static_cast<std::size_t>(system.dimension()) + active.size())) {}
+
+  void operator()(const MovablePoint& at, double* d) const {
+    const auto n = static_cast<std::size_t>(system_.dimension());
+    system_.first(kind_, index_, at.x.data(), at.par.data(), active_, f_.data(), first_.data(),
+                  first_.data() + rows_ * n);
+    std::fill(d, d + rows_, 0.0);
+    for (std::size_t c = 0; c < n + active_.size(); ++c)
+      for (std::size_t i = 0; i < rows_; ++i) d[i] += first_[c * rows_ + i] * direction_[c];
+  }
+
+ private:
+  const HybridSystem& system_;
+  FunctionKind kind_;
+  int index_;
+  std::size_t rows_;
+  std::span<const int> active_;
+  const double* direction_;
+  mutable std::vector<double> f_, first_;
+};
+
+/// D as a difference of values along the direction.
+class DifferencedDirectional {
+ public:
+  static constexpr double error = differenced;
+  DifferencedDirectional(const HybridSystem& system, FunctionKind kind, int index, int rows,
+                         std::span<const int> active, const double* direction)
+      : system_(system), kind_(kind), index_(index), rows_(rows), active_(active), direction_(direction) {}
+
+  void operator()(const MovablePoint& at, double* d) const {
+    const int n = system_.dimension();
+    const int variables = n + static_cast<int>(active_.size());
+    MovablePoint from = at;
+    double unit = INFINITY;  // no variable moves by more than its own scale
+    for (int c = 0; c < variables; ++c)
+      if (direction_[c] != 0.0)
+        unit = std::min(unit, (1.0 + std::abs(from.variable(c, n, active_))) / std::abs(direction_[c]));
+    if (!std::isfinite(unit)) {
+      std::fill(d, d + rows_, 0.0);
+      return;
+    }
+    MovablePoint point = at;
+    const auto along = [&](double t, double* out) {
+      for (int c = 0; c < variables; ++c)
+        point.variable(c, n, active_) = from.variable(c, n, active_) + t * direction_[c];
+      system_.value(kind_, index_, point.x.data(), point.par.data(), out);
+    };
+    difference(along, computed, unit, rows_, d);
+  }
+
+ private:
+  const HybridSystem& system_;
+  FunctionKind kind_;
+  int index_;
+  int rows_;
+  std::span<const int> active_;
+  const double* direction_;
+};
+
+int row_count(const HybridSystem& system, FunctionKind kind) {
+  return kind == FunctionKind::event ? 1 : system.dimension();
 }
 
 }  // namespace
 
 void difference_first(const HybridSystem& system, FunctionKind kind, int index, const double* x, const double* par,
                       std::span<const int> active, double* out, double* dx, double* dp) {
-  const int rows = kind == FunctionKind::event ? 1 : system.dimension();
-  const auto value = [&](const MovablePoint& at, double* f) {
-    system.value(kind, index, at.x.data(), at.par.data(), f);
-  };
+  difference_columns(Value(system, kind, index), system, row_count(system, kind), x, par, active, dx, dp);
   system.value(kind, index, x, par, out);
-  difference_columns(value, system, rows, x, par, active, dx, dp);
+}
+
+void difference_by_parameter(const HybridSystem& system, FunctionKind kind, int index, const double* x,
+                             const double* par, int k, double* column) {
+  MovablePoint point(x, system.dimension(), par);
+  double& variable = point.par[static_cast<std::size_t>(k - 1)];
+  difference_column(Value(system, kind, index), point, variable, row_count(system, kind), column);
 }
 
 void difference_second(const HybridSystem& system, FunctionKind kind, int index, const double* x, const double* par,
                        std::span<const int> active, const double* direction, double* out, double* dx, double* dp) {
-  const int n = system.dimension();
-  const int rows = kind == FunctionKind::event ? 1 : n;
-  const int parameters = static_cast<int>(active.size());
-  std::vector<double> f(static_cast<std::size_t>(rows));
-  std::vector<double> fx(static_cast<std::size_t>(rows * n));
-  std::vector<double> fp(static_cast<std::size_t>(rows * std::max(parameters, 1)));
-  const auto directional = [&](const MovablePoint& at, double* d) {
-    system.first(kind, index, at.x.data(), at.par.data(), active, f.data(), fx.data(), fp.data());
-    for (int i = 0; i < rows; ++i) {
-      d[i] = 0.0;
-      for (int c = 0; c < n; ++c) d[i] += fx[static_cast<std::size_t>(c * rows + i)] * direction[c];
-      for (int a = 0; a < parameters; ++a) d[i] += fp[static_cast<std::size_t>(a * rows + i)] * direction[n + a];
-    }
+  const int rows = row_count(system, kind);
+  const MovablePoint here(x, system.dimension(), par);
+  const auto differentiate = [&](const auto& directional) {
+    directional(here, out);
+    difference_columns(directional, system, rows, x, par, active, dx, dp);
   };
-  const MovablePoint here(x, n, par);
-  directional(here, out);
-  difference_columns(directional, system, rows, x, par, active, dx, dp);
+  if (system.table().derivative_order >= 1)
+    differentiate(SuppliedDirectional(system, kind, index, rows, active, direction));
+  else
+    differentiate(DifferencedDirectional(system, kind, index, rows, active, direction));
 }
 
 }  // namespace tchat

@@ -1,7 +1,8 @@
 /// Central differences for problem tables that supply fewer derivatives than are needed (GCIDIFF 0 or 1).
 ///
-/// Same shapes as HybridSystem::first and ::second. No allocation for dimensions up to 64 and 16 active parameters
-/// beyond a few stack arrays; larger problems use heap buffers.
+/// Same shapes as HybridSystem::first and ::second. A derivative by one variable comes from six values at distances h,
+/// 2h, 3h: its error is of order h^6, near rounding / h = 1e-13 where the function varies on a scale of 1. The result
+/// is compared with the one of fourth order from the same values; where they disagree or are not finite, h is reduced.
 #pragma once
 
 #include <span>
@@ -10,11 +11,16 @@
 
 namespace tchat {
 
-/// F by value, F_x and F_p by central differences of F with step cbrt(eps) (1 + |variable|): error about 1e-10.
+/// F by value, F_x and F_p by differences of F.
 void difference_first(const HybridSystem& system, FunctionKind kind, int index, const double* x, const double* par,
                       std::span<const int> active, double* out, double* dx, double* dp);
 
-/// D = F_x v + F_p w from first(), its derivatives by central differences of D.
+/// dF/dPAR(k) by differences of F: `rows` numbers.
+void difference_by_parameter(const HybridSystem& system, FunctionKind kind, int index, const double* x,
+                             const double* par, int k, double* column);
+
+/// D = F_x v + F_p w, its derivatives by differences of D. D comes from first derivatives where the table has them,
+/// else it is itself a difference along (v, w).
 void difference_second(const HybridSystem& system, FunctionKind kind, int index, const double* x, const double* par,
                        std::span<const int> active, const double* direction, double* out, double* dx, double* dp);
 

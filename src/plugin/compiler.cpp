@@ -100,13 +100,28 @@ std::string first_lines(const std::string& text, int count) {
   return text.substr(0, end + 1) + "[the rest of the compiler's output is left out]\n";
 }
 
-[[noreturn]] void refuse_missing_compiler(const std::vector<std::string>& command, const std::string& source,
+/// What differs between the two compilers in messages.
+struct CompilerWords {
+  const char* language;
+  const char* variable;  // of the environment that names another one
+  const char* usual;     // its command
+  const char* package;   // of Debian
+};
+
+const CompilerWords& words_of(Language language) {
+  static constexpr CompilerWords cpp = {"C++", "CXX", "c++", "g++"};
+  static constexpr CompilerWords fortran = {"Fortran", "FC", "gfortran", "gfortran"};
+  return language == Language::cpp ? cpp : fortran;
+}
+
+[[noreturn]] void refuse_missing_compiler(Language language, const std::string& command, const std::string& source,
                                           int error) {
+  const CompilerWords& words = words_of(language);
   throw UserError(
-      fmt::format("No C++ compiler to compile {}: '{}' cannot be started ({}).\n"
-                  "  Install one (Debian: apt install g++), or name yours in the environment variable CXX, or compile "
+      fmt::format("No {} compiler to compile {}: '{}' cannot be started ({}).\n"
+                  "  Install one (Debian: apt install {}), or name yours in the environment variable {}, or compile "
                   "the plugin on another computer and give the .so file.",
-                  source, command[0], std::strerror(error)));
+                  words.language, source, command, std::strerror(error), words.package, words.variable));
 }
 
 void require_success(const ProcessResult& result, const std::vector<std::string>& command, const std::string& source) {
@@ -132,9 +147,10 @@ bool has_interface(const std::string& folder) {
 
 }  // namespace
 
-Compiler::Compiler(const PluginBuildOptions& options) : command_(split_words(options.compiler)) {
-  if (command_.empty()) command_ = split_words(environment("CXX"));
-  if (command_.empty()) command_ = {"c++"};
+Compiler::Compiler(const PluginBuildOptions& options, Language language) : language_(language) {
+  command_ = split_words(language == Language::cpp ? options.compiler : options.fortran_compiler);
+  if (command_.empty()) command_ = split_words(environment(words_of(language).variable));
+  if (command_.empty()) command_ = {words_of(language).usual};
 }
 
 std::string Compiler::identity() const {
@@ -152,18 +168,25 @@ std::string Compiler::identity() const {
   return text;
 }
 
-void Compiler::compile(const std::string& source, const std::string& library, const std::string& dependencies,
-                       const std::string& include_folder) const {
+std::vector<std::string> Compiler::flags(const Compilation& what) const {
+  // Lines of fixed form may be longer than 72 columns: cutting them there would be a silent mistake.
+  if (language_ == Language::fortran)
+    return {"-std=legacy", "-ffixed-line-length-none", "-J" + what.scratch_folder,
+            "-I" + what.include_folder + "/tchat", "-I" + what.scratch_folder};
+  std::vector<std::string> flags = {"-std=c++20", "-fvisibility=hidden", "-I" + what.include_folder, "-MMD",
+                                    "-MF",        what.dependencies};
+  if (!is_clang(command_)) flags.emplace_back("-fno-gnu-unique");
+  return flags;
+}
+
+void Compiler::compile(const Compilation& what) const {
   std::vector<std::string> words = command_;
-  for (const char* flag : {"-std=c++20", "-O2", "-fPIC", "-shared", "-fvisibility=hidden"}) words.emplace_back(flag);
-  if (!is_clang(command_)) words.emplace_back("-fno-gnu-unique");
-  words.push_back("-I" + include_folder);
-  for (const std::string& word :
-       {std::string("-MMD"), std::string("-MF"), dependencies, std::string("-o"), library, source})
-    words.push_back(word);
+  for (const char* flag : {"-O2", "-fPIC", "-shared"}) words.emplace_back(flag);
+  for (const std::string& flag : flags(what)) words.push_back(flag);
+  for (const std::string& word : {std::string("-o"), what.library, what.source}) words.push_back(word);
   const ProcessResult result = run_process(words);
-  if (result.spawn_error != 0) refuse_missing_compiler(command_, source, result.spawn_error);
-  require_success(result, words, source);
+  if (result.spawn_error != 0) refuse_missing_compiler(language_, command_[0], what.source, result.spawn_error);
+  require_success(result, words, what.source);
 }
 
 std::string find_include_folder(const PluginBuildOptions& options) {

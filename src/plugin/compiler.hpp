@@ -1,4 +1,4 @@
-/// The C++ compiler that turns a plugin's source into a shared library, as a process of its own.
+/// The C++ or Fortran compiler that turns a plugin's source into a shared library, as a process of its own.
 #pragma once
 
 #include <string>
@@ -7,13 +7,25 @@
 namespace tchat {
 
 struct PluginBuildOptions {
-  std::string compiler;        ///< command, with arguments if any; empty: $CXX, else c++
-  std::string include_folder;  ///< folder with tchat/problem.hpp; empty: see find_include_folder
+  std::string compiler = {};          ///< command, with arguments if any; empty: $CXX, else c++
+  std::string include_folder = {};    ///< folder with tchat/problem.hpp; empty: see find_include_folder
+  std::string fortran_compiler = {};  ///< empty: $FC, else gfortran
+};
+
+enum class Language { cpp, fortran };
+
+/// What is compiled, and to what.
+struct Compilation {
+  std::string source;
+  std::string library;              ///< the shared library
+  std::string include_folder = {};  ///< with tchat/problem.hpp, tchat/gccont.h
+  std::string dependencies;         ///< C++: the files read, system headers left out, are listed here as make rules
+  std::string scratch_folder;       ///< Fortran: module files are put here, and includes are also looked for here
 };
 
 class Compiler {
  public:
-  explicit Compiler(const PluginBuildOptions& options);
+  Compiler(const PluginBuildOptions& options, Language language);
 
   /// The command's words, without a source.
   const std::vector<std::string>& command() const { return command_; }
@@ -21,12 +33,13 @@ class Compiler {
   /// compiler is not installed.
   std::string identity() const;
 
-  /// Compiles `source` to the shared library `library` and lists the files it read, system headers left out, as make
-  /// rules in `dependencies`. Throws UserError with the compiler's own message.
-  void compile(const std::string& source, const std::string& library, const std::string& dependencies,
-               const std::string& include_folder) const;
+  /// Throws UserError with the compiler's own message.
+  void compile(const Compilation& what) const;
 
  private:
+  std::vector<std::string> flags(const Compilation& what) const;
+
+  Language language_;
   std::vector<std::string> command_;
 };
 

@@ -5,17 +5,20 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
 #include <ctime>
 #include <filesystem>
+#include <fstream>
 #include <optional>
 
 #include "constants/user_error.hpp"
 #include "plugin/build_stamp.hpp"
 #include "plugin/file_lock.hpp"
+#include "plugin/fortran_source.hpp"
 
 namespace tchat {
 
@@ -23,12 +26,22 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<const char*, 3> source_suffixes = {".cpp", ".cc", ".cxx"};
+struct SourceSuffix {
+  const char* text;
+  Language language;
+};
+constexpr std::array<SourceSuffix, 6> source_suffixes = {{{".cpp", Language::cpp},
+                                                          {".cc", Language::cpp},
+                                                          {".cxx", Language::cpp},
+                                                          {".f90", Language::fortran},
+                                                          {".f", Language::fortran},
+                                                          {".for", Language::fortran}}};
 
-bool is_source(const fs::path& path) {
-  for (const char* suffix : source_suffixes)
-    if (path.extension() == suffix) return true;
-  return false;
+/// Nothing when the suffix is that of no source.
+std::optional<Language> language_of(const fs::path& path) {
+  for (const SourceSuffix& suffix : source_suffixes)
+    if (path.extension() == suffix.text) return suffix.language;
+  return std::nullopt;
 }
 
 bool is_file(const fs::path& path) {
@@ -49,6 +62,20 @@ class TemporaryFile {
   std::string path_;
 };
 
+/// A folder that is removed again with all that is in it.
+class TemporaryFolder {
+ public:
+  explicit TemporaryFolder(std::string path) : path_(std::move(path)) { fs::create_directory(path_, ignored_); }
+  ~TemporaryFolder() { fs::remove_all(path_, ignored_); }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+  std::error_code ignored_;
+};
+
 bool not_newer(const std::string& file, const timespec& time) {
   struct stat at {};
   if (stat(file.c_str(), &at) != 0) return false;
@@ -63,11 +90,15 @@ bool same_compiler(const BuildStamp& stamp, const Compiler& compiler) {
 /// One source and everything that decides whether its library is up to date.
 struct Build {
   fs::path source;
+  Language language;
   std::string include_folder;
   Compiler compiler;
 
+  FortranFiles fortran() const { return fortran_files(source.string(), {include_folder + "/tchat"}); }
+
   /// The files that a library compiled elsewhere is compared with.
   std::vector<std::string> known_inputs() const {
+    if (language == Language::fortran) return fortran().found;
     std::vector<std::string> files = {source.string()};
     for (const char* header : {"dual.hpp", "problem.h", "problem.hpp"})
       files.push_back(include_folder + "/tchat/" + header);
@@ -78,10 +109,18 @@ struct Build {
     struct stat at {};
     if (stat(library.c_str(), &at) != 0 || !S_ISREG(at.st_mode)) return false;
     const std::optional<BuildStamp> stamp = read_stamp(library.string());
+    if (stamp && !is_from_source(*stamp)) return false;
+    // A file that was missing when the library was compiled counts by its absence, in the hash.
     for (const std::string& file : stamp ? stamp->files : known_inputs())
-      if (!not_newer(file, at.st_mtim)) return false;
+      if (!not_newer(file, at.st_mtim) && !(stamp && !is_file(file))) return false;
     if (!stamp) return true;
     return same_compiler(*stamp, compiler) && stamp->contents == hash_files(stamp->files);
+  }
+
+  /// False for the library of NAME.cpp when the source is NAME.f.
+  bool is_from_source(const BuildStamp& stamp) const {
+    return std::any_of(stamp.files.begin(), stamp.files.end(),
+                       [&](const std::string& file) { return fs::path(file).filename() == source.filename(); });
   }
 
   /// Compiles to a temporary name in the library's folder and renames. The lock is the caller's.
@@ -89,11 +128,10 @@ struct Build {
     const std::string temporary_name =
         fmt::format("{}/.{}.{}", library.parent_path().string(), library.filename().string(), getpid());
     const TemporaryFile temporary(temporary_name);
-    const TemporaryFile dependencies(temporary_name + ".d");
     timespec begun{};
     timespec_get(&begun, TIME_UTC);
-    compiler.compile(source.string(), temporary.path(), dependencies.path(), include_folder);
-    const std::vector<std::string> files = read_dependencies(dependencies.path());
+    const std::vector<std::string> files =
+        language == Language::cpp ? compile_cpp(temporary_name) : compile_fortran(temporary_name);
     const BuildStamp stamp{hash_text(compiler.identity()), hash_files(files), files};
     const bool written = append_stamp(temporary.path(), stamp);
     // The library is as old as the begin of its compilation: a source saved meanwhile is newer.
@@ -104,6 +142,24 @@ struct Build {
           fmt::format("The compiled plugin cannot be stored as {} ({}).\n"
                       "  Make room, or make the folder writable.",
                       library.string(), std::strerror(errno)));
+  }
+
+  /// Both compile to a file and return what decides whether it is up to date.
+  std::vector<std::string> compile_cpp(const std::string& library) const {
+    const TemporaryFile dependencies(library + ".d");
+    compiler.compile({source.string(), library, include_folder, dependencies.path(), ""});
+    return read_dependencies(dependencies.path());
+  }
+
+  std::vector<std::string> compile_fortran(const std::string& library) const {
+    const TemporaryFolder scratch(library + ".scratch");
+    FortranFiles files = fortran();
+    if (files.lacks_own_header) {
+      const std::ofstream empty(scratch.path() + "/" + files.own_header);
+      files.found.push_back((fs::absolute(source).parent_path() / files.own_header).string());
+    }
+    compiler.compile({source.string(), library, include_folder, "", scratch.path()});
+    return files.found;
   }
 };
 
@@ -140,7 +196,8 @@ bool is_read_only(int error) { return error == EACCES || error == EROFS || error
 
 std::string build_source(const fs::path& given, const PluginBuildOptions& options) {
   const fs::path source = given.has_parent_path() ? given : "." / given;  // messages show the path as it was given
-  const Build build{source, find_include_folder(options), Compiler(options)};
+  const Language language = language_of(source).value();
+  const Build build{source, language, find_include_folder(options), Compiler(options, language)};
   fs::path library = fs::path(source).replace_extension(".so");
   if (build.is_current(library)) return library.string();
 
@@ -160,24 +217,24 @@ std::string build_source(const fs::path& given, const PluginBuildOptions& option
   std::error_code failed;
   const bool folder = fs::is_directory(name, failed);
   const std::string inside = (fs::path(name) / fs::path(name).filename()).string();
-  throw UserError(fmt::format("There is no plugin {0}: neither {0}.cpp nor {0}.so exists.\n  {1}", name,
+  throw UserError(fmt::format("There is no plugin {0}: none of {0}.cpp, {0}.f90, {0}.f and {0}.so exists.\n  {1}", name,
                               folder ? fmt::format("{} is a folder: the plugin in it would be {}.", name, inside)
-                                     : "Give its path with -p: P.cpp, P.so, or P for either of them."));
+                                     : "Give its path with -p: P.cpp, P.f, P.so, or P for any of them."));
 }
 
 }  // namespace
 
 std::string resolve_plugin(const std::string& name_or_path, const PluginBuildOptions& options) {
-  if (name_or_path.empty()) throw UserError("The plugin's name is empty.\n  Give -p P for P.cpp or P.so.");
+  if (name_or_path.empty()) throw UserError("The plugin's name is empty.\n  Give -p P for P.cpp, P.f or P.so.");
   const fs::path given(name_or_path);
-  if (given.extension() == ".so" || is_source(given)) {
+  if (given.extension() == ".so" || language_of(given)) {
     if (!is_file(given))
-      throw UserError(fmt::format("There is no plugin file {}.\n  Give the path of an existing P.cpp or P.so with -p.",
-                                  name_or_path));
-    return is_source(given) ? build_source(given, options) : name_or_path;
+      throw UserError(fmt::format(
+          "There is no plugin file {}.\n  Give the path of an existing P.cpp, P.f or P.so with -p.", name_or_path));
+    return language_of(given) ? build_source(given, options) : name_or_path;
   }
-  for (const char* suffix : source_suffixes)
-    if (is_file(name_or_path + suffix)) return build_source(name_or_path + suffix, options);
+  for (const SourceSuffix& suffix : source_suffixes)
+    if (is_file(name_or_path + suffix.text)) return build_source(name_or_path + suffix.text, options);
   if (is_file(name_or_path + ".so")) return name_or_path + ".so";
   refuse_missing(name_or_path);
 }

@@ -92,12 +92,22 @@ const tchat_problem* call_entry(const std::string& path, tchat_problem_entry ent
   }
 }
 
-/// The table of a C++ or C plugin. A further kind of plugin (other entry symbols) would be recognised here.
+/// The plugin's Fortran subroutines as a problem; nothing when it has a table of its own.
+std::unique_ptr<FortranProblem> wrap_fortran(const std::string& path, void* handle,
+                                             const ProblemLibrary::Sizes& sizes) {
+  if (dlsym(handle, TCHAT_PROBLEM_ENTRY) != nullptr || !is_fortran_problem(handle)) return nullptr;
+  if (!sizes)
+    refuse(path, "a Fortran plugin does not say how many states and functions it has", "Give its constants file too.");
+  const ExitGuard guard(path);
+  return std::make_unique<FortranProblem>(path, handle, sizes());
+}
+
+/// The table of a C++ or C plugin.
 const tchat_problem* find_table(const std::string& path, void* handle) {
   void* const symbol = dlsym(handle, TCHAT_PROBLEM_ENTRY);
   if (symbol == nullptr)
-    refuse(path, "it does not export " TCHAT_PROBLEM_ENTRY,
-           "End the source with TCHAT_PROBLEM(YourClass), once, outside any namespace.");
+    refuse(path, "it does not export " TCHAT_PROBLEM_ENTRY " nor the Fortran subroutines GCFUNC, GCBOUND, JUMPMAP",
+           "End a C++ source with TCHAT_PROBLEM(YourClass), once, outside any namespace.");
   const tchat_problem* const table = call_entry(path, reinterpret_cast<tchat_problem_entry>(symbol));
   if (table == nullptr)
     refuse(path, TCHAT_PROBLEM_ENTRY " returned no table",
@@ -105,8 +115,8 @@ const tchat_problem* find_table(const std::string& path, void* handle) {
   return table;
 }
 
-HybridSystem checked_system(const std::string& path, void* handle) {
-  const tchat_problem* const table = find_table(path, handle);
+HybridSystem checked_system(const std::string& path, void* handle, const FortranProblem* fortran) {
+  const tchat_problem* const table = fortran != nullptr ? &fortran->table() : find_table(path, handle);
   try {
     return HybridSystem(*table);
   } catch (const std::invalid_argument& error) {
@@ -121,7 +131,23 @@ HybridSystem checked_system(const std::string& path, void* handle) {
 
 void ProblemLibrary::Close::operator()(void* handle) const { dlclose(handle); }
 
-ProblemLibrary::ProblemLibrary(const std::string& path)
-    : path_(path), handle_(open_library(path)), system_(checked_system(path, handle_.get())) {}
+ProblemLibrary::ProblemLibrary(const std::string& path, const Sizes& sizes)
+    : path_(path),
+      handle_(open_library(path)),
+      fortran_(wrap_fortran(path, handle_.get(), sizes)),
+      system_(checked_system(path, handle_.get(), fortran_.get())) {}
+
+std::vector<std::string> ProblemLibrary::derivative_notes() const {
+  std::vector<std::string> notes;
+  const int order = system_.table().derivative_order;
+  if (order == 0) notes.emplace_back("All derivatives are central differences: the problem supplies values only.");
+  if (order == 1)
+    notes.emplace_back("Second derivatives are central differences of the first ones that the problem supplies.");
+  if (order == 2 && fortran_ != nullptr)
+    notes.emplace_back("Second derivatives of jumps and by two parameters are central differences of first ones.");
+  if (order >= 1 && fortran_ != nullptr)
+    notes.emplace_back("Parameter derivatives of jumps that JUMPMAP leaves at zero are central differences.");
+  return notes;
+}
 
 }  // namespace tchat

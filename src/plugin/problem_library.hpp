@@ -1,25 +1,36 @@
 /// A problem plugin loaded into the process.
 ///
 /// Owns the shared library (dlopen ... dlclose) and checks it when loading: it must be a shared library whose symbols
-/// resolve, export TCHAT_PROBLEM_ENTRY, and return a table of this tchat's interface version. Every failure is a
-/// UserError that names the path, what is wrong and the cure.
+/// resolve, and either export TCHAT_PROBLEM_ENTRY and return a table of this tchat's interface version, or export the
+/// subroutines of the Fortran interface (fortran_problem.hpp). Every failure is a UserError that names the path, what
+/// is wrong and the cure.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "hybrid/hybrid_system.hpp"
+#include "plugin/fortran_problem.hpp"
+#include "plugin/problem_sizes.hpp"
 
 namespace tchat {
 
 class ProblemLibrary {
  public:
+  /// Asked only when the plugin does not say its sizes itself; may throw.
+  using Sizes = std::function<ProblemSizes()>;
+
   /// Loads the shared library at `path` (a file name, never searched for in library folders). Throws UserError.
-  explicit ProblemLibrary(const std::string& path);
+  ///     const ProblemLibrary library(resolve_plugin(name), [&] { return problem_sizes(settings); });
+  explicit ProblemLibrary(const std::string& path, const Sizes& sizes = {});
 
   /// The problem; a view that must not outlive this object.
   const HybridSystem& system() const { return system_; }
   const std::string& path() const { return path_; }
+  /// What of the derivatives is a finite difference, for the d-file; empty when all are exact.
+  std::vector<std::string> derivative_notes() const;
 
  private:
   struct Close {
@@ -28,6 +39,7 @@ class ProblemLibrary {
 
   std::string path_;
   std::unique_ptr<void, Close> handle_;
+  std::unique_ptr<FortranProblem> fortran_;  // empty: the library has a table of its own
   HybridSystem system_;
 };
 

@@ -33,17 +33,28 @@ void BranchWriter::begin_section(Section section) {
   if (screen_ != nullptr) *screen_ << format_table_heading(columns_) << std::flush;
 }
 
+/// PAR with the entries that the problem sets for output.
+ParameterVector BranchWriter::output_parameters(const Orbit& x) const {
+  ParameterVector par = x.par;
+  const tchat_problem& table = system_.table();
+  for (int s = 0; table.output_parameters != nullptr && s < x.shape.segments; ++s)
+    table.output_parameters(table.self, s + 1, x.end(s), par.data());
+  for (const int k : setup_.active_parameters) par(k - 1) = x.par(k - 1);  // these belong to the computation
+  return par;
+}
+
 std::vector<double> BranchWriter::column_values(const BranchPoint& point) const {
   const Orbit& x = point.path.orbit;
   const int n = x.shape.dimension;
   std::vector<double> user(static_cast<std::size_t>(system_.table().user_values));
   if (!user.empty()) system_.table().user_value(system_.table().self, x.start(0), x.par.data(), user.data());
+  const ParameterVector par = output_parameters(x);
   std::vector<double> values;
   for (const PointColumn& column : columns_) {
     using Kind = PointColumn::Kind;
     switch (column.kind) {
       case Kind::parameter:
-        values.push_back(x.par(column.index - 1));
+        values.push_back(par(column.index - 1));
         break;
       case Kind::l2_norm:
         values.push_back(l2_norm(x, rule_, weights_));

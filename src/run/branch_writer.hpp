@@ -48,6 +48,7 @@ class BranchWriter final : public BranchSink {
   int last_label() const { return setup_.last_label; }
 
  private:
+  ParameterVector output_parameters(const Orbit& x) const;
   std::vector<double> column_values(const BranchPoint& point) const;
   bool shown_stable(const BranchPoint& point);
   void show(const BranchPoint& point, const PointLine& line);

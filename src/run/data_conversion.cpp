@@ -20,7 +20,7 @@ std::string convert_data(const RunRequest& request) {
   settings.start = {};
   const std::string plugin = resolve_plugin(request.problem.value_or(request.name));
   const ExitGuard guard(plugin);
-  const ProblemLibrary library(plugin);
+  const ProblemLibrary library(plugin, [&settings] { return problem_sizes(settings); });
   check_settings_against(library.system(), settings, constants);
 
   RunRequest from_data = request;

@@ -69,7 +69,7 @@ int run_problem(const RunRequest& request, std::ostream& screen, std::ostream& w
   // Plugin.
   const std::string plugin = resolve_plugin(request.problem.value_or(request.name));
   const ExitGuard guard(plugin);
-  const ProblemLibrary library(plugin);
+  const ProblemLibrary library(plugin, [&settings] { return problem_sizes(settings); });
   const HybridSystem& system = library.system();
   warn(check_settings_against(system, settings, constants));
 
@@ -118,6 +118,8 @@ int run_problem(const RunRequest& request, std::ostream& screen, std::ostream& w
     continuation.stop_at = make_stop_rule(settings);
     writer.begin_section({branch, continuation.step.initial,
                           side == &setup && direction == 1 ? std::vector<NewtonIteration>{} : side->start.correction});
+    if (direction == 0)
+      for (const std::string& note : library.derivative_notes()) writer.note(1, note);
     const std::size_t labels_before = writer.labels().size();
     ContinuationRun run(*side->follower, *side->defining, continuation,
                         select_tests(*side->defining, settings, side->follower->condition(), side->curve_type), writer);

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include "constants/user_error.hpp"
@@ -52,6 +54,9 @@ SelectedStart start_from_data(const std::string& path, const RunSettings& settin
     par(k - 1) = value;
     if (is_duration(k, m)) given[static_cast<std::size_t>(duration_segment(k))] = true;
   };
+  const tchat_problem& table = system.table();
+  for (int s = 0; table.initial_durations != nullptr && s < std::min(m, table.durations); ++s)
+    if (std::isfinite(table.initial_durations[s])) set(first_duration + s, table.initial_durations[s]);
   for (const auto& [k, value] : data.parameters) set(k, value);
   for (const auto& [name, value] : data.named_parameters) set(parameter_index(system, name, path), value);
   apply_command_line(system, settings, par);

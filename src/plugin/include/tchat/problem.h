@@ -79,6 +79,15 @@ typedef struct tchat_problem {
   int32_t user_values;
   const char* const* user_value_names; /* `user_values` strings or NULL */
   void (*user_value)(const void* self, const double* x, const double* par, double* out);
+
+  /* Starting values of PAR(61), PAR(62), ..., the durations: `durations` values, NaN for one that is not known. NULL when
+   * the problem does not say. */
+  int32_t durations;
+  const double* initial_durations;
+
+  /* Sets entries of `par` that are only output (AUTO's PVLS), called for each segment (from 1) with its end x_s(1) and a
+   * copy of PAR. NULL when there are none. */
+  void (*output_parameters)(const void* self, int32_t segment, const double* x, double* par);
 } tchat_problem;
 
 typedef const tchat_problem* (*tchat_problem_entry)(void);

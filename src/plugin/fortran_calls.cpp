@@ -1,0 +1,139 @@
+#include "plugin/fortran_calls.hpp"
+
+#include <dlfcn.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <new>
+
+#include "constants/user_error.hpp"
+#include "hybrid/parameter_vector.hpp"
+
+namespace tchat {
+
+namespace {
+
+constexpr std::uint64_t unset_bits = 0x7ff8746368617400;  // a quiet NaN with a payload of its own
+constexpr int beyond = 16;                                // states that a library written for a larger N may touch
+constexpr int large = 128;                                // states from where second derivatives get room on demand
+
+template <class Function>
+Function find(void* library, const char* name) {
+  return reinterpret_cast<Function>(dlsym(library, name));
+}
+
+template <class Function>
+Function require(const std::string& path, void* library, const char* symbol, const char* subroutine) {
+  if (const Function function = find<Function>(library, symbol)) return function;
+  throw UserError(
+      fmt::format("Plugin {}: SUBROUTINE {} is missing (the library does not export {}).\n"
+                  "  A Fortran problem has GCFUNC (fields), GCBOUND (event functions) and JUMPMAP (jumps).",
+                  path, subroutine, symbol));
+}
+
+}  // namespace
+
+bool is_fortran_problem(void* library) {
+  return dlsym(library, "gcfunc_") != nullptr || dlsym(library, "gcbound_") != nullptr ||
+         dlsym(library, "jumpmap_") != nullptr;
+}
+
+void FortranCalls::Free::operator()(double* memory) const { std::free(memory); }
+
+FortranCalls::FortranCalls(const std::string& path, void* library, int n, int order)
+    : n_(n),
+      value_room_(n + beyond),
+      field_(require<Derivatives>(path, library, "gcfunc_", "GCFUNC")),
+      event_(require<Derivatives>(path, library, "gcbound_", "GCBOUND")),
+      jump_(require<Jump>(path, library, "jumpmap_", "JUMPMAP")),
+      starting_values_(find<StartingValues>(library, "gcstpnt_")),
+      output_parameters_(find<OutputParameters>(library, "gcpvls_")) {
+  const bool second = order >= 2 || n <= large;
+  const auto size = static_cast<std::size_t>(n);
+  const std::size_t room = size + beyond;
+  const std::size_t extents[] = {room,
+                                 static_cast<std::size_t>(parameter_length) + beyond,
+                                 room,
+                                 size * room + beyond,
+                                 size * parameter_length + room,
+                                 second ? size * size * room + beyond : 1,
+                                 second ? size * size * parameter_length + room : 1};
+  std::size_t total = 0;
+  for (const std::size_t extent : extents) total += extent;
+  // Large arrays that are never touched cost nothing this way.
+  memory_.reset(static_cast<double*>(std::calloc(total, sizeof(double))));
+  if (memory_ == nullptr) throw std::bad_alloc();
+  double* next = memory_.get();
+  double** const arrays[] = {&x_, &par_, &value_, &dx_, &dp_, &dxx_, &dxp_};
+  for (std::size_t k = 0; k < std::size(arrays); ++k) {
+    *arrays[k] = next;
+    next += extents[k];
+  }
+}
+
+double FortranCalls::unset() { return std::bit_cast<double>(unset_bits); }
+
+bool FortranCalls::is_unset(double value) { return std::bit_cast<std::uint64_t>(value) == unset_bits; }
+
+void FortranCalls::load(const double* x, const double* par) {
+  std::copy(x, x + n_, x_);
+  std::fill(x_ + n_, x_ + n_ + beyond, NAN);  // a library written for more states then gives NaN
+  std::copy(par, par + parameter_length, par_);
+}
+
+void FortranCalls::clear_derivatives(int order, std::span<const int> active) {
+  const std::ptrdiff_t n = n_;
+  std::fill(dx_, dx_ + rows_ * n, 0.0);
+  for (const int k : active) std::fill(dp_ + rows_ * (k - 1), dp_ + rows_ * k, 0.0);
+  if (order < 2) return;
+  std::fill(dxx_, dxx_ + rows_ * n * n, 0.0);
+  for (const int k : active) std::fill(dxp_ + rows_ * n * (k - 1), dxp_ + rows_ * n * k, 0.0);
+}
+
+void FortranCalls::evaluate(FunctionKind kind, int index, const double* x, const double* par, int order,
+                            std::span<const int> active) {
+  rows_ = kind == FunctionKind::event ? 1 : n_;
+  load(x, par);
+  std::fill(value_, value_ + value_room_, unset());
+  clear_derivatives(order, active);
+  Integer n = n_;
+  Integer wanted = order;
+  Integer number = index;
+  if (kind == FunctionKind::jump) {
+    double restitution = unset();  // COEFFRES, which nothing reads
+    jump_(&n, x_, par_, value_, &restitution, dx_, dp_, &number);
+    return;
+  }
+  const Derivatives function = kind == FunctionKind::field ? field_ : event_;
+  function(&n, x_, par_, &wanted, value_, dx_, dp_, dxx_, dxp_, &number);
+}
+
+bool FortranCalls::left_unset(int i) const { return is_unset(value_[i]); }
+
+bool FortranCalls::wrote_beyond() const {
+  return !std::all_of(value_ + rows_, value_ + value_room_, [](double value) { return is_unset(value); });
+}
+
+void FortranCalls::starting_values(int segment, double* x, double* par) {
+  load(x, par);
+  Integer n = n_;
+  Integer number = segment;
+  double time = 0.0;
+  starting_values_(&n, x_, par_, &time, &number);
+  std::copy(x_, x_ + n_, x);
+  std::copy(par_, par_ + parameter_length, par);
+}
+
+void FortranCalls::output_parameters(int segment, const double* x, double* par) {
+  load(x, par);
+  Integer n = n_;
+  Integer number = segment;
+  output_parameters_(&n, x_, par_, &number);
+  std::copy(par_, par_ + parameter_length, par);
+}
+
+}  // namespace tchat

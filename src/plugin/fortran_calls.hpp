@@ -1,0 +1,78 @@
+/// The subroutines of a Fortran plugin and the arrays that they are called with.
+///
+/// Every call gets copies of x and PAR; outputs are preset (values to a NaN that no computation gives, derivatives that
+/// are read afterwards to zero) and have room behind them, so that what a subroutine leaves unset or writes too much
+/// can be told. See fortran_problem.hpp for the argument lists.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "hybrid/hybrid_system.hpp"
+
+namespace tchat {
+
+class FortranCalls {
+ public:
+  /// Looks the subroutines up in the library; throws UserError, naming `path`, when a required one is missing. Room for
+  /// n states; for second derivatives only if `order` is 2 or n is not large.
+  FortranCalls(const std::string& path, void* library, int n, int order);
+
+  /// F and, by `order`, its derivatives of order 1 and 2; those by parameters for the `active` ones only.
+  void evaluate(FunctionKind kind, int index, const double* x, const double* par, int order,
+                std::span<const int> active);
+
+  // Results of the last evaluate(); rows, states and PAR indices count from 0.
+  const double* value() const { return value_; }
+  const double* by_state() const { return dx_; }                       // rows x n
+  const double* by_parameter(int k) const { return dp_ + k * rows_; }  // rows
+  double by_states(int i, int j, int k) const { return dxx_[i + rows_ * (j + n_ * k)]; }
+  double by_state_and_parameter(int i, int j, int k) const { return dxp_[i + rows_ * (j + n_ * k)]; }
+  /// Did the last evaluate() leave entry i unset, or write beyond its last entry?
+  bool left_unset(int i) const;
+  bool wrote_beyond() const;
+
+  bool has_starting_values() const { return starting_values_ != nullptr; }
+  bool has_output_parameters() const { return output_parameters_ != nullptr; }
+  /// GCSTPNT for a segment, from 1: entries of `par` and `x` that it does not set stay as they are.
+  void starting_values(int segment, double* x, double* par);
+  /// GCPVLS for a segment, from 1, at its end x.
+  void output_parameters(int segment, const double* x, double* par);
+
+  /// The preset of values, and whether a number is that.
+  static double unset();
+  static bool is_unset(double value);
+
+ private:
+  using Integer = int;
+  using Derivatives = void (*)(Integer*, double*, double*, Integer*, double*, double*, double*, double*, double*,
+                               Integer*);
+  using Jump = void (*)(Integer*, double*, double*, double*, double*, double*, double*, Integer*);
+  using StartingValues = void (*)(Integer*, double*, double*, double*, Integer*);
+  using OutputParameters = void (*)(Integer*, double*, double*, Integer*);
+
+  struct Free {
+    void operator()(double* memory) const;
+  };
+
+  void load(const double* x, const double* par);
+  void clear_derivatives(int order, std::span<const int> active);
+
+  int n_;
+  int rows_ = 1;
+  int value_room_;
+  Derivatives field_ = nullptr, event_ = nullptr;
+  Jump jump_ = nullptr;
+  StartingValues starting_values_ = nullptr;
+  OutputParameters output_parameters_ = nullptr;
+
+  std::unique_ptr<double, Free> memory_;
+  double *x_, *par_, *value_, *dx_, *dp_, *dxx_, *dxp_;  // in memory_
+};
+
+/// True when the library exports one of the required subroutines.
+bool is_fortran_problem(void* library);
+
+}  // namespace tchat

@@ -1,0 +1,200 @@
+#include "plugin/fortran_problem.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+
+#include "constants/user_error.hpp"
+#include "hybrid/difference_derivatives.hpp"
+#include "hybrid/parameter_vector.hpp"
+
+namespace tchat {
+
+namespace {
+
+constexpr std::array<const char*, 3> subroutines = {"GCFUNC", "GCBOUND", "JUMPMAP"};
+constexpr std::array<const char*, 3> outputs = {"FI", "H", "UJUMP"};
+
+FunctionKind kind_of(std::int32_t kind) { return static_cast<FunctionKind>(kind); }
+
+std::size_t place(FunctionKind kind) { return static_cast<std::size_t>(kind); }
+
+int last_or_one(const std::vector<int>& indices) { return indices.empty() ? 1 : indices.back(); }
+
+std::span<const int> list(const std::int32_t* active, std::int32_t count) {
+  return {active, static_cast<std::size_t>(count)};
+}
+
+}  // namespace
+
+FortranProblem::FortranProblem(const std::string& path, void* library, const ProblemSizes& sizes)
+    : sizes_(sizes),
+      name_(std::filesystem::path(path).stem().string()),
+      calls_(path, library, sizes.dimension, sizes.derivative_order) {
+  read_starting_values(path);
+  fill_table();
+  try_functions(path);
+}
+
+void FortranProblem::read_starting_values(const std::string& path) {
+  std::vector<double> x(static_cast<std::size_t>(sizes_.dimension), FortranCalls::unset());
+  std::vector<double> par(parameter_length, FortranCalls::unset());
+  if (calls_.has_starting_values())
+    for (int segment = sizes_.segments; segment >= 1; --segment)
+      calls_.starting_values(segment, x.data(), par.data());  // segment 1 has the last word
+  for (int k = 1; k <= parameter_length; ++k) {
+    const double value = par[static_cast<std::size_t>(k - 1)];
+    if (FortranCalls::is_unset(value)) continue;
+    if (!std::isfinite(value))
+      throw UserError(
+          fmt::format("Plugin {}: GCSTPNT sets PAR({}) to {}.\n  Set it to a finite number, from values that are set "
+                      "before it, or leave it out.",
+                      path, k, value));
+    if (k < first_duration) sizes_.parameters = std::max(sizes_.parameters, k);
+  }
+  for (int k = 1; k <= sizes_.parameters; ++k) {
+    const double value = par[static_cast<std::size_t>(k - 1)];
+    parameters_.push_back(FortranCalls::is_unset(value) ? 0.0 : value);
+  }
+  for (int s = 0; s < sizes_.segments; ++s) {
+    const double value = par[static_cast<std::size_t>(first_duration - 1 + s)];
+    durations_.push_back(FortranCalls::is_unset(value) ? NAN : value);
+  }
+  const bool gives_state = std::all_of(x.begin(), x.end(), [](double value) { return std::isfinite(value); });
+  for (std::size_t i = 0; !gives_state && i < x.size(); ++i) x[i] = 0.1 + 0.3 * std::sin(1.0 + static_cast<double>(i));
+  state_ = x;
+}
+
+void FortranProblem::fill_table() {
+  table_.abi_version = TCHAT_PROBLEM_ABI;
+  table_.struct_size = sizeof(tchat_problem);
+  table_.dimension = sizes_.dimension;
+  table_.parameters = sizes_.parameters;
+  table_.fields = last_or_one(sizes_.fields);
+  table_.events = last_or_one(sizes_.events);
+  table_.jumps = last_or_one(sizes_.jumps);
+  table_.derivative_order = sizes_.derivative_order;
+  table_.name = name_.c_str();
+  table_.initial_parameters = parameters_.data();
+  table_.durations = sizes_.segments;
+  table_.initial_durations = durations_.data();
+  table_.self = this;
+  table_.value = [](const void* pointer, std::int32_t kind, std::int32_t index, const double* x, const double* par,
+                    double* out) {
+    const auto& problem = *static_cast<const FortranProblem*>(pointer);
+    problem.calls_.evaluate(kind_of(kind), index, x, par, 0, {});
+    std::copy_n(problem.calls_.value(), kind == TCHAT_EVENT ? 1 : problem.sizes_.dimension, out);
+  };
+  table_.first = [](const void* pointer, std::int32_t kind, std::int32_t index, const double* x, const double* par,
+                    const std::int32_t* active, std::int32_t count, double* out, double* dx, double* dp) {
+    static_cast<const FortranProblem*>(pointer)->first(kind_of(kind), index, x, par, list(active, count), out, dx, dp);
+  };
+  table_.second = [](const void* pointer, std::int32_t kind, std::int32_t index, const double* x, const double* par,
+                     const std::int32_t* active, std::int32_t count, const double* direction, double* out, double* dx,
+                     double* dp) {
+    static_cast<const FortranProblem*>(pointer)->second(kind_of(kind), index, x, par, list(active, count), direction,
+                                                        out, dx, dp);
+  };
+  if (calls_.has_output_parameters())
+    table_.output_parameters = [](const void* pointer, std::int32_t segment, const double* x, double* par) {
+      static_cast<const FortranProblem*>(pointer)->calls_.output_parameters(segment, x, par);
+    };
+  first_order_ = table_;
+  first_order_.derivative_order = std::min(sizes_.derivative_order, 1);
+  first_order_system_.emplace(first_order_);
+}
+
+void FortranProblem::first(FunctionKind kind, int index, const double* x, const double* par,
+                           std::span<const int> active, double* out, double* dx, double* dp) const {
+  const int rows = kind == FunctionKind::event ? 1 : sizes_.dimension;
+  calls_.evaluate(kind, index, x, par, 1, active);
+  std::copy_n(calls_.value(), rows, out);
+  std::copy_n(calls_.by_state(), rows * sizes_.dimension, dx);
+  for (std::size_t a = 0; a < active.size(); ++a)
+    std::copy_n(calls_.by_parameter(active[a] - 1), rows, dp + static_cast<int>(a) * rows);
+  if (kind != FunctionKind::jump) return;
+  std::vector<double> column(static_cast<std::size_t>(rows));
+  for (std::size_t a = 0; a < active.size(); ++a) {
+    double* const supplied = dp + static_cast<int>(a) * rows;
+    if (std::find(supplied, supplied + rows, 0.0) == supplied + rows) continue;
+    difference_by_parameter(*first_order_system_, kind, index, x, par, active[a], column.data());
+    for (int i = 0; i < rows; ++i)
+      if (supplied[i] == 0.0) supplied[i] = column[static_cast<std::size_t>(i)];
+  }
+}
+
+void FortranProblem::second(FunctionKind kind, int index, const double* x, const double* par,
+                            std::span<const int> active, const double* direction, double* out, double* dx,
+                            double* dp) const {
+  const int n = sizes_.dimension;
+  const int rows = kind == FunctionKind::event ? 1 : n;
+  const int parameters = static_cast<int>(active.size());
+  const double* const v = direction;
+  const double* const w = direction + n;
+  const bool along_parameters = std::any_of(w, w + parameters, [](double entry) { return entry != 0.0; });
+  // By differences: everything for a jump; F_pp w, which comes in dp when the direction is (0, w).
+  if (kind == FunctionKind::jump) {
+    difference_second(*first_order_system_, kind, index, x, par, active, direction, out, dx, dp);
+    return;
+  }
+  if (along_parameters) {
+    std::vector<double> only_parameters(direction, direction + n + parameters);
+    std::fill_n(only_parameters.begin(), n, 0.0);
+    difference_second(*first_order_system_, kind, index, x, par, active, only_parameters.data(), out, dx, dp);
+  } else {
+    std::fill_n(dp, rows * parameters, 0.0);
+  }
+  calls_.evaluate(kind, index, x, par, 2, active);
+  for (int i = 0; i < rows; ++i) {
+    out[i] = 0.0;
+    for (int c = 0; c < n; ++c) out[i] += calls_.by_state()[c * rows + i] * v[c];
+    for (int a = 0; a < parameters; ++a) out[i] += calls_.by_parameter(active[a] - 1)[i] * w[a];
+    for (int j = 0; j < n; ++j) {
+      double& entry = dx[j * rows + i];
+      entry = 0.0;
+      for (int k = 0; k < n; ++k) entry += calls_.by_states(i, j, k) * v[k];
+      for (int a = 0; a < parameters; ++a) {
+        const double mixed = calls_.by_state_and_parameter(i, j, active[a] - 1);
+        entry += mixed * w[a];
+        dp[a * rows + i] += mixed * v[j];
+      }
+    }
+  }
+}
+
+void FortranProblem::try_functions(const std::string& path) const {
+  for (const int i : sizes_.fields) try_function(path, FunctionKind::field, i);
+  for (const int j : sizes_.events) try_function(path, FunctionKind::event, j);
+  for (const int k : sizes_.jumps) try_function(path, FunctionKind::jump, k);
+}
+
+void FortranProblem::try_function(const std::string& path, FunctionKind kind, int index) const {
+  const char* const subroutine = subroutines[place(kind)];
+  const char* const output = outputs[place(kind)];
+  std::vector<double> par(parameter_length, 0.0);
+  std::copy(parameters_.begin(), parameters_.end(), par.begin());
+  calls_.evaluate(kind, index, state_.data(), par.data(), 0, {});
+  const int n = sizes_.dimension;
+  if (calls_.wrote_beyond())
+    throw UserError(
+        fmt::format("Plugin {}: {} with SEGNO = {} sets more than GCNDIM = {} entries of {}.\n"
+                    "  It is written for more states: set NDIM in the constants file to their number.",
+                    path, subroutine, index, n, output));
+  const int rows = kind == FunctionKind::event ? 1 : n;
+  for (int i = 0; i < rows; ++i) {
+    if (!calls_.left_unset(i)) continue;
+    const std::string entry = kind == FunctionKind::event ? output : fmt::format("{}({})", output, i + 1);
+    throw UserError(
+        fmt::format("Plugin {}: {} with SEGNO = {} leaves {} unset.\n"
+                    "  Set it there, or correct NDIM = {} or the index {} of {} in the constants file.",
+                    path, subroutine, index, entry, n, index,
+                    kind == FunctionKind::field   ? "GCFIND"
+                    : kind == FunctionKind::event ? "GCHIND or GCHGRZIND"
+                                                  : "GCGIND or GRJUMP"));
+  }
+}
+
+}  // namespace tchat

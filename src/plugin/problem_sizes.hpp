@@ -1,0 +1,23 @@
+/// How many states and functions a problem has, for plugins that cannot say it themselves (Fortran): the constants file
+/// knows.
+#pragma once
+
+#include <vector>
+
+#include "constants/run_settings.hpp"
+
+namespace tchat {
+
+struct ProblemSizes {
+  int dimension = 1;         ///< n
+  int parameters = 0;        ///< largest PAR index of a free parameter that is no duration
+  int segments = 1;          ///< of the orbit; starting values are asked for each
+  int derivative_order = 0;  ///< of the derivatives coded by hand: 0, 1 or 2
+  /// Indices that the orbit uses, ascending; the plugin has functions 1 .. the last of them.
+  std::vector<int> fields, events, jumps;
+};
+
+/// NDIM, ICP, GCIDIFF and the indices in GCFIND, GCHIND, GCHGRZIND, GCGIND; GRJUMP where the problem type reads it.
+ProblemSizes problem_sizes(const RunSettings& settings);
+
+}  // namespace tchat
