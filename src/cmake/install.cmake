@@ -1,5 +1,6 @@
-# What `cmake --install` puts where: the program, TC-HAT's commands beside it, the plugin headers (the program looks for them in ../include beside
-# its own folder), the problems with their constants, and a package so that find_package(tchat) gives tchat::plugin.
+# What `cmake --install` puts where: the program with TC-HAT's commands beside it, the plugin headers (the program looks
+# for them in ../include beside its own folder), the problems with their constants, and a package so that
+# find_package(tchat) gives tchat::plugin.
 include(CMakePackageConfigHelpers)
 
 install(TARGETS tchat)

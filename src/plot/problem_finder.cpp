@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "constants/constants_file.hpp"
 #include "constants/user_error.hpp"
 #include "output/point_columns.hpp"
 #include "plot/branch_file.hpp"
@@ -18,7 +19,9 @@ namespace fs = std::filesystem;
 
 bool has_plugin(const fs::path& path) {
   std::error_code error;
-  return fs::is_regular_file(path.string() + ".cpp", error) || fs::is_regular_file(path.string() + ".so", error);
+  for (const char* suffix : {".cpp", ".f", ".f90", ".so"})
+    if (fs::is_regular_file(path.string() + suffix, error)) return true;
+  return false;
 }
 
 /// The only NAME.so of a folder, without extension; empty when there are none or several.
@@ -69,12 +72,19 @@ void take(ProblemChoice& choice, std::shared_ptr<ProblemLibrary> library) {
   choice.parameters = names.parameters;
 }
 
+/// The library; a Fortran plugin needs r.O, the constants of the run that wrote q.O.
+std::shared_ptr<ProblemLibrary> load(const std::string& plugin, const std::string& solution_path) {
+  return std::make_shared<ProblemLibrary>(resolve_plugin(plugin), [&solution_path] {
+    return problem_sizes(read_constants_file(sibling_path(solution_path, 'r')));
+  });
+}
+
 }  // namespace
 
 ProblemChoice find_problem(const std::string& solution_path, const std::string& plugin, int dimension) {
   ProblemChoice choice;
   if (!plugin.empty()) {
-    take(choice, std::make_shared<ProblemLibrary>(resolve_plugin(plugin)));
+    take(choice, load(plugin, solution_path));
     if (choice.system()->dimension() != dimension)
       throw UserError(fmt::format("-p {}: problem {} has {} states, the orbits of {} have {}", plugin,
                                   choice.system()->name(), choice.system()->dimension(), solution_path, dimension));
@@ -83,7 +93,7 @@ ProblemChoice find_problem(const std::string& solution_path, const std::string& 
   for (const fs::path& path : candidates(solution_path)) {
     if (path.empty() || !has_plugin(path)) continue;
     try {
-      auto library = std::make_shared<ProblemLibrary>(resolve_plugin(path.string()));
+      auto library = load(path.string(), solution_path);
       if (library->system().dimension() != dimension) continue;
       take(choice, std::move(library));
       return choice;

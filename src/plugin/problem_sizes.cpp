@@ -10,12 +10,20 @@ namespace {
 
 constexpr int grazing_curve = 150;
 
-void sort_and_unite(std::vector<int>& indices) {
-  std::sort(indices.begin(), indices.end());
-  indices.erase(std::unique(indices.begin(), indices.end()), indices.end());
+void insert(std::vector<int>& ascending, int index) {
+  const auto place = std::lower_bound(ascending.begin(), ascending.end(), index);
+  if (place == ascending.end() || *place != index) ascending.insert(place, index);
 }
 
 }  // namespace
+
+void ProblemSizes::add(const IndexVector& index) {
+  insert(fields, index.field);
+  insert(events, index.event);
+  insert(jumps, index.jump);
+}
+
+void ProblemSizes::add_jump(int k) { insert(jumps, k); }
 
 ProblemSizes problem_sizes(const RunSettings& settings) {
   ProblemSizes sizes;
@@ -25,13 +33,10 @@ ProblemSizes problem_sizes(const RunSettings& settings) {
   for (const int k : settings.free_parameters)
     if (k < first_duration) sizes.parameters = std::max(sizes.parameters, k);
   for (const SegmentSettings& segment : settings.segments) {
-    sizes.fields.push_back(segment.index.field);
-    sizes.events.push_back(segment.index.event);
-    sizes.events.insert(sizes.events.end(), segment.monitor.begin(), segment.monitor.end());
-    sizes.jumps.push_back(segment.index.jump);
+    sizes.add(segment.index);
+    for (const int event : segment.monitor) insert(sizes.events, event);
   }
-  if (settings.problem_type == grazing_curve) sizes.jumps.push_back(settings.grazing_jump);
-  for (std::vector<int>* const indices : {&sizes.fields, &sizes.events, &sizes.jumps}) sort_and_unite(*indices);
+  if (settings.problem_type == grazing_curve) sizes.add_jump(settings.grazing_jump);
   return sizes;
 }
 

@@ -15,6 +15,10 @@ struct ProblemSizes {
   int derivative_order = 0;  ///< of the derivatives coded by hand: 0, 1 or 2
   /// Indices that the orbit uses, ascending; the plugin has functions 1 .. the last of them.
   std::vector<int> fields, events, jumps;
+
+  /// Adds the functions of an index vector.
+  void add(const IndexVector& index);
+  void add_jump(int k);
 };
 
 /// NDIM, ICP, GCIDIFF and the indices in GCFIND, GCHIND, GCHGRZIND, GCGIND; GRJUMP where the problem type reads it.

@@ -254,6 +254,16 @@ std::string summary(const Source& source, const RunSettings& settings, const Orb
   return text + fmt::format("  free: {}\n", free);
 }
 
+/// The functions of the orbit and of what is made of it, for a plugin that does not say what it has.
+ProblemSizes sizes_for(const ResegmentRequest& request, const RunSettings& settings) {
+  ProblemSizes sizes = problem_sizes(settings);
+  if (request.signature)
+    for (const IndexVector& index : parse_signature(*request.signature)) sizes.add(index);
+  if (request.jump && *request.jump >= 1) sizes.add_jump(*request.jump);
+  if (request.kind == ResegmentKind::impacting) sizes.add_jump(request.jump.value_or(settings.grazing_jump));
+  return sizes;
+}
+
 }  // namespace
 
 std::vector<std::string> resegment(const ResegmentRequest& request, std::ostream& screen) {
@@ -264,7 +274,7 @@ std::vector<std::string> resegment(const ResegmentRequest& request, std::ostream
 
   const std::string plugin = resolve_plugin(request.problem.value_or(run_name(path)));
   const ExitGuard guard(plugin);
-  const ProblemLibrary library(plugin);
+  const ProblemLibrary library(plugin, [&] { return sizes_for(request, source.settings); });
   const HybridSystem& system = library.system();
   check_settings_against(system, source.settings, constants);
 
