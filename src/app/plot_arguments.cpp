@@ -77,10 +77,12 @@ std::vector<PlotItem> read_plot_items(const std::vector<std::string>& words) {
     } else if (is_label(words[k]) && !items.empty()) {
       items.back().labels.push_back(words[k]);
     } else {
+      const std::string what = is_label(words[k]) ? ", and labels come after the q-file that has them"
+                                                  : fmt::format(" and no label, and there is no {} and no {}",
+                                                                beside(words[k], 'p'), beside(words[k], 'q'));
       throw UserError(fmt::format(
           "{} is no file{}; give p-files (branches), or a q-file and its labels, as in tchat plot q.mems GR1 PD1",
-          in_quotes(words[k]),
-          is_label(words[k]) ? ", and labels come after the q-file that has them" : " and no label"));
+          in_quotes(words[k]), what));
     }
   }
   return items;
@@ -113,8 +115,8 @@ PlotSize read_plot_size(const std::string& text) {
   const auto pixels = [](const std::string& part) { return parse_integer(part).value_or(0); };
   const PlotSize size{pixels(text.substr(0, cross)), cross == std::string::npos ? 0 : pixels(text.substr(cross + 1))};
   if (std::min(size.width, size.height) < 100 || std::max(size.width, size.height) > 10000)
-    throw UserError(fmt::format(
-        "--size {}: a size is width and height from 100 to 10000 pixels, as in --size 1200x900", in_quotes(text)));
+    throw UserError(fmt::format("--size {}: a size is width and height from 100 to 10000 pixels, as in --size 1200x900",
+                                in_quotes(text)));
   return size;
 }
 

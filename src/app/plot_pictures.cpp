@@ -129,6 +129,15 @@ NamedFigure orbit_picture(const std::vector<PlotItem>& items, const PlotArgument
   return result;
 }
 
+std::string label_list(const std::vector<DiagnosticPoint>& points) {
+  std::string list;
+  for (const DiagnosticPoint& point : points)
+    if (point.label > 0)
+      list += fmt::format("{}{}{}", list.empty() ? "" : ", ", point.label,
+                          point.type.empty() ? "" : " (" + point.type + ")");
+  return list.empty() ? "no labels" : list;
+}
+
 /// The points of a d-file that have these labels; types count in file order.
 std::vector<DiagnosticPoint> labelled(const std::vector<DiagnosticPoint>& points, const PlotItem& item,
                                       const std::string& path) {
@@ -140,7 +149,8 @@ std::vector<DiagnosticPoint> labelled(const std::vector<DiagnosticPoint>& points
       if (label.type.empty()) return point.label > 0 && point.label == label.number;
       return point.type == label.type && --left == 0;
     });
-    if (found == points.end()) throw UserError(fmt::format("{}: no point {}", path, word));
+    if (found == points.end())
+      throw UserError(fmt::format("{}: no point {}; there are {}", path, word, label_list(points)));
     result.push_back(*found);
   }
   return result;

@@ -44,12 +44,22 @@ Range widened(Range range) {
   return {range.low - margin * span, range.high + margin * span};
 }
 
-double round_step(double step) {
-  const double power = std::pow(10.0, std::floor(std::log10(step)));
-  const double leading = step / power;
-  if (leading <= 1.0) return power;
-  if (leading <= 2.0) return 2.0 * power;
-  return leading <= 5.0 ? 5.0 * power : 10.0 * power;
+struct RoundStep {
+  double leading = 1.0;
+  double step = 1.0;
+};
+
+/// The largest of 1, 2, 5 times a power of ten that has that many multiples between low and high.
+RoundStep round_step(double low, double high, int tics) {
+  double power = std::pow(10.0, std::floor(std::log10(high - low)));
+  for (int trial = 0; trial < 20; ++trial) {
+    for (const double leading : {5.0, 2.0, 1.0}) {
+      const double step = leading * power;
+      if (std::floor(high / step + 1e-9) - std::ceil(low / step - 1e-9) + 1.0 >= tics) return {leading, step};
+    }
+    power /= 10.0;
+  }
+  return {1.0, high - low};  // a range at rounding level
 }
 
 std::string tic_format(double step, double largest) {
@@ -61,7 +71,9 @@ std::string tic_format(double step, double largest) {
 void set_linear_tics(AxisScale& scale, int tics) {
   const double low = std::min(scale.low, scale.high);
   const double high = std::max(scale.low, scale.high);
-  scale.tic_step = round_step((high - low) / tics);
+  const RoundStep step = round_step(low, high, tics);
+  scale.tic_step = step.step;
+  scale.minor_tics = step.leading == 5.0 ? 5 : 2;
   scale.first_tic = std::ceil(low / scale.tic_step - 1e-9) * scale.tic_step;
   if (std::abs(scale.first_tic) < 1e-9 * scale.tic_step) scale.first_tic = 0.0;
   scale.format = tic_format(scale.tic_step, std::max(std::abs(low), std::abs(high)));

@@ -14,6 +14,7 @@ struct AxisScale {
   bool logarithmic = false;
   double first_tic = 0.0;  ///< linear axes
   double tic_step = 0.2;
+  int minor_tics = 2;          ///< parts of a step
   std::string format = "%g";   ///< printf format of the tics' numbers
   double widest_number = 1.0;  ///< of the tics, in units of the font's size
 
@@ -21,8 +22,8 @@ struct AxisScale {
   double fraction(double value) const;
 };
 
-/// A range that holds all `values` with a margin, the ends that the user chose kept, and tics at round numbers, at
-/// most about `tics` of them. Values that are not finite, beyond 1e90 in size, or not positive on a logarithmic axis
+/// A range that holds all `values` with a margin, the ends that the user chose kept, and at least `tics` tics at
+/// round numbers. Values that are not finite, beyond 1e90 in size, or not positive on a logarithmic axis
 /// are left out of account. Throws UserError when a logarithmic axis has nothing positive to show.
 AxisScale choose_scale(const AxisSettings& settings, const std::vector<double>& values, int tics);
 

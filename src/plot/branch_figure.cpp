@@ -123,7 +123,12 @@ class BranchFigureBuilder {
   }
 
   void add_branch(std::size_t f, const BranchPiece& piece, const Intervals& intervals) {
-    const std::string colour = plain_files_.size() > 1 ? series_colour(f) : neutral;
+    const auto number =
+        static_cast<std::size_t>(std::distance(plain_files_.begin(), plain_files_.find(files_[f].path)));
+    constexpr std::size_t after_curves = 3;  // colours that no curve has
+    const std::string colour = !kind_files_.empty()      ? series_colour(after_curves + number)
+                               : plain_files_.size() > 1 ? series_colour(f)
+                                                         : neutral;
     add_runs(piece, intervals, files_[f], [this, &colour](LineKind kind) {
       kinds_.insert(kind);
       return branch_stroke(kind, colour);

@@ -71,7 +71,10 @@ double shape_factor(Symbol symbol) {
 class ScriptWriter {
  public:
   ScriptWriter(const Figure& figure, const FigureLayout& layout, const PictureTarget& target)
-      : figure_(figure), layout_(layout), target_(target), units_(terminal_units(target.format, figure.width)) {}
+      : figure_(figure),
+        layout_(layout),
+        target_(target),
+        units_(terminal_units(target.format, figure.width, layout.font)) {}
 
   std::string write() {
     head();
@@ -179,7 +182,7 @@ class ScriptWriter {
       return;
     }
     const int columns = KeySize(figure_.key, layout_.font).columns(place.box.width());
-    line(fmt::format("set key at {} center bottom horizontal maxcols {} {}",
+    line(fmt::format("set key at {} center bottom horizontal maxcols {} width -3 {}",
                      screen(0.5 * (place.box.left + place.box.right), place.box.bottom), columns, style));
   }
 
@@ -211,8 +214,8 @@ class ScriptWriter {
     if (scale.logarithmic)
       line(fmt::format("set {}tics in scale 1,0.5", name));
     else
-      line(fmt::format("set {0}tics {1:.10g},{2:.10g}\nset {0}tics in scale 1,0.5\nset m{0}tics 2", name,
-                       scale.first_tic, scale.tic_step));
+      line(fmt::format("set {0}tics {1:.10g},{2:.10g}\nset {0}tics in scale 1,0.5\nset m{0}tics {3}", name,
+                       scale.first_tic, scale.tic_step, scale.minor_tics));
     line(fmt::format("set format {} '{}'", name, numbered ? scale.format : ""));
   }
 

@@ -8,7 +8,7 @@ namespace tchat {
 
 namespace {
 
-constexpr double sample_width = 3.2;  // of a line and the gap to the text, in units of the font's size
+constexpr double sample_width = 2.9;  // of a line and the gap to the text, in units of the font's size
 
 /// A corner or the middle of an edge as parts of the free width and height.
 struct Corner {
@@ -29,7 +29,7 @@ constexpr std::array<Corner, 8> corners = {{{1.0, 1.0, 0.0},
 KeySize::KeySize(const std::vector<KeyEntry>& entries, double font)
     : rows_(static_cast<int>(entries.size())), font_(font) {
   for (const KeyEntry& entry : entries)
-    width_ = std::max(width_, (text_width(entry.text) * label_font_ratio + sample_width + 0.6) * font);
+    width_ = std::max(width_, (text_width(entry.text) * label_font_ratio + sample_width + 0.3) * font);
 }
 
 int KeySize::columns(double available) const {

@@ -44,7 +44,7 @@ void equalise(PanelLayout& panel) {
   AxisSettings wider;
   wider.low = middle + factor * (scale.low - middle);
   wider.high = middle + factor * (scale.high - middle);
-  scale = choose_scale(wider, {}, 6);
+  scale = choose_scale(wider, {}, 4);
 }
 
 Obstacles obstacles_of(const Panel& panel, const PanelLayout& layout, const std::optional<KeyPlace>& key, double font) {
@@ -116,8 +116,8 @@ FigureLayout lay_out(const Figure& figure) {
     Values own;
     add_values(panel, own);
     PanelLayout place;
-    place.x = choose_scale(panel.x, visible(shared.x, shared.y, panels == 1 ? panel.y : AxisSettings{}), 6);
-    place.y = choose_scale(panel.y, visible(own.y, own.x, panel.x), panels > 1 ? 4 : 6);
+    place.x = choose_scale(panel.x, visible(shared.x, shared.y, panels == 1 ? panel.y : AxisSettings{}), 4);
+    place.y = choose_scale(panel.y, visible(own.y, own.x, panel.x), panels > 1 ? 3 : 4);
     widest = std::max(widest, place.y.widest_number);
     layout.panels.push_back(place);
   }

@@ -35,20 +35,20 @@ std::string window_terminal(const std::vector<std::string>& terminals) {
   return "";
 }
 
-TerminalUnits terminal_units(PictureFormat format, int width) {
+TerminalUnits terminal_units(PictureFormat format, int width, double font) {
   const double scale = width / 1200.0;
   switch (format) {
     case PictureFormat::svg:
-      return {1.0, 1.0 / 4.2, scale};
+      return {1.0, 1.0 / (0.375 * font), scale};
     case PictureFormat::pdf:
-      return {points_per_inch / pixels_per_inch, 1.0 / 6.6, 0.55 * scale};
+      return {0.75 * points_per_inch / pixels_per_inch, 1.0 / 6.5, 0.55 * scale};
     default:
-      return {0.75, 1.0 / 3.3, scale};
+      return {0.75, 1.0 / 3.1, scale};
   }
 }
 
 std::string terminal_line(PictureFormat format, const std::string& window, int width, int height, double font) {
-  const double size = font * terminal_units(format, width).font;
+  const double size = font * terminal_units(format, width, font).font;
   switch (format) {
     case PictureFormat::png:
       return fmt::format("set terminal pngcairo enhanced background '#ffffff' size {},{} font 'sans,{:.1f}'", width,

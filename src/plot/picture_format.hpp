@@ -22,8 +22,8 @@ struct TerminalUnits {
   double line_width = 1.0;  ///< linewidth for a line of width one in a picture 1200 pixels wide
 };
 
-/// For a picture `width` pixels wide.
-TerminalUnits terminal_units(PictureFormat format, int width);
+/// For a picture `width` pixels wide with a font of that size in pixels.
+TerminalUnits terminal_units(PictureFormat format, int width, double font);
 
 /// The `set terminal` line. `window`: name of the window terminal.
 std::string terminal_line(PictureFormat format, const std::string& window, int width, int height, double font);

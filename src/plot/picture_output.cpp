@@ -111,8 +111,8 @@ std::string output_picture(const Figure& figure, const PictureWish& wish) {
   const std::string path = wish.name + ".png";
   keep_script({PictureFormat::png, path, ""});
   draw_to_file(figure, layout, path);
-  return fmt::format("{} (there is no {} for a window; -o FILE chooses another name or form)", path,
-                     has_display() ? "window terminal in this gnuplot" : "display");
+  return fmt::format("{} (no window: {}; -o FILE chooses another name or form)", path,
+                     has_display() ? "this gnuplot cannot open one" : "there is no display");
 }
 
 }  // namespace tchat

@@ -194,7 +194,9 @@ class PointFileReader {
 
   double value_of(std::string_view word) {
     if (const auto value = parse_fortran_real(word)) return *value;
-    if (!is_gap(word)) refuse(fmt::format("{} is not a number; the file is damaged", in_quotes(word)));
+    if (!is_gap(word))
+      refuse(fmt::format("{} is not a number; {}", in_quotes(word),
+                         file_.sections.empty() ? "this is no p-file" : "the file is damaged"));
     ++gaps_;
     return std::numeric_limits<double>::quiet_NaN();
   }
