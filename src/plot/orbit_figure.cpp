@@ -47,14 +47,10 @@ StateWindow window_of(const std::vector<OrbitTrace>& orbits, int a, int b) {
   return {low_x, high_x, low_y, high_y};
 }
 
-/// In the middle of the longest piece of the segment in the plane, where the orbit runs fast.
-void add_arrow(Panel& panel, const Curve& curve) {
-  double width = 1e-300, height = 1e-300;
-  for (const PicturePoint& p : curve.points)
-    for (const PicturePoint& q : {curve.points.front()}) {
-      width = std::max(width, std::abs(p.x - q.x));
-      height = std::max(height, std::abs(p.y - q.y));
-    }
+/// In the middle of a segment's way in the picture, unless that way is short.
+void add_arrow(Panel& panel, const Curve& curve, const StateWindow& window) {
+  constexpr double shortest = 0.08;  // parts of the window
+  const double width = window.high_x - window.low_x, height = window.high_y - window.low_y;
   double total = 0.0;
   std::vector<double> length{0.0};
   for (std::size_t k = 1; k < curve.points.size(); ++k) {
@@ -62,7 +58,7 @@ void add_arrow(Panel& panel, const Curve& curve) {
                         (curve.points[k].y - curve.points[k - 1].y) / height);
     length.push_back(total);
   }
-  if (!(total > 0.0)) return;
+  if (!(total > shortest)) return;
   const auto middle = std::upper_bound(length.begin(), length.end(), 0.5 * total);
   const auto k = std::clamp<std::size_t>(static_cast<std::size_t>(middle - length.begin()), 1, length.size() - 1);
   panel.arrows.push_back({curve.points[k - 1], curve.points[k], curve.stroke.colour});
@@ -120,6 +116,7 @@ Figure phase_portrait(const std::vector<OrbitTrace>& orbits, const OrbitFigureOp
     throw UserError("a phase portrait has one state along y; several of them are for --time, as in --time -y x1,x2");
   const int a = options.x.empty() ? 0 : find_state(options.x, n, options, "-x");
   const int b = options.y.empty() ? std::min(a == 1 ? 0 : 1, n - 1) : find_state(options.y.front(), n, options, "-y");
+  const StateWindow window = window_of(orbits, a, b);
   Figure figure;
   Panel panel;
   panel.x.label = mathematical_name(state_name(a, options));
@@ -127,7 +124,7 @@ Figure phase_portrait(const std::vector<OrbitTrace>& orbits, const OrbitFigureOp
   if (options.system != nullptr && options.surfaces) {
     const EventSurfaces surfaces(*options.system, orbits, options.events);
     std::size_t number = 0;
-    for (auto& line : surfaces.in_plane(a, b, window_of(orbits, a, b))) {
+    for (auto& line : surfaces.in_plane(a, b, window)) {
       const KeyEntry entry = surface_entry(line.name, number++);
       for (auto& piece : line.pieces) panel.curves.push_back({std::move(piece), *entry.stroke, true});
       figure.key.push_back(entry);
@@ -143,7 +140,7 @@ Figure phase_portrait(const std::vector<OrbitTrace>& orbits, const OrbitFigureOp
       curve.stroke = stroke;
       const Eigen::MatrixXd& states = orbit.segments[s].states;
       for (Eigen::Index i = 0; i < states.cols(); ++i) curve.points.push_back(point(states.col(i)));
-      add_arrow(panel, curve);
+      add_arrow(panel, curve, window);
       panel.curves.push_back(std::move(curve));
       if (!orbit.jumps_after(s)) continue;
       const PicturePoint before = point(orbit.end_of(s)), after = point(orbit.start_after(s));
