@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cstdlib>
 #include <filesystem>
 
 #include "constants/constant_value.hpp"
@@ -185,11 +186,14 @@ Target to_rotated(const ResegmentRequest& request, const Source& source) {
   return target;
 }
 
-/// At a period doubling the doubled problem has a branch point: ISW = -1 goes from there to the doubled orbit.
+/// At a period doubling, or anywhere on a curve of them, the doubled problem has a branch point: ISW = -1 goes from
+/// there to the doubled orbit.
 Target to_repeated(const Source& source) {
   if (source.settings.problem_type != 180)
     throw UserError(fmt::format("{} lies on a grazing curve; an orbit of type IPS = 180 can be doubled", source.name));
-  const bool doubling = basic_type(source.solution.type) == static_cast<int>(PointType::period_doubling);
+  constexpr int period_doubling = static_cast<int>(PointType::period_doubling);
+  const int type = source.solution.type;
+  const bool doubling = basic_type(type) == period_doubling || std::abs(type) / 10 == period_doubling;
   Target target{repeated(segments_of(source.settings)), {180, doubling ? -1 : 1, source.settings.grazing_jump}};
   target.type = static_cast<int>(doubling ? PointType::branch_point : PointType::end);
   return target;

@@ -186,6 +186,14 @@ TEST_CASE("resegment: the orbit twice over, and the doubled one at a period doub
   const auto last = workspace.solutions("doubled1").back();
   CHECK(last.parameter(1) < 3.03619);                                     // the doubled orbit lives below the doubling
   CHECK(std::abs(last.states.back()[1] - last.states.back()[5]) > 1e-3);  // two different impacts
+
+  // Every label of a curve of period doublings is one.
+  workspace.run("-c period_doubling_curve -s impacting_20072 -o curve NMX=4");
+  resegment(workspace, "q.curve EP1 --to double -o from_curve ICP=[1,61,62] NMX=3 DS=0.01");
+  CHECK(contains(workspace.read("gc.from_curve"), "50 4 3 2 -1"));
+  workspace.run("-c from_curve -s from_curve -o doubled2");
+  const auto other = workspace.solutions("doubled2").back();
+  CHECK(std::abs(other.states.back()[1] - other.states.back()[5]) > 1e-4);
 }
 
 TEST_CASE("resegment: equal calls write equal files, old ones are kept") {
