@@ -53,7 +53,8 @@ TEST_CASE("a new problem never touches what is there") {
   check_refused(workspace.tchat("new wall"), {"wall", "exists"});
   CHECK(workspace.read("wall/wall.cpp") == "mine");
   check_refused(workspace.tchat("new linosc.cpp"), {"letters"});
-  for (const char* name : {"3walls", "two-walls", ".", ".."}) check_refused(workspace.tchat(std::vector<std::string>{"new", name}), {"letter"});
+  for (const char* name : {"3walls", "two-walls", ".", ".."})
+    check_refused(workspace.tchat(std::vector<std::string>{"new", name}), {"letter"});
   check_refused(workspace.tchat(std::vector<std::string>{"new", ""}), {});
 }
 

@@ -69,9 +69,9 @@ typedef struct tchat_problem {
 
   /* Index jump function iota: writes at most `capacity` index vectors (i, j, k) that may follow the segment `from`,
    * three integers each, the one with priority first, and returns how many there are. x is the state at the end of that
-   * segment, before the jump. from = (0, 0, 0) asks for those at the start of a simulation, where x is the start itself;
-   * none: the problem leaves that to the user. A negative count: cannot be evaluated at x. NULL when the problem does
-   * not say what follows what. */
+   * segment, before the jump. from = (0, 0, 0) asks for those at the start of a simulation, where x is the start
+   * itself; none: the problem leaves that to the user. A negative count: cannot be evaluated at x. NULL when the
+   * problem does not say what follows what. */
   int32_t (*successors)(const void* self, const int32_t from[3], const double* x, const double* par, int32_t* to,
                         int32_t capacity);
 
@@ -80,13 +80,13 @@ typedef struct tchat_problem {
   const char* const* user_value_names; /* `user_values` strings or NULL */
   void (*user_value)(const void* self, const double* x, const double* par, double* out);
 
-  /* Starting values of PAR(61), PAR(62), ..., the durations: `durations` values, NaN for one that is not known. NULL when
-   * the problem does not say. */
+  /* Starting values of PAR(61), PAR(62), ..., the durations: `durations` values, NaN for one that is not known. NULL
+   * when the problem does not say. */
   int32_t durations;
   const double* initial_durations;
 
-  /* Sets entries of `par` that are only output (AUTO's PVLS), called for each segment (from 1) with its end x_s(1) and a
-   * copy of PAR. NULL when there are none. */
+  /* Sets entries of `par` that are only output (AUTO's PVLS), called for each segment (from 1) with its end x_s(1) and
+   * a copy of PAR. NULL when there are none. */
   void (*output_parameters)(const void* self, int32_t segment, const double* x, double* par);
 } tchat_problem;
 
