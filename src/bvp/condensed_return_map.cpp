@@ -18,7 +18,15 @@ CondensedReturnMap::CondensedReturnMap(const DefiningSystem& system, const Orbit
       size_(shape.segments * (2 * shape.dimension + 1)),
       condensed_weights_(static_cast<std::size_t>(shape.segments * shape.dimension)),
       collocation_weights_(
-          static_cast<std::size_t>(shape.segments * shape.intervals * shape.collocation * shape.dimension)) {
+          static_cast<std::size_t>(shape.segments * shape.intervals * shape.collocation * shape.dimension)),
+      point_(n_),
+      f_(n_),
+      d_(n_),
+      direction_(Vector::Zero(n_ + system.free_count())),
+      fx_(n_, n_),
+      dx_(n_, n_),
+      fp_(n_, system.free_count()),
+      dp_(n_, system.free_count()) {
   const int block = 2 * n_ + 1;
   const auto dense = [&](int row, int row_count, int column, int column_count) {
     for (int a = 0; a < row_count; ++a)
@@ -78,12 +86,13 @@ void CondensedReturnMap::subtract_derivative(CondensedSystem& condensed, const O
   }
 }
 
-/// Collocation rows: slope v - h T f_x v - h sigma f.
+/// Collocation rows: slope v - h T f_x v - h sigma f. The innermost loops of a curve: plain ones, no temporaries.
 void CondensedReturnMap::add_interval(const CondensedSystem& condensed, const Orbit& x, int s, int j,
-                                      const double* weights, const OrbitVector& v, OrbitVector& gradient) const {
+                                      const double* weights, const OrbitVector& v, OrbitVector& gradient) {
   const HybridSystem& hybrid = system_.system();
-  const CollocationRule& rule = condensed.rule();
+  const Matrix& value = condensed.rule().value;
   const std::vector<int>& free = system_.free_parameters();
+  const int n = n_;
   const int c = shape_.collocation;
   const int q = system_.free_count();
   const int field = system_.signature()[static_cast<std::size_t>(s)].field;
@@ -91,20 +100,35 @@ void CondensedReturnMap::add_interval(const CondensedSystem& condensed, const Or
   const double duration = x.duration(s);
   const double sigma = v.durations(s);
   const int column = s * shape_.nodes() + j * c;
-  Vector f(n_), d(n_), point(n_);
-  Vector direction = Vector::Zero(n_ + q);
-  Matrix fx(n_, n_), dx(n_, n_), fp(n_, q), dp(n_, q);
-  for (int g = 0; g < c; ++g, weights += n_) {
-    const Eigen::Map<const Vector> w(weights, n_);
-    point.noalias() = x.states.middleCols(column, c + 1) * rule.value.row(g).transpose();
-    direction.head(n_).noalias() = v.states.middleCols(column, c + 1) * rule.value.row(g).transpose();
-    hybrid.first(FunctionKind::field, field, point.data(), x.par.data(), free, f.data(), fx.data(), fp.data());
-    hybrid.second(FunctionKind::field, field, point.data(), x.par.data(), free, direction.data(), d.data(), dx.data(),
-                  dp.data());
-    const Vector by_state = h * (duration * (dx.transpose() * w) + sigma * (fx.transpose() * w));
-    for (int i = 0; i <= c; ++i) gradient.states.col(column + i) += rule.value(g, i) * by_state;
-    gradient.durations(s) += h * w.dot(d);
-    gradient.globals += h * (duration * (dp.transpose() * w) + sigma * (fp.transpose() * w));
+  const double* const states = x.states.col(column).data();
+  const double* const deviations = v.states.col(column).data();
+  double* const by_states = gradient.states.col(column).data();
+  // h (T w^T f_xx v + sigma w^T f_x) for one variable
+  const auto weighted = [&](const double* second, const double* first, const double* w) {
+    double sum = 0.0;
+    for (int b = 0; b < n; ++b) sum += (duration * second[b] + sigma * first[b]) * w[b];
+    return h * sum;
+  };
+  for (int g = 0; g < c; ++g, weights += n) {
+    for (int a = 0; a < n; ++a) {
+      double at = 0.0;
+      double along = 0.0;
+      for (int i = 0; i <= c; ++i) {
+        at += value(g, i) * states[i * n + a];
+        along += value(g, i) * deviations[i * n + a];
+      }
+      point_(a) = at;
+      direction_(a) = along;
+    }
+    hybrid.first(FunctionKind::field, field, point_.data(), x.par.data(), free, f_.data(), fx_.data(), fp_.data());
+    hybrid.second(FunctionKind::field, field, point_.data(), x.par.data(), free, direction_.data(), d_.data(),
+                  dx_.data(), dp_.data());
+    for (int a = 0; a < n; ++a) {
+      const double by_state = weighted(&dx_(0, a), &fx_(0, a), weights);
+      for (int i = 0; i <= c; ++i) by_states[i * n + a] += value(g, i) * by_state;
+      gradient.durations(s) += h * weights[a] * d_(a);
+    }
+    for (int k = 0; k < q; ++k) gradient.globals(k) += weighted(&dp_(0, k), &fp_(0, k), weights);
   }
 }
 

@@ -72,6 +72,9 @@ bool ContinuationRun::take_step() {
 SpecialPoint ContinuationRun::end_conditions(SpecialPoint special) {
   const double principal = here_.orbit.par(settings_.principal - 1);
   measure_ = solution_measure(here_.orbit, follower_.condensed().rule(), settings_.state_weights, settings_.measure);
+  if (is_beyond(principal, settings_.parameter_min, settings_.parameter_max) ||
+      is_beyond(measure_, settings_.measure_min, settings_.measure_max))
+    special = {};  // what lies beyond the bound was not asked for: the branch ends there with an ordinary end point
   const bool is_special = special.type != PointType::ordinary && special.type != PointType::end;
   if (is_special && (special.ends_branch || (settings_.stop_at && settings_.stop_at(special))))
     end(EndReason::special_point, special.description);
@@ -92,6 +95,12 @@ SpecialPoint ContinuationRun::end_conditions(SpecialPoint special) {
            (number_ > 1 || settings_.label_start))
     special.type = PointType::regular;
   return special;
+}
+
+/// Outside of the bounds, and not just by the accuracy of a located point (a user value may be a bound).
+bool ContinuationRun::is_beyond(double value, double least, double most) const {
+  const double accuracy = location_settings(settings_).tolerance * (1.0 + std::abs(value));
+  return value < least - accuracy || value > most + accuracy;
 }
 
 void ContinuationRun::record(const SpecialPoint& special) {

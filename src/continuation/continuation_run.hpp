@@ -41,6 +41,7 @@ class ContinuationRun {
  private:
   bool take_step();
   SpecialPoint end_conditions(SpecialPoint special);
+  bool is_beyond(double value, double least, double most) const;
   void record(const SpecialPoint& special);
   void end(EndReason reason, std::string detail);
   void prepare_next_step();

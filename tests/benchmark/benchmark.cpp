@@ -7,6 +7,7 @@
 #include "benchmark/auto_comparison.hpp"
 #include "benchmark/matrix_times.hpp"
 #include "benchmark/step_times.hpp"
+#include "benchmark/two_parameter_times.hpp"
 
 namespace {
 
@@ -15,7 +16,8 @@ constexpr const char* purpose =
     "and prints tables:\n"
     "  (a) time per continuation step for 1 to 16 segments and for 50 to 800 mesh intervals;\n"
     "  (b) one Newton matrix and the multipliers, in units of the local eliminations of one Newton matrix;\n"
-    "  (c) with --auto, time per step of AUTO-07p on the same k-segment problem, divided by ours.";
+    "  (c) a step along a fold, period-doubling or torus curve, divided by a step of the one-parameter branch;\n"
+    "  (d) with --auto, time per step of AUTO-07p on the same k-segment problem, divided by ours.";
 
 constexpr const char* how_to_read =
     "How to read it. The machine's speed drops out of exponents, units and ratios; microseconds only tell where the\n"
@@ -23,7 +25,8 @@ constexpr const char* how_to_read =
     "segments or intervals that should be independent. (b) A part of 0.5 units takes half the time of the "
     "eliminations\n"
     "that every collocation code has to do; the parts below a line are measured on their own and add up to it only\n"
-    "about. (c) Processor times of one thread; a ratio of 10 says that AUTO needs ten times as long for a step. AUTO\n"
+    "about. (c) Both with multipliers, as in a run; a curve has no chord iterations, every Newton matrix is new.\n"
+    "(d) Processor times of one thread; a ratio of 10 says that AUTO needs ten times as long for a step. AUTO\n"
     "computes no multipliers when IPS = 4, hence the two ratios. The difference is that of the states on the two\n"
     "branches at the same alpha; AUTO's file has ten digits. Compare only numbers of an optimised build.";
 
@@ -36,6 +39,7 @@ int run(bool quick, bool with_auto) {
   if (quick) sizes = {{1, 2}, {10, 20}, 10, 3};
   print_step_times(sizes);
   print_matrix_times(quick ? 5 : 2000);
+  print_two_parameter_times(quick ? 3 : 400, quick ? 20 : 100);
   if (with_auto && !auto_is_installed()) return 1;
   if (with_auto) print_auto_comparison(quick ? std::vector<int>{1, 2} : std::vector<int>{1, 2, 4, 8}, quick);
   fmt::print("{}\n", how_to_read);

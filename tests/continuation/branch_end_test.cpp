@@ -73,6 +73,30 @@ TEST_CASE("bounds on the parameter and on the measure end a branch at the first 
   CHECK(by_measure.sink.points.back().measure > 2.2);
 }
 
+TEST_CASE("a special point counts up to the bound, also in the last step; beyond it the branch ends with EP") {
+  // Steps that go far beyond alpha = 3.0526: with one user value before the bound, at it, beyond it, or both.
+  const auto last_points = [](const std::vector<double>& values, double bound) {
+    Branch branch;
+    branch.settings.step.initial = branch.settings.step.maximum = 0.4;
+    branch.settings.parameter_max = bound;
+    for (const double value : values) branch.tests.push_back(std::make_unique<UserValueTest>(1, value, true, "alpha"));
+    const BranchSummary summary = branch.run();
+    return std::pair{summary.reason, branch.sink.points};
+  };
+  const auto [before, stopped] = last_points({3.0525, 3.0527}, 3.0526);
+  CHECK(before == EndReason::special_point);
+  CHECK(stopped.back().special.type == PointType::user);
+  CHECK(stopped.back().orbit.par(0) == Approx(3.0525).epsilon(1e-9));
+  const auto [at, on_bound] = last_points({3.0526}, 3.0526);
+  CHECK(at == EndReason::special_point);
+  CHECK(on_bound.back().special.type == PointType::user);
+  const auto [beyond, ended] = last_points({3.0527}, 3.0526);
+  CHECK(beyond == EndReason::parameter_bound);
+  CHECK(ended.back().special.type == PointType::end);
+  CHECK(ended.back().orbit.par(0) > 3.0526);
+  for (const KeptPoint& p : ended) CHECK(p.special.type != PointType::user);
+}
+
 TEST_CASE("a stop condition, a user value that stops, an interruption") {
   Branch stopped;
   stopped.tests.push_back(std::make_unique<UserValueTest>(1, 3.05, false, "alpha"));
