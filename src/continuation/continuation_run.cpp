@@ -59,12 +59,19 @@ bool ContinuationRun::take_step() {
     newton_ = follower_.step(here_, step_.value(), next_);
     ds_taken_ = step_.value();
     const bool converged = newton_.converged();
-    if (converged && (step_.is_short() || search_.resolved(next_, ds_taken_))) return true;
+    std::string trouble;
+    if (!converged)
+      trouble = describe(newton_.status);
+    else if (step_.is_short())
+      return true;
+    else if (!search_.same_branch(here_, next_))
+      trouble = "it may have come to another branch";
+    else if (!search_.resolved(next_, ds_taken_))
+      trouble = "a test function may have changed sign twice";
+    else
+      return true;
     if (!step_.failed()) return converged;
-    sink_.note(number_ + 1,
-               fmt::format("Retrying step ({}): ds = {:.4e}",
-                           converged ? "a test function may have changed sign twice" : describe(newton_.status),
-                           step_.value()));
+    sink_.note(number_ + 1, fmt::format("Retrying step ({}): ds = {:.4e}", trouble, step_.value()));
   }
 }
 

@@ -84,10 +84,19 @@ NewtonResult PathFollower::step(const PathPoint& from, double ds, PathPoint& to)
   to.orbit.states = from.orbit.states;
   to.orbit.par = from.orbit.par;
   advance(to.orbit, ds, from.tangent, system_.free_parameters());
+  return step_near(from, ds, to);
+}
+
+NewtonResult PathFollower::step_near(const PathPoint& from, double ds, PathPoint& to) {
   row_.states = from.dual.states;
   row_.durations = from.dual.durations;
   row_.globals = from.dual.globals;
   return correct_and_orient(to, from.orbit, ds);
+}
+
+bool PathFollower::solves(const Orbit& x) {
+  problem_.evaluate(x, newton_.residual());
+  return is_rounding(problem_.residual_size(newton_.residual()), x);
 }
 
 /// The first component of the tangent that is not negligible decides: the principal parameter's when it varies.

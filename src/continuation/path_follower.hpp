@@ -38,6 +38,11 @@ class PathFollower {
   /// One step of signed length ds; `to` must come from make_point or be a former path point.
   NewtonResult step(const PathPoint& from, double ds, PathPoint& to);
 
+  /// The same point, but Newton starts at what to.orbit holds instead of on the tangent.
+  NewtonResult step_near(const PathPoint& from, double ds, PathPoint& to);
+  /// Are the equations satisfied to rounding?
+  bool solves(const Orbit& x);
+
   /// Moves the point to a new mesh of the same size: states and tangent are interpolated, the tangent renormalised.
   void change_mesh(PathPoint& point, const std::vector<double>& mesh) const;
   void reverse(PathPoint& point) const;

@@ -17,6 +17,10 @@ constexpr double together = 1e-5;
 constexpr double unexpected = 0.3;
 /// It may have changed sign twice when the parabola through its values falls below this share of those at the ends.
 constexpr double dip = 0.25;
+/// A step whose tangents make a larger angle (cosine) has come to another branch if the determinant falls below this
+/// share.
+constexpr double same_direction = 0.95;
+constexpr double small_determinant = 0.3;
 /// To find where a function has the sign that it brought into the step.
 constexpr int most_halvings = 12;
 constexpr std::size_t history_length = 12;
@@ -117,6 +121,11 @@ void SpecialPointSearch::evaluate(const PathPoint& at) {
   }
 }
 
+void SpecialPointSearch::evaluate_again(const PathPoint& at) {
+  follower_.linearize_at(at);
+  evaluate(at);
+}
+
 int SpecialPointSearch::sign_at(const TestedPoint& point, std::size_t test) const {
   const std::optional<double>& value = data_.values[test];
   if (!value) return tests_[test]->sign_where_undefined(point);
@@ -125,9 +134,8 @@ int SpecialPointSearch::sign_at(const TestedPoint& point, std::size_t test) cons
 }
 
 void SpecialPointSearch::begin(const PathPoint& start) {
-  follower_.linearize_at(start);
   determinant_unit_.reset();
-  evaluate(start);
+  evaluate_again(start);
   signs_ = data_.signs;
   history_.clear();
   remember(0.0);
@@ -135,6 +143,7 @@ void SpecialPointSearch::begin(const PathPoint& start) {
 
 void SpecialPointSearch::remember(double ds) {
   const double arclength = history_.empty() ? 0.0 : history_.back().arclength + std::abs(ds);
+  determinant_here_ = data_.determinant;
   if (history_.size() == history_length) history_.erase(history_.begin());
   history_.push_back({arclength, data_.values});
 }
@@ -160,6 +169,14 @@ bool SpecialPointSearch::resolved(const PathPoint& next, double ds) {
   return true;
 }
 
+bool SpecialPointSearch::same_branch(const PathPoint& here, const PathPoint& next) {
+  const double cosine = dot(here.dual, next.tangent);
+  if (cosine > same_direction) return true;
+  evaluate(next);
+  // A border that is not the tangent makes the determinant smaller by the cosine.
+  return std::abs(data_.determinant) > small_determinant * std::abs(cosine * determinant_here_);
+}
+
 /// Test functions that had a sign at the start of the step and have another, or none, at its end.
 std::vector<std::size_t> SpecialPointSearch::changed(const PointData& end) const {
   std::vector<std::size_t> result;
@@ -171,51 +188,103 @@ std::vector<std::size_t> SpecialPointSearch::changed(const PointData& end) const
 std::optional<SpecialPoint> SpecialPointSearch::advance(const PathPoint& here, PathPoint& next, double& ds,
                                                         NewtonResult& newton, const Note& note) {
   evaluate(next);
-  const PointData end = data_;
-  const OrbitVector end_tangent = next.tangent;
-  const double whole = ds;
-  std::optional<Zero> first;
-  bool moved = false;
-  const double negligible = 10.0 * settings_.tolerance;
-  for (const std::size_t i : changed(end)) {
-    const bool at_end = end.signs[i] == 0;
-    const Zero zero = at_end ? Zero{i, ds, true} : locate(i, here, next, ds, *end.values[i]);
-    moved = moved || !at_end;
-    if (!zero.converged)
-      note(fmt::format("Possible special point: {} changes sign, but no zero of it was located", tests_[i]->name()));
-    else if (std::abs(zero.ds) > negligible && (!first || std::abs(zero.ds) < std::abs(first->ds)))
-      first = zero;
-  }
-  if (moved) {
-    // Trial steps have moved `next`: compute it again, where the branch goes on.
-    const double length = first ? first->ds : ds;
-    newton = follower_.step(here, length, next);
-    if (!newton.converged() && first) {
-      note(fmt::format("Possible special point: {}, dropped for want of convergence", tests_[first->test]->name()));
-      first.reset();
-      newton = follower_.step(here, ds, next);
-    } else {
-      ds = length;
-    }
-    evaluate(next);
-  }
   std::optional<SpecialPoint> special;
-  if (first) special = classify(*first, next, end);
-  if (special && special->type == PointType::branch_point) {
-    // The null space has two dimensions there: go on along the tangents of the ends of the step, which are certain.
-    const double share = end.signs[first->test] == 0 ? 0.0 : first->ds / whole;
-    next.tangent = here.tangent;
-    next.tangent.scale(1.0 - share);
-    next.tangent.states += share * end_tangent.states;
-    next.tangent.durations += share * end_tangent.durations;
-    next.tangent.globals += share * end_tangent.globals;
-    follower_.renormalise(next);
-  }
+  if (!changed(data_).empty()) special = advance_to_first_zero(here, next, ds, newton, note);
   for (std::size_t i = 0; i < tests_.size(); ++i)
-    if (!first || i != first->test)
-      if (data_.signs[i] != 0) signs_[i] = data_.signs[i];
+    if (data_.signs[i] != 0) signs_[i] = data_.signs[i];
   remember(ds);
   return special;
+}
+
+/// Trial steps overwrite `next`: it becomes the first zero, or again the end of the step when there is none.
+std::optional<SpecialPoint> SpecialPointSearch::advance_to_first_zero(const PathPoint& here, PathPoint& next,
+                                                                      double& ds, NewtonResult& newton,
+                                                                      const Note& note) {
+  const PathPoint end_point = next;
+  const Step whole{ds, data_};
+  // A branch point before anything else: other functions are searched up to it only, so that no step leads onto it.
+  const std::optional<BranchPointBracket> branch_point = find_branch_point(here, next, ds, note);
+  const Step searched = branch_point ? up_to(*branch_point) : whole;
+  if (const std::optional<Zero> first = find_first(here, next, searched, note)) {
+    const bool at_end = first->ds == whole.ds;
+    const NewtonResult result = at_end ? newton : follower_.step(here, first->ds, next);
+    if (result.converged()) {
+      if (at_end) next = end_point;
+      evaluate_again(next);
+      ds = first->ds;
+      newton = result;
+      return classify(vanishing_with(first->test, whole.end), next, whole.end);
+    }
+    note(fmt::format("Possible special point: {}, dropped for want of convergence", tests_[first->test]->name()));
+  }
+  if (branch_point) {
+    branch_point->put_zero(next);
+    evaluate_again(next);
+    ds = branch_point->length();
+    return classify(vanishing_at(*branch_point), next, branch_point->after().data);
+  }
+  next = end_point;
+  evaluate_again(next);
+  return std::nullopt;
+}
+
+/// Right after the start a zero is the start itself: a label that the run begins from.
+bool SpecialPointSearch::is_start(double length) const {
+  return history_.size() == 1 && std::abs(length) <= 10.0 * settings_.tolerance;
+}
+
+/// The zero of a function that Newton's method cannot come near to, on the step to `trial`, evaluated last.
+std::optional<BranchPointBracket> SpecialPointSearch::find_branch_point(const PathPoint& here, PathPoint& trial,
+                                                                        double ds, const Note& note) {
+  const std::vector<std::size_t> candidates = changed(data_);
+  const auto found =
+      std::find_if(candidates.begin(), candidates.end(), [&](std::size_t i) { return tests_[i]->singular_at_zero(); });
+  if (found == candidates.end()) return std::nullopt;
+  if (data_.signs[*found] == 0) {  // the step ends on top of it: look from beyond
+    constexpr double beyond = 1.1;
+    ds *= beyond;
+    if (!follower_.step(here, ds, trial).converged()) return std::nullopt;
+    evaluate(trial);
+    if (data_.signs[*found] != -signs_[*found]) return std::nullopt;
+  }
+  const PathPoint end = trial;
+  const PointData end_data = data_;
+  evaluate_again(here);
+  BranchPointBracket bracket(follower_, here, data_, ds, end, end_data, *found, signs_[*found]);
+  const auto evaluated = [this](const PathPoint& point) -> const PointData& {
+    evaluate(point);
+    return data_;
+  };
+  if (!bracket.narrow(evaluated, trial, settings_.tolerance)) {
+    note(fmt::format("Possible special point: {} changes sign, but no zero of it was located", tests_[*found]->name()));
+    return std::nullopt;
+  }
+  if (is_start(bracket.length())) return std::nullopt;
+  return bracket;
+}
+
+/// What vanishes within the bracket, vanishes with the branch point and not before it.
+SpecialPointSearch::Step SpecialPointSearch::up_to(const BranchPointBracket& branch_point) const {
+  Step step{branch_point.length_before(), branch_point.before().data};
+  for (std::size_t i = 0; i < tests_.size(); ++i)
+    if (step.end.signs[i] == 0) step.end.signs[i] = signs_[i];
+  return step;
+}
+
+/// The zero nearest to the start among those of all functions that Newton's method can come near to.
+std::optional<SpecialPointSearch::Zero> SpecialPointSearch::find_first(const PathPoint& here, PathPoint& trial,
+                                                                       const Step& step, const Note& note) {
+  std::optional<Zero> first;
+  for (const std::size_t i : changed(step.end)) {
+    const bool at_end = step.end.signs[i] == 0;
+    if (tests_[i]->singular_at_zero() && !at_end) continue;
+    const Zero zero = at_end ? Zero{i, step.ds, true} : locate(i, here, trial, step.ds, *step.end.values[i]);
+    if (!zero.converged)
+      note(fmt::format("Possible special point: {} changes sign, but no zero of it was located", tests_[i]->name()));
+    else if (!is_start(zero.ds) && (!first || std::abs(zero.ds) < std::abs(first->ds)))
+      first = zero;
+  }
+  return first;
 }
 
 /// Between the start of the step, evaluated again with the border and the mesh of the trial steps, and its end. At a
@@ -251,13 +320,31 @@ SpecialPointSearch::Zero SpecialPointSearch::locate(std::size_t test, const Path
   return {test, low + zero.ds, zero.converged};
 }
 
-/// What the zero is. Functions that vanish together make one special point, of the first one's type, and none of them
-/// is looked for again.
-SpecialPoint SpecialPointSearch::classify(const Zero& zero, const PathPoint& at, const PointData& end) {
+/// The functions that vanish at the point evaluated last, where `test` has its zero.
+std::vector<std::size_t> SpecialPointSearch::vanishing_with(std::size_t test, const PointData& end) const {
   std::vector<std::size_t> group;
   for (const std::size_t i : changed(end))
-    if (i == zero.test || (data_.values[i] && std::abs(*data_.values[i]) <= together * std::abs(*end.values[i])))
+    if (i == test || (data_.values[i] && std::abs(*data_.values[i]) <= together * std::abs(*end.values[i])))
       group.push_back(i);
+  return group;
+}
+
+/// The branch point's own function, then the others that change sign within the bracket.
+std::vector<std::size_t> SpecialPointSearch::vanishing_at(const BranchPointBracket& branch_point) const {
+  std::vector<std::size_t> group{branch_point.test()};
+  const PointData& before = branch_point.before().data;
+  const PointData& after = branch_point.after().data;
+  for (std::size_t i = 0; i < tests_.size(); ++i)
+    if (i != branch_point.test() && before.values[i] && after.values[i] && signs_[i] != 0 &&
+        after.signs[i] == -signs_[i])
+      group.push_back(i);
+  return group;
+}
+
+/// Functions that vanish together make one special point, of the first one's type, and none of them is looked for
+/// again.
+SpecialPoint SpecialPointSearch::classify(const std::vector<std::size_t>& group, const PathPoint& at,
+                                          const PointData& after) {
   SpecialPoint special;
   for (const std::size_t i : group) {
     const SpecialPoint found = tests_[i]->classify(tested(at), signs_[i] < 0);
@@ -269,8 +356,9 @@ SpecialPoint SpecialPointSearch::classify(const Zero& zero, const PathPoint& at,
     }
   }
   for (const std::size_t i : group) {
-    signs_[i] = end.signs[i];
+    signs_[i] = after.signs[i];
     data_.values[i] = 0.0;
+    data_.signs[i] = 0;
   }
   return special;
 }

@@ -6,22 +6,14 @@
 #include <memory>
 #include <optional>
 
+#include "continuation/branch_point_bracket.hpp"
 #include "continuation/path_follower.hpp"
+#include "continuation/point_data.hpp"
 #include "special_points/locator.hpp"
 #include "special_points/test_function.hpp"
 #include "stability/floquet_multipliers.hpp"
 
 namespace tchat {
-
-/// What is known about a converged point besides the orbit.
-struct PointData {
-  FloquetMultipliers multipliers;
-  std::vector<double> transversalities;       ///< h_x f / (|h_x| |f|) at the end of each segment
-  double determinant = 1.0;                   ///< as in TestedPoint
-  std::vector<std::optional<double>> values;  ///< of the test functions
-  std::vector<double> zero_levels;
-  std::vector<int> signs;  ///< of the values; 0 for those up to the zero level
-};
 
 struct LocationSettings {
   bool multipliers = true;   ///< compute them (ISP > 0)
@@ -48,6 +40,10 @@ class SpecialPointSearch {
   /// have changed sign twice, a shorter step will tell.
   bool resolved(const PathPoint& next, double ds);
 
+  /// Does a converged step go on along the same branch? Close to a branch point Newton may come out on another one: the
+  /// tangent turns much there and the determinant is small.
+  bool same_branch(const PathPoint& here, const PathPoint& next);
+
   /// `next` is a converged step of length ds from `here`, whose linearisation the follower holds. When test functions
   /// change sign on the way, `next`, `ds` and `newton` are moved to their first zero, and what it is is returned.
   /// Afterwards data() belongs to `next`, which becomes the new `here`.
@@ -60,13 +56,28 @@ class SpecialPointSearch {
     double ds;
     bool converged;
   };
+  /// How far the zeros are searched, and what is known there.
+  struct Step {
+    double ds;
+    PointData end;
+  };
 
-  void evaluate(const PathPoint& at);
+  void evaluate(const PathPoint& at);        // the follower holds its linearisation
+  void evaluate_again(const PathPoint& at);  // with a new one
   TestedPoint tested(const PathPoint& at) const;
   int sign_at(const TestedPoint& point, std::size_t test) const;
   std::vector<std::size_t> changed(const PointData& end) const;
+  std::optional<SpecialPoint> advance_to_first_zero(const PathPoint& here, PathPoint& next, double& ds,
+                                                    NewtonResult& newton, const Note& note);
+  bool is_start(double length) const;
+  std::optional<BranchPointBracket> find_branch_point(const PathPoint& here, PathPoint& trial, double ds,
+                                                      const Note& note);
+  Step up_to(const BranchPointBracket& branch_point) const;
+  std::optional<Zero> find_first(const PathPoint& here, PathPoint& trial, const Step& step, const Note& note);
   Zero locate(std::size_t test, const PathPoint& here, PathPoint& trial, double ds, double end_value);
-  SpecialPoint classify(const Zero& zero, const PathPoint& at, const PointData& end);
+  std::vector<std::size_t> vanishing_with(std::size_t test, const PointData& end) const;
+  std::vector<std::size_t> vanishing_at(const BranchPointBracket& branch_point) const;
+  SpecialPoint classify(const std::vector<std::size_t>& group, const PathPoint& at, const PointData& after);
   void remember(double ds);
 
   PathFollower& follower_;
@@ -80,8 +91,9 @@ class SpecialPointSearch {
     double arclength;
     std::vector<std::optional<double>> values;
   };
-  std::vector<Past> history_;  // the last accepted points, for resolved()
-  std::vector<int> signs_;     // of the test functions at the last accepted point; 0: none yet
+  double determinant_here_ = 1.0;  // at the last accepted point
+  std::vector<Past> history_;      // the last accepted points, for resolved()
+  std::vector<int> signs_;         // of the test functions at the last accepted point; 0: none yet
 };
 
 }  // namespace tchat

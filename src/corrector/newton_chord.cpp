@@ -13,6 +13,8 @@ constexpr double divergence_factor = 20.0;
 constexpr double rounding_residual = 200 * std::numeric_limits<double>::epsilon();
 /// A stalled iteration is accepted at rounding-level residual when its corrections are about sqrt(rounding) or less.
 constexpr double stalled_change = 1e-6;
+/// A correction larger than this multiple of a residual at rounding level says nothing: the matrix is nearly singular.
+constexpr double magnified = 1e6;
 
 }  // namespace
 
@@ -29,6 +31,10 @@ std::string describe(NewtonStatus status) {
     default:
       return "the Newton matrix is singular";
   }
+}
+
+bool is_rounding(double residual, const Orbit& x) {
+  return residual < rounding_residual * (1.0 + x.states.cwiseAbs().maxCoeff());
 }
 
 NewtonChord::NewtonChord(BorderedProblem& problem, const NewtonSettings& settings)
@@ -74,12 +80,15 @@ NewtonResult NewtonChord::correct(Orbit& x, const OrbitVector& row, const Orbit&
       return result;
     }
     if (iteration == 1) first_change = larger;
-    const double size = 1.0 + x.states.cwiseAbs().maxCoeff();
-    const bool rounding = result.residual < rounding_residual * size;
-    if (iteration > 1 && larger > divergence_factor * first_change) {
-      // Very near a branch point rounding grows to corrections of any size: the point before this one was the answer.
-      if (rounding) advance(x, -1.0, dx_, free_parameters);
-      result.status = rounding ? NewtonStatus::converged : NewtonStatus::diverging;
+    const bool rounding = is_rounding(result.residual, x);
+    const bool diverges = iteration > 1 && larger > divergence_factor * first_change;
+    if (rounding && (diverges || larger > magnified * rounding_residual)) {
+      advance(x, -1.0, dx_, free_parameters);
+      result.status = NewtonStatus::converged;
+      return result;
+    }
+    if (diverges) {
+      result.status = NewtonStatus::diverging;
       return result;
     }
     if (iteration > 2 && larger < stalled_change && rounding) {

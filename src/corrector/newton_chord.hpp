@@ -7,7 +7,8 @@
 ///     |dp| / (1 + |p|) <= tolerance_parameters  for durations and free parameters (EPSL), and
 ///     max |du| / (1 + max |u|) < tolerance_states                                (EPSU).
 /// Given up at once when the larger of the two exceeds 20 times its value at the first iteration. Near a branch point
-/// Newton stalls at |du| of the order of the square root of rounding: a residual at rounding level is accepted there.
+/// the corrections are rounding, magnified by a nearly singular matrix, and do not get smaller: there a residual at
+/// rounding level is accepted, and such a correction not applied.
 #pragma once
 
 #include <string>
@@ -45,6 +46,9 @@ struct NewtonResult {
 };
 
 std::string describe(NewtonStatus status);
+
+/// Is a residual of this size zero but for rounding?
+bool is_rounding(double residual, const Orbit& x);
 
 class NewtonChord {
  public:

@@ -32,6 +32,7 @@ class BranchPointTest final : public TestFunction {
   std::string name() const override { return "branch point"; }
   std::optional<double> value(const TestedPoint& point) const override { return point.determinant; }
   double zero_level(const TestedPoint&) const override { return 1e-9; }
+  bool singular_at_zero() const override { return true; }
   SpecialPoint classify(const TestedPoint& point, bool rising) const override;
 
  private:

@@ -46,6 +46,8 @@ class TestFunction {
   /// True for functions that may change sign twice within a step that is otherwise fine; such a step is then shortened
   /// until their trend is followed.
   virtual bool oscillates() const { return false; }
+  /// True when Newton's matrix is singular at the zeros, which are then located from both sides.
+  virtual bool singular_at_zero() const { return false; }
   /// The special point at a located zero; `rising` says which way the function went through it.
   virtual SpecialPoint classify(const TestedPoint& point, bool rising) const = 0;
 };

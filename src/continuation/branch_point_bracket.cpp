@@ -1,0 +1,138 @@
+#include "continuation/branch_point_bracket.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tchat {
+
+namespace {
+
+/// Each round puts a trial point on both sides of the expected zero, at this share of the bracket.
+constexpr double share = 0.1;
+constexpr int most_rounds = 10;
+/// Share of the step that counts as one place for other functions that vanish there.
+constexpr double narrow_enough = 0.01;
+/// To find where the function has the sign that it brought into the step, after a zero at its start.
+constexpr int most_halvings = 12;
+constexpr std::size_t most_nodes = 4;
+/// The best that is asked for where rounding forbids more.
+constexpr double reachable = 1e-7;
+/// Around a zero the function changes by a smaller share than this of its change over the step; at a jump it does not.
+constexpr double jump_share = 0.5;
+
+}  // namespace
+
+BranchPointBracket::BranchPointBracket(PathFollower& follower, const PathPoint& start, const PointData& start_data,
+                                       double ds, const PathPoint& end, const PointData& end_data, std::size_t test,
+                                       int sign)
+    : follower_(follower),
+      start_(start),
+      test_(test),
+      sign_(sign),
+      direction_(ds < 0.0 ? -1.0 : 1.0),
+      low_(make_side(0.0, start, start_data)),
+      high_(make_side(std::abs(ds), end, end_data)),
+      nodes_{{low_.at, low_.value}, {high_.at, high_.value}} {}
+
+BranchPointBracket::Side BranchPointBracket::make_side(double at, const PathPoint& point, const PointData& data) const {
+  Side side{at, data.values[test_].value_or(0.0), point.orbit, point.tangent, data};
+  side.slope.scale(direction_ / dot(start_.dual, point.tangent));
+  return side;
+}
+
+bool BranchPointBracket::narrow(const Evaluate& evaluate, PathPoint& trial, double tolerance) {
+  const double whole = high_.at;
+  if (!find_sign(evaluate, trial)) return false;
+  const double change = high_.value - low_.value;
+  double moved = std::numeric_limits<double>::infinity();
+  for (int round = 0; round < most_rounds; ++round) {
+    const double last = zero_;
+    zero_ = interpolated_zero();
+    if (round > 0) moved = std::abs(zero_ - last);
+    if (moved <= tolerance && high_.at - low_.at <= narrow_enough * whole) {
+      put_zero(trial);
+      if (follower_.solves(trial.orbit)) break;
+    }
+    const double distance = share * (high_.at - low_.at);
+    const double below = zero_ - distance;
+    const double above = zero_ + distance;
+    const bool narrowed = try_at(below, evaluate, trial);
+    if (!try_at(above, evaluate, trial) && !narrowed) break;
+  }
+  return moved <= std::max(tolerance, reachable) && std::abs(high_.value - low_.value) <= jump_share * std::abs(change);
+}
+
+/// At a zero located before, the function lacks the sign that the branch had there.
+bool BranchPointBracket::find_sign(const Evaluate& evaluate, PathPoint& trial) {
+  for (int halving = 0; low_.data.signs[test_] != sign_; ++halving) {
+    if (halving == most_halvings) return false;
+    if (!try_at(0.5 * (low_.at + high_.at), evaluate, trial)) return false;
+  }
+  return true;
+}
+
+/// A trial point inside the bracket, which takes the place of one of its ends. False when there is none.
+bool BranchPointBracket::try_at(double at, const Evaluate& evaluate, PathPoint& trial) {
+  if (!(at > low_.at && at < high_.at)) return false;
+  put(at, trial);
+  if (!follower_.step_near(start_, direction_ * at, trial).converged()) return false;
+  const PointData& data = evaluate(trial);
+  if (!data.values[test_]) return false;
+  Side side = make_side(at, trial, data);
+  nodes_.push_back({at, side.value});
+  (side.value * sign_ > 0.0 ? low_ : high_) = std::move(side);
+  return true;
+}
+
+/// Of the polynomial through the ends of the bracket and the points nearest to it.
+double BranchPointBracket::interpolated_zero() const {
+  const double middle = 0.5 * (low_.at + high_.at);
+  std::vector<Node> nodes = nodes_;
+  std::sort(nodes.begin(), nodes.end(),
+            [&](const Node& a, const Node& b) { return std::abs(a.at - middle) < std::abs(b.at - middle); });
+  nodes.resize(std::min(nodes.size(), most_nodes));
+  const auto polynomial = [&](double at) {
+    double result = 0.0;
+    for (const Node& i : nodes) {
+      double term = i.value;
+      for (const Node& k : nodes)
+        if (k.at != i.at) term *= (at - k.at) / (i.at - k.at);
+      result += term;
+    }
+    return result;
+  };
+  double low = low_.at;
+  double high = high_.at;
+  for (int halving = 0; halving < 60; ++halving) {
+    const double half = 0.5 * (low + high);
+    (polynomial(half) * sign_ > 0.0 ? low : high) = half;
+  }
+  return 0.5 * (low + high);
+}
+
+void BranchPointBracket::put(double at, PathPoint& point) const {
+  const std::vector<int>& free = follower_.condensed().system().free_parameters();
+  const double h = high_.at - low_.at;
+  const double s = (at - low_.at) / h;
+  OrbitVector across = low_.slope;  // from low to high
+  across.states = high_.orbit.states - low_.orbit.states;
+  for (int k = 0; k < low_.orbit.shape.segments; ++k)
+    across.durations(k) = high_.orbit.duration(k) - low_.orbit.duration(k);
+  for (std::size_t g = 0; g < free.size(); ++g)
+    across.globals(static_cast<Eigen::Index>(g)) = high_.orbit.par(free[g] - 1) - low_.orbit.par(free[g] - 1);
+  point.orbit = low_.orbit;
+  advance(point.orbit, s * s * (3.0 - 2.0 * s), across, free);
+  advance(point.orbit, h * s * (1.0 - s) * (1.0 - s), low_.slope, free);
+  advance(point.orbit, h * s * s * (s - 1.0), high_.slope, free);
+
+  const double by_low = direction_ * (1.0 - s) * (1.0 - 3.0 * s);
+  const double by_high = direction_ * s * (3.0 * s - 2.0);
+  across.scale(direction_ * 6.0 * s * (1.0 - s) / h);
+  point.tangent.states = across.states + by_low * low_.slope.states + by_high * high_.slope.states;
+  point.tangent.durations = across.durations + by_low * low_.slope.durations + by_high * high_.slope.durations;
+  point.tangent.globals = across.globals + by_low * low_.slope.globals + by_high * high_.slope.globals;
+  follower_.renormalise(point);
+}
+
+}  // namespace tchat

@@ -1,0 +1,72 @@
+/// Location of a zero where Newton's matrix is singular: a branch point within a continuation step (2).
+///
+/// A trial step right on top of a branch point fails, or comes out anywhere within the square root of rounding, or on
+/// the other branch. So no trial step goes there. Trial points close in on the zero from both sides at a distance that
+/// shrinks with the bracket; between them the branch is smooth, and the zero is placed by interpolation:
+///
+///     test function      polynomial through the nearest four points, along the arclength of the step,
+///     orbit, tangent     cubic Hermite between the two ends of the bracket,
+///
+/// until the place no longer moves and the interpolated orbit satisfies the equations to rounding. The same cubic is
+/// the start of Newton's method at trial points, which keeps them on the branch.
+#pragma once
+
+#include <functional>
+
+#include "continuation/path_follower.hpp"
+#include "continuation/point_data.hpp"
+
+namespace tchat {
+
+class BranchPointBracket {
+ public:
+  /// Evaluates a converged point, whose linearisation the follower holds.
+  using Evaluate = std::function<const PointData&(const PathPoint&)>;
+  /// A point of the branch at an arclength from the start of the step.
+  struct Side {
+    double at = 0.0;  ///< without the sign of the step
+    double value = 0.0;
+    Orbit orbit;
+    OrbitVector slope;  ///< d orbit / d at
+    PointData data;
+  };
+
+  /// From `start` (evaluated as `start_data`) a step of length ds has led to `end`, where the test function has another
+  /// sign than `sign`, which it had before the zero. The follower and the start must outlive this object.
+  BranchPointBracket(PathFollower& follower, const PathPoint& start, const PointData& start_data, double ds,
+                     const PathPoint& end, const PointData& end_data, std::size_t test, int sign);
+
+  /// `trial` is overwritten. False when the function has no zero there that could be located.
+  bool narrow(const Evaluate& evaluate, PathPoint& trial, double tolerance);
+
+  std::size_t test() const { return test_; }
+  double length() const { return direction_ * zero_; }           ///< of the step to the zero
+  double length_before() const { return direction_ * low_.at; }  ///< of the step to before()
+  const Side& before() const { return low_; }
+  const Side& after() const { return high_; }
+  /// The interpolated point and its unit tangent.
+  void put_zero(PathPoint& point) const { put(zero_, point); }
+
+ private:
+  Side make_side(double at, const PathPoint& point, const PointData& data) const;
+  bool find_sign(const Evaluate& evaluate, PathPoint& trial);
+  bool try_at(double at, const Evaluate& evaluate, PathPoint& trial);
+  double interpolated_zero() const;
+  void put(double at, PathPoint& point) const;
+
+  PathFollower& follower_;
+  const PathPoint& start_;
+  std::size_t test_;
+  int sign_;
+  double direction_;
+  Side low_;
+  Side high_;
+  struct Node {
+    double at;
+    double value;
+  };
+  std::vector<Node> nodes_;  // every evaluated point
+  double zero_ = 0.0;
+};
+
+}  // namespace tchat
