@@ -73,6 +73,36 @@ TEST_CASE("xi_n and the smooth multipliers of the linear oscillator along the gr
   }
 }
 
+TEST_CASE("xi_n and the smooth multipliers do not depend on cuts of the orbit, in either order of the segments") {
+  constexpr double omega = 1.7;
+  const OscillatorOrbit orbit = nonimpacting_orbit(omega, std::abs(OscillatorConstants{omega}.stiffness()));
+  const double half = orbit.constants.period() / 2;  // from the contact, the maximum of x1, to its minimum
+  const Piece falling = orbit.piece(0, half), rising = orbit.piece(half, 2 * half);
+  for (const bool contact_first : {true, false}) {
+    CAPTURE(contact_first);
+    const Signature signature = contact_first ? Signature{{1, 1, 2}, {1, 3, 2}} : Signature{{1, 3, 2}, {1, 1, 2}};
+    const std::vector<Piece> pieces =
+        contact_first ? std::vector<Piece>{rising, falling} : std::vector<Piece>{falling, rising};
+    const Orbit start = sampled_orbit(pieces, 4, 40, 4, orbit.par());
+    const GrazingOrbitSystem system(linosc(), signature, {2, 1}, contact_first ? 0 : 1);
+    Tests tests;
+    for (int n = 1; n <= 5; ++n) tests.push_back(std::make_unique<XiTest>(system, 1, n));
+    const RecordedBranch branch = continued(system, start, 0.03, 0.03, 6, std::move(tests));
+    REQUIRE(branch.points.size() == 6);
+    for (const RecordedPoint& p : branch.points) {
+      const double at = p.orbit.par(1);
+      CAPTURE(at);
+      for (int n = 1; n <= 5; ++n)
+        CHECK(*p.values[static_cast<std::size_t>(n - 1)] == Approx(exact_xi(n, at)).margin(1e-8));
+      for (const auto& exact : nonimpacting_multipliers(at)) {
+        double nearest = 1.0;
+        for (const auto& mu : p.multipliers.values) nearest = std::min(nearest, std::abs(mu - exact));
+        CHECK(nearest < 1e-7);
+      }
+    }
+  }
+}
+
 TEST_CASE("xi_n vanish at omega = 2 n omega_d / k, every one of them, one label for those that coincide") {
   const double damped = std::sqrt(1 - 0.05 * 0.05);
   constexpr double low = 0.8, high = 2.3;
