@@ -74,9 +74,10 @@ std::string CheckedFunction::row_name(int row) const {
   return kind_ == FunctionKind::event ? name : fmt::format("{}[{}]", name, system_.state_name(row + 1));
 }
 
-WorstEntry compare_with_differences(const CheckedFunction& function, const TestPoint& at, const MatrixXd& supplied,
-                                    const std::function<VectorXd(const TestPoint&)>& value) {
-  WorstEntry worst;
+MatrixComparison compare_with_differences(const CheckedFunction& function, const TestPoint& at,
+                                          const MatrixXd& supplied,
+                                          const std::function<VectorXd(const TestPoint&)>& value) {
+  MatrixComparison comparison;
   const double value_scale = value(at).lpNorm<Eigen::Infinity>();
   const double scale = 1.0 + std::max(value_scale, supplied.lpNorm<Eigen::Infinity>());
   for (int c = 0; c < function.variables(); ++c) {
@@ -88,11 +89,12 @@ WorstEntry compare_with_differences(const CheckedFunction& function, const TestP
       const double distance = std::abs(supplied(r, c) - difference.value(r));
       const double allowed = trust_factor * difference.error(r) + relative_tolerance * scale;
       const double excess = std::isfinite(supplied(r, c)) ? distance / allowed : INFINITY;
-      if (excess <= worst.excess) continue;
-      worst = {distance / scale, excess > 1.0, excess, r, c, supplied(r, c), difference.value(r)};
+      const ComparedEntry entry = {distance / scale, excess, r, c, supplied(r, c), difference.value(r)};
+      if (entry.at_fault()) comparison.faults.push_back(entry);
+      if (entry.excess > comparison.worst.excess) comparison.worst = entry;
     }
   }
-  return worst;
+  return comparison;
 }
 
 }  // namespace tchat

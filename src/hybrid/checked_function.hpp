@@ -51,20 +51,25 @@ class CheckedFunction {
   std::vector<int> active_;  // 1..q
 };
 
-/// The worst entry of a matrix against differences, and whether it is outside the tolerance.
-struct WorstEntry {
-  double relative = 0.0;
-  bool at_fault = false;
-  double excess = 0.0;
+/// An entry of a matrix of derivatives against differences.
+struct ComparedEntry {
+  double relative = 0.0;  // distance by the function's scale
+  double excess = 0.0;    // distance by what is allowed
   int row = 0, column = 0;
   double supplied = 0.0, difference = 0.0;
+  bool at_fault() const { return excess > 1.0; }
+};
+
+struct MatrixComparison {
+  ComparedEntry worst;
+  std::vector<ComparedEntry> faults;  // column by column
 };
 
 /// Compares `supplied`, rows x variables, with differences of `value` (a view of the function, or of its directional
 /// derivative). An entry is at fault when it is off by more than 20 times the differences' error estimate and 1e-8 of
 /// the function's scale; entries whose differences cannot be evaluated are passed over.
-WorstEntry compare_with_differences(const CheckedFunction& function, const TestPoint& at,
-                                    const Eigen::MatrixXd& supplied,
-                                    const std::function<Eigen::VectorXd(const TestPoint&)>& value);
+MatrixComparison compare_with_differences(const CheckedFunction& function, const TestPoint& at,
+                                          const Eigen::MatrixXd& supplied,
+                                          const std::function<Eigen::VectorXd(const TestPoint&)>& value);
 
 }  // namespace tchat

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <random>
 #include <set>
 
@@ -21,6 +22,7 @@ using Eigen::VectorXd;
 constexpr double consistency_factor = 1e-11;  // between two exact evaluations
 constexpr int guard = 16;                     // entries of room behind arguments and outputs
 constexpr double untouched = -7.25e77;        // what the room behind the outputs holds
+constexpr int most_faults = 10;               // wrong entries of one function that are listed
 constexpr int many_variables = 16;            // from here on random directions instead of every variable
 
 /// Keeps the messages of one function: the worst entry, and the first fault of each sort.
@@ -41,8 +43,8 @@ class FunctionChecker {
       for (const TestPoint& at : evaluable_) check_first(at);
     if (system_.table().derivative_order >= 2)
       for (const TestPoint& at : evaluable_) check_second(at);
-    if (first_.at_fault) check_.faults.push_back(text(first_, check_.worst_first, first_at_));
-    if (second_.at_fault) check_.faults.push_back(text(second_, check_.worst_second, second_at_));
+    add_first_faults();
+    if (second_.at_fault()) check_.faults.push_back(text(second_, check_.worst_second, second_at_));
     return check_;
   }
 
@@ -115,14 +117,33 @@ class FunctionChecker {
     if (!((value - expected).norm() <= consistency_factor * (1.0 + expected.norm())))
       add_fault("value", fmt::format("the value of {} with derivatives differs from its value alone at {}",
                                      system_.function_name(check_.kind, check_.index), point_text(at)));
-    const WorstEntry worst = compare_with_differences(function_, at, derivative,
-                                                      [this](const TestPoint& near) { return function_.value(near); });
-    if (worst.excess <= first_.excess) return;
-    first_ = worst;
-    first_at_ = point_text(at);
-    check_.first_error = worst.relative;
-    check_.worst_first =
-        fmt::format("d {} / d {}", function_.row_name(worst.row), function_.variable_name(worst.column));
+    const auto compared = compare_with_differences(function_, at, derivative,
+                                                   [this](const TestPoint& near) { return function_.value(near); });
+    for (const ComparedEntry& entry : compared.faults) {
+      FirstFault& fault = first_faults_[{entry.row, entry.column}];
+      if (entry.excess > fault.entry.excess) fault = {entry, point_text(at)};
+    }
+    if (compared.worst.excess <= first_excess_) return;
+    first_excess_ = compared.worst.excess;
+    check_.first_error = compared.worst.relative;
+    check_.worst_first = first_name(compared.worst);
+  }
+
+  std::string first_name(const ComparedEntry& entry) const {
+    return fmt::format("d {} / d {}", function_.row_name(entry.row), function_.variable_name(entry.column));
+  }
+
+  /// Every wrong entry, each where it is worst, row by row; a long list is cut.
+  void add_first_faults() {
+    int shown = 0;
+    for (const auto& [place, fault] : first_faults_) {
+      if (++shown > most_faults) break;
+      check_.faults.push_back(text(fault.entry, first_name(fault.entry), fault.at));
+    }
+    const int all = static_cast<int>(first_faults_.size());
+    if (all > most_faults)
+      check_.faults.push_back(fmt::format("{} more first derivatives of {} are wrong", all - most_faults,
+                                          system_.function_name(check_.kind, check_.index)));
   }
 
   void check_second(const TestPoint& at) {
@@ -137,12 +158,13 @@ class FunctionChecker {
     VectorXd along;
     const MatrixXd derivative = function_.second(at, direction, along);
     check_agreement(at, direction, along, name);
-    const WorstEntry worst =
+    const auto compared =
         compare_with_differences(function_, at, derivative, [this, &direction](const TestPoint& near) {
           VectorXd d;
           function_.second(near, direction, d);
           return d;
         });
+    const ComparedEntry& worst = compared.worst;
     if (worst.excess <= second_.excess) return;
     second_ = worst;
     second_at_ = point_text(at);
@@ -160,7 +182,7 @@ class FunctionChecker {
     const double scale = 1.0 + first.lpNorm<Eigen::Infinity>() + value.lpNorm<Eigen::Infinity>();
     for (int r = 0; r < function_.rows(); ++r) {
       const bool agrees = std::abs(along(r) - expected(r)) <= consistency_factor * scale;
-      if (agrees || first_.at_fault) continue;
+      if (agrees || !first_faults_.empty()) continue;
       add_fault(fmt::format("agreement {}", function_.row_name(r)),
                 fmt::format("d {} / d {} is {:.13g} from the first derivatives but {:.13g} from the second ones at {}",
                             function_.row_name(r), name, expected(r), along(r), point_text(at)));
@@ -172,7 +194,7 @@ class FunctionChecker {
     return VectorXd::NullaryExpr(function_.variables(), [&] { return uniform(random_); });
   }
 
-  static std::string text(const WorstEntry& worst, const std::string& entry, const std::string& at) {
+  static std::string text(const ComparedEntry& worst, const std::string& entry, const std::string& at) {
     return fmt::format("{} is {:.10g}, differences give {:.10g}, at {}", entry, worst.supplied, worst.difference, at);
   }
 
@@ -187,8 +209,14 @@ class FunctionChecker {
   std::mt19937 random_;
   FunctionCheck check_;
   std::vector<TestPoint> evaluable_;
-  WorstEntry first_, second_;
-  std::string first_at_, second_at_;
+  struct FirstFault {
+    ComparedEntry entry;
+    std::string at;
+  };
+  std::map<std::pair<int, int>, FirstFault> first_faults_;  // by row and column
+  double first_excess_ = 0.0;
+  ComparedEntry second_;
+  std::string second_at_;
   std::set<std::string> sorts_;  // of the faults found
 };
 

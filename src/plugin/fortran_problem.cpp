@@ -42,17 +42,19 @@ FortranProblem::FortranProblem(const std::string& path, void* library, const Pro
 void FortranProblem::read_starting_values(const std::string& path) {
   std::vector<double> x(static_cast<std::size_t>(sizes_.dimension), FortranCalls::unset());
   std::vector<double> par(parameter_length, FortranCalls::unset());
-  if (calls_.has_starting_values())
-    for (int segment = sizes_.segments; segment >= 1; --segment)
-      calls_.starting_values(segment, x.data(), par.data());  // segment 1 has the last word
+  std::vector<double> from_zero(parameter_length, 0.0);  // tells an entry left unset from one computed of such
+  for (std::vector<double>* const start : {&from_zero, &par})
+    for (int segment = sizes_.segments; segment >= 1 && calls_.has_starting_values(); --segment)
+      calls_.starting_values(segment, x.data(), start->data());  // segment 1 has the last word
   for (int k = 1; k <= parameter_length; ++k) {
     const double value = par[static_cast<std::size_t>(k - 1)];
-    if (FortranCalls::is_unset(value)) continue;
+    const double other = from_zero[static_cast<std::size_t>(k - 1)];
+    if (FortranCalls::is_unset(value) && other == 0.0) continue;
     if (!std::isfinite(value))
       throw UserError(
-          fmt::format("Plugin {}: GCSTPNT sets PAR({}) to {}.\n  Set it to a finite number, from values that are set "
-                      "before it, or leave it out.",
-                      path, k, value));
+          fmt::format("Plugin {}: GCSTPNT sets PAR({}) to a value that is not finite.\n"
+                      "  Compute it from entries of PAR that are set before it, or leave it out.",
+                      path, k));
     if (k < first_duration) sizes_.parameters = std::max(sizes_.parameters, k);
   }
   for (int k = 1; k <= sizes_.parameters; ++k) {
