@@ -15,6 +15,7 @@ struct LinearOscillator {
   static constexpr const char* event_names[] = {"wall", "maximum of x1", "minimum of x1"};
   static constexpr const char* jump_names[] = {"impact", "identity"};
   static constexpr double initial_parameters[] = {3.0, 2.0, 0.05, 0.8};
+  static constexpr double initial_state[] = {0.0, 0.0, 0.0, 1.0};  // at rest
 
   template <class T>
   void field(int, const T* x, const T* par, T* f) const {

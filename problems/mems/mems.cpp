@@ -26,6 +26,7 @@ struct MemsOscillator {
   static constexpr const char* event_names[] = {"front", "end of slip", "maximum displacement"};
   static constexpr const char* jump_names[] = {"impact", "identity", "stick"};
   static constexpr double initial_parameters[] = {0.5641, 0.8};
+  static constexpr double initial_state[] = {0.0, 0.0, 0.0, 0.0, 1.0};  // at rest
 
   static constexpr double m1 = 5.0, m2 = 1.0, k = 1.0, c = 0.04, d = 1.0, delta = 0.5, e = 0.8;
   static constexpr double friction = 3.17844;  // mu_d N / m1: the frame's deceleration in slip

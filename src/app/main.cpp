@@ -18,6 +18,7 @@
 #include "app/plot_command.hpp"
 #include "app/resegment_command.hpp"
 #include "app/run_command.hpp"
+#include "app/simulate_command.hpp"
 #include "constants/user_error.hpp"
 
 namespace {
@@ -56,6 +57,7 @@ int main(int argc, char** argv) {
   std::function<int()> chosen;
   tchat::add_run_command(app, chosen);
   tchat::add_resegment_command(app, chosen);
+  tchat::add_simulate_command(app, chosen);
   tchat::add_labels_command(app, chosen);
   tchat::add_orbit_command(app, chosen);
   tchat::add_plot_command(app, chosen);

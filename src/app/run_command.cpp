@@ -3,40 +3,20 @@
 #include <fmt/format.h>
 
 #include <CLI/Validators.hpp>
-#include <csignal>
-#include <exception>
 #include <iostream>
 #include <memory>
 
-#include "constants/user_error.hpp"
+#include "app/interruption.hpp"
 #include "run/run_problem.hpp"
 
 namespace tchat {
 
 namespace {
 
-// A signal handler can reach nothing but a global.
-volatile std::sig_atomic_t caught_signal = 0;
-
-void remember_signal(int signal) {
-  // A second signal ends the program the ordinary way.
-  caught_signal = signal;
-  std::signal(signal, SIG_DFL);
-}
-
 int do_run(const RunRequest& request) {
-  std::signal(SIGINT, &remember_signal);
-  std::signal(SIGTERM, &remember_signal);
-  int status = 0;
-  try {
-    status = run_problem(request, std::cout, std::cerr, [] { return caught_signal != 0; });
-  } catch (const std::exception& error) {
-    if (caught_signal == 0) throw;
-    // The failure may be the signal's doing, such as that of a compiler that it ended too.
-    std::cerr << "tchat: interrupted: " << error.what() << '\n';
-  }
-  if (caught_signal == 0) return status;
-  return 128 + static_cast<int>(caught_signal);
+  return run_interruptibly([&](const std::function<bool()>& interrupted) {
+    return run_problem(request, std::cout, std::cerr, interrupted);
+  });
 }
 
 }  // namespace

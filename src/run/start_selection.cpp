@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "constants/user_error.hpp"
+#include "run/parameter_values.hpp"
 #include "run/problem_setup.hpp"
 #include "start/point_type.hpp"
 #include "start/solution_file_reader.hpp"
@@ -19,24 +20,6 @@ int segment_count(const RunSettings& settings) { return static_cast<int>(setting
 
 OrbitShape shape_of(const RunSettings& settings) {
   return {settings.dimension, segment_count(settings), settings.mesh_intervals, settings.collocation_points};
-}
-
-ParameterVector initial_parameters(const HybridSystem& system) {
-  ParameterVector par = ParameterVector::Zero(parameter_length);
-  if (system.table().initial_parameters != nullptr)
-    for (int i = 0; i < system.parameters(); ++i) par(i) = system.table().initial_parameters[i];
-  return par;
-}
-
-/// The command line's values, the last word. True when any differs from what was there.
-bool apply_command_line(const HybridSystem& system, const RunSettings& settings, ParameterVector& par) {
-  bool changed = false;
-  for (const RunSettings::ParameterValue& value : settings.parameter_values) {
-    double& target = par(parameter_index(system, value.name, "command line") - 1);
-    changed = changed || target != value.value;
-    target = value.value;
-  }
-  return changed;
 }
 
 bool given_on_command_line(const HybridSystem& system, const RunSettings& settings, int k) {

@@ -29,11 +29,23 @@ void halve(std::vector<Sample>& samples) {
   samples.resize(kept);
 }
 
-/// At most `count` samples, spread evenly over what there is, first and last included.
+/// At most `count` samples, first and last included: half of their density follows time, half the integrator's steps.
 void thin(std::vector<Sample>& samples, std::size_t count) {
   if (samples.size() <= count || count < 2) return;
+  const std::size_t last = samples.size() - 1;
+  const double begin = samples.front().time;
+  const double span = samples.back().time - begin;
+  const auto weight = [&](std::size_t i) {
+    return 0.5 * (samples[i].time - begin) / span + 0.5 * static_cast<double>(i) / static_cast<double>(last);
+  };
   std::vector<Sample> kept;
-  for (std::size_t i = 0; i < count; ++i) kept.push_back(std::move(samples[i * (samples.size() - 1) / (count - 1)]));
+  std::size_t i = 0;
+  for (std::size_t k = 0; k + 1 < count; ++k) {
+    const double target = static_cast<double>(k) / static_cast<double>(count - 1);
+    while (i < last && weight(i) < target) ++i;
+    if (i < last) kept.push_back(std::move(samples[i++]));
+  }
+  kept.push_back(std::move(samples[last]));
   samples = std::move(kept);
 }
 
@@ -74,7 +86,7 @@ bool HybridSimulation::is_wall(const IndexVector& index, const VectorXd& x) cons
   return before * after < 0.0;
 }
 
-SimulatedSegment HybridSimulation::next() {
+SimulatedSegment HybridSimulation::next(double end_time) {
   SimulatedSegment segment = begin_segment();
   if (segment.ended_by != SegmentEnd::event) return segment;
   if (sticks_at_start(segment)) return segment;
@@ -82,7 +94,7 @@ SimulatedSegment HybridSimulation::next() {
   if (const std::vector<int> due = due_at_start(segment); !due.empty())
     end_by(segment, due);
   else
-    integrate(segment);
+    integrate(segment, end_time);
   return segment;
 }
 
@@ -162,12 +174,12 @@ void HybridSimulation::note_contacts(SimulatedSegment& segment, CvodesFlow& flow
   }
 }
 
-void HybridSimulation::integrate(SimulatedSegment& segment) {
+void HybridSimulation::integrate(SimulatedSegment& segment, double end_time) {
   CvodesFlow flow(system_, mode_.field(), x_, par_, settings_.flow);
   flow.watch(mode_.all_events());
   flow.on_piece([&](double from, double to) { return pass_piece(segment, flow, from, to); });
   const std::vector<int> terminal = mode_.terminal_events();
-  const double left = settings_.end_time - time_;
+  const double left = end_time - time_;
   const double until = std::min(left, settings_.flow.max_duration);
   Progress progress = until > 0.0 ? flow.advance(until) : Progress::end_time;
   while (progress == Progress::root && !contains(terminal, flow.fallen())) {

@@ -24,7 +24,6 @@ class CvodesFlow;
 
 struct SimulationSettings {
   FlowOptions flow;           ///< max_duration: give up waiting for an event after this time
-  double end_time = 1e300;    ///< of the whole simulation
   double contact = 1e-3;      ///< a least value of h below this share of its largest value is a near-grazing contact
   std::size_t samples = 200;  ///< at most so many states are kept of each segment; 0 none
   std::function<bool()> interrupted;
@@ -84,8 +83,16 @@ class HybridSimulation {
   /// the wrong length or not finite, and when there is no first mode.
   HybridSimulation(ModeRule rule, const Eigen::VectorXd& x0, const Eigen::VectorXd& par, SimulationSettings settings);
 
-  /// The next segment. When one has not ended in an event there is nothing to go on with.
-  SimulatedSegment next();
+  /// The next segment, or the part of it up to `end_time`. When one has not ended in an event there is nothing to go on
+  /// with.
+  SimulatedSegment next(double end_time);
+
+  const HybridSystem& system() const { return system_; }
+  const Eigen::VectorXd& parameters() const { return par_; }
+  double time() const { return time_; }
+  const Eigen::VectorXd& state() const { return x_; }
+  /// Of the last segment; before any, that of the start.
+  const Mode& mode() const { return mode_; }
 
  private:
   /// h_j and h_x f under field i at x.
@@ -100,7 +107,7 @@ class HybridSimulation {
   std::vector<int> due_at_start(const SimulatedSegment& segment) const;
   bool sticks_at_start(SimulatedSegment& segment) const;
   void mark_walls_behind(SimulatedSegment& segment) const;
-  void integrate(SimulatedSegment& segment);
+  void integrate(SimulatedSegment& segment, double end_time);
   bool pass_piece(SimulatedSegment& segment, const CvodesFlow& flow, double from, double to);
   void note_contacts(SimulatedSegment& segment, CvodesFlow& flow) const;
   void end_by(SimulatedSegment& segment, const std::vector<int>& together);

@@ -61,6 +61,7 @@ std::string fault_of(const HybridSystem& system, const std::vector<IndexVector>&
 Mode ModeRule::first(const VectorXd& x, const VectorXd& par) {
   position_ = 0;
   if (is_cyclic()) return cycle_.front();
+  if (start_) return *start_;
   const auto start = system_.successors({0, 0, 0}, x.data(), par.data());
   if (!start || start->empty())
     throw UserError(

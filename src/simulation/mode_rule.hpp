@@ -7,6 +7,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -32,15 +33,16 @@ struct Mode {
 
 class ModeRule {
  public:
-  /// By the problem's index jump function.
-  explicit ModeRule(const HybridSystem& system) : system_(system) {}
+  /// By the problem's index jump function, from `start` or, if that is not given, from what iota says of a start.
+  explicit ModeRule(const HybridSystem& system, std::optional<Mode> start = {})
+      : system_(system), start_(std::move(start)) {}
   /// Cyclically through modes of one index vector each.
   ModeRule(const HybridSystem& system, std::vector<Mode> cycle) : system_(system), cycle_(std::move(cycle)) {}
 
   const HybridSystem& system() const { return system_; }
   bool is_cyclic() const { return !cycle_.empty(); }
 
-  /// The mode at a start x: the first of the cycle, or what iota says of a start. Throws UserError when it says
+  /// The mode at a start x. Throws UserError when it says
   /// nothing.
   Mode first(const Eigen::VectorXd& x, const Eigen::VectorXd& par);
   /// The mode after a segment `from` that ends, before its jump, at x; without index vectors, and the reason in
@@ -50,6 +52,7 @@ class ModeRule {
 
  private:
   const HybridSystem& system_;
+  std::optional<Mode> start_;
   std::vector<Mode> cycle_;
   std::string fault_;
   std::size_t position_ = 0;

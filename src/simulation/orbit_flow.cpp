@@ -116,7 +116,8 @@ PeriodicOrbit shoot(const HybridSystem& system, const Signature& signature, cons
       orbit.message = orbit.map.message;
       return orbit;
     }
-    const VectorXd residual = orbit.start - orbit.map.end;
+    VectorXd residual = orbit.start - orbit.map.end;
+    for (const Eigen::Index k : options.ignorable) residual(k) = 0.0;
     orbit.residual = residual.lpNorm<Eigen::Infinity>();
     orbit.converged = last_step <= options.tolerance;
     if (orbit.converged) return orbit;
@@ -125,7 +126,8 @@ PeriodicOrbit shoot(const HybridSystem& system, const Signature& signature, cons
                                   orbit.iterations, orbit.residual, last_step);
       return orbit;
     }
-    const MatrixXd matrix = MatrixXd::Identity(residual.size(), residual.size()) - orbit.map.derivative;
+    MatrixXd matrix = MatrixXd::Identity(residual.size(), residual.size()) - orbit.map.derivative;
+    for (const Eigen::Index k : options.ignorable) matrix.row(k) = VectorXd::Unit(residual.size(), k).transpose();
     const VectorXd step = -matrix.fullPivLu().solve(residual);
     last_step = step.lpNorm<Eigen::Infinity>() / (1.0 + orbit.start.lpNorm<Eigen::Infinity>());
     orbit.start += step;

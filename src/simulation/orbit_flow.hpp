@@ -46,6 +46,9 @@ struct ShootingOptions {
   FlowOptions flow;
   int max_iterations = 20;
   double tolerance = 1e-11;  ///< on |Newton step| / (1 + |x|), of the last step taken
+  /// States that nothing depends on and that need not return (a position on an endless floor), from 0: kept at their
+  /// start, and without an equation.
+  std::vector<Eigen::Index> ignorable;
 };
 
 struct PeriodicOrbit {

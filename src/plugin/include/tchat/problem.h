@@ -51,6 +51,7 @@ typedef struct tchat_problem {
   const char* const* event_names;
   const char* const* jump_names;
   const double* initial_parameters; /* `parameters` values or NULL */
+  const double* initial_state;      /* where simulations start: `dimension` values or NULL (all zero) */
 
   const void* self; /* handed back as first argument of every function below */
 

@@ -21,6 +21,7 @@
 ///     static constexpr const char* state_names[]      = {"x", "v"};      // and parameter_names, field_names,
 ///                                                                        // event_names, jump_names
 ///     static constexpr double initial_parameters[]    = {9.81, 0.8};
+///     static constexpr double initial_state[]         = {1.0, 0.0};       // where simulations start
 ///     // index jump function iota, for `tchat simulate`: the index vectors that may follow the segment `from`, whose
 ///     last
 ///     // state, before the jump, is x; from = {0, 0, 0}: those at a start x. x and par may be left out.
@@ -265,6 +266,7 @@ class ProblemTable {
     TCHAT_OPTIONAL_ARRAY(event_names, Problem::events)
     TCHAT_OPTIONAL_ARRAY(jump_names, Problem::jumps)
     TCHAT_OPTIONAL_ARRAY(initial_parameters, q)
+    TCHAT_OPTIONAL_ARRAY(initial_state, n)
     TCHAT_OPTIONAL_ARRAY(user_value_names, Problem::user_values)
 #undef TCHAT_OPTIONAL_ARRAY
     return table;

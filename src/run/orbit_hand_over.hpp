@@ -1,0 +1,27 @@
+/// A periodic orbit found by simulation as the start of a continuation: NAME2.dat and the constants file gc.NAME2.
+#pragma once
+
+#include <string>
+
+#include "constants/run_settings.hpp"
+#include "hybrid/hybrid_system.hpp"
+#include "simulation/found_orbit.hpp"
+#include "simulation/orbit_samples.hpp"
+
+namespace tchat {
+
+/// The .dat file: `# PAR(k) = v` for all parameters and durations, then the rows.
+std::string data_text(const HybridSystem& system, const FoundOrbit& orbit, const OrbitSamples& samples,
+                      const Eigen::VectorXd& par);
+
+/// Constants for the orbit: `base` (numerical constants, weights, bounds where they still make sense) with the
+/// signature found, `parameter` and all durations free, and on each segment those event functions of its mode monitored
+/// that are not negative anywhere on it.
+RunSettings orbit_settings(const HybridSystem& system, const RunSettings& base, const FoundOrbit& orbit,
+                           const OrbitSamples& samples, const Eigen::VectorXd& par, int parameter);
+
+/// What `orbit_settings` starts from where there is no constants file: the command line's constants in `given`, and
+/// sensible ones where it left the defaults.
+RunSettings default_orbit_settings(const RunSettings& given);
+
+}  // namespace tchat

@@ -1,0 +1,24 @@
+#include "run/parameter_values.hpp"
+
+#include "run/problem_setup.hpp"
+
+namespace tchat {
+
+ParameterVector initial_parameters(const HybridSystem& system) {
+  ParameterVector par = ParameterVector::Zero(parameter_length);
+  if (system.table().initial_parameters != nullptr)
+    for (int i = 0; i < system.parameters(); ++i) par(i) = system.table().initial_parameters[i];
+  return par;
+}
+
+bool apply_command_line(const HybridSystem& system, const RunSettings& settings, ParameterVector& par) {
+  bool changed = false;
+  for (const RunSettings::ParameterValue& value : settings.parameter_values) {
+    double& target = par(parameter_index(system, value.name, "command line") - 1);
+    changed = changed || target != value.value;
+    target = value.value;
+  }
+  return changed;
+}
+
+}  // namespace tchat

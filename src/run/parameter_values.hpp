@@ -1,0 +1,17 @@
+/// Values of PAR before a run: the plugin's, and the command line's, which has the last word.
+#pragma once
+
+#include "constants/run_settings.hpp"
+#include "hybrid/hybrid_system.hpp"
+#include "hybrid/parameter_vector.hpp"
+
+namespace tchat {
+
+/// The plugin's starting values; zero where it has none.
+ParameterVector initial_parameters(const HybridSystem& system);
+
+/// PAR(2)=0.8 and PAR(omega)=0.8 of the command line. True when any differs from what was there. Throws UserError for a
+/// name that the problem does not have.
+bool apply_command_line(const HybridSystem& system, const RunSettings& settings, ParameterVector& par);
+
+}  // namespace tchat

@@ -1,0 +1,206 @@
+#include "run/simulate_problem.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <filesystem>
+
+#include "constants/constants_writer.hpp"
+#include "constants/user_error.hpp"
+#include "output/simulation_files.hpp"
+#include "output/whole_file.hpp"
+#include "plugin/exit_guard.hpp"
+#include "plugin/plugin_build.hpp"
+#include "plugin/problem_library.hpp"
+#include "run/orbit_hand_over.hpp"
+#include "run/parameter_values.hpp"
+#include "run/problem_setup.hpp"
+#include "run/simulation_start.hpp"
+#include "run/simulation_summary.hpp"
+#include "simulation/found_orbit.hpp"
+
+namespace tchat {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Eigen::VectorXd;
+
+constexpr int data_rows = 401;
+
+SimulationSettings simulation_settings(const SimulationRequest& request, const std::function<bool()>& interrupted) {
+  SimulationSettings settings;
+  settings.flow.method = request.stiff ? IntegrationMethod::bdf : IntegrationMethod::adams;
+  settings.flow.relative_tolerance = request.tolerance;
+  settings.flow.absolute_tolerance = 0.01 * request.tolerance;
+  settings.flow.max_duration = request.wait;
+  settings.flow.max_steps = 10000000;
+  settings.contact = request.contact;
+  settings.samples = static_cast<std::size_t>(request.rows);
+  settings.interrupted = interrupted;
+  return settings;
+}
+
+/// A line on a terminal that is renewed every second.
+class ProgressLine {
+ public:
+  explicit ProgressLine(std::ostream* out) : out_(out), last_(Clock::now()) {}
+  ~ProgressLine() {
+    if (out_ != nullptr && shown_) *out_ << "\r\033[K" << std::flush;
+  }
+  void show(long segment, double t) {
+    if (out_ == nullptr || Clock::now() - last_ < std::chrono::seconds(1)) return;
+    last_ = Clock::now();
+    shown_ = true;
+    *out_ << fmt::format("\r{} events, t = {:.6g} ", segment, t) << std::flush;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  std::ostream* out_;
+  Clock::time_point last_;
+  bool shown_ = false;
+};
+
+struct OrbitPaths {
+  std::string data, constants;
+};
+
+OrbitPaths orbit_paths(const std::string& name) {
+  const fs::path path(name);
+  return {name + ".dat", (path.parent_path() / ("gc." + path.filename().string())).string()};
+}
+
+bool same_file(const std::string& a, const std::string& b) {
+  std::error_code error;
+  return fs::equivalent(a, b, error) && !error;
+}
+
+void check_folder(const std::string& name, const char* option) {
+  const fs::path parent = fs::path(name).parent_path();
+  std::error_code ignored;
+  if (fs::path(name).filename().empty())
+    throw UserError(fmt::format("{} '{}' is no name for output files; an example is {} found", option, name, option));
+  if (!parent.empty() && !fs::is_directory(parent, ignored))
+    throw UserError(fmt::format("{} {}: there is no folder {}; make it first", option, name, parent.string()));
+  const std::string folder = parent.empty() ? "." : parent.string();
+  if (::access(folder.c_str(), W_OK | X_OK) != 0)
+    throw UserError(fmt::format("{} {}: the folder {} cannot be written to; choose another", option, name, folder));
+}
+
+/// The orbit's files must not replace what the simulation reads, unless they have been named.
+void check_orbit_name(const SimulationRequest& request, const std::string& name, const std::string& constants) {
+  check_folder(name, "--dat");
+  if (!request.orbit_name.empty()) return;
+  const OrbitPaths paths = orbit_paths(name);
+  std::string replaced;
+  if (!constants.empty() && same_file(paths.constants, constants)) replaced = paths.constants;
+  if (request.data && (same_file(paths.data, *request.data) || same_file(paths.data, *request.data + ".dat")))
+    replaced = paths.data;
+  if (!replaced.empty())
+    throw UserError(
+        fmt::format("--dat would replace {}, which the simulation starts from; give the orbit a name, as in "
+                    "--dat {}_orbit",
+                    replaced, request.name));
+}
+
+int continuation_parameter(const SimulationRequest& request, const SimulationSettingsFile& constants,
+                           const HybridSystem& system) {
+  if (request.parameter) return parameter_index(system, *request.parameter, "--free");
+  for (const int k : constants.settings.free_parameters)
+    if (k <= system.parameters()) return k;
+  return 1;
+}
+
+/// Writes the orbit for `tchat run`; what to say about it.
+std::string hand_over(const SimulationRequest& request, const SimulationSettingsFile& constants,
+                      const HybridSystem& system, const FoundOrbit& orbit, const VectorXd& par,
+                      const std::string& name) {
+  const OrbitSamples samples = sample_orbit(system, orbit, par, data_rows);
+  const RunSettings base = constants.is_given() ? constants.settings : default_orbit_settings(constants.settings);
+  const RunSettings settings =
+      orbit_settings(system, base, orbit, samples, par, continuation_parameter(request, constants, system));
+  const OrbitPaths paths = orbit_paths(name);
+  write_whole_file(paths.data, data_text(system, orbit, samples, par));
+  write_whole_file(paths.constants, keyword_text(settings));
+  const std::string plugin = request.problem ? fmt::format(" -p {}", *request.problem) : "";
+  return fmt::format("Written: {} and {}. Go on with\n  tchat run {}{} -c {} -d {} -o {}\n", paths.data,
+                     paths.constants, request.name, plugin, name, name, name);
+}
+
+/// "" when the orbit can be continued; otherwise why not.
+std::string obstacle(const HybridSystem& system, const SimulationResult& result, const FoundOrbit& orbit) {
+  if (!result.is_periodic()) return "no periodic orbit was recognised";
+  if (!orbit.converged) return "the orbit could not be refined";
+  for (Eigen::Index i = 0; i < orbit.advance.size(); ++i)
+    if (std::abs(orbit.advance(i)) > 1e-9 * (1.0 + std::abs(orbit.start(i))))
+      return fmt::format("{} does not return; `tchat run` needs a problem without that state",
+                         system.state_name(static_cast<int>(i) + 1));
+  if (static_cast<int>(orbit.signature.size()) > max_segments)
+    return fmt::format("it has {} segments, at most {} can be continued", orbit.signature.size(), max_segments);
+  return "";
+}
+
+}  // namespace
+
+int simulate_problem(const SimulationRequest& request, std::ostream& screen, std::ostream& warnings,
+                     const std::function<bool()>& interrupted, std::ostream* progress) {
+  const auto say = [&](const std::string& text) {
+    if (!request.quiet) screen << text << std::flush;
+  };
+
+  const std::string plugin = resolve_plugin(request.problem.value_or(request.name));
+  const ExitGuard guard(plugin);
+  const ProblemLibrary library(plugin);
+  const HybridSystem& system = library.system();
+  const SimulationSettingsFile constants = simulation_constants(request, system);
+  const SimulationStart start = simulation_start(request, constants, system);
+  const std::string output = request.output.value_or(request.name);
+  const std::string orbit_name = request.orbit_name.empty() ? output : request.orbit_name;
+  check_folder(output, "-o");
+  if (request.hand_over) {
+    check_orbit_name(request, orbit_name, constants.path);
+    continuation_parameter(request, constants, system);
+  }
+
+  HybridSimulation simulation(start.rule, start.state, start.par, simulation_settings(request, interrupted));
+  say(start_text(system, start, simulation.mode()));
+  SimulationFiles files(system, output, problem_text(system, start.par), start.par);
+  SimulationResult result;
+  {
+    ProgressLine line(progress);
+    result = run_simulation(simulation, request.plan, [&](const SimulatedSegment& segment) {
+      files.write(segment);
+      line.show(segment.number, segment.end_time());
+    });
+  }
+  files.finish();
+  say(course_text(system, result, result.last.end_time(), request.contact));
+
+  FoundOrbit orbit;
+  if (result.is_periodic()) {
+    IndexVector first = constants.is_given() ? constants.settings.segments.front().index : IndexVector{0, 0, 0};
+    orbit = refine(system, result, start.par, first);
+    say(orbit.converged
+            ? orbit_text(system, orbit)
+            : fmt::format("The motion repeats itself after {} events, but shooting does not find the orbit: {}\n",
+                          result.turn.size(), orbit.message));
+  } else {
+    say(no_orbit_text(result, request.plan));
+  }
+  say(fmt::format("Written: {}, {}\n", SimulationFiles::trajectory_path(output), SimulationFiles::events_path(output)));
+  if (result.last.ended_by == SegmentEnd::failed) {
+    warnings << "tchat: " << result.last.message << '\n';
+    return 1;
+  }
+  if (!request.hand_over) return 0;
+  if (const std::string why = obstacle(system, result, orbit); !why.empty()) {
+    warnings << fmt::format("tchat: --dat: nothing written, {}\n", why);
+    return 1;
+  }
+  say(hand_over(request, constants, system, orbit, start.par, orbit_name));
+  return 0;
+}
+
+}  // namespace tchat

@@ -1,0 +1,228 @@
+#include "run/simulation_start.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <optional>
+
+#include "constants/constants_file.hpp"
+#include "constants/user_error.hpp"
+#include "run/parameter_values.hpp"
+#include "run/problem_setup.hpp"
+#include "run/run_request.hpp"
+#include "start/dat_file.hpp"
+#include "start/solution_file_reader.hpp"
+
+namespace tchat {
+
+namespace {
+
+using Eigen::VectorXd;
+
+std::vector<std::string> split(const std::string& text, char separator) {
+  std::vector<std::string> parts;
+  std::size_t begin = 0;
+  while (true) {
+    const std::size_t end = text.find(separator, begin);
+    std::string part = text.substr(begin, end - begin);
+    part.erase(0, part.find_first_not_of(" \t"));
+    part.erase(part.find_last_not_of(" \t") + 1);
+    parts.push_back(part);
+    if (end == std::string::npos) return parts;
+    begin = end + 1;
+  }
+}
+
+template <class Number>
+std::optional<Number> read_number(const std::string& text) {
+  Number value{};
+  const char* const begin = text.data() + (text.starts_with('+') ? 1 : 0);
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(begin, end, value);
+  if (error != std::errc{} || stop != end) return std::nullopt;
+  return value;
+}
+
+double read_state_value(const std::string& text, const std::string& all) {
+  const std::optional<double> value = read_number<double>(text);
+  if (value && std::isfinite(*value)) return *value;
+  throw UserError(fmt::format("--state {}: '{}' is no finite number; examples: --state 0,0.1,-2.5e-3 or --state x1=0.1",
+                              all, text));
+}
+
+int state_index(const HybridSystem& system, const std::string& name, const std::string& all) {
+  std::string list;
+  for (int k = 1; k <= system.dimension(); ++k) {
+    if (name == system.state_name(k) || name == fmt::format("U({})", k)) return k;
+    list += fmt::format("{}{}", k > 1 ? ", " : "", system.state_name(k));
+  }
+  throw UserError(fmt::format("--state {}: {} has no state '{}'; it has {}", all, system.name(), name, list));
+}
+
+/// "0,0.1" replaces the state, "x1=0.1,x2=3" changes it.
+void apply_state_option(const HybridSystem& system, const std::string& text, VectorXd& state) {
+  const std::vector<std::string> parts = split(text, ',');
+  if (text.find('=') != std::string::npos) {
+    for (const std::string& part : parts) {
+      const std::size_t equals = part.find('=');
+      if (equals == std::string::npos)
+        throw UserError(fmt::format("--state {}: '{}' lacks its name; give NAME=VALUE for some states or all {} values",
+                                    text, part, system.dimension()));
+      const std::string name = split(part.substr(0, equals), ',').front();
+      state(state_index(system, name, text) - 1) = read_state_value(split(part.substr(equals + 1), ',').front(), text);
+    }
+    return;
+  }
+  if (static_cast<int>(parts.size()) != system.dimension())
+    throw UserError(
+        fmt::format("--state {}: {} values, but {} has {} states; give them all, or some by name as in "
+                    "--state {}=0.1",
+                    text, parts.size(), system.name(), system.dimension(), system.state_name(1)));
+  for (std::size_t i = 0; i < parts.size(); ++i) state(static_cast<Eigen::Index>(i)) = read_state_value(parts[i], text);
+}
+
+/// "1,2,1;1,3,2"
+std::vector<IndexVector> read_modes(const HybridSystem& system, const std::string& text) {
+  std::vector<IndexVector> index_vectors;
+  for (std::string item : split(text, ';')) {
+    std::erase_if(item, [](char c) { return c == '(' || c == ')'; });
+    const std::vector<std::string> parts = split(item, ',');
+    std::vector<int> numbers;
+    for (const std::string& part : parts)
+      if (const auto number = read_number<int>(part)) numbers.push_back(*number);
+    if (parts.size() != 3 || numbers.size() != 3)
+      throw UserError(
+          fmt::format("--mode {}: '{}' is no index vector; it is written field,event,jump as in 1,2,1, "
+                      "several with semicolons as in '1,2,1;1,3,2'",
+                      text, item));
+    index_vectors.push_back({numbers[0], numbers[1], numbers[2]});
+  }
+  if (const std::string fault = fault_of(system, index_vectors); !fault.empty())
+    throw UserError(fmt::format("--mode {}: {}", text, fault));
+  return index_vectors;
+}
+
+std::vector<Mode> modes_of_signature(const RunSettings& settings) {
+  std::vector<Mode> modes;
+  for (const SegmentSettings& segment : settings.segments) {
+    Mode mode{{segment.index}, segment.monitor};
+    std::erase(mode.monitored, segment.index.event);
+    modes.push_back(std::move(mode));
+  }
+  return modes;
+}
+
+/// The signature of the constants file, beginning at --mode.
+ModeRule cyclic_rule(const SimulationRequest& request, const SimulationSettingsFile& constants,
+                     const HybridSystem& system) {
+  if (!constants.is_given())
+    throw UserError(fmt::format(
+        "{} has no index jump function (successors), so a simulation follows the signature of a constants file, and "
+        "there is no gc.{}; name one with -c, or give the problem a member `successors` (README, \"Simulation\")",
+        system.name(), request.name));
+  std::vector<Mode> modes = modes_of_signature(constants.settings);
+  if (!request.modes) return ModeRule(system, std::move(modes));
+  const std::vector<IndexVector> wanted = read_modes(system, *request.modes);
+  const auto at = std::find_if(modes.begin(), modes.end(), [&](const Mode& m) { return m.index_vectors == wanted; });
+  if (at == modes.end())
+    throw UserError(
+        fmt::format("--mode {}: the signature of {}, which the simulation follows, is {}; give one of its "
+                    "index vectors",
+                    *request.modes, constants.path, to_string(constants.settings.signature())));
+  std::rotate(modes.begin(), at, modes.end());
+  return ModeRule(system, std::move(modes));
+}
+
+ModeRule mode_rule(const SimulationRequest& request, const SimulationSettingsFile& constants,
+                   const HybridSystem& system, const VectorXd& x, const VectorXd& par) {
+  if (!system.has_successors() || request.follow_signature) return cyclic_rule(request, constants, system);
+  if (request.modes) return ModeRule(system, Mode{read_modes(system, *request.modes), {}});
+  const auto start = system.successors({0, 0, 0}, x.data(), par.data());
+  const bool is_silent = !start || start->empty();
+  if (is_silent && constants.is_given()) return ModeRule(system, Mode{{constants.settings.segments.front().index}, {}});
+  return ModeRule(system);
+}
+
+void apply_data(const SimulationRequest& request, const SimulationSettingsFile& constants, const HybridSystem& system,
+                SimulationStart& start) {
+  const std::string path = data_path(*request.data);
+  const int m = constants.is_given() ? static_cast<int>(constants.settings.segments.size()) : 1;
+  const DatFile data = read_dat_file(path, system.dimension(), m);
+  for (const auto& [k, value] : data.parameters) start.par(k - 1) = value;
+  for (const auto& [name, value] : data.named_parameters) start.par(parameter_index(system, name, path) - 1) = value;
+  start.state = data.states.col(0).head(system.dimension());
+  start.source = fmt::format("first row of {}", path);
+}
+
+void apply_label(const SimulationRequest& request, const SimulationSettingsFile& constants, const HybridSystem& system,
+                 SimulationStart& start) {
+  const std::string path = solution_path(*request.start);
+  const SolutionFile file = read_solution_file(path);
+  if (constants.settings.start.from_data())
+    throw UserError(
+        fmt::format("-s {}: say which label with IRS=, as in IRS=3 or IRS=PD1; `tchat labels {}` lists them",
+                    *request.start, path));
+  const LabelledSolution& solution = find_solution(file.solutions, constants.settings.start, path);
+  if (solution.states.rows() < system.dimension() ||
+      (solution.dimension > 0 && solution.dimension != system.dimension()))
+    throw UserError(fmt::format("{}: label {} has {} states, {} has {}; give the q-file of this problem", path,
+                                solution.label,
+                                solution.dimension > 0 ? solution.dimension : static_cast<int>(solution.states.rows()),
+                                system.name(), system.dimension()));
+  for (std::size_t k = 0; k < solution.parameters.size() && k < static_cast<std::size_t>(parameter_length); ++k)
+    start.par(static_cast<Eigen::Index>(k)) = solution.parameters[k];
+  start.state = solution.states.col(0).head(system.dimension());
+  start.source = fmt::format("label {} of {}", solution.label, path);
+}
+
+}  // namespace
+
+SimulationSettingsFile simulation_constants(const SimulationRequest& request, const HybridSystem& system) {
+  namespace fs = std::filesystem;
+  SimulationSettingsFile file;
+  const fs::path name(request.name);
+  const fs::path own = name.parent_path() / ("gc." + name.filename().string());
+  std::error_code ignored;
+  if (request.constants)
+    file.path = constants_path(*request.constants);
+  else if (fs::is_regular_file(own, ignored))
+    file.path = own.string();
+  if (file.is_given()) {
+    file.settings = read_constants_file(file.path);
+  } else {
+    file.settings.dimension = system.dimension();
+    file.settings.free_parameters = {1};
+    file.settings.segments.resize(1);
+  }
+  apply_overrides(file.settings, request.overrides);
+  if (file.is_given()) check_settings_against(system, file.settings, file.path);
+  return file;
+}
+
+SimulationStart simulation_start(const SimulationRequest& request, const SimulationSettingsFile& constants,
+                                 const HybridSystem& system) {
+  if (request.data && request.start)
+    throw UserError("-d and -s are both given; a simulation starts from data (-d) or from a label of a q-file (-s)");
+  SimulationStart start{initial_parameters(system), VectorXd::Zero(system.dimension()), "zero", ModeRule(system)};
+  if (const double* const initial = system.table().initial_state) {
+    start.state = Eigen::Map<const VectorXd>(initial, system.dimension());
+    start.source = "the problem's starting state";
+  }
+  if (request.data) apply_data(request, constants, system, start);
+  if (request.start) apply_label(request, constants, system, start);
+  apply_command_line(system, constants.settings, start.par);
+  if (request.state) {
+    apply_state_option(system, *request.state, start.state);
+    start.source = "--state";
+  }
+  if (!start.state.allFinite())
+    throw UserError(fmt::format("the start {} ({}) is not finite", state_text(start.state), start.source));
+  SimulationStart result{start.par, start.state, start.source,
+                         mode_rule(request, constants, system, start.state, start.par)};
+  return result;
+}
+
+}  // namespace tchat

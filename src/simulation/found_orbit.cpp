@@ -1,0 +1,141 @@
+#include "simulation/found_orbit.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+namespace tchat {
+
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double stability_margin = 1e-5;
+constexpr double same_orbit = 0.1;   // largest correction, as a share of the orbit's range
+constexpr double same_state = 1e-7;  // of points of the refined orbit, likewise
+
+/// Rotated so that the signature reads the same whenever the simulation stopped.
+std::vector<SimulatedSegment> in_standard_order(std::vector<SimulatedSegment> turn, const IndexVector& first) {
+  const auto sequence_from = [&](std::size_t begin) {
+    Signature s;
+    for (std::size_t i = 0; i < turn.size(); ++i) s.push_back(turn[(begin + i) % turn.size()].index);
+    return s;
+  };
+  const auto is_better = [&](std::size_t a, std::size_t b) {
+    const bool a_first = turn[a].index == first;
+    const bool b_first = turn[b].index == first;
+    return a_first != b_first ? a_first : sequence_from(a) < sequence_from(b);
+  };
+  std::size_t best = 0;
+  for (std::size_t k = 1; k < turn.size(); ++k)
+    if (is_better(k, best)) best = k;
+  std::rotate(turn.begin(), turn.begin() + static_cast<std::ptrdiff_t>(best), turn.end());
+  return turn;
+}
+
+PeriodicOrbit shoot_finely(const HybridSystem& system, const FoundOrbit& found, const VectorXd& guess,
+                           const VectorXd& par, const std::vector<Eigen::Index>& ignorable) {
+  ShootingOptions options;
+  options.ignorable = ignorable;
+  const PeriodicOrbit orbit = shoot(system, found.signature, guess, par, options);
+  if (orbit.converged) return orbit;
+  // Large derivatives leave fewer digits.
+  options.flow.relative_tolerance = 1e-12;
+  options.flow.absolute_tolerance = 1e-13;
+  options.tolerance = 1e-9;
+  return shoot(system, found.signature, guess, par, options);
+}
+
+std::vector<std::complex<double>> multipliers_without(const MatrixXd& m, const std::vector<Eigen::Index>& ignorable) {
+  std::vector<Eigen::Index> kept;
+  for (Eigen::Index i = 0; i < m.rows(); ++i)
+    if (std::find(ignorable.begin(), ignorable.end(), i) == ignorable.end()) kept.push_back(i);
+  const Eigen::VectorXcd values = MatrixXd(m(kept, kept)).eigenvalues();
+  std::vector<std::complex<double>> sorted(values.begin(), values.end());
+  std::sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) {
+    return std::abs(a) != std::abs(b) ? std::abs(a) > std::abs(b) : a.imag() > b.imag();
+  });
+  return sorted;
+}
+
+/// How far each state goes on the simulated orbit; infinitely far where it does not matter.
+VectorXd ranges(const std::vector<SimulatedSegment>& turn, const std::vector<Eigen::Index>& ignorable) {
+  VectorXd low = turn.front().start;
+  VectorXd high = low;
+  for (const SimulatedSegment& segment : turn) {
+    low = low.cwiseMin(segment.end);
+    high = high.cwiseMax(segment.end);
+    for (const Sample& sample : segment.samples) {
+      low = low.cwiseMin(sample.state);
+      high = high.cwiseMax(sample.state);
+    }
+  }
+  VectorXd range = high - low;
+  for (const Eigen::Index k : ignorable) range(k) = 0.0;
+  range.array() += 1e-3 * range.maxCoeff();
+  for (const Eigen::Index k : ignorable) range(k) = INFINITY;
+  return range;
+}
+
+/// The number of segments after which the orbit already repeats itself: near an orbit with a multiplier close to -1 the
+/// simulation comes back best after two turns.
+std::size_t true_period(const FoundOrbit& found, const PeriodicOrbit& orbit, const VectorXd& range) {
+  const std::size_t m = found.signature.size();
+  for (std::size_t q = 1; q < m; ++q) {
+    bool repeats = m % q == 0;
+    for (std::size_t s = 0; repeats && s < m; ++s) {
+      const VectorXd difference = orbit.map.segments[s].start - orbit.map.segments[(s + q) % m].start;
+      repeats = found.signature[s] == found.signature[(s + q) % m] &&
+                (difference.cwiseAbs().array() <= same_state * range.array()).all();
+    }
+    if (repeats) return q;
+  }
+  return m;
+}
+
+}  // namespace
+
+bool FoundOrbit::is_stable() const {
+  return std::all_of(multipliers.begin(), multipliers.end(),
+                     [](const auto& mu) { return std::abs(mu) <= 1.0 + stability_margin; });
+}
+
+FoundOrbit refine(const HybridSystem& system, const SimulationResult& result, const VectorXd& par,
+                  const IndexVector& first) {
+  const std::vector<SimulatedSegment> turn = in_standard_order(result.turn, first);
+  FoundOrbit found;
+  for (const SimulatedSegment& segment : turn) {
+    found.signature.push_back(segment.index);
+    found.modes.push_back(segment.mode);
+  }
+  const VectorXd range = ranges(turn, result.ignorable);
+  PeriodicOrbit orbit = shoot_finely(system, found, turn.front().start, par, result.ignorable);
+  if (const std::size_t period = true_period(found, orbit, range); orbit.converged && period < turn.size()) {
+    found.signature.resize(period);
+    found.modes.resize(period);
+    orbit = shoot_finely(system, found, orbit.start, par, result.ignorable);
+  }
+  found.start = orbit.start;
+  found.map = orbit.map;
+  found.iterations = orbit.iterations;
+  if (!orbit.converged) {
+    found.message = orbit.message;
+    return found;
+  }
+  const VectorXd moved = orbit.start - turn.front().start;
+  const double share = moved.cwiseQuotient(range).lpNorm<Eigen::Infinity>();
+  if (!(share < same_orbit)) {
+    found.message = fmt::format("shooting went {:.2g} of its range away, to another orbit", share);
+    return found;
+  }
+  found.converged = true;
+  found.multipliers = multipliers_without(orbit.map.derivative, result.ignorable);
+  found.advance = VectorXd::Zero(found.start.size());
+  for (const Eigen::Index k : result.ignorable) found.advance(k) = orbit.map.end(k) - orbit.start(k);
+  return found;
+}
+
+}  // namespace tchat
