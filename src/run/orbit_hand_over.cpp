@@ -52,8 +52,8 @@ std::vector<IndexedValue> parameter_weights(const RunSettings& base, int segment
 
 }  // namespace
 
-std::string data_text(const HybridSystem& system, const FoundOrbit& orbit, const OrbitSamples& samples,
-                      const Eigen::VectorXd& par) {
+std::string orbit_data_text(const HybridSystem& system, const FoundOrbit& orbit, const OrbitSamples& samples,
+                            const Eigen::VectorXd& par) {
   std::string text =
       fmt::format("# Periodic orbit of {}, found by simulation and refined by shooting.\n# signature {}\n",
                   system.name(), to_string(orbit.signature));

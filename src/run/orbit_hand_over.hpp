@@ -11,8 +11,8 @@
 namespace tchat {
 
 /// The .dat file: `# PAR(k) = v` for all parameters and durations, then the rows.
-std::string data_text(const HybridSystem& system, const FoundOrbit& orbit, const OrbitSamples& samples,
-                      const Eigen::VectorXd& par);
+std::string orbit_data_text(const HybridSystem& system, const FoundOrbit& orbit, const OrbitSamples& samples,
+                            const Eigen::VectorXd& par);
 
 /// Constants for the orbit: `base` (numerical constants, weights, bounds where they still make sense) with the
 /// signature found, `parameter` and all durations free, and on each segment those event functions of its mode monitored

@@ -122,7 +122,7 @@ std::string hand_over(const SimulationRequest& request, const SimulationSettings
   const RunSettings settings =
       orbit_settings(system, base, orbit, samples, par, continuation_parameter(request, constants, system));
   const OrbitPaths paths = orbit_paths(name);
-  write_whole_file(paths.data, data_text(system, orbit, samples, par));
+  write_whole_file(paths.data, orbit_data_text(system, orbit, samples, par));
   write_whole_file(paths.constants, keyword_text(settings));
   const std::string plugin = request.problem ? fmt::format(" -p {}", *request.problem) : "";
   return fmt::format("Written: {} and {}. Go on with\n  tchat run {}{} -c {} -d {} -o {}\n", paths.data,
