@@ -46,9 +46,9 @@ class Blocks {
       take_point(words);
     else if (is_bar(words))
       close();
-    else if (words[0] == "Multipliers:")
+    else if (contains(words, "Multipliers:"))
       multipliers_.clear();
-    else if (words[0] == "Multiplier" && words.size() >= 4)
+    else
       take_multiplier(words);
     after_heading_ = is_heading(words);
   }
@@ -67,9 +67,16 @@ class Blocks {
     open_ = true;
   }
 
+  static bool contains(const Words& words, std::string_view wanted) {
+    return std::find(words.begin(), words.end(), wanted) != words.end();
+  }
+
+  /// `Multiplier k re im`, in AUTO's files after the numbers of branch and point.
   void take_multiplier(const Words& words) {
-    const auto real = parse_fortran_real(words[2]);
-    const auto imaginary = parse_fortran_real(words[3]);
+    const auto at = std::find(words.begin(), words.end(), "Multiplier");
+    if (words.end() - at < 4 || !parse_integer(at[1])) return;
+    const auto real = parse_fortran_real(at[2]);
+    const auto imaginary = parse_fortran_real(at[3]);
     if (real && imaginary) multipliers_.emplace_back(*real, *imaginary);
   }
 

@@ -1,0 +1,212 @@
+// tchat plot through the binary: pictures that are there and of the right size, what the script says, refusals.
+#include <stdlib.h>
+
+#include <filesystem>
+
+#include "end_to_end/bad_input.hpp"
+
+using namespace test_support;
+
+namespace {
+
+/// A variable of the environment with another value, or none, for the programs that this one starts.
+class Environment {
+ public:
+  Environment(const char* name, const char* value) : name_(name) {
+    if (const char* const old = ::getenv(name)) before_ = old, there_ = true;
+    value != nullptr ? ::setenv(name, value, 1) : ::unsetenv(name);
+  }
+  ~Environment() { there_ ? ::setenv(name_, before_.c_str(), 1) : ::unsetenv(name_); }
+  Environment(const Environment&) = delete;
+  Environment& operator=(const Environment&) = delete;
+
+ private:
+  const char* name_;
+  std::string before_;
+  bool there_ = false;
+};
+
+/// Impacting orbits through the period doubling, at alpha = 3.03619, with labels and multipliers.
+Workspace& impacting() {
+  static Workspace workspace;
+  static const bool made = [] {
+    workspace.run("-c impacting -d impacting -o branch NMX=60 NTST=20 DS=-0.02 GRSTOP=0 -q");
+    return true;
+  }();
+  static_cast<void>(made);
+  return workspace;
+}
+
+unsigned big_endian(const std::string& bytes, std::size_t at) {
+  unsigned value = 0;
+  for (std::size_t k = 0; k < 4; ++k) value = 256 * value + static_cast<unsigned char>(bytes.at(at + k));
+  return value;
+}
+
+/// Width and height in a PNG's header.
+std::pair<unsigned, unsigned> png_size(const std::string& bytes) {
+  REQUIRE(bytes.size() > 1000);
+  CHECK(bytes.substr(0, 8) == "\x89PNG\r\n\x1a\n");
+  return {big_endian(bytes, 16), big_endian(bytes, 20)};
+}
+
+std::string script_of(const Workspace& workspace, const std::string& arguments) {
+  const Outcome outcome = workspace.tchat("plot " + arguments + " -o picture.svg --script picture.gp");
+  INFO(outcome.text());
+  REQUIRE(outcome.status == 0);
+  return workspace.read("picture.gp");
+}
+
+}  // namespace
+
+TEST_CASE("a branch as PNG of the size asked for, SVG and PDF") {
+  const Workspace& workspace = impacting();
+  CHECK(workspace.tchat("plot p.branch -o a.png").status == 0);
+  CHECK(png_size(workspace.read("a.png")) == std::pair(1200U, 900U));
+  CHECK(workspace.tchat("plot p.branch -o b.png --size 640x400").status == 0);
+  CHECK(png_size(workspace.read("b.png")) == std::pair(640U, 400U));
+  CHECK(workspace.tchat("plot p.branch -o c.svg").status == 0);
+  CHECK(contains(workspace.read("c.svg"), "<svg"));
+  CHECK(workspace.tchat("plot p.branch -o d.pdf").status == 0);
+  CHECK(workspace.read("d.pdf").substr(0, 5) == "%PDF-");
+}
+
+TEST_CASE("equal commands make equal files") {
+  const Workspace& workspace = impacting();
+  for (const std::string name : {"same.png", "same.svg", "same.pdf"}) {
+    CHECK(workspace.tchat("plot p.branch -o " + name + " --script same.gp").status == 0);
+    const std::string picture = workspace.read(name), script = workspace.read("same.gp");
+    CHECK(workspace.tchat("plot p.branch -o " + name + " --script same.gp").status == 0);
+    CHECK(workspace.read(name) == picture);
+    CHECK(workspace.read("same.gp") == script);
+  }
+}
+
+TEST_CASE("the script of a branch: names on the axes, solid and dashed, letters of points") {
+  const Workspace& workspace = impacting();
+  const std::string script = script_of(workspace, "p.branch");
+  CHECK(contains(script, "set xlabel 'α'"));
+  CHECK(contains(script, "set ylabel 'L_2 norm'"));
+  CHECK(contains(script, "dt solid"));
+  CHECK(contains(script, "dt (14,8)"));
+  CHECK(contains(script, "set label 'PD'"));
+  CHECK(contains(script, "set label 'GR'"));
+  CHECK_FALSE(contains(script, "set label 'EP'"));
+  CHECK(contains(script, "title 'stable'"));
+  CHECK(contains(script, "title 'unstable'"));
+  CHECK(contains(script, "title 'inadmissible'"));
+  CHECK(contains(script_of(workspace, "p.branch --labels EP --numbers"), "set label 'EP 1'"));
+  CHECK_FALSE(contains(script_of(workspace, "p.branch --no-labels"), "set label"));
+}
+
+TEST_CASE("a kept script draws the picture again") {
+  const Workspace& workspace = impacting();
+  REQUIRE(workspace.tchat("plot p.branch -o again.png --script again.gp").status == 0);
+  const std::string picture = workspace.read("again.png");
+  std::filesystem::remove(workspace.file("again.png"));
+  const Outcome outcome = Process({"/bin/sh", "-c", "gnuplot again.gp"}, workspace.file(""), workspace.file("log"))
+                              .wait(std::chrono::seconds(60));
+  INFO(outcome.text());
+  CHECK(outcome.status == 0);
+  CHECK(workspace.read("again.png") == picture);
+}
+
+TEST_CASE("taste: columns, ranges, texts, logarithmic axes") {
+  const Workspace& workspace = impacting();
+  const Outcome outcome = workspace.tchat({"plot", "p.branch", "-y", "MAX x2", "--xrange", "3:3.1", "--yrange", ":5",
+                                           "--title", "it's `date`", "--xlabel", "forcing_1", "--legend", "one branch",
+                                           "--logy", "-o", "taste.png", "--script", "taste.gp"});
+  INFO(outcome.text());
+  REQUIRE(outcome.status == 0);
+  const std::string script = workspace.read("taste.gp");
+  CHECK(contains(script, "set xrange [3:3.1]"));
+  CHECK(contains(script, ":5]"));
+  CHECK(contains(script, "set logscale y"));
+  CHECK(contains(script, "'it''s `date`' noenhanced"));
+  CHECK(contains(script, "set xlabel 'forcing_1' noenhanced"));
+  CHECK(contains(script, "set ylabel 'max x_{2}'"));
+  CHECK(contains(script, "title 'one branch'"));
+}
+
+TEST_CASE("orbits: names and wall from the plugin, jumps dashed") {
+  const Workspace& workspace = impacting();
+  const std::string portrait = script_of(workspace, "q.branch PD1 EP1 -p linosc");
+  CHECK(contains(portrait, "set xlabel 'x_{1}'"));
+  CHECK(contains(portrait, "set ylabel 'x_{2}'"));
+  CHECK(contains(portrait, "title 'wall'"));
+  CHECK(contains(portrait, "PD1: α = 3.0362"));
+  CHECK(contains(portrait, "dt (14,8) lw 1.3"));
+  CHECK(contains(script_of(workspace, "q.branch PD1"), "title 'wall'"));  // the only plugin of the folder
+  CHECK_FALSE(contains(script_of(workspace, "q.branch PD1 --surfaces none"), "wall"));
+  const std::string series = script_of(workspace, "--time q.branch PD1 -y x1,y1,y2");
+  CHECK(contains(series, "set multiplot"));
+  CHECK(contains(series, "set xlabel 'time'"));
+  CHECK(contains(series, "set ylabel 'y_{2}'"));
+  CHECK(contains(series, "title 'wall'"));
+}
+
+TEST_CASE("multipliers along the branch and at labels") {
+  const Workspace& workspace = impacting();
+  const std::string all = script_of(workspace, "--multipliers q.branch");
+  CHECK(contains(all, "real part"));
+  CHECK(contains(all, "set label 'PD'"));
+  CHECK(contains(script_of(workspace, "--multipliers p.branch PD1 EP1"), "title 'EP1'"));
+}
+
+TEST_CASE("without -o and without a display the picture has the branch's name") {
+  const Workspace& workspace = impacting();
+  const Environment no_display("DISPLAY", nullptr), no_wayland("WAYLAND_DISPLAY", nullptr);
+  const Outcome outcome = workspace.tchat("plot branch");
+  CHECK(outcome.status == 0);
+  CHECK(contains(outcome.out, "branch.png"));
+  CHECK(png_size(workspace.read("branch.png")) == std::pair(1200U, 900U));
+}
+
+TEST_CASE("without gnuplot the message says how to get it") {
+  const Workspace& workspace = impacting();
+  const Environment no_path("PATH", "/nowhere");
+  check_refused(workspace.tchat("plot p.branch -o none.png"), {"gnuplot", "apt install gnuplot-nox"});
+  CHECK_FALSE(workspace.has("none.png"));
+}
+
+TEST_CASE("bad usage of plot is refused with what there is") {
+  const Workspace& workspace = impacting();
+  workspace.write("p.broken", "   1  1  9  1  1.0\n   1  2  0  0  1.0 2.0\n");
+  struct Bad {
+    std::string arguments;
+    std::vector<std::string> expected;
+  };
+  for (const Bad& bad : {Bad{"p.branch -y nosuch", {"'nosuch'", "alpha, L2-NORM, MAX x1", "1.."}},
+                         Bad{"nosuch", {"'nosuch'", "p.nosuch"}},
+                         Bad{"p.branch PD1", {"q.branch PD1"}},
+                         Bad{"q.branch", {"which orbits", "(PD)"}},
+                         Bad{"q.branch PD9", {"PD9", "(EP)"}},
+                         Bad{"q.branch PD1 p.branch", {"p.branch", "q-file"}},
+                         Bad{"q.branch PD1 -x z", {"'z'", "x1, x2, y1, y2"}},
+                         Bad{"q.branch PD1 -y x1,x2", {"--time"}},
+                         Bad{"q.branch PD1 -p nosuch", {"nosuch.cpp"}},
+                         Bad{"q.branch PD1 --surfaces 9", {"1..3"}},
+                         Bad{"q.branch PD1 --surfaces wall", {"'wall'"}},
+                         Bad{"--time p.branch", {"q-file"}},
+                         Bad{"d.branch", {"--multipliers"}},
+                         Bad{"--multipliers d.branch 99", {"99", "(PD)"}},
+                         Bad{"p.branch -o x.jpg", {".png, .svg or .pdf"}},
+                         Bad{"p.branch -o nowhere/x.png", {"nowhere/x.png"}},
+                         Bad{"p.branch --xrange 3", {"--xrange", "colon"}},
+                         Bad{"p.branch --xrange 3:x", {"'x'"}},
+                         Bad{"p.branch --yrange 3:2", {"--yrange", "smaller"}},
+                         Bad{"p.branch --size 10", {"1200x900"}},
+                         Bad{"p.branch --size 10x99999", {"10000"}},
+                         Bad{"p.branch --labels LP,ZZ", {"'ZZ'", "GR, XI"}},
+                         Bad{"p.branch --legend a --legend b", {"2 times"}},
+                         Bad{"p.branch --logx --xrange=-1:2", {"positive"}},
+                         Bad{"p.broken", {"p.broken:2"}},
+                         Bad{"impacting.dat", {"impacting.dat:1"}},
+                         Bad{"", {"--help"}},
+                         Bad{"p.branch --nosuch", {"--help"}}}) {
+    INFO("tchat plot " << bad.arguments);
+    check_refused(workspace.tchat("plot " + bad.arguments + (contains(bad.arguments, "-o") ? "" : " -o bad.png")),
+                  bad.expected);
+    CHECK_FALSE(workspace.has("bad.png"));
+  }
+}

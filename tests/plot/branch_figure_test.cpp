@@ -1,0 +1,199 @@
+// What a diagram shows: styles from signs, types and the files beside a p-file; columns by name.
+#include "plot/branch_figure.hpp"
+
+#include <fmt/format.h>
+#include <catch2/catch.hpp>
+
+#include "constants/user_error.hpp"
+#include "plot/branch_columns.hpp"
+#include "start/temporary_folder.hpp"
+
+using namespace tchat;
+using test_support::message_of;
+using test_support::TemporaryFolder;
+
+namespace {
+
+struct Row {
+  int point, type, label;
+  double x, norm, omega;
+};
+
+std::string header(int ips, int isw, int curve_type = 0, const char* active = "1 2 61") {
+  std::string text = fmt::format(
+      "   0   0.0 1.0 0.0 1.0\n   0   NDIM=   2   IPS = {}   ISP =   2\n   0   ISW ={:4}   NSEG=   1\n"
+      "   0   parnames = {{1: 'alpha', 2: 'omega', 3: 'r'}}\n   0   Active continuation parameters:  {}\n",
+      ips, isw, active);
+  if (curve_type != 0) text += fmt::format("   0   Branch type: {}  TY = 'LP'\n", curve_type);
+  return text +
+         "   0\n   0    PT  TY  LAB             alpha            L2-NORM              omega             MAX x1\n";
+}
+
+std::string rows(const std::vector<Row>& list) {
+  std::string text;
+  for (const Row& r : list)
+    text += fmt::format("{:4}{:6}{:4}{:5}{:19.10E}{:19.10E}{:19.10E}{:19.10E}\n", 1, r.point, r.type, r.label, r.x,
+                        r.norm, r.omega, 2.0 * r.norm);
+  return text;
+}
+
+/// One point of a d-file.
+std::string diagnostics(int point, const char* type, int label, bool admissible) {
+  return fmt::format("  BR    PT  TY  LAB       alpha\n{:4}{:6}{:>4}{:5}   1.0E+00{}\n{}\n", 1, point, type, label,
+                     admissible ? "" : "  inadmissible", std::string(47, '='));
+}
+
+const std::vector<Row> branch = {{1, 9, 1, 0.0, 1.0, 2.0},  {2, 0, 0, 0.1, 1.1, 2.0},   {3, 7, 2, 0.2, 1.2, 2.0},
+                                 {-4, 0, 0, 0.3, 1.3, 2.0}, {-5, -4, 3, 0.4, 1.4, 2.0}, {-6, 9, 4, 0.5, 1.5, 2.0}};
+
+std::vector<const Curve*> with_dash(const Figure& figure, Dash dash) {
+  std::vector<const Curve*> found;
+  for (const Curve& curve : figure.panels[0].curves)
+    if (curve.stroke.dash == dash) found.push_back(&curve);
+  return found;
+}
+
+std::vector<std::string> labels_of(const Figure& figure) {
+  std::vector<std::string> labels;
+  for (const Marker& marker : figure.panels[0].markers) labels.push_back(marker.label.text);
+  return labels;
+}
+
+}  // namespace
+
+TEST_CASE("stable solid, unstable dashed, the change at the located point") {
+  const TemporaryFolder folder;
+  const BranchFile file = read_branch_file(folder.write("p.a", header(180, 1) + rows(branch)));
+  const Figure figure = branch_figure({file}, {});
+  CHECK(figure.panels[0].x.label.text == "α");
+  CHECK(figure.panels[0].y.label.text == "L_2 norm");
+  const auto solid = with_dash(figure, Dash::solid), dashed = with_dash(figure, Dash::dashed);
+  REQUIRE(solid.size() == 1);
+  REQUIRE(dashed.size() == 1);
+  CHECK(dashed[0]->points.front().x == 0.0);
+  CHECK(dashed[0]->points.back().x == 0.2);
+  CHECK(solid[0]->points.front().x == 0.2);
+  CHECK(solid[0]->points.back().x == 0.5);
+  CHECK(labels_of(figure) == std::vector<std::string>{"PD"});
+  REQUIRE(figure.key.size() == 2);
+  CHECK(figure.key[0].text.text == "stable");
+}
+
+TEST_CASE("labels by type, all, none, with numbers") {
+  const TemporaryFolder folder;
+  const BranchFile file = read_branch_file(folder.write("p.a", header(180, 1) + rows(branch)));
+  LabelSelection all;
+  all.all = true;
+  CHECK(labels_of(branch_figure({file}, {"", "", all, {}})) == std::vector<std::string>{"EP", "PD", "UZ", "EP"});
+  LabelSelection chosen;
+  chosen.defaults = false;
+  chosen.types = {"EP"};
+  chosen.numbers = true;
+  CHECK(labels_of(branch_figure({file}, {"", "", chosen, {}})) == std::vector<std::string>{"EP 1", "EP 4"});
+  LabelSelection none;
+  none.defaults = false;
+  CHECK(branch_figure({file}, {"", "", none, {}}).panels[0].markers.empty());
+}
+
+TEST_CASE("inadmissible points and names of UZ points come from the d-file") {
+  const TemporaryFolder folder;
+  const std::string path = folder.write("p.a", header(180, 1) + rows(branch));
+  std::string text;
+  for (const Row& r : branch)
+    text += diagnostics(r.point,
+                        r.label == 3  ? "GR"
+                        : r.type == 7 ? "PD"
+                        : r.type == 9 ? "EP"
+                                      : "",
+                        r.label, r.point != -6);
+  folder.write("d.a", text);
+  const BranchFile file = read_branch_file(path);
+  CHECK(line_kind(file, 0, 4) == LineKind::stable);
+  CHECK(line_kind(file, 0, 5) == LineKind::inadmissible);
+  const Figure figure = branch_figure({file}, {});
+  CHECK(labels_of(figure) == std::vector<std::string>{"PD", "GR"});
+  const auto dotted = with_dash(figure, Dash::fine_dotted);
+  REQUIRE(dotted.size() == 1);
+  CHECK(dotted[0]->points.front().x == 0.4);
+  CHECK(figure.key.back().text.text == "inadmissible");
+}
+
+TEST_CASE("where stability is not known there is none to show") {
+  const TemporaryFolder folder;
+  std::string text = header(4, 1);
+  const BranchFile file =
+      read_branch_file(folder.write("b.a", text + rows({{1, 9, 1, 0.0, 1.0, 2.0}, {2, 9, 2, 1.0, 1.0, 2.0}})));
+  CHECK(line_kind(file, 0, 1) == LineKind::stable);
+  CHECK(branch_figure({file}, {}).key.empty());
+}
+
+TEST_CASE("two-parameter curves: free parameters as axes, a line and a name for each kind") {
+  const TemporaryFolder folder;
+  const std::vector<Row> curve = {{1, 0, 0, 0.0, 1.0, 2.0}, {2, 59, 8, 1.0, 1.1, 2.5}};
+  const std::vector<BranchFile> files = {
+      read_branch_file(folder.write("p.grazing", header(150, 1, 0, "2 1 61") + rows(curve))),
+      read_branch_file(folder.write("p.folds", header(180, 2, 5) + rows(curve))),
+      read_branch_file(folder.write("p.doublings", header(180, 2, 7) + rows(curve))),
+      read_branch_file(
+          folder.write("p.from_types", header(180, 2) + rows({{1, 0, 0, 0.0, 1.0, 2.0}, {2, 79, 3, 1.0, 1.0, 3.0}})))};
+  const Figure figure = branch_figure(files, {});
+  CHECK(figure.panels[0].x.label.text == "ω");
+  CHECK(figure.panels[0].y.label.text == "α");
+  REQUIRE(figure.key.size() == 4);
+  CHECK(figure.key[0].text.text == "grazing");
+  CHECK(figure.key[1].text.text == "fold");
+  CHECK(figure.key[2].text.text == "period doubling (doublings)");
+  CHECK(figure.key[3].text.text == "period doubling (from_types)");
+  CHECK(figure.key[2].stroke->colour != figure.key[3].stroke->colour);
+  CHECK(with_dash(figure, Dash::solid).size() == 1);
+  CHECK(with_dash(figure, Dash::dashed).size() == 1);
+  CHECK(with_dash(figure, Dash::dash_dot).size() == 2);
+
+  const Figure named = branch_figure(files, {"", "", {}, {"G", "F", "P", "P2"}});
+  CHECK(named.key[2].text.text == "P");
+}
+
+TEST_CASE("columns by heading, number, PAR(k), last word; others are refused with those there are") {
+  const TemporaryFolder folder;
+  const BranchFile file = read_branch_file(folder.write("p.a", header(180, 1) + rows(branch)));
+  for (const auto& [wanted, column] : {std::pair("alpha", 0U),
+                                       {"1", 0U},
+                                       {"PAR(1)", 0U},
+                                       {"par(2)", 2U},
+                                       {"OMEGA", 2U},
+                                       {"max  x1", 3U},
+                                       {"x1", 3U},
+                                       {"l2-norm", 1U},
+                                       {"4", 3U}}) {
+    INFO(wanted);
+    CHECK(find_column(file, 0, wanted, "-x").column == column);
+  }
+  for (const char* wanted : {"nosuch", "0", "5", "-1", "PAR(3)", "r", "", "U(9)", "PAR(99999999999)"}) {
+    const std::string message = message_of<UserError>([&] { find_column(file, 0, wanted, "-y"); });
+    CHECK(message.find("alpha, L2-NORM, omega, MAX x1") != std::string::npos);
+    CHECK(message.find("-y") != std::string::npos);
+  }
+}
+
+TEST_CASE("a section with several branches is not one line; after 9999 the count goes on") {
+  const TemporaryFolder folder;
+  const BranchFile two = read_branch_file(folder.write("p.a", header(180, 1) + rows({{1, 9, 1, 0.0, 1.0, 2.0},
+                                                                                     {2, 9, 2, 1.0, 1.0, 2.0},
+                                                                                     {-1, 9, 3, 5.0, 1.0, 2.0},
+                                                                                     {-2, 0, 0, 6.0, 1.0, 2.0}})));
+  CHECK(two.pieces.size() == 2);
+  const BranchFile one = read_branch_file(folder.write(
+      "p.b",
+      header(180, 1) + rows({{9998, 0, 0, 0.0, 1.0, 2.0}, {9999, 0, 0, 1.0, 1.0, 2.0}, {1, 0, 0, 2.0, 1.0, 2.0}})));
+  CHECK(one.pieces.size() == 1);
+}
+
+TEST_CASE("names of files of one run") {
+  CHECK(sibling_path("results/p.mems", 'q') == "results/q.mems");
+  CHECK(sibling_path("q.mems", 'd') == "d.mems");
+  CHECK(sibling_path("fort.7", 'q') == "fort.8");
+  CHECK(sibling_path("b.ab", 'q') == "s.ab");
+  CHECK(sibling_path("mems", 'q').empty());
+  CHECK(run_name("results/p.mems") == "mems");
+  CHECK(run_name("fort.7") == "fort.7");
+}

@@ -1,0 +1,101 @@
+// The script: what gnuplot is told, text that cannot escape its quotes, equal figures give equal scripts.
+#include "plot/gnuplot_script.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "constants/user_error.hpp"
+#include "plot/picture_styles.hpp"
+
+using namespace tchat;
+
+namespace {
+
+bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+Figure sample() {
+  Figure figure;
+  Panel panel;
+  panel.x.label = mathematical_name("alpha");
+  panel.y.label = plain_text("it's `date`");
+  panel.curves.push_back(
+      {{{0.0, 0.0}, {1.0, 2.0}, {std::nan(""), 1.0}, {2.0, 1.0}}, {Dash::dashed, 2.0, "#123456"}, false});
+  panel.markers.push_back(special_point_marker("GR", {1.0, 2.0}));
+  figure.panels.push_back(panel);
+  figure.key.push_back({plain_text("a_b"), Stroke{}, std::nullopt});
+  figure.title = plain_text("title");
+  return figure;
+}
+
+std::string script_of(const Figure& figure, const PictureTarget& target) {
+  return gnuplot_script(figure, lay_out(figure), target);
+}
+
+}  // namespace
+
+TEST_CASE("axes, data, dashes, labels and texts are in the script") {
+  const std::string script = script_of(sample(), {PictureFormat::png, "x's.png", ""});
+  CHECK(contains(script, "set terminal pngcairo"));
+  CHECK(contains(script, "size 1200,900"));
+  CHECK(contains(script, "set output 'x''s.png'"));
+  CHECK(contains(script, "set xlabel 'α' enhanced"));
+  CHECK(contains(script, "set ylabel 'it''s `date`' noenhanced"));
+  CHECK(contains(script, "$curve1_1 << END\n0 0\n1 2\n\n2 1\nEND\n"));
+  CHECK(contains(script, "dt (14,8) lw 2 lc rgb '#123456'"));
+  CHECK(contains(script, "set label 'GR' noenhanced at screen"));
+  CHECK(contains(script, "title 'a_b' noenhanced"));
+  CHECK(contains(script, "'title' noenhanced"));
+  CHECK(script == script_of(sample(), {PictureFormat::png, "x's.png", ""}));
+}
+
+TEST_CASE("every form of picture has its terminal") {
+  CHECK(picture_format("a.PNG") == PictureFormat::png);
+  CHECK(contains(script_of(sample(), {picture_format("a.svg"), "a.svg", ""}), "set terminal svg"));
+  CHECK(contains(script_of(sample(), {picture_format("a.pdf"), "a.pdf", ""}), "size 8.000in,6.000in"));
+  const std::string window = script_of(sample(), {PictureFormat::window, "", "qt"});
+  CHECK(contains(window, "set terminal qt"));
+  CHECK_FALSE(contains(window, "set output"));
+  CHECK(window_terminal({"png", "x11", "qt"}) == "qt");
+  CHECK(window_terminal({"png", "x11"}) == "x11");
+  CHECK(window_terminal({"png"}).empty());
+  for (const char* path : {"a", "a.jpg", "a.", ""}) CHECK_THROWS_AS(picture_format(path), UserError);
+}
+
+TEST_CASE("what is placed is inside the picture") {
+  Figure figure = sample();
+  for (const auto& [width, height] : {std::pair(1200, 900), {300, 200}, {4000, 700}, {100, 100}}) {
+    figure.width = width;
+    figure.height = height;
+    const FigureLayout layout = lay_out(figure);
+    const Box& frame = layout.panels[0].frame;
+    CHECK(frame.left >= 0.0);
+    CHECK(frame.right <= width);
+    CHECK(frame.bottom >= 0.0);
+    CHECK(frame.top <= height);
+    const PicturePoint p = layout.panels[0].in_data(layout.panels[0].on_paper({1.0, 2.0}));
+    CHECK(p.x == Approx(1.0));
+    CHECK(p.y == Approx(2.0));
+  }
+}
+
+TEST_CASE("equal points side by side share a label, the key hides nothing") {
+  Figure figure;
+  Panel panel;
+  Curve curve;
+  for (int k = 0; k <= 200; ++k) curve.points.push_back({k / 200.0, 1.0 - k / 200.0});
+  panel.curves.push_back(curve);
+  for (int k = 0; k < 40; ++k)
+    panel.markers.push_back(special_point_marker("XI", {0.5 + 0.0005 * k, 0.5 - 0.0005 * k}));
+  panel.markers.push_back(special_point_marker("GR", {0.5, 0.5}));
+  figure.panels.push_back(panel);
+  figure.key.push_back({plain_text("stable"), Stroke{}, std::nullopt});
+  const FigureLayout layout = lay_out(figure);
+  int xi = 0;
+  for (std::size_t k = 0; k + 1 < layout.panels[0].labels.size(); ++k) xi += layout.panels[0].labels[k].has_value();
+  CHECK(xi >= 1);
+  CHECK(xi <= 2);
+  CHECK(layout.panels[0].labels.back().has_value());
+  REQUIRE(layout.key);
+  CHECK(layout.key->inside);
+  for (const PicturePoint& p : curve.points) CHECK_FALSE(layout.key->box.contains(layout.panels[0].on_paper(p)));
+}

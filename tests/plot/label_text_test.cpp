@@ -1,0 +1,33 @@
+#include "plot/label_text.hpp"
+
+#include <catch2/catch.hpp>
+
+using namespace tchat;
+
+TEST_CASE("names of columns become mathematics") {
+  CHECK(mathematical_name("alpha").text == "α");
+  CHECK(mathematical_name("omega").text == "ω");
+  CHECK(mathematical_name("x1").text == "x_{1}");
+  CHECK(mathematical_name("omega_d").text == "ω_{d}");
+  CHECK(mathematical_name("MAX x12").text == "max x_{12}");
+  CHECK(mathematical_name("L2-NORM").text == "L_2 norm");
+  CHECK(mathematical_name("PAR(61)").text == "PAR(61)");
+  CHECK(mathematical_name("velocity").text == "velocity");
+  CHECK(mathematical_name("wall_gap").text == "wall\\_gap");
+  CHECK(mathematical_name("a^b{c}").text == "a\\^b\\{c\\}");
+}
+
+TEST_CASE("texts of users stay as they are, and quotes end no string") {
+  CHECK(plain_text("impacting_20072").text == "impacting_20072");
+  CHECK_FALSE(plain_text("x_1").markup);
+  CHECK(plain_text("two\nlines").text == "two lines");
+  CHECK(gnuplot_quoted("it's `date` \"x\" $1") == "'it''s `date` \"x\" $1'");
+  CHECK(joined(plain_text("PD_1: "), mathematical_name("alpha")).text == "PD\\_1: α");
+}
+
+TEST_CASE("widths of texts") {
+  CHECK(text_width({"", false}) == 0.0);
+  CHECK(text_width({"PDPD", false}) == Approx(2.0 * text_width({"PD", false})));
+  CHECK(text_width({"x_{1}", true}) < text_width({"x1", false}));
+  CHECK(text_width({"α", false}) == Approx(text_width({"a", false})));  // one character, two bytes
+}

@@ -1,0 +1,51 @@
+// d-files: multipliers before or after their point, letters of types, the word inadmissible.
+#include "start/diagnostics_file_reader.hpp"
+
+#include <catch2/catch.hpp>
+
+using namespace tchat;
+
+TEST_CASE("a d-file of this program") {
+  const auto points = parse_diagnostics(
+      "  BR    PT  IT     PARAMETER      RESIDUAL\n"
+      "   2     1   1   3.03550E+00   6.37445E-10\n"
+      "  BR    PT  TY  LAB       alpha       L2-NORM\n"
+      "   2     1        0   3.03550E+00   1.87468E+00\n"
+      " Multipliers:     Stable:   1\n"
+      "   Multiplier   1  1.9100096656E-003  0.0000000000E+000   Abs. Val.  1.9100096656E-003\n"
+      "   Multiplier   2 -6.9579946485E+008  2.0000000000E+000   Abs. Val.  6.9579946485E+008\n"
+      "===============================================\n"
+      "  BR    PT  TY  LAB       alpha       L2-NORM\n"
+      "   2    -2  GR   42   3.03505E+00   1.86346E+00  inadmissible\n"
+      "   2     2  NOTE: Inadmissible: segment 1\n"
+      "===============================================\n"
+      "end of run\n");
+  REQUIRE(points.size() == 2);
+  CHECK(points[0].label == 0);
+  CHECK(points[0].type.empty());
+  CHECK(points[0].admissible);
+  REQUIRE(points[0].multipliers.size() == 2);
+  CHECK(points[0].multipliers[1] == std::complex<double>(-6.9579946485e8, 2.0));
+  CHECK(points[1].point == -2);
+  CHECK(points[1].type == "GR");
+  CHECK(points[1].label == 42);
+  CHECK_FALSE(points[1].admissible);
+  CHECK(points[1].multipliers.empty());
+}
+
+TEST_CASE("a block of AUTO has its multipliers before the point") {
+  const auto points = parse_diagnostics(
+      "===============================================\n"
+      "  BR    PT  IT         PAR           L2-NORM\n"
+      "   1     5   0    1.0E+00   2.0E+00\n"
+      " Multipliers:     Stable:   2\n"
+      "   1     5  NOTE:Multiplier inaccurate\n"
+      "   1     5         Multiplier  1    5.00000E-01  2.50000E-01    Abs. Val.  5.59017E-01\n"
+      "  BR    PT  TY  LAB    PAR(1)        L2-NORM\n"
+      "   1    -5  PD    3   1.0E+00   2.0E+00\n"
+      "===============================================\n");
+  REQUIRE(points.size() == 1);
+  CHECK(points[0].type == "PD");
+  REQUIRE(points[0].multipliers.size() == 1);
+  CHECK(points[0].multipliers[0] == std::complex<double>(0.5, 0.25));
+}
