@@ -49,6 +49,12 @@ struct ForcedOscillator {
     if (k == 1) g[1] = x[1] + (1.0 + par[4]) * velocity(x, par);
   }
 
+  /// An orbit is cut at its impacts, or at the minima of x1 as long as it has none.
+  std::vector<std::array<int, 3>> successors(std::array<int, 3> from) const {
+    if (from[2] == 1) return {{1, 1, 1}};
+    return {{1, 1, 1}, {1, 2, 2}};
+  }
+
   /// x1' at the end of an orbit, before the impact, from the state after it; at the minimum of x1 it is zero.
   void user_value(const double* x, const double* par, double* out) const { out[0] = -velocity(x, par) / par[4]; }
 };
