@@ -15,6 +15,7 @@ struct ThreeDimensionalOscillator {
   static constexpr const char* event_names[] = {"wall", "minimum of x1"};
   static constexpr const char* jump_names[] = {"impact", "identity"};
   static constexpr double initial_parameters[] = {-0.9, 0.28, 0.8};
+  static constexpr double initial_state[] = {-0.5, 0.3, 0.4};
 
   static constexpr int user_values = 1;
   static constexpr const char* user_value_names[] = {"velocity"};
@@ -44,11 +45,8 @@ struct ThreeDimensionalOscillator {
     if (k == 1) g[1] = x[1] + (1.0 + par[2]) * velocity(x, par);
   }
 
-  /// An orbit is cut at its impacts, or at the minima of x1 as long as it has none.
-  std::vector<std::array<int, 3>> successors(std::array<int, 3> from) const {
-    if (from[2] == 1) return {{1, 1, 1}};
-    return {{1, 1, 1}, {1, 2, 2}};
-  }
+  /// An orbit is cut at its impacts and at minima of x1 above the wall.
+  std::vector<std::array<int, 3>> successors(std::array<int, 3>) const { return {{1, 1, 1}, {1, 2, 2}}; }
 
   /// x1' at the end of an orbit, before the impact, from the state after it; at the minimum of x1 it is zero.
   void user_value(const double* x, const double* par, double* out) const { out[0] = -velocity(x, par) / par[2]; }

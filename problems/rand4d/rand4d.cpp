@@ -16,6 +16,7 @@ struct ForcedOscillator {
   static constexpr const char* event_names[] = {"wall", "minimum of x1"};
   static constexpr const char* jump_names[] = {"impact", "identity"};
   static constexpr double initial_parameters[] = {-0.4938, 1.25, 1.9, 0.28, 0.8};
+  static constexpr double initial_state[] = {-0.3, 0.5, 0.2, 0.0, 1.0};
 
   static constexpr int user_values = 1;
   static constexpr const char* user_value_names[] = {"velocity"};
