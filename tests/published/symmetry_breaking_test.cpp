@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <tuple>
 
 #include "published/chain.hpp"
 
@@ -63,6 +64,19 @@ void check_branch_point(const Workspace& workspace, const std::string& name) {
   }
 }
 
+/// The branch stays on the orbits of z = 0, p = 1, and comes out on the other side of mu = 0.
+void check_symmetric(const Workspace& workspace, const std::string& name) {
+  const auto sections = workspace.points(name);
+  REQUIRE(sections.size() == 1);
+  const PointSection& section = sections.front();
+  for (const PointRow& row : section.rows) {
+    CHECK(std::abs(row.values[section.column("MAX z")]) < 1e-6);
+    CHECK(std::abs(row.values[section.column("p")] - 1.0) < 1e-6);
+  }
+  const std::size_t mu = section.column("mu");
+  CHECK(section.rows.front().values[mu] * section.rows.back().values[mu] < 0.0);
+}
+
 }  // namespace
 
 TEST_CASE("symmetry breaking on a grazing curve: located with any step, passed on the symmetric branch") {
@@ -74,10 +88,11 @@ TEST_CASE("symmetry breaking on a grazing curve: located with any step, passed o
       const std::string steps = " NMX=2000 DSMAX=" + std::to_string(largest) + mesh;
       run(workspace, "DS=" + std::to_string(largest) + steps);
       check_branch_point(workspace, "symmetric");
-      for (const PointRow& row : rows_of(workspace.points("symmetric"))) CHECK(row.values[2] == Approx(1.0));
-      // And back from the other side.
-      run(workspace, "-s symmetric -o back IRS=EP2 DS=-" + std::to_string(largest) + steps);
+      check_symmetric(workspace, "symmetric");
+      // And back from the other side: the end lies beyond RL1, by up to a step.
+      run(workspace, "-s symmetric -o back IRS=EP2 RL1=1 DS=-" + std::to_string(largest) + steps);
       check_branch_point(workspace, "back");
+      check_symmetric(workspace, "back");
     }
 }
 
@@ -103,12 +118,21 @@ TEST_CASE("symmetry breaking on a grazing curve: restart, and both sides of the 
   // Each side is a branch of its own.
   const auto sections = workspace.points("sides");
   REQUIRE(sections.size() == 2);
-  CHECK(std::abs(sections[0].rows.back().values[2] - sections[1].rows.back().values[2]) > 0.1);
+  const std::size_t z_column = sections[0].column("MAX z");
+  for (const PointSection& section : sections)
+    for (const PointRow& row : section.rows) CHECK(row.values[z_column] * section.rows.back().values[z_column] > 0.0);
+  CHECK(sections[0].rows.back().values[z_column] * sections[1].rows.back().values[z_column] < 0.0);
 
-  // Back along one side, through the branch point, to the other one.
-  run(workspace, "-s sides -o through IRS=EP1 DS=-0.03");
-  check_branch_point(workspace, "through");
-  const auto ends = workspace.solutions("through");
-  CHECK(ends.front().states.front().at(2) * ends.back().states.front().at(2) <= 0.0);
-  CHECK(std::abs(ends.back().states.front().at(2)) > 0.5);
+  // From the end of either side, beyond RL1, back through the branch point to the other one, with any step.
+  for (const auto& [end, sign, z_sign] : {std::tuple{"EP1", "-", 1.0}, std::tuple{"EP2", "", -1.0}})
+    for (const double largest : {0.0015, 0.004, 0.03, 0.1, 0.3}) {
+      INFO("from " << end << ", DSMAX = " << largest);
+      const std::string step = std::to_string(largest);
+      run(workspace,
+          std::string("-s sides -o through RL1=0.4 NMX=2000 IRS=") + end + " DS=" + sign + step + " DSMAX=" + step);
+      check_branch_point(workspace, "through");
+      const PointSection through = workspace.points("through").front();
+      CHECK(z_sign * through.rows.front().values[z_column] > 0.1);
+      CHECK(z_sign * through.rows.back().values[z_column] < -0.5);
+    }
 }
