@@ -1,8 +1,11 @@
 #include "app/simulate_command.hpp"
 
+#include <fmt/format.h>
 #include <unistd.h>
 
+#include <CLI/TypeTools.hpp>
 #include <CLI/Validators.hpp>
+#include <cmath>
 #include <iostream>
 #include <memory>
 
@@ -12,6 +15,31 @@
 namespace tchat {
 
 namespace {
+
+/// Refuses what is no finite number with these bounds, and says what is `allowed`.
+CLI::Validator number(double least, double most, const std::string& allowed) {
+  return CLI::Validator(
+      [=](const std::string& text) -> std::string {
+        double value = 0.0;
+        const bool is_number = CLI::detail::lexical_cast(text, value) && std::isfinite(value);
+        if (is_number && value >= least && value <= most) return "";
+        return fmt::format("found '{}'; allowed: {}", text, allowed);
+      },
+      "");
+}
+
+CLI::Validator count(long least, long most) {
+  const std::string allowed = fmt::format("a whole number from {} to {}", least, most);
+  const CLI::Validator is_whole(
+      [=](const std::string& text) -> std::string {
+        long value = 0;
+        return CLI::detail::lexical_cast(text, value) ? "" : fmt::format("found '{}'; allowed: {}", text, allowed);
+      },
+      "");
+  return is_whole & number(static_cast<double>(least), static_cast<double>(most), allowed);
+}
+
+CLI::Validator positive_time() { return number(1e-300, 1e300, "a finite number > 0"); }
 
 int do_simulate(const SimulationRequest& request) {
   std::ostream* const progress = ::isatty(STDERR_FILENO) != 0 && !request.quiet ? &std::cerr : nullptr;
@@ -33,6 +61,10 @@ void add_start_options(CLI::App& command, SimulationRequest& request) {
                   "first of gc.C]")
       ->group(group);
   command
+      .add_option("--signature", request.signature,
+                  "follow these index vectors one after the other, as '1,1,1;2,2,2', whatever else the problem says")
+      ->group(group);
+  command
       .add_flag("--follow-signature", request.follow_signature,
                 "the index vectors of gc.C one after the other, even where the problem has an index jump function")
       ->group(group);
@@ -41,18 +73,25 @@ void add_start_options(CLI::App& command, SimulationRequest& request) {
 void add_length_options(CLI::App& command, SimulationRequest& request) {
   const char* const group = "Length [until a periodic orbit is recognised, at most 10000 events]";
   SimulationPlan& plan = request.plan;
-  command.add_option("--time", plan.time, "so long after the transient")->check(CLI::PositiveNumber)->group(group);
+  command.add_option("--time", plan.time, "so long after the transient")
+      ->type_name("T")
+      ->check(positive_time())
+      ->group(group);
   command.add_option("--events", plan.events, "so many events after the transient")
-      ->check(CLI::PositiveNumber)
+      ->type_name("N")
+      ->check(count(1, 1000000000))
       ->group(group);
   command.add_option("--transient-time", plan.transient_time, "drop what begins before this time")
-      ->check(CLI::NonNegativeNumber)
+      ->type_name("T")
+      ->check(number(0.0, 1e300, "a finite number >= 0"))
       ->group(group);
   command.add_option("--transient-events", plan.transient_events, "drop so many first segments")
-      ->check(CLI::NonNegativeNumber)
+      ->type_name("N")
+      ->check(count(0, 1000000000))
       ->group(group);
   command.add_option("--wait", request.wait, "give up after so long without an event")
-      ->check(CLI::PositiveNumber)
+      ->type_name("T")
+      ->check(positive_time())
       ->capture_default_str()
       ->group(group);
 }
@@ -60,28 +99,33 @@ void add_length_options(CLI::App& command, SimulationRequest& request) {
 void add_detail_options(CLI::App& command, SimulationRequest& request) {
   const char* const group = "Details";
   command.add_option("--tolerance", request.tolerance, "relative error of one integration step")
-      ->check(CLI::Range(1e-15, 1e-2))
+      ->type_name("E")
+      ->check(number(1e-15, 1e-2, "a number from 1e-15 to 0.01"))
       ->capture_default_str()
       ->group(group);
   command.add_flag("--stiff", request.stiff, "backward differentiation instead of Adams' formulas")->group(group);
   command.add_option("--max-period", request.plan.max_period, "longest periodic orbit, in events")
-      ->check(CLI::Range(1, 1000))
+      ->type_name("N")
+      ->check(count(1, 1000))
       ->capture_default_str()
       ->group(group);
   command
       .add_option("--recognition", request.plan.recognition,
                   "difference, relative to the orbit's range, below which states are the same")
-      ->check(CLI::Range(1e-12, 1e-1))
+      ->type_name("E")
+      ->check(number(1e-12, 1e-1, "a number from 1e-12 to 0.1"))
       ->capture_default_str()
       ->group(group);
   command
       .add_option("--contact", request.contact,
                   "a least value of h below this share of its largest value is a near-grazing contact")
-      ->check(CLI::Range(0.0, 1.0))
+      ->type_name("E")
+      ->check(number(0.0, 1.0, "a number from 0 to 1"))
       ->capture_default_str()
       ->group(group);
   command.add_option("--rows", request.rows, "at most so many rows of each segment in O.trajectory; 0 none")
-      ->check(CLI::Range(0, 1000000))
+      ->type_name("N")
+      ->check(count(0, 1000000))
       ->capture_default_str()
       ->group(group);
 }
@@ -111,11 +155,14 @@ void add_simulate_command(CLI::App& app, std::function<int()>& chosen) {
                       "parameters and constants, e.g. PAR(omega)=0.8 'PAR(1)=0.5' NTST=100 IRS=PD1");
   command->footer(
       "After each event the problem's index jump function (successors) says which index vectors are watched next;\n"
-      "the first event function that falls to zero decides. Without one the signature of gc.C is followed.\n"
+      "the first event function that falls to zero decides. Without one a signature is followed: --signature, gc.C.\n"
       "O.events lists every event with the states before and after the jump and h_x f, and near-grazing contacts.\n"
+      "Nothing depends on some states, as a position on an endless floor: those may advance in a periodic orbit.\n"
       "Examples:\n"
+      "  tchat simulate linosc                                         # from the problem's own start\n"
       "  tchat simulate linosc 'PAR(alpha)=3' --dat found && tchat run linosc -c found -d found\n"
       "  tchat simulate linosc --state x1=0.5 --time 100 --transient-time 50 -o trial\n"
+      "  tchat simulate mine --signature '1,1,1;2,2,2' --state 0,0.3   # a problem without successors\n"
       "  tchat simulate linosc -c impacting -s impacting IRS=PD1 'PAR(alpha)=3.036' --dat doubled\n"
       "Exit status: 0 simulated (also when events accumulate), 1 a function cannot be evaluated, or --dat without a\n"
       "periodic orbit, 2 bad usage or bad input, 130 or 143 interrupted (files are complete).");

@@ -1,18 +1,16 @@
 #include "output/run_files.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <utility>
 
 #include "constants/user_error.hpp"
 #include "output/diagnostics_file.hpp"
+#include "output/writable_file.hpp"
 #include "start/solution_file_reader.hpp"
 #include "start/text_file.hpp"
 
@@ -36,29 +34,6 @@ std::string tail_of(const std::string& path) {
   file.read(tail.data(), length);
   tail.resize(static_cast<std::size_t>(file.gcount()));
   return tail;
-}
-
-void refuse(const std::string& path, const std::string& what) {
-  throw UserError(fmt::format("{}: {}; choose another name with -o, or mend the file's place", path, what));
-}
-
-void check_folder(const std::string& path) {
-  const fs::path parent = fs::path(path).parent_path();
-  const std::string folder = parent.empty() ? "." : parent.string();
-  std::error_code error;
-  if (!fs::is_directory(folder, error)) refuse(path, fmt::format("cannot be written, there is no folder {}", folder));
-  if (::access(folder.c_str(), W_OK | X_OK) != 0)
-    refuse(path, fmt::format("cannot be written in folder {} ({})", folder, std::strerror(errno)));
-}
-
-void check_file(const std::string& path) {
-  check_folder(path);
-  std::error_code error;
-  const fs::file_status status = fs::status(path, error);
-  if (fs::is_directory(status)) refuse(path, "cannot be written, it is a directory");
-  if (fs::exists(status) && !fs::is_regular_file(status)) refuse(path, "cannot be written, it is a device or pipe");
-  if (fs::exists(status) && ::access(path.c_str(), W_OK) != 0)
-    refuse(path, fmt::format("cannot be written ({})", std::strerror(errno)));
 }
 
 /// Cuts a file to its first `size` bytes.
@@ -95,7 +70,7 @@ RunFiles::RunFiles(std::string name, Mode mode) : name_(std::move(name)), mode_(
 void RunFiles::check_writable() {
   if (fs::path(name_).filename().empty())
     throw UserError(fmt::format("'{}' is no name for output files; an example is -o mems", name_));
-  for (const char letter : letters) check_file(path(letter));
+  for (const char letter : letters) require_writable(path(letter));
   if (mode_ == Mode::append && exists(path('q'))) {
     const SolutionFile existing = read_solution_file(path('q'));
     last_label_ = existing.last_label;

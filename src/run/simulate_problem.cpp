@@ -1,7 +1,6 @@
 #include "run/simulate_problem.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <chrono>
 #include <filesystem>
@@ -10,6 +9,7 @@
 #include "constants/user_error.hpp"
 #include "output/simulation_files.hpp"
 #include "output/whole_file.hpp"
+#include "output/writable_file.hpp"
 #include "plugin/exit_guard.hpp"
 #include "plugin/plugin_build.hpp"
 #include "plugin/problem_library.hpp"
@@ -77,23 +77,20 @@ bool same_file(const std::string& a, const std::string& b) {
   return fs::equivalent(a, b, error) && !error;
 }
 
-void check_folder(const std::string& name, const char* option) {
-  const fs::path parent = fs::path(name).parent_path();
-  std::error_code ignored;
-  if (fs::path(name).filename().empty())
+/// Files NAME.*, gc.NAME can be made from `name`.
+void check_name(const std::string& name, const char* option) {
+  const std::string file = fs::path(name).filename().string();
+  if (file.empty() || file == "." || file == "..")
     throw UserError(fmt::format("{} '{}' is no name for output files; an example is {} found", option, name, option));
-  if (!parent.empty() && !fs::is_directory(parent, ignored))
-    throw UserError(fmt::format("{} {}: there is no folder {}; make it first", option, name, parent.string()));
-  const std::string folder = parent.empty() ? "." : parent.string();
-  if (::access(folder.c_str(), W_OK | X_OK) != 0)
-    throw UserError(fmt::format("{} {}: the folder {} cannot be written to; choose another", option, name, folder));
 }
 
 /// The orbit's files must not replace what the simulation reads, unless they have been named.
 void check_orbit_name(const SimulationRequest& request, const std::string& name, const std::string& constants) {
-  check_folder(name, "--dat");
-  if (!request.orbit_name.empty()) return;
+  check_name(name, "--dat");
   const OrbitPaths paths = orbit_paths(name);
+  require_writable(paths.data);
+  require_writable(paths.constants);
+  if (!request.orbit_name.empty()) return;
   std::string replaced;
   if (!constants.empty() && same_file(paths.constants, constants)) replaced = paths.constants;
   if (request.data && (same_file(paths.data, *request.data) || same_file(paths.data, *request.data + ".dat")))
@@ -105,7 +102,7 @@ void check_orbit_name(const SimulationRequest& request, const std::string& name,
                     replaced, request.name));
 }
 
-int continuation_parameter(const SimulationRequest& request, const SimulationSettingsFile& constants,
+int continuation_parameter(const SimulationRequest& request, const SimulationConstants& constants,
                            const HybridSystem& system) {
   if (request.parameter) return parameter_index(system, *request.parameter, "--free");
   for (const int k : constants.settings.free_parameters)
@@ -114,7 +111,7 @@ int continuation_parameter(const SimulationRequest& request, const SimulationSet
 }
 
 /// Writes the orbit for `tchat run`; what to say about it.
-std::string hand_over(const SimulationRequest& request, const SimulationSettingsFile& constants,
+std::string hand_over(const SimulationRequest& request, const SimulationConstants& constants,
                       const HybridSystem& system, const FoundOrbit& orbit, const VectorXd& par,
                       const std::string& name) {
   const OrbitSamples samples = sample_orbit(system, orbit, par, data_rows);
@@ -152,13 +149,16 @@ int simulate_problem(const SimulationRequest& request, std::ostream& screen, std
 
   const std::string plugin = resolve_plugin(request.problem.value_or(request.name));
   const ExitGuard guard(plugin);
-  const ProblemLibrary library(plugin);
+  SimulationConstants constants = read_simulation_constants(request);
+  const ProblemLibrary library(plugin, [&] { return sizes_of(request, constants); });
   const HybridSystem& system = library.system();
-  const SimulationSettingsFile constants = simulation_constants(request, system);
+  fit_to_problem(constants, system);
   const SimulationStart start = simulation_start(request, constants, system);
   const std::string output = request.output.value_or(request.name);
   const std::string orbit_name = request.orbit_name.empty() ? output : request.orbit_name;
-  check_folder(output, "-o");
+  check_name(output, "-o");
+  require_writable(SimulationFiles::trajectory_path(output));
+  require_writable(SimulationFiles::events_path(output));
   if (request.hand_over) {
     check_orbit_name(request, orbit_name, constants.path);
     continuation_parameter(request, constants, system);
@@ -180,11 +180,12 @@ int simulate_problem(const SimulationRequest& request, std::ostream& screen, std
 
   FoundOrbit orbit;
   if (result.is_periodic()) {
-    IndexVector first = constants.is_given() ? constants.settings.segments.front().index : IndexVector{0, 0, 0};
+    const IndexVector first =
+        constants.has_signature ? constants.settings.segments.front().index : IndexVector{0, 0, 0};
     orbit = refine(system, result, start.par, first);
     say(orbit.converged
             ? orbit_text(system, orbit)
-            : fmt::format("The motion repeats itself after {} events, but shooting does not find the orbit: {}\n",
+            : fmt::format("The motion repeats itself after {} event(s), but shooting does not find the orbit: {}\n",
                           result.turn.size(), orbit.message));
   } else {
     say(no_orbit_text(result, request.plan));

@@ -18,9 +18,10 @@ struct SimulationRequest {
   std::optional<std::string> output;     ///< -o
   std::vector<std::string> overrides;    ///< KEY=VALUE
 
-  std::optional<std::string> state;  ///< "0,0.1" or "x1=0.1,x2=3"
-  std::optional<std::string> modes;  ///< "1,2,1;1,3,2"
-  bool follow_signature = false;     ///< of the constants file, even where there is an index jump function
+  std::optional<std::string> state;      ///< "0,0.1" or "x1=0.1,x2=3"
+  std::optional<std::string> modes;      ///< "1,2,1;1,3,2"
+  std::optional<std::string> signature;  ///< "1,1,1;2,2,2", followed cyclically
+  bool follow_signature = false;         ///< of the constants file, even where there is an index jump function
 
   SimulationPlan plan;
   double tolerance = 1e-10;  ///< relative, of one integration step

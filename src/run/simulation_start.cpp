@@ -2,17 +2,16 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <filesystem>
 #include <optional>
+#include <set>
 
-#include "constants/constants_file.hpp"
 #include "constants/user_error.hpp"
 #include "run/parameter_values.hpp"
 #include "run/problem_setup.hpp"
 #include "run/run_request.hpp"
+#include "run/simulation_rule.hpp"
 #include "start/dat_file.hpp"
 #include "start/solution_file_reader.hpp"
 
@@ -66,13 +65,16 @@ int state_index(const HybridSystem& system, const std::string& name, const std::
 void apply_state_option(const HybridSystem& system, const std::string& text, VectorXd& state) {
   const std::vector<std::string> parts = split(text, ',');
   if (text.find('=') != std::string::npos) {
+    std::set<int> given;
     for (const std::string& part : parts) {
       const std::size_t equals = part.find('=');
       if (equals == std::string::npos)
         throw UserError(fmt::format("--state {}: '{}' lacks its name; give NAME=VALUE for some states or all {} values",
                                     text, part, system.dimension()));
       const std::string name = split(part.substr(0, equals), ',').front();
-      state(state_index(system, name, text) - 1) = read_state_value(split(part.substr(equals + 1), ',').front(), text);
+      const int k = state_index(system, name, text);
+      if (!given.insert(k).second) throw UserError(fmt::format("--state {}: '{}' is given twice", text, name));
+      state(k - 1) = read_state_value(split(part.substr(equals + 1), ',').front(), text);
     }
     return;
   }
@@ -84,80 +86,28 @@ void apply_state_option(const HybridSystem& system, const std::string& text, Vec
   for (std::size_t i = 0; i < parts.size(); ++i) state(static_cast<Eigen::Index>(i)) = read_state_value(parts[i], text);
 }
 
-/// "1,2,1;1,3,2"
-std::vector<IndexVector> read_modes(const HybridSystem& system, const std::string& text) {
-  std::vector<IndexVector> index_vectors;
-  for (std::string item : split(text, ';')) {
-    std::erase_if(item, [](char c) { return c == '(' || c == ')'; });
-    const std::vector<std::string> parts = split(item, ',');
-    std::vector<int> numbers;
-    for (const std::string& part : parts)
-      if (const auto number = read_number<int>(part)) numbers.push_back(*number);
-    if (parts.size() != 3 || numbers.size() != 3)
-      throw UserError(
-          fmt::format("--mode {}: '{}' is no index vector; it is written field,event,jump as in 1,2,1, "
-                      "several with semicolons as in '1,2,1;1,3,2'",
-                      text, item));
-    index_vectors.push_back({numbers[0], numbers[1], numbers[2]});
+/// Of an orbit of the signature, or of one segment: the first row is all that matters.
+DatFile read_start(const std::string& path, const SimulationConstants& constants, int n) {
+  const int m = constants.has_signature ? static_cast<int>(constants.settings.segments.size()) : 1;
+  try {
+    return read_dat_file(path, n, m);
+  } catch (const UserError&) {
+    if (m == 1) throw;
   }
-  if (const std::string fault = fault_of(system, index_vectors); !fault.empty())
-    throw UserError(fmt::format("--mode {}: {}", text, fault));
-  return index_vectors;
+  return read_dat_file(path, n, 1);
 }
 
-std::vector<Mode> modes_of_signature(const RunSettings& settings) {
-  std::vector<Mode> modes;
-  for (const SegmentSettings& segment : settings.segments) {
-    Mode mode{{segment.index}, segment.monitor};
-    std::erase(mode.monitored, segment.index.event);
-    modes.push_back(std::move(mode));
-  }
-  return modes;
-}
-
-/// The signature of the constants file, beginning at --mode.
-ModeRule cyclic_rule(const SimulationRequest& request, const SimulationSettingsFile& constants,
-                     const HybridSystem& system) {
-  if (!constants.is_given())
-    throw UserError(fmt::format(
-        "{} has no index jump function (successors), so a simulation follows the signature of a constants file, and "
-        "there is no gc.{}; name one with -c, or give the problem a member `successors` (README, \"Simulation\")",
-        system.name(), request.name));
-  std::vector<Mode> modes = modes_of_signature(constants.settings);
-  if (!request.modes) return ModeRule(system, std::move(modes));
-  const std::vector<IndexVector> wanted = read_modes(system, *request.modes);
-  const auto at = std::find_if(modes.begin(), modes.end(), [&](const Mode& m) { return m.index_vectors == wanted; });
-  if (at == modes.end())
-    throw UserError(
-        fmt::format("--mode {}: the signature of {}, which the simulation follows, is {}; give one of its "
-                    "index vectors",
-                    *request.modes, constants.path, to_string(constants.settings.signature())));
-  std::rotate(modes.begin(), at, modes.end());
-  return ModeRule(system, std::move(modes));
-}
-
-ModeRule mode_rule(const SimulationRequest& request, const SimulationSettingsFile& constants,
-                   const HybridSystem& system, const VectorXd& x, const VectorXd& par) {
-  if (!system.has_successors() || request.follow_signature) return cyclic_rule(request, constants, system);
-  if (request.modes) return ModeRule(system, Mode{read_modes(system, *request.modes), {}});
-  const auto start = system.successors({0, 0, 0}, x.data(), par.data());
-  const bool is_silent = !start || start->empty();
-  if (is_silent && constants.is_given()) return ModeRule(system, Mode{{constants.settings.segments.front().index}, {}});
-  return ModeRule(system);
-}
-
-void apply_data(const SimulationRequest& request, const SimulationSettingsFile& constants, const HybridSystem& system,
+void apply_data(const SimulationRequest& request, const SimulationConstants& constants, const HybridSystem& system,
                 SimulationStart& start) {
   const std::string path = data_path(*request.data);
-  const int m = constants.is_given() ? static_cast<int>(constants.settings.segments.size()) : 1;
-  const DatFile data = read_dat_file(path, system.dimension(), m);
+  const DatFile data = read_start(path, constants, system.dimension());
   for (const auto& [k, value] : data.parameters) start.par(k - 1) = value;
   for (const auto& [name, value] : data.named_parameters) start.par(parameter_index(system, name, path) - 1) = value;
   start.state = data.states.col(0).head(system.dimension());
   start.source = fmt::format("first row of {}", path);
 }
 
-void apply_label(const SimulationRequest& request, const SimulationSettingsFile& constants, const HybridSystem& system,
+void apply_label(const SimulationRequest& request, const SimulationConstants& constants, const HybridSystem& system,
                  SimulationStart& start) {
   const std::string path = solution_path(*request.start);
   const SolutionFile file = read_solution_file(path);
@@ -180,29 +130,7 @@ void apply_label(const SimulationRequest& request, const SimulationSettingsFile&
 
 }  // namespace
 
-SimulationSettingsFile simulation_constants(const SimulationRequest& request, const HybridSystem& system) {
-  namespace fs = std::filesystem;
-  SimulationSettingsFile file;
-  const fs::path name(request.name);
-  const fs::path own = name.parent_path() / ("gc." + name.filename().string());
-  std::error_code ignored;
-  if (request.constants)
-    file.path = constants_path(*request.constants);
-  else if (fs::is_regular_file(own, ignored))
-    file.path = own.string();
-  if (file.is_given()) {
-    file.settings = read_constants_file(file.path);
-  } else {
-    file.settings.dimension = system.dimension();
-    file.settings.free_parameters = {1};
-    file.settings.segments.resize(1);
-  }
-  apply_overrides(file.settings, request.overrides);
-  if (file.is_given()) check_settings_against(system, file.settings, file.path);
-  return file;
-}
-
-SimulationStart simulation_start(const SimulationRequest& request, const SimulationSettingsFile& constants,
+SimulationStart simulation_start(const SimulationRequest& request, const SimulationConstants& constants,
                                  const HybridSystem& system) {
   if (request.data && request.start)
     throw UserError("-d and -s are both given; a simulation starts from data (-d) or from a label of a q-file (-s)");
@@ -221,7 +149,7 @@ SimulationStart simulation_start(const SimulationRequest& request, const Simulat
   if (!start.state.allFinite())
     throw UserError(fmt::format("the start {} ({}) is not finite", state_text(start.state), start.source));
   SimulationStart result{start.par, start.state, start.source,
-                         mode_rule(request, constants, system, start.state, start.par)};
+                         simulation_rule(request, constants, system, start.state, start.par)};
   return result;
 }
 

@@ -15,6 +15,9 @@ std::string event_name(const HybridSystem& system, int event) {
   return name == fmt::format("event {}", event) ? name : fmt::format("event {} ({})", event, name);
 }
 
+/// "1 event", "3 events"
+std::string counted(long n, const char* what) { return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s"); }
+
 std::string index_text(const IndexVector& v) { return fmt::format("({},{},{})", v.field, v.event, v.jump); }
 
 std::string multiplier_text(const std::complex<double>& mu) {
@@ -33,6 +36,10 @@ std::string why_it_ended(const HybridSystem& system, const SimulationResult& res
         result.events > 20 ? 20 : result.events, limit.pattern, limit.ratio, last.end_time() + limit.remaining,
         limit.remaining, state_text(last.after));
   }
+  if (result.dies_out)
+    return fmt::format(
+        "The motion dies out: the last events are 1e-12 times as fast as the first. It rests near x = {}.\n",
+        state_text(last.after));
   switch (last.ended_by) {
     case SegmentEnd::event:
     case SegmentEnd::end_time:
@@ -43,8 +50,10 @@ std::string why_it_ended(const HybridSystem& system, const SimulationResult& res
       std::string watched;
       for (const int event : last.mode.terminal_events())
         watched += fmt::format("{}{}", watched.empty() ? "" : ", ", event_name(system, event));
-      return fmt::format("The end: {}. Watched: {}. The last state is x = {}.\n", last.message, watched,
-                         state_text(last.end));
+      return fmt::format(
+          "The end: {}. Watched: {}. The last state is x = {}.\nIt may be at rest, or wait longer (--wait), start "
+          "elsewhere (--state), watch other events (--mode, --signature).\n",
+          last.message, watched, state_text(last.end));
     }
     default:
       return fmt::format("The end: {}.\n", last.message);
@@ -75,27 +84,26 @@ std::string start_text(const HybridSystem& system, const SimulationStart& start,
 }
 
 std::string course_text(const HybridSystem& system, const SimulationResult& result, double end_time, double contact) {
-  std::string text = fmt::format("{} events up to t = {:.12g}", result.events, end_time);
+  std::string text = fmt::format("{} up to t = {:.12g}", counted(result.events, "event"), end_time);
   if (result.dropped > 0) text += fmt::format(", the first {} dropped as transient", result.dropped);
   text += "\n" + why_it_ended(system, result);
   if (result.contacts > 0)
-    text += fmt::format("{} near-grazing contacts (least values of an event function within {:g} of its range)\n",
-                        result.contacts, contact);
+    text += fmt::format("{} (least values of an event function within {:g} of its range)\n",
+                        counted(result.contacts, "near-grazing contact"), contact);
   if (result.simultaneous > 0)
-    text +=
-        fmt::format("{} times several events came together; the first in the order of the index vectors went first\n",
-                    result.simultaneous);
+    text += fmt::format("{} several events came together; the first in the order of the index vectors went first\n",
+                        counted(result.simultaneous, "time"));
   if (result.beyond > 0)
-    text += fmt::format("{} segments start beyond a wall (`beyond` in the list of events): states outside the model\n",
-                        result.beyond);
+    text += fmt::format("{} beyond a wall (`beyond` in the list of events): states outside the model\n",
+                        counted(result.beyond, "start"));
   if (result.violations > 0) {
     const SimulatedSegment& segment = *result.first_violation;
     for (const SegmentMark& mark : segment.marks) {
       if (mark.kind != SegmentMark::Kind::violation) continue;
       text += fmt::format(
-          "{} times a monitored event function fell below zero, first {} at t = {:.10g} in segment {}:\nthis signature "
+          "{} a monitored event function fell below zero, first {} at t = {:.10g} in segment {}:\nthis signature "
           "has no such orbit there. An index jump function (successors) would choose what follows.\n",
-          result.violations, event_name(system, mark.event), mark.time, segment.number);
+          counted(result.violations, "time"), event_name(system, mark.event), mark.time, segment.number);
       break;
     }
   }
@@ -131,10 +139,11 @@ std::string orbit_text(const HybridSystem& system, const FoundOrbit& orbit) {
 }
 
 std::string no_orbit_text(const SimulationResult& result, const SimulationPlan& plan) {
-  if (result.accumulation) return "";
+  if (result.accumulation || result.dies_out) return "";
   switch (result.last.ended_by) {
     case SegmentEnd::failed:
     case SegmentEnd::sticks:
+    case SegmentEnd::no_event:
       return "";
     default:
       return fmt::format(

@@ -1,5 +1,5 @@
-/// A simulation of wanted length: what is dropped as transient, whether it settles on a periodic orbit, whether events
-/// accumulate.
+/// A simulation of wanted length: what is dropped as transient, whether it settles on a periodic orbit or dies out,
+/// whether events accumulate.
 #pragma once
 
 #include <functional>
@@ -31,6 +31,8 @@ struct SimulationResult {
   std::vector<SimulatedSegment> turn;   ///< the segments of one period, in order; empty when nothing was recognised
   std::vector<Eigen::Index> ignorable;  ///< states that nothing depends on, from 0
   std::optional<ChatteringDetector::Accumulation> accumulation;
+  bool dies_out =
+      false;  ///< the last events' h_x f is next to nothing of what it was; not looked for in a given length
 
   bool is_periodic() const { return !turn.empty(); }
 };

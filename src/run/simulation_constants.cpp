@@ -1,0 +1,80 @@
+#include "run/simulation_constants.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "constants/constants_file.hpp"
+#include "constants/user_error.hpp"
+#include "resegment/segment_list.hpp"
+#include "run/problem_setup.hpp"
+#include "run/run_request.hpp"
+#include "run/simulation_rule.hpp"
+#include "simulation/mode_rule.hpp"
+
+namespace tchat {
+
+namespace {
+
+/// The segments of --signature; those that the file has keep its monitored event functions.
+std::vector<SegmentSettings> segments_of_signature(const std::string& text, const std::vector<SegmentSettings>& known) {
+  std::vector<SegmentSettings> segments;
+  for (const IndexVector& index : parse_signature(text)) {
+    const auto same = std::find_if(known.begin(), known.end(), [&](const auto& s) { return s.index == index; });
+    SegmentSettings segment;
+    if (same != known.end()) segment = *same;
+    segment.index = index;
+    segments.push_back(std::move(segment));
+  }
+  return segments;
+}
+
+}  // namespace
+
+SimulationConstants read_simulation_constants(const SimulationRequest& request) {
+  namespace fs = std::filesystem;
+  SimulationConstants constants;
+  const fs::path name(request.name);
+  const fs::path own = name.parent_path() / ("gc." + name.filename().string());
+  std::error_code ignored;
+  if (request.constants)
+    constants.path = constants_path(*request.constants);
+  else if (fs::is_regular_file(own, ignored))
+    constants.path = own.string();
+  RunSettings& settings = constants.settings;
+  if (constants.is_given()) {
+    settings = read_constants_file(constants.path);
+  } else {
+    settings.free_parameters = {1};
+    settings.segments.resize(1);
+  }
+  apply_overrides(settings, request.overrides);
+  if (request.signature)
+    settings.segments = segments_of_signature(
+        *request.signature, constants.is_given() ? settings.segments : std::vector<SegmentSettings>{});
+  constants.has_signature = constants.is_given() || request.signature.has_value();
+  return constants;
+}
+
+ProblemSizes sizes_of(const SimulationRequest& request, const SimulationConstants& constants) {
+  if (!constants.is_given())
+    throw UserError(
+        fmt::format("{} is a Fortran plugin, which does not say how many states and functions it has; give a constants "
+                    "file with -c C (or name one gc.{}), whose NDIM and signature say it",
+                    request.name, request.name));
+  ProblemSizes sizes = problem_sizes(constants.settings);
+  if (request.modes)
+    for (const IndexVector& index : parse_modes(*request.modes)) sizes.add(index);
+  return sizes;
+}
+
+void fit_to_problem(SimulationConstants& constants, const HybridSystem& system) {
+  if (!constants.is_given()) constants.settings.dimension = system.dimension();
+  for (const SegmentSettings& segment : constants.settings.segments)
+    if (const std::string fault = fault_of(system, {segment.index}); constants.has_signature && !fault.empty())
+      throw UserError(fmt::format("{}: {}", constants.is_given() ? constants.path : "--signature", fault));
+  if (constants.is_given()) check_settings_against(system, constants.settings, constants.path);
+}
+
+}  // namespace tchat

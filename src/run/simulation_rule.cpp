@@ -1,0 +1,118 @@
+#include "run/simulation_rule.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "constants/constant_value.hpp"
+#include "constants/user_error.hpp"
+
+namespace tchat {
+
+namespace {
+
+using Eigen::VectorXd;
+
+[[noreturn]] void refuse_modes(const std::string& text, const std::string& item) {
+  throw UserError(
+      fmt::format("--mode {}: '{}' is no index vector; it is written field,event,jump as in 1,2,1, several with "
+                  "semicolons as in '1,2,1;1,3,2'",
+                  text, item));
+}
+
+IndexVector parse_index_vector(const std::string& item, const std::string& text) {
+  std::vector<int> numbers;
+  for (std::size_t begin = 0; begin <= item.size();) {
+    const std::size_t end = std::min(item.find(',', begin), item.size());
+    const auto number = parse_integer(item.substr(begin, end - begin));
+    if (!number) refuse_modes(text, item);
+    numbers.push_back(*number);
+    begin = end + 1;
+  }
+  if (numbers.size() != 3) refuse_modes(text, item);
+  return {numbers[0], numbers[1], numbers[2]};
+}
+
+/// Those of --mode, which the problem must have.
+std::vector<IndexVector> existing_modes(const HybridSystem& system, const std::string& text) {
+  std::vector<IndexVector> index_vectors = parse_modes(text);
+  if (const std::string fault = fault_of(system, index_vectors); !fault.empty())
+    throw UserError(fmt::format("--mode {}: {}", text, fault));
+  return index_vectors;
+}
+
+std::vector<Mode> modes_of_signature(const RunSettings& settings) {
+  std::vector<Mode> modes;
+  for (const SegmentSettings& segment : settings.segments) {
+    Mode mode{{segment.index}, segment.monitor};
+    std::erase(mode.monitored, segment.index.event);
+    modes.push_back(std::move(mode));
+  }
+  return modes;
+}
+
+bool has_one_of_each(const HybridSystem& system) {
+  return system.count(FunctionKind::field) == 1 && system.count(FunctionKind::event) == 1 &&
+         system.count(FunctionKind::jump) == 1;
+}
+
+[[noreturn]] void refuse_without_signature(const SimulationRequest& request, const HybridSystem& system) {
+  if (system.has_successors())
+    throw UserError(
+        fmt::format("--follow-signature: there is no signature to follow; give it with --signature '1,2,2;...' or a "
+                    "constants file with -c C (there is no gc.{})",
+                    request.name));
+  throw UserError(
+      fmt::format("{} has no index jump function (successors), so a simulation follows a signature; give it with "
+                  "--signature '1,2,2;...' or a constants file with -c C (there is no gc.{}), or give the problem a "
+                  "member `successors` (README, \"From equations to an orbit\")",
+                  system.name(), request.name));
+}
+
+/// The signature, beginning at --mode.
+ModeRule cyclic_rule(const SimulationRequest& request, const SimulationConstants& constants,
+                     const HybridSystem& system) {
+  if (!constants.has_signature && !has_one_of_each(system)) refuse_without_signature(request, system);
+  std::vector<Mode> modes = constants.has_signature ? modes_of_signature(constants.settings)
+                                                    : std::vector<Mode>{Mode{{IndexVector{1, 1, 1}}, {}}};
+  if (!request.modes) return ModeRule(system, std::move(modes));
+  const std::vector<IndexVector> wanted = existing_modes(system, *request.modes);
+  const auto at = std::find_if(modes.begin(), modes.end(), [&](const Mode& m) { return m.index_vectors == wanted; });
+  if (at == modes.end())
+    throw UserError(
+        fmt::format("--mode {}: the signature, which the simulation follows, is {}; give one of its index "
+                    "vectors",
+                    *request.modes, to_string(constants.settings.signature())));
+  std::rotate(modes.begin(), at, modes.end());
+  return ModeRule(system, std::move(modes));
+}
+
+}  // namespace
+
+std::vector<IndexVector> parse_modes(const std::string& text) {
+  std::string plain = text;
+  std::erase_if(plain, [](char c) { return c == '(' || c == ')' || c == ' '; });
+  std::vector<IndexVector> index_vectors;
+  for (std::size_t begin = 0; begin <= plain.size();) {
+    const std::size_t end = std::min(plain.find(';', begin), plain.size());
+    const IndexVector index = parse_index_vector(plain.substr(begin, end - begin), text);
+    if (std::find(index_vectors.begin(), index_vectors.end(), index) == index_vectors.end())
+      index_vectors.push_back(index);
+    begin = end + 1;
+  }
+  return index_vectors;
+}
+
+ModeRule simulation_rule(const SimulationRequest& request, const SimulationConstants& constants,
+                         const HybridSystem& system, const VectorXd& x, const VectorXd& par) {
+  if (!system.has_successors() || request.follow_signature || request.signature)
+    return cyclic_rule(request, constants, system);
+  if (request.modes) return ModeRule(system, Mode{existing_modes(system, *request.modes), {}});
+  const auto start = system.successors({0, 0, 0}, x.data(), par.data());
+  const bool is_silent = !start || start->empty();
+  if (is_silent && constants.has_signature)
+    return ModeRule(system, Mode{{constants.settings.segments.front().index}, {}});
+  return ModeRule(system);
+}
+
+}  // namespace tchat
