@@ -259,7 +259,10 @@ std::optional<BranchPointBracket> SpecialPointSearch::find_branch_point(const Pa
     note(fmt::format("Possible special point: {} changes sign, but no zero of it was located", tests_[*found]->name()));
     return std::nullopt;
   }
-  if (is_start(bracket.length())) return std::nullopt;
+  if (is_start(bracket.length())) {
+    note(fmt::format("The run starts at a zero of {}: no label of its own", tests_[*found]->name()));
+    return std::nullopt;
+  }
   return bracket;
 }
 

@@ -83,7 +83,7 @@ void refuse_singular(PathFollower& follower, const DefiningSystem& defining, con
   throw ComputationError(fmt::format(
       "the boundary value problem is singular (scaled reciprocal condition {:.1e}): it leaves {} undetermined, so that "
       "Newton converges only by luck; pin that direction, for instance by a jump that sets the state, or free another "
-      "parameter",
+      "parameter (if this is the one point where branches cross, start beside it: its label BP is then found)",
       singularity.reciprocal_condition,
       undetermined(defining.system(), defining, singularity.direction, point.orbit.shape)));
 }
