@@ -112,6 +112,18 @@ void check_passage(const Workspace& workspace, const Curve& curve) {
   check_values(workspace, curve, "through");
   check_codimension_two_point(workspace, "through");
   check_multipliers(workspace, curve, "through");
+  // It runs on beyond, into orbits that the model forbids.
+  const auto sections = workspace.points("through");
+  const PointRow* beyond = nullptr;
+  for (const PointSection& section : sections) {
+    const auto met = std::find_if(section.rows.begin(), section.rows.end(), [](const PointRow& row) {
+      return std::abs(row.values.front() - codimension_two()) < 1e-6;
+    });
+    if (met != section.rows.end() && section.rows.end() - met > 5) beyond = &section.rows.back();
+  }
+  REQUIRE(beyond != nullptr);
+  const double omega = beyond->values.front();
+  CHECK((omega - codimension_two()) * (curve.values.front().omega - codimension_two()) < 0.0);
 }
 
 /// Back from the point itself, in small steps.

@@ -153,14 +153,20 @@ TEST_CASE("contact: located, falling ends the branch, rising does not") {
 
 TEST_CASE("contact: of two minima that cross within a step the first one is labelled") {
   for (const double c : {0.01, -0.01}) {
-    const RecordedBranch branch = continued({1.3, 0.0, c, 1.0}, pi, 1, 1, -0.1, 20);
+    // Steps of 0.1 from 1.34: one of them leads from 1.04 to 0.94, across both zeros.
+    const RecordedBranch branch = continued({1.34, 0.0, c, 1.0}, pi, 1, 1, -0.1, 20);
     REQUIRE(branch.special().size() == 1);
+    const double before = branch.points[branch.points.size() - 2].orbit.par(0);
+    CHECK(before > 1.01);
+    CHECK(before - 0.1 < 0.99);
     // a - d - |c| = 0 comes first.
     CHECK(branch.special()[0]->orbit.par(0) == Approx(1.01).margin(1e-8));
     const double angle = branch.special()[0]->special.kind.tau * 2 * pi + pi;
     CHECK(std::sin(angle) == Approx(c > 0 ? -1.0 : 1.0).margin(1e-6));
-    const RecordedBranch on = continued({1.3, 0.0, c, 1.0}, pi, 1, 1, -0.1, 8, false);
-    CHECK(on.special().size() == 1);
+    const RecordedBranch on = continued({1.34, 0.0, c, 1.0}, pi, 1, 1, -0.1, 8, false);
+    CHECK(on.points.back().orbit.par(0) < 0.99);
+    REQUIRE(on.special().size() == 1);
+    CHECK(on.special()[0]->orbit.par(0) == Approx(1.01).margin(1e-8));
     CHECK(on.notes.empty());
   }
 }

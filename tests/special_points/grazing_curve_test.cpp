@@ -34,10 +34,11 @@ double exact_xi(int n, double omega) {
 }
 
 /// {(1,1,2)} from omega on; PAR(2) first, so that omega is the principal parameter.
-RecordedBranch grazing_oscillator(double omega, double ds, double largest_step, int points, int most) {
+RecordedBranch grazing_oscillator(double omega, double ds, double largest_step, int points, int most,
+                                  int intervals = 50, int collocation = 4) {
   const double alpha = std::abs(OscillatorConstants{omega}.stiffness());
   const OscillatorOrbit orbit = nonimpacting_orbit(omega, alpha);
-  const Orbit start = sampled_orbit({orbit.piece(0, orbit.constants.period())}, 4, 50, 4, orbit.par());
+  const Orbit start = sampled_orbit({orbit.piece(0, orbit.constants.period())}, 4, intervals, collocation, orbit.par());
   const GrazingOrbitSystem system(linosc(), {{1, 1, 2}}, {2, 1}, 0);
   Tests tests;
   for (int n = 1; n <= most; ++n) tests.push_back(std::make_unique<XiTest>(system, 1, n));
@@ -132,6 +133,29 @@ TEST_CASE("xi_n vanish at omega = 2 n omega_d / k, every one of them, one label 
   REQUIRE(!branch.special().empty());
   const std::string text = branch.special()[0]->special.description;
   for (int n = 1; n <= most; ++n) CHECK(text.find("xi_" + std::to_string(n)) != std::string::npos);
+}
+
+TEST_CASE("xi_1 and xi_2 vanish at the same places on every mesh, both ways") {
+  const double damped = std::sqrt(1 - 0.05 * 0.05);
+  struct Mesh {
+    int intervals, collocation;
+    double tolerance;
+  };
+  for (const Mesh& mesh : {Mesh{20, 3, 1e-5}, Mesh{50, 5, 1e-7}, Mesh{50, 6, 1e-7}, Mesh{100, 4, 1e-7},
+                           Mesh{200, 4, 1e-7}, Mesh{200, 6, 1e-7}})
+    for (const double way : {1.0, -1.0}) {
+      CAPTURE(mesh.intervals, mesh.collocation, way);
+      // xi_1 at 2 omega_d, xi_2 there and at 4 omega_d / 3.
+      const RecordedBranch branch =
+          grazing_oscillator(way > 0 ? 1.25 : 2.1, way * 0.05, 0.1, 40, 2, mesh.intervals, mesh.collocation);
+      std::vector<double> found;
+      for (const RecordedPoint* p : branch.special())
+        if (const double omega = p->orbit.par(1); omega > 1.25 && omega < 2.1) found.push_back(omega);
+      REQUIRE(found.size() == 2);
+      std::sort(found.begin(), found.end());
+      CHECK(std::abs(found[0] - 4 * damped / 3) < mesh.tolerance);
+      CHECK(std::abs(found[1] - 2 * damped) < mesh.tolerance);
+    }
 }
 
 TEST_CASE("grazing-fold and grazing-flip of the normal forms") {
