@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "continuation/value_trend.hpp"
 #include "special_points/bifurcation_tests.hpp"
 
 namespace tchat {
@@ -13,10 +14,6 @@ namespace {
 
 /// Functions that have fallen to this share of their change over the step vanish together with the one located.
 constexpr double together = 1e-5;
-/// An oscillating function is followed when it misses its extrapolation by no more than this share of its size.
-constexpr double unexpected = 0.3;
-/// It may have changed sign twice when the parabola through its values falls below this share of those at the ends.
-constexpr double dip = 0.25;
 /// A step whose tangents make a larger angle (cosine) has come to another branch if the determinant falls below this
 /// share.
 constexpr double same_direction = 0.95;
@@ -24,51 +21,6 @@ constexpr double small_determinant = 0.3;
 /// To find where a function has the sign that it brought into the step.
 constexpr int most_halvings = 12;
 constexpr std::size_t history_length = 12;
-
-struct Node {
-  double at;
-  double value;
-};
-
-/// The last node with the last one before it that is at least `spacing` away, and so on; at most `most`, latest first.
-std::vector<Node> apart(const std::vector<Node>& nodes, double spacing, std::size_t most) {
-  std::vector<Node> chosen;
-  for (auto node = nodes.rbegin(); node != nodes.rend() && chosen.size() < most; ++node)
-    if (chosen.empty() || std::abs(node->at - chosen.back().at) >= spacing) chosen.push_back(*node);
-  return chosen;
-}
-
-/// Value at `at` of the parabola through the last point and two earlier ones at least `spacing` apart (the line when
-/// there is only one such point); nothing when there is none.
-std::optional<double> extrapolate(const std::vector<Node>& nodes, double at, double spacing) {
-  const std::vector<Node> chosen = apart(nodes, spacing, 3);
-  if (chosen.size() < 2) return std::nullopt;
-  double result = 0.0;
-  for (std::size_t i = 0; i < chosen.size(); ++i) {
-    double weight = 1.0;
-    for (std::size_t k = 0; k < chosen.size(); ++k)
-      if (k != i) weight *= (at - chosen[k].at) / (chosen[i].at - chosen[k].at);
-    result += weight * chosen[i].value;
-  }
-  return result;
-}
-
-/// Does the parabola through the last two values and the new one turn back between the last one and the new one, of
-/// the same sign, near zero or beyond it?
-bool turns_at_zero(const std::vector<Node>& nodes, const Node& next, double spacing) {
-  const std::vector<Node> past = apart(nodes, spacing, 2);
-  if (past.size() < 2 || !(past[0].value * next.value > 0.0)) return false;
-  // Newton's form on past[0], next, past[1] in t = at - past[0].at.
-  const double length = next.at - past[0].at;
-  const double slope = (next.value - past[0].value) / length;
-  const double before = (past[0].value - past[1].value) / (past[0].at - past[1].at);
-  const double curvature = (slope - before) / (next.at - past[1].at);
-  const double turn = 0.5 * (length - slope / curvature);
-  if (!(turn > 0.0 && turn < length)) return false;
-  const double value = past[0].value + slope * turn + curvature * turn * (turn - length);
-  const double sign = next.value > 0.0 ? 1.0 : -1.0;
-  return sign * value < dip * std::min(std::abs(past[0].value), std::abs(next.value));
-}
 
 /// A multiplier +1 where the bordered determinant changes sign is a branch point, no grazing-fold.
 bool is_the_same(const SpecialPoint& special, const SpecialPoint& other) {
@@ -155,16 +107,10 @@ bool SpecialPointSearch::resolved(const PathPoint& next, double ds) {
   const double at = history_.back().arclength + std::abs(ds);
   for (std::size_t i = 0; i < tests_.size(); ++i) {
     if (!tests_[i]->oscillates() || !data_.values[i]) continue;
-    std::vector<Node> nodes;
-    double size = std::abs(*data_.values[i]);
-    for (const Past& past : history_) {
-      if (!past.values[i]) continue;
-      nodes.push_back({past.arclength, *past.values[i]});
-      size = std::max(size, std::abs(*past.values[i]));
-    }
-    const std::optional<double> expected = extrapolate(nodes, at, 0.2 * std::abs(ds));
-    if (expected && std::abs(*expected - *data_.values[i]) > unexpected * size) return false;
-    if (turns_at_zero(nodes, {at, *data_.values[i]}, 0.2 * std::abs(ds))) return false;
+    std::vector<TrendValue> past;
+    for (const Past& point : history_)
+      if (point.values[i]) past.push_back({point.arclength, *point.values[i]});
+    if (!follows_trend(past, {at, *data_.values[i]})) return false;
   }
   return true;
 }
