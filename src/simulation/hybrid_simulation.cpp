@@ -24,8 +24,10 @@ bool contains(const std::vector<int>& events, int event) {
 
 /// Every second sample, first and last included.
 void halve(std::vector<Sample>& samples) {
+  const std::size_t last = samples.size() - 1;
   std::size_t kept = 0;
-  for (std::size_t i = 0; i < samples.size(); i += 2) samples[kept++] = std::move(samples[i]);
+  for (std::size_t i = 0; i < last; i += 2) samples[kept++] = std::move(samples[i]);
+  samples[kept++] = std::move(samples[last]);
   samples.resize(kept);
 }
 
