@@ -163,7 +163,7 @@ void add_simulate_command(CLI::App& app, std::function<int()>& chosen) {
       "  tchat simulate linosc 'PAR(alpha)=3' --dat found && tchat run linosc -c found -d found\n"
       "  tchat simulate linosc --state x1=0.5 --time 100 --transient-time 50 -o trial\n"
       "  tchat simulate mine --signature '1,1,1;2,2,2' --state 0,0.3   # a problem without successors\n"
-      "  tchat simulate linosc -c impacting -s impacting IRS=PD1 'PAR(alpha)=3.036' --dat doubled\n"
+      "  tchat simulate linosc -c impacting -s impacting IRS=PD1 'PAR(alpha)=3.0361' --dat doubled\n"
       "Exit status: 0 simulated (also when events accumulate), 1 a function cannot be evaluated, or --dat without a\n"
       "periodic orbit, 2 bad usage or bad input, 130 or 143 interrupted (files are complete).");
   command->callback([&chosen, request, command] {

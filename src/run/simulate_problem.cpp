@@ -104,7 +104,12 @@ void check_orbit_name(const SimulationRequest& request, const std::string& name,
 
 int continuation_parameter(const SimulationRequest& request, const SimulationConstants& constants,
                            const HybridSystem& system) {
-  if (request.parameter) return parameter_index(system, *request.parameter, "--free");
+  if (request.parameter) {
+    const int k = parameter_index(system, *request.parameter, "--free");
+    if (k <= system.parameters()) return k;
+    throw UserError(fmt::format("--free {}: {} has PAR(1) to PAR({}); one of them is to be free", *request.parameter,
+                                system.name(), system.parameters()));
+  }
   for (const int k : constants.settings.free_parameters)
     if (k <= system.parameters()) return k;
   return 1;

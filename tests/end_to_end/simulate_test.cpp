@@ -1,0 +1,242 @@
+// tchat simulate: the files it writes, orbits that tchat run goes on with, exit statuses, Ctrl-C.
+#include <signal.h>
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <thread>
+
+#include "end_to_end/bad_input.hpp"
+#include "end_to_end/event_list.hpp"
+
+using namespace test_support;
+
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+
+Outcome simulate(const Workspace& workspace, const std::string& arguments, int status = 0) {
+  Outcome outcome = workspace.tchat("simulate " + arguments);
+  INFO("tchat simulate " << arguments << "\n" << outcome.text());
+  CHECK(outcome.signal == 0);
+  REQUIRE(outcome.status == status);
+  return outcome;
+}
+
+const std::string logistic_clock = R"(#include <tchat/problem.hpp>
+struct LogisticClock {
+  static constexpr int dimension = 2, parameters = 1, fields = 1, events = 1, jumps = 1;
+  static constexpr const char* parameter_names[] = {"a"};
+  static constexpr double initial_parameters[] = {3.566};
+  static constexpr double initial_state[] = {0.0, 0.4};
+  template <class T> void field(int, const T*, const T*, T* f) const { f[0] = T(1.0), f[1] = T(0.0); }
+  template <class T> T event(int, const T* x, const T*) const { return 1.0 - x[0]; }
+  template <class T> void jump(int, const T* x, const T* p, T* g) const {
+    g[0] = x[0] - 1.0, g[1] = p[0] * x[1] * (1.0 - x[1]);
+  }
+};
+TCHAT_PROBLEM(LogisticClock)
+)";
+
+const std::string ball = R"(#include <tchat/problem.hpp>
+struct Ball {
+  static constexpr int dimension = 2, parameters = 2, fields = 1, events = 1, jumps = 1;
+  static constexpr const char* state_names[] = {"height", "velocity"};
+  static constexpr const char* parameter_names[] = {"g", "r"};
+  static constexpr double initial_parameters[] = {9.81, 0.5};
+  static constexpr double initial_state[] = {2.0, 0.0};
+  template <class T> void field(int, const T* x, const T* p, T* f) const { f[0] = x[1], f[1] = -p[0]; }
+  template <class T> T event(int, const T* x, const T*) const { return x[0]; }
+  template <class T> void jump(int, const T* x, const T* p, T* g) const { g[0] = x[0], g[1] = -p[1] * x[1]; }
+};
+TCHAT_PROBLEM(Ball)
+)";
+
+/// "... = NUMBER" after `key`.
+double number_after(const std::string& text, const std::string& key) {
+  const auto at = text.find(key);
+  INFO(text);
+  REQUIRE(at != std::string::npos);
+  return std::stod(text.substr(at + key.size()));
+}
+
+}  // namespace
+
+TEST_CASE("simulate: without any option, from the problem's start to its orbit") {
+  const Workspace workspace;
+  const Outcome outcome = simulate(workspace, "linosc");
+  CHECK(outcome.err.empty());
+  CHECK(contains(outcome.out, "Periodic orbit, signature {(1,2,2)}, period 3.14159265359"));
+  CHECK(contains(outcome.out, "stable"));
+  CHECK(contains(outcome.out, "Written: linosc.trajectory, linosc.events"));
+  CHECK_FALSE(workspace.has("linosc.dat"));
+
+  const auto events = read_event_list(workspace.read("linosc.events"), 4);
+  REQUIRE(events.size() > 10);
+  for (const ListedEvent& e : events) {
+    CHECK(e.field == 1);
+    if (e.what != "event") continue;
+    CHECK(std::abs(e.h) < 1e-11);
+    CHECK(e.rate < 0.0);
+    CHECK(e.before[0] <= 1.0 + 1e-11);
+    if (e.event == 1) CHECK(e.after[1] == Approx(-0.8 * e.before[1]));
+    if (e.event == 2) CHECK(e.after == e.before);
+  }
+  // SPEC section 13.1, and no number of this program.
+  CHECK(events.back().before[0] == Approx(0.997785157856609).margin(1e-5));
+
+  std::istringstream rows(workspace.read("linosc.trajectory"));
+  double time = -1.0;
+  int count = 0;
+  for (std::string line; std::getline(rows, line);) {
+    if (line.empty() || line[0] == '#') continue;
+    const std::vector<std::string> words = words_of(line);
+    REQUIRE(words.size() == 9);
+    CHECK(std::stod(words[4]) >= time);
+    time = std::stod(words[4]);
+    CHECK(std::stod(words[5]) <= 1.0 + 1e-9);
+    ++count;
+  }
+  CHECK(count > 1000);
+}
+
+TEST_CASE("simulate: two equal runs write the same bytes, and keep what was there before") {
+  const Workspace workspace;
+  const std::string run = "linosc PAR(alpha)=3.2 PAR(omega)=2.0072 --events 5 --dat found";
+  simulate(workspace, run + " -o a", 1);
+  CHECK_FALSE(workspace.has("found.dat"));
+  const std::string orbit = "linosc PAR(alpha)=3.0485 PAR(omega)=2.0072 --dat found -o ";
+  const Outcome first = simulate(workspace, orbit + "a");
+  for (const char* name : {"a.trajectory~", "a.events~"}) CHECK(workspace.has(name));
+  const Outcome second = simulate(workspace, orbit + "b");
+  CHECK(workspace.read("a.trajectory") == workspace.read("b.trajectory"));
+  CHECK(workspace.read("a.events") == workspace.read("b.events"));
+  CHECK(workspace.read("found.dat") == workspace.read("found.dat~"));
+  CHECK(workspace.read("gc.found") == workspace.read("gc.found~"));
+  CHECK(first.out.substr(0, first.out.find("Written")) == second.out.substr(0, second.out.find("Written")));
+  for (const char* left : {"a.trajectory.new", "b.events.new", "found.dat.new", "gc.found.new"})
+    CHECK_FALSE(workspace.has(left));
+}
+
+TEST_CASE("simulate: the orbit's own constants file keeps what the given one says") {
+  const Workspace workspace;
+  simulate(workspace, "linosc -c impacting -d impacting --dat found -o trial NTST=33 DSMAX=0.07 --free omega");
+  const std::string constants = workspace.read("gc.found");
+  for (const char* line : {"NTST = 33 ", "DSMAX = 0.07 ", "ICP = [2, 61] ", "GCHIND = [1] ", "IRS = 0 "}) {
+    INFO(constants);
+    CHECK(contains(constants, line));
+  }
+  workspace.run("-c found -d found -o onward NMX=3");
+}
+
+TEST_CASE("simulate: a start from a label of an earlier run, on both sides of its period doubling") {
+  const Workspace workspace;
+  workspace.run("-c to_grazing -d nonimpacting -o grazing");
+  workspace.run("-c grazing_curve -s grazing -o grazing_curve --both");
+  workspace.run("-c impacting_20072 -s grazing_curve -o impacting");
+  // SPEC section 13.1: period doubling at alpha = 3.03619356554716, the doubled orbit lives below it.
+  const Outcome above = simulate(workspace, "linosc -c impacting_20072 -s impacting IRS=PD1 PAR(alpha)=3.038 -o above");
+  CHECK(contains(above.out, "signature {(1,1,1)}"));
+  const Outcome below =
+      simulate(workspace, "linosc -c impacting_20072 -s impacting IRS=PD1 PAR(alpha)=3.0361 -o below --dat doubled");
+  CHECK(contains(below.out, "signature {(1,1,1), (1,1,1)}"));
+  CHECK(contains(below.out, ": stable"));
+  workspace.run("-c doubled -d doubled -o doubled NMX=3");
+}
+
+TEST_CASE("simulate: an orbit of 16 events is recognised and continued; a longer one when asked for") {
+  const Workspace workspace;
+  workspace.write("logistic.cpp", logistic_clock);
+  const Outcome outcome = simulate(workspace, "logistic --transient-time 20000 --recognition 1e-8 --rows 2 --dat");
+  CHECK(contains(outcome.out, "period 16\n"));
+  CHECK(contains(outcome.out, "segment 16: (1,1,1)"));
+  const Outcome run = workspace.tchat("run logistic -d logistic NMX=2");
+  INFO(run.text());
+  CHECK(run.status == 0);
+  const std::string diagnostics = workspace.read("d.logistic");
+  CHECK(number_after(diagnostics, "Iterations   :") <= 4);
+
+  const std::string longer = "logistic PAR(a)=3.569 --transient-time 100000 --recognition 1e-8 --rows 0 --events 200 ";
+  CHECK(contains(simulate(workspace, longer + "-o x").out, "No periodic orbit recognised"));
+  CHECK(contains(simulate(workspace, longer + "-o x --max-period 32").out, "period 32\n"));
+}
+
+TEST_CASE("simulate: chattering is told with its limit in time; no orbit is written") {
+  const Workspace workspace;
+  workspace.write("ball.cpp", ball);
+  const Outcome outcome = simulate(workspace, "ball --dat", 1);
+  CHECK(contains(outcome.out, "Events accumulate (chattering)"));
+  CHECK(contains(outcome.err, "no periodic orbit was recognised"));
+  const double first = std::sqrt(2.0 * 2.0 / 9.81);
+  CHECK(number_after(outcome.out, "The limit is at t = ") == Approx(3.0 * first).epsilon(1e-9));
+  CHECK_FALSE(workspace.has("ball.dat"));
+  CHECK_FALSE(workspace.has("gc.ball"));
+  CHECK(simulate(workspace, "ball").status == 0);
+  // At rest on the floor.
+  CHECK(contains(simulate(workspace, "ball PAR(r)=0").out, "the contact lasts"));
+}
+
+TEST_CASE("simulate: several events at once, a start beyond a wall, rest and near-grazing contacts are told") {
+  const Workspace workspace;
+  const Outcome beyond = simulate(workspace, "linosc --state x1=1.5 --events 3");
+  CHECK(contains(beyond.out, "beyond a wall"));
+  const Outcome rest = simulate(workspace, "linosc PAR(alpha)=0 --state x1=0.5");
+  CHECK(contains(rest.out, "The motion dies out"));
+  const Outcome near = simulate(workspace, "linosc -c impacting PAR(alpha)=3.00666 PAR(omega)=2");
+  CHECK(contains(near.out, "near-grazing contact"));
+  int contacts = 0;
+  for (const ListedEvent& e : read_event_list(workspace.read("linosc.events"), 4)) {
+    if (e.what != "contact") continue;
+    ++contacts;
+    CHECK(e.event == 1);
+    CHECK(e.jump == 0);
+    CHECK(e.h > 0.0);
+    CHECK(std::abs(e.before[1]) < 1e-8);
+    CHECK(e.after == e.before);
+  }
+  CHECK(contacts > 0);
+}
+
+TEST_CASE("simulate: a signature followed without the index jump function, and what contradicts it") {
+  const Workspace workspace;
+  const Outcome maxima = simulate(workspace, "linosc --signature 1,3,2 PAR(alpha)=2 --dat minima -o m");
+  CHECK(contains(maxima.out, "signature {(1,3,2)}, period 3.14159265359"));
+  workspace.run("-c minima -d minima -o minima NMX=2");
+  // Beyond grazing the smooth orbit crosses the wall.
+  const Outcome crossing =
+      simulate(workspace, "linosc -c nonimpacting_alpha --follow-signature PAR(alpha)=3.2 PAR(omega)=2 -o c");
+  CHECK(contains(crossing.out, "a monitored event function fell below zero, first event 1 (wall)"));
+  bool is_listed = false;
+  for (const ListedEvent& e : read_event_list(workspace.read("c.events"), 4)) is_listed |= e.what == "violation";
+  CHECK(is_listed);
+}
+
+TEST_CASE("simulate: -q is silent") {
+  const Workspace workspace;
+  const Outcome outcome = simulate(workspace, "linosc -q --dat found");
+  CHECK(outcome.text().empty());
+  CHECK(workspace.has("found.dat"));
+}
+
+TEST_CASE("simulate: Ctrl-C and SIGTERM leave complete files") {
+  for (const auto& [signal, status] : {std::pair{SIGINT, 130}, std::pair{SIGTERM, 143}}) {
+    const Workspace workspace;
+    simulate(workspace, "linosc --events 3 -o o");
+    const std::string old = workspace.read("o.events");
+    const auto process = workspace.start_tchat("simulate linosc PAR(alpha)=3.2 --time 1e9 --rows 2 -o o");
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+    while (!workspace.has("o.events.new") || workspace.read("o.events.new").size() < 100'000) {
+      REQUIRE_FALSE(process->ended());
+      REQUIRE(std::chrono::steady_clock::now() < deadline);
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    CHECK(workspace.read("o.events") == old);  // until the new one is complete
+    process->send(signal);
+    const Outcome outcome = process->wait(std::chrono::seconds(30));
+    CHECK_FALSE(outcome.timed_out);
+    CHECK(outcome.status == status);
+    CHECK(contains(outcome.out, "Interrupted."));
+    CHECK(read_event_list(workspace.read("o.events"), 4).size() > 100);
+    CHECK(workspace.read("o.events~") == old);
+    CHECK_FALSE(workspace.has("o.events.new"));
+  }
+}
