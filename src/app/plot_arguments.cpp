@@ -12,6 +12,7 @@
 #include "constants/constant_value.hpp"
 #include "constants/user_error.hpp"
 #include "plot/picture_styles.hpp"
+#include "plot/trajectory_file.hpp"
 #include "start/fortran_number.hpp"
 #include "start/point_file_reader.hpp"
 
@@ -41,7 +42,7 @@ std::string file_of(const std::string& word, bool label_follows) {
   const std::array<char, 3> letters = label_follows ? std::array{'q', 'p', 'd'} : std::array{'p', 'q', 'd'};
   for (const char letter : letters)
     if (is_file(beside(word, letter))) return beside(word, letter);
-  return "";
+  return is_file(word + ".trajectory") ? word + ".trajectory" : "";
 }
 
 std::string first_line(const std::string& path) {
@@ -53,6 +54,7 @@ std::string first_line(const std::string& path) {
 
 /// By the first line: of a q-file it holds 12 or 16 integers, of a p-file it is a header line or a point.
 PlotItem::Kind kind_of(const std::string& path) {
+  if (looks_like_trajectory(path)) return PlotItem::Kind::trajectory;
   const std::string line = first_line(path);
   const auto words = split_words(line);
   const bool integers =
@@ -72,6 +74,9 @@ std::vector<PlotItem> read_plot_items(const std::vector<std::string>& words) {
   for (std::size_t k = 0; k < words.size(); ++k) {
     const bool label_follows = k + 1 < words.size() && is_label(words[k + 1]) && !is_file(words[k + 1]);
     const std::string path = file_of(words[k], label_follows);
+    if (path.ends_with(".events"))
+      throw UserError(
+          fmt::format("{} lists events, there is no picture of it; give the trajectory of the simulation", path));
     if (!path.empty()) {
       items.push_back({kind_of(path), path, {}});
     } else if (is_label(words[k]) && !items.empty()) {
@@ -80,9 +85,10 @@ std::vector<PlotItem> read_plot_items(const std::vector<std::string>& words) {
       const std::string what = is_label(words[k]) ? ", and labels come after the q-file that has them"
                                                   : fmt::format(" and no label, and there is no {} and no {}",
                                                                 beside(words[k], 'p'), beside(words[k], 'q'));
-      throw UserError(fmt::format(
-          "{} is no file{}; give p-files (branches), or a q-file and its labels, as in tchat plot q.mems GR1 PD1",
-          in_quotes(words[k]), what));
+      throw UserError(
+          fmt::format("{} is no file{}; give p-files (branches), or a q-file and its labels, as in tchat plot q.mems "
+                      "GR1 PD1, or the trajectory of a simulation",
+                      in_quotes(words[k]), what));
     }
   }
   return items;

@@ -35,14 +35,15 @@ struct PlotArguments {
 
 /// A file of a run and the labels named after it.
 struct PlotItem {
-  enum class Kind { points, solutions, diagnostics };
+  enum class Kind { points, solutions, diagnostics, trajectory };
   Kind kind = Kind::points;
   std::string path;
   std::vector<std::string> labels;
 };
 
 /// Words into files and labels. A word is a file when there is one of that name, or p.WORD or q.WORD (q.WORD when a
-/// label follows); what kind of file is judged by its first line. Throws UserError for a word that is neither.
+/// label follows), or WORD.trajectory; what kind of file is judged by its first line. Throws UserError for a word that
+/// is neither.
 std::vector<PlotItem> read_plot_items(const std::vector<std::string>& words);
 
 /// "0.5:2", "0.5:", ":2"; an end left out or a star is chosen from the data.

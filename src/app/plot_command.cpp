@@ -46,11 +46,12 @@ int make_picture(const PlotArguments& arguments) {
 }
 
 constexpr const char* footer =
-    "Three kinds of picture, by the files given:\n"
+    "Four kinds of picture, by the files given:\n"
     "  tchat plot p.A [p.B ...]           branches: by default the first free parameter and the solution measure;\n"
     "                                     the two free parameters when all files are two-parameter curves\n"
     "  tchat plot q.A LABEL [LABEL ...]   orbits: phase portrait of the first two states, or with --time time series;\n"
     "                                     labels are numbers or types with a count (5, PD1, GR1), or all\n"
+    "  tchat plot A.trajectory            a simulation: time series, or with -x a phase portrait\n"
     "  tchat plot --multipliers q.A ...   Floquet multipliers (from d.A) along the branch, or at labels\n"
     "Stable branches are solid, unstable ones dashed, inadmissible ones (from d.A) dotted. Columns are named by their\n"
     "heading (alpha, 'MAX x1', L2-NORM), as PAR(k), or by number; a parameter that is fixed has its value from q.A.\n"
@@ -61,6 +62,7 @@ constexpr const char* footer =
     "  tchat plot p.grazing_curve p.fold_curve p.period_doubling_curve -o diagram.png\n"
     "  tchat plot q.impacting GR1 PD1 -p linosc -o orbits.png\n"
     "  tchat plot --time q.impacting PD1 -y x1,x2,y1 -o series.svg\n"
+    "  tchat plot linosc.trajectory -y x1,x2 --xrange 0:50     what tchat simulate linosc has written\n"
     "  tchat plot --multipliers q.impacting -o multipliers.png";
 
 }  // namespace
@@ -70,7 +72,9 @@ void add_plot_command(CLI::App& app, std::function<int()>& chosen) {
       app.add_subcommand("plot", "Bifurcation diagrams, orbits and multipliers to PNG, SVG, PDF or a window");
   command->footer(footer);
   const auto a = std::make_shared<PlotArguments>();
-  command->add_option("FILES", a->words, "p-files; a q-file with labels; A is taken for p.A, before labels for q.A")
+  command
+      ->add_option("FILES", a->words,
+                   "p-files; a q-file with labels; trajectories; A is taken for p.A, before labels for q.A")
       ->required();
   command->add_flag("--multipliers", a->multipliers, "Floquet multipliers with the unit circle");
   command->add_flag("--time", a->time, "orbits as time series");

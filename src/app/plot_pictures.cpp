@@ -13,6 +13,7 @@
 #include "plot/multiplier_figure.hpp"
 #include "plot/orbit_figure.hpp"
 #include "plot/problem_finder.hpp"
+#include "plot/trajectory_file.hpp"
 #include "start/diagnostics_file_reader.hpp"
 #include "start/solution_file_reader.hpp"
 
@@ -55,10 +56,20 @@ NamedFigure branches(const std::vector<PlotItem>& items, const PlotArguments& ar
 
 struct Orbits {
   std::vector<OrbitTrace> traces;
+  std::vector<std::string> states;  // names in a trajectory's heading
   std::vector<std::string> warnings;
 };
 
+void add_trajectory(const PlotItem& item, Orbits& orbits) {
+  if (!item.labels.empty())
+    throw UserError(fmt::format("{} is a trajectory, it has no labels such as {}", item.path, item.labels.front()));
+  TrajectoryFile file = read_trajectory_file(item.path);
+  orbits.traces.push_back(std::move(file.trace));
+  if (orbits.states.empty()) orbits.states = file.states;
+}
+
 void add_orbits(const PlotItem& item, bool several_files, int dimension, Orbits& orbits) {
+  if (item.kind == PlotItem::Kind::trajectory) return add_trajectory(item, orbits);
   const SolutionFile file = read_solution_file(item.path);
   for (const std::string& warning : file.warnings) orbits.warnings.push_back(warning);
   const auto add = [&](const LabelledSolution& solution, const std::string& word) {
@@ -87,19 +98,23 @@ void add_orbits(const PlotItem& item, bool several_files, int dimension, Orbits&
 NamedFigure orbit_picture(const std::vector<PlotItem>& items, const PlotArguments& arguments) {
   Orbits orbits;
   for (const PlotItem& item : items) {
-    if (item.kind != PlotItem::Kind::solutions)
+    if (item.kind != PlotItem::Kind::solutions && item.kind != PlotItem::Kind::trajectory)
       throw UserError(
           fmt::format("{} is no q-file; one picture shows either branches (p-files) or orbits (a q-file with "
-                      "labels)",
+                      "labels, or trajectories)",
                       item.path));
     add_orbits(item, items.size() > 1, arguments.dimension, orbits);
   }
   if (orbits.traces.empty()) throw UserError(fmt::format("{}: there are no solutions in it", items.front().path));
   check_legend(arguments, orbits.traces.size(), "orbit");
 
-  ProblemChoice choice = find_problem(items.front().path, arguments.plugin, orbits.traces.front().dimension());
+  const bool is_trajectory = items.front().kind == PlotItem::Kind::trajectory;
+  const std::string name = is_trajectory ? orbits.traces.front().name : run_name(items.front().path);
+  const std::string run = (fs::path(items.front().path).parent_path() / ("q." + name)).string();
+  ProblemChoice choice =
+      find_problem(is_trajectory ? run : items.front().path, arguments.plugin, orbits.traces.front().dimension());
   OrbitFigureOptions options;
-  options.states = choice.states;
+  options.states = choice.states.empty() ? orbits.states : choice.states;
   options.parameters = choice.parameters;
   options.x = arguments.x;
   options.y = split_at_commas(arguments.y);
@@ -122,8 +137,9 @@ NamedFigure orbit_picture(const std::vector<PlotItem>& items, const PlotArgument
           fmt::format("--surfaces {}: the problem's plugin is needed; give it with -p", arguments.surfaces));
   }
   NamedFigure result;
-  result.figure = arguments.time ? time_series(orbits.traces, options) : phase_portrait(orbits.traces, options);
-  result.name = run_name(items.front().path) + (arguments.time ? "_time" : "_orbits");
+  const bool in_time = arguments.time || (is_trajectory && arguments.x.empty());
+  result.figure = in_time ? time_series(orbits.traces, options) : phase_portrait(orbits.traces, options);
+  result.name = name + (in_time ? "_time" : "_orbits");
   result.warnings = orbits.warnings;
   if (!choice.warning.empty()) result.warnings.push_back(choice.warning);
   return result;
@@ -185,8 +201,9 @@ NamedFigure multipliers(const std::vector<PlotItem>& items, const PlotArguments&
 
 NamedFigure make_figure(const std::vector<PlotItem>& items, const PlotArguments& arguments) {
   if (arguments.multipliers) return multipliers(items, arguments);
-  const bool orbits = std::any_of(items.begin(), items.end(),
-                                  [](const PlotItem& item) { return item.kind == PlotItem::Kind::solutions; });
+  const bool orbits = std::any_of(items.begin(), items.end(), [](const PlotItem& item) {
+    return item.kind == PlotItem::Kind::solutions || item.kind == PlotItem::Kind::trajectory;
+  });
   if (!orbits && arguments.time)
     throw UserError("--time shows orbits: give a q-file and labels, as in tchat plot --time q.mems PD1");
   for (const PlotItem& item : items)

@@ -88,6 +88,10 @@ int find_state(const std::string& wanted, int dimension, const OrbitFigureOption
                               fmt::join(names, ", "), dimension));
 }
 
+bool is_in_key(const std::vector<OrbitTrace>& orbits, const OrbitFigureOptions& options) {
+  return orbits.size() > 1 || orbits.front().is_closed || !options.legend.empty();
+}
+
 LabelText orbit_name(const std::vector<OrbitTrace>& orbits, std::size_t k, const OrbitFigureOptions& options) {
   if (k < options.legend.size()) return plain_text(options.legend[k]);
   const OrbitTrace& orbit = orbits[k];
@@ -148,7 +152,7 @@ Figure phase_portrait(const std::vector<OrbitTrace>& orbits, const OrbitFigureOp
       panel.markers.push_back(impact_marker(after, false, stroke.colour));
       panel.markers.push_back(impact_marker(before, true, stroke.colour));
     }
-    entries.push_back({orbit_name(orbits, k, options), stroke, std::nullopt});
+    if (is_in_key(orbits, options)) entries.push_back({orbit_name(orbits, k, options), stroke, std::nullopt});
   }
   figure.key.insert(figure.key.begin(), entries.begin(), entries.end());
   figure.panels.push_back(std::move(panel));

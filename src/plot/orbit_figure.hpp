@@ -36,6 +36,9 @@ std::string state_name(int state, const OrbitFigureOptions& options);
 /// The key's entry of an orbit: "PD1: alpha = 3.0362".
 LabelText orbit_name(const std::vector<OrbitTrace>& orbits, std::size_t k, const OrbitFigureOptions& options);
 
+/// A single trajectory needs no name in the key.
+bool is_in_key(const std::vector<OrbitTrace>& orbits, const OrbitFigureOptions& options);
+
 /// Key entry of an event surface, the number-th in the picture (from 0).
 KeyEntry surface_entry(const std::string& name, std::size_t number);
 

@@ -46,6 +46,7 @@ double duration(const LabelledSolution& solution, int s) {
 }  // namespace
 
 bool OrbitTrace::jumps_after(std::size_t s) const {
+  if (!is_closed && s + 1 == segments.size()) return false;
   const Eigen::VectorXd from = end_of(s);
   const Eigen::VectorXd to = start_after(s);
   for (Eigen::Index i = 0; i < from.size(); ++i) {

@@ -79,7 +79,7 @@ Figure time_series(const std::vector<OrbitTrace>& orbits, const OrbitFigureOptio
   const bool one_panel = options.one_panel || states.size() == 1;
   figure.panels.resize(one_panel ? 1 : states.size());
   for (std::size_t k = 0; k < orbits.size(); ++k)
-    if (!one_panel || states.size() == 1)
+    if ((!one_panel || states.size() == 1) && is_in_key(orbits, options))
       figure.key.push_back(
           {orbit_name(orbits, k, options), Stroke{series_dash(k), 2.5, series_colour(k)}, std::nullopt});
   for (std::size_t i = 0; i < states.size(); ++i) {

@@ -210,6 +210,27 @@ TEST_CASE("simulate: a signature followed without the index jump function, and w
   CHECK(is_listed);
 }
 
+TEST_CASE("simulate: a trajectory is plotted, in time or as a phase portrait, with the problem's names") {
+  const Workspace workspace;
+  simulate(workspace, "linosc --time 20");
+  const Outcome series = workspace.tchat("plot linosc.trajectory -y x1,y2 --script series.gp -o series.png");
+  INFO(series.text());
+  CHECK(series.status == 0);
+  CHECK(workspace.has("series.png"));
+  const std::string script = workspace.read("series.gp");
+  for (const char* part : {"time", "wall", "x", "y"}) CHECK(contains(script, part));
+  CHECK(workspace.tchat("plot linosc -x x1 -y x2 -o portrait.svg").status == 0);
+  CHECK(contains(workspace.read("portrait.svg"), "<svg"));
+
+  simulate(workspace, "linosc --time 20 --rows 0 -o empty");
+  check_refused(workspace.tchat("plot empty.trajectory -o x.png"), {"empty.trajectory", "--rows"});
+  check_refused(workspace.tchat("plot linosc.events -o x.png"), {"linosc.events", "trajectory"});
+  check_refused(workspace.tchat("plot linosc.trajectory 3 -o x.png"), {"no labels"});
+  check_refused(workspace.tchat("plot linosc.trajectory -y z -o x.png"), {"'z'", "x1, x2, y1, y2"});
+  workspace.write("broken.trajectory", "# X with a = 1\n#segment i j k t x\n1 1 1 1 0 0\n1 1 1 1 0\n");
+  check_refused(workspace.tchat("plot broken.trajectory -o x.png"), {"broken.trajectory:4", "5 numbers"});
+}
+
 TEST_CASE("simulate: -q is silent") {
   const Workspace workspace;
   const Outcome outcome = simulate(workspace, "linosc -q --dat found");

@@ -270,6 +270,18 @@ TEST_CASE("microactuator: its reduced orbit is the one of mems that tchat run co
   }
 }
 
+TEST_CASE("microactuator: its Makefile runs from a fresh copy") {
+  const Workspace workspace;
+  fs::create_directories(workspace.file("problems"));
+  fs::copy(PROBLEMS "/microactuator", workspace.file("problems/microactuator"));
+  const Outcome outcome = workspace.make("problems/microactuator", "OUT=" + workspace.file("out") + " all");
+  INFO(outcome.text());
+  REQUIRE(outcome.status == 0);
+  for (const char* name : {"from_rest.events", "steady.trajectory", "strong_drive.events"})
+    CHECK(workspace.has(std::string("out/") + name));
+  CHECK(outcome.out.find("Events accumulate") != std::string::npos);
+}
+
 TEST_CASE("microactuator: from rest its motion is that of mems, event by event") {
   const Workspace workspace;
   copy_problems(workspace);

@@ -23,8 +23,7 @@
 ///     static constexpr double initial_parameters[]    = {9.81, 0.8};
 ///     static constexpr double initial_state[]         = {1.0, 0.0};       // where simulations start
 ///     // index jump function iota, for `tchat simulate`: the index vectors that may follow the segment `from`, whose
-///     last
-///     // state, before the jump, is x; from = {0, 0, 0}: those at a start x. x and par may be left out.
+///     // last state, before the jump, is x; from = {0, 0, 0}: those at a start x. x and par may be left out.
 ///     std::vector<std::array<int, 3>> successors(std::array<int, 3> from, const double* x, const double* par) const;
 ///     static constexpr int user_values = 1;                               // PVLS, with user_value_names if wanted
 ///     void user_value(const double* x, const double* par, double* out) const;         // x is x_1(0)
