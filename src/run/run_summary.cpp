@@ -9,13 +9,14 @@ namespace tchat {
 namespace {
 
 std::string reason_text(const BranchSummary& summary, const std::string& parameter) {
+  const char* left = summary.points > 1 ? "left" : "starts outside";
   switch (summary.reason) {
     case EndReason::max_points:
       return fmt::format("the number of points asked for was reached ({})", summary.detail);
     case EndReason::parameter_bound:
-      return fmt::format("{} left the bounds RL0, RL1: {}", parameter, summary.detail);
+      return fmt::format("{} {} the bounds RL0, RL1: {}", parameter, left, summary.detail);
     case EndReason::measure_bound:
-      return fmt::format("the solution measure left the bounds A0, A1: {}", summary.detail);
+      return fmt::format("the solution measure {} the bounds A0, A1: {}", left, summary.detail);
     case EndReason::special_point:
       return "at the last special point above, where the run was to end";
     case EndReason::interrupted:

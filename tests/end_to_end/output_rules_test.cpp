@@ -209,8 +209,10 @@ TEST_CASE("RL0, RL1, A0, A1: the first point outside is the last one, EP") {
   CHECK(rows.back().type == 9);
   CHECK(rows.back().values[1] < 1.5);
   CHECK(rows[rows.size() - 2].values[1] >= 1.5);
-  // A start outside is a branch of one point.
-  rows = rows_after(workspace, impacting + "RL0=2 RL1=3");
+  // A start outside is a branch of one point, and that is said.
+  const Outcome outside = workspace.run(impacting + "RL0=2 RL1=3");
+  CHECK(outside.text().find("starts outside the bounds RL0, RL1") != std::string::npos);
+  rows = workspace.points("branch").front().rows;
   CHECK(rows.size() == 1);
   CHECK(rows.back().type == 9);
 }
