@@ -13,18 +13,19 @@ namespace {
 long allocations = 0;
 }  // namespace
 
-// Counts the allocations of this test program; what is allocated and freed must match, so all are replaced.
-void* operator new(std::size_t size) {
+// Counts the allocations of this test program; what is allocated and freed must match, so all are replaced. Inlined,
+// g++ takes malloc and delete, or new and free, for a mismatch.
+[[gnu::noinline]] void* operator new(std::size_t size) {
   ++allocations;
   if (void* memory = std::malloc(size)) return memory;
   throw std::bad_alloc();
 }
-void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
+[[gnu::noinline]] void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
   ++allocations;
   return std::malloc(size);
 }
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 
 using namespace tchat;
 using Eigen::MatrixXd;
