@@ -1,6 +1,6 @@
 /// Functions whose zeros along a branch are special points.
 ///
-/// All share one mechanism (special_point_search): they are evaluated at each accepted point, a change of sign over a step
+/// All share one mechanism (special_point_search): evaluated at every accepted point, a change of sign over a step
 /// brackets a zero, the zero is located on the arclength of that step (locator.hpp), classified, labelled and written.
 /// A new kind of special point is one new class. Test functions are pure: the same point gives the same value.
 #pragma once
