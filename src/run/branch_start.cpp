@@ -6,6 +6,7 @@
 
 #include "bvp/evaluation_failure.hpp"
 #include "constants/user_error.hpp"
+#include "run/problem_setup.hpp"
 #include "start/point_type.hpp"
 
 namespace tchat {
@@ -92,6 +93,20 @@ bool start_is_branch_point(const SelectedStart& selected) {
   return selected.from_solution && basic_type(selected.type) == static_cast<int>(PointType::branch_point);
 }
 
+/// On top of a branch point Newton's matrix is singular and the iteration stalls. A stored orbit that satisfies every
+/// equation to the tolerance is taken as it is. To be called after an attempt to correct it.
+bool solves_without_correction(PathFollower& follower, const Orbit& stored, const RunSettings& settings) {
+  const std::vector<NewtonIteration>& attempt = follower.newton().history();
+  if (attempt.empty()) return follower.solves(stored);
+  return attempt.front().residual <= newton_settings(settings).tolerance_states;
+}
+
+/// A branch point has two tangents, and the computed one is any mixture of them: the stored one belongs to the branch.
+void use_direction(PathFollower& follower, const OrbitVector& direction, PathPoint& point) {
+  point.tangent = direction;
+  follower.renormalise(point);
+}
+
 /// x_s(0) = x_s(1) with T_s = 0 for all s satisfies every condition where h = 0 and g(x) = x: no orbit.
 void refuse_empty_orbit(const Orbit& found, const Orbit& start, const std::string& source) {
   if (std::abs(found.period()) > vanishing_period * std::abs(start.period())) return;
@@ -112,12 +127,16 @@ FirstPoint first_point(PathFollower& follower, const DefiningSystem& system, con
   const bool fitting_direction =
       start.direction && (selected.problem_type == 0 || selected.problem_type == settings.problem_type);
   bool along = false;
+  bool as_stored = false;
   if (fitting_direction && !selected.parameters_changed) {
     result = follower.start_along(point, *start.direction);
-    if (result.converged() && start_is_branch_point(selected)) {
-      // Two tangents there, and the computed one is any mixture of them: the stored one belongs to the branch.
-      point.tangent = *start.direction;
-      follower.renormalise(point);
+    if (start_is_branch_point(selected)) {
+      if (!result.converged() && solves_without_correction(follower, start.orbit, settings)) {
+        point = follower.make_point(start.orbit);
+        result.status = NewtonStatus::converged;
+        as_stored = true;
+      }
+      if (result.converged()) use_direction(follower, *start.direction, point);
     }
     along = result.converged() && std::abs(follower.alignment(point, *start.direction)) > parallel;
   }
@@ -146,7 +165,8 @@ FirstPoint first_point(PathFollower& follower, const DefiningSystem& system, con
     if (fitting_direction && follower.alignment(point, *start.direction) < -least) follower.reverse(point);
   }
   refuse_empty_orbit(point.orbit, start.orbit, selected.source);
-  FirstPoint first{std::move(point), follower.newton().history()};
+  FirstPoint first{std::move(point), {}};
+  if (!as_stored) first.correction = follower.newton().history();
   // A branch point is where the matrix is singular.
   if (!start_is_branch_point(selected)) refuse_singular(follower, system, first.point);
   return first;
