@@ -158,7 +158,11 @@ class BranchFigureBuilder {
       const int label = file.sections[piece.section].rows[piece.begin + k].label;
       if (label == 0 || type.empty() || !options_.labels.includes(type)) continue;
       Marker marker = special_point_marker(type, points[k]);
-      if (options_.labels.numbers) marker.label = plain_text(fmt::format("{} {}", type, label));
+      const auto zeros = file.xi_zeros.find(label);
+      if (options_.labels.numbers)
+        marker.label = plain_text(fmt::format("{} {}", type, label));
+      else if (type == "XI" && zeros != file.xi_zeros.end())
+        marker.label = xi_name(zeros->second);
       panel_.markers.push_back(std::move(marker));
     }
   }

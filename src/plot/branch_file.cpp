@@ -58,6 +58,7 @@ void take_from_solutions(BranchFile& file) {
       if (found == by_label.end() || found->second->point != std::abs(row.point)) continue;
       const LabelledSolution& solution = *found->second;
       file.types[s][k] = type_name(solution);
+      if (solution.kind.kind == UserPointKind::xi) file.xi_zeros[row.label] = {solution.kind.index};
       if (file.parameters[s].empty())
         for (std::size_t p = 0; p < solution.parameters.size(); ++p)
           file.parameters[s][static_cast<int>(p) + 1] = solution.parameters[p];
@@ -87,6 +88,8 @@ void take_from_diagnostics(BranchFile& file) {
       if (found == points.end()) continue;
       next = static_cast<std::size_t>(found - points.begin()) + 1;
       file.admissible[s][k] = found->admissible;
+      if (row.label > 0 && !found->xi_zeros.empty())
+        file.xi_zeros[row.label] = found->xi_zeros;  // the q-file has one n
       if (file.types[s][k] == "UZ" && !found->type.empty()) file.types[s][k] = found->type;
     }
   }

@@ -24,6 +24,7 @@ struct BranchFile {
   std::vector<BranchPiece> pieces;
   std::vector<std::vector<std::string>> types;  ///< letters of each point by section and row; "" for an ordinary point
   std::vector<std::vector<bool>> admissible;    ///< true where the d-file does not say otherwise
+  std::map<int, std::vector<int>> xi_zeros;     ///< by label: the n of every xi_n that vanishes there
   std::vector<std::map<int, double>> parameters;  ///< by section: PAR(k) at one of its labels, if the q-file is there
   std::vector<std::string> warnings;
 };

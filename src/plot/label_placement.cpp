@@ -54,7 +54,7 @@ double static_cost(const LabelRequest& request, const Box& box, const Obstacles&
 
 std::vector<Candidate> candidates(const LabelRequest& request, const Obstacles& obstacles) {
   std::vector<Candidate> result;
-  for (std::size_t ring = 0; ring < rings.size(); ++ring) {
+  for (std::size_t ring = 0; ring < (request.only_beside ? first_far_ring : rings.size()); ++ring) {
     for (int k = 0; k < directions; ++k) {
       const double angle = 2.0 * std::numbers::pi * k / directions;
       const double distance = request.clearance * rings[ring].distance;
@@ -73,7 +73,10 @@ std::vector<Candidate> candidates(const LabelRequest& request, const Obstacles& 
 class Assignment {
  public:
   Assignment(const std::vector<LabelRequest>& requests, const Obstacles& obstacles) : chosen_(requests.size(), -1) {
-    for (const LabelRequest& request : requests) candidates_.push_back(candidates(request, obstacles));
+    for (const LabelRequest& request : requests) {
+      candidates_.push_back(candidates(request, obstacles));
+      most_.push_back(request.only_beside ? marker_cost : outside_cost);
+    }
   }
 
   void improve() {
@@ -92,7 +95,7 @@ class Assignment {
     std::vector<std::optional<PlacedLabel>> places;
     for (std::size_t k = 0; k < chosen_.size(); ++k) {
       const Candidate& candidate = at(k);
-      const bool is_free = candidate.cost < outside_cost && overlap(k, candidate.place.box) == 0.0;
+      const bool is_free = candidate.cost < most_[k] && overlap(k, candidate.place.box) == 0.0;
       if (is_free)
         places.emplace_back(candidate.place);
       else
@@ -125,7 +128,8 @@ class Assignment {
   }
 
   std::vector<std::vector<Candidate>> candidates_;
-  std::vector<int> chosen_;  // -1: none yet
+  std::vector<double> most_;  // that a place may cost
+  std::vector<int> chosen_;   // -1: none yet
 };
 
 }  // namespace

@@ -48,7 +48,8 @@ struct LabelRequest {
   PicturePoint at;
   double width = 0.0;
   double height = 0.0;
-  double clearance = 0.0;  ///< from the point to the label, the marker's radius included
+  double clearance = 0.0;    ///< from the point to the label, the marker's radius included
+  bool only_beside = false;  ///< one of many: rather none than one far away or on a marker
 };
 
 struct PlacedLabel {

@@ -1,6 +1,7 @@
 #include "plot/label_text.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -73,6 +74,7 @@ double character_width(char c) {
   if (std::string_view("ijlI|.,:;'! ").find(c) != std::string_view::npos) return 0.32;
   if (std::string_view("frt()[]-/").find(c) != std::string_view::npos) return 0.40;
   if (std::string_view("mMwW=+<>%").find(c) != std::string_view::npos) return 0.90;
+  if (static_cast<unsigned char>(c) == 0xE2) return 0.95;  // first byte of the ellipsis and the minus sign
   return c >= 'A' && c <= 'Z' ? 0.70 : 0.62;
 }
 
@@ -94,6 +96,19 @@ LabelText mathematical_name(std::string_view name) {
     result.text += word_as_mathematics(word);
   }
   return result;
+}
+
+LabelText xi_name(const std::vector<int>& n) {
+  const bool in_a_row = n.size() > 2 && n.back() - n.front() + 1 == static_cast<int>(n.size());
+  const std::string subscript =
+      in_a_row ? fmt::format("{}…{}", n.front(), n.back()) : fmt::format("{}", fmt::join(n, ","));
+  return {fmt::format("ξ_{{{}}}", subscript), true};
+}
+
+LabelText number_text(double value) {
+  std::string text = fmt::format("{:.5g}", value);
+  for (std::size_t at = text.find('-'); at != std::string::npos; at = text.find('-', at + 1)) text.replace(at, 1, "−");
+  return {text, false};
 }
 
 LabelText joined(const LabelText& first, const LabelText& second) {
@@ -125,6 +140,11 @@ double text_width(const LabelText& text) {
     small = small && grouped;
   }
   return width;
+}
+
+double text_height(const LabelText& text) {
+  const bool subscript = text.markup && text.text.find('_') != std::string::npos;
+  return subscript ? 1.1 : 0.95;
 }
 
 std::string gnuplot_quoted(std::string_view text) {

@@ -3,6 +3,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace tchat {
 
@@ -22,11 +23,20 @@ LabelText plain_text(std::string_view text);
 /// L with subscript 2, norm). What is no such name stays as it is.
 LabelText mathematical_name(std::string_view name);
 
+/// The letter xi with all n as its subscript: "2,4"; three and more in a row as "1...5".
+LabelText xi_name(const std::vector<int>& n);
+
+/// The number with a proper minus sign.
+LabelText number_text(double value);
+
 /// The two one after the other.
 LabelText joined(const LabelText& first, const LabelText& second);
 
 /// Width of the text in units of the font's size, from the widths of characters of a common sans-serif font.
 double text_width(const LabelText& text);
+
+/// Height of a line likewise: a subscript hangs below it.
+double text_height(const LabelText& text);
 
 /// The text in gnuplot's single quotes, in which nothing is special but the quote itself.
 std::string gnuplot_quoted(std::string_view text);

@@ -72,14 +72,16 @@ void place_marker_labels(const Panel& panel, PanelLayout& layout, const Obstacle
     const PicturePoint at = layout.on_paper(marker.at);
     if (marker.label.empty() || !layout.frame.contains(at)) continue;
     const double size = label_font_ratio * font;
-    const LabelRequest request{at, text_width(marker.label) * size, 0.95 * size,
-                               (marker.size * marker_radius + 0.22) * font};
+    const LabelRequest request{at, text_width(marker.label) * size, text_height(marker.label) * size,
+                               (marker.size * marker_radius + 0.22) * font, marker.one_of_many};
     const bool crowded = std::any_of(owners.begin(), owners.end(), [&](const std::size_t& owner) {
       const PicturePoint other = requests[static_cast<std::size_t>(&owner - owners.data())].at;
-      return panel.markers[owner].label.text == marker.label.text && std::abs(other.x - at.x) < 1.2 * request.width &&
-             std::abs(other.y - at.y) < 1.2 * request.height;
+      const bool equal = panel.markers[owner].label.text == marker.label.text;
+      const bool many = panel.markers[owner].one_of_many && marker.one_of_many;
+      const double reach = equal ? 1.2 : many ? 0.5 : 0.0;
+      return std::abs(other.x - at.x) < reach * request.width && std::abs(other.y - at.y) < reach * request.height;
     });
-    if (crowded) continue;  // equal points side by side: one label stands for all
+    if (crowded) continue;  // points side by side: one label stands for all
     requests.push_back(request);
     owners.push_back(k);
   }

@@ -102,7 +102,7 @@ LabelText orbit_name(const std::vector<OrbitTrace>& orbits, std::size_t k, const
     const std::string name =
         position < options.parameters.size() ? options.parameters[position] : fmt::format("PAR({})", index);
     text = joined(joined(text, plain_text(first ? ": " : ", ")),
-                  joined(mathematical_name(name), plain_text(fmt::format(" = {:.5g}", value))));
+                  joined(mathematical_name(name), joined(plain_text(" = "), number_text(value))));
     first = false;
   }
   return text;

@@ -68,7 +68,8 @@ Marker special_point_marker(const std::string& type, const PicturePoint& at) {
   marker.at = at;
   marker.symbol = style.symbol;
   marker.filled = style.filled;
-  marker.size = type == "XI" ? 0.8 : 1.0;  // there are many of them
+  marker.one_of_many = type == "XI";
+  marker.size = marker.one_of_many ? 0.8 : 1.0;
   marker.label = plain_text(type);
   return marker;
 }

@@ -48,6 +48,8 @@ class Blocks {
       close();
     else if (contains(words, "Multipliers:"))
       multipliers_.clear();
+    else if (contains(words, "NOTE:"))
+      take_xi_zeros(words);
     else
       take_multiplier(words);
     after_heading_ = is_heading(words);
@@ -69,6 +71,16 @@ class Blocks {
 
   static bool contains(const Words& words, std::string_view wanted) {
     return std::find(words.begin(), words.end(), wanted) != words.end();
+  }
+
+  /// `... xi_1 = 0, xi_2 = 0`
+  void take_xi_zeros(const Words& words) {
+    if (!open_) return;
+    for (std::size_t k = 0; k + 2 < words.size(); ++k) {
+      if (!words[k].starts_with("xi_") || words[k + 1] != "=" || (words[k + 2] != "0" && words[k + 2] != "0,"))
+        continue;
+      if (const auto n = parse_integer(words[k].substr(3))) points_.back().xi_zeros.push_back(*n);
+    }
   }
 
   /// `Multiplier k re im`, in AUTO's files after the numbers of branch and point.

@@ -1,8 +1,9 @@
 /// Reads d-files (fort.9) for what the p-file does not hold: the multipliers of every point, the letters of its type
-/// and whether the orbit is one of the model.
+/// whether the orbit is one of the model, and which xi_n vanish there.
 ///
 /// Only what AUTO's own readers rely on is looked at: the bars of 47 `=` between blocks, the line below a
-/// `BR PT TY LAB` heading, lines `Multiplier k re im`; and the word `inadmissible` of this program.
+/// `BR PT TY LAB` heading, lines `Multiplier k re im`; and of this program the word `inadmissible` and notes
+/// `xi_1 = 0, xi_2 = 0`.
 #pragma once
 
 #include <complex>
@@ -18,6 +19,7 @@ struct DiagnosticPoint {
   std::string type;  ///< letters, "" for an ordinary point
   int label = 0;
   bool admissible = true;
+  std::vector<int> xi_zeros;  ///< n of every xi_n = 0 in its notes
   std::vector<std::complex<double>> multipliers;
 };
 

@@ -197,3 +197,20 @@ TEST_CASE("names of files of one run") {
   CHECK(run_name("results/p.mems") == "mems");
   CHECK(run_name("fort.7") == "fort.7");
 }
+
+TEST_CASE("a zero of xi_n is labelled with its n") {
+  const TemporaryFolder folder;
+  const std::string grazing =
+      header(150, 1) + rows({{1, 9, 1, 0.0, 1.0, 2.0}, {2, -4, 2, 0.5, 1.1, 2.0}, {3, -4, 3, 1.0, 1.2, 2.0}});
+  folder.write(
+      "d.a",
+      diagnostics(1, "EP", 1, true) +
+          "  BR    PT  TY  LAB       alpha\n   1     2  XI    2   1.0E+00\n   1     2  NOTE: codimension two: xi_2 "
+          "= 0, xi_4 = 0\n" +
+          std::string(47, '=') + '\n' + diagnostics(3, "GC", 3, true));
+  const BranchFile file = read_branch_file(folder.write("p.a", grazing));
+  CHECK(labels_of(branch_figure({file}, {})) == std::vector<std::string>{"ξ_{2,4}", "GC"});
+  BranchFigureOptions numbered;
+  numbered.labels.numbers = true;
+  CHECK(labels_of(branch_figure({file}, numbered)) == std::vector<std::string>{"XI 2", "GC 3"});
+}

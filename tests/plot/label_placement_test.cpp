@@ -108,3 +108,22 @@ TEST_CASE("crowds: what has no place is left out, the rest is free") {
   }
   CHECK(count > 10);
 }
+
+TEST_CASE("one of many is left out rather than far away or on a marker") {
+  std::vector<LabelRequest> requests;
+  for (int k = 0; k < 40; ++k) requests.push_back(request(450.0 + 4.0 * k, 350.0));
+  const Obstacles obstacles = with_markers(requests);
+  for (LabelRequest& r : requests) r.only_beside = true;
+  const auto places = place_labels(requests, obstacles);
+  check_free(places);
+  int placed = 0;
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    if (!places[k]) continue;
+    ++placed;
+    CHECK_FALSE(places[k]->far);
+    CHECK(std::abs(places[k]->box.centre().y - 350.0) < 50.0);
+    for (const Box& marker : obstacles.markers) CHECK(shared_area(places[k]->box, marker) == 0.0);
+  }
+  CHECK(placed >= 6);
+  CHECK(placed < 40);
+}

@@ -31,3 +31,17 @@ TEST_CASE("widths of texts") {
   CHECK(text_width({"x_{1}", true}) < text_width({"x1", false}));
   CHECK(text_width({"α", false}) == Approx(text_width({"a", false})));  // one character, two bytes
 }
+
+TEST_CASE("the xi_n that vanish, and numbers, as they are printed") {
+  CHECK(xi_name({3}).text == "ξ_{3}");
+  CHECK(xi_name({2, 4}).text == "ξ_{2,4}");
+  CHECK(xi_name({1, 2}).text == "ξ_{1,2}");
+  CHECK(xi_name({1, 2, 3, 4, 5}).text == "ξ_{1…5}");
+  CHECK(xi_name({1, 2, 4}).text == "ξ_{1,2,4}");
+  CHECK(xi_name({3}).markup);
+  CHECK(number_text(-0.4938).text == "−0.4938");
+  CHECK(number_text(2.5e-7).text == "2.5e−07");
+  CHECK(number_text(3.0).text == "3");
+  CHECK(text_height(xi_name({3})) > text_height(plain_text("XI")));
+  CHECK(text_height(plain_text("a_b")) == text_height(plain_text("ab")));
+}

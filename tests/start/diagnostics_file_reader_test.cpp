@@ -49,3 +49,19 @@ TEST_CASE("a block of AUTO has its multipliers before the point") {
   REQUIRE(points[0].multipliers.size() == 1);
   CHECK(points[0].multipliers[0] == std::complex<double>(0.5, 0.25));
 }
+
+TEST_CASE("the xi_n that vanish are read from the notes") {
+  const auto points = parse_diagnostics(
+      "  BR    PT  TY  LAB       omega\n"
+      "   1    -2  XI    2   8.00522E-01\n"
+      "   1     2  NOTE: codimension two: xi_2 = 0, xi_4 = 0\n"
+      "   xi_1:                                          4.2219725705E+000\n"
+      "===============================================\n"
+      "  BR    PT  TY  LAB       omega\n"
+      "   1    -3        0   8.10000E-01\n"
+      "   1     3  NOTE: xi_x = 0, xi_7 = 0.5\n"
+      "===============================================\n");
+  REQUIRE(points.size() == 2);
+  CHECK(points[0].xi_zeros == std::vector<int>{2, 4});
+  CHECK(points[1].xi_zeros.empty());
+}
