@@ -16,6 +16,7 @@ constexpr int too_many_zeros = 50;
 
 void ChatteringDetector::add(const IndexVector& index, double duration) {
   segments_.push_back({index, duration});
+  if (segments_.size() > most_kept) segments_.pop_front();
   zeros_ = duration > 0.0 ? 0 : zeros_ + 1;
   const std::size_t last = segments_.size() - 1;
   for (std::size_t q = 1; q <= longest_pattern; ++q) {
@@ -32,7 +33,8 @@ std::optional<ChatteringDetector::Accumulation> ChatteringDetector::accumulation
 }
 
 std::optional<ChatteringDetector::Accumulation> ChatteringDetector::accumulation(std::size_t q) const {
-  const std::size_t turns = shrinking_[q] / q;
+  if (segments_.empty()) return std::nullopt;
+  const std::size_t turns = std::min(shrinking_[q], segments_.size() - 1) / q;
   if (turns < 3 || shrinking_[q] < ratios) return std::nullopt;
   const std::size_t last = segments_.size() - 1;
   if (!(segments_[last].duration < shrunk * segments_[last - q * turns].duration)) return std::nullopt;

@@ -4,8 +4,8 @@
 /// With a pattern of q events, T_k / T_{k-q} -> rho < 1; what remains is (T_{k-q+1} + ... + T_k) rho / (1 - rho).
 #pragma once
 
+#include <deque>
 #include <optional>
-#include <vector>
 
 #include "hybrid/index_vector.hpp"
 
@@ -26,13 +26,14 @@ class ChatteringDetector {
 
  private:
   static constexpr std::size_t longest_pattern = 8;
+  static constexpr std::size_t most_kept = 100000;  // a simulation may be endless
   struct Segment {
     IndexVector index;
     double duration;
   };
   std::optional<Accumulation> accumulation(std::size_t pattern) const;
 
-  std::vector<Segment> segments_;
+  std::deque<Segment> segments_;                     // the last `most_kept`
   std::size_t shrinking_[longest_pattern + 1] = {};  // how many last segments were shorter than those q before
   int zeros_ = 0;                                    // last segments of no duration
 };

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "end_to_end/bad_input.hpp"
 #include "published/chain.hpp"
 
 using namespace test_support;
@@ -81,6 +82,19 @@ TEST_CASE("simulate and run: mems, nonimpacting and impacting") {
       {"impacting", "PAR(V)=0.79013593844 PAR(omega)=0.8", "{(1,1,1), (2,2,2)}", pi / 0.8, {0.595826261, 0.352713557}});
   simulate_and_run(workspace, "mems",
                    {"nonimpacting", "PAR(V)=0.58 PAR(omega)=0.8 --state 0,0.37,0,0,1", "{(1,3,3)}", pi / 0.8, {}});
+}
+
+TEST_CASE("simulate and run: the MEMS oscillator in Fortran, whose constants file says its sizes") {
+  const Workspace workspace;
+  fs::copy_file(PROBLEMS "/mems_fortran/mems.f.1", workspace.file("mems.f"));
+  check_refused(workspace.tchat("simulate mems"), {"Fortran", "-c"});
+  fs::copy_file(PROBLEMS "/mems_fortran/gc.mems.3", workspace.file("gc.mems"));
+  simulate_and_run(workspace, "mems",
+                   {"impacting",
+                    "PAR(1)=0.79013593844 PAR(2)=0.8 --state 0,0.3,0,0,1",
+                    "{(1,1,1), (2,2,2)}",
+                    pi / 0.8,
+                    {0.595826261, 0.352713557}});
 }
 
 TEST_CASE("simulate and run: rand3d at both values of m, nonimpacting and impacting") {
