@@ -16,8 +16,9 @@ int create(const std::string& path) {
   fmt::print("{} is a driven mass with a wall on one side, to be changed into your own system:\n", path);
   for (const NewFile& file : files) fmt::print("  {}\n", file.name);
   fmt::print(
-      "\nTry it:   cd {} && make\nThen edit the .cpp file; `tchat check` compares its derivatives, README and\n"
-      "`tchat constants` explain the constants file.\n",
+      "\nTry it:   cd {} && make\nThen edit the .cpp file; `tchat check` compares its derivatives, `tchat simulate` "
+      "finds orbits to\n"
+      "start from, README and `tchat constants` explain the constants file.\n",
       path);
   return 0;
 }

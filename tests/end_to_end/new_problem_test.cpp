@@ -46,6 +46,16 @@ TEST_CASE("a new problem runs as it is: its Makefile arrives at the closed forms
   }
 }
 
+TEST_CASE("a new problem can be simulated, and the orbit found continued") {
+  const Workspace workspace;
+  REQUIRE(workspace.tchat("new wall").status == 0);
+  const Outcome simulated = workspace.tchat("simulate wall/wall PAR(F)=3.6 -o wall/found --dat wall/found");
+  INFO(simulated.text());
+  CHECK(simulated.status == 0);
+  CHECK(simulated.out.find("Periodic orbit, signature {(1,1,1)}") != std::string::npos);
+  CHECK(workspace.tchat("run wall/wall -c wall/found -d wall/found -o wall/found NMX=3").status == 0);
+}
+
 TEST_CASE("a new problem never touches what is there") {
   const Workspace workspace;
   REQUIRE(workspace.tchat("new wall").status == 0);
