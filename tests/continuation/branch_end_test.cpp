@@ -73,7 +73,7 @@ TEST_CASE("bounds on the parameter and on the measure end a branch at the first 
   CHECK(by_measure.sink.points.back().measure > 2.2);
 }
 
-TEST_CASE("a special point counts up to the bound, also in the last step; beyond it the branch ends with EP") {
+TEST_CASE("a special point counts up to the bound, also in the last step, beyond it the branch ends with EP") {
   // Steps that go far beyond alpha = 3.0526: with one user value before the bound, at it, beyond it, or both.
   const auto last_points = [](const std::vector<double>& values, double bound) {
     Branch branch;

@@ -68,7 +68,7 @@ TEST_CASE("a new problem never touches what is there") {
   check_refused(workspace.tchat(std::vector<std::string>{"new", ""}), {});
 }
 
-TEST_CASE("constants: the other form says the same, also of itself; explained in words") {
+TEST_CASE("constants: the other form says the same, also of itself, explained in words") {
   const Workspace workspace;
   const Outcome keyword = workspace.tchat("constants impacting");
   REQUIRE(keyword.status == 0);

@@ -86,7 +86,7 @@ int iterations(const Workspace& workspace, const std::string& name) {
 
 }  // namespace
 
-TEST_CASE("resegment: a contact inside the segment cuts it in two; both ways on converge") {
+TEST_CASE("resegment: a contact inside the segment cuts it in two, both ways on converge") {
   const Workspace workspace;
   run_to_contact_inside(workspace);
   const Outcome outcome = resegment(workspace, "q.inside GR1 --to grazing-curve -o curve");

@@ -143,7 +143,7 @@ TEST_CASE("simulate: a start from a label of an earlier run, on both sides of it
   workspace.run("-c doubled -d doubled -o doubled NMX=3");
 }
 
-TEST_CASE("simulate: an orbit of 16 events is recognised and continued; a longer one when asked for") {
+TEST_CASE("simulate: an orbit of 16 events is recognised and continued, a longer one when asked for") {
   const Workspace workspace;
   workspace.write("logistic.cpp", logistic_clock);
   const Outcome outcome = simulate(workspace, "logistic --transient-time 20000 --recognition 1e-8 --rows 2 --dat");
@@ -160,7 +160,7 @@ TEST_CASE("simulate: an orbit of 16 events is recognised and continued; a longer
   CHECK(contains(simulate(workspace, longer + "-o x --max-period 32").out, "period 32\n"));
 }
 
-TEST_CASE("simulate: chattering is told with its limit in time; no orbit is written") {
+TEST_CASE("simulate: chattering is told with its limit in time, no orbit is written") {
   const Workspace workspace;
   workspace.write("ball.cpp", ball);
   const Outcome outcome = simulate(workspace, "ball --dat", 1);
@@ -181,7 +181,7 @@ TEST_CASE("simulate: several events at once, a start beyond a wall, rest and nea
   CHECK(contains(beyond.out, "beyond a wall"));
   const Outcome rest = simulate(workspace, "linosc PAR(alpha)=0 --state x1=0.5");
   CHECK(contains(rest.out, "The motion dies out"));
-  const Outcome near = simulate(workspace, "linosc -c impacting PAR(alpha)=3.00666 PAR(omega)=2");
+  const Outcome near = simulate(workspace, "linosc -c impacting PAR(alpha)=3.00666 PAR(omega)=2 --events 200");
   CHECK(contains(near.out, "near-grazing contact"));
   int contacts = 0;
   for (const ListedEvent& e : read_event_list(workspace.read("linosc.events"), 4)) {

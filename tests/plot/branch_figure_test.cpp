@@ -153,7 +153,7 @@ TEST_CASE("two-parameter curves: free parameters as axes, a line and a name for 
   CHECK(named.key[2].text.text == "P");
 }
 
-TEST_CASE("columns by heading, number, PAR(k), last word; others are refused with those there are") {
+TEST_CASE("columns by heading, number, PAR(k), last word, others are refused with those there are") {
   const TemporaryFolder folder;
   const BranchFile file = read_branch_file(folder.write("p.a", header(180, 1) + rows(branch)));
   for (const auto& [wanted, column] : {std::pair("alpha", 0U),
@@ -175,7 +175,7 @@ TEST_CASE("columns by heading, number, PAR(k), last word; others are refused wit
   }
 }
 
-TEST_CASE("a section with several branches is not one line; after 9999 the count goes on") {
+TEST_CASE("a section with several branches is not one line, after 9999 the count goes on") {
   const TemporaryFolder folder;
   const BranchFile two = read_branch_file(folder.write("p.a", header(180, 1) + rows({{1, 9, 1, 0.0, 1.0, 2.0},
                                                                                      {2, 9, 2, 1.0, 1.0, 2.0},

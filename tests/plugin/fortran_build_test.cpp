@@ -50,7 +50,7 @@ TEST_CASE("Fortran sources by every name, in fixed and free form") {
   CHECK(folder.entries() == 4);  // no module file is left
 }
 
-TEST_CASE("a missing header NAME.h is empty; when it appears or changes, the source is compiled again") {
+TEST_CASE("a missing header NAME.h is empty, when it appears or changes, the source is compiled again") {
   const PluginFolder folder;
   folder.write("pend.f", with_includes());
   const auto value = [&] { return first_parameter(resolve_plugin(folder / "pend", build_options)); };

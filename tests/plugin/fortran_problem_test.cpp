@@ -94,7 +94,7 @@ TEST_CASE("a Fortran plugin: values, first and second derivatives for every GCID
   CHECK_THAT(notes.front(), Contains("central differences"));
 }
 
-TEST_CASE("a Fortran plugin's starting values: parameters, durations; PVLS") {
+TEST_CASE("a Fortran plugin's starting values: parameters, durations, PVLS") {
   const PluginFolder folder;
   const std::string path = compiled(folder, fortran_source() + R"(      SUBROUTINE GCPVLS(GCNDIM,X,PAR,SEGNO)
       IMPLICIT DOUBLE PRECISION (A-H,O-Z)

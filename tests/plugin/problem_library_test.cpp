@@ -69,7 +69,7 @@ TCHAT_PROBLEM(Ball)
   CHECK(gp[1] == Approx(3.0));
 }
 
-TEST_CASE("a small C plugin is loaded; its derivatives are differences") {
+TEST_CASE("a small C plugin is loaded, its derivatives are differences") {
   const PluginFolder folder;
   const ProblemLibrary library(resolve_plugin(folder.write("small.cpp", small_plugin()), build_options));
   const double x[] = {0.5, -3.0}, par[256] = {2.0};
@@ -192,7 +192,7 @@ TEST_CASE("a plugin that ends the process is named, status 2") {
   CHECK_THAT(entered.error_output, Contains("entry.so ended the process"));
 }
 
-TEST_CASE("an exit while no guard lives is left alone; guards nest") {
+TEST_CASE("an exit while no guard lives is left alone, guards nest") {
   const PluginFolder folder;
   const Ended free = in_process(folder, [] {
     { const ExitGuard guard("plugin.so"); }

@@ -77,7 +77,7 @@ TEST_CASE("linear oscillator: every segment up to an impact follows the closed f
   }
 }
 
-TEST_CASE("a pair of crossings much shorter than a step is found; a miss by as little is a contact") {
+TEST_CASE("a pair of crossings much shorter than a step is found, a miss by as little is a contact") {
   // x = A cos(w t), A just beyond the wall or just before it; the tolerance allows steps of a tenth of a period.
   const double w = 1.3;
   for (const double tolerance : {1e-4, 1e-8, 1e-12}) {
@@ -153,7 +153,7 @@ TEST_CASE("events that nearly coincide come in their own order") {
   }
 }
 
-TEST_CASE("a start beyond a wall is told; a monitored function below zero is a violation, with its time") {
+TEST_CASE("a start beyond a wall is told, a monitored function below zero is a violation, with its time") {
   const double w = 1.3;
   const Simulated beyond =
       simulate(always<TwoWalls>({{1, 1, 1}}), Vector4d(1.5, 0.1, 1.0, 0.0), parameters({w, 0.5}), so_long(1.0));
