@@ -63,15 +63,11 @@ std::vector<std::complex<double>> multipliers_without(const MatrixXd& m, const s
 
 /// How far each state goes on the simulated orbit; infinitely far where it does not matter.
 VectorXd ranges(const std::vector<SimulatedSegment>& turn, const std::vector<Eigen::Index>& ignorable) {
-  VectorXd low = turn.front().start;
-  VectorXd high = low;
+  VectorXd low = turn.front().low;
+  VectorXd high = turn.front().high;
   for (const SimulatedSegment& segment : turn) {
-    low = low.cwiseMin(segment.end);
-    high = high.cwiseMax(segment.end);
-    for (const Sample& sample : segment.samples) {
-      low = low.cwiseMin(sample.state);
-      high = high.cwiseMax(sample.state);
-    }
+    low = low.cwiseMin(segment.low);
+    high = high.cwiseMax(segment.high);
   }
   VectorXd range = high - low;
   for (const Eigen::Index k : ignorable) range(k) = 0.0;

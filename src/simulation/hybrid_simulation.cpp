@@ -16,7 +16,7 @@ namespace {
 using Eigen::RowVectorXd;
 using Eigen::VectorXd;
 
-constexpr int points_of_piece = 4;  // kept of each integration step, before thinning
+constexpr int points_of_piece = 4;  // looked at in each integration step; kept, before thinning
 
 bool contains(const std::vector<int>& events, int event) {
   return std::find(events.begin(), events.end(), event) != events.end();
@@ -104,7 +104,7 @@ SimulatedSegment HybridSimulation::begin_segment() {
   SimulatedSegment segment;
   segment.number = ++segments_;
   segment.start_time = time_;
-  segment.start = segment.end = x_;
+  segment.start = segment.end = segment.low = segment.high = x_;
   if (last_.field != 0) mode_ = rule_.next(last_, std::exchange(before_jump_, {}), par_);
   segment.mode = mode_;
   if (mode_.index_vectors.empty()) stop(segment, SegmentEnd::failed, rule_.fault());
@@ -157,13 +157,14 @@ bool HybridSimulation::pass_piece(SimulatedSegment& segment, const CvodesFlow& f
     double& largest = largest_[event];
     largest = std::max(largest, system_.event(event, x.data(), par_.data()));
   }
-  if (settings_.samples > 0) {
-    for (int k = 1; k <= points_of_piece; ++k) {
-      const double t = k == points_of_piece ? to : from + (to - from) * k / points_of_piece;
-      segment.samples.push_back({segment.start_time + t, flow.state_at(t)});
-    }
-    if (segment.samples.size() > 50 * settings_.samples) halve(segment.samples);
+  for (int k = 1; k <= points_of_piece; ++k) {
+    const double t = k == points_of_piece ? to : from + (to - from) * k / points_of_piece;
+    VectorXd state = flow.state_at(t);
+    segment.low = segment.low.cwiseMin(state);
+    segment.high = segment.high.cwiseMax(state);
+    if (settings_.samples > 0) segment.samples.push_back({segment.start_time + t, std::move(state)});
   }
+  if (settings_.samples > 0 && segment.samples.size() > 50 * settings_.samples) halve(segment.samples);
   return !(settings_.interrupted && settings_.interrupted());
 }
 

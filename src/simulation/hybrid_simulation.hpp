@@ -71,6 +71,7 @@ struct SimulatedSegment {
   double event_velocity = 0.0;            ///< h_x f at the end
   std::vector<IndexVector> simultaneous;  ///< others whose events came at the same time
   std::vector<Sample> samples;            ///< start and end included
+  Eigen::VectorXd low, high;              ///< least and largest value of each state, whatever samples are kept
   std::vector<SegmentMark> marks;
   std::string message;  ///< why it did not end in an event
 

@@ -33,12 +33,7 @@ void keep_independent(const HybridSystem& system, FunctionKind kind, const Vecto
 }  // namespace
 
 void Recurrence::add(const SimulatedSegment& segment) {
-  End end{segment.index, segment.after, segment.start.cwiseMin(segment.end), segment.start.cwiseMax(segment.end)};
-  for (const Sample& sample : segment.samples) {
-    end.low = end.low.cwiseMin(sample.state);
-    end.high = end.high.cwiseMax(sample.state);
-  }
-  ends_.push_back(std::move(end));
+  ends_.push_back({segment.index, segment.after, segment.low, segment.high});
   if (ends_.size() > 2 * static_cast<std::size_t>(max_period_)) ends_.pop_front();
 }
 

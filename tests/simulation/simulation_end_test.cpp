@@ -31,6 +31,25 @@ struct Damped {
   }
 };
 
+/// x'' = -x - p x' + cos t, with (sin t, cos t) as a clock that attracts; event 1: maximum of x.
+struct Driven {
+  static constexpr int dimension = 4, parameters = 1, fields = 1, events = 1, jumps = 1;
+  template <class T>
+  void field(int, const T* x, const T* p, T* f) const {
+    const T growth = 1.0 - x[2] * x[2] - x[3] * x[3];
+    f[0] = x[1], f[1] = -x[0] - p[0] * x[1] + x[3];
+    f[2] = growth * x[2] + x[3], f[3] = growth * x[3] - x[2];
+  }
+  template <class T>
+  T event(int, const T* x, const T*) const {
+    return x[1];
+  }
+  template <class T>
+  void jump(int, const T* x, const T*, T* g) const {
+    for (int i = 0; i < 4; ++i) g[i] = x[i];
+  }
+};
+
 Simulated logistic(double a, int max_period, double transient = 20000.0) {
   SimulationPlan plan;
   plan.transient_time = transient;
@@ -85,6 +104,24 @@ TEST_CASE("an impact that leaves no velocity sticks, and is told") {
   CHECK(ball.result.last.ended_by == SegmentEnd::sticks);
   CHECK(ball.result.events == 1);
   CHECK_THAT(ball.result.last.message, Contains("the contact lasts"));
+}
+
+TEST_CASE("an orbit is recognised after the same number of events whatever samples are kept") {
+  // x'' = -x - 0.1 x' + cos t between events at the maxima of x: x = 10 sin t with range 20, cut where x' = 0, so that
+  // the ends of segments alone show no range at all.
+  const ModeRule rule = always<Driven>({{1, 1, 1}});
+  std::vector<long> events;
+  for (const std::size_t samples : {200, 0, 1, 2, 7}) {
+    SimulationSettings settings = settings_for_tests();
+    settings.samples = samples;
+    const Simulated run = simulate(rule, Eigen::Vector4d(0.0, 0.0, 0.0, 1.0), parameters({0.1}), {}, settings);
+    REQUIRE(run.result.is_periodic());
+    const SimulatedSegment& turn = run.result.turn.front();
+    CHECK(turn.low(0) == Approx(-10.0).epsilon(1e-3));
+    CHECK(turn.high(0) == Approx(10.0).epsilon(1e-3));
+    events.push_back(run.result.events);
+  }
+  CHECK(events == std::vector<long>(events.size(), events.front()));
 }
 
 TEST_CASE("a motion that dies out is no periodic orbit") {
