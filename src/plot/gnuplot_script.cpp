@@ -8,8 +8,6 @@
 #include <map>
 #include <tuple>
 
-#include "plot/key_placement.hpp"
-
 namespace tchat {
 
 namespace {
@@ -169,21 +167,24 @@ class ScriptWriter {
                        font_size(label_font_ratio)));
   }
 
+  /// Drawn by hand: gnuplot's own key estimates widths of texts by their number of letters.
   void key() {
-    if (!layout_.key || figure_.key.empty()) {
-      line("unset key");
-      return;
-    }
+    line("unset key");
+    if (!layout_.key) return;
     const KeyPlace& place = *layout_.key;
-    const std::string style =
-        fmt::format("Left reverse samplen 2.8 spacing 1.25 font ',{:.1f}'", font_size(label_font_ratio));
-    if (place.inside) {
-      line(fmt::format("set key at {} left top vertical {}", screen(place.box.left, place.box.top), style));
-      return;
+    const double length = key_sample_length * place.font;
+    for (std::size_t k = 0; k < figure_.key.size(); ++k) {
+      const KeyEntry& entry = figure_.key[k];
+      const PicturePoint& at = place.entries[k];
+      if (entry.stroke)
+        line(fmt::format("set arrow from {} to {} nohead front {}", screen(at.x, at.y), screen(at.x + length, at.y),
+                         stroke(*entry.stroke)));
+      if (entry.marker)
+        line(fmt::format("set label '' at {} front point {}", screen(at.x + 0.5 * length, at.y),
+                         points(*entry.marker, entry.marker->filled, entry.marker->colour)));
+      line(fmt::format("set label {} at {} left front font ',{:.1f}'", quoted(entry.text),
+                       screen(at.x + length + 0.5 * place.font, at.y), place.font * label_font_ratio * units_.font));
     }
-    const int columns = KeySize(figure_.key, layout_.font).columns(place.box.width());
-    line(fmt::format("set key at {} center bottom horizontal maxcols {} width -3 {}",
-                     screen(0.5 * (place.box.left + place.box.right), place.box.bottom), columns, style));
   }
 
   // Panels -------------------------------------------------------------------------------------------------------
@@ -203,7 +204,7 @@ class ScriptWriter {
     arrows(panel, place);
     labels(panel, place);
     plot(panel, k);
-    if (!lowest) line("unset key\nunset label\nunset arrow\n");
+    if (!lowest) line("unset label\nunset arrow\n");
   }
 
   void axis(char name, const AxisScale& scale, const LabelText& label, bool numbered) {
@@ -257,22 +258,8 @@ class ScriptWriter {
       elements.push_back(fmt::format("{} with points {} notitle", block, background(marker)));
       elements.push_back(fmt::format("{} with points {} notitle", block, points(marker, marker.filled, marker.colour)));
     }
-    if (number == 0)
-      for (const KeyEntry& entry : figure_.key) elements.push_back(key_entry(entry));
     if (elements.empty()) elements.emplace_back("NaN notitle");
     line(fmt::format("plot {}", fmt::join(elements, ", \\\n     ")));
-  }
-
-  std::string key_entry(const KeyEntry& entry) const {
-    std::string style = "lines";
-    if (entry.stroke && entry.marker)
-      style = fmt::format("linespoints {} pt {} ps {:.3g}", stroke(*entry.stroke),
-                          point_type(entry.marker->symbol, entry.marker->filled), point_size(*entry.marker));
-    else if (entry.stroke)
-      style = "lines " + stroke(*entry.stroke);
-    else if (entry.marker)
-      style = "points " + points(*entry.marker, entry.marker->filled, entry.marker->colour);
-    return fmt::format("keyentry with {} title {}", style, quoted(entry.text));
   }
 
   const Figure& figure_;

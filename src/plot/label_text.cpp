@@ -73,7 +73,9 @@ std::string word_as_mathematics(std::string_view word) {
 double character_width(char c) {
   if (std::string_view("ijlI|.,:;'! ").find(c) != std::string_view::npos) return 0.32;
   if (std::string_view("frt()[]-/").find(c) != std::string_view::npos) return 0.40;
-  if (std::string_view("mMwW=+<>%").find(c) != std::string_view::npos) return 0.90;
+  if (std::string_view("mW%@").find(c) != std::string_view::npos) return 0.98;
+  if (std::string_view("Mw=+<>~").find(c) != std::string_view::npos) return 0.88;
+  if (std::string_view("DGHNOQU&").find(c) != std::string_view::npos) return 0.78;
   if (static_cast<unsigned char>(c) == 0xE2) return 0.95;  // first byte of the ellipsis and the minus sign
   return c >= 'A' && c <= 'Z' ? 0.70 : 0.62;
 }

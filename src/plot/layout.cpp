@@ -126,9 +126,10 @@ FigureLayout lay_out(const Figure& figure) {
 
   const double above = (figure.title.empty() ? 0.0 : 1.7) + (figure.note.empty() ? 0.0 : 1.3);
   Box inner{(widest + 3.0) * font, figure.width - 1.5 * font, 3.7 * font, figure.height - (0.8 + above) * font};
-  const KeySize key(figure.key, font);
+  const KeyGrid list(figure.key, font);
+  const KeyGrid rows(figure.key, font, figure.width - font, 0.35 * inner.height());
   const bool may_be_inside = panels == 1;
-  if (!may_be_inside && !key.empty()) inner.top -= key.rows_height(inner.width());
+  if (!may_be_inside && !rows.empty()) inner.top -= rows.height();
 
   const double gap = 0.7 * font;
   const double height = (inner.height() - gap * (panels - 1)) / panels;
@@ -138,16 +139,16 @@ FigureLayout lay_out(const Figure& figure) {
     place.frame = {inner.left, inner.right, top - height, top};
     if (figure.panels[static_cast<std::size_t>(k)].equal_scales) equalise(place);
   }
-  if (!key.empty() && may_be_inside) {
+  if (!list.empty() && may_be_inside) {
     const Obstacles obstacles = obstacles_of(figure.panels[0], layout.panels[0], std::nullopt, font);
-    layout.key = key.place_inside(obstacles);
+    layout.key = list.place_inside(obstacles);
     if (!layout.key) {
       PanelLayout& place = layout.panels[0];
-      place.frame.top -= key.rows_height(inner.width());
+      place.frame.top -= rows.height();
       if (figure.panels[0].equal_scales) equalise(place);
     }
   }
-  if (!key.empty() && !layout.key) layout.key = key.place_above(layout.panels[0].frame);
+  if (!rows.empty() && !layout.key) layout.key = rows.place_above(layout.panels[0].frame, figure.width);
   for (std::size_t k = 0; k < layout.panels.size(); ++k)
     place_marker_labels(figure.panels[k], layout.panels[k],
                         obstacles_of(figure.panels[k], layout.panels[k], layout.key, font), font);

@@ -24,7 +24,9 @@ struct PanelLayout {
 
 struct KeyPlace {
   Box box;
-  bool inside = true;  ///< inside the first panel; otherwise above it, in rows
+  bool inside = true;                 ///< inside the first panel; otherwise above it
+  double font = 27.0;                 ///< as that of the axes, or smaller
+  std::vector<PicturePoint> entries;  ///< the left end of each entry's sample, at half its height
 };
 
 struct FigureLayout {
@@ -34,6 +36,9 @@ struct FigureLayout {
 };
 
 inline constexpr double label_font_ratio = 0.85;
+
+/// Of the lines in the key, in units of the font's size.
+inline constexpr double key_sample_length = 2.6;
 
 /// Markers of a size of 1 have this radius, in units of the font's size.
 inline constexpr double marker_radius = 0.25;

@@ -92,11 +92,12 @@ TEST_CASE("the script of a branch: names on the axes, solid and dashed, letters 
   CHECK(contains(script, "set label 'PD'"));
   CHECK(contains(script, "set label 'GR'"));
   CHECK_FALSE(contains(script, "set label 'EP'"));
-  CHECK(contains(script, "title 'stable'"));
-  CHECK(contains(script, "title 'unstable'"));
-  CHECK(contains(script, "title 'inadmissible'"));
+  CHECK(contains(script, "set label 'stable'"));
+  CHECK(contains(script, "set label 'unstable'"));
+  CHECK(contains(script, "set label 'inadmissible'"));
   CHECK(contains(script_of(workspace, "p.branch --labels EP --numbers"), "set label 'EP 1'"));
-  CHECK_FALSE(contains(script_of(workspace, "p.branch --no-labels"), "set label"));
+  for (const std::string letters : {"PD", "GR", "LP"})
+    CHECK_FALSE(contains(script_of(workspace, "p.branch --no-labels"), "set label '" + letters + "'"));
 }
 
 TEST_CASE("a kept script draws the picture again") {
@@ -125,7 +126,7 @@ TEST_CASE("taste: columns, ranges, texts, logarithmic axes") {
   CHECK(contains(script, "'it''s `date`' noenhanced"));
   CHECK(contains(script, "set xlabel 'forcing_1' noenhanced"));
   CHECK(contains(script, "set ylabel 'max x_{2}'"));
-  CHECK(contains(script, "title 'one branch'"));
+  CHECK(contains(script, "set label 'one branch'"));
 }
 
 TEST_CASE("orbits: names and wall from the plugin, jumps dashed") {
@@ -133,16 +134,16 @@ TEST_CASE("orbits: names and wall from the plugin, jumps dashed") {
   const std::string portrait = script_of(workspace, "q.branch PD1 EP1 -p linosc");
   CHECK(contains(portrait, "set xlabel 'x_{1}'"));
   CHECK(contains(portrait, "set ylabel 'x_{2}'"));
-  CHECK(contains(portrait, "title 'wall'"));
+  CHECK(contains(portrait, "set label 'wall'"));
   CHECK(contains(portrait, "PD1: α = 3.0362"));
   CHECK(contains(portrait, "dt (14,8) lw 1.3"));
-  CHECK(contains(script_of(workspace, "q.branch PD1"), "title 'wall'"));  // the only plugin of the folder
+  CHECK(contains(script_of(workspace, "q.branch PD1"), "set label 'wall'"));  // the only plugin of the folder
   CHECK_FALSE(contains(script_of(workspace, "q.branch PD1 --surfaces none"), "wall"));
   const std::string series = script_of(workspace, "--time q.branch PD1 -y x1,y1,y2");
   CHECK(contains(series, "set multiplot"));
   CHECK(contains(series, "set xlabel 'time'"));
   CHECK(contains(series, "set ylabel 'y_{2}'"));
-  CHECK(contains(series, "title 'wall'"));
+  CHECK(contains(series, "set label 'wall'"));
 }
 
 TEST_CASE("multipliers along the branch and at labels") {
@@ -150,7 +151,7 @@ TEST_CASE("multipliers along the branch and at labels") {
   const std::string all = script_of(workspace, "--multipliers q.branch");
   CHECK(contains(all, "real part"));
   CHECK(contains(all, "set label 'PD'"));
-  CHECK(contains(script_of(workspace, "--multipliers p.branch PD1 EP1"), "title 'EP1'"));
+  CHECK(contains(script_of(workspace, "--multipliers p.branch PD1 EP1"), "set label 'EP1'"));
 }
 
 TEST_CASE("without -o and without a display the picture has the branch's name") {

@@ -43,7 +43,7 @@ TEST_CASE("axes, data, dashes, labels and texts are in the script") {
   CHECK(contains(script, "$curve1_1 << END\n0 0\n1 2\n\n2 1\nEND\n"));
   CHECK(contains(script, "dt (14,8) lw 2 lc rgb '#123456'"));
   CHECK(contains(script, "set label 'GR' noenhanced at screen"));
-  CHECK(contains(script, "title 'a_b' noenhanced"));
+  CHECK(contains(script, "set label 'a_b' noenhanced"));
   CHECK(contains(script, "'title' noenhanced"));
   CHECK(script == script_of(sample(), {PictureFormat::png, "x's.png", ""}));
 }
