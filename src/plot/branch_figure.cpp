@@ -115,7 +115,8 @@ class BranchFigureBuilder {
     std::optional<LineKind> before;
     for (std::size_t k = 0; k < intervals.size(); ++k) {
       const LineKind kind = line_kind(file, piece.section, piece.begin + k + 1);
-      if (kind != before) panel_.curves.push_back({{intervals[k].front()}, stroke_of(kind), false});
+      if (kind != before)
+        panel_.curves.push_back({{intervals[k].front()}, stroke_of(kind), false, kind == LineKind::inadmissible});
       auto& points = panel_.curves.back().points;
       points.insert(points.end(), intervals[k].begin() + 1, intervals[k].end());
       before = kind;
@@ -158,6 +159,7 @@ class BranchFigureBuilder {
       const int label = file.sections[piece.section].rows[piece.begin + k].label;
       if (label == 0 || type.empty() || !options_.labels.includes(type)) continue;
       Marker marker = special_point_marker(type, points[k]);
+      marker.minor = !file.admissible[piece.section][piece.begin + k];
       const auto zeros = file.xi_zeros.find(label);
       if (options_.labels.numbers)
         marker.label = plain_text(fmt::format("{} {}", type, label));

@@ -2,7 +2,8 @@
 ///
 /// A branch against one parameter is solid where the orbits are stable and dashed where they are not (sign of PT); the
 /// line from a point to the next is that of the next point, for at a located bifurcation the sign of the point before
-/// is written. Inadmissible orbits are thin and dotted. A curve in two parameters has the line of its kind (grazing,
+/// is written. Inadmissible orbits are thin and dotted and leave the ranges of the axes
+/// to the others. A curve in two parameters has the line of its kind (grazing,
 /// fold, period doubling, torus) and no stability.
 #pragma once
 

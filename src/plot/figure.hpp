@@ -30,6 +30,7 @@ struct Curve {
   std::vector<PicturePoint> points;
   Stroke stroke;
   bool background = false;  ///< event surfaces, axes: neither part of the range nor avoided by labels
+  bool minor = false;       ///< inadmissible: part of the range only where a panel has nothing else
 };
 
 enum class Symbol { square, circle, triangle, diamond, pentagon, reversed_triangle, dot };
@@ -42,6 +43,7 @@ struct Marker {
   std::string colour = "#000000";
   LabelText label;           ///< empty: none
   bool one_of_many = false;  ///< where they are crowded some go without label
+  bool minor = false;        ///< as that of a curve
 };
 
 /// An arrowhead on a curve.

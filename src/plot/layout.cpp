@@ -13,25 +13,37 @@ namespace {
 constexpr double font_for_1200_pixels = 27.0;
 constexpr double least_font = 9.0;
 
+/// Coordinates that set the ranges, and those of what does so only where nothing else is seen.
 struct Values {
-  std::vector<double> x, y;
+  std::vector<PicturePoint> points, minor;
 };
 
 void add_values(const Panel& panel, Values& values) {
   for (const Curve& curve : panel.curves) {
     if (curve.background) continue;
-    for (const PicturePoint& p : curve.points) values.x.push_back(p.x), values.y.push_back(p.y);
+    auto& list = curve.minor ? values.minor : values.points;
+    list.insert(list.end(), curve.points.begin(), curve.points.end());
   }
-  for (const Marker& marker : panel.markers) values.x.push_back(marker.at.x), values.y.push_back(marker.at.y);
+  const bool has_curve = !values.points.empty();
+  for (const Marker& marker : panel.markers)
+    (marker.minor || !(has_curve || panel.curves.empty()) ? values.minor : values.points).push_back(marker.at);
 }
 
-/// What lies within the other axis's range, so that a chosen --xrange gives a fitting y-range.
-std::vector<double> visible(const std::vector<double>& values, const std::vector<double>& others,
+bool is_inside(double value, const AxisSettings& range) {
+  return can_be_shown(value) && !(range.low && value < *range.low) && !(range.high && value > *range.high);
+}
+
+/// One coordinate of what lies within the other axis's range, so that a chosen --xrange gives a fitting y-range.
+std::vector<double> visible(const Values& values, double PicturePoint::*coordinate, double PicturePoint::*across,
                             const AxisSettings& other) {
+  const bool limited = other.low || other.high;
   std::vector<double> result;
-  for (std::size_t k = 0; k < values.size(); ++k)
-    if (!(other.low && others[k] < *other.low) && !(other.high && others[k] > *other.high)) result.push_back(values[k]);
-  return result.empty() ? values : result;
+  for (const auto* list : {&values.points, &values.minor}) {
+    for (const PicturePoint& p : *list)
+      if (!limited || is_inside(p.*across, other)) result.push_back(p.*coordinate);
+    if (!result.empty()) return result;
+  }
+  return limited ? visible(values, coordinate, across, {}) : result;
 }
 
 /// Widens one axis so that a unit is as long on both.
@@ -118,8 +130,9 @@ FigureLayout lay_out(const Figure& figure) {
     Values own;
     add_values(panel, own);
     PanelLayout place;
-    place.x = choose_scale(panel.x, visible(shared.x, shared.y, panels == 1 ? panel.y : AxisSettings{}), 4);
-    place.y = choose_scale(panel.y, visible(own.y, own.x, panel.x), panels > 1 ? 3 : 4);
+    place.x = choose_scale(
+        panel.x, visible(shared, &PicturePoint::x, &PicturePoint::y, panels == 1 ? panel.y : AxisSettings{}), 4);
+    place.y = choose_scale(panel.y, visible(own, &PicturePoint::y, &PicturePoint::x, panel.x), panels > 1 ? 3 : 4);
     widest = std::max(widest, place.y.widest_number);
     layout.panels.push_back(place);
   }

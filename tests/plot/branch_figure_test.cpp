@@ -6,6 +6,7 @@
 
 #include "constants/user_error.hpp"
 #include "plot/branch_columns.hpp"
+#include "plot/layout.hpp"
 #include "start/temporary_folder.hpp"
 
 using namespace tchat;
@@ -213,4 +214,35 @@ TEST_CASE("a zero of xi_n is labelled with its n") {
   BranchFigureOptions numbered;
   numbered.labels.numbers = true;
   CHECK(labels_of(branch_figure({file}, numbered)) == std::vector<std::string>{"XI 2", "GC 3"});
+}
+
+TEST_CASE("inadmissible parts set no range where there are admissible ones") {
+  const TemporaryFolder folder;
+  const std::string path = folder.write(
+      "p.a", header(180, 1) + rows({{-1, 9, 1, 0.0, 1.0, 2.0}, {-2, 0, 0, 1.0, 2.0, 2.0}, {-3, 9, 2, 9.0, 50.0, 2.0}}));
+  const auto frame_of = [&](int admissible_points, const AxisSettings& x) {
+    std::string text;
+    for (int point = 1; point <= 3; ++point)
+      text += diagnostics(-point, point == 2 ? "" : "EP",
+                          point == 1   ? 1
+                          : point == 3 ? 2
+                                       : 0,
+                          point <= admissible_points);
+    folder.write("d.a", text);
+    BranchFigureOptions options;
+    options.labels.all = true;
+    Figure figure = branch_figure({read_branch_file(path)}, options);
+    figure.panels[0].x.low = x.low, figure.panels[0].x.high = x.high;
+    return lay_out(figure).panels[0];
+  };
+  const PanelLayout part = frame_of(2, {});
+  CHECK(part.x.high < 1.2);
+  CHECK(part.y.low < 1.0);
+  CHECK(part.y.high < 2.2);
+  CHECK(frame_of(3, {}).y.high > 50.0);
+  CHECK(frame_of(0, {}).y.high > 50.0);
+  CHECK(frame_of(1, {}).y.high > 50.0);  // one point is no part of a branch
+  AxisSettings beyond;
+  beyond.low = 5.0, beyond.high = 10.0;
+  CHECK(frame_of(2, beyond).y.high > 50.0);
 }
