@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <set>
 
 #include "hybrid/identity_jump.hpp"
 #include "hybrid/parameter_vector.hpp"
@@ -15,24 +17,63 @@ namespace {
 constexpr double no_bound = 1e300;
 constexpr double surface = 1e-9;  // h below minus this, times its scale, is negative
 
-/// Events of the segment's mode that are >= 0 along it: the others would make every point of the branch inadmissible
-/// (sections, whose functions take both signs).
-std::vector<int> monitored_events(const HybridSystem& system, const Mode& mode, const Eigen::MatrixXd& states,
-                                  const Eigen::VectorXd& par) {
-  std::vector<int> events;
-  for (const int event : mode.all_events()) {
-    double least = 0.0;
-    double scale = 1.0;
+/// The values of an event function along a segment.
+struct EventValues {
+  double least = 0.0, scale = 1.0;
+  Eigen::VectorXd nearest;  // state where the value is least
+
+  EventValues(const HybridSystem& system, int event, const Eigen::MatrixXd& states, const Eigen::VectorXd& par) {
+    least = no_bound;
     for (const auto& column : states.colwise()) {
       const Eigen::VectorXd x = column;
       const double h = system.event(event, x.data(), par.data());
-      least = std::min(least, h);
       scale = std::max(scale, std::abs(h));
+      if (h >= least) continue;
+      least = h;
+      nearest = x;
     }
-    if (least >= -surface * scale) events.push_back(event);
+  }
+  bool is_negative() const { return !(least >= -surface * scale); }
+};
+
+/// Does the event change neither state nor field, as a Poincare section? What follows is seen where segment s ends by
+/// it; elsewhere the index jump function is asked at x. An event that is only monitored is none.
+bool is_section(const HybridSystem& system, const FoundOrbit& orbit, std::size_t s, int event, const Eigen::VectorXd& x,
+                const Eigen::VectorXd& par) {
+  const std::vector<IndexVector>& watched = orbit.modes[s].index_vectors;
+  const auto v = std::find_if(watched.begin(), watched.end(), [&](const auto& w) { return w.event == event; });
+  if (v == watched.end() || !is_identity_jump(system, v->jump)) return false;
+  if (*v == orbit.signature[s]) return orbit.signature[(s + 1) % orbit.signature.size()].field == v->field;
+  const auto following = system.successors(*v, x.data(), par.data());
+  return following && !following->empty() && following->front().field == v->field;
+}
+
+/// Events of segment s' mode whose contact would matter: no sections, and none that is negative somewhere, which would
+/// make every point of the branch inadmissible.
+std::vector<int> monitored_events(const HybridSystem& system, const FoundOrbit& orbit, std::size_t s,
+                                  const Eigen::MatrixXd& states, const Eigen::VectorXd& par) {
+  std::vector<int> events;
+  for (const int event : orbit.modes[s].all_events()) {
+    const EventValues values(system, event, states, par);
+    if (values.is_negative() || is_section(system, orbit, s, event, values.nearest, par)) continue;
+    events.push_back(event);
   }
   std::sort(events.begin(), events.end());
   return events;
+}
+
+/// The jump that contact with a monitored event brings, where all of them that change the state have the same one.
+std::optional<int> jump_of_contact(const HybridSystem& system, const FoundOrbit& orbit,
+                                   const std::vector<SegmentSettings>& segments) {
+  std::set<int> jumps;
+  for (std::size_t s = 0; s < segments.size(); ++s)
+    for (const IndexVector& v : orbit.modes[s].index_vectors) {
+      const std::vector<int>& monitored = segments[s].monitor;
+      const bool is_monitored = std::find(monitored.begin(), monitored.end(), v.event) != monitored.end();
+      if (is_monitored && !is_identity_jump(system, v.jump)) jumps.insert(v.jump);
+    }
+  if (jumps.size() != 1) return std::nullopt;
+  return *jumps.begin();
 }
 
 bool is_free(const std::vector<int>& free, int k) { return std::find(free.begin(), free.end(), k) != free.end(); }
@@ -76,7 +117,6 @@ RunSettings default_orbit_settings(const RunSettings& given) {
   const auto prefer = [&](auto member, auto value) {
     if (given.*member == plain.*member) settings.*member = value;
   };
-  prefer(&RunSettings::print_every, 20);
   prefer(&RunSettings::tolerance_parameters, 1e-10);
   prefer(&RunSettings::tolerance_states, 1e-10);
   prefer(&RunSettings::tolerance_special, 1e-9);
@@ -112,11 +152,13 @@ RunSettings orbit_settings(const HybridSystem& system, const RunSettings& base, 
     const auto k = static_cast<std::size_t>(s);
     segment.index = orbit.signature[k];
     segment.type = is_identity_jump(system, segment.index.jump) ? 0 : 1;
-    segment.monitor = monitored_events(system, orbit.modes[k], samples.states.middleRows(s * n, n), par);
+    segment.monitor = monitored_events(system, orbit, k, samples.states.middleRows(s * n, n), par);
     for (std::size_t i = 0; i < segment.monitor.size(); ++i)
       settings.test_functions.push_back(static_cast<int>(settings.test_functions.size()) + 1);
     settings.segments.push_back(std::move(segment));
   }
+  if (base.grazing_jump == RunSettings{}.grazing_jump)
+    settings.grazing_jump = jump_of_contact(system, orbit, settings.segments).value_or(base.grazing_jump);
   return settings;
 }
 

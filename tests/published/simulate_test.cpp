@@ -80,6 +80,8 @@ TEST_CASE("simulate and run: mems, nonimpacting and impacting") {
   simulate_and_run(
       workspace, "mems",
       {"impacting", "PAR(V)=0.79013593844 PAR(omega)=0.8", "{(1,1,1), (2,2,2)}", pi / 0.8, {0.595826261, 0.352713557}});
+  // The section (1,3,3) is no wall; the end of slip, with the identity jump but into another field, is monitored.
+  CHECK(contains(workspace.read("gc.found"), "GCHGRZIND = [[1], [1, 2]] "));
   simulate_and_run(workspace, "mems",
                    {"nonimpacting", "PAR(V)=0.58 PAR(omega)=0.8 --state 0,0.37,0,0,1", "{(1,3,3)}", pi / 0.8, {}});
 }
