@@ -50,6 +50,7 @@ SimulationConstants read_simulation_constants(const SimulationRequest& request) 
     settings.segments.resize(1);
   }
   apply_overrides(settings, request.overrides);
+  constants.file_segments = static_cast<int>(settings.segments.size());
   if (request.signature)
     settings.segments = segments_of_signature(
         *request.signature, constants.is_given() ? settings.segments : std::vector<SegmentSettings>{});

@@ -14,6 +14,7 @@ struct SimulationConstants {
   RunSettings settings;
   std::string path;            ///< empty: no constants file, all constants have their defaults
   bool has_signature = false;  ///< of the file, or of --signature
+  int file_segments = 1;       ///< of the file, whatever --signature says: of data that go with it
   bool is_given() const { return !path.empty(); }
 };
 

@@ -86,15 +86,19 @@ void apply_state_option(const HybridSystem& system, const std::string& text, Vec
   for (std::size_t i = 0; i < parts.size(); ++i) state(static_cast<Eigen::Index>(i)) = read_state_value(parts[i], text);
 }
 
-/// Of an orbit of the signature, or of one segment: the first row is all that matters.
+/// Of an orbit of the signature, that of the constants file or --signature's, or of one segment: the first row is all
+/// that matters.
 DatFile read_start(const std::string& path, const SimulationConstants& constants, int n) {
   const int m = constants.has_signature ? static_cast<int>(constants.settings.segments.size()) : 1;
-  try {
-    return read_dat_file(path, n, m);
-  } catch (const UserError&) {
-    if (m == 1) throw;
+  for (const int other : {constants.file_segments, 1}) {
+    if (other == m) continue;
+    try {
+      return read_dat_file(path, n, other);
+    } catch (const UserError&) {
+      continue;  // what is wrong with it is told about the signature's number
+    }
   }
-  return read_dat_file(path, n, 1);
+  return read_dat_file(path, n, m);
 }
 
 void apply_data(const SimulationRequest& request, const SimulationConstants& constants, const HybridSystem& system,
