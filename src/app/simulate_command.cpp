@@ -71,7 +71,10 @@ void add_start_options(CLI::App& command, SimulationRequest& request) {
 }
 
 void add_length_options(CLI::App& command, SimulationRequest& request) {
-  const char* const group = "Length [until a periodic orbit is recognised, at most 10000 events]";
+  const char* const group =
+      "Length [until a periodic orbit is recognised, at most 10000 events; of a longer motion O.trajectory then holds "
+      "the "
+      "last 10 MB]";
   SimulationPlan& plan = request.plan;
   command.add_option("--time", plan.time, "so long after the transient")
       ->type_name("T")

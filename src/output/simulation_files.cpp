@@ -3,12 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace tchat {
 
 namespace {
 
 constexpr int column = 24;  // 16 significant digits
+constexpr std::size_t segments_in_any_case = 32;
 
 /// Headings without blanks inside, so that they stay one word for each column.
 std::string names(const HybridSystem& system, const char* ending) {
@@ -51,20 +53,23 @@ const char* word(SegmentMark::Kind kind) {
 }  // namespace
 
 SimulationFiles::SimulationFiles(const HybridSystem& system, const std::string& name, const std::string& heading,
-                                 const Eigen::VectorXd& par)
-    : system_(system), par_(par), trajectory_(trajectory_path(name)), events_(events_path(name)) {
+                                 const Eigen::VectorXd& par, std::size_t trajectory_bytes)
+    : system_(system),
+      par_(par),
+      trajectory_(trajectory_path(name)),
+      events_(events_path(name)),
+      most_bytes_(trajectory_bytes) {
   trajectory_.write(fmt::format("# {}\n#segment  i   j   k {:>{}}{}\n", heading, "t", column, names(system, "")));
   events_.write(fmt::format("# {}\n#segment  i   j   k {:>{}} {:>{}} {:>{}}{}{} what\n", heading, "t", column, "h",
                             column, "h_x_f", column, names(system, ""), names(system, "_after")));
 }
 
 void SimulationFiles::write(const SimulatedSegment& segment) {
-  std::string rows = is_first_ ? "" : "\n";
-  is_first_ = false;
+  std::string rows;
   const std::string head = indices(segment.number, index_of(segment));
   for (const Sample& sample : segment.samples)
     rows += fmt::format("{} {:{}.15e}{}\n", head, sample.time, column, numbers(sample.state));
-  trajectory_.write(rows);
+  write_rows(std::move(rows));
 
   std::string lines;
   const auto line = [&](const IndexVector& index, double t, double h, double rate, const Eigen::VectorXd& before,
@@ -83,7 +88,26 @@ void SimulationFiles::write(const SimulatedSegment& segment) {
   events_.write(lines);
 }
 
+void SimulationFiles::put_rows(const std::string& rows) {
+  if (!is_first_) trajectory_.write("\n");
+  trajectory_.write(rows);
+  is_first_ = false;
+}
+
+void SimulationFiles::write_rows(std::string rows) {
+  ++segments_;
+  if (most_bytes_ == everything) return put_rows(rows);
+  bytes_ += rows.size() + 1;
+  last_rows_.push_back(std::move(rows));
+  while (bytes_ > most_bytes_ && last_rows_.size() > segments_in_any_case) {
+    bytes_ -= last_rows_.front().size() + 1;
+    last_rows_.pop_front();
+    ++dropped_;
+  }
+}
+
 void SimulationFiles::finish() {
+  for (const std::string& rows : last_rows_) put_rows(rows);
   trajectory_.finish();
   events_.finish();
 }

@@ -14,6 +14,9 @@
 /// nothing ended the segment k = 0, and the state after is the state before.
 #pragma once
 
+#include <cstddef>
+#include <deque>
+#include <limits>
 #include <string>
 
 #include "hybrid/hybrid_system.hpp"
@@ -24,12 +27,19 @@ namespace tchat {
 
 class SimulationFiles {
  public:
-  /// Opens both under temporary names. `heading` is one line: which problem, which parameters.
+  static constexpr std::size_t everything = std::numeric_limits<std::size_t>::max();
+
+  /// Opens both under temporary names. `heading` is one line: which problem, which parameters. Of the trajectory the
+  /// last segments are kept, at most so many bytes, but those of two turns of a recognised orbit in any case.
   SimulationFiles(const HybridSystem& system, const std::string& name, const std::string& heading,
-                  const Eigen::VectorXd& par);
+                  const Eigen::VectorXd& par, std::size_t trajectory_bytes = everything);
 
   void write(const SimulatedSegment& segment);
   void finish();
+
+  long segments() const { return segments_; }
+  /// Of the first ones, that the trajectory does not hold.
+  long dropped_segments() const { return dropped_; }
 
   /// O.trajectory, O.events
   static std::string trajectory_path(const std::string& name) { return name + ".trajectory"; }
@@ -40,6 +50,13 @@ class SimulationFiles {
   Eigen::VectorXd par_;
   ReplacedFile trajectory_;
   ReplacedFile events_;
+  void write_rows(std::string rows);  // of one segment, at once or kept until finish()
+  void put_rows(const std::string& rows);
+
+  std::size_t most_bytes_;
+  std::deque<std::string> last_rows_;  // not yet written, because they may be dropped
+  std::size_t bytes_ = 0;              // of those
+  long segments_ = 0, dropped_ = 0;
   bool is_first_ = true;
 };
 

@@ -28,6 +28,32 @@ namespace fs = std::filesystem;
 using Eigen::VectorXd;
 
 constexpr int data_rows = 401;
+constexpr std::size_t megabyte = 1000000;
+constexpr std::size_t told_size = 10 * megabyte;  // of a file
+constexpr std::size_t kept_size = 9900000;        // of a trajectory when no length has been asked for
+
+/// Asked for a part of the motion: all of that is written.
+bool has_length(const SimulationPlan& plan) {
+  return plan.time || plan.events || plan.transient_time > 0.0 || plan.transient_events > 0;
+}
+
+/// "x.trajectory (377 MB)": sizes that may surprise are told.
+std::string sized(const std::string& path) {
+  std::error_code error;
+  const auto size = std::filesystem::file_size(path, error);
+  if (error || size <= told_size) return path;
+  return fmt::format("{} ({} MB)", path, (size + megabyte / 2) / megabyte);
+}
+
+std::string written_text(const std::string& output, const SimulationFiles& files) {
+  std::string text = fmt::format("Written: {}, {}\n", sized(SimulationFiles::trajectory_path(output)),
+                                 sized(SimulationFiles::events_path(output)));
+  if (files.dropped_segments() > 0)
+    text += fmt::format(
+        "  The trajectory holds the last {} of {} segments; with --events, --time or a transient it holds all.\n",
+        files.segments() - files.dropped_segments(), files.segments());
+  return text;
+}
 
 SimulationSettings simulation_settings(const SimulationRequest& request, const std::function<bool()>& interrupted) {
   SimulationSettings settings;
@@ -171,7 +197,9 @@ int simulate_problem(const SimulationRequest& request, std::ostream& screen, std
 
   HybridSimulation simulation(start.rule, start.state, start.par, simulation_settings(request, interrupted));
   say(start_text(system, start, simulation.mode()));
-  SimulationFiles files(system, output, problem_text(system, start.par), start.par);
+  warnings << start_warnings(system, start, simulation.mode());
+  SimulationFiles files(system, output, problem_text(system, start.par), start.par,
+                        has_length(request.plan) ? SimulationFiles::everything : kept_size);
   SimulationResult result;
   {
     ProgressLine line(progress);
@@ -195,7 +223,7 @@ int simulate_problem(const SimulationRequest& request, std::ostream& screen, std
   } else {
     say(no_orbit_text(result, request.plan));
   }
-  say(fmt::format("Written: {}, {}\n", SimulationFiles::trajectory_path(output), SimulationFiles::events_path(output)));
+  say(written_text(output, files));
   if (result.last.ended_by == SegmentEnd::failed) {
     warnings << "tchat: " << result.last.message << '\n';
     return 1;

@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <set>
+
+#include "hybrid/identity_jump.hpp"
 
 namespace tchat {
 
@@ -19,6 +22,17 @@ std::string event_name(const HybridSystem& system, int event) {
 std::string counted(long n, const char* what) { return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s"); }
 
 std::string index_text(const IndexVector& v) { return fmt::format("({},{},{})", v.field, v.event, v.jump); }
+
+constexpr double rounding = 1e-6;  // of the state at a label or in a .dat, relative
+
+/// h at x; 0 where it cannot be told from zero.
+double clear_value(const HybridSystem& system, int event, const VectorXd& x, const VectorXd& par) {
+  double h = 0.0;
+  double no_parameters = 0.0;
+  Eigen::RowVectorXd gradient(x.size());
+  system.first(FunctionKind::event, event, x.data(), par.data(), {}, &h, gradient.data(), &no_parameters);
+  return std::abs(h) <= rounding * (1.0 + gradient.norm() * x.norm()) ? 0.0 : h;
+}
 
 std::string multiplier_text(const std::complex<double>& mu) {
   if (mu.imag() == 0.0) return fmt::format("{:.10g}", mu.real());
@@ -80,6 +94,21 @@ std::string start_text(const HybridSystem& system, const SimulationStart& start,
   system.value(FunctionKind::field, mode.field(), start.state.data(), start.par.data(), f.data());
   if (f.isZero(0.0))
     text += "  The field is zero there, so nothing will move; give another start with --state, -d or -s.\n";
+  return text;
+}
+
+std::string start_warnings(const HybridSystem& system, const SimulationStart& start, const Mode& mode) {
+  std::string text;
+  std::set<int> told;
+  for (const IndexVector& v : mode.index_vectors) {
+    const double h = clear_value(system, v.event, start.state, start.par);
+    if (!(h < 0.0) || is_identity_jump(system, v.jump) || !told.insert(v.event).second) continue;
+    text += fmt::format(
+        "tchat: the start is behind {}: its function is {:.6g} there, and nothing happens until it has risen above "
+        "zero.\n  If that is a wall the motion is outside the model; start where the function is positive, with "
+        "--state, -d or -s.\n",
+        event_name(system, v.event), h);
+  }
   return text;
 }
 

@@ -51,6 +51,42 @@ struct Ball {
 TCHAT_PROBLEM(Ball)
 )";
 
+/// x'' = a cos 2t - x - 0.1 x' under a wall at x = 1, and a stroboscopic section where the phase passes pi.
+const std::string driven = R"(#include <tchat/problem.hpp>
+struct Driven {
+  static constexpr int dimension = 4, parameters = 1, fields = 1, events = 2, jumps = 2;
+  static constexpr const char* state_names[] = {"x", "v", "sine", "cosine"};
+  static constexpr const char* parameter_names[] = {"a"};
+  static constexpr const char* event_names[] = {"wall", "phase pi"};
+  static constexpr double initial_parameters[] = {4.0};
+  static constexpr double initial_state[] = {0.0, 0.0, 0.0, 1.0};
+  template <class T> void field(int, const T* x, const T* p, T* f) const {
+    const T growth = 1.0 - x[2] * x[2] - x[3] * x[3];
+    f[0] = x[1], f[1] = p[0] * x[3] - x[0] - 0.1 * x[1];
+    f[2] = growth * x[2] + 2.0 * x[3], f[3] = growth * x[3] - 2.0 * x[2];
+  }
+  template <class T> T event(int j, const T* x, const T*) const { return j == 1 ? T(1.0 - x[0]) : x[2]; }
+  template <class T> void jump(int k, const T* x, const T*, T* g) const {
+    for (int i = 0; i < 4; ++i) g[i] = x[i];
+    if (k == 2) g[1] = -0.8 * x[1];
+  }
+  std::vector<std::array<int, 3>> successors(std::array<int, 3>) const { return {{1, 1, 2}, {1, 2, 1}}; }
+};
+TCHAT_PROBLEM(Driven)
+)";
+
+/// Segment numbers of the rows of a trajectory, each once.
+std::vector<long> segments_of(const std::string& trajectory) {
+  std::vector<long> segments;
+  std::istringstream rows(trajectory);
+  for (std::string line; std::getline(rows, line);) {
+    if (line.empty() || line[0] == '#') continue;
+    const long segment = std::stol(line);
+    if (segments.empty() || segments.back() != segment) segments.push_back(segment);
+  }
+  return segments;
+}
+
 /// "... = NUMBER" after `key`.
 double number_after(const std::string& text, const std::string& key) {
   const auto at = text.find(key);
@@ -160,6 +196,53 @@ TEST_CASE("simulate: an orbit of 16 events is recognised and continued, a longer
   CHECK(contains(simulate(workspace, longer + "-o x --max-period 32").out, "period 32\n"));
 }
 
+TEST_CASE("simulate: walls are monitored on the orbit handed over, sections are not") {
+  const Workspace workspace;
+  workspace.write("driven.cpp", driven);
+  const Outcome outcome = simulate(workspace, "driven --rows 0 --dat");
+  CHECK(contains(outcome.out, "signature {(1,1,2), (1,2,1)}"));
+  const std::string constants = workspace.read("gc.driven");
+  INFO(constants);
+  for (const char* line : {"GCHGRZIND = [[1], [1]] ", "GCIPSI = [1, 2] ", "GRJUMP = 2 ", "NPR = 0 "})
+    CHECK(contains(constants, line));
+  simulate(workspace, "driven GRJUMP=3 --dat other -q");
+  CHECK(contains(workspace.read("gc.other"), "GRJUMP = 3 "));
+}
+
+TEST_CASE("simulate: data of a signature can start another one") {
+  const Workspace workspace;
+  workspace.write("driven.cpp", driven);
+  simulate(workspace, "driven --dat two -o driven");
+  const Outcome one = simulate(workspace, "driven -c two -d two --signature 1,1,2 -o one --dat one");
+  CHECK(contains(one.out, "first row of two.dat"));
+  CHECK(contains(one.out, "signature {(1,1,2)}, period 3.14159265359"));
+  check_refused(workspace.tchat("simulate driven -d two --signature 1,1,2"), {"two.dat"});
+}
+
+TEST_CASE(
+    "simulate: the end of a long motion is kept, all of it when a length is asked for, and large files are told") {
+  const Workspace workspace;
+  workspace.write("logistic.cpp", logistic_clock);
+  const Outcome outcome = simulate(workspace, "logistic PAR(a)=3.9");  // chaotic
+  const std::vector<long> last = segments_of(workspace.read("logistic.trajectory"));
+  REQUIRE(last.size() > 100);
+  CHECK(last.size() < 10'000);
+  CHECK(last.back() == 10'000);
+  CHECK(last.front() == 10'001 - static_cast<long>(last.size()));
+  CHECK(contains(outcome.out, "holds the last " + std::to_string(last.size()) + " of 10000 segments"));
+  CHECK(contains(outcome.out, "Written: logistic.trajectory, logistic.events"));
+  const std::size_t size = workspace.read("logistic.trajectory").size();
+  CHECK(size > 9'000'000);
+  CHECK(size <= 10'000'000);
+  CHECK(read_event_list(workspace.read("logistic.events"), 2).size() == 10'000);
+
+  const Outcome all = simulate(workspace, "logistic PAR(a)=3.9 --events 10000");
+  const std::string trajectory = workspace.read("logistic.trajectory");
+  CHECK(segments_of(trajectory).size() == 10'000);
+  const std::size_t megabytes = (trajectory.size() + 500'000) / 1'000'000;
+  CHECK(contains(all.out, "Written: logistic.trajectory (" + std::to_string(megabytes) + " MB), logistic.events\n"));
+}
+
 TEST_CASE("simulate: chattering is told with its limit in time, no orbit is written") {
   const Workspace workspace;
   workspace.write("ball.cpp", ball);
@@ -179,6 +262,12 @@ TEST_CASE("simulate: several events at once, a start beyond a wall, rest and nea
   const Workspace workspace;
   const Outcome beyond = simulate(workspace, "linosc --state x1=1.5 --events 3");
   CHECK(contains(beyond.out, "beyond a wall"));
+  CHECK(contains(beyond.err, "the start is behind event 1 (wall): its function is -0.5 there"));
+  // At rest, where the jump does not show that it is a wall; the section may be negative.
+  const Outcome still = simulate(workspace, "linosc --state x1=1.5,x2=0,y1=1,y2=0 --events 3");
+  CHECK(contains(still.err, "--state"));
+  CHECK(simulate(workspace, "linosc --state x1=-0.5,x2=0.1,y1=-1,y2=0 --events 3").err.empty());
+  CHECK(simulate(workspace, "linosc --state x1=0.5,x2=0.1,y1=1,y2=0 --events 3").err.empty());
   const Outcome rest = simulate(workspace, "linosc PAR(alpha)=0 --state x1=0.5");
   CHECK(contains(rest.out, "The motion dies out"));
   const Outcome near = simulate(workspace, "linosc -c impacting PAR(alpha)=3.00666 PAR(omega)=2 --events 200");
