@@ -37,6 +37,28 @@ int curve_type_of(const PointSection& section) {
   return 0;
 }
 
+CurveKind kind_of(const PointSection& section) {
+  return curve_kind(curve_type_of(section), section.problem_type == 150);
+}
+
+/// The curves of one kind in one file share a line.
+struct FileCurve {
+  std::string path;
+  CurveKind kind;
+
+  bool operator==(const FileCurve& other) const { return path == other.path && kind.name == other.kind.name; }
+};
+
+template <class T>
+std::size_t position(const std::vector<T>& list, const T& wanted) {
+  return static_cast<std::size_t>(std::distance(list.begin(), std::find(list.begin(), list.end(), wanted)));
+}
+
+template <class T>
+void add_once(std::vector<T>& list, T entry) {
+  if (position(list, entry) == list.size()) list.push_back(std::move(entry));
+}
+
 class BranchFigureBuilder {
  public:
   BranchFigureBuilder(const std::vector<BranchFile>& files, const BranchFigureOptions& options)
@@ -45,12 +67,14 @@ class BranchFigureBuilder {
     if (!options.y.empty()) axes_.y = options.y;
     for (const BranchFile& file : files)
       for (const PointSection& section : file.sections) {
-        const bool curve = section.is_two_parameter_curve();
-        if (curve)
-          ++kind_files_[curve_kind(curve_type_of(section), section.problem_type == 150).name][file.path];
+        if (section.is_two_parameter_curve())
+          add_once(curves_, FileCurve{file.path, kind_of(section)});
         else
-          plain_files_.insert(file.path);
+          add_once(plain_files_, file.path);
       }
+    std::vector<CurveKind> kinds;
+    for (const FileCurve& curve : curves_) kinds.push_back(curve.kind);
+    curve_strokes_ = curve_strokes(kinds);
   }
 
   Figure build() {
@@ -124,10 +148,7 @@ class BranchFigureBuilder {
   }
 
   void add_branch(std::size_t f, const BranchPiece& piece, const Intervals& intervals) {
-    const auto number =
-        static_cast<std::size_t>(std::distance(plain_files_.begin(), plain_files_.find(files_[f].path)));
-    constexpr std::size_t after_curves = 3;  // colours that no curve has
-    const std::string colour = !kind_files_.empty()      ? series_colour(after_curves + number)
+    const std::string colour = !curves_.empty() ? unused_colour(curve_strokes_, position(plain_files_, files_[f].path))
                                : plain_files_.size() > 1 ? series_colour(f)
                                                          : neutral;
     add_runs(piece, intervals, files_[f], [this, &colour](LineKind kind) {
@@ -139,18 +160,17 @@ class BranchFigureBuilder {
 
   void add_curve(std::size_t f, const BranchPiece& piece, const Intervals& intervals) {
     const PointSection& section = files_[f].sections[piece.section];
-    CurveKind kind = curve_kind(curve_type_of(section), section.problem_type == 150);
-    const auto& of_kind = kind_files_[kind.name];
-    const auto number = static_cast<std::size_t>(std::distance(of_kind.begin(), of_kind.find(files_[f].path)));
-    static constexpr std::array<const char*, 3> further = {"#707070", "#b08a00", "#9a5aa0"};
-    if (number > 0) kind.stroke.colour = further[(number - 1) % further.size()];
-    add_runs(piece, intervals, files_[f], [this, &kind](LineKind line) {
-      if (line != LineKind::inadmissible) return kind.stroke;
+    const FileCurve curve{files_[f].path, kind_of(section)};
+    const Stroke& stroke = curve_strokes_[position(curves_, curve)];
+    add_runs(piece, intervals, files_[f], [this, &stroke](LineKind line) {
+      if (line != LineKind::inadmissible) return stroke;
       kinds_.insert(line);
-      return branch_stroke(line, kind.stroke.colour);
+      return branch_stroke(line, stroke.colour);
     });
-    const bool several = of_kind.size() > 1;
-    add_file_entry(f, kind.stroke, several ? fmt::format("{} ({})", kind.name, files_[f].name) : kind.name);
+    const std::string& name = curve.kind.name;
+    const bool several = std::count_if(curves_.begin(), curves_.end(),
+                                       [&name](const FileCurve& other) { return other.kind.name == name; }) > 1;
+    add_file_entry(f, stroke, several ? fmt::format("{} ({})", name, files_[f].name) : name);
   }
 
   void add_markers(const BranchFile& file, const BranchPiece& piece, const std::vector<PicturePoint>& points) {
@@ -193,8 +213,9 @@ class BranchFigureBuilder {
   const std::vector<BranchFile>& files_;
   const BranchFigureOptions& options_;
   AxisColumns axes_;
-  std::map<std::string, std::map<std::string, int>> kind_files_;  // kind of curve -> files with such sections
-  std::set<std::string> plain_files_;
+  std::vector<FileCurve> curves_;  // in the order given
+  std::vector<Stroke> curve_strokes_;
+  std::vector<std::string> plain_files_;  // files with branches in one parameter
   std::set<LineKind> kinds_;
   std::string x_name_, y_name_;
   Panel panel_;

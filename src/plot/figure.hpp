@@ -23,6 +23,7 @@ struct Stroke {
   Dash dash = Dash::solid;
   double width = 2.5;  ///< for a picture 1200 pixels wide
   std::string colour = "#000000";
+  int variant = 0;  ///< of the dashes: 0 the usual ones, 1 to 3 others of the same character
 };
 
 /// A polyline; a point that is not finite interrupts it.

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <tuple>
@@ -16,16 +17,22 @@ std::string quoted(const LabelText& text) {
   return gnuplot_quoted(text.text) + (text.markup ? " enhanced" : " noenhanced");
 }
 
-const char* dash_pattern(Dash dash) {
+const char* dash_pattern(Dash dash, int variant) {
+  using Variants = std::array<const char*, 4>;
+  static constexpr Variants solid = {"solid", "(40,8)", "(40,6,10,6)", "(40,6,6,6,6,6)"};
+  static constexpr Variants dashed = {"(14,8)", "(7,5)", "(24,12)", "(18,6,6,6)"};
+  static constexpr Variants dash_dot = {"(16,6,3,6)", "(16,5,3,5,3,5)", "(30,6,3,6)", "(8,5,2,5)"};
+  static constexpr Variants dotted = {"(3,5)", "(3,10)", "(2,3,2,10)", "(6,10)"};
+  const auto k = static_cast<std::size_t>(variant) % 4;
   switch (dash) {
     case Dash::solid:
-      return "solid";
+      return solid[k];
     case Dash::dashed:
-      return "(14,8)";
+      return dashed[k];
     case Dash::dash_dot:
-      return "(16,6,3,6)";
+      return dash_dot[k];
     case Dash::dotted:
-      return "(3,5)";
+      return dotted[k];
     default:
       return "(2,5)";
   }
@@ -90,7 +97,8 @@ class ScriptWriter {
   void line(const std::string& command) { text_ += command + '\n'; }
 
   std::string stroke(const Stroke& s) const {
-    return fmt::format("dt {} lw {:.3g} lc rgb '{}'", dash_pattern(s.dash), s.width * units_.line_width, s.colour);
+    return fmt::format("dt {} lw {:.3g} lc rgb '{}'", dash_pattern(s.dash, s.variant), s.width * units_.line_width,
+                       s.colour);
   }
 
   double point_size(const Marker& marker) const {

@@ -137,7 +137,7 @@ Figure phase_portrait(const std::vector<OrbitTrace>& orbits, const OrbitFigureOp
   std::vector<KeyEntry> entries;
   for (std::size_t k = 0; k < orbits.size(); ++k) {
     const OrbitTrace& orbit = orbits[k];
-    const Stroke stroke{series_dash(k), orbit_width, series_colour(k)};
+    const Stroke stroke = series_stroke(k, orbit_width);
     const auto point = [a, b](const Eigen::VectorXd& x) { return PicturePoint{x(a), x(b)}; };
     for (std::size_t s = 0; s < orbit.segments.size(); ++s) {
       Curve curve;

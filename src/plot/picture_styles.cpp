@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 
 namespace tchat {
 
@@ -43,6 +44,10 @@ constexpr std::array<PointStyle, 26> point_styles = {{
     {"", Symbol::dot, true, false},
 }};
 
+/// The first ones differ in hue and in lightness, those of the kinds of curve are among them.
+constexpr std::array<const char*, 12> colours = {"#000000", "#0060a8", "#c04000", "#3a9a4a", "#9a5aa0", "#d09a00",
+                                                 "#50b8e8", "#e060a0", "#7a4420", "#008a8a", "#8a9a20", "#8888d8"};
+
 const PointStyle& style_of(const std::string& type) {
   const auto found = std::find_if(point_styles.begin(), point_styles.end(),
                                   [&type](const PointStyle& style) { return type == style.type; });
@@ -51,15 +56,11 @@ const PointStyle& style_of(const std::string& type) {
 
 }  // namespace
 
-std::string series_colour(std::size_t k) {
-  static constexpr std::array<const char*, 7> colours = {"#000000", "#0060a8", "#c04000", "#4a9a6a",
-                                                         "#9a5aa0", "#808080", "#b08a00"};
-  return colours[k % colours.size()];
-}
+std::string series_colour(std::size_t k) { return colours[k % colours.size()]; }
 
-Dash series_dash(std::size_t k) {
+Stroke series_stroke(std::size_t k, double width) {
   static constexpr std::array<Dash, 4> dashes = {Dash::solid, Dash::dashed, Dash::dash_dot, Dash::dotted};
-  return dashes[k % dashes.size()];
+  return {dashes[k % dashes.size()], width, series_colour(k), static_cast<int>(k / dashes.size() % 4)};
 }
 
 Marker special_point_marker(const std::string& type, const PicturePoint& at) {
@@ -92,15 +93,37 @@ CurveKind curve_kind(int curve_type, bool grazing) {
     case 7:
       return {"period doubling", {Dash::dash_dot, 2.6, "#c04000"}};
     case 8:
-      return {"torus", {Dash::dotted, 3.2, "#3a7a4a"}};
+      return {"torus", {Dash::dotted, 3.2, "#3a9a4a"}};
     case 3:
       return {"Hopf", {Dash::dash_dot, 2.6, "#9a5aa0"}};
     case 1:
     case 6:
-      return {"branch points", {Dash::dotted, 3.2, "#808080"}};
+      return {"branch points", {Dash::dotted, 3.2, "#7a4420"}};
     default:
       return {"two-parameter curve", {Dash::solid, 2.6, "#000000"}};
   }
+}
+
+std::string unused_colour(const std::vector<Stroke>& lines, std::size_t k) {
+  std::vector<std::string> unused;
+  for (const char* colour : colours)
+    if (std::none_of(lines.begin(), lines.end(), [colour](const Stroke& line) { return line.colour == colour; }))
+      unused.emplace_back(colour);
+  return unused.empty() ? series_colour(k) : unused[k % unused.size()];
+}
+
+std::vector<Stroke> curve_strokes(const std::vector<CurveKind>& kinds) {
+  std::map<std::string, int> count;
+  std::vector<Stroke> strokes, own_colours;
+  for (const CurveKind& kind : kinds) {
+    strokes.push_back(kind.stroke);
+    strokes.back().variant = count[kind.name]++;
+    if (strokes.back().variant == 0) own_colours.push_back(kind.stroke);
+  }
+  std::size_t further = 0;
+  for (Stroke& stroke : strokes)
+    if (stroke.variant > 0) stroke.colour = unused_colour(own_colours, further++);
+  return strokes;
 }
 
 }  // namespace tchat

@@ -11,8 +11,8 @@ namespace tchat {
 /// Colour of the k-th file or orbit (from 0): black first, then colours that differ for the colour-blind and in grey.
 std::string series_colour(std::size_t k);
 
-/// Dashes of the k-th orbit in one picture.
-Dash series_dash(std::size_t k);
+/// Line of the k-th orbit in one picture.
+Stroke series_stroke(std::size_t k, double width);
 
 /// The marker of a special point by its letters (LP, PD, GR, ...), with the letters as its label.
 Marker special_point_marker(const std::string& type, const PicturePoint& at);
@@ -29,5 +29,12 @@ struct CurveKind {
   Stroke stroke;
 };
 CurveKind curve_kind(int curve_type, bool grazing);
+
+/// Lines of several curves in one picture. The first of a kind has the line of the kind, further ones other dashes of
+/// the same character; as long as there are colours each has its own.
+std::vector<Stroke> curve_strokes(const std::vector<CurveKind>& kinds);
+
+/// The k-th (from 0) of the colours that none of these lines has; from the beginning again when there are no more.
+std::string unused_colour(const std::vector<Stroke>& lines, std::size_t k);
 
 }  // namespace tchat

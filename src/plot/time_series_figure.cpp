@@ -80,8 +80,7 @@ Figure time_series(const std::vector<OrbitTrace>& orbits, const OrbitFigureOptio
   figure.panels.resize(one_panel ? 1 : states.size());
   for (std::size_t k = 0; k < orbits.size(); ++k)
     if ((!one_panel || states.size() == 1) && is_in_key(orbits, options))
-      figure.key.push_back(
-          {orbit_name(orbits, k, options), Stroke{series_dash(k), 2.5, series_colour(k)}, std::nullopt});
+      figure.key.push_back({orbit_name(orbits, k, options), series_stroke(k, 2.5), std::nullopt});
   for (std::size_t i = 0; i < states.size(); ++i) {
     Panel& panel = figure.panels[one_panel ? 0 : i];
     const LabelText name = mathematical_name(state_name(states[i], options));
@@ -93,7 +92,8 @@ Figure time_series(const std::vector<OrbitTrace>& orbits, const OrbitFigureOptio
     for (std::size_t k = 0; k < orbits.size(); ++k) {
       // Several states in one panel: a colour a state, a dash an orbit.
       const bool by_state = one_panel && states.size() > 1;
-      const Stroke stroke{series_dash(k), 2.5, series_colour(by_state ? i : k)};
+      Stroke stroke = series_stroke(k, 2.5);
+      if (by_state) stroke.colour = series_colour(i);
       add_series(panel, orbits[k], states[i], stroke);
       if (by_state)
         figure.key.push_back(

@@ -3,10 +3,12 @@
 
 #include <fmt/format.h>
 #include <catch2/catch.hpp>
+#include <set>
 
 #include "constants/user_error.hpp"
 #include "plot/branch_columns.hpp"
 #include "plot/layout.hpp"
+#include "plot/picture_styles.hpp"
 #include "start/temporary_folder.hpp"
 
 using namespace tchat;
@@ -245,4 +247,42 @@ TEST_CASE("inadmissible parts set no range where there are admissible ones") {
   AxisSettings beyond;
   beyond.low = 5.0, beyond.high = 10.0;
   CHECK(frame_of(2, beyond).y.high > 50.0);
+}
+
+TEST_CASE("eight curves in one picture: no colour and no dashes twice, none of them grey") {
+  const TemporaryFolder folder;
+  std::vector<BranchFile> files;
+  const auto add = [&](const std::string& name, int ips, int type) {
+    files.push_back(
+        read_branch_file(folder.write("p." + name, header(ips, type == 0 ? 1 : 2, type) +
+                                                       rows({{1, 0, 0, 0.0, 1.0, 2.0}, {2, 0, 0, 1.0, 1.1, 2.5}}))));
+  };
+  for (const char* name : {"z", "y", "x", "w"}) add(name, 150, 0);
+  for (const char* name : {"v", "u"}) add(name, 180, 7);
+  for (const char* name : {"t", "s"}) add(name, 180, 5);
+  const Figure figure = branch_figure(files, {});
+  REQUIRE(figure.key.size() == 8);
+  CHECK(figure.key[0].text.text == "grazing (z)");
+  CHECK(figure.key[0].stroke->colour == "#000000");  // the first in the command line, not in the alphabet
+  std::set<std::string> colours;
+  std::set<std::pair<Dash, int>> dashes;
+  for (const KeyEntry& entry : figure.key) {
+    const std::string& colour = entry.stroke->colour;
+    colours.insert(colour);
+    dashes.insert({entry.stroke->dash, entry.stroke->variant});
+    CHECK(
+        (colour == "#000000" || colour.substr(1, 2) != colour.substr(3, 2) || colour.substr(1, 2) != colour.substr(5)));
+  }
+  CHECK(colours.size() == 8);
+  CHECK(dashes.size() == 8);
+  for (std::size_t k = 0; k < 4; ++k) CHECK(figure.key[k].stroke->dash == Dash::solid);
+}
+
+TEST_CASE("twelve branches have twelve colours") {
+  std::set<std::string> colours;
+  for (std::size_t k = 0; k < 12; ++k) colours.insert(series_colour(k));
+  CHECK(colours.size() == 12);
+  std::set<std::pair<Dash, int>> dashes;
+  for (std::size_t k = 0; k < 12; ++k) dashes.insert({series_stroke(k, 2.0).dash, series_stroke(k, 2.0).variant});
+  CHECK(dashes.size() == 12);
 }

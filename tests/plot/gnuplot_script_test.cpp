@@ -3,6 +3,7 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <set>
 
 #include "constants/user_error.hpp"
 #include "plot/picture_styles.hpp"
@@ -98,4 +99,18 @@ TEST_CASE("equal points side by side share a label, the key hides nothing") {
   REQUIRE(layout.key);
   CHECK(layout.key->inside);
   for (const PicturePoint& p : curve.points) CHECK_FALSE(layout.key->box.contains(layout.panels[0].on_paper(p)));
+}
+
+TEST_CASE("variants of dashes differ in the script") {
+  std::set<std::string> patterns;
+  for (const Dash dash : {Dash::solid, Dash::dashed, Dash::dash_dot, Dash::dotted})
+    for (int variant = 0; variant < 4; ++variant) {
+      Figure figure = sample();
+      figure.key.clear();
+      figure.panels[0].curves[0].stroke = {dash, 2.0, "#123456", variant};
+      const std::string script = script_of(figure, {PictureFormat::png, "x.png", ""});
+      const std::size_t at = script.find("with lines dt ");
+      patterns.insert(script.substr(at, script.find(" lw", at) - at));
+    }
+  CHECK(patterns.size() == 16);
 }
