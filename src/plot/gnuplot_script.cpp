@@ -206,6 +206,7 @@ class ScriptWriter {
     line(fmt::format("set bmargin at screen {:.5f}", place.frame.bottom / figure_.height));
     line(fmt::format("set tmargin at screen {:.5f}", place.frame.top / figure_.height));
     line("set clip two");
+    line("set tics front");  // neither lines nor points over them
     line(fmt::format("set border 15 lw {:.3g}", 1.5 * units_.line_width));
     axis('x', place.x, panel.x.label, lowest);
     axis('y', place.y, panel.y.label, true);

@@ -14,6 +14,7 @@ namespace tchat {
 namespace {
 
 constexpr double farthest = 2.5;
+constexpr double critical_width = 1e-4;  // of what counts as on the circle
 
 Curve unit_circle() {
   constexpr int corners = 360;
@@ -30,8 +31,32 @@ Curve axis_line(PicturePoint from, PicturePoint to) { return {{from, to}, {Dash:
 
 /// Dark at the beginning of the branch, lighter towards its end.
 std::string shade(double part) {
-  const int level = static_cast<int>(std::lround(150.0 * part));
+  const int level = static_cast<int>(std::lround(170.0 * part));
   return fmt::format("#{0:02x}{0:02x}{0:02x}", level);
+}
+
+/// The sign of a located bifurcation is that of the point before: at single labels the multipliers tell more.
+bool has_outside(const DiagnosticPoint& point) {
+  return std::any_of(point.multipliers.begin(), point.multipliers.end(),
+                     [](const auto& mu) { return std::abs(mu) > 1.0 + critical_width; });
+}
+
+KeyEntry dot(const std::string& text, const std::string& colour, bool filled) {
+  Marker sample;
+  sample.colour = colour;
+  sample.filled = filled;
+  sample.size = 0.8;
+  return {plain_text(text), std::nullopt, sample};
+}
+
+/// What filled and open circles mean, and, where shades tell it, which way the branch goes.
+void explain_dots(Figure& figure, bool stable, bool unstable, bool shaded) {
+  const std::string colour = figure.key.empty() ? "#000000" : "#606060";
+  if (stable) figure.key.push_back(dot("stable orbit", colour, true));
+  if (unstable) figure.key.push_back(dot("unstable orbit", colour, false));
+  if (!shaded) return;
+  figure.key.push_back(dot("black: start of the branch", shade(0.0), stable));
+  figure.key.push_back(dot("grey: its end", shade(1.0), stable));
 }
 
 }  // namespace
@@ -48,6 +73,8 @@ Figure multiplier_figure(const std::vector<MultiplierSeries>& series, const Mult
   panel.curves.push_back(axis_line({0.0, -1e3}, {0.0, 1e3}));
   panel.curves.push_back(unit_circle());
   std::size_t far = 0, shown = 0;
+  const bool shaded = series.size() == 1 && !options.labelled_points;
+  bool stable = false, unstable = false;
   for (std::size_t s = 0; s < series.size(); ++s) {
     const auto& points = series[s].points;
     for (std::size_t k = 0; k < points.size(); ++k) {
@@ -61,12 +88,12 @@ Figure multiplier_figure(const std::vector<MultiplierSeries>& series, const Mult
         Marker marker;
         marker.at = {mu.real(), mu.imag()};
         marker.size = options.labelled_points ? 0.9 : 0.6;
-        marker.filled = points[k].point < 0;
+        marker.filled = options.labelled_points ? !has_outside(points[k]) : points[k].point < 0;
         marker.colour =
-            series.size() > 1 || options.labelled_points
-                ? series_colour(s)
-                : shade(static_cast<double>(k) / static_cast<double>(std::max<std::size_t>(points.size(), 2) - 1));
-        const bool critical = std::abs(std::abs(mu) - 1.0) < 1e-4 && mu.imag() >= 0.0;
+            shaded ? shade(static_cast<double>(k) / static_cast<double>(std::max<std::size_t>(points.size(), 2) - 1))
+                   : series_colour(s);
+        (marker.filled ? stable : unstable) = true;
+        const bool critical = std::abs(std::abs(mu) - 1.0) < critical_width && mu.imag() >= 0.0;
         if (critical && !labelled && is_labelled_by_default(points[k].type)) {
           marker.label = plain_text(points[k].type);
           labelled = true;
@@ -74,15 +101,12 @@ Figure multiplier_figure(const std::vector<MultiplierSeries>& series, const Mult
         panel.markers.push_back(std::move(marker));
       }
     }
-    if (series.size() > 1 || !options.legend.empty()) {
-      Marker sample;
-      sample.colour = series_colour(s);
-      figure.key.push_back(
-          {plain_text(s < options.legend.size() ? options.legend[s] : series[s].name), std::nullopt, sample});
-    }
+    if (series.size() > 1 || !options.legend.empty())
+      figure.key.push_back(dot(s < options.legend.size() ? options.legend[s] : series[s].name, series_colour(s), true));
   }
   if (shown + far == 0)
     throw UserError("there are no multipliers in the d-file; a run with ISP = 1 or 2 computes them");
+  explain_dots(figure, stable && !options.labelled_points, unstable, shaded && series.front().points.size() > 1);
   if (far > 0)
     figure.note =
         plain_text(fmt::format("{} multiplier{} with modulus above {} not shown", far, far == 1 ? "" : "s", farthest));

@@ -16,11 +16,12 @@ struct MultiplierSeries {
 };
 
 struct MultiplierFigureOptions {
-  bool labelled_points = false;     ///< single labels were asked for: their multipliers carry the labels
+  bool labelled_points = false;     ///< single labels were asked for: open circles where a multiplier is outside
   std::vector<std::string> legend;  ///< a text for each series
 };
 
-/// Filled circles where stable, open ones where not. Multipliers far outside (|mu| > 2.5, unless the user's ranges
+/// Filled circles where stable, open ones where not, black at the start of a lone branch and grey at its end, as the
+/// key says. Multipliers far outside (|mu| > 2.5, unless the user's ranges
 /// say otherwise) are counted in a note. Throws UserError when there are no multipliers at all.
 Figure multiplier_figure(const std::vector<MultiplierSeries>& series, const MultiplierFigureOptions& options);
 
