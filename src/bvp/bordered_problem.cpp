@@ -21,13 +21,23 @@ BorderedProblem::BorderedProblem(const DefiningSystem& system, const OrbitShape&
   for (Eigen::Index g = 0; g < stand_in.globals.size(); ++g) stand_in.globals(g) = g % 2 == 0 ? 1.0 : -1.3;
 }
 
+ConditionMemory BorderedProblem::memory() const {
+  return condition_ ? ConditionMemory{condition_->memory(), rows_[1]} : ConditionMemory{};
+}
+
+void BorderedProblem::recall(const ConditionMemory& memory) {
+  if (!condition_) return;
+  condition_->recall(memory.condition);
+  rows_[1] = memory.stand_in;
+}
+
 Linearization BorderedProblem::linearize(const Orbit& x, const OrbitVector& row, OrbitResidual& residual) {
   rows_[0].states = row.states;
   rows_[0].durations = row.durations;
   rows_[0].globals = row.globals;
   const Linearization outcome = condensed_.linearize(x, rows_, residual);
   if (outcome != Linearization::ready || !condition_) return outcome;
-  if (!condition_->evaluate(condensed_, x)) return Linearization::singular;
+  if (!condition_->evaluate(condensed_, x)) return Linearization::condition_lost;
   condensed_.solve(std::array{0.0, 1.0}, response_);
   response_slope_ = dot(condition_->gradient(), response_);
   if (!std::isfinite(response_slope_) || response_slope_ == 0.0) return Linearization::singular;

@@ -7,6 +7,10 @@
 /// The gradient of G is known only after J has been condensed. So J is condensed with a stand-in for it, the gradient
 /// of the last linearisation, and the true gradient enters by a rank-one correction: one more solution of the same
 /// factors.
+///
+/// A condition is found by iteration from where it was last: which multiplier it means, and the border of its own
+/// problem. A trial of Newton's method that fails leaves these anywhere. They belong to the point of the branch that
+/// the trial began from, together with the stand-in, and are brought back (`recall`) before the next one.
 #pragma once
 
 #include <memory>
@@ -24,6 +28,16 @@ class OrbitCondition {
   virtual bool evaluate(CondensedSystem& condensed, const Orbit& x) = 0;
   virtual double value() const = 0;
   virtual const OrbitVector& gradient() const = 0;
+
+  /// What evaluations near the point of the last one begin from.
+  virtual std::vector<double> memory() const = 0;
+  virtual void recall(const std::vector<double>& memory) = 0;
+};
+
+/// What linearisations near a point of the branch begin from; empty without a condition.
+struct ConditionMemory {
+  std::vector<double> condition;
+  OrbitVector stand_in;
 };
 
 class BorderedProblem {
@@ -39,6 +53,9 @@ class BorderedProblem {
 
   /// Old factors may be used for another point: not with a condition, whose value comes with the factors.
   bool allows_chord() const { return condition_ == nullptr; }
+
+  ConditionMemory memory() const;
+  void recall(const ConditionMemory& memory);
 
   Linearization linearize(const Orbit& x, const OrbitVector& row, OrbitResidual& residual);
   void evaluate(const Orbit& x, OrbitResidual& residual) { condensed_.evaluate(x, residual); }

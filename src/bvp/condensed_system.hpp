@@ -33,8 +33,9 @@ struct OrbitResidual {
   bool finite() const;
 };
 
-/// Outcome of a linearisation; factors exist only when it is `ready`.
-enum class Linearization { ready, not_finite, singular };
+/// Outcome of a linearisation; factors exist only when it is `ready`. `condition_lost`: the condition of a
+/// two-parameter curve cannot be evaluated.
+enum class Linearization { ready, not_finite, singular, condition_lost };
 
 class CondensedSystem {
  public:

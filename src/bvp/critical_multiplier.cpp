@@ -36,13 +36,33 @@ CriticalMultiplier::CriticalMultiplier(const DefiningSystem& system, const Orbit
       rhs_(column_.size() + 1, 0.0),
       v_(shape, system.free_count()),
       gradient_(shape, system.free_count()) {
+  begin_border();
+  rhs_.back() = 1.0;
+}
+
+/// Any border that leaves the matrix regular.
+void CriticalMultiplier::begin_border() {
   for (std::size_t i = 0; i < column_.size(); ++i) {
     column_[i] = std::sin(1.0 + 0.7 * static_cast<double>(i));
     row_[i] = std::cos(0.3 + 0.9 * static_cast<double>(i));
   }
   normalise(column_);
   normalise(row_);
-  rhs_.back() = 1.0;
+}
+
+std::vector<double> CriticalMultiplier::memory() const {
+  if (!started_) return {};
+  std::vector<double> memory = column_;
+  memory.insert(memory.end(), row_.begin(), row_.end());
+  return memory;
+}
+
+void CriticalMultiplier::recall(const std::vector<double>& memory) {
+  started_ = !memory.empty();
+  if (!started_) return begin_border();
+  const auto middle = memory.begin() + static_cast<std::ptrdiff_t>(column_.size());
+  column_.assign(memory.begin(), middle);
+  row_.assign(middle, memory.end());
 }
 
 bool CriticalMultiplier::solve_bordered(const CondensedSystem& condensed, const Orbit& x) {

@@ -27,6 +27,9 @@ class CriticalMultiplier final : public OrbitCondition {
   bool evaluate(CondensedSystem& condensed, const Orbit& x) override;
   double value() const override { return value_; }
   const OrbitVector& gradient() const override { return gradient_; }
+  /// The border b, c; empty before the first evaluation.
+  std::vector<double> memory() const override;
+  void recall(const std::vector<double>& memory) override;
 
   /// The null vector v with the sigma_s as durations, of unit size at the ends of segments.
   const OrbitVector& null_vector() const { return v_; }
@@ -37,6 +40,7 @@ class CriticalMultiplier final : public OrbitCondition {
 
  private:
   bool solve_bordered(const CondensedSystem& condensed, const Orbit& x);
+  void begin_border();
   void follow_null_vectors();
 
   int multiplier_;

@@ -1,5 +1,6 @@
 #include "bvp/critical_pair.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace tchat {
@@ -42,7 +43,40 @@ bool CriticalPair::solve_bordered(const std::vector<double>& values) {
   return v_.allFinite() && w_.allFinite();
 }
 
+std::vector<double> CriticalPair::memory() const {
+  std::vector<double> memory{multiplier_.real(), multiplier_.imag()};
+  for (const Vector* border : {&column_, &row_})
+    for (const Complex& entry : *border) memory.push_back(entry.real()), memory.push_back(entry.imag());
+  return memory;
+}
+
+void CriticalPair::recall(const std::vector<double>& memory) {
+  auto part = memory.begin();
+  const auto next = [&part] {
+    part += 2;
+    return Complex(part[-2], part[-1]);
+  };
+  multiplier_ = next();
+  for (Vector* border : {&column_, &row_})
+    for (Complex& entry : *border) entry = next();
+}
+
+/// The pair's multiplier near the last one, with its null vectors.
 bool CriticalPair::find_multiplier(const std::vector<double>& values) {
+  constexpr double farthest = 0.5;
+  constexpr double least_angle = 1e-4;  // nearer to the double multiplier its two halves are told apart badly
+  const Complex last = multiplier_;
+  if (!iterate(values)) return false;
+  if (multiplier_.imag() < 0.0) {  // its conjugate
+    multiplier_ = std::conj(multiplier_);
+    for (Vector* vector : {&column_, &row_, &v_, &w_}) *vector = vector->conjugate().eval();
+  }
+  return multiplier_.imag() > least_angle * std::abs(multiplier_) &&
+         std::min(std::abs(multiplier_ - last), std::abs(multiplier_ - std::conj(last))) < farthest * std::abs(last);
+}
+
+/// Newton's method for mu on the bordered problem.
+bool CriticalPair::iterate(const std::vector<double>& values) {
   constexpr int most_iterations = 12;
   constexpr double tolerance = 1e-14;
   const int size = map_.size();

@@ -6,8 +6,9 @@
 ///     d mu = -(w^H (dS) v) / (w_last^H v_1(0)),      dG = 2 Re(conj(mu) d mu),
 ///
 /// where w_last belongs to the last connectivity, mu v_1(0) = g_x w_m. Regular while the pair is simple: the curve ends
-/// at 1:1 and 1:2 resonances, where it becomes a double real multiplier. Compared with one critical multiplier there
-/// are two sweeps of second derivatives, for the real and the imaginary part.
+/// at 1:1 and 1:2 resonances, where it becomes a double real multiplier. Newton's method that comes to a real
+/// multiplier or far from where it began has found another one: an evaluation fails then. Compared with one critical
+/// multiplier there are two sweeps of second derivatives, for the real and the imaginary part.
 #pragma once
 
 #include <Eigen/SparseCore>
@@ -27,6 +28,10 @@ class CriticalPair final : public OrbitCondition {
   bool evaluate(CondensedSystem& condensed, const Orbit& x) override;
   double value() const override { return std::norm(multiplier_) - 1.0; }
   const OrbitVector& gradient() const override { return gradient_; }
+  /// mu and the border b, c.
+  std::vector<double> memory() const override;
+  void recall(const std::vector<double>& memory) override;
+  /// In the upper half plane.
   std::complex<double> multiplier() const { return multiplier_; }
 
  private:
@@ -34,6 +39,7 @@ class CriticalPair final : public OrbitCondition {
   using Vector = Eigen::VectorXcd;
 
   bool find_multiplier(const std::vector<double>& values);
+  bool iterate(const std::vector<double>& values);
   bool solve_bordered(const std::vector<double>& values);
 
   CondensedReturnMap map_;

@@ -22,10 +22,11 @@ PathFollower::PathFollower(const DefiningSystem& system, const OrbitShape& shape
       problem_(system, shape, std::move(condition)),
       newton_(problem_, settings),
       settings_(settings),
+      unused_(problem_.memory()),
       row_(condensed().make_vector()) {}
 
 PathPoint PathFollower::make_point(Orbit orbit) const {
-  return {std::move(orbit), condensed().make_vector(), condensed().make_vector()};
+  return {std::move(orbit), condensed().make_vector(), condensed().make_vector(), unused_};
 }
 
 OrbitVector PathFollower::principal_row() const {
@@ -46,6 +47,11 @@ double PathFollower::alignment(const PathPoint& point, const OrbitVector& direct
   OrbitVector dual = condensed().make_vector();
   normalise(point.orbit, v, dual);
   return dot(dual, point.tangent);
+}
+
+bool PathFollower::linearize_at(const PathPoint& point) {
+  problem_.recall(point.memory);
+  return linearize(point.orbit, point.dual);
 }
 
 bool PathFollower::linearize(const Orbit& x, const OrbitVector& row) {
@@ -76,6 +82,7 @@ NewtonResult PathFollower::correct_and_orient(PathPoint& point, const Orbit& bas
   const bool current = result.change_since_factorization <= current_enough;
   if ((!current && !linearize(point.orbit, row_)) || !find_tangent(point.orbit, point.tangent, point.dual))
     result.status = NewtonStatus::singular;
+  point.memory = problem_.memory();
   return result;
 }
 
@@ -91,6 +98,7 @@ NewtonResult PathFollower::step_near(const PathPoint& from, double ds, PathPoint
   row_.states = from.dual.states;
   row_.durations = from.dual.durations;
   row_.globals = from.dual.globals;
+  problem_.recall(from.memory);
   return correct_and_orient(to, from.orbit, ds);
 }
 
@@ -112,6 +120,7 @@ void PathFollower::orient(PathPoint& point) const {
 
 NewtonResult PathFollower::start_at_fixed_parameter(PathPoint& point) {
   row_ = principal_row();
+  problem_.recall(point.memory);
   const Orbit base = point.orbit;
   NewtonResult result = correct_and_orient(point, base, 0.0);
   if (result.converged()) orient(point);
@@ -122,6 +131,7 @@ NewtonResult PathFollower::start_along(PathPoint& point, const OrbitVector& dire
   point.tangent = direction;
   normalise(point.orbit, point.tangent, point.dual);
   row_ = point.dual;
+  problem_.recall(point.memory);
   const Orbit base = point.orbit;
   return correct_and_orient(point, base, 0.0);
 }
@@ -133,6 +143,7 @@ NewtonResult PathFollower::start_by_minimum_norm(PathPoint& point) {
     row_.states.data()[i] = std::cos(1.0 + 0.37 * static_cast<double>(i));
   row_.durations.setOnes();
   row_.globals.setOnes();
+  problem_.recall(point.memory);
   NewtonResult result;
   result.status = NewtonStatus::singular;
   if (!linearize(point.orbit, row_) || !find_tangent(point.orbit, point.tangent, point.dual)) return result;
@@ -163,6 +174,7 @@ void PathFollower::reverse(PathPoint& point) const {
 
 CondensedSystem::Singularity PathFollower::singularity(const PathPoint& point) {
   row_ = point.dual;
+  problem_.recall(point.memory);
   if (problem_.linearize(point.orbit, row_, newton_.residual()) == Linearization::not_finite) return {1.0, {}};
   return condensed().singularity();
 }

@@ -2,7 +2,8 @@
 ///
 /// A path point carries its unit tangent in the weighted norm, oriented along the branch. A step of length ds predicts
 /// x + ds v and corrects with <v, x_new - x> = ds; the tangent at the new point comes from the factors of its
-/// linearisation, which stay available for multipliers and test functions.
+/// linearisation, which stay available for multipliers and test functions. Everything that a step begins from is in
+/// the point that it goes from: trials before it, failed ones too, leave no trace.
 #pragma once
 
 #include <memory>
@@ -14,8 +15,9 @@ namespace tchat {
 
 struct PathPoint {
   Orbit orbit;
-  OrbitVector tangent;  ///< unit length
-  OrbitVector dual;     ///< <tangent, .> on the orbit's mesh
+  OrbitVector tangent;     ///< unit length
+  OrbitVector dual;        ///< <tangent, .> on the orbit's mesh
+  ConditionMemory memory;  ///< of a two-parameter curve's condition
 };
 
 class PathFollower {
@@ -50,7 +52,7 @@ class PathFollower {
   void renormalise(PathPoint& point) const { normalise(point.orbit, point.tangent, point.dual); }
 
   /// Makes condensed() the linearisation at a converged point. False when it is singular.
-  bool linearize_at(const PathPoint& point) { return linearize(point.orbit, point.dual); }
+  bool linearize_at(const PathPoint& point);
 
   /// The linearisation at the last point that start_..., step or linearize_at was given, current to about 1e-10.
   CondensedSystem& condensed() { return problem_.condensed(); }
@@ -78,7 +80,8 @@ class PathFollower {
   BorderedProblem problem_;
   NewtonChord newton_;
   NewtonSettings settings_;
-  OrbitVector row_;  // the branch's row of the last linearisation
+  ConditionMemory unused_;  // the condition's before anything was evaluated
+  OrbitVector row_;         // the branch's row of the last linearisation
 };
 
 }  // namespace tchat

@@ -16,6 +16,11 @@ constexpr double stalled_change = 1e-6;
 /// A correction larger than this multiple of a residual at rounding level says nothing: the matrix is nearly singular.
 constexpr double magnified = 1e6;
 
+NewtonStatus failure(Linearization outcome) {
+  if (outcome == Linearization::not_finite) return NewtonStatus::not_finite;
+  return outcome == Linearization::singular ? NewtonStatus::singular : NewtonStatus::condition_lost;
+}
+
 }  // namespace
 
 std::string describe(NewtonStatus status) {
@@ -28,6 +33,8 @@ std::string describe(NewtonStatus status) {
       return "the Newton corrections grow";
     case NewtonStatus::not_finite:
       return "a function of the problem is not finite";
+    case NewtonStatus::condition_lost:
+      return "the critical multiplier is lost (a torus curve ends where its pair becomes real: 1:1 and 1:2 resonance)";
     default:
       return "the Newton matrix is singular";
   }
@@ -56,7 +63,7 @@ NewtonResult NewtonChord::correct(Orbit& x, const OrbitVector& row, const Orbit&
     if (iteration <= full_iterations) {
       const Linearization outcome = problem_.linearize(x, row, residual_);
       if (outcome != Linearization::ready) {
-        result.status = outcome == Linearization::singular ? NewtonStatus::singular : NewtonStatus::not_finite;
+        result.status = failure(outcome);
         return result;
       }
       result.change_since_factorization = 0.0;

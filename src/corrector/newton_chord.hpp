@@ -25,7 +25,7 @@ struct NewtonSettings {
   double tolerance_states = 1e-7;
 };
 
-enum class NewtonStatus { converged, too_many_iterations, diverging, not_finite, singular };
+enum class NewtonStatus { converged, too_many_iterations, diverging, not_finite, singular, condition_lost };
 
 /// One line of the Newton history.
 struct NewtonIteration {

@@ -26,6 +26,10 @@ class ConditionAt {
     REQUIRE(condition.evaluate(condensed, x));
     return condition.value();
   }
+  bool evaluates(OrbitCondition& condition, const Orbit& x) {
+    REQUIRE(condensed.linearize(x, border_, residual_) == Linearization::ready);
+    return condition.evaluate(condensed, x);
+  }
   OrbitVector random_vector(OrbitVector v) {
     std::uniform_real_distribution<double> uniform(-1.0, 1.0);
     for (auto* part : {&v.durations, &v.globals})
@@ -184,6 +188,32 @@ TEST_CASE("critical pair: zero at the closed-form torus bifurcation, with its an
     CHECK(at.value(condition, x) == Approx(std::norm(moved.multiplier()) - 1).margin(1e-10));
     CHECK(std::abs(condition.multiplier() - moved.multiplier()) < 1e-10);
   }
+}
+
+TEST_CASE("critical pair: in the upper half plane, and not found where the pair is real or another one") {
+  const LangfordCircle circle = LangfordCircle{}.at_torus();
+  const Orbit x = circle.orbit(40, 5);
+  ConditionAt at(system_of<Langford>(), {{1, 1, 1}}, x);
+  CriticalPair conjugate(at.system, x.shape, std::conj(circle.multiplier()));
+  at.value(conjugate, x);
+  CHECK(std::abs(conjugate.multiplier() - circle.multiplier()) < 1e-10);
+  const OrbitVector gradient = conjugate.gradient();
+  CriticalPair condition(at.system, x.shape, circle.multiplier());
+  at.value(condition, x);
+  CHECK(std::abs(dot(gradient, gradient) / dot(condition.gradient(), gradient) - 1.0) < 1e-8);
+
+  // The complex pair of an orbit with impact has become real at the period doubling.
+  const OscillatorOrbit complex_orbit = one_impact_orbit(2.0072, 0.5);
+  const OscillatorOrbit doubling_orbit = one_impact_orbit(2.0072, period_doubling_velocity());
+  const Orbit complex_pair = sampled(whole(complex_orbit), complex_orbit, 20, 4);
+  const Orbit real_pair = sampled(whole(doubling_orbit), doubling_orbit, 20, 4);
+  ConditionAt impacting(linosc(), {{1, 1, 1}}, complex_pair);
+  CriticalPair pair(impacting.system, complex_pair.shape, {0.5896957647, 0.34676174832});
+  const double value = impacting.value(pair, complex_pair);
+  const std::vector<double> memory = pair.memory();
+  CHECK_FALSE(impacting.evaluates(pair, real_pair));
+  pair.recall(memory);
+  CHECK(impacting.value(pair, complex_pair) == Approx(value).margin(1e-12));
 }
 
 TEST_CASE("critical pair: gradient") {

@@ -1,0 +1,3 @@
+#include "two_walls.hpp"
+
+TCHAT_PROBLEM(TwoWalls)
