@@ -73,7 +73,9 @@ std::vector<PlotItem> read_plot_items(const std::vector<std::string>& words) {
   std::vector<PlotItem> items;
   for (std::size_t k = 0; k < words.size(); ++k) {
     const bool label_follows = k + 1 < words.size() && is_label(words[k + 1]) && !is_file(words[k + 1]);
-    const std::string path = file_of(words[k], label_follows);
+    // After a q-file a label is a label, even where a file q.PD1 exists.
+    const bool labels_possible = !items.empty() && items.back().kind == PlotItem::Kind::solutions;
+    const std::string path = labels_possible && is_label(words[k]) ? "" : file_of(words[k], label_follows);
     if (path.ends_with(".events"))
       throw UserError(
           fmt::format("{} lists events, there is no picture of it; give the trajectory of the simulation", path));

@@ -55,7 +55,8 @@ void add_resegment_command(CLI::App& app, std::function<int()>& chosen) {
                       "index vectors of the new orbit, as \"1,1,1;2,2,2\"; those beyond the segments that there are "
                       "are segments of zero duration after the contact");
   command->add_option("--jump", request->jump,
-                      "jump at the contact (default: the identity on a grazing curve, GRJUMP for impacting orbits)");
+                      "jump at the contact (default: the identity on a grazing curve, else what the problem says of "
+                      "that event, or GRJUMP)");
   command->add_option("--by", request->rotation, "segments that --to rotate moves from the beginning to the end")
       ->capture_default_str();
   command->add_flag("-q,--quiet", *quiet, "no summary on the screen");

@@ -24,7 +24,7 @@ Limits any() { return {}; }
 constexpr double max_list = 1000;  // length of lists that nothing else bounds
 constexpr std::string_view kept = "read and kept, no effect";
 constexpr std::string_view type_with_count =
-    "a type with a count: BP, LP, PD, TR, UZ, GR, XI, EP, MX or RG and a number";
+    "a type with a count: BP, LP, PD, TR, UZ, GR, XI, GC, CP, R1, R2, R3, R4, EP, MX or RG and a number";
 
 std::vector<Constant> make_table() {
   const SegmentInteger segment_type{&SegmentSettings::type, nullptr};
@@ -36,7 +36,8 @@ std::vector<Constant> make_table() {
       {"IPS", "problem type", 1, &R::problem_type, one_of({180, 150}),
        "180 (periodic orbits) or 150 (periodic orbits in grazing contact)", "180", ""},
       {"IRS", "label to start from, 0: from data", 1, &R::start, at_least(0),
-       "a label number >= 0, or a type with a count (PD1: BP, LP, PD, TR, UZ, GR, XI, EP, MX or RG and a number)",
+       "a label number >= 0, or a type with a count (PD1: BP, LP, PD, TR, UZ, GR, XI, GC, CP, R1, R2, R3, R4, EP, MX "
+       "or RG and a number)",
        "PD1", ""},
       {"ILP", "detect folds; negative: and stop there", 1, &R::detect_folds, range(-1, 1), "", "1", ""},
       {"NICP", "number of free parameters listed", 2, ListCount{"ICP"}, range(1, 256), "", "3", ""},
@@ -242,7 +243,8 @@ std::string allowed_text(const Constant& constant) {
 }
 
 std::span<const std::string_view> point_type_names() {
-  static constexpr std::array<std::string_view, 10> names{"BP", "LP", "PD", "TR", "UZ", "GR", "XI", "EP", "MX", "RG"};
+  static constexpr std::array<std::string_view, 16> names{"BP", "LP", "PD", "TR", "UZ", "GR", "XI", "GC",
+                                                          "CP", "R1", "R2", "R3", "R4", "EP", "MX", "RG"};
   return names;
 }
 

@@ -48,7 +48,7 @@ std::string format_newton_history(int branch, int point, const std::vector<Newto
 }
 
 std::string format_diagnostics_point(const PointLine& point, const std::vector<PointColumn>& columns) {
-  return format_table_heading(columns) + format_table_line(point);
+  return format_table_heading(columns) + format_table_line(point, columns);
 }
 
 std::string format_multipliers(std::span<const std::complex<double>> multipliers) {

@@ -1,4 +1,5 @@
-/// The table on the screen: branch, point, type in letters, label and at most seven columns of 14,
+/// The table on the screen: branch, point, type in letters, label and at most seven columns of 14 (maxima give way to
+/// free parameters),
 ///
 ///       BR    PT  TY  LAB       alpha        L2-NORM  ...
 ///        1   -12  GR    4   1.99833E+00   1.41421E+00
@@ -19,6 +20,6 @@ std::string format_table_heading(const std::vector<PointColumn>& columns);
 
 /// The line of one point; inadmissible points end in the word `inadmissible`. Types as AUTO shows them: blank for
 /// ordinary and for regular points.
-std::string format_table_line(const PointLine& point);
+std::string format_table_line(const PointLine& point, const std::vector<PointColumn>& columns);
 
 }  // namespace tchat

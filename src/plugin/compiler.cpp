@@ -124,13 +124,23 @@ const CompilerWords& words_of(Language language) {
                   words.language, source, command, std::strerror(error), words.package, words.variable));
 }
 
+/// What a problem's author most often overlooks, from the compiler's words about it; "" when it is something else.
+std::string advice(const std::string& output) {
+  const bool narrows =
+      output.find("cannot convert") != std::string::npos || output.find("no viable conversion") != std::string::npos;
+  if (!narrows || output.find("Dual") == std::string::npos) return "";
+  return "  Derivatives come from calling the functions with dual numbers: a local variable that depends on x or par "
+         "is "
+         "of type T\n  (or auto), not double.\n";
+}
+
 void require_success(const ProcessResult& result, const std::vector<std::string>& command, const std::string& source) {
   if (WIFEXITED(result.status) && WEXITSTATUS(result.status) == 0) return;
   const std::string ending = WIFSIGNALED(result.status)
                                  ? fmt::format("it was ended by signal {}", WTERMSIG(result.status))
                                  : fmt::format("exit status {}", WEXITSTATUS(result.status));
-  throw UserError(fmt::format("The compiler refused {} ({}). It says:\n\n{}\n  The command was: {}", source, ending,
-                              first_lines(result.output, 60), fmt::join(command, " ")));
+  throw UserError(fmt::format("The compiler refused {} ({}). It says:\n\n{}\n{}  The command was: {}", source, ending,
+                              first_lines(result.output, 60), advice(result.output), fmt::join(command, " ")));
 }
 
 /// -fno-gnu-unique keeps a reloaded plugin from sharing its statics with an earlier one; only g++ knows it.

@@ -57,6 +57,19 @@ ContactPoint contact_along(const UserPointKind& kind, const Orbit& x, const Hybr
 
 }  // namespace
 
+int jump_at_contact(const HybridSystem& system, const RunSettings& settings, const Orbit& x,
+                    const ContactPoint& contact) {
+  const int m = x.shape.segments;
+  const int before = (contact.segment + m - 1) % m;
+  const IndexVector& from = settings.segments[static_cast<std::size_t>(before)].index;
+  const auto watched = system.successors(from, x.end(before), x.par.data());
+  const int field = settings.segments[static_cast<std::size_t>(contact.segment)].index.field;
+  std::vector<int> jumps;
+  for (const IndexVector& v : watched.value_or(std::vector<IndexVector>{}))
+    if (v.field == field && v.event == contact.event) jumps.push_back(v.jump);
+  return jumps.size() == 1 ? jumps.front() : settings.grazing_jump;
+}
+
 int grazing_segment(const RunSettings& settings) {
   const auto marked = std::find_if(settings.segments.begin(), settings.segments.end(),
                                    [](const SegmentSettings& segment) { return segment.type == 2; });

@@ -28,6 +28,11 @@ struct ContactPoint {
 ContactPoint contact_point(const LabelledSolution& solution, const Orbit& x, const HybridSystem& system,
                            const RunSettings& settings, const std::string& source);
 
+/// The jump that the contact would bring, by the index jump function after the segment before; GRJUMP when the problem
+/// has none or it leaves a choice.
+int jump_at_contact(const HybridSystem& system, const RunSettings& settings, const Orbit& x,
+                    const ContactPoint& contact);
+
 /// The segment (from 0) that ends in grazing contact: the one marked by GCSEGTYP = 2, else the first.
 int grazing_segment(const RunSettings& settings);
 

@@ -145,7 +145,10 @@ Target to_grazing_curve(const ResegmentRequest& request, const Source& source, c
   if (contact.where == ContactPoint::impact) cut = without_empty_segments(std::move(cut), source.start.orbit);
   if (request.signature) cut = with_signature(std::move(cut), parse_signature(*request.signature), false, contact);
   cut.segments[cut.contact].grazes = true;
-  return {cut.segments, {150, 1, contact.where == ContactPoint::impact ? own : source.settings.grazing_jump}};
+  const int contact_jump = contact.where == ContactPoint::impact
+                               ? own
+                               : jump_at_contact(system, source.settings, source.start.orbit, contact);
+  return {cut.segments, {150, 1, contact_jump}};
 }
 
 Target to_impacting(const ResegmentRequest& request, const Source& source, const HybridSystem& system) {
@@ -155,8 +158,10 @@ Target to_impacting(const ResegmentRequest& request, const Source& source, const
         fmt::format("{} is where an impact of this signature has velocity zero: the impacting orbits are those of its "
                     "own branch; `tchat run` goes on along it",
                     source.name));
-  const int jump = checked_jump(system, request.jump.value_or(source.settings.grazing_jump),
-                                request.jump ? "--jump" : "GRJUMP, the jump that contact brings,");
+  const int jump = request.jump
+                       ? checked_jump(system, *request.jump, "--jump")
+                       : checked_jump(system, jump_at_contact(system, source.settings, source.start.orbit, contact),
+                                      "GRJUMP, the jump that contact brings,");
   CutList cut = cut_at(segments_of(source.settings), contact, jump);
   Signature signature;
   if (request.signature) {

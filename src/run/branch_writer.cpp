@@ -116,7 +116,7 @@ bool BranchWriter::shown_stable(const BranchPoint& point) {
 /// Labelled points, the first one, and where orbits become inadmissible (with what is violated) or admissible again.
 void BranchWriter::show(const BranchPoint& point, const PointLine& line) {
   const bool change = point.number > 1 && line.admissible != last_admissible_;
-  if (point.labelled() || point.number == 1 || change) *screen_ << format_table_line(line);
+  if (point.labelled() || point.number == 1 || change) *screen_ << format_table_line(line, columns_);
   if (!line.admissible && (change || point.number == 1))
     for (const Violation& violation : point.violations) *screen_ << "       " << describe(violation, system_) << '\n';
   last_admissible_ = line.admissible;

@@ -13,33 +13,51 @@ std::vector<PointColumn> columns(const std::vector<std::string>& names) {
   return result;
 }
 
+std::string line_of(const PointLine& point) {
+  return format_table_line(point, columns(std::vector<std::string>(point.values.size(), "P")));
+}
+
 }  // namespace
 
 TEST_CASE("The table on screen by hand", "[output]") {
   CHECK(format_table_heading(columns({"alpha", "L2-NORM", "a name that is too long"})) ==
         "  BR    PT  TY  LAB       alpha       L2-NORM  a name that\n");
-  CHECK(format_table_line({1, 1, true, 9, 1, {3.0, -1.25}}) == "   1    -1  EP    1   3.00000E+00  -1.25000E+00\n");
-  CHECK(format_table_line({1, 20, false, 4, 2, {1e-100}}) == "   1    20        2  1.00000E-100\n");
-  CHECK(format_table_line({2, 3, false, 0, 0, {0.5}}) == "   2     3        0   5.00000E-01\n");
-  CHECK(format_table_line({1, 7, false, 54, 3, {}}) == "   1     7        3\n");
+  CHECK(line_of({1, 1, true, 9, 1, {3.0, -1.25}}) == "   1    -1  EP    1   3.00000E+00  -1.25000E+00\n");
+  CHECK(line_of({1, 20, false, 4, 2, {1e-100}}) == "   1    20        2  1.00000E-100\n");
+  CHECK(line_of({2, 3, false, 0, 0, {0.5}}) == "   2     3        0   5.00000E-01\n");
+  CHECK(line_of({1, 7, false, 54, 3, {}}) == "   1     7        3\n");
 }
 
 TEST_CASE("Types in letters, GR and XI by what the point is", "[output]") {
-  CHECK(format_table_line({1, 5, false, -4, 3, {}, {UserPointKind::contact, 1, 2, 0.5}}) == "   1     5  GR    3\n");
-  CHECK(format_table_line({1, 5, false, -4, 3, {}, {UserPointKind::xi, 1, 2, 0.0}}) == "   1     5  XI    3\n");
-  CHECK(format_table_line({1, 5, false, -54, 3, {}, {UserPointKind::user_value, 0, 2, 0.0}}) ==
-        "   1     5  UZ    3\n");
-  CHECK(format_table_line({1, 5, false, -59, 3, {}}) == "   1     5  MX    3\n");
+  CHECK(line_of({1, 5, false, -4, 3, {}, {UserPointKind::contact, 1, 2, 0.5}}) == "   1     5  GR    3\n");
+  CHECK(line_of({1, 5, false, -4, 3, {}, {UserPointKind::xi, 1, 2, 0.0}}) == "   1     5  XI    3\n");
+  CHECK(line_of({1, 5, false, -54, 3, {}, {UserPointKind::user_value, 0, 2, 0.0}}) == "   1     5  UZ    3\n");
+  CHECK(line_of({1, 5, false, -59, 3, {}}) == "   1     5  MX    3\n");
 }
 
 TEST_CASE("Inadmissible points are marked", "[output]") {
-  CHECK(format_table_line({1, 5, false, 0, 0, {1.0}, {}, false}) ==
-        "   1     5        0   1.00000E+00  inadmissible\n");
+  CHECK(line_of({1, 5, false, 0, 0, {1.0}, {}, false}) == "   1     5        0   1.00000E+00  inadmissible\n");
 }
 
 TEST_CASE("At most seven columns", "[output]") {
-  const std::string line = format_table_line({1, 5, false, 0, 0, std::vector<double>(12, 1.0)});
+  const std::string line = line_of({1, 5, false, 0, 0, std::vector<double>(12, 1.0)});
   CHECK(line.size() == 19 + 7 * 14 + 1);
   const auto many = columns(std::vector<std::string>(12, "P"));
   CHECK(format_table_heading(many).size() == 19 + 7 * 14 - 2 + 1);
+}
+
+TEST_CASE("A free parameter is shown before the last maximum, durations are not", "[output]") {
+  using Kind = PointColumn::Kind;
+  const std::vector<PointColumn> columns{{Kind::parameter, 2, "omega"}, {Kind::l2_norm, 0, "L2-NORM"},
+                                         {Kind::maximum, 1, "MAX q1"},  {Kind::maximum, 2, "MAX v1"},
+                                         {Kind::maximum, 3, "MAX q2"},  {Kind::maximum, 4, "MAX v2"},
+                                         {Kind::maximum, 5, "MAX s"},   {Kind::parameter, 1, "a"},
+                                         {Kind::parameter, 61, "T1"},   {Kind::period, 0, "PERIOD"}};
+  const std::string heading = format_table_heading(columns);
+  const std::string line = format_table_line({1, 2, true, 0, 0, {1, 2, 3, 4, 5, 6, 7, 8, 9, 10}}, columns);
+  CHECK(heading.find("MAX v2") != std::string::npos);
+  CHECK(heading.find("MAX s") == std::string::npos);
+  CHECK(heading.find(" a\n") != std::string::npos);
+  CHECK(line.find("6.00000E+00   8.00000E+00\n") != std::string::npos);
+  CHECK(line.size() == 19 + 7 * 14 + 1);
 }
