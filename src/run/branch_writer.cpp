@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "continuation/solution_measure.hpp"
+#include "hybrid/parameter_vector.hpp"
 #include "output/diagnostics_file.hpp"
 #include "output/number_format.hpp"
 #include "output/screen_table.hpp"
@@ -99,7 +100,16 @@ void BranchWriter::point(const BranchPoint& point) {
   write_diagnostics(point, line);
   if (screen_ != nullptr) show(point, line);
   if (point.labelled())
-    labels_.push_back({line.label, type_name(line.type, line.kind), line.values.front(), point.special.description});
+    labels_.push_back({line.label, type_name(line.type, line.kind), place(line), point.special.description});
+}
+
+std::string BranchWriter::place(const PointLine& line) const {
+  std::string text;
+  for (std::size_t k = 0; k < columns_.size(); ++k)
+    if (const PointColumn& column = columns_[k];
+        column.kind == PointColumn::Kind::parameter && (k == 0 || column.index < first_duration))
+      text += fmt::format("{}{} = {:.10g}", text.empty() ? "" : ", ", column.name, line.values[k]);
+  return text;
 }
 
 /// At a bifurcation a multiplier is on the unit circle; as in AUTO's files the sign is that of the point before, so

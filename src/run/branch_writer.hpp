@@ -40,7 +40,7 @@ class BranchWriter final : public BranchSink {
   struct Labelled {
     int label;
     std::string type;
-    double parameter;
+    std::string place;  ///< "alpha = 3.1", with the other free parameters that are no durations
     std::string description;
   };
   /// The labels written so far, in order.
@@ -50,6 +50,7 @@ class BranchWriter final : public BranchSink {
  private:
   ParameterVector output_parameters(const Orbit& x) const;
   std::vector<double> column_values(const BranchPoint& point) const;
+  std::string place(const PointLine& line) const;
   bool shown_stable(const BranchPoint& point);
   void show(const BranchPoint& point, const PointLine& line);
   void write_diagnostics(const BranchPoint& point, const PointLine& line);

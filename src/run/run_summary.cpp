@@ -51,6 +51,20 @@ std::string trust(const BranchSummary& summary) {
   return text;
 }
 
+/// Lines of at most 120 characters, broken at blanks, the further ones indented.
+std::string folded(std::string line) {
+  constexpr std::size_t width = 120;
+  const std::string indent = "      ";
+  std::string text;
+  while (line.size() > width) {
+    const std::size_t blank = line.rfind(' ', width);
+    if (blank == std::string::npos || blank <= indent.size()) break;
+    text += line.substr(0, blank) + '\n';
+    line = indent + line.substr(blank + 1);
+  }
+  return text + line + '\n';
+}
+
 bool is_special(const BranchWriter::Labelled& label) {
   return label.type != "EP" && label.type != "RG" && !label.type.empty();
 }
@@ -68,8 +82,8 @@ std::string summary_text(const BranchSummary& summary, const std::vector<BranchW
   text += ".\n";
   for (const BranchWriter::Labelled& label : labels)
     if (is_special(label))
-      text += fmt::format("  {} label {} at {} = {:.10g}{}{}\n", label.type, label.label, parameter, label.parameter,
-                          label.description.empty() ? "" : ": ", label.description);
+      text += folded(fmt::format("  {} label {} at {}{}{}", label.type, label.label, label.place,
+                                 label.description.empty() ? "" : ": ", label.description));
   text += fmt::format("  stopped: {}\n", reason_text(summary, parameter));
   return text + advice(summary) + trust(summary);
 }

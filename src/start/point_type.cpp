@@ -102,8 +102,8 @@ std::string description(const UserPointKind& kind) {
       return fmt::format("impact velocity zero at the end of segment {}, event function {}", kind.segment, kind.index);
     case UserPointKind::grazing_codimension_two:
       if (kind.index == 0) return "a* = 0: h is no longer least at the contact";
-      return kind.index < 0 ? "grazing-flip: multiplier -1 of the smooth orbit"
-                            : "grazing-fold: multiplier +1 of the smooth orbit";
+      return kind.index < 0 ? "grazing-flip: multiplier -1 of the orbit that grazes, without the contact"
+                            : "grazing-fold: multiplier +1 of the orbit that grazes, without the contact";
     default:
       return "";
   }
