@@ -72,7 +72,8 @@ KeyPlace KeyGrid::placed(double left, double bottom, bool inside) const {
 }
 
 std::optional<KeyPlace> KeyGrid::place_inside(const Obstacles& obstacles) const {
-  const Box area = obstacles.frame.grown(-0.4 * font_);
+  Box area = obstacles.frame.grown(-0.4 * font_);
+  area.left += 0.5 * font_, area.right -= 0.2 * font_;  // clear of the tics
   const double free_x = area.width() - width();
   const double free_y = area.height() - height();
   if (free_x < 0.35 * area.width() || free_y < 0.35 * area.height()) return std::nullopt;

@@ -83,4 +83,13 @@ TEST_CASE("entries of the key are drawn where the layout has them") {
   CHECK(place->entries[0].x == place->entries[1].x);
   CHECK(place->entries[0].y > place->entries[1].y);
   for (const PicturePoint& at : place->entries) CHECK(place->box.contains(at));
+
+  // At the left edge it keeps clear of the tics, which are about half as long as letters are high.
+  Obstacles right_taken = empty;
+  right_taken.curves.push_back({{1000.0, 0.0}, {1000.0, 900.0}});
+  for (double x = 300.0; x < 1200.0; x += 20.0) right_taken.curves.push_back({{x, 0.0}, {x, 900.0}});
+  const auto at_left = column.place_inside(right_taken);
+  REQUIRE(at_left);
+  CHECK(at_left->entries[0].x < 100.0);
+  CHECK(at_left->entries[0].x > 0.7 * font);
 }
