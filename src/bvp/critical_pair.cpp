@@ -1,120 +1,192 @@
 #include "bvp/critical_pair.hpp"
 
-#include <algorithm>
+#include <Eigen/LU>
+#include <Eigen/QR>
+#include <Eigen/SparseCore>
+#include <Eigen/SparseLU>
 #include <cmath>
 
 namespace tchat {
 
+namespace {
+
+/// Newton's matrix for (dV, dL), the columns of dV first, then dL row by row: block k of its rows is column k of
+/// S dV + E dV L + E V dL, the rows after them V_last^T dV. The entries follow `CriticalPair::factorize`.
+SparseLu make_newton(const CondensedReturnMap& map) {
+  const int size = map.size();
+  const int n = size - map.last_connectivity_row();
+  std::vector<int> rows, columns;
+  for (int k = 0; k < 2; ++k) {
+    for (std::size_t i = 0; i < map.rows().size(); ++i) {
+      rows.push_back(k * size + map.rows()[i]);
+      columns.push_back(k * size + map.columns()[i]);
+    }
+    const int row = k * size + map.last_connectivity_row();
+    for (int j = 0; j < 2; ++j)
+      for (int a = 0; a < n; ++a) {
+        rows.push_back(row + a), columns.push_back(j * size + a);
+        rows.push_back(row + a), columns.push_back(2 * size + 2 * j + k);
+      }
+    for (int j = 0; j < 2; ++j)
+      for (int i = 0; i < size; ++i) rows.push_back(2 * size + 2 * j + k), columns.push_back(k * size + i);
+  }
+  return {2 * size + 4, rows, columns};
+}
+
+}  // namespace
+
 CriticalPair::CriticalPair(const DefiningSystem& system, const OrbitShape& shape, std::complex<double> multiplier)
     : map_(system, shape),
-      multiplier_(multiplier),
-      column_(map_.size()),
-      row_(map_.size()),
+      first_multiplier_(multiplier),
+      lu_(make_newton(map_)),
+      rhs_(2 * map_.size() + 4),
+      change_(rhs_.size()),
+      pair_(Eigen::Matrix2d::Identity()),
+      plane_(map_.size(), 2),
+      border_(map_.size(), 2),
       extended_(shape, system.free_count()),
-      gradient_(shape, system.free_count()) {
-  for (Eigen::Index i = 0; i < column_.size(); ++i) {
-    const auto k = static_cast<double>(i);
-    column_(i) = {std::sin(1.0 + 0.7 * k), std::cos(0.2 + 1.1 * k)};
-    row_(i) = {std::cos(0.3 + 0.9 * k), std::sin(0.5 + 0.4 * k)};
-  }
-  column_.normalize();
-  row_.normalize();
-}
-
-/// [S b; c^H 0] [v; g] = e_last and its adjoint at the present multiplier.
-bool CriticalPair::solve_bordered(const std::vector<double>& values) {
-  const int size = map_.size();
-  std::vector<Eigen::Triplet<Complex>> entries;
-  for (std::size_t k = 0; k < values.size(); ++k)
-    entries.emplace_back(map_.rows()[k], map_.columns()[k], Complex(values[k]));
-  for (const std::size_t k : map_.factor_positions())
-    entries.emplace_back(map_.rows()[k], map_.columns()[k], multiplier_ - values[k]);
-  for (int i = 0; i < size; ++i) {
-    entries.emplace_back(i, size, column_(i));
-    entries.emplace_back(size, i, std::conj(row_(i)));
-  }
-  matrix_.resize(size + 1, size + 1);
-  matrix_.setFromTriplets(entries.begin(), entries.end());
-  lu_.compute(matrix_);
-  if (lu_.info() != Eigen::Success) return false;
-  const Vector unit = Vector::Unit(size + 1, size);
-  v_ = lu_.solve(unit);
-  w_ = lu_.adjoint().solve(unit);
-  return v_.allFinite() && w_.allFinite();
-}
+      gradient_(shape, system.free_count()) {}
 
 std::vector<double> CriticalPair::memory() const {
-  std::vector<double> memory{multiplier_.real(), multiplier_.imag()};
-  for (const Vector* border : {&column_, &row_})
-    for (const Complex& entry : *border) memory.push_back(entry.real()), memory.push_back(entry.imag());
+  if (!started_) return {};
+  std::vector<double> memory(pair_.data(), pair_.data() + pair_.size());
+  memory.insert(memory.end(), plane_.data(), plane_.data() + plane_.size());
   return memory;
 }
 
 void CriticalPair::recall(const std::vector<double>& memory) {
-  auto part = memory.begin();
-  const auto next = [&part] {
-    part += 2;
-    return Complex(part[-2], part[-1]);
-  };
-  multiplier_ = next();
-  for (Vector* border : {&column_, &row_})
-    for (Complex& entry : *border) entry = next();
+  started_ = !memory.empty();
+  if (!started_) return;
+  pair_ = Eigen::Matrix2d::Map(memory.data());
+  plane_ = Plane::Map(memory.data() + pair_.size(), plane_.rows(), 2);
 }
 
-/// The pair's multiplier near the last one, with its null vectors.
-bool CriticalPair::find_multiplier(const std::vector<double>& values) {
-  constexpr double farthest = 0.5;
-  constexpr double least_angle = 1e-4;  // nearer to the double multiplier its two halves are told apart badly
-  const Complex last = multiplier_;
-  if (!iterate(values)) return false;
-  if (multiplier_.imag() < 0.0) {  // its conjugate
-    multiplier_ = std::conj(multiplier_);
-    for (Vector* vector : {&column_, &row_, &v_, &w_}) *vector = vector->conjugate().eval();
-  }
-  return multiplier_.imag() > least_angle * std::abs(multiplier_) &&
-         std::min(std::abs(multiplier_ - last), std::abs(multiplier_ - std::conj(last))) < farthest * std::abs(last);
+std::complex<double> CriticalPair::multiplier() const {
+  const double discriminant = cosine() * cosine() - pair_.determinant();
+  if (discriminant < 0.0) return {cosine(), std::sqrt(-discriminant)};
+  const double larger = cosine() + std::copysign(std::sqrt(discriminant), cosine());
+  return larger == 0.0 ? 0.0 : pair_.determinant() / larger;
 }
 
-/// Newton's method for mu on the bordered problem.
-bool CriticalPair::iterate(const std::vector<double>& values) {
-  constexpr int most_iterations = 12;
-  constexpr double tolerance = 1e-14;
-  const int size = map_.size();
+/// The plane of the real and imaginary part of the eigenvector next to the first multiplier, by inverse iteration.
+bool CriticalPair::begin(const std::vector<double>& values) {
+  using Complex = std::complex<double>;
+  constexpr double beside = 1e-5;  // the shift is not to be an eigenvalue itself
+  constexpr int rounds = 3;
+  const Complex shift = first_multiplier_ * (1.0 + beside);
+  std::vector<Eigen::Triplet<Complex>> entries;
+  for (std::size_t k = 0; k < values.size(); ++k) entries.emplace_back(map_.rows()[k], map_.columns()[k], values[k]);
+  for (const std::size_t first : map_.factor_positions())
+    entries.emplace_back(map_.rows()[first], map_.columns()[first], shift);
+  Eigen::SparseMatrix<Complex> matrix(map_.size(), map_.size());
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  Eigen::SparseLU<Eigen::SparseMatrix<Complex>> lu(matrix);
+  if (lu.info() != Eigen::Success) return false;
   const int first = map_.last_connectivity_row();
-  const Eigen::Index n = size - first;
-  for (int iteration = 0; iteration < most_iterations; ++iteration) {
-    if (!solve_bordered(values)) return false;
-    const Complex slope = -w_.segment(first, n).dot(v_.head(n));  // dg / dmu; dot conjugates its left side
-    const Complex change = -v_(size) / slope;
-    if (!std::isfinite(change.real()) || !std::isfinite(change.imag())) return false;
-    multiplier_ += change;
-    column_ = w_.head(size).normalized();
-    row_ = v_.head(size).normalized();
-    if (std::abs(change) < tolerance * (1.0 + std::abs(multiplier_))) return true;
+  const Eigen::Index n = map_.size() - first;
+  Eigen::VectorXcd v(map_.size());
+  for (Eigen::Index i = 0; i < v.size(); ++i) v(i) = std::sin(1.0 + 0.7 * static_cast<double>(i));
+  for (int round = 0; round < rounds; ++round) {
+    Eigen::VectorXcd rhs = Eigen::VectorXcd::Zero(map_.size());
+    rhs.tail(n) = v.head(n);
+    v = lu.solve(rhs);
+    if (!v.allFinite()) return false;
+    v.normalize();
   }
-  return solve_bordered(values) && std::abs(v_(size)) < 1e-9;
+  plane_.col(0) = v.real();
+  plane_.col(1) = v.imag();
+  pair_.setIdentity();
+  if (!orthonormalise()) return false;
+  // L fits the last connectivity best.
+  pair_.setZero();
+  set_right_hand_side(values);
+  Plane wanted(n, 2);
+  for (int k = 0; k < 2; ++k) wanted.col(k) = rhs_.segment(k * map_.size() + first, n);
+  pair_ = Plane(plane_.topRows(n)).colPivHouseholderQr().solve(wanted);
+  return pair_.allFinite();
+}
+
+/// V = Q R becomes Q, L becomes R L R^-1.
+bool CriticalPair::orthonormalise() {
+  const double first = plane_.col(0).norm();
+  plane_.col(0) /= first;
+  const double across = plane_.col(0).dot(plane_.col(1));
+  plane_.col(1) -= across * plane_.col(0);
+  const double second = plane_.col(1).norm();
+  plane_.col(1) /= second;
+  Eigen::Matrix2d r;
+  r << first, across, 0.0, second;
+  pair_ = r * pair_ * r.inverse();
+  return plane_.allFinite() && pair_.allFinite();
+}
+
+/// In the order of `make_newton`.
+bool CriticalPair::factorize(const std::vector<double>& values) {
+  const Eigen::Index n = map_.size() - map_.last_connectivity_row();
+  matrix_.clear();
+  for (int k = 0; k < 2; ++k) {
+    matrix_.insert(matrix_.end(), values.begin(), values.end());
+    for (int j = 0; j < 2; ++j)
+      for (Eigen::Index a = 0; a < n; ++a) {
+        matrix_.push_back(pair_(j, k));
+        matrix_.push_back(plane_(a, j));
+      }
+    for (int j = 0; j < 2; ++j) matrix_.insert(matrix_.end(), border_.col(j).begin(), border_.col(j).end());
+  }
+  return lu_.factorize(matrix_);
+}
+
+/// -(S V + E V L) and 0: the border stays satisfied.
+void CriticalPair::set_right_hand_side(const std::vector<double>& values) {
+  const Eigen::Index size = map_.size();
+  const Eigen::Index first = map_.last_connectivity_row();
+  rhs_.setZero();
+  for (int k = 0; k < 2; ++k) {
+    for (std::size_t i = 0; i < values.size(); ++i)
+      rhs_(k * size + map_.rows()[i]) -= values[i] * plane_(map_.columns()[i], k);
+    rhs_.segment(k * size + first, size - first) -= plane_.topRows(size - first) * pair_.col(k);
+  }
+}
+
+/// Newton's method; the last factors belong to a plane that differs from the result by less than the tolerance.
+bool CriticalPair::find_plane(const std::vector<double>& values) {
+  constexpr int most_iterations = 12;
+  constexpr double tolerance = 1e-9;  // of a correction, after which the error is about its square
+  constexpr double farthest = 0.5;
+  constexpr double beyond_meeting = 1.1;
+  const Eigen::Index size = map_.size();
+  const Eigen::Matrix2d last = pair_;
+  border_ = plane_;
+  for (int iteration = 0; iteration < most_iterations; ++iteration) {
+    if (!factorize(values)) return false;
+    set_right_hand_side(values);
+    lu_.solve(rhs_.data(), change_.data());
+    if (!change_.allFinite()) return false;
+    plane_ += Plane::Map(change_.data(), size, 2);
+    pair_ += Eigen::Matrix2d::Map(change_.data() + 2 * size).transpose();
+    if ((pair_ - last).norm() > farthest * (1.0 + last.norm())) return false;
+    if (change_.cwiseAbs().maxCoeff() > tolerance * (1.0 + pair_.cwiseAbs().maxCoeff())) continue;
+    const double cosine = 0.5 * pair_.trace();
+    return cosine * cosine < beyond_meeting * beyond_meeting * pair_.determinant();
+  }
+  return false;
 }
 
 bool CriticalPair::evaluate(CondensedSystem& condensed, const Orbit& x) {
   std::vector<double> values;
-  map_.values(condensed, x, 1.0, values);
-  if (!find_multiplier(values)) return false;
-  const int size = map_.size();
-  const int first = map_.last_connectivity_row();
-  const Eigen::Index n = size - first;
-  const Complex denominator = w_.segment(first, n).dot(v_.head(n));
-  if (denominator == 0.0) return false;
-  // dG = Re(gamma w^H (dS) v), that is (the parts of conj(gamma) w) with (the parts of v).
-  const Complex gamma = -2.0 * std::conj(multiplier_) / denominator;
-  const Vector weights = -std::conj(gamma) * w_.head(size);
-  const Eigen::VectorXd v_real = v_.head(size).real();
-  const Eigen::VectorXd v_imag = v_.head(size).imag();
-  const Eigen::VectorXd w_real = weights.real();
-  const Eigen::VectorXd w_imag = weights.imag();
+  map_.values(condensed, x, 0.0, values);
+  if (!started_ && !begin(values)) return false;
+  if (!find_plane(values)) return false;
+  started_ = true;
+  const Eigen::Index size = map_.size();
+  rhs_.setZero();
+  rhs_.tail<4>() << pair_(1, 1), -pair_(1, 0), -pair_(0, 1), pair_(0, 0);  // d det / d L, row by row
+  lu_.solve_transposed(rhs_.data(), change_.data());
+  if (!change_.allFinite()) return false;
   gradient_.set_zero();
-  map_.subtract_derivative(condensed, x, v_real.data(), w_real.data(), extended_, gradient_);
-  map_.subtract_derivative(condensed, x, v_imag.data(), w_imag.data(), extended_, gradient_);
-  return true;
+  for (int k = 0; k < 2; ++k)
+    map_.subtract_derivative(condensed, x, plane_.col(k).data(), change_.data() + k * size, extended_, gradient_);
+  return orthonormalise();
 }
 
 }  // namespace tchat

@@ -1,55 +1,66 @@
-/// Defining condition of torus curves: a complex pair of multipliers on the unit circle, G = |mu|^2 - 1.
+/// Defining condition of torus curves: two multipliers of product one, G = det L - 1.
 ///
-/// mu is followed as a simple eigenvalue of the condensed return map: S(mu) v = 0, w^H S(mu) = 0 by Newton's method on
-/// the bordered problem from the last mu, and
+/// The pair is followed as an invariant plane of the condensed return map S(mu) = S + mu E: the columns of V span it,
 ///
-///     d mu = -(w^H (dS) v) / (w_last^H v_1(0)),      dG = 2 Re(conj(mu) d mu),
+///     S V + E V L = 0,      V_last^T V = Id,
 ///
-/// where w_last belongs to the last connectivity, mu v_1(0) = g_x w_m. Regular while the pair is simple: the curve ends
-/// at 1:1 and 1:2 resonances, where it becomes a double real multiplier. Newton's method that comes to a real
-/// multiplier or far from where it began has found another one: an evaluation fails then. Compared with one critical
-/// multiplier there are two sweeps of second derivatives, for the real and the imaginary part.
+/// by Newton's method on V and the 2 x 2 matrix L, whose eigenvalues are the pair, from the last plane. With the
+/// solution (W, K) of the transposed Newton system for the right-hand side (0, d det / d L)
+///
+///     dG = -sum of w_k^T (dS) v_k:
+///
+/// two sweeps of second derivatives where one critical multiplier needs one. Regular as long as the pair differs from
+/// the other multipliers, also where its two halves meet: there, at the 1:1 and 1:2 resonance, a torus curve ends, and
+/// pairs of real multipliers of product one (neutral saddles) follow, of which only the nearest are admitted.
 #pragma once
 
-#include <Eigen/SparseCore>
-#include <Eigen/SparseLU>
+#include <Eigen/Core>
 #include <complex>
+#include <vector>
 
 #include "bvp/bordered_problem.hpp"
 #include "bvp/condensed_return_map.hpp"
+#include "linear_algebra/sparse_lu.hpp"
 
 namespace tchat {
 
 class CriticalPair final : public OrbitCondition {
  public:
-  /// `multiplier`: where to begin, in the upper half plane.
+  /// `multiplier`: where to begin, not a real number.
   CriticalPair(const DefiningSystem& system, const OrbitShape& shape, std::complex<double> multiplier);
 
+  /// False where no plane is found near the last one.
   bool evaluate(CondensedSystem& condensed, const Orbit& x) override;
-  double value() const override { return std::norm(multiplier_) - 1.0; }
+  double value() const override { return pair_.determinant() - 1.0; }
   const OrbitVector& gradient() const override { return gradient_; }
-  /// mu and the border b, c.
+  /// L and V; empty before the first evaluation.
   std::vector<double> memory() const override;
   void recall(const std::vector<double>& memory) override;
-  /// In the upper half plane.
-  std::complex<double> multiplier() const { return multiplier_; }
+
+  /// Half the sum of the pair: the cosine of its angle on the curve, beyond +-1 where it is real.
+  double cosine() const { return 0.5 * pair_.trace(); }
+  /// In the closed upper half plane; for a real pair the one nearer to zero.
+  std::complex<double> multiplier() const;
 
  private:
-  using Complex = std::complex<double>;
-  using Vector = Eigen::VectorXcd;
+  using Plane = Eigen::Matrix<double, Eigen::Dynamic, 2>;
 
-  bool find_multiplier(const std::vector<double>& values);
-  bool iterate(const std::vector<double>& values);
-  bool solve_bordered(const std::vector<double>& values);
+  bool begin(const std::vector<double>& values);
+  bool find_plane(const std::vector<double>& values);
+  bool factorize(const std::vector<double>& values);
+  void set_right_hand_side(const std::vector<double>& values);
+  bool orthonormalise();
 
   CondensedReturnMap map_;
-  Complex multiplier_;
-  Eigen::SparseMatrix<Complex> matrix_;
-  Eigen::SparseLU<Eigen::SparseMatrix<Complex>> lu_;
-  Vector column_;  // b
-  Vector row_;     // c
-  Vector v_;       // with the bordered problem's g last
-  Vector w_;
+  std::complex<double> first_multiplier_;
+  SparseLu lu_;  // of Newton's matrix for (V, L)
+  std::vector<double> matrix_;
+  Eigen::VectorXd rhs_;
+  Eigen::VectorXd change_;
+  Eigen::Matrix2d pair_;  // L
+  Plane plane_;           // V
+  Plane border_;          // V_last
+  bool started_ = false;
   OrbitVector extended_;
   OrbitVector gradient_;
 };

@@ -34,7 +34,8 @@ std::string describe(NewtonStatus status) {
     case NewtonStatus::not_finite:
       return "a function of the problem is not finite";
     case NewtonStatus::condition_lost:
-      return "the critical multiplier is lost (a torus curve ends where its pair becomes real: 1:1 and 1:2 resonance)";
+      return "the critical multiplier of the curve is lost (not found near the last one, or a pair that has become "
+             "real)";
     default:
       return "the Newton matrix is singular";
   }

@@ -86,7 +86,8 @@ std::vector<std::unique_ptr<TestFunction>> select_tests(const DefiningSystem& sy
   if (const auto* critical = dynamic_cast<const CriticalMultiplier*>(condition))
     add_codimension_two(tests, *critical, curve_type);
   else if (const auto* pair = dynamic_cast<const CriticalPair*>(condition))
-    for (const PointType type : {PointType::resonance_3, PointType::resonance_4})
+    for (const PointType type :
+         {PointType::resonance_1, PointType::resonance_2, PointType::resonance_3, PointType::resonance_4})
       tests.push_back(std::make_unique<AngleTest>(*pair, type));
   else
     add_bifurcations(tests, system, settings);

@@ -37,14 +37,15 @@ class ResonanceTest final : public TestFunction {
   PointType type_;
 };
 
-/// The angle of the critical pair on a torus curve: 1:3 and 1:4 resonance.
+/// The angle of the critical pair on a torus curve, by its cosine, which is smooth also where the pair meets: 1:3 and
+/// 1:4 resonance, and 1:1 and 1:2, where the curve ends.
 class AngleTest final : public TestFunction {
  public:
   AngleTest(const CriticalPair& condition, PointType type) : condition_(condition), type_(type) {}
-  std::string name() const override { return type_ == PointType::resonance_3 ? "1:3 resonance" : "1:4 resonance"; }
+  std::string name() const override;
   std::optional<double> value(const TestedPoint& point) const override;
   double zero_level(const TestedPoint&) const override { return 1e-9; }
-  SpecialPoint classify(const TestedPoint&, bool) const override { return {type_, {}, false, name()}; }
+  SpecialPoint classify(const TestedPoint&, bool) const override;
 
  private:
   const CriticalPair& condition_;

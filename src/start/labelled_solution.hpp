@@ -18,8 +18,8 @@ enum class PointType {
   end = 9,
   no_convergence = -9,
   cusp = -2,         ///< on fold curves
-  resonance_1 = -5,  ///< 1:1, on fold curves
-  resonance_2 = -6,  ///< 1:2, on period-doubling curves
+  resonance_1 = -5,  ///< 1:1, on fold and torus curves
+  resonance_2 = -6,  ///< 1:2, on period-doubling and torus curves
   resonance_3 = -7,  ///< 1:3, on torus curves
   resonance_4 = -8   ///< 1:4, on torus curves
 };
