@@ -67,6 +67,14 @@ PlotItem::Kind kind_of(const std::string& path) {
   return PlotItem::Kind::points;
 }
 
+/// Why a word that is no file cannot mean anything else either.
+std::string what_else(const std::string& word) {
+  if (is_label(word)) return ", and labels come after the q-file that has them";
+  const std::string name = fs::path(word).filename().string();
+  if (name.size() > 2 && name[1] == '.') return " and no label";
+  return fmt::format(" and no label, and there is no {} and no {}", beside(word, 'p'), beside(word, 'q'));
+}
+
 }  // namespace
 
 std::vector<PlotItem> read_plot_items(const std::vector<std::string>& words) {
@@ -84,13 +92,10 @@ std::vector<PlotItem> read_plot_items(const std::vector<std::string>& words) {
     } else if (is_label(words[k]) && !items.empty()) {
       items.back().labels.push_back(words[k]);
     } else {
-      const std::string what = is_label(words[k]) ? ", and labels come after the q-file that has them"
-                                                  : fmt::format(" and no label, and there is no {} and no {}",
-                                                                beside(words[k], 'p'), beside(words[k], 'q'));
       throw UserError(
           fmt::format("{} is no file{}; give p-files (branches), or a q-file and its labels, as in tchat plot q.mems "
                       "GR1 PD1, or the trajectory of a simulation",
-                      in_quotes(words[k]), what));
+                      in_quotes(words[k]), what_else(words[k])));
     }
   }
   return items;

@@ -57,6 +57,11 @@ TEST_CASE("Overrides of start and stop", "[constants]") {
   CHECK(s.stop_rules[1].type == "GR");
   CHECK(s.stop_rules[1].count == 2);
   CHECK(with({"STOP=PD1"}).stop_rules.size() == 1);
+  for (const char* type : {"GC", "CP", "R1", "R2", "R3", "R4"}) {
+    const StartLabel start = with({std::string("IRS=") + type + "12"}).start;
+    CHECK(start.type == type);
+    CHECK(start.number == 12);
+  }
   CHECK(with({"IRS=0"}).start.from_data());
   CHECK_FALSE(with({"GRSTOP=0"}).stop_at_grazing);
 }

@@ -146,6 +146,15 @@ TEST_CASE("orbits: names and wall from the plugin, jumps dashed") {
   CHECK(contains(series, "set label 'wall'"));
 }
 
+TEST_CASE("after a q-file a label is a label, whatever files there are") {
+  const Workspace& workspace = impacting();
+  workspace.write("q.PD1", "another file");
+  workspace.write("PD1", "one more");
+  CHECK(contains(script_of(workspace, "q.branch PD1 EP1 -p linosc"), "PD1: α = 3.0362"));
+  std::filesystem::remove(workspace.file("q.PD1"));
+  std::filesystem::remove(workspace.file("PD1"));
+}
+
 TEST_CASE("multipliers along the branch and at labels") {
   const Workspace& workspace = impacting();
   const std::string all = script_of(workspace, "--multipliers q.branch");

@@ -208,6 +208,23 @@ TCHAT_PROBLEM(Forgot)
   CHECK_THROWS_WITH(resolve_plugin(folder / "forgot", options), Contains("fields"));
 }
 
+TEST_CASE("a local variable of type double that depends on the state: the message says what to do") {
+  const PluginFolder folder;
+  folder.write("narrow.cpp", R"(#include <tchat/problem.hpp>
+struct Narrow {
+  static constexpr int dimension = 1, parameters = 1, fields = 1, events = 1, jumps = 1;
+  template <class T> void field(int, const T* x, const T* par, T* f) const {
+    const double spring = par[0] * x[0];
+    f[0] = -spring;
+  }
+  template <class T> T event(int, const T* x, const T*) const { return x[0]; }
+  template <class T> void jump(int, const T* x, const T*, T* g) const { g[0] = x[0]; }
+};
+TCHAT_PROBLEM(Narrow)
+)");
+  CHECK_THROWS_WITH(resolve_plugin(folder / "narrow", {"", TCHAT_TEST_INCLUDE}), Contains("of type T"));
+}
+
 TEST_CASE("a long list of errors is cut") {
   const PluginFolder folder;
   std::string source;

@@ -85,3 +85,11 @@ TEST_CASE("labels that are no grazing points, and labels of another problem") {
   CHECK_THROWS_WITH(find(labelled(mems_orbits::impacting, {contact, 1, 9, 0.5}, state(0, 0))),
                     Contains("event function 9"));
 }
+
+TEST_CASE("the jump at a contact is that of the index jump function, else GRJUMP") {
+  Labelled l = labelled({{1, 3, 3}}, {contact, 1, 1, 0.4}, state(0.0, 0.0));
+  l.settings.grazing_jump = 2;
+  CHECK(jump_at_contact(mems(), l.settings, l.x, find(l)) == 1);
+  // An event that is not watched on this segment.
+  CHECK(jump_at_contact(mems(), l.settings, l.x, {ContactPoint::inside, 0, 2, 0.4}) == 2);
+}
