@@ -56,12 +56,24 @@ void add_codimension_two(Tests& tests, const CriticalMultiplier& condition, int 
   tests.push_back(std::make_unique<ResonanceTest>(condition, fold ? PointType::resonance_1 : PointType::resonance_2));
 }
 
+/// On a grazing curve, contacts with the other monitored events; with the same event on segments that do not touch the
+/// contact that the curve keeps.
+void add_further_contacts(Tests& tests, const GrazingOrbitSystem& system, const RunSettings& settings) {
+  const int kept = system.grazing_segment();
+  const int event = system.signature()[static_cast<std::size_t>(kept)].event;
+  for (int s = 0; s < system.segments(); ++s)
+    for (const int other : settings.segments[static_cast<std::size_t>(s)].monitor)
+      if (other != event || (s != kept && s != (kept + 1) % system.segments()))
+        tests.push_back(std::make_unique<ContactTest>(system, s, other, settings.stop_at_grazing));
+}
+
 /// On a grazing curve: xi_n by GCIPSI, a*, branch points, multipliers +1 and -1 of the smooth orbit, impact velocities
-/// of the other segments. A fold in the principal parameter means nothing there.
+/// of the other segments, further contacts. A fold in the principal parameter means nothing there.
 Tests tests_on_grazing_curve(const GrazingOrbitSystem& system, const RunSettings& settings) {
   Tests tests;
   add_user_values(tests, system.system(), settings);
   add_impact_velocities(tests, system, settings);
+  add_further_contacts(tests, system, settings);
   for (const int n : settings.test_functions)
     tests.push_back(std::make_unique<XiTest>(system, settings.grazing_jump, n));
   tests.push_back(std::make_unique<AccelerationTest>(system, settings.grazing_jump));

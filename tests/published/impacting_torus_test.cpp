@@ -23,7 +23,7 @@ void run_to_torus(const Workspace& workspace) {
   std::filesystem::copy_file(TWO_WALLS_LIBRARY, workspace.file("walls.so"));
   command(workspace, "simulate walls -q -o simulated --dat smooth --free a");
   command(workspace, "run walls -q -c smooth -d smooth -o smooth NPR=0");
-  command(workspace, "resegment -q -p walls q.smooth GR1 --to impacting --jump 2 -o born NPR=0 NMX=300 DS=0.01");
+  command(workspace, "resegment -q -p walls q.smooth GR1 --to impacting -o born NPR=0 NMX=300 DS=0.01");
   command(workspace, "run walls -q -c born -s born -o torus");
 }
 
