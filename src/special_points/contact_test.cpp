@@ -179,15 +179,37 @@ int ContactTest::sign_where_undefined(const TestedPoint& point) const {
   return 0;
 }
 
+/// At an end of the segment h may pass zero with a slope: its surface is met there, where another event cuts the orbit.
+bool ContactTest::crosses(const TestedPoint& point, const Contact& contact) const {
+  constexpr double slow = 1e-5;
+  if (contact.tau > 0.0 && contact.tau < 1.0) return false;
+  const HybridSystem& system = system_.system();
+  const int field = system_.signature()[static_cast<std::size_t>(segment_)].field;
+  const double* par = point.orbit.par.data();
+  Eigen::VectorXd f(contact.state.size());
+  Eigen::VectorXd gradient(contact.state.size());
+  double h = 0.0;
+  system.value(FunctionKind::field, field, contact.state.data(), par, f.data());
+  system.first(FunctionKind::event, event_, contact.state.data(), par, {}, &h, gradient.data(), nullptr);
+  return std::abs(gradient.dot(f)) > slow * (1.0 + gradient.norm() * f.norm());
+}
+
 SpecialPoint ContactTest::classify(const TestedPoint& point, bool rising) const {
-  const Contact contact =
-      least_value(system_, point.condensed.rule(), point.orbit, segment_, event_).value_or(Contact{});
+  const std::optional<Contact> contact = least_value(system_, point.condensed.rule(), point.orbit, segment_, event_);
+  const bool ends_branch = stop_ && !rising;
+  const std::string where = fmt::format("event {} ({}) inside segment {}", event_,
+                                        system_.system().function_name(FunctionKind::event, event_), segment_ + 1);
+  if (!contact)
+    return {PointType::user,
+            {UserPointKind::contact, segment_ + 1, event_, 0.0},
+            ends_branch,
+            "grazing: contact with " + where};
   return {PointType::user,
-          {UserPointKind::contact, segment_ + 1, event_, contact.tau},
-          stop_ && !rising,
-          fmt::format("grazing: contact with event {} ({}) inside segment {}, tau = {:.10g}, {}", event_,
-                      system_.system().function_name(FunctionKind::event, event_), segment_ + 1, contact.tau,
-                      state_text(system_.system(), contact.state.data()))};
+          {UserPointKind::contact, segment_ + 1, event_, contact->tau},
+          ends_branch,
+          fmt::format("{} with {}, tau = {:.10g}, {}",
+                      crosses(point, *contact) ? "two events at once: crossing" : "grazing: contact", where,
+                      contact->tau, state_text(system_.system(), contact->state.data()))};
 }
 
 }  // namespace tchat

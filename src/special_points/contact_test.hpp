@@ -35,6 +35,8 @@ class ContactTest final : public TestFunction {
   SpecialPoint classify(const TestedPoint& point, bool rising) const override;
 
  private:
+  bool crosses(const TestedPoint& point, const Contact& contact) const;
+
   const DefiningSystem& system_;
   int segment_;
   int event_;
