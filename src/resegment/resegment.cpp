@@ -310,7 +310,7 @@ std::vector<std::string> resegment(const ResegmentRequest& request, std::ostream
   const std::string start_out = request.data ? request.output + ".dat" : solutions_out;
   write_whole_file(start_out, request.data ? data_text(start.orbit, system)
                                            : format_solution(make_solution(source, target, start, settings)));
-  write_whole_file(constants_out, positional_text(settings));
+  write_whole_file(constants_out, keyword_text(settings));
 
   screen << summary(source, settings, start.orbit, system)
          << fmt::format("{} and {} written; next: tchat run {} -c {} {} {}\n", start_out, constants_out,
