@@ -316,6 +316,9 @@ std::vector<std::string> resegment(const ResegmentRequest& request, std::ostream
          << fmt::format("{} and {} written; next: tchat run {} -c {} {} {}\n", start_out, constants_out,
                         std::filesystem::path(plugin).stem().string(), request.output, request.data ? "-d" : "-s",
                         request.output);
+  if (request.kind == ResegmentKind::impacting)
+    screen << "On one side of this point the orbit has the new impact, on the other it is inadmissible: choose by the "
+              "sign of DS, or\nsee both with --both.\n";
   return warnings;
 }
 
