@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <numeric>
 
 #include "constants/settings_check.hpp"
@@ -24,11 +25,19 @@ std::vector<RawValue> items_of(const Constant& constant, const RawValue& value) 
   refuse(constant, std::string(constant.keyword), value.token.place, in_quotes(value.token.text), "a list of values");
 }
 
-std::vector<int> integers_of(const Constant& constant, const RawValue& value) {
+std::vector<int> integers_of(const Constant& constant, const std::vector<RawValue>& items) {
   std::vector<int> result;
-  for (const RawValue& item : items_of(constant, value))
+  for (const RawValue& item : items)
     result.push_back(integer_value(constant, element(constant, result.size()), item, constant.limits));
   return result;
+}
+
+std::vector<int> integers_of(const Constant& constant, const RawValue& value) {
+  return integers_of(constant, items_of(constant, value));
+}
+
+bool is_name(std::string_view text) {
+  return !text.empty() && (std::isalpha(static_cast<unsigned char>(text.front())) != 0 || text.front() == '_');
 }
 
 /// The pairs of a dictionary; an empty list counts as none.
@@ -36,6 +45,10 @@ const std::vector<RawPair>& pairs_of(const Constant& constant, const RawValue& v
   if (value.shape == Shape::pairs || (value.shape == Shape::list && value.items.empty())) return value.pairs;
   refuse(constant, std::string(constant.keyword), value.token.place, in_quotes(value.token.text),
          "pairs of an index and a value");
+}
+
+bool has_parameter_indices(const Constant& constant) {
+  return constant.keyword == "ICP" || constant.keyword == "THL" || constant.keyword == "UZR";
 }
 
 int pair_index(const Constant& constant, const Token& key) {
@@ -71,11 +84,16 @@ struct SettingsDraft::Assigner {
     else
       settings().*member = {"", integer_value(constant, name(), value, constant.limits)};
   }
-  void operator()(std::vector<int> RunSettings::*member) const { settings().*member = integers_of(constant, value); }
+  void operator()(std::vector<int> RunSettings::*member) const {
+    std::vector<RawValue> items = items_of(constant, value);
+    for (RawValue& item : items)
+      if (item.shape == Shape::scalar) item.token = draft.index_token(constant, item.token);
+    settings().*member = integers_of(constant, items);
+  }
   void operator()(std::vector<IndexedValue> RunSettings::*member) const {
     std::vector<IndexedValue> result;
     for (const auto& [key, weight] : pairs_of(constant, value)) {
-      const int index = pair_index(constant, key);
+      const int index = pair_index(constant, draft.index_token(constant, key));
       const auto same = [index](const IndexedValue& other) { return other.index == index; };
       if (std::any_of(result.begin(), result.end(), same))
         refuse(constant, pair_name(constant, index), key.place, "the index " + in_quotes(key.text) + " twice",
@@ -87,7 +105,7 @@ struct SettingsDraft::Assigner {
   void operator()(std::vector<UserValue> RunSettings::*member) const {
     std::vector<UserValue> result;
     for (const auto& [key, values] : pairs_of(constant, value)) {
-      const int index = pair_index(constant, key);
+      const int index = pair_index(constant, draft.index_token(constant, key));
       for (const RawValue& item : items_of(constant, values))
         result.push_back(
             {std::abs(index), real_value(constant, pair_name(constant, index), item, constant.limits), index < 0});
@@ -129,8 +147,20 @@ struct SettingsDraft::Assigner {
   }
 };
 
-SettingsDraft::SettingsDraft(RunSettings base, std::string source)
-    : settings_(std::move(base)), source_(std::move(source)) {}
+SettingsDraft::SettingsDraft(RunSettings base, std::string source, ParameterNames names)
+    : settings_(std::move(base)), source_(std::move(source)), names_(std::move(names)) {}
+
+/// The number in the place of a parameter's name, which may have the sign of an index; everything else as it is.
+Token SettingsDraft::index_token(const Constant& constant, const Token& token) const {
+  const bool negative = token.text.starts_with('-');
+  const std::string name = token.text.substr(negative ? 1 : 0);
+  if (!has_parameter_indices(constant) || !is_name(name)) return token;
+  if (!names_)
+    refuse(constant, (constant.keyword == "ICP" ? "" : "I") + std::string(constant.keyword), token.place,
+           in_quotes(token.text),
+           "indices here; names are understood by tchat run, simulate and resegment, which know the problem");
+  return {fmt::format("{}{}", negative ? "-" : "", names_(name)), token.place};
+}
 
 void SettingsDraft::assign(const Constant& constant, const RawValue& value) {
   std::visit(Assigner{*this, constant, value}, constant.member);

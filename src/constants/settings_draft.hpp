@@ -2,6 +2,7 @@
 /// them together (list lengths, the segments' lists, indices of durations) is settled by `finish`.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -15,10 +16,14 @@ namespace tchat {
 /// Accepted without effect, or probably not what was meant: complete sentences for the user.
 using Warnings = std::vector<std::string>;
 
+/// PAR index of a parameter's name, where names are known.
+using ParameterNames = std::function<int(const std::string& name)>;
+
 class SettingsDraft {
  public:
-  /// `source` names the text that the constants come from ("gc.mems", "command line").
-  SettingsDraft(RunSettings base, std::string source);
+  /// `source` names the text that the constants come from ("gc.mems", "command line"). With `names`, ICP, THL and UZR
+  /// may have names of parameters in the place of PAR indices.
+  SettingsDraft(RunSettings base, std::string source, ParameterNames names = {});
 
   /// Gives a constant a new value (a list is replaced as a whole). Throws UserError when the value by itself is wrong.
   void assign(const Constant& constant, const RawValue& value);
@@ -50,8 +55,11 @@ class SettingsDraft {
   void check_count(const Constant& constant, std::size_t actual) const;
   void check_counts() const;
 
+  Token index_token(const Constant& constant, const Token& token) const;
+
   RunSettings settings_;
   std::string source_;
+  ParameterNames names_;
   std::map<std::string_view, Place> places_;            // of what has been assigned, by keyword
   std::map<std::string_view, int> counts_;              // NICP, ...
   std::map<std::string_view, std::vector<int>> lists_;  // GCSEGTYP, GCFIND, ..., GCHNO, as given

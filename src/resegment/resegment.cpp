@@ -20,6 +20,7 @@
 #include "resegment/empty_segments.hpp"
 #include "resegment/new_settings.hpp"
 #include "resegment/segment_list.hpp"
+#include "run/named_parameters.hpp"
 #include "run/problem_setup.hpp"
 #include "run/run_request.hpp"
 #include "start/orbit_start.hpp"
@@ -293,7 +294,7 @@ std::vector<std::string> resegment(const ResegmentRequest& request, std::ostream
   const OrbitStart start = assemble(source.start, pieces);
   RunSettings settings = new_settings(source.settings, target.segments, target.problem, system);
   if (request.data) settings.start = {};
-  apply_overrides(settings, request.overrides, &warnings);
+  apply_overrides(settings, request.overrides, &warnings, names_of(system, "ICP, THL, UZR"));
   if (!settings.parameter_values.empty())
     throw UserError("values of parameters are not kept in a constants file; give PAR(...)= to `tchat run`");
   const std::vector<std::string> contradictions = check_settings_against(system, settings, "the new constants");

@@ -15,6 +15,7 @@
 #include "plugin/problem_library.hpp"
 #include "run/branch_setup.hpp"
 #include "run/branch_writer.hpp"
+#include "run/named_parameters.hpp"
 #include "run/problem_setup.hpp"
 #include "run/problem_types.hpp"
 #include "run/run_summary.hpp"
@@ -50,6 +51,13 @@ void refuse_to_replace_start(const RunRequest& request, const SelectedStart& sta
                   output, output));
 }
 
+RunSettings read_settings(const RunRequest& request, const std::string& constants, const ParameterNames& names,
+                          Warnings* warnings) {
+  RunSettings settings = read_constants_file(constants, warnings, names);
+  apply_overrides(settings, request.overrides, warnings, names);
+  return settings;
+}
+
 }  // namespace
 
 int run_problem(const RunRequest& request, std::ostream& screen, std::ostream& warnings,
@@ -60,17 +68,21 @@ int run_problem(const RunRequest& request, std::ostream& screen, std::ostream& w
 
   // Constants.
   Warnings constant_warnings;
+  bool named_parameters = false;
   const std::string constants = constants_path(request.constants.value_or(request.name));
-  RunSettings settings = read_constants_file(constants, &constant_warnings);
-  apply_overrides(settings, request.overrides, &constant_warnings);
+  RunSettings settings = read_settings(request, constants, names_to_come(named_parameters), &constant_warnings);
   warn(constant_warnings);
-  const std::vector<int> free_parameters = free_problem_parameters(problem_type(settings), settings);
+  std::vector<int> free_parameters = free_problem_parameters(problem_type(settings), settings);
 
   // Plugin.
   const std::string plugin = resolve_plugin(request.problem.value_or(request.name));
   const ExitGuard guard(plugin);
   const ProblemLibrary library(plugin, [&settings] { return problem_sizes(settings); });
   const HybridSystem& system = library.system();
+  if (named_parameters) {
+    settings = read_settings(request, constants, names_of(system, "ICP, THL, UZR"), nullptr);
+    free_parameters = free_problem_parameters(problem_type(settings), settings);
+  }
   warn(check_settings_against(system, settings, constants));
 
   // Start.

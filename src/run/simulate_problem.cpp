@@ -13,6 +13,7 @@
 #include "plugin/exit_guard.hpp"
 #include "plugin/plugin_build.hpp"
 #include "plugin/problem_library.hpp"
+#include "run/named_parameters.hpp"
 #include "run/orbit_hand_over.hpp"
 #include "run/parameter_values.hpp"
 #include "run/problem_setup.hpp"
@@ -180,9 +181,11 @@ int simulate_problem(const SimulationRequest& request, std::ostream& screen, std
 
   const std::string plugin = resolve_plugin(request.problem.value_or(request.name));
   const ExitGuard guard(plugin);
-  SimulationConstants constants = read_simulation_constants(request);
+  bool named_parameters = false;
+  SimulationConstants constants = read_simulation_constants(request, names_to_come(named_parameters));
   const ProblemLibrary library(plugin, [&] { return sizes_of(request, constants); });
   const HybridSystem& system = library.system();
+  if (named_parameters) constants = read_simulation_constants(request, names_of(system, "ICP, THL, UZR"));
   fit_to_problem(constants, system);
   const SimulationStart start = simulation_start(request, constants, system);
   const std::string output = request.output.value_or(request.name);

@@ -32,7 +32,7 @@ std::vector<SegmentSettings> segments_of_signature(const std::string& text, cons
 
 }  // namespace
 
-SimulationConstants read_simulation_constants(const SimulationRequest& request) {
+SimulationConstants read_simulation_constants(const SimulationRequest& request, const ParameterNames& names) {
   namespace fs = std::filesystem;
   SimulationConstants constants;
   const fs::path name(request.name);
@@ -44,12 +44,12 @@ SimulationConstants read_simulation_constants(const SimulationRequest& request) 
     constants.path = own.string();
   RunSettings& settings = constants.settings;
   if (constants.is_given()) {
-    settings = read_constants_file(constants.path);
+    settings = read_constants_file(constants.path, nullptr, names);
   } else {
     settings.free_parameters = {1};
     settings.segments.resize(1);
   }
-  apply_overrides(settings, request.overrides);
+  apply_overrides(settings, request.overrides, nullptr, names);
   constants.file_segments = static_cast<int>(settings.segments.size());
   if (request.signature)
     settings.segments = segments_of_signature(

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "constants/run_settings.hpp"
+#include "constants/settings_draft.hpp"
 #include "hybrid/hybrid_system.hpp"
 #include "plugin/problem_sizes.hpp"
 #include "run/simulation_request.hpp"
@@ -20,7 +21,7 @@ struct SimulationConstants {
 
 /// gc.C of -c, or gc.NAME if there is one, with the command line's constants; --signature replaces the file's. Throws
 /// UserError.
-SimulationConstants read_simulation_constants(const SimulationRequest& request);
+SimulationConstants read_simulation_constants(const SimulationRequest& request, const ParameterNames& names);
 
 /// For a plugin that cannot say its sizes itself. Throws UserError without a constants file.
 ProblemSizes sizes_of(const SimulationRequest& request, const SimulationConstants& constants);

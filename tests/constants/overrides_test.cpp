@@ -49,6 +49,24 @@ TEST_CASE("Overrides of lists", "[constants]") {
   CHECK(with({"GCIPSI=[]"}).test_functions.empty());
 }
 
+TEST_CASE("Names of parameters in the place of their indices", "[constants]") {
+  const ParameterNames names = [](const std::string& name) { return name == "omega" ? 2 : 1; };
+  RunSettings s;
+  const std::vector<std::string> words{"ICP=[omega, alpha, 61]", "UZR={omega: [1.5, 2], -alpha: 3}",
+                                       "THL={omega: 0.5}"};
+  apply_overrides(s, words, nullptr, names);
+  CHECK(s.free_parameters == std::vector<int>{2, 1, 61});
+  REQUIRE(s.user_values.size() == 3);
+  CHECK(s.user_values[1].parameter == 2);
+  CHECK_FALSE(s.user_values[1].stop);
+  CHECK(s.user_values[2].parameter == 1);
+  CHECK(s.user_values[2].stop);
+  CHECK(s.parameter_weights.at(0).index == 2);
+  CHECK_THROWS_WITH(apply_override(s, "ICP=[omega, 61]"),
+                    Catch::Matchers::Contains("names are understood by tchat run"));
+  CHECK_THROWS_AS(apply_overrides(s, std::vector<std::string>{"THU={omega: 1}"}, nullptr, names), UserError);
+}
+
 TEST_CASE("Overrides of start and stop", "[constants]") {
   const RunSettings s = with({"IRS=PD1", "STOP=[PD1,GR2]"});
   CHECK(s.start.type == "PD");

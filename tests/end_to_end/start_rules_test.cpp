@@ -110,3 +110,17 @@ TEST_CASE("r.O as constants of the next run") {
   workspace.run("-c r.three -s one -o four");
   CHECK(workspace.read("p.three") == workspace.read("p.four"));
 }
+
+TEST_CASE("parameters by name or by index: the same run") {
+  const Workspace workspace;
+  workspace.run("-c nonimpacting_omega -d nonimpacting -o index ICP=[2,61] UZR={2:1.5}");
+  workspace.run("-c nonimpacting_omega -d nonimpacting -o name ICP=[omega,61] UZR={omega:1.5}");
+  CHECK(workspace.read("p.name") == workspace.read("p.index"));
+  CHECK(workspace.read("r.name") == workspace.read("r.index"));
+  const Outcome refused =
+      workspace.tchat("run linosc -c nonimpacting_omega -d nonimpacting -o none ICP=[frequency,61]");
+  CHECK(refused.status == 2);
+  CHECK(refused.err.find("frequency") != std::string::npos);
+  CHECK(refused.err.find("alpha, omega, zeta, r") != std::string::npos);
+  CHECK_FALSE(workspace.has("p.none"));
+}

@@ -1,0 +1,23 @@
+#include "run/named_parameters.hpp"
+
+#include <map>
+#include <memory>
+
+#include "hybrid/parameter_vector.hpp"
+#include "run/problem_setup.hpp"
+
+namespace tchat {
+
+ParameterNames names_to_come(bool& used) {
+  const auto seen = std::make_shared<std::map<std::string, int>>();
+  return [&used, seen](const std::string& name) {
+    used = true;
+    return seen->emplace(name, first_duration - 1 - static_cast<int>(seen->size())).first->second;
+  };
+}
+
+ParameterNames names_of(const HybridSystem& system, const std::string& where) {
+  return [&system, where](const std::string& name) { return parameter_index(system, name, where); };
+}
+
+}  // namespace tchat

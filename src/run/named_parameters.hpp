@@ -1,0 +1,20 @@
+/// Parameters named in constants (ICP, UZR, THL): their indices are known when the problem is.
+///
+/// Constants are read twice where names occur: first with stand-ins, so that all other mistakes are told before a
+/// plugin is compiled, then with the problem's own names.
+#pragma once
+
+#include <string>
+
+#include "constants/settings_draft.hpp"
+#include "hybrid/hybrid_system.hpp"
+
+namespace tchat {
+
+/// Stands in for names: each has an index of its own. `used` becomes true when a name occurs.
+ParameterNames names_to_come(bool& used);
+
+/// The problem's names. A name it does not have throws UserError, with those it has; `where` names the constants.
+ParameterNames names_of(const HybridSystem& system, const std::string& where);
+
+}  // namespace tchat
