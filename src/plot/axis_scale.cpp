@@ -78,8 +78,11 @@ void set_linear_tics(AxisScale& scale, int tics) {
   if (std::abs(scale.first_tic) < 1e-9 * scale.tic_step) scale.first_tic = 0.0;
   scale.format = tic_format(scale.tic_step, std::max(std::abs(low), std::abs(high)));
   scale.widest_number = 0.0;
-  for (double tic = scale.first_tic; tic <= high + 1e-9 * scale.tic_step; tic += scale.tic_step)
-    scale.widest_number = std::max(scale.widest_number, text_width({fmt::sprintf(scale.format, tic), false}));
+  const int steps = static_cast<int>(std::floor((high - scale.first_tic) / scale.tic_step + 1e-9));
+  for (int k = 0; k <= steps; ++k) {
+    const std::string number = fmt::sprintf(scale.format, scale.first_tic + k * scale.tic_step);
+    scale.widest_number = std::max(scale.widest_number, text_width({number, false}));
+  }
 }
 
 }  // namespace
