@@ -15,8 +15,6 @@
 #include "constants/user_error.hpp"
 #include "start/fortran_number.hpp"
 
-extern char** environ;
-
 namespace tchat {
 
 namespace {
