@@ -40,6 +40,7 @@ class FortranProblem {
   FortranProblem(const std::string& path, void* library, const ProblemSizes& sizes);
   FortranProblem(const FortranProblem&) = delete;
   FortranProblem& operator=(const FortranProblem&) = delete;
+  ~FortranProblem() = default;
 
   const tchat_problem& table() const { return table_; }
 
