@@ -73,6 +73,8 @@ SimulationSettings simulation_settings(const SimulationRequest& request, const s
 class ProgressLine {
  public:
   explicit ProgressLine(std::ostream* out) : out_(out), last_(Clock::now()) {}
+  ProgressLine(const ProgressLine&) = delete;
+  ProgressLine& operator=(const ProgressLine&) = delete;
   ~ProgressLine() {
     if (out_ != nullptr && shown_) *out_ << "\r\033[K" << std::flush;
   }
