@@ -9,11 +9,13 @@
 #include "constants/user_error.hpp"
 #include "simulation/orbit_flow.hpp"
 #include "simulation/segment_flow.hpp"
+#include "support/van_der_pol.hpp"
 
 using namespace tchat;
 using Catch::Matchers::Contains;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
+using tchat::test::VanDerPol;
 
 namespace {
 
@@ -48,23 +50,6 @@ struct Harmonic {
   void jump(int k, const T* x, const T*, T* g) const {
     g[0] = x[0];
     g[1] = k == 1 ? x[1] : -0.5 * x[1];
-  }
-};
-
-struct VanDerPol {
-  static constexpr int dimension = 2, parameters = 1, fields = 1, events = 1, jumps = 1;
-  template <class T>
-  void field(int, const T* x, const T* p, T* f) const {
-    f[0] = x[1];
-    f[1] = p[0] * (1.0 - x[0] * x[0]) * x[1] - x[0];
-  }
-  template <class T>
-  T event(int, const T* x, const T*) const {
-    return x[1];
-  }
-  template <class T>
-  void jump(int, const T* x, const T*, T* g) const {
-    g[0] = x[0], g[1] = x[1];
   }
 };
 
