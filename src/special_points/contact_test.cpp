@@ -58,12 +58,19 @@ class EventAlongSegment {
     const double value = system().event(event_, u.data(), par()) + 0.5 * rate * correction;
     u += correction * f;
     const double tau = x_.mesh[static_cast<std::size_t>(j)] + sigma * length(j) + correction / x_.duration(s_);
-    return {std::clamp(tau, 0.0, 1.0), value, u};
+    return {snapped(tau), value, u};
   }
 
  private:
   const HybridSystem& system() const { return defining_.system(); }
   const double* par() const { return x_.par.data(); }
+
+  /// A minimum on an end but for rounding is on it.
+  static double snapped(double tau) {
+    constexpr double rounding = 1e-12;
+    if (tau < rounding) return 0.0;
+    return tau > 1.0 - rounding ? 1.0 : tau;
+  }
 
   Vector gradient(const Vector& u) const {
     Vector result(u.size());
