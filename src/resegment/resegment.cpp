@@ -294,7 +294,7 @@ std::vector<std::string> resegment(const ResegmentRequest& request, std::ostream
   const OrbitStart start = assemble(source.start, pieces);
   RunSettings settings = new_settings(source.settings, target.segments, target.problem, system);
   if (request.data) settings.start = {};
-  apply_overrides(settings, request.overrides, &warnings, names_of(system, "ICP, THL, UZR"));
+  apply_overrides(settings, request.overrides, &warnings, names_of(system));
   if (!settings.parameter_values.empty())
     throw UserError("values of parameters are not kept in a constants file; give PAR(...)= to `tchat run`");
   const std::vector<std::string> contradictions = check_settings_against(system, settings, "the new constants");

@@ -2,6 +2,7 @@
 
 #include <map>
 #include <memory>
+#include <string>
 
 #include "hybrid/parameter_vector.hpp"
 #include "run/problem_setup.hpp"
@@ -16,8 +17,8 @@ ParameterNames names_to_come(bool& used) {
   };
 }
 
-ParameterNames names_of(const HybridSystem& system, const std::string& where) {
-  return [&system, where](const std::string& name) { return parameter_index(system, name, where); };
+ParameterNames names_of(const HybridSystem& system) {
+  return [&system](const std::string& name) { return parameter_index(system, name, "ICP, THL or UZR"); };
 }
 
 }  // namespace tchat

@@ -4,8 +4,6 @@
 /// plugin is compiled, then with the problem's own names.
 #pragma once
 
-#include <string>
-
 #include "constants/settings_draft.hpp"
 #include "hybrid/hybrid_system.hpp"
 
@@ -14,7 +12,7 @@ namespace tchat {
 /// Stands in for names: each has an index of its own. `used` becomes true when a name occurs.
 ParameterNames names_to_come(bool& used);
 
-/// The problem's names. A name it does not have throws UserError, with those it has; `where` names the constants.
-ParameterNames names_of(const HybridSystem& system, const std::string& where);
+/// The problem's names, while it lives. A name it does not have throws UserError, with those it has.
+ParameterNames names_of(const HybridSystem& system);
 
 }  // namespace tchat

@@ -80,7 +80,7 @@ int run_problem(const RunRequest& request, std::ostream& screen, std::ostream& w
   const ProblemLibrary library(plugin, [&settings] { return problem_sizes(settings); });
   const HybridSystem& system = library.system();
   if (named_parameters) {
-    settings = read_settings(request, constants, names_of(system, "ICP, THL, UZR"), nullptr);
+    settings = read_settings(request, constants, names_of(system), nullptr);
     free_parameters = free_problem_parameters(problem_type(settings), settings);
   }
   warn(check_settings_against(system, settings, constants));

@@ -187,7 +187,7 @@ int simulate_problem(const SimulationRequest& request, std::ostream& screen, std
   SimulationConstants constants = read_simulation_constants(request, names_to_come(named_parameters));
   const ProblemLibrary library(plugin, [&] { return sizes_of(request, constants); });
   const HybridSystem& system = library.system();
-  if (named_parameters) constants = read_simulation_constants(request, names_of(system, "ICP, THL, UZR"));
+  if (named_parameters) constants = read_simulation_constants(request, names_of(system));
   fit_to_problem(constants, system);
   const SimulationStart start = simulation_start(request, constants, system);
   const std::string output = request.output.value_or(request.name);
