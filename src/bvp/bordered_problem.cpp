@@ -21,8 +21,10 @@ BorderedProblem::BorderedProblem(const DefiningSystem& system, const OrbitShape&
   for (Eigen::Index g = 0; g < stand_in.globals.size(); ++g) stand_in.globals(g) = g % 2 == 0 ? 1.0 : -1.3;
 }
 
-ConditionMemory BorderedProblem::memory() const {
-  return condition_ ? ConditionMemory{condition_->memory(), rows_[1]} : ConditionMemory{};
+void BorderedProblem::remember(ConditionMemory& memory) const {
+  if (!condition_) return;
+  condition_->remember(memory.condition);
+  memory.stand_in = rows_[1];
 }
 
 void BorderedProblem::recall(const ConditionMemory& memory) {

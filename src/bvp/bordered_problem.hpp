@@ -29,8 +29,8 @@ class OrbitCondition {
   virtual double value() const = 0;
   virtual const OrbitVector& gradient() const = 0;
 
-  /// What evaluations near the point of the last one begin from.
-  virtual std::vector<double> memory() const = 0;
+  /// What evaluations near the point of the last one begin from; `memory` is overwritten, empty before the first one.
+  virtual void remember(std::vector<double>& memory) const = 0;
   virtual void recall(const std::vector<double>& memory) = 0;
 };
 
@@ -54,7 +54,8 @@ class BorderedProblem {
   /// Old factors may be used for another point: not with a condition, whose value comes with the factors.
   bool allows_chord() const { return condition_ == nullptr; }
 
-  ConditionMemory memory() const;
+  /// Overwrites `memory`, whose space is used again.
+  void remember(ConditionMemory& memory) const;
   void recall(const ConditionMemory& memory);
 
   Linearization linearize(const Orbit& x, const OrbitVector& row, OrbitResidual& residual);

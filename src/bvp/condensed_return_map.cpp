@@ -4,13 +4,6 @@
 
 namespace tchat {
 
-namespace {
-
-using Vector = Eigen::VectorXd;
-using Matrix = Eigen::MatrixXd;
-
-}  // namespace
-
 CondensedReturnMap::CondensedReturnMap(const DefiningSystem& system, const OrbitShape& shape)
     : system_(system),
       shape_(shape),
@@ -22,7 +15,9 @@ CondensedReturnMap::CondensedReturnMap(const DefiningSystem& system, const Orbit
       point_(n_),
       f_(n_),
       d_(n_),
-      direction_(Vector::Zero(n_ + system.free_count())),
+      hx_(n_),
+      hp_(system.free_count()),
+      direction_(Eigen::VectorXd::Zero(n_ + system.free_count())),
       fx_(n_, n_),
       dx_(n_, n_),
       fp_(n_, system.free_count()),
@@ -49,25 +44,21 @@ void CondensedReturnMap::values(const CondensedSystem& condensed, const Orbit& x
                                 std::vector<double>& values) {
   const HybridSystem& hybrid = system_.system();
   const double* par = x.par.data();
-  Vector f(n_);
-  Vector duration(n_);
-  Vector gradient(n_);
-  Matrix gx(n_, n_);
   values.clear();
   for (int s = 0; s < shape_.segments; ++s) {
     const IndexVector& v = system_.signature()[static_cast<std::size_t>(s)];
-    condensed.duration_block(s, duration.data());
+    condensed.duration_block(s, d_.data());
     for (int a = 0; a < n_; ++a) {
       values.insert(values.end(), condensed.first_block(s) + a * n_, condensed.first_block(s) + (a + 1) * n_);
       values.insert(values.end(), condensed.last_block(s) + a * n_, condensed.last_block(s) + (a + 1) * n_);
-      values.push_back(duration(a));
+      values.push_back(d_(a));
     }
-    system_.section_gradient(s, x.end(s), par, gradient.data());
-    values.insert(values.end(), gradient.data(), gradient.data() + n_);
-    hybrid.first(FunctionKind::jump, v.jump, x.end(s), par, {}, f.data(), gx.data(), nullptr);
+    system_.section_gradient(s, x.end(s), par, hx_.data());
+    values.insert(values.end(), hx_.begin(), hx_.end());
+    hybrid.first(FunctionKind::jump, v.jump, x.end(s), par, {}, f_.data(), fx_.data(), nullptr);
     values.insert(values.end(), static_cast<std::size_t>(n_), s + 1 == shape_.segments ? mu : 1.0);
     for (int a = 0; a < n_; ++a)
-      for (int b = 0; b < n_; ++b) values.push_back(-gx(a, b));
+      for (int b = 0; b < n_; ++b) values.push_back(-fx_(a, b));
   }
 }
 
@@ -90,7 +81,7 @@ void CondensedReturnMap::subtract_derivative(CondensedSystem& condensed, const O
 void CondensedReturnMap::add_interval(const CondensedSystem& condensed, const Orbit& x, int s, int j,
                                       const double* weights, const OrbitVector& v, OrbitVector& gradient) {
   const HybridSystem& hybrid = system_.system();
-  const Matrix& value = condensed.rule().value;
+  const Eigen::MatrixXd& value = condensed.rule().value;
   const std::vector<int>& free = system_.free_parameters();
   const int n = n_;
   const int c = shape_.collocation;
@@ -134,31 +125,24 @@ void CondensedReturnMap::add_interval(const CondensedSystem& condensed, const Or
 
 /// Event row h_x v and connectivity rows mu v_next - g_x v of segment s; `weights` are those of its rows of S.
 void CondensedReturnMap::add_ends(const Orbit& x, int s, const double* weights, const OrbitVector& v,
-                                  OrbitVector& gradient) const {
+                                  OrbitVector& gradient) {
   const HybridSystem& hybrid = system_.system();
   const std::vector<int>& free = system_.free_parameters();
   const IndexVector& index = system_.signature()[static_cast<std::size_t>(s)];
-  const int q = system_.free_count();
   const int end = (s + 1) * shape_.nodes() - 1;
-  Vector direction = Vector::Zero(n_ + q);
-  direction.head(n_) = v.states.col(end);
+  direction_.head(n_) = v.states.col(end);
 
   double rate = 0.0;
-  Vector hx(n_);
-  Vector hp(q);
-  hybrid.second(FunctionKind::event, index.event, x.end(s), x.par.data(), free, direction.data(), &rate, hx.data(),
-                hp.data());
-  gradient.states.col(end) -= weights[n_] * hx;
-  gradient.globals -= weights[n_] * hp;
+  hybrid.second(FunctionKind::event, index.event, x.end(s), x.par.data(), free, direction_.data(), &rate, hx_.data(),
+                hp_.data());
+  gradient.states.col(end) -= weights[n_] * hx_;
+  gradient.globals -= weights[n_] * hp_;
 
-  const Eigen::Map<const Vector> w(weights + n_ + 1, n_);
-  Vector d(n_);
-  Matrix dx(n_, n_);
-  Matrix dp(n_, q);
-  hybrid.second(FunctionKind::jump, index.jump, x.end(s), x.par.data(), free, direction.data(), d.data(), dx.data(),
-                dp.data());
-  gradient.states.col(end) += dx.transpose() * w;
-  gradient.globals += dp.transpose() * w;
+  const Eigen::Map<const Eigen::VectorXd> w(weights + n_ + 1, n_);
+  hybrid.second(FunctionKind::jump, index.jump, x.end(s), x.par.data(), free, direction_.data(), d_.data(), dx_.data(),
+                dp_.data());
+  gradient.states.col(end).noalias() += dx_.transpose() * w;
+  gradient.globals.noalias() += dp_.transpose() * w;
 }
 
 }  // namespace tchat

@@ -38,7 +38,7 @@ class CondensedReturnMap {
  private:
   void add_interval(const CondensedSystem& condensed, const Orbit& x, int s, int j, const double* weights,
                     const OrbitVector& v, OrbitVector& gradient);
-  void add_ends(const Orbit& x, int s, const double* weights, const OrbitVector& v, OrbitVector& gradient) const;
+  void add_ends(const Orbit& x, int s, const double* weights, const OrbitVector& v, OrbitVector& gradient);
 
   const DefiningSystem& system_;
   OrbitShape shape_;
@@ -49,8 +49,8 @@ class CondensedReturnMap {
   std::vector<std::size_t> factor_positions_;
   std::vector<double> condensed_weights_;
   std::vector<double> collocation_weights_;
-  // scratch of one collocation point; the directions of the free parameters stay zero
-  Eigen::VectorXd point_, f_, d_, direction_;
+  // scratch of one collocation point or end of a segment; the directions of the free parameters stay zero
+  Eigen::VectorXd point_, f_, d_, hx_, hp_, direction_;
   Eigen::MatrixXd fx_, dx_, fp_, dp_;
 };
 

@@ -50,11 +50,11 @@ void CriticalMultiplier::begin_border() {
   normalise(row_);
 }
 
-std::vector<double> CriticalMultiplier::memory() const {
-  if (!started_) return {};
-  std::vector<double> memory = column_;
+void CriticalMultiplier::remember(std::vector<double>& memory) const {
+  memory.clear();
+  if (!started_) return;
+  memory.insert(memory.end(), column_.begin(), column_.end());
   memory.insert(memory.end(), row_.begin(), row_.end());
-  return memory;
 }
 
 void CriticalMultiplier::recall(const std::vector<double>& memory) {

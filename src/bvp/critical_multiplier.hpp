@@ -28,7 +28,7 @@ class CriticalMultiplier final : public OrbitCondition {
   double value() const override { return value_; }
   const OrbitVector& gradient() const override { return gradient_; }
   /// The border b, c; empty before the first evaluation.
-  std::vector<double> memory() const override;
+  void remember(std::vector<double>& memory) const override;
   void recall(const std::vector<double>& memory) override;
 
   /// The null vector v with the sigma_s as durations, of unit size at the ends of segments.

@@ -47,11 +47,11 @@ CriticalPair::CriticalPair(const DefiningSystem& system, const OrbitShape& shape
       extended_(shape, system.free_count()),
       gradient_(shape, system.free_count()) {}
 
-std::vector<double> CriticalPair::memory() const {
-  if (!started_) return {};
-  std::vector<double> memory(pair_.data(), pair_.data() + pair_.size());
+void CriticalPair::remember(std::vector<double>& memory) const {
+  memory.clear();
+  if (!started_) return;
+  memory.insert(memory.end(), pair_.data(), pair_.data() + pair_.size());
   memory.insert(memory.end(), plane_.data(), plane_.data() + plane_.size());
-  return memory;
 }
 
 void CriticalPair::recall(const std::vector<double>& memory) {
@@ -69,13 +69,13 @@ std::complex<double> CriticalPair::multiplier() const {
 }
 
 /// The plane of the real and imaginary part of the eigenvector next to the first multiplier, by inverse iteration.
-bool CriticalPair::begin(const std::vector<double>& values) {
+bool CriticalPair::begin() {
   using Complex = std::complex<double>;
   constexpr double beside = 1e-5;  // the shift is not to be an eigenvalue itself
   constexpr int rounds = 3;
   const Complex shift = first_multiplier_ * (1.0 + beside);
   std::vector<Eigen::Triplet<Complex>> entries;
-  for (std::size_t k = 0; k < values.size(); ++k) entries.emplace_back(map_.rows()[k], map_.columns()[k], values[k]);
+  for (std::size_t k = 0; k < values_.size(); ++k) entries.emplace_back(map_.rows()[k], map_.columns()[k], values_[k]);
   for (const std::size_t first : map_.factor_positions())
     entries.emplace_back(map_.rows()[first], map_.columns()[first], shift);
   Eigen::SparseMatrix<Complex> matrix(map_.size(), map_.size());
@@ -99,7 +99,7 @@ bool CriticalPair::begin(const std::vector<double>& values) {
   if (!orthonormalise()) return false;
   // L fits the last connectivity best.
   pair_.setZero();
-  set_right_hand_side(values);
+  set_right_hand_side();
   Plane wanted(n, 2);
   for (int k = 0; k < 2; ++k) wanted.col(k) = rhs_.segment(k * map_.size() + first, n);
   pair_ = Plane(plane_.topRows(n)).colPivHouseholderQr().solve(wanted);
@@ -121,11 +121,11 @@ bool CriticalPair::orthonormalise() {
 }
 
 /// In the order of `make_newton`.
-bool CriticalPair::factorize(const std::vector<double>& values) {
+bool CriticalPair::factorize() {
   const Eigen::Index n = map_.size() - map_.last_connectivity_row();
   matrix_.clear();
   for (int k = 0; k < 2; ++k) {
-    matrix_.insert(matrix_.end(), values.begin(), values.end());
+    matrix_.insert(matrix_.end(), values_.begin(), values_.end());
     for (int j = 0; j < 2; ++j)
       for (Eigen::Index a = 0; a < n; ++a) {
         matrix_.push_back(pair_(j, k));
@@ -137,19 +137,19 @@ bool CriticalPair::factorize(const std::vector<double>& values) {
 }
 
 /// -(S V + E V L) and 0: the border stays satisfied.
-void CriticalPair::set_right_hand_side(const std::vector<double>& values) {
+void CriticalPair::set_right_hand_side() {
   const Eigen::Index size = map_.size();
   const Eigen::Index first = map_.last_connectivity_row();
   rhs_.setZero();
   for (int k = 0; k < 2; ++k) {
-    for (std::size_t i = 0; i < values.size(); ++i)
-      rhs_(k * size + map_.rows()[i]) -= values[i] * plane_(map_.columns()[i], k);
-    rhs_.segment(k * size + first, size - first) -= plane_.topRows(size - first) * pair_.col(k);
+    for (std::size_t i = 0; i < values_.size(); ++i)
+      rhs_(k * size + map_.rows()[i]) -= values_[i] * plane_(map_.columns()[i], k);
+    rhs_.segment(k * size + first, size - first).noalias() -= plane_.topRows(size - first) * pair_.col(k);
   }
 }
 
 /// Newton's method; the last factors belong to a plane that differs from the result by less than the tolerance.
-bool CriticalPair::find_plane(const std::vector<double>& values) {
+bool CriticalPair::find_plane() {
   constexpr int most_iterations = 12;
   constexpr double tolerance = 1e-9;  // of a correction, after which the error is about its square
   constexpr double farthest = 0.5;
@@ -158,8 +158,8 @@ bool CriticalPair::find_plane(const std::vector<double>& values) {
   const Eigen::Matrix2d last = pair_;
   border_ = plane_;
   for (int iteration = 0; iteration < most_iterations; ++iteration) {
-    if (!factorize(values)) return false;
-    set_right_hand_side(values);
+    if (!factorize()) return false;
+    set_right_hand_side();
     lu_.solve(rhs_.data(), change_.data());
     if (!change_.allFinite()) return false;
     plane_ += Plane::Map(change_.data(), size, 2);
@@ -173,10 +173,9 @@ bool CriticalPair::find_plane(const std::vector<double>& values) {
 }
 
 bool CriticalPair::evaluate(CondensedSystem& condensed, const Orbit& x) {
-  std::vector<double> values;
-  map_.values(condensed, x, 0.0, values);
-  if (!started_ && !begin(values)) return false;
-  if (!find_plane(values)) return false;
+  map_.values(condensed, x, 0.0, values_);
+  if (!started_ && !begin()) return false;
+  if (!find_plane()) return false;
   started_ = true;
   const Eigen::Index size = map_.size();
   rhs_.setZero();

@@ -33,8 +33,8 @@ class CriticalPair final : public OrbitCondition {
   bool evaluate(CondensedSystem& condensed, const Orbit& x) override;
   double value() const override { return pair_.determinant() - 1.0; }
   const OrbitVector& gradient() const override { return gradient_; }
-  /// L and V; empty before the first evaluation.
-  std::vector<double> memory() const override;
+  /// L and V.
+  void remember(std::vector<double>& memory) const override;
   void recall(const std::vector<double>& memory) override;
 
   /// Half the sum of the pair: the cosine of its angle on the curve, beyond +-1 where it is real.
@@ -45,15 +45,16 @@ class CriticalPair final : public OrbitCondition {
  private:
   using Plane = Eigen::Matrix<double, Eigen::Dynamic, 2>;
 
-  bool begin(const std::vector<double>& values);
-  bool find_plane(const std::vector<double>& values);
-  bool factorize(const std::vector<double>& values);
-  void set_right_hand_side(const std::vector<double>& values);
+  bool begin();
+  bool find_plane();
+  bool factorize();
+  void set_right_hand_side();
   bool orthonormalise();
 
   CondensedReturnMap map_;
   std::complex<double> first_multiplier_;
-  SparseLu lu_;  // of Newton's matrix for (V, L)
+  SparseLu lu_;                 // of Newton's matrix for (V, L)
+  std::vector<double> values_;  // of S
   std::vector<double> matrix_;
   Eigen::VectorXd rhs_;
   Eigen::VectorXd change_;

@@ -2,66 +2,60 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Core>
-
 namespace tchat {
-
-double slope_along_flow(const DefiningSystem& defining, int s, const double* x, const double* par, double* dx,
-                        double* dp) {
-  const HybridSystem& system = defining.system();
-  const IndexVector& v = defining.signature()[static_cast<std::size_t>(s)];
-  const int n = defining.dimension();
-  const int q = defining.free_count();
-  const std::vector<int>& active = defining.free_parameters();
-  Eigen::VectorXd f(n);
-  Eigen::MatrixXd fx(n, n);
-  Eigen::MatrixXd fp(n, q);
-  Eigen::VectorXd hx(n);
-  Eigen::VectorXd hp(q);
-  double h = 0.0;
-  system.first(FunctionKind::field, v.field, x, par, active, f.data(), fx.data(), fp.data());
-  system.first(FunctionKind::event, v.event, x, par, active, &h, hx.data(), hp.data());
-
-  // d (h_x f) = h_xx f + h_x f_x: the first part is the second derivative in the direction (f, 0).
-  Eigen::VectorXd direction = Eigen::VectorXd::Zero(n + q);
-  direction.head(n) = f;
-  double slope = 0.0;
-  Eigen::VectorXd by_state(n);
-  Eigen::VectorXd by_parameter(q);
-  system.second(FunctionKind::event, v.event, x, par, active, direction.data(), &slope, by_state.data(),
-                by_parameter.data());
-  Eigen::Map<Eigen::VectorXd>(dx, n) = by_state + fx.transpose() * hx;
-  if (dp != nullptr) Eigen::Map<Eigen::VectorXd>(dp, q) = by_parameter + fp.transpose() * hx;
-  return slope;
-}
 
 GrazingOrbitSystem::GrazingOrbitSystem(const HybridSystem& system, Signature signature,
                                        std::vector<int> free_parameters, int grazing_segment)
-    : DefiningSystem(system, std::move(signature), std::move(free_parameters)), grazing_segment_(grazing_segment) {}
+    : DefiningSystem(system, std::move(signature), std::move(free_parameters)),
+      grazing_segment_(grazing_segment),
+      f_(dimension()),
+      hx_(dimension()),
+      slope_x_(dimension()),
+      direction_(Eigen::VectorXd::Zero(dimension() + free_count())),
+      hp_(free_count()),
+      slope_p_(free_count()),
+      fx_(dimension(), dimension()),
+      fp_(dimension(), free_count()) {}
+
+void GrazingOrbitSystem::evaluate_contact(const double* x, const double* par) const {
+  const IndexVector& v = signature()[static_cast<std::size_t>(grazing_segment_)];
+  const std::vector<int>& active = free_parameters();
+  system().first(FunctionKind::field, v.field, x, par, active, f_.data(), fx_.data(), fp_.data());
+  system().first(FunctionKind::event, v.event, x, par, active, &h_, hx_.data(), hp_.data());
+  // d (h_x f) = h_xx f + h_x f_x: the first part is the second derivative in the direction (f, 0).
+  direction_.head(dimension()) = f_;
+  system().second(FunctionKind::event, v.event, x, par, active, direction_.data(), &slope_, slope_x_.data(),
+                  slope_p_.data());
+  slope_x_.noalias() += fx_.transpose() * hx_;
+  slope_p_.noalias() += fp_.transpose() * hx_;
+}
 
 void GrazingOrbitSystem::end_values(int s, const double* x, const double* par, double* values) const {
-  system().value(FunctionKind::event, signature()[static_cast<std::size_t>(s)].event, x, par, values);
-  if (s != grazing_segment_) return;
-  Eigen::VectorXd gradient(dimension());
-  values[1] = slope_along_flow(*this, s, x, par, gradient.data(), nullptr);
+  if (s != grazing_segment_) {
+    system().value(FunctionKind::event, signature()[static_cast<std::size_t>(s)].event, x, par, values);
+    return;
+  }
+  evaluate_contact(x, par);
+  values[0] = h_;
+  values[1] = slope_;
 }
 
 void GrazingOrbitSystem::end_derivatives(int s, const double* x, const double* par, double* values, double* dx,
                                          double* dp) const {
-  const int n = dimension();
-  const int q = free_count();
-  const int event = signature()[static_cast<std::size_t>(s)].event;
   if (s != grazing_segment_) {
-    system().first(FunctionKind::event, event, x, par, free_parameters(), values, dx, dp);
+    system().first(FunctionKind::event, signature()[static_cast<std::size_t>(s)].event, x, par, free_parameters(),
+                   values, dx, dp);
     return;
   }
-  Eigen::MatrixXd by_state(n, 2);
-  Eigen::MatrixXd by_parameter(q, 2);
-  system().first(FunctionKind::event, event, x, par, free_parameters(), values, by_state.col(0).data(),
-                 by_parameter.col(0).data());
-  values[1] = slope_along_flow(*this, s, x, par, by_state.col(1).data(), by_parameter.col(1).data());
-  Eigen::Map<Eigen::MatrixXd>(dx, 2, n) = by_state.transpose();
-  Eigen::Map<Eigen::MatrixXd>(dp, 2, q) = by_parameter.transpose();
+  evaluate_contact(x, par);
+  values[0] = h_;
+  values[1] = slope_;
+  Eigen::Map<Eigen::MatrixXd> by_state(dx, 2, dimension());
+  Eigen::Map<Eigen::MatrixXd> by_parameter(dp, 2, free_count());
+  by_state.row(0) = hx_;
+  by_state.row(1) = slope_x_;
+  by_parameter.row(0) = hp_;
+  by_parameter.row(1) = slope_p_;
 }
 
 std::string GrazingOrbitSystem::end_condition_name(int s, int r) const {
@@ -71,10 +65,9 @@ std::string GrazingOrbitSystem::end_condition_name(int s, int r) const {
 }
 
 void GrazingOrbitSystem::section_gradient(int s, const double* x, const double* par, double* gradient) const {
-  if (s == grazing_segment_)
-    slope_along_flow(*this, s, x, par, gradient, nullptr);
-  else
-    DefiningSystem::section_gradient(s, x, par, gradient);
+  if (s != grazing_segment_) return DefiningSystem::section_gradient(s, x, par, gradient);
+  evaluate_contact(x, par);
+  Eigen::Map<Eigen::VectorXd>(gradient, dimension()) = slope_x_;
 }
 
 }  // namespace tchat

@@ -8,6 +8,8 @@
 /// section h_P = h_x f = 0 there, transversal where a* = h_{P,x} f > 0; the event's own surface is not.
 #pragma once
 
+#include <Eigen/Core>
+
 #include "bvp/defining_system.hpp"
 
 namespace tchat {
@@ -27,12 +29,15 @@ class GrazingOrbitSystem final : public DefiningSystem {
   void section_gradient(int s, const double* x, const double* par, double* gradient) const override;
 
  private:
-  int grazing_segment_;
-};
+  /// h and h_P with their gradients at the end x of the grazing segment, into the scratch below.
+  void evaluate_contact(const double* x, const double* par) const;
 
-/// h_P = h_x f of the terminal event of segment s (from 0) with its gradient by the state (n) and by the free
-/// parameters (one for each; may be null).
-double slope_along_flow(const DefiningSystem& system, int s, const double* x, const double* par, double* dx,
-                        double* dp);
+  int grazing_segment_;
+  // scratch of one contact, kept because Newton's loop is not to allocate; `direction_` stays zero in the parameters
+  mutable double h_ = 0.0;
+  mutable double slope_ = 0.0;  // h_P
+  mutable Eigen::VectorXd f_, hx_, slope_x_, direction_, hp_, slope_p_;
+  mutable Eigen::MatrixXd fx_, fp_;
+};
 
 }  // namespace tchat

@@ -22,8 +22,9 @@ PathFollower::PathFollower(const DefiningSystem& system, const OrbitShape& shape
       problem_(system, shape, std::move(condition)),
       newton_(problem_, settings),
       settings_(settings),
-      unused_(problem_.memory()),
-      row_(condensed().make_vector()) {}
+      row_(condensed().make_vector()) {
+  problem_.remember(unused_);
+}
 
 PathPoint PathFollower::make_point(Orbit orbit) const {
   return {std::move(orbit), condensed().make_vector(), condensed().make_vector(), unused_};
@@ -82,7 +83,7 @@ NewtonResult PathFollower::correct_and_orient(PathPoint& point, const Orbit& bas
   const bool current = result.change_since_factorization <= current_enough;
   if ((!current && !linearize(point.orbit, row_)) || !find_tangent(point.orbit, point.tangent, point.dual))
     result.status = NewtonStatus::singular;
-  point.memory = problem_.memory();
+  problem_.remember(point.memory);
   return result;
 }
 

@@ -7,6 +7,11 @@
 #include <cstdlib>
 #include <new>
 
+#include "bvp/critical_multiplier.hpp"
+#include "bvp/critical_pair.hpp"
+#include "bvp/grazing_orbit_system.hpp"
+#include "special_points/impacting_orbits.hpp"
+#include "special_points/langford.hpp"
 #include "support/branch_fixture.hpp"
 #include "support/linear_oscillator.hpp"
 #include "support/three_modes.hpp"
@@ -90,16 +95,14 @@ struct Counts {
   int newton_iterations;
 };
 
-Counts steps_after_the_first(PeriodicOrbits& orbits, const Orbit& start, double ds) {
-  PathPoint here = orbits.corrected(start);
-  REQUIRE(orbits.result.converged());
+Counts steps_after_the_first(PathFollower& follower, PathPoint here, double ds) {
   PathPoint next = here;
-  REQUIRE(orbits.follower.step(here, ds, next).converged());
+  REQUIRE(follower.step(here, ds, next).converged());
   std::swap(here, next);
   Counts counts{0, 0, 0};
   const CountedScope scope;
   for (int k = 0; k < 5; ++k) {
-    const NewtonResult result = orbits.follower.step(here, ds, next);
+    const NewtonResult result = follower.step(here, ds, next);
     if (!result.converged()) break;
     counts.newton_iterations += result.iterations;
     std::swap(here, next);
@@ -107,6 +110,24 @@ Counts steps_after_the_first(PeriodicOrbits& orbits, const Orbit& start, double 
   counts.ours = ours;
   counts.solver = solver;
   return counts;
+}
+
+Counts steps_after_the_first(PeriodicOrbits& orbits, const Orbit& start, double ds) {
+  const PathPoint here = orbits.corrected(start);
+  REQUIRE(orbits.result.converged());
+  return steps_after_the_first(orbits.follower, here, ds);
+}
+
+/// On the two-parameter curve of a condition, from its start.
+template <class Condition, class Multiplier>
+Counts steps_on_curve(const HybridSystem& hybrid, const Orbit& start, Multiplier multiplier) {
+  give_solver_its_own_allocator();
+  const PeriodicOrbitSystem system(hybrid, {{1, 1, 1}}, {1, 2});
+  PathFollower follower(system, start.shape, WeightedNorm::unit(start.shape.dimension), {9, 3, 1e-10, 1e-10}, 1,
+                        std::make_unique<Condition>(system, start.shape, multiplier));
+  PathPoint here = follower.make_point(start);
+  REQUIRE(follower.start_by_minimum_norm(here).converged());
+  return steps_after_the_first(follower, here, 0.02);
 }
 
 }  // namespace
@@ -145,6 +166,38 @@ TEST_CASE("no allocation with kernels of run-time size, several fields and jumps
                     20, 6, ThreeModes::par());
   PeriodicOrbits orbits(system_of<ThreeModes>(), ThreeModes::signature(), 1, start.shape, {8, 2, 1e-9, 1e-9});
   const Counts counts = steps_after_the_first(orbits, start, 0.02);
+  CHECK(counts.newton_iterations >= 5);
+  CHECK(counts.ours == 0);
+}
+
+TEST_CASE("no allocation of our own along fold, period-doubling and torus curves") {
+  const OscillatorOrbit fold = one_impact_orbit(1.8901, fold_velocity());
+  const OscillatorOrbit doubling = one_impact_orbit(2.0072, period_doubling_velocity());
+  const LangfordCircle circle = LangfordCircle{}.at_torus();
+  const auto sampled = [](const OscillatorOrbit& orbit) {
+    return sampled_orbit(whole(orbit).pieces, 4, 30, 4, orbit.par());
+  };
+  const Counts counts[] = {
+      steps_on_curve<CriticalMultiplier>(linosc(), sampled(fold), 1),
+      steps_on_curve<CriticalMultiplier>(linosc(), sampled(doubling), -1),
+      steps_on_curve<CriticalPair>(system_of<Langford>(), circle.orbit(30, 4), circle.multiplier()),
+  };
+  for (const Counts& curve : counts) {
+    CHECK(curve.newton_iterations >= 5);
+    CHECK(curve.ours == 0);
+  }
+}
+
+TEST_CASE("no allocation of our own along a grazing curve") {
+  give_solver_its_own_allocator();
+  const OscillatorOrbit orbit = nonimpacting_orbit(1.7, std::abs(OscillatorConstants{1.7}.stiffness()));
+  const double half = orbit.constants.period() / 2;
+  const Orbit start = sampled_orbit({orbit.piece(0, half), orbit.piece(half, 2 * half)}, 4, 30, 4, orbit.par());
+  const GrazingOrbitSystem system(linosc(), {{1, 3, 2}, {1, 1, 2}}, {2, 1}, 1);
+  PathFollower follower(system, start.shape, WeightedNorm::unit(start.shape.dimension), {9, 3, 1e-10, 1e-10}, 2);
+  PathPoint here = follower.make_point(start);
+  REQUIRE(follower.start_at_fixed_parameter(here).converged());
+  const Counts counts = steps_after_the_first(follower, here, 0.05);
   CHECK(counts.newton_iterations >= 5);
   CHECK(counts.ours == 0);
 }

@@ -200,7 +200,8 @@ TEST_CASE("critical pair: complex or just become real, its product is the contra
   ConditionAt at(linosc(), {{1, 1, 1}}, x);
   CriticalPair pair(at.system, x.shape, {0.5896957647, 0.34676174832});
   CHECK(at.value(pair, x) == Approx(product(first) - 1.0).margin(1e-9));
-  const std::vector<double> memory = pair.memory();
+  std::vector<double> memory;
+  pair.remember(memory);
   constexpr double least = 0.02;
   double v = 0.5;
   bool real = false;
