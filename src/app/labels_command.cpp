@@ -7,6 +7,7 @@
 #include <memory>
 #include <string>
 
+#include "output/recorded_names.hpp"
 #include "output/solution_tables.hpp"
 #include "start/solution_file_reader.hpp"
 
@@ -17,11 +18,13 @@ namespace {
 int print_labels(const std::string& given) {
   const std::string path = resolve_solution_path(given);
   const SolutionFile file = read_solution_file(path);
+  const RecordedNames recorded = recorded_names(path);
   if (file.solutions.empty())
     fmt::print("{} holds no labelled solution.\n", path);
   else
-    fmt::print("{}", format_label_table(file));
+    fmt::print("{}", format_label_table(file, recorded.names));
   for (const std::string& warning : file.warnings) fmt::print(stderr, "Warning: {}\n", warning);
+  if (!recorded.warning.empty()) fmt::print(stderr, "Warning: {}\n", recorded.warning);
   return 0;
 }
 
@@ -30,7 +33,8 @@ int print_labels(const std::string& given) {
 void add_labels_command(CLI::App& app, std::function<int()>& chosen) {
   CLI::App* command = app.add_subcommand("labels", "Table of the labelled solutions of a q-file, with what each is");
   command->footer(
-      "SEG is the number of segments. A UZ label is a user value; contacts and zero impact velocities are\n"
+      "SEG is the number of segments. Parameters have their names when p.NAME is beside q.NAME.\n"
+      "A UZ label is a user value; contacts and zero impact velocities are\n"
       "called GR, zeros of xi_n XI: IRS, STOP and `tchat orbit` know them by these names (UZ1, GR1, XI1).\n"
       "Example: tchat labels q.mems");
   const auto path = std::make_shared<std::string>();

@@ -10,6 +10,7 @@
 
 #include "constants/constant_value.hpp"
 #include "constants/user_error.hpp"
+#include "output/recorded_names.hpp"
 #include "output/solution_tables.hpp"
 #include "start/solution_file_reader.hpp"
 
@@ -34,10 +35,12 @@ int print_orbit(const OrbitArguments& arguments) {
   const StartLabel label = read_label(arguments.label);
   const std::string path = resolve_solution_path(arguments.path);
   const SolutionFile file = read_solution_file(path);
+  const RecordedNames recorded = recorded_names(path);
   for (const std::string& warning : file.warnings) fmt::print(stderr, "Warning: {}\n", warning);
+  if (!recorded.warning.empty()) fmt::print(stderr, "Warning: {}\n", recorded.warning);
   const LabelledSolution& solution = find_solution(file.solutions, label, path);
   const std::string name = std::filesystem::path(path).filename().string();
-  fmt::print("{}", format_orbit_table(solution, name, arguments.dimension));
+  fmt::print("{}", format_orbit_table(solution, name, recorded.names, arguments.dimension));
   return 0;
 }
 
@@ -46,7 +49,8 @@ int print_orbit(const OrbitArguments& arguments) {
 void add_orbit_command(CLI::App& app, std::function<int()>& chosen) {
   CLI::App* command = app.add_subcommand("orbit", "One orbit of a q-file in physical time, all segments, as a table");
   command->footer(
-      "Lines: number of the segment, tau in [0,1], time t since the start of segment 1, states.\n"
+      "Lines: number of the segment, tau in [0,1], time t since the start of segment 1, states (named\n"
+      "when p.NAME is beside q.NAME).\n"
       "A # begins the heading, an empty line separates segments.\n"
       "Example: tchat orbit q.mems PD1 > orbit.txt");
   const auto arguments = std::make_shared<OrbitArguments>();

@@ -15,6 +15,7 @@
 #include "plot/problem_finder.hpp"
 #include "plot/trajectory_file.hpp"
 #include "start/diagnostics_file_reader.hpp"
+#include "start/run_file_names.hpp"
 #include "start/solution_file_reader.hpp"
 
 namespace tchat {

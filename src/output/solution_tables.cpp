@@ -16,11 +16,11 @@ double parameter(const LabelledSolution& solution, int k) {
 
 std::string number_or_dash(int number) { return number > 0 ? fmt::format("{}", number) : "-"; }
 
-std::string free_parameters(const LabelledSolution& solution, int segments) {
+std::string free_parameters(const LabelledSolution& solution, int segments, const ProblemNames& names) {
   std::string list;
   for (const int k : solution.free_parameters)
     if (!is_duration(k, segments))
-      list += fmt::format("{}PAR({}) = {:.9g}", list.empty() ? "" : ", ", k, parameter(solution, k));
+      list += fmt::format("{}{} = {:.9g}", list.empty() ? "" : ", ", names.parameter(k), parameter(solution, k));
   return list;
 }
 
@@ -46,7 +46,8 @@ OrbitSizes sizes_of(const LabelledSolution& solution, const std::string& name, i
   return {rows / segments, segments};
 }
 
-std::string heading(const LabelledSolution& solution, const std::string& name, const OrbitSizes& sizes) {
+std::string heading(const LabelledSolution& solution, const std::string& name, const OrbitSizes& sizes,
+                    const ProblemNames& names) {
   const std::string type = type_name(solution);
   double period = 0.0;
   for (int s = 0; s < sizes.segments; ++s) period += parameter(solution, first_duration + s);
@@ -54,15 +55,16 @@ std::string heading(const LabelledSolution& solution, const std::string& name, c
       fmt::format("# {}: label {}{}, {} segment{}, period {:.10g}\n", name, solution.label,
                   type.empty() ? "" : " (" + type + ")", sizes.segments, sizes.segments == 1 ? "" : "s", period);
   for (const int k : solution.free_parameters)
-    if (!is_duration(k, sizes.segments)) text += fmt::format("# PAR({}) = {:.10g}\n", k, parameter(solution, k));
+    if (!is_duration(k, sizes.segments))
+      text += fmt::format("# {} = {:.10g}\n", names.parameter(k), parameter(solution, k));
   text += fmt::format("#{:>3}{:>19}{:>19}", "seg", "tau", "t");
-  for (int k = 1; k <= sizes.dimension; ++k) text += fmt::format("{:>19}", fmt::format("U({})", k));
+  for (int k = 1; k <= sizes.dimension; ++k) text += fmt::format(" {:>18}", names.state(k));
   return text + '\n';
 }
 
 }  // namespace
 
-std::string format_label_table(const SolutionFile& file) {
+std::string format_label_table(const SolutionFile& file, const ProblemNames& names) {
   std::string text = fmt::format("{:>5} {:>3} {:>4} {:>5} {:>5} {:>4} {:>9} {:>15}  {}\n", "LAB", "TY", "BR", "PT",
                                  "IPS", "SEG", "NTSTxNCOL", "PERIOD", "FREE PARAMETERS");
   for (const LabelledSolution& solution : file.solutions) {
@@ -70,18 +72,19 @@ std::string format_label_table(const SolutionFile& file) {
     const double duration = period(solution);
     const std::string mesh = fmt::format("{}x{}", solution.mesh_intervals, solution.collocation_points);
     const std::string what = description(solution.kind);
-    text +=
-        fmt::format("{:>5} {:>3} {:>4} {:>5} {:>5} {:>4} {:>9} {:>15}  {}{}{}\n", solution.label, type_name(solution),
-                    solution.branch, solution.point, number_or_dash(solution.problem_type), number_or_dash(segments),
-                    mesh, segments > 0 ? fmt::format("{:.9g}", duration) : "-",
-                    free_parameters(solution, segments > 0 ? segments : max_segments), what.empty() ? "" : "   ", what);
+    text += fmt::format("{:>5} {:>3} {:>4} {:>5} {:>5} {:>4} {:>9} {:>15}  {}{}{}\n", solution.label,
+                        type_name(solution), solution.branch, solution.point, number_or_dash(solution.problem_type),
+                        number_or_dash(segments), mesh, segments > 0 ? fmt::format("{:.9g}", duration) : "-",
+                        free_parameters(solution, segments > 0 ? segments : max_segments, names),
+                        what.empty() ? "" : "   ", what);
   }
   return text;
 }
 
-std::string format_orbit_table(const LabelledSolution& solution, const std::string& name, int dimension) {
+std::string format_orbit_table(const LabelledSolution& solution, const std::string& name, const ProblemNames& names,
+                               int dimension) {
   const OrbitSizes sizes = sizes_of(solution, name, dimension > 0 ? dimension : solution.dimension);
-  std::string text = heading(solution, name, sizes);
+  std::string text = heading(solution, name, sizes, names);
   double start = 0.0;
   for (int s = 0; s < sizes.segments; ++s) {
     const double duration = parameter(solution, first_duration + s);

@@ -3,20 +3,23 @@
 
 #include <string>
 
+#include "output/point_columns.hpp"
 #include "start/solution_file_reader.hpp"
 
 namespace tchat {
 
 /// One line for each solution: label, type, branch, point, problem type, segments, mesh, period, the free parameters
-/// that are not durations with their values, and what a UZ point is. "-" where an older file does not tell.
-std::string format_label_table(const SolutionFile& file);
+/// that are not durations with their values, by their names where there are some, and what a UZ point is. "-" where an
+/// older file does not tell.
+std::string format_label_table(const SolutionFile& file, const ProblemNames& names = {});
 
 /// All segments of an orbit, one after the other, in physical time: '#' heading, then lines
 ///
-///     segment  tau  t  U(1) .. U(n)          t = T_1 + ... + T_{s-1} + tau T_s
+///     segment  tau  t  U(1) .. U(n), by their names          t = T_1 + ... + T_{s-1} + tau T_s
 ///
 /// An empty line separates segments. `dimension` is n, for files of the older generation; 0: what the solution says.
 /// `name` says whose orbit it is. Throws UserError when n is not known or the states are no whole number of segments.
-std::string format_orbit_table(const LabelledSolution& solution, const std::string& name, int dimension = 0);
+std::string format_orbit_table(const LabelledSolution& solution, const std::string& name,
+                               const ProblemNames& names = {}, int dimension = 0);
 
 }  // namespace tchat

@@ -9,6 +9,7 @@
 #include "constants/user_error.hpp"
 #include "start/diagnostics_file_reader.hpp"
 #include "start/point_type.hpp"
+#include "start/run_file_names.hpp"
 #include "start/solution_file_reader.hpp"
 
 namespace tchat {
@@ -96,27 +97,6 @@ void take_from_diagnostics(BranchFile& file) {
 }
 
 }  // namespace
-
-std::string sibling_path(const std::string& path, char letter) {
-  const fs::path given(path);
-  const std::string name = given.filename().string();
-  const auto beside = [&given](const std::string& other) { return (given.parent_path() / other).string(); };
-  if (name == "fort.7" || name == "fort.8" || name == "fort.9")
-    return beside(letter == 'p' ? "fort.7" : letter == 'q' ? "fort.8" : "fort.9");
-  if (name.size() < 3 || name[1] != '.') return "";
-  const std::string rest = name.substr(1);
-  const std::string ours = beside(letter + rest);
-  if (is_file(ours) || std::string("pqd").find(name[0]) != std::string::npos) return ours;
-  if (letter == 'd') return ours;
-  if (std::string("bs").find(name[0]) != std::string::npos) return beside((letter == 'p' ? "b" : "s") + rest);
-  return "";
-}
-
-std::string run_name(const std::string& path) {
-  const std::string name = fs::path(path).filename().string();
-  const bool prefixed = name.size() > 2 && name[1] == '.' && std::string("pqdbs").find(name[0]) != std::string::npos;
-  return prefixed ? name.substr(2) : name;
-}
 
 BranchFile read_branch_file(const std::string& path) {
   PointFile points = read_point_file(path);

@@ -32,11 +32,4 @@ struct BranchFile {
 /// Reads p.NAME, and q.NAME and d.NAME if they are beside it and can be read (a warning if not).
 BranchFile read_branch_file(const std::string& path);
 
-/// The name of another file of the same run: "p.mems" -> "q.mems" ("b.x" -> "s.x", "fort.7" -> "fort.8"); letter 'p',
-/// 'q' or 'd'. Empty when the name does not tell.
-std::string sibling_path(const std::string& path, char letter);
-
-/// "results/p.mems" -> "mems".
-std::string run_name(const std::string& path);
-
 }  // namespace tchat

@@ -2,14 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <filesystem>
 
 #include "constants/constants_file.hpp"
 #include "constants/user_error.hpp"
-#include "output/point_columns.hpp"
-#include "plot/branch_file.hpp"
+#include "output/recorded_names.hpp"
 #include "plugin/plugin_build.hpp"
+#include "start/run_file_names.hpp"
 
 namespace tchat {
 
@@ -41,28 +40,6 @@ std::vector<fs::path> candidates(const std::string& solution_path) {
   const fs::path folder = fs::path(solution_path).parent_path();
   const std::string name = run_name(solution_path);
   return {folder / name, fs::path(name), only_plugin(folder)};
-}
-
-/// Names as the run that wrote the q-file had them.
-void take_names_from_points(const std::string& solution_path, ProblemChoice& choice) {
-  std::error_code error;
-  const std::string path = sibling_path(solution_path, 'p');
-  if (path.empty() || !fs::is_regular_file(path, error)) return;
-  try {
-    const PointFile file = read_point_file(path);
-    const PointSection& section = file.sections.front();
-    const auto list = [](const std::map<int, std::string>& names, const char* symbol) {
-      std::vector<std::string> result;
-      const int last = names.empty() ? 0 : std::min(names.rbegin()->first, 1000);
-      for (int k = 1; k <= last; ++k)
-        result.push_back(names.contains(k) ? names.at(k) : fmt::format("{}({})", symbol, k));
-      return result;
-    };
-    choice.states = list(section.states, "U");
-    choice.parameters = list(section.parameters, "PAR");
-  } catch (const UserError&) {
-    choice.warning = fmt::format("{} cannot be read: names of states are left out", path);
-  }
 }
 
 void take(ProblemChoice& choice, std::shared_ptr<ProblemLibrary> library) {
@@ -101,7 +78,10 @@ ProblemChoice find_problem(const std::string& solution_path, const std::string& 
       continue;  // the picture does without
     }
   }
-  take_names_from_points(solution_path, choice);
+  RecordedNames recorded = recorded_names(solution_path);
+  choice.states = std::move(recorded.names.states);
+  choice.parameters = std::move(recorded.names.parameters);
+  choice.warning = std::move(recorded.warning);
   return choice;
 }
 

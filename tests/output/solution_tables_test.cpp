@@ -57,9 +57,9 @@ TEST_CASE("Older files: segments from the durations, or the dimension from the u
   CHECK(rows_of(format_orbit_table(orbit, "q.x")).size() == 15);
   orbit.free_parameters.clear();
   CHECK_THAT(message_of<UserError>([&] { format_orbit_table(orbit, "q.x"); }), Contains("--dimension"));
-  CHECK(rows_of(format_orbit_table(orbit, "q.x", 3)).size() == 10);
-  CHECK_THAT(format_orbit_table(orbit, "q.x", 3), Contains("2 segments, period 3.5"));
-  CHECK_THAT(message_of<UserError>([&] { format_orbit_table(orbit, "q.x", 4); }), Contains("must divide 6"));
+  CHECK(rows_of(format_orbit_table(orbit, "q.x", {}, 3)).size() == 10);
+  CHECK_THAT(format_orbit_table(orbit, "q.x", {}, 3), Contains("2 segments, period 3.5"));
+  CHECK_THAT(message_of<UserError>([&] { format_orbit_table(orbit, "q.x", {}, 4); }), Contains("must divide 6"));
 }
 
 TEST_CASE("The table of labels", "[output]") {
@@ -75,4 +75,14 @@ TEST_CASE("The table of labels", "[output]") {
         "    5  PD    2    17   180    2      50x4             3.5  PAR(1) = 3\n"
         "    6  GR    2    17   180    1      10x2             1.5  PAR(1) = 3   contact inside segment 1, event "
         "function 2, tau = 0.5\n");
+}
+
+TEST_CASE("Names of the problem in both tables", "[output]") {
+  const ProblemNames names{{"x", "velocity"}, {"omega"}, {}};
+  SolutionFile file;
+  file.solutions.push_back(sample_orbit(3, 1, 4, 2));
+  CHECK_THAT(format_label_table(file, names), Contains("omega = 3\n") && !Contains("PAR(1)"));
+  const std::string text = format_orbit_table(file.solutions[0], "q.x", names);
+  CHECK_THAT(text, Contains("# omega = 3\n"));
+  CHECK_THAT(text, Contains("                  x           velocity               U(3)\n"));
 }

@@ -191,16 +191,6 @@ TEST_CASE("a section with several branches is not one line, after 9999 the count
   CHECK(one.pieces.size() == 1);
 }
 
-TEST_CASE("names of files of one run") {
-  CHECK(sibling_path("results/p.mems", 'q') == "results/q.mems");
-  CHECK(sibling_path("q.mems", 'd') == "d.mems");
-  CHECK(sibling_path("fort.7", 'q') == "fort.8");
-  CHECK(sibling_path("b.ab", 'q') == "s.ab");
-  CHECK(sibling_path("mems", 'q').empty());
-  CHECK(run_name("results/p.mems") == "mems");
-  CHECK(run_name("fort.7") == "fort.7");
-}
-
 TEST_CASE("a zero of xi_n is labelled with its n") {
   const TemporaryFolder folder;
   const std::string grazing =

@@ -1,0 +1,15 @@
+/// How the files of one run are called.
+#pragma once
+
+#include <string>
+
+namespace tchat {
+
+/// The name of another file of the same run: "p.mems" -> "q.mems" ("b.x" -> "s.x", "fort.7" -> "fort.8"); letter 'p',
+/// 'q', 'd' or 'r' (the constants). Empty when the name does not tell.
+std::string sibling_path(const std::string& path, char letter);
+
+/// "results/p.mems" -> "mems".
+std::string run_name(const std::string& path);
+
+}  // namespace tchat

@@ -1,0 +1,17 @@
+#include "start/run_file_names.hpp"
+
+#include <catch2/catch.hpp>
+
+using namespace tchat;
+
+TEST_CASE("Names of files of one run") {
+  CHECK(sibling_path("results/p.mems", 'q') == "results/q.mems");
+  CHECK(sibling_path("q.mems", 'd') == "d.mems");
+  CHECK(sibling_path("fort.7", 'q') == "fort.8");
+  CHECK(sibling_path("fort.8", 'r') == "fort.2");
+  CHECK(sibling_path("q.mems", 'r') == "r.mems");
+  CHECK(sibling_path("b.ab", 'q') == "s.ab");
+  CHECK(sibling_path("mems", 'q').empty());
+  CHECK(run_name("results/p.mems") == "mems");
+  CHECK(run_name("fort.7") == "fort.7");
+}
