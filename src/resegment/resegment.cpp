@@ -2,12 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 
 #include "constants/constant_value.hpp"
 #include "constants/constants_file.hpp"
 #include "constants/constants_writer.hpp"
+#include "constants/keyword_form.hpp"
 #include "constants/user_error.hpp"
 #include "output/run_files.hpp"
 #include "output/solution_file.hpp"
@@ -18,6 +21,7 @@
 #include "resegment/contact_point.hpp"
 #include "resegment/data_text.hpp"
 #include "resegment/empty_segments.hpp"
+#include "resegment/impacting_side.hpp"
 #include "resegment/new_settings.hpp"
 #include "resegment/segment_list.hpp"
 #include "run/named_parameters.hpp"
@@ -46,6 +50,7 @@ struct Target {
   NewProblem problem;
   int type = static_cast<int>(PointType::end);
   UserPointKind kind = {};
+  std::optional<int> impact = {};  ///< segment (from 0) that ends in the new impact
 };
 
 StartLabel read_label(const std::string& text) {
@@ -176,7 +181,9 @@ Target to_impacting(const ResegmentRequest& request, const Source& source, const
     cut = with_empty_segments(std::move(cut), static_cast<int>(between.size()), contact.event);
     for (std::size_t k = 0; k < between.size(); ++k) cut.segments[cut.contact + 1 + k].index = between[k];
   }
-  return {cut.segments, {180, 1, source.settings.grazing_jump}};
+  Target target{cut.segments, {180, 1, source.settings.grazing_jump}};
+  target.impact = static_cast<int>(cut.contact);
+  return target;
 }
 
 Target to_rotated(const ResegmentRequest& request, const Source& source) {
@@ -241,7 +248,7 @@ void refuse_same_file(const std::string& output, const std::string& input, const
 
 std::string summary(const Source& source, const RunSettings& settings, const Orbit& x, const HybridSystem& system) {
   const std::string type = type_name(source.solution);
-  const std::string meaning = description(source.solution.kind);
+  const std::string meaning = description(source.solution.kind, system.parameter_name(source.solution.kind.index));
   std::string text = fmt::format("{}{}{}\n", source.name, type.empty() ? "" : fmt::format(" ({})", type),
                                  meaning.empty() ? "" : ": " + meaning);
   text += fmt::format("  signature {}\n         -> {}, IPS = {}, ISW = {}\n", to_string(source.settings.signature()),
@@ -262,6 +269,40 @@ std::string summary(const Source& source, const RunSettings& settings, const Orb
   for (const int k : settings.free_parameters)
     free += fmt::format("{}{}", free.empty() ? "" : ", ", system.parameter_name(k));
   return text + fmt::format("  free: {}\n", free);
+}
+
+bool gives_step(const std::vector<std::string>& overrides) {
+  return std::any_of(overrides.begin(), overrides.end(), [](const std::string& text) {
+    const std::vector<Assignment> assignments = parse_assignments(text, Place{"command line"});
+    return std::any_of(assignments.begin(), assignments.end(),
+                       [](const Assignment& a) { return constant_of(a).keyword == "DS"; });
+  });
+}
+
+/// On one side of grazing the orbit has the new impact, on the other it is inadmissible. Gives DS the sign for impacts
+/// unless the user gave DS, and says so.
+std::string choose_side(const ResegmentRequest& request, const HybridSystem& system, int impact, OrbitStart start,
+                        RunSettings& settings) {
+  if (request.data) start.direction.reset();
+  SelectedStart selected;
+  selected.start = std::move(start);
+  selected.from_solution = !request.data;
+  selected.problem_type = settings.problem_type;
+  selected.type = static_cast<int>(PointType::end);
+  const int side = impacting_side(system, settings, selected, impact);
+  if (side == 0)
+    return "On one side of this point the orbit has the new impact, on the other it is inadmissible: choose by the "
+           "sign of DS, or\nsee both with --both.\n";
+  const double step = std::copysign(settings.step, side);
+  if (!gives_step(request.overrides)) settings.step = step;
+  return settings.step == step
+             ? fmt::format(
+                   "DS = {} leads to the side with the new impact; on the other side the orbit is inadmissible.\n",
+                   step)
+             : fmt::format(
+                   "DS = {} leads to the side where the orbit is inadmissible; the new impact is on the side of "
+                   "DS = {}.\n",
+                   settings.step, step);
 }
 
 /// The functions of the orbit and of what is made of it, for a plugin that does not say what it has.
@@ -300,6 +341,7 @@ std::vector<std::string> resegment(const ResegmentRequest& request, std::ostream
   const std::vector<std::string> contradictions = check_settings_against(system, settings, "the new constants");
   warnings.insert(warnings.end(), contradictions.begin(), contradictions.end());
   require_fit(system, settings.signature(), start.orbit);
+  const std::string side = target.impact ? choose_side(request, system, *target.impact, start, settings) : "";
 
   const std::string solutions_out = output_path('q', request.output);
   const std::string constants_out =
@@ -316,10 +358,8 @@ std::vector<std::string> resegment(const ResegmentRequest& request, std::ostream
   screen << summary(source, settings, start.orbit, system)
          << fmt::format("{} and {} written; next: tchat run {} -c {} {} {}\n", start_out, constants_out,
                         std::filesystem::path(plugin).stem().string(), request.output, request.data ? "-d" : "-s",
-                        request.output);
-  if (request.kind == ResegmentKind::impacting)
-    screen << "On one side of this point the orbit has the new impact, on the other it is inadmissible: choose by the "
-              "sign of DS, or\nsee both with --both.\n";
+                        request.output)
+         << side;
   return warnings;
 }
 

@@ -89,10 +89,10 @@ std::string type_name(int type, const UserPointKind& kind) {
 
 std::string type_name(const LabelledSolution& solution) { return type_name(solution.type, solution.kind); }
 
-std::string description(const UserPointKind& kind) {
+std::string description(const UserPointKind& kind, const std::string& parameter) {
   switch (kind.kind) {
     case UserPointKind::user_value:
-      return fmt::format("user value of PAR({})", kind.index);
+      return "user value of " + (parameter.empty() ? fmt::format("PAR({})", kind.index) : parameter);
     case UserPointKind::contact:
       return fmt::format("contact inside segment {}, event function {}, tau = {:.6g}", kind.segment, kind.index,
                          kind.tau);

@@ -18,7 +18,8 @@ int basic_type(int type);
 std::string type_name(int type, const UserPointKind& kind = {});
 std::string type_name(const LabelledSolution& solution);
 
-/// What a UZ label is, in words: "contact inside segment 1, event function 2, tau = 0.5"; "" for kind none.
-std::string description(const UserPointKind& kind);
+/// What a UZ label is, in words: "contact inside segment 1, event function 2, tau = 0.5"; "" for kind none. `parameter`
+/// is the name of the one whose value the user asked for, PAR(index) when empty.
+std::string description(const UserPointKind& kind, const std::string& parameter = "");
 
 }  // namespace tchat

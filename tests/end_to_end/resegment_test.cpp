@@ -111,6 +111,24 @@ TEST_CASE("resegment: a contact inside the segment cuts it in two, both ways on 
   CHECK(contains(workspace.read("d.born2"), "Inadmissible"));
 }
 
+TEST_CASE("resegment: DS leads to the side with impacts, whatever its sign was") {
+  const Workspace workspace;
+  run_to_contact_inside(workspace);
+  for (const std::string extra : {"", " --dat"}) {
+    for (const std::string step : {"0.02", "-0.02"}) {
+      CAPTURE(extra, step);
+      workspace.write("gc.signed", workspace.tchat("constants r.inside DS=" + step).out);
+      const Outcome outcome = resegment(workspace, "q.inside GR1 --to impacting -c signed -o born NMX=5" + extra);
+      CHECK(contains(outcome.out, "DS = 0.02 leads to the side with the new impact"));
+      workspace.run(std::string("-c born ") + (extra.empty() ? "-s" : "-d") + " born -o born1");
+      CHECK_FALSE(contains(workspace.read("d.born1"), "Inadmissible"));
+    }
+  }
+  const Outcome given = resegment(workspace, "q.inside GR1 --to impacting -o born DS=-0.01");  // the user's own choice
+  CHECK(contains(given.out, "DS = -0.01 leads to the side where the orbit is inadmissible"));
+  CHECK(contains(workspace.read("gc.born"), "DS = -0.01"));
+}
+
 TEST_CASE("resegment: a contact on the section replaces it, from data as well") {
   const Workspace workspace;
   workspace.run("-c to_grazing -d nonimpacting -o grazing");

@@ -81,7 +81,9 @@ TEST_CASE("Names of the problem in both tables", "[output]") {
   const ProblemNames names{{"x", "velocity"}, {"omega"}, {}};
   SolutionFile file;
   file.solutions.push_back(sample_orbit(3, 1, 4, 2));
-  CHECK_THAT(format_label_table(file, names), Contains("omega = 3\n") && !Contains("PAR(1)"));
+  file.solutions[0].type = -4;
+  file.solutions[0].kind = {UserPointKind::user_value, 0, 1, 0.0};
+  CHECK_THAT(format_label_table(file, names), Contains("omega = 3   user value of omega\n") && !Contains("PAR(1)"));
   const std::string text = format_orbit_table(file.solutions[0], "q.x", names);
   CHECK_THAT(text, Contains("# omega = 3\n"));
   CHECK_THAT(text, Contains("                  x           velocity               U(3)\n"));
