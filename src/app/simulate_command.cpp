@@ -152,6 +152,12 @@ void add_simulate_command(CLI::App& app, std::function<int()>& chosen) {
       ->expected(0, 1)
       ->type_name("[NAME2]")
       ->group("Periodic orbit");
+  command
+      ->add_flag(
+          "--without-sections", request->without_sections,
+          "Poincare sections (identity jump, the same field after it) end no segments of the orbit, unless nothing "
+          "else does")
+      ->group("Periodic orbit");
   command->add_option("--free", request->parameter, "continuation parameter in gc.NAME2 [ICP(1) of gc.C, else PAR(1)]")
       ->group("Periodic orbit");
   command->add_option("KEY=VALUE", request->overrides,

@@ -220,6 +220,7 @@ int simulate_problem(const SimulationRequest& request, std::ostream& screen, std
   if (result.is_periodic()) {
     const IndexVector first =
         constants.has_signature ? constants.settings.segments.front().index : IndexVector{0, 0, 0};
+    if (request.without_sections) result.turn = without_sections(system, std::move(result.turn));
     orbit = refine(system, result, start.par, first);
     say(orbit.converged
             ? orbit_text(system, orbit)

@@ -32,6 +32,7 @@ struct SimulationRequest {
   bool quiet = false;
 
   bool hand_over = false;                ///< --dat: write the orbit for `tchat run`
+  bool without_sections = false;         ///< Poincare sections end no segments of the orbit
   std::string orbit_name;                ///< its NAME2; empty: that of the output
   std::optional<std::string> parameter;  ///< --free: the continuation parameter
 };

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hybrid/identity_jump.hpp"
+
 namespace tchat {
 
 namespace {
@@ -34,6 +36,29 @@ std::vector<SimulatedSegment> in_standard_order(std::vector<SimulatedSegment> tu
     if (is_better(k, best)) best = k;
   std::rotate(turn.begin(), turn.begin() + static_cast<std::ptrdiff_t>(best), turn.end());
   return turn;
+}
+
+bool ends_in_section(const HybridSystem& system, const std::vector<SimulatedSegment>& turn, std::size_t s) {
+  return is_identity_jump(system, turn[s].index.jump) &&
+         turn[(s + 1) % turn.size()].mode.field() == turn[s].mode.field();
+}
+
+/// `first` and the segment that follows it without anything between.
+SimulatedSegment joined(const SimulatedSegment& first, SimulatedSegment second) {
+  for (const IndexVector& v : first.mode.index_vectors)
+    if (const auto& all = second.mode.index_vectors; std::find(all.begin(), all.end(), v) == all.end())
+      second.mode.index_vectors.push_back(v);
+  for (const int event : first.mode.monitored)
+    if (const auto& all = second.mode.monitored; std::find(all.begin(), all.end(), event) == all.end())
+      second.mode.monitored.push_back(event);
+  second.start = first.start;
+  second.start_time = first.start_time;
+  second.duration += first.duration;
+  second.low = second.low.cwiseMin(first.low);
+  second.high = second.high.cwiseMax(first.high);
+  second.samples.clear();
+  second.marks.clear();
+  return second;
 }
 
 PeriodicOrbit shoot_finely(const HybridSystem& system, const FoundOrbit& found, const VectorXd& guess,
@@ -97,6 +122,24 @@ std::size_t true_period(const FoundOrbit& found, const PeriodicOrbit& orbit, con
 bool FoundOrbit::is_stable() const {
   return std::all_of(multipliers.begin(), multipliers.end(),
                      [](const auto& mu) { return std::abs(mu) <= 1.0 + stability_margin; });
+}
+
+std::vector<SimulatedSegment> without_sections(const HybridSystem& system, std::vector<SimulatedSegment> turn) {
+  std::size_t last = turn.size();  // a segment that stays one
+  for (std::size_t s = 0; s < turn.size(); ++s)
+    if (!ends_in_section(system, turn, s)) last = s;
+  if (last == turn.size()) return turn;
+  std::rotate(turn.begin(), turn.begin() + static_cast<std::ptrdiff_t>((last + 1) % turn.size()), turn.end());
+  std::vector<SimulatedSegment> kept;
+  bool open = false;  // the last one kept goes on
+  for (std::size_t s = 0; s < turn.size(); ++s) {
+    if (open)
+      kept.back() = joined(kept.back(), turn[s]);
+    else
+      kept.push_back(turn[s]);
+    open = ends_in_section(system, turn, s);
+  }
+  return kept;
 }
 
 FoundOrbit refine(const HybridSystem& system, const SimulationResult& result, const VectorXd& par,

@@ -26,6 +26,10 @@ struct FoundOrbit {
   bool is_stable() const;
 };
 
+/// A turn whose Poincare sections (identity jump, the same field after it) no longer end segments: each joins the
+/// segment after it. As it was when nothing else ends a segment. Samples and marks are not kept.
+std::vector<SimulatedSegment> without_sections(const HybridSystem& system, std::vector<SimulatedSegment> turn);
+
 /// Refines the recognised turn of `result`, whose segments are rotated so that the smallest index vector, or `first` if
 /// the orbit has it, comes first. What fails is a value: no convergence, or convergence to another orbit than the one
 /// simulated.

@@ -209,6 +209,20 @@ TEST_CASE("simulate: walls are monitored on the orbit handed over, sections are 
   CHECK(contains(workspace.read("gc.other"), "GRJUMP = 3 "));
 }
 
+TEST_CASE("simulate: an orbit without its section, where it has another event") {
+  const Workspace workspace;
+  workspace.write("driven.cpp", driven);
+  const Outcome both = simulate(workspace, "driven --dat both");
+  const Outcome one = simulate(workspace, "driven --dat one --without-sections");
+  CHECK(contains(both.out, "signature {(1,1,2), (1,2,1)}, period 3.14159265359"));
+  CHECK(contains(one.out, "signature {(1,1,2)}, period 3.14159265359"));
+  const auto multipliers = [](const Outcome& o) { return o.out.substr(o.out.find("multipliers"), 30); };
+  CHECK(multipliers(one) == multipliers(both));
+  CHECK(contains(workspace.read("gc.one"), "GCHGRZIND = [[1]] "));
+  workspace.run("-c one -d one -p driven -o first NMX=3");
+  CHECK(contains(workspace.read("d.first"), "Iterations   :"));
+}
+
 TEST_CASE("simulate: data of a signature can start another one") {
   const Workspace workspace;
   workspace.write("driven.cpp", driven);

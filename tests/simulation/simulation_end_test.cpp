@@ -1,6 +1,7 @@
 // What a simulation settles on: chattering, sticking, rest, periodic orbits of any period.
 #include <catch2/catch.hpp>
 
+#include "../hybrid/linear_oscillator.hpp"
 #include "simulated_problems.hpp"
 #include "simulation/found_orbit.hpp"
 #include "simulation/recurrence.hpp"
@@ -194,6 +195,41 @@ TEST_CASE("an orbit is refined from its lowest index vector on, or from the one 
   CHECK(lowest.signature == Signature{{1, 1, 1}, {1, 2, 2}});
   const FoundOrbit wanted = refine(system_of<BouncingBall>(), run.result, parameters({9.81, 1.0}), {1, 2, 2});
   CHECK(wanted.signature == Signature{{1, 2, 2}, {1, 1, 1}});
+}
+
+TEST_CASE("sections end no segments of an orbit that has another end, wherever the turn begins") {
+  const HybridSystem& hybrid = system_of<LinearOscillator>();
+  const auto segment = [](IndexVector index, double begin, double duration) {
+    SimulatedSegment s;
+    s.index = index;
+    s.mode = {{index}, {}};
+    s.start_time = begin;
+    s.duration = duration;
+    s.start = Eigen::Vector4d(begin, 0.0, 0.0, 1.0);
+    s.low = s.high = s.start;
+    return s;
+  };
+  const IndexVector impact{1, 1, 1}, section{1, 3, 2};
+  std::vector<SimulatedSegment> turn{segment(section, 0.0, 1.0), segment(impact, 1.0, 2.0), segment(section, 3.0, 3.0),
+                                     segment(section, 6.0, 4.0), segment(impact, 10.0, 5.0)};
+  for (std::size_t turned = 0; turned < turn.size(); ++turned) {
+    CAPTURE(turned);
+    std::vector<double> durations, starts;
+    for (const SimulatedSegment& s : without_sections(hybrid, turn)) {
+      CHECK(s.index == impact);
+      CHECK(s.mode.index_vectors == std::vector<IndexVector>{impact, section});
+      CHECK(s.low(0) == s.start(0));
+      durations.push_back(s.duration);
+      starts.push_back(s.start(0));
+    }
+    std::sort(durations.begin(), durations.end());
+    std::sort(starts.begin(), starts.end());
+    CHECK(durations == std::vector<double>{3.0, 12.0});
+    CHECK(starts == std::vector<double>{0.0, 3.0});
+    std::rotate(turn.begin(), turn.begin() + 1, turn.end());
+  }
+  const std::vector<SimulatedSegment> only{segment(section, 0.0, 1.0), segment(section, 1.0, 1.0)};
+  CHECK(without_sections(hybrid, only).size() == 2);
 }
 
 TEST_CASE("a simulation that is interrupted ends at once") {
