@@ -11,6 +11,7 @@
 
 #include "constants/constant_value.hpp"
 #include "constants/user_error.hpp"
+#include "plot/data_file.hpp"
 #include "plot/picture_styles.hpp"
 #include "plot/trajectory_file.hpp"
 #include "start/fortran_number.hpp"
@@ -60,8 +61,9 @@ PlotItem::Kind kind_of(const std::string& path) {
   const bool integers =
       std::all_of(words.begin(), words.end(), [](std::string_view word) { return parse_integer(word).has_value(); });
   if (integers && (words.size() == 12 || words.size() == 16)) return PlotItem::Kind::solutions;
-  if (looks_like_point_file(line)) return PlotItem::Kind::points;
   const std::string name = fs::path(path).filename().string();
+  if (name.find('.') != 1 && looks_like_data(path)) return PlotItem::Kind::data;  // p.NAME is meant to be a p-file
+  if (looks_like_point_file(line)) return PlotItem::Kind::points;
   if (name.starts_with("d.") || name == "fort.9") return PlotItem::Kind::diagnostics;
   if (name.starts_with("q.") || name.starts_with("s.")) return PlotItem::Kind::solutions;
   return PlotItem::Kind::points;

@@ -35,7 +35,7 @@ struct PlotArguments {
 
 /// A file of a run and the labels named after it.
 struct PlotItem {
-  enum class Kind { points, solutions, diagnostics, trajectory };
+  enum class Kind { points, solutions, diagnostics, trajectory, data };
   Kind kind = Kind::points;
   std::string path;
   std::vector<std::string> labels;

@@ -49,6 +49,7 @@ constexpr const char* footer =
     "Four kinds of picture, by the files given:\n"
     "  tchat plot p.A [p.B ...]           branches: by default the first free parameter and the solution measure;\n"
     "                                     the two free parameters when all files are two-parameter curves\n"
+    "  tchat plot p.A [p.B ...] TABLE     with the first two columns of a table of your own as dots beneath\n"
     "  tchat plot q.A LABEL [LABEL ...]   orbits: phase portrait of the first two states, or with --time time series;\n"
     "                                     labels are numbers or types with a count (5, PD1, GR1), or all\n"
     "  tchat plot A.trajectory            a simulation: time series, or with -x a phase portrait\n"
@@ -75,7 +76,7 @@ void add_plot_command(CLI::App& app, std::function<int()>& chosen) {
   const auto a = std::make_shared<PlotArguments>();
   command
       ->add_option("FILES", a->words,
-                   "p-files; a q-file with labels; trajectories; A is taken for p.A, before labels for q.A")
+                   "p-files; a q-file with labels; trajectories; tables; A is taken for p.A, before labels for q.A")
       ->required();
   command->add_flag("--multipliers", a->multipliers, "Floquet multipliers with the unit circle");
   command->add_flag("--time", a->time, "orbits as time series");

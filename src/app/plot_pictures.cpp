@@ -10,6 +10,7 @@
 #include "constants/constant_value.hpp"
 #include "constants/user_error.hpp"
 #include "plot/branch_figure.hpp"
+#include "plot/data_file.hpp"
 #include "plot/multiplier_figure.hpp"
 #include "plot/orbit_figure.hpp"
 #include "plot/problem_finder.hpp"
@@ -42,16 +43,27 @@ void check_legend(const PlotArguments& arguments, std::size_t count, const char*
 NamedFigure branches(const std::vector<PlotItem>& items, const PlotArguments& arguments) {
   NamedFigure result;
   std::vector<BranchFile> files;
-  for (const PlotItem& item : items) {
+  BranchFigureOptions options{arguments.x, arguments.y, read_label_selection(arguments), {}, {}};
+  check_legend(arguments, items.size(), "file");
+  for (std::size_t k = 0; k < items.size(); ++k) {
+    const PlotItem& item = items[k];
+    const bool has_legend = k < arguments.legend.size();
+    if (item.kind == PlotItem::Kind::data) {
+      DataFile data = read_data_file(item.path);
+      options.clouds.push_back(
+          {has_legend ? arguments.legend[k] : data.name, data.x_name, data.y_name, std::move(data.points)});
+      result.name = data.name;
+      continue;
+    }
+    if (has_legend) options.legend.push_back(arguments.legend[k]);
     if (!item.labels.empty())
       throw UserError(fmt::format("{} holds branches, labels such as {} belong to orbits: tchat plot {} {}", item.path,
                                   item.labels.front(), sibling_path(item.path, 'q'), item.labels.front()));
     files.push_back(read_branch_file(item.path));
     for (const std::string& warning : files.back().warnings) result.warnings.push_back(warning);
   }
-  check_legend(arguments, files.size(), "file");
-  result.figure = branch_figure(files, {arguments.x, arguments.y, read_label_selection(arguments), arguments.legend});
-  result.name = files.front().name;
+  result.figure = branch_figure(files, options);
+  if (!files.empty()) result.name = files.front().name;
   return result;
 }
 

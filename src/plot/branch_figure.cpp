@@ -62,7 +62,8 @@ void add_once(std::vector<T>& list, T entry) {
 class BranchFigureBuilder {
  public:
   BranchFigureBuilder(const std::vector<BranchFile>& files, const BranchFigureOptions& options)
-      : files_(files), options_(options), axes_(default_columns(files)) {
+      : files_(files), options_(options) {
+    if (!files.empty()) axes_ = default_columns(files);
     if (!options.x.empty()) axes_.x = options.x;
     if (!options.y.empty()) axes_.y = options.y;
     for (const BranchFile& file : files)
@@ -83,6 +84,7 @@ class BranchFigureBuilder {
       for (const BranchPiece& piece : files_[f].pieces) pieces.push_back(read_piece(f, piece));
     const PicturePoint scale = size_of(pieces);
     for (const Piece& piece : pieces) add_piece(piece, scale);
+    add_clouds();
     add_key();
     panel_.x.label = mathematical_name(x_name_);
     panel_.y.label = mathematical_name(y_name_);
@@ -186,6 +188,16 @@ class BranchFigureBuilder {
       else if (type == "XI" && zeros != file.xi_zeros.end())
         marker.label = xi_name(zeros->second);
       panel_.markers.push_back(std::move(marker));
+    }
+  }
+
+  void add_clouds() {
+    for (const NamedCloud& cloud : options_.clouds) {
+      const std::string colour = cloud_colour(panel_.clouds.size());
+      panel_.clouds.push_back({cloud.points, colour});
+      key_.push_back({plain_text(cloud.name), std::nullopt, cloud_marker(colour)});
+      if (x_name_.empty()) x_name_ = cloud.x_name;
+      if (y_name_.empty()) y_name_ = cloud.y_name;
     }
   }
 

@@ -24,13 +24,21 @@ struct LabelSelection {
   bool includes(const std::string& type) const;
 };
 
+/// Dots beneath the branches.
+struct NamedCloud {
+  std::string name;            ///< in the key
+  std::string x_name, y_name;  ///< of the axes when there are no branches
+  std::vector<PicturePoint> points;
+};
+
 struct BranchFigureOptions {
   std::string x, y;  ///< columns; empty: default_columns
   LabelSelection labels;
-  std::vector<std::string> legend;  ///< a text for each file; empty: chosen here
+  std::vector<std::string> legend = {};  ///< a text for each file; empty: chosen here
+  std::vector<NamedCloud> clouds = {};
 };
 
-/// Throws UserError for columns that a file does not have.
+/// `files` may be empty when there are clouds. Throws UserError for columns that a file does not have.
 Figure branch_figure(const std::vector<BranchFile>& files, const BranchFigureOptions& options);
 
 /// How the line from point k - 1 to point k of a branch is drawn.

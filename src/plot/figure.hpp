@@ -47,6 +47,12 @@ struct Marker {
   bool minor = false;        ///< as that of a curve
 };
 
+/// Dots beneath everything else.
+struct Cloud {
+  std::vector<PicturePoint> points;
+  std::string colour = "#000000";
+};
+
 /// An arrowhead on a curve.
 struct Arrow {
   PicturePoint from;
@@ -64,6 +70,7 @@ struct AxisSettings {
 struct Panel {
   AxisSettings x;
   AxisSettings y;
+  std::vector<Cloud> clouds;
   std::vector<Curve> curves;
   std::vector<Marker> markers;
   std::vector<Arrow> arrows;

@@ -9,6 +9,8 @@
 #include <map>
 #include <tuple>
 
+#include "plot/picture_styles.hpp"
+
 namespace tchat {
 
 namespace {
@@ -136,6 +138,13 @@ class ScriptWriter {
 
   void data(const Panel& panel, std::size_t number) {
     int count = 0;
+    for (const Cloud& cloud : panel.clouds) {
+      line(fmt::format("$cloud{}_{} << END", number + 1, ++count));
+      for (const PicturePoint& p : cloud.points)
+        if (std::isfinite(p.x) && std::isfinite(p.y)) line(fmt::format("{:.10g} {:.10g}", p.x, p.y));
+      line("END");
+    }
+    count = 0;
     for (const Curve& curve : panel.curves) {
       line(fmt::format("$curve{}_{} << END", number + 1, ++count));
       for (const PicturePoint& p : curve.points)
@@ -257,6 +266,9 @@ class ScriptWriter {
 
   void plot(const Panel& panel, std::size_t number) {
     std::vector<std::string> elements;
+    for (std::size_t c = 0; c < panel.clouds.size(); ++c)
+      elements.push_back(fmt::format("$cloud{}_{} with points {} notitle", number + 1, c + 1,
+                                     points(cloud_marker(""), true, panel.clouds[c].colour)));
     for (std::size_t c = 0; c < panel.curves.size(); ++c)
       elements.push_back(
           fmt::format("$curve{}_{} with lines {} notitle", number + 1, c + 1, stroke(panel.curves[c].stroke)));

@@ -86,6 +86,8 @@ std::optional<KeyPlace> KeyGrid::place_inside(const Obstacles& obstacles) const 
     double cost = corner.cost + obstacles.curve_length(box);
     for (const Box& marker : obstacles.markers)
       if (shared_area(box.grown(1.2 * font_), marker) > 0.0) cost += 2.0 * font_;
+    for (const PicturePoint& dot : obstacles.dots)
+      if (box.contains(dot)) cost += 0.1 * font_;
     if (cost < least) least = cost, best = placed(left, bottom, true);
   }
   return best;

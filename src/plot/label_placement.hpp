@@ -38,7 +38,8 @@ struct Obstacles {
   Box frame;                                      ///< labels stay inside
   std::vector<std::vector<PicturePoint>> curves;  ///< polylines, interrupted by points that are not finite
   std::vector<Box> markers;
-  std::vector<Box> forbidden;  ///< the key
+  std::vector<Box> forbidden;           ///< the key
+  std::vector<PicturePoint> dots = {};  ///< of clouds: only the key keeps clear of them
 
   /// Length of curves in the box.
   double curve_length(const Box& box) const;

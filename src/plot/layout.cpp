@@ -24,6 +24,8 @@ void add_values(const Panel& panel, Values& values) {
     auto& list = curve.minor ? values.minor : values.points;
     list.insert(list.end(), curve.points.begin(), curve.points.end());
   }
+  for (const Cloud& cloud : panel.clouds)
+    values.points.insert(values.points.end(), cloud.points.begin(), cloud.points.end());
   const bool has_curve = !values.points.empty();
   for (const Marker& marker : panel.markers)
     (marker.minor || !(has_curve || panel.curves.empty()) ? values.minor : values.points).push_back(marker.at);
@@ -67,6 +69,8 @@ Obstacles obstacles_of(const Panel& panel, const PanelLayout& layout, const std:
     for (const PicturePoint& p : curve.points) points.push_back(layout.on_paper(p));
     obstacles.curves.push_back(std::move(points));
   }
+  for (const Cloud& cloud : panel.clouds)
+    for (const PicturePoint& p : cloud.points) obstacles.dots.push_back(layout.on_paper(p));
   for (const Marker& marker : panel.markers) {
     const PicturePoint at = layout.on_paper(marker.at);
     const double radius = marker.size * marker_radius * font;

@@ -56,6 +56,19 @@ const PointStyle& style_of(const std::string& type) {
 
 }  // namespace
 
+std::string cloud_colour(std::size_t k) {
+  constexpr std::array<const char*, 4> pale = {"#a8a8a8", "#8ab8e0", "#e8b088", "#9cd0a4"};
+  return pale[k % pale.size()];
+}
+
+Marker cloud_marker(const std::string& colour) {
+  Marker marker;
+  marker.symbol = Symbol::dot;
+  marker.size = 0.5;
+  marker.colour = colour;
+  return marker;
+}
+
 std::string series_colour(std::size_t k) { return colours[k % colours.size()]; }
 
 Stroke series_stroke(std::size_t k, double width) {

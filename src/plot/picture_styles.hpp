@@ -11,6 +11,12 @@ namespace tchat {
 /// Colour of the k-th file or orbit (from 0): black first, then colours that differ for the colour-blind and in grey.
 std::string series_colour(std::size_t k);
 
+/// Colour of the k-th cloud of dots (from 0): pale, for curves lie over it.
+std::string cloud_colour(std::size_t k);
+
+/// A dot as large as those of clouds.
+Marker cloud_marker(const std::string& colour);
+
 /// Line of the k-th orbit in one picture.
 Stroke series_stroke(std::size_t k, double width);
 

@@ -7,11 +7,13 @@
 
 #include "constants/user_error.hpp"
 #include "plot/branch_columns.hpp"
+#include "plot/data_file.hpp"
 #include "plot/layout.hpp"
 #include "plot/picture_styles.hpp"
 #include "start/temporary_folder.hpp"
 
 using namespace tchat;
+using Catch::Matchers::Contains;
 using test_support::message_of;
 using test_support::TemporaryFolder;
 
@@ -189,6 +191,49 @@ TEST_CASE("a section with several branches is not one line, after 9999 the count
       "p.b",
       header(180, 1) + rows({{9998, 0, 0, 0.0, 1.0, 2.0}, {9999, 0, 0, 1.0, 1.0, 2.0}, {1, 0, 0, 2.0, 1.0, 2.0}})));
   CHECK(one.pieces.size() == 1);
+}
+
+TEST_CASE("a table of numbers: two columns, names from the last comment before them") {
+  const TemporaryFolder folder;
+  const DataFile data =
+      read_data_file(folder.write("d.txt", "# brute force\n#  a  v  events\n\n 0 0.5 1\n1e-1 -0.25 2\n"));
+  CHECK(data.name == "d");
+  CHECK(data.x_name == "a");
+  CHECK(data.y_name == "v");
+  REQUIRE(data.points.size() == 2);
+  CHECK(data.points[1].x == 0.1);
+  CHECK(data.points[1].y == -0.25);
+  CHECK(read_data_file(folder.write("e.txt", "# a v\n0 1 2\n")).x_name.empty());
+  for (const char* text : {"0 0.5\n0 0.6\n", "# a b\n3 1\n", "1.5 2 3 4 5 6.5\n"})
+    CHECK(looks_like_data(folder.write("x", text)));
+  for (const char* text : {"", "# a\n", "1\n", "a b\n", "1 2\nx y\n", "0 -1.0 1.0 0.0 2.0\n", "1 2 9 1 0.5\n"})
+    CHECK_FALSE(looks_like_data(folder.write("x", text)));
+  const auto message = [&](const std::string& text) {
+    return message_of<UserError>([&] { read_data_file(folder.write("bad.txt", text)); });
+  };
+  CHECK_THAT(message("1 2\n3\n"), Contains("bad.txt:2") && Contains("'3'"));
+  CHECK_THAT(message("1 2\n3 x\n"), Contains("bad.txt:2") && Contains("two numbers"));
+  CHECK_THAT(message("# nothing\n"), Contains("no numbers"));
+}
+
+TEST_CASE("dots beneath branches, and alone") {
+  const TemporaryFolder folder;
+  const BranchFile file = read_branch_file(folder.write("p.a", header(180, 1) + rows(branch)));
+  BranchFigureOptions options;
+  options.clouds.push_back({"brute force", "a", "v", {{0.5, 7.0}, {1.5, 8.0}}});
+  const Figure both = branch_figure({file}, options);
+  REQUIRE(both.panels[0].clouds.size() == 1);
+  CHECK(both.panels[0].clouds[0].points.size() == 2);
+  REQUIRE(both.key.size() == 4);  // with stable and unstable
+  CHECK(both.key[1].text.text == "brute force");
+  CHECK(both.panels[0].x.label.text != "a");
+  const FigureLayout layout = lay_out(both);
+  CHECK(layout.panels[0].x.low <= 0.5);
+  CHECK(layout.panels[0].y.high >= 8.0);
+  const Figure alone = branch_figure({}, options);
+  CHECK(alone.key.empty());
+  CHECK(alone.panels[0].x.label.text == mathematical_name("a").text);
+  CHECK(alone.panels[0].y.label.text == mathematical_name("v").text);
 }
 
 TEST_CASE("a zero of xi_n is labelled with its n") {
