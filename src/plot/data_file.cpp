@@ -34,13 +34,9 @@ bool is_comment(const std::string& line) {
 
 bool looks_like_data(const std::string& path) {
   std::ifstream file(path);
-  int rows = 0;
-  for (std::string line; rows < 2 && std::getline(file, line);) {
-    if (is_comment(line)) continue;
-    if (!is_row(line)) return false;
-    ++rows;
-  }
-  return rows > 0;
+  for (std::string line; std::getline(file, line);)
+    if (!is_comment(line)) return is_row(line);
+  return false;
 }
 
 DataFile read_data_file(const std::string& path) {

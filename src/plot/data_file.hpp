@@ -18,7 +18,7 @@ struct DataFile {
   std::vector<PicturePoint> points;
 };
 
-/// Judged by the first two rows: two or more numbers and nothing else, and no line of a p-file.
+/// Judged by the first row: two or more numbers and nothing else, and no line of a p-file.
 bool looks_like_data(const std::string& path);
 
 /// Throws UserError with the line for what is no table of numbers, or has no rows.

@@ -179,9 +179,25 @@ TEST_CASE("without gnuplot the message says how to get it") {
   CHECK_FALSE(workspace.has("none.png"));
 }
 
+TEST_CASE("a table of numbers lies as dots beneath a branch") {
+  const Workspace& workspace = impacting();
+  workspace.write("brute.txt", "# alpha v\n2.9 0.125\n3.25 0.5\n");
+  const Outcome outcome =
+      workspace.tchat("plot p.branch brute.txt --legend branch --legend dots --script s.gp -o d.png");
+  INFO(outcome.text());
+  REQUIRE(outcome.status == 0);
+  CHECK(workspace.has("d.png"));
+  const std::string script = workspace.read("s.gp");
+  CHECK(contains(script, "$cloud1_1 << END\n2.9 0.125\n3.25 0.5\nEND\n"));
+  CHECK(contains(script, "plot $cloud1_1 with points "));
+  CHECK(contains(script, "dots"));
+}
+
 TEST_CASE("bad usage of plot is refused with what there is") {
   const Workspace& workspace = impacting();
   workspace.write("p.broken", "   1  1  9  1  1.0\n   1  2  0  0  1.0 2.0\n");
+  workspace.write("words", "alpha beta\n");
+  workspace.write("table", "# alpha v\n2.9 0.1\nbroken\n");
   struct Bad {
     std::string arguments;
     std::vector<std::string> expected;
@@ -211,7 +227,8 @@ TEST_CASE("bad usage of plot is refused with what there is") {
                          Bad{"p.branch --legend a --legend b", {"2 times"}},
                          Bad{"p.branch --logx --xrange=-1:2", {"positive"}},
                          Bad{"p.broken", {"p.broken:2"}},
-                         Bad{"impacting.dat", {"impacting.dat:1"}},
+                         Bad{"words", {"words:1"}},
+                         Bad{"p.branch table", {"table:3", "'broken'"}},
                          Bad{"", {"--help"}},
                          Bad{"p.branch --nosuch", {"--help"}}}) {
     INFO("tchat plot " << bad.arguments);
