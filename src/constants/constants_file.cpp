@@ -11,6 +11,7 @@
 
 #include "constants/keyword_form.hpp"
 #include "constants/positional_form.hpp"
+#include "constants/settings_check.hpp"
 #include "constants/user_error.hpp"
 
 namespace tchat {
@@ -127,7 +128,11 @@ void apply_overrides(RunSettings& settings, std::span<const std::string> key_val
           fmt::format("{}: found {}; allowed: KEY=VALUE; for example: DS=-0.01", place.text(), in_quotes(key_value)));
     for (const Assignment& assignment : assignments) assign_override(draft, assignment);
   }
-  settings = draft.finish(warnings);
+  RunSettings changed = draft.finish(warnings);
+  if (warnings != nullptr && draft.is_given("GCHGRZIND") && !draft.is_given("GCIPSI"))
+    if (const std::string sentence = unlocated_contacts(settings, changed); !sentence.empty())
+      warnings->push_back(fmt::format("{}: {}", place.text(), sentence));
+  settings = std::move(changed);
 }
 
 void apply_override(RunSettings& settings, const std::string& key_value) {

@@ -8,6 +8,8 @@
 #include <cctype>
 #include <cmath>
 
+#include "constants/near_words.hpp"
+
 namespace tchat {
 
 namespace {
@@ -135,22 +137,6 @@ std::string upper(std::string_view word) {
   return result;
 }
 
-/// Least number of insertions, deletions and replacements that turn a into b.
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({row[j] + 1, row[j - 1] + 1, replaced});
-    }
-  }
-  return row[b.size()];
-}
-
 }  // namespace
 
 bool Limits::contain(double value) const {
@@ -205,19 +191,9 @@ const Constant* find_constant(std::string_view keyword) {
 }
 
 std::vector<std::string> near_keywords(std::string_view word) {
-  const std::string wanted = upper(word.substr(0, 32));
-  std::vector<std::pair<std::size_t, std::string>> candidates;
-  for (const Constant& constant : constants_table()) {
-    const std::size_t distance = edit_distance(wanted, constant.keyword);
-    const bool part = wanted.size() > 2 && constant.keyword.find(wanted) != std::string_view::npos;
-    if (part || (distance <= 2 && distance < wanted.size())) candidates.emplace_back(distance, constant.keyword);
-  }
-  std::stable_sort(candidates.begin(), candidates.end(),
-                   [](const auto& a, const auto& b) { return a.first < b.first; });
-  if (candidates.size() > 5) candidates.resize(5);
-  std::vector<std::string> result;
-  for (auto& [distance, keyword] : candidates) result.push_back(std::move(keyword));
-  return result;
+  std::vector<std::string> keywords;
+  for (const Constant& constant : constants_table()) keywords.emplace_back(constant.keyword);
+  return near_words(word, keywords);
 }
 
 bool has_real_values(const Constant& constant) {

@@ -201,6 +201,20 @@ class AssignmentParser {
   std::size_t position_ = 0;
 };
 
+/// Near keywords where there are some; on the command line a word may also be meant for a parameter's name.
+[[noreturn]] void refuse_keyword(const Assignment& assignment) {
+  const Token& key = assignment.key;
+  const std::vector<std::string> near = near_keywords(key.text);
+  const std::string cure =
+      near.empty() ? "`tchat constants` lists them" : fmt::format("did you mean: {}", fmt::join(near, ", "));
+  const bool may_be_parameter =
+      key.place.line == 0 && !assignment.has_argument && parse_real(assignment.value.token.text);
+  throw UserError(fmt::format("{}: found {}, which is no constant; {}{}", key.place.text(), in_quotes(key.text), cure,
+                              may_be_parameter ? fmt::format("; the value of a parameter is written 'PAR({})={}'",
+                                                             key.text, assignment.value.token.text)
+                                               : ""));
+}
+
 }  // namespace
 
 std::vector<Assignment> parse_assignments(std::string_view text, const Place& start) {
@@ -222,15 +236,7 @@ bool begins_with_assignment(std::string_view text) {
 
 const Constant& constant_of(const Assignment& assignment) {
   const Constant* constant = find_constant(assignment.key.text);
-  if (constant == nullptr) {
-    std::vector<std::string> known = near_keywords(assignment.key.text);
-    const bool near = !known.empty();
-    if (!near)
-      for (const Constant& each : constants_table()) known.emplace_back(each.keyword);
-    throw UserError(fmt::format("{}: found {}, which is no constant; {}: {}", assignment.key.place.text(),
-                                in_quotes(assignment.key.text), near ? "did you mean" : "allowed",
-                                fmt::join(known, ", ")));
-  }
+  if (constant == nullptr) refuse_keyword(assignment);
   if (assignment.has_argument && constant->record != command_line_record)
     refuse(*constant, std::string(constant->keyword), assignment.key.place,
            in_quotes(fmt::format("{}({})", assignment.key.text, assignment.argument)),

@@ -112,6 +112,26 @@ class SettingsCheck {
   const PlaceOf& place_;
 };
 
+/// A test function of IPS 180 by its number in GCIPSI; all from 1.
+struct Contact {
+  int number = 0, segment = 0, event = 0;
+};
+
+std::vector<Contact> not_chosen(const RunSettings& settings) {
+  std::vector<Contact> result;
+  const std::vector<int>& chosen = settings.test_functions;
+  Contact contact;
+  for (const SegmentSettings& segment : settings.segments) {
+    ++contact.segment;
+    for (const int event : segment.monitor) {
+      ++contact.number;
+      contact.event = event;
+      if (std::find(chosen.begin(), chosen.end(), contact.number) == chosen.end()) result.push_back(contact);
+    }
+  }
+  return result;
+}
+
 }  // namespace
 
 void check_settings(const RunSettings& settings, const PlaceOf& place) {
@@ -135,6 +155,23 @@ std::vector<std::string> settings_warnings(const RunSettings& settings, const st
           fmt::format("{}: GCSEGTYP({}) = 2 (grazing contact) has no effect with IPS = 180; it belongs to IPS = 150",
                       source, s + 1));
   return sentences;
+}
+
+std::string unlocated_contacts(const RunSettings& before, const RunSettings& now) {
+  const std::vector<Contact> earlier = not_chosen(before);
+  const std::vector<Contact> left = not_chosen(now);
+  const bool none_wanted = before.test_functions.empty() && !earlier.empty();
+  if (now.problem_type != 180 || none_wanted || left.size() <= earlier.size()) return "";
+  constexpr std::size_t most = 6;
+  std::string list;
+  for (std::size_t i = 0; i < std::min(left.size(), most); ++i)
+    list += fmt::format("{}{} (event {} on segment {})", i == 0 ? "" : ", ", left[i].number, left[i].event,
+                        left[i].segment);
+  return fmt::format(
+      "GCHGRZIND changes and GCIPSI does not: {} test functions are not located, {}{}; GCIPSI numbers the events of "
+      "all "
+      "GCHGRZIND lists in order (`tchat constants NAME -e` lists them), give it too",
+      left.size(), list, left.size() > most ? ", ..." : "");
 }
 
 }  // namespace tchat

@@ -20,4 +20,8 @@ void check_settings(const RunSettings& settings, const std::function<Place(std::
 /// What is accepted without effect, in sentences beginning with `source`.
 std::vector<std::string> settings_warnings(const RunSettings& settings, const std::string& source);
 
+/// New monitored events whose contacts GCIPSI, as it was `before`, does not choose: a sentence that numbers them. Empty
+/// when there are none, and when none were chosen before.
+std::string unlocated_contacts(const RunSettings& before, const RunSettings& now);
+
 }  // namespace tchat

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "constants/settings_check.hpp"
+#include "constants/user_error.hpp"
 
 namespace tchat {
 
@@ -159,7 +160,8 @@ Token SettingsDraft::index_token(const Constant& constant, const Token& token) c
     refuse(constant, (constant.keyword == "ICP" ? "" : "I") + std::string(constant.keyword), token.place,
            in_quotes(token.text),
            "indices here; names are understood by tchat run, simulate and resegment, which know the problem");
-  return {fmt::format("{}{}", negative ? "-" : "", names_(name)), token.place};
+  const std::string where = fmt::format("{}: {} ({})", token.place.text(), constant.keyword, constant.meaning);
+  return {fmt::format("{}{}", negative ? "-" : "", names_(name, where)), token.place};
 }
 
 void SettingsDraft::assign(const Constant& constant, const RawValue& value) {
@@ -187,6 +189,45 @@ void SettingsDraft::assign_parameter(const Constant& constant, const Token& name
 Place SettingsDraft::place_of(std::string_view keyword) const {
   const auto found = places_.find(keyword);
   return found == places_.end() ? Place{source_} : found->second;
+}
+
+/// Without GCNOSEG the lists of the signature say how many segments there are, so their lengths must agree; a list that
+/// is not given is as long as before.
+void SettingsDraft::check_lengths_agree() const {
+  if (segment_count_) return;
+  struct Length {
+    std::string_view keyword;
+    std::size_t values;
+    bool given;
+  };
+  std::vector<Length> lengths;
+  const std::size_t before = settings_.segments.size();
+  const bool monitored = std::any_of(settings_.segments.begin(), settings_.segments.end(),
+                                     [](const SegmentSettings& segment) { return !segment.monitor.empty(); });
+  for (const Constant& constant : constants_table()) {
+    const auto* of_segment = std::get_if<SegmentInteger>(&constant.member);
+    const bool monitors = std::holds_alternative<MonitorLists>(constant.member);
+    const auto list = lists_.find(constant.keyword);
+    if (of_segment != nullptr && list != lists_.end())
+      lengths.push_back({constant.keyword, list->second.size(), true});
+    else if (monitors && monitors_)
+      lengths.push_back({constant.keyword, monitors_->size(), true});
+    else if (before > 0 && ((of_segment != nullptr && of_segment->of_index != nullptr) ||
+                            (monitors && monitored && places_.count(constant.keyword) == 0)))
+      lengths.push_back({constant.keyword, before, false});
+  }
+  const auto first = std::find_if(lengths.begin(), lengths.end(), [](const Length& each) { return each.given; });
+  if (first == lengths.end()) return;
+  if (std::all_of(lengths.begin(), lengths.end(), [&](const Length& each) { return each.values == first->values; }))
+    return;
+  std::string found;
+  for (const Length& each : lengths)
+    found += fmt::format("{}{} has {}{}", found.empty() ? "" : ", ", each.keyword, each.values,
+                         each.given ? "" : " (not given here)");
+  throw UserError(
+      fmt::format("{}: the lists of the signature have different lengths: {}; allowed: one value (GCHGRZIND: one list) "
+                  "for each segment in all of them; give those too that are to change",
+                  place_of(first->keyword).text(), found));
 }
 
 /// GCNOSEG where it is given, else the length of the first list given, else what there was.
@@ -263,6 +304,7 @@ void SettingsDraft::settle_monitors() {
 }
 
 void SettingsDraft::settle_segments() {
+  check_lengths_agree();
   const int count = settle_segment_count();
   const Constant& segment_count = *find_constant("GCNOSEG");
   if (!segment_count.limits.contain(count))

@@ -16,8 +16,9 @@ namespace tchat {
 /// Accepted without effect, or probably not what was meant: complete sentences for the user.
 using Warnings = std::vector<std::string>;
 
-/// PAR index of a parameter's name, where names are known.
-using ParameterNames = std::function<int(const std::string& name)>;
+/// PAR index of a parameter's name, where names are known. `where` begins the message when there is no such name: the
+/// place and the constant.
+using ParameterNames = std::function<int(const std::string& name, const std::string& where)>;
 
 class SettingsDraft {
  public:
@@ -39,6 +40,9 @@ class SettingsDraft {
   /// Number of segments given so far (GCNOSEG).
   int segments() const { return segment_count_.value_or(1); }
 
+  /// Has a value been assigned to the constant?
+  bool is_given(std::string_view keyword) const { return places_.count(keyword) > 0; }
+
   /// Settles the segments and all counts and checks the whole. Throws UserError.
   RunSettings finish(Warnings* warnings);
 
@@ -48,6 +52,7 @@ class SettingsDraft {
 
   Place place_of(std::string_view keyword) const;
   int settle_segment_count() const;
+  void check_lengths_agree() const;
   void settle_segments();
   void settle_segment_integers(const Constant& constant, const SegmentInteger& member);
   void settle_monitors();

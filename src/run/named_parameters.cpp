@@ -11,14 +11,14 @@ namespace tchat {
 
 ParameterNames names_to_come(bool& used) {
   const auto seen = std::make_shared<std::map<std::string, int>>();
-  return [&used, seen](const std::string& name) {
+  return [&used, seen](const std::string& name, const std::string&) {
     used = true;
     return seen->emplace(name, first_duration - 1 - static_cast<int>(seen->size())).first->second;
   };
 }
 
 ParameterNames names_of(const HybridSystem& system) {
-  return [&system](const std::string& name) { return parameter_index(system, name, "ICP, THL or UZR"); };
+  return [&system](const std::string& name, const std::string& where) { return parameter_index(system, name, where); };
 }
 
 }  // namespace tchat

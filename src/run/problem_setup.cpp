@@ -32,6 +32,50 @@ double available_memory() {
   return 0.0;
 }
 
+/// May the problem read entries of PAR beyond its parameters? The Fortran interface, which alone knows durations, has
+/// no number of parameters; entries that are set for output are among PAR(1..60) too.
+bool has_further_parameters(const HybridSystem& system) {
+  return system.table().initial_durations != nullptr || system.table().output_parameters != nullptr;
+}
+
+bool is_parameter(const HybridSystem& system, int k) {
+  return k >= 1 && (k <= system.parameters() || k >= first_duration || has_further_parameters(system));
+}
+
+std::string parameter_list(const HybridSystem& system) {
+  std::string names;
+  for (int i = 1; i <= system.parameters(); ++i)
+    names += fmt::format("{}{}", i > 1 ? ", " : "", system.parameter_name(i));
+  if (names.empty()) return "none";
+  return system.parameters() == 1 ? "PAR(1): " + names
+                                  : fmt::format("PAR(1) to PAR({}): {}", system.parameters(), names);
+}
+
+/// PAR(name) = v and UZR beyond the problem's parameters would do nothing, and so would the run's free parameter: they
+/// are refused. Further entries of ICP are mere columns of the output and weights are harmless: a warning.
+void check_parameters(const HybridSystem& system, const RunSettings& settings, const std::string& constants_name,
+                      std::vector<std::string>& warnings) {
+  for (const RunSettings::ParameterValue& value : settings.parameter_values)
+    parameter_index(system, value.name, "command line");
+  const auto no_parameter = [&](const char* keyword, int k) {
+    return fmt::format("{}: {}: PAR({}) is no parameter of problem {}; it has {}", constants_name, keyword, k,
+                       system.name(), parameter_list(system));
+  };
+  std::size_t free = settings.problem_type == 150 || settings.branch_mode == 2 ? 2 : 1;
+  for (const int k : settings.free_parameters) {
+    if (k >= first_duration) continue;
+    const bool is_free = free > 0;
+    free -= is_free ? 1 : 0;
+    if (is_parameter(system, k)) continue;
+    if (is_free) throw UserError(no_parameter("ICP", k));
+    warnings.push_back(no_parameter("ICP", k));
+  }
+  for (const UserValue& value : settings.user_values)
+    if (!is_parameter(system, value.parameter)) throw UserError(no_parameter("UZR", value.parameter));
+  for (const IndexedValue& weight : settings.parameter_weights)
+    if (!is_parameter(system, weight.index)) warnings.push_back(no_parameter("THL", weight.index));
+}
+
 }  // namespace
 
 std::vector<std::string> check_settings_against(const HybridSystem& system, const RunSettings& settings,
@@ -56,11 +100,7 @@ std::vector<std::string> check_settings_against(const HybridSystem& system, cons
                       constants_name, s, segment.type, segment.type == 0 ? "identity" : "another", segment.index.jump,
                       system.function_name(FunctionKind::jump, segment.index.jump), identity ? "" : "not "));
   }
-  const int m = static_cast<int>(settings.segments.size());
-  for (const int k : settings.free_parameters)
-    if (k > system.parameters() && !is_duration(k, m))
-      warnings.push_back(fmt::format("{}: ICP lists PAR({}), but problem {} has {} parameters", constants_name, k,
-                                     system.name(), system.parameters()));
+  check_parameters(system, settings, constants_name, warnings);
   return warnings;
 }
 
@@ -68,16 +108,12 @@ int parameter_index(const HybridSystem& system, const std::string& name, const s
   int k = 0;
   const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), k);
   if (error == std::errc{} && end == name.data() + name.size()) {
-    if (k >= 1 && k <= parameter_length) return k;
+    if (k <= parameter_length && is_parameter(system, k)) return k;
   } else if (const int named = system.parameter_index(name); named > 0) {
     return named;
   }
-  std::string list;
-  for (int i = 1; i <= system.parameters(); ++i)
-    list += fmt::format("{}{}", i > 1 ? ", " : "", system.parameter_name(i));
-  throw UserError(
-      fmt::format("{}: PAR({}) is no parameter of problem {}; it has {}, and PAR(61), ... are the durations", where,
-                  name, system.name(), list.empty() ? "none" : list));
+  throw UserError(fmt::format("{}: PAR({}) is no parameter of problem {}; it has {}; PAR(61), ... are the durations",
+                              where, name, system.name(), parameter_list(system)));
 }
 
 Eigen::VectorXd state_weights(const RunSettings& settings) {

@@ -50,7 +50,7 @@ TEST_CASE("Overrides of lists", "[constants]") {
 }
 
 TEST_CASE("Names of parameters in the place of their indices", "[constants]") {
-  const ParameterNames names = [](const std::string& name) { return name == "omega" ? 2 : 1; };
+  const ParameterNames names = [](const std::string& name, const std::string&) { return name == "omega" ? 2 : 1; };
   RunSettings s;
   const std::vector<std::string> words{"ICP=[omega, alpha, 61]", "UZR={omega: [1.5, 2], -alpha: 3}",
                                        "THL={omega: 0.5}"};
@@ -114,4 +114,23 @@ TEST_CASE("Settings stay as they were when an override is refused", "[constants]
   const std::vector<std::string> overrides{"NMX=5", "DS=0"};
   CHECK_THROWS_AS(apply_overrides(s, overrides), UserError);
   CHECK(testing::same_constants(s, appendix()));
+}
+
+TEST_CASE("Monitored events that GCIPSI does not number are told", "[constants]") {
+  const auto warnings_of = [](const std::vector<std::string>& overrides) {
+    RunSettings s = appendix();  // one event on segment 1, two on segment 2; GCIPSI = 1, 2, 3
+    Warnings warnings;
+    apply_overrides(s, overrides, &warnings);
+    std::string text;
+    for (const std::string& warning : warnings) text += warning + '\n';
+    return text;
+  };
+  const std::string two_more = warnings_of({"GCHGRZIND=[[1,3],[2,1,3]]"});
+  CHECK_THAT(two_more, Catch::Matchers::Contains("2 test functions are not located") &&
+                           Catch::Matchers::Contains("4 (event 1 on segment 2), 5 (event 3 on segment 2)") &&
+                           Catch::Matchers::Contains("GCIPSI"));
+  CHECK(warnings_of({"GCHGRZIND=[[1,3],[2,1,3]]", "GCIPSI=[1,2,3,4,5]"}).empty());
+  CHECK(warnings_of({"GCHGRZIND=[[1],[2,1,3]]", "GCIPSI=[1]"}).empty());  // chosen in the same breath
+  CHECK(warnings_of({"GCHGRZIND=[[1,2],[1]]"}).empty());                  // as many as before
+  CHECK(warnings_of({"DS=0.1"}).empty());
 }

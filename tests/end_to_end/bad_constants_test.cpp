@@ -117,6 +117,18 @@ TEST_CASE("constants that do not fit the problem") {
   refused(19, "3", {"gc.impacting", "GCGIND", "1..2"});
   refused(20, "1 7", {"gc.impacting", "GCHGRZIND", "1..3"});
   refused(3, "50 4 3 2 2 0 0 0", {"gc.impacting", "ISW"});
+  refused(2, "2 5 61", {"gc.impacting", "ICP", "PAR(5)", "alpha, omega, zeta, r"});
+  refused(12, "5 3.2", {"gc.impacting", "UZR", "PAR(5)"});
+  workspace.write("gc.named", "NDIM = 4\nICP = [omega]\nUZR = {nosuch: 3}\n");
+  check_refused(workspace.tchat("run linosc -c named -d impacting -o none"), {"gc.named:3: UZR (", "PAR(nosuch)"});
+}
+
+TEST_CASE("parameters beyond the problem's own that do no harm are warned of") {
+  const Workspace workspace;
+  const Outcome outcome = workspace.run(
+      {"-c", "impacting", "-d", "impacting", "-o", "some", "NMX=1", "ICP=[1,61,7]", "THL={11: 0, 61: 0}"});
+  CHECK(contains(outcome.err, "warning: gc.impacting: ICP: PAR(7)"));
+  CHECK(contains(outcome.err, "warning: gc.impacting: THL: PAR(11)"));
 }
 
 TEST_CASE("overrides that cannot be") {
@@ -136,6 +148,13 @@ TEST_CASE("overrides that cannot be") {
       {"PAR(2)=x", {"PAR(2)", "'x'"}},
       {"PAR(nosuch)=1", {"nosuch", "alpha, omega, zeta, r"}},
       {"PAR(0)=1", {"PAR(0)"}},
+      {"PAR(5)=1", {"PAR(5)", "PAR(1) to PAR(4): alpha, omega, zeta, r"}},
+      {"PAR(62)=1", {"PAR(62)", "61"}},
+      {"alpha=3", {"'alpha'", "'PAR(alpha)=3'"}},
+      {"ICP=[nosuch]", {"ICP (", "PAR(nosuch)", "alpha, omega, zeta, r"}},
+      {"UZR={nosuch: 3}", {"UZR (", "PAR(nosuch)"}},
+      {"THL={nosuch: 3}", {"THL (", "PAR(nosuch)"}},
+      {"GCFIND=[1,1]", {"GCFIND has 2", "GCHIND has 1"}},
       {"PAR(77)=1", {"PAR(77)"}},
       {"PAR(2=1", {"(2=1", "parenthesis"}},
       {"UZR={1: [}", {"UZR"}},
