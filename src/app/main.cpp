@@ -19,6 +19,7 @@
 #include "app/resegment_command.hpp"
 #include "app/run_command.hpp"
 #include "app/simulate_command.hpp"
+#include "app/usage_error.hpp"
 #include "constants/user_error.hpp"
 
 namespace {
@@ -68,7 +69,8 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error, std::cout, std::cerr) == 0 ? 0 : bad_input;
+    if (error.get_exit_code() == 0) return app.exit(error, std::cout, std::cerr);  // --help, --version
+    return report(tchat::usage_error(app, error), bad_input);
   }
   return run_command(chosen);
 }

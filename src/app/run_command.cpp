@@ -35,9 +35,10 @@ void add_run_command(CLI::App& app, std::function<int()>& chosen) {
   command->add_flag("-q,--quiet", request->quiet, "no table and no summary on the screen");
   command->add_flag("--both", request->both_directions, "both directions of DS, one after the other");
   command->add_flag("--append", request->append, "add to p.O q.O d.O instead of replacing them");
-  command->add_option("KEY=VALUE", request->overrides,
-                      "constants and parameters for this run, e.g. DS=-0.01 NMX=50 IRS=PD1 'PAR(2)=0.8' PAR(omega)=0.8 "
-                      "'UZR={1: [2.5, 3.0]}'");
+  command->add_option(
+      "KEY=VALUE", request->overrides,
+      "constants and parameters for this run, e.g. DS=-0.01 NMX=50 IRS=PD1 'PAR(2)=0.8' 'PAR(omega)=0.8' "
+      "'UZR={1: [2.5, 3.0]}'");
   command->footer(
       "The table shows the first point, labelled points and inadmissible ones; p.O has every point.\n"
       "Exit status: 0 the branch was computed (also when it ended by MX), 1 no convergence at the first point or of "

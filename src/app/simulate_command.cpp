@@ -161,7 +161,7 @@ void add_simulate_command(CLI::App& app, std::function<int()>& chosen) {
   command->add_option("--free", request->parameter, "continuation parameter in gc.NAME2 [ICP(1) of gc.C, else PAR(1)]")
       ->group("Periodic orbit");
   command->add_option("KEY=VALUE", request->overrides,
-                      "parameters and constants, e.g. PAR(omega)=0.8 'PAR(1)=0.5' NTST=100 IRS=PD1");
+                      "parameters and constants, e.g. 'PAR(omega)=0.8' 'PAR(1)=0.5' NTST=100 IRS=PD1");
   command->footer(
       "After each event the problem's index jump function (successors) says which index vectors are watched next;\n"
       "the first event function that falls to zero decides. Without one a signature is followed: --signature, gc.C.\n"

@@ -1,12 +1,13 @@
 # What `cmake --install` puts where: the program with TC-HAT's commands beside it, the plugin headers (the program looks
-# for them in ../include beside its own folder), the problems with their constants, and a package so that
-# find_package(tchat) gives tchat::plugin.
+# for them in ../include beside its own folder), the README that messages name, the problems with their constants, and a
+# package so that find_package(tchat) gives tchat::plugin.
 include(CMakePackageConfigHelpers)
 
 install(TARGETS tchat)
 file(GLOB tc_hat_commands CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/scripts/@*")
 install(PROGRAMS ${tc_hat_commands} TYPE BIN)
 install(FILES scripts/tc-hat TYPE BIN)
+install(FILES README.md LICENSE TYPE DOC)
 install(TARGETS tchat_plugin EXPORT tchatConfig FILE_SET HEADERS)
 install(DIRECTORY problems constants DESTINATION "${CMAKE_INSTALL_DATADIR}/tchat"
         PATTERN "*.so" EXCLUDE PATTERN "*.o" EXCLUDE PATTERN "*~" EXCLUDE)

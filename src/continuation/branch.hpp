@@ -55,7 +55,8 @@ enum class EndReason {
 
 struct BranchSummary {
   EndReason reason = EndReason::max_points;
-  std::string detail;  ///< which bound, which special point, what was tried
+  std::string detail;               ///< which bound, which special point, what was tried
+  bool undefined_function = false;  ///< no convergence, for a function of the problem has no value there
   int points = 0;
   int inadmissible_points = 0;
   int unstable_points = 0;

@@ -156,6 +156,7 @@ void ContinuationRun::give_up() {
   if (newton_.status == NewtonStatus::not_finite) {
     const std::string where = evaluation_failure(system_, follower_.condensed().rule(), next_.orbit);
     if (!where.empty()) trouble = where;
+    summary_.undefined_function = true;
   }
   end(number_ == 1 ? EndReason::first_step_failed : EndReason::no_convergence,
       fmt::format("{}; steps down to {:.3e} were tried", trouble, std::abs(ds_taken_)));

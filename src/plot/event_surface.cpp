@@ -111,10 +111,35 @@ double EventSurfaces::value(int event, const OrbitTrace& orbit, int a, double x,
   return system_.event(event, state.data(), parameters_[index].data());
 }
 
+/// One is a multiple of the other in the window.
+bool EventSurfaces::same_zeros(int event, int other, int a, int b, const StateWindow& window) const {
+  constexpr int points = 9;
+  for (const OrbitTrace& orbit : orbits_) {
+    double product = 0.0, square = 0.0, other_square = 0.0;
+    for (int i = 0; i < points * points; ++i) {
+      const double x = window.low_x + (window.high_x - window.low_x) * (i % points) / (points - 1);
+      const double y = window.low_y + (window.high_y - window.low_y) * (i / points) / (points - 1);
+      const double h = value(event, orbit, a, x, b, y), k = value(other, orbit, a, x, b, y);
+      product += h * k;
+      square += h * h;
+      other_square += k * k;
+    }
+    const double size = square * other_square;
+    if (!(size > 0.0) || !(std::abs(product * product - size) <= 1e-12 * size)) return false;
+  }
+  return true;
+}
+
 std::vector<EventSurfaces::Line> EventSurfaces::in_plane(int a, int b, const StateWindow& window) const {
   std::vector<Line> lines;
   for (const int event : events_) {
     if (!depends_only_on(event, {a, b})) continue;
+    const auto same = std::find_if(lines.begin(), lines.end(),
+                                   [&](const Line& other) { return same_zeros(other.event, event, a, b, window); });
+    if (same != lines.end()) {
+      same->name += ", " + system_.function_name(FunctionKind::event, event);
+      continue;
+    }
     Line line{event, system_.function_name(FunctionKind::event, event), {}};
     for (const OrbitTrace& orbit : orbits_)
       for (auto& piece : zero_contour([&](double x, double y) { return value(event, orbit, a, x, b, y); },
@@ -136,6 +161,13 @@ std::vector<EventSurfaces::Level> EventSurfaces::of_state(int a, double low, dou
   std::vector<Level> levels;
   for (const int event : events_) {
     if (!depends_only_on(event, {a})) continue;
+    const auto same = std::find_if(levels.begin(), levels.end(), [&](const Level& other) {
+      return same_zeros(other.event, event, a, -1, {low, high, 0.0, 1.0});
+    });
+    if (same != levels.end()) {
+      same->name += ", " + system_.function_name(FunctionKind::event, event);
+      continue;
+    }
     Level level{event, system_.function_name(FunctionKind::event, event), {}};
     for (const OrbitTrace& orbit : orbits_) {
       const auto h = [&](double x) { return value(event, orbit, a, x, -1, 0.0); };

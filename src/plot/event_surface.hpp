@@ -3,7 +3,8 @@
 ///
 /// On which states h_j depends is judged by its derivatives along the orbits shown. Event functions that are but the
 /// time derivative of another one, up to a factor (sections through maxima), are no surfaces of the model and left out
-/// unless asked for.
+/// unless asked for. Functions with the same zeros (a multiple of another one, as h and -h) make one line with both
+/// names.
 #pragma once
 
 #include <string>
@@ -27,8 +28,8 @@ class EventSurfaces {
   EventSurfaces(const HybridSystem& system, const std::vector<OrbitTrace>& orbits, const std::vector<int>& events);
 
   struct Line {
-    int event = 0;
-    std::string name;                               ///< "wall"
+    int event = 0;                                  ///< the first of those with these zeros
+    std::string name;                               ///< "wall", or "forward, back"
     std::vector<std::vector<PicturePoint>> pieces;  ///< polylines
   };
   /// h_j = 0 in the plane of states a and b (from 0), for every orbit's own parameters.
@@ -45,6 +46,7 @@ class EventSurfaces {
  private:
   bool depends_only_on(int event, const std::vector<int>& states) const;
   bool is_section(int event) const;
+  bool same_zeros(int event, int other, int a, int b, const StateWindow& window) const;
   double value(int event, const OrbitTrace& orbit, int a, double x, int b, double y) const;
 
   const HybridSystem& system_;

@@ -8,7 +8,8 @@ namespace tchat {
 
 namespace {
 
-std::string reason_text(const BranchSummary& summary, const std::string& parameter) {
+/// `told`: the line of the label MX says it all.
+std::string reason_text(const BranchSummary& summary, const std::string& parameter, bool told) {
   const char* left = summary.points > 1 ? "left" : "starts outside";
   switch (summary.reason) {
     case EndReason::max_points:
@@ -22,15 +23,22 @@ std::string reason_text(const BranchSummary& summary, const std::string& paramet
     case EndReason::interrupted:
       return "interrupted; all files are complete up to the last point";
     case EndReason::no_convergence:
-      return fmt::format("no convergence (MX): {}", summary.detail);
+      return told ? "no convergence (MX), see above" : fmt::format("no convergence (MX): {}", summary.detail);
     default:
-      return fmt::format("the first step failed (MX): {}", summary.detail);
+      return told ? "the first step failed (MX), see above"
+                  : fmt::format("the first step failed (MX): {}", summary.detail);
   }
 }
 
 /// What was tried at an abnormal end, and what a user might change.
 std::string advice(const BranchSummary& summary) {
   if (summary.reason != EndReason::no_convergence && summary.reason != EndReason::first_step_failed) return "";
+  if (summary.undefined_function)
+    return "  tried: halving the step down to DSMIN; beyond the last point that function has no value.\n"
+           "  you might: end the branch before it (RL0, RL1); let the plugin give a value there (a root or logarithm "
+           "of\n"
+           "  what becomes negative, a division by what becomes 0); look at the last orbit (tchat orbit) for a border\n"
+           "  of the model, which an event function should guard.\n";
   return "  tried: halving the step down to DSMIN, Newton with ITNW iterations, NWTN of them with a new Jacobian.\n"
          "  you might: lower DSMIN (0 goes to 1e-10 DSMAX); raise NTST, NCOL or ITNW, NWTN; adapt the mesh more often\n"
          "  (IAD = 1); lower DSMAX; loosen EPSL and EPSU if they are near rounding; look at the last orbit\n"
@@ -84,7 +92,10 @@ std::string summary_text(const BranchSummary& summary, const std::vector<BranchW
     if (is_special(label))
       text += folded(fmt::format("  {} label {} at {}{}{}", label.type, label.label, label.place,
                                  label.description.empty() ? "" : ": ", label.description));
-  text += fmt::format("  stopped: {}\n", reason_text(summary, parameter));
+  const bool told = std::any_of(labels.begin(), labels.end(), [&summary](const BranchWriter::Labelled& label) {
+    return label.type == "MX" && label.description == summary.detail;
+  });
+  text += fmt::format("  stopped: {}\n", reason_text(summary, parameter, told));
   return text + advice(summary) + trust(summary);
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "constants/constants_table.hpp"
 #include "constants/user_error.hpp"
 #include "run/parameter_values.hpp"
 #include "run/problem_setup.hpp"
@@ -48,7 +49,7 @@ SelectedStart start_from_data(const std::string& path, const RunSettings& settin
     if (m > 1)
       throw UserError(fmt::format(
           "{}: the duration of segment {} is not given; with several segments every one is needed, add a line "
-          "`# PAR({}) = value` to the file or PAR({})=value to the command line",
+          "`# PAR({}) = value` to the file or 'PAR({})=value' to the command line",
           path, s + 1, first_duration + s, first_duration + s));
     par(first_duration - 1) = data.span;
   }
@@ -60,10 +61,28 @@ SelectedStart start_from_data(const std::string& path, const RunSettings& settin
   return selected;
 }
 
+bool gives_label(const std::string& override_text) {
+  return override_text.size() > 3 && find_constant(override_text.substr(0, 3)) == find_constant("IRS") &&
+         (override_text[3] == '=' || override_text[3] == ' ');
+}
+
+/// The label of IRS; where there is none and IRS is not from the command line, the message says where it is from.
+const LabelledSolution& find_start(const SolutionFile& file, const std::string& path, const RunSettings& settings,
+                                   const RunRequest& request) {
+  try {
+    return find_solution(file.solutions, settings.start, path);
+  } catch (const UserError& error) {
+    if (std::any_of(request.overrides.begin(), request.overrides.end(), gives_label)) throw;
+    throw UserError(fmt::format("{}; IRS = {}{} is from {}: give another one, as in IRS=LABEL", error.what(),
+                                settings.start.type, settings.start.number,
+                                constants_path(request.constants.value_or(request.name))));
+  }
+}
+
 SelectedStart start_from_solution(const std::string& path, const RunSettings& settings, const HybridSystem& system,
-                                  const std::vector<int>& free_parameters) {
+                                  const std::vector<int>& free_parameters, const RunRequest& request) {
   const SolutionFile file = read_solution_file(path);
-  const LabelledSolution& solution = find_solution(file.solutions, settings.start, path);
+  const LabelledSolution& solution = find_start(file, path, settings, request);
   SelectedStart selected;
   selected.source = path;
   selected.from_solution = true;
@@ -106,7 +125,7 @@ SelectedStart select_start(const RunRequest& request, const RunSettings& setting
   if (request.start) {
     const std::string path = solution_path(*request.start);
     if (label.from_data()) refuse_solution_without_label(path);
-    return start_from_solution(path, settings, system, free_parameters);
+    return start_from_solution(path, settings, system, free_parameters, request);
   }
   const bool is_first_label = label.type.empty() && label.number <= 1;
   if (request.data || label.from_data()) {
@@ -118,7 +137,7 @@ SelectedStart select_start(const RunRequest& request, const RunSettings& setting
     return start_from_data(data_path(request.data.value_or(request.name)), settings, system);
   }
   const std::string solutions = default_solution_path(request.name);
-  if (exists(solutions)) return start_from_solution(solutions, settings, system, free_parameters);
+  if (exists(solutions)) return start_from_solution(solutions, settings, system, free_parameters, request);
   if (is_first_label) return start_from_data(data_path(request.name), settings, system);
   throw UserError(
       fmt::format("IRS = {}{}, but there is no q.{} to restart from; name a q-file with -s, or use IRS=0 "

@@ -74,6 +74,30 @@ class NumberStream {
   const std::string& path_;
 };
 
+/// What a file is by its name, where that is no q-file.
+std::string other_kind(const std::string& path) {
+  const std::filesystem::path file = std::filesystem::path(path).filename();
+  const std::string name = file.string();
+  if (file.extension() == ".dat") return "this is starting data, no q-file";
+  if (name.starts_with("p.") || name.starts_with("b.")) return "this is a p-file (the branch's points), no q-file";
+  if (name.starts_with("d.")) return "this is a d-file (what the run noted), no q-file";
+  if (name.starts_with("gc.") || name.starts_with("r.")) return "this is a constants file, no q-file";
+  return "";
+}
+
+/// The q-file of the same run where there is one.
+std::string solution_file_cure(const std::string& path) {
+  const std::filesystem::path file(path);
+  const std::string name = file.filename().string();
+  const bool data = file.extension() == ".dat";
+  const std::string run = data ? file.stem().string() : name.substr(name.find('.') + 1);
+  const std::filesystem::path solutions = file.parent_path() / ("q." + run);
+  std::error_code ignored;
+  if (std::filesystem::exists(solutions, ignored)) return fmt::format("give {}", solutions.string());
+  const std::string made = data ? fmt::format("; `tchat dat {}` makes q.{} from the data", run, run) : "";
+  return fmt::format("labelled solutions are in a run's q-file, q.NAME{}", made);
+}
+
 class SolutionReader {
  public:
   SolutionReader(std::string_view text, const std::string& path) : text_(text), path_(path) {}
@@ -156,6 +180,9 @@ class SolutionReader {
   }
 
   [[noreturn]] void refuse_identifier(const std::string& found) const {
+    if (file_.solutions.empty())
+      if (const std::string other = other_kind(path_); !other.empty())
+        throw UserError(fmt::format("{}: {}; {}", place(line_), other, solution_file_cure(path_)));
     throw UserError(
         fmt::format("{}: a labelled solution begins with a line of 16 integers (12 in older files), {}; either this is "
                     "no q-file, or "

@@ -55,9 +55,9 @@ set_target_properties(ball PROPERTIES PREFIX "")
 TEST_CASE("installed, and moved elsewhere: everything works outside the source tree") {
   const Installation installation;
   const Workspace& workspace = installation.workspace();
-  for (const char* file :
-       {"bin/tchat", "bin/@gc", "bin/@sv", "bin/tc-hat", "include/tchat/problem.hpp", "include/tchat/problem.h",
-        "include/tchat/gccont.h", "share/tchat/problems/mems/mems.cpp", "share/tchat/constants/linosc/gc.impacting"}) {
+  for (const char* file : {"bin/tchat", "bin/@gc", "bin/@sv", "bin/tc-hat", "include/tchat/problem.hpp",
+                           "include/tchat/problem.h", "include/tchat/gccont.h", "share/tchat/problems/mems/mems.cpp",
+                           "share/tchat/constants/linosc/gc.impacting", "share/doc/tchat/README.md"}) {
     INFO(file);
     CHECK(workspace.has(std::string("prefix/") + file));
   }
@@ -65,6 +65,16 @@ TEST_CASE("installed, and moved elsewhere: everything works outside the source t
   SECTION("a new problem") {
     installation.shell("tchat new mine && make -C mine q.impacting");
     CHECK(workspace.has("mine/q.impacting"));
+  }
+  SECTION("an example's Makefile wants a folder for its results") {
+    const Outcome refused = installation.shell(
+        "! make -C prefix/share/tchat/problems/linosc 2>&1 && make -n -C prefix/share/tchat/problems/mems "
+        "OUT=\"$PWD/out\"");
+    CHECK(refused.out.find("make OUT=/some/folder") != std::string::npos);
+    CHECK(refused.out.find("/out/q.impacting") != std::string::npos);
+    CHECK_FALSE(workspace.has("prefix/share/tchat/build"));
+    installation.shell("make -C prefix/share/tchat/problems/linosc OUT=\"$PWD/out\" \"$PWD/out/q.grazing\"");
+    CHECK(workspace.has("out/q.grazing"));
   }
   SECTION("Fortran, by the Makefile in TC-HAT's manner") {
     installation.shell("cp -rL prefix/share/tchat/problems/mems_fortran . && make -C mems_fortran 1 2");

@@ -44,6 +44,25 @@ struct Ring {
   }
 };
 
+/// Relative velocity as the event of both directions, and one with other zeros.
+struct Belt {
+  static constexpr int dimension = 2, parameters = 1, fields = 1, events = 3, jumps = 1;
+  static constexpr const char* event_names[] = {"forward", "back", "wall"};
+  template <class T>
+  void field(int, const T* x, const T*, T* f) const {
+    f[0] = x[1], f[1] = 1.0 - x[0] * x[0];
+  }
+  template <class T>
+  T event(int j, const T* x, const T* par) const {
+    if (j == 3) return 1.5 - x[0] - 0.1 * x[1];
+    return j == 1 ? par[0] - x[1] : 2.0 * (x[1] - par[0]);
+  }
+  template <class T>
+  void jump(int, const T* x, const T*, T* g) const {
+    g[0] = x[0], g[1] = x[1];
+  }
+};
+
 }  // namespace
 
 TEST_CASE("the wall is a line, sections through turning points are left out unless asked for") {
@@ -63,9 +82,27 @@ TEST_CASE("the wall is a line, sections through turning points are left out unle
   CHECK(levels[0].values[0] == Approx(1.0).margin(1e-9));
 
   const EventSurfaces all(test::linosc(), orbits, {1, 2, 3});
-  CHECK(all.in_plane(0, 1, window).size() == 3);
+  CHECK(all.in_plane(0, 1, window).size() == 2);  // x2 and -x2 are one line
   CHECK_THROWS_AS(EventSurfaces(test::linosc(), orbits, {4}), UserError);
   CHECK_THROWS_AS(EventSurfaces(test::linosc(), orbits, {0}), UserError);
+}
+
+TEST_CASE("event functions with the same zeros are one line with both names") {
+  OrbitTrace a;
+  a.parameters = {1.0};
+  a.segments.push_back({{0.0, 1.0, 2.0}, Eigen::MatrixXd{{0.1, 0.5, 1.2}, {-0.3, 0.7, 0.4}}});
+  const std::vector<OrbitTrace> orbits{a};
+  const EventSurfaces surfaces(test::system_of<Belt>(), orbits, {1, 2, 3});
+  const auto lines = surfaces.in_plane(0, 1, {-2.0, 2.0, -2.0, 2.0});
+  REQUIRE(lines.size() == 2);
+  CHECK(lines[0].name == "forward, back");
+  REQUIRE(lines[0].pieces.size() == 1);
+  for (const PicturePoint& p : lines[0].pieces[0]) CHECK(p.y == Approx(1.0));
+  CHECK(lines[1].name == "wall");
+  const auto levels = surfaces.of_state(1, -2.0, 2.0);
+  REQUIRE(levels.size() == 1);
+  CHECK(levels[0].name == "forward, back");
+  CHECK(levels[0].values.size() == 1);
 }
 
 TEST_CASE("every orbit has its own parameters, functions of a third state are no line") {
