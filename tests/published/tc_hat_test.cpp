@@ -199,6 +199,13 @@ TEST_CASE("TC-HAT's commands: what they leave, keep and refuse") {
   CHECK(failing("INCLUDE 'mems.h'", "INCLUDE 'mens.h'").find("mens.h") != std::string::npos);
 }
 
+TEST_CASE("any of PAR(1..60) may belong to a Fortran problem, which does not say how many it has") {
+  const TcHatFolder folder;
+  folder.succeed("for file in gc.mems mems.f mems.dat; do cp $file.1 $file; done");
+  folder.succeed("\"$TCHAT\" run mems -d mems IRS=0 'PAR(12)=3.5' 'UZR={11: 3}' NMX=1 -q");
+  CHECK(folder.shell("\"$TCHAT\" run mems -d mems IRS=0 'PAR(63)=1' NMX=1 -q").status == 2);
+}
+
 TEST_CASE("tchat check names the wrong derivative of a Fortran problem") {
   const TcHatFolder folder;
   folder.succeed("cp gc.mems.2 gc.mems; sed 's/DFIDX(3,5)=/DFIDX(3,4)=/' mems.f.1 >mems.f");
