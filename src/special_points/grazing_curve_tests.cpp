@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Dense>
+#include <algorithm>
 
 namespace tchat {
 
@@ -69,8 +70,10 @@ GrazingUnfolding grazing_unfolding(const GrazingOrbitSystem& system, const Conde
   result.acceleration = section.dot(f);
   Vector v = project(system, x, s, jump_derivative(system.system(), jump, contact, x.par.data()) * f);
   for (int k = 1; k <= count; ++k) {
+    const double before = v.norm();
     v = once_around(system, condensed, x, v);
     result.xi.push_back(-event_gradient.dot(v));
+    result.scale.push_back(event_gradient.norm() * std::max(before, v.norm()));
   }
   return result;
 }
@@ -79,6 +82,11 @@ std::string XiTest::name() const { return fmt::format("xi_{}", n_); }
 
 std::optional<double> XiTest::value(const TestedPoint& point) const {
   return grazing_unfolding(system_, point.condensed, point.orbit, jump_, n_).xi.back();
+}
+
+double XiTest::zero_level(const TestedPoint& point) const {
+  constexpr double rounding = 1e-9;  // each turn's share, with that of the orbit's own error
+  return rounding * grazing_unfolding(system_, point.condensed, point.orbit, jump_, n_).scale.back();
 }
 
 SpecialPoint XiTest::classify(const TestedPoint&, bool) const {

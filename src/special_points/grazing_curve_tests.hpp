@@ -18,6 +18,9 @@ namespace tchat {
 struct GrazingUnfolding {
   double acceleration = 0.0;  ///< a*
   std::vector<double> xi;
+  /// What each xi_n is small or large against: |h_x| times the larger of |A^n beta| and |A^(n-1) beta|. The powers
+  /// decay where A contracts, and xi_n with them: that is no zero.
+  std::vector<double> scale;
 };
 GrazingUnfolding grazing_unfolding(const GrazingOrbitSystem& system, const CondensedSystem& condensed, const Orbit& x,
                                    int jump, int count);
@@ -27,7 +30,7 @@ class XiTest final : public TestFunction {
   XiTest(const GrazingOrbitSystem& system, int jump, int n) : system_(system), jump_(jump), n_(n) {}
   std::string name() const override;
   std::optional<double> value(const TestedPoint& point) const override;
-  double zero_level(const TestedPoint&) const override { return 1e-9; }
+  double zero_level(const TestedPoint& point) const override;
   bool oscillates() const override { return true; }
   SpecialPoint classify(const TestedPoint& point, bool rising) const override;
 

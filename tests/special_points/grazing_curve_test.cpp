@@ -46,7 +46,61 @@ RecordedBranch grazing_oscillator(double omega, double ds, double largest_step, 
   return continued(system, start, ds, largest_step, points, std::move(tests));
 }
 
+/// A parabola x1 over the wall x1 = 0, reset where it rises with speed 1: x1 -> p + y, x2 -> -1, y -> lambda y + 0.1.
+/// The wall is touched when p = 1/2 - y, y = 0.1 / (1 - lambda). Impacts (jump 1) give y their speed: A of rank one,
+/// A (0, 0, 1) = (1, 0, lambda), and xi_n = -lambda^(n-1).
+struct ResetParabola {
+  static constexpr int dimension = 3, parameters = 2, fields = 1, events = 2, jumps = 3;
+
+  template <class T>
+  void field(int, const T* x, const T*, T* f) const {
+    f[0] = x[1], f[1] = T(1.0), f[2] = T(0.0);
+  }
+  template <class T>
+  T event(int j, const T* x, const T*) const {
+    return j == 1 ? x[0] : 1.0 - x[1];
+  }
+  template <class T>
+  void jump(int k, const T* x, const T* p, T* g) const {
+    g[0] = x[0], g[1] = x[1], g[2] = x[2];
+    if (k == 1) g[1] = -0.5 * x[1], g[2] = x[2] + x[1];
+    if (k == 3) g[0] = p[0] + x[2], g[1] = T(-1.0), g[2] = p[1] * x[2] + 0.1;
+  }
+
+  static Orbit orbit(double lambda) {
+    const double y = 0.1 / (1.0 - lambda);
+    const auto from = [y](double speed) {
+      return [=](double t) {
+        const double v = speed + t;
+        return Eigen::VectorXd(Eigen::Vector3d(0.5 * v * v, v, y));
+      };
+    };
+    return sampled_orbit({{1.0, from(-1.0)}, {1.0, from(0.0)}}, 3, 20, 4, test::parameters({0.5 - y, lambda}));
+  }
+};
+
 }  // namespace
+
+TEST_CASE("xi_n that decay with n are not zero, and vanish together where the return map loses its last direction") {
+  const GrazingOrbitSystem system(system_of<ResetParabola>(), {{1, 1, 2}, {1, 2, 3}}, {2, 1}, 0);
+  constexpr int most = 6;
+  Tests tests;
+  for (int n = 1; n <= most; ++n) tests.push_back(std::make_unique<XiTest>(system, 1, n));
+  const RecordedBranch branch = continued(system, ResetParabola::orbit(-0.02), 0.003, 0.003, 20, std::move(tests));
+  for (const RecordedPoint& p : branch.points) {
+    if (p.special.type == PointType::user) continue;  // there they are given as zero
+    const double lambda = p.orbit.par(1);
+    CAPTURE(lambda);
+    for (int n = 1; n <= most; ++n)
+      CHECK(*p.values[static_cast<std::size_t>(n - 1)] == Approx(-std::pow(lambda, n - 1)).epsilon(1e-6));
+  }
+  REQUIRE(branch.special().size() == 1);
+  const RecordedPoint& zero = *branch.special().front();
+  CHECK(std::abs(zero.orbit.par(1)) < 1e-9);
+  for (const char* name : {"xi_2 = 0", "xi_4 = 0", "xi_6 = 0"})
+    CHECK(zero.special.description.find(name) != std::string::npos);
+  CHECK(zero.special.description.find("xi_1") == std::string::npos);
+}
 
 TEST_CASE("xi_n: closed form agrees with the published values") {
   CHECK(exact_xi(1, 1.5) == Approx(-2.83954739661).epsilon(1e-11));
