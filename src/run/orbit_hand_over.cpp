@@ -20,7 +20,6 @@ constexpr double surface = 1e-9;  // h below minus this, times its scale, is neg
 /// The values of an event function along a segment.
 struct EventValues {
   double least = 0.0, scale = 1.0;
-  Eigen::VectorXd nearest;  // state where the value is least
 
   EventValues(const HybridSystem& system, int event, const Eigen::MatrixXd& states, const Eigen::VectorXd& par) {
     least = no_bound;
@@ -28,24 +27,26 @@ struct EventValues {
       const Eigen::VectorXd x = column;
       const double h = system.event(event, x.data(), par.data());
       scale = std::max(scale, std::abs(h));
-      if (h >= least) continue;
-      least = h;
-      nearest = x;
+      if (!(h >= least)) least = h;  // NaN is kept
     }
   }
   bool is_negative() const { return !(least >= -surface * scale); }
 };
 
 /// Does the event change neither state nor field, as a Poincare section? What follows is seen where segment s ends by
-/// it; elsewhere the index jump function is asked at x. An event that is only monitored is none.
-bool is_section(const HybridSystem& system, const FoundOrbit& orbit, std::size_t s, int event, const Eigen::VectorXd& x,
-                const Eigen::VectorXd& par) {
+/// it; elsewhere the index jump function is asked all along the segment, for what follows may depend on the state. An
+/// event that is only monitored is none.
+bool is_section(const HybridSystem& system, const FoundOrbit& orbit, std::size_t s, int event,
+                const Eigen::MatrixXd& states, const Eigen::VectorXd& par) {
   const std::vector<IndexVector>& watched = orbit.modes[s].index_vectors;
   const auto v = std::find_if(watched.begin(), watched.end(), [&](const auto& w) { return w.event == event; });
   if (v == watched.end() || !is_identity_jump(system, v->jump)) return false;
   if (*v == orbit.signature[s]) return orbit.signature[(s + 1) % orbit.signature.size()].field == v->field;
-  const auto following = system.successors(*v, x.data(), par.data());
-  return following && !following->empty() && following->front().field == v->field;
+  const auto columns = states.colwise();
+  return std::all_of(columns.begin(), columns.end(), [&](const Eigen::VectorXd& x) {
+    const auto following = system.successors(*v, x.data(), par.data());
+    return following && !following->empty() && following->front().field == v->field;
+  });
 }
 
 /// Events of segment s' mode whose contact would matter: no sections, and none that is negative somewhere, which would
@@ -55,7 +56,7 @@ std::vector<int> monitored_events(const HybridSystem& system, const FoundOrbit& 
   std::vector<int> events;
   for (const int event : orbit.modes[s].all_events()) {
     const EventValues values(system, event, states, par);
-    if (values.is_negative() || is_section(system, orbit, s, event, values.nearest, par)) continue;
+    if (values.is_negative() || is_section(system, orbit, s, event, states, par)) continue;
     events.push_back(event);
   }
   std::sort(events.begin(), events.end());

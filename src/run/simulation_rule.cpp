@@ -75,7 +75,11 @@ ModeRule cyclic_rule(const SimulationRequest& request, const SimulationConstants
   if (!constants.has_signature && !has_one_of_each(system)) refuse_without_signature(request, system);
   std::vector<Mode> modes = constants.has_signature ? modes_of_signature(constants.settings)
                                                     : std::vector<Mode>{Mode{{IndexVector{1, 1, 1}}, {}}};
-  if (!request.modes) return ModeRule(system, std::move(modes));
+  // --signature alone says nothing of what else matters.
+  const bool says_nothing = request.signature && std::all_of(modes.begin(), modes.end(),
+                                                             [](const Mode& mode) { return mode.monitored.empty(); });
+  const auto monitor = says_nothing ? ModeRule::Monitor::what_follows : ModeRule::Monitor::as_given;
+  if (!request.modes) return ModeRule(system, std::move(modes), monitor);
   const std::vector<IndexVector> wanted = existing_modes(system, *request.modes);
   const auto at = std::find_if(modes.begin(), modes.end(), [&](const Mode& m) { return m.index_vectors == wanted; });
   if (at == modes.end())
@@ -84,7 +88,7 @@ ModeRule cyclic_rule(const SimulationRequest& request, const SimulationConstants
                     "vectors",
                     *request.modes, to_string(constants.settings.signature())));
   std::rotate(modes.begin(), at, modes.end());
-  return ModeRule(system, std::move(modes));
+  return ModeRule(system, std::move(modes), monitor);
 }
 
 }  // namespace

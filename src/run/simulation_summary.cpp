@@ -131,8 +131,10 @@ std::string course_text(const HybridSystem& system, const SimulationResult& resu
       if (mark.kind != SegmentMark::Kind::violation) continue;
       text += fmt::format(
           "{} a monitored event function fell below zero, first {} at t = {:.10g} in segment {}:\nthis signature "
-          "has no such orbit there. An index jump function (successors) would choose what follows.\n",
-          counted(result.violations, "time"), event_name(system, mark.event), mark.time, segment.number);
+          "has no such orbit there. {} what follows.\n",
+          counted(result.violations, "time"), event_name(system, mark.event), mark.time, segment.number,
+          system.has_successors() ? "Without a signature to follow the index jump function (successors) chooses"
+                                  : "An index jump function (successors) would choose");
       break;
     }
   }

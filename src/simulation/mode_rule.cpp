@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "constants/user_error.hpp"
+#include "hybrid/identity_jump.hpp"
 
 namespace tchat {
 
@@ -58,9 +59,27 @@ std::string fault_of(const HybridSystem& system, const std::vector<IndexVector>&
   return "";
 }
 
+Mode ModeRule::of_cycle(const IndexVector& from, const VectorXd& x, const VectorXd& par) const {
+  Mode mode = cycle_[position_];
+  if (monitor_ == Monitor::as_given) return mode;
+  const auto following = [&](const IndexVector& v) {
+    return system_.successors(v, x.data(), par.data()).value_or(std::vector<IndexVector>{});
+  };
+  const auto has_field = [&](const std::vector<IndexVector>& list) {
+    return std::any_of(list.begin(), list.end(), [&](const IndexVector& v) { return v.field == mode.field(); });
+  };
+  const std::vector<IndexVector> list = following(from);
+  if (!has_field(list)) return mode;
+  for (const IndexVector& v : list) {
+    const bool section = is_identity_jump(system_, v.jump) && has_field(following(v));
+    if (!section && v.event != mode.index_vectors.front().event) add_once(mode.monitored, v.event);
+  }
+  return mode;
+}
+
 Mode ModeRule::first(const VectorXd& x, const VectorXd& par) {
   position_ = 0;
-  if (is_cyclic()) return cycle_.front();
+  if (is_cyclic()) return of_cycle(cycle_.back().index_vectors.front(), x, par);
   if (start_) return *start_;
   const auto start = system_.successors({0, 0, 0}, x.data(), par.data());
   if (!start || start->empty())
@@ -77,7 +96,7 @@ Mode ModeRule::first(const VectorXd& x, const VectorXd& par) {
 Mode ModeRule::next(const IndexVector& from, const VectorXd& x, const VectorXd& par) {
   if (is_cyclic()) {
     position_ = (position_ + 1) % cycle_.size();
-    return cycle_[position_];
+    return of_cycle(from, x, par);
   }
   const auto next = system_.successors(from, x.data(), par.data());
   const std::string fault = next ? fault_of(system_, *next) : "it cannot be evaluated";

@@ -36,8 +36,14 @@ class ModeRule {
   /// By the problem's index jump function, from `start` or, if that is not given, from what iota says of a start.
   explicit ModeRule(const HybridSystem& system, std::optional<Mode> start = {})
       : system_(system), start_(std::move(start)) {}
+  /// What a mode of a cycle monitors.
+  enum class Monitor {
+    as_given,
+    what_follows,  ///< the events of the index jump function's index vectors, but Poincare sections
+  };
   /// Cyclically through modes of one index vector each.
-  ModeRule(const HybridSystem& system, std::vector<Mode> cycle) : system_(system), cycle_(std::move(cycle)) {}
+  ModeRule(const HybridSystem& system, std::vector<Mode> cycle, Monitor monitor = Monitor::as_given)
+      : system_(system), cycle_(std::move(cycle)), monitor_(monitor) {}
 
   const HybridSystem& system() const { return system_; }
   bool is_cyclic() const { return !cycle_.empty(); }
@@ -51,9 +57,13 @@ class ModeRule {
   const std::string& fault() const { return fault_; }
 
  private:
+  /// Mode `position_` of the cycle after `from`, which ended at x.
+  Mode of_cycle(const IndexVector& from, const Eigen::VectorXd& x, const Eigen::VectorXd& par) const;
+
   const HybridSystem& system_;
   std::optional<Mode> start_;
   std::vector<Mode> cycle_;
+  Monitor monitor_ = Monitor::as_given;
   std::string fault_;
   std::size_t position_ = 0;
 };

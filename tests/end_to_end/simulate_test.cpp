@@ -209,6 +209,28 @@ TEST_CASE("simulate: walls are monitored on the orbit handed over, sections are 
   CHECK(contains(workspace.read("gc.other"), "GRJUMP = 3 "));
 }
 
+TEST_CASE(
+    "simulate: an event after which another field may follow is no section, whatever follows where it is nearest") {
+  std::string problem = driven;
+  const auto put = [&](const std::string& old, const std::string& text) {
+    REQUIRE(contains(problem, old));
+    problem.replace(problem.find(old), old.size(), text);
+  };
+  put("fields = 1, events = 2", "fields = 2, events = 3");
+  put("\"phase pi\"", "\"phase pi\", \"far left\"");
+  put("return j == 1 ?", "return j == 3 ? T(99.0 + x[0]) : j == 1 ?");
+  put("std::array<int, 3>) const { return {{1, 1, 2}, {1, 2, 1}}; }",
+      "std::array<int, 3> from, const double* x, const double*) const {\n"
+      "    if (from[1] == 3 && x[0] > 0.0) return {{2, 1, 2}};\n"
+      "    return {{1, 1, 2}, {1, 2, 1}, {1, 3, 1}};\n  }");
+  const Workspace workspace;
+  workspace.write("driven.cpp", problem);
+  simulate(workspace, "driven --rows 0 -q --dat");
+  const std::string constants = workspace.read("gc.driven");
+  INFO(constants);
+  CHECK(contains(constants, "GCHGRZIND = [[1, 3], [1, 3]] "));
+}
+
 TEST_CASE("simulate: an orbit without its section, where it has another event") {
   const Workspace workspace;
   workspace.write("driven.cpp", driven);
@@ -304,7 +326,10 @@ TEST_CASE("simulate: a signature followed without the index jump function, and w
   const Outcome maxima = simulate(workspace, "linosc --signature 1,3,2 PAR(alpha)=2 --dat minima -o m");
   CHECK(contains(maxima.out, "signature {(1,3,2)}, period 3.14159265359"));
   workspace.run("-c minima -d minima -o minima NMX=2");
-  // Beyond grazing the smooth orbit crosses the wall.
+  // Beyond grazing the smooth orbit crosses the wall: what a signature watches says gc.C, else the index jump function.
+  const Outcome alone = simulate(workspace, "linosc --signature 1,3,2 PAR(alpha)=3.2 PAR(omega)=2 -o c");
+  CHECK(contains(alone.out, "a monitored event function fell below zero, first event 1 (wall)"));
+  CHECK(contains(alone.out, "Without a signature to follow"));
   const Outcome crossing =
       simulate(workspace, "linosc -c nonimpacting_alpha --follow-signature PAR(alpha)=3.2 PAR(omega)=2 -o c");
   CHECK(contains(crossing.out, "a monitored event function fell below zero, first event 1 (wall)"));
