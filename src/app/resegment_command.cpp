@@ -19,11 +19,12 @@ namespace {
 ResegmentKind kind_of(const std::string& text) {
   const std::map<std::string, ResegmentKind> kinds{{"grazing-curve", ResegmentKind::grazing_curve},
                                                    {"impacting", ResegmentKind::impacting},
+                                                   {"signature", ResegmentKind::signature},
                                                    {"rotate", ResegmentKind::rotate},
                                                    {"double", ResegmentKind::repeat}};
   if (const auto found = kinds.find(text); found != kinds.end()) return found->second;
-  throw UserError(fmt::format("--to {}: there is no such kind; allowed: grazing-curve, impacting, rotate, double",
-                              in_quotes(text)));
+  throw UserError(fmt::format(
+      "--to {}: there is no such kind; allowed: grazing-curve, impacting, signature, rotate, double", in_quotes(text)));
 }
 
 int do_resegment(ResegmentRequest request, const std::string& kind, bool quiet) {
@@ -45,7 +46,9 @@ void add_resegment_command(CLI::App& app, std::function<int()>& chosen) {
   command->add_option("FILE", request->solutions, "q-file; `mems` is taken for q.mems when there is no file mems")
       ->required();
   command->add_option("LABEL", request->label, "label number, or a type with its count: GR1, UZ2, PD1")->required();
-  command->add_option("--to", *kind, "what the new run is to continue: grazing-curve, impacting, rotate or double")
+  command
+      ->add_option("--to", *kind,
+                   "what the new run is to continue: grazing-curve, impacting, signature, rotate or double")
       ->required();
   command->add_option("-o,--output", request->output, "write q.O and gc.O")->required();
   command->add_option("-p,--problem", request->problem, "plugin P.so, or P.cpp (default: the name of the q-file)");
@@ -69,6 +72,9 @@ void add_resegment_command(CLI::App& app, std::function<int()>& chosen) {
       "segments\n"
       "                       of zero duration (--signature, or the problem's index jump function)\n"
       "A Poincare section that the contact lies on is replaced. From any label:\n"
+      "  --to signature       the same orbit with --signature: where two events come at once they change places, "
+      "segments\n"
+      "                       of zero duration vanish or appear\n"
       "  --to rotate          the cyclic order of segments: another one first\n"
       "  --to double          the signature twice; from a PD label the run switches to the doubled orbit\n"
       "Example: tchat resegment q.to_grazing GR1 --to impacting -o born -p mems ICP=[1,61,62]\n"

@@ -36,7 +36,8 @@ void require_section(const ContactPoint& contact, const Orbit& x, const HybridSy
   if (same_field && (after - end).lpNorm<Eigen::Infinity>() <= unmoved * (1.0 + end.lpNorm<Eigen::Infinity>())) return;
   throw UserError(fmt::format(
       "{}: the contact with event {} ({}) coincides with the end of segment {}, where event {} ({}) {}: two events at "
-      "once, which no signature of separate events describes; move along the branch, or choose another section",
+      "once. Where they change places, or a segment of no duration vanishes or appears, the run goes on with another "
+      "signature: --to signature --signature '...'; or move along the branch, or choose another section",
       source, contact.event, system.function_name(FunctionKind::event, contact.event), s + 1, index.event,
       system.function_name(FunctionKind::event, index.event),
       same_field ? "changes the state" : "changes the vector field"));

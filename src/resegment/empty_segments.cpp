@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "constants/user_error.hpp"
+#include "hybrid/identity_jump.hpp"
 
 namespace tchat {
 
@@ -19,6 +21,24 @@ std::vector<IndexVector> successors(const HybridSystem& system, const IndexVecto
 
 bool has_field(const std::vector<IndexVector>& list, int field) {
   return std::any_of(list.begin(), list.end(), [&](const IndexVector& v) { return v.field == field; });
+}
+
+struct Following {
+  Eigen::VectorXd at;
+  std::vector<IndexVector> list;  ///< empty where nothing was found
+};
+
+/// At x or beside it, in the direction of one state.
+Following successors_with_field(const HybridSystem& system, const IndexVector& before, const Eigen::VectorXd& x,
+                                const ParameterVector& par, int field) {
+  constexpr double beside = 1e-3;
+  for (Eigen::Index k = -1; k < 2 * x.size(); ++k) {
+    Eigen::VectorXd at = x;
+    if (k >= 0) at(k / 2) += (k % 2 == 0 ? beside : -beside) * (1.0 + std::abs(x(k / 2)));
+    std::vector<IndexVector> list = successors(system, before, at, par);
+    if (has_field(list, field)) return {at, std::move(list)};
+  }
+  return {x, {}};
 }
 
 std::string event_text(const HybridSystem& system, int event) {
@@ -42,9 +62,27 @@ Signature segments_after_impact(const HybridSystem& system, const IndexVector& a
   if (candidates.size() == 1) return candidates;
   throw UserError(fmt::format(
       "after {} the index jump function of problem {} allows {}, and {} of these can last no time and be followed by "
-      "field {} ({}); give the whole signature, for example --signature \"1,1,1;2,2,2\"",
+      "field {} ({}); give the whole signature, for example --signature \"1,1,1;2,2,2\", where two events come at once "
+      "with --to signature",
       to_string({after}), system.name(), to_string(following), candidates.empty() ? "none" : to_string(candidates),
       next_field, system.function_name(FunctionKind::field, next_field)));
+}
+
+std::vector<int> watched_after(const HybridSystem& system, const IndexVector& before, const Eigen::VectorXd& x,
+                               const ParameterVector& par, const IndexVector& own, int next_field) {
+  const auto [at, following] = successors_with_field(system, before, x, par, own.field);
+  Eigen::VectorXd start(x.size());
+  system.value(FunctionKind::jump, before.jump, at.data(), par.data(), start.data());
+  const auto keeps_field = [&](const IndexVector& v) {
+    return v == own ? next_field == own.field : has_field(successors(system, v, start, par), own.field);
+  };
+  std::vector<int> events;
+  for (const IndexVector& v : following) {
+    const bool section = is_identity_jump(system, v.jump) && keeps_field(v);
+    if (!section && std::find(events.begin(), events.end(), v.event) == events.end()) events.push_back(v.event);
+  }
+  std::sort(events.begin(), events.end());
+  return events;
 }
 
 void require_fit(const HybridSystem& system, const Signature& signature, const Orbit& x) {

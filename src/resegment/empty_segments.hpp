@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "bvp/orbit.hpp"
 #include "hybrid/hybrid_system.hpp"
@@ -15,6 +16,13 @@ namespace tchat {
 /// Throws UserError when there is no such index vector or more than one: the signature has to be given.
 Signature segments_after_impact(const HybridSystem& system, const IndexVector& after, const Eigen::VectorXd& x,
                                 const ParameterVector& par, int next_field);
+
+/// The event functions to watch on a segment of index vector `own` that follows `before`, which ended (before its jump)
+/// in state x: those of the index jump function's index vectors, without Poincare sections (identity jump, the same
+/// field after it; of `own` the next segment's field tells). x may lie where the function changes its mind: it is asked
+/// beside x as well. Empty when the plugin has none or it leads to other fields.
+std::vector<int> watched_after(const HybridSystem& system, const IndexVector& before, const Eigen::VectorXd& x,
+                               const ParameterVector& par, const IndexVector& own, int next_field);
 
 /// Throws UserError that names the segment when a terminal event does not hold at a segment's end or a jump does not
 /// lead to the next segment's start, coarsely: what Newton is meant to repair passes.

@@ -15,12 +15,19 @@ int segment_type(const HybridSystem& system, const NewSegment& segment) {
   return is_identity_jump(system, segment.index.jump) ? 0 : 1;
 }
 
+std::size_t free_problem_parameters(int problem_type, int branch_mode) {
+  return problem_type == 150 || branch_mode == 2 ? 2 : 1;
+}
+
 std::vector<int> new_free_parameters(const RunSettings& old, std::size_t segments, const NewProblem& problem,
                                      const HybridSystem& system) {
   std::vector<int> list;
   for (const int k : old.free_parameters)
     if (!is_duration(k, static_cast<int>(old.segments.size()))) list.push_back(k);
-  const std::size_t needed = problem.problem_type == 150 || problem.branch_mode == 2 ? 2 : 1;
+  const std::size_t had = free_problem_parameters(old.problem_type, old.branch_mode);
+  const std::size_t needed = free_problem_parameters(problem.problem_type, problem.branch_mode);
+  for (std::size_t k = needed; k < had && list.size() > needed; ++k)
+    list.erase(list.begin() + static_cast<std::ptrdiff_t>(needed));  // free no longer; those printed only stay
   for (int k = 1; k <= system.parameters() && list.size() < needed; ++k)
     if (std::find(list.begin(), list.end(), k) == list.end()) list.push_back(k);
   if (list.size() < needed)

@@ -14,10 +14,10 @@ struct NewProblem {
   int grazing_jump = 1;    ///< GRJUMP
 };
 
-/// Free parameters: the problem's own in their order (a second one is added where the problem type needs it), then all
-/// durations. Weights of durations go with the pieces; user values of durations and rules to stop are dropped. Test
-/// functions: xi_1..xi_5 on a grazing curve, otherwise the located ones of the watched events. Throws UserError when
-/// the problem has no second parameter.
+/// Free parameters: the problem's own in their order (a second one is added where the problem type needs it, and left
+/// out where it does not), then all durations. Weights of durations go with the pieces; user values of durations and
+/// rules to stop are dropped. Test functions: xi_1..xi_5 on a grazing curve, otherwise the located ones of the watched
+/// events. Throws UserError when the problem has no second parameter.
 RunSettings new_settings(const RunSettings& old, const SegmentList& segments, const NewProblem& problem,
                          const HybridSystem& system);
 

@@ -30,12 +30,16 @@ std::vector<double> mesh_for(const Orbit& x, const std::vector<OrbitPiece>& piec
   return equal_parts(grid, density, x.shape.intervals);
 }
 
-/// Whole segments in another order, or repeated: of states, or of a direction's.
+/// Whole segments in another order, or repeated, and constant ones: of states, or of a direction's.
 Eigen::MatrixXd copy_segments(const Eigen::MatrixXd& states, int nodes, const std::vector<OrbitPiece>& pieces) {
   Eigen::MatrixXd result(states.rows(), nodes * static_cast<Eigen::Index>(pieces.size()));
-  for (std::size_t p = 0; p < pieces.size(); ++p)
-    result.middleCols(static_cast<Eigen::Index>(p) * nodes, nodes) =
-        states.middleCols(pieces[p].segment * nodes, nodes);
+  for (std::size_t p = 0; p < pieces.size(); ++p) {
+    auto columns = result.middleCols(static_cast<Eigen::Index>(p) * nodes, nodes);
+    if (pieces[p].constant.size() > 0)
+      columns.colwise() = pieces[p].constant;
+    else
+      columns = states.middleCols(pieces[p].segment * nodes, nodes);
+  }
   return result;
 }
 
@@ -44,6 +48,11 @@ Eigen::MatrixXd resample(const Orbit& x, const std::vector<OrbitPiece>& pieces, 
   Eigen::MatrixXd result(target.shape.dimension, target.shape.columns());
   for (std::size_t p = 0; p < pieces.size(); ++p) {
     const OrbitPiece& piece = pieces[p];
+    if (piece.constant.size() > 0) {
+      result.middleCols(static_cast<Eigen::Index>(p) * target.shape.nodes(), target.shape.nodes()).colwise() =
+          piece.constant;
+      continue;
+    }
     for (int k = 0; k < target.shape.nodes(); ++k)
       result.col(static_cast<Eigen::Index>(p) * target.shape.nodes() + k) =
           state_at(x, rule, piece.segment, piece.from + (piece.to - piece.from) * target.tau(k));
@@ -76,15 +85,19 @@ OrbitStart assemble(const OrbitStart& old, const std::vector<OrbitPiece>& pieces
   result.orbit.shape.segments = static_cast<int>(pieces.size());
   result.orbit.par = x.par;
   set_durations(x, pieces, result.orbit);
-  const bool whole = std::all_of(pieces.begin(), pieces.end(), [](const OrbitPiece& piece) { return piece.whole(); });
-  if (!whole) {
+  const auto is_whole = [](const OrbitPiece& piece) { return piece.whole(); };
+  const bool whole = std::all_of(pieces.begin(), pieces.end(), is_whole);
+  const bool copied = std::all_of(pieces.begin(), pieces.end(), [&](const OrbitPiece& piece) {
+    return is_whole(piece) || piece.constant.size() > 0;
+  });
+  if (!copied) {
     result.orbit.mesh = mesh_for(x, pieces);
     result.orbit.states = resample(x, pieces, result.orbit);
     return result;
   }
   result.orbit.mesh = x.mesh;
   result.orbit.states = copy_segments(x.states, x.shape.nodes(), pieces);
-  if (!old.direction) return result;
+  if (!whole || !old.direction) return result;
   OrbitVector direction(result.orbit.shape, static_cast<int>(old.direction->globals.size()));
   direction.states = copy_segments(old.direction->states, x.shape.nodes(), pieces);
   direction.globals = old.direction->globals;

@@ -1,10 +1,11 @@
 /// An orbit put together from pieces of another one: the same curve with other cuts.
 ///
 /// A piece is the part tau in [from, to] of one segment; scaled to [0, 1] it is a segment of duration
-/// (to - from) T_s of the new orbit. from = to is a segment of zero duration, constant. All new segments share one
-/// mesh: the old mesh when every piece is a whole segment (then states and direction are copied exactly), otherwise a
-/// mesh whose density is the sum of those that the old mesh gives to the pieces; there the old collocation polynomials
-/// are evaluated, so the new orbit has the accuracy that the old one has between mesh points, order NCOL + 1.
+/// (to - from) T_s of the new orbit. from = to is a segment of zero duration, constant: in the old orbit's state there,
+/// or in a state of its own. All new segments share one mesh: the old mesh when every piece is a whole segment (then
+/// states and direction are copied exactly), otherwise a mesh whose density is the sum of those that the old mesh gives
+/// to the pieces; there the old collocation polynomials are evaluated, so the new orbit has the accuracy that the old
+/// one has between mesh points, order NCOL + 1.
 #pragma once
 
 #include <vector>
@@ -18,6 +19,7 @@ struct OrbitPiece {
   int segment = 0;  ///< of the old orbit, from 0
   double from = 0.0;
   double to = 1.0;
+  Eigen::VectorXd constant = {};  ///< state of an empty piece, where it is not that of the old orbit
 
   bool whole() const { return from == 0.0 && to == 1.0; }
   bool empty() const { return from == to; }

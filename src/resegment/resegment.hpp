@@ -12,6 +12,7 @@ namespace tchat {
 enum class ResegmentKind {
   grazing_curve,  ///< the segment ends in grazing contact, IPS 150
   impacting,      ///< it ends in the event with the event's own jump, IPS 180
+  signature,      ///< another signature of the same orbit: segments of zero duration vanish or appear
   rotate,         ///< another segment first
   repeat,         ///< the signature twice
 };

@@ -92,13 +92,12 @@ CutList cut_at(SegmentList segments, const ContactPoint& contact, int jump) {
   return cut;
 }
 
+bool lasts_no_time(const Orbit& x, int s) { return std::abs(x.duration(s)) <= no_duration * std::abs(x.period()); }
+
 CutList without_empty_segments(CutList cut, const Orbit& x) {
-  const auto empty = [&](const NewSegment& segment) {
-    return std::abs(x.duration(segment.piece.segment)) <= no_duration * std::abs(x.period());
-  };
   while (cut.segments.size() > 1) {
     const std::size_t next = (cut.contact + 1) % cut.segments.size();
-    if (!empty(cut.segments[next])) break;
+    if (!lasts_no_time(x, cut.segments[next].piece.segment)) break;
     cut.segments.erase(cut.segments.begin() + static_cast<std::ptrdiff_t>(next));
     if (next < cut.contact) --cut.contact;
   }

@@ -46,6 +46,9 @@ struct CutList {
 /// with its own event and jump. A section that the contact lies on is replaced.
 CutList cut_at(SegmentList segments, const ContactPoint& contact, int jump);
 
+/// Does segment s (from 0) of orbit x last no time, but for rounding?
+bool lasts_no_time(const Orbit& x, int s);
+
 /// Without the segments of no duration (of orbit x) that follow the contact: those of an impact of velocity zero.
 CutList without_empty_segments(CutList cut, const Orbit& x);
 

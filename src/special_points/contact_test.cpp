@@ -201,9 +201,28 @@ bool ContactTest::crosses(const TestedPoint& point, const Contact& contact) cons
   return std::abs(gradient.dot(f)) > slow * (1.0 + gradient.norm() * f.norm());
 }
 
+/// Then every point of the segment is the contact.
+bool ContactTest::lasts_no_time(const Orbit& x) const {
+  constexpr double no_duration = 1e-7;  // of the period
+  return std::abs(x.duration(segment_)) <= no_duration * std::abs(x.period());
+}
+
+SpecialPoint ContactTest::vanishing_segment(bool ends_branch) const {
+  const int own = system_.signature()[static_cast<std::size_t>(segment_)].event;
+  const auto name = [this](int event) {
+    return fmt::format("event {} ({})", event, system_.system().function_name(FunctionKind::event, event));
+  };
+  return {PointType::user,
+          {UserPointKind::contact, segment_ + 1, event_, 1.0},
+          ends_branch,
+          fmt::format("two events at once: segment {}, which ends in {}, has shrunk to T = 0{}", segment_ + 1,
+                      name(own), own == event_ ? "" : " on the surface of " + name(event_))};
+}
+
 SpecialPoint ContactTest::classify(const TestedPoint& point, bool rising) const {
   const std::optional<Contact> contact = least_value(system_, point.condensed.rule(), point.orbit, segment_, event_);
   const bool ends_branch = stop_ && !rising;
+  if (lasts_no_time(point.orbit)) return vanishing_segment(ends_branch);
   const std::string where = fmt::format("event {} ({}) inside segment {}", event_,
                                         system_.system().function_name(FunctionKind::event, event_), segment_ + 1);
   if (!contact)

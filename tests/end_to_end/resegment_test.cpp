@@ -119,7 +119,7 @@ TEST_CASE("resegment: DS leads to the side with impacts, whatever its sign was")
       CAPTURE(extra, step);
       workspace.write("gc.signed", workspace.tchat("constants r.inside DS=" + step).out);
       const Outcome outcome = resegment(workspace, "q.inside GR1 --to impacting -c signed -o born NMX=5" + extra);
-      CHECK(contains(outcome.out, "DS = 0.02 leads to the side with the new impact"));
+      CHECK(contains(outcome.out, "DS = 0.02 leads to the side with the new event"));
       workspace.run(std::string("-c born ") + (extra.empty() ? "-s" : "-d") + " born -o born1");
       CHECK_FALSE(contains(workspace.read("d.born1"), "Inadmissible"));
     }

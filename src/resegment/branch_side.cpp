@@ -1,0 +1,72 @@
+#include "resegment/branch_side.hpp"
+
+#include <cmath>
+
+#include "bvp/grazing_orbit_system.hpp"
+#include "constants/user_error.hpp"
+#include "run/branch_setup.hpp"
+
+namespace tchat {
+
+namespace {
+
+/// Of a parameter or a duration: what the correction of a start may change.
+constexpr double unmoved = 1e-5;
+/// A smaller part of the tangent is no change.
+constexpr double no_change = 1e-10;
+
+/// d(h_x f) at the end of segment `impact` along the tangent: the second condition of a grazing orbit.
+double slope_along_tangent(const HybridSystem& system, const DefiningSystem& defining, const PathPoint& point,
+                           int impact) {
+  const GrazingOrbitSystem grazing(system, defining.signature(), defining.free_parameters(), impact);
+  Eigen::Vector2d values;
+  Eigen::Matrix2Xd by_state(2, grazing.dimension());
+  Eigen::Matrix2Xd by_parameter(2, grazing.free_count());
+  grazing.end_derivatives(impact, point.orbit.end(impact), point.orbit.par.data(), values.data(), by_state.data(),
+                          by_parameter.data());
+  const Eigen::Index end = (impact + 1) * point.orbit.shape.nodes() - 1;
+  return by_state.row(1).dot(point.tangent.states.col(end)) + by_parameter.row(1).dot(point.tangent.globals);
+}
+
+/// dh at the end of a segment along the tangent.
+double event_along_tangent(const HybridSystem& system, const DefiningSystem& defining, const PathPoint& point,
+                           const Birth::EndEvent& at) {
+  Eigen::VectorXd by_state(defining.dimension());
+  Eigen::VectorXd by_parameter(defining.free_count());
+  double h = 0.0;
+  system.first(FunctionKind::event, at.event, point.orbit.end(at.segment), point.orbit.par.data(),
+               defining.free_parameters(), &h, by_state.data(), by_parameter.data());
+  const Eigen::Index end = (at.segment + 1) * point.orbit.shape.nodes() - 1;
+  return by_state.dot(point.tangent.states.col(end)) + by_parameter.dot(point.tangent.globals);
+}
+
+/// PAR holds parameters and durations.
+bool has_moved(const Orbit& found, const Orbit& start) {
+  const double scale = 1.0 + std::abs(start.period());
+  return ((found.par - start.par).array().abs() > unmoved * (scale + start.par.array().abs())).any();
+}
+
+int sign_of(double rate) { return std::abs(rate) > no_change ? (rate > 0.0 ? 1 : -1) : 0; }
+
+}  // namespace
+
+int side_of_birth(const HybridSystem& system, const RunSettings& settings, const SelectedStart& start,
+                  const Birth& birth) {
+  try {
+    const BranchSetup setup = set_up_branch(system, settings, start);
+    const PathPoint& point = setup.start.point;
+    if (has_moved(point.orbit, start.start.orbit)) return 0;
+    std::vector<int> sides;
+    if (birth.impact) sides.push_back(-sign_of(slope_along_tangent(system, *setup.defining, point, *birth.impact)));
+    for (const int s : birth.empty_segments) sides.push_back(sign_of(point.tangent.durations(s)));
+    for (const Birth::EndEvent& late : birth.late_events)
+      sides.push_back(sign_of(event_along_tangent(system, *setup.defining, point, late)));
+    for (const int side : sides)
+      if (side != sides.front()) return 0;
+    return sides.empty() ? 0 : sides.front();
+  } catch (const ComputationError&) {
+    return 0;  // the run itself will say why
+  }
+}
+
+}  // namespace tchat

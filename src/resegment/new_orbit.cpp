@@ -1,0 +1,224 @@
+#include "resegment/new_orbit.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "constants/user_error.hpp"
+#include "hybrid/identity_jump.hpp"
+#include "resegment/contact_point.hpp"
+#include "resegment/empty_segments.hpp"
+#include "resegment/segment_list.hpp"
+#include "resegment/signature_match.hpp"
+
+namespace tchat {
+
+namespace {
+
+int checked_jump(const HybridSystem& system, int jump, const char* what) {
+  const int count = system.count(FunctionKind::jump);
+  if (jump >= 1 && jump <= count) return jump;
+  throw UserError(fmt::format("{} is jump {}, but problem {} has {} jumps; allowed: 1..{}", what, jump, system.name(),
+                              count, count));
+}
+
+int identity_jump(const HybridSystem& system) {
+  for (int k = 1; k <= system.count(FunctionKind::jump); ++k)
+    if (is_identity_jump(system, k)) return k;
+  throw UserError(fmt::format(
+      "problem {} has no identity jump, which the cut at a grazing contact needs: add one (g = x) to the plugin, or "
+      "choose the jump with --jump",
+      system.name()));
+}
+
+/// The segments of the cut take the index vectors given by the user; the segments of no duration among them come after
+/// the contact.
+CutList with_signature(CutList cut, const Signature& signature, bool may_add, const ContactPoint& contact) {
+  const std::size_t pieces = cut.segments.size();
+  if (signature.size() < pieces || (signature.size() > pieces && !may_add))
+    throw UserError(fmt::format("--signature has {} index vectors, but the orbit cut at the contact has {} segments{}",
+                                signature.size(), pieces,
+                                may_add ? "; further ones are segments of zero duration after the contact" : ""));
+  cut = with_empty_segments(std::move(cut), static_cast<int>(signature.size() - pieces), contact.event);
+  for (std::size_t s = 0; s < signature.size(); ++s) {
+    NewSegment& segment = cut.segments[s];
+    if (!segment.piece.empty() && segment.index.field != signature[s].field)
+      throw UserError(
+          fmt::format("--signature: index vector {} has field {}, but that part of the orbit was computed "
+                      "with field {}",
+                      s + 1, signature[s].field, segment.index.field));
+    if (s == cut.contact && segment.index.event != signature[s].event)
+      throw UserError(
+          fmt::format("--signature: index vector {} ends in event {}, but that segment ends in the contact "
+                      "with event {}",
+                      s + 1, signature[s].event, segment.index.event));
+    segment.index = signature[s];
+  }
+  return cut;
+}
+
+Eigen::VectorXd end_of(const OrbitPiece& piece, const Orbit& x) {
+  if (piece.constant.size() > 0) return piece.constant;
+  return state_at(x, CollocationRule(x.shape.collocation), piece.segment, piece.to);
+}
+
+std::vector<int> empty_segments(const SegmentList& segments) {
+  std::vector<int> list;
+  for (std::size_t s = 0; s < segments.size(); ++s)
+    if (segments[s].piece.empty()) list.push_back(static_cast<int>(s));
+  return list;
+}
+
+/// Watched events that come just where another one ends the segment.
+std::vector<Birth::EndEvent> events_at_ends(const SegmentList& segments, const Orbit& x, const HybridSystem& system) {
+  constexpr double at_zero = 1e-5;
+  std::vector<Birth::EndEvent> list;
+  for (std::size_t s = 0; s < segments.size(); ++s) {
+    const NewSegment& segment = segments[s];
+    const Eigen::VectorXd end = end_of(segment.piece, x);
+    if (segment.piece.empty()) continue;  // its own growth tells
+    for (const WatchedEvent& watched : segment.watched) {
+      if (watched.event == segment.index.event) continue;
+      const double h = system.event(watched.event, end.data(), x.par.data());
+      if (std::abs(h) <= at_zero * (1.0 + end.lpNorm<Eigen::Infinity>()))
+        list.push_back({static_cast<int>(s), watched.event});
+    }
+  }
+  return list;
+}
+
+/// Segments of zero duration watch what the index jump function says; where it says nothing, what an old segment of
+/// the same field watches, or what they have.
+void watch_after_events(SegmentList& segments, const LabelledOrbit& source, const HybridSystem& system) {
+  const Orbit& x = source.start.orbit;
+  for (const int empty : empty_segments(segments)) {
+    const auto s = static_cast<std::size_t>(empty);
+    NewSegment& segment = segments[s];
+    const NewSegment& before = segments[(s + segments.size() - 1) % segments.size()];
+    const int next_field = segments[(s + 1) % segments.size()].index.field;
+    const std::vector<int> events =
+        watched_after(system, before.index, end_of(before.piece, x), x.par, segment.index, next_field);
+    if (!events.empty()) {
+      segment.watched.clear();
+      for (const int event : events) segment.watched.push_back({event, true});
+    }
+    if (!segment.watched.empty()) continue;
+    for (const NewSegment& old : segments_of(source.settings))
+      if (old.index.field == segment.index.field && segment.watched.empty()) segment.watched = old.watched;
+  }
+}
+
+NewOrbit to_grazing_curve(const ResegmentRequest& request, const LabelledOrbit& source, const HybridSystem& system) {
+  const ContactPoint contact = contact_point(source.solution, source.start.orbit, system, source.settings, source.name);
+  const auto at = static_cast<std::size_t>(contact.segment);
+  if (contact.where == ContactPoint::grazing_curve)
+    throw UserError(
+        fmt::format("{} lies on a grazing curve already; `tchat run` goes on along it, and where two events change "
+                    "places with the signature of --to signature --signature '...'",
+                    source.name));
+  const int own = source.settings.segments[at].index.jump;
+  const int jump = request.jump ? *request.jump : contact.where == ContactPoint::section ? own : identity_jump(system);
+  CutList cut = cut_at(segments_of(source.settings), contact, checked_jump(system, jump, "--jump"));
+  if (contact.where == ContactPoint::impact) cut = without_empty_segments(std::move(cut), source.start.orbit);
+  if (request.signature) cut = with_signature(std::move(cut), parse_signature(*request.signature), false, contact);
+  cut.segments[cut.contact].grazes = true;
+  const int contact_jump = contact.where == ContactPoint::impact
+                               ? own
+                               : jump_at_contact(system, source.settings, source.start.orbit, contact);
+  return {cut.segments, {150, 1, contact_jump}};
+}
+
+NewOrbit to_impacting(const ResegmentRequest& request, const LabelledOrbit& source, const HybridSystem& system) {
+  const ContactPoint contact = contact_point(source.solution, source.start.orbit, system, source.settings, source.name);
+  if (contact.where == ContactPoint::impact)
+    throw UserError(
+        fmt::format("{} is where an impact of this signature has velocity zero: the impacting orbits are those of its "
+                    "own branch; `tchat run` goes on along it",
+                    source.name));
+  const int jump = request.jump
+                       ? checked_jump(system, *request.jump, "--jump")
+                       : checked_jump(system, jump_at_contact(system, source.settings, source.start.orbit, contact),
+                                      "GRJUMP, the jump that contact brings,");
+  CutList cut = cut_at(segments_of(source.settings), contact, jump);
+  Signature signature;
+  if (request.signature) {
+    cut = with_signature(std::move(cut), parse_signature(*request.signature), true, contact);
+  } else {
+    const NewSegment& impact = cut.segments[cut.contact];
+    const NewSegment& next = cut.segments[(cut.contact + 1) % cut.segments.size()];
+    const CollocationRule rule(source.start.orbit.shape.collocation);
+    const Eigen::VectorXd x = state_at(source.start.orbit, rule, impact.piece.segment, impact.piece.to);
+    const Signature between = segments_after_impact(system, impact.index, x, source.start.orbit.par, next.index.field);
+    cut = with_empty_segments(std::move(cut), static_cast<int>(between.size()), contact.event);
+    for (std::size_t k = 0; k < between.size(); ++k) cut.segments[cut.contact + 1 + k].index = between[k];
+  }
+  watch_after_events(cut.segments, source, system);
+  NewOrbit target{cut.segments, {180, 1, source.settings.grazing_jump}};
+  target.birth = {static_cast<int>(cut.contact), empty_segments(cut.segments), {}};
+  return target;
+}
+
+/// Two events at once change places, a segment of no duration vanishes or appears.
+NewOrbit to_signature(const ResegmentRequest& request, const LabelledOrbit& source, const HybridSystem& system) {
+  if (!request.signature)
+    throw UserError("--to signature needs the new signature, for example --signature \"1,1,1;2,2,2\"");
+  const RunSettings& old = source.settings;
+  SegmentList before = segments_of(old);
+  if (old.problem_type == 150) before[static_cast<std::size_t>(grazing_segment(old))].grazes = true;
+  SegmentList segments = matched(system, before, source.start.orbit, parse_signature(*request.signature));
+  if (old.problem_type == 150 && std::none_of(segments.begin(), segments.end(), [](const auto& s) { return s.grazes; }))
+    throw UserError(
+        fmt::format("--signature {}: {} lies on a grazing curve, and no segment of this signature ends in "
+                    "its contact",
+                    *request.signature, source.name));
+  watch_after_events(segments, source, system);
+  NewOrbit target{segments, {old.problem_type, old.branch_mode, old.grazing_jump}, source.solution.type};
+  target.birth = {std::nullopt, empty_segments(segments), events_at_ends(segments, source.start.orbit, system)};
+  return target;
+}
+
+NewOrbit to_rotated(const ResegmentRequest& request, const LabelledOrbit& source) {
+  const RunSettings& old = source.settings;
+  const int m = static_cast<int>(old.segments.size());
+  SegmentList segments = segments_of(old);
+  if (old.problem_type == 150) segments[static_cast<std::size_t>(grazing_segment(old))].grazes = true;
+  NewOrbit target{rotated(segments, request.rotation),
+                  {old.problem_type, old.branch_mode, old.grazing_jump},
+                  source.solution.type,
+                  source.solution.kind};
+  if (target.kind.segment > 0) target.kind.segment = (((target.kind.segment - 1 - request.rotation) % m) + m) % m + 1;
+  return target;
+}
+
+/// At a period doubling, or anywhere on a curve of them, the doubled problem has a branch point: ISW = -1 goes from
+/// there to the doubled orbit.
+NewOrbit to_repeated(const LabelledOrbit& source) {
+  if (source.settings.problem_type != 180)
+    throw UserError(fmt::format("{} lies on a grazing curve; an orbit of type IPS = 180 can be doubled", source.name));
+  constexpr int period_doubling = static_cast<int>(PointType::period_doubling);
+  const int type = source.solution.type;
+  const bool doubling = basic_type(type) == period_doubling || std::abs(type) / 10 == period_doubling;
+  NewOrbit target{repeated(segments_of(source.settings)), {180, doubling ? -1 : 1, source.settings.grazing_jump}};
+  target.type = static_cast<int>(doubling ? PointType::branch_point : PointType::end);
+  return target;
+}
+
+}  // namespace
+
+NewOrbit new_orbit(const ResegmentRequest& request, const LabelledOrbit& source, const HybridSystem& system) {
+  switch (request.kind) {
+    case ResegmentKind::grazing_curve:
+      return to_grazing_curve(request, source, system);
+    case ResegmentKind::impacting:
+      return to_impacting(request, source, system);
+    case ResegmentKind::signature:
+      return to_signature(request, source, system);
+    case ResegmentKind::rotate:
+      return to_rotated(request, source);
+    default:
+      return to_repeated(source);
+  }
+}
+
+}  // namespace tchat

@@ -1,0 +1,37 @@
+/// What becomes of a labelled orbit: its segments cut, joined, rotated or repeated, with their new index vectors.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "resegment/branch_side.hpp"
+#include "resegment/new_settings.hpp"
+#include "resegment/resegment.hpp"
+#include "start/labelled_solution.hpp"
+#include "start/orbit_start.hpp"
+#include "start/point_type.hpp"
+
+namespace tchat {
+
+/// The labelled orbit with the constants of its run.
+struct LabelledOrbit {
+  std::string name;  ///< "label 3 of q.S"
+  RunSettings settings;
+  LabelledSolution solution;
+  std::vector<int> free_parameters;  ///< of the problem, at the label
+  OrbitStart start;
+};
+
+/// What the next run is to continue.
+struct NewOrbit {
+  SegmentList segments;
+  NewProblem problem;
+  int type = static_cast<int>(PointType::end);
+  UserPointKind kind = {};
+  Birth birth = {};
+};
+
+/// Throws UserError when label, signature, jump and problem do not go together.
+NewOrbit new_orbit(const ResegmentRequest& request, const LabelledOrbit& source, const HybridSystem& system);
+
+}  // namespace tchat

@@ -1,0 +1,167 @@
+#include "resegment/signature_match.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "constants/user_error.hpp"
+#include "resegment/empty_segments.hpp"
+
+namespace tchat {
+
+namespace {
+
+using Vector = Eigen::VectorXd;
+
+constexpr std::size_t most_new_segments = 4;  // of zero duration: the ways to place them are all tried
+constexpr double misfit_of_none = 1e-4;       // relative; what Newton is meant to repair is less
+
+Vector state(const double* x, int n) { return Eigen::Map<const Vector>(x, n); }
+
+/// Which old segment (position in `lasting`) each index vector takes; none: zero duration.
+using Places = std::vector<std::optional<std::size_t>>;
+
+class SignatureMatch {
+ public:
+  SignatureMatch(const HybridSystem& system, const SegmentList& old, const Orbit& x, const Signature& signature)
+      : system_(system), x_(x), signature_(signature) {
+    for (const NewSegment& segment : old)
+      if (!lasts_no_time(x, segment.piece.segment)) lasting_.push_back(segment);
+    check_numbers(old.size());
+  }
+
+  SegmentList best() {
+    for (rotation_ = 0; rotation_ < lasting_.size(); ++rotation_) {
+      places_.assign(signature_.size(), std::nullopt);
+      place(0, 0);
+    }
+    if (!best_places_)
+      throw UserError(
+          fmt::format("--signature {}: the orbit's segments that last some time have the fields {}, which "
+                      "do not follow each other in this signature",
+                      to_string(signature_), fields()));
+    const SegmentList segments = segments_of(*best_places_, best_rotation_);
+    if (!(best_misfit_ <= 1.0)) refuse(segments);
+    return segments;
+  }
+
+ private:
+  void check_numbers(std::size_t old_count) const {
+    if (lasting_.empty()) throw UserError("no segment of the orbit lasts any time");
+    if (signature_.size() < lasting_.size())
+      throw UserError(fmt::format("--signature has {} index vectors, but {} of the orbit's {} segments last some time",
+                                  signature_.size(), lasting_.size(), old_count));
+    if (signature_.size() > lasting_.size() + most_new_segments)
+      throw UserError(
+          fmt::format("--signature has {} index vectors for {} segments that last some time; at most {} "
+                      "segments of zero duration can be put in at once",
+                      signature_.size(), lasting_.size(), most_new_segments));
+  }
+
+  std::string fields() const {
+    std::string list;
+    for (const NewSegment& segment : lasting_)
+      list += fmt::format("{}{}", list.empty() ? "" : ", ", segment.index.field);
+    return list;
+  }
+
+  const NewSegment& old_segment(std::size_t k, std::size_t rotation) const {
+    return lasting_[(k + rotation) % lasting_.size()];
+  }
+
+  /// All ways to place the old segments from `next` on at index vectors from `at` on.
+  void place(std::size_t at, std::size_t next) {
+    if (next == lasting_.size()) return compare();
+    if (signature_.size() - at < lasting_.size() - next) return;
+    if (signature_[at].field == old_segment(next, rotation_).index.field) {
+      places_[at] = next;
+      place(at + 1, next + 1);
+      places_[at] = std::nullopt;
+    }
+    place(at + 1, next);
+  }
+
+  void compare() {
+    const double misfit = misfit_of(segments_of(places_, rotation_));
+    if (best_places_ && !(misfit < best_misfit_)) return;
+    best_misfit_ = misfit;
+    best_places_ = places_;
+    best_rotation_ = rotation_;
+  }
+
+  Vector after(const IndexVector& v, const Vector& end) const {
+    Vector result(end.size());
+    system_.value(FunctionKind::jump, v.jump, end.data(), x_.par.data(), result.data());
+    return result;
+  }
+
+  Vector end_of(const NewSegment& segment) const {
+    const OrbitPiece& piece = segment.piece;
+    return piece.constant.size() > 0 ? piece.constant : state(x_.end(piece.segment), x_.shape.dimension);
+  }
+
+  Vector start_of(const NewSegment& segment) const {
+    const OrbitPiece& piece = segment.piece;
+    return piece.constant.size() > 0 ? piece.constant : state(x_.start(piece.segment), x_.shape.dimension);
+  }
+
+  SegmentList segments_of(const Places& places, std::size_t rotation) const {
+    const std::size_t m = signature_.size();
+    SegmentList segments(m);
+    const auto first = static_cast<std::size_t>(
+        std::find_if(places.begin(), places.end(), [](const auto& p) { return p.has_value(); }) - places.begin());
+    for (std::size_t i = 0; i < m; ++i) {
+      const std::size_t s = (first + i) % m;
+      if (places[s]) {
+        segments[s] = old_segment(*places[s], rotation);
+        segments[s].grazes = segments[s].grazes && segments[s].index.event == signature_[s].event;
+      } else {
+        const NewSegment& before = segments[(s + m - 1) % m];
+        segments[s].piece = {before.piece.segment, 1.0, 1.0, after(before.index, end_of(before))};
+      }
+      segments[s].index = signature_[s];
+    }
+    return segments;
+  }
+
+  /// The largest violation of a terminal event or a jump, relative to what Newton may repair.
+  double misfit_of(const SegmentList& segments) const {
+    double worst = 0.0;
+    for (std::size_t s = 0; s < segments.size(); ++s) {
+      const Vector end = end_of(segments[s]);
+      const double scale = misfit_of_none * (1.0 + end.lpNorm<Eigen::Infinity>());
+      const Vector next = start_of(segments[(s + 1) % segments.size()]);
+      worst = std::max(worst, std::abs(system_.event(segments[s].index.event, end.data(), x_.par.data())) / scale);
+      worst = std::max(worst, (after(segments[s].index, end) - next).lpNorm<Eigen::Infinity>() / scale);
+    }
+    return std::isfinite(worst) ? worst : std::numeric_limits<double>::max();
+  }
+
+  [[noreturn]] void refuse(const SegmentList& segments) const {
+    std::vector<OrbitPiece> pieces;
+    for (const NewSegment& segment : segments) pieces.push_back(segment.piece);
+    require_fit(system_, signature_, assemble({x_, std::nullopt}, pieces).orbit);
+    throw UserError(fmt::format("--signature {} does not fit the orbit", to_string(signature_)));
+  }
+
+  const HybridSystem& system_;
+  const Orbit& x_;
+  const Signature& signature_;
+  SegmentList lasting_;
+  std::size_t rotation_ = 0;
+  Places places_;
+  double best_misfit_ = std::numeric_limits<double>::infinity();
+  std::optional<Places> best_places_;
+  std::size_t best_rotation_ = 0;
+};
+
+}  // namespace
+
+SegmentList matched(const HybridSystem& system, const SegmentList& old, const Orbit& x, const Signature& signature) {
+  return SignatureMatch(system, old, x, signature).best();
+}
+
+}  // namespace tchat
