@@ -5,6 +5,7 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 #include <csignal>
+#include <cstdio>
 #include <functional>
 #include <iostream>
 #include <new>
@@ -47,9 +48,7 @@ int run_command(const std::function<int()>& command) {
   }
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int run_program(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);  // a file size limit is then an error of the write, reported like a full disk
   CLI::App app{"tchat: numerical continuation of periodic orbits of hybrid dynamical systems", "tchat"};
   app.set_version_flag("--version", "tchat " TCHAT_VERSION);
@@ -73,4 +72,15 @@ int main(int argc, char** argv) {
     return report(tchat::usage_error(app, error), bad_input);
   }
   return run_command(chosen);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run_program(argc, argv);
+  } catch (...) {
+    std::fputs("tchat: internal error before the command began\n", stderr);
+    return computation_failed;
+  }
 }

@@ -141,8 +141,8 @@ void CondensedReturnMap::add_ends(const Orbit& x, int s, const double* weights, 
   const Eigen::Map<const Eigen::VectorXd> w(weights + n_ + 1, n_);
   hybrid.second(FunctionKind::jump, index.jump, x.end(s), x.par.data(), free, direction_.data(), d_.data(), dx_.data(),
                 dp_.data());
-  gradient.states.col(end).noalias() += dx_.transpose() * w;
-  gradient.globals.noalias() += dp_.transpose() * w;
+  for (int b = 0; b < n_; ++b) gradient.states(b, end) += dx_.col(b).dot(w);
+  for (int k = 0; k < system_.free_count(); ++k) gradient.globals(k) += dp_.col(k).dot(w);
 }
 
 }  // namespace tchat

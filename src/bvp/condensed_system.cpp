@@ -238,7 +238,9 @@ bool CondensedSystem::fill_interval(const Orbit& x, int s, int j, double* block,
   return with_dimension(n_, [&](auto n) { return fill_interval_of(n, x, s, j, block, collocation); });
 }
 
+// clang-tidy does not see that `collocation` is written to, in an expression that depends on the template.
 template <class Dimension>
+// NOLINTNEXTLINE(readability-non-const-parameter)
 bool CondensedSystem::fill_interval_of(Dimension n, const Orbit& x, int s, int j, double* block, double* collocation) {
   const int c = shape_.collocation;
   const int width = interval_.width();

@@ -26,8 +26,8 @@ void GrazingOrbitSystem::evaluate_contact(const double* x, const double* par) co
   direction_.head(dimension()) = f_;
   system().second(FunctionKind::event, v.event, x, par, active, direction_.data(), &slope_, slope_x_.data(),
                   slope_p_.data());
-  slope_x_.noalias() += fx_.transpose() * hx_;
-  slope_p_.noalias() += fp_.transpose() * hx_;
+  for (int b = 0; b < dimension(); ++b) slope_x_(b) += fx_.col(b).dot(hx_);
+  for (int k = 0; k < free_count(); ++k) slope_p_(k) += fp_.col(k).dot(hx_);
 }
 
 void GrazingOrbitSystem::end_values(int s, const double* x, const double* par, double* values) const {
