@@ -12,7 +12,7 @@ struct IndexVector {
   int field = 1;
   int event = 1;
   int jump = 1;
-  auto operator<=>(const IndexVector&) const = default;
+  auto operator<=>(const IndexVector&) const = default;  // NOLINT(modernize-use-nullptr): of the generated code
 };
 
 /// The index vectors of the segments of one period, in order.

@@ -117,8 +117,9 @@ bool EventSurfaces::same_zeros(int event, int other, int a, int b, const StateWi
   for (const OrbitTrace& orbit : orbits_) {
     double product = 0.0, square = 0.0, other_square = 0.0;
     for (int i = 0; i < points * points; ++i) {
-      const double x = window.low_x + (window.high_x - window.low_x) * (i % points) / (points - 1);
-      const double y = window.low_y + (window.high_y - window.low_y) * (i / points) / (points - 1);
+      const int column = i % points, row = i / points;
+      const double x = window.low_x + (window.high_x - window.low_x) * column / (points - 1);
+      const double y = window.low_y + (window.high_y - window.low_y) * row / (points - 1);
       const double h = value(event, orbit, a, x, b, y), k = value(other, orbit, a, x, b, y);
       product += h * k;
       square += h * h;

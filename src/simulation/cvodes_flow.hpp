@@ -24,6 +24,8 @@ class CvodesFlow {
   /// `par` has parameter_length entries. A view of `system`, which outlives this object.
   CvodesFlow(const HybridSystem& system, int field, const Eigen::VectorXd& x0, const Eigen::VectorXd& par,
              const FlowOptions& options);
+  CvodesFlow(const CvodesFlow&) = delete;
+  CvodesFlow& operator=(const CvodesFlow&) = delete;
   ~CvodesFlow();
 
   /// Stop where one of these event functions falls through zero (event_watch.hpp says what counts). Once, before the

@@ -38,7 +38,7 @@ struct Rate {
 
 }  // namespace
 
-EventWatch::EventWatch(const HybridSystem& system, int field, std::vector<int> events, const VectorXd& par,
+EventWatch::EventWatch(const HybridSystem& system, int field, const std::vector<int>& events, const VectorXd& par,
                        const double* x0, double tolerance)
     : system_(system), field_(field), par_(par), tolerance_(tolerance) {
   for (const int event : events) {

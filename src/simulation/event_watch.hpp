@@ -37,7 +37,7 @@ class EventWatch {
 
   /// A view of `system` and `par`, which outlive this object. `tolerance` on |h| / (1 + |h_x| |x|) says what is on the
   /// surface at the start x0 (time 0).
-  EventWatch(const HybridSystem& system, int field, std::vector<int> events, const Eigen::VectorXd& par,
+  EventWatch(const HybridSystem& system, int field, const std::vector<int>& events, const Eigen::VectorXd& par,
              const double* x0, double tolerance);
 
   int count() const { return static_cast<int>(events_.size()); }

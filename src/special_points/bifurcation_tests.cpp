@@ -53,7 +53,7 @@ double transversality(const DefiningSystem& defining, const Orbit& x, int s) {
 }
 
 FoldTest::FoldTest(int parameter, const std::vector<int>& free_parameters, int segments, bool stop)
-    : is_duration_(is_duration(parameter, segments)), index_(0), stop_(stop) {
+    : is_duration_(is_duration(parameter, segments)), stop_(stop) {
   index_ = is_duration_
                ? duration_segment(parameter)
                : std::find(free_parameters.begin(), free_parameters.end(), parameter) - free_parameters.begin();

@@ -21,7 +21,7 @@ class FoldTest final : public TestFunction {
 
  private:
   bool is_duration_;
-  Eigen::Index index_;
+  Eigen::Index index_ = 0;
   bool stop_;
 };
 
