@@ -31,7 +31,7 @@ class CvodesFlow {
   /// Stop where one of these event functions falls through zero (event_watch.hpp says what counts). Once, before the
   /// first advance(). CVODES finds the zeros of h and of h_P = h_x f; the watch looks at every step it takes, so that a
   /// pair of crossings inside one step, near grazing, is not missed, and zeros that CVODES finds too close are no harm.
-  void watch(std::vector<int> events);
+  void watch(const std::vector<int>& events);
   /// Called for every piece of the flow that has been passed, from one time to the next; state_at() is valid in it.
   /// False stops the flow (Progress::stopped).
   void on_piece(std::function<bool(double from, double to)> observer);
