@@ -208,7 +208,7 @@ class AssignmentParser {
   const std::string cure =
       near.empty() ? "`tchat constants` lists them" : fmt::format("did you mean: {}", fmt::join(near, ", "));
   const bool may_be_parameter =
-      key.place.line == 0 && !assignment.has_argument && parse_real(assignment.value.token.text);
+      near.empty() && key.place.line == 0 && !assignment.has_argument && parse_real(assignment.value.token.text);
   throw UserError(fmt::format("{}: found {}, which is no constant; {}{}", key.place.text(), in_quotes(key.text), cure,
                               may_be_parameter ? fmt::format("; the value of a parameter is written 'PAR({})={}'",
                                                              key.text, assignment.value.token.text)
