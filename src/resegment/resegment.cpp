@@ -58,10 +58,9 @@ std::string constants_of(const ResegmentRequest& request, const std::string& sol
 }
 
 LabelledOrbit read_source(const ResegmentRequest& request, const std::string& path, const std::string& constants,
-                          std::vector<std::string>& warnings) {
+                          const SolutionFile& file, std::vector<std::string>& warnings) {
   LabelledOrbit source;
   source.settings = read_constants_file(constants, &warnings);
-  const SolutionFile file = read_solution_file(path);
   warnings.insert(warnings.end(), file.warnings.begin(), file.warnings.end());
   source.solution = find_solution(file.solutions, read_label(request.label), path);
   const LabelledSolution& solution = source.solution;
@@ -179,8 +178,9 @@ ProblemSizes sizes_for(const ResegmentRequest& request, const RunSettings& setti
 std::vector<std::string> resegment(const ResegmentRequest& request, std::ostream& screen) {
   std::vector<std::string> warnings;
   const std::string path = resolve_solution_path(request.solutions);
+  const SolutionFile file = read_solution_file(path);
   const std::string constants = constants_of(request, path);
-  const LabelledOrbit source = read_source(request, path, constants, warnings);
+  const LabelledOrbit source = read_source(request, path, constants, file, warnings);
 
   const std::string plugin = resolve_plugin(request.problem.value_or(run_name(path)));
   const ExitGuard guard(plugin);
