@@ -72,16 +72,25 @@ void write_orbit(const Workspace& workspace, const std::string& name, double p, 
 const std::string common =
     "NDIM = 2, NTST = 20, NCOL = 4, EPSL = 1e-11, EPSU = 1e-11, EPSS = 1e-10, NPR = 0, NMX = 40, DSMAX = 0.1\n";
 
-/// Continued in p up to 1, where the section comes when the drive is switched off.
-void run_to_two_events(const Workspace& workspace, const std::string& step) {
+/// The orbit at p and r, continued up to where the section comes when the drive is switched off: two events at once.
+Outcome run_to_two_events(const Workspace& workspace, double p, double r, const std::vector<double>& cuts,
+                          const std::string& constants) {
   workspace.write("wave.cpp", square_wave);
-  write_orbit(workspace, "wave", 0.6, 1.0, {0.6, 1.0, 2.0});
-  workspace.write("gc.wave", common + "IPS = 180, ICP = [p, 61, 62, 63], RL1 = 1.6, DS = " + step +
-                                 "\nGCFIND = [1, 1, 2], GCHIND = [2, 1, 3], GCGIND = [1, 1, 2], GCSEGTYP = [0, 0, 1]\n"
-                                 "GCHGRZIND = [[1], [], []], GCIPSI = [1]\n");
-  const Outcome outcome = workspace.tchat("run wave -o first");
+  write_orbit(workspace, "wave", p, r, cuts);
+  workspace.write("gc.wave", common + constants);
+  Outcome outcome = workspace.tchat("run wave -o first");
   INFO(outcome.text());
   REQUIRE(outcome.status == 0);
+  CHECK(contains(outcome.out, "two events at once"));
+  return outcome;
+}
+
+void run_to_two_events(const Workspace& workspace) {
+  const Outcome outcome =
+      run_to_two_events(workspace, 0.6, 1.0, {0.6, 1.0, 2.0},
+                        "IPS = 180, ICP = [p, 61, 62, 63], RL1 = 1.6, DS = 0.05\n"
+                        "GCFIND = [1, 1, 2], GCHIND = [2, 1, 3], GCGIND = [1, 1, 2], GCSEGTYP = [0, 0, 1]\n"
+                        "GCHGRZIND = [[1], [], []], GCIPSI = [1]\n");
   CHECK(contains(outcome.out, "GR label 2 at p = 1: two events at once"));
 }
 
@@ -111,7 +120,7 @@ std::vector<double> column(const Workspace& workspace, const std::string& name, 
 
 TEST_CASE("resegment --to signature: two events change places, DS leads on") {
   const Workspace workspace;
-  run_to_two_events(workspace, "0.05");
+  run_to_two_events(workspace);
   const Outcome outcome = resegment(workspace, "q.first GR1 --to signature --signature 1,1,1;2,2,1;2,3,2 -o on");
   CHECK(contains(outcome.out, "{(1,2,1), (1,1,1), (2,3,2)}"));
   CHECK(contains(outcome.out, "-> {(1,1,1), (2,2,1), (2,3,2)}, IPS = 180"));
@@ -138,7 +147,7 @@ TEST_CASE("resegment --to signature: two events change places, DS leads on") {
 
 TEST_CASE("resegment --to signature: segments of no duration vanish") {
   const Workspace workspace;
-  run_to_two_events(workspace, "0.05");
+  run_to_two_events(workspace);
   const Outcome outcome = resegment(workspace, "q.first GR1 --to signature --signature 1,1,1;2,3,2 -o fewer");
   CHECK(contains(outcome.out, "-> {(1,1,1), (2,3,2)}"));
   run(workspace, "fewer");
@@ -152,17 +161,11 @@ TEST_CASE("resegment --to signature: along a grazing curve") {
     (8.0 * (middle - 0.5) < 1.0 - x_at(middle) ? low : high) = middle;
   }
   const double r = x_at(low) - 4.0 * (low - 0.5) * (low - 0.5);
-  Workspace workspace;
-  workspace.write("wave.cpp", square_wave);
-  write_orbit(workspace, "wave", 0.9, r, {low, 0.9, 1.0, 2.0});
-  workspace.write("gc.wave", common +
-                                 "IPS = 150, ICP = [p, r, 61, 62, 63, 64], RL1 = 1.6, DS = 0.02, GRJUMP = 1\n"
-                                 "GCFIND = [1, 1, 1, 2], GCHIND = [4, 2, 1, 3], GCGIND = [1, 1, 1, 2]\n"
-                                 "GCSEGTYP = [2, 0, 0, 1], GCHGRZIND = [[], [1], [], []], GCIPSI = []\n");
-  const Outcome first = workspace.tchat("run wave -o first");
-  INFO(first.text());
-  REQUIRE(first.status == 0);
-  CHECK(contains(first.out, "two events at once"));
+  const Workspace workspace;
+  run_to_two_events(workspace, 0.9, r, {low, 0.9, 1.0, 2.0},
+                    "IPS = 150, ICP = [p, r, 61, 62, 63, 64], RL1 = 1.6, DS = 0.02, GRJUMP = 1\n"
+                    "GCFIND = [1, 1, 1, 2], GCHIND = [4, 2, 1, 3], GCGIND = [1, 1, 1, 2]\n"
+                    "GCSEGTYP = [2, 0, 0, 1], GCHGRZIND = [[], [1], [], []], GCIPSI = []\n");
   const Outcome outcome = resegment(workspace, "q.first GR1 --to signature --signature 1,4,1;1,1,1;2,2,1;2,3,2 -o on");
   CHECK(contains(outcome.out, "surface (grazing)"));
   CHECK(contains(outcome.out, "IPS = 150"));
@@ -177,7 +180,7 @@ TEST_CASE("resegment --to signature: along a grazing curve") {
 
 TEST_CASE("resegment --to signature refuses what does not fit") {
   const Workspace workspace;
-  run_to_two_events(workspace, "0.05");
+  run_to_two_events(workspace);
   struct Bad {
     std::string signature;
     std::vector<std::string> expected;
