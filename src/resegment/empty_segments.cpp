@@ -7,6 +7,7 @@
 
 #include "constants/user_error.hpp"
 #include "hybrid/identity_jump.hpp"
+#include "hybrid/relevant_events.hpp"
 
 namespace tchat {
 
@@ -73,14 +74,11 @@ std::vector<int> watched_after(const HybridSystem& system, const IndexVector& be
   const auto [at, following] = successors_with_field(system, before, x, par, own.field);
   Eigen::VectorXd start(x.size());
   system.value(FunctionKind::jump, before.jump, at.data(), par.data(), start.data());
-  const auto keeps_field = [&](const IndexVector& v) {
-    return v == own ? next_field == own.field : has_field(successors(system, v, start, par), own.field);
-  };
-  std::vector<int> events;
-  for (const IndexVector& v : following) {
-    const bool section = is_identity_jump(system, v.jump) && keeps_field(v);
-    if (!section && std::find(events.begin(), events.end(), v.event) == events.end()) events.push_back(v.event);
-  }
+  std::vector<int> events = relevant_events(system, following, own.field, start.data(), par.data());
+  std::erase(events, own.event);
+  const bool ends_in_section = is_identity_jump(system, own.jump) && next_field == own.field;
+  const bool is_listed = std::find(following.begin(), following.end(), own) != following.end();
+  if (is_listed && !ends_in_section) events.push_back(own.event);
   std::sort(events.begin(), events.end());
   return events;
 }

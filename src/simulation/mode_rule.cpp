@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "constants/user_error.hpp"
-#include "hybrid/identity_jump.hpp"
+#include "hybrid/relevant_events.hpp"
 
 namespace tchat {
 
@@ -62,18 +62,12 @@ std::string fault_of(const HybridSystem& system, const std::vector<IndexVector>&
 Mode ModeRule::of_cycle(const IndexVector& from, const VectorXd& x, const VectorXd& par) const {
   Mode mode = cycle_[position_];
   if (monitor_ == Monitor::as_given) return mode;
-  const auto following = [&](const IndexVector& v) {
-    return system_.successors(v, x.data(), par.data()).value_or(std::vector<IndexVector>{});
-  };
-  const auto has_field = [&](const std::vector<IndexVector>& list) {
-    return std::any_of(list.begin(), list.end(), [&](const IndexVector& v) { return v.field == mode.field(); });
-  };
-  const std::vector<IndexVector> list = following(from);
-  if (!has_field(list)) return mode;
-  for (const IndexVector& v : list) {
-    const bool section = is_identity_jump(system_, v.jump) && has_field(following(v));
-    if (!section && v.event != mode.index_vectors.front().event) add_once(mode.monitored, v.event);
-  }
+  const auto following = system_.successors(from, x.data(), par.data()).value_or(std::vector<IndexVector>{});
+  const bool goes_on =
+      std::any_of(following.begin(), following.end(), [&](const IndexVector& v) { return v.field == mode.field(); });
+  if (!goes_on) return mode;
+  mode.monitored = relevant_events(system_, following, mode.field(), x.data(), par.data());
+  std::erase(mode.monitored, mode.index_vectors.front().event);
   return mode;
 }
 
