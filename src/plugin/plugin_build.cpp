@@ -82,11 +82,6 @@ bool not_newer(const std::string& file, const timespec& time) {
   return at.st_mtim.tv_sec < time.tv_sec || (at.st_mtim.tv_sec == time.tv_sec && at.st_mtim.tv_nsec <= time.tv_nsec);
 }
 
-bool same_compiler(const BuildStamp& stamp, const Compiler& compiler) {
-  const std::string identity = compiler.identity();
-  return identity.empty() || stamp.compiler == hash_text(identity);  // without a compiler, what there is must do
-}
-
 /// One source and everything that decides whether its library is up to date.
 struct Build {
   fs::path source;
@@ -96,13 +91,43 @@ struct Build {
 
   FortranFiles fortran() const { return fortran_files(source.string(), {include_folder + "/tchat"}); }
 
+  BuildPlaces places() const {
+    return {fs::absolute(source).parent_path().lexically_normal().string(),
+            fs::absolute(include_folder).lexically_normal().string()};
+  }
+
+  /// Files by their place. The compiler's paths begin as the source or a folder of headers was given to it.
+  std::vector<BuildInput> placed(const std::vector<std::string>& files) const {
+    const BuildPlaces as_given = {fs::absolute(source).parent_path().string(), fs::absolute(include_folder).string()};
+    const BuildPlaces normal = places();
+    std::vector<BuildInput> inputs;
+    for (const std::string& file : files) {
+      inputs.push_back(place_of(file, as_given));
+      if (inputs.back().root == BuildInput::Root::elsewhere) inputs.back() = place_of(file, normal);
+    }
+    return inputs;
+  }
+
   /// The files that a library compiled elsewhere is compared with.
-  std::vector<std::string> known_inputs() const {
-    if (language == Language::fortran) return fortran().found;
-    std::vector<std::string> files = {source.string()};
+  std::vector<BuildInput> known_inputs() const {
+    if (language == Language::fortran) return placed(fortran().found);
+    std::vector<std::string> files = {fs::absolute(source).string()};
     for (const char* header : {"dual.hpp", "problem.h", "problem.hpp"})
-      files.push_back(include_folder + "/tchat/" + header);
-    return files;
+      files.push_back(fs::absolute(include_folder).string() + "/tchat/" + header);
+    return placed(files);
+  }
+
+  /// Options such as -I may mean other files for a source that lies elsewhere.
+  std::string compiler_identity() const {
+    const std::string identity = compiler.identity();
+    const bool options = std::any_of(compiler.command().begin(), compiler.command().end(),
+                                     [](const std::string& word) { return word.starts_with('-'); });
+    return options && !identity.empty() ? identity + places().source_folder : identity;
+  }
+
+  bool same_compiler(const BuildStamp& stamp) const {
+    const std::string identity = compiler_identity();
+    return identity.empty() || stamp.compiler == hash_text(identity);  // without a compiler, what there is must do
   }
 
   bool is_current(const fs::path& library) const {
@@ -111,16 +136,19 @@ struct Build {
     const std::optional<BuildStamp> stamp = read_stamp(library.string());
     if (stamp && !is_from_source(*stamp)) return false;
     // A file that was missing when the library was compiled counts by its absence, in the hash.
-    for (const std::string& file : stamp ? stamp->files : known_inputs())
-      if (!not_newer(file, at.st_mtim) && !(stamp && !is_file(file))) return false;
+    for (const BuildInput& input : stamp ? stamp->files : known_inputs())
+      if (const std::string file = input.found_from(places());
+          !not_newer(file, at.st_mtim) && !(stamp && !is_file(file)))
+        return false;
     if (!stamp) return true;
-    return same_compiler(*stamp, compiler) && stamp->contents == hash_files(stamp->files);
+    return same_compiler(*stamp) && stamp->contents == hash_files(stamp->files, places());
   }
 
   /// False for the library of NAME.cpp when the source is NAME.f.
   bool is_from_source(const BuildStamp& stamp) const {
-    return std::any_of(stamp.files.begin(), stamp.files.end(),
-                       [&](const std::string& file) { return fs::path(file).filename() == source.filename(); });
+    return std::any_of(stamp.files.begin(), stamp.files.end(), [&](const BuildInput& file) {
+      return file.root == BuildInput::Root::source && file.path == source.filename();
+    });
   }
 
   /// Compiles to a temporary name in the library's folder and renames. The lock is the caller's.
@@ -130,9 +158,9 @@ struct Build {
     const TemporaryFile temporary(temporary_name);
     timespec begun{};
     timespec_get(&begun, TIME_UTC);
-    const std::vector<std::string> files =
-        language == Language::cpp ? compile_cpp(temporary_name) : compile_fortran(temporary_name);
-    const BuildStamp stamp{hash_text(compiler.identity()), hash_files(files), files};
+    const std::vector<BuildInput> files =
+        placed(language == Language::cpp ? compile_cpp(temporary_name) : compile_fortran(temporary_name));
+    const BuildStamp stamp{hash_text(compiler_identity()), hash_files(files, places()), files};
     const bool written = append_stamp(temporary.path(), stamp);
     // The library is as old as the begin of its compilation: a source saved meanwhile is newer.
     const std::array<timespec, 2> times = {begun, begun};

@@ -7,9 +7,10 @@
 ///   3. otherwise P with one of these endings, in this order, then P.so.
 ///
 /// A source is compiled when its library is missing, or when the source, a header that it includes (tchat's interface
-/// among them) or the compiler has changed since. The library is compiled to a temporary name under a lock and then
-/// renamed, so that several processes may ask for one plugin at the same time and none ever sees half a file. Where
-/// the source's folder cannot be written, the library goes to $XDG_CACHE_HOME/tchat, else ~/.cache/tchat.
+/// among them) or the compiler has changed since; in a copy of a folder the copy's own files count. The library is
+/// compiled to a temporary name under a lock and then renamed, so that several processes may ask for one plugin at the
+/// same time and none ever sees half a file. Where the source's folder cannot be written, the library goes to
+/// $XDG_CACHE_HOME/tchat, else ~/.cache/tchat.
 #pragma once
 
 #include <string>

@@ -34,6 +34,25 @@ TEST_CASE("a plugin is compiled at the first run and not again until its source 
   CHECK(fs::last_write_time(workspace.file("linosc.so")) != made);
 }
 
+TEST_CASE("a copy of a project folder, edited, runs what it holds") {
+  const Workspace workspace(Workspace::Plugin::source);
+  workspace.run("-c nonimpacting_alpha -d nonimpacting NMX=1 -o one");
+  const fs::path copy = workspace.file("copy");
+  fs::create_directory(copy);
+  for (const char* name : {"linosc.cpp", "linosc.so", "gc.nonimpacting_alpha", "nonimpacting.dat"})
+    fs::copy_file(workspace.file(name), copy / name);
+  age(workspace, "copy/linosc.so", std::chrono::seconds(5));  // only contents tell
+  workspace.edit("copy/linosc.cpp", "static constexpr int dimension = 4, parameters = 4;",
+                 "static constexpr int dimension = 4, parameters = 4, user_values = 1;\n"
+                 "  void user_value(const double*, const double*, double* out) const { out[0] = 7.5; }");
+  const Outcome outcome =
+      workspace.tchat("run copy/linosc -c copy/gc.nonimpacting_alpha -d copy/nonimpacting.dat NMX=1 -o two");
+  INFO(outcome.text());
+  CHECK(outcome.status == 0);
+  CHECK(workspace.read("p.two").find("PVLS(1)") != std::string::npos);
+  CHECK(workspace.read("p.one").find("PVLS(1)") == std::string::npos);
+}
+
 TEST_CASE("two runs that need the same plugin at once") {
   const Workspace workspace(Workspace::Plugin::source);
   const auto one = workspace.start_tchat("run linosc -o one " + quick);

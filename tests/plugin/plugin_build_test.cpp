@@ -161,6 +161,98 @@ TEST_CASE("a plugin is compiled when something changed, and only then") {
   }
 }
 
+TEST_CASE("a copy of a folder has sources of its own") {
+  const PluginFolder folder;
+  const PluginBuildOptions options = folder.counting_compiler();
+  folder.write("work/first/own.h", "enum { more = 0 };\n");
+  folder.write("work/common/size.h", "enum { size = 2 };\n");
+  folder.write("work/first/small.cpp",
+               "#include \"own.h\"\n#include \"../common/size.h\"\n" + small_plugin("table.dimension = size + more;"));
+  const bool relative = GENERATE(false, true);  // the path as it is given, from the parent folder
+  const fs::path before = fs::current_path();
+  fs::current_path(folder / "work");
+  const auto dimension_in = [&](const std::string& name) {
+    const std::string path = (relative ? fs::path() : fs::current_path()) / name;
+    return dimension_of(resolve_plugin(path, options));
+  };
+  CHECK(dimension_in("first/small") == 2);
+  fs::copy("first", "second", fs::copy_options::recursive);
+  fs::last_write_time("second/small.so", fs::file_time_type::clock::now());
+
+  SECTION("the library is taken as long as they are the same") {
+    CHECK(dimension_in("second/small") == 2);
+    folder.write("work/first/small.cpp", small_plugin("table.dimension = 9;"));
+    CHECK(dimension_in("second/small") == 2);
+    CHECK(folder.compilations() == 1);
+    CHECK(dimension_in("first/small") == 9);
+  }
+  SECTION("the source changes") {
+    folder.write("work/second/small.cpp", small_plugin("table.dimension = 5;"));
+    CHECK(dimension_in("second/small") == 5);
+    CHECK(dimension_in("first/small") == 2);
+  }
+  SECTION("the source changes to one with an older time") {
+    folder.write("work/second/small.cpp", small_plugin("table.dimension = 5;"));
+    make_older(folder / "work/second/small.cpp", std::chrono::hours(24));
+    CHECK(dimension_in("second/small") == 5);
+  }
+  SECTION("a header changes") {
+    folder.write("work/second/own.h", "enum { more = 5 };\n");
+    CHECK(dimension_in("second/small") == 7);
+  }
+  SECTION("a header that both share changes") {
+    folder.write("work/common/size.h", "enum { size = 4 };\n");
+    CHECK(dimension_in("second/small") == 4);
+    CHECK(dimension_in("first/small") == 4);
+  }
+  SECTION("it is copied to where a header is missing") {
+    fs::create_directories("deep/down");
+    fs::copy("first", "deep/down/third", fs::copy_options::recursive);
+    CHECK_THROWS_WITH(dimension_in("deep/down/third/small"), Contains("common/size.h"));
+  }
+  SECTION("the original is gone") {
+    fs::remove_all("first");
+    CHECK(dimension_in("second/small") == 2);
+    folder.write("work/second/own.h", "enum { more = 1 };\n");
+    CHECK(dimension_in("second/small") == 3);
+  }
+  fs::current_path(before);
+}
+
+TEST_CASE("a copy of a folder whose library is a link to the original's") {
+  const PluginFolder folder;
+  const PluginBuildOptions options = folder.counting_compiler();
+  folder.write("first/small.cpp", small_plugin());
+  CHECK(dimension_of(resolve_plugin(folder / "first/small", options)) == 2);
+  folder.write("second/small.cpp", small_plugin("table.dimension = 5;"));
+  fs::create_symlink(folder / "first/small.so", folder / "second/small.so");
+  CHECK(dimension_of(resolve_plugin(folder / "second/small", options)) == 5);
+  CHECK(dimension_of(resolve_plugin(folder / "first/small", options)) == 2);
+  CHECK(folder.compilations() == 2);
+}
+
+TEST_CASE("a library of another tchat, or stamped by one, is compiled again") {
+  const PluginFolder folder;
+  const PluginBuildOptions options = folder.counting_compiler();
+  folder.write("small.cpp", small_plugin());
+  SECTION("other headers") {
+    fs::copy(TCHAT_TEST_INCLUDE, folder / "include", fs::copy_options::recursive);
+    std::ofstream(folder / "include/tchat/problem.h", std::ios::app) << "// another version\n";
+    make_older(folder / "include/tchat/problem.h", std::chrono::hours(24));
+    resolve_plugin(folder / "small", {options.compiler, folder / "include"});
+    resolve_plugin(folder / "small", options);
+    CHECK(folder.compilations() == 2);
+  }
+  SECTION("a stamp that lists paths") {
+    resolve_plugin(folder / "small", options);
+    std::ofstream(folder / "small.so", std::ios::app) << "\n#tchat-plugin-stamp 1\nabc\ndef\n"
+                                                      << folder / "small.cpp"
+                                                      << "\n#tchat-plugin-stamp-end\n";
+    resolve_plugin(folder / "small", options);
+    CHECK(folder.compilations() == 2);
+  }
+}
+
 TEST_CASE("a library compiled by the user is taken unless its source is newer") {
   const PluginFolder folder;
   const PluginBuildOptions options = folder.counting_compiler();
