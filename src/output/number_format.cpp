@@ -10,11 +10,23 @@ namespace tchat {
 
 namespace {
 
-constexpr std::size_t e19_width = 19;
 constexpr int largest_point = 9999;
 constexpr double largest_es = 1.7976e308;  ///< rounded up in its last decimal a larger one is read as infinity
 
 bool continues_character(char c) { return (static_cast<unsigned char>(c) & 0xC0) == 0x80; }  // of UTF-8
+
+/// Right-justified in `width` columns, three exponent digits at least.
+void append_exponential(std::string& line, double value, int decimals, std::size_t width) {
+  fmt::memory_buffer digits;
+  fmt::format_to(std::back_inserter(digits), "{:.{}E}", finite(value), decimals);
+  const std::string_view text(digits.data(), digits.size());
+  const auto exponent = text.find('E') + 2;  // after the sign
+  const bool short_exponent = text.size() - exponent == 2;
+  line.append(width - text.size() - (short_exponent ? 1 : 0), ' ');
+  line.append(text.substr(0, exponent));
+  if (short_exponent) line += '0';
+  line.append(text.substr(exponent));
+}
 
 }  // namespace
 
@@ -24,17 +36,9 @@ double finite(double value) {
   return value == 0.0 ? 0.0 : value;
 }
 
-void append_e19(std::string& line, double value) {
-  fmt::memory_buffer digits;
-  fmt::format_to(std::back_inserter(digits), "{:.10E}", finite(value));
-  const std::string_view text(digits.data(), digits.size());
-  const auto exponent = text.find('E') + 2;  // after the sign
-  const bool short_exponent = text.size() - exponent == 2;
-  line.append(e19_width - text.size() - (short_exponent ? 1 : 0), ' ');
-  line.append(text.substr(0, exponent));
-  if (short_exponent) line += '0';
-  line.append(text.substr(exponent));
-}
+void append_e19(std::string& line, double value) { append_exponential(line, value, 10, 19); }
+
+void append_e26(std::string& line, double value) { append_exponential(line, value, 16, 26); }
 
 std::string e19(double value) {
   std::string text;

@@ -16,6 +16,9 @@ double finite(double value);
 std::string e19(double value);
 void append_e19(std::string& line, double value);
 
+/// 26 columns: `  1.2345678901234567E+000`, sixteen decimals, from which the number is read back exactly.
+void append_e26(std::string& line, double value);
+
 /// `width` columns with four or more decimals as Fortran's ESw.d prints them: `  1.0000E-01`, `-1.7976+308`.
 std::string es(double value, int width, int decimals);
 

@@ -63,10 +63,11 @@ EntrySizes checked_sizes(const LabelledSolution& solution) {
   return sizes;
 }
 
-void append_numbers(std::string& text, std::span<const double> numbers) {
+void append_numbers(std::string& text, std::span<const double> numbers,
+                    void (*append_number)(std::string&, double) = append_e19) {
   for (std::size_t k = 0; k < numbers.size(); ++k) {
     if (k % numbers_per_line == 0) text += k == 0 ? "    " : "\n    ";
-    append_e19(text, numbers[k]);
+    append_number(text, numbers[k]);
   }
   if (!numbers.empty()) text += '\n';
 }
@@ -125,7 +126,8 @@ std::string format_solution(const LabelledSolution& solution) {
       append_numbers(text,
                      std::span(solution.state_direction.col(point).data(), static_cast<std::size_t>(sizes.states)));
   }
-  append_numbers(text, all_parameters(solution, sizes));
+  // Nothing corrects a fixed parameter at a restart: it has to be the same number again.
+  append_numbers(text, all_parameters(solution, sizes), append_e26);
   return text;
 }
 

@@ -208,11 +208,22 @@ class SolutionReader {
     return static_cast<std::int64_t>(count);
   }
 
-  /// A last line without newline is whole when it has the fixed width of 4 + 19 k columns and no number is missing.
+  /// A last line without newline is whole when it has the fixed width of 4 + 19 k or 4 + 26 k columns for its k numbers
+  /// and no number is missing.
   static bool cut_inside_last_line(const SolutionIdentifier& id, const std::vector<Line>& lines, std::int64_t found) {
     if (lines.back().ended) return false;
     const bool all_numbers = found == id.numbers(false) || found == id.numbers(true);
-    return !all_numbers || (lines.back().text.size() % 19) != 4;
+    const std::string_view text = lines.back().text;
+    const std::size_t count = split_words(text).size();
+    const bool whole = text.size() == 4 + 26 * count || (text.size() == 4 + 19 * count && !has_more_digits(text));
+    return !all_numbers || !whole;
+  }
+
+  /// Than the ten decimals of a number of 19 columns: part of one of 26.
+  static bool has_more_digits(std::string_view text) {
+    const std::string_view last = split_words(text).back();
+    const auto point = last.find('.');
+    return last.find_first_of("EeDd") == std::string_view::npos || last.find_first_of("EeDd") - point != 11;
   }
 
   bool has_direction(const SolutionIdentifier& id, std::int64_t found, int entry_line) const {

@@ -188,6 +188,22 @@ TEST_CASE("restart with another value of a fixed parameter keeps ICP(1) at the f
   }
 }
 
+TEST_CASE("a restart has the parameters of the label to the last bit") {
+  const Workspace workspace;
+  const double coefficient = 0.8 + 1.0 / 3e10;
+  const double damping = 0.1 / 3.0;
+  workspace.run({"-c", "impacting", "-d", "impacting", "-o", "branch", "NMX=5", "PAR(zeta)=0.03333333333333333333",
+                 "PAR(r)=0.80000000003333333333"});
+  REQUIRE(workspace.solutions("branch").front().parameter(3) == damping);
+  REQUIRE(workspace.solutions("branch").front().parameter(4) == coefficient);
+  const SolutionEntry again = restarted_point(workspace, "-c impacting -s branch IRS=EP2");
+  CHECK(again.parameter(3) == damping);
+  CHECK(again.parameter(4) == coefficient);
+  // What was free, too: here alpha becomes a fixed parameter.
+  const SolutionEntry end = workspace.solutions("branch").back();
+  CHECK(restarted_point(workspace, "-c impacting -s branch ICP=[2,61] RL0=1 IRS=EP2").parameter(1) == end.parameter(1));
+}
+
 TEST_CASE("DS > 0 goes on in the stored direction, or where ICP(1) grows when the free parameter is another") {
   const Workspace workspace;
   workspace.run("-c impacting -d impacting -o back DS=-0.02 GRSTOP=0");

@@ -26,20 +26,13 @@ class LineReader {
   /// `count` numbers, seven to a line after four blanks, beginning on a new line.
   std::vector<double> reals(std::size_t count) {
     static const std::regex pattern(" +-?[0-9]\\.[0-9]{10}E[+-][0-9]{3}");
-    std::vector<double> values;
-    while (values.size() < count) {
-      const std::string text = line();
-      const std::size_t here = std::min<std::size_t>(7, count - values.size());
-      INFO("line " << number_ << ": " << text);
-      REQUIRE(text.size() == 4 + 19 * here);
-      REQUIRE(text.compare(0, 4, "    ") == 0);
-      for (std::size_t k = 0; k < here; ++k) {
-        const std::string field = text.substr(4 + 19 * k, 19);
-        REQUIRE(std::regex_match(field, pattern));
-        values.push_back(std::stod(field));
-      }
-    }
-    return values;
+    return reals(count, 19, pattern);
+  }
+
+  /// The same with all digits.
+  std::vector<double> exact_reals(std::size_t count) {
+    static const std::regex pattern(" +-?[0-9]\\.[0-9]{16}E[+-][0-9]{3}");
+    return reals(count, 26, pattern);
   }
 
   /// `count` integers of five columns, twenty to a line.
@@ -55,6 +48,23 @@ class LineReader {
   }
 
  private:
+  std::vector<double> reals(std::size_t count, std::size_t width, const std::regex& pattern) {
+    std::vector<double> values;
+    while (values.size() < count) {
+      const std::string text = line();
+      const std::size_t here = std::min<std::size_t>(7, count - values.size());
+      INFO("line " << number_ << ": " << text);
+      REQUIRE(text.size() == 4 + width * here);
+      REQUIRE(text.compare(0, 4, "    ") == 0);
+      for (std::size_t k = 0; k < here; ++k) {
+        const std::string field = text.substr(4 + width * k, width);
+        REQUIRE(std::regex_match(field, pattern));
+        values.push_back(std::stod(field));
+      }
+    }
+    return values;
+  }
+
   std::istringstream in_;
   int number_ = 0;
 };
@@ -107,7 +117,7 @@ SolutionEntry read_entry(LineReader& reader) {
     entry.parameter_direction = reader.reals(static_cast<std::size_t>(free));
     for (int k = 0; k < points; ++k) entry.direction.push_back(reader.reals(static_cast<std::size_t>(states)));
   }
-  entry.par = reader.reals(static_cast<std::size_t>(parameters));
+  entry.par = reader.exact_reals(static_cast<std::size_t>(parameters));
   entry.internal.assign(entry.par.end() - internal, entry.par.end());
   entry.par.resize(static_cast<std::size_t>(parameters - internal));
   REQUIRE(reader.line_number() - first_line == lines);

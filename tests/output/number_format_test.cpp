@@ -6,6 +6,16 @@
 
 using namespace tchat;
 
+namespace {
+
+std::string e26(double value) {
+  std::string text;
+  append_e26(text, value);
+  return text;
+}
+
+}  // namespace
+
 TEST_CASE("Nineteen columns, ten decimals, three exponent digits", "[output]") {
   CHECK(e19(1.2345678901) == "  1.2345678901E+000");
   CHECK(e19(-1.2345678901e-3) == " -1.2345678901E-003");
@@ -14,6 +24,9 @@ TEST_CASE("Nineteen columns, ten decimals, three exponent digits", "[output]") {
   CHECK(e19(1e-100) == "  1.0000000000E-100");
   CHECK(e19(-1.7976931348623157e308) == " -1.7976931349E+308");
   CHECK(e19(5e-324) == "  4.9406564584E-324");
+  CHECK(e26(1.0 / 3.0) == "   3.3333333333333331E-001");
+  CHECK(e26(-1e-100) == "  -1.0000000000000000E-100");
+  CHECK(std::stod(e26(0.1 + 0.2)) == 0.1 + 0.2);
   CHECK(e19(9.99999999999) == "  1.0000000000E+001");
 }
 

@@ -34,7 +34,7 @@ int integer_at(const std::string& line, std::size_t begin, std::size_t width) {
   return std::stoi(field);
 }
 
-/// A reader of one entry by columns, as its format is described: 6I6, I8, I6, I8, 7I5; 4X,7E19; 20I5.
+/// A reader of one entry by columns, as its format is described: 6I6, I8, I6, I8, 7I5; 4X,7E19; 20I5; PAR 4X,7E26.
 class FixedColumns {
  public:
   explicit FixedColumns(const std::string& text) : lines_(lines_of(text)) {
@@ -48,19 +48,19 @@ class FixedColumns {
     }
   }
 
-  std::vector<double> numbers(int count) {
+  std::vector<double> numbers(int count, std::size_t width = 19) {
     std::vector<double> values;
     for (int k = 0; k < count; ++k) {
       if (k % 7 == 0) {
         REQUIRE(next_ < lines_.size());
-        REQUIRE(lines_[next_].size() == 4 + 19 * static_cast<std::size_t>(std::min(7, count - k)));
+        REQUIRE(lines_[next_].size() == 4 + width * static_cast<std::size_t>(std::min(7, count - k)));
         REQUIRE(lines_[next_].substr(0, 4) == "    ");
         ++next_;
       }
-      const std::string field = lines_[next_ - 1].substr(4 + 19 * static_cast<std::size_t>(k % 7), 19);
+      const std::string field = lines_[next_ - 1].substr(4 + width * static_cast<std::size_t>(k % 7), width);
       REQUIRE(field[0] == ' ');
-      REQUIRE(field[14] == 'E');
-      REQUIRE(field[3] == '.');
+      REQUIRE(field[width - 5] == 'E');
+      REQUIRE(field[width == 19 ? 3 : 4] == '.');
       values.push_back(std::stod(field));
     }
     return values;
@@ -129,7 +129,7 @@ void check_entry(const LabelledSolution& orbit) {
         REQUIRE(record[static_cast<std::size_t>(r)] == Approx(orbit.state_direction(r, p)).epsilon(1e-10));
     }
   }
-  const auto par = entry.numbers(parameters);
+  const auto par = entry.numbers(parameters, 26);
   for (std::size_t k = 0; k + 4 < par.size(); ++k)
     REQUIRE(par[k] == (k < orbit.parameters.size() ? orbit.parameters[k] : 0.0));
   CHECK(par[par.size() - 4] == orbit.kind.kind);
@@ -157,11 +157,13 @@ TEST_CASE("An entry written by hand, byte for byte", "[output]") {
   orbit.parameter_direction = {1.0, -2.0};
   orbit.state_direction.resize(1, 3);
   orbit.state_direction << 0.5, 0.0, 3.0;
-  orbit.parameters = {3.14159265358979, 2.0};
+  orbit.parameters = {3.14159265358979312, 2.0};
   orbit.kind = {UserPointKind::contact, 1, 2, 0.75};
-  const std::string zeros =
-      "      0.0000000000E+000  0.0000000000E+000  0.0000000000E+000  0.0000000000E+000  0.0000000000E+000"
-      "  0.0000000000E+000  0.0000000000E+000\n";
+  const auto zeros = [](int count) {
+    std::string line = "    ";
+    for (int k = 0; k < count; ++k) line += "   0.0000000000000000E+000";
+    return line;
+  };
   std::string expected =
       "     1     2    -4    12     2     1       3     2      23    1    2  104    4    1  180    0\n"
       "      0.0000000000E+000  1.0000000000E+000\n"
@@ -172,12 +174,12 @@ TEST_CASE("An entry written by hand, byte for byte", "[output]") {
       "      5.0000000000E-001\n"
       "      0.0000000000E+000\n"
       "      3.0000000000E+000\n"
-      "      3.1415926536E+000  2.0000000000E+000  0.0000000000E+000  0.0000000000E+000  0.0000000000E+000"
-      "  0.0000000000E+000  0.0000000000E+000\n";
-  for (int line = 0; line < 13; ++line) expected += zeros;
-  expected +=
-      "      0.0000000000E+000  0.0000000000E+000  2.0000000000E+000  1.0000000000E+000  2.0000000000E+000"
-      "  7.5000000000E-001\n";
+      "       3.1415926535897931E+000   2.0000000000000000E+000" +
+      zeros(5).substr(4) + "\n";
+  for (int line = 0; line < 13; ++line) expected += zeros(7) + "\n";
+  expected += zeros(2) +
+              "   2.0000000000000000E+000   1.0000000000000000E+000   2.0000000000000000E+000"
+              "   7.5000000000000000E-001\n";
   CHECK(format_solution(orbit) == expected);
 }
 

@@ -7,20 +7,20 @@
 
 namespace test_support {
 
-inline std::string e19_text(double value) {
+inline std::string real_text(double value, int decimals, std::size_t width) {
   char digits[64];
-  std::snprintf(digits, sizeof digits, "%.10E", value);
+  std::snprintf(digits, sizeof digits, "%.*E", decimals, value);
   std::string text = digits;
   const auto exponent = text.find('E') + 2;
   while (text.size() - exponent < 3) text.insert(exponent, "0");
-  return std::string(19 - text.size(), ' ') + text;
+  return std::string(width - text.size(), ' ') + text;
 }
 
-inline std::string records(const std::vector<double>& numbers) {
+inline std::string records(const std::vector<double>& numbers, int decimals = 10) {
   std::string text;
   for (std::size_t k = 0; k < numbers.size(); ++k) {
     if (k % 7 == 0) text += k == 0 ? "    " : "\n    ";
-    text += e19_text(numbers[k]);
+    text += real_text(numbers[k], decimals, decimals == 10 ? 19 : 26);
   }
   return text + "\n";
 }
@@ -39,6 +39,7 @@ struct SampleEntry {
   int parameters = 104;  ///< NPAR, the four internal values included
   std::vector<double> internal = {0, 0, 0, 0};
   int problem_type = 180;
+  int parameter_decimals = 10;  ///< 16 in files of ours
 
   int points() const { return intervals * collocation + 1; }
   int states() const { return dimension * segments; }
@@ -67,7 +68,7 @@ struct SampleEntry {
     std::vector<double> par;
     for (int k = 1; k <= parameters - static_cast<int>(internal.size()); ++k) par.push_back(k);
     par.insert(par.end(), internal.begin(), internal.end());
-    return text + records(par);
+    return text + records(par, parameter_decimals);
   }
 
   std::string direction_text() const {
