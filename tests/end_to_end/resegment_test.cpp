@@ -145,7 +145,7 @@ TEST_CASE("resegment: a contact on the section replaces it, from data as well") 
   CHECK(std::abs(first_value(workspace, "born1", "alpha") - 3.0) < 1e-9);
 
   // Back from there: the impact's velocity vanishes, and the grazing curve is without it.
-  workspace.run("-c born -s born1 -o back IRS=EP1 DS=-0.02 NMX=60");
+  workspace.run("-c born -s born1 -o back IRS=EP2 DS=-0.02 NMX=60");
   resegment(workspace, "q.back GR1 --to grazing-curve -o again");
   CHECK(contains(workspace.read("gc.again"), "IPS = 150"));
   workspace.run("-c again -s again -o again1 NMX=2");
