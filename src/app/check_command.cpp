@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <memory>
@@ -65,6 +66,15 @@ int find_parameter(const HybridSystem& system, const std::string& key) {
                               system.parameters()));
 }
 
+/// The largest k of "PAR(k)=v" up to 60; 0 when there is none.
+int largest_given_parameter(const std::vector<std::string>& settings) {
+  int largest = 0;
+  for (const std::string& setting : settings)
+    for (int k = 1; k < first_duration; ++k)
+      if (setting.starts_with(fmt::format("PAR({})=", k))) largest = std::max(largest, k);
+  return largest;
+}
+
 /// Starting values of the problem with "PAR(omega)=2" or "PAR(2)=2" put in.
 Eigen::VectorXd read_parameters(const HybridSystem& system, const std::vector<std::string>& settings) {
   Eigen::VectorXd par(system.parameters());
@@ -86,7 +96,9 @@ int check_problem(const CheckArguments& arguments) {
   const ExitGuard guard(path);
   const ProblemLibrary library(path, [&arguments] {
     const std::string constants = arguments.constants.empty() ? arguments.name : arguments.constants;
-    return problem_sizes(read_constants_file(constants_path(constants)));
+    ProblemSizes sizes = problem_sizes(read_constants_file(constants_path(constants)));
+    sizes.parameters = std::max(sizes.parameters, largest_given_parameter(arguments.parameters));
+    return sizes;
   });
   DerivativeCheckOptions options;
   for (const std::string& state : arguments.states) options.states.push_back(read_state(state));

@@ -75,13 +75,15 @@ std::string HybridSystem::function_name(FunctionKind kind, int index) const {
 }
 
 int HybridSystem::parameter_index(const std::string& name) const {
-  for (int k = 1; k <= parameters(); ++k)
-    if (table_->parameter_names != nullptr && name == table_->parameter_names[k - 1]) return k;
+  const char* const* const names = table_->parameter_names;
+  for (int k = 1; names != nullptr && k <= parameters(); ++k)
+    if (names[k - 1] != nullptr && name == names[k - 1]) return k;
   return 0;
 }
 
 std::optional<std::vector<IndexVector>> HybridSystem::successors(const IndexVector& from, const double* x,
                                                                  const double* par) const {
+  if (!has_successors()) return std::nullopt;
   const std::array<std::int32_t, 3> last{from.field, from.event, from.jump};
   std::vector<std::int32_t> to(3 * 64);
   const auto ask = [&] {

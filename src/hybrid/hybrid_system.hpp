@@ -51,7 +51,7 @@ class HybridSystem {
   /// Does the problem have an index jump function?
   bool has_successors() const { return table_->successors != nullptr; }
   /// The index vectors that may follow a segment `from` that ends, before its jump, at x; from = (0, 0, 0): those at a
-  /// start x. The one with priority first. Nothing when the function cannot be evaluated.
+  /// start x. The one with priority first. Nothing when the problem has no such function or it cannot be evaluated.
   std::optional<std::vector<IndexVector>> successors(const IndexVector& from, const double* x, const double* par) const;
 
   /// F, F_x (rows x dimension) and F_p (rows x active.size()); `active` lists PAR indices from 1. Central differences

@@ -2,11 +2,12 @@
 
 #include <fmt/format.h>
 
+#include "run/parameter_values.hpp"
+
 namespace tchat {
 
 std::string data_text(const Orbit& x, const HybridSystem& system) {
-  std::string text;
-  for (int k = 1; k <= system.parameters(); ++k) text += fmt::format("# PAR({}) = {}\n", k, x.par(k - 1));
+  std::string text = parameter_lines(system, x.par);
   for (int s = 0; s < x.shape.segments; ++s) text += fmt::format("# PAR({}) = {}\n", first_duration + s, x.duration(s));
   for (int k = 0; k < x.shape.nodes(); ++k) {
     text += fmt::format("{:.15g}", x.tau(k));

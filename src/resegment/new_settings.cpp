@@ -1,5 +1,7 @@
 #include "resegment/new_settings.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "constants/user_error.hpp"
@@ -30,8 +32,11 @@ std::vector<int> new_free_parameters(const RunSettings& old, std::size_t segment
     list.erase(list.begin() + static_cast<std::ptrdiff_t>(needed));  // free no longer; those printed only stay
   for (int k = 1; k <= system.parameters() && list.size() < needed; ++k)
     if (std::find(list.begin(), list.end(), k) == list.end()) list.push_back(k);
-  if (list.size() < needed)
-    throw UserError("a grazing curve has two free parameters, but the problem has only one parameter");
+  if (list.size() < needed && !problem.names_parameters)
+    throw UserError(
+        fmt::format("a grazing curve has two free parameters, but of problem {} only one is known; name both, as in "
+                    "ICP=[1,2,61]",
+                    system.name()));
   for (std::size_t s = 0; s < segments; ++s) list.push_back(first_duration + static_cast<int>(s));
   return list;
 }

@@ -9,15 +9,16 @@
 namespace tchat {
 
 struct NewProblem {
-  int problem_type = 180;  ///< IPS
-  int branch_mode = 1;     ///< ISW
-  int grazing_jump = 1;    ///< GRJUMP
+  int problem_type = 180;         ///< IPS
+  int branch_mode = 1;            ///< ISW
+  int grazing_jump = 1;           ///< GRJUMP
+  bool names_parameters = false;  ///< the user gives ICP, so what is missing there is no fault
 };
 
 /// Free parameters: the problem's own in their order (a second one is added where the problem type needs it, and left
 /// out where it does not), then all durations. Weights of durations go with the pieces; user values of durations and
 /// rules to stop are dropped. Test functions: xi_1..xi_5 on a grazing curve, otherwise the located ones of the watched
-/// events. Throws UserError when the problem has no second parameter.
+/// events. Throws UserError when no second parameter of the problem is known.
 RunSettings new_settings(const RunSettings& old, const SegmentList& segments, const NewProblem& problem,
                          const HybridSystem& system);
 

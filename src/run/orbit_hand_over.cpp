@@ -9,6 +9,7 @@
 
 #include "hybrid/identity_jump.hpp"
 #include "hybrid/parameter_vector.hpp"
+#include "run/parameter_values.hpp"
 
 namespace tchat {
 
@@ -100,7 +101,7 @@ std::string orbit_data_text(const HybridSystem& system, const FoundOrbit& orbit,
       fmt::format("# Periodic orbit of {}, found by simulation and refined by shooting.\n# signature {}\n",
                   system.name(), to_string(orbit.signature));
   text += fmt::format("# period {}\n", orbit.map.period);
-  for (int k = 1; k <= system.parameters(); ++k) text += fmt::format("# PAR({}) = {}\n", k, par(k - 1));
+  text += parameter_lines(system, par);
   for (std::size_t s = 0; s < orbit.map.segments.size(); ++s)
     text += fmt::format("# PAR({}) = {}\n", first_duration + static_cast<int>(s), orbit.map.segments[s].duration);
   text += fmt::format("# tau, then the {} states of each segment\n", system.dimension());

@@ -1,5 +1,7 @@
 #include "run/parameter_values.hpp"
 
+#include <fmt/format.h>
+
 #include "run/problem_setup.hpp"
 
 namespace tchat {
@@ -9,6 +11,13 @@ ParameterVector initial_parameters(const HybridSystem& system) {
   if (system.table().initial_parameters != nullptr)
     for (int i = 0; i < system.parameters(); ++i) par(i) = system.table().initial_parameters[i];
   return par;
+}
+
+std::string parameter_lines(const HybridSystem& system, const Eigen::VectorXd& par) {
+  std::string text;
+  for (int k = 1; k < first_duration; ++k)
+    if (k <= system.parameters() || par(k - 1) != 0.0) text += fmt::format("# PAR({}) = {}\n", k, par(k - 1));
+  return text;
 }
 
 bool apply_command_line(const HybridSystem& system, const RunSettings& settings, ParameterVector& par) {

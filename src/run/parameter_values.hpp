@@ -1,6 +1,8 @@
 /// Values of PAR before a run: the plugin's, and the command line's, which has the last word.
 #pragma once
 
+#include <string>
+
 #include "constants/run_settings.hpp"
 #include "hybrid/hybrid_system.hpp"
 #include "hybrid/parameter_vector.hpp"
@@ -13,5 +15,9 @@ ParameterVector initial_parameters(const HybridSystem& system);
 /// PAR(2)=0.8 and PAR(omega)=0.8 of the command line. True when any differs from what was there. Throws UserError for a
 /// name that the problem does not have.
 bool apply_command_line(const HybridSystem& system, const RunSettings& settings, ParameterVector& par);
+
+/// Lines "# PAR(k) = v" of a .dat file: the problem's parameters, and further entries of PAR(1..60) that are not zero,
+/// which the Fortran interface may read without saying so.
+std::string parameter_lines(const HybridSystem& system, const Eigen::VectorXd& par);
 
 }  // namespace tchat

@@ -152,7 +152,9 @@ FoundOrbit refine(const HybridSystem& system, const SimulationResult& result, co
   }
   const VectorXd range = ranges(turn, result.ignorable);
   PeriodicOrbit orbit = shoot_finely(system, found, turn.front().start, par, result.ignorable);
-  if (const std::size_t period = true_period(found, orbit, range); orbit.converged && period < turn.size()) {
+  // Only where shooting has closed the orbit does its map have all segments.
+  if (const std::size_t period = orbit.converged ? true_period(found, orbit, range) : turn.size();
+      period < turn.size()) {
     found.signature.resize(period);
     found.modes.resize(period);
     orbit = shoot_finely(system, found, orbit.start, par, result.ignorable);

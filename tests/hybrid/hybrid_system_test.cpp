@@ -52,6 +52,18 @@ TEST_CASE("names of states, parameters and functions") {
   CHECK(unnamed.parameter_index("PAR(1)") == 0);
 }
 
+TEST_CASE("names may be left out one by one") {
+  const char* const some[] = {nullptr, "omega", nullptr, "r"};
+  tchat_problem table = linosc_table();
+  table.parameter_names = table.state_names = some;
+  const HybridSystem system(table);
+  CHECK(system.parameter_name(1) == "PAR(1)");
+  CHECK(system.state_name(3) == "U(3)");
+  CHECK(system.parameter_index("omega") == 2);
+  CHECK(system.parameter_index("r") == 4);
+  CHECK(system.parameter_index("alpha") == 0);
+}
+
 TEST_CASE("an unusable table is refused") {
   const std::vector<RefusedTable> cases = {
       {"interface version is 99", [](tchat_problem& t) { t.abi_version = 99; }},
@@ -215,7 +227,9 @@ TEST_CASE("index jump function of the state, and of the index vector alone") {
   const HybridSystem linosc(linosc_table());
   const double x[] = {1.0, 0.5, 0.0, 1.0};
   CHECK(linosc.successors({1, 1, 1}, x, par) == Next{{1, 1, 1}, {1, 2, 2}});
-  CHECK_FALSE(HybridSystem(nonlinear_table()).has_successors());
+  const HybridSystem silent(nonlinear_table());
+  CHECK_FALSE(silent.has_successors());
+  CHECK_FALSE(silent.successors({1, 1, 1}, x, par).has_value());
 }
 
 TEST_CASE("all_finite") {

@@ -197,6 +197,20 @@ TEST_CASE("an orbit is refined from its lowest index vector on, or from the one 
   CHECK(wanted.signature == Signature{{1, 2, 2}, {1, 1, 1}});
 }
 
+TEST_CASE("an orbit whose events shooting does not find again is a value") {
+  // Thrown upwards where the ball falls upwards: the floor is never met again.
+  SimulatedSegment segment;
+  segment.mode = {{{1, 1, 1}}, {}};
+  segment.index = {1, 1, 1};
+  segment.start = segment.low = Vector2d(0.0, 1.0);
+  segment.high = Vector2d(1.0, 2.0);
+  SimulationResult result;
+  result.turn = {segment, segment};
+  const FoundOrbit found = refine(system_of<BouncingBall>(), result, parameters({-9.81, 1.0}), {0, 0, 0});
+  CHECK_FALSE(found.converged);
+  CHECK_THAT(found.message, Contains("segment 1"));
+}
+
 TEST_CASE("sections end no segments of an orbit that has another end, wherever the turn begins") {
   const HybridSystem& hybrid = system_of<LinearOscillator>();
   const auto segment = [](IndexVector index, double begin, double duration) {
