@@ -26,6 +26,7 @@
 #include "resegment/segment_list.hpp"
 #include "run/named_parameters.hpp"
 #include "run/problem_setup.hpp"
+#include "run/problem_types.hpp"
 #include "run/run_request.hpp"
 #include "start/orbit_start.hpp"
 #include "start/point_type.hpp"
@@ -79,12 +80,34 @@ LabelledOrbit read_source(const ResegmentRequest& request, const std::string& pa
   return source;
 }
 
+std::vector<int> free_parameters_of(const RunSettings& settings) {
+  return free_problem_parameters(problem_type(settings), settings);
+}
+
+/// A direction, computed with the label's free parameters, as one of the new problem: nothing when the problem is of
+/// another type, frees other parameters, or continues other orbits (an impact is born); the run then finds its own.
+std::optional<OrbitVector> kept_direction(const LabelledOrbit& source, const NewOrbit& target,
+                                          const std::optional<OrbitVector>& direction, const RunSettings& settings) {
+  const std::vector<int> free = free_parameters_of(settings);
+  const bool other_problem = source.settings.problem_type != settings.problem_type ||
+                             source.free_parameters.size() != free.size() || target.birth.impact;
+  if (!direction || other_problem) return std::nullopt;
+  OrbitVector kept = *direction;
+  for (std::size_t g = 0; g < free.size(); ++g) {
+    const auto at = std::find(source.free_parameters.begin(), source.free_parameters.end(), free[g]);
+    if (at == source.free_parameters.end()) return std::nullopt;
+    kept.globals(static_cast<Eigen::Index>(g)) = direction->globals(at - source.free_parameters.begin());
+  }
+  return kept;
+}
+
 LabelledSolution make_solution(const LabelledOrbit& source, const NewOrbit& target, const OrbitStart& start,
                                const RunSettings& settings) {
-  std::vector<int> listed = source.free_parameters;
+  const std::vector<int> free = free_parameters_of(settings);
+  std::vector<int> listed = free;
   for (int s = 0; s < start.orbit.shape.segments; ++s) listed.push_back(first_duration + s);
-  LabelledSolution solution = labelled_solution(start.orbit, start.direction.value_or(OrbitVector{}),
-                                                source.free_parameters, start.direction ? listed : std::vector<int>{});
+  LabelledSolution solution = labelled_solution(start.orbit, start.direction.value_or(OrbitVector{}), free,
+                                                start.direction ? listed : std::vector<int>{});
   solution.branch = source.solution.branch;
   solution.type = target.type;
   solution.kind = target.kind;
@@ -126,11 +149,11 @@ std::string summary(const LabelledOrbit& source, const RunSettings& settings, co
   return text + fmt::format("  free: {}\n", free);
 }
 
-bool gives_step(const std::vector<std::string>& overrides) {
-  return std::any_of(overrides.begin(), overrides.end(), [](const std::string& text) {
+bool gives(const std::vector<std::string>& overrides, std::string_view keyword) {
+  return std::any_of(overrides.begin(), overrides.end(), [&](const std::string& text) {
     const std::vector<Assignment> assignments = parse_assignments(text, Place{"command line"});
     return std::any_of(assignments.begin(), assignments.end(),
-                       [](const Assignment& a) { return constant_of(a).keyword == "DS"; });
+                       [&](const Assignment& a) { return constant_of(a).keyword == keyword; });
   });
 }
 
@@ -156,7 +179,7 @@ std::string choose_side(const ResegmentRequest& request, const HybridSystem& sys
         "both with --both.\n",
         born);
   const double step = std::copysign(settings.step, side);
-  if (!gives_step(request.overrides)) settings.step = step;
+  if (!gives(request.overrides, "DS")) settings.step = step;
   if (settings.step == step)
     return fmt::format("DS = {} leads to the side with {}; on the other side the orbit is inadmissible.\n", step, born);
   return fmt::format("DS = {} leads to the side where the orbit is inadmissible; {} is on the side of DS = {}.\n",
@@ -188,10 +211,11 @@ std::vector<std::string> resegment(const ResegmentRequest& request, std::ostream
   const HybridSystem& system = library.system();
   check_settings_against(system, source.settings, constants);
 
-  const NewOrbit target = new_orbit(request, source, system);
+  NewOrbit target = new_orbit(request, source, system);
+  target.problem.names_parameters = gives(request.overrides, "ICP");
   std::vector<OrbitPiece> pieces;
   for (const NewSegment& segment : target.segments) pieces.push_back(segment.piece);
-  const OrbitStart start = assemble(source.start, pieces);
+  OrbitStart start = assemble(source.start, pieces);
   RunSettings settings = new_settings(source.settings, target.segments, target.problem, system);
   if (request.data) settings.start = {};
   apply_overrides(settings, request.overrides, &warnings, names_of(system));
@@ -200,6 +224,7 @@ std::vector<std::string> resegment(const ResegmentRequest& request, std::ostream
   const std::vector<std::string> contradictions = check_settings_against(system, settings, "the new constants");
   warnings.insert(warnings.end(), contradictions.begin(), contradictions.end());
   require_fit(system, settings.signature(), start.orbit);
+  start.direction = kept_direction(source, target, start.direction, settings);
   const std::string side = target.birth.is_any() ? choose_side(request, system, target, start, settings) : "";
 
   const std::string solutions_out = output_path('q', request.output);

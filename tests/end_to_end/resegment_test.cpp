@@ -153,6 +153,32 @@ TEST_CASE("resegment: a contact on the section replaces it, from data as well") 
   check_refused(workspace.tchat("resegment q.back GR1 --to impacting -o none -p linosc"), {"its own branch"});
 }
 
+TEST_CASE("resegment: a direction goes on only into a problem with the same free parameters") {
+  const Workspace workspace;
+  workspace.run("-c to_grazing -d nonimpacting -o grazing");
+  workspace.run("-c grazing_curve -s grazing -o curve");
+  // Tangents of the grazing curve, which two parameters span, are none of the impacting orbits.
+  for (const std::string& label : {std::string("XI1"), std::string("UZ1")})
+    for (const std::string& free : {std::string("ICP=[1,61]"), std::string("ICP=[2,61]")}) {
+      CAPTURE(label, free);
+      const Outcome outcome = resegment(workspace, "q.curve " + label + " --to impacting -o born NMX=3 " + free);
+      CHECK(workspace.solutions("born").front().parameter_direction.empty());
+      CHECK(contains(outcome.out, "leads to the side with the new event"));
+      workspace.run("-c born -s born -o born1");
+      CHECK_FALSE(contains(workspace.read("d.born1"), "Inadmissible"));
+    }
+  // Along the curve it stays, whatever the order of the parameters; another pair has none.
+  resegment(workspace, "q.curve UZ1 --to rotate -o same");
+  CHECK(workspace.solutions("same").front().parameter_direction ==
+        with_label(workspace.solutions("curve"), 4).parameter_direction);
+  resegment(workspace, "q.curve UZ1 --to rotate -o swapped ICP=[1,2,61]");
+  const auto same = workspace.solutions("same").front().parameter_direction;
+  const auto swapped = workspace.solutions("swapped").front().parameter_direction;
+  CHECK(swapped == std::vector<double>{same[1], same[0], same[2]});
+  resegment(workspace, "q.curve UZ1 --to rotate -o other ICP=[1,3,61]");
+  CHECK(workspace.solutions("other").front().parameter_direction.empty());
+}
+
 TEST_CASE("resegment: rotation keeps multipliers, states and the direction") {
   const Workspace workspace;
   write_response(workspace, "two", 2.0, 2.0, 2);
