@@ -35,6 +35,8 @@ void add_run_command(CLI::App& app, std::function<int()>& chosen) {
   command->add_flag("-q,--quiet", request->quiet, "no table and no summary on the screen");
   command->add_flag("--both", request->both_directions, "both directions of DS, one after the other");
   command->add_flag("--append", request->append, "add to p.O q.O d.O instead of replacing them");
+  command->add_flag("--clip", request->clip, "end on RL0, RL1, A0, A1, not at the first point beyond them");
+  command->add_flag("--strict", request->strict, "exit status 3 when a branch ends by MX");
   command->add_option(
       "KEY=VALUE", request->overrides,
       "constants and parameters for this run, e.g. DS=-0.01 NMX=50 IRS=PD1 'PAR(2)=0.8' 'PAR(omega)=0.8' "
@@ -43,7 +45,8 @@ void add_run_command(CLI::App& app, std::function<int()>& chosen) {
       "The table shows the first point, labelled points and inadmissible ones; p.O has every point.\n"
       "Exit status: 0 the branch was computed (also when it ended by MX), 1 no convergence at the first point or of "
       "the\n"
-      "first step, 2 bad usage or bad input, 130 or 143 interrupted (files are complete).");
+      "first step, 2 bad usage or bad input, 3 ended by MX with --strict, 130 or 143 interrupted (files are "
+      "complete).");
   command->callback([&chosen, request] { chosen = [request] { return do_run(*request); }; });
 }
 

@@ -47,6 +47,7 @@ enum class EndReason {
   max_points,
   parameter_bound,
   measure_bound,
+  on_bound,  ///< of RL0, RL1, A0, A1, where the branch was to end
   special_point,
   interrupted,
   no_convergence,

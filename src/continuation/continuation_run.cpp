@@ -7,6 +7,7 @@
 
 #include "bvp/evaluation_failure.hpp"
 #include "bvp/mesh_adaptation.hpp"
+#include "continuation/bound_tests.hpp"
 #include "continuation/solution_measure.hpp"
 
 namespace tchat {
@@ -18,7 +19,22 @@ LocationSettings location_settings(const ContinuationSettings& settings) {
   return {settings.multipliers, settings.location_tolerance * scale, std::max(settings.max_location, 2)};
 }
 
+/// After all others: what else vanishes on a bound gives the point its type.
+std::vector<std::unique_ptr<TestFunction>> with_bounds(std::vector<std::unique_ptr<TestFunction>> tests,
+                                                       const ContinuationSettings& settings,
+                                                       const HybridSystem& system) {
+  if (settings.clip)
+    for (auto& test : bound_tests(settings, system.parameter_name(settings.principal)))
+      tests.push_back(std::move(test));
+  return tests;
+}
+
 }  // namespace
+
+bool is_beyond(const ContinuationSettings& settings, double value, double least, double most) {
+  const double accuracy = location_settings(settings).tolerance * (1.0 + std::abs(value));
+  return value < least - accuracy || value > most + accuracy;
+}
 
 ContinuationRun::ContinuationRun(PathFollower& follower, const DefiningSystem& system, ContinuationSettings settings,
                                  std::vector<std::unique_ptr<TestFunction>> tests, BranchSink& sink)
@@ -26,7 +42,8 @@ ContinuationRun::ContinuationRun(PathFollower& follower, const DefiningSystem& s
       system_(system),
       settings_(std::move(settings)),
       sink_(sink),
-      search_(follower, system, std::move(tests), location_settings(settings_)),
+      search_(follower, system, with_bounds(std::move(tests), settings_, system.system()),
+              location_settings(settings_)),
       step_(settings_.step) {}
 
 BranchSummary ContinuationRun::run(PathPoint start) {
@@ -35,7 +52,7 @@ BranchSummary ContinuationRun::run(PathPoint start) {
   search_.begin(here_);
   SpecialPoint special;
   if (settings_.label_start) special.type = PointType::end;
-  record(end_conditions(special));
+  accept(end_conditions(special));
 
   const auto note = [this](const std::string& text) { sink_.note(number_ + 1, text); };
   while (!ended_) {
@@ -47,7 +64,7 @@ BranchSummary ContinuationRun::run(PathPoint start) {
     special = search_.advance(here_, next_, ds_taken_, newton_, note).value_or(SpecialPoint{});
     std::swap(here_, next_);
     ++number_;
-    record(end_conditions(special));
+    accept(end_conditions(special));
     step_.converged(newton_.iterations, number_);
   }
   return summary_;
@@ -79,12 +96,14 @@ bool ContinuationRun::take_step() {
 SpecialPoint ContinuationRun::end_conditions(SpecialPoint special) {
   const double principal = here_.orbit.par(settings_.principal - 1);
   measure_ = solution_measure(here_.orbit, follower_.condensed().rule(), settings_.state_weights, settings_.measure);
-  if (is_beyond(principal, settings_.parameter_min, settings_.parameter_max) ||
-      is_beyond(measure_, settings_.measure_min, settings_.measure_max))
+  if (is_beyond(settings_, principal, settings_.parameter_min, settings_.parameter_max) ||
+      is_beyond(settings_, measure_, settings_.measure_min, settings_.measure_max))
     special = {};  // what lies beyond the bound was not asked for: the branch ends there with an ordinary end point
   const bool is_special = special.type != PointType::ordinary && special.type != PointType::end;
   if (is_special && (special.ends_branch || (settings_.stop_at && settings_.stop_at(special))))
     end(EndReason::special_point, special.description);
+  else if (special.ends_branch)
+    end(EndReason::on_bound, special.description);
   else if (principal < settings_.parameter_min || principal > settings_.parameter_max)
     end(EndReason::parameter_bound, fmt::format("it is {:.10g}, allowed are {:.10g} to {:.10g}", principal,
                                                 settings_.parameter_min, settings_.parameter_max));
@@ -104,19 +123,20 @@ SpecialPoint ContinuationRun::end_conditions(SpecialPoint special) {
   return special;
 }
 
-/// Outside of the bounds, and not just by the accuracy of a located point (a user value may be a bound).
-bool ContinuationRun::is_beyond(double value, double least, double most) const {
-  const double accuracy = location_settings(settings_).tolerance * (1.0 + std::abs(value));
-  return value < least - accuracy || value > most + accuracy;
+/// here_ with what the search knows of it; kept, for the steps from it move it to another mesh.
+void ContinuationRun::accept(const SpecialPoint& special) {
+  accepted_ = here_;
+  accepted_data_ = search_.data();
+  record(special, accepted_data_);
 }
 
-void ContinuationRun::record(const SpecialPoint& special) {
+void ContinuationRun::record(const SpecialPoint& special, const PointData& data) {
   const std::vector<Violation> violations =
       inadmissibilities(system_.system(), system_.signature(), settings_.monitored, here_.orbit);
   BranchPoint point{number_,
                     special,
                     here_,
-                    search_.data().multipliers,
+                    data.multipliers,
                     violations,
                     measure_,
                     estimated_error(here_.orbit, follower_.condensed().rule()),
@@ -125,13 +145,13 @@ void ContinuationRun::record(const SpecialPoint& special) {
                     number_ > 1 ? ds_taken_ : 0.0,
                     {}};
   for (std::size_t i = 0; i < search_.tests().size(); ++i)
-    point.tests.push_back({search_.tests()[i]->name(), search_.data().values[i]});
+    point.tests.push_back({search_.tests()[i]->name(), data.values[i]});
   summary_.points = number_;
   summary_.inadmissible_points += !violations.empty();
   summary_.multipliers_computed = settings_.multipliers;
   summary_.critical_curve = follower_.condition() != nullptr;
-  summary_.unstable_points += settings_.multipliers && !search_.data().multipliers.stable();
-  summary_.worst_structural = std::max(summary_.worst_structural, search_.data().multipliers.structural);
+  summary_.unstable_points += settings_.multipliers && !data.multipliers.stable();
+  summary_.worst_structural = std::max(summary_.worst_structural, data.multipliers.structural);
   summary_.worst_estimated_error = std::max(summary_.worst_estimated_error, point.estimated_error);
   sink_.point(point);
 }
@@ -150,7 +170,8 @@ void ContinuationRun::prepare_next_step() {
   sink_.next_step(number_, step_.value());
 }
 
-/// The branch ends abnormally: the last converged point is written once more, as MX.
+/// The branch ends abnormally: the last converged point is written once more as it was accepted, as MX. The history
+/// of Newton's method is that of the last trial, which failed.
 void ContinuationRun::give_up() {
   std::string trouble = describe(newton_.status);
   if (newton_.status == NewtonStatus::not_finite) {
@@ -166,7 +187,8 @@ void ContinuationRun::give_up() {
   SpecialPoint special;
   special.type = PointType::no_convergence;
   special.description = summary_.detail;
-  record(special);
+  std::swap(here_, accepted_);
+  record(special, accepted_data_);
 }
 
 }  // namespace tchat

@@ -24,11 +24,15 @@ struct ContinuationSettings {
   double location_tolerance = 1e-7;                      ///< EPSS
   int max_location = 10;                                 ///< ITMX
   bool label_start = true;                               ///< false at a restart: the first point is known already
+  bool clip = false;                                     ///< end on the bounds, not at the first point beyond them
   /// Called for every labelled point; true ends the branch there (STOP).
   std::function<bool(const SpecialPoint&)> stop_at;
   std::vector<std::vector<int>> monitored;  ///< event functions monitored on each segment
   std::function<bool()> interrupted;        ///< asked after every point
 };
+
+/// Outside of the bounds, and not just by the accuracy of a located point (a user value may be a bound).
+bool is_beyond(const ContinuationSettings& settings, double value, double least, double most);
 
 class ContinuationRun {
  public:
@@ -41,8 +45,8 @@ class ContinuationRun {
  private:
   bool take_step();
   SpecialPoint end_conditions(SpecialPoint special);
-  bool is_beyond(double value, double least, double most) const;
-  void record(const SpecialPoint& special);
+  void record(const SpecialPoint& special, const PointData& data);
+  void accept(const SpecialPoint& special);
   void end(EndReason reason, std::string detail);
   void prepare_next_step();
   void give_up();
@@ -53,7 +57,9 @@ class ContinuationRun {
   BranchSink& sink_;
   SpecialPointSearch search_;
   StepSize step_;
-  PathPoint here_;         // the last accepted point
+  PathPoint here_;      // the last accepted point, moved to a new mesh where one was due
+  PathPoint accepted_;  // the same as it was accepted
+  PointData accepted_data_;
   PathPoint next_;         // the point being computed
   NewtonResult newton_;    // of the step to it
   double ds_taken_ = 0.0;  // length of that step

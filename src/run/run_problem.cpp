@@ -10,6 +10,7 @@
 #include "constants/constants_writer.hpp"
 #include "constants/user_error.hpp"
 #include "continuation/continuation_run.hpp"
+#include "continuation/solution_measure.hpp"
 #include "plugin/exit_guard.hpp"
 #include "plugin/plugin_build.hpp"
 #include "plugin/problem_library.hpp"
@@ -26,6 +27,9 @@
 namespace tchat {
 
 namespace {
+
+/// Exit status of a run whose branch ended by MX where that counts as a failure (--strict).
+constexpr int ended_by_mx = 3;
 
 /// STOP: true at the n-th labelled point of a type.
 std::function<bool(const SpecialPoint&)> make_stop_rule(const RunSettings& settings) {
@@ -49,6 +53,22 @@ void refuse_to_replace_start(const RunRequest& request, const SelectedStart& sta
       fmt::format("the output q.{} would replace the file that the run starts from; say -o {} if that is "
                   "meant, or give the output another name",
                   output, output));
+}
+
+/// A start beyond the bounds leaves nothing to compute. A label may lie there, where an earlier run ended: its branch
+/// of one point says so.
+void refuse_start_outside(const Orbit& start, const CollocationRule& rule, const ContinuationSettings& settings,
+                          const std::string& parameter, const std::string& source) {
+  const auto refuse = [&](const std::string& what, double value, double least, double most, const char* bounds) {
+    if (!is_beyond(settings, value, least, most)) return;
+    throw UserError(
+        fmt::format("the start from {} lies outside of the bounds: {} is {:.10g}, and {} allow {:.10g} to {:.10g}; "
+                    "widen them, or start elsewhere",
+                    source, what, value, bounds, least, most));
+  };
+  refuse(parameter, start.par(settings.principal - 1), settings.parameter_min, settings.parameter_max, "RL0, RL1");
+  refuse("the solution measure", solution_measure(start, rule, settings.state_weights, settings.measure),
+         settings.measure_min, settings.measure_max, "A0, A1");
 }
 
 RunSettings read_settings(const RunRequest& request, const std::string& constants, const ParameterNames& names,
@@ -98,6 +118,10 @@ int run_problem(const RunRequest& request, std::ostream& screen, std::ostream& w
   const BranchSetup setup = set_up_branch(system, asked, selected);
   settings = setup.settings;
   ContinuationSettings continuation = continuation_settings(settings);
+  continuation.clip = request.clip;
+  if (!selected.from_solution || selected.parameters_changed)
+    refuse_start_outside(setup.start.point.orbit, setup.follower->condensed().rule(), continuation,
+                         system.parameter_name(continuation.principal), selected.source);
 
   // Files are touched only now.
   files.open(positional_text(settings));
@@ -143,6 +167,9 @@ int run_problem(const RunRequest& request, std::ostream& screen, std::ostream& w
     if (summary.reason == EndReason::first_step_failed) {
       status = 1;
       warnings << "tchat: the first step failed: " << summary.detail << '\n';
+    } else if (summary.reason == EndReason::no_convergence && request.strict) {
+      status = status == 0 ? ended_by_mx : status;
+      warnings << "tchat: the branch ended by MX: " << summary.detail << '\n';
     }
   }
   files.finish();

@@ -18,6 +18,8 @@ std::string reason_text(const BranchSummary& summary, const std::string& paramet
       return fmt::format("{} {} the bounds RL0, RL1: {}", parameter, left, summary.detail);
     case EndReason::measure_bound:
       return fmt::format("the solution measure {} the bounds A0, A1: {}", left, summary.detail);
+    case EndReason::on_bound:
+      return summary.detail;
     case EndReason::special_point:
       return "at the last special point above, where the run was to end";
     case EndReason::interrupted:

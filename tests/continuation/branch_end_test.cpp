@@ -1,6 +1,7 @@
 // How branches end, and which points are labelled.
 #include <catch2/catch.hpp>
 
+#include "special_points/normal_forms.hpp"
 #include "special_points/user_value_test.hpp"
 #include "support/branch_fixture.hpp"
 #include "support/linear_oscillator.hpp"
@@ -32,6 +33,30 @@ struct Branch {
       if (p.special.type != PointType::ordinary) numbers.push_back(p.number);
     return numbers;
   }
+};
+
+/// The normal forms, until their field is broken: then it has no value anywhere.
+struct Breakable : NormalForms {
+  static inline bool broken = false;
+  template <class T>
+  void field(int i, const T* u, const T* p, T* f) const {
+    NormalForms::field(i, u, p, f);
+    if (broken) f[2] = std::numeric_limits<double>::quiet_NaN();
+  }
+};
+
+/// Refuses the first step beyond mu = -0.1 by a value far from its trend, and breaks the field.
+class Breaking final : public TestFunction {
+ public:
+  std::string name() const override { return "breaking"; }
+  std::optional<double> value(const TestedPoint& point) const override {
+    if (point.orbit.par(0) < -0.1) return 1.0;
+    Breakable::broken = true;
+    return 1e6;
+  }
+  double zero_level(const TestedPoint&) const override { return 0.0; }
+  bool oscillates() const override { return true; }
+  SpecialPoint classify(const TestedPoint&, bool) const override { return {}; }
 };
 
 }  // namespace
@@ -148,6 +173,66 @@ TEST_CASE("no convergence ends a branch with MX and says what was tried") {
   CHECK(branch.sink.points.back().special.type == PointType::no_convergence);
   REQUIRE_FALSE(branch.sink.notes.empty());
   CHECK_THAT(branch.sink.notes.back(), Contains("fixed step size"));
+}
+
+TEST_CASE("MX is the last point as it was accepted: its mesh, its multipliers, its test values") {
+  const OrbitShape shape{3, 1, 10, 4};
+  PeriodicOrbits orbits(system_of<Breakable>(), {{1, 1, 1}}, 1, shape);
+  Breakable::broken = false;
+  const PathPoint start = orbits.corrected(NormalForms::orbit(pi, 0.0, -0.3, 9.0, 10));
+  REQUIRE(orbits.result.converged());
+  ContinuationSettings settings = branch_settings(shape, 1, 0.02, 0.05, 40);
+  settings.adapt_mesh_every = 1;
+  std::vector<std::unique_ptr<TestFunction>> tests;
+  tests.push_back(std::make_unique<Breaking>());
+  KeepingSink sink;
+  ContinuationRun run(orbits.follower, orbits.system, settings, std::move(tests), sink);
+  REQUIRE(run.run(start).reason == EndReason::no_convergence);
+  REQUIRE(sink.points.size() > 4);
+  const KeptPoint& end = sink.points.back();
+  const KeptPoint& last = sink.points[sink.points.size() - 2];
+  CHECK(end.special.type == PointType::no_convergence);
+  CHECK(end.orbit.mesh == last.orbit.mesh);
+  CHECK(end.orbit.states == last.orbit.states);
+  CHECK(end.multipliers.values == last.multipliers.values);
+  CHECK(end.tests.front().value == 1.0);
+  // That of z at z = 0, to the accuracy of the mesh.
+  double nearest = 1.0;
+  for (const auto& mu : end.multipliers.values)
+    nearest = std::min(nearest, std::abs(mu - std::exp(2 * pi * end.orbit.par(0))));
+  CHECK(nearest < 1e-6);
+}
+
+TEST_CASE("with clip a branch ends on its bounds") {
+  const auto ended = [](const std::function<void(ContinuationSettings&)>& change,
+                        std::vector<std::unique_ptr<TestFunction>> tests = {}) {
+    Branch branch;
+    branch.settings.clip = true;
+    branch.settings.step.initial = branch.settings.step.maximum = 0.4;
+    branch.settings.max_points = 60;
+    branch.tests = std::move(tests);
+    change(branch.settings);
+    const BranchSummary summary = branch.run();
+    return std::pair{summary, branch.sink.points.back()};
+  };
+  const auto [above, last] = ended([](ContinuationSettings& s) { s.parameter_max = 3.06; });
+  CHECK(above.reason == EndReason::on_bound);
+  CHECK_THAT(above.detail, Contains("RL1"));
+  CHECK(last.special.type == PointType::end);
+  CHECK(last.orbit.par(0) == Approx(3.06).epsilon(1e-10));
+  const auto [measure, at_measure] = ended([](ContinuationSettings& s) {
+    s.measure = 2;  // max x2
+    s.measure_max = 2.4;
+  });
+  CHECK(measure.reason == EndReason::on_bound);
+  CHECK(at_measure.measure == Approx(2.4).epsilon(1e-8));
+  // A user value on the bound keeps its name, and the branch ends there.
+  std::vector<std::unique_ptr<TestFunction>> tests;
+  tests.push_back(std::make_unique<UserValueTest>(1, 3.06, false, "alpha"));
+  const auto [both, user] = ended([](ContinuationSettings& s) { s.parameter_max = 3.06; }, std::move(tests));
+  CHECK(both.reason == EndReason::special_point);
+  CHECK(user.special.type == PointType::user);
+  CHECK(user.orbit.par(0) == Approx(3.06).epsilon(1e-10));
 }
 
 TEST_CASE("the summary counts unstable and inadmissible points") {

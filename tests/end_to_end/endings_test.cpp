@@ -48,6 +48,35 @@ TEST_CASE("a branch that ends by MX after some steps is a result, with advice") 
   workspace.run("-c impacting -s branch -o on IRS=MX1 NMX=3");
 }
 
+TEST_CASE("MX after a new mesh: the last point once more, a restart needs one Newton step at most") {
+  const Workspace workspace;
+  workspace.run("-c impacting -d impacting -o branch ITNW=2 DS=0.02 DSMIN=0.019 DSMAX=5 RL1=99 NPR=1 IAD=1 NTST=10");
+  const std::vector<SolutionEntry> solutions = workspace.solutions("branch");
+  REQUIRE(solutions.size() > 3);
+  REQUIRE(solutions.back().type == -9);
+  const SolutionEntry& last = solutions[solutions.size() - 2];
+  CHECK(solutions.back().t == last.t);
+  CHECK(solutions.back().states == last.states);
+  CHECK(solutions.back().direction == last.direction);
+  workspace.run("-c impacting -s branch -o again IRS=MX1 NMX=1 IAD=1 NTST=10");
+  const std::string text = workspace.read("d.again");
+  const auto at = text.find("Iterations   :");
+  REQUIRE(at != std::string::npos);
+  CHECK(std::stoi(text.substr(at + 14)) <= 1);
+}
+
+TEST_CASE("with --strict a branch that ends by MX has exit status 3") {
+  const Workspace workspace;
+  const std::string fails = "run linosc -c impacting -d impacting -o branch ITNW=2 DS=0.02 DSMIN=0.019 DSMAX=5 RL1=99";
+  CHECK(workspace.tchat(fails).status == 0);
+  const Outcome strict = workspace.tchat(fails + " --strict");
+  CHECK(strict.status == 3);
+  check_contains(strict.err, {"MX", "steps down to"});
+  CHECK(workspace.points("branch").front().rows.back().type == -9);
+  check_contains(workspace.read("d.branch"), {"end of run"});
+  CHECK(workspace.tchat("run linosc -c impacting -d impacting -o branch NMX=5 --strict").status == 0);
+}
+
 TEST_CASE("a first step that fails") {
   const Workspace workspace;
   const Outcome outcome =

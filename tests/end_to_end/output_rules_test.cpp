@@ -209,12 +209,47 @@ TEST_CASE("RL0, RL1, A0, A1: the first point outside is the last one, EP") {
   CHECK(rows.back().type == 9);
   CHECK(rows.back().values[1] < 1.5);
   CHECK(rows[rows.size() - 2].values[1] >= 1.5);
-  // A start outside is a branch of one point, and that is said.
-  const Outcome outside = workspace.run(impacting + "RL0=2 RL1=3");
+}
+
+TEST_CASE("a label beyond the bounds, where an earlier run ended, is a branch of one point, and that is said") {
+  const Workspace workspace;
+  workspace.run(impacting + "RL1=3.1");
+  const Outcome outside = workspace.run("-c impacting -s branch -o on IRS=EP2 RL1=3.1");
   CHECK(outside.text().find("starts outside the bounds RL0, RL1") != std::string::npos);
-  rows = workspace.points("branch").front().rows;
-  CHECK(rows.size() == 1);
+  CHECK(workspace.points("on").front().rows.size() == 1);
+}
+
+TEST_CASE("with --clip the branch ends on the bound") {
+  const Workspace workspace;
+  const auto clipped = [&](const std::string& arguments) {
+    const Outcome outcome = workspace.run(arguments + " --clip");
+    CHECK(outcome.out.find("stopped: ") != std::string::npos);
+    CHECK(outcome.out.find(", the bound ") != std::string::npos);
+    return workspace.points("branch").front().rows;
+  };
+  Rows rows = clipped(impacting + "RL1=3.1");
   CHECK(rows.back().type == 9);
+  CHECK(rows.back().values.front() == Approx(3.1).epsilon(1e-9));
+  rows = clipped(smooth + "RL0=2.5");
+  CHECK(rows.back().type == 9);
+  CHECK(rows.back().values.front() == Approx(2.5).epsilon(1e-9));
+  rows = clipped(impacting + "A1=2.5");
+  CHECK(rows.back().values[1] == Approx(2.5).epsilon(1e-7));
+  rows = clipped(smooth + "A0=1.5");
+  CHECK(rows.back().values[1] == Approx(1.5).epsilon(1e-7));
+}
+
+TEST_CASE("a start outside of RL0, RL1 or A0, A1 is refused, and nothing is written") {
+  const Workspace workspace;
+  for (const std::string bounds : {"RL0=2 RL1=3", "A0=0 A1=1"}) {
+    const Outcome outcome = workspace.tchat("run linosc " + impacting + bounds);
+    INFO(outcome.text());
+    CHECK(outcome.status == 2);
+    CHECK(outcome.err.find("outside of the bounds") != std::string::npos);
+    CHECK(outcome.err.find(bounds[0] == 'R' ? "alpha is 3.0485" : "the solution measure is 2.165") !=
+          std::string::npos);
+    CHECK_FALSE(workspace.has("p.branch"));
+  }
 }
 
 TEST_CASE("NPR labels every NPR-th point") {

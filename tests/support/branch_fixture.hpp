@@ -52,13 +52,14 @@ struct KeptPoint {
   double estimated_error;
   int newton_iterations;
   double step;
+  std::vector<TestValue> tests;
 };
 
 class KeepingSink final : public BranchSink {
  public:
   void point(const BranchPoint& p) override {
     points.push_back({p.number, p.special, p.path.orbit, p.multipliers, p.violations, p.measure, p.estimated_error,
-                      p.newton_iterations, p.step});
+                      p.newton_iterations, p.step, p.tests});
   }
   void next_step(int, double) override {}
   void note(int, const std::string& text) override { notes.push_back(text); }

@@ -1,0 +1,18 @@
+/// The bounds of a branch as test functions: it ends on them instead of at the first point beyond.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "continuation/continuation_run.hpp"
+#include "special_points/test_function.hpp"
+
+namespace tchat {
+
+/// One for each finite bound among RL0, RL1, A0, A1: the value minus the bound. Their zeros are end points.
+/// `parameter` is the name of the principal parameter.
+std::vector<std::unique_ptr<TestFunction>> bound_tests(const ContinuationSettings& settings,
+                                                       const std::string& parameter);
+
+}  // namespace tchat
