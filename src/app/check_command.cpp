@@ -14,7 +14,6 @@
 #include "constants/user_error.hpp"
 #include "hybrid/derivative_check.hpp"
 #include "hybrid/parameter_vector.hpp"
-#include "plugin/exit_guard.hpp"
 #include "plugin/plugin_build.hpp"
 #include "plugin/problem_library.hpp"
 #include "run/run_request.hpp"
@@ -93,7 +92,6 @@ Eigen::VectorXd read_parameters(const HybridSystem& system, const std::vector<st
 
 int check_problem(const CheckArguments& arguments) {
   const std::string path = resolve_plugin(arguments.plugin.empty() ? arguments.name : arguments.plugin);
-  const ExitGuard guard(path);
   const ProblemLibrary library(path, [&arguments] {
     const std::string constants = arguments.constants.empty() ? arguments.name : arguments.constants;
     ProblemSizes sizes = problem_sizes(read_constants_file(constants_path(constants)));

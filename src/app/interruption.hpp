@@ -1,5 +1,7 @@
 /// Ctrl-C and SIGTERM for commands that finish what they are at: their files are complete, the exit status is 128 + the
-/// signal. A second signal ends the program the ordinary way.
+/// signal. Where that takes too long (a plugin that never returns), the program is ended at once, with the same status:
+/// by a second signal, or some seconds after the first: 5, or three times the longest time that it has taken so far
+/// from one question to the next.
 #pragma once
 
 #include <functional>

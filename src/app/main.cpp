@@ -20,6 +20,7 @@
 #include "app/resegment_command.hpp"
 #include "app/run_command.hpp"
 #include "app/simulate_command.hpp"
+#include "app/standard_descriptors.hpp"
 #include "app/usage_error.hpp"
 #include "constants/user_error.hpp"
 
@@ -49,6 +50,7 @@ int run_command(const std::function<int()>& command) {
 }
 
 int run_program(int argc, char** argv) {
+  tchat::occupy_standard_descriptors();
   std::signal(SIGXFSZ, SIG_IGN);  // a file size limit is then an error of the write, reported like a full disk
   CLI::App app{"tchat: numerical continuation of periodic orbits of hybrid dynamical systems", "tchat"};
   app.set_version_flag("--version", "tchat " TCHAT_VERSION);

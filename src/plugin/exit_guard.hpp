@@ -1,13 +1,24 @@
-/// Catches a plugin that ends the process (exit, STOP in Fortran): names it and turns the exit into status 2.
+/// Catches a plugin that ends the process: names it, says where it was, and makes it status 2.
 ///
-/// While an ExitGuard lives, an exit() of the process prints a message to standard error, flushes the open C and C++
-/// streams and leaves with status 2. Hold one wherever a plugin's code may run, and let it go out of scope before
-/// main returns: the ordinary end of the program is then untouched. Guards nest; the innermost one names the plugin.
-/// _exit, abort and signals are not caught.
+/// While an ExitGuard lives, these are caught, from a plugin's function (plugin_call.hpp) or from a thread that the
+/// plugin started:
+///   - exit, quick_exit (STOP in Fortran), and from a function _exit and _Exit, which the program defines itself so
+///   that
+///     a plugin's call of them comes here;
+///   - a signal that the plugin caused: invalid memory, a full stack, an integer divided by zero, abort (CALL ABORT, an
+///     exception that nobody catches), and the like.
+/// The message is written without allocation, open C and C++ streams are flushed where that is safe, and the process
+/// ends with status 2. A signal that tchat's own code caused is told as such and ends the process as usual; signals
+/// sent by others are left alone.
 ///
-/// The process has one list of exit handlers, so what the handler reads has to be global: it is all in exit_guard.cpp.
+/// ProblemLibrary holds a guard as long as the plugin is loaded. Guards may be destroyed in any order; the youngest one
+/// names the plugin.
+///
+/// The process has one list of exit handlers and one table of signal handlers, so what they read has to be global: it
+/// is all in exit_guard.cpp and plugin_call.hpp.
 #pragma once
 
+#include <list>
 #include <string>
 
 namespace tchat {
@@ -21,7 +32,10 @@ class ExitGuard {
   ExitGuard& operator=(const ExitGuard&) = delete;
 
  private:
-  std::string outer_;  // the name that an enclosing guard had armed
+  std::list<std::string>::iterator name_;
 };
+
+/// Ends the process at once, without exit handlers, flushing and messages. Safe in a signal handler.
+[[noreturn]] void leave_process(int status) noexcept;
 
 }  // namespace tchat

@@ -12,7 +12,7 @@
 #include <string_view>
 
 #include "constants/user_error.hpp"
-#include "plugin/exit_guard.hpp"
+#include "plugin/plugin_call.hpp"
 
 namespace tchat {
 
@@ -70,7 +70,7 @@ void* open_library(const std::string& path) {
   require_file(path);
   if (is_truncated(path))
     refuse(path, "the file is incomplete", "Delete it, so that it is compiled again, or copy it again.");
-  const ExitGuard guard(path);
+  const PluginCall call(path.c_str(), "while it was loaded");
   // An absolute path keeps dlopen from searching the system's library folders for a name without a slash.
   void* const handle = dlopen(fs::absolute(path).c_str(), RTLD_NOW | RTLD_LOCAL);
   if (handle != nullptr) return handle;
@@ -82,7 +82,7 @@ void* open_library(const std::string& path) {
 /// Calls the entry point, which runs the problem class's constructor.
 const tchat_problem* call_entry(const std::string& path, tchat_problem_entry entry) {
   const std::string cure = "The problem class's constructor must not fail: open no files there, compute only.";
-  const ExitGuard guard(path);
+  const PluginCall call(path.c_str(), "in the problem class's constructor");
   try {
     return entry();
   } catch (const std::exception& error) {
@@ -98,8 +98,9 @@ std::unique_ptr<FortranProblem> wrap_fortran(const std::string& path, void* hand
   if (dlsym(handle, TCHAT_PROBLEM_ENTRY) != nullptr || !is_fortran_problem(handle)) return nullptr;
   if (!sizes)
     refuse(path, "a Fortran plugin does not say how many states and functions it has", "Give its constants file too.");
-  const ExitGuard guard(path);
-  return std::make_unique<FortranProblem>(path, handle, sizes());
+  const ProblemSizes known = sizes();
+  const PluginCall call(path.c_str(), "in GCSTPNT, or in a first call of GCFUNC, GCBOUND or JUMPMAP");
+  return std::make_unique<FortranProblem>(path, handle, known);
 }
 
 /// The table of a C++ or C plugin.
@@ -115,10 +116,11 @@ const tchat_problem* find_table(const std::string& path, void* handle) {
   return table;
 }
 
-HybridSystem checked_system(const std::string& path, void* handle, const FortranProblem* fortran) {
+std::unique_ptr<GuardedProblem> guarded(const std::string& path, void* handle, const FortranProblem* fortran) {
   const tchat_problem* const table = fortran != nullptr ? &fortran->table() : find_table(path, handle);
   try {
-    return HybridSystem(*table);
+    const HybridSystem checked(*table);
+    return std::make_unique<GuardedProblem>(checked.table(), path);
   } catch (const std::invalid_argument& error) {
     const bool version = table->abi_version != TCHAT_PROBLEM_ABI || table->struct_size != sizeof(tchat_problem);
     refuse(path, fmt::format("its problem table cannot be used: {}", error.what()),
@@ -129,13 +131,24 @@ HybridSystem checked_system(const std::string& path, void* handle, const Fortran
 
 }  // namespace
 
-void ProblemLibrary::Close::operator()(void* handle) const { dlclose(handle); }
+void ProblemLibrary::Close::operator()(void* handle) const {
+  const PluginCall call(path.c_str(), "while it was unloaded");
+  dlclose(handle);
+}
 
 ProblemLibrary::ProblemLibrary(const std::string& path, const Sizes& sizes)
     : path_(path),
-      handle_(open_library(path)),
+      guard_(path),
+      handle_(open_library(path), Close{path}),
       fortran_(wrap_fortran(path, handle_.get(), sizes)),
-      system_(checked_system(path, handle_.get(), fortran_.get())) {}
+      problem_(guarded(path, handle_.get(), fortran_.get())),
+      system_(problem_->table()) {}
+
+std::string ProblemLibrary::complaint() const {
+  if (problem_->thrown().empty()) return "";
+  return fmt::format("plugin {}: an exception of {}\n  Its values are 1e99 in the files where it threw.", path_,
+                     problem_->thrown());
+}
 
 std::vector<std::string> ProblemLibrary::derivative_notes() const {
   std::vector<std::string> notes;

@@ -3,7 +3,7 @@
 /// Owns the shared library (dlopen ... dlclose) and checks it when loading: it must be a shared library whose symbols
 /// resolve, and either export TCHAT_PROBLEM_ENTRY and return a table of this tchat's interface version, or export the
 /// subroutines of the Fortran interface (fortran_problem.hpp). Every failure is a UserError that names the path, what
-/// is wrong and the cure.
+/// is wrong and the cure. As long as it is loaded, a plugin that ends the process is named (exit_guard.hpp).
 #pragma once
 
 #include <functional>
@@ -12,7 +12,9 @@
 #include <vector>
 
 #include "hybrid/hybrid_system.hpp"
+#include "plugin/exit_guard.hpp"
 #include "plugin/fortran_problem.hpp"
+#include "plugin/guarded_problem.hpp"
 #include "plugin/problem_sizes.hpp"
 
 namespace tchat {
@@ -31,15 +33,20 @@ class ProblemLibrary {
   const std::string& path() const { return path_; }
   /// What of the derivatives is a finite difference, for the d-file; empty when all are exact.
   std::vector<std::string> derivative_notes() const;
+  /// What a function that is called for output only has thrown: one sentence with the cure; "" when none did.
+  std::string complaint() const;
 
  private:
   struct Close {
+    std::string path;
     void operator()(void* handle) const;
   };
 
   std::string path_;
+  ExitGuard guard_;  // outlives the library, whose destructors may end the process
   std::unique_ptr<void, Close> handle_;
   std::unique_ptr<FortranProblem> fortran_;  // empty: the library has a table of its own
+  std::unique_ptr<GuardedProblem> problem_;
   HybridSystem system_;
 };
 

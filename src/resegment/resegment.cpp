@@ -15,7 +15,6 @@
 #include "output/run_files.hpp"
 #include "output/solution_file.hpp"
 #include "output/whole_file.hpp"
-#include "plugin/exit_guard.hpp"
 #include "plugin/plugin_build.hpp"
 #include "plugin/problem_library.hpp"
 #include "resegment/branch_side.hpp"
@@ -206,7 +205,6 @@ std::vector<std::string> resegment(const ResegmentRequest& request, std::ostream
   const LabelledOrbit source = read_source(request, path, constants, file, warnings);
 
   const std::string plugin = resolve_plugin(request.problem.value_or(run_name(path)));
-  const ExitGuard guard(plugin);
   const ProblemLibrary library(plugin, [&] { return sizes_for(request, source.settings); });
   const HybridSystem& system = library.system();
   check_settings_against(system, source.settings, constants);

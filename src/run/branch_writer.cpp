@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "continuation/solution_measure.hpp"
 #include "hybrid/parameter_vector.hpp"
 #include "output/diagnostics_file.hpp"
@@ -99,8 +101,21 @@ void BranchWriter::point(const BranchPoint& point) {
   files_.write_points(format_point(line));
   write_diagnostics(point, line);
   if (screen_ != nullptr) show(point, line);
+  tell_unknown_user_values(line);
   if (point.labelled())
     labels_.push_back({line.label, type_name(line.type, line.kind), place(line), point.special.description});
+}
+
+/// User functions are for output only: one that is not finite stops nothing, so it is told, once.
+void BranchWriter::tell_unknown_user_values(const PointLine& line) {
+  for (std::size_t k = 0; k < columns_.size(); ++k) {
+    const bool unknown = columns_[k].kind == PointColumn::Kind::user_function && !std::isfinite(line.values[k]);
+    if (!unknown || !told_user_functions_.insert(columns_[k].index).second) continue;
+    const std::string text = fmt::format("User function {} has no finite value here, the files show {:g}",
+                                         columns_[k].name, finite(line.values[k]));
+    note(line.point, text);
+    if (screen_ != nullptr) *screen_ << "       " << text << '\n' << std::flush;
+  }
 }
 
 std::string BranchWriter::place(const PointLine& line) const {

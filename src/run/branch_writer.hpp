@@ -3,6 +3,7 @@
 
 #include <map>
 #include <ostream>
+#include <set>
 #include <vector>
 
 #include "continuation/branch.hpp"
@@ -53,6 +54,7 @@ class BranchWriter final : public BranchSink {
   std::string place(const PointLine& line) const;
   bool shown_stable(const BranchPoint& point);
   void show(const BranchPoint& point, const PointLine& line);
+  void tell_unknown_user_values(const PointLine& line);
   void write_diagnostics(const BranchPoint& point, const PointLine& line);
   void write_solution(const BranchPoint& point, const PointLine& line);
 
@@ -68,6 +70,7 @@ class BranchWriter final : public BranchSink {
   std::vector<NewtonIteration> start_correction_;  // how Newton came to the section's first point
   bool last_admissible_ = true;
   bool last_stable_ = false;
+  std::set<int> told_user_functions_;
 };
 
 }  // namespace tchat

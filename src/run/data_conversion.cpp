@@ -4,7 +4,6 @@
 #include "constants/user_error.hpp"
 #include "output/solution_file.hpp"
 #include "output/whole_file.hpp"
-#include "plugin/exit_guard.hpp"
 #include "plugin/plugin_build.hpp"
 #include "plugin/problem_library.hpp"
 #include "run/problem_setup.hpp"
@@ -19,7 +18,6 @@ std::string convert_data(const RunRequest& request) {
   apply_overrides(settings, request.overrides);
   settings.start = {};
   const std::string plugin = resolve_plugin(request.problem.value_or(request.name));
-  const ExitGuard guard(plugin);
   const ProblemLibrary library(plugin, [&settings] { return problem_sizes(settings); });
   check_settings_against(library.system(), settings, constants);
 

@@ -11,7 +11,6 @@
 #include "constants/user_error.hpp"
 #include "continuation/continuation_run.hpp"
 #include "continuation/solution_measure.hpp"
-#include "plugin/exit_guard.hpp"
 #include "plugin/plugin_build.hpp"
 #include "plugin/problem_library.hpp"
 #include "run/branch_setup.hpp"
@@ -96,7 +95,6 @@ int run_problem(const RunRequest& request, std::ostream& screen, std::ostream& w
 
   // Plugin.
   const std::string plugin = resolve_plugin(request.problem.value_or(request.name));
-  const ExitGuard guard(plugin);
   const ProblemLibrary library(plugin, [&settings] { return problem_sizes(settings); });
   const HybridSystem& system = library.system();
   if (named_parameters) {
@@ -173,6 +171,7 @@ int run_problem(const RunRequest& request, std::ostream& screen, std::ostream& w
     }
   }
   files.finish();
+  if (const std::string complaint = library.complaint(); !complaint.empty()) warn({complaint});
   return status;
 }
 

@@ -10,7 +10,6 @@
 #include "output/simulation_files.hpp"
 #include "output/whole_file.hpp"
 #include "output/writable_file.hpp"
-#include "plugin/exit_guard.hpp"
 #include "plugin/plugin_build.hpp"
 #include "plugin/problem_library.hpp"
 #include "run/named_parameters.hpp"
@@ -182,7 +181,6 @@ int simulate_problem(const SimulationRequest& request, std::ostream& screen, std
   };
 
   const std::string plugin = resolve_plugin(request.problem.value_or(request.name));
-  const ExitGuard guard(plugin);
   bool named_parameters = false;
   SimulationConstants constants = read_simulation_constants(request, names_to_come(named_parameters));
   const ProblemLibrary library(plugin, [&] { return sizes_of(request, constants); });

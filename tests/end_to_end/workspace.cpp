@@ -49,6 +49,11 @@ Outcome Workspace::tchat_on_small_disk(int blocks, const std::string& arguments)
   return Process({"/bin/sh", "-c", script}, file(""), logs_.file(std::to_string(++runs_))).wait(time_limit);
 }
 
+Outcome Workspace::tchat_redirected(const std::string& arguments, const std::string& redirection) const {
+  const std::string script = "exec '" TCHAT_EXECUTABLE "' " + arguments + " " + redirection;
+  return Process({"/bin/sh", "-c", script}, file(""), logs_.file(std::to_string(++runs_))).wait(time_limit);
+}
+
 Outcome Workspace::make(const std::string& folder, const std::string& targets) const {
   std::vector<std::string> words{"/usr/bin/env", "make", "-C", folder, "TCHAT=" TCHAT_EXECUTABLE};
   for (const std::string& target : words_of(targets)) words.push_back(target);

@@ -21,6 +21,8 @@ class Workspace {
   Outcome tchat(const std::string& arguments) const;
   Outcome tchat(const std::vector<std::string>& words) const;
   std::unique_ptr<Process> start_tchat(const std::string& arguments) const;
+  /// As tchat(), with a redirection of the shell, such as ">&-".
+  Outcome tchat_redirected(const std::string& arguments, const std::string& redirection) const;
   /// As tchat(), with files of at most so many blocks of 512 bytes, as on a full disk.
   Outcome tchat_on_small_disk(int blocks, const std::string& arguments) const;
 

@@ -1,15 +1,11 @@
 #include "plugin/problem_library.hpp"
 
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <vector>
 
 #include "constants/user_error.hpp"
-#include "plugin/exit_guard.hpp"
 #include "plugin_folder.hpp"
 
 using namespace tchat;
@@ -23,25 +19,6 @@ struct BadPlugin {
   const char* source;
   std::vector<const char*> message;  // parts of it
 };
-
-struct Ended {
-  int status;
-  std::string error_output;
-};
-
-/// Runs `action` in a process of its own that then ends normally with status 0.
-template <class Action>
-Ended in_process(const PluginFolder& folder, const Action& action) {
-  const pid_t child = fork();
-  if (child == 0) {
-    if (freopen((folder / "stderr").c_str(), "w", stderr) == nullptr) _exit(99);
-    action();
-    _exit(0);
-  }
-  int status = 0;
-  waitpid(child, &status, 0);
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, folder.read("stderr")};
-}
 
 }  // namespace
 
@@ -159,52 +136,4 @@ TEST_CASE("a plugin that writes NaN is seen by its values") {
   const ProblemLibrary library(resolve_plugin(source, build_options));
   const double x[] = {0.5, -3.0}, par[256] = {};
   CHECK(std::isnan(library.system().event(1, x, par)));
-}
-
-TEST_CASE("a plugin that ends the process is named, status 2") {
-  const PluginFolder folder;
-  const std::string when_called = resolve_plugin(
-      folder.write("stops.cpp", "#include <stdlib.h>\n" +
-                                    small_plugin("table.value = [](const void*, int32_t, int32_t, const double*, "
-                                                 "const double*, double*) { exit(0); };")),
-      build_options);
-  const std::string when_loaded = resolve_plugin(
-      folder.write("early.cpp", "#include <stdlib.h>\nstatic int now = (exit(0), 1);\n" + small_plugin()),
-      build_options);
-  const std::string at_entry =
-      resolve_plugin(folder.write("entry.cpp", "#include <stdlib.h>\n" + small_plugin("exit(7);")), build_options);
-  const double x[] = {0.5, -3.0}, par[256] = {};
-
-  const Ended called = in_process(folder, [&] {
-    const ProblemLibrary library(when_called);
-    const ExitGuard guard(when_called);
-    library.system().event(1, x, par);
-  });
-  CHECK(called.status == 2);
-  CHECK_THAT(called.error_output, Contains("stops.so ended the process") && Contains("returns NaN"));
-
-  const Ended loaded = in_process(folder, [&] { const ProblemLibrary library(when_loaded); });
-  CHECK(loaded.status == 2);
-  CHECK_THAT(loaded.error_output, Contains("early.so ended the process"));
-
-  const Ended entered = in_process(folder, [&] { const ProblemLibrary library(at_entry); });
-  CHECK(entered.status == 2);
-  CHECK_THAT(entered.error_output, Contains("entry.so ended the process"));
-}
-
-TEST_CASE("an exit while no guard lives is left alone, guards nest") {
-  const PluginFolder folder;
-  const Ended free = in_process(folder, [] {
-    { const ExitGuard guard("plugin.so"); }
-    std::quick_exit(5);
-  });
-  CHECK(free.status == 5);
-  CHECK(free.error_output.empty());
-  const Ended nested = in_process(folder, [] {
-    const ExitGuard outer("outer.so");
-    { const ExitGuard inner("inner.so"); }
-    std::quick_exit(5);
-  });
-  CHECK(nested.status == 2);
-  CHECK_THAT(nested.error_output, Contains("outer.so"));
 }

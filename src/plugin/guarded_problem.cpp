@@ -1,0 +1,127 @@
+#include "plugin/guarded_problem.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+
+#include "plugin/plugin_call.hpp"
+
+namespace tchat {
+
+namespace {
+
+const char* place_of(std::int32_t kind) {
+  return kind == TCHAT_FIELD ? "in field" : kind == TCHAT_EVENT ? "in event function" : "in jump";
+}
+
+void set_nan(double* values, int count) { std::fill(values, values + count, NAN); }
+
+/// The text of the exception that is being caught.
+std::string caught_text() {
+  try {
+    throw;
+  } catch (const std::exception& error) {
+    return error.what();
+  } catch (...) {
+    return "no std::exception";
+  }
+}
+
+}  // namespace
+
+struct GuardedProblem::Calls {
+  static const GuardedProblem& object(const void* self) { return *static_cast<const GuardedProblem*>(self); }
+
+  static void value(const void* self, std::int32_t kind, std::int32_t index, const double* x, const double* par,
+                    double* out) {
+    const tchat_problem& plugin = object(self).plugin_;
+    const PluginCall call(object(self).path_.c_str(), place_of(kind), index);
+    try {
+      plugin.value(plugin.self, kind, index, x, par, out);
+    } catch (...) {
+      set_nan(out, rows(plugin, kind));
+    }
+  }
+
+  static void first(const void* self, std::int32_t kind, std::int32_t index, const double* x, const double* par,
+                    const std::int32_t* active, std::int32_t count, double* out, double* dx, double* dp) {
+    const tchat_problem& plugin = object(self).plugin_;
+    const PluginCall call(object(self).path_.c_str(), place_of(kind), index);
+    try {
+      plugin.first(plugin.self, kind, index, x, par, active, count, out, dx, dp);
+    } catch (...) {
+      set_all(plugin, kind, count, out, dx, dp);
+    }
+  }
+
+  static void second(const void* self, std::int32_t kind, std::int32_t index, const double* x, const double* par,
+                     const std::int32_t* active, std::int32_t count, const double* direction, double* out, double* dx,
+                     double* dp) {
+    const tchat_problem& plugin = object(self).plugin_;
+    const PluginCall call(object(self).path_.c_str(), place_of(kind), index);
+    try {
+      plugin.second(plugin.self, kind, index, x, par, active, count, direction, out, dx, dp);
+    } catch (...) {
+      set_all(plugin, kind, count, out, dx, dp);
+    }
+  }
+
+  static std::int32_t successors(const void* self, const std::int32_t from[3], const double* x, const double* par,
+                                 std::int32_t* to, std::int32_t capacity) {
+    const tchat_problem& plugin = object(self).plugin_;
+    const PluginCall call(object(self).path_.c_str(), "in the index jump function (successors)");
+    try {
+      return plugin.successors(plugin.self, from, x, par, to, capacity);
+    } catch (...) {
+      return -1;
+    }
+  }
+
+  static void user_value(const void* self, const double* x, const double* par, double* out) {
+    const tchat_problem& plugin = object(self).plugin_;
+    const PluginCall call(object(self).path_.c_str(), "in the user functions (user_value)");
+    try {
+      plugin.user_value(plugin.self, x, par, out);
+    } catch (...) {
+      set_nan(out, plugin.user_values);
+      note_thrown(self, "user_value");
+    }
+  }
+
+  static void output_parameters(const void* self, std::int32_t segment, const double* x, double* par) {
+    const tchat_problem& plugin = object(self).plugin_;
+    const PluginCall call(object(self).path_.c_str(), "in the output parameters (GCPVLS) of segment", segment);
+    try {
+      plugin.output_parameters(plugin.self, segment, x, par);
+    } catch (...) {
+      note_thrown(self, "output_parameters");
+    }
+  }
+
+ private:
+  static int rows(const tchat_problem& plugin, std::int32_t kind) { return kind == TCHAT_EVENT ? 1 : plugin.dimension; }
+
+  static void set_all(const tchat_problem& plugin, std::int32_t kind, int count, double* out, double* dx, double* dp) {
+    const int r = rows(plugin, kind);
+    set_nan(out, r);
+    set_nan(dx, r * plugin.dimension);
+    if (count > 0) set_nan(dp, r * count);
+  }
+
+  static void note_thrown(const void* self, const char* function) {
+    if (object(self).thrown_.empty()) object(self).thrown_ = std::string(function) + ": " + caught_text();
+  }
+};
+
+GuardedProblem::GuardedProblem(const tchat_problem& plugin, const std::string& path)
+    : plugin_(plugin), path_(path), table_(plugin) {
+  table_.self = this;
+  table_.value = &Calls::value;
+  if (plugin.first != nullptr) table_.first = &Calls::first;
+  if (plugin.second != nullptr) table_.second = &Calls::second;
+  if (plugin.successors != nullptr) table_.successors = &Calls::successors;
+  if (plugin.user_value != nullptr) table_.user_value = &Calls::user_value;
+  if (plugin.output_parameters != nullptr) table_.output_parameters = &Calls::output_parameters;
+}
+
+}  // namespace tchat
