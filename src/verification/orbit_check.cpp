@@ -1,0 +1,147 @@
+#include "verification/orbit_check.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "resegment/contact_point.hpp"
+
+namespace tchat {
+
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::RowVectorXd;
+using Eigen::VectorXd;
+
+/// What q-files round away, and Newton's method leaves.
+constexpr double stored_accuracy = 1e-9;
+constexpr double least_scale = 1e-3;
+/// A difference of multipliers is no defect where a change of the map by this part of the tolerance explains it.
+constexpr double explained = 1e-2;
+
+StoredSegment stored_segment(const HybridSystem& system, const RunSettings& settings, const Orbit& x, int s) {
+  const int m = x.shape.segments;
+  const int n = x.shape.dimension;
+  const SegmentSettings& own = settings.segments[static_cast<std::size_t>(s)];
+  const SegmentSettings& before = settings.segments[static_cast<std::size_t>((s + m - 1) % m)];
+  const SegmentSettings& after = settings.segments[static_cast<std::size_t>((s + 1) % m)];
+  StoredSegment segment;
+  segment.index = own.index;
+  segment.next_field = after.index.field;
+  segment.grazing = settings.problem_type == 150 && s == grazing_segment(settings);
+  segment.start = Eigen::Map<const VectorXd>(x.start(s), n);
+  segment.end = Eigen::Map<const VectorXd>(x.end(s), n);
+  segment.duration = x.duration(s);
+  segment.monitored = own.monitor;
+  if (!system.has_successors()) return segment;
+  const auto following =
+      system.successors(before.index, x.end((s + m - 1) % m), x.par.data()).value_or(std::vector<IndexVector>{});
+  for (const IndexVector& v : following)
+    if (v.field == own.index.field && v.event != own.index.event) segment.alternatives.push_back(v);
+  return segment;
+}
+
+/// The gradient of h_x f.
+RowVectorXd rate_gradient(const HybridSystem& system, const IndexVector& index, const VectorXd& x,
+                          const VectorXd& par) {
+  const int n = system.dimension();
+  VectorXd f(n), direction = VectorXd::Zero(n + par.size());
+  MatrixXd fx(n, n);
+  RowVectorXd hx(n), gradient(n);
+  double h = 0.0, rate = 0.0, no_parameters = 0.0;
+  system.first(FunctionKind::field, index.field, x.data(), par.data(), {}, f.data(), fx.data(), &no_parameters);
+  system.first(FunctionKind::event, index.event, x.data(), par.data(), {}, &h, hx.data(), &no_parameters);
+  direction.head(n) = f;
+  system.second(FunctionKind::event, index.event, x.data(), par.data(), {}, direction.data(), &rate, gradient.data(),
+                &no_parameters);
+  return gradient + hx * fx;
+}
+
+/// In states divided by their scales. A segment that ends in contact is a return to h_x f = 0, where the orbit that
+/// does not see the contact is cut.
+SegmentLink link_at(const HybridSystem& system, const StoredSegment& segment, const SegmentCheck& check,
+                    const VectorXd& par, const VectorXd& scale) {
+  const int n = system.dimension();
+  const IndexVector& index = segment.index;
+  SegmentLink link{check.flow, VectorXd(n), RowVectorXd(n), MatrixXd(n, n)};
+  VectorXd after(n);
+  double h = 0.0, no_parameters = 0.0;
+  const double* const x = check.end.data();
+  system.value(FunctionKind::field, index.field, x, par.data(), link.f.data());
+  system.first(FunctionKind::event, index.event, x, par.data(), {}, &h, link.hx.data(), &no_parameters);
+  if (segment.grazing) link.hx = rate_gradient(system, index, check.end, par);
+  system.first(FunctionKind::jump, index.jump, x, par.data(), {}, after.data(), link.gx.data(), &no_parameters);
+  const auto divide = scale.cwiseInverse().asDiagonal();
+  link.flow = divide * link.flow * scale.asDiagonal();
+  link.f = divide * link.f;
+  link.hx = link.hx * scale.asDiagonal();
+  link.gx = divide * link.gx * scale.asDiagonal();
+  return link;
+}
+
+/// The state after the stored end's jump against the next stored start.
+double jump_defect(const HybridSystem& system, const IndexVector& index, const Orbit& x, int s, const VectorXd& scale) {
+  const int n = x.shape.dimension;
+  VectorXd after(n);
+  system.value(FunctionKind::jump, index.jump, x.end(s), x.par.data(), after.data());
+  const Eigen::Map<const VectorXd> next(x.start((s + 1) % x.shape.segments), n);
+  return (after - next).cwiseAbs().cwiseQuotient(scale).maxCoeff();
+}
+
+}  // namespace
+
+VectorXd state_scales(const Orbit& x) {
+  VectorXd scale = x.states.cwiseAbs().rowwise().maxCoeff();
+  const double largest = scale.maxCoeff();
+  return scale.cwiseMax(largest > 0.0 ? least_scale * largest : 1.0);
+}
+
+OrbitCheck check_orbit(const HybridSystem& system, const RunSettings& settings, const Orbit& x,
+                       const std::vector<std::complex<double>>& stored, double tolerance) {
+  OrbitCheck check;
+  const VectorXd scale = state_scales(x);
+  const VectorXd par = x.par;
+  std::vector<SegmentLink> links;
+  for (int s = 0; s < x.shape.segments; ++s) {
+    const IndexVector& index = settings.segments[static_cast<std::size_t>(s)].index;
+    const StoredSegment stored_one = stored_segment(system, settings, x, s);
+    SegmentCheck segment = check_segment(system, stored_one, par, scale, tolerance);
+    if (segment.message.empty()) links.push_back(link_at(system, stored_one, segment, par, scale));
+    const double jump = jump_defect(system, index, x, s, scale);
+    segment.state_defect = std::isfinite(jump) ? std::max(segment.state_defect, jump) : jump;
+    check.segments.push_back(std::move(segment));
+    check.durations.push_back(x.duration(s));
+    check.period += std::abs(x.duration(s));
+  }
+  if (!(check.period > 0.0)) check.period = 1.0;
+  if (links.size() != check.segments.size()) return check;
+  const ReturnPencil pencil(links);
+  if (!pencil.determines_multipliers(tolerance)) return check;
+  check.multipliers = pencil.multipliers();
+  if (stored.size() != check.multipliers.size()) return check;
+  check.multiplier_difference = largest_difference(stored, check.multipliers);
+  for (const std::complex<double>& mu : stored)
+    if (std::abs(mu) < 1e98) check.multiplier_error = std::max(check.multiplier_error, pencil.backward_error(mu));
+  return check;
+}
+
+std::vector<Defect> defects_of(const OrbitCheck& check, std::size_t s, double tolerance) {
+  const SegmentCheck& segment = check.segments[s];
+  if (!segment.message.empty()) return {Defect::not_integrated};
+  const double allowed = std::max(tolerance, stored_accuracy * segment.growth);
+  std::vector<Defect> defects;
+  if (!(segment.state_defect <= allowed)) defects.push_back(Defect::state);
+  const bool is_in_time = segment.time_defect <= allowed * check.period;
+  const bool is_on_surface = segment.event_level <= allowed;
+  if (!is_in_time && !is_on_surface) defects.push_back(Defect::time);
+  if (!segment.wrong.empty() || segment.leaves_surface || check.durations[s] < -allowed * check.period)
+    defects.push_back(Defect::event);
+  return defects;
+}
+
+bool are_multipliers_wrong(const OrbitCheck& check, double tolerance) {
+  return check.multiplier_difference && *check.multiplier_difference > tolerance &&
+         check.multiplier_error > explained * tolerance;
+}
+
+}  // namespace tchat

@@ -1,0 +1,43 @@
+/// A stored orbit against forward integration: every segment from its stored start (segment_check.hpp), every jump, and
+/// the multipliers (return_pencil.hpp) against those of the run's d-file.
+#pragma once
+
+#include <complex>
+#include <optional>
+#include <vector>
+
+#include "bvp/orbit.hpp"
+#include "constants/run_settings.hpp"
+#include "verification/return_pencil.hpp"
+#include "verification/segment_check.hpp"
+
+namespace tchat {
+
+struct OrbitCheck {
+  std::vector<SegmentCheck> segments;  ///< state_defect counts the jump after the segment
+  std::vector<double> durations;       ///< T_s
+  double period = 0.0;                 ///< sum |T_s|, 1 for an orbit that takes no time
+  /// Of the return map along the integrated segments; empty when one of them could not be integrated, or the
+  /// map does not determine them.
+  std::vector<std::complex<double>> multipliers;
+  std::optional<double> multiplier_difference;  ///< from the stored ones (largest_difference)
+  double multiplier_error = 0.0;                ///< largest backward error of a stored one
+};
+
+/// Sizes by which defects of the states are measured: max |x_k| over the orbit, but at least a thousandth of the
+/// largest.
+Eigen::VectorXd state_scales(const Orbit& x);
+
+/// `stored`: the multipliers of the d-file; empty when there are none.
+OrbitCheck check_orbit(const HybridSystem& system, const RunSettings& settings, const Orbit& x,
+                       const std::vector<std::complex<double>>& stored, double tolerance);
+
+/// What is beyond `tolerance`, with the growth of errors (growth * 1e-9 where that is more): one list for a segment,
+/// one for the multipliers.
+enum class Defect { not_integrated, state, time, event, multipliers };
+std::vector<Defect> defects_of(const OrbitCheck& check, std::size_t segment, double tolerance);
+/// They differ by more than `tolerance`, and by more than a change of the map by a hundredth of it explains:
+/// multipliers that are many times as sensitive as the map (Jordan blocks, impacts of low velocity) are known to less.
+bool are_multipliers_wrong(const OrbitCheck& check, double tolerance);
+
+}  // namespace tchat

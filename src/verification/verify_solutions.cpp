@@ -1,0 +1,267 @@
+#include "verification/verify_solutions.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+
+#include "bvp/admissibility.hpp"
+#include "constants/constant_value.hpp"
+#include "constants/constants_file.hpp"
+#include "constants/user_error.hpp"
+#include "plugin/exit_guard.hpp"
+#include "plugin/plugin_build.hpp"
+#include "plugin/problem_library.hpp"
+#include "run/named_parameters.hpp"
+#include "run/problem_setup.hpp"
+#include "run/run_request.hpp"
+#include "start/diagnostics_file_reader.hpp"
+#include "start/orbit_start.hpp"
+#include "start/point_type.hpp"
+#include "start/run_file_names.hpp"
+#include "start/solution_file_reader.hpp"
+#include "verification/orbit_check.hpp"
+
+namespace tchat {
+
+namespace {
+
+StartLabel read_label(const std::string& text) {
+  if (const auto number = parse_integer(text); number && *number >= 1) return {"", *number};
+  if (const auto typed = parse_typed_label(text)) return *typed;
+  throw UserError(fmt::format("{} is no label; a number or a type with its count is needed, such as 5, GR1 or PD1",
+                              in_quotes(text)));
+}
+
+std::string constants_of(const VerifyRequest& request, const std::string& solutions) {
+  if (request.constants) return constants_path(*request.constants);
+  const std::string used = sibling_path(solutions, 'r');
+  if (!used.empty() && std::filesystem::exists(used)) return used;
+  const std::string made = (std::filesystem::path(solutions).parent_path() / ("gc." + run_name(solutions))).string();
+  if (std::filesystem::exists(made)) return made;  // of `tchat resegment`
+  throw UserError(fmt::format("there is no {} with the constants of the run that wrote {}; give them with -c C",
+                              used.empty() ? "r-file" : used, solutions));
+}
+
+std::vector<LabelledSolution> chosen(const VerifyRequest& request, const SolutionFile& file, const std::string& path) {
+  if (request.labels.empty()) return file.solutions;
+  std::vector<LabelledSolution> result;
+  for (const std::string& word : request.labels)
+    result.push_back(find_solution(file.solutions, read_label(word), path));
+  return result;
+}
+
+/// Labelled points of the d-file; empty when there is none.
+std::map<int, DiagnosticPoint> recorded_points(const std::string& path) {
+  std::map<int, DiagnosticPoint> result;
+  if (path.empty() || !std::filesystem::exists(path)) return result;
+  for (DiagnosticPoint& point : read_diagnostics_file(path))
+    if (point.label > 0) result[point.label] = std::move(point);
+  return result;
+}
+
+/// Why this entry of a q-file is not an orbit of these constants; "" when it is.
+std::string mismatch(const LabelledSolution& solution, const RunSettings& settings) {
+  const auto states = static_cast<Eigen::Index>(settings.segments.size()) * settings.dimension;
+  if (solution.problem_type != 0 && solution.problem_type != settings.problem_type)
+    return fmt::format("computed with IPS = {}, the constants have {}", solution.problem_type, settings.problem_type);
+  if (solution.states.rows() != states)
+    return fmt::format("has {} states, the constants {} segments of {}", solution.states.rows(),
+                       settings.segments.size(), settings.dimension);
+  return "";
+}
+
+const char* word_for(Defect defect) {
+  switch (defect) {
+    case Defect::not_integrated:
+      return "not integrated";
+    case Defect::state:
+      return "state";
+    case Defect::time:
+      return "time";
+    case Defect::event:
+      return "event";
+    default:
+      return "multipliers";
+  }
+}
+
+/// What is seen of one label.
+struct Verdict {
+  bool is_right = true;
+  bool is_inadmissible = false;  // as stored
+};
+
+struct Largest {
+  double value = 0.0;
+  std::string where = "none";
+  void take(double other, const std::string& place) {
+    if (!(other > value)) return;
+    value = other;
+    where = place;
+  }
+};
+
+class Table {
+ public:
+  Table(const HybridSystem& system, const RunSettings& settings, double tolerance, std::ostream& screen)
+      : system_(system), settings_(settings), tolerance_(tolerance), screen_(screen) {
+    screen_ << " LAB  TY SEG              T    STATE     TIME   GROWTH  MULTIPL.  EVENT\n";
+  }
+
+  Verdict add(const LabelledSolution& solution, const DiagnosticPoint* recorded) {
+    const std::string why_not = mismatch(solution, settings_);
+    if (!why_not.empty()) {
+      screen_ << fmt::format("{:>4}  {:<2}  not verified: {}\n", solution.label, type_name(solution), why_not);
+      return {false, false};
+    }
+    const Orbit x = orbit_of(solution);
+    const auto stored = recorded != nullptr ? recorded->multipliers : std::vector<std::complex<double>>{};
+    const OrbitCheck check = check_orbit(system_, settings_, x, stored, tolerance_);
+    const bool is_inadmissible = recorded != nullptr
+                                     ? !recorded->admissible
+                                     : !inadmissibilities(system_, settings_.signature(), monitored(), x).empty();
+    return rows(solution, check, is_inadmissible);
+  }
+
+  std::string worst() const {
+    return fmt::format("Largest defects: states {:.1e} ({}), times {:.1e} ({}), multipliers {:.1e} ({}).\n",
+                       state_.value, state_.where, time_.value, time_.where, multipliers_.value, multipliers_.where);
+  }
+
+ private:
+  Orbit orbit_of(const LabelledSolution& solution) const {
+    const auto segments = static_cast<int>(settings_.segments.size());
+    return orbit_from_solution(solution,
+                               {settings_.dimension, segments, solution.mesh_intervals, solution.collocation_points},
+                               {}, "the q-file")
+        .orbit;
+  }
+
+  std::vector<std::vector<int>> monitored() const {
+    std::vector<std::vector<int>> result;
+    for (const SegmentSettings& segment : settings_.segments) result.push_back(segment.monitor);
+    return result;
+  }
+
+  std::string event_name(int event) const { return system_.function_name(FunctionKind::event, event); }
+
+  /// "front, but end of slip at t = 0.31 comes first"
+  std::string events(const OrbitCheck& check, std::size_t s) const {
+    const SegmentCheck& segment = check.segments[s];
+    std::string text = event_name(settings_.segments[s].index.event);
+    for (const EventMet& met : segment.wrong)
+      text += fmt::format(", but {} at t = {:.6g} comes first (depth {:.1e})", event_name(met.event),
+                          met.time > 1e-9 * check.period ? met.time : 0.0, met.depth);
+    if (segment.leaves_surface) text += ", crossed from below";
+    if (check.durations[s] < 0.0 && segment.wrong.empty()) text += ", negative duration";
+    if (!segment.passed.empty() && segment.wrong.empty())
+      text += fmt::format(", passes {} at t = {:.6g}{}", event_name(segment.passed.front().event),
+                          segment.passed.front().time,
+                          segment.passed.size() > 1 ? fmt::format(" and {} more", segment.passed.size() - 1) : "");
+    return segment.message.empty() ? text : segment.message;
+  }
+
+  /// Of an orbit for which none are stored, or which has none.
+  static std::string multipliers_of(const OrbitCheck& check) {
+    std::string list;
+    for (const std::complex<double>& mu : check.multipliers)
+      list += fmt::format(
+          "{}{:.8g}{}", list.empty() ? "" : ", ", mu.real(),
+          mu.imag() == 0.0 ? "" : fmt::format(" {} {:.8g}i", mu.imag() < 0 ? '-' : '+', std::abs(mu.imag())));
+    return fmt::format("{:12}multipliers: {}\n", "", list.empty() ? "not determined" : list);
+  }
+
+  Verdict rows(const LabelledSolution& solution, const OrbitCheck& check, bool is_inadmissible) {
+    Verdict verdict;
+    for (std::size_t s = 0; s < check.segments.size(); ++s) {
+      const SegmentCheck& segment = check.segments[s];
+      std::vector<Defect> defects = defects_of(check, s, tolerance_);
+      const bool excused = is_inadmissible && std::erase(defects, Defect::event) > 0;
+      if (s == 0 && are_multipliers_wrong(check, tolerance_)) defects.push_back(Defect::multipliers);
+      verdict.is_right = verdict.is_right && defects.empty();
+      verdict.is_inadmissible = verdict.is_inadmissible || excused;
+      std::vector<const char*> words;
+      for (const Defect defect : defects) words.push_back(word_for(defect));
+      const std::string end = !words.empty() ? fmt::format("  << {}", fmt::join(words, ", "))
+                              : excused      ? "  inadmissible as stored"
+                                             : "";
+      const std::string place = fmt::format("label {}, segment {}", solution.label, s + 1);
+      const double time = segment.event_level == 0.0 ? 0.0 : segment.time_defect / check.period;
+      state_.take(segment.state_defect, place);
+      time_.take(time, place);
+      const std::string name = s == 0 ? fmt::format("{:>4}  {:<2}", solution.label, type_name(solution)) : "";
+      const std::string multipliers =
+          s == 0 && check.multiplier_difference ? fmt::format("{:.1e}", *check.multiplier_difference) : "";
+      screen_ << fmt::format("{:<8}{:>4}{:>15.7g}{:>9.1e}{:>9.1e}{:>9.1e}{:>10}  {}{}\n", name, s + 1,
+                             check.durations[s], segment.state_defect, time, segment.growth, multipliers,
+                             events(check, s), end);
+    }
+    if (!check.multiplier_difference) screen_ << multipliers_of(check);
+    if (check.multiplier_difference)
+      multipliers_.take(*check.multiplier_difference, fmt::format("label {}", solution.label));
+    return verdict;
+  }
+
+  const HybridSystem& system_;
+  const RunSettings& settings_;
+  double tolerance_;
+  std::ostream& screen_;
+  Largest state_, time_, multipliers_;
+};
+
+std::string summary(const std::string& path, const std::vector<int>& wrong, std::size_t labels, int inadmissible,
+                    double tolerance) {
+  const std::string stored =
+      inadmissible > 0 ? fmt::format(" ({} inadmissible, as the run had found)", inadmissible) : "";
+  if (wrong.empty())
+    return fmt::format("{}: {} label{} agree{} with forward integration to {:g}{}.\n", path, labels,
+                       labels == 1 ? "" : "s", labels == 1 ? "s" : "", tolerance, stored);
+  return fmt::format("{}: {} of {} labels beyond the tolerance {:g}{}: {}\n", path, wrong.size(), labels, tolerance,
+                     stored, fmt::join(wrong, ", "));
+}
+
+}  // namespace
+
+bool verify_solutions(const VerifyRequest& request, std::ostream& screen, std::ostream& warnings) {
+  if (!(request.tolerance > 0.0 && request.tolerance < 1.0))
+    throw UserError(
+        fmt::format("--tolerance {:g}: a number between 0 and 1 is needed, such as 1e-6", request.tolerance));
+  const std::string path = resolve_solution_path(request.solutions);
+  const SolutionFile file = read_solution_file(path);
+  const std::vector<LabelledSolution> solutions = chosen(request, file, path);
+  const std::string constants = constants_of(request, path);
+  bool named_parameters = false;
+  RunSettings settings = read_constants_file(constants, nullptr, names_to_come(named_parameters));
+
+  const std::string plugin =
+      resolve_plugin(request.problem.value_or((std::filesystem::path(path).parent_path() / run_name(path)).string()));
+  const ExitGuard guard(plugin);
+  const ProblemLibrary library(plugin, [&] { return problem_sizes(settings); });
+  const HybridSystem& system = library.system();
+  if (named_parameters) settings = read_constants_file(constants, nullptr, names_of(system));
+  check_settings_against(system, settings, constants);
+  for (const std::string& warning : file.warnings) warnings << "tchat: warning: " << warning << '\n';
+
+  const std::string diagnostics = sibling_path(path, 'd');
+  const std::map<int, DiagnosticPoint> recorded = recorded_points(diagnostics);
+  if (recorded.empty())
+    warnings << fmt::format("tchat: warning: there is no {}: multipliers are compared with nothing\n",
+                            diagnostics.empty() ? "d-file" : diagnostics);
+  Table table(system, settings, request.tolerance, screen);
+  std::vector<int> wrong;
+  int inadmissible = 0;
+  for (const LabelledSolution& solution : solutions) {
+    const auto found = recorded.find(solution.label);
+    const Verdict verdict = table.add(solution, found != recorded.end() ? &found->second : nullptr);
+    if (!verdict.is_right) wrong.push_back(solution.label);
+    inadmissible += verdict.is_inadmissible ? 1 : 0;
+  }
+  screen << table.worst() << summary(path, wrong, solutions.size(), inadmissible, request.tolerance);
+  return wrong.empty();
+}
+
+}  // namespace tchat
