@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <regex>
 
 #include "constants/constant_value.hpp"
 #include "constants/user_error.hpp"
@@ -32,13 +31,36 @@ std::optional<std::size_t> column_of_heading(const PointSection& section, const 
   return std::nullopt;
 }
 
+/// "MAX U(1)" taken apart: before "MAX ", symbol "u", index 1.
+struct IndexedName {
+  std::string before;
+  std::string symbol;  ///< "par" or "u"
+  int index = 0;
+};
+
+std::optional<IndexedName> indexed_name(const std::string& text) {
+  constexpr std::size_t most_digits = 6;
+  const auto open = text.rfind('(');
+  if (open == std::string::npos || text.back() != ')') return std::nullopt;
+  const std::string digits = text.substr(open + 1, text.size() - open - 2);
+  if (digits.size() > most_digits || digits.find_first_not_of("0123456789") != std::string::npos) return std::nullopt;
+  const auto index = parse_integer(digits);
+  for (const std::string symbol : {"par", "u"}) {
+    if (!index || open < symbol.size() || lower(text.substr(open - symbol.size(), symbol.size())) != symbol) continue;
+    const std::string before = text.substr(0, open - symbol.size());
+    const bool word =
+        before.empty() || (std::isalnum(static_cast<unsigned char>(before.back())) == 0 && before.back() != '_');
+    if (word) return IndexedName{before, symbol, *index};
+  }
+  return std::nullopt;
+}
+
 /// "PAR(2)" -> "omega", "MAX U(1)" -> "MAX x1".
 std::string with_names(const PointSection& section, const std::string& wanted) {
-  static const std::regex pattern("(.*)\\b(PAR|U)\\(([0-9]{1,6})\\)", std::regex::icase);
-  std::smatch found;
-  if (!std::regex_match(wanted, found, pattern)) return wanted;
-  const int k = std::stoi(found[3].str());
-  return found[1].str() + (lower(found[2].str()) == "u" ? section.state_name(k) : section.parameter_name(k));
+  const auto found = indexed_name(wanted);
+  if (!found) return wanted;
+  return found->before +
+         (found->symbol == "u" ? section.state_name(found->index) : section.parameter_name(found->index));
 }
 
 std::optional<std::size_t> column_of_last_word(const PointSection& section, const std::string& wanted) {
@@ -50,8 +72,8 @@ std::optional<std::size_t> column_of_last_word(const PointSection& section, cons
 std::optional<int> parameter_index(const PointSection& section, const std::string& wanted) {
   for (const auto& [k, name] : section.parameters)
     if (name == wanted) return k;
-  static const std::regex pattern("PAR\\(([0-9]{1,6})\\)", std::regex::icase);
-  if (std::smatch found; std::regex_match(wanted, found, pattern)) return std::stoi(found[1].str());
+  const auto found = indexed_name(wanted);
+  if (found && found->symbol == "par" && found->before.empty()) return found->index;
   return std::nullopt;
 }
 

@@ -7,7 +7,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <regex>
 
 #include "constants/constant_value.hpp"
 #include "constants/user_error.hpp"

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <regex>
 
 #include "constants/constant_value.hpp"
 #include "constants/user_error.hpp"
@@ -20,7 +19,6 @@ namespace {
 
 constexpr std::size_t prefix_words = 4;  // BR PT TY LAB
 constexpr std::size_t most_values = 1000;
-constexpr std::size_t longest_header_line = 10000;
 
 /// NaN, Infinity and fields of stars (a number too large for its width): there is a number that cannot be shown.
 bool is_gap(std::string_view word) {
@@ -31,46 +29,99 @@ bool is_gap(std::string_view word) {
          (!word.empty() && word.find_first_not_of('*') == std::string_view::npos);
 }
 
+/// Takes blanks off the beginning.
+void skip_blanks(std::string_view& text) {
+  while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
+}
+
+/// Takes `prefix` off the beginning; false when it is not there.
+bool skip(std::string_view& text, std::string_view prefix) {
+  if (!text.starts_with(prefix)) return false;
+  text.remove_prefix(prefix.size());
+  return true;
+}
+
+/// Digits at the beginning, with a minus before them.
+std::optional<int> leading_integer(std::string_view text) {
+  std::size_t size = text.starts_with('-') ? 1 : 0;
+  while (size < text.size() && text[size] >= '0' && text[size] <= '9') ++size;
+  return parse_integer(text.substr(0, size));
+}
+
+/// What follows `KEY =`, blanks before it taken off; the key is a word of its own.
+std::optional<std::string_view> value_of_key(std::string_view line, std::string_view key) {
+  for (auto at = line.find(key); at != std::string_view::npos; at = line.find(key, at + 1)) {
+    std::string_view rest = line.substr(at + key.size());
+    skip_blanks(rest);
+    const bool word = at == 0 || line[at - 1] == ' ' || line[at - 1] == ',';
+    if (!word || !skip(rest, "=")) continue;
+    skip_blanks(rest);
+    return rest;
+  }
+  return std::nullopt;
+}
+
+/// What follows `title` and blanks.
+std::optional<std::string_view> text_after(std::string_view line, std::string_view title) {
+  const auto at = line.find(title);
+  if (at == std::string_view::npos) return std::nullopt;
+  std::string_view rest = line.substr(at + title.size());
+  skip_blanks(rest);
+  return rest;
+}
+
+/// {1: 'x1', 2: "x2"}
+std::map<int, std::string> dictionary(std::string_view text) {
+  std::map<int, std::string> names;
+  constexpr std::string_view quotes = "'\"";
+  text = text.substr(0, text.find('}'));
+  while (!text.empty()) {
+    const auto open = text.find_first_of(quotes);
+    if (open == std::string_view::npos) break;
+    const auto close = text.find_first_of(quotes, open + 1);
+    if (close == std::string_view::npos) break;
+    std::string_view before = text.substr(0, open);
+    before.remove_prefix(std::min(before.find_first_of("0123456789"), before.size()));
+    if (const auto index = leading_integer(before))
+      names[*index] = std::string(text.substr(open + 1, close - open - 1));
+    text.remove_prefix(close + 1);
+  }
+  return names;
+}
+
 /// What the lines of a header say; kept for sections that have none of their own.
 class Header {
  public:
   void read(std::string_view line) {
-    if (line.size() > longest_header_line) line = line.substr(0, longest_header_line);  // std::regex is recursive
-    const std::string text(line);
-    integer(text, "IPS", section_.problem_type);
-    integer(text, "ISW", section_.branch_mode);
-    integer(text, "ISP", section_.detect_bifurcations);
-    integer(text, "NDIM", section_.dimension);
-    integer(text, "NSEG", section_.segments);
-    names(text, "unames", section_.states);
-    names(text, "parnames", section_.parameters);
-    static const std::regex branch_type("Branch +type: *([0-9]+)");
-    if (std::smatch found; std::regex_search(text, found, branch_type))
-      section_.curve_type = parse_integer(found[1].str()).value_or(0);
-    static const std::regex active("Active continuation parameters?(?:\\(s\\))?:(.*)");
-    if (std::smatch found; std::regex_search(text, found, active)) read_active(found[1].str());
-    headings_ = text;
+    integer(line, "IPS", section_.problem_type);
+    integer(line, "ISW", section_.branch_mode);
+    integer(line, "ISP", section_.detect_bifurcations);
+    integer(line, "NDIM", section_.dimension);
+    integer(line, "NSEG", section_.segments);
+    names(line, "unames", section_.states);
+    names(line, "parnames", section_.parameters);
+    if (auto rest = text_after(line, "Branch"); rest && skip(*rest, "type:")) {
+      skip_blanks(*rest);
+      section_.curve_type = leading_integer(*rest).value_or(0);
+    }
+    if (auto rest = text_after(line, "Active continuation parameter")) {
+      skip(*rest, "s") || skip(*rest, "(s)");
+      if (skip(*rest, ":")) read_active(std::string(*rest));
+    }
+    headings_ = line;
   }
   const PointSection& section() const { return section_; }
   /// The last header line: headings of the columns, or nothing of use.
   const std::string& headings() const { return headings_; }
 
  private:
-  static void integer(const std::string& text, const char* key, int& value) {
-    const std::regex pattern(fmt::format("(?:^|[ ,]){} *= *(-?[0-9]+)", key));
-    if (std::smatch found; std::regex_search(text, found, pattern))
-      value = parse_integer(found[1].str()).value_or(value);
+  static void integer(std::string_view line, std::string_view key, int& value) {
+    if (const auto text = value_of_key(line, key)) value = leading_integer(*text).value_or(value);
   }
 
-  static void names(const std::string& text, const char* key, std::map<int, std::string>& result) {
-    const std::regex dictionary(fmt::format("{} *= *\\{{([^}}]*)\\}}", key));
-    std::smatch found;
-    if (!std::regex_search(text, found, dictionary)) return;
-    result.clear();
-    static const std::regex entry("([0-9]+) *: *['\"]([^'\"]*)['\"]");
-    const std::string list = found[1].str();
-    for (std::sregex_iterator it(list.begin(), list.end(), entry), end; it != end; ++it)
-      if (const auto index = parse_integer((*it)[1].str())) result[*index] = (*it)[2].str();
+  static void names(std::string_view line, std::string_view key, std::map<int, std::string>& result) {
+    auto text = value_of_key(line, key);
+    if (text && skip(*text, "{") && text->find('}') != std::string_view::npos) result = dictionary(*text);
   }
 
   void read_active(std::string list) {

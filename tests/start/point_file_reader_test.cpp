@@ -1,8 +1,11 @@
 // p-files of this program, of AUTO-07p and of AUTO 97, written out by hand.
 #include "start/point_file_reader.hpp"
 
+#include <pthread.h>
+
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <functional>
 #include <random>
 
 #include "constants/user_error.hpp"
@@ -48,6 +51,22 @@ const std::string auto_97 =
     "   0\n"
     "   0    PT  TY LAB    PAR(1)        L2-NORM        MAX U(1)\n"
     "   1     1   9   1  0.100000E+00  0.200000E+01  0.300000D+01\n";
+
+/// Runs `call` in a thread with 128 kB; false when there is no such thread.
+bool call_on_small_stack(const std::function<void()>& call) {
+  pthread_attr_t attributes;
+  pthread_attr_init(&attributes);
+  pthread_attr_setstacksize(&attributes, 128 * 1024);
+  pthread_t thread{};
+  const auto run = [](void* argument) -> void* {
+    (*static_cast<const std::function<void()>*>(argument))();
+    return nullptr;
+  };
+  const bool made = pthread_create(&thread, &attributes, run, const_cast<std::function<void()>*>(&call)) == 0;
+  if (made) pthread_join(thread, nullptr);
+  pthread_attr_destroy(&attributes);
+  return made;
+}
 
 }  // namespace
 
@@ -153,4 +172,17 @@ TEST_CASE("kinds of files are told apart by their first line") {
   CHECK_FALSE(looks_like_point_file(
       "     1     1     9     1     2     1     201     5     402   50    4  100    4    4  180    0\n"));
   CHECK_FALSE(looks_like_point_file(""));
+}
+
+TEST_CASE("header lines of any length are read on a small stack") {
+  std::string names;
+  for (int k = 1; k <= 2000; ++k) names += (k > 1 ? ", " : "") + std::to_string(k) + ": 'p" + std::to_string(k) + "'";
+  const std::string text = "   0   NDIM=   4   IPS = 180   parnames = {" + names + "}\n   0\n   0    PT  TY  LAB " +
+                           std::string(100'000, ' ') + "alpha\n   1     1   9    1  1.0000000000E+000\n";
+  PointFile file;
+  const auto read = [&] { file = parse_point_file(text, "p.x"); };
+  REQUIRE(call_on_small_stack(read));
+  REQUIRE(file.sections.size() == 1);
+  CHECK(file.sections[0].problem_type == 180);
+  CHECK(file.sections[0].parameter_name(2000) == "p2000");
 }
