@@ -47,7 +47,7 @@ struct RawPair {
 };
 
 /// The number in a token (blanks and a sign allowed; exponent letters e, E, d, D); nothing when it is none, not finite
-/// or out of the type's range.
+/// or out of the type's range. An integer whose negative is no int is out of range too: signs are taken off everywhere.
 std::optional<int> parse_integer(std::string_view text);
 std::optional<double> parse_real(std::string_view text);
 

@@ -42,8 +42,7 @@ std::string ProblemNames::parameter(int k) const { return name_at(parameters, k,
 
 PointColumn measure_column(int selector, int dimension, const ProblemNames& names) {
   using Kind = PointColumn::Kind;
-  if (selector == 0 || std::abs(selector) > 3 * dimension || selector < -dimension)
-    return {Kind::l2_norm, 0, "L2-NORM"};
+  if (selector == 0 || selector > 3 * dimension || selector < -dimension) return {Kind::l2_norm, 0, "L2-NORM"};
   const int k = (std::abs(selector) - 1) % dimension + 1;
   const std::string name = names.state(k);
   if (selector < 0) return {Kind::minimum, k, "MIN " + name};

@@ -141,6 +141,7 @@ class SolutionReader {
     const int entry_line = line_;
     const auto identifier = read_identifier(first);
     if (!identifier) return truncated(entry_line);
+    if (first.ended) check_numbering(*identifier, place(entry_line));
     if (identifier->is_empty_entry()) return count_in(*identifier);
     if (!first.ended) return truncated(entry_line);
     check_counts(*identifier, place(entry_line));

@@ -45,9 +45,16 @@ std::int64_t SolutionIdentifier::standard_lines(bool direction) const {
   return plain + (free_parameters() + 19) / 20 + (free_parameters() + 6) / 7 + (states() + 6) / 7 * time_points();
 }
 
+void check_numbering(const SolutionIdentifier& id, const std::string& place) {
+  constexpr int largest = 999'999'999;
+  const Requirement need{place};
+  need(id.branch() <= largest, fmt::format("branch {} (integer 1) is greater than {}", id.values[0], largest));
+  need(id.label() >= 0, fmt::format("label {} (integer 4) is negative", id.label()));
+  need(id.label() <= largest, fmt::format("label {} (integer 4) is greater than {}", id.label(), largest));
+}
+
 void check_counts(const SolutionIdentifier& id, const std::string& place) {
   const Requirement need{place};
-  need(id.label() >= 0, fmt::format("label {} (integer 4) is negative", id.label()));
   need(id.free_parameters() >= 0, fmt::format("NFPR = {} free parameters (integer 5)", id.free_parameters()));
   need(id.time_points() >= 1, fmt::format("NTPL = {} time points (integer 7), at least 1 expected", id.time_points()));
   need(id.numbers_per_point() >= 2, fmt::format("NAR = {} numbers per time point (integer 8), t and at least one state "

@@ -48,6 +48,9 @@ struct SolutionIdentifier {
   static int magnitude(int value) { return value < 0 ? -(value + (value < -2147483647 ? 1 : 0)) : value; }
 };
 
+/// Throws UserError like check_counts() when branch or label leaves no room for those of a run that goes on from there.
+void check_numbering(const SolutionIdentifier& id, const std::string& place);
+
 /// Throws UserError, with `place` (path:line) before the message, when the counts are out of range or contradict each
 /// other.
 void check_counts(const SolutionIdentifier& id, const std::string& place);
