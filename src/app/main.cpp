@@ -21,6 +21,7 @@
 #include "app/run_command.hpp"
 #include "app/simulate_command.hpp"
 #include "app/standard_descriptors.hpp"
+#include "app/standard_output.hpp"
 #include "app/usage_error.hpp"
 #include "app/verify_command.hpp"
 #include "constants/user_error.hpp"
@@ -46,6 +47,7 @@ int run_command(const std::function<int()>& command) {
   } catch (const std::bad_alloc&) {
     return report("out of memory; use a smaller NTST, NCOL or number of segments", bad_input);
   } catch (const std::exception& error) {
+    if (std::ferror(stdout) != 0) return computation_failed;  // printing failed, and main says so
     return report(fmt::format("internal error: {}", error.what()), computation_failed);
   }
 }
@@ -82,7 +84,11 @@ int run_program(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   try {
-    return run_program(argc, argv);
+    const int status = run_program(argc, argv);
+    const std::string lost = tchat::lost_output();
+    if (lost.empty()) return status;
+    std::cerr << "tchat: " << lost << '\n';
+    return status == 0 ? computation_failed : status;
   } catch (...) {
     std::fputs("tchat: internal error before the command began\n", stderr);
     return computation_failed;
