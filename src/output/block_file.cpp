@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -10,25 +9,25 @@
 #include <utility>
 
 #include "constants/user_error.hpp"
+#include "output/block_write.hpp"
 
 namespace tchat {
 
 namespace {
 
-/// Size of an ordinary file; -1 for devices and pipes, which cannot be cut.
-off_t ordinary_size(int descriptor) {
-  struct stat status {};
-  if (::fstat(descriptor, &status) != 0 || !S_ISREG(status.st_mode)) return -1;
-  return status.st_size;
+const char* state_after(const BlockOutcome& outcome) {
+  return outcome.whole ? "cannot be written; it holds everything up to the last complete block"
+                       : "cannot be written; its last block is not complete";
 }
 
 }  // namespace
 
-BlockFile::BlockFile(std::string path, Mode mode) : path_(std::move(path)) {
-  const int how = O_WRONLY | O_CREAT | O_CLOEXEC | O_APPEND | (mode == Mode::replace ? O_TRUNC : 0);
-  descriptor_ = ::open(path_.c_str(), how, 0666);
+BlockFile::BlockFile(std::string path) : path_(std::move(path)) {
+  descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | O_APPEND, 0666);
   if (descriptor_ < 0) fail("cannot be opened for writing", errno);
 }
+
+BlockFile::BlockFile(int descriptor, std::string path) : path_(std::move(path)), descriptor_(descriptor) {}
 
 BlockFile::BlockFile(BlockFile&& other) noexcept
     : path_(std::move(other.path_)), descriptor_(std::exchange(other.descriptor_, -1)) {}
@@ -44,19 +43,13 @@ BlockFile::~BlockFile() {
 }
 
 void BlockFile::write(std::string_view block) {
-  const off_t before = ordinary_size(descriptor_);
-  while (!block.empty()) {
-    const ssize_t written = ::write(descriptor_, block.data(), block.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) {
-      const int error = written < 0 ? errno : ENOSPC;
-      const bool restored = before < 0 || ::ftruncate(descriptor_, before) == 0;
-      fail(restored ? "cannot be written; it holds everything up to the last complete block"
-                    : "cannot be written; its last block is not complete",
-           error);
-    }
-    block.remove_prefix(static_cast<std::size_t>(written));
-  }
+  const BlockOutcome outcome = append_block_through_kill(descriptor_, block);
+  if (outcome.error != 0) fail(state_after(outcome), outcome.error);
+}
+
+void BlockFile::write_unread(std::string_view block) {
+  const BlockOutcome outcome = append_block(descriptor_, block);
+  if (outcome.error != 0) fail("cannot be written", outcome.error);
 }
 
 void BlockFile::close() {

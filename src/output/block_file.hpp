@@ -8,11 +8,11 @@ namespace tchat {
 
 class BlockFile {
  public:
-  enum class Mode { replace, append };
-
   BlockFile() = default;
-  /// Opens or creates the file. Throws ComputationError naming it when that fails.
-  BlockFile(std::string path, Mode mode);
+  /// Opens or creates the file, to add to its end. Throws ComputationError naming it when that fails.
+  explicit BlockFile(std::string path);
+  /// Takes over an open file; `path` is its name.
+  BlockFile(int descriptor, std::string path);
   BlockFile(const BlockFile&) = delete;
   BlockFile& operator=(const BlockFile&) = delete;
   BlockFile(BlockFile&& other) noexcept;
@@ -23,9 +23,12 @@ class BlockFile {
   bool is_open() const { return descriptor_ >= 0; }
   const std::string& path() const { return path_; }
 
-  /// Hands the block to the system in one call. When only a part of it can be stored (disk full) the part is removed
-  /// again; throws ComputationError naming the file and the reason.
+  /// Stores the block whole, also when this process is killed meanwhile. When only a part of it can be stored (disk
+  /// full) the part is removed again; throws ComputationError naming the file and the reason.
   void write(std::string_view block);
+
+  /// The same for a file that nobody reads before it is finished: a kill may cut it. Much cheaper.
+  void write_unread(std::string_view block);
 
   /// Closes the file. Throws ComputationError when the system reports a failure only now.
   void close();

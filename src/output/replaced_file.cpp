@@ -1,29 +1,27 @@
 #include "output/replaced_file.hpp"
 
-#include <fmt/format.h>
-
 #include <filesystem>
 
-#include "constants/user_error.hpp"
+#include "output/writable_file.hpp"
 
 namespace tchat {
 
-namespace fs = std::filesystem;
+namespace {
 
-ReplacedFile::ReplacedFile(std::string path)
-    : path_(std::move(path)), file_(path_ + ".new", BlockFile::Mode::replace) {}
-
-ReplacedFile::~ReplacedFile() {
-  std::error_code ignored;
-  if (file_.is_open()) fs::remove(path_ + ".new", ignored);
+std::string checked(std::string path) {
+  require_writable(path);
+  return path;
 }
+
+}  // namespace
+
+ReplacedFile::ReplacedFile(std::string path) : path_(checked(std::move(path))), file_(path_) {}
 
 void ReplacedFile::finish() {
   file_.close();
   std::error_code error;
-  if (fs::exists(path_, error)) fs::rename(path_, path_ + "~", error);
-  fs::rename(path_ + ".new", path_, error);
-  if (error) throw ComputationError(fmt::format("{} cannot be written: {}", path_, error.message()));
+  if (std::filesystem::exists(path_, error)) keep_as(path_, path_ + "~");
+  file_.put_in_place();
 }
 
 }  // namespace tchat

@@ -2,15 +2,17 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <filesystem>
-#include <fstream>
 #include <utility>
+#include <vector>
 
 #include "constants/user_error.hpp"
 #include "output/diagnostics_file.hpp"
+#include "output/output_lock.hpp"
+#include "output/temporary_file.hpp"
 #include "output/writable_file.hpp"
+#include "start/fortran_number.hpp"
 #include "start/solution_file_reader.hpp"
 #include "start/text_file.hpp"
 
@@ -22,18 +24,8 @@ namespace fs = std::filesystem;
 
 constexpr std::array<char, 4> letters{'p', 'q', 'd', 'r'};
 
-/// The last bytes of a file; empty when it cannot be read.
-std::string tail_of(const std::string& path) {
-  constexpr std::streamoff longest = 4096;
-  std::ifstream file(path, std::ios::binary | std::ios::ate);
-  if (!file) return "";
-  const std::streamoff size = file.tellg();
-  const std::streamoff length = std::min(size, longest);
-  std::string tail(static_cast<std::size_t>(std::max<std::streamoff>(length, 0)), '\0');
-  file.seekg(size - length);
-  file.read(tail.data(), length);
-  tail.resize(static_cast<std::size_t>(file.gcount()));
-  return tail;
+std::string read_to_append(const std::string& path) {
+  return read_text_file(path, "an output to add to", "run without --append");
 }
 
 /// Cuts a file to its first `size` bytes.
@@ -43,12 +35,44 @@ void cut(const std::string& path, std::size_t size) {
   if (error) throw ComputationError(fmt::format("{}: cannot be mended ({})", path, error.message()));
 }
 
-/// Makes the file end with a newline, cutting off what follows the last one.
-void cut_last_line(const std::string& path) {
-  const std::string text = read_text_file(path, "an output to add to", "run without --append");
+/// Where the last whole line ends.
+std::size_t end_of_lines(std::string_view text) {
   const auto end = text.rfind('\n');
-  const std::size_t size = end == std::string::npos ? 0 : end + 1;
-  if (size != text.size()) cut(path, size);
+  return end == std::string_view::npos ? 0 : end + 1;
+}
+
+std::string_view last_line(std::string_view lines) {
+  if (lines.empty()) return lines;
+  const auto before = lines.rfind('\n', lines.size() - 2);
+  return lines.size() < 2 || before == std::string_view::npos ? lines : lines.substr(before + 1);
+}
+
+/// Cuts off an incomplete last line and a header without points, which AUTO's reader refuses.
+void mend_points(const std::string& path) {
+  const std::string text = read_to_append(path);
+  std::string_view lines(text.data(), end_of_lines(text));
+  while (!lines.empty()) {
+    const auto words = split_words(without_carriage_return(last_line(lines).substr(0, last_line(lines).size() - 1)));
+    if (!words.empty() && words[0] != "0") break;
+    lines.remove_suffix(last_line(lines).size());
+  }
+  if (lines.size() < text.size()) cut(path, lines.size());
+}
+
+/// Cuts off an incomplete last line, and ends the last block.
+void mend_diagnostics(const std::string& path) {
+  const std::string text = read_to_append(path);
+  const std::string_view lines(text.data(), end_of_lines(text));
+  if (lines.size() < text.size()) cut(path, lines.size());
+  if (!lines.empty() && last_line(lines) != format_bar() && !ends_complete_run(last_line(lines)))
+    BlockFile(path).write(format_bar());
+}
+
+void mend_solutions(const std::string& path) {
+  const std::string text = read_to_append(path);
+  const std::size_t complete = parse_solution_file(text, path).complete_bytes;
+  if (complete < text.size()) cut(path, complete);
+  if (complete > 0 && text[complete - 1] != '\n') BlockFile(path).write("\n");
 }
 
 bool exists(const std::string& path) {
@@ -58,38 +82,58 @@ bool exists(const std::string& path) {
 
 }  // namespace
 
-std::string output_path(char letter, const std::string& name) {
-  const fs::path path(name);
-  return (path.parent_path() / fmt::format("{}.{}", letter, path.filename().string())).string();
-}
-
-bool is_complete_run(const std::string& diagnostics_path) { return ends_complete_run(tail_of(diagnostics_path)); }
-
 RunFiles::RunFiles(std::string name, Mode mode) : name_(std::move(name)), mode_(mode) {}
 
 void RunFiles::check_writable() {
   if (fs::path(name_).filename().empty())
     throw UserError(fmt::format("'{}' is no name for output files; an example is -o mems", name_));
   for (const char letter : letters) require_writable(path(letter));
+  lock_ = lock_output(name_);
   if (mode_ == Mode::append && exists(path('q'))) {
     const SolutionFile existing = read_solution_file(path('q'));
     last_label_ = existing.last_label;
     last_branch_ = existing.last_branch;
   }
-  checked_ = true;
 }
 
 void RunFiles::open(std::string_view constants) {
-  if (!checked_) check_writable();
-  if (mode_ == Mode::replace) keep_existing();
-  if (mode_ == Mode::append) mend_existing();
-  // The d-file comes first: a set without one is taken for somebody's own, not for an interrupted run's.
-  diagnostics_ = BlockFile(path('d'), mode_);
-  points_ = BlockFile(path('p'), mode_);
-  solutions_ = BlockFile(path('q'), mode_);
-  BlockFile used_constants(path('r'), Mode::replace);
+  if (!lock_) check_writable();
+  std::vector<std::string> names;
+  for (const char letter : letters)
+    for (const char* suffix : {"", "~", "~~"}) names.push_back(path(letter) + suffix);
+  remove_abandoned(names);
+  // A disk without room for it is noticed before anything is touched.
+  TemporaryFile used_constants(path('r'));
   used_constants.write(constants);
   used_constants.close();
+  if (mode_ == Mode::replace)
+    begin_new_set();
+  else
+    go_on_with_set();
+  used_constants.put_in_place();
+}
+
+void RunFiles::begin_new_set() {
+  TemporaryFile diagnostics(path('d')), points(path('p')), solutions(path('q'));
+  keep_run_set(name_);
+  diagnostics_ = diagnostics.put_in_place();
+  points_ = points.put_in_place();
+  solutions_ = solutions.put_in_place();
+}
+
+/// Files that are still those of the kept set too, because a run was killed at its very beginning, are separated.
+void RunFiles::go_on_with_set() {
+  for (const char letter : letters) separate(path(letter), path(letter) + "~");
+  mend_existing();
+  diagnostics_ = BlockFile(path('d'));
+  points_ = BlockFile(path('p'));
+  solutions_ = BlockFile(path('q'));
+}
+
+void RunFiles::mend_existing() const {
+  if (exists(path('p'))) mend_points(path('p'));
+  if (exists(path('d'))) mend_diagnostics(path('d'));
+  if (exists(path('q'))) mend_solutions(path('q'));
 }
 
 void RunFiles::finish() {
@@ -98,28 +142,7 @@ void RunFiles::finish() {
   solutions_.close();
   diagnostics_.write(format_end_of_run());
   diagnostics_.close();
-}
-
-/// A set with a d-file that lacks the closing line may be lost for a complete p.O~; every other one is kept.
-void RunFiles::keep_existing() const {
-  const bool incomplete = exists(path('d')) && !is_complete_run(path('d'));
-  if (incomplete && is_complete_run(path('d') + "~")) return;
-  for (const char letter : letters) {
-    const std::string current = path(letter);
-    std::error_code error;
-    if (exists(current)) fs::rename(current, current + "~", error);
-    if (error) throw ComputationError(fmt::format("{}: cannot be kept as {}~ ({})", current, current, error.message()));
-  }
-}
-
-void RunFiles::mend_existing() const {
-  for (const char letter : {'p', 'd'})
-    if (exists(path(letter))) cut_last_line(path(letter));
-  if (!exists(path('q'))) return;
-  const std::string text = read_text_file(path('q'), "an output to add to", "run without --append");
-  const std::size_t complete = parse_solution_file(text, path('q')).complete_bytes;
-  if (complete < text.size()) cut(path('q'), complete);
-  if (complete > 0 && text[complete - 1] != '\n') BlockFile(path('q'), Mode::append).write("\n");
+  lock_.reset();
 }
 
 }  // namespace tchat

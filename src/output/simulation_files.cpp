@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "output/output_lock.hpp"
+#include "output/temporary_file.hpp"
+
 namespace tchat {
 
 namespace {
@@ -50,12 +53,21 @@ const char* word(SegmentMark::Kind kind) {
   }
 }
 
+/// What killed simulations of this name have left is removed.
+std::unique_ptr<FileLock> lock_simulation(const std::string& name) {
+  const std::string trajectory = SimulationFiles::trajectory_path(name);
+  auto lock = lock_output(trajectory);
+  remove_abandoned({trajectory, SimulationFiles::events_path(name)});
+  return lock;
+}
+
 }  // namespace
 
 SimulationFiles::SimulationFiles(const HybridSystem& system, const std::string& name, const std::string& heading,
                                  const Eigen::VectorXd& par, std::size_t trajectory_bytes)
     : system_(system),
       par_(par),
+      lock_(lock_simulation(name)),
       trajectory_(trajectory_path(name)),
       events_(events_path(name)),
       most_bytes_(trajectory_bytes) {

@@ -17,10 +17,12 @@
 #include <cstddef>
 #include <deque>
 #include <limits>
+#include <memory>
 #include <string>
 
 #include "hybrid/hybrid_system.hpp"
 #include "output/replaced_file.hpp"
+#include "plugin/file_lock.hpp"
 #include "simulation/hybrid_simulation.hpp"
 
 namespace tchat {
@@ -29,8 +31,9 @@ class SimulationFiles {
  public:
   static constexpr std::size_t everything = std::numeric_limits<std::size_t>::max();
 
-  /// Opens both under temporary names. `heading` is one line: which problem, which parameters. Of the trajectory the
-  /// last segments are kept, at most so many bytes, but those of two turns of a recognised orbit in any case.
+  /// Opens both under temporary names, which no other simulation can at the same time (UserError). `heading` is one
+  /// line: which problem, which parameters. Of the trajectory the last segments are kept, at most so many bytes, but
+  /// those of two turns of a recognised orbit in any case.
   SimulationFiles(const HybridSystem& system, const std::string& name, const std::string& heading,
                   const Eigen::VectorXd& par, std::size_t trajectory_bytes = everything);
 
@@ -48,6 +51,7 @@ class SimulationFiles {
  private:
   const HybridSystem& system_;
   Eigen::VectorXd par_;
+  std::unique_ptr<FileLock> lock_;
   ReplacedFile trajectory_;
   ReplacedFile events_;
   void write_rows(std::string rows);  // of one segment, at once or kept until finish()

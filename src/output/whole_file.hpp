@@ -6,7 +6,8 @@
 
 namespace tchat {
 
-/// Writes path.new and renames it; an existing file is kept as path~. Throws ComputationError naming the file.
+/// Writes a file beside it and renames it; an existing file is kept as path~. Throws UserError, ComputationError naming
+/// the file.
 void write_whole_file(const std::string& path, std::string_view text);
 
 }  // namespace tchat

@@ -38,6 +38,12 @@ void require_writable(const std::string& path) {
   if (fs::exists(status) && !fs::is_regular_file(status)) refuse(path, "cannot be written, it is a device or pipe");
   if (fs::exists(status) && ::access(path.c_str(), W_OK) != 0)
     refuse(path, fmt::format("cannot be written ({})", std::strerror(errno)));
+  const std::string kept = path + "~";
+  if (fs::exists(status) && fs::is_directory(kept, error))
+    throw UserError(
+        fmt::format("{} cannot be replaced: it is to be kept as {}, and that is a directory; move the directory away, "
+                    "or choose another name with -o",
+                    path, kept));
 }
 
 }  // namespace tchat

@@ -6,7 +6,7 @@
 namespace tchat {
 
 /// Throws UserError when `path` lies in a folder that is missing or closed, or is a directory, a device or a file that
-/// may not be replaced.
+/// may not be replaced, or when there is one that cannot be kept as `path~`.
 void require_writable(const std::string& path);
 
 }  // namespace tchat

@@ -1,17 +1,15 @@
 #include "plot/picture_output.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <cctype>
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <memory>
 
 #include "constants/user_error.hpp"
+#include "output/temporary_file.hpp"
 #include "plot/gnuplot.hpp"
 #include "plot/gnuplot_script.hpp"
 
@@ -21,45 +19,20 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A file beside its final name, removed unless it is moved there.
-class UnfinishedFile {
- public:
-  explicit UnfinishedFile(const std::string& path) : path_(path) {
-    const fs::path final_path(path);
-    name_ = (final_path.parent_path() / fmt::format(".{}.{}", final_path.filename().string(), getpid())).string();
-    std::ofstream file(name_);
-    if (!file)
-      throw UserError(
-          fmt::format("{}: cannot be written ({}); give a file in a folder that is there and writable, or "
-                      "make it",
-                      path, std::strerror(errno)));
+/// Throws UserError when no file can be made beside `path`.
+std::unique_ptr<TemporaryFile> begin_file(const std::string& path) {
+  try {
+    return std::make_unique<TemporaryFile>(path);
+  } catch (const ComputationError& error) {
+    throw UserError(fmt::format("{}; give a file in a folder that is there and writable, or make it", error.what()));
   }
-  ~UnfinishedFile() { std::remove(name_.c_str()); }
-  UnfinishedFile(const UnfinishedFile&) = delete;
-  UnfinishedFile& operator=(const UnfinishedFile&) = delete;
-
-  const std::string& name() const { return name_; }
-
-  void write(const std::string& text) const {
-    std::ofstream file(name_, std::ios::binary);
-    file << text << std::flush;
-    if (!file) throw ComputationError(fmt::format("{}: cannot be written ({})", path_, std::strerror(errno)));
-  }
-
-  void finish() const {
-    if (std::rename(name_.c_str(), path_.c_str()) != 0)
-      throw UserError(fmt::format("{}: cannot be written ({})", path_, std::strerror(errno)));
-  }
-
- private:
-  std::string path_;
-  std::string name_;
-};
+}
 
 void write_text(const std::string& path, const std::string& text) {
-  const UnfinishedFile file(path);
-  file.write(text);
-  file.finish();
+  const auto file = begin_file(path);
+  file->write(text);
+  file->close();
+  file->put_in_place();
 }
 
 /// A PDF says when it was made: digits of these dates become a fixed day, so that lengths stay.
@@ -80,13 +53,14 @@ void remove_dates(const std::string& path) {
 
 void draw_to_file(const Figure& figure, const FigureLayout& layout, const std::string& path) {
   const PictureFormat format = picture_format(path);
-  const UnfinishedFile file(path);
-  run_gnuplot(gnuplot_script(figure, layout, {format, file.name(), ""}));
+  const auto file = begin_file(path);
+  file->close();
+  run_gnuplot(gnuplot_script(figure, layout, {format, file->name(), ""}));
   std::error_code error;
-  if (fs::file_size(file.name(), error) == 0 || error)
+  if (fs::file_size(file->name(), error) == 0 || error)
     throw ComputationError(fmt::format("{}: gnuplot drew nothing; is the disk full?", path));
-  if (format == PictureFormat::pdf) remove_dates(file.name());
-  file.finish();
+  if (format == PictureFormat::pdf) remove_dates(file->name());
+  file->put_in_place();
 }
 
 }  // namespace

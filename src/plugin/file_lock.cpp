@@ -5,7 +5,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
+#include <charconv>
+#include <thread>
 
 namespace tchat {
 
@@ -19,24 +22,60 @@ bool still_at(const std::string& path, int descriptor) {
   return opened.st_dev == named.st_dev && opened.st_ino == named.st_ino;
 }
 
-void wait_for_lock(int descriptor) {
-  while (flock(descriptor, LOCK_EX) != 0 && errno == EINTR) {
+/// False when another process has the lock and we do not wait. Other failures are those of a file system without locks.
+bool lock(int descriptor, bool wait) {
+  while (flock(descriptor, wait ? LOCK_EX : LOCK_EX | LOCK_NB) != 0) {
+    if (errno == EINTR) continue;
+    return errno != EWOULDBLOCK;
   }
+  return true;
+}
+
+int number_in(int descriptor) {
+  std::array<char, 16> text{};
+  const ssize_t size = pread(descriptor, text.data(), text.size(), 0);
+  int number = 0;
+  if (size > 0) std::from_chars(text.data(), text.data() + size, number);
+  return number;
+}
+
+void leave_own_number(int descriptor) {
+  const std::string text = std::to_string(getpid()) + '\n';
+  if (ftruncate(descriptor, 0) != 0) return;
+  if (pwrite(descriptor, text.data(), text.size(), 0) < 0) return;  // the number only serves a message
 }
 
 }  // namespace
 
 FileLock::FileLock(const std::string& path) : path_(path) {
-  while (true) {
-    descriptor_ = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-    if (descriptor_ < 0) {
-      error_ = errno;
-      return;
-    }
-    wait_for_lock(descriptor_);
-    if (still_at(path, descriptor_)) return;
-    close(descriptor_);
+  while (!try_once(true)) {
   }
+}
+
+FileLock::FileLock(const std::string& path, std::chrono::milliseconds patience) : path_(path) {
+  constexpr std::chrono::milliseconds pause{10};
+  const auto deadline = std::chrono::steady_clock::now() + patience;
+  while (!try_once(false)) {
+    if (error_ != 0 && std::chrono::steady_clock::now() >= deadline) return;
+    std::this_thread::sleep_for(pause);
+  }
+}
+
+/// True when there is nothing more to try: the lock is held, or its file cannot be made.
+bool FileLock::try_once(bool wait) {
+  const int descriptor = open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
+  error_ = descriptor < 0 ? errno : 0;
+  if (descriptor < 0) return true;
+  if (!lock(descriptor, wait)) {
+    error_ = EWOULDBLOCK;
+    holder_ = number_in(descriptor);
+  } else if (still_at(path_, descriptor)) {
+    leave_own_number(descriptor);
+    descriptor_ = descriptor;
+    return true;
+  }
+  close(descriptor);
+  return false;
 }
 
 FileLock::~FileLock() {

@@ -233,8 +233,10 @@ std::vector<std::string> resegment(const ResegmentRequest& request, std::ostream
   refuse_same_file(solutions_out, path, "q-file");
   refuse_same_file(constants_out, constants, "constants file");
   const std::string start_out = request.data ? request.output + ".dat" : solutions_out;
-  write_whole_file(start_out, request.data ? data_text(start.orbit, system)
-                                           : format_solution(make_solution(source, target, start, settings)));
+  if (request.data)
+    write_whole_file(start_out, data_text(start.orbit, system));
+  else
+    replace_solution_file(request.output, format_solution(make_solution(source, target, start, settings)));
   write_whole_file(constants_out, keyword_text(settings));
 
   screen << summary(source, settings, start.orbit, system)

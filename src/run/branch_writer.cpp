@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <utility>
 
 #include "continuation/solution_measure.hpp"
 #include "hybrid/parameter_vector.hpp"
@@ -31,8 +32,9 @@ void BranchWriter::begin_section(Section section) {
   setup_.branch = section.branch;
   setup_.settings.step = section.step;
   start_correction_ = std::move(section.correction);
-  files_.write_points(
-      format_point_header({setup_.settings, setup_.active_parameters, names_, setup_.curve_type}, columns_));
+  if (has_points_) files_.write_diagnostics(format_bar());  // the last point of a branch has no next step and no bar
+  has_points_ = false;
+  header_ = format_point_header({setup_.settings, setup_.active_parameters, names_, setup_.curve_type}, columns_);
   if (screen_ != nullptr) *screen_ << format_table_heading(columns_) << std::flush;
 }
 
@@ -98,7 +100,8 @@ void BranchWriter::point(const BranchPoint& point) {
   if (point.labelled()) line.label = ++setup_.last_label;
 
   if (point.labelled()) write_solution(point, line);
-  files_.write_points(format_point(line));
+  files_.write_points(std::exchange(header_, "") + format_point(line));
+  has_points_ = true;
   write_diagnostics(point, line);
   if (screen_ != nullptr) show(point, line);
   tell_unknown_user_values(line);

@@ -32,7 +32,8 @@ class BranchWriter final : public BranchSink {
     double step = 0.0;                        ///< DS, with its sign in this section
     std::vector<NewtonIteration> correction;  ///< how Newton came to the first point
   };
-  /// Writes the header of a section; points that follow belong to it.
+  /// Points that follow belong to a section of their own; its header is written with the first of them, for AUTO's
+  /// reader refuses a header without points.
   void begin_section(Section section);
   void point(const BranchPoint& point) override;
   void next_step(int point_number, double ds) override;
@@ -68,6 +69,8 @@ class BranchWriter final : public BranchSink {
   Eigen::VectorXd weights_;
   std::vector<Labelled> labels_;
   std::vector<NewtonIteration> start_correction_;  // how Newton came to the section's first point
+  std::string header_;                             // of the section, until it is written
+  bool has_points_ = false;                        // the section
   bool last_admissible_ = true;
   bool last_stable_ = false;
   std::set<int> told_user_functions_;

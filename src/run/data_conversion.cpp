@@ -2,8 +2,8 @@
 
 #include "constants/constants_file.hpp"
 #include "constants/user_error.hpp"
+#include "output/run_set.hpp"
 #include "output/solution_file.hpp"
-#include "output/whole_file.hpp"
 #include "plugin/plugin_build.hpp"
 #include "plugin/problem_library.hpp"
 #include "run/problem_setup.hpp"
@@ -29,9 +29,9 @@ std::string convert_data(const RunRequest& request) {
   solution.type = static_cast<int>(PointType::end);
   solution.problem_type = settings.problem_type;
   solution.branch_mode = settings.branch_mode;
-  const std::string path = default_solution_path(request.output.value_or(request.name));
-  write_whole_file(path, format_solution(solution));
-  return path;
+  const std::string name = request.output.value_or(request.name);
+  replace_solution_file(name, format_solution(solution));
+  return output_path('q', name);
 }
 
 }  // namespace tchat

@@ -52,12 +52,22 @@ def read_entries(name):
     return entries
 
 
-def check_run(name, parseB, parseBandS, parseS):
+def check_blocks(name, parseD, rows, states):
+    """Every point has a block of its own in d.NAME, with its branch, label and as many multipliers as states."""
+    blocks = parseD.parseD("d." + name)
+    blocks = [block for block in (blocks[k] for k in range(len(blocks.data))) if block["Multipliers"]]
+    same([len(block["Multipliers"]) for block in blocks], [states] * len(rows), name + ": multipliers of each block")
+    same([block["Branch number"] for block in blocks], [row[0][0] for row in rows], name + ": branches of the d-file")
+    same([block["Label"] for block in blocks], [row[0][3] for row in rows], name + ": labels of the d-file")
+
+
+def check_run(name, parseB, parseBandS, parseD, parseS):
     rows = read_rows(name)
     branches = parseB.parseBR("p." + name)
     read = [(int(branch["BR"]), branch) for branch in branches]
     same(sum(len(branch.coordarray[0]) for _, branch in read), len(rows), name + ": number of points")
     same(branches.getLabels(), [r[0][3] for r in rows if r[0][3] > 0], name + ": labels of the p-file")
+    check_blocks(name, parseD, rows, 4)
     at = 0
     for number, branch in read:
         for k in range(len(branch.coordarray[0])):
@@ -95,7 +105,7 @@ def main():
     tchat, plugin, constants = (os.path.abspath(a) for a in sys.argv[1:4])
     sys.path.insert(0, auto)
     allow_new_numpy()
-    from auto import parseB, parseBandS, parseS
+    from auto import parseB, parseBandS, parseD, parseS
 
     with tempfile.TemporaryDirectory() as work:
         os.chdir(work)
@@ -104,7 +114,7 @@ def main():
         shutil.copy(plugin, work)
         for run in RUNS:
             subprocess.run([tchat, "run", "linosc", "-q"] + run, check=True)
-            check_run(run[run.index("-o") + 1], parseB, parseBandS, parseS)
+            check_run(run[run.index("-o") + 1], parseB, parseBandS, parseD, parseS)
         os.chdir(constants)
     print("%d runs, %d faults" % (len(RUNS), len(FAULTS)))
     return 1 if FAULTS else 0

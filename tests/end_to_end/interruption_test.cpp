@@ -115,6 +115,39 @@ TEST_CASE("after SIGKILL the files load, an incomplete set never replaces a comp
   CHECK(workspace.read("q.branch~") != complete);
 }
 
+TEST_CASE("two runs with one output name: the second is refused while the first goes on") {
+  const Workspace workspace;
+  const auto process = workspace.start_tchat(endless);
+  wait_for_points(workspace, *process, 1);
+  for (const std::string second : {"run linosc -c impacting -d impacting -o branch NMX=3",
+                                   "run linosc -c impacting -d impacting -o branch --append NMX=3",
+                                   "dat linosc -c impacting -d impacting -o branch"}) {
+    const Outcome outcome = workspace.tchat(second);
+    CHECK(outcome.status == 2);
+    CHECK(outcome.err.find("another tchat (process ") != std::string::npos);
+    CHECK(outcome.err.find("-o") != std::string::npos);
+  }
+  workspace.run("-c impacting -d impacting -o other NMX=3");
+  process->send(SIGINT);
+  CHECK(process->wait(std::chrono::seconds(30)).status == 130);
+  CHECK(labels_of(workspace.points("branch")) == labels_of(workspace.solutions("branch")));
+  workspace.run("-c impacting -d impacting -o branch NMX=3");
+}
+
+TEST_CASE("a complete set, an --append that is killed, a plain run: the set is kept") {
+  const Workspace workspace;
+  workspace.run("-c impacting -d impacting -o branch NMX=3");
+  workspace.run("-c impacting -d impacting -o branch NMX=5");
+  const std::string points = workspace.read("p.branch"), solutions = workspace.read("q.branch");
+  const auto process = workspace.start_tchat(endless + " --append");
+  wait_for_points(workspace, *process, solutions.size() + some_solutions);
+  process->send(SIGKILL);
+  process->wait(std::chrono::seconds(30));
+  workspace.run("-c impacting -d impacting -o branch NMX=4");
+  CHECK(workspace.read("p.branch~").compare(0, points.size(), points) == 0);
+  CHECK(workspace.read("q.branch~").compare(0, solutions.size(), solutions) == 0);
+}
+
 TEST_CASE("a q-file cut anywhere in its last solution gives a warning and the solutions before") {
   const Workspace workspace;
   workspace.run("-c impacting -d impacting -o branch NMX=9 NPR=4 NTST=10");

@@ -1,8 +1,14 @@
 #include "output/block_file.hpp"
 
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <catch2/catch.hpp>
+#include <chrono>
 #include <filesystem>
 #include <string>
+#include <thread>
 #include <utility>
 
 #include "constants/user_error.hpp"
@@ -15,7 +21,7 @@ using test_support::message_of;
 
 TEST_CASE("Blocks are in the file as soon as they are written", "[output]") {
   const test_support::TemporaryFolder folder;
-  BlockFile file(folder.file("p.x"), BlockFile::Mode::replace);
+  BlockFile file(folder.file("p.x"));
   file.write("one\n");
   CHECK(folder.read("p.x") == "one\n");
   BlockFile moved = std::move(file);
@@ -23,25 +29,62 @@ TEST_CASE("Blocks are in the file as soon as they are written", "[output]") {
   CHECK(folder.read("p.x") == "one\ntwo\n");
 }
 
-TEST_CASE("Replacing and appending", "[output]") {
+TEST_CASE("A file that is there is added to", "[output]") {
   const test_support::TemporaryFolder folder;
   folder.write("p.x", "old\n");
-  BlockFile(folder.file("p.x"), BlockFile::Mode::append).write("new\n");
+  BlockFile(folder.file("p.x")).write("new\n");
   CHECK(folder.read("p.x") == "old\nnew\n");
-  BlockFile(folder.file("p.x"), BlockFile::Mode::replace).write("newest\n");
-  CHECK(folder.read("p.x") == "newest\n");
+}
+
+TEST_CASE("Blocks of all sizes, within a page of memory and across many") {
+  const test_support::TemporaryFolder folder;
+  BlockFile file(folder.file("q.x"));
+  std::string expected;
+  for (const std::size_t size : {1u, 4094u, 1u, 1u, 4096u, 50000u, 0u, 8191u, 300u}) {
+    const std::string block(size, static_cast<char>('a' + expected.size() % 26));
+    file.write(block);
+    expected += block;
+    CHECK(folder.read("q.x") == expected);
+  }
+}
+
+TEST_CASE("A block is whole although the process is killed while it is stored") {
+  const test_support::TemporaryFolder folder;
+  const std::string block = std::string(999'999, 'b') + "\n";
+  for (int attempt = 0; attempt < 10; ++attempt) {
+    const std::string name = folder.file(std::to_string(attempt));
+    BlockFile file(name);
+    const pid_t child = ::fork();
+    if (child == 0) {
+      while (true) file.write(block);
+    }
+    while (std::filesystem::file_size(name) < block.size())
+      ;
+    ::kill(child, SIGKILL);
+    ::waitpid(child, nullptr, 0);
+    // The process that stores the last block may still be at it.
+    std::uintmax_t size = 0;
+    for (int still = 0; still < 20; ++still) {
+      const std::uintmax_t now = std::filesystem::file_size(name);
+      still = now == size ? still : 0;
+      size = now;
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+    CHECK(size % block.size() == 0);
+    std::filesystem::remove(name);
+  }
 }
 
 TEST_CASE("A full disk is an error that names the file", "[output]") {
   if (!std::filesystem::exists("/dev/full")) return;
-  BlockFile file("/dev/full", BlockFile::Mode::append);
+  BlockFile file("/dev/full");
   const std::string message = message_of<ComputationError>([&] { file.write("block\n"); });
   CHECK_THAT(message, Contains("/dev/full") && Contains("No space left"));
 }
 
 TEST_CASE("The part of a block that still fitted is taken back", "[output]") {
   const test_support::TemporaryFolder folder;
-  BlockFile file(folder.file("q.x"), BlockFile::Mode::replace);
+  BlockFile file(folder.file("q.x"));
   file.write(std::string(1000, 'a') + "\n");
   const test_support::FileSizeLimit limit(1500);
   const std::string message = message_of<ComputationError>([&] { file.write(std::string(1000, 'b') + "\n"); });
@@ -53,6 +96,6 @@ TEST_CASE("The part of a block that still fitted is taken back", "[output]") {
 
 TEST_CASE("A file that cannot be opened", "[output]") {
   const test_support::TemporaryFolder folder;
-  const auto open = [&] { BlockFile(folder.file("none/p.x"), BlockFile::Mode::replace); };
+  const auto open = [&] { BlockFile(folder.file("none/p.x")); };
   CHECK_THAT(message_of<ComputationError>(open), Contains("none/p.x") && Contains("No such file"));
 }
