@@ -26,9 +26,6 @@ class Workspace {
   /// As tchat(), with files of at most so many blocks of 512 bytes, as on a full disk.
   Outcome tchat_on_small_disk(int blocks, const std::string& arguments) const;
 
-  /// As tchat(), with a redirection of the shell at its end, such as `> /dev/full`.
-  Outcome tchat_redirected(const std::string& arguments, const std::string& redirection) const;
-
   /// make -C FOLDER TARGETS, with this tchat.
   Outcome make(const std::string& folder, const std::string& targets) const;
 
