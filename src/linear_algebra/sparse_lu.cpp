@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 namespace tchat {
 
@@ -16,6 +17,17 @@ using SparseMatrix = Eigen::SparseMatrix<double, Eigen::ColMajor, int>;
 
 void check(int status, const char* what) {
   if (status != UMFPACK_OK) throw std::invalid_argument(std::string("UMFPACK: ") + what);
+}
+
+/// Sign of a permutation of 0, 1, ..., by its cycles.
+int parity(std::vector<int> order) {
+  int sign = 1;
+  for (std::size_t k = 0; k < order.size(); ++k)
+    while (order[k] != static_cast<int>(k)) {
+      std::swap(order[k], order[static_cast<std::size_t>(order[k])]);
+      sign = -sign;
+    }
+  return sign;
 }
 
 }  // namespace
@@ -83,7 +95,11 @@ bool SparseLu::factorize(const std::vector<double>& values) {
   if (finite != 0.0) return false;
   const int status = umfpack_di_numeric(st.matrix.outerIndexPtr(), st.matrix.innerIndexPtr(), entries, st.symbolic,
                                         &st.numeric, st.control, st.info);
-  return status == UMFPACK_OK;
+  // Finite values may overflow on the way.
+  const bool finite_factors = std::isfinite(st.info[UMFPACK_UMAX]) && std::isfinite(st.info[UMFPACK_UMIN]);
+  if (status == UMFPACK_OK && finite_factors) return true;
+  umfpack_di_free_numeric(&st.numeric);
+  return false;
 }
 
 void SparseLu::solve(const double* b, double* x) { state_->solve(UMFPACK_A, b, x); }
@@ -91,12 +107,25 @@ void SparseLu::solve_transposed(const double* b, double* x) { state_->solve(UMFP
 
 SparseLu::Determinant SparseLu::determinant() const {
   if (state_->numeric == nullptr) return {};
-  double mantissa = 0.0;
-  double exponent = 0.0;  // of ten
-  double info[UMFPACK_INFO];
-  umfpack_di_get_determinant(&mantissa, &exponent, state_->numeric, info);
-  if (mantissa == 0.0 || !std::isfinite(mantissa)) return {};
-  return {mantissa > 0.0 ? 1 : -1, std::log2(std::abs(mantissa)) + exponent * std::log2(10.0)};
+  // P R A Q = L U with L's diagonal 1. UMFPACK's own product of U's diagonal never ends where an entry is not finite.
+  const auto n = static_cast<std::size_t>(size());
+  std::vector<int> row_order(n);
+  std::vector<int> column_order(n);
+  std::vector<double> diagonal(n);
+  std::vector<double> row_scale(n);
+  int reciprocal = 0;  // R is 1 / row_scale or row_scale
+  if (umfpack_di_get_numeric(nullptr, nullptr, nullptr, nullptr, nullptr, nullptr, row_order.data(),
+                             column_order.data(), diagonal.data(), &reciprocal, row_scale.data(),
+                             state_->numeric) != UMFPACK_OK)
+    return {};
+  Determinant result{parity(row_order) * parity(column_order), 0.0};
+  for (std::size_t k = 0; k < n; ++k) {
+    if (diagonal[k] == 0.0) return {};
+    if (diagonal[k] < 0.0) result.sign = -result.sign;
+    const double scale = std::log2(row_scale[k]);
+    result.log2_size += std::log2(std::abs(diagonal[k])) + (reciprocal != 0 ? -scale : scale);
+  }
+  return std::isfinite(result.log2_size) ? result : Determinant{};
 }
 
 SparseLu::Condition SparseLu::condition() const {

@@ -4,6 +4,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <cmath>
 
 namespace tchat {
 
@@ -13,15 +14,15 @@ using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
 using RowMajorBlock = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>;
 
-/// v across the end of segment s: onto the section along the flow, then through the jump if asked.
-Vector project(const DefiningSystem& system, const Orbit& x, int s, const Vector& v) {
+/// The columns of v at the end of segment s onto the section along the flow.
+Matrix project(const DefiningSystem& system, const Orbit& x, int s, const Matrix& v) {
   const int n = system.dimension();
   Vector f(n);
   Vector gradient(n);
   system.system().value(FunctionKind::field, system.signature()[static_cast<std::size_t>(s)].field, x.end(s),
                         x.par.data(), f.data());
   system.section_gradient(s, x.end(s), x.par.data(), gradient.data());
-  return v - f * (gradient.dot(v) / gradient.dot(f));
+  return v - f * ((gradient.transpose() * v) / gradient.dot(f));
 }
 
 Matrix jump_derivative(const HybridSystem& system, int jump, const double* x, const double* par) {
@@ -32,8 +33,8 @@ Matrix jump_derivative(const HybridSystem& system, int jump, const double* x, co
   return gx;
 }
 
-/// A v: from the contact through the cycle back to it.
-Vector once_around(const GrazingOrbitSystem& system, const CondensedSystem& condensed, const Orbit& x, Vector v) {
+/// A v: the columns of v from the contact through the cycle back to it.
+Matrix once_around(const GrazingOrbitSystem& system, const CondensedSystem& condensed, const Orbit& x, Matrix v) {
   const int m = system.segments();
   const int n = system.dimension();
   for (int i = 1; i <= m; ++i) {
@@ -44,15 +45,69 @@ Vector once_around(const GrazingOrbitSystem& system, const CondensedSystem& cond
         v;
     const RowMajorBlock first(condensed.first_block(s), n, n);
     const RowMajorBlock last(condensed.last_block(s), n, n);
-    v = project(system, x, s, Matrix(last).partialPivLu().solve(Vector(-(first * v))));
+    v = project(system, x, s, Matrix(last).partialPivLu().solve(Matrix(-(first * v))));
   }
   return v;
+}
+
+/// A matrix or vector as digits * 2^exponent, so that powers neither vanish nor overflow.
+struct Scaled {
+  Matrix digits;
+  double exponent = 0.0;
+
+  void normalise() {
+    const double size = digits.lpNorm<Eigen::Infinity>();
+    if (size == 0.0 || !std::isfinite(size)) return;
+    const int shift = std::ilogb(size);
+    digits *= std::ldexp(1.0, -shift);
+    exponent += shift;
+  }
+};
+
+Scaled product(const Scaled& a, const Scaled& b) {
+  Scaled result{a.digits * b.digits, a.exponent + b.exponent};
+  result.normalise();
+  return result;
+}
+
+/// A^n v by squaring A.
+Scaled power_times(Scaled a, int n, Scaled v) {
+  for (; n > 0; n /= 2) {
+    if (n % 2 == 1) v = product(a, v);
+    a = product(a, a);
+  }
+  return v;
+}
+
+/// A^(n-1) beta and A^n beta, with one exponent for both. Few powers are taken one by one, as cheap and most accurate.
+struct Powers {
+  Vector before, last;
+};
+Powers powers(const GrazingOrbitSystem& system, const CondensedSystem& condensed, const Orbit& x, const Vector& beta,
+              int n) {
+  constexpr int one_by_one = 40;
+  constexpr double smallest = -900.0;  // a sign that underflow would swallow is kept, at this size
+  constexpr double largest = 900.0;
+  Powers result{beta, beta};
+  if (n <= one_by_one) {
+    for (int k = 1; k <= n; ++k) {
+      result.before = result.last;
+      result.last = once_around(system, condensed, x, result.before);
+    }
+    return result;
+  }
+  const Scaled a{once_around(system, condensed, x, Matrix::Identity(beta.size(), beta.size()))};
+  const Scaled before = power_times(a, n - 1, {beta});
+  const double size = std::ldexp(1.0, static_cast<int>(std::clamp(before.exponent, smallest, largest)));
+  result.before = size * before.digits;
+  result.last = size * (a.digits * before.digits);
+  return result;
 }
 
 }  // namespace
 
 GrazingUnfolding grazing_unfolding(const GrazingOrbitSystem& system, const CondensedSystem& condensed, const Orbit& x,
-                                   int jump, int count) {
+                                   int jump, int number) {
   const int s = system.grazing_segment();
   const int n = system.dimension();
   const IndexVector& index = system.signature()[static_cast<std::size_t>(s)];
@@ -68,25 +123,23 @@ GrazingUnfolding grazing_unfolding(const GrazingOrbitSystem& system, const Conde
 
   GrazingUnfolding result;
   result.acceleration = section.dot(f);
-  Vector v = project(system, x, s, jump_derivative(system.system(), jump, contact, x.par.data()) * f);
-  for (int k = 1; k <= count; ++k) {
-    const double before = v.norm();
-    v = once_around(system, condensed, x, v);
-    result.xi.push_back(-event_gradient.dot(v));
-    result.scale.push_back(event_gradient.norm() * std::max(before, v.norm()));
-  }
+  if (number == 0) return result;
+  const Vector beta = project(system, x, s, jump_derivative(system.system(), jump, contact, x.par.data()) * f);
+  const Powers turns = powers(system, condensed, x, beta, number);
+  result.xi = -event_gradient.dot(turns.last);
+  result.scale = event_gradient.norm() * std::max(turns.before.norm(), turns.last.norm());
   return result;
 }
 
 std::string XiTest::name() const { return fmt::format("xi_{}", n_); }
 
 std::optional<double> XiTest::value(const TestedPoint& point) const {
-  return grazing_unfolding(system_, point.condensed, point.orbit, jump_, n_).xi.back();
+  return grazing_unfolding(system_, point.condensed, point.orbit, jump_, n_).xi;
 }
 
 double XiTest::zero_level(const TestedPoint& point) const {
   constexpr double rounding = 1e-9;  // each turn's share, with that of the orbit's own error
-  return rounding * grazing_unfolding(system_, point.condensed, point.orbit, jump_, n_).scale.back();
+  return rounding * grazing_unfolding(system_, point.condensed, point.orbit, jump_, n_).scale;
 }
 
 SpecialPoint XiTest::classify(const TestedPoint&, bool) const {

@@ -14,16 +14,17 @@
 
 namespace tchat {
 
-/// a* and xi_1..xi_count at a point whose linearisation is in `condensed`.
+/// a* and xi_n at a point whose linearisation is in `condensed`.
 struct GrazingUnfolding {
   double acceleration = 0.0;  ///< a*
-  std::vector<double> xi;
-  /// What each xi_n is small or large against: |h_x| times the larger of |A^n beta| and |A^(n-1) beta|. The powers
+  double xi = 0.0;
+  /// What xi_n is small or large against: |h_x| times the larger of |A^n beta| and |A^(n-1) beta|. The powers
   /// decay where A contracts, and xi_n with them: that is no zero.
-  std::vector<double> scale;
+  double scale = 0.0;
 };
+/// n >= 1, or 0 for a* alone. Beyond 2^-900 and 2^900 xi_n and its scale stop at that size and keep their sign.
 GrazingUnfolding grazing_unfolding(const GrazingOrbitSystem& system, const CondensedSystem& condensed, const Orbit& x,
-                                   int jump, int count);
+                                   int jump, int n);
 
 class XiTest final : public TestFunction {
  public:

@@ -90,6 +90,40 @@ TEST_CASE("singular matrices and values that are not finite") {
   CHECK_FALSE(SparseLu(2, {0, 0}, {0, 1}).factorize({1.0, 1.0}));  // row 1 has no entry
 }
 
+TEST_CASE("entries at the end of the range of double precision") {
+  // Products of such entries overflow, the determinant does not.
+  MatrixXd a = VectorXd::LinSpaced(6, 2.0, 7.0).asDiagonal();
+  a(1, 1) = a(4, 4) = -1.7e308;
+  a(0, 1) = a(3, 5) = 0.5;
+  const Sparse sparse(a);
+  SparseLu lu(6, sparse.rows, sparse.columns);
+  REQUIRE(lu.factorize(sparse.values));
+  CHECK(lu.determinant().sign == 1);
+  CHECK(lu.determinant().log2_size == Approx(std::log2(2.0 * 4.0 * 5.0 * 7.0) + 2.0 * std::log2(1.7e308)));
+
+  // Row sums that overflow: refused, or factors that are finite.
+  for (const double huge : {1e200, 1.7e308}) {
+    MatrixXd b(3, 3);
+    b << 1.0, huge, huge, 1.0, -huge, huge, huge, huge, -huge;
+    const Sparse full(b);
+    SparseLu of_full(3, full.rows, full.columns);
+    const int sign = of_full.factorize(full.values) ? 1 : 0;
+    CHECK(std::abs(of_full.determinant().sign) == sign);
+  }
+}
+
+TEST_CASE("a determinant far beyond the range of double precision") {
+  Sparse a(40);
+  MatrixXd scaled = a.dense();
+  const double before = std::log2(std::abs(scaled.determinant()));
+  const int sign = scaled.determinant() > 0 ? 1 : -1;
+  const Sparse large(scaled * 1e100);
+  SparseLu lu(40, large.rows, large.columns);
+  REQUIRE(lu.factorize(large.values));
+  CHECK(lu.determinant().sign == sign);
+  CHECK(lu.determinant().log2_size == Approx(before + 4000 * std::log2(10.0)).margin(1e-6));
+}
+
 TEST_CASE("condition and null direction against the singular value decomposition") {
   const int n = 12;
   for (const double smallest : {1e-1, 1e-4, 1e-8, 1e-13}) {

@@ -108,6 +108,32 @@ TEST_CASE("xi_n: closed form agrees with the published values") {
   CHECK(exact_xi(2, 2.0) == Approx(-0.0413804785294).epsilon(1e-10));
 }
 
+TEST_CASE("xi_n of large n: the closed form, and its sign where numbers of its size do not exist") {
+  const double omega = 1.5;
+  const OscillatorOrbit orbit = nonimpacting_orbit(omega, std::abs(OscillatorConstants{omega}.stiffness()));
+  const Orbit start = sampled_orbit({orbit.piece(0, orbit.constants.period())}, 4, 100, 6, orbit.par());
+  const GrazingOrbitSystem system(linosc(), {{1, 1, 2}}, {2, 1}, 0);
+  Tests tests;
+  const int numbers[] = {40, 41, 100, 1000, 3000, 100000};
+  for (const int n : numbers) tests.push_back(std::make_unique<XiTest>(system, 1, n));
+  const RecordedBranch branch = continued(system, start, 1e-7, 1e-7, 2, std::move(tests));
+  const RecordedPoint& p = branch.points.front();
+  const double at = p.orbit.par(1);
+  const double amplitude = 1.8 * at * at / std::sqrt(1 - 0.05 * 0.05);
+  for (std::size_t k = 0; k < std::size(numbers); ++k) {
+    CAPTURE(numbers[k]);
+    REQUIRE(p.values[k]);
+    const double n = numbers[k];
+    const double decay = std::exp(-0.05 * n * 2 * pi / at);
+    if (n <= 1000) CHECK(*p.values[k] == Approx(exact_xi(numbers[k], at)).margin(1e-9 * n * amplitude * decay));
+    if (n <= 1000) continue;
+    const double sine = std::sin(std::sqrt(1 - 0.05 * 0.05) * n * 2 * pi / at);
+    CHECK(std::abs(sine) > 1e-3);
+    CHECK((*p.values[k] > 0) == (sine > 0));
+    CHECK(std::abs(*p.values[k]) < 1e-260);
+  }
+}
+
 TEST_CASE("xi_n and the smooth multipliers of the linear oscillator along the grazing curve") {
   const RecordedBranch branch = grazing_oscillator(2.0, 0.05, 0.1, 15, 5);
   for (const RecordedPoint& p : branch.points) {
