@@ -60,6 +60,11 @@ void add_resegment_command(CLI::App& app, std::function<int()>& chosen) {
   command->add_option("--jump", request->jump,
                       "jump at the contact (default: the identity on a grazing curve, else what the problem says of "
                       "that event, or GRJUMP)");
+  command
+      ->add_option("--repeat", request->repeats,
+                   "--to impacting: the orbit N times over, with an impact in the first period only")
+      ->check(CLI::Range(1, 64))
+      ->capture_default_str();
   command->add_option("--by", request->rotation, "segments that --to rotate moves from the beginning to the end")
       ->capture_default_str();
   command->add_flag("-q,--quiet", *quiet, "no summary on the screen");
@@ -70,7 +75,8 @@ void add_resegment_command(CLI::App& app, std::function<int()>& chosen) {
       "  --to grazing-curve   the segment is cut at the contact and ends there (IPS 150)\n"
       "  --to impacting       it ends there in the event's own jump; what must follow an impact at once becomes "
       "segments\n"
-      "                       of zero duration (--signature, or the problem's index jump function)\n"
+      "                       of zero duration (--signature, or the problem's index jump function); with --repeat N\n"
+      "                       in the first of N periods only\n"
       "A Poincare section that the contact lies on is replaced. From any label:\n"
       "  --to signature       the same orbit with --signature: where two events come at once they change places, "
       "segments\n"

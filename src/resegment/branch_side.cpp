@@ -57,7 +57,7 @@ int side_of_birth(const HybridSystem& system, const RunSettings& settings, const
     const PathPoint& point = setup.start.point;
     if (has_moved(point.orbit, start.start.orbit)) return 0;
     std::vector<int> sides;
-    if (birth.impact) sides.push_back(-sign_of(slope_along_tangent(system, *setup.defining, point, *birth.impact)));
+    for (const int s : birth.impacts) sides.push_back(-sign_of(slope_along_tangent(system, *setup.defining, point, s)));
     for (const int s : birth.empty_segments) sides.push_back(sign_of(point.tangent.durations(s)));
     for (const Birth::EndEvent& late : birth.late_events)
       sides.push_back(sign_of(event_along_tangent(system, *setup.defining, point, late)));

@@ -1,7 +1,6 @@
 /// Which way a branch leads that begins where an event or a segment is born.
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include "constants/run_settings.hpp"
@@ -12,7 +11,7 @@ namespace tchat {
 
 /// What is born at the start of a branch; segments count from 0.
 struct Birth {
-  std::optional<int> impact;        ///< segment whose end is in grazing contact: h_x f is to fall there
+  std::vector<int> impacts;         ///< segments whose ends are in grazing contact: h_x f is to fall there
   std::vector<int> empty_segments;  ///< of zero duration: it is to grow
 
   struct EndEvent {
@@ -20,7 +19,7 @@ struct Birth {
   };
   std::vector<EndEvent> late_events;  ///< zero just at the end of a segment that another event ends: to come later
 
-  bool is_any() const { return impact || !empty_segments.empty() || !late_events.empty(); }
+  bool is_any() const { return !impacts.empty() || !empty_segments.empty() || !late_events.empty(); }
 };
 
 /// The sign of DS with which the run of `settings` from `start` leads to where all of these exist. 0 when they

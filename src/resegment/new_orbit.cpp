@@ -11,6 +11,7 @@
 #include "resegment/empty_segments.hpp"
 #include "resegment/segment_list.hpp"
 #include "resegment/signature_match.hpp"
+#include "resegment/simultaneous_contacts.hpp"
 
 namespace tchat {
 
@@ -33,14 +34,17 @@ int identity_jump(const HybridSystem& system) {
 }
 
 /// The segments of the cut take the index vectors given by the user; the segments of no duration among them come after
-/// the contact.
-CutList with_signature(CutList cut, const Signature& signature, bool may_add, const ContactPoint& contact) {
+/// the contacts, as many after each.
+CutList with_signature(CutList cut, const Signature& signature, bool may_add) {
   const std::size_t pieces = cut.segments.size();
-  if (signature.size() < pieces || (signature.size() > pieces && !may_add))
-    throw UserError(fmt::format("--signature has {} index vectors, but the orbit cut at the contact has {} segments{}",
-                                signature.size(), pieces,
-                                may_add ? "; further ones are segments of zero duration after the contact" : ""));
-  cut = with_empty_segments(std::move(cut), static_cast<int>(signature.size() - pieces), contact.event);
+  const std::size_t added = signature.size() - std::min(signature.size(), pieces);
+  if (signature.size() < pieces || (added > 0 && !may_add) || added % cut.contacts.size() != 0)
+    throw UserError(
+        fmt::format("--signature has {} index vectors, but the orbit cut at {} has {} segments{}", signature.size(),
+                    cut.contacts.size() == 1 ? "the contact" : fmt::format("its {} contacts", cut.contacts.size()),
+                    pieces, may_add ? "; further ones are segments of zero duration, as many after each contact" : ""));
+  for (std::size_t k = 0; k < cut.contacts.size(); ++k)
+    cut = with_empty_segments(std::move(cut), k, static_cast<int>(added / cut.contacts.size()));
   for (std::size_t s = 0; s < signature.size(); ++s) {
     NewSegment& segment = cut.segments[s];
     if (!segment.piece.empty() && segment.index.field != signature[s].field)
@@ -48,7 +52,8 @@ CutList with_signature(CutList cut, const Signature& signature, bool may_add, co
           fmt::format("--signature: index vector {} has field {}, but that part of the orbit was computed "
                       "with field {}",
                       s + 1, signature[s].field, segment.index.field));
-    if (s == cut.contact && segment.index.event != signature[s].event)
+    const bool is_contact = std::find(cut.contacts.begin(), cut.contacts.end(), s) != cut.contacts.end();
+    if (is_contact && segment.index.event != signature[s].event)
       throw UserError(
           fmt::format("--signature: index vector {} ends in event {}, but that segment ends in the contact "
                       "with event {}",
@@ -56,6 +61,35 @@ CutList with_signature(CutList cut, const Signature& signature, bool may_add, co
     segment.index = signature[s];
   }
   return cut;
+}
+
+std::string place_of(const ContactPoint& contact, const HybridSystem& system) {
+  return fmt::format(
+      "event {} ({}) {} segment {}", contact.event, system.function_name(FunctionKind::event, contact.event),
+      contact.where == ContactPoint::inside ? fmt::format("at tau = {:.6g} of", contact.tau) : "at the end of",
+      contact.segment + 1);
+}
+
+std::string list_of(const std::vector<ContactPoint>& contacts, const HybridSystem& system) {
+  std::string list;
+  for (const ContactPoint& contact : contacts) list += (list.empty() ? "" : ", ") + place_of(contact, system);
+  return list;
+}
+
+/// Segment s (from 0) of the orbit no longer ends in `event` but in a section there, so that it may touch or not.
+void end_in_section(NewSegment& segment, const Orbit& x, const HybridSystem& system) {
+  const int event = segment.index.event;
+  const auto section = section_at_end(x, system, segment.piece.segment, segment.index.field, event);
+  if (!section)
+    throw UserError(fmt::format(
+        "event {} ({}) may be missed there once the impact is born elsewhere, so segment {} has to end in a section, "
+        "but problem {} has no event function that falls through zero at the contact, as a velocity does; add one (the "
+        "time derivative of that event function), or give --signature, or start from a GR label of an orbit that is "
+        "cut elsewhere",
+        event, system.function_name(FunctionKind::event, event), segment.piece.segment + 1, system.name()));
+  segment.index.event = *section;
+  segment.grazes = false;
+  watch(segment, event);
 }
 
 Eigen::VectorXd end_of(const OrbitPiece& piece, const Orbit& x) {
@@ -109,8 +143,27 @@ void watch_after_events(SegmentList& segments, const LabelledOrbit& source, cons
   }
 }
 
+/// Impacts whose velocities vanish together with that of contact `own`: without them, and what follows them at once,
+/// these segments end in sections.
+CutList without_other_impacts(CutList cut, const std::vector<ContactPoint>& contacts, const ContactPoint& own,
+                              const LabelledOrbit& source, const HybridSystem& system) {
+  const Orbit& x = source.start.orbit;
+  for (const ContactPoint& other : contacts) {
+    if (other.segment == own.segment) continue;
+    const auto at = std::find_if(cut.segments.begin(), cut.segments.end(),
+                                 [&](const NewSegment& segment) { return segment.piece.segment == other.segment; });
+    CutList alone{cut.segments, {static_cast<std::size_t>(at - cut.segments.begin()), cut.contacts.front()}};
+    end_in_section(alone.segments[alone.contacts[0]], x, system);
+    alone.segments[alone.contacts[0]].index.jump = identity_jump(system);
+    alone = without_empty_segments(std::move(alone), 0, x);
+    cut = {alone.segments, {alone.contacts[1]}};
+  }
+  return cut;
+}
+
 NewOrbit to_grazing_curve(const ResegmentRequest& request, const LabelledOrbit& source, const HybridSystem& system) {
-  const ContactPoint contact = contact_point(source.solution, source.start.orbit, system, source.settings, source.name);
+  const Orbit& x = source.start.orbit;
+  const ContactPoint contact = contact_point(source.solution, x, system, source.settings, source.name);
   const auto at = static_cast<std::size_t>(contact.segment);
   if (contact.where == ContactPoint::grazing_curve)
     throw UserError(
@@ -119,43 +172,72 @@ NewOrbit to_grazing_curve(const ResegmentRequest& request, const LabelledOrbit& 
                     source.name));
   const int own = source.settings.segments[at].index.jump;
   const int jump = request.jump ? *request.jump : contact.where == ContactPoint::section ? own : identity_jump(system);
-  CutList cut = cut_at(segments_of(source.settings), contact, checked_jump(system, jump, "--jump"));
-  if (contact.where == ContactPoint::impact) cut = without_empty_segments(std::move(cut), source.start.orbit);
-  if (request.signature) cut = with_signature(std::move(cut), parse_signature(*request.signature), false, contact);
-  cut.segments[cut.contact].grazes = true;
-  const int contact_jump = contact.where == ContactPoint::impact
-                               ? own
-                               : jump_at_contact(system, source.settings, source.start.orbit, contact);
-  return {cut.segments, {150, 1, contact_jump}};
+  const std::vector<ContactPoint> contacts = simultaneous_contacts(contact, x, system, source.settings);
+  CutList cut = cut_at({segments_of(source.settings), {}}, contact, checked_jump(system, jump, "--jump"));
+  if (contact.where == ContactPoint::impact) {
+    cut = without_empty_segments(std::move(cut), 0, x);
+    cut = without_other_impacts(std::move(cut), contacts, contact, source, system);
+  }
+  if (request.signature) cut = with_signature(std::move(cut), parse_signature(*request.signature), false);
+  cut.segments[cut.contacts.front()].grazes = true;
+  const int contact_jump =
+      contact.where == ContactPoint::impact ? own : jump_at_contact(system, source.settings, x, contact);
+  NewOrbit target{cut.segments, {150, 1, contact_jump}};
+  if (contacts.size() > 1)
+    target.remarks.push_back(fmt::format("The orbit has {} contacts at once ({}); the curve keeps that of its label.",
+                                         contacts.size(), list_of(contacts, system)));
+  return target;
+}
+
+/// The orbit once more, without impacts: what is in contact on a grazing curve need not be where the impact is missing.
+SegmentList turn_without_contact(const LabelledOrbit& source, const std::vector<ContactPoint>& contacts, bool is_given,
+                                 const HybridSystem& system) {
+  SegmentList segments = segments_of(source.settings);
+  for (const ContactPoint& contact : contacts) {
+    NewSegment& segment = segments[static_cast<std::size_t>(contact.segment)];
+    watch(segment, contact.event);
+    if (contact.where == ContactPoint::grazing_curve && !is_given) end_in_section(segment, source.start.orbit, system);
+  }
+  return segments;
 }
 
 NewOrbit to_impacting(const ResegmentRequest& request, const LabelledOrbit& source, const HybridSystem& system) {
-  const ContactPoint contact = contact_point(source.solution, source.start.orbit, system, source.settings, source.name);
-  if (contact.where == ContactPoint::impact)
+  const Orbit& orbit = source.start.orbit;
+  const RunSettings& old = source.settings;
+  const ContactPoint own = contact_point(source.solution, orbit, system, old, source.name);
+  if (own.where == ContactPoint::impact)
     throw UserError(
         fmt::format("{} is where an impact of this signature has velocity zero: the impacting orbits are those of its "
                     "own branch; `tchat run` goes on along it",
                     source.name));
-  const int jump = request.jump
-                       ? checked_jump(system, *request.jump, "--jump")
-                       : checked_jump(system, jump_at_contact(system, source.settings, source.start.orbit, contact),
-                                      "GRJUMP, the jump that contact brings,");
-  CutList cut = cut_at(segments_of(source.settings), contact, jump);
-  Signature signature;
+  const std::vector<ContactPoint> contacts = simultaneous_contacts(own, orbit, system, old);
+  CutList cut{segments_of(old), {}};
+  for (auto contact = contacts.rbegin(); contact != contacts.rend(); ++contact) {
+    const int jump = request.jump ? checked_jump(system, *request.jump, "--jump")
+                                  : checked_jump(system, jump_at_contact(system, old, orbit, *contact),
+                                                 "GRJUMP, the jump that contact brings,");
+    cut = cut_at(std::move(cut), *contact, jump);
+  }
+  const SegmentList turn = turn_without_contact(source, contacts, request.repeats == 1 || request.signature, system);
+  for (int k = 1; k < request.repeats; ++k) cut.segments = joined(std::move(cut.segments), turn);
   if (request.signature) {
-    cut = with_signature(std::move(cut), parse_signature(*request.signature), true, contact);
+    cut = with_signature(std::move(cut), parse_signature(*request.signature), true);
   } else {
-    const NewSegment& impact = cut.segments[cut.contact];
-    const NewSegment& next = cut.segments[(cut.contact + 1) % cut.segments.size()];
-    const CollocationRule rule(source.start.orbit.shape.collocation);
-    const Eigen::VectorXd x = state_at(source.start.orbit, rule, impact.piece.segment, impact.piece.to);
-    const Signature between = segments_after_impact(system, impact.index, x, source.start.orbit.par, next.index.field);
-    cut = with_empty_segments(std::move(cut), static_cast<int>(between.size()), contact.event);
-    for (std::size_t k = 0; k < between.size(); ++k) cut.segments[cut.contact + 1 + k].index = between[k];
+    for (std::size_t k = 0; k < cut.contacts.size(); ++k) {
+      const NewSegment& impact = cut.segments[cut.contacts[k]];
+      const NewSegment& next = cut.segments[(cut.contacts[k] + 1) % cut.segments.size()];
+      const Signature between =
+          segments_after_impact(system, impact.index, end_of(impact.piece, orbit), orbit.par, next.index.field);
+      cut = with_empty_segments(std::move(cut), k, static_cast<int>(between.size()));
+      for (std::size_t i = 0; i < between.size(); ++i) cut.segments[cut.contacts[k] + 1 + i].index = between[i];
+    }
   }
   watch_after_events(cut.segments, source, system);
-  NewOrbit target{cut.segments, {180, 1, source.settings.grazing_jump}};
-  target.birth = {static_cast<int>(cut.contact), empty_segments(cut.segments), {}};
+  NewOrbit target{cut.segments, {180, 1, old.grazing_jump}};
+  target.birth = {{cut.contacts.begin(), cut.contacts.end()}, empty_segments(cut.segments), {}};
+  if (contacts.size() > 1)
+    target.remarks.push_back(fmt::format("The orbit has {} contacts at once and is cut at all of them: {}.",
+                                         contacts.size(), list_of(contacts, system)));
   return target;
 }
 
@@ -174,7 +256,7 @@ NewOrbit to_signature(const ResegmentRequest& request, const LabelledOrbit& sour
                     *request.signature, source.name));
   watch_after_events(segments, source, system);
   NewOrbit target{segments, {old.problem_type, old.branch_mode, old.grazing_jump}, source.solution.type};
-  target.birth = {std::nullopt, empty_segments(segments), events_at_ends(segments, source.start.orbit, system)};
+  target.birth = {{}, empty_segments(segments), events_at_ends(segments, source.start.orbit, system)};
   return target;
 }
 
@@ -207,6 +289,8 @@ NewOrbit to_repeated(const LabelledOrbit& source) {
 }  // namespace
 
 NewOrbit new_orbit(const ResegmentRequest& request, const LabelledOrbit& source, const HybridSystem& system) {
+  if (request.repeats != 1 && request.kind != ResegmentKind::impacting)
+    throw UserError("--repeat goes with --to impacting; --to double repeats any orbit twice");
   switch (request.kind) {
     case ResegmentKind::grazing_curve:
       return to_grazing_curve(request, source, system);

@@ -29,6 +29,7 @@ struct NewOrbit {
   int type = static_cast<int>(PointType::end);
   UserPointKind kind = {};
   Birth birth = {};
+  std::vector<std::string> remarks = {};  ///< what the user may not expect, for the screen
 };
 
 /// Throws UserError when label, signature, jump and problem do not go together.

@@ -89,7 +89,7 @@ std::optional<OrbitVector> kept_direction(const LabelledOrbit& source, const New
                                           const std::optional<OrbitVector>& direction, const RunSettings& settings) {
   const std::vector<int> free = free_parameters_of(settings);
   const bool other_problem = source.settings.problem_type != settings.problem_type ||
-                             source.free_parameters.size() != free.size() || target.birth.impact;
+                             source.free_parameters.size() != free.size() || !target.birth.impacts.empty();
   if (!direction || other_problem) return std::nullopt;
   OrbitVector kept = *direction;
   for (std::size_t g = 0; g < free.size(); ++g) {
@@ -167,7 +167,7 @@ std::string choose_side(const ResegmentRequest& request, const HybridSystem& sys
   selected.problem_type = settings.problem_type;
   selected.type = target.type;
   selected.kind = target.kind;
-  const std::string born = target.birth.impact                   ? "the new event"
+  const std::string born = !target.birth.impacts.empty()         ? "the new event"
                            : target.birth.empty_segments.empty() ? "the new signature"
                                                                  : "the new segment";
   const int side = side_of_birth(system, settings, selected, target.birth);
@@ -244,6 +244,7 @@ std::vector<std::string> resegment(const ResegmentRequest& request, std::ostream
                         std::filesystem::path(plugin).stem().string(), request.output, request.data ? "-d" : "-s",
                         request.output)
          << side;
+  for (const std::string& remark : target.remarks) screen << remark << '\n';
   return warnings;
 }
 

@@ -21,6 +21,7 @@ struct ResegmentRequest {
   std::string solutions;  ///< q-file, by path or by the name of its run
   std::string label;
   ResegmentKind kind = ResegmentKind::grazing_curve;
+  int repeats = 1;                       ///< of `impacting`: periods of the orbit, the contact is in the first one
   int rotation = 1;                      ///< of `rotate`: segments that move from the beginning to the end
   std::optional<std::string> constants;  ///< -c; default r.S of the run that wrote the label
   std::optional<std::string> problem;    ///< -p; default the name of the q-file

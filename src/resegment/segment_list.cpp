@@ -15,12 +15,6 @@ namespace {
 /// Durations that are a smaller part of the period are zero.
 constexpr double no_duration = 1e-6;
 
-void watch(NewSegment& segment, int event) {
-  for (const WatchedEvent& watched : segment.watched)
-    if (watched.event == event) return;
-  segment.watched.push_back({event, true});
-}
-
 std::vector<std::string_view> split(std::string_view text, char separator) {
   std::vector<std::string_view> parts;
   for (std::size_t begin = 0; begin <= text.size();) {
@@ -65,17 +59,23 @@ SegmentList rotated(const SegmentList& segments, int k) {
   return result;
 }
 
-SegmentList repeated(const SegmentList& segments) {
-  if (2 * segments.size() > static_cast<std::size_t>(max_segments))
+SegmentList joined(SegmentList segments, const SegmentList& further) {
+  segments.insert(segments.end(), further.begin(), further.end());
+  if (segments.size() > static_cast<std::size_t>(max_segments))
     throw UserError(
-        fmt::format("the doubled orbit has {} segments, at most {} are allowed", 2 * segments.size(), max_segments));
-  SegmentList result = segments;
-  result.insert(result.end(), segments.begin(), segments.end());
-  return result;
+        fmt::format("the new orbit has {} segments, at most {} are allowed", segments.size(), max_segments));
+  return segments;
 }
 
-CutList cut_at(SegmentList segments, const ContactPoint& contact, int jump) {
-  CutList cut{std::move(segments), static_cast<std::size_t>(contact.segment)};
+SegmentList repeated(const SegmentList& segments) { return joined(segments, segments); }
+
+void watch(NewSegment& segment, int event) {
+  for (const WatchedEvent& watched : segment.watched)
+    if (watched.event == event) return;
+  segment.watched.push_back({event, true});
+}
+
+CutList cut_at(CutList cut, const ContactPoint& contact, int jump) {
   const auto at = cut.segments.begin() + contact.segment;
   if (contact.where == ContactPoint::inside) {
     NewSegment rest = *at;
@@ -83,8 +83,11 @@ CutList cut_at(SegmentList segments, const ContactPoint& contact, int jump) {
     watch(rest, contact.event);
     at->piece.to = contact.tau;
     cut.segments.insert(at + 1, rest);
+    for (std::size_t& later : cut.contacts) ++later;
   }
-  NewSegment& first = cut.segments[cut.contact];
+  const auto position = static_cast<std::size_t>(contact.segment);
+  cut.contacts.insert(cut.contacts.begin(), position);
+  NewSegment& first = cut.segments[position];
   first.index.event = contact.event;
   first.index.jump = jump;
   first.grazes = false;
@@ -94,21 +97,25 @@ CutList cut_at(SegmentList segments, const ContactPoint& contact, int jump) {
 
 bool lasts_no_time(const Orbit& x, int s) { return std::abs(x.duration(s)) <= no_duration * std::abs(x.period()); }
 
-CutList without_empty_segments(CutList cut, const Orbit& x) {
+CutList without_empty_segments(CutList cut, std::size_t k, const Orbit& x) {
   while (cut.segments.size() > 1) {
-    const std::size_t next = (cut.contact + 1) % cut.segments.size();
+    const std::size_t next = (cut.contacts[k] + 1) % cut.segments.size();
     if (!lasts_no_time(x, cut.segments[next].piece.segment)) break;
     cut.segments.erase(cut.segments.begin() + static_cast<std::ptrdiff_t>(next));
-    if (next < cut.contact) --cut.contact;
+    for (std::size_t& contact : cut.contacts)
+      if (next < contact) --contact;
   }
   return cut;
 }
 
-CutList with_empty_segments(CutList cut, int count, int event) {
-  const OrbitPiece& piece = cut.segments[cut.contact].piece;
-  NewSegment empty{{piece.segment, piece.to, piece.to}, {}, false, {{event, true}}};
-  cut.segments.insert(cut.segments.begin() + static_cast<std::ptrdiff_t>(cut.contact) + 1,
+CutList with_empty_segments(CutList cut, std::size_t k, int count) {
+  const NewSegment& before = cut.segments[cut.contacts[k]];
+  const NewSegment empty{
+      {before.piece.segment, before.piece.to, before.piece.to}, {}, false, {{before.index.event, true}}};
+  cut.segments.insert(cut.segments.begin() + static_cast<std::ptrdiff_t>(cut.contacts[k]) + 1,
                       static_cast<std::size_t>(count), empty);
+  for (std::size_t later = k + 1; later < cut.contacts.size(); ++later)
+    cut.contacts[later] += static_cast<std::size_t>(count);
   return cut;
 }
 

@@ -36,24 +36,31 @@ SegmentList rotated(const SegmentList& segments, int k);
 /// All segments once more. Throws UserError beyond the largest number of segments.
 SegmentList repeated(const SegmentList& segments);
 
-/// The signature cut at the contact, and the position (from 0) of the segment that now ends there.
+/// Further segments at the end. Throws UserError beyond the largest number of segments.
+SegmentList joined(SegmentList segments, const SegmentList& further);
+
+/// Adds an event function to those that a segment monitors, unless it is there.
+void watch(NewSegment& segment, int event);
+
+/// The signature cut at contacts, and the positions (from 0, rising) of the segments that now end there.
 struct CutList {
   SegmentList segments;
-  std::size_t contact = 0;
+  std::vector<std::size_t> contacts;
 };
 
 /// Segment contact.segment now ends in the contact's event with jump `jump`; the rest of a segment cut inside follows
-/// with its own event and jump. A section that the contact lies on is replaced.
-CutList cut_at(SegmentList segments, const ContactPoint& contact, int jump);
+/// with its own event and jump. A section that the contact lies on is replaced. Several contacts are cut from the last
+/// one on the orbit to the first.
+CutList cut_at(CutList cut, const ContactPoint& contact, int jump);
 
 /// Does segment s (from 0) of orbit x last no time, but for rounding?
 bool lasts_no_time(const Orbit& x, int s);
 
-/// Without the segments of no duration (of orbit x) that follow the contact: those of an impact of velocity zero.
-CutList without_empty_segments(CutList cut, const Orbit& x);
+/// Without the segments of no duration (of orbit x) that follow contact k: those of an impact of velocity zero.
+CutList without_empty_segments(CutList cut, std::size_t k, const Orbit& x);
 
-/// With `count` segments of zero duration after the contact, constant there; index vectors are still to be set.
-CutList with_empty_segments(CutList cut, int count, int event);
+/// With `count` segments of zero duration after contact k, constant there; index vectors are still to be set.
+CutList with_empty_segments(CutList cut, std::size_t k, int count);
 
 /// "1,1,1;2,2,2" (blanks and parentheses are ignored, braces too). Throws UserError when it is no list of triples.
 Signature parse_signature(std::string_view text);

@@ -146,25 +146,31 @@ Minima find_minima(const EventAlongSegment& along, int intervals, int c) {
 
 }  // namespace
 
-std::optional<Contact> least_value(const DefiningSystem& system, const CollocationRule& rule, const Orbit& x, int s,
-                                   int event) {
+std::vector<Contact> least_candidates(const DefiningSystem& system, const CollocationRule& rule, const Orbit& x, int s,
+                                      int event) {
   const EventAlongSegment along(system, rule, x, s, event);
   const bool start_pinned = is_pinned_start(system.system(), system.signature(), x, s, event);
   const bool end_pinned = system.signature()[static_cast<std::size_t>(s)].event == event;
-  std::optional<Contact> least;
-  const auto offer = [&](const Contact& candidate) {
-    if (!least || candidate.value < least->value) least = candidate;
-  };
-  if (!start_pinned) offer(along.at_node(0));
-  if (!end_pinned) offer(along.at_node(x.shape.nodes() - 1));
-  if (!(x.duration(s) > 0.0)) return least;
+  std::vector<Contact> candidates;
+  if (!start_pinned) candidates.push_back(along.at_node(0));
+  if (!end_pinned) candidates.push_back(along.at_node(x.shape.nodes() - 1));
+  if (!(x.duration(s) > 0.0)) return candidates;
   const Minima minima = find_minima(along, x.shape.intervals, x.shape.collocation);
   for (std::size_t i = 0; i < minima.list.size(); ++i) {
     if (i == 0 && start_pinned && minima.first_hangs_on_start) continue;
     if (i + 1 == minima.list.size() && end_pinned && minima.last_hangs_on_end) continue;
-    offer(along.polished(minima.list[i].interval, minima.list[i].sigma));
+    candidates.push_back(along.polished(minima.list[i].interval, minima.list[i].sigma));
   }
-  return least;
+  return candidates;
+}
+
+std::optional<Contact> least_value(const DefiningSystem& system, const CollocationRule& rule, const Orbit& x, int s,
+                                   int event) {
+  const std::vector<Contact> candidates = least_candidates(system, rule, x, s, event);
+  const auto least = std::min_element(candidates.begin(), candidates.end(),
+                                      [](const Contact& a, const Contact& b) { return a.value < b.value; });
+  if (least == candidates.end()) return std::nullopt;
+  return *least;
 }
 
 ContactTest::ContactTest(const DefiningSystem& system, int segment, int event, bool stop)

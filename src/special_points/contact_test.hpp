@@ -19,6 +19,10 @@ struct Contact {
   Eigen::VectorXd state;
 };
 
+/// All candidates for event function `event` on segment `s` (from 0): the ends, then minima in order.
+std::vector<Contact> least_candidates(const DefiningSystem& system, const CollocationRule& rule, const Orbit& x, int s,
+                                      int event);
+
 /// The candidate with the least value for event function `event` on segment `s` (from 0); nothing without candidates.
 std::optional<Contact> least_value(const DefiningSystem& system, const CollocationRule& rule, const Orbit& x, int s,
                                    int event);

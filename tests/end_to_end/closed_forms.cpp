@@ -40,7 +40,8 @@ double NonimpactingOrbit::l2_norm() const {
   return std::sqrt(amplitude_ * amplitude_ * (1.0 + omega_ * omega_) / 2.0 + 1.0);
 }
 
-ImpactingOrbit::ImpactingOrbit(double velocity, double omega, double zeta, double r) : omega_(omega), zeta_(zeta) {
+ImpactingOrbit::ImpactingOrbit(double velocity, double omega, double zeta, double r, int periods)
+    : omega_(omega), zeta_(zeta), periods_(periods) {
   const Eigen::Matrix2d closing = free_flow(zeta, period()) - Eigen::Matrix2d::Identity();
   const Eigen::Vector2d free = closing.partialPivLu().solve(Eigen::Vector2d(0.0, (1.0 + r) * velocity));
   free_position_ = free(0);
@@ -65,6 +66,6 @@ State ImpactingOrbit::at(double time) const {
           std::cos(omega_ * time + phase_)};
 }
 
-double ImpactingOrbit::period() const { return 2.0 * M_PI / omega_; }
+double ImpactingOrbit::period() const { return 2.0 * M_PI * periods_ / omega_; }
 
 }  // namespace test_support

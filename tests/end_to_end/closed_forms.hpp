@@ -24,18 +24,19 @@ class NonimpactingOrbit {
   double omega_, amplitude_, phase_;
 };
 
-/// The orbit with one impact of velocity v a period, from just after the impact on: forced oscillation plus the free
-/// one (u, u'), which the period T = 2 pi/omega and the impact must close: H(T) (u, u') = (u, u' + (1 + r) v), H the
-/// flow of the free oscillator. x1(0) = 1, x2(0) = -r v.
+/// The orbit with one impact of velocity v in N periods of the forcing, from just after the impact on: forced
+/// oscillation plus the free one (u, u'), which the period T = 2 pi N/omega and the impact must close: H(T) (u, u') =
+/// (u, u' + (1 + r) v), H the flow of the free oscillator. x1(0) = 1, x2(0) = -r v.
 class ImpactingOrbit {
  public:
-  ImpactingOrbit(double velocity, double omega, double zeta, double r);
+  ImpactingOrbit(double velocity, double omega, double zeta, double r, int periods = 1);
   State at(double time) const;
   double period() const;
   double alpha() const { return alpha_; }
 
  private:
   double omega_, zeta_;
+  int periods_;
   double free_position_ = 0.0, free_velocity_ = 0.0;      // u(0), u'(0)
   double forced_position_ = 0.0, forced_velocity_ = 0.0;  // of the forced oscillation at time 0
   double alpha_ = 0.0, phase_ = 0.0;                      // forcing alpha cos(omega t + phase)

@@ -41,8 +41,8 @@ Orbit orbit(std::initializer_list<double> durations) {
 }  // namespace
 
 TEST_CASE("a contact inside a segment cuts it in two") {
-  const CutList cut = cut_at(segments_of(impacting_settings()), {ContactPoint::inside, 0, 1, 0.325}, 2);
-  CHECK(cut.contact == 0);
+  const CutList cut = cut_at({segments_of(impacting_settings()), {}}, {ContactPoint::inside, 0, 1, 0.325}, 2);
+  CHECK(cut.contacts == std::vector<std::size_t>{0});
   CHECK(signature(cut.segments) == mems_orbits::secondary_grazing);
   CHECK(cut.segments[0].piece.to == 0.325);
   CHECK(cut.segments[1].piece.from == 0.325);
@@ -54,10 +54,10 @@ TEST_CASE("a section on the contact is replaced, its jump is the caller's choice
   RunSettings settings = impacting_settings();
   settings.segments = {{1, {1, 3, 3}, {1}}};
   settings.test_functions = {1};
-  const CutList cut = cut_at(segments_of(settings), {ContactPoint::section, 0, 1, 1.0}, 3);
+  const CutList cut = cut_at({segments_of(settings), {}}, {ContactPoint::section, 0, 1, 1.0}, 3);
   CHECK(signature(cut.segments) == mems_orbits::grazing);
   CHECK(cut.segments[0].piece.whole());
-  const CutList born = with_empty_segments(cut, 2, 1);
+  const CutList born = with_empty_segments(cut, 0, 2);
   REQUIRE(born.segments.size() == 3);
   CHECK(born.segments[2].piece.empty());
   CHECK(born.segments[2].piece.from == 1.0);
@@ -65,14 +65,14 @@ TEST_CASE("a section on the contact is replaced, its jump is the caller's choice
 
 TEST_CASE("segments of no duration after a vanishing impact are left out, also around the end of the list") {
   SegmentList segments = segments_of(impacting_settings());
-  const CutList cut = without_empty_segments({segments, 0}, orbit({3.9, 1e-9}));
+  const CutList cut = without_empty_segments({segments, {0}}, 0, orbit({3.9, 1e-9}));
   REQUIRE(cut.segments.size() == 1);
   CHECK(cut.segments[0].index.field == 1);
-  const CutList around = without_empty_segments({segments, 1}, orbit({1e-9, 3.9}));
+  const CutList around = without_empty_segments({segments, {1}}, 0, orbit({1e-9, 3.9}));
   REQUIRE(around.segments.size() == 1);
-  CHECK(around.contact == 0);
+  CHECK(around.contacts == std::vector<std::size_t>{0});
   CHECK(around.segments[0].index.field == 2);
-  CHECK(without_empty_segments({segments, 0}, orbit({3.9, 0.1})).segments.size() == 2);
+  CHECK(without_empty_segments({segments, {0}}, 0, orbit({3.9, 0.1})).segments.size() == 2);
 }
 
 TEST_CASE("rotation and repetition") {
@@ -86,7 +86,7 @@ TEST_CASE("rotation and repetition") {
 
 TEST_CASE("constants follow the pieces: weights, test functions, free parameters") {
   const RunSettings old = impacting_settings();
-  const CutList cut = cut_at(segments_of(old), {ContactPoint::inside, 0, 1, 0.325}, 2);
+  const CutList cut = cut_at({segments_of(old), {}}, {ContactPoint::inside, 0, 1, 0.325}, 2);
   const RunSettings impacting = new_settings(old, cut.segments, {180, 1, 1}, mems());
   CHECK(impacting.signature() == mems_orbits::secondary_grazing);
   CHECK(impacting.free_parameters == std::vector<int>{1, 61, 62, 63});
