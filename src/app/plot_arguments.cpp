@@ -12,6 +12,7 @@
 #include "constants/constant_value.hpp"
 #include "constants/user_error.hpp"
 #include "plot/data_file.hpp"
+#include "plot/label_text.hpp"
 #include "plot/picture_styles.hpp"
 #include "plot/trajectory_file.hpp"
 #include "start/fortran_number.hpp"
@@ -82,6 +83,7 @@ std::string what_else(const std::string& word) {
 std::vector<PlotItem> read_plot_items(const std::vector<std::string>& words) {
   std::vector<PlotItem> items;
   for (std::size_t k = 0; k < words.size(); ++k) {
+    refuse_control_characters(words[k], "the file");
     const bool label_follows = k + 1 < words.size() && is_label(words[k + 1]) && !is_file(words[k + 1]);
     // After a q-file a label is a label, even where a file q.PD1 exists.
     const bool labels_possible = !items.empty() && items.back().kind == PlotItem::Kind::solutions;

@@ -36,7 +36,8 @@ void apply_taste(const PlotArguments& arguments, Figure& figure) {
 
 int make_picture(const PlotArguments& arguments) {
   const std::vector<PlotItem> items = read_plot_items(arguments.words);
-  if (!arguments.output.empty()) picture_format(arguments.output);  // refuse early
+  refuse_control_characters(arguments.output, "-o");  // early, like a picture of no known form
+  if (!arguments.output.empty()) picture_format(arguments.output);
   NamedFigure picture = make_figure(items, arguments);
   for (const std::string& warning : picture.warnings) fmt::print(stderr, "Warning: {}\n", warning);
   apply_taste(arguments, picture.figure);

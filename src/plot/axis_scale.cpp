@@ -15,6 +15,8 @@ namespace {
 
 constexpr double infinity_in_files = 1e90;
 constexpr double margin = 0.04;
+/// Ends that differ by less than this part of their size are equal in a script.
+constexpr double narrowest = 1e-8;
 
 struct Range {
   double low = std::numeric_limits<double>::infinity();
@@ -37,11 +39,26 @@ Range range_of(const std::vector<double>& values, bool positive) {
 Range widened(Range range) {
   const double size = std::max(std::abs(range.low), std::abs(range.high));
   const double span = range.high - range.low;
-  if (span <= 1e-8 * size || span == 0.0) {
+  if (span <= narrowest * size || span == 0.0) {
     const double half = size > 0.0 ? 0.05 * size : 1.0;
     return {range.low - half, range.high + half};
   }
   return {range.low - margin * span, range.high + margin * span};
+}
+
+bool is_narrow(double low, double high) { return high - low <= narrowest * std::max(std::abs(low), std::abs(high)); }
+
+/// Ranges that the user has given, of which gnuplot would make an error.
+void refuse_range(const AxisSettings& settings) {
+  for (const std::optional<double>& end : {settings.low, settings.high})
+    if (end && !can_be_shown(*end))
+      throw UserError(fmt::format("a range that ends at {:g} cannot be drawn; its ends are between {:g} and {:g}", *end,
+                                  -infinity_in_files, infinity_in_files));
+  if (settings.low && settings.high && is_narrow(*settings.low, *settings.high))
+    throw UserError(
+        fmt::format("the range {:.17g}:{:.17g} is too narrow to be drawn; its ends must differ by more than "
+                    "{:g} of their size",
+                    *settings.low, *settings.high, narrowest));
 }
 
 struct RoundStep {
@@ -113,10 +130,11 @@ AxisScale choose_scale(const AxisSettings& settings, const std::vector<double>& 
   } else {
     range = {0.0, 1.0};
   }
+  refuse_range(settings);
   scale.low = settings.low.value_or(range.low);
   scale.high = settings.high.value_or(range.high);
-  if (!settings.high && scale.high <= scale.low) scale.high = scale.low + std::max(1.0, std::abs(scale.low));
-  if (!settings.low && scale.low >= scale.high)
+  if (!settings.high && is_narrow(scale.low, scale.high)) scale.high = scale.low + std::max(1.0, std::abs(scale.low));
+  if (!settings.low && is_narrow(scale.low, scale.high))
     scale.low = settings.logarithmic ? scale.high / 10.0 : scale.high - std::max(1.0, std::abs(scale.high));
   if (scale.logarithmic) {
     scale.format = "10^{%L}";

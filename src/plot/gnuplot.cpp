@@ -72,8 +72,9 @@ Ending run(const std::string& script, bool stay) {
   posix_spawn_file_actions_adddup2(&actions, input.descriptor(), STDIN_FILENO);
   posix_spawn_file_actions_adddup2(&actions, output.descriptor(), STDOUT_FILENO);
   posix_spawn_file_actions_adddup2(&actions, output.descriptor(), STDERR_FILENO);
-  std::string program = "gnuplot", option = "--persist", from_input = "-";
-  std::array<char*, 4> words = {program.data(), stay ? option.data() : from_input.data(),
+  // -d: neither the user's nor the system's initialisation file has a say in a picture.
+  std::string program = "gnuplot", defaults = "-d", option = "--persist", from_input = "-";
+  std::array<char*, 5> words = {program.data(), defaults.data(), stay ? option.data() : from_input.data(),
                                 stay ? from_input.data() : nullptr, nullptr};
   pid_t child = 0;
   const int error = posix_spawnp(&child, program.c_str(), &actions, nullptr, words.data(), environ);

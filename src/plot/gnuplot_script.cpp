@@ -19,6 +19,9 @@ std::string quoted(const LabelText& text) {
   return gnuplot_quoted(text.text) + (text.markup ? " enhanced" : " noenhanced");
 }
 
+/// The name of a file as gnuplot takes it: one that begins with | would be a command, with ~ a home folder.
+std::string file_name(const std::string& path) { return path.find_first_of("|~") == 0 ? "./" + path : path; }
+
 const char* dash_pattern(Dash dash, int variant) {
   using Variants = std::array<const char*, 4>;
   static constexpr Variants solid = {"solid", "(40,8)", "(40,6,10,6)", "(40,6,6,6,6,6)"};
@@ -126,11 +129,11 @@ class ScriptWriter {
   double font_size(double ratio) const { return layout_.font * ratio * units_.font; }
 
   void head() {
-    line("# Written by tchat plot: `gnuplot THIS_FILE` draws the picture again.");
+    line("# Written by tchat plot: `gnuplot -d THIS_FILE` draws the picture again.");
     line("set encoding utf8");
     line("set minussign");
     line(terminal_line(target_.format, target_.window, figure_.width, figure_.height, layout_.font));
-    if (target_.format != PictureFormat::window) line("set output " + gnuplot_quoted(target_.path));
+    if (target_.format != PictureFormat::window) line("set output " + gnuplot_quoted(file_name(target_.path)));
     line("");
   }
 

@@ -1,6 +1,7 @@
 /// A figure as a gnuplot script with its data inline: it needs no other file, can be edited and run again.
 ///
-/// Equal figures give equal scripts, byte for byte. Texts stand in single quotes, where gnuplot substitutes nothing.
+/// Equal figures give equal scripts, byte for byte. Texts are quoted (gnuplot_quoted), so that gnuplot substitutes
+/// nothing.
 #pragma once
 
 #include <string>

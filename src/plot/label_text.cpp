@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "constants/constant_value.hpp"
+#include "constants/user_error.hpp"
 #include "start/fortran_number.hpp"
 
 namespace tchat {
@@ -150,9 +152,24 @@ double text_height(const LabelText& text) {
 }
 
 std::string gnuplot_quoted(std::string_view text) {
-  std::string result = "'";
-  for (const char c : text) result += c == '\'' ? "''" : std::string(1, c);
-  return result + "'";
+  refuse_control_characters(text, "a text of the picture");
+  if (text.find('\'') == std::string_view::npos) return fmt::format("'{}'", text);
+  std::string result = "\"";
+  for (const char c : text)
+    result += std::string_view("'\"\\`$").find(c) == std::string_view::npos
+                  ? std::string(1, c)
+                  : fmt::format("\\{:03o}", static_cast<unsigned char>(c));
+  return result + "\"";
+}
+
+void refuse_control_characters(std::string_view name, std::string_view what) {
+  for (const char c : name) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte >= 0x20 && byte != 0x7f) continue;
+    throw UserError(fmt::format("{} {}: the {} in it cannot stand in a script for gnuplot; give it another name", what,
+                                in_quotes(name),
+                                c == '\n' ? "line break" : fmt::format("control character of code {}", byte)));
+  }
 }
 
 }  // namespace tchat

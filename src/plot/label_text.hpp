@@ -38,7 +38,13 @@ double text_width(const LabelText& text);
 /// Height of a line likewise: a subscript hangs below it.
 double text_height(const LabelText& text);
 
-/// The text in gnuplot's single quotes, in which nothing is special but the quote itself.
+/// The text as a string of gnuplot that says just that: every text that enters a script goes through here. In single
+/// quotes, where nothing is special but the quote itself; a text that has one, which gnuplot does not read at its ends
+/// or doubled, in double quotes with octal codes for what is special there. Throws UserError for control characters: a
+/// line's end would begin a command.
 std::string gnuplot_quoted(std::string_view text);
+
+/// Throws UserError, beginning with `what`, when a name has a control character in it.
+void refuse_control_characters(std::string_view name, std::string_view what);
 
 }  // namespace tchat

@@ -123,7 +123,7 @@ TEST_CASE("taste: columns, ranges, texts, logarithmic axes") {
   CHECK(contains(script, "set xrange [3:3.1]"));
   CHECK(contains(script, ":5]"));
   CHECK(contains(script, "set logscale y"));
-  CHECK(contains(script, "'it''s `date`' noenhanced"));
+  CHECK(contains(script, R"("it\047s \140date\140" noenhanced)"));
   CHECK(contains(script, "set xlabel 'forcing_1' noenhanced"));
   CHECK(contains(script, "set ylabel 'max x_{2}'"));
   CHECK(contains(script, "set label 'one branch'"));
@@ -191,6 +191,77 @@ TEST_CASE("a table of numbers lies as dots beneath a branch") {
   CHECK(contains(script, "$cloud1_1 << END\n2.9 0.125\n3.25 0.5\nEND\n"));
   CHECK(contains(script, "plot $cloud1_1 with points "));
   CHECK(contains(script, "dots"));
+}
+
+TEST_CASE("texts are drawn as they are written, whatever characters they have") {
+  const Workspace& workspace = impacting();
+  const std::vector<std::string> texts{"x''",    "'quoted'", "'",         "''",     "it's",
+                                       "a\\nb'", "{}^_@~",   "`touch y`", "'`id`'", "\"two\" $HOME",
+                                       "@term",  "a#b' ; c", "%d '%s'",   "\\"};
+  for (const std::string& text : texts) {
+    const Outcome outcome =
+        workspace.tchat({"plot", "p.branch", "--title", text, "--xlabel", text, "--legend", text, "-o", "text.svg"});
+    INFO(text << '\n' << outcome.text());
+    CHECK(outcome.status == 0);
+    std::string drawn = workspace.read("text.svg"), expected = text;
+    for (auto at = drawn.find("&quot;"); at != std::string::npos; at = drawn.find("&quot;")) drawn.replace(at, 6, "\"");
+    for (auto at = drawn.find("&#39;"); at != std::string::npos; at = drawn.find("&#39;")) drawn.replace(at, 5, "'");
+    CHECK(contains(drawn, '>' + expected + "</"));
+    CHECK_FALSE(workspace.has("y"));
+  }
+}
+
+TEST_CASE("a name with a line break or a pipe is no command") {
+  const Workspace workspace;
+  workspace.run("-c impacting -d impacting -o branch NMX=3 NTST=20 -q");
+  for (const std::string command : {"system \"touch made\"", "!touch made"}) {
+    const std::string name = "a\n" + command + "\n#";
+    workspace.write("p." + name, workspace.read("p.branch"));
+    workspace.write("q." + name, workspace.read("q.branch"));
+    INFO(command);
+    for (const std::vector<std::string>& words :
+         std::vector<std::vector<std::string>>{{"plot", "p." + name},
+                                               {"plot", "p." + name, "-o", "a.svg"},
+                                               {"plot", "q." + name, "EP1"},
+                                               {"plot", "p.branch", "-o", "a'\n" + command + "\n#.svg"},
+                                               {"plot", "--multipliers", "q." + name}}) {
+      check_refused(workspace.tchat(words), {"line break"});
+      CHECK_FALSE(workspace.has("made"));
+    }
+  }
+  CHECK(workspace.tchat({"plot", "p.branch", "-o", "|touch made;.svg", "--script", "pipe.gp"}).status == 0);
+  CHECK(workspace.has("|touch made;.svg"));
+  Process({"/bin/sh", "-c", "gnuplot pipe.gp"}, workspace.file(""), workspace.file("log"))
+      .wait(std::chrono::seconds(60));
+  CHECK_FALSE(workspace.has("made"));
+}
+
+TEST_CASE("no initialisation file of gnuplot changes a picture") {
+  const Workspace& workspace = impacting();
+  REQUIRE(workspace.tchat("plot p.branch -o plain.svg").status == 0);
+  std::filesystem::create_directories(workspace.file("config/gnuplot"));
+  workspace.write(".gnuplot", "set label 99 'intruder' at screen 0.5,0.5\nset grid\n");
+  workspace.write("config/gnuplot/gnuplotrc", "set label 99 'intruder' at screen 0.5,0.5\n");
+  const std::string home = workspace.file(""), config = workspace.file("config");
+  const Environment other_home("HOME", home.c_str()), other_config("XDG_CONFIG_HOME", config.c_str());
+  REQUIRE(workspace.tchat("plot p.branch -o other.svg").status == 0);
+  CHECK(workspace.read("other.svg") == workspace.read("plain.svg"));
+}
+
+TEST_CASE("ranges that gnuplot cannot draw are refused, all others drawn") {
+  const Workspace& workspace = impacting();
+  for (const std::string range :
+       {"-1e308:1e308", "-1e90:1e90", "1:1e300", "1:1.0000000001", "1e16:1.000000000001e16"}) {
+    INFO(range);
+    for (const std::string axis : {"--xrange=", "--yrange="})
+      check_refused(workspace.tchat("plot p.branch -o range.svg " + axis + range), {"range", "drawn"});
+    check_refused(workspace.tchat("plot p.branch -o range.svg --logx --xrange=" + range), {"range"});
+  }
+  for (const std::string range : {"-1e89:1e89", "3:3.000001", "3.2:", ":2.9", "0:1e-300", "-1e-310:1e-310"}) {
+    const Outcome outcome = workspace.tchat("plot p.branch -o range.svg --xrange=" + range);
+    INFO(range << '\n' << outcome.text());
+    CHECK(outcome.status == 0);
+  }
 }
 
 TEST_CASE("bad usage of plot is refused with what there is") {

@@ -38,15 +38,25 @@ TEST_CASE("axes, data, dashes, labels and texts are in the script") {
   const std::string script = script_of(sample(), {PictureFormat::png, "x's.png", ""});
   CHECK(contains(script, "set terminal pngcairo"));
   CHECK(contains(script, "size 1200,900"));
-  CHECK(contains(script, "set output 'x''s.png'"));
+  CHECK(contains(script, R"(set output "x\047s.png")"));
   CHECK(contains(script, "set xlabel 'α' enhanced"));
-  CHECK(contains(script, "set ylabel 'it''s `date`' noenhanced"));
+  CHECK(contains(script, R"(set ylabel "it\047s \140date\140" noenhanced)"));
   CHECK(contains(script, "$curve1_1 << END\n0 0\n1 2\n\n2 1\nEND\n"));
   CHECK(contains(script, "dt (14,8) lw 2 lc rgb '#123456'"));
   CHECK(contains(script, "set label 'GR' noenhanced at screen"));
   CHECK(contains(script, "set label 'a_b' noenhanced"));
   CHECK(contains(script, "'title' noenhanced"));
   CHECK(script == script_of(sample(), {PictureFormat::png, "x's.png", ""}));
+}
+
+TEST_CASE("a name of a file is a name: no command, no home folder, no line of its own") {
+  CHECK(contains(script_of(sample(), {PictureFormat::png, "|cat.png", ""}), "set output './|cat.png'"));
+  CHECK(contains(script_of(sample(), {PictureFormat::png, "~a.png", ""}), "set output './~a.png'"));
+  CHECK(contains(script_of(sample(), {PictureFormat::png, "/tmp/a.png", ""}), "set output '/tmp/a.png'"));
+  CHECK_THROWS_AS(script_of(sample(), {PictureFormat::png, "a\n!touch b\n.png", ""}), UserError);
+  Figure figure = sample();
+  figure.title = {"a\nsystem 'b'", false};
+  CHECK_THROWS_AS(script_of(figure, {PictureFormat::png, "a.png", ""}), UserError);
 }
 
 TEST_CASE("every form of picture has its terminal") {

@@ -2,6 +2,8 @@
 
 #include <catch2/catch.hpp>
 
+#include "constants/user_error.hpp"
+
 using namespace tchat;
 
 TEST_CASE("names of columns become mathematics") {
@@ -21,7 +23,12 @@ TEST_CASE("texts of users stay as they are, and quotes end no string") {
   CHECK(plain_text("impacting_20072").text == "impacting_20072");
   CHECK_FALSE(plain_text("x_1").markup);
   CHECK(plain_text("two\nlines").text == "two lines");
-  CHECK(gnuplot_quoted("it's `date` \"x\" $1") == "'it''s `date` \"x\" $1'");
+  CHECK(gnuplot_quoted("`date` \"x\" \\n $1") == "'`date` \"x\" \\n $1'");
+  CHECK(gnuplot_quoted("it's `a` \"x\" \\n $1") == R"("it\047s \140a\140 \042x\042 \134n \0441")");
+  for (const char* text : {"two\nlines", "a\rb", "\x01", "tab\t", "\x7f"}) {
+    CHECK_THROWS_AS(gnuplot_quoted(text), tchat::UserError);
+    CHECK_THROWS_AS(refuse_control_characters(text, "-o"), tchat::UserError);
+  }
   CHECK(joined(plain_text("PD_1: "), mathematical_name("alpha")).text == "PD\\_1: α");
 }
 
