@@ -132,6 +132,7 @@ RunSettings orbit_settings(const HybridSystem& system, const RunSettings& base, 
   const Eigen::Index n = system.dimension();
   RunSettings settings = base;
   settings.dimension = static_cast<int>(n);
+  settings.mesh_intervals = samples.intervals;
   settings.problem_type = 180;
   settings.branch_mode = 1;
   settings.start = {};

@@ -14,10 +14,10 @@ namespace tchat {
 std::string orbit_data_text(const HybridSystem& system, const FoundOrbit& orbit, const OrbitSamples& samples,
                             const Eigen::VectorXd& par);
 
-/// Constants for the orbit: `base` (numerical constants, weights, bounds where they still make sense) with the
-/// signature found, `parameter` and all durations free, and on each segment those event functions of its mode monitored
-/// that are not negative anywhere on it and no Poincare sections (identity jump, and the same field after it). GRJUMP,
-/// unless `base` has another than its default, is the jump of the monitored walls where that is one.
+/// Constants for the orbit: the mesh of the samples, `base` (numerical constants, weights, bounds where they still make
+/// sense) with the signature found, `parameter` and all durations free, and on each segment those event functions of
+/// its mode monitored that are not negative anywhere on it and no Poincare sections (identity jump, and the same field
+/// after it). GRJUMP, unless `base` has another than its default, is the jump of the monitored walls where that is one.
 RunSettings orbit_settings(const HybridSystem& system, const RunSettings& base, const FoundOrbit& orbit,
                            const OrbitSamples& samples, const Eigen::VectorXd& par, int parameter);
 

@@ -27,7 +27,6 @@ namespace {
 namespace fs = std::filesystem;
 using Eigen::VectorXd;
 
-constexpr int data_rows = 401;
 constexpr std::size_t megabyte = 1000000;
 constexpr std::size_t told_size = 10 * megabyte;  // of a file
 constexpr std::size_t kept_size = 9900000;        // of a trajectory when no length has been asked for
@@ -147,15 +146,19 @@ int continuation_parameter(const SimulationRequest& request, const SimulationCon
 std::string hand_over(const SimulationRequest& request, const SimulationConstants& constants,
                       const HybridSystem& system, const FoundOrbit& orbit, const VectorXd& par,
                       const std::string& name) {
-  const OrbitSamples samples = sample_orbit(system, orbit, par, data_rows);
   const RunSettings base = constants.is_given() ? constants.settings : default_orbit_settings(constants.settings);
+  const OrbitSamples samples = sample_orbit(system, orbit, par, base.mesh_intervals, base.collocation_points);
   const RunSettings settings =
       orbit_settings(system, base, orbit, samples, par, continuation_parameter(request, constants, system));
   const OrbitPaths paths = orbit_paths(name);
   write_whole_file(paths.data, orbit_data_text(system, orbit, samples, par));
   write_whole_file(paths.constants, keyword_text(settings));
   const std::string plugin = request.problem ? fmt::format(" -p {}", *request.problem) : "";
-  return fmt::format("Written: {} and {}. Go on with\n  tchat run {}{} -c {} -d {} -o {}\n", paths.data,
+  const std::string finer = samples.intervals == base.mesh_intervals
+                                ? ""
+                                : fmt::format("The orbit is sharp: NTST = {} instead of {}, for an error of {:.1e}.\n",
+                                              samples.intervals, base.mesh_intervals, samples.error);
+  return fmt::format("{}Written: {} and {}. Go on with\n  tchat run {}{} -c {} -d {} -o {}\n", finer, paths.data,
                      paths.constants, request.name, plugin, name, name, name);
 }
 

@@ -61,8 +61,8 @@ SimulatedSegment joined(const SimulatedSegment& first, SimulatedSegment second) 
   return second;
 }
 
-PeriodicOrbit shoot_finely(const HybridSystem& system, const FoundOrbit& found, const VectorXd& guess,
-                           const VectorXd& par, const std::vector<Eigen::Index>& ignorable) {
+PeriodicOrbit shoot_finely(const HybridSystem& system, FoundOrbit& found, const VectorXd& guess, const VectorXd& par,
+                           const std::vector<Eigen::Index>& ignorable) {
   ShootingOptions options;
   options.ignorable = ignorable;
   const PeriodicOrbit orbit = shoot(system, found.signature, guess, par, options);
@@ -71,7 +71,15 @@ PeriodicOrbit shoot_finely(const HybridSystem& system, const FoundOrbit& found, 
   options.flow.relative_tolerance = 1e-12;
   options.flow.absolute_tolerance = 1e-13;
   options.tolerance = 1e-9;
-  return shoot(system, found.signature, guess, par, options);
+  const PeriodicOrbit roughly = shoot(system, found.signature, guess, par, options);
+  if (roughly.converged) return roughly;
+  // On a stiff problem the steps of a method for others are too many.
+  options.flow.method = IntegrationMethod::bdf;
+  options.flow.max_steps = 1000000;
+  PeriodicOrbit stiff = shoot(system, found.signature, guess, par, options);
+  if (!stiff.converged) return roughly;
+  found.method = IntegrationMethod::bdf;
+  return stiff;
 }
 
 std::vector<std::complex<double>> multipliers_without(const MatrixXd& m, const std::vector<Eigen::Index>& ignorable) {

@@ -21,6 +21,7 @@ struct FoundOrbit {
   std::vector<std::complex<double>> multipliers;
   Eigen::VectorXd advance;  ///< of each state in one turn: zero but for ignorable states
   int iterations = 0;       ///< Newton steps of shooting
+  IntegrationMethod method = IntegrationMethod::adams;  ///< by which it was found
 
   /// Every multiplier at most 1 + 1e-5 in modulus.
   bool is_stable() const;

@@ -66,6 +66,37 @@ Eigen::MatrixXd stack(const Eigen::MatrixXd& states, const OrbitShape& shape) {
   return result;
 }
 
+/// The mesh that the rows lie on, when they divide NTST intervals of different length into equal parts, a multiple of
+/// NCOL on each; empty when there is none.
+std::vector<double> mesh_of_rows(const DatFile& data, const OrbitShape& shape) {
+  constexpr double rounding = 1e-9;  // of a step: rows may be written with 15 digits
+  const int rows = static_cast<int>(data.tau.size()) - 1;
+  if (rows < 1 || rows % (shape.nodes() - 1) != 0) return {};
+  const int parts = rows / shape.intervals;
+  std::vector<double> mesh{data.tau.front()};
+  bool uniform = true;
+  for (int j = 0; j < shape.intervals; ++j) {
+    const double begin = data.tau[index(j * parts)];
+    const double length = data.tau[index((j + 1) * parts)] - begin;
+    for (int k = 1; k < parts; ++k)
+      if (std::abs(data.tau[index(j * parts + k)] - begin - length * k / parts) > rounding * (1e-3 + length)) return {};
+    mesh.push_back(begin + length);
+    uniform = uniform && std::abs(length * shape.intervals - 1.0) < 1e-3;
+  }
+  mesh.back() = 1.0;
+  return uniform ? std::vector<double>{} : mesh;
+}
+
+/// The data on a mesh.
+Orbit on_mesh(const DatFile& data, const std::vector<double>& mesh, const OrbitShape& shape,
+              const ParameterVector& par) {
+  Orbit orbit{shape, mesh, Eigen::MatrixXd(shape.dimension, shape.columns()), par};
+  Eigen::MatrixXd stacked(data.states.rows(), shape.nodes());
+  for (int k = 0; k < shape.nodes(); ++k) stacked.col(k) = interpolate(data, orbit.tau(k));
+  orbit.states = unstack(stacked, shape.dimension);
+  return orbit;
+}
+
 /// The stored direction on the stored mesh; nothing when it belongs to other free parameters.
 std::optional<OrbitVector> stored_direction(const LabelledSolution& solution, const OrbitShape& stored,
                                             const std::vector<int>& free_parameters) {
@@ -91,10 +122,13 @@ std::optional<OrbitVector> stored_direction(const LabelledSolution& solution, co
 }  // namespace
 
 Orbit orbit_from_data(const DatFile& data, const OrbitShape& shape, const ParameterVector& par) {
-  Orbit orbit{shape, mesh_of_data(data, shape.intervals), Eigen::MatrixXd(shape.dimension, shape.columns()), par};
-  Eigen::MatrixXd stacked(data.states.rows(), shape.nodes());
-  for (int k = 0; k < shape.nodes(); ++k) stacked.col(k) = interpolate(data, orbit.tau(k));
-  orbit.states = unstack(stacked, shape.dimension);
+  if (const std::vector<double> mesh = mesh_of_rows(data, shape); !mesh.empty()) return on_mesh(data, mesh, shape, par);
+  Orbit orbit = on_mesh(data, mesh_of_data(data, shape.intervals), shape, par);
+  // Fewer rows than nodes say nothing of the derivatives between them.
+  if (static_cast<int>(data.tau.size()) < shape.nodes()) return orbit;
+  const CollocationRule rule(shape.collocation);
+  for (int pass = 0; pass < 5; ++pass)
+    orbit = on_mesh(data, equidistributed_mesh(orbit, rule, shape.intervals), shape, par);
   return orbit;
 }
 
