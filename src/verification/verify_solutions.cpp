@@ -213,6 +213,9 @@ class Table {
   Largest state_, time_, multipliers_;
 };
 
+/// Labels in a summary.
+constexpr std::size_t most_named = 20;
+
 std::string summary(const std::string& path, const std::vector<int>& wrong, std::size_t labels, int inadmissible,
                     double tolerance) {
   const std::string stored =
@@ -220,8 +223,10 @@ std::string summary(const std::string& path, const std::vector<int>& wrong, std:
   if (wrong.empty())
     return fmt::format("{}: {} label{} agree{} with forward integration to {:g}{}.\n", path, labels,
                        labels == 1 ? "" : "s", labels == 1 ? "s" : "", tolerance, stored);
-  return fmt::format("{}: {} of {} labels beyond the tolerance {:g}{}: {}\n", path, wrong.size(), labels, tolerance,
-                     stored, fmt::join(wrong, ", "));
+  const std::size_t named = std::min(wrong.size(), most_named);
+  return fmt::format("{}: {} of {} labels beyond the tolerance {:g}{}: {}{}\n", path, wrong.size(), labels, tolerance,
+                     stored, fmt::join(wrong.begin(), wrong.begin() + static_cast<std::ptrdiff_t>(named), ", "),
+                     wrong.size() > named ? ", ..." : "");
 }
 
 }  // namespace

@@ -46,6 +46,7 @@ TEST_CASE("every label restarts where the curves run on into inadmissible orbits
 TEST_CASE("make -j2 in problems/linosc: the files of the chain") {
   const MakefileRun chain("linosc");
   chain.check_repeatable();
+  chain.check_verified();
   for (const std::string& name : branches)
     for (const char* letter : {"p.", "q.", "d.", "r."}) CHECK(chain.read(letter + name).size() > 100);
   for (const char* orbit : {"orbit_5_7a", "orbit_5_7b", "orbit_5_8a", "orbit_5_8b", "orbit_5_10"})

@@ -73,6 +73,14 @@ void MakefileRun::check_repeatable() const {
   CHECK(files_in(folder_.file("serial")).empty());
 }
 
+void MakefileRun::check_verified() const {
+  const Outcome outcome = make({"verify"}, "out");
+  INFO(outcome.text());
+  CHECK(outcome.status == 0);
+  CHECK(outcome.text().find("agree with forward integration") != std::string::npos);
+  CHECK(outcome.text().find("<<") == std::string::npos);
+}
+
 Outcome MakefileRun::tchat(std::vector<std::string> words) const {
   words.insert(words.begin(), TCHAT_EXECUTABLE);
   return Process(words, folder_.file("out"), logs_.file(std::to_string(++runs_))).wait(time_limit);

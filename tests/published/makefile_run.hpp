@@ -17,6 +17,9 @@ class MakefileRun {
   /// Once more there is nothing to do; without -j2 every file is the same to the byte; `make clean` leaves nothing.
   void check_repeatable() const;
 
+  /// `make verify`: forward integration agrees with every labelled orbit of the chain.
+  void check_verified() const;
+
   /// tchat in the folder of the results.
   Outcome tchat(std::vector<std::string> words) const;
   /// tchat run NAME with the plugin of the chain; fails the test unless the exit status is 0.

@@ -92,6 +92,10 @@ TEST_CASE("Appendix A's Makefile with the Fortran problem: values found by shoot
   run_makefile(fortran);
   CHECK(fortran.read("d.mems.4").find("Second derivatives are central differences") != std::string::npos);
 
+  // Forward integration agrees; step 2 has NCOL = 2, so errors are of fourth order in 1/50.
+  for (const char* labels : {"q.mems.1", "q.mems.2 PD1 LP1 GR1 --tolerance 2e-5", "q.mems.3", "q.mems.4"})
+    fortran.succeed(std::string("\"$TCHAT\" verify -p mems ") + labels);
+
   // Step 1, the grazing curve.
   const PointSection grazing = fortran.points("mems.1");
   check_near(value_at(grazing, "PAR(2)", 0.56, "PAR(1)"), 0.532126908360, 1e-8);
