@@ -32,6 +32,14 @@ struct BranchPoint {
   bool labelled() const { return special.type != PointType::ordinary; }
 };
 
+/// A test function changed sign on the step to a point, but no zero of it could be located.
+struct LostPoint {
+  int number = 1;
+  std::string text;
+  double from = 0.0;  ///< the principal parameter where the step began
+  double to = 0.0;    ///< and where it ended
+};
+
 /// Receives a branch as it grows.
 class BranchSink {
  public:
@@ -41,6 +49,8 @@ class BranchSink {
   virtual void next_step(int point_number, double ds) = 0;
   /// Something worth a line in the d-file, about the point being computed.
   virtual void note(int point_number, const std::string& text) = 0;
+  /// Something that the user must hear of: a special point may be missing.
+  virtual void lost(const LostPoint& point) { note(point.number, point.text); }
 };
 
 enum class EndReason {
@@ -65,6 +75,7 @@ struct BranchSummary {
   bool critical_curve = false;    ///< every point has a critical multiplier, so stability says nothing
   double worst_structural = 0.0;  ///< largest structural multiplier
   double worst_estimated_error = 0.0;
+  std::vector<LostPoint> lost;  ///< special points that may be missing
 };
 
 }  // namespace tchat

@@ -54,18 +54,19 @@ BranchSummary ContinuationRun::run(PathPoint start) {
   if (settings_.label_start) special.type = PointType::end;
   accept(end_conditions(special));
 
-  const auto note = [this](const std::string& text) { sink_.note(number_ + 1, text); };
+  const SpecialPointSearch::Reports reports{[this](const std::string& text) { sink_.note(number_ + 1, text); },
+                                            [this](const std::string& text) { report_lost(text); }};
   while (!ended_) {
     prepare_next_step();
     if (!take_step()) {
       give_up();
       break;
     }
-    special = search_.advance(here_, next_, ds_taken_, newton_, note).value_or(SpecialPoint{});
+    special = search_.advance(here_, next_, ds_taken_, newton_, reports).value_or(SpecialPoint{});
     std::swap(here_, next_);
     ++number_;
     accept(end_conditions(special));
-    step_.converged(newton_.iterations, number_);
+    if (!limited_) step_.converged(newton_.iterations, number_);
   }
   return summary_;
 }
@@ -73,8 +74,9 @@ BranchSummary ContinuationRun::run(PathPoint start) {
 /// Predicts and corrects, halving the step until it succeeds. False when it cannot be made any smaller.
 bool ContinuationRun::take_step() {
   for (;;) {
-    newton_ = follower_.step(here_, step_.value(), next_);
-    ds_taken_ = step_.value();
+    ds_taken_ = search_.limited(step_.value());
+    limited_ = ds_taken_ != step_.value();
+    newton_ = follower_.step(here_, ds_taken_, next_);
     const bool converged = newton_.converged();
     std::string trouble;
     if (!converged)
@@ -160,6 +162,12 @@ void ContinuationRun::end(EndReason reason, std::string detail) {
   ended_ = true;
   summary_.reason = reason;
   summary_.detail = std::move(detail);
+}
+
+void ContinuationRun::report_lost(const std::string& text) {
+  const auto parameter = [this](const PathPoint& point) { return point.orbit.par(settings_.principal - 1); };
+  summary_.lost.push_back({number_ + 1, text, parameter(here_), parameter(next_)});
+  sink_.lost(summary_.lost.back());
 }
 
 /// A new mesh where it is due, and the step length for the d-file.

@@ -49,6 +49,7 @@ class ContinuationRun {
   void accept(const SpecialPoint& special);
   void end(EndReason reason, std::string detail);
   void prepare_next_step();
+  void report_lost(const std::string& text);
   void give_up();
 
   PathFollower& follower_;
@@ -63,6 +64,7 @@ class ContinuationRun {
   PathPoint next_;         // the point being computed
   NewtonResult newton_;    // of the step to it
   double ds_taken_ = 0.0;  // length of that step
+  bool limited_ = false;   // by zeros that are known to lie ahead: it says nothing of the next one
   double measure_ = 0.0;   // at here_
   int number_ = 1;         // of here_
   bool ended_ = false;

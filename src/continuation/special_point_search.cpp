@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "continuation/value_trend.hpp"
 #include "special_points/bifurcation_tests.hpp"
@@ -18,14 +19,18 @@ constexpr double together = 1e-5;
 /// share.
 constexpr double same_direction = 0.95;
 constexpr double small_determinant = 0.3;
-/// To find where a function has the sign that it brought into the step.
-constexpr int most_halvings = 12;
 constexpr std::size_t history_length = 12;
 
 /// A multiplier +1 where the bordered determinant changes sign is a branch point, no grazing-fold.
 bool is_the_same(const SpecialPoint& special, const SpecialPoint& other) {
   return special.type == PointType::branch_point && other.kind.kind == UserPointKind::grazing_codimension_two &&
          other.kind.index == 1;
+}
+
+/// What vanishes besides the label's own function.
+UserPointKind kind_of(const SpecialPoint& special) {
+  if (special.type == PointType::user) return special.kind;
+  return {UserPointKind::other_type, 0, static_cast<int>(special.type), 0.0};
 }
 
 /// What to add to the description "KIND: WHAT" for a further one, without repeating an equal KIND.
@@ -89,6 +94,8 @@ void SpecialPointSearch::begin(const PathPoint& start) {
   determinant_unit_.reset();
   evaluate_again(start);
   signs_ = data_.signs;
+  labelled_.assign(tests_.size(), false);
+  rest_ = 0.0;
   history_.clear();
   remember(0.0);
 }
@@ -96,6 +103,7 @@ void SpecialPointSearch::begin(const PathPoint& start) {
 void SpecialPointSearch::remember(double ds) {
   const double arclength = history_.empty() ? 0.0 : history_.back().arclength + std::abs(ds);
   determinant_here_ = data_.determinant;
+  signs_here_ = data_.signs;
   if (history_.size() == history_length) history_.erase(history_.begin());
   history_.push_back({arclength, data_.values});
 }
@@ -123,55 +131,123 @@ bool SpecialPointSearch::same_branch(const PathPoint& here, const PathPoint& nex
   return std::abs(data_.determinant) > small_determinant * std::abs(cosine * determinant_here_);
 }
 
-/// Test functions that had a sign at the start of the step and have another, or none, at its end.
+/// Test functions that had a sign at the start of the step and have the other one at its end.
 std::vector<std::size_t> SpecialPointSearch::changed(const PointData& end) const {
   std::vector<std::size_t> result;
   for (std::size_t i = 0; i < tests_.size(); ++i)
-    if (end.values[i] && signs_[i] != 0 && end.signs[i] != signs_[i]) result.push_back(i);
+    if (end.values[i] && signs_[i] != 0 && end.signs[i] == -signs_[i]) result.push_back(i);
   return result;
 }
 
 std::optional<SpecialPoint> SpecialPointSearch::advance(const PathPoint& here, PathPoint& next, double& ds,
-                                                        NewtonResult& newton, const Note& note) {
+                                                        NewtonResult& newton, const Reports& reports) {
   evaluate(next);
+  searches_.assign(tests_.size(), Search::none);
+  const Step step = searched_step(here, next, ds);
   std::optional<SpecialPoint> special;
-  if (!changed(data_).empty()) special = advance_to_first_zero(here, next, ds, newton, note);
+  rest_ = std::max(rest_ - std::abs(ds), 0.0);
+  if (!changed(step.end).empty()) special = advance_to_first_zero(here, next, ds, newton, step);
+  report_lost(reports);
   for (std::size_t i = 0; i < tests_.size(); ++i)
     if (data_.signs[i] != 0) signs_[i] = data_.signs[i];
+  if (special)
+    keep_rest(step, next);
+  else
+    labelled_.assign(tests_.size(), false);
   remember(ds);
   return special;
 }
 
-/// Trial steps overwrite `next`: it becomes the first zero, or again the end of the step when there is none.
+/// The step to `next`, evaluated last. A function that ends it within its zero level has not changed sign yet: whether
+/// it does is seen a little farther on.
+SpecialPointSearch::Step SpecialPointSearch::searched_step(const PathPoint& here, const PathPoint& next, double ds) {
+  constexpr double beyond = 1.1;
+  Step step{ds, next, data_};
+  const auto undecided = [&](std::size_t i) { return signs_[i] != 0 && step.end.values[i] && step.end.signs[i] == 0; };
+  std::vector<std::size_t> tests;
+  for (std::size_t i = 0; i < tests_.size(); ++i)
+    if (undecided(i)) tests.push_back(i);
+  if (tests.empty()) return step;
+  Step farther{beyond * ds, next, {}};
+  if (follower_.step(here, farther.ds, farther.point).converged() && same_branch(here, farther.point)) {
+    evaluate(farther.point);
+    farther.end = data_;
+    if (std::any_of(tests.begin(), tests.end(), [&](std::size_t i) { return data_.signs[i] == -signs_[i]; }))
+      return farther;
+  }
+  evaluate_again(next);
+  return step;
+}
+
+/// `next` becomes the first zero, or stays the end of the step when there is none; it is evaluated last.
 std::optional<SpecialPoint> SpecialPointSearch::advance_to_first_zero(const PathPoint& here, PathPoint& next,
                                                                       double& ds, NewtonResult& newton,
-                                                                      const Note& note) {
+                                                                      const Step& whole) {
   const PathPoint end_point = next;
-  const Step whole{ds, data_};
-  // A branch point before anything else: other functions are searched up to it only, so that no step leads onto it.
-  const std::optional<BranchPointBracket> branch_point = find_branch_point(here, next, ds, note);
-  const Step searched = branch_point ? up_to(*branch_point) : whole;
-  if (const std::optional<Zero> first = find_first(here, next, searched, note)) {
-    const bool at_end = first->ds == whole.ds;
-    const NewtonResult result = at_end ? newton : follower_.step(here, first->ds, next);
-    if (result.converged()) {
-      if (at_end) next = end_point;
-      evaluate_again(next);
-      ds = first->ds;
-      newton = result;
-      return classify(vanishing_with(first->test, whole.end), next, whole.end);
-    }
-    note(fmt::format("Possible special point: {}, dropped for want of convergence", tests_[first->test]->name()));
+  std::optional<Cut> cut;
+  for (Step step = whole; !changed(step.end).empty();) {
+    const std::optional<Cut> earlier = first_in(here, next, step);
+    if (!earlier) break;
+    cut = earlier;
+    // What besides has another sign there than at both ends of the step has a zero before.
+    step = {cut->ds, cut->point, data_};
+    for (const std::size_t i : cut->group) step.end.signs[i] = signs_[i];
   }
-  if (branch_point) {
-    branch_point->put_zero(next);
-    evaluate_again(next);
-    ds = branch_point->length();
-    return classify(vanishing_at(*branch_point), next, branch_point->after().data);
-  }
-  next = end_point;
+  next = cut ? cut->point : end_point;
   evaluate_again(next);
-  return std::nullopt;
+  if (!cut) return std::nullopt;
+  ds = cut->ds;
+  if (cut->newton) newton = *cut->newton;
+  return classify(cut->group, next);
+}
+
+/// The nearest of the zeros that can be located on a step; trial steps overwrite `trial`, data_ is that of the zero.
+std::optional<SpecialPointSearch::Cut> SpecialPointSearch::first_in(const PathPoint& here, PathPoint& trial,
+                                                                    const Step& step) {
+  // A branch point before anything else: other functions are searched up to it only, so that no step leads onto it.
+  const std::optional<BranchPointBracket> branch_point = find_branch_point(here, trial, step);
+  // What vanishes within the bracket, vanishes with the branch point and not before it.
+  const std::vector<Zero> zeros =
+      branch_point ? find_zeros(here, trial, branch_point->length_before(), branch_point->before().data)
+                   : find_zeros(here, trial, step.ds, step.end);
+  if (!zeros.empty()) {
+    const Zero first = *std::min_element(zeros.begin(), zeros.end(),
+                                         [](const Zero& a, const Zero& b) { return std::abs(a.ds) < std::abs(b.ds); });
+    const NewtonResult result = follower_.step(here, first.ds, trial);
+    if (result.converged()) {
+      evaluate(trial);
+      return Cut{first.ds, trial, vanishing_with(first, zeros, step.end), result};
+    }
+    searches_[first.test] = Search::failed;
+  }
+  if (!branch_point) return std::nullopt;
+  branch_point->put_zero(trial);
+  evaluate_again(trial);
+  return Cut{branch_point->length(), trial, vanishing_at(*branch_point), std::nullopt};
+}
+
+/// After a step was cut at a zero: what has yet another sign at its end is found on the rest, if that is not passed.
+void SpecialPointSearch::keep_rest(const Step& whole, const PathPoint& cut) {
+  if (changed(whole.end).empty()) return;
+  rest_ = std::abs(dot_difference(cut.dual, whole.point.orbit, cut.orbit, system_.free_parameters()));
+}
+
+double SpecialPointSearch::limited(double ds) const {
+  return rest_ > settings_.tolerance && rest_ < std::abs(ds) ? std::copysign(rest_, ds) : ds;
+}
+
+/// Changes of sign that `next`, evaluated last, leaves behind without a label.
+void SpecialPointSearch::report_lost(const Reports& reports) const {
+  for (const std::size_t i : changed(data_)) {
+    const std::string name = tests_[i]->name();
+    if (searches_[i] == Search::start)
+      reports.note(fmt::format("The {} at a zero of {}: no label of its own",
+                               history_.size() == 1 ? "run starts" : "last label is", name));
+    else if (searches_[i] == Search::jump)
+      reports.note(fmt::format("{} changes sign by a jump: no special point", name));
+    else if (searches_[i] != Search::no_special_point)
+      reports.lost(fmt::format("Possible special point: {} changes sign, but no zero of it was located", name));
+  }
 }
 
 /// Right after the start a zero is the start itself: a label that the run begins from.
@@ -179,61 +255,40 @@ bool SpecialPointSearch::is_start(double length) const {
   return history_.size() == 1 && std::abs(length) <= 10.0 * settings_.tolerance;
 }
 
-/// The zero of a function that Newton's method cannot come near to, on the step to `trial`, evaluated last.
+/// The zero of a function that Newton's method cannot come near to.
 std::optional<BranchPointBracket> SpecialPointSearch::find_branch_point(const PathPoint& here, PathPoint& trial,
-                                                                        double ds, const Note& note) {
-  const std::vector<std::size_t> candidates = changed(data_);
+                                                                        const Step& step) {
+  const std::vector<std::size_t> candidates = changed(step.end);
   const auto found =
       std::find_if(candidates.begin(), candidates.end(), [&](std::size_t i) { return tests_[i]->singular_at_zero(); });
   if (found == candidates.end()) return std::nullopt;
-  if (data_.signs[*found] == 0) {  // the step ends on top of it: look from beyond
-    constexpr double beyond = 1.1;
-    ds *= beyond;
-    if (!follower_.step(here, ds, trial).converged()) return std::nullopt;
-    evaluate(trial);
-    if (data_.signs[*found] != -signs_[*found]) return std::nullopt;
-  }
-  const PathPoint end = trial;
-  const PointData end_data = data_;
   evaluate_again(here);
-  BranchPointBracket bracket(follower_, here, data_, ds, end, end_data, *found, signs_[*found]);
+  BranchPointBracket bracket(follower_, here, data_, step.ds, step.point, step.end, *found, signs_[*found]);
   const auto evaluated = [this](const PathPoint& point) -> const PointData& {
     evaluate(point);
     return data_;
   };
-  if (!bracket.narrow(evaluated, trial, settings_.tolerance)) {
-    note(fmt::format("Possible special point: {} changes sign, but no zero of it was located", tests_[*found]->name()));
-    return std::nullopt;
-  }
-  if (is_start(bracket.length())) {
-    note(fmt::format("The run starts at a zero of {}: no label of its own", tests_[*found]->name()));
-    return std::nullopt;
-  }
+  const bool narrowed = bracket.narrow(evaluated, trial, settings_.tolerance);
+  searches_[*found] = !narrowed ? Search::failed : is_start(bracket.length()) ? Search::start : Search::located;
+  if (searches_[*found] != Search::located) return std::nullopt;
   return bracket;
 }
 
-/// What vanishes within the bracket, vanishes with the branch point and not before it.
-SpecialPointSearch::Step SpecialPointSearch::up_to(const BranchPointBracket& branch_point) const {
-  Step step{branch_point.length_before(), branch_point.before().data};
-  for (std::size_t i = 0; i < tests_.size(); ++i)
-    if (step.end.signs[i] == 0) step.end.signs[i] = signs_[i];
-  return step;
-}
-
-/// The zero nearest to the start among those of all functions that Newton's method can come near to.
-std::optional<SpecialPointSearch::Zero> SpecialPointSearch::find_first(const PathPoint& here, PathPoint& trial,
-                                                                       const Step& step, const Note& note) {
-  std::optional<Zero> first;
-  for (const std::size_t i : changed(step.end)) {
-    const bool at_end = step.end.signs[i] == 0;
-    if (tests_[i]->singular_at_zero() && !at_end) continue;
-    const Zero zero = at_end ? Zero{i, step.ds, true} : locate(i, here, trial, step.ds, *step.end.values[i]);
-    if (!zero.converged)
-      note(fmt::format("Possible special point: {} changes sign, but no zero of it was located", tests_[i]->name()));
-    else if (!is_start(zero.ds) && (!first || std::abs(zero.ds) < std::abs(first->ds)))
-      first = zero;
+/// All zeros on a step of length ds, which ends with the values `end`, that Newton's method can come near to.
+std::vector<SpecialPointSearch::Zero> SpecialPointSearch::find_zeros(const PathPoint& here, PathPoint& trial, double ds,
+                                                                     const PointData& end) {
+  std::vector<Zero> zeros;
+  for (const std::size_t i : changed(end)) {
+    if (tests_[i]->singular_at_zero()) continue;
+    const Zero zero = locate(i, here, trial, ds, *end.values[i]);
+    searches_[i] = zero.search;
+    if (zero.search != Search::located) continue;
+    if (is_start(zero.ds))
+      searches_[i] = Search::start;
+    else
+      zeros.push_back(zero);
   }
-  return first;
+  return zeros;
 }
 
 /// Between the start of the step, evaluated again with the border and the mesh of the trial steps, and its end. At a
@@ -249,32 +304,57 @@ SpecialPointSearch::Zero SpecialPointSearch::locate(std::size_t test, const Path
   };
   const std::optional<double>& value = data_.values[test];
   const auto has_sign = [&] { return value && data_.signs[test] == signs_[test]; };
-  double low = 0.0;
-  double high = ds;
-  bool arrived = arrive(low);
-  for (int halving = 0; arrived && !has_sign() && halving < most_halvings; ++halving) {
-    const double middle = 0.5 * (low + high);
+  SignChange bracket{0.0, ds, 0.0, end_value};
+  bool arrived = arrive(bracket.low);
+  while (arrived && !has_sign() && bracket.length() > settings_.tolerance) {
+    const double middle = 0.5 * (bracket.low + bracket.high);
     arrived = arrive(middle);
     if (value && data_.signs[test] == -signs_[test])
-      high = middle, end_value = *value;
+      bracket.high = middle, bracket.high_value = *value;
     else
-      low = middle;
+      bracket.low = middle;
   }
-  if (!arrived || !has_sign()) return {test, 0.0, false};
-  const auto at = [&](double length) { return arrive(low + length) ? value : std::nullopt; };
-  const double rounding = 1e-5 * data_.zero_levels[test];
-  const double start_value = *value;
-  const LocatedZero zero =
-      locate_zero(at, high - low, start_value, end_value, settings_.tolerance, rounding, settings_.max_evaluations);
-  return {test, low + zero.ds, zero.converged};
+  if (!arrived) return {test, 0.0, Search::failed};
+  if (!has_sign()) return {test, bracket.high, zero_at_start(test)};
+  bracket.low_value = *value;
+  double least = std::numeric_limits<double>::infinity();
+  bool genuine = true;
+  const auto at = [&](double length) {
+    if (!arrive(length)) return std::optional<double>();
+    if (value && std::abs(*value) < least) {
+      least = std::abs(*value);
+      genuine = tests_[test]->is_genuine(tested(trial));
+    }
+    return value;
+  };
+  // No level of rounding: where a function is flat, it is small far from its zero.
+  const LocatedZero zero = locate_zero_surely(at, bracket, settings_.tolerance, 0.0, settings_.max_evaluations);
+  const Search search = !zero.converged() ? zero.status == ZeroSearch::jump ? Search::jump : Search::failed
+                        : genuine         ? Search::located
+                                          : Search::no_special_point;
+  return {test, zero.ds, search};
 }
 
-/// The functions that vanish at the point evaluated last, where `test` has its zero.
-std::vector<std::size_t> SpecialPointSearch::vanishing_with(std::size_t test, const PointData& end) const {
+/// The branch leaves the start of the step with another sign than it came with.
+SpecialPointSearch::Search SpecialPointSearch::zero_at_start(std::size_t test) const {
+  if (!history_.back().values[test]) return Search::no_special_point;  // undefined there: nothing goes through zero
+  if (labelled_[test]) return Search::start;
+  return signs_here_[test] == 0 ? Search::located : Search::jump;
+}
+
+/// The functions that vanish at the point evaluated last, where one has its zero: whose own zeros are at the same
+/// place, or, where these were not located, that have become small.
+std::vector<std::size_t> SpecialPointSearch::vanishing_with(const Zero& first, const std::vector<Zero>& zeros,
+                                                            const PointData& end) const {
+  const double same_place = 10.0 * settings_.tolerance;
   std::vector<std::size_t> group;
-  for (const std::size_t i : changed(end))
-    if (i == test || (data_.values[i] && std::abs(*data_.values[i]) <= together * std::abs(*end.values[i])))
-      group.push_back(i);
+  for (const std::size_t i : changed(end)) {
+    const auto zero = std::find_if(zeros.begin(), zeros.end(), [i](const Zero& z) { return z.test == i; });
+    const bool small = data_.values[i] && std::abs(*data_.values[i]) <= together * std::abs(*end.values[i]);
+    const bool same =
+        zero != zeros.end() ? std::abs(zero->ds - first.ds) <= same_place : small && searches_[i] == Search::failed;
+    if (same) group.push_back(i);
+  }
   return group;
 }
 
@@ -292,22 +372,24 @@ std::vector<std::size_t> SpecialPointSearch::vanishing_at(const BranchPointBrack
 
 /// Functions that vanish together make one special point, of the first one's type, and none of them is looked for
 /// again.
-SpecialPoint SpecialPointSearch::classify(const std::vector<std::size_t>& group, const PathPoint& at,
-                                          const PointData& after) {
+SpecialPoint SpecialPointSearch::classify(const std::vector<std::size_t>& group, const PathPoint& at) {
   SpecialPoint special;
+  labelled_.assign(tests_.size(), false);
   for (const std::size_t i : group) {
     const SpecialPoint found = tests_[i]->classify(tested(at), signs_[i] < 0);
     if (i == group.front()) {
       special = found;
     } else if (!is_the_same(special, found)) {
+      special.further.push_back(kind_of(found));
       special.description += joined(special.description, found.description);
       special.ends_branch = special.ends_branch || found.ends_branch;
     }
   }
   for (const std::size_t i : group) {
-    signs_[i] = after.signs[i];
+    signs_[i] = -signs_[i];
     data_.values[i] = 0.0;
     data_.signs[i] = 0;
+    labelled_[i] = true;
   }
   return special;
 }

@@ -23,7 +23,12 @@ struct LocationSettings {
 
 class SpecialPointSearch {
  public:
-  using Note = std::function<void(const std::string&)>;
+  /// Who hears of what deserves no label: a note for the d-file, and what the user must know, as a point may be
+  /// missing.
+  struct Reports {
+    std::function<void(const std::string&)> note;
+    std::function<void(const std::string&)> lost;
+  };
 
   SpecialPointSearch(PathFollower& follower, const DefiningSystem& system,
                      std::vector<std::unique_ptr<TestFunction>> tests, const LocationSettings& settings);
@@ -48,18 +53,32 @@ class SpecialPointSearch {
   /// change sign on the way, `next`, `ds` and `newton` are moved to their first zero, and what it is is returned.
   /// Afterwards data() belongs to `next`, which becomes the new `here`.
   std::optional<SpecialPoint> advance(const PathPoint& here, PathPoint& next, double& ds, NewtonResult& newton,
-                                      const Note& note);
+                                      const Reports& reports);
+
+  /// A step that was cut at a zero has shown what lies beyond. As long as further zeros are known there, the next steps
+  /// end where it ended, not farther: `ds`, or what is left of that step.
+  double limited(double ds) const;
 
  private:
+  /// What came of the search for a zero.
+  enum class Search { none, located, start, jump, no_special_point, failed };
   struct Zero {
     std::size_t test;
     double ds;
-    bool converged;
+    Search search;
   };
   /// How far the zeros are searched, and what is known there.
   struct Step {
     double ds;
+    PathPoint point;
     PointData end;
+  };
+  /// Where a step is cut: the zero of a group of functions.
+  struct Cut {
+    double ds;
+    PathPoint point;
+    std::vector<std::size_t> group;
+    std::optional<NewtonResult> newton;  // nothing: interpolated
   };
 
   void evaluate(const PathPoint& at);        // the follower holds its linearisation
@@ -67,17 +86,21 @@ class SpecialPointSearch {
   TestedPoint tested(const PathPoint& at) const;
   int sign_at(const TestedPoint& point, std::size_t test) const;
   std::vector<std::size_t> changed(const PointData& end) const;
+  Step searched_step(const PathPoint& here, const PathPoint& next, double ds);
   std::optional<SpecialPoint> advance_to_first_zero(const PathPoint& here, PathPoint& next, double& ds,
-                                                    NewtonResult& newton, const Note& note);
+                                                    NewtonResult& newton, const Step& whole);
+  std::optional<Cut> first_in(const PathPoint& here, PathPoint& trial, const Step& step);
+  void keep_rest(const Step& whole, const PathPoint& cut);
+  void report_lost(const Reports& reports) const;
   bool is_start(double length) const;
-  std::optional<BranchPointBracket> find_branch_point(const PathPoint& here, PathPoint& trial, double ds,
-                                                      const Note& note);
-  Step up_to(const BranchPointBracket& branch_point) const;
-  std::optional<Zero> find_first(const PathPoint& here, PathPoint& trial, const Step& step, const Note& note);
+  std::optional<BranchPointBracket> find_branch_point(const PathPoint& here, PathPoint& trial, const Step& step);
+  std::vector<Zero> find_zeros(const PathPoint& here, PathPoint& trial, double ds, const PointData& end);
   Zero locate(std::size_t test, const PathPoint& here, PathPoint& trial, double ds, double end_value);
-  std::vector<std::size_t> vanishing_with(std::size_t test, const PointData& end) const;
+  Search zero_at_start(std::size_t test) const;
+  std::vector<std::size_t> vanishing_with(const Zero& first, const std::vector<Zero>& zeros,
+                                          const PointData& end) const;
   std::vector<std::size_t> vanishing_at(const BranchPointBracket& branch_point) const;
-  SpecialPoint classify(const std::vector<std::size_t>& group, const PathPoint& at, const PointData& after);
+  SpecialPoint classify(const std::vector<std::size_t>& group, const PathPoint& at);
   void remember(double ds);
 
   PathFollower& follower_;
@@ -94,6 +117,10 @@ class SpecialPointSearch {
   double determinant_here_ = 1.0;  // at the last accepted point
   std::vector<Past> history_;      // the last accepted points, for resolved()
   std::vector<int> signs_;         // of the test functions at the last accepted point; 0: none yet
+  std::vector<int> signs_here_;    // of the values at the last accepted point; 0 within their zero levels
+  std::vector<bool> labelled_;     // the last accepted point is labelled as their zero
+  std::vector<Search> searches_;   // on the step being searched
+  double rest_ = 0.0;              // of a step that was cut; 0: nothing more is known there
 };
 
 }  // namespace tchat

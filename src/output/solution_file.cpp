@@ -8,6 +8,7 @@
 
 #include "hybrid/parameter_vector.hpp"
 #include "output/number_format.hpp"
+#include "start/point_type.hpp"
 
 namespace tchat {
 
@@ -16,7 +17,7 @@ namespace {
 constexpr int numbers_per_line = 7;
 constexpr int integers_per_line = 20;
 constexpr int least_parameters = 100;
-constexpr int internal_parameters = 4;
+constexpr int values_of_a_kind = 4;
 
 /// Lines that `count` items take, `per_line` on each.
 int lines_for(int count, int per_line) { return (count + per_line - 1) / per_line; }
@@ -32,6 +33,7 @@ struct EntrySizes {
   int segments = 0;
   int free_parameters = 0;
   int parameters = 0;  ///< NPAR
+  int internal = 0;    ///< NPARI, the last of them
 
   int lines(bool direction) const {
     const int record = lines_for(states + 1, numbers_per_line);
@@ -52,7 +54,8 @@ EntrySizes checked_sizes(const LabelledSolution& solution) {
   require(solution.dimension > 0 && sizes.states > 0 && sizes.states % solution.dimension == 0,
           "states are not a whole number of segments");
   sizes.segments = sizes.states / solution.dimension;
-  sizes.parameters = std::max(least_parameters, first_duration - 1 + sizes.segments) + internal_parameters;
+  sizes.internal = values_of_a_kind * (1 + static_cast<int>(solution.further.size()));
+  sizes.parameters = std::max(least_parameters, first_duration - 1 + sizes.segments) + sizes.internal;
   if (solution.has_direction()) {
     require(solution.parameter_direction.size() == solution.free_parameters.size(),
             "direction does not fit the free parameters");
@@ -86,7 +89,7 @@ void append_identifier(std::string& text, const LabelledSolution& solution, cons
                           solution.label, sizes.free_parameters, solution.branch_mode})
     text += integer_field(value, 6);
   text += integer_field(sizes.points, 8) + integer_field(sizes.states + 1, 6) + integer_field(lines, 8);
-  for (const int value : {solution.mesh_intervals, solution.collocation_points, sizes.parameters, internal_parameters,
+  for (const int value : {solution.mesh_intervals, solution.collocation_points, sizes.parameters, sizes.internal,
                           solution.dimension, solution.problem_type, 0})
     text += integer_field(value, 5);
   text += '\n';
@@ -94,15 +97,15 @@ void append_identifier(std::string& text, const LabelledSolution& solution, cons
 
 /// PAR(1..NPAR): the solution's own, zeros, and what a UZ point is.
 std::vector<double> all_parameters(const LabelledSolution& solution, const EntrySizes& sizes) {
-  const auto ordinary = static_cast<std::size_t>(sizes.parameters - internal_parameters);
+  const auto ordinary = static_cast<std::size_t>(sizes.parameters - sizes.internal);
   std::vector<double> parameters = solution.parameters;
   require(std::all_of(parameters.begin() + static_cast<std::ptrdiff_t>(std::min(ordinary, parameters.size())),
                       parameters.end(), [](double value) { return value == 0.0; }),
           "more parameters than the file has room for");
   parameters.resize(ordinary, 0.0);
-  const UserPointKind& kind = solution.kind;
-  parameters.insert(parameters.end(), {static_cast<double>(kind.kind), static_cast<double>(kind.segment),
-                                       static_cast<double>(kind.index), kind.tau});
+  for (const UserPointKind& kind : all_kinds(solution))
+    parameters.insert(parameters.end(), {static_cast<double>(kind.kind), static_cast<double>(kind.segment),
+                                         static_cast<double>(kind.index), kind.tau});
   return parameters;
 }
 

@@ -71,7 +71,7 @@ std::string format_label_table(const SolutionFile& file, const ProblemNames& nam
     const int segments = segment_count(solution);
     const double duration = period(solution);
     const std::string mesh = fmt::format("{}x{}", solution.mesh_intervals, solution.collocation_points);
-    const std::string what = description(solution.kind, names.parameter(solution.kind.index));
+    const std::string what = description(solution, [&names](int k) { return names.parameter(k); });
     text += fmt::format("{:>5} {:>3} {:>4} {:>5} {:>5} {:>4} {:>9} {:>15}  {}{}{}\n", solution.label,
                         type_name(solution), solution.branch, solution.point, number_or_dash(solution.problem_type),
                         number_or_dash(segments), mesh, segments > 0 ? fmt::format("{:.9g}", duration) : "-",

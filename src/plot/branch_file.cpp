@@ -59,7 +59,8 @@ void take_from_solutions(BranchFile& file) {
       if (found == by_label.end() || found->second->point != std::abs(row.point)) continue;
       const LabelledSolution& solution = *found->second;
       file.types[s][k] = type_name(solution);
-      if (solution.kind.kind == UserPointKind::xi) file.xi_zeros[row.label] = {solution.kind.index};
+      for (const UserPointKind& kind : all_kinds(solution))
+        if (kind.kind == UserPointKind::xi) file.xi_zeros[row.label].push_back(kind.index);
       if (file.parameters[s].empty())
         for (std::size_t p = 0; p < solution.parameters.size(); ++p)
           file.parameters[s][static_cast<int>(p) + 1] = solution.parameters[p];
@@ -90,7 +91,7 @@ void take_from_diagnostics(BranchFile& file) {
       next = static_cast<std::size_t>(found - points.begin()) + 1;
       file.admissible[s][k] = found->admissible;
       if (row.label > 0 && !found->xi_zeros.empty())
-        file.xi_zeros[row.label] = found->xi_zeros;  // the q-file has one n
+        file.xi_zeros[row.label] = found->xi_zeros;  // older q-files have one n
       if (file.types[s][k] == "UZ" && !found->type.empty()) file.types[s][k] = found->type;
     }
   }

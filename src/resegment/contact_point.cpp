@@ -83,14 +83,18 @@ ContactPoint contact_point(const LabelledSolution& solution, const Orbit& x, con
     const int s = grazing_segment(settings);
     return {ContactPoint::grazing_curve, s, settings.segments[static_cast<std::size_t>(s)].index.event, 1.0};
   }
-  const UserPointKind& kind = solution.kind;
-  if (kind.kind != UserPointKind::contact && kind.kind != UserPointKind::impact_velocity) {
+  const std::vector<UserPointKind> kinds = all_kinds(solution);
+  const auto grazing = std::find_if(kinds.begin(), kinds.end(), [](const UserPointKind& kind) {
+    return kind.kind == UserPointKind::contact || kind.kind == UserPointKind::impact_velocity;
+  });
+  if (grazing == kinds.end()) {
     const std::string type = type_name(solution);
     throw UserError(
         fmt::format("{} is no grazing point but {}; choose a GR label (GR1 is the first one, `tchat labels` lists "
                     "them) or a label of a grazing curve (IPS = 150)",
                     source, type.empty() ? "an ordinary point" : "of type " + type));
   }
+  const UserPointKind& kind = *grazing;
   checked(kind.segment, x.shape.segments, "segment", source);
   checked(kind.index, system.count(FunctionKind::event), "event function", source);
   if (kind.kind == UserPointKind::impact_velocity) return {ContactPoint::impact, kind.segment - 1, kind.index, 1.0};

@@ -268,8 +268,13 @@ NewOrbit to_rotated(const ResegmentRequest& request, const LabelledOrbit& source
   NewOrbit target{rotated(segments, request.rotation),
                   {old.problem_type, old.branch_mode, old.grazing_jump},
                   source.solution.type,
-                  source.solution.kind};
-  if (target.kind.segment > 0) target.kind.segment = (((target.kind.segment - 1 - request.rotation) % m) + m) % m + 1;
+                  source.solution.kind,
+                  source.solution.further};
+  const auto rotate = [&](UserPointKind& kind) {
+    if (kind.segment > 0) kind.segment = (((kind.segment - 1 - request.rotation) % m) + m) % m + 1;
+  };
+  rotate(target.kind);
+  for (UserPointKind& kind : target.further) rotate(kind);
   return target;
 }
 

@@ -28,6 +28,7 @@ struct NewOrbit {
   NewProblem problem;
   int type = static_cast<int>(PointType::end);
   UserPointKind kind = {};
+  std::vector<UserPointKind> further = {};
   Birth birth = {};
   std::vector<std::string> remarks = {};  ///< what the user may not expect, for the screen
 };

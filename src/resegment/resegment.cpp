@@ -110,6 +110,7 @@ LabelledSolution make_solution(const LabelledOrbit& source, const NewOrbit& targ
   solution.branch = source.solution.branch;
   solution.type = target.type;
   solution.kind = target.kind;
+  solution.further = target.further;
   solution.problem_type = settings.problem_type;
   solution.branch_mode = source.solution.branch_mode;
   return solution;
@@ -124,8 +125,8 @@ void refuse_same_file(const std::string& output, const std::string& input, const
 
 std::string summary(const LabelledOrbit& source, const RunSettings& settings, const Orbit& x,
                     const HybridSystem& system) {
-  const std::string type = type_name(source.solution);
-  const std::string meaning = description(source.solution.kind, system.parameter_name(source.solution.kind.index));
+  const std::string type = fmt::format("{}", fmt::join(type_names(source.solution), " "));
+  const std::string meaning = description(source.solution, [&system](int k) { return system.parameter_name(k); });
   std::string text = fmt::format("{}{}{}\n", source.name, type.empty() ? "" : fmt::format(" ({})", type),
                                  meaning.empty() ? "" : ": " + meaning);
   text += fmt::format("  signature {}\n         -> {}, IPS = {}, ISW = {}\n", to_string(source.settings.signature()),
@@ -167,6 +168,7 @@ std::string choose_side(const ResegmentRequest& request, const HybridSystem& sys
   selected.problem_type = settings.problem_type;
   selected.type = target.type;
   selected.kind = target.kind;
+  selected.types = {basic_type(target.type)};
   const std::string born = !target.birth.impacts.empty()         ? "the new event"
                            : target.birth.empty_segments.empty() ? "the new signature"
                                                                  : "the new segment";

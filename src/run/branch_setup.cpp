@@ -24,8 +24,8 @@ constexpr int torus = static_cast<int>(PointType::torus);
 /// The curve that a label lies on: of its own type, or the one that it was computed on (tens digit).
 int curve_through(const SelectedStart& selected) {
   const int tens = std::abs(selected.type) / 10;
-  const int type = tens > 0 ? tens : selected.type;
-  if (type == fold || type == period_doubling || type == torus) return type;
+  for (const int type : tens > 0 ? std::vector<int>{tens} : selected.types)
+    if (type == fold || type == period_doubling || type == torus) return type;
   throw UserError(fmt::format(
       "{}: ISW = 2 follows the curve of a fold (LP), period doubling (PD) or torus bifurcation (TR) in two parameters, "
       "but the run starts "

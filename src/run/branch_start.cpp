@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "bvp/evaluation_failure.hpp"
@@ -90,7 +91,10 @@ void refuse_singular(PathFollower& follower, const DefiningSystem& defining, con
 }
 
 bool start_is_branch_point(const SelectedStart& selected) {
-  return selected.from_solution && basic_type(selected.type) == static_cast<int>(PointType::branch_point);
+  constexpr int branch_point = static_cast<int>(PointType::branch_point);
+  const std::vector<int>& types = selected.types;
+  return selected.from_solution && (basic_type(selected.type) == branch_point ||
+                                    std::find(types.begin(), types.end(), branch_point) != types.end());
 }
 
 /// On top of a branch point Newton's matrix is singular and the iteration stalls. A stored orbit that satisfies every

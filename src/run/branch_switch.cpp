@@ -109,9 +109,12 @@ Bifurcation branch_at(PathFollower& follower, const PathPoint& point) {
 }  // namespace
 
 BranchSetup switch_branch(const HybridSystem& system, const RunSettings& settings, const SelectedStart& selected) {
-  const int type = std::abs(selected.type) % 10;
-  const bool doubling = selected.from_solution && type == static_cast<int>(PointType::period_doubling);
-  if (!doubling && !(selected.from_solution && type == static_cast<int>(PointType::branch_point)))
+  constexpr int period_doubling = static_cast<int>(PointType::period_doubling);
+  const auto bifurcation_type = std::find_if(selected.types.begin(), selected.types.end(), [](int type) {
+    return type == period_doubling || type == static_cast<int>(PointType::branch_point);
+  });
+  const bool doubling = bifurcation_type != selected.types.end() && *bifurcation_type == period_doubling;
+  if (bifurcation_type == selected.types.end())
     throw UserError(
         fmt::format("{}: ISW = -1 switches at a period doubling (PD) or a branch point (BP), but the run does "
                     "not start from such a label; name one, for example IRS=PD1",

@@ -106,7 +106,9 @@ void BranchWriter::point(const BranchPoint& point) {
   if (screen_ != nullptr) show(point, line);
   tell_unknown_user_values(line);
   if (point.labelled())
-    labels_.push_back({line.label, type_name(line.type, line.kind), place(line), point.special.description});
+    labels_.push_back({line.label,
+                       fmt::format("{}", fmt::join(type_names(line.type, line.kind, point.special.further), " ")),
+                       place(line), point.special.description});
 }
 
 /// User functions are for output only: one that is not finite stops nothing, so it is told, once.
@@ -167,6 +169,7 @@ void BranchWriter::write_solution(const BranchPoint& point, const PointLine& lin
   solution.branch_mode = setup_.settings.branch_mode;
   solution.problem_type = setup_.settings.problem_type;
   solution.kind = line.kind;
+  solution.further = point.special.further;
   files_.write_solution(format_solution(solution));
 }
 
@@ -207,6 +210,14 @@ void BranchWriter::next_step(int point_number, double ds) {
 
 void BranchWriter::note(int point_number, const std::string& text) {
   files_.write_diagnostics(format_note(setup_.branch, point_number, text));
+}
+
+void BranchWriter::lost(const LostPoint& point) {
+  note(point.number, point.text);
+  if (screen_ == nullptr) return;
+  *screen_ << fmt::format("       warning: point {}, {} = {:.8g} to {:.8g}: {}\n", point.number, columns_.front().name,
+                          point.from, point.to, point.text)
+           << std::flush;
 }
 
 }  // namespace tchat

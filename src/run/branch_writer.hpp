@@ -38,6 +38,7 @@ class BranchWriter final : public BranchSink {
   void point(const BranchPoint& point) override;
   void next_step(int point_number, double ds) override;
   void note(int point_number, const std::string& text) override;
+  void lost(const LostPoint& point) override;
 
   struct Labelled {
     int label;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <map>
@@ -33,11 +34,13 @@ constexpr int ended_by_mx = 3;
 /// STOP: true at the n-th labelled point of a type.
 std::function<bool(const SpecialPoint&)> make_stop_rule(const RunSettings& settings) {
   return [rules = settings.stop_rules, seen = std::map<std::string, int>{}](const SpecialPoint& special) mutable {
-    const std::string type = type_name(static_cast<int>(special.type), special.kind);
-    const int count = ++seen[type];
-    for (const StopRule& rule : rules)
-      if (rule.type == type && rule.count == count) return true;
-    return false;
+    bool stops = false;
+    for (const std::string& type : type_names(static_cast<int>(special.type), special.kind, special.further)) {
+      const int count = ++seen[type];
+      stops = stops || std::any_of(rules.begin(), rules.end(),
+                                   [&](const StopRule& rule) { return rule.type == type && rule.count == count; });
+    }
+    return stops;
   };
 }
 

@@ -75,6 +75,17 @@ std::string folded(std::string line) {
   return text + line + '\n';
 }
 
+/// Special points that may be missing, and what a user might change.
+std::string lost_points(const BranchSummary& summary, const std::string& parameter) {
+  if (summary.lost.empty()) return "";
+  std::string text =
+      fmt::format("  {} special point{} may be missing:\n", summary.lost.size(), summary.lost.size() == 1 ? "" : "s");
+  for (const LostPoint& lost : summary.lost)
+    text += folded(fmt::format("    between {} = {:.8g} and {:.8g} (point {}): {}", parameter, lost.from, lost.to,
+                               lost.number, lost.text));
+  return text + "  you might: lower DSMAX; raise NTST or NCOL; EPSL and EPSU smaller than EPSS\n";
+}
+
 bool is_special(const BranchWriter::Labelled& label) {
   return label.type != "EP" && label.type != "RG" && !label.type.empty();
 }
@@ -98,7 +109,7 @@ std::string summary_text(const BranchSummary& summary, const std::vector<BranchW
     return label.type == "MX" && label.description == summary.detail;
   });
   text += fmt::format("  stopped: {}\n", reason_text(summary, parameter, told));
-  return text + advice(summary) + trust(summary);
+  return text + advice(summary) + lost_points(summary, parameter) + trust(summary);
 }
 
 }  // namespace tchat

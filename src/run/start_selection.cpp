@@ -95,6 +95,7 @@ SelectedStart start_from_solution(const std::string& path, const RunSettings& se
   selected.label = solution.label;
   selected.type = solution.type;
   selected.kind = solution.kind;
+  selected.types = basic_types(solution, settings.start.type);
   selected.warnings = file.warnings;
   return selected;
 }

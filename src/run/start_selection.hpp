@@ -19,11 +19,12 @@ struct SelectedStart {
   bool label_start = true;          ///< IRS = 0: the first point gets a label
   bool parameters_changed = false;  ///< the command line changed a value that the label had
   int branch = 1;
-  int last_label = 0;    ///< largest label in the start file
-  int problem_type = 0;  ///< IPS of the label, 0 if unknown
-  int label = 0;         ///< its number
-  int type = 0;          ///< its type number, tens digit included
-  UserPointKind kind;    ///< of a UZ label
+  int last_label = 0;      ///< largest label in the start file
+  int problem_type = 0;    ///< IPS of the label, 0 if unknown
+  int label = 0;           ///< its number
+  int type = 0;            ///< its type number, tens digit included
+  UserPointKind kind;      ///< of a UZ label
+  std::vector<int> types;  ///< basic types of a label that is several things at once, the one asked for first
   std::vector<std::string> warnings;
 };
 

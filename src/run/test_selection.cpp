@@ -16,6 +16,7 @@ namespace {
 
 using Tests = std::vector<std::unique_ptr<TestFunction>>;
 
+/// These come last: where something else vanishes too, it names the label.
 void add_user_values(Tests& tests, const HybridSystem& system, const RunSettings& settings) {
   for (const UserValue& u : settings.user_values)
     tests.push_back(std::make_unique<UserValueTest>(u.parameter, u.value, u.stop, system.parameter_name(u.parameter)));
@@ -71,7 +72,6 @@ void add_further_contacts(Tests& tests, const GrazingOrbitSystem& system, const 
 /// of the other segments, further contacts. A fold in the principal parameter means nothing there.
 Tests tests_on_grazing_curve(const GrazingOrbitSystem& system, const RunSettings& settings) {
   Tests tests;
-  add_user_values(tests, system.system(), settings);
   add_impact_velocities(tests, system, settings);
   add_further_contacts(tests, system, settings);
   for (const int n : settings.test_functions)
@@ -81,6 +81,7 @@ Tests tests_on_grazing_curve(const GrazingOrbitSystem& system, const RunSettings
   if (kind == 2 || kind == 3) tests.push_back(std::make_unique<BranchPointTest>(settings.detect_bifurcations < 0));
   if (kind == 2 || kind == 4)
     for (const int target : {1, -1}) tests.push_back(std::make_unique<SmoothMultiplierTest>(target));
+  add_user_values(tests, system.system(), settings);
   return tests;
 }
 
@@ -91,7 +92,6 @@ std::vector<std::unique_ptr<TestFunction>> select_tests(const DefiningSystem& sy
   if (const auto* grazing = dynamic_cast<const GrazingOrbitSystem*>(&system))
     return tests_on_grazing_curve(*grazing, settings);
   Tests tests;
-  add_user_values(tests, system.system(), settings);
   // Where an impact vanishes the contact that it brings does too: the label is to say the former, so it comes first.
   add_impact_velocities(tests, system, settings);
   add_contacts(tests, system, settings);
@@ -103,6 +103,7 @@ std::vector<std::unique_ptr<TestFunction>> select_tests(const DefiningSystem& sy
       tests.push_back(std::make_unique<AngleTest>(*pair, type));
   else
     add_bifurcations(tests, system, settings);
+  add_user_values(tests, system.system(), settings);
   return tests;
 }
 

@@ -31,6 +31,12 @@ const std::complex<double>* nearest_pair(const FloquetMultipliers& multipliers) 
   return nearest;
 }
 
+double distance_to_minus_one(const FloquetMultipliers& multipliers) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const auto& mu : multipliers.values) nearest = std::min(nearest, std::abs(1.0 + mu));
+  return nearest;
+}
+
 }  // namespace
 
 std::string state_text(const HybridSystem& system, const double* x) {
@@ -81,9 +87,13 @@ std::optional<double> PeriodDoublingTest::value(const TestedPoint& point) const 
   return result;
 }
 
+bool PeriodDoublingTest::is_genuine(const TestedPoint& point) const {
+  constexpr double close = 0.05;  // far more than a located zero misses -1 by, unless the multiplier is about infinite
+  return distance_to_minus_one(point.multipliers) <= close;
+}
+
 double PeriodDoublingTest::zero_level(const TestedPoint& point) const {
-  double nearest = std::numeric_limits<double>::infinity();
-  for (const auto& mu : point.multipliers.values) nearest = std::min(nearest, std::abs(1.0 + mu));
+  const double nearest = distance_to_minus_one(point.multipliers);
   const std::optional<double> size = value(point);
   return size && nearest > 0.0 ? 1e-9 * std::abs(*size) / nearest : 1e-9;
 }

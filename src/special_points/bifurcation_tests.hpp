@@ -47,6 +47,8 @@ class PeriodDoublingTest final : public TestFunction {
   std::string name() const override { return "period doubling"; }
   std::optional<double> value(const TestedPoint& point) const override;
   double zero_level(const TestedPoint& point) const override;
+  /// Where no multiplier goes through infinity with an a_s, as in the plane, the product vanishes with that a_s.
+  bool is_genuine(const TestedPoint& point) const override;
   SpecialPoint classify(const TestedPoint& point, bool rising) const override;
 
  private:

@@ -30,7 +30,8 @@ struct SpecialPoint {
   PointType type = PointType::ordinary;
   UserPointKind kind;  ///< for PointType::user
   bool ends_branch = false;
-  std::string description;  ///< one line for the d-file
+  std::string description;                  ///< one line for the d-file
+  std::vector<UserPointKind> further = {};  ///< what else vanishes there
 };
 
 class TestFunction {
@@ -46,6 +47,8 @@ class TestFunction {
   /// True for functions that may change sign twice within a step that is otherwise fine; such a step is then shortened
   /// until their trend is followed.
   virtual bool oscillates() const { return false; }
+  /// False at a zero that is none of the special points looked for: a factor that keeps the function regular vanishes.
+  virtual bool is_genuine(const TestedPoint&) const { return true; }
   /// True when Newton's matrix is singular at the zeros, which are then located from both sides.
   virtual bool singular_at_zero() const { return false; }
   /// The special point at a located zero; `rising` says which way the function went through it.

@@ -24,13 +24,23 @@ enum class PointType {
   resonance_4 = -8   ///< 1:4, on torus curves
 };
 
-/// What a UZ label is: the last PAR entries of a q-file entry (NPARI = 4 internal values).
+/// What a UZ label is: the last PAR entries of a q-file entry, four internal values for each kind. What vanishes with
+/// the label's own function has a kind each, after the label's own.
 struct UserPointKind {
-  enum Kind { none = 0, user_value = 1, contact = 2, xi = 3, impact_velocity = 4, grazing_codimension_two = 5 };
+  enum Kind {
+    none = 0,
+    user_value = 1,
+    contact = 2,
+    xi = 3,
+    impact_velocity = 4,
+    grazing_codimension_two = 5,
+    other_type = 6  ///< a point that has a type number of its own, beside the label's
+  };
   int kind = none;
   int segment = 0;  ///< from 1
-  int index = 0;    ///< event function, or n of xi_n, or PAR index of a user value
+  int index = 0;    ///< event function, n of xi_n, PAR index of a user value, or type number (other_type)
   double tau = 0.0;
+  bool operator==(const UserPointKind&) const = default;
 };
 
 struct LabelledSolution {
@@ -51,6 +61,7 @@ struct LabelledSolution {
   Eigen::MatrixXd state_direction;          ///< like states; 0 x 0 without direction
   std::vector<double> parameters;           ///< PAR(1..NPAR - NPARI)
   UserPointKind kind;                       ///< from the NPARI internal values
+  std::vector<UserPointKind> further;       ///< likewise, of what vanishes at the same point
 
   bool has_direction() const { return state_direction.size() > 0; }
 };

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace tchat {
 
 namespace {
@@ -89,6 +91,34 @@ std::string type_name(int type, const UserPointKind& kind) {
 
 std::string type_name(const LabelledSolution& solution) { return type_name(solution.type, solution.kind); }
 
+std::vector<std::string> type_names(int type, const UserPointKind& kind, const std::vector<UserPointKind>& further) {
+  constexpr int user = static_cast<int>(PointType::user);
+  std::vector<std::string> names{type_name(type, kind)};
+  for (const UserPointKind& other : further) {
+    const std::string name = type_name(other.kind == UserPointKind::other_type ? other.index : user, other);
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  }
+  return names;
+}
+
+std::vector<std::string> type_names(const LabelledSolution& solution) {
+  return type_names(solution.type, solution.kind, solution.further);
+}
+
+std::vector<int> basic_types(const LabelledSolution& solution, const std::string& asked_for) {
+  std::vector<int> types{basic_type(solution.type)};
+  for (const UserPointKind& other : solution.further)
+    types.push_back(other.kind == UserPointKind::other_type ? other.index : static_cast<int>(PointType::user));
+  std::stable_partition(types.begin(), types.end(), [&](int type) { return type_name(type) == asked_for; });
+  return types;
+}
+
+std::vector<UserPointKind> all_kinds(const LabelledSolution& solution) {
+  std::vector<UserPointKind> kinds{solution.kind};
+  kinds.insert(kinds.end(), solution.further.begin(), solution.further.end());
+  return kinds;
+}
+
 std::string description(const UserPointKind& kind, const std::string& parameter) {
   switch (kind.kind) {
     case UserPointKind::user_value:
@@ -104,9 +134,21 @@ std::string description(const UserPointKind& kind, const std::string& parameter)
       if (kind.index == 0) return "a* = 0: h is no longer least at the contact";
       return kind.index < 0 ? "grazing-flip: multiplier -1 of the orbit that grazes, without the contact"
                             : "grazing-fold: multiplier +1 of the orbit that grazes, without the contact";
+    case UserPointKind::other_type:
+      return type_name(kind.index);
     default:
       return "";
   }
+}
+
+std::string description(const LabelledSolution& solution, const std::function<std::string(int)>& parameter_name) {
+  std::string text;
+  for (const UserPointKind& kind : all_kinds(solution)) {
+    const std::string what =
+        description(kind, kind.kind == UserPointKind::user_value ? parameter_name(kind.index) : "");
+    if (!what.empty()) text += (text.empty() ? "" : "; ") + what;
+  }
+  return text;
 }
 
 }  // namespace tchat

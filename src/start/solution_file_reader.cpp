@@ -255,6 +255,8 @@ class SolutionReader {
     for (std::int64_t k = 0; k < ordinary; ++k) solution.parameters.push_back(numbers.real());
     if (id.has_kind()) {
       solution.kind = read_kind(numbers);
+      for (std::int64_t k = kind_values; k < id.internal_parameters(); k += kind_values)
+        solution.further.push_back(read_kind(numbers));
     } else {
       for (std::int64_t k = 0; k < id.internal_parameters(); ++k) numbers.real();
     }
@@ -302,14 +304,15 @@ class SolutionReader {
     const auto whole = [&numbers](double lowest, double highest, const std::string& what) {
       const double value = numbers.real();
       if (!(value >= lowest && value <= highest) || value != static_cast<double>(static_cast<int>(value)))
-        numbers.refuse(
-            fmt::format("{} as {} of a UZ point (one of the last four parameters); the file is damaged", value, what));
+        numbers.refuse(fmt::format(
+            "{} as {} of a UZ point (one of the internal values at the end of the parameters); the file is damaged",
+            value, what));
       return static_cast<int>(value);
     };
     UserPointKind kind;
-    kind.kind = whole(0.0, UserPointKind::grazing_codimension_two, "kind");
+    kind.kind = whole(0.0, UserPointKind::other_type, "kind");
     kind.segment = whole(0.0, max_segments, "segment");
-    kind.index = whole(-1.0, 1e6, "index");
+    kind.index = whole(kind.kind == UserPointKind::other_type ? -9.0 : -1.0, 1e6, "index");
     kind.tau = numbers.real();
     return kind;
   }
@@ -321,10 +324,15 @@ class SolutionReader {
   SolutionFile file_;
 };
 
+bool is_called(const LabelledSolution& solution, const std::string& type) {
+  const std::vector<std::string> names = type_names(solution);
+  return std::find(names.begin(), names.end(), type) != names.end();
+}
+
 std::string label_list(const std::vector<LabelledSolution>& solutions) {
   std::string list;
   for (const LabelledSolution& solution : solutions) {
-    const std::string type = type_name(solution);
+    const std::string type = fmt::format("{}", fmt::join(type_names(solution), " "));
     list += fmt::format("{}{}{}", list.empty() ? "" : ", ", solution.label, type.empty() ? "" : " (" + type + ")");
   }
   return list;
@@ -354,7 +362,7 @@ const LabelledSolution& find_solution(const std::vector<LabelledSolution>& solut
                                       const std::string& path) {
   int left = std::max(label.number, 1);
   for (const LabelledSolution& solution : solutions) {
-    const bool matches = label.type.empty() ? solution.label == label.number : type_name(solution) == label.type;
+    const bool matches = label.type.empty() ? solution.label == label.number : is_called(solution, label.type);
     if (matches && (label.type.empty() || --left == 0)) return solution;
   }
   const std::string wanted = label.type.empty() ? fmt::format("label {}", label.number)

@@ -35,8 +35,8 @@ SolutionFile parse_solution_file(std::string_view text, const std::string& path)
 std::string resolve_solution_path(const std::string& path);
 
 /// The solution with a label number, or the n-th one of a type (PD1, UZ2, GR1; a number below 1 counts as 1). UZ means
-/// user values only, GR contacts and impact velocities zero, XI zeros of xi_n. Throws UserError that lists the labels
-/// there are.
+/// user values only, GR contacts and impact velocities zero, XI zeros of xi_n. A solution that is several things at
+/// once has all their names. Throws UserError that lists the labels there are.
 const LabelledSolution& find_solution(const std::vector<LabelledSolution>& solutions, const StartLabel& label,
                                       const std::string& path);
 

@@ -9,7 +9,8 @@
 
 namespace tchat {
 
-/// How many internal values at the end of PAR say what a UZ label is: kind, segment, index, tau.
+/// How many internal values at the end of PAR say what a UZ label is: kind, segment, index, tau; as many again for
+/// each further kind.
 inline constexpr int kind_values = 4;
 
 /// The integers in the order of the file; the last four are zero in the older generation.
@@ -38,7 +39,7 @@ struct SolutionIdentifier {
   bool is_empty_entry() const { return time_points() == 0 && lines() == 0; }
   /// Problem types of this program.
   bool is_ours() const { return problem_type() == 180 || problem_type() == 150; }
-  bool has_kind() const { return is_ours() && internal_parameters() == kind_values; }
+  bool has_kind() const { return is_ours() && internal_parameters() > 0 && internal_parameters() % kind_values == 0; }
 
   /// How many numbers the solution has after this line, and how many lines they take in AUTO's layout.
   std::int64_t numbers(bool direction) const;

@@ -252,6 +252,30 @@ TEST_CASE("resegment: equal calls write equal files, old ones are kept") {
   CHECK(workspace.read("gc.a~") == workspace.read("gc.b"));
 }
 
+TEST_CASE("a contact that falls on a user value has both names") {
+  const Workspace workspace;
+  write_response(workspace, "inside", 2.9, 2.0, 1);
+  run_to_contact_inside(workspace);
+  const std::string value = fmt::format("UZR={{1: [{:.15g}]}}", grazing_alpha(2.0));
+  const Outcome run = workspace.run(words_of("-c inside -d inside -o both GRSTOP=0 STOP=[GR1] " + value));
+  CHECK(run.out.find("GR UZ label") != std::string::npos);
+  CHECK(run.out.find("user value alpha") != std::string::npos);
+  CHECK(rows_of(workspace.points("both")).back().values.front() == Approx(grazing_alpha(2.0)).epsilon(1e-9));
+  const std::string table = workspace.tchat("labels q.both").out;
+  CHECK(table.find("contact inside segment 1") != std::string::npos);
+  CHECK(table.find("user value of alpha") != std::string::npos);
+  for (const std::string name : {"GR1", "UZ1"}) {
+    CAPTURE(name);
+    workspace.run("-c inside -s both -o again NMX=2 GRSTOP=0 IRS=" + name);
+    const std::string made =
+        resegment(workspace, "q.both " + name + " --to grazing-curve -o curve ICP=[1,2,61,62]").out;
+    CHECK(made.find("contact inside segment 1") != std::string::npos);
+  }
+  // Either name ends the branch there.
+  workspace.run(words_of("-c inside -d inside -o both GRSTOP=0 STOP=[UZ1] " + value));
+  CHECK(rows_of(workspace.points("both")).back().values.front() == Approx(grazing_alpha(2.0)).epsilon(1e-9));
+}
+
 TEST_CASE("resegment refuses what makes no sense") {
   const Workspace workspace;
   run_to_contact_inside(workspace);

@@ -261,3 +261,15 @@ TEST_CASE("What is written is read back, to ten decimals", "[output]") {
   CHECK(file.last_label == 6);
   CHECK(file.last_branch == 2);
 }
+
+TEST_CASE("What is several things at once has four internal values for each", "[output]") {
+  LabelledSolution orbit = sample_orbit(2, 3, 2, 2);
+  orbit.type = 6;
+  orbit.kind = {};
+  orbit.further = {{UserPointKind::contact, 1, 2, 0.75}, {UserPointKind::other_type, 0, 5, 0.0}};
+  const SolutionFile file = parse_solution_file(format_solution(orbit), "q.x");
+  REQUIRE(file.solutions.size() == 1);
+  CHECK(file.solutions[0].kind == UserPointKind{});
+  CHECK(file.solutions[0].further == orbit.further);
+  CHECK(file.solutions[0].parameters[0] == orbit.parameters[0]);
+}

@@ -1,4 +1,6 @@
 // The impacting orbit born at grazing: fold, period doubling, stability, and the orbit of twice the period.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -68,6 +70,23 @@ TEST_CASE("fold at omega = 1.8901, from the grazing curve's label") {
   CHECK(distance_to(point.multipliers, 0.45899627657) < 1e-6);
   check_stability(workspace, "impacting_18901", fold.label, false);
   check_backwards(workspace, "impacting_18901", "LP", 1.9706026714368);
+}
+
+TEST_CASE("a user value just before a fold is met on both sides of it") {
+  const Workspace workspace;
+  run_impacting(workspace, "18901");
+  const double fold = only(workspace, "impacting_18901", "LP").parameter(1);
+  // 1.9707 lies between the fold and both ends of the step that passes it; so do the others, at other distances.
+  for (const double distance : {fold - 1.9707, 1e-4, 1e-6}) {
+    const double value = fold + (fold < 1.9707 ? 1.0 : -1.0) * std::abs(distance);
+    workspace.run(
+        {"-c", "impacting_18901", "-s", "grazing_curve", "-o", "user", fmt::format("UZR={{1: [{:.15g}]}}", value)});
+    std::string types;
+    for (const DiagnosticPoint& point : read_diagnostics(workspace.read("d.user")))
+      if (point.type == "LP" || point.type == "UZ") types += point.type + " ";
+    CAPTURE(distance);
+    CHECK(types == "UZ LP UZ ");
+  }
 }
 
 TEST_CASE("fold and period doubling on other meshes and with other steps") {

@@ -135,6 +135,14 @@ void check_secondary_grazing(const MakefileRun& chain) {
   check_near(section.rows.front().values[section.column("V")], 0.74694282418);
   for (int s = 0; s < 3; ++s)
     check_near(section.rows.front().values[section.column("PAR(" + std::to_string(61 + s) + ")")], durations[s], 1e-10);
+  // Zeros of xi_5 on steps that are cut at those of other xi_n.
+  std::vector<double> zeros;
+  for (const DiagnosticPoint& point : chain.diagnostics("secondary_grazing_curve"))
+    for (const std::string& note : point.notes)
+      if (note.find("xi_5 = 0") != std::string::npos)
+        zeros.push_back(with_label(chain.solutions("secondary_grazing_curve"), point.label).parameter(2));
+  for (const double omega : {0.5884250, 0.5787374, 0.5667654})
+    CHECK(std::any_of(zeros.begin(), zeros.end(), [=](double zero) { return std::abs(zero - omega) < 1e-7; }));
 }
 
 /// Both curves leave xi_1 = 0 towards larger omega, tangent to the grazing curve: their distance from it grows with the

@@ -7,6 +7,7 @@
 
 #include "normal_forms.hpp"
 #include "recorded_branch.hpp"
+#include "special_points/bifurcation_tests.hpp"
 
 using namespace tchat;
 using namespace tchat::test;
@@ -24,7 +25,7 @@ class FunctionOfParameter final : public TestFunction {
   double zero_level(const TestedPoint&) const override { return 1e-9; }
   bool oscillates() const override { return oscillates_; }
   SpecialPoint classify(const TestedPoint&, bool rising) const override {
-    return {PointType::user, {}, false, name_ + (rising ? " rising" : " falling")};
+    return {PointType::user, {UserPointKind::contact, 1, 1, 0.5}, false, name_ + (rising ? " rising" : " falling")};
   }
 
  private:
@@ -40,14 +41,14 @@ struct Named {
 };
 
 /// From mu = `from` in steps of at most 0.1 for `points` points.
-RecordedBranch searched(double from, double ds, int points, const std::vector<Named>& functions) {
+RecordedBranch searched(double from, double ds, int points, const std::vector<Named>& functions, int most_trials = 20) {
   const Orbit start = NormalForms::orbit(pi, 0.0, from, 0.0, 10);
   PeriodicOrbits orbits(system_of<NormalForms>(), {{1, 1, 1}}, 1, start.shape);
   const PathPoint point = orbits.corrected(start);
   REQUIRE(orbits.result.converged());
   ContinuationSettings settings = branch_settings(start.shape, 1, ds, std::abs(ds), points);
   settings.location_tolerance = 1e-10;
-  settings.max_location = 20;
+  settings.max_location = most_trials;
   settings.multipliers = false;
   Tests tests;
   for (const Named& f : functions)
@@ -93,6 +94,7 @@ TEST_CASE("search: functions that vanish together get one label") {
   check_labels(branch, {0.25, 0.36});
   REQUIRE(!branch.special().empty());
   CHECK(branch.special()[0]->special.description == "a rising; b falling");
+  CHECK(branch.special()[0]->special.further.size() == 1);
 }
 
 TEST_CASE("search: a start at a zero raises no alarm") {
@@ -112,12 +114,100 @@ TEST_CASE("search: a zero at an accepted point gets one label") {
   check_labels(branch, {0.25});
 }
 
+TEST_CASE("search: a touch without a change of sign gets no label") {
+  // The points of the branch lie at the zero itself, and so near that the value counts as zero.
+  const auto touches = [](double at) { return [=](double p) { return 1e-3 * (p - at) * (p - at); }; };
+  const RecordedBranch branch =
+      searched(0.0, 0.125, 8, {{"at a point", touches(0.25)}, {"beside one", touches(0.5004)}});
+  check_labels(branch, {});
+  CHECK(branch.notes.empty());
+}
+
+TEST_CASE("search: a flat zero is located, not met where its function has become small") {
+  const auto flat = [](double at) { return [=](double p) { return 1e-2 * (p - at) * std::abs(p - at); }; };
+  for (const double zero : {0.25, 0.2501, 0.2499})
+    check_labels(searched(0.0, 0.125, 6, {{"flat", flat(zero)}}), {zero});
+}
+
+TEST_CASE("search: zeros a little before and behind the end of a step") {
+  for (const double distance : {1e-10, 1e-9, 3e-9, 1e-8, 3e-8, -1e-10, -1e-9, -1e-8})
+    for (const double slope : {1.0, -0.3, 7.0}) {
+      CAPTURE(distance, slope);
+      const double zero = 0.25 - distance;
+      const RecordedBranch branch = searched(0.0, 0.125, 6, {{"f", [=](double p) { return slope * (p - zero); }}});
+      check_labels(branch, {zero});
+      CHECK(branch.notes.empty());
+    }
+}
+
+TEST_CASE("search: two zeros on both sides of the first one that the step shows") {
+  // `pair` has the same sign at both ends of the step and the other one in between.
+  const auto pair = [](double p) { return (p - 0.223) * (p - 0.251); };
+  const auto middle = [](double p) { return p - 0.236; };
+  const auto last = [](double p) { return 0.262 - p; };
+  for (const double ds : {0.1, 0.3}) {
+    const RecordedBranch branch = searched(0.0, ds, 9, {{"last", last}, {"middle", middle}, {"pair", pair}});
+    check_labels(branch, {0.223, 0.236, 0.251, 0.262});
+  }
+}
+
+TEST_CASE("search: what a cut step has shown is found on the rest of it") {
+  // After the first zero the branch would go farther than the step went, past both zeros of `pair`.
+  const auto first = [](double p) { return p - 0.201; };
+  const auto pair = [](double p) { return (p - 0.29) * (p - 0.305); };
+  const RecordedBranch branch = searched(0.0, 0.1, 9, {{"first", first}, {"pair", pair}});
+  check_labels(branch, {0.201, 0.29, 0.305});
+}
+
+TEST_CASE("search: few trials are repeated on smaller steps until the zero is found") {
+  const auto steep = [](double p) { return std::atan(1e4 * (p - 0.234)); };
+  const auto flat = [](double p) { return std::pow(p - 0.567, 3); };
+  const RecordedBranch branch = searched(0.0, 0.1, 9, {{"steep", steep}, {"flat", flat}}, 3);
+  check_labels(branch, {0.234, 0.567});
+  CHECK(branch.notes.empty());
+}
+
+TEST_CASE("search: what vanishes at a branch point keeps its kind") {
+  const Orbit start = NormalForms::orbit(pi, 0.0, -0.23, 0.0, 10);
+  PeriodicOrbits orbits(system_of<NormalForms>(), {{1, 1, 1}}, 1, start.shape);
+  const PathPoint point = orbits.corrected(start);
+  REQUIRE(orbits.result.converged());
+  ContinuationSettings settings = branch_settings(start.shape, 1, 0.1, 0.1, 6);
+  settings.location_tolerance = 1e-9;
+  Tests tests;
+  tests.push_back(std::make_unique<FunctionOfParameter>(
+      "contact", [](double p) { return p; }, false));
+  tests.push_back(std::make_unique<BranchPointTest>(false));
+  const RecordedBranch branch = record(orbits.follower, orbits.system, point, settings, std::move(tests));
+  check_labels(branch, {0.0});
+  REQUIRE(!branch.special().empty());
+  const SpecialPoint& special = branch.special()[0]->special;
+  CHECK(special.type == PointType::branch_point);
+  REQUIRE(special.further.size() == 1);
+  CHECK(special.further[0] == UserPointKind{UserPointKind::contact, 1, 1, 0.5});
+}
+
+TEST_CASE("search: a change of sign whose zero cannot be located is told, with its place") {
+  const auto gap = [](double p) -> std::optional<double> {
+    if (p > 0.23 && p < 0.24) return std::nullopt;
+    return p - 0.2371;
+  };
+  const RecordedBranch branch = searched(0.0, 0.1, 6, {{"gap", gap}});
+  check_labels(branch, {});
+  REQUIRE(branch.summary.lost.size() == 1);
+  CHECK(branch.summary.lost[0].from <= 0.23);
+  CHECK(branch.summary.lost[0].to >= 0.24);
+  CHECK(branch.summary.lost[0].text.find("gap") != std::string::npos);
+  CHECK(branch.notes == std::vector<std::string>{branch.summary.lost[0].text});
+}
+
 TEST_CASE("search: a jump through zero is no zero, and the search goes on after it") {
   const auto jumping = [](double p) { return p < 0.23 ? -1.0 : 0.54 - p; };
   const RecordedBranch branch = searched(0.0, 0.1, 10, {{"f", jumping}});
   check_labels(branch, {0.54});
   REQUIRE(branch.notes.size() == 1);
-  CHECK(branch.notes[0].find("Possible special point") != std::string::npos);
+  CHECK(branch.notes[0].find("jump") != std::string::npos);
+  CHECK(branch.summary.lost.empty());
 }
 
 TEST_CASE("search: a pole is no zero") {

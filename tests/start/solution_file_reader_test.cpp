@@ -233,3 +233,37 @@ TEST_CASE("Segments of older files follow from the free durations", "[start]") {
   s.free_parameters = {1, 11};
   CHECK(segment_count(s) == 0);
 }
+
+TEST_CASE("A solution that is several things at once is found by each of its names", "[start]") {
+  std::vector<LabelledSolution> solutions{labelled(1, 6), labelled(2, -4, UserPointKind::contact), labelled(3, 6)};
+  solutions[0].further = {{UserPointKind::contact, 2, 1, 0.25}, {UserPointKind::other_type, 0, 5, 0.0}};
+  solutions[1].further = {{UserPointKind::user_value, 0, 3, 0.0}, {UserPointKind::contact, 1, 1, 0.5}};
+  const auto label = [&](const std::string& type, int number) {
+    return find_solution(solutions, {type, number}, "q.x").label;
+  };
+  CHECK(label("BP", 1) == 1);
+  CHECK(label("GR", 1) == 1);
+  CHECK(label("LP", 1) == 1);
+  CHECK(label("GR", 2) == 2);  // two contacts at once count once
+  CHECK(label("UZ", 1) == 2);
+  CHECK(label("BP", 2) == 3);
+  CHECK_THAT(message_of<UserError>([&] { label("GR", 3); }), Contains("1 (BP GR LP), 2 (GR UZ), 3 (BP)"));
+  CHECK(basic_types(solutions[0], "LP") == std::vector<int>{5, 6, -4});
+  CHECK(description(solutions[1], [](int) { return "omega"; }) ==
+        "contact inside segment 0, event function 0, tau = 0; user value of omega; contact inside segment 1, event "
+        "function 1, tau = 0.5");
+}
+
+TEST_CASE("Internal values of several kinds", "[start]") {
+  SampleEntry entry;
+  entry.internal = {0, 0, 0, 0, 2, 1, 1, 0.625, 6, 0, -5, 0};
+  entry.parameters = 112;
+  const SolutionFile file = parse_solution_file(entry.text(), "q.x");
+  REQUIRE(file.solutions.size() == 1);
+  const LabelledSolution& s = file.solutions[0];
+  CHECK(s.kind.kind == UserPointKind::none);
+  REQUIRE(s.further.size() == 2);
+  CHECK(s.further[0] == UserPointKind{UserPointKind::contact, 1, 1, 0.625});
+  CHECK(s.further[1] == UserPointKind{UserPointKind::other_type, 0, -5, 0.0});
+  CHECK(s.parameters.size() == 100);
+}
