@@ -86,6 +86,7 @@ struct RunSettings {
 
   bool stop_at_grazing = true;       ///< GRSTOP
   int grazing_jump = 1;              ///< GRJUMP
+  bool start_may_move = false;       ///< ICPMOVE
   std::vector<StopRule> stop_rules;  ///< STOP
 
   /// PAR(k) = v given on the command line, by index or by the problem's own name.

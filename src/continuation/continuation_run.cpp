@@ -89,6 +89,11 @@ bool ContinuationRun::take_step() {
       trouble = "a test function may have changed sign twice";
     else
       return true;
+    if (!converged && here_.orbit.mesh != accepted_.orbit.mesh) {
+      here_ = accepted_;
+      sink_.note(number_ + 1, fmt::format("Retrying step ({}): on the mesh before its adaptation", trouble));
+      continue;
+    }
     if (!step_.failed()) return converged;
     sink_.note(number_ + 1, fmt::format("Retrying step ({}): ds = {:.4e}", trouble, step_.value()));
   }

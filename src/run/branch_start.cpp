@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bvp/evaluation_failure.hpp"
 #include "constants/user_error.hpp"
+#include "run/first_correction.hpp"
 #include "run/problem_setup.hpp"
 #include "start/point_type.hpp"
 
@@ -20,37 +20,6 @@ constexpr double singular_condition = 1e-12;
 constexpr double parallel = 0.999;
 /// An orbit whose period is a smaller part of its start's is the empty orbit that every event surface has.
 constexpr double vanishing_period = 1e-5;
-
-std::string state_label(const HybridSystem& system, int component, int s, bool at_end) {
-  return fmt::format("{} at the {} of segment {}", system.state_name(component), at_end ? "end" : "start", s + 1);
-}
-
-/// The residual of each boundary condition of the uncorrected start, largest collocation defect included.
-std::string residual_report(CondensedSystem& condensed, const DefiningSystem& defining, const Orbit& start) {
-  OrbitResidual residual = condensed.make_residual();
-  condensed.evaluate(start, residual);
-  const HybridSystem& system = defining.system();
-  const int n = defining.dimension();
-  const int m = defining.segments();
-  std::string text;
-  std::size_t end = 0;
-  const std::size_t per_segment = residual.collocation.size() / static_cast<std::size_t>(m);
-  for (int s = 0; s < m; ++s) {
-    double defect = 0.0;
-    for (std::size_t i = 0; i < per_segment; ++i)
-      defect = std::max(defect, std::abs(residual.collocation[static_cast<std::size_t>(s) * per_segment + i]));
-    text += fmt::format("\n  {:11.4e}  differential equations on segment {} (largest defect)", defect, s + 1);
-    for (int r = 0; r < defining.end_conditions(s); ++r)
-      text += fmt::format("\n  {:11.4e}  {}", residual.end[end++], defining.end_condition_name(s, r));
-    for (int a = 0; a < n; ++a)
-      text += fmt::format(
-          "\n  {:11.4e}  {} minus jump {} ({}) of the end of segment {}",
-          residual.connection[static_cast<std::size_t>(s * n + a)], state_label(system, a + 1, (s + 1) % m, false),
-          defining.signature()[static_cast<std::size_t>(s)].jump,
-          system.function_name(FunctionKind::jump, defining.signature()[static_cast<std::size_t>(s)].jump), s + 1);
-  }
-  return text;
-}
 
 /// The largest entries of the null direction, each as a share of the largest.
 std::string undetermined(const HybridSystem& system, const DefiningSystem& defining, const OrbitVector& direction,
@@ -144,35 +113,22 @@ FirstPoint first_point(PathFollower& follower, const DefiningSystem& system, con
     }
     along = result.converged() && std::abs(follower.alignment(point, *start.direction)) > parallel;
   }
+  FirstPoint first{std::move(point), {}, {}};
+  std::string refusal;
   if (!along) {
-    point = follower.make_point(start.orbit);
-    result = follower.start_at_fixed_parameter(point);
-    const std::string first_trouble = describe(result.status);
-    if (!result.converged()) {
-      point = follower.make_point(start.orbit);
-      result = follower.start_by_minimum_norm(point);
-    }
-    if (!result.converged()) {
-      const std::string failure = evaluation_failure(system, follower.condensed().rule(), start.orbit);
-      if (!failure.empty())
-        throw ComputationError(
-            fmt::format("the starting solution from {} cannot be evaluated: {}", selected.source, failure));
-      throw ComputationError(fmt::format(
-          "no convergence at the first point, from {}: {} with ICP(1) fixed, {} by minimum-norm steps with it free. "
-          "Residuals of the start, condition by condition:{}\n  The largest ones say which part of the start, of the "
-          "parameters or of the signature is wrong; a better start, a larger NTST or ITNW may help.",
-          selected.source, first_trouble, describe(result.status),
-          residual_report(follower.condensed(), system, start.orbit)));
-    }
+    FirstCorrection corrected = correct_start(follower, system, selected, settings);
+    refusal = std::move(corrected.refusal);
+    first = {std::move(corrected.point), std::move(corrected.history), std::move(corrected.note)};
     // Another parameter value turns the tangent somewhat; without one, another signature has made the direction new.
     const double least = selected.parameters_changed ? 0.0 : parallel;
-    if (fitting_direction && follower.alignment(point, *start.direction) < -least) follower.reverse(point);
+    if (fitting_direction && follower.alignment(first.point, *start.direction) < -least) follower.reverse(first.point);
+  } else if (!as_stored) {
+    first.correction = follower.newton().history();
   }
-  refuse_empty_orbit(point.orbit, start.orbit, selected.source);
-  FirstPoint first{std::move(point), {}};
-  if (!as_stored) first.correction = follower.newton().history();
+  refuse_empty_orbit(first.point.orbit, start.orbit, selected.source);
   // A branch point is where the matrix is singular.
   if (!start_is_branch_point(selected)) refuse_singular(follower, system, first.point);
+  if (!refusal.empty()) throw ComputationError(refusal);
   return first;
 }
 

@@ -11,9 +11,10 @@ namespace tchat {
 struct FirstPoint {
   PathPoint point;
   std::vector<NewtonIteration> correction;  ///< how the start was corrected
+  std::string note;                         ///< what the user has to know of it, or empty
 };
 
-/// From data: Newton at fixed ICP(1), by minimum-norm steps where that matrix is singular. From a label with its
+/// From data: correct_start(). From a label with its
 /// direction: orthogonally to the direction, unless a parameter was changed or the direction is no tangent of this
 /// problem (another signature); then as from data. DS > 0 goes on in the stored direction when there is one that fits,
 /// otherwise ICP(1) grows; a changed parameter value keeps the side that the stored direction points to. Throws

@@ -143,7 +143,7 @@ BranchSetup switch_branch(const HybridSystem& system, const RunSettings& setting
   if (!result.converged())
     throw ComputationError(fmt::format("no step onto the branch that bifurcates at label {} of {}: {}; try another DS",
                                        selected.label, selected.source, describe(result.status)));
-  setup.start = {std::move(first), setup.follower->newton().history()};
+  setup.start = {std::move(first), setup.follower->newton().history(), {}};
   return setup;
 }
 

@@ -118,6 +118,7 @@ int run_problem(const RunRequest& request, std::ostream& screen, std::ostream& w
   const RunSettings asked = settings;
   const BranchSetup setup = set_up_branch(system, asked, selected);
   settings = setup.settings;
+  if (!setup.start.note.empty()) warn({setup.start.note});
   ContinuationSettings continuation = continuation_settings(settings);
   continuation.clip = request.clip;
   if (!selected.from_solution || selected.parameters_changed)

@@ -43,6 +43,7 @@ SelectedStart start_from_data(const std::string& path, const RunSettings& settin
     if (std::isfinite(table.initial_durations[s])) set(first_duration + s, table.initial_durations[s]);
   for (const auto& [k, value] : data.parameters) set(k, value);
   for (const auto& [name, value] : data.named_parameters) set(parameter_index(system, name, path), value);
+  const ParameterVector known = par;
   apply_command_line(system, settings, par);
   for (int s = 0; s < m; ++s) {
     if (given[static_cast<std::size_t>(s)] || given_on_command_line(system, settings, first_duration + s)) continue;
@@ -56,6 +57,8 @@ SelectedStart start_from_data(const std::string& path, const RunSettings& settin
   SelectedStart selected;
   selected.source = path;
   selected.start.orbit = orbit_from_data(data, shape_of(settings), par);
+  selected.known_parameters = known;
+  selected.known_parameters.segment(first_duration - 1, m) = par.segment(first_duration - 1, m);
   selected.label_start = settings.start.from_data();
   selected.last_label = selected.label_start ? 0 : 1;
   return selected;
@@ -88,6 +91,7 @@ SelectedStart start_from_solution(const std::string& path, const RunSettings& se
   selected.from_solution = true;
   selected.label_start = false;
   selected.start = orbit_from_solution(solution, shape_of(settings), free_parameters, path);
+  selected.known_parameters = selected.start.orbit.par;
   selected.parameters_changed = apply_command_line(system, settings, selected.start.orbit.par);
   selected.branch = std::max(solution.branch, 1);
   selected.last_label = file.last_label;

@@ -1,0 +1,208 @@
+#include "run/first_correction.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "bvp/evaluation_failure.hpp"
+#include "bvp/mesh_adaptation.hpp"
+#include "constants/user_error.hpp"
+
+namespace tchat {
+
+namespace {
+
+/// What data of five digits explain: a fold or codimension-two point lies so far from the value that they give it.
+constexpr double relative_move = 1e-4;
+constexpr double absolute_move = 1e-6;
+/// A larger move of ICP(1) than by rounding is told.
+constexpr double told_move = 1e-9;
+/// The least part of the way from known to wanted parameter values that is tried as one step.
+constexpr double smallest_part = 1.0 / 1024;
+/// The largest change of the states in such a step, relative to 1 + max |u|: further away are other branches.
+constexpr double largest_change = 0.3;
+constexpr int most_meshes = 5;
+/// Meshes whose points have moved by less than this part of an interval are the same.
+constexpr double settled = 0.1;
+
+std::string state_label(const HybridSystem& system, int component, int s, bool at_end) {
+  return fmt::format("{} at the {} of segment {}", system.state_name(component), at_end ? "end" : "start", s + 1);
+}
+
+/// The residual of each boundary condition of the uncorrected start, largest collocation defect included.
+std::string residual_report(CondensedSystem& condensed, const DefiningSystem& defining, const Orbit& start) {
+  OrbitResidual residual = condensed.make_residual();
+  condensed.evaluate(start, residual);
+  const HybridSystem& system = defining.system();
+  const int n = defining.dimension();
+  const int m = defining.segments();
+  std::string text;
+  std::size_t end = 0;
+  const std::size_t per_segment = residual.collocation.size() / static_cast<std::size_t>(m);
+  for (int s = 0; s < m; ++s) {
+    double defect = 0.0;
+    for (std::size_t i = 0; i < per_segment; ++i)
+      defect = std::max(defect, std::abs(residual.collocation[static_cast<std::size_t>(s) * per_segment + i]));
+    text += fmt::format("\n  {:11.4e}  differential equations on segment {} (largest defect)", defect, s + 1);
+    for (int r = 0; r < defining.end_conditions(s); ++r)
+      text += fmt::format("\n  {:11.4e}  {}", residual.end[end++], defining.end_condition_name(s, r));
+    for (int a = 0; a < n; ++a)
+      text += fmt::format(
+          "\n  {:11.4e}  {} minus jump {} ({}) of the end of segment {}",
+          residual.connection[static_cast<std::size_t>(s * n + a)], state_label(system, a + 1, (s + 1) % m, false),
+          defining.signature()[static_cast<std::size_t>(s)].jump,
+          system.function_name(FunctionKind::jump, defining.signature()[static_cast<std::size_t>(s)].jump), s + 1);
+  }
+  return text;
+}
+
+/// The parameters that the command line gave another value, without those that Newton's method is to find.
+std::vector<int> changed_parameters(const SelectedStart& selected, const DefiningSystem& system, int principal) {
+  const std::vector<int>& free = system.free_parameters();
+  const ParameterVector& wanted = selected.start.orbit.par;
+  std::vector<int> changed;
+  for (int k = 1; k < first_duration; ++k) {
+    const bool found = k != principal && std::find(free.begin(), free.end(), k) != free.end();
+    if (!found && wanted(k - 1) != selected.known_parameters(k - 1)) changed.push_back(k);
+  }
+  return changed;
+}
+
+struct Approach {
+  NewtonResult result;
+  double reached = 0.0;  ///< part of the way
+  bool begun = false;    ///< the orbit was found at the known values
+};
+
+/// Natural continuation along the straight line from the known parameter values to those wanted.
+Approach approach(PathFollower& follower, const SelectedStart& selected, const std::vector<int>& changed,
+                  PathPoint& point) {
+  const ParameterVector wanted = selected.start.orbit.par;
+  const ParameterVector& known = selected.known_parameters;
+  Orbit orbit = selected.start.orbit;
+  orbit.par = known;
+  point = follower.make_point(std::move(orbit));
+  Approach way;
+  way.result = follower.start_at_fixed_parameter(point);
+  way.begun = way.result.converged();
+  PathPoint trial = point;
+  for (double part = 0.25; way.begun && way.reached < 1.0 && part >= smallest_part;) {
+    const double next = std::min(way.reached + part, 1.0);
+    trial = point;
+    for (const int k : changed)
+      trial.orbit.par(k - 1) = next == 1.0 ? wanted(k - 1) : known(k - 1) + next * (wanted(k - 1) - known(k - 1));
+    way.result = follower.start_at_fixed_parameter(trial);
+    const double change = (trial.orbit.states - point.orbit.states).cwiseAbs().maxCoeff() /
+                          (1.0 + point.orbit.states.cwiseAbs().maxCoeff());
+    if (way.result.converged() && change < largest_change) {
+      std::swap(point, trial);
+      way.reached = next;
+      part *= 1.5;
+    } else {
+      part *= 0.5;
+    }
+  }
+  return way;
+}
+
+std::string values_at(const SelectedStart& selected, const HybridSystem& system, const std::vector<int>& changed,
+                      double part) {
+  std::string text;
+  for (const int k : changed) {
+    const double known = selected.known_parameters(k - 1);
+    text += fmt::format("{}{} = {:.6g}", text.empty() ? "" : ", ", system.parameter_name(k),
+                        known + part * (selected.start.orbit.par(k - 1) - known));
+  }
+  return text;
+}
+
+[[noreturn]] void refuse(PathFollower& follower, const DefiningSystem& system, const SelectedStart& selected,
+                         const std::string& trouble) {
+  const Orbit& start = selected.start.orbit;
+  const std::string failure = evaluation_failure(system, follower.condensed().rule(), start);
+  if (!failure.empty())
+    throw ComputationError(
+        fmt::format("the starting solution from {} cannot be evaluated: {}", selected.source, failure));
+  throw ComputationError(
+      fmt::format("no convergence at the first point, from {}: {} "
+                  "Residuals of the start, condition by condition:{}\n  The largest ones say which part of the start, "
+                  "of the parameters or of the signature is wrong; a better start, a larger NTST or ITNW may help.",
+                  selected.source, trouble, residual_report(follower.condensed(), system, start)));
+}
+
+/// On meshes adapted to the point until they settle; the last good one is kept.
+void settle_mesh(PathFollower& follower, PathPoint& point) {
+  const int intervals = point.orbit.shape.intervals;
+  for (int pass = 0; pass < most_meshes; ++pass) {
+    const std::vector<double>& old = point.orbit.mesh;
+    const std::vector<double> mesh = equidistributed_mesh(point.orbit, follower.condensed().rule(), intervals);
+    double moved = 0.0;
+    for (std::size_t j = 1; j + 1 < mesh.size(); ++j)
+      moved = std::max(moved, std::abs(mesh[j] - old[j]) / (mesh[j + 1] - mesh[j - 1]));
+    if (moved < settled) return;
+    PathPoint trial = point;
+    follower.change_mesh(trial, mesh);
+    if (!follower.start_at_fixed_parameter(trial).converged()) break;
+    std::swap(point, trial);
+  }
+}
+
+}  // namespace
+
+FirstCorrection correct_start(PathFollower& follower, const DefiningSystem& system, const SelectedStart& selected,
+                              const RunSettings& settings) {
+  const Orbit& start = selected.start.orbit;
+  const HybridSystem& problem = system.system();
+  const int principal = settings.free_parameters.front();
+  const std::string name = problem.parameter_name(principal);
+  const double asked = start.par(principal - 1);
+  PathPoint point = follower.make_point(start);
+  NewtonResult result = follower.start_at_fixed_parameter(point);
+  const std::string trouble = describe(result.status);
+  FirstCorrection corrected{{}, follower.newton().history(), {}, {}};
+
+  std::string followed;
+  const std::vector<int> changed = changed_parameters(selected, system, principal);
+  if (!result.converged() && !changed.empty()) {
+    const Approach way = approach(follower, selected, changed, point);
+    result = way.result;
+    if (way.reached < 1.0) result.status = NewtonStatus::too_many_iterations;
+    corrected.history = follower.newton().history();
+    if (way.begun && way.reached < 1.0)
+      followed = fmt::format(" From {} the orbit was followed towards {} as far as {}, and no further.",
+                             values_at(selected, problem, changed, 0.0), values_at(selected, problem, changed, 1.0),
+                             values_at(selected, problem, changed, way.reached));
+  }
+  if (!result.converged()) {
+    point = follower.make_point(start);
+    result = follower.start_by_minimum_norm(point);
+    corrected.history = follower.newton().history();
+    if (!result.converged())
+      refuse(follower, system, selected,
+             fmt::format("{} with ICP(1) fixed, {} by minimum-norm steps with it free.{}", trouble,
+                         describe(result.status), followed));
+    const double found = point.orbit.par(principal - 1);
+    const double move = std::abs(found - asked);
+    if (move > relative_move * std::abs(asked) + absolute_move && !settings.start_may_move)
+      corrected.refusal = fmt::format(
+          "no orbit was found at {} = {:.10g}, the value of the start from {}: {} with ICP(1) fixed; with it free "
+          "there "
+          "is one at {} = {:.10g}.{} The orbit asked for may not exist (beyond a fold), or the start be too far from "
+          "it: "
+          "begin where an orbit is known and continue to this value (UZR={{{}: {:.10g}}}), or take the one found with "
+          "ICPMOVE=1",
+          name, asked, selected.source, trouble, name, found, followed, name, asked);
+    if (move > told_move * (1.0 + std::abs(asked)))
+      corrected.note = fmt::format(
+          "the first point has {} = {:.12g}, the start from {} {:.12g}: with ICP(1) fixed there was no convergence",
+          name, found, selected.source, asked);
+    corrected.point = std::move(point);
+    return corrected;
+  }
+  if (!selected.from_solution && settings.adapt_mesh_every > 0) settle_mesh(follower, point);
+  corrected.point = std::move(point);
+  return corrected;
+}
+
+}  // namespace tchat
