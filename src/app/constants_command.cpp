@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <iostream>
 #include <memory>
 #include <string>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "constants/constants_guide.hpp"
 #include "constants/constants_writer.hpp"
 #include "run/run_request.hpp"
+#include "run/warnings.hpp"
 
 namespace tchat {
 
@@ -33,7 +35,7 @@ int print_constants(const ConstantsArguments& arguments) {
   const std::string path = constants_path(arguments.name);
   RunSettings settings = read_constants_file(path, &warnings);
   apply_overrides(settings, arguments.overrides, &warnings);
-  for (const std::string& warning : warnings) fmt::print(stderr, "tchat: warning: {}\n", warning);
+  print_warnings(std::cerr, warnings);
   const bool to_keyword =
       arguments.keyword || (!arguments.positional && constants_form(path) == ConstantsForm::positional);
   if (arguments.explain)

@@ -4,11 +4,13 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <iostream>
 #include <memory>
 #include <string>
 
 #include "output/recorded_names.hpp"
 #include "output/solution_tables.hpp"
+#include "run/warnings.hpp"
 #include "start/solution_file_reader.hpp"
 
 namespace tchat {
@@ -23,8 +25,8 @@ int print_labels(const std::string& given) {
     fmt::print("{} holds no labelled solution.\n", path);
   else
     fmt::print("{}", format_label_table(file, recorded.names));
-  for (const std::string& warning : file.warnings) fmt::print(stderr, "Warning: {}\n", warning);
-  if (!recorded.warning.empty()) fmt::print(stderr, "Warning: {}\n", recorded.warning);
+  print_warnings(std::cerr, file.warnings);
+  if (!recorded.warning.empty()) print_warnings(std::cerr, {recorded.warning});
   return 0;
 }
 

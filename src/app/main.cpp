@@ -24,6 +24,7 @@
 #include "app/standard_output.hpp"
 #include "app/usage_error.hpp"
 #include "app/verify_command.hpp"
+#include "constants/printable.hpp"
 #include "constants/user_error.hpp"
 
 namespace {
@@ -33,7 +34,7 @@ constexpr int bad_input = 2;
 
 int report(const std::string& message, int status) {
   std::cout << std::flush;
-  std::cerr << "tchat: " << message << '\n';
+  std::cerr << "tchat: " << tchat::printable(message) << '\n';
   return status;
 }
 

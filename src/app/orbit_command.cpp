@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
+#include <iostream>
 #include <memory>
 #include <string>
 
@@ -12,6 +13,7 @@
 #include "constants/user_error.hpp"
 #include "output/recorded_names.hpp"
 #include "output/solution_tables.hpp"
+#include "run/warnings.hpp"
 #include "start/solution_file_reader.hpp"
 
 namespace tchat {
@@ -36,8 +38,8 @@ int print_orbit(const OrbitArguments& arguments) {
   const std::string path = resolve_solution_path(arguments.path);
   const SolutionFile file = read_solution_file(path);
   const RecordedNames recorded = recorded_names(path);
-  for (const std::string& warning : file.warnings) fmt::print(stderr, "Warning: {}\n", warning);
-  if (!recorded.warning.empty()) fmt::print(stderr, "Warning: {}\n", recorded.warning);
+  print_warnings(std::cerr, file.warnings);
+  if (!recorded.warning.empty()) print_warnings(std::cerr, {recorded.warning});
   const LabelledSolution& solution = find_solution(file.solutions, label, path);
   const std::string name = std::filesystem::path(path).filename().string();
   fmt::print("{}", format_orbit_table(solution, name, recorded.names, arguments.dimension));

@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <iostream>
 #include <memory>
 #include <optional>
 #include <string>
@@ -13,6 +14,7 @@
 #include "constants/user_error.hpp"
 #include "plot/picture_format.hpp"
 #include "plot/picture_output.hpp"
+#include "run/warnings.hpp"
 
 namespace tchat {
 
@@ -39,7 +41,7 @@ int make_picture(const PlotArguments& arguments) {
   refuse_control_characters(arguments.output, "-o");  // early, like a picture of no known form
   if (!arguments.output.empty()) picture_format(arguments.output);
   NamedFigure picture = make_figure(items, arguments);
-  for (const std::string& warning : picture.warnings) fmt::print(stderr, "Warning: {}\n", warning);
+  print_warnings(std::cerr, picture.warnings);
   apply_taste(arguments, picture.figure);
   const std::string made = output_picture(picture.figure, {arguments.output, arguments.script, picture.name});
   if (!made.empty()) fmt::print("{}\n", made);

@@ -11,6 +11,7 @@
 #include "constants/constant_value.hpp"
 #include "constants/user_error.hpp"
 #include "resegment/resegment.hpp"
+#include "run/warnings.hpp"
 
 namespace tchat {
 
@@ -31,7 +32,7 @@ int do_resegment(ResegmentRequest request, const std::string& kind, bool quiet) 
   request.kind = kind_of(kind);
   std::ostringstream unseen;
   std::ostream& screen = quiet ? static_cast<std::ostream&>(unseen) : std::cout;
-  for (const std::string& warning : resegment(request, screen)) std::cerr << "tchat: warning: " << warning << '\n';
+  print_warnings(std::cerr, resegment(request, screen));
   return 0;
 }
 

@@ -33,7 +33,7 @@ void CondensedSystem::condense_right_hand_side(const OrbitResidual& residual, in
   const double* collocation = &residual.collocation[index(block(s, 0) * rows)];
   double* result = &segment_rhs_[index(s * (n_ + border_))];
   for (int j = 0; j < shape_.intervals; ++j, collocation += rows) {
-    const int b = block(s, j);
+    const std::ptrdiff_t b = block(s, j);
     double* r = &interval_rhs_[index(b * (rows + border_))];
     for (int i = 0; i < rows; ++i) r[i] = -collocation[i];
     std::fill_n(r + rows, border_, 0.0);
@@ -70,7 +70,7 @@ void CondensedSystem::expand_segment(int s, const double* ends, const double* gl
   double* local = local_.data();
   double* chain_local = chain_local_.data();
   for (int j = shape_.intervals - 1; j >= 0; --j) {
-    const int b = block(s, j);
+    const std::ptrdiff_t b = block(s, j);
     if (j > 0) {
       std::copy_n(start, n_, chain_local + n_);
       std::copy_n(node((j + 1) * c), n_, chain_local + 2 * n_);
@@ -106,7 +106,7 @@ void CondensedSystem::extend_adjoint(const double* weights, std::vector<double>&
   for (int s = 0; s < shape_.segments; ++s) {
     std::copy_n(weights + s * n_, n_, chain + n_);
     for (int j = shape_.intervals - 1; j >= 0; --j) {
-      const int b = block(s, j);
+      const std::ptrdiff_t b = block(s, j);
       double* own = &collocation[index(b * rows)];
       std::fill_n(own, rows, 0.0);
       if (j > 0) {
@@ -137,10 +137,10 @@ CondensedSystem::Determinant CondensedSystem::determinant() const {
     product.sign *= (mantissa > 0.0) - (mantissa < 0.0);
     product.log2_size -= std::log2(std::abs(mantissa));
   };
-  const int blocks = shape_.segments * shape_.intervals;
+  const std::ptrdiff_t blocks = block(shape_.segments, 0);
   const int interval_size = (interval_.rows() + border_) * interval_.width();
   const int chain_size = (chain_.rows() + border_) * chain_.width();
-  for (int b = 0; b < blocks; ++b) {
+  for (std::ptrdiff_t b = 0; b < blocks; ++b) {
     multiply(interval_, &interval_blocks_[index(b * interval_size)], &interval_swaps_[index(b * interval_.pivots())]);
     if (b % shape_.intervals != 0)
       multiply(chain_, &chain_blocks_[index(b * chain_size)], &chain_swaps_[index(b * chain_.pivots())]);

@@ -28,7 +28,7 @@ int most_end_conditions(const DefiningSystem& system) {
   return most;
 }
 
-std::vector<double> zeros(int count) { return std::vector<double>(static_cast<std::size_t>(count), 0.0); }
+std::vector<double> zeros(std::ptrdiff_t count) { return std::vector<double>(static_cast<std::size_t>(count), 0.0); }
 
 /// Rows are numbered as they are met; repeated calls keep a running position in the triplet list.
 struct PatternBuilder {
@@ -92,7 +92,7 @@ CondensedSystem::CondensedSystem(const DefiningSystem& system, const OrbitShape&
       chain_(chain_kernel(n_, scalars_)),
       lu_(make_sparse()) {
   assert(shape.segments + globals_ == total_end_conditions(system) + border_rows);
-  const int blocks = shape.segments * shape.intervals;
+  const std::ptrdiff_t blocks = block(shape.segments, 0);
   const int interval_rows = interval_.rows() + border_;
   const int chain_rows = chain_.rows() + border_;
   interval_blocks_ = zeros(blocks * interval_rows * interval_.width());
@@ -147,7 +147,7 @@ SparseLu CondensedSystem::make_sparse() {
 
 OrbitResidual CondensedSystem::make_residual() const {
   OrbitResidual r;
-  r.collocation = zeros(shape_.segments * shape_.intervals * shape_.collocation * n_);
+  r.collocation = zeros(block(shape_.segments, 0) * shape_.collocation * n_);
   r.end = zeros(total_end_conditions(system_));
   r.connection = zeros(shape_.segments * n_);
   return r;

@@ -12,6 +12,7 @@
 /// Border rows are general linear functionals of the unknowns, given as dual vectors.
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -91,8 +92,9 @@ class CondensedSystem {
   Singularity singularity() const;
 
  private:
-  static std::size_t index(int i) { return static_cast<std::size_t>(i); }
-  int block(int s, int j) const { return s * shape_.intervals + j; }
+  static std::size_t index(std::ptrdiff_t i) { return static_cast<std::size_t>(i); }
+  /// Number of an interval's blocks; their places in the arrays exceed the range of int for large problems.
+  std::ptrdiff_t block(int s, int j) const { return static_cast<std::ptrdiff_t>(s) * shape_.intervals + j; }
   int start_unknown(int s) const { return s * (2 * n_ + 1); }
   int end_unknown(int s) const { return start_unknown(s) + n_; }
   int duration_unknown(int s) const { return start_unknown(s) + 2 * n_; }

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 
+#include "constants/printable.hpp"
 #include "constants/user_error.hpp"
 
 namespace tchat {
@@ -77,12 +78,9 @@ std::optional<double> parse_real(std::string_view text) {
 
 std::string in_quotes(std::string_view text) {
   constexpr std::size_t longest = 60;
-  std::string result = "'";
-  for (const char c : text.substr(0, longest)) {
-    const auto byte = static_cast<unsigned char>(c);
-    result += byte < 0x20 || byte == 0x7f ? '?' : c;
-  }
-  return result + (text.size() > longest ? "...'" : "'");
+  std::string shown = printable(text.substr(0, longest));
+  std::replace(shown.begin(), shown.end(), '\n', '?');
+  return fmt::format("'{}{}'", shown, text.size() > longest ? "..." : "");
 }
 
 void refuse(const Constant& constant, const std::string& name, const Place& place, const std::string& found,

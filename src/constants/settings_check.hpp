@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -14,8 +15,10 @@ namespace tchat {
 /// Checks: ICP not empty, without repetition, with the free parameters that problem type and branch mode need; indices
 /// of ICP, THL, UZR, PAR either 1..60 or a duration 61..60+m (THL and UZR up to 60+2m for the doubled orbit of a branch
 /// switch); THU <= NDIM; RL0 < RL1; A0 < A1; DSMAX > 0 unless IADS = 0; GCIPSI within the GCHGRZIND lists (IPS 180);
-/// one grazing segment (IPS 150). Throws UserError; `place` tells where a constant was given.
-void check_settings(const RunSettings& settings, const std::function<Place(std::string_view keyword)>& place);
+/// one grazing segment (IPS 150). Throws UserError; `named` are the indices that were given as names of parameters,
+/// which their owner has checked; `place` tells where a constant was given.
+void check_settings(const RunSettings& settings, const std::set<int>& named,
+                    const std::function<Place(std::string_view keyword)>& place);
 
 /// What is accepted without effect, in sentences beginning with `source`.
 std::vector<std::string> settings_warnings(const RunSettings& settings, const std::string& source);

@@ -152,7 +152,7 @@ SettingsDraft::SettingsDraft(RunSettings base, std::string source, ParameterName
     : settings_(std::move(base)), source_(std::move(source)), names_(std::move(names)) {}
 
 /// The number in the place of a parameter's name, which may have the sign of an index; everything else as it is.
-Token SettingsDraft::index_token(const Constant& constant, const Token& token) const {
+Token SettingsDraft::index_token(const Constant& constant, const Token& token) {
   const bool negative = token.text.starts_with('-');
   const std::string name = token.text.substr(negative ? 1 : 0);
   if (!has_parameter_indices(constant) || !is_name(name)) return token;
@@ -161,7 +161,9 @@ Token SettingsDraft::index_token(const Constant& constant, const Token& token) c
            in_quotes(token.text),
            "indices here; names are understood by tchat run, simulate and resegment, which know the problem");
   const std::string where = fmt::format("{}: {} ({})", token.place.text(), constant.keyword, constant.meaning);
-  return {fmt::format("{}{}", negative ? "-" : "", names_(name, where)), token.place};
+  const int index = names_(name, where);
+  named_.insert(index);
+  return {fmt::format("{}{}", negative ? "-" : "", index), token.place};
 }
 
 void SettingsDraft::assign(const Constant& constant, const RawValue& value) {
@@ -358,7 +360,7 @@ RunSettings SettingsDraft::finish(Warnings* warnings) {
   settle_segments();
   check_counts();
   if (settings_.branch_mode == 0) settings_.branch_mode = 1;
-  check_settings(settings_, [this](std::string_view keyword) { return place_of(keyword); });
+  check_settings(settings_, named_, [this](std::string_view keyword) { return place_of(keyword); });
   if (warnings != nullptr)
     for (std::string& sentence : settings_warnings(settings_, source_)) warnings->push_back(std::move(sentence));
   return settings_;

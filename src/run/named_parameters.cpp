@@ -13,7 +13,7 @@ ParameterNames names_to_come(bool& used) {
   const auto seen = std::make_shared<std::map<std::string, int>>();
   return [&used, seen](const std::string& name, const std::string&) {
     used = true;
-    return seen->emplace(name, first_duration - 1 - static_cast<int>(seen->size())).first->second;
+    return seen->emplace(name, parameter_length - static_cast<int>(seen->size())).first->second;
   };
 }
 

@@ -9,7 +9,8 @@
 
 namespace tchat {
 
-/// Stands in for names: each has an index of its own. `used` becomes true when a name occurs.
+/// Stands in for names: each has an index of its own, from the end of PAR down, where neither parameters nor durations
+/// are. `used` becomes true when a name occurs.
 ParameterNames names_to_come(bool& used);
 
 /// The problem's names, while it lives. A name it does not have throws UserError, with those it has.

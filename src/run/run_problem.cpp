@@ -22,6 +22,7 @@
 #include "run/run_summary.hpp"
 #include "run/start_selection.hpp"
 #include "run/test_selection.hpp"
+#include "run/warnings.hpp"
 #include "start/point_type.hpp"
 
 namespace tchat {
@@ -84,9 +85,7 @@ RunSettings read_settings(const RunRequest& request, const std::string& constant
 
 int run_problem(const RunRequest& request, std::ostream& screen, std::ostream& warnings,
                 const std::function<bool()>& interrupted) {
-  const auto warn = [&](const std::vector<std::string>& texts) {
-    for (const std::string& text : texts) warnings << "tchat: warning: " << text << '\n';
-  };
+  const auto warn = [&](const std::vector<std::string>& texts) { print_warnings(warnings, texts); };
 
   // Constants.
   Warnings constant_warnings;

@@ -26,13 +26,8 @@ class EventAlongSegment {
 
   /// d h / d tau at sigma in [0, 1] of interval j, from the polynomial.
   double slope(int j, double sigma) const {
-    const int c = x_.shape.collocation;
-    Vector values(c + 1);
-    Vector slopes(c + 1);
-    rule_.basis(sigma, values.data(), slopes.data());
-    const auto nodes = x_.states.middleCols(s_ * x_.shape.nodes() + j * c, c + 1);
-    const Vector u = nodes * values;
-    return gradient(u).dot(nodes * slopes) / length(j);
+    const Basis basis = basis_at(sigma);
+    return gradient(nodes(j) * basis.values).dot(nodes(j) * basis.slopes) / length(j);
   }
 
   Contact at_node(int k) const {
@@ -40,11 +35,11 @@ class EventAlongSegment {
     return {x_.tau(k), system().event(event_, u, par()), Eigen::Map<const Vector>(u, x_.shape.dimension)};
   }
 
-  /// The minimum near sigma of interval j, by the flow from the interval's left mesh point; the small rest of h_x f
-  /// there is removed by one Newton step on the time.
+  /// The minimum near sigma of interval j, by the flow from the interval's left mesh point (by the polynomial where
+  /// there is no flow); the small rest of h_x f there is removed by one Newton step on the time.
   Contact polished(int j, double sigma) const {
     const double time = sigma * length(j) * x_.duration(s_);
-    Vector u = flow(x_.node(s_, j * x_.shape.collocation), time);
+    Vector u = flow(x_.node(s_, j * x_.shape.collocation), time).value_or(nodes(j) * basis_at(sigma).values);
     const int n = x_.shape.dimension;
     const int field = defining_.signature()[static_cast<std::size_t>(s_)].field;
     Vector f(n);
@@ -79,18 +74,43 @@ class EventAlongSegment {
     return result;
   }
 
-  Vector flow(const double* from, double time) const {
+  /// Nothing where the flow cannot be integrated: the field has no value near the orbit, or is too stiff for an
+  /// explicit method of this accuracy.
+  std::optional<Vector> flow(const double* from, double time) const {
     namespace odeint = boost::numeric::odeint;
     using State = std::vector<double>;
+    constexpr int most_trials = 2000;  // of steps; the part of one mesh interval takes some ten
     State u(from, from + x_.shape.dimension);
     const int field = defining_.signature()[static_cast<std::size_t>(s_)].field;
     const auto rhs = [&](const State& y, State& dydt, double) {
       system().value(FunctionKind::field, field, y.data(), par(), dydt.data());
     };
-    if (time > 0.0)
-      odeint::integrate_adaptive(odeint::make_controlled<odeint::runge_kutta_fehlberg78<State>>(1e-14, 1e-13), rhs, u,
-                                 0.0, time, time);
-    return Eigen::Map<const Vector>(u.data(), x_.shape.dimension);
+    auto stepper = odeint::make_controlled<odeint::runge_kutta_fehlberg78<State>>(1e-14, 1e-13);
+    double t = 0.0;
+    double dt = time;
+    for (int trial = 0; t < time; ++trial) {
+      if (trial == most_trials) return std::nullopt;
+      dt = std::min(dt, time - t);
+      stepper.try_step(rhs, u, t, dt);
+    }
+    const Vector end = Eigen::Map<const Vector>(u.data(), x_.shape.dimension);
+    return end.allFinite() ? std::optional(end) : std::nullopt;
+  }
+
+  struct Basis {
+    Vector values;
+    Vector slopes;
+  };
+  Basis basis_at(double sigma) const {
+    Basis basis{Vector(x_.shape.collocation + 1), Vector(x_.shape.collocation + 1)};
+    rule_.basis(sigma, basis.values.data(), basis.slopes.data());
+    return basis;
+  }
+
+  /// The nodes of interval j, one a column.
+  Eigen::MatrixXd::ConstColsBlockXpr nodes(int j) const {
+    const int c = x_.shape.collocation;
+    return x_.states.middleCols(s_ * x_.shape.nodes() + j * c, c + 1);
   }
 
   const DefiningSystem& defining_;

@@ -70,7 +70,7 @@ std::optional<std::string_view> text_after(std::string_view line, std::string_vi
   return rest;
 }
 
-/// {1: 'x1', 2: "x2"}
+/// {1: 'x1', 2: "x2"}; an empty name is none.
 std::map<int, std::string> dictionary(std::string_view text) {
   std::map<int, std::string> names;
   constexpr std::string_view quotes = "'\"";
@@ -82,7 +82,7 @@ std::map<int, std::string> dictionary(std::string_view text) {
     if (close == std::string_view::npos) break;
     std::string_view before = text.substr(0, open);
     before.remove_prefix(std::min(before.find_first_of("0123456789"), before.size()));
-    if (const auto index = leading_integer(before))
+    if (const auto index = leading_integer(before); index && close > open + 1)
       names[*index] = std::string(text.substr(open + 1, close - open - 1));
     text.remove_prefix(close + 1);
   }

@@ -57,6 +57,15 @@ TEST_CASE("malformed starting data") {
   check_refused(workspace.tchat("dat linosc -c impacting -d bad"), {"bad.dat"});
 }
 
+TEST_CASE("a word of a file does not reach the terminal as a command") {
+  const Workspace workspace;
+  workspace.write("bad.dat", "# PAR(\x1b[31mspeed) = 1\n0 1 2 3 4\n1 1 2 3 4\n");
+  const Outcome result = workspace.tchat(run + "-d bad");
+  CHECK(result.status == 2);
+  CHECK(result.err.find("?[31mspeed") != std::string::npos);
+  CHECK(result.err.find('\x1b') == std::string::npos);
+}
+
 TEST_CASE("malformed q-files") {
   const Workspace workspace;
   workspace.run("-c impacting -d impacting -o good NMX=2 NTST=10 NPR=0");

@@ -123,4 +123,7 @@ TEST_CASE("parameters by name or by index: the same run") {
   CHECK(refused.err.find("frequency") != std::string::npos);
   CHECK(refused.err.find("alpha, omega, zeta, r") != std::string::npos);
   CHECK_FALSE(workspace.has("p.none"));
+  // A name takes no index away from those that stand beside it.
+  const Outcome beside = workspace.run("-c nonimpacting_omega -d nonimpacting -o beside ICP=[omega,60,61] NMX=2");
+  CHECK(beside.err.find("PAR(60) is no parameter") != std::string::npos);
 }
