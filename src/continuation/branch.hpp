@@ -29,6 +29,7 @@ struct BranchPoint {
   std::vector<NewtonIteration> newton;  ///< of the step that reached it
   double step = 0.0;                    ///< ds of that step, 0 at the start
   std::vector<TestValue> tests;
+  std::vector<std::string> details;  ///< of a labelled point: what else its test functions know
   bool labelled() const { return special.type != PointType::ordinary; }
 };
 

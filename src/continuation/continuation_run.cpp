@@ -134,6 +134,7 @@ SpecialPoint ContinuationRun::end_conditions(SpecialPoint special) {
 void ContinuationRun::accept(const SpecialPoint& special) {
   accepted_ = here_;
   accepted_data_ = search_.data();
+  if (special.type != PointType::ordinary) accepted_data_.details = search_.details(here_);
   record(special, accepted_data_);
 }
 
@@ -150,9 +151,11 @@ void ContinuationRun::record(const SpecialPoint& special, const PointData& data)
                     newton_.iterations,
                     follower_.newton().history(),
                     number_ > 1 ? ds_taken_ : 0.0,
+                    {},
                     {}};
   for (std::size_t i = 0; i < search_.tests().size(); ++i)
     point.tests.push_back({search_.tests()[i]->name(), data.values[i]});
+  point.details = data.details;
   summary_.points = number_;
   summary_.inadmissible_points += !violations.empty();
   summary_.multipliers_computed = settings_.multipliers;

@@ -14,7 +14,8 @@ struct PointData {
   double determinant = 1.0;                   ///< as in TestedPoint
   std::vector<std::optional<double>> values;  ///< of the test functions
   std::vector<double> zero_levels;
-  std::vector<int> signs;  ///< of the values; 0 for those up to the zero level
+  std::vector<std::string> details;  ///< of a labelled point
+  std::vector<int> signs;            ///< of the values; 0 for those up to the zero level
 };
 
 }  // namespace tchat

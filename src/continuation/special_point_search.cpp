@@ -62,6 +62,13 @@ TestedPoint SpecialPointSearch::tested(const PathPoint& at) const {
   return {at.orbit, at.tangent, follower_.condensed(), data_.multipliers, data_.transversalities, data_.determinant};
 }
 
+std::vector<std::string> SpecialPointSearch::details(const PathPoint& at) const {
+  std::vector<std::string> list;
+  for (const auto& test : tests_)
+    if (const std::string text = test->details(tested(at)); !text.empty()) list.push_back(text);
+  return list;
+}
+
 void SpecialPointSearch::evaluate(const PathPoint& at) {
   if (settings_.multipliers) data_.multipliers = floquet_.compute(follower_.condensed(), at.orbit);
   for (int s = 0; s < system_.segments(); ++s)

@@ -59,6 +59,9 @@ class SpecialPointSearch {
   /// end where it ended, not farther: `ds`, or what is left of that step.
   double limited(double ds) const;
 
+  /// What the test functions know of `at`, whose linearisation the follower holds.
+  std::vector<std::string> details(const PathPoint& at) const;
+
  private:
   /// What came of the search for a zero.
   enum class Search { none, located, start, jump, no_special_point, failed };

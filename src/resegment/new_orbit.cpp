@@ -33,6 +33,27 @@ int identity_jump(const HybridSystem& system) {
       system.name()));
 }
 
+/// Jumps for a contact on segment s (from 0) that brings `own`: the identity, and others that leave every state of the
+/// segment as it is. Where a state is constant (a velocity in stick) the identity may leave it undetermined, and a jump
+/// that sets it does the same to the orbit and determines it.
+std::vector<int> jumps_without_effect(const HybridSystem& system, const Orbit& x, int s, int own) {
+  constexpr double unmoved = 1e-6;
+  std::vector<int> jumps{identity_jump(system)};
+  Eigen::VectorXd after(x.shape.dimension);
+  const auto moves = [&](int jump) {
+    for (int k = 0; k < x.shape.nodes(); ++k) {
+      const Eigen::Map<const Eigen::VectorXd> state(x.node(s, k), x.shape.dimension);
+      system.value(FunctionKind::jump, jump, state.data(), x.par.data(), after.data());
+      const double change = (after - state).lpNorm<Eigen::Infinity>();
+      if (!(change <= unmoved * (1.0 + state.lpNorm<Eigen::Infinity>()))) return true;
+    }
+    return false;
+  };
+  for (int k = 1; k <= system.count(FunctionKind::jump); ++k)
+    if (k != own && k != jumps.front() && !moves(k)) jumps.push_back(k);
+  return jumps;
+}
+
 /// The segments of the cut take the index vectors given by the user; the segments of no duration among them come after
 /// the contacts, as many after each.
 CutList with_signature(CutList cut, const Signature& signature, bool may_add) {
@@ -183,6 +204,9 @@ NewOrbit to_grazing_curve(const ResegmentRequest& request, const LabelledOrbit& 
   const int contact_jump =
       contact.where == ContactPoint::impact ? own : jump_at_contact(system, source.settings, x, contact);
   NewOrbit target{cut.segments, {150, 1, contact_jump}};
+  target.contact = cut.contacts.front();
+  if (!request.jump && !request.signature && contact.where != ContactPoint::section)
+    target.contact_jumps = jumps_without_effect(system, x, contact.segment, contact_jump);
   if (contacts.size() > 1)
     target.remarks.push_back(fmt::format("The orbit has {} contacts at once ({}); the curve keeps that of its label.",
                                          contacts.size(), list_of(contacts, system)));

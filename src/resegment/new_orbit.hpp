@@ -30,6 +30,8 @@ struct NewOrbit {
   UserPointKind kind = {};
   std::vector<UserPointKind> further = {};
   Birth birth = {};
+  std::size_t contact = 0;                ///< of a grazing curve: the segment (from 0) that ends in contact
+  std::vector<int> contact_jumps = {};    ///< jumps that change nothing there, one of which suits; empty: no choice
   std::vector<std::string> remarks = {};  ///< what the user may not expect, for the screen
 };
 

@@ -23,6 +23,7 @@
 #include "resegment/new_orbit.hpp"
 #include "resegment/new_settings.hpp"
 #include "resegment/segment_list.hpp"
+#include "run/branch_setup.hpp"
 #include "run/named_parameters.hpp"
 #include "run/problem_setup.hpp"
 #include "run/problem_types.hpp"
@@ -187,6 +188,52 @@ std::string choose_side(const ResegmentRequest& request, const HybridSystem& sys
                      settings.step, born, step);
 }
 
+std::vector<OrbitPiece> pieces_of(const NewOrbit& target) {
+  std::vector<OrbitPiece> pieces;
+  for (const NewSegment& segment : target.segments) pieces.push_back(segment.piece);
+  return pieces;
+}
+
+/// Why the run of `settings` from `start` does not begin; empty when it does.
+std::string obstacle(const HybridSystem& system, const RunSettings& settings, const OrbitStart& start) {
+  SelectedStart selected;
+  selected.start = start;
+  selected.from_solution = true;
+  selected.problem_type = settings.problem_type;
+  try {
+    set_up_branch(system, settings, selected);
+  } catch (const ComputationError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+/// Of several jumps that leave the orbit at its contact as it is, the first with which the problem is regular.
+void choose_contact_jump(const ResegmentRequest& request, const LabelledOrbit& source, const HybridSystem& system,
+                         NewOrbit& target) {
+  if (target.contact_jumps.size() < 2) return;
+  int& jump = target.segments[target.contact].index.jump;
+  const auto name = [&](int k) { return fmt::format("{} ({})", k, system.function_name(FunctionKind::jump, k)); };
+  const int first = target.contact_jumps.front();
+  std::string why;
+  for (const int candidate : target.contact_jumps) {
+    jump = candidate;
+    RunSettings settings = new_settings(source.settings, target.segments, target.problem, system);
+    apply_overrides(settings, request.overrides, nullptr, names_of(system));
+    const std::string refusal = obstacle(system, settings, assemble(source.start, pieces_of(target)));
+    if (why.empty()) why = refusal;
+    if (!refusal.empty()) continue;
+    if (candidate != first)
+      target.remarks.push_back(
+          fmt::format("The segment in contact ends in jump {}, which leaves this orbit as it is too; with jump {}\n{}",
+                      name(candidate), name(first), why));
+    return;
+  }
+  jump = first;
+  target.remarks.push_back(
+      fmt::format("The run will not begin: {}\nAnother jump at the contact may help: --jump", why));
+}
+
 /// The functions of the orbit and of what is made of it, for a plugin that does not say what it has.
 ProblemSizes sizes_for(const ResegmentRequest& request, const RunSettings& settings) {
   ProblemSizes sizes = problem_sizes(settings);
@@ -213,9 +260,8 @@ std::vector<std::string> resegment(const ResegmentRequest& request, std::ostream
 
   NewOrbit target = new_orbit(request, source, system);
   target.problem.names_parameters = gives(request.overrides, "ICP");
-  std::vector<OrbitPiece> pieces;
-  for (const NewSegment& segment : target.segments) pieces.push_back(segment.piece);
-  OrbitStart start = assemble(source.start, pieces);
+  choose_contact_jump(request, source, system, target);
+  OrbitStart start = assemble(source.start, pieces_of(target));
   RunSettings settings = new_settings(source.settings, target.segments, target.problem, system);
   if (request.data) settings.start = {};
   apply_overrides(settings, request.overrides, &warnings, names_of(system));

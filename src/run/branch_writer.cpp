@@ -187,6 +187,7 @@ void BranchWriter::write_diagnostics(const BranchPoint& point, const PointLine& 
   }
   text += format_diagnostics_point(line, columns_);
   if (!point.special.description.empty()) text += format_note(line.branch, line.point, point.special.description);
+  for (const std::string& details : point.details) text += format_note(line.branch, line.point, details);
   for (const Violation& violation : point.violations)
     text += format_note(line.branch, line.point, "Inadmissible: " + describe(violation, system_));
   if (point.multipliers.valid) text += format_multipliers(point.multipliers.values);

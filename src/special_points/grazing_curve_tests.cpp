@@ -104,7 +104,28 @@ Powers powers(const GrazingOrbitSystem& system, const CondensedSystem& condensed
   return result;
 }
 
+/// beta = (Id - f h_{P,x} / a*) g_x f at the contact.
+Vector impact_direction(const GrazingOrbitSystem& system, const Orbit& x, int jump) {
+  const int s = system.grazing_segment();
+  Vector f(system.dimension());
+  system.system().value(FunctionKind::field, system.signature()[static_cast<std::size_t>(s)].field, x.end(s),
+                        x.par.data(), f.data());
+  return project(system, x, s, jump_derivative(system.system(), jump, x.end(s), x.par.data()) * f);
+}
+
+std::string row_text(const Eigen::RowVectorXd& row) {
+  std::string text;
+  for (const double value : row) text += fmt::format("{:19.10E}", value);
+  return text;
+}
+
 }  // namespace
+
+GrazingMatrices grazing_matrices(const GrazingOrbitSystem& system, const CondensedSystem& condensed, const Orbit& x,
+                                 int jump) {
+  const int n = system.dimension();
+  return {impact_direction(system, x, jump), once_around(system, condensed, x, Matrix::Identity(n, n))};
+}
 
 GrazingUnfolding grazing_unfolding(const GrazingOrbitSystem& system, const CondensedSystem& condensed, const Orbit& x,
                                    int jump, int number) {
@@ -124,7 +145,7 @@ GrazingUnfolding grazing_unfolding(const GrazingOrbitSystem& system, const Conde
   GrazingUnfolding result;
   result.acceleration = section.dot(f);
   if (number == 0) return result;
-  const Vector beta = project(system, x, s, jump_derivative(system.system(), jump, contact, x.par.data()) * f);
+  const Vector beta = impact_direction(system, x, jump);
   const Powers turns = powers(system, condensed, x, beta, number);
   result.xi = -event_gradient.dot(turns.last);
   result.scale = event_gradient.norm() * std::max(turns.before.norm(), turns.last.norm());
@@ -151,6 +172,15 @@ SpecialPoint XiTest::classify(const TestedPoint&, bool) const {
 
 std::optional<double> AccelerationTest::value(const TestedPoint& point) const {
   return grazing_unfolding(system_, point.condensed, point.orbit, jump_, 0).acceleration;
+}
+
+std::string AccelerationTest::details(const TestedPoint& point) const {
+  const GrazingMatrices matrices = grazing_matrices(system_, point.condensed, point.orbit, jump_);
+  const Eigen::Map<const Vector> contact(point.orbit.end(system_.grazing_segment()), system_.dimension());
+  std::string text = fmt::format("Contact x*, beta of jump {} there, and the derivative A of the return map:\n", jump_);
+  text += "x*  " + row_text(contact.transpose()) + "\nbeta" + row_text(matrices.beta.transpose());
+  for (const auto& row : matrices.return_map.rowwise()) text += "\nA   " + row_text(row);
+  return text;
 }
 
 SpecialPoint AccelerationTest::classify(const TestedPoint&, bool) const {

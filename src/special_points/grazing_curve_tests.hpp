@@ -22,6 +22,14 @@ struct GrazingUnfolding {
   /// decay where A contracts, and xi_n with them: that is no zero.
   double scale = 0.0;
 };
+/// beta (n) and A (n x n) at that point.
+struct GrazingMatrices {
+  Eigen::VectorXd beta;
+  Eigen::MatrixXd return_map;
+};
+GrazingMatrices grazing_matrices(const GrazingOrbitSystem& system, const CondensedSystem& condensed, const Orbit& x,
+                                 int jump);
+
 /// n >= 1, or 0 for a* alone. Beyond 2^-900 and 2^900 xi_n and its scale stop at that size and keep their sign.
 GrazingUnfolding grazing_unfolding(const GrazingOrbitSystem& system, const CondensedSystem& condensed, const Orbit& x,
                                    int jump, int n);
@@ -41,13 +49,15 @@ class XiTest final : public TestFunction {
   int n_;
 };
 
-/// a* = h_{P,x} f at the contact: positive where h has a minimum there, shown at every point.
+/// a* = h_{P,x} f at the contact: positive where h has a minimum there, shown at every point. At labels also x*, beta
+/// and A, from which the dynamics near grazing follow.
 class AccelerationTest final : public TestFunction {
  public:
   AccelerationTest(const GrazingOrbitSystem& system, int jump) : system_(system), jump_(jump) {}
   std::string name() const override { return "a*"; }
   std::optional<double> value(const TestedPoint& point) const override;
   double zero_level(const TestedPoint&) const override { return 1e-9; }
+  std::string details(const TestedPoint& point) const override;
   SpecialPoint classify(const TestedPoint& point, bool rising) const override;
 
  private:

@@ -51,6 +51,8 @@ class TestFunction {
   virtual bool is_genuine(const TestedPoint&) const { return true; }
   /// True when Newton's matrix is singular at the zeros, which are then located from both sides.
   virtual bool singular_at_zero() const { return false; }
+  /// What else there is to know of a labelled point, in lines for the d-file; empty: nothing.
+  virtual std::string details(const TestedPoint&) const { return ""; }
   /// The special point at a located zero; `rising` says which way the function went through it.
   virtual SpecialPoint classify(const TestedPoint& point, bool rising) const = 0;
 };

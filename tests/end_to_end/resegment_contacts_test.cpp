@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <filesystem>
 
 #include "end_to_end/bad_input.hpp"
 #include "end_to_end/closed_forms.hpp"
@@ -155,4 +156,25 @@ TEST_CASE("resegment: an orbit that touches two walls at once hits both") {
   succeed(workspace, "run walls -c again -s again -o again1");
   const SolutionEntry end = workspace.solutions("again1").back();
   CHECK(std::abs(end.parameter(1) * amplitude(1.0, end.parameter(2), zeta) - 1.0) < 1e-7);
+}
+
+TEST_CASE("resegment: where stick leaves a state undetermined the contact ends in a jump that sets it") {
+  const Workspace workspace;
+  std::filesystem::copy_file(MEMS_SOURCE, workspace.file("mems.cpp"));
+  std::filesystem::copy_file(MEMS_CONSTANTS "/gc.nonimpacting", workspace.file("gc.nonimpacting"));
+  succeed(workspace, "simulate mems PAR(V)=0.3 --dat orbit -o motion -q");
+  succeed(workspace, "run mems -c nonimpacting -d orbit -o touching");
+  succeed(workspace, "resegment q.touching GR1 --to impacting -o born -p mems NMX=6");
+  succeed(workspace, "run mems -c born -s born -o born1");
+  succeed(workspace, "run mems -c born -s born1 -o back IRS=EP1 NMX=30 --both");
+  // The impact's velocity vanishes; in stick nothing but a jump determines the frame's velocity.
+  const Outcome made = succeed(workspace, "resegment q.back GR1 --to grazing-curve -o curve -p mems ICP=[2,1] NMX=2");
+  CHECK(contains(made.out, "{(1,1,3)}, IPS = 150"));
+  CHECK(contains(made.out, "ends in jump 3 (stick)"));
+  succeed(workspace, "run mems -c curve -s curve -o curve1");
+  const PointSection section = workspace.points("curve1").front();
+  CHECK(std::abs(section.rows.front().values[section.column("V")] - 0.597984349382) < 1e-8);  // at omega = 0.8
+  const Outcome own = succeed(workspace, "resegment q.back GR1 --to grazing-curve --jump 2 -o own -p mems ICP=[2,1]");
+  CHECK(contains(own.out, "{(1,1,2)}"));
+  CHECK(workspace.tchat("run mems -c own -s own -o own1").status == 1);  // singular, and told
 }
