@@ -12,7 +12,7 @@
 namespace tchat {
 
 struct ProblemChoice {
-  std::shared_ptr<ProblemLibrary> library;  ///< none when no plugin was found
+  std::shared_ptr<ProblemLibrary> library;  ///< none when no plugin was named
   std::vector<std::string> states;
   std::vector<std::string> parameters;
   std::string warning;
@@ -20,10 +20,8 @@ struct ProblemChoice {
   const HybridSystem* system() const { return library ? &library->system() : nullptr; }
 };
 
-/// The plugin that the user named; else NAME of q.NAME, in its folder or in the current one; else the only plugin of
-/// the folder. A plugin found in these ways that cannot be used, or has another dimension, is passed over. Without a
-/// plugin the names come from the header of p.NAME. Throws UserError when the plugin that the user named cannot be
-/// used.
+/// The plugin that the user named with -p. A picture compiles and runs nothing on its own account: without one the
+/// names come from the header of p.NAME. Throws UserError when the plugin cannot be used, or has another dimension.
 ProblemChoice find_problem(const std::string& solution_path, const std::string& plugin, int dimension);
 
 }  // namespace tchat

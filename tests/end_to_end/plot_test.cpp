@@ -137,13 +137,30 @@ TEST_CASE("orbits: names and wall from the plugin, jumps dashed") {
   CHECK(contains(portrait, "set label 'wall'"));
   CHECK(contains(portrait, "PD1: α = 3.0362"));
   CHECK(contains(portrait, "dt (14,8) lw 1.3"));
-  CHECK(contains(script_of(workspace, "q.branch PD1"), "set label 'wall'"));  // the only plugin of the folder
-  CHECK_FALSE(contains(script_of(workspace, "q.branch PD1 --surfaces none"), "wall"));
-  const std::string series = script_of(workspace, "--time q.branch PD1 -y x1,y1,y2");
+  CHECK_FALSE(contains(script_of(workspace, "q.branch PD1 -p linosc --surfaces none"), "wall"));
+  const std::string series = script_of(workspace, "--time q.branch PD1 -y x1,y1,y2 -p linosc");
   CHECK(contains(series, "set multiplot"));
   CHECK(contains(series, "set xlabel 'time'"));
   CHECK(contains(series, "set ylabel 'y_{2}'"));
   CHECK(contains(series, "set label 'wall'"));
+}
+
+TEST_CASE("orbits without -p: names from the run, no plugin is compiled or loaded") {
+  const Workspace& workspace = impacting();
+  workspace.write("branch.cpp", "#error this is compiled\n");
+  workspace.write("branch.f", "      this is compiled\n");
+  const std::string portrait = script_of(workspace, "q.branch PD1");  // the folder's only plugin is linosc.so
+  CHECK(contains(portrait, "set xlabel 'x_{1}'"));
+  CHECK(contains(portrait, "PD1: α = 3.0362"));
+  CHECK_FALSE(contains(portrait, "wall"));
+  CHECK_FALSE(contains(script_of(workspace, "--time q.branch PD1 -y x1"), "wall"));
+  workspace.write("branch.cpp",
+                  "#include <stdio.h>\nstatic FILE* ran = fopen(\"ran\", \"w\");\n"
+                  "extern \"C\" void* tchat_problem_table() { return ran; }\n");
+  script_of(workspace, "q.branch PD1");
+  CHECK_FALSE(workspace.has("ran"));
+  CHECK_FALSE(workspace.has("branch.so"));
+  for (const char* name : {"branch.cpp", "branch.f"}) std::filesystem::remove(workspace.file(name));
 }
 
 TEST_CASE("after a q-file a label is a label, whatever files there are") {
