@@ -90,6 +90,10 @@ int main(int argc, char** argv) {
     if (lost.empty()) return status;
     std::cerr << "tchat: " << lost << '\n';
     return status == 0 ? computation_failed : status;
+  } catch (const std::bad_alloc&) {
+    std::fputs("tchat: out of memory before the command began; end other programs, or raise the limit (ulimit -v)\n",
+               stderr);
+    return computation_failed;
   } catch (...) {
     std::fputs("tchat: internal error before the command began\n", stderr);
     return computation_failed;

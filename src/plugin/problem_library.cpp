@@ -76,6 +76,11 @@ void* open_library(const std::string& path) {
   if (handle != nullptr) return handle;
   const char* const said = dlerror();
   const std::string text = said != nullptr ? said : "no reason was given";
+  if (text.find("cannot read file data") != std::string::npos)
+    throw ComputationError(
+        fmt::format("Plugin {}: reading fails; the loader says: {}.\n"
+                    "  The disk or the connection to it is at fault; copy the source elsewhere.",
+                    path, text));
   refuse(path, fmt::format("it cannot be loaded; the loader says: {}", text), load_cure(text));
 }
 

@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 
 #include "constants/user_error.hpp"
 
@@ -23,8 +23,13 @@ std::string read_text_file(const std::string& path, const std::string& what, con
                                 cure));
   std::ifstream file(path, std::ios::binary);
   if (!file) throw UserError(fmt::format("{}: cannot be read ({}): {}", path, what, std::strerror(errno)));
-  std::string text((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
-  if (file.bad()) throw UserError(fmt::format("{}: cannot be read ({})", path, what));
+  std::string text;
+  std::array<char, 65536> piece;  // read() tells a failing device by badbit, an iterator by an exception
+  while (file.read(piece.data(), piece.size()), file.gcount() > 0)
+    text.append(piece.data(), static_cast<std::size_t>(file.gcount()));
+  if (file.bad())
+    throw ComputationError(fmt::format("{}: reading fails ({}, {}); the disk or the connection to it is at fault", path,
+                                       what, std::strerror(errno)));
   return text;
 }
 

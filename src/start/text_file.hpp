@@ -5,7 +5,8 @@
 
 namespace tchat {
 
-/// The bytes of the file. Throws UserError when it is missing, a directory or cannot be read; `what` says what it is
+/// The bytes of the file. Throws UserError when it is missing, a directory or cannot be opened, ComputationError when
+/// the device fails while it is read; `what` says what it is
 /// ("starting data"), `cure` where it comes from.
 std::string read_text_file(const std::string& path, const std::string& what, const std::string& cure);
 

@@ -168,3 +168,20 @@ TEST_CASE("plugin sources that do not compile or compile to something else") {
     CHECK_FALSE(workspace.has("p.none"));
   }
 }
+
+TEST_CASE("files whose device fails while they are read: a sentence, status 1") {
+  const Workspace workspace;
+  // The first page of a process cannot be read: input/output error.
+  for (const char* name : {"q.fails", "p.fails", "d.fails", "fails.so"})
+    std::filesystem::create_symlink("/proc/self/mem", workspace.file(name));
+  for (const char* arguments :
+       {"labels q.fails", "orbit q.fails 1", "plot p.fails -o a.png", "plot --multipliers q.fails -o a.png",
+        "run linosc -c impacting -s fails IRS=1", "run linosc -c impacting -d impacting -p fails.so", "check fails"}) {
+    const Outcome outcome = workspace.tchat(arguments);
+    INFO(arguments << "\n" << outcome.text());
+    CHECK(outcome.status == 1);
+    CHECK(outcome.err.find("internal error") == std::string::npos);
+    CHECK(outcome.err.find("reading fails") != std::string::npos);
+    CHECK(outcome.err.find("Input/output error") != std::string::npos);
+  }
+}
