@@ -116,5 +116,5 @@ TEST_CASE("simulate: a full disk is told, and what was there stays") {
   CHECK(outcome.status == 1);
   CHECK(contains(outcome.err, "o.trajectory"));
   CHECK(workspace.read("o.trajectory") == old);
-  CHECK_FALSE(workspace.has("o.trajectory.new"));
+  CHECK_FALSE(workspace.has_unfinished());
 }

@@ -1,5 +1,6 @@
 #include "end_to_end/workspace.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <sstream>
@@ -76,6 +77,11 @@ std::vector<PointSection> Workspace::points(const std::string& name) const { ret
 
 std::vector<SolutionEntry> Workspace::solutions(const std::string& name) const {
   return read_solutions(read("q." + name));
+}
+
+bool Workspace::has_unfinished() const {
+  return std::any_of(fs::directory_iterator(file("")), fs::directory_iterator(),
+                     [](const fs::directory_entry& entry) { return entry.path().extension() == ".new"; });
 }
 
 void Workspace::edit(const std::string& name, const std::string& old, const std::string& text) const {

@@ -40,6 +40,8 @@ class Workspace {
   std::string file(const std::string& name) const { return folder_.file(name); }
   std::string read(const std::string& name) const { return folder_.read(name); }
   bool has(const std::string& name) const { return folder_.has(name); }
+  /// Is there a file .NAME.XXXXXX.new that has not been put in its place?
+  bool has_unfinished() const;
   void write(const std::string& name, const std::string& text) const { folder_.write(name, text); }
   /// Replaces the one place where `old` stands in a file.
   void edit(const std::string& name, const std::string& old, const std::string& text) const;
