@@ -8,16 +8,19 @@ namespace tchat {
 
 namespace {
 
-/// Each round puts a trial point on both sides of the expected zero, at this share of the bracket.
-constexpr double share = 0.1;
-constexpr int most_rounds = 10;
+/// Each round puts a trial point on both sides of the expected zero, at this share of the bracket: farther away when no
+/// step so close to the zero converges.
+constexpr double smallest_share = 0.1;
+constexpr double largest_share = 0.4;
+constexpr int most_rounds = 12;
 /// Share of the step that counts as one place for other functions that vanish there.
 constexpr double narrow_enough = 0.01;
 /// To find where the function has the sign that it brought into the step, after a zero at its start.
 constexpr int most_halvings = 12;
 constexpr std::size_t most_nodes = 4;
-/// The best that is asked for where rounding forbids more.
+/// The best that is asked for where rounding and Newton's tolerances forbid more: an arclength, or a share of the step.
 constexpr double reachable = 1e-7;
+constexpr double reachable_share = 1e-5;
 /// Around a zero the function changes by a smaller share than this of its change over the step; at a jump it does not.
 constexpr double jump_share = 0.5;
 
@@ -45,22 +48,34 @@ bool BranchPointBracket::narrow(const Evaluate& evaluate, PathPoint& trial, doub
   const double whole = high_.at;
   if (!find_sign(evaluate, trial)) return false;
   const double change = high_.value - low_.value;
+  const double least = std::max({tolerance, reachable, reachable_share * whole});
+  double share = smallest_share;
   double moved = std::numeric_limits<double>::infinity();
+  Located best;
   for (int round = 0; round < most_rounds; ++round) {
     const double last = zero_;
     zero_ = interpolated_zero();
     if (round > 0) moved = std::abs(zero_ - last);
-    if (moved <= tolerance && high_.at - low_.at <= narrow_enough * whole) {
+    if (moved <= best.moved && high_.at - low_.at <= narrow_enough * whole) {
+      best = {moved, zero_, low_, high_};
       put_zero(trial);
-      if (follower_.solves(trial.orbit)) break;
+      if (moved <= tolerance && follower_.solves(trial.orbit)) break;
+    } else if (best.moved <= least) {
+      break;
     }
     const double distance = share * (high_.at - low_.at);
     const double below = zero_ - distance;
     const double above = zero_ + distance;
     const bool narrowed = try_at(below, evaluate, trial);
-    if (!try_at(above, evaluate, trial) && !narrowed) break;
+    if (try_at(above, evaluate, trial) || narrowed) continue;
+    if (share >= largest_share) break;
+    share *= 2.0;
   }
-  return moved <= std::max(tolerance, reachable) && std::abs(high_.value - low_.value) <= jump_share * std::abs(change);
+  if (best.moved > least) return false;
+  zero_ = best.zero;
+  low_ = std::move(best.low);
+  high_ = std::move(best.high);
+  return std::abs(high_.value - low_.value) <= jump_share * std::abs(change);
 }
 
 /// At a zero located before, the function lacks the sign that the branch had there.

@@ -7,11 +7,14 @@
 ///     test function      polynomial through the nearest four points, along the arclength of the step,
 ///     orbit, tangent     cubic Hermite between the two ends of the bracket,
 ///
-/// until the place no longer moves and the interpolated orbit satisfies the equations to rounding. The same cubic is
-/// the start of Newton's method at trial points, which keeps them on the branch.
+/// until the place no longer moves and the interpolated orbit satisfies the equations to rounding. The latter may be
+/// out of reach: trial points are as accurate as Newton's tolerances, and the closer the matrix comes to a singular
+/// one, the less accurate are its solutions. When the place begins to move again, the bracket goes back to where it
+/// moved least. The same cubic is the start of Newton's method at trial points, which keeps them on the branch.
 #pragma once
 
 #include <functional>
+#include <limits>
 
 #include "continuation/path_follower.hpp"
 #include "continuation/point_data.hpp"
@@ -67,6 +70,13 @@ class BranchPointBracket {
   };
   std::vector<Node> nodes_;  // every evaluated point
   double zero_ = 0.0;
+  /// A state of the bracket to come back to.
+  struct Located {
+    double moved = std::numeric_limits<double>::infinity();  // by the last round
+    double zero = 0.0;
+    Side low;
+    Side high;
+  };
 };
 
 }  // namespace tchat

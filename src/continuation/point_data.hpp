@@ -11,7 +11,7 @@ namespace tchat {
 struct PointData {
   FloquetMultipliers multipliers;
   std::vector<double> transversalities;       ///< h_x f / (|h_x| |f|) at the end of each segment
-  double determinant = 1.0;                   ///< as in TestedPoint
+  double singular_distance = 1.0;             ///< as in TestedPoint
   std::vector<std::optional<double>> values;  ///< of the test functions
   std::vector<double> zero_levels;
   std::vector<std::string> details;  ///< of a labelled point

@@ -15,10 +15,10 @@ namespace {
 
 /// Functions that have fallen to this share of their change over the step vanish together with the one located.
 constexpr double together = 1e-5;
-/// A step whose tangents make a larger angle (cosine) has come to another branch if the determinant falls below this
-/// share.
+/// A step whose tangents make a larger angle (cosine) has come to another branch if the distance to a singular problem
+/// falls below this share.
 constexpr double same_direction = 0.95;
-constexpr double small_determinant = 0.3;
+constexpr double small_distance = 0.3;
 constexpr std::size_t history_length = 12;
 
 /// A multiplier +1 where the bordered determinant changes sign is a branch point, no grazing-fold.
@@ -59,7 +59,8 @@ SpecialPointSearch::SpecialPointSearch(PathFollower& follower, const DefiningSys
 }
 
 TestedPoint SpecialPointSearch::tested(const PathPoint& at) const {
-  return {at.orbit, at.tangent, follower_.condensed(), data_.multipliers, data_.transversalities, data_.determinant};
+  return {
+      at.orbit, at.tangent, follower_.condensed(), data_.multipliers, data_.transversalities, data_.singular_distance};
 }
 
 std::vector<std::string> SpecialPointSearch::details(const PathPoint& at) const {
@@ -73,10 +74,7 @@ void SpecialPointSearch::evaluate(const PathPoint& at) {
   if (settings_.multipliers) data_.multipliers = floquet_.compute(follower_.condensed(), at.orbit);
   for (int s = 0; s < system_.segments(); ++s)
     data_.transversalities[static_cast<std::size_t>(s)] = transversality(system_, at.orbit, s);
-  const CondensedSystem::Determinant determinant = follower_.condensed().determinant();
-  if (!determinant_unit_) determinant_unit_ = determinant.log2_size;
-  data_.determinant =
-      determinant.sign * std::exp2(std::clamp(determinant.log2_size - *determinant_unit_, -1000.0, 1000.0));
+  data_.singular_distance = follower_.condensed().signed_distance();
   const TestedPoint point = tested(at);
   for (std::size_t i = 0; i < tests_.size(); ++i) {
     data_.values[i] = tests_[i]->value(point);
@@ -98,7 +96,6 @@ int SpecialPointSearch::sign_at(const TestedPoint& point, std::size_t test) cons
 }
 
 void SpecialPointSearch::begin(const PathPoint& start) {
-  determinant_unit_.reset();
   evaluate_again(start);
   signs_ = data_.signs;
   labelled_.assign(tests_.size(), false);
@@ -109,7 +106,7 @@ void SpecialPointSearch::begin(const PathPoint& start) {
 
 void SpecialPointSearch::remember(double ds) {
   const double arclength = history_.empty() ? 0.0 : history_.back().arclength + std::abs(ds);
-  determinant_here_ = data_.determinant;
+  distance_here_ = data_.singular_distance;
   signs_here_ = data_.signs;
   if (history_.size() == history_length) history_.erase(history_.begin());
   history_.push_back({arclength, data_.values});
@@ -135,7 +132,7 @@ bool SpecialPointSearch::same_branch(const PathPoint& here, const PathPoint& nex
   if (cosine > same_direction) return true;
   evaluate(next);
   // A border that is not the tangent makes the determinant smaller by the cosine.
-  return std::abs(data_.determinant) > small_determinant * std::abs(cosine * determinant_here_);
+  return std::abs(data_.singular_distance) > small_distance * std::abs(cosine * distance_here_);
 }
 
 /// Test functions that had a sign at the start of the step and have the other one at its end.

@@ -46,7 +46,7 @@ class SpecialPointSearch {
   bool resolved(const PathPoint& next, double ds);
 
   /// Does a converged step go on along the same branch? Close to a branch point Newton may come out on another one: the
-  /// tangent turns much there and the determinant is small.
+  /// tangent turns much there and the problem is nearly singular.
   bool same_branch(const PathPoint& here, const PathPoint& next);
 
   /// `next` is a converged step of length ds from `here`, whose linearisation the follower holds. When test functions
@@ -112,18 +112,17 @@ class SpecialPointSearch {
   LocationSettings settings_;
   FloquetSolver floquet_;
   PointData data_;
-  std::optional<double> determinant_unit_;  // log2 of its size at the start of the branch
   struct Past {
     double arclength;
     std::vector<std::optional<double>> values;
   };
-  double determinant_here_ = 1.0;  // at the last accepted point
-  std::vector<Past> history_;      // the last accepted points, for resolved()
-  std::vector<int> signs_;         // of the test functions at the last accepted point; 0: none yet
-  std::vector<int> signs_here_;    // of the values at the last accepted point; 0 within their zero levels
-  std::vector<bool> labelled_;     // the last accepted point is labelled as their zero
-  std::vector<Search> searches_;   // on the step being searched
-  double rest_ = 0.0;              // of a step that was cut; 0: nothing more is known there
+  double distance_here_ = 1.0;    // PointData::singular_distance at the last accepted point
+  std::vector<Past> history_;     // the last accepted points, for resolved()
+  std::vector<int> signs_;        // of the test functions at the last accepted point; 0: none yet
+  std::vector<int> signs_here_;   // of the values at the last accepted point; 0 within their zero levels
+  std::vector<bool> labelled_;    // the last accepted point is labelled as their zero
+  std::vector<Search> searches_;  // on the step being searched
+  double rest_ = 0.0;             // of a step that was cut; 0: nothing more is known there
 };
 
 }  // namespace tchat

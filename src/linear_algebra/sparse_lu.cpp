@@ -15,6 +15,53 @@ namespace {
 
 using SparseMatrix = Eigen::SparseMatrix<double, Eigen::ColMajor, int>;
 
+/// D_r A D_c with rows and columns whose largest entries are about 1.
+struct Equilibrated {
+  SparseMatrix matrix;
+  Eigen::VectorXd row_scale;     // diagonal of D_r
+  Eigen::VectorXd column_scale;  // diagonal of D_c
+};
+
+Equilibrated equilibrate(const SparseMatrix& matrix) {
+  constexpr int sweeps = 4;
+  Equilibrated result{matrix, Eigen::VectorXd::Ones(matrix.rows()), Eigen::VectorXd::Ones(matrix.cols())};
+  SparseMatrix& scaled = result.matrix;
+  for (int sweep = 0; sweep < sweeps; ++sweep) {
+    Eigen::VectorXd row_size = Eigen::VectorXd::Zero(matrix.rows());
+    for (int c = 0; c < scaled.cols(); ++c)
+      for (SparseMatrix::InnerIterator it(scaled, c); it; ++it)
+        row_size(it.row()) = std::max(row_size(it.row()), std::abs(it.value()));
+    for (Eigen::Index r = 0; r < row_size.size(); ++r)
+      if (row_size(r) > 0.0) result.row_scale(r) /= row_size(r);
+    for (int c = 0; c < scaled.cols(); ++c) {
+      double column_size = 0.0;
+      for (SparseMatrix::InnerIterator it(scaled, c); it; ++it) {
+        if (row_size(it.row()) > 0.0) it.valueRef() /= row_size(it.row());
+        column_size = std::max(column_size, std::abs(it.value()));
+      }
+      if (column_size == 0.0) continue;
+      for (SparseMatrix::InnerIterator it(scaled, c); it; ++it) it.valueRef() /= column_size;
+      result.column_scale(c) /= column_size;
+    }
+  }
+  return result;
+}
+
+/// By power iteration.
+double largest_singular_value(const SparseMatrix& matrix, int iterations) {
+  Eigen::VectorXd v(matrix.cols());
+  for (Eigen::Index i = 0; i < v.size(); ++i) v(i) = std::sin(1.0 + static_cast<double>(i));
+  Eigen::VectorXd w(matrix.rows());
+  double largest = 0.0;
+  for (int iteration = 0; iteration < iterations; ++iteration) {
+    v.normalize();
+    w = matrix * v;
+    v = matrix.transpose() * w;
+    largest = std::sqrt(v.norm());
+  }
+  return largest;
+}
+
 void check(int status, const char* what) {
   if (status != UMFPACK_OK) throw std::invalid_argument(std::string("UMFPACK: ") + what);
 }
@@ -128,28 +175,37 @@ SparseLu::Determinant SparseLu::determinant() const {
   return std::isfinite(result.log2_size) ? result : Determinant{};
 }
 
-SparseLu::Condition SparseLu::condition() const {
-  // Equilibrate a copy by alternating scaling to unit largest entries, then find the smallest singular value by
-  // inverse iteration on (D_r A D_c)^T (D_r A D_c) with a factorisation of the scaled copy.
+double SparseLu::singular_distance() const {
+  if (state_->numeric == nullptr) return 0.0;
+  constexpr int iterations = 4;
+  const Equilibrated scaled = equilibrate(state_->matrix);
   const int n = size();
-  SparseMatrix scaled = state_->matrix;
-  Eigen::VectorXd column_scale = Eigen::VectorXd::Ones(n);
-  for (int sweep = 0; sweep < 4; ++sweep) {
-    Eigen::VectorXd row_size = Eigen::VectorXd::Zero(n);
-    for (int c = 0; c < n; ++c)
-      for (SparseMatrix::InnerIterator it(scaled, c); it; ++it)
-        row_size(it.row()) = std::max(row_size(it.row()), std::abs(it.value()));
-    for (int c = 0; c < n; ++c) {
-      double column_size = 0.0;
-      for (SparseMatrix::InnerIterator it(scaled, c); it; ++it) {
-        if (row_size(it.row()) > 0.0) it.valueRef() /= row_size(it.row());
-        column_size = std::max(column_size, std::abs(it.value()));
-      }
-      if (column_size == 0.0) continue;
-      for (SparseMatrix::InnerIterator it(scaled, c); it; ++it) it.valueRef() /= column_size;
-      column_scale(c) /= column_size;
-    }
+  Eigen::VectorXd v(n);
+  for (int i = 0; i < n; ++i) v(i) = std::cos(1.0 + 2.0 * i);
+  Eigen::VectorXd right(n);
+  Eigen::VectorXd left(n);
+  double growth = 0.0;
+  // (D_r A D_c)^-1 = D_c^-1 A^-1 D_r^-1
+  for (int iteration = 0; iteration < iterations; ++iteration) {
+    v.normalize();
+    right = v.cwiseQuotient(scaled.column_scale);
+    state_->solve(UMFPACK_At, right.data(), left.data());
+    left = left.cwiseQuotient(scaled.row_scale).cwiseQuotient(scaled.row_scale);
+    state_->solve(UMFPACK_A, left.data(), right.data());
+    v = right.cwiseQuotient(scaled.column_scale);
+    growth = v.norm();
+    if (!std::isfinite(growth) || growth == 0.0) return 0.0;
   }
+  const double largest = largest_singular_value(scaled.matrix, iterations);
+  return largest > 0.0 ? 1.0 / (std::sqrt(growth) * largest) : 0.0;
+}
+
+SparseLu::Condition SparseLu::condition() const {
+  // Equilibrate a copy, then find the smallest singular value by inverse iteration on (D_r A D_c)^T (D_r A D_c) with a
+  // factorisation of the scaled copy.
+  const int n = size();
+  const Equilibrated equilibrated = equilibrate(state_->matrix);
+  const SparseMatrix& scaled = equilibrated.matrix;
 
   Condition result;
   State work;
@@ -175,17 +231,10 @@ SparseLu::Condition SparseLu::condition() const {
   work.real_work.resize(static_cast<std::size_t>(n) * 5);
 
   Eigen::VectorXd v(n);
-  for (int i = 0; i < n; ++i) v(i) = std::sin(1.0 + i);
   Eigen::VectorXd u(n);
   Eigen::VectorXd w(n);
-  double largest = 0.0;
+  const double largest = largest_singular_value(scaled, 20);
   double smallest = 0.0;
-  for (int iteration = 0; iteration < 20; ++iteration) {  // power iteration for the largest singular value
-    v.normalize();
-    w = scaled.transpose() * (scaled * v);
-    largest = std::sqrt(w.norm());
-    v = w;
-  }
   for (int i = 0; i < n; ++i) v(i) = std::cos(1.0 + 2.0 * i);
   for (int iteration = 0; iteration < 6; ++iteration) {
     v.normalize();
@@ -197,7 +246,7 @@ SparseLu::Condition SparseLu::condition() const {
     v = w;
   }
   v.normalize();
-  const Eigen::VectorXd direction = column_scale.cwiseProduct(v);
+  const Eigen::VectorXd direction = equilibrated.column_scale.cwiseProduct(v);
   result.reciprocal = largest > 0.0 ? smallest / largest : 0.0;
   result.null_direction.assign(direction.data(), direction.data() + n);
   return result;

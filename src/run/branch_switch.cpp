@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "bvp/critical_multiplier.hpp"
 #include "constants/user_error.hpp"
@@ -14,11 +15,17 @@ namespace tchat {
 
 namespace {
 
-/// The orbit where the branch bifurcates and the direction of the new branch there.
+/// The orbit where the branch bifurcates, the direction of the new branch there and that of the known one.
 struct Bifurcation {
   Orbit orbit;
   OrbitVector direction;
+  OrbitVector known;
 };
+
+/// A first point that is nearer to the known branch than this share of its step lies on it.
+constexpr double left_behind = 0.1;
+/// Of the step asked for: what is tried, one after the other, to leave the known branch.
+constexpr double displacements[] = {1.0, 3.0, 0.3, 10.0, 0.1};
 
 RunSettings once(RunSettings settings) {
   settings.branch_mode = 1;
@@ -68,11 +75,16 @@ Bifurcation double_at(PathFollower& follower, const DefiningSystem& defining, co
   OrbitShape shape = x.shape;
   shape.segments *= 2;
   Bifurcation result{{shape, x.mesh, Eigen::MatrixXd(shape.dimension, shape.columns()), x.par},
+                     OrbitVector(shape, defining.free_count()),
                      OrbitVector(shape, defining.free_count())};
   const int m = x.shape.segments;
   result.orbit.states << x.states, x.states;
   result.direction.states << v.states, -v.states;
   result.direction.durations << v.durations, -v.durations;
+  const OrbitVector& along = point.tangent;
+  result.known.states << along.states, along.states;
+  result.known.durations << along.durations, along.durations;
+  result.known.globals = along.globals;
   for (int s = 0; s < m; ++s) result.orbit.duration(m + s) = x.duration(s);
   return result;
 }
@@ -103,7 +115,49 @@ Bifurcation branch_at(PathFollower& follower, const PathPoint& point) {
   OrbitVector v = condensed.make_vector();
   condensed.solve(residual, std::vector<double>{0.0}, v);
   orient(point.orbit, v);
-  return {point.orbit, v};
+  return {point.orbit, v, point.tangent};
+}
+
+/// The largest difference of states, durations and free parameters.
+double largest_difference(const Orbit& a, const Orbit& b, const std::vector<int>& free_parameters) {
+  double largest = (a.states - b.states).cwiseAbs().maxCoeff();
+  for (int s = 0; s < a.shape.segments; ++s) largest = std::max(largest, std::abs(a.duration(s) - b.duration(s)));
+  for (const int p : free_parameters) largest = std::max(largest, std::abs(a.par(p - 1) - b.par(p - 1)));
+  return largest;
+}
+
+/// Is `reached`, by a step of length ds from `from`, another point than the one that the known branch has as far along
+/// its own tangent?
+bool has_left(PathFollower& follower, const PathPoint& from, const OrbitVector& known, double ds,
+              const Orbit& reached) {
+  const std::vector<int>& free = follower.condensed().system().free_parameters();
+  Orbit displaced = from.orbit;
+  advance(displaced, ds, from.tangent, free);
+  const double displacement = largest_difference(displaced, from.orbit, free);
+  PathPoint start = from;
+  start.tangent = known;
+  follower.renormalise(start);
+  const double along = dot_difference(start.dual, reached, start.orbit, free);
+  PathPoint expected = start;
+  const bool close = std::abs(along) < left_behind * std::abs(ds);  // to the bifurcation, where Newton goes anywhere
+  if (close || !follower.step(start, along, expected).converged()) {
+    expected.orbit = start.orbit;
+    advance(expected.orbit, along, start.tangent, free);
+  }
+  return largest_difference(reached, expected.orbit, free) > left_behind * displacement;
+}
+
+/// The longest step that converges, of at most so much; nothing when none does.
+std::optional<double> first_step(PathFollower& follower, const PathPoint& from, StepSettings settings, double share,
+                                 PathPoint& first, NewtonResult& result) {
+  settings.initial *= share;
+  settings.maximum = std::max(settings.maximum, std::abs(settings.initial));
+  StepSize step(settings);
+  do {
+    result = follower.step(from, step.value(), first);
+    if (result.converged()) return step.value();
+  } while (step.failed());
+  return std::nullopt;
 }
 
 }  // namespace
@@ -136,15 +190,27 @@ BranchSetup switch_branch(const HybridSystem& system, const RunSettings& setting
   PathPoint from = setup.follower->make_point(bifurcation.orbit);
   from.tangent = bifurcation.direction;
   setup.follower->renormalise(from);
+  const StepSettings step = continuation_settings(settings).step;
   PathPoint first = from;
-  StepSize step(continuation_settings(settings).step);
-  NewtonResult result = setup.follower->step(from, step.value(), first);
-  while (!result.converged() && step.failed()) result = setup.follower->step(from, step.value(), first);
-  if (!result.converged())
+  NewtonResult result;
+  bool any = false;
+  for (const double share : displacements) {
+    const std::optional<double> ds = first_step(*setup.follower, from, step, share, first, result);
+    if (!ds) continue;
+    any = true;
+    const std::vector<NewtonIteration> history = setup.follower->newton().history();
+    if (!has_left(*setup.follower, from, bifurcation.known, *ds, first.orbit)) continue;
+    setup.start = {std::move(first), history, {}};
+    return setup;
+  }
+  if (!any)
     throw ComputationError(fmt::format("no step onto the branch that bifurcates at label {} of {}: {}; try another DS",
                                        selected.label, selected.source, describe(result.status)));
-  setup.start = {std::move(first), setup.follower->newton().history(), {}};
-  return setup;
+  throw ComputationError(fmt::format(
+      "no step from label {} of {} leads away from the branch that the label lies on, for DS between {:.3g} "
+      "and {:.3g}; compute that branch and its label again with a larger NTST or a smaller EPSS, or try "
+      "another DS",
+      selected.label, selected.source, 0.1 * step.initial, 10.0 * step.initial));
 }
 
 }  // namespace tchat

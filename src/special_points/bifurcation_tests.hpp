@@ -1,8 +1,10 @@
 /// Test functions of the bifurcations of orbits: fold, branch point, period doubling, torus (7).
 ///
 /// None has a pole where an impact velocity a_s = h_x f goes through zero and a multiplier through infinity: the
-/// product over (1 + mu) is multiplied by the product of the a_s. The branch point's function is the determinant of the
-/// boundary value problem bordered by the tangent, regular at a_s = 0 and of constant sign through folds.
+/// product over (1 + mu) is multiplied by the product of the a_s. The branch point's function has the sign of the
+/// determinant of the boundary value problem bordered by the tangent, regular at a_s = 0 and of constant sign through
+/// folds. The determinant's size tells nothing: it has factors of the mesh and goes like exp(-1/2 integral of tr f_x),
+/// over many decades along a branch. The function's size is the distance to a singular matrix.
 #pragma once
 
 #include "special_points/test_function.hpp"
@@ -25,13 +27,14 @@ class FoldTest final : public TestFunction {
   bool stop_;
 };
 
-/// BP: the bordered determinant.
+/// BP: the distance of the bordered problem to a singular one, with the determinant's sign.
 class BranchPointTest final : public TestFunction {
  public:
   explicit BranchPointTest(bool stop) : stop_(stop) {}
   std::string name() const override { return "branch point"; }
-  std::optional<double> value(const TestedPoint& point) const override { return point.determinant; }
-  double zero_level(const TestedPoint&) const override { return 1e-9; }
+  std::optional<double> value(const TestedPoint& point) const override { return point.singular_distance; }
+  /// What rounding makes of a singular matrix.
+  double zero_level(const TestedPoint&) const override { return 1e-13; }
   bool singular_at_zero() const override { return true; }
   SpecialPoint classify(const TestedPoint& point, bool rising) const override;
 
