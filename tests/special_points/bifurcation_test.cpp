@@ -120,7 +120,7 @@ TEST_CASE("branch point: pitchfork and transcritical normal forms, no fold and n
         if (p.special.type == PointType::branch_point) continue;
         CHECK(*p.values[branch_point] * mu * sign > 0.0);
         const double size = std::min(std::sinh(pi * std::abs(mu)), 0.3);
-        CHECK(std::abs(*p.values[branch_point]) > 0.5 * size);
+        CHECK(std::abs(*p.values[branch_point]) > 0.2 * size);
         CHECK(std::abs(*p.values[branch_point]) < 2.0 * size);
       }
     }
