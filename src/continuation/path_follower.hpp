@@ -59,6 +59,7 @@ class PathFollower {
   const CondensedSystem& condensed() const { return problem_.condensed(); }
   OrbitCondition* condition() { return problem_.condition(); }
   const NewtonChord& newton() const { return newton_; }
+  int principal() const { return principal_; }  ///< PAR index of the continuation parameter
   double principal_direction(const OrbitVector& v) const;
   /// Cosine of the angle between the point's tangent and a direction, in the weighted norm.
   double alignment(const PathPoint& point, const OrbitVector& direction) const;

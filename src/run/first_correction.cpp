@@ -154,7 +154,7 @@ FirstCorrection correct_start(PathFollower& follower, const DefiningSystem& syst
                               const RunSettings& settings) {
   const Orbit& start = selected.start.orbit;
   const HybridSystem& problem = system.system();
-  const int principal = settings.free_parameters.front();
+  const int principal = follower.principal();
   const std::string name = problem.parameter_name(principal);
   const double asked = start.par(principal - 1);
   PathPoint point = follower.make_point(start);

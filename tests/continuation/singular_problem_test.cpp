@@ -51,6 +51,7 @@ FirstPoint first_point_with(int jump) {
   PeriodicOrbits orbits(system_of<Bystander>(), {{1, 1, jump}}, 1, start().shape);
   SelectedStart selected;
   selected.start.orbit = start();
+  selected.known_parameters = selected.start.orbit.par;
   selected.source = "test.dat";
   return first_point(orbits.follower, orbits.system, selected, RunSettings{});
 }
@@ -76,6 +77,7 @@ TEST_CASE("no convergence at the first point lists the residual of every conditi
   selected.start.orbit =
       sampled_orbit({{3.0, [](double t) { return Eigen::VectorXd::Constant(4, std::cos(7 * t) * 40); }}}, 4, 10, 4,
                     parameters({3.0, 2.0, 0.05, 0.8}));
+  selected.known_parameters = selected.start.orbit.par;
   CHECK_THROWS_WITH(first_point(orbits.follower, orbits.system, selected, RunSettings{}),
                     Contains("test.dat") && Contains("event 1 (wall)") && Contains("x1 at the start of segment 1") &&
                         Contains("y2 at the start of segment 1") && Contains("differential equations on segment 1"));
