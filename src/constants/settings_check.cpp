@@ -15,8 +15,7 @@ using PlaceOf = std::function<Place(std::string_view)>;
 /// The checks of one run's settings, in the order of the table.
 class SettingsCheck {
  public:
-  SettingsCheck(const RunSettings& settings, const std::set<int>& named, const PlaceOf& place)
-      : settings_(settings), named_(named), place_(place) {}
+  SettingsCheck(const RunSettings& settings, const PlaceOf& place) : settings_(settings), place_(place) {}
 
   void free_parameters() const {
     const std::vector<int>& list = settings_.free_parameters;
@@ -31,7 +30,7 @@ class SettingsCheck {
     }
     const bool two = settings_.problem_type == 150 || settings_.branch_mode == 2;
     const auto of_problem =
-        std::count_if(list.begin(), list.end(), [this](int k) { return k < first_duration || named_.count(k) > 0; });
+        std::count_if(list.begin(), list.end(), [](int k) { return k < first_duration || k > last_index; });
     if (of_problem < (two ? 2 : 1))
       refuse_constant("ICP", "ICP", fmt::format("{} parameters that are not durations", of_problem),
                       fmt::format("at least {} with IPS = {}, ISW = {}; durations are free in any case", two ? 2 : 1,
@@ -96,7 +95,8 @@ class SettingsCheck {
   int segments_of_run() const { return settings_.branch_mode == -1 ? 2 * segments() : segments(); }
 
   void parameter_index(std::string_view keyword, const std::string& name, int k, int segment_count) const {
-    if ((k >= 1 && k < first_duration + segment_count) || named_.count(k) > 0) return;
+    const bool stands_in = k > last_index && keyword != "PAR";
+    if ((k >= 1 && k < first_duration + segment_count) || stands_in) return;
     const std::string durations = segment_count == 1
                                       ? fmt::format("{} (the duration of the segment)", first_duration)
                                       : fmt::format("{} to {} (durations of the {} segments)", first_duration,
@@ -111,7 +111,6 @@ class SettingsCheck {
   }
 
   const RunSettings& settings_;
-  const std::set<int>& named_;
   const PlaceOf& place_;
 };
 
@@ -137,8 +136,8 @@ std::vector<Contact> not_chosen(const RunSettings& settings) {
 
 }  // namespace
 
-void check_settings(const RunSettings& settings, const std::set<int>& named, const PlaceOf& place) {
-  const SettingsCheck check(settings, named, place);
+void check_settings(const RunSettings& settings, const PlaceOf& place) {
+  const SettingsCheck check(settings, place);
   check.free_parameters();
   check.bounds("RL0", settings.parameter_min, "RL1", settings.parameter_max);
   check.bounds("A0", settings.measure_min, "A1", settings.measure_max);

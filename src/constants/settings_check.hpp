@@ -2,23 +2,26 @@
 #pragma once
 
 #include <functional>
-#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "constants/constant_value.hpp"
 #include "constants/run_settings.hpp"
+#include "hybrid/parameter_vector.hpp"
 
 namespace tchat {
+
+/// The largest index of a duration (of the doubled orbit of a switch). Nothing beyond it may be written in constants:
+/// there names of parameters have their stand-ins until the problem is known.
+inline constexpr int last_index = first_duration - 1 + 2 * max_segments;
 
 /// Checks: ICP not empty, without repetition, with the free parameters that problem type and branch mode need; indices
 /// of ICP, THL, UZR, PAR either 1..60 or a duration 61..60+m (THL and UZR up to 60+2m for the doubled orbit of a branch
 /// switch); THU <= NDIM; RL0 < RL1; A0 < A1; DSMAX > 0 unless IADS = 0; GCIPSI within the GCHGRZIND lists (IPS 180);
-/// one grazing segment (IPS 150). Throws UserError; `named` are the indices that were given as names of parameters,
-/// which their owner has checked; `place` tells where a constant was given.
-void check_settings(const RunSettings& settings, const std::set<int>& named,
-                    const std::function<Place(std::string_view keyword)>& place);
+/// one grazing segment (IPS 150). Indices of ICP, THL and UZR beyond last_index are stand-ins for names. Throws
+/// UserError; `place` tells where a constant was given.
+void check_settings(const RunSettings& settings, const std::function<Place(std::string_view keyword)>& place);
 
 /// What is accepted without effect, in sentences beginning with `source`.
 std::vector<std::string> settings_warnings(const RunSettings& settings, const std::string& source);

@@ -87,14 +87,15 @@ struct SettingsDraft::Assigner {
   }
   void operator()(std::vector<int> RunSettings::*member) const {
     std::vector<RawValue> items = items_of(constant, value);
-    for (RawValue& item : items)
-      if (item.shape == Shape::scalar) item.token = draft.index_token(constant, item.token);
+    for (std::size_t i = 0; i < items.size(); ++i)
+      if (items[i].shape == Shape::scalar)
+        items[i].token = draft.index_token(constant, element(constant, i), items[i].token);
     settings().*member = integers_of(constant, items);
   }
   void operator()(std::vector<IndexedValue> RunSettings::*member) const {
     std::vector<IndexedValue> result;
     for (const auto& [key, weight] : pairs_of(constant, value)) {
-      const int index = pair_index(constant, draft.index_token(constant, key));
+      const int index = pair_index(constant, draft.index_token(constant, "I" + std::string(constant.keyword), key));
       const auto same = [index](const IndexedValue& other) { return other.index == index; };
       if (std::any_of(result.begin(), result.end(), same))
         refuse(constant, pair_name(constant, index), key.place, "the index " + in_quotes(key.text) + " twice",
@@ -106,7 +107,7 @@ struct SettingsDraft::Assigner {
   void operator()(std::vector<UserValue> RunSettings::*member) const {
     std::vector<UserValue> result;
     for (const auto& [key, values] : pairs_of(constant, value)) {
-      const int index = pair_index(constant, draft.index_token(constant, key));
+      const int index = pair_index(constant, draft.index_token(constant, "I" + std::string(constant.keyword), key));
       for (const RawValue& item : items_of(constant, values))
         result.push_back(
             {std::abs(index), real_value(constant, pair_name(constant, index), item, constant.limits), index < 0});
@@ -151,19 +152,25 @@ struct SettingsDraft::Assigner {
 SettingsDraft::SettingsDraft(RunSettings base, std::string source, ParameterNames names)
     : settings_(std::move(base)), source_(std::move(source)), names_(std::move(names)) {}
 
-/// The number in the place of a parameter's name, which may have the sign of an index; everything else as it is.
-Token SettingsDraft::index_token(const Constant& constant, const Token& token) {
+/// The number in the place of a parameter's name, which may have the sign of an index; everything else as it is, but
+/// for indices in the place of stand-ins. `shown` is the value in messages, "ICP(2)".
+Token SettingsDraft::index_token(const Constant& constant, const std::string& shown, const Token& token) const {
   const bool negative = token.text.starts_with('-');
   const std::string name = token.text.substr(negative ? 1 : 0);
-  if (!has_parameter_indices(constant) || !is_name(name)) return token;
+  if (!has_parameter_indices(constant)) return token;
+  const auto refuse_token = [&](const std::string& allowed) {
+    refuse(constant, shown, token.place, in_quotes(token.text), allowed);
+  };
+  if (!is_name(name)) {
+    if (parse_integer(name).value_or(0) > last_index)
+      refuse_token(fmt::format("1 to {} (parameters of the problem) or {}, ... (durations of the segments)",
+                               first_duration - 1, first_duration));
+    return token;
+  }
   if (!names_)
-    refuse(constant, (constant.keyword == "ICP" ? "" : "I") + std::string(constant.keyword), token.place,
-           in_quotes(token.text),
-           "indices here; names are understood by tchat run, simulate and resegment, which know the problem");
+    refuse_token("indices here; names are understood by tchat run, simulate and resegment, which know the problem");
   const std::string where = fmt::format("{}: {} ({})", token.place.text(), constant.keyword, constant.meaning);
-  const int index = names_(name, where);
-  named_.insert(index);
-  return {fmt::format("{}{}", negative ? "-" : "", index), token.place};
+  return {fmt::format("{}{}", negative ? "-" : "", names_(name, where)), token.place};
 }
 
 void SettingsDraft::assign(const Constant& constant, const RawValue& value) {
@@ -360,7 +367,7 @@ RunSettings SettingsDraft::finish(Warnings* warnings) {
   settle_segments();
   check_counts();
   if (settings_.branch_mode == 0) settings_.branch_mode = 1;
-  check_settings(settings_, named_, [this](std::string_view keyword) { return place_of(keyword); });
+  check_settings(settings_, [this](std::string_view keyword) { return place_of(keyword); });
   if (warnings != nullptr)
     for (std::string& sentence : settings_warnings(settings_, source_)) warnings->push_back(std::move(sentence));
   return settings_;

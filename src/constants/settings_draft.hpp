@@ -5,7 +5,6 @@
 #include <functional>
 #include <map>
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -61,12 +60,11 @@ class SettingsDraft {
   void check_count(const Constant& constant, std::size_t actual) const;
   void check_counts() const;
 
-  Token index_token(const Constant& constant, const Token& token);
+  Token index_token(const Constant& constant, const std::string& shown, const Token& token) const;
 
   RunSettings settings_;
   std::string source_;
   ParameterNames names_;
-  std::set<int> named_;                                 // PAR indices that stood there as names
   std::map<std::string_view, Place> places_;            // of what has been assigned, by keyword
   std::map<std::string_view, int> counts_;              // NICP, ...
   std::map<std::string_view, std::vector<int>> lists_;  // GCSEGTYP, GCFIND, ..., GCHNO, as given

@@ -126,4 +126,7 @@ TEST_CASE("parameters by name or by index: the same run") {
   // A name takes no index away from those that stand beside it.
   const Outcome beside = workspace.run("-c nonimpacting_omega -d nonimpacting -o beside ICP=[omega,60,61] NMX=2");
   CHECK(beside.err.find("PAR(60) is no parameter") != std::string::npos);
+  // Names in the file, other constants on the command line.
+  workspace.write("gc.named", "NDIM = 4\nICP = [omega, 61]\nGCHIND = [2]\nGCGIND = [2]\nGCSEGTYP = [0]\n");
+  workspace.run("-c named -d nonimpacting -o both_ways NMX=2");
 }
