@@ -211,16 +211,15 @@ std::optional<SpecialPointSearch::Cut> SpecialPointSearch::first_in(const PathPo
   // A branch point before anything else: other functions are searched up to it only, so that no step leads onto it.
   const std::optional<BranchPointBracket> branch_point = find_branch_point(here, trial, step);
   // What vanishes within the bracket, vanishes with the branch point and not before it.
-  const std::vector<Zero> zeros =
-      branch_point ? find_zeros(here, trial, branch_point->length_before(), branch_point->before().data)
-                   : find_zeros(here, trial, step.ds, step.end);
+  const double length = branch_point ? branch_point->length_before() : step.ds;
+  const PointData& end = branch_point ? branch_point->before().data : step.end;
+  const std::vector<Zero> zeros = find_zeros(here, trial, length, end);
   if (!zeros.empty()) {
-    const Zero first = *std::min_element(zeros.begin(), zeros.end(),
-                                         [](const Zero& a, const Zero& b) { return std::abs(a.ds) < std::abs(b.ds); });
+    const Zero first = first_sharp_zero(here, trial, length, zeros, end);
     const NewtonResult result = follower_.step(here, first.ds, trial);
     if (result.converged()) {
       evaluate(trial);
-      return Cut{first.ds, trial, vanishing_with(first, zeros, step.end), result};
+      return Cut{first.ds, trial, vanishing_with(first, zeros, length, step.end), result};
     }
     searches_[first.test] = Search::failed;
   }
@@ -228,6 +227,39 @@ std::optional<SpecialPointSearch::Cut> SpecialPointSearch::first_in(const PathPo
   branch_point->put_zero(trial);
   evaluate_again(trial);
   return Cut{branch_point->length(), trial, vanishing_at(*branch_point), std::nullopt};
+}
+
+/// At a point `distance` from the place of its zero: is the function so small there that the point may be its zero as
+/// well? So it is with a function that is flat where it vanishes, whose zero is found to the root of rounding only.
+bool SpecialPointSearch::is_flat(const Zero& zero, const PointData& there, double distance, double length,
+                                 const PointData& end) const {
+  constexpr double linear_share = 0.1;
+  const std::optional<double>& value = there.values[zero.test];
+  return value && std::abs(*value) <= linear_share * std::abs(distance / length * *end.values[zero.test]);
+}
+
+/// The nearest zero on a step of this length; where its function is flat and another one vanishes sharply beside it (a
+/// contact and an impact velocity at a codimension-two end of a curve), the sharp one.
+SpecialPointSearch::Zero SpecialPointSearch::first_sharp_zero(const PathPoint& here, PathPoint& trial, double length,
+                                                              const std::vector<Zero>& zeros, const PointData& end) {
+  constexpr double beside = 1e-3;  // share of the step
+  const Zero first = *std::min_element(zeros.begin(), zeros.end(),
+                                       [](const Zero& a, const Zero& b) { return std::abs(a.ds) < std::abs(b.ds); });
+  const auto data_at = [&](const Zero& zero) -> std::optional<PointData> {
+    if (!follower_.step(here, zero.ds, trial).converged()) return std::nullopt;
+    evaluate(trial);
+    return data_;
+  };
+  for (const Zero& other : zeros) {
+    const double distance = other.ds - first.ds;
+    if (std::abs(distance) <= 10.0 * settings_.tolerance || std::abs(distance) > beside * std::abs(length)) continue;
+    const std::optional<PointData> at_first = data_at(first);
+    const std::optional<PointData> at_other = data_at(other);
+    if (at_first && at_other && is_flat(first, *at_other, distance, length, end) &&
+        !is_flat(other, *at_first, distance, length, end))
+      return other;
+  }
+  return first;
 }
 
 /// After a step was cut at a zero: what has yet another sign at its end is found on the rest, if that is not passed.
@@ -347,16 +379,17 @@ SpecialPointSearch::Search SpecialPointSearch::zero_at_start(std::size_t test) c
 }
 
 /// The functions that vanish at the point evaluated last, where one has its zero: whose own zeros are at the same
-/// place, or, where these were not located, that have become small.
+/// place as far as can be told, or, where these were not located, that have become small.
 std::vector<std::size_t> SpecialPointSearch::vanishing_with(const Zero& first, const std::vector<Zero>& zeros,
-                                                            const PointData& end) const {
+                                                            double length, const PointData& end) const {
   const double same_place = 10.0 * settings_.tolerance;
   std::vector<std::size_t> group;
   for (const std::size_t i : changed(end)) {
     const auto zero = std::find_if(zeros.begin(), zeros.end(), [i](const Zero& z) { return z.test == i; });
     const bool small = data_.values[i] && std::abs(*data_.values[i]) <= together * std::abs(*end.values[i]);
-    const bool same =
-        zero != zeros.end() ? std::abs(zero->ds - first.ds) <= same_place : small && searches_[i] == Search::failed;
+    const bool same = zero == zeros.end() ? small && searches_[i] == Search::failed
+                                          : std::abs(zero->ds - first.ds) <= same_place ||
+                                                (small && is_flat(*zero, data_, zero->ds - first.ds, length, end));
     if (same) group.push_back(i);
   }
   return group;

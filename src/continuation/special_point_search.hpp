@@ -100,7 +100,10 @@ class SpecialPointSearch {
   std::vector<Zero> find_zeros(const PathPoint& here, PathPoint& trial, double ds, const PointData& end);
   Zero locate(std::size_t test, const PathPoint& here, PathPoint& trial, double ds, double end_value);
   Search zero_at_start(std::size_t test) const;
-  std::vector<std::size_t> vanishing_with(const Zero& first, const std::vector<Zero>& zeros,
+  bool is_flat(const Zero& zero, const PointData& there, double distance, double length, const PointData& end) const;
+  Zero first_sharp_zero(const PathPoint& here, PathPoint& trial, double length, const std::vector<Zero>& zeros,
+                        const PointData& end);
+  std::vector<std::size_t> vanishing_with(const Zero& first, const std::vector<Zero>& zeros, double length,
                                           const PointData& end) const;
   std::vector<std::size_t> vanishing_at(const BranchPointBracket& branch_point) const;
   SpecialPoint classify(const std::vector<std::size_t>& group, const PathPoint& at);

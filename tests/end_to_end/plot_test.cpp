@@ -299,7 +299,7 @@ TEST_CASE("bad usage of plot is refused with what there is") {
                          Bad{"q.branch PD1 -x z", {"'z'", "x1, x2, y1, y2"}},
                          Bad{"q.branch PD1 -y x1,x2", {"--time"}},
                          Bad{"q.branch PD1 -p nosuch", {"nosuch.cpp"}},
-                         Bad{"q.branch PD1 --surfaces 9", {"1..3"}},
+                         Bad{"q.branch PD1 -p linosc --surfaces 9", {"1..3"}},
                          Bad{"q.branch PD1 --surfaces wall", {"'wall'"}},
                          Bad{"--time p.branch", {"q-file"}},
                          Bad{"d.branch", {"--multipliers"}},

@@ -257,7 +257,12 @@ TEST_CASE("a contact that falls on a user value has both names") {
   write_response(workspace, "inside", 2.9, 2.0, 1);
   run_to_contact_inside(workspace);
   const std::string value = fmt::format("UZR={{1: [{:.15g}]}}", grazing_alpha(2.0));
-  const Outcome run = workspace.run(words_of("-c inside -d inside -o both GRSTOP=0 STOP=[GR1] " + value));
+  const auto run_to = [&](const std::string& stop) {
+    std::vector<std::string> words = words_of("-c inside -d inside -o both GRSTOP=0 STOP=[" + stop + "]");
+    words.push_back(value);
+    return workspace.run(words);
+  };
+  const Outcome run = run_to("GR1");
   CHECK(run.out.find("GR UZ label") != std::string::npos);
   CHECK(run.out.find("user value alpha") != std::string::npos);
   CHECK(rows_of(workspace.points("both")).back().values.front() == Approx(grazing_alpha(2.0)).epsilon(1e-9));
@@ -272,7 +277,7 @@ TEST_CASE("a contact that falls on a user value has both names") {
     CHECK(made.find("contact inside segment 1") != std::string::npos);
   }
   // Either name ends the branch there.
-  workspace.run(words_of("-c inside -d inside -o both GRSTOP=0 STOP=[UZ1] " + value));
+  run_to("UZ1");
   CHECK(rows_of(workspace.points("both")).back().values.front() == Approx(grazing_alpha(2.0)).epsilon(1e-9));
 }
 

@@ -341,7 +341,7 @@ TEST_CASE("simulate: a signature followed without the index jump function, and w
 TEST_CASE("simulate: a trajectory is plotted, in time or as a phase portrait, with the problem's names") {
   const Workspace workspace;
   simulate(workspace, "linosc --time 20");
-  const Outcome series = workspace.tchat("plot linosc.trajectory -y x1,y2 --script series.gp -o series.png");
+  const Outcome series = workspace.tchat("plot linosc.trajectory -p linosc -y x1,y2 --script series.gp -o series.png");
   INFO(series.text());
   CHECK(series.status == 0);
   CHECK(workspace.has("series.png"));

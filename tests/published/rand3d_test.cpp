@@ -187,7 +187,9 @@ std::vector<SolutionEntry> zeros_of_xi_1(const MakefileRun& chain, const std::st
   std::vector<SolutionEntry> zeros;
   const auto solutions = chain.solutions(name);
   for (const DiagnosticPoint& point : of_type(chain.diagnostics(name), "XI"))
-    if (point.notes.back().find("xi_1 = 0") != std::string::npos) zeros.push_back(with_label(solutions, point.label));
+    if (std::any_of(point.notes.begin(), point.notes.end(),
+                    [](const std::string& note) { return note.find("xi_1 = 0") != std::string::npos; }))
+      zeros.push_back(with_label(solutions, point.label));
   return zeros;
 }
 
