@@ -35,9 +35,9 @@ class SparseLu {
   };
   Determinant determinant() const;
 
-  /// Estimate of the smallest singular value as a share of the largest, of the matrix scaled to rows and columns of unit
-  /// size: the relative distance to a singular matrix. Near one it is as exact as rounding allows. From the factors;
-  /// 0 without them.
+  /// Estimate of the smallest singular value as a share of the largest, of the matrix scaled to rows and columns of
+  /// unit size: the relative distance to a singular matrix. Near one it is as exact as rounding allows. From the
+  /// factors; 0 without them.
   double singular_distance() const;
 
   /// Estimate of the reciprocal 2-norm condition of the matrix scaled to rows and columns of unit size, with the

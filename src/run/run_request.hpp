@@ -17,8 +17,8 @@ struct RunRequest {
   bool quiet = false;
   bool both_directions = false;
   bool append = false;
-  bool clip = false;    ///< end on the bounds RL0, RL1, A0, A1
-  bool strict = false;  ///< a branch that ends by MX is a failure
+  bool clip = false;                   ///< end on the bounds RL0, RL1, A0, A1
+  bool strict = false;                 ///< a branch that ends by MX is a failure
   std::vector<std::string> overrides;  ///< KEY=VALUE
 };
 

@@ -19,8 +19,8 @@ struct FoundOrbit {
   ReturnMap map;            ///< one turn from there
   /// Floquet multipliers, largest modulus first; the 1 of each ignorable state left out.
   std::vector<std::complex<double>> multipliers;
-  Eigen::VectorXd advance;  ///< of each state in one turn: zero but for ignorable states
-  int iterations = 0;       ///< Newton steps of shooting
+  Eigen::VectorXd advance;                              ///< of each state in one turn: zero but for ignorable states
+  int iterations = 0;                                   ///< Newton steps of shooting
   IntegrationMethod method = IntegrationMethod::adams;  ///< by which it was found
 
   /// Every multiplier at most 1 + 1e-5 in modulus.

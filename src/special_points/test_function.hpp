@@ -22,7 +22,7 @@ struct TestedPoint {
   const CondensedSystem& condensed;
   const FloquetMultipliers& multipliers;
   const std::vector<double>& transversalities;  ///< h_x f / (|h_x| |f|) at the end of each segment
-  double singular_distance = 1.0;  ///< CondensedSystem::signed_distance() of the bordered problem
+  double singular_distance = 1.0;               ///< CondensedSystem::signed_distance() of the bordered problem
 };
 
 /// What a point of the branch is; for a zero of a test function, what it found.

@@ -15,10 +15,10 @@ struct OrbitStart {
   std::optional<OrbitVector> direction;
 };
 
-/// Fits a mesh to the rows of a .dat file and interpolates the states by cubics through four neighbouring rows: the mesh
-/// that the rows lie on, when there is one of this shape; otherwise one that equidistributes the estimated error of the
-/// data, or, where there are fewer rows than nodes, time and arclength of the scaled states. `par` holds the parameters
-/// and the durations.
+/// Fits a mesh to the rows of a .dat file and interpolates the states by cubics through four neighbouring rows: the
+/// mesh that the rows lie on, when there is one of this shape; otherwise one that equidistributes the estimated error
+/// of the data, or, where there are fewer rows than nodes, time and arclength of the scaled states. `par` holds the
+/// parameters and the durations.
 Orbit orbit_from_data(const DatFile& data, const OrbitShape& shape, const ParameterVector& par);
 
 /// The labelled solution on a mesh of shape.intervals and shape.collocation: its own where they agree, otherwise one of
