@@ -17,6 +17,25 @@
 
 namespace tchat {
 
+namespace {
+
+/// "" when all multipliers are known.
+std::string undetermined_text(const FloquetMultipliers& multipliers) {
+  if (multipliers.undetermined == 0) return "";
+  return fmt::format("{} not determined (0/0 where h_x f = 0), left out",
+                     multipliers.undetermined == 1 ? "one multiplier is"
+                                                   : fmt::format("{} multipliers are", multipliers.undetermined));
+}
+
+/// What a label is, and what of it is not known.
+std::string told(const BranchPoint& point) {
+  const std::string missing = undetermined_text(point.multipliers);
+  if (point.special.description.empty() || missing.empty()) return point.special.description + missing;
+  return point.special.description + "; " + missing;
+}
+
+}  // namespace
+
 BranchWriter::BranchWriter(const HybridSystem& system, const CollocationRule& rule, Setup setup, RunFiles& files,
                            std::ostream* screen)
     : system_(system),
@@ -108,7 +127,7 @@ void BranchWriter::point(const BranchPoint& point) {
   if (point.labelled())
     labels_.push_back({line.label,
                        fmt::format("{}", fmt::join(type_names(line.type, line.kind, point.special.further), " ")),
-                       place(line), point.special.description});
+                       place(line), told(point)});
 }
 
 /// User functions are for output only: one that is not finite stops nothing, so it is told, once.
@@ -133,13 +152,15 @@ std::string BranchWriter::place(const PointLine& line) const {
 }
 
 /// At a bifurcation a multiplier is on the unit circle; as in AUTO's files the sign is that of the point before, so
-/// that stability changes on the line after it. On two-parameter curves stability says nothing.
+/// that stability changes on the line after it. So it is where a multiplier is not determined. On two-parameter curves
+/// stability says nothing.
 bool BranchWriter::shown_stable(const BranchPoint& point) {
   if (setup_.curve_type != 0) return false;
   const PointType type = point.special.type;
   const bool bifurcation = type == PointType::fold || type == PointType::branch_point ||
                            type == PointType::period_doubling || type == PointType::torus;
-  if (!(bifurcation && point.number > 1)) last_stable_ = point.multipliers.stable();
+  const bool unknown = bifurcation || point.multipliers.undetermined > 0;
+  if (!unknown || point.number == 1) last_stable_ = point.multipliers.stable();
   return last_stable_;
 }
 
@@ -191,6 +212,8 @@ void BranchWriter::write_diagnostics(const BranchPoint& point, const PointLine& 
   for (const Violation& violation : point.violations)
     text += format_note(line.branch, line.point, "Inadmissible: " + describe(violation, system_));
   if (point.multipliers.valid) text += format_multipliers(point.multipliers.values);
+  if (const std::string missing = undetermined_text(point.multipliers); !missing.empty())
+    text += format_note(line.branch, line.point, missing);
   if (level >= 2) {
     std::vector<TestFunctionLine> tests;
     for (const TestValue& test : point.tests)

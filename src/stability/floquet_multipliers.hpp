@@ -11,7 +11,10 @@
 ///     E_s c_s = A'_s c_{s-1},   E_s = F_s^T C_s Z_s,   A'_s = -F_s^T A_s g_{s-1,x} Z_{s-1}      ((n-1) x (n-1))
 ///
 /// and the n - 1 nontrivial multipliers are the eigenvalues of the product of E_s^-1 A'_s (periodic QZ). E_s is
-/// singular exactly at grazing, h_x f = 0, where one multiplier is infinite and the others remain what they are.
+/// singular exactly at grazing, h_x f = 0, where one multiplier is infinite and the others remain what they are. But
+/// where A'_{s+1} annihilates the same vector (in the plane; at a section that the orbit touches; where a curve of
+/// folds or period doublings ends at grazing) the pencil is singular, and a multiplier has a finite limit that cannot
+/// be read off it any more: it is 0/0. Such a one is known by what an error of the orbit's size makes of it.
 ///
 /// The projection removes the structural zero multiplier. What is printed in its place is its size as the
 /// discretisation sees it: how far Phi_s f(x_s(0)) misses f(x_s(1)), relatively, on the worst segment. It is 0 for the
@@ -34,8 +37,13 @@ struct FloquetMultipliers {
   std::vector<std::complex<double>> values;
   double structural = 0.0;  ///< size of the structural zero
   bool valid = false;       ///< false: not computed, or the eigenvalue iteration failed
+  /// Nontrivial multipliers that are left out of `values`: where h_x f = 0 they may be 0/0, and what comes out is
+  /// noise.
+  int undetermined = 0;
 
-  /// All |mu| <= 1 + 1e-5.
+  bool determined() const { return valid && undetermined == 0; }
+
+  /// All |mu| <= 1 + 1e-5 of those that are known.
   bool stable() const;
   int stable_count() const;
 };
@@ -50,7 +58,14 @@ class FloquetSolver {
 
  private:
   struct SegmentEnd;
+  std::vector<std::complex<double>> eigenvalues(double disturbance);
+  void leave_out_undetermined(FloquetMultipliers& result);
+
   OrbitShape shape_;
+  std::vector<Eigen::MatrixXd> a_;  // A'_s
+  std::vector<Eigen::MatrixXd> e_;  // E_s
+  std::vector<double> a_sizes_;     // of the blocks before their projection
+  std::vector<double> e_sizes_;
   PeriodicQz qz_;
 };
 

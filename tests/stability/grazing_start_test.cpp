@@ -4,6 +4,7 @@
 #include "support/branch_fixture.hpp"
 #include "support/linear_oscillator.hpp"
 #include "support/multiplier_sets.hpp"
+#include "support/van_der_pol.hpp"
 
 using namespace tchat;
 using namespace tchat::test;
@@ -82,4 +83,49 @@ TEST_CASE("at grazing the multiplier that is infinite is printed as 1e99, the ot
     nearest = std::min(nearest, std::abs(mu - limit_cycle));
   }
   CHECK(nearest < 1e-8);
+}
+
+namespace {
+
+/// Van der Pol's oscillator with a wall at x1 = PAR(2), that returns the velocity times -0.8.
+struct WallOscillator : VanDerPol {
+  static constexpr int parameters = 2, events = 2, jumps = 2;
+  template <class T>
+  T event(int j, const T* x, const T* p) const {
+    return j == 1 ? x[1] : T(p[1] - x[0]);
+  }
+  template <class T>
+  void jump(int k, const T* x, const T*, T* g) const {
+    g[0] = x[0];
+    g[1] = k == 1 ? x[1] : T(-0.8 * x[1]);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("in the plane the multiplier at grazing is 0/0: left out there, beside it near its limit") {
+  const double mu = 0.2;
+  const PeriodicOrbit cycle = van_der_pol_cycle(mu);
+  REQUIRE(cycle.converged);
+  const double smooth = cycle.map.multipliers.cwiseAbs().maxCoeff();
+  const Orbit grazing =
+      sampled_orbit(van_der_pol_pieces(cycle, mu), 2, 40, 4, parameters({mu, cycle.map.segments[0].start(0)}));
+  PeriodicOrbits orbits(system_of<WallOscillator>(), {{1, 2, 2}}, 2, grazing.shape);
+  PathPoint start = orbits.follower.make_point(grazing);
+  REQUIRE(orbits.follower.start_by_minimum_norm(start).converged());
+  const FloquetMultipliers at_grazing = orbits.multipliers(start);
+  REQUIRE(std::abs(start.orbit.end(0)[1]) < 1e-8);
+  CHECK(at_grazing.valid);
+  CHECK(at_grazing.undetermined == 1);
+  CHECK(at_grazing.values.size() == 1);  // the structural one
+  CHECK_FALSE(at_grazing.determined());
+  // r squared times that of the cycle, for low velocities.
+  PathPoint beside = orbits.follower.make_point(grazing);
+  for (const double ds : {3e-3, -3e-3}) {
+    REQUIRE(orbits.follower.step(start, ds, beside).converged());
+    const FloquetMultipliers multipliers = orbits.multipliers(beside);
+    REQUIRE(multipliers.determined());
+    REQUIRE(multipliers.values.size() == 2);
+    CHECK(std::abs(multipliers.values[0]) == Approx(0.64 * smooth).epsilon(0.05));
+  }
 }

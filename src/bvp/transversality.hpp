@@ -1,0 +1,29 @@
+/// How an orbit meets the section that ends a segment: h_x f there, negative where the event function falls through
+/// zero.
+#pragma once
+
+#include <cmath>
+
+#include "bvp/defining_system.hpp"
+#include "bvp/orbit.hpp"
+
+namespace tchat {
+
+/// |h_x f| / (|h_x| |f|) up to this is zero: grazing, or a section that the orbit touches. Orbits are known to about
+/// this much: Newton's method ends with errors of 1e-12 to 1e-10, the discretisation adds its own. The sign of less
+/// says nothing, nor does what has been divided by it.
+inline constexpr double no_transversality = 1e-9;
+
+struct Crossing {
+  double rate = 0.0;   ///< h_x f, the velocity of an impact when h is a distance
+  double sizes = 0.0;  ///< |h_x| |f|
+
+  /// h_x f / (|h_x| |f|), from -1 to 1; 0 when h_x or f vanishes.
+  double transversality() const { return sizes > 0.0 ? rate / sizes : 0.0; }
+  bool touches() const { return !(std::abs(transversality()) > no_transversality); }
+};
+
+/// At the end of segment s (from 0), with the gradient of the section there.
+Crossing crossing_at_end(const DefiningSystem& system, const Orbit& x, int s);
+
+}  // namespace tchat
