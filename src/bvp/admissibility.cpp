@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "bvp/transversality.hpp"
+
 namespace tchat {
 
 namespace {
@@ -64,7 +66,7 @@ std::vector<Violation> inadmissibilities(const HybridSystem& system, const Signa
     system.value(FunctionKind::field, v.field, x.end(s), par, f.data());
     const Vector gradient = event_gradient(system, v.event, x.end(s), par);
     const double slope = gradient.dot(f);
-    if (slope > tolerance * (1.0 + gradient.norm() * f.norm()))
+    if (slope > no_transversality * gradient.norm() * f.norm())
       result.push_back({Violation::leaving_terminal_surface, s + 1, v.event, 1.0, slope});
   }
   return result;

@@ -53,7 +53,8 @@ void CondensedReturnMap::values(const CondensedSystem& condensed, const Orbit& x
       values.insert(values.end(), condensed.last_block(s) + a * n_, condensed.last_block(s) + (a + 1) * n_);
       values.push_back(d_(a));
     }
-    system_.section_gradient(s, x.end(s), par, hx_.data());
+    double h = 0.0;
+    hybrid.first(FunctionKind::event, v.event, x.end(s), par, {}, &h, hx_.data(), nullptr);
     values.insert(values.end(), hx_.begin(), hx_.end());
     hybrid.first(FunctionKind::jump, v.jump, x.end(s), par, {}, f_.data(), fx_.data(), nullptr);
     values.insert(values.end(), static_cast<std::size_t>(n_), s + 1 == shape_.segments ? mu : 1.0);

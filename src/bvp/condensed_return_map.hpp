@@ -5,7 +5,9 @@
 ///     S(mu):   A_s v_s(0) + C_s w_s + B_s sigma_s = 0,   h_x w_s = 0,   v_{s+1}(0) = g_x w_s,   mu v_1(0) = g_x w_m,
 ///
 /// is singular exactly when mu is a multiplier: sigma_s replaces the division by h_x f of (5.13), so nothing is special
-/// at grazing. A_s, C_s, B_s are the blocks of the condensed Newton matrix.
+/// at grazing. A_s, C_s, B_s are the blocks of the condensed Newton matrix. h is the terminal event of the segment,
+/// whose second derivatives enter the derivative of S: the map belongs to problem types whose sections are these events
+/// (180).
 #pragma once
 
 #include <vector>

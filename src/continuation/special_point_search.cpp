@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "bvp/transversality.hpp"
 #include "continuation/value_trend.hpp"
 #include "special_points/bifurcation_tests.hpp"
 
@@ -73,7 +74,7 @@ std::vector<std::string> SpecialPointSearch::details(const PathPoint& at) const 
 void SpecialPointSearch::evaluate(const PathPoint& at) {
   if (settings_.multipliers) data_.multipliers = floquet_.compute(follower_.condensed(), at.orbit);
   for (int s = 0; s < system_.segments(); ++s)
-    data_.transversalities[static_cast<std::size_t>(s)] = transversality(system_, at.orbit, s);
+    data_.transversalities[static_cast<std::size_t>(s)] = crossing_at_end(system_, at.orbit, s).transversality();
   data_.singular_distance = follower_.condensed().signed_distance();
   const TestedPoint point = tested(at);
   for (std::size_t i = 0; i < tests_.size(); ++i) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bvp/no_duration.hpp"
 #include "constants/constant_value.hpp"
 #include "constants/user_error.hpp"
 
@@ -12,8 +13,6 @@ namespace tchat {
 
 namespace {
 
-/// Durations that are a smaller part of the period are zero.
-constexpr double no_duration = 1e-6;
 
 std::vector<std::string_view> split(std::string_view text, char separator) {
   std::vector<std::string_view> parts;
@@ -94,8 +93,6 @@ CutList cut_at(CutList cut, const ContactPoint& contact, int jump) {
   watch(first, contact.event);
   return cut;
 }
-
-bool lasts_no_time(const Orbit& x, int s) { return std::abs(x.duration(s)) <= no_duration * std::abs(x.period()); }
 
 CutList without_empty_segments(CutList cut, std::size_t k, const Orbit& x) {
   while (cut.segments.size() > 1) {

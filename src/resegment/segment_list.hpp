@@ -53,9 +53,6 @@ struct CutList {
 /// one on the orbit to the first.
 CutList cut_at(CutList cut, const ContactPoint& contact, int jump);
 
-/// Does segment s (from 0) of orbit x last no time, but for rounding?
-bool lasts_no_time(const Orbit& x, int s);
-
 /// Without the segments of no duration (of orbit x) that follow contact k: those of an impact of velocity zero.
 CutList without_empty_segments(CutList cut, std::size_t k, const Orbit& x);
 

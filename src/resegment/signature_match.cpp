@@ -7,6 +7,7 @@
 #include <limits>
 #include <optional>
 
+#include "bvp/no_duration.hpp"
 #include "constants/user_error.hpp"
 #include "resegment/empty_segments.hpp"
 

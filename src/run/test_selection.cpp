@@ -42,6 +42,16 @@ void add_impact_velocities(Tests& tests, const DefiningSystem& system, const Run
       tests.push_back(std::make_unique<ImpactVelocityTest>(system, s, settings.stop_at_grazing));
 }
 
+/// Identity jumps: the section may become tangent to the orbit, and no orbit is cut by it beyond. What a grazing curve
+/// keeps is not watched.
+void add_section_tangencies(Tests& tests, const DefiningSystem& system, const RunSettings& settings) {
+  const auto* grazing = dynamic_cast<const GrazingOrbitSystem*>(&system);
+  for (int s = 0; s < system.segments(); ++s)
+    if ((grazing == nullptr || s != grazing->grazing_segment()) &&
+        is_identity_jump(system.system(), system.signature()[static_cast<std::size_t>(s)].jump))
+      tests.push_back(std::make_unique<ImpactVelocityTest>(system, s, settings.stop_at_grazing));
+}
+
 /// GCIPSI counts through the monitored events of all segments in order.
 void add_contacts(Tests& tests, const DefiningSystem& system, const RunSettings& settings) {
   int k = 0;
@@ -74,6 +84,7 @@ Tests tests_on_grazing_curve(const GrazingOrbitSystem& system, const RunSettings
   Tests tests;
   add_impact_velocities(tests, system, settings);
   add_further_contacts(tests, system, settings);
+  add_section_tangencies(tests, system, settings);
   for (const int n : settings.test_functions)
     tests.push_back(std::make_unique<XiTest>(system, settings.grazing_jump, n));
   tests.push_back(std::make_unique<AccelerationTest>(system, settings.grazing_jump));
@@ -95,6 +106,7 @@ std::vector<std::unique_ptr<TestFunction>> select_tests(const DefiningSystem& sy
   // Where an impact vanishes the contact that it brings does too: the label is to say the former, so it comes first.
   add_impact_velocities(tests, system, settings);
   add_contacts(tests, system, settings);
+  add_section_tangencies(tests, system, settings);
   if (const auto* critical = dynamic_cast<const CriticalMultiplier*>(condition))
     add_codimension_two(tests, *critical, curve_type);
   else if (const auto* pair = dynamic_cast<const CriticalPair*>(condition))

@@ -6,20 +6,44 @@
 #include <cmath>
 #include <limits>
 
+#include "bvp/transversality.hpp"
+#include "hybrid/identity_jump.hpp"
+
 namespace tchat {
 
 namespace {
 
 constexpr double structural_limit = 5e-2;
-constexpr double grazing_level = 1e-9;
 /// A pair whose imaginary parts are smaller, relatively, is real.
 constexpr double complex_level = 1e-7;
 
 bool trusted(const FloquetMultipliers& multipliers) {
-  return multipliers.valid && multipliers.structural <= structural_limit;
+  return multipliers.determined() && multipliers.structural <= structural_limit;
 }
 
 bool is_upper(const std::complex<double>& mu) { return mu.imag() > complex_level * std::abs(mu); }
+
+/// Does segment s end in a mere cut: identity jump, the same field after it?
+bool is_section(const DefiningSystem& system, int s) {
+  const Signature& signature = system.signature();
+  const IndexVector& index = signature[static_cast<std::size_t>(s)];
+  return index.field == signature[static_cast<std::size_t>((s + 1) % system.segments())].field &&
+         is_identity_jump(system.system(), index.jump);
+}
+
+/// A fold located to EPSS has this multiplier nearer to 1.
+bool has_multiplier_one(const FloquetMultipliers& multipliers) {
+  return std::any_of(multipliers.values.begin(), multipliers.values.end(),
+                     [](const auto& mu) { return std::abs(mu - 1.0) < 1e-3; });
+}
+
+/// The segment (from 0) whose end touches its event's surface but for the accuracy of a located point, -1: none.
+int touching_segment(const TestedPoint& point) {
+  constexpr double tangent = 1e-4;
+  for (std::size_t s = 0; s < point.transversalities.size(); ++s)
+    if (std::abs(point.transversalities[s]) < tangent) return static_cast<int>(s);
+  return -1;
+}
 
 /// The complex multiplier (upper half plane) nearest to the unit circle; null without one.
 const std::complex<double>* nearest_pair(const FloquetMultipliers& multipliers) {
@@ -46,16 +70,25 @@ std::string state_text(const HybridSystem& system, const double* x) {
   return text;
 }
 
-double transversality(const DefiningSystem& defining, const Orbit& x, int s) {
-  const HybridSystem& system = defining.system();
-  const IndexVector& v = defining.signature()[static_cast<std::size_t>(s)];
-  const int n = system.dimension();
-  Eigen::VectorXd f(n);
-  Eigen::VectorXd gradient(n);
-  system.value(FunctionKind::field, v.field, x.end(s), x.par.data(), f.data());
-  defining.section_gradient(s, x.end(s), x.par.data(), gradient.data());
-  const double sizes = gradient.norm() * f.norm();
-  return sizes > 0.0 ? gradient.dot(f) / sizes : 0.0;
+std::optional<double> multiplier_product(const TestedPoint& point, int target) {
+  if (!trusted(point.multipliers)) return std::nullopt;
+  std::complex<double> product = 1.0;
+  for (const auto& mu : point.multipliers.values) product *= 1.0 - mu / static_cast<double>(target);
+  double result = product.real();
+  for (const double a : point.transversalities) {
+    if (std::abs(a) <= no_transversality) return std::nullopt;
+    result *= a;
+  }
+  return result;
+}
+
+double multiplier_product_level(const TestedPoint& point, int target) {
+  constexpr double rounding = 1e-9;
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const auto& mu : point.multipliers.values)
+    nearest = std::min(nearest, std::abs(mu - static_cast<double>(target)));
+  const std::optional<double> size = multiplier_product(point, target);
+  return size && nearest > 0.0 ? rounding * std::abs(*size) / nearest : rounding;
 }
 
 FoldTest::FoldTest(int parameter, const std::vector<int>& free_parameters, int segments, bool stop)
@@ -69,22 +102,24 @@ std::optional<double> FoldTest::value(const TestedPoint& point) const {
   return is_duration_ ? point.tangent.durations(index_) : point.tangent.globals(index_);
 }
 
-SpecialPoint FoldTest::classify(const TestedPoint&, bool) const { return {PointType::fold, {}, stop_, "fold"}; }
+/// The branch also turns where h_x f = 0: at a section that becomes tangent its two ways through the orbit meet, while
+/// the orbits go on, and in the plane so it is at grazing. A fold of orbits has the multiplier +1.
+SpecialPoint FoldTest::classify(const TestedPoint& point, bool) const {
+  const DefiningSystem& system = point.condensed.system();
+  const int s = touching_segment(point);
+  if (s < 0 || has_multiplier_one(point.multipliers)) return {PointType::fold, {}, stop_, "fold"};
+  return {PointType::user,
+          {UserPointKind::impact_velocity, s + 1, system.signature()[static_cast<std::size_t>(s)].event, 1.0},
+          stop_,
+          fmt::format("turning point of the branch, no fold of orbits: h_x f = 0 at the end of segment {}", s + 1)};
+}
 
 SpecialPoint BranchPointTest::classify(const TestedPoint&, bool) const {
   return {PointType::branch_point, {}, stop_, "branch point"};
 }
 
 std::optional<double> PeriodDoublingTest::value(const TestedPoint& point) const {
-  if (!trusted(point.multipliers)) return std::nullopt;
-  std::complex<double> product = 1.0;
-  for (const auto& mu : point.multipliers.values) product *= 1.0 + mu;
-  double result = product.real();
-  for (const double a : point.transversalities) {
-    if (std::abs(a) < grazing_level) return std::nullopt;
-    result *= a;
-  }
-  return result;
+  return multiplier_product(point, -1);
 }
 
 bool PeriodDoublingTest::is_genuine(const TestedPoint& point) const {
@@ -92,11 +127,7 @@ bool PeriodDoublingTest::is_genuine(const TestedPoint& point) const {
   return distance_to_minus_one(point.multipliers) <= close;
 }
 
-double PeriodDoublingTest::zero_level(const TestedPoint& point) const {
-  const double nearest = distance_to_minus_one(point.multipliers);
-  const std::optional<double> size = value(point);
-  return size && nearest > 0.0 ? 1e-9 * std::abs(*size) / nearest : 1e-9;
-}
+double PeriodDoublingTest::zero_level(const TestedPoint& point) const { return multiplier_product_level(point, -1); }
 
 SpecialPoint PeriodDoublingTest::classify(const TestedPoint&, bool) const {
   return {PointType::period_doubling, {}, stop_, "period doubling"};
@@ -124,7 +155,11 @@ ImpactVelocityTest::ImpactVelocityTest(const DefiningSystem& system, int segment
 std::string ImpactVelocityTest::name() const { return fmt::format("h_x f at the end of segment {}", segment_ + 1); }
 
 std::optional<double> ImpactVelocityTest::value(const TestedPoint& point) const {
-  return point.transversalities[static_cast<std::size_t>(segment_)];
+  return crossing_at_end(system_, point.orbit, segment_).rate;
+}
+
+double ImpactVelocityTest::zero_level(const TestedPoint& point) const {
+  return no_transversality * crossing_at_end(system_, point.orbit, segment_).sizes;
 }
 
 SpecialPoint ImpactVelocityTest::classify(const TestedPoint& point, bool rising) const {
@@ -132,8 +167,9 @@ SpecialPoint ImpactVelocityTest::classify(const TestedPoint& point, bool rising)
   return {PointType::user,
           {UserPointKind::impact_velocity, segment_ + 1, event, 1.0},
           stop_ && rising,
-          fmt::format("grazing: h_x f = 0 at the end of segment {}, event {} ({}), {}", segment_ + 1, event,
-                      system_.system().function_name(FunctionKind::event, event),
+          fmt::format("{}: h_x f = 0 at the end of segment {}, event {} ({}), {}",
+                      is_section(system_, segment_) ? "section tangent, orbits go on with another section" : "grazing",
+                      segment_ + 1, event, system_.system().function_name(FunctionKind::event, event),
                       state_text(system_.system(), point.orbit.end(segment_)))};
 }
 

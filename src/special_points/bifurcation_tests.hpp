@@ -11,7 +11,7 @@
 
 namespace tchat {
 
-/// LP: the component of the tangent along the principal parameter.
+/// LP: the component of the tangent along the principal parameter; where a section is tangent, its label (GR).
 class FoldTest final : public TestFunction {
  public:
   /// `parameter` is a PAR index; `free_parameters` those of the tangent's globals.
@@ -43,7 +43,7 @@ class BranchPointTest final : public TestFunction {
 };
 
 /// PD: product of 1 + mu over the multipliers times the product of the scaled a_s. Undefined while the structural
-/// multiplier is off by more than 5e-2 and where an a_s is zero to rounding.
+/// multiplier is off by more than 5e-2.
 class PeriodDoublingTest final : public TestFunction {
  public:
   explicit PeriodDoublingTest(bool stop) : stop_(stop) {}
@@ -72,14 +72,15 @@ class TorusTest final : public TestFunction {
   bool stop_;
 };
 
-/// a_s = h_x f at the end of a segment: the impact velocity through zero, birth of an impacting orbit at grazing.
+/// a_s = h_x f at the end of a segment: the impact velocity through zero, birth of an impacting orbit at grazing. At a
+/// mere section of the orbit (identity jump, the same field after it) the section becomes tangent there.
 class ImpactVelocityTest final : public TestFunction {
  public:
   /// `segment` counts from 0. Beyond a rising zero the orbit violates the model: `stop` ends the branch there.
   ImpactVelocityTest(const DefiningSystem& system, int segment, bool stop);
   std::string name() const override;
   std::optional<double> value(const TestedPoint& point) const override;
-  double zero_level(const TestedPoint&) const override { return 1e-9; }
+  double zero_level(const TestedPoint& point) const override;
   SpecialPoint classify(const TestedPoint& point, bool rising) const override;
 
  private:
@@ -88,9 +89,12 @@ class ImpactVelocityTest final : public TestFunction {
   bool stop_;
 };
 
-/// h_x f / (|h_x| |f|) at the end of segment s (from 0), with h_x the gradient of the section there; 0 when h_x or f
-/// vanishes.
-double transversality(const DefiningSystem& system, const Orbit& x, int s);
+/// Product of 1 - mu / target over the multipliers times the product of the scaled a_s, which keeps it finite where one
+/// of them and a multiplier go through zero and infinity together. Undefined where multipliers are not trusted and
+/// where an a_s is zero. `target` is 1 or -1.
+std::optional<double> multiplier_product(const TestedPoint& point, int target);
+/// What of this product is rounding: it is small only against the other factors.
+double multiplier_product_level(const TestedPoint& point, int target);
 
 /// "x1 = 1, x2 = 0, ..."
 std::string state_text(const HybridSystem& system, const double* x);

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "bvp/admissibility.hpp"
+#include "bvp/no_duration.hpp"
 #include "special_points/bifurcation_tests.hpp"
 
 namespace tchat {
@@ -227,12 +228,6 @@ bool ContactTest::crosses(const TestedPoint& point, const Contact& contact) cons
   return std::abs(gradient.dot(f)) > slow * (1.0 + gradient.norm() * f.norm());
 }
 
-/// Then every point of the segment is the contact.
-bool ContactTest::lasts_no_time(const Orbit& x) const {
-  constexpr double no_duration = 1e-7;  // of the period
-  return std::abs(x.duration(segment_)) <= no_duration * std::abs(x.period());
-}
-
 SpecialPoint ContactTest::vanishing_segment(bool ends_branch) const {
   const int own = system_.signature()[static_cast<std::size_t>(segment_)].event;
   const auto name = [this](int event) {
@@ -248,7 +243,8 @@ SpecialPoint ContactTest::vanishing_segment(bool ends_branch) const {
 SpecialPoint ContactTest::classify(const TestedPoint& point, bool rising) const {
   const std::optional<Contact> contact = least_value(system_, point.condensed.rule(), point.orbit, segment_, event_);
   const bool ends_branch = stop_ && !rising;
-  if (lasts_no_time(point.orbit)) return vanishing_segment(ends_branch);
+  // Where the segment lasts no time every point of it is the contact.
+  if (lasts_no_time(point.orbit, segment_)) return vanishing_segment(ends_branch);
   const std::string where = fmt::format("event {} ({}) inside segment {}", event_,
                                         system_.system().function_name(FunctionKind::event, event_), segment_ + 1);
   if (!contact)

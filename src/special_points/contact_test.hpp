@@ -39,7 +39,6 @@ class ContactTest final : public TestFunction {
   SpecialPoint classify(const TestedPoint& point, bool rising) const override;
 
  private:
-  bool lasts_no_time(const Orbit& x) const;
   SpecialPoint vanishing_segment(bool ends_branch) const;
   bool crosses(const TestedPoint& point, const Contact& contact) const;
 

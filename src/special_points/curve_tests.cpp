@@ -2,16 +2,24 @@
 
 #include <cmath>
 
+#include "bvp/transversality.hpp"
+
 namespace tchat {
 
 std::optional<double> ResonanceTest::value(const TestedPoint& point) const {
-  constexpr double grazing_level = 1e-6;
   double result = condition_.multiplicity_function();
   for (const double a : point.transversalities) {
-    if (std::abs(a) < grazing_level) return std::nullopt;
+    if (std::abs(a) <= no_transversality) return std::nullopt;
     result *= a;
   }
   return result;
+}
+
+/// Against the a_s, with which the function and the factors that it is multiplied by vanish.
+double ResonanceTest::zero_level(const TestedPoint& point) const {
+  double level = 1e-9;
+  for (const double a : point.transversalities) level *= a * a;
+  return level;
 }
 
 std::string AngleTest::name() const {

@@ -29,7 +29,7 @@ class ResonanceTest final : public TestFunction {
   ResonanceTest(const CriticalMultiplier& condition, PointType type) : condition_(condition), type_(type) {}
   std::string name() const override { return type_ == PointType::resonance_1 ? "1:1 resonance" : "1:2 resonance"; }
   std::optional<double> value(const TestedPoint& point) const override;
-  double zero_level(const TestedPoint&) const override { return 1e-9; }
+  double zero_level(const TestedPoint& point) const override;
   SpecialPoint classify(const TestedPoint&, bool) const override { return {type_, {}, false, name()}; }
 
  private:
