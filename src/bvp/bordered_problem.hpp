@@ -16,6 +16,8 @@
 #include <memory>
 #include <vector>
 
+#include <string>
+
 #include "bvp/condensed_system.hpp"
 
 namespace tchat {
@@ -28,6 +30,8 @@ class OrbitCondition {
   virtual bool evaluate(CondensedSystem& condensed, const Orbit& x) = 0;
   virtual double value() const = 0;
   virtual const OrbitVector& gradient() const = 0;
+  /// "" on the curve, or why the last point, which solves the equations, lies beyond its end.
+  virtual std::string beyond_end() const { return {}; }
 
   /// What evaluations near the point of the last one begin from; `memory` is overwritten, empty before the first one.
   virtual void remember(std::vector<double>& memory) const = 0;

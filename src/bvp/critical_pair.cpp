@@ -1,5 +1,7 @@
 #include "bvp/critical_pair.hpp"
 
+#include <fmt/format.h>
+
 #include <Eigen/LU>
 #include <Eigen/QR>
 #include <Eigen/SparseCore>
@@ -59,6 +61,15 @@ void CriticalPair::recall(const std::vector<double>& memory) {
   if (!started_) return;
   pair_ = Eigen::Matrix2d::Map(memory.data());
   plane_ = Plane::Map(memory.data() + pair_.size(), plane_.rows(), 2);
+}
+
+std::string CriticalPair::beyond_end() const {
+  constexpr double accuracy = 1e-6;  // of a located resonance
+  if (!(std::abs(cosine()) > 1.0 + accuracy)) return {};
+  return fmt::format(
+      "the pair of multipliers is real, with product 1 (neutral saddles, no torus bifurcations): the torus curve has "
+      "ended at its {} resonance, before this point",
+      cosine() > 0.0 ? "1:1" : "1:2");
 }
 
 std::complex<double> CriticalPair::multiplier() const {

@@ -33,6 +33,8 @@ class CriticalPair final : public OrbitCondition {
   bool evaluate(CondensedSystem& condensed, const Orbit& x) override;
   double value() const override { return pair_.determinant() - 1.0; }
   const OrbitVector& gradient() const override { return gradient_; }
+  /// Where the pair is real.
+  std::string beyond_end() const override;
   /// L and V.
   void remember(std::vector<double>& memory) const override;
   void recall(const std::vector<double>& memory) override;

@@ -60,6 +60,8 @@ enum class EndReason {
   measure_bound,
   on_bound,  ///< of RL0, RL1, A0, A1, where the branch was to end
   special_point,
+  curve_end,    ///< of a two-parameter curve, passed
+  equilibrium,  ///< the orbit has shrunk to a point
   interrupted,
   no_convergence,
   first_step_failed
@@ -69,6 +71,7 @@ struct BranchSummary {
   EndReason reason = EndReason::max_points;
   std::string detail;               ///< which bound, which special point, what was tried
   bool undefined_function = false;  ///< no convergence, for a function of the problem has no value there
+  std::string remark;               ///< what becomes of the orbit at the end; "" if nothing is to be said
   int points = 0;
   int inadmissible_points = 0;
   int unstable_points = 0;

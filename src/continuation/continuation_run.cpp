@@ -9,10 +9,25 @@
 #include "bvp/mesh_adaptation.hpp"
 #include "continuation/bound_tests.hpp"
 #include "continuation/solution_measure.hpp"
+#include "special_points/bifurcation_tests.hpp"
 
 namespace tchat {
 
 namespace {
+
+/// The principal parameter's part of the tangent, as a share of its largest one on the branch, that is rounding when
+/// one end of a step has no more.
+constexpr double insignificant_turn = 1e-7;
+/// A part that falls to rounding from this many times more within a step does not fade: the step ends on a fold.
+constexpr double sudden = 1e3;
+/// An orbit whose states all move by a smaller share of what they did is a point: where the branch was found to turn,
+/// known to EPSS, and where Newton's matrix is singular anyway.
+constexpr double shrunk_where_located = 1e-3;
+/// So near to a point a branch is followed that leads through it: Newton's matrix is as near to a singular one.
+constexpr double shrunk_enough = 1e-4;
+/// The deviations of orbits before and behind a point are opposite but for what a step changes.
+constexpr double opposite = -0.8;
+constexpr double shrunk = 1e-6;
 
 LocationSettings location_settings(const ContinuationSettings& settings) {
   const double scale = 1.0 + std::sqrt(std::abs(settings.step.initial * settings.step.maximum));
@@ -54,21 +69,91 @@ BranchSummary ContinuationRun::run(PathPoint start) {
   if (settings_.label_start) special.type = PointType::end;
   accept(end_conditions(special));
 
-  const SpecialPointSearch::Reports reports{[this](const std::string& text) { sink_.note(number_ + 1, text); },
-                                            [this](const std::string& text) { report_lost(text); }};
   while (!ended_) {
     prepare_next_step();
     if (!take_step()) {
       give_up();
       break;
     }
-    special = search_.advance(here_, next_, ds_taken_, newton_, reports).value_or(SpecialPoint{});
+    special = advance();
     std::swap(here_, next_);
     ++number_;
-    accept(end_conditions(special));
+    accept(end_conditions(curve_end(special)));
     if (!limited_) step_.converged(newton_.iterations, number_);
   }
+  summary_.remark = trend_.growing_period(system_.system().parameter_name(settings_.principal));
   return summary_;
+}
+
+/// The first special point on the step to next_, which is moved to it. A turn of the parameter that an end of the
+/// step shows by no more than rounding is none: so it is where the parameter tends to a limit, at a period without
+/// bound.
+SpecialPoint ContinuationRun::advance() {
+  const SpecialPointSearch::Reports reports{[this](const std::string& text) { sink_.note(number_ + 1, text); },
+                                            [this](const std::string& text) { report_lost(text); }};
+  const bool through_point = leads_through_point();
+  const double before = std::abs(follower_.principal_direction(here_.tangent));
+  const double turn = std::min(before, std::abs(follower_.principal_direction(next_.tangent)));
+  steepest_ = std::max(steepest_, before);
+  SpecialPoint special = search_.advance(here_, next_, ds_taken_, newton_, reports).value_or(SpecialPoint{});
+  const double level = insignificant_turn * steepest_;
+  if (special.type != PointType::fold || turn > level || before > sudden * level)
+    return shrunk_orbit(special, through_point);
+  reports.note(fmt::format("ICP(1) turns by rounding only (its share of the tangent is {:.1e}): no fold", turn));
+  return {};
+}
+
+/// Has the step gone through an equilibrium, to the same orbits run through from another point? Then next_ is moved
+/// back to short of it. Whatever changes sign there is hardly located, for Newton's matrix is singular.
+bool ContinuationRun::leads_through_point() {
+  if (deviation_cosine(here_.orbit, next_.orbit) > opposite) return false;
+  constexpr int max_steps = 30;
+  PathPoint near = here_;
+  PathPoint trial = here_;
+  NewtonResult newton = newton_;
+  double share = 0.9;  // of the way to the point
+  double length = 0.0;
+  for (int k = 0; k < max_steps && !trend_.has_shrunk(near.orbit, shrunk_enough); ++k) {
+    const double ds = -share / deviation_growth(near.orbit, near.tangent.states);
+    if (!(ds * ds_taken_ > 0.0)) break;
+    newton = follower_.step(near, ds, trial);
+    if (newton.converged() && deviation_cosine(near.orbit, trial.orbit) > -opposite) {
+      std::swap(near, trial);
+      length += ds;
+    } else {
+      share *= 0.5;
+    }
+  }
+  const bool found = trend_.has_shrunk(near.orbit, shrunk_where_located);
+  if (found) {
+    next_ = near;
+    ds_taken_ = length;
+    newton_ = newton;
+  }
+  follower_.linearize_at(next_);
+  return found;
+}
+
+/// Where the branch turns, or ends of itself, because its orbit has shrunk to a point: the end of the branch.
+SpecialPoint ContinuationRun::shrunk_orbit(SpecialPoint special, bool through_point) {
+  const bool turns =
+      through_point || special.type == PointType::fold || special.kind.kind == UserPointKind::impact_velocity;
+  if (!trend_.has_shrunk(next_.orbit, turns ? shrunk_where_located : shrunk)) return special;
+  end(EndReason::equilibrium,
+      fmt::format("the orbit has shrunk to a point, {}: an equilibrium, where the branch of periodic orbits ends (Hopf "
+                  "bifurcation, if the flow is smooth there)",
+                  state_text(system_.system(), next_.orbit.start(0))));
+  return {PointType::end, {}, false, summary_.detail};
+}
+
+/// A two-parameter curve may be left without a special point where it ends: from a start there, or when it was missed.
+SpecialPoint ContinuationRun::curve_end(SpecialPoint special) {
+  const OrbitCondition* condition = follower_.condition();
+  if (ended_ || special.ends_branch || condition == nullptr) return special;
+  const std::string reason = condition->beyond_end();
+  if (reason.empty()) return special;
+  end(EndReason::curve_end, reason);
+  return {PointType::end, {}, false, reason};
 }
 
 /// Predicts and corrects, halving the step until it succeeds. False when it cannot be made any smaller.
@@ -106,6 +191,7 @@ SpecialPoint ContinuationRun::end_conditions(SpecialPoint special) {
   if (is_beyond(settings_, principal, settings_.parameter_min, settings_.parameter_max) ||
       is_beyond(settings_, measure_, settings_.measure_min, settings_.measure_max))
     special = {};  // what lies beyond the bound was not asked for: the branch ends there with an ordinary end point
+  if (ended_) return special;
   const bool is_special = special.type != PointType::ordinary && special.type != PointType::end;
   if (is_special && (special.ends_branch || (settings_.stop_at && settings_.stop_at(special))))
     end(EndReason::special_point, special.description);
@@ -135,6 +221,7 @@ void ContinuationRun::accept(const SpecialPoint& special) {
   accepted_ = here_;
   accepted_data_ = search_.data();
   if (special.type != PointType::ordinary) accepted_data_.details = search_.details(here_);
+  trend_.add(here_.orbit, here_.orbit.par(settings_.principal - 1));
   record(special, accepted_data_);
 }
 

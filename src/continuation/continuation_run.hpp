@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "continuation/branch.hpp"
+#include "continuation/orbit_trend.hpp"
 #include "continuation/special_point_search.hpp"
 #include "continuation/step_size.hpp"
 
@@ -44,6 +45,10 @@ class ContinuationRun {
 
  private:
   bool take_step();
+  SpecialPoint advance();
+  bool leads_through_point();
+  SpecialPoint shrunk_orbit(SpecialPoint special, bool through_point);
+  SpecialPoint curve_end(SpecialPoint special);
   SpecialPoint end_conditions(SpecialPoint special);
   void record(const SpecialPoint& special, const PointData& data);
   void accept(const SpecialPoint& special);
@@ -58,6 +63,7 @@ class ContinuationRun {
   BranchSink& sink_;
   SpecialPointSearch search_;
   StepSize step_;
+  OrbitTrend trend_;
   PathPoint here_;      // the last accepted point, moved to a new mesh where one was due
   PathPoint accepted_;  // the same as it was accepted
   PointData accepted_data_;
@@ -65,6 +71,7 @@ class ContinuationRun {
   NewtonResult newton_;    // of the step to it
   double ds_taken_ = 0.0;  // length of that step
   bool limited_ = false;   // by zeros that are known to lie ahead: it says nothing of the next one
+  double steepest_ = 0.0;  // largest part of the principal parameter in a tangent so far
   double measure_ = 0.0;   // at here_
   int number_ = 1;         // of here_
   bool ended_ = false;

@@ -22,8 +22,11 @@ constexpr double same_direction = 0.95;
 constexpr double small_distance = 0.3;
 constexpr std::size_t history_length = 12;
 
-/// A multiplier +1 where the bordered determinant changes sign is a branch point, no grazing-fold.
+/// A multiplier +1 where the bordered determinant changes sign is a branch point, no grazing-fold; a branch that turns
+/// where an end of a segment is tangent to its surface has the label of that.
 bool is_the_same(const SpecialPoint& special, const SpecialPoint& other) {
+  constexpr auto velocity = UserPointKind::impact_velocity;
+  if (special.kind.kind == velocity && other.kind.kind == velocity) return special.kind.segment == other.kind.segment;
   return special.type == PointType::branch_point && other.kind.kind == UserPointKind::grazing_codimension_two &&
          other.kind.index == 1;
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "constants/user_error.hpp"
+#include "continuation/orbit_trend.hpp"
 #include "run/first_correction.hpp"
 #include "run/problem_setup.hpp"
 #include "start/point_type.hpp"
@@ -20,6 +21,10 @@ constexpr double singular_condition = 1e-12;
 constexpr double parallel = 0.999;
 /// An orbit whose period is a smaller part of its start's is the empty orbit that every event surface has.
 constexpr double vanishing_period = 1e-5;
+/// An orbit whose states all move by a smaller part of what they did at the start, or by no more than Newton's method
+/// ends with, is an equilibrium.
+constexpr double vanishing_range = 1e-4;
+constexpr double no_range = 1e-7;
 
 /// The largest entries of the null direction, each as a share of the largest.
 std::string undetermined(const HybridSystem& system, const DefiningSystem& defining, const OrbitVector& direction,
@@ -82,12 +87,20 @@ void use_direction(PathFollower& follower, const OrbitVector& direction, PathPoi
 
 /// x_s(0) = x_s(1) with T_s = 0 for all s satisfies every condition where h = 0 and g(x) = x: no orbit.
 void refuse_empty_orbit(const Orbit& found, const Orbit& start, const std::string& source) {
-  if (std::abs(found.period()) > vanishing_period * std::abs(start.period())) return;
-  throw ComputationError(
-      fmt::format("Newton left the start from {}, of period {:.6g}, for an orbit of period {:.1e}: a point, no orbit; "
-                  "the start is too far from an orbit of this signature or the mesh too coarse, so improve the start "
-                  "or raise NTST",
-                  source, start.period(), found.period()));
+  if (!(found.period() > vanishing_period * std::abs(start.period())))
+    throw ComputationError(fmt::format(
+        "Newton left the start from {}, of period {:.6g}, for an orbit of period {:.1e}: a point, no orbit; "
+        "the start is too far from an orbit of this signature or the mesh too coarse, so improve the start "
+        "or raise NTST",
+        source, start.period(), found.period()));
+  const Eigen::VectorXd least =
+      (vanishing_range * state_ranges(start)).cwiseMax(no_range * (1.0 + found.states.cwiseAbs().maxCoeff()));
+  if ((state_ranges(found).array() <= least.array()).all())
+    throw ComputationError(
+        fmt::format("Newton left the start from {} for an orbit on which no state moves by more than {:.1e}: an "
+                    "equilibrium, no orbit; the start is too far from an orbit of this signature, or there is none at "
+                    "these parameters",
+                    source, state_ranges(found).maxCoeff()));
 }
 
 }  // namespace

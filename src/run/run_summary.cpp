@@ -19,6 +19,8 @@ std::string reason_text(const BranchSummary& summary, const std::string& paramet
     case EndReason::measure_bound:
       return fmt::format("the solution measure {} the bounds A0, A1: {}", left, summary.detail);
     case EndReason::on_bound:
+    case EndReason::equilibrium:
+    case EndReason::curve_end:
       return summary.detail;
     case EndReason::special_point:
       return "at the last special point above, where the run was to end";
@@ -108,7 +110,8 @@ std::string summary_text(const BranchSummary& summary, const std::vector<BranchW
   const bool told = std::any_of(labels.begin(), labels.end(), [&summary](const BranchWriter::Labelled& label) {
     return label.type == "MX" && label.description == summary.detail;
   });
-  text += fmt::format("  stopped: {}\n", reason_text(summary, parameter, told));
+  text += folded(fmt::format("  stopped: {}", reason_text(summary, parameter, told)));
+  if (!summary.remark.empty()) text += folded("  " + summary.remark);
   return text + advice(summary) + lost_points(summary, parameter) + trust(summary);
 }
 

@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "special_points/bifurcation_tests.hpp"
-
 namespace tchat {
 
 namespace {
@@ -193,11 +191,10 @@ SpecialPoint AccelerationTest::classify(const TestedPoint&, bool) const {
 }
 
 std::optional<double> SmoothMultiplierTest::value(const TestedPoint& point) const {
-  return multiplier_product(point, target_);
-}
-
-double SmoothMultiplierTest::zero_level(const TestedPoint& point) const {
-  return multiplier_product_level(point, target_);
+  if (!point.multipliers.determined()) return std::nullopt;
+  std::complex<double> product = 1.0;
+  for (const auto& mu : point.multipliers.values) product *= static_cast<double>(target_) - mu;
+  return product.real();
 }
 
 SpecialPoint SmoothMultiplierTest::classify(const TestedPoint&, bool) const {

@@ -65,14 +65,14 @@ class AccelerationTest final : public TestFunction {
   int jump_;
 };
 
-/// Multiplier +1 (grazing-fold) or -1 (grazing-flip) of the smooth return map, as a product without poles.
+/// Multiplier +1 (grazing-fold) or -1 (grazing-flip) of the smooth return map.
 class SmoothMultiplierTest final : public TestFunction {
  public:
   /// `target` is 1 or -1.
   explicit SmoothMultiplierTest(int target) : target_(target) {}
   std::string name() const override { return target_ > 0 ? "grazing-fold" : "grazing-flip"; }
   std::optional<double> value(const TestedPoint& point) const override;
-  double zero_level(const TestedPoint& point) const override;
+  double zero_level(const TestedPoint&) const override { return 1e-10; }
   SpecialPoint classify(const TestedPoint& point, bool rising) const override;
 
  private:

@@ -1,0 +1,65 @@
+#include "continuation/orbit_trend.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace tchat {
+
+namespace {
+
+/// The parameter stands still while it moves no more than this (relatively), the period grows by more than that factor.
+constexpr double standstill = 1e-6;
+constexpr double growth = 1.5;
+/// A state whose range is a smaller share of it does not move.
+constexpr double rounding = 1e-10;
+
+Eigen::MatrixXd deviation(const Eigen::MatrixXd& states) { return states.colwise() - states.rowwise().mean(); }
+
+}  // namespace
+
+Eigen::VectorXd state_ranges(const Orbit& x) { return x.states.rowwise().maxCoeff() - x.states.rowwise().minCoeff(); }
+
+double deviation_cosine(const Orbit& x, const Orbit& y) {
+  const Eigen::MatrixXd a = deviation(x.states);
+  const Eigen::MatrixXd b = deviation(y.states);
+  const double sizes = a.norm() * b.norm();
+  return sizes > 0.0 ? a.cwiseProduct(b).sum() / sizes : 0.0;
+}
+
+double deviation_growth(const Orbit& x, const Eigen::MatrixXd& direction) {
+  const Eigen::MatrixXd a = deviation(x.states);
+  return a.cwiseProduct(deviation(direction)).sum() / a.squaredNorm();
+}
+
+void OrbitTrend::add(const Orbit& x, double parameter) {
+  const bool first = largest_.size() == 0;
+  const Eigen::VectorXd ranges = state_ranges(x);
+  const Eigen::VectorXd sizes = x.states.cwiseAbs().rowwise().maxCoeff();
+  largest_ = first ? ranges : Eigen::VectorXd(largest_.cwiseMax(ranges));
+  sizes_ = first ? sizes : Eigen::VectorXd(sizes_.cwiseMax(sizes));
+  if (first || !(std::abs(parameter - still_.parameter) <= standstill * (1.0 + std::abs(parameter))))
+    still_ = {parameter, x.period()};
+  last_ = {parameter, x.period()};
+}
+
+bool OrbitTrend::has_shrunk(const Orbit& x, double share) const {
+  const Eigen::VectorXd ranges = state_ranges(x);
+  bool moves = false;
+  for (Eigen::Index i = 0; i < largest_.size(); ++i) {
+    if (largest_(i) <= rounding * (1.0 + sizes_(i))) continue;
+    moves = true;
+    if (ranges(i) > share * largest_(i)) return false;
+  }
+  return moves;
+}
+
+std::string OrbitTrend::growing_period(const std::string& parameter_name) const {
+  if (!(last_.period > growth * still_.period)) return "";
+  return fmt::format(
+      "the period grows, from {:.5g} to {:.5g}, while {} stays at {:.10g}: so it does without bound towards a "
+      "homoclinic or heteroclinic orbit",
+      still_.period, last_.period, parameter_name, last_.parameter);
+}
+
+}  // namespace tchat

@@ -1,0 +1,43 @@
+/// What becomes of the orbit along a branch: does it shrink to a point, does its period grow without bound?
+#pragma once
+
+#include <string>
+
+#include "bvp/orbit.hpp"
+
+namespace tchat {
+
+/// Largest minus least value of each state over the orbit, n entries.
+Eigen::VectorXd state_ranges(const Orbit& x);
+
+/// Cosine of the angle between the states' deviations from their means, nodes being equal; both orbits on one mesh.
+/// About -1 where a step has led through an equilibrium: beyond it the branch consists of the same orbits, begun half a
+/// turn later.
+double deviation_cosine(const Orbit& x, const Orbit& y);
+/// What a step of unit length along `direction`, a vector of states, adds to x's deviation from its mean, as a share of
+/// the deviation, in its own direction.
+double deviation_growth(const Orbit& x, const Eigen::MatrixXd& direction);
+
+class OrbitTrend {
+ public:
+  /// An accepted point of the branch; `parameter` is the principal one.
+  void add(const Orbit& x, double parameter);
+
+  /// Is every state's range at most this share of its largest one so far?
+  bool has_shrunk(const Orbit& x, double share) const;
+
+  /// "" or, where the period has grown much since the parameter stands still, a line that says so.
+  std::string growing_period(const std::string& parameter_name) const;
+
+ private:
+  struct Place {
+    double parameter = 0.0;
+    double period = 0.0;
+  };
+  Eigen::VectorXd largest_;  // ranges
+  Eigen::VectorXd sizes_;    // largest moduli of the states
+  Place still_;              // since when the parameter has stood still
+  Place last_;
+};
+
+}  // namespace tchat

@@ -1,0 +1,208 @@
+// Turning points that are no folds of orbits, and ends that a branch has of itself: a section that becomes tangent, an
+// orbit that shrinks to an equilibrium, a period without bound, a torus curve beyond its 1:1 resonance.
+#include <catch2/catch.hpp>
+
+#include "bvp/critical_pair.hpp"
+#include "special_points/bifurcation_tests.hpp"
+#include "special_points/curve_tests.hpp"
+#include "support/branch_fixture.hpp"
+#include "support/linear_oscillator.hpp"
+
+using namespace tchat;
+using namespace tchat::test;
+using Catch::Matchers::Contains;
+
+namespace {
+
+/// One field, sections that are states, the identity.
+template <class Field, int n, int section>
+struct Cut {
+  static constexpr int dimension = n, parameters = 2, fields = 1, events = 1, jumps = 1;
+  template <class T>
+  void field(int, const T* x, const T* p, T* f) const {
+    Field::value(x, p, f);
+  }
+  template <class T>
+  T event(int, const T* x, const T*) const {
+    return x[section];
+  }
+  template <class T>
+  void jump(int, const T* x, const T*, T* g) const {
+    for (int i = 0; i < n; ++i) g[i] = x[i];
+  }
+};
+
+/// Circles of radius sqrt(mu), period 2 pi.
+struct HopfField {
+  template <class T>
+  static void value(const T* x, const T* p, T* f) {
+    const T growth = p[0] - x[0] * x[0] - x[1] * x[1];
+    f[0] = x[0] * growth - x[1];
+    f[1] = x[1] * growth + x[0];
+  }
+};
+
+/// Orbits around (1, 0) that end at a homoclinic orbit of (0, 0) as mu grows to -0.86454525.
+struct HomoclinicField {
+  template <class T>
+  static void value(const T* x, const T* p, T* f) {
+    f[0] = x[1];
+    f[1] = x[0] - x[0] * x[0] + p[0] * x[1] + x[0] * x[1];
+  }
+};
+
+/// Bogdanov's normal form beside a rotation of period 2 pi: with the equilibrium x = 0, y = 0 at p1 = 0 the multipliers
+/// exp(+-2 pi sqrt(p2)), a torus curve for p2 < 0 and neutral saddles for p2 > 0.
+struct BogdanovField {
+  template <class T>
+  static void value(const T* x, const T* p, T* f) {
+    f[0] = x[1];
+    f[1] = p[0] + p[1] * x[0] + x[0] * x[0] - x[0] * x[1];
+    const T growth = 1.0 - x[2] * x[2] - x[3] * x[3];
+    f[2] = x[2] * growth - x[3];
+    f[3] = x[3] * growth + x[2];
+  }
+};
+
+using Tests = std::vector<std::unique_ptr<TestFunction>>;
+
+Tests folds_and_sections(const DefiningSystem& system, bool stop) {
+  Tests tests;
+  for (int s = 0; s < system.segments(); ++s) tests.push_back(std::make_unique<ImpactVelocityTest>(system, s, stop));
+  tests.push_back(std::make_unique<FoldTest>(1, system.free_parameters(), system.segments(), false));
+  return tests;
+}
+
+int folds(const KeepingSink& sink) {
+  int count = 0;
+  for (const KeptPoint& p : sink.points) count += p.special.type == PointType::fold;
+  return count;
+}
+
+/// One impact of velocity v in two periods of the forcing.
+OscillatorOrbit one_impact_in_two_periods(double omega, double v) {
+  const OscillatorConstants k{omega};
+  const Eigen::Vector2d jump(0.0, (1 + k.r) * v);
+  const Eigen::Vector2d u0 = (k.homogeneous(2 * k.period()) - Eigen::Matrix2d::Identity()).partialPivLu().solve(jump);
+  const std::complex<double> forcing = std::complex<double>{1 - u0(0), (k.r * v + u0(1)) / omega} * k.stiffness();
+  return {k, std::abs(forcing), std::arg(forcing), u0};
+}
+
+/// The time of the first maximum of x1 after the impact.
+double first_maximum(const OscillatorOrbit& orbit, double most) {
+  const auto velocity = [&](double t) { return orbit.state(t)(1); };
+  constexpr int steps = 4000;
+  for (int k = 1; k < steps; ++k) {
+    double low = most * k / steps, high = most * (k + 1) / steps;
+    if (!(velocity(low) > 0.0 && velocity(high) <= 0.0)) continue;
+    for (int i = 0; i < 60; ++i) (velocity(0.5 * (low + high)) > 0.0 ? low : high) = 0.5 * (low + high);
+    return low;
+  }
+  return 0.0;
+}
+
+}  // namespace
+
+TEST_CASE("a section that becomes tangent turns the branch: it is named, and no fold of orbits") {
+  const bool stop = GENERATE(true, false);
+  CAPTURE(stop);
+  const OscillatorOrbit orbit = one_impact_in_two_periods(3.8, 5.2);
+  const double period = 2 * orbit.constants.period();
+  const double maximum = first_maximum(orbit, period);
+  REQUIRE(maximum > 0.0);
+  const OrbitShape shape{4, 2, 30, 4};
+  PeriodicOrbits orbits(linosc(), {{1, 1, 1}, {1, 2, 2}}, 1, shape);
+  const PathPoint start =
+      orbits.corrected(sampled_orbit({orbit.piece(maximum, period), orbit.piece(0.0, maximum)}, 4, 30, 4, orbit.par()));
+  REQUIRE(orbits.result.converged());
+  const double direction = one_impact_in_two_periods(3.8, 5.3).alpha > orbit.alpha ? 1.0 : -1.0;
+  ContinuationSettings settings = branch_settings(shape, 1, 0.02 * direction, 0.1, 60);
+  KeepingSink sink;
+  ContinuationRun run(orbits.follower, orbits.system, settings, folds_and_sections(orbits.system, stop), sink);
+  const BranchSummary summary = run.run(start);
+  CHECK(folds(sink) == 0);
+  const auto tangent = std::find_if(sink.points.begin(), sink.points.end(),
+                                    [](const KeptPoint& p) { return p.special.type == PointType::user; });
+  REQUIRE(tangent != sink.points.end());
+  CHECK(tangent->special.kind.kind == UserPointKind::impact_velocity);
+  CHECK(tangent->special.kind.segment == 2);
+  CHECK_THAT(tangent->special.description, Contains("section tangent") && !Contains("; fold"));
+  CHECK(tangent->orbit.par(0) == Approx(8.7197).epsilon(1e-4));
+  CHECK((summary.reason == EndReason::special_point) == stop);
+  if (!stop) CHECK(sink.points.end() - tangent > 5);
+}
+
+TEST_CASE("a branch that shrinks to an equilibrium ends there, and is not retraced") {
+  using Hopf = Cut<HopfField, 2, 1>;
+  const double largest = GENERATE(0.01, 0.05, 0.1);
+  const double tolerance = GENERATE(1e-7, 1e-9);
+  const bool with_tests = GENERATE(true, false);
+  CAPTURE(largest, tolerance, with_tests);
+  const OrbitShape shape{2, 1, 20, 4};
+  PeriodicOrbits orbits(system_of<Hopf>(), {{1, 1, 1}}, 1, shape);
+  const auto circle = [](double t) { return Eigen::Vector2d(-0.5 * std::cos(t), -0.5 * std::sin(t)); };
+  const PathPoint start = orbits.corrected(sampled_orbit({{2 * pi, circle}}, 2, 20, 4, parameters({0.25})));
+  REQUIRE(orbits.result.converged());
+  ContinuationSettings settings = branch_settings(shape, 1, -largest, largest, 300);
+  settings.location_tolerance = tolerance;
+  settings.adapt_mesh_every = 3;
+  KeepingSink sink;
+  Tests tests = folds_and_sections(orbits.system, true);
+  if (!with_tests) tests.pop_back();
+  ContinuationRun run(orbits.follower, orbits.system, settings, std::move(tests), sink);
+  const BranchSummary summary = run.run(start);
+  INFO(summary.detail);
+  CHECK(summary.reason == EndReason::equilibrium);
+  CHECK(folds(sink) == 0);
+  CHECK(sink.points.back().special.type == PointType::end);
+  CHECK(std::abs(sink.points.back().orbit.par(0)) < 1e-8);
+  CHECK(sink.points.back().orbit.period() == Approx(2 * pi).epsilon(1e-6));
+}
+
+TEST_CASE("a parameter that tends to a limit while the period grows does not turn there") {
+  using Homoclinic = Cut<HomoclinicField, 2, 1>;
+  const HybridSystem& system = system_of<Homoclinic>();
+  const int intervals = GENERATE(40, 100);
+  CAPTURE(intervals);
+  const ParameterVector par = parameters({-0.95});
+  const PeriodicOrbit cycle = shoot(system, {{1, 1, 1}}, Eigen::Vector2d(1.3737, 0.0), par, ShootingOptions{});
+  REQUIRE(cycle.converged);
+  const OrbitShape shape{2, 1, intervals, 4};
+  PeriodicOrbits orbits(system, {{1, 1, 1}}, 1, shape, {8, 3, 1e-8, 1e-8});
+  const PathPoint start =
+      orbits.corrected(sampled_orbit(pieces_of(system, {{1, 1, 1}}, cycle.map, par), 2, intervals, 4, par));
+  REQUIRE(orbits.result.converged());
+  ContinuationSettings settings = branch_settings(shape, 1, 0.02, 0.2, 200);
+  settings.adapt_mesh_every = 3;
+  KeepingSink sink;
+  ContinuationRun run(orbits.follower, orbits.system, settings, folds_and_sections(orbits.system, true), sink);
+  const BranchSummary summary = run.run(start);
+  CHECK(folds(sink) == 0);
+  CHECK(sink.points.back().orbit.period() > 40.0);
+  CHECK(sink.points.back().orbit.par(0) == Approx(-0.8645452).epsilon(1e-6));
+  CHECK_THAT(summary.remark, Contains("period grows"));
+}
+
+TEST_CASE("beyond the 1:1 resonance that it begins at a torus curve ends, it does not follow neutral saddles") {
+  using Bogdanov = Cut<BogdanovField, 4, 3>;
+  const HybridSystem& system = system_of<Bogdanov>();
+  const double direction = GENERATE(1.0, -1.0);
+  CAPTURE(direction);
+  const auto state = [](double t) { return Eigen::Vector4d(0.0, 0.0, -std::cos(t), -std::sin(t)); };
+  const OrbitShape shape{4, 1, 10, 4};
+  const PeriodicOrbitSystem defining(system, {{1, 1, 1}}, {2, 1});
+  auto pair = std::make_unique<CriticalPair>(defining, shape, std::polar(1.0, 2 * pi * std::sqrt(1e-6)));
+  const CriticalPair& condition = *pair;
+  PathFollower follower(defining, shape, WeightedNorm::unit(4), tight_newton(), 2, std::move(pair));
+  PathPoint start = follower.make_point(sampled_orbit({{2 * pi, state}}, 4, 10, 4, parameters({0.0, -1e-6})));
+  REQUIRE(follower.start_at_fixed_parameter(start).converged());
+  Tests tests;
+  if (direction < 0.0) tests.push_back(std::make_unique<AngleTest>(condition, PointType::resonance_1));
+  const ContinuationSettings settings = branch_settings(shape, 2, 1e-3 * direction, 5e-3, 15);
+  KeepingSink sink;
+  ContinuationRun run(follower, defining, settings, std::move(tests), sink);
+  const BranchSummary summary = run.run(start);
+  CHECK((summary.reason == EndReason::curve_end) == (direction > 0.0));
+  CHECK((sink.points.size() == 2) == (direction > 0.0));
+  if (direction > 0.0) CHECK_THAT(summary.detail, Contains("neutral saddles") && Contains("1:1"));
+}
