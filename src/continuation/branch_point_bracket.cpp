@@ -12,7 +12,9 @@ namespace {
 /// step so close to the zero converges.
 constexpr double smallest_share = 0.1;
 constexpr double largest_share = 0.4;
-constexpr int most_rounds = 12;
+constexpr int most_rounds = 20;
+/// Rounds in a row in which the place moves more than before.
+constexpr int most_worse = 2;
 /// Share of the step that counts as one place for other functions that vanish there.
 constexpr double narrow_enough = 0.01;
 /// To find where the function has the sign that it brought into the step, after a zero at its start.
@@ -51,6 +53,7 @@ bool BranchPointBracket::narrow(const Evaluate& evaluate, PathPoint& trial, doub
   const double least = std::max({tolerance, reachable, reachable_share * whole});
   double share = smallest_share;
   double moved = std::numeric_limits<double>::infinity();
+  int worse = 0;
   Located best;
   for (int round = 0; round < most_rounds; ++round) {
     const double last = zero_;
@@ -60,14 +63,19 @@ bool BranchPointBracket::narrow(const Evaluate& evaluate, PathPoint& trial, doub
       best = {moved, zero_, low_, high_};
       put_zero(trial);
       if (moved <= tolerance && follower_.solves(trial.orbit)) break;
-    } else if (best.moved <= least) {
+      worse = 0;
+    } else if (best.moved <= tolerance || (best.moved <= least && ++worse == most_worse)) {
       break;
     }
-    const double distance = share * (high_.at - low_.at);
+    const double before = high_.at - low_.at;
+    const double distance = share * before;
     const double below = zero_ - distance;
     const double above = zero_ + distance;
-    const bool narrowed = try_at(below, evaluate, trial);
-    if (try_at(above, evaluate, trial) || narrowed) continue;
+    bool narrowed = try_at(below, evaluate, trial);
+    narrowed = try_at(above, evaluate, trial) || narrowed;
+    // Values over many decades are no polynomial.
+    if (narrowed && high_.at - low_.at > 0.5 * before) try_at(0.5 * (low_.at + high_.at), evaluate, trial);
+    if (narrowed) continue;
     if (share >= largest_share) break;
     share *= 2.0;
   }
