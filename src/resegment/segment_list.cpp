@@ -13,7 +13,6 @@ namespace tchat {
 
 namespace {
 
-
 std::vector<std::string_view> split(std::string_view text, char separator) {
   std::vector<std::string_view> parts;
   for (std::size_t begin = 0; begin <= text.size();) {
