@@ -46,7 +46,10 @@ int run_command(const std::function<int()>& command) {
   } catch (const tchat::ComputationError& error) {
     return report(error.what(), computation_failed);
   } catch (const std::bad_alloc&) {
-    return report("out of memory; use a smaller NTST, NCOL or number of segments", bad_input);
+    return report(
+        "out of memory; end other programs, raise the limit (ulimit -v), or use a smaller NTST, NCOL or number of "
+        "segments",
+        computation_failed);
   } catch (const std::exception& error) {
     if (std::ferror(stdout) != 0) return computation_failed;  // printing failed, and main says so
     return report(fmt::format("internal error: {}", error.what()), computation_failed);

@@ -26,13 +26,6 @@ struct OrbitArguments {
   int dimension = 0;
 };
 
-StartLabel read_label(const std::string& text) {
-  if (const auto number = parse_integer(text); number && *number >= 0) return {"", *number};
-  if (const auto typed = parse_typed_label(text)) return *typed;
-  throw UserError(
-      fmt::format("{} is no label; a number or a type with its count is needed, such as 5 or PD1", in_quotes(text)));
-}
-
 int print_orbit(const OrbitArguments& arguments) {
   const StartLabel label = read_label(arguments.label);
   const std::string path = resolve_solution_path(arguments.path);

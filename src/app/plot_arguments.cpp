@@ -7,9 +7,9 @@
 #include <array>
 #include <cctype>
 #include <filesystem>
-#include <fstream>
 
 #include "constants/constant_value.hpp"
+#include "constants/text_file.hpp"
 #include "constants/user_error.hpp"
 #include "plot/data_file.hpp"
 #include "plot/label_text.hpp"
@@ -48,9 +48,9 @@ std::string file_of(const std::string& word, bool label_follows) {
 }
 
 std::string first_line(const std::string& path) {
-  std::ifstream file(path);
+  TextLines file(path, "something to draw");
   std::string line;
-  std::getline(file, line);
+  file.next(line);
   return line;
 }
 

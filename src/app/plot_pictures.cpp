@@ -25,11 +25,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-StartLabel read_label(const std::string& word) {
-  if (const auto number = parse_integer(word)) return {"", *number};
-  return *parse_typed_label(word);  // only labels were taken for labels
-}
-
 bool has_all(const PlotItem& item) {
   return std::find(item.labels.begin(), item.labels.end(), "all") != item.labels.end();
 }

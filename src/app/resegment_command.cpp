@@ -17,7 +17,7 @@ namespace tchat {
 
 namespace {
 
-ResegmentKind kind_of(const std::string& text) {
+ResegmentKind resegment_kind(const std::string& text) {
   const std::map<std::string, ResegmentKind> kinds{{"grazing-curve", ResegmentKind::grazing_curve},
                                                    {"impacting", ResegmentKind::impacting},
                                                    {"signature", ResegmentKind::signature},
@@ -29,7 +29,7 @@ ResegmentKind kind_of(const std::string& text) {
 }
 
 int do_resegment(ResegmentRequest request, const std::string& kind, bool quiet) {
-  request.kind = kind_of(kind);
+  request.kind = resegment_kind(kind);
   std::ostringstream unseen;
   std::ostream& screen = quiet ? static_cast<std::ostream&>(unseen) : std::cout;
   print_warnings(std::cerr, resegment(request, screen));

@@ -10,8 +10,7 @@ namespace tchat {
 
 namespace {
 
-constexpr double tolerance = 1e-9;
-/// How close to parallel two gradients of a pinned start must be, and how close to zero h there.
+/// How close to parallel two gradients of a pinned start must be, and how close to zero h there (of its size).
 constexpr double structural_tolerance = 1e-6;
 
 using Vector = Eigen::VectorXd;
@@ -29,7 +28,8 @@ bool is_pinned_start(const HybridSystem& system, const Signature& signature, con
   const int before = (s + x.shape.segments - 1) % x.shape.segments;
   const IndexVector& v = signature[static_cast<std::size_t>(before)];
   const double* par = x.par.data();
-  if (std::abs(system.event(event, x.start(s), par)) > structural_tolerance) return false;
+  if (std::abs(system.event(event, x.start(s), par)) > structural_tolerance * event_scale(system, x, event))
+    return false;
   const int n = system.dimension();
   Vector g(n);
   Eigen::MatrixXd gx(n, n);
@@ -49,7 +49,7 @@ std::vector<Violation> inadmissibilities(const HybridSystem& system, const Signa
   for (int s = 0; s < m; ++s) {
     const auto index = static_cast<std::size_t>(s);
     const IndexVector& v = signature[index];
-    if (x.duration(s) < -tolerance * (1.0 + std::abs(x.period())))
+    if (x.duration(s) < -orbit_accuracy * std::abs(x.period()))
       result.push_back({Violation::negative_duration, s + 1, 0, 0.0, x.duration(s)});
 
     for (const int event : monitored[index]) {
@@ -59,7 +59,7 @@ std::vector<Violation> inadmissibilities(const HybridSystem& system, const Signa
         const double h = system.event(event, x.node(s, k), par);
         if (h < worst.value) worst.value = h, worst.tau = x.tau(k);
       }
-      if (worst.value < -tolerance * (1.0 + x.states.cwiseAbs().maxCoeff())) result.push_back(worst);
+      if (worst.value < -orbit_accuracy * event_scale(system, x, event)) result.push_back(worst);
     }
 
     Vector f(x.shape.dimension);

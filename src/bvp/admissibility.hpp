@@ -1,9 +1,9 @@
 /// Is a solution of the boundary value problem an orbit of the model? (Fig. 5.10)
 ///
-/// Checked with a tolerance of 1e-9, scaled: T_s >= 0; h >= 0 at the stored points of every event function monitored
-/// on a segment; h_x f <= 0 at every terminal point. Pinned ends are left out: the segment's own terminal event at its
-/// end, and a start on the event surface just left (h = 0 there, and h o g has a gradient parallel to that of the
-/// previous terminal event).
+/// Checked with the accuracy of orbits (orbit_accuracy.hpp), of the period, of the size of h and of |h_x| |f|: T_s >=
+/// 0; h >= 0 at the stored points of every event function monitored on a segment; h_x f <= 0 at every terminal point.
+/// Pinned ends are left out: the segment's own terminal event at its end, and a start on the event surface just left (h
+/// = 0 there, and h o g has a gradient parallel to that of the previous terminal event).
 #pragma once
 
 #include <string>

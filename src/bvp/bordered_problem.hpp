@@ -14,9 +14,8 @@
 #pragma once
 
 #include <memory>
-#include <vector>
-
 #include <string>
+#include <vector>
 
 #include "bvp/condensed_system.hpp"
 

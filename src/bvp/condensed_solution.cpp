@@ -27,34 +27,38 @@ void CondensedSystem::solve(const OrbitResidual& residual, std::span<const doubl
   for (int g = 0; g < globals_; ++g) dx.globals(g) = solution_[index(global_unknown(g))];
 }
 
+/// The right-hand sides of a piece's n condensed rows and its border rows.
+double* CondensedSystem::piece_rhs(int s, int first, int last) {
+  return last - first == 1 ? &interval_rhs_[index(block(s, first) * (interval_.rows() + border_) + interval_.pivots())]
+                           : &join_rhs_[index(block(s, halfway(first, last)) * (2 * n_ + border_) + n_)];
+}
+
 void CondensedSystem::condense_right_hand_side(const OrbitResidual& residual, int s) {
   const int rows = interval_.rows();
-  const int p = interval_.pivots();
   const double* collocation = &residual.collocation[index(block(s, 0) * rows)];
-  double* result = &segment_rhs_[index(s * (n_ + border_))];
   for (int j = 0; j < shape_.intervals; ++j, collocation += rows) {
     const std::ptrdiff_t b = block(s, j);
     double* r = &interval_rhs_[index(b * (rows + border_))];
     for (int i = 0; i < rows; ++i) r[i] = -collocation[i];
     std::fill_n(r + rows, border_, 0.0);
     interval_.forward(&interval_blocks_[index(b * (rows + border_) * interval_.width())], border_,
-                      &interval_swaps_[index(b * p)], r);
-    if (j == 0) {
-      std::copy_n(r + p, n_, result);
-      std::copy_n(r + rows, border_, result + n_);
-      continue;
-    }
-    double* chain = &chain_rhs_[index(b * (2 * n_ + border_))];
-    std::copy_n(result, n_, chain);
-    std::copy_n(r + p, n_, chain + n_);
-    for (int k = 0; k < border_; ++k) chain[2 * n_ + k] = result[n_ + k] + r[rows + k];
-    chain_.forward(&chain_blocks_[index(b * (2 * n_ + border_) * chain_.width())], border_,
-                   &chain_swaps_[index(b * n_)], chain);
-    std::copy_n(chain + n_, n_ + border_, result);
+                      &interval_swaps_[index(b * interval_.pivots())], r);
   }
+  for (const Join& at : joins_) {
+    const std::ptrdiff_t b = block(s, at.middle);
+    const double* left = piece_rhs(s, at.first, at.middle);
+    const double* right = piece_rhs(s, at.middle, at.last);
+    double* r = &join_rhs_[index(b * (2 * n_ + border_))];
+    std::copy_n(left, n_, r);
+    std::copy_n(right, n_, r + n_);
+    for (int k = 0; k < border_; ++k) r[2 * n_ + k] = left[n_ + k] + right[n_ + k];
+    join_.forward(&join_blocks_[index(b * (2 * n_ + border_) * join_.width())], border_, &join_swaps_[index(b * n_)],
+                  r);
+  }
+  std::copy_n(piece_rhs(s, 0, shape_.intervals), n_ + border_, &segment_rhs_[index(s * (n_ + border_))]);
 }
 
-/// From the ends of a segment back to its mesh nodes, right to left, and on to the interior nodes.
+/// From the ends of a segment back to its mesh nodes, joins in reverse, and on to the interior nodes.
 void CondensedSystem::expand_segment(int s, const double* ends, const double* globals, bool homogeneous,
                                      OrbitVector& dx) {
   const int c = shape_.collocation;
@@ -68,18 +72,19 @@ void CondensedSystem::expand_segment(int s, const double* ends, const double* gl
   std::copy_n(start, n_, node(0));
   std::copy_n(end, n_, node(shape_.nodes() - 1));
   double* local = local_.data();
-  double* chain_local = chain_local_.data();
-  for (int j = shape_.intervals - 1; j >= 0; --j) {
+  double* join_local = join_local_.data();
+  for (auto at = joins_.rbegin(); at != joins_.rend(); ++at) {
+    const std::ptrdiff_t b = block(s, at->middle);
+    std::copy_n(node(at->first * c), n_, join_local + n_);
+    std::copy_n(node(at->last * c), n_, join_local + 2 * n_);
+    join_local[3 * n_] = duration;
+    std::copy_n(globals, globals_, join_local + 3 * n_ + 1);
+    join_.backward(&join_blocks_[index(b * (2 * n_ + border_) * join_.width())],
+                   homogeneous ? zero_rhs_.data() : &join_rhs_[index(b * (2 * n_ + border_))], join_local);
+    std::copy_n(join_local, n_, node(at->middle * c));
+  }
+  for (int j = 0; j < shape_.intervals; ++j) {
     const std::ptrdiff_t b = block(s, j);
-    if (j > 0) {
-      std::copy_n(start, n_, chain_local + n_);
-      std::copy_n(node((j + 1) * c), n_, chain_local + 2 * n_);
-      chain_local[3 * n_] = duration;
-      std::copy_n(globals, globals_, chain_local + 3 * n_ + 1);
-      chain_.backward(&chain_blocks_[index(b * (2 * n_ + border_) * chain_.width())],
-                      homogeneous ? zero_rhs_.data() : &chain_rhs_[index(b * (2 * n_ + border_))], chain_local);
-      std::copy_n(chain_local, n_, node(j * c));
-    }
     std::copy_n(node(j * c), n_, local + p);
     std::copy_n(node((j + 1) * c), n_, local + p + n_);
     local[p + 2 * n_] = duration;
@@ -102,22 +107,23 @@ void CondensedSystem::extend(const double* small, OrbitVector& dx) {
 void CondensedSystem::extend_adjoint(const double* weights, std::vector<double>& collocation) {
   const int p = interval_.pivots();
   const int rows = interval_.rows();
-  double* chain = chain_rhs_.data();  // scratch: right-hand sides are no longer needed
+  // Right-hand sides are no longer needed: their places serve as scratch.
   for (int s = 0; s < shape_.segments; ++s) {
-    std::copy_n(weights + s * n_, n_, chain + n_);
-    for (int j = shape_.intervals - 1; j >= 0; --j) {
+    std::copy_n(weights + s * n_, n_, piece_rhs(s, 0, shape_.intervals));
+    for (auto at = joins_.rbegin(); at != joins_.rend(); ++at) {
+      const std::ptrdiff_t b = block(s, at->middle);
+      double* w = &join_rhs_[index(b * (2 * n_ + border_))];
+      std::fill_n(w, n_, 0.0);
+      join_.forward_transposed(&join_blocks_[index(b * (2 * n_ + border_) * join_.width())],
+                               &join_swaps_[index(b * n_)], w);
+      std::copy_n(w, n_, piece_rhs(s, at->first, at->middle));
+      std::copy_n(w + n_, n_, piece_rhs(s, at->middle, at->last));
+    }
+    for (int j = 0; j < shape_.intervals; ++j) {
       const std::ptrdiff_t b = block(s, j);
       double* own = &collocation[index(b * rows)];
-      std::fill_n(own, rows, 0.0);
-      if (j > 0) {
-        std::fill_n(chain, n_, 0.0);
-        chain_.forward_transposed(&chain_blocks_[index(b * (2 * n_ + border_) * chain_.width())],
-                                  &chain_swaps_[index(b * n_)], chain);
-        std::copy_n(chain + n_, n_, own + p);
-        std::copy_n(chain, n_, chain + n_);
-      } else {
-        std::copy_n(chain + n_, n_, own + p);
-      }
+      std::fill_n(own, p, 0.0);
+      std::copy_n(piece_rhs(s, j, j + 1), n_, own + p);
       interval_.forward_transposed(&interval_blocks_[index(b * (rows + border_) * interval_.width())],
                                    &interval_swaps_[index(b * p)], own);
     }
@@ -139,11 +145,11 @@ CondensedSystem::Determinant CondensedSystem::determinant() const {
   };
   const std::ptrdiff_t blocks = block(shape_.segments, 0);
   const int interval_size = (interval_.rows() + border_) * interval_.width();
-  const int chain_size = (chain_.rows() + border_) * chain_.width();
+  const int join_size = (join_.rows() + border_) * join_.width();
   for (std::ptrdiff_t b = 0; b < blocks; ++b) {
     multiply(interval_, &interval_blocks_[index(b * interval_size)], &interval_swaps_[index(b * interval_.pivots())]);
     if (b % shape_.intervals != 0)
-      multiply(chain_, &chain_blocks_[index(b * chain_size)], &chain_swaps_[index(b * chain_.pivots())]);
+      multiply(join_, &join_blocks_[index(b * join_size)], &join_swaps_[index(b * join_.pivots())]);
   }
   return {product.sign, product.log2_size};
 }

@@ -89,18 +89,19 @@ CondensedSystem::CondensedSystem(const DefiningSystem& system, const OrbitShape&
       border_(border_rows),
       rule_(shape.collocation),
       interval_(interval_kernel(n_, shape.collocation, scalars_)),
-      chain_(chain_kernel(n_, scalars_)),
+      join_(join_kernel(n_, scalars_)),
+      joins_(joins_of_halves(shape.intervals)),
       lu_(make_sparse()) {
   assert(shape.segments + globals_ == total_end_conditions(system) + border_rows);
   const std::ptrdiff_t blocks = block(shape.segments, 0);
   const int interval_rows = interval_.rows() + border_;
-  const int chain_rows = chain_.rows() + border_;
+  const int join_rows = join_.rows() + border_;
   interval_blocks_ = zeros(blocks * interval_rows * interval_.width());
   interval_swaps_.resize(index(blocks * interval_.pivots()));
-  chain_blocks_ = zeros(blocks * chain_rows * chain_.width());
-  chain_swaps_.resize(index(blocks * chain_.pivots()));
+  join_blocks_ = zeros(blocks * join_rows * join_.width());
+  join_swaps_.resize(index(blocks * join_.pivots()));
   interval_rhs_ = zeros(blocks * interval_rows);
-  chain_rhs_ = zeros(blocks * chain_rows);
+  join_rhs_ = zeros(blocks * join_rows);
   first_blocks_ = zeros(shape.segments * n_ * n_);
   last_blocks_ = first_blocks_;
   scalar_blocks_ = zeros(shape.segments * n_ * scalars_);
@@ -115,12 +116,28 @@ CondensedSystem::CondensedSystem(const DefiningSystem& system, const OrbitShape&
   fx_ = scaled_ = zeros(n_ * n_);
   fp_ = zeros(n_ * globals_);
   local_ = zeros(interval_.width());
-  chain_local_ = zeros(chain_.width());
+  join_local_ = zeros(join_.width());
   h_ = zeros(conditions);
   hx_ = zeros(conditions * n_);
   hp_ = zeros(conditions * globals_);
   zero_ = make_residual();
-  zero_rhs_ = zeros(std::max(interval_rows, chain_rows));
+  zero_rhs_ = zeros(std::max(interval_rows, join_rows));
+}
+
+/// Pieces before those that they are part of, in an order that goes on with what was made last.
+std::vector<CondensedSystem::Join> CondensedSystem::joins_of_halves(int intervals) {
+  std::vector<Join> result;
+  std::vector<Join> open{{0, halfway(0, intervals), intervals}};
+  while (!open.empty()) {  // a piece, its right half, its left half: the reverse of the order wanted
+    const Join at = open.back();
+    open.pop_back();
+    if (at.last - at.first < 2) continue;
+    result.push_back(at);
+    open.push_back({at.first, halfway(at.first, at.middle), at.middle});
+    open.push_back({at.middle, halfway(at.middle, at.last), at.last});
+  }
+  std::reverse(result.begin(), result.end());
+  return result;
 }
 
 SparseLu CondensedSystem::make_sparse() {
@@ -219,17 +236,9 @@ Linearization CondensedSystem::condense_segment(const Orbit& x, int s, std::span
     if (!interval_.eliminate(a, border_, &interval_swaps_[index(block(s, j) * interval_.pivots())]))
       return Linearization::singular;
   }
-  for (int j = 1; j < shape_.intervals; ++j)
-    if (!join(s, j)) return Linearization::singular;
-  const int p = interval_.pivots();
-  if (shape_.intervals == 1) {
-    keep_segment_blocks(s, &interval_blocks_[index(block(s, 0) * block_size)], interval_.width(), p, p + n_, p + 2 * n_,
-                        p, interval_.rows());
-  } else {
-    const int chain_size = (chain_.rows() + border_) * chain_.width();
-    keep_segment_blocks(s, &chain_blocks_[index(block(s, shape_.intervals - 1) * chain_size)], chain_.width(), n_,
-                        2 * n_, 3 * n_, n_, chain_.rows());
-  }
+  for (const Join& at : joins_)
+    if (!join(s, at)) return Linearization::singular;
+  keep_segment_blocks(s);
   return Linearization::ready;
 }
 
@@ -297,62 +306,57 @@ void CondensedSystem::fill_border(int s, int j, std::span<const OrbitVector> row
   }
 }
 
-/// Eliminates the mesh node between everything left of interval j and interval j:
-/// columns (middle | first | last | scalars), rows (what came before; interval j; border).
-bool CondensedSystem::join(int s, int j) {
-  const int wi = interval_.width();
-  const int wc = chain_.width();
-  const int p = interval_.pivots();
-  const int interval_size = (interval_.rows() + border_) * wi;
-  const int chain_size = (chain_.rows() + border_) * wc;
-  double* target = &chain_blocks_[index(block(s, j) * chain_size)];
-  std::fill(target, target + chain_size, 0.0);
+CondensedSystem::Piece CondensedSystem::piece(int s, int first, int last) const {
+  const bool one_interval = last - first == 1;
+  const BlockKernel& kernel = one_interval ? interval_ : join_;
+  const std::ptrdiff_t size = (kernel.rows() + border_) * kernel.width();
+  const double* block = one_interval ? &interval_blocks_[index(this->block(s, first) * size)]
+                                     : &join_blocks_[index(this->block(s, halfway(first, last)) * size)];
+  const int p = kernel.pivots();
+  return {block + p * kernel.width() + p, block + kernel.rows() * kernel.width() + p, kernel.width()};
+}
 
-  const double* own = &interval_blocks_[index(block(s, j) * interval_size)];
-  const auto put_own = [&](int from_row, int to_row) {
-    const double* from = own + from_row * wi + p;
-    double* to = target + to_row * wc;
-    for (int a = 0; a < n_; ++a) to[a] += from[a];
-    for (int a = 0; a < n_ + scalars_; ++a) to[2 * n_ + a] += from[n_ + a];
-  };
-  const bool opening = j == 1;
-  const double* before = opening ? own - interval_size : target - chain_size;
-  const auto put_before = [&](int from_row, int to_row) {
-    double* to = target + to_row * wc;
-    const double* from = before + from_row * (opening ? wi : wc) + (opening ? p : n_);  // (first | last | scalars)
+/// Columns (middle | first | last | scalars), rows (left piece; right piece; border).
+bool CondensedSystem::join(int s, const Join& at) {
+  const int width = join_.width();
+  const int size = (join_.rows() + border_) * width;
+  double* target = &join_blocks_[index(block(s, at.middle) * size)];
+  std::fill(target, target + size, 0.0);
+  const auto put_left = [&](const double* from, double* to) {
     for (int a = 0; a < n_; ++a) {
       to[a] += from[n_ + a];
       to[n_ + a] += from[a];
     }
     for (int a = 0; a < scalars_; ++a) to[3 * n_ + a] += from[2 * n_ + a];
   };
+  const auto put_right = [&](const double* from, double* to) {
+    for (int a = 0; a < n_; ++a) to[a] += from[a];
+    for (int a = 0; a < n_ + scalars_; ++a) to[2 * n_ + a] += from[n_ + a];
+  };
+  const Piece left = piece(s, at.first, at.middle);
+  const Piece right = piece(s, at.middle, at.last);
   for (int a = 0; a < n_; ++a) {
-    put_before((opening ? p : n_) + a, a);
-    put_own(p + a, n_ + a);
+    put_left(left.rows + a * left.width, target + a * width);
+    put_right(right.rows + a * right.width, target + (n_ + a) * width);
   }
   for (int r = 0; r < border_; ++r) {
-    put_before((opening ? interval_.rows() : chain_.rows()) + r, chain_.rows() + r);
-    put_own(interval_.rows() + r, chain_.rows() + r);
+    put_left(left.border + r * left.width, target + (join_.rows() + r) * width);
+    put_right(right.border + r * right.width, target + (join_.rows() + r) * width);
   }
-  return chain_.eliminate(target, border_, &chain_swaps_[index(block(s, j) * chain_.pivots())]);
+  return join_.eliminate(target, border_, &join_swaps_[index(block(s, at.middle) * join_.pivots())]);
 }
 
-void CondensedSystem::keep_segment_blocks(int s, const double* block, int width, int first, int last, int scalars,
-                                          int row, int border_row) {
+void CondensedSystem::keep_segment_blocks(int s) {
+  const Piece whole = piece(s, 0, shape_.intervals);
   for (int a = 0; a < n_; ++a) {
-    const double* from = block + (row + a) * width;
-    std::copy_n(from + first, n_, &first_blocks_[index((s * n_ + a) * n_)]);
-    std::copy_n(from + last, n_, &last_blocks_[index((s * n_ + a) * n_)]);
-    std::copy_n(from + scalars, scalars_, &scalar_blocks_[index((s * n_ + a) * scalars_)]);
+    const double* from = whole.rows + a * whole.width;
+    std::copy_n(from, n_, &first_blocks_[index((s * n_ + a) * n_)]);
+    std::copy_n(from + n_, n_, &last_blocks_[index((s * n_ + a) * n_)]);
+    std::copy_n(from + 2 * n_, scalars_, &scalar_blocks_[index((s * n_ + a) * scalars_)]);
   }
   const int length = 2 * n_ + scalars_;
-  for (int r = 0; r < border_; ++r) {
-    const double* from = block + (border_row + r) * width;
-    double* to = &border_blocks_[index((s * border_ + r) * length)];
-    std::copy_n(from + first, n_, to);
-    std::copy_n(from + last, n_, to + n_);
-    std::copy_n(from + scalars, scalars_, to + 2 * n_);
-  }
+  for (int r = 0; r < border_; ++r)
+    std::copy_n(whole.border + r * whole.width, length, &border_blocks_[index((s * border_ + r) * length)]);
 }
 
 /// The matrix that UMFPACK sees, in the order of make_sparse().

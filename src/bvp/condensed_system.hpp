@@ -4,8 +4,14 @@
 /// b rows, reads J dx = -F. It is reduced in two sweeps that touch every mesh interval once:
 ///   1. interval: the c - 1 interior nodes are eliminated from the c n collocation rows; n rows in (left, right)
 ///   remain;
-///   2. chain: mesh nodes are eliminated from left to right with pivoting, until n rows per segment remain,
+///   2. joins: neighbouring pieces are joined by elimination of the mesh node between them with pivoting, halves of a
+///   segment from their halves, until n rows per segment remain,
 ///          A_s x_s(0) + C_s x_s(1) + B_s (T_s, p) = r_s                                   (5.48-5.49 with C_s kept)
+///   The order matters. From left to right the same elimination becomes a product of transfer matrices wherever the
+///   flow grows little per interval: every pivot is then an entry of the longer piece, rounding grows like the flow
+///   over the whole segment, up to 2^(n N), and decaying modes are lost [S. J. Wright, SIAM J. Sci. Comput. 14 (1993)
+///   231]. Pieces of equal length show their growth to the pivot search; rounding grows by 2^n for each of the log2 N
+///   levels at most, by little in practice;
 /// and UMFPACK solves what is left, 2 n m + m + q unknowns that couple only neighbouring segments. Work and memory
 /// are linear in m and N. All arrays are allocated when the object is made.
 ///
@@ -105,6 +111,21 @@ class CondensedSystem {
   int duration_unknown(int s) const { return start_unknown(s) + 2 * n_; }
   int global_unknown(int g) const { return shape_.segments * (2 * n_ + 1) + g; }
 
+  /// The elimination of mesh node `middle` joins intervals first..middle-1 to intervals middle..last-1; its block is
+  /// the one of interval `middle`.
+  struct Join {
+    int first, middle, last;
+  };
+  /// The n condensed rows and the border rows of some neighbouring intervals: columns (first node | last node |
+  /// scalars) begin at `rows` and `border`.
+  struct Piece {
+    const double* rows;
+    const double* border;
+    int width;
+  };
+
+  static std::vector<Join> joins_of_halves(int intervals);
+  static int halfway(int first, int last) { return first + (last - first) / 2; }
   SparseLu make_sparse();
   template <class Dimension>
   void interpolate(Dimension n, const Orbit& x, int s, int j, int gauss_point);
@@ -113,10 +134,11 @@ class CondensedSystem {
   Linearization condense_segment(const Orbit& x, int s, std::span<const OrbitVector> rows, double* collocation);
   bool fill_interval(const Orbit& x, int s, int j, double* block, double* collocation);
   void fill_border(int s, int j, std::span<const OrbitVector> rows, double* block) const;
-  bool join(int s, int j);
-  void keep_segment_blocks(int s, const double* block, int width, int first, int last, int scalars, int row,
-                           int border_row);
+  Piece piece(int s, int first, int last) const;
+  bool join(int s, const Join& at);
+  void keep_segment_blocks(int s);
   bool assemble(const Orbit& x, std::span<const OrbitVector> rows, OrbitResidual& residual);
+  double* piece_rhs(int s, int first, int last);
   void condense_right_hand_side(const OrbitResidual& residual, int s);
   void expand_segment(int s, const double* ends, const double* globals, bool homogeneous, OrbitVector& dx);
 
@@ -128,14 +150,15 @@ class CondensedSystem {
   int border_;   // b
   CollocationRule rule_;
   BlockKernel interval_;
-  BlockKernel chain_;
+  BlockKernel join_;
+  std::vector<Join> joins_;  // each after those that make its two pieces
 
   std::vector<double> interval_blocks_;  // per interval (c n + b) x width
   std::vector<int> interval_swaps_;
-  std::vector<double> chain_blocks_;  // per interval (2 n + b) x width
-  std::vector<int> chain_swaps_;
+  std::vector<double> join_blocks_;  // per interval (2 n + b) x width
+  std::vector<int> join_swaps_;
   std::vector<double> interval_rhs_;
-  std::vector<double> chain_rhs_;
+  std::vector<double> join_rhs_;
   std::vector<double> first_blocks_;   // m n x n
   std::vector<double> last_blocks_;    // m n x n
   std::vector<double> scalar_blocks_;  // m n x scalars
@@ -150,7 +173,7 @@ class CondensedSystem {
   std::vector<double> solution_;
 
   // scratch of one collocation point or one end of a segment
-  std::vector<double> x_, slope_, f_, fx_, scaled_, fp_, local_, chain_local_, h_, hx_, hp_;
+  std::vector<double> x_, slope_, f_, fx_, scaled_, fp_, local_, join_local_, h_, hx_, hp_;
   OrbitResidual zero_;
   std::vector<double> zero_rhs_;  // of one block
 };

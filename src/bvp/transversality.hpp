@@ -5,14 +5,16 @@
 #include <cmath>
 
 #include "bvp/defining_system.hpp"
-#include "bvp/orbit.hpp"
+#include "bvp/orbit_accuracy.hpp"
 
 namespace tchat {
 
-/// |h_x f| / (|h_x| |f|) up to this is zero: grazing, or a section that the orbit touches. Orbits are known to about
-/// this much: Newton's method ends with errors of 1e-12 to 1e-10, the discretisation adds its own. The sign of less
-/// says nothing, nor does what has been divided by it.
-inline constexpr double no_transversality = 1e-9;
+/// |h_x f| / (|h_x| |f|) up to this is zero: grazing, or a section that the orbit touches. The sign of less says
+/// nothing, nor does what has been divided by it.
+inline constexpr double no_transversality = orbit_accuracy;
+/// At a contact that was located as a zero of h, which is quadratic there, h_x f is known to the root of that (EPSS):
+/// up to this share of |h_x| |f| the contact is tangent, more is a crossing.
+inline constexpr double tangent_contact = 1e-5;
 
 struct Crossing {
   double rate = 0.0;   ///< h_x f, the velocity of an impact when h is a distance

@@ -6,12 +6,14 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <map>
+#include <optional>
+#include <utility>
 
 #include "constants/keyword_form.hpp"
 #include "constants/positional_form.hpp"
 #include "constants/settings_check.hpp"
+#include "constants/text_file.hpp"
 #include "constants/user_error.hpp"
 
 namespace tchat {
@@ -30,16 +32,11 @@ std::string file_contents(const std::string& path) {
     throw UserError(fmt::format("{}: no such constants file; give its NAME or path with -c", path));
   if (std::filesystem::is_directory(status))
     throw UserError(fmt::format("{}: is a directory; give a constants file, for example {}/gc.NAME", path, path));
-  errno = 0;
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw UserError(fmt::format("{}: cannot be read: {}; check its permissions", path, std::strerror(errno)));
-  std::string text(longest_file + 1, '\0');
-  file.read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (file.bad()) throw UserError(fmt::format("{}: reading fails: {}", path, std::strerror(errno)));
-  text.resize(static_cast<std::size_t>(file.gcount()));
-  if (text.size() > longest_file)
+  std::optional<std::string> text = read_text_if_there(path, "constants", longest_file + 1);
+  if (!text) throw UserError(fmt::format("{}: cannot be read: {}; check its permissions", path, std::strerror(errno)));
+  if (text->size() > longest_file)
     throw UserError(fmt::format("{}: longer than {} bytes, no constants file; {}", path, longest_file, two_forms));
-  return text;
+  return *std::move(text);
 }
 
 /// Newlines for CRLF and CR, no byte order mark.

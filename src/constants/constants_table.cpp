@@ -133,12 +133,6 @@ std::vector<Constant> make_table() {
   };
 }
 
-std::string upper(std::string_view word) {
-  std::string result(word);
-  for (char& c : result) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
-  return result;
-}
-
 }  // namespace
 
 bool Limits::contain(double value) const {

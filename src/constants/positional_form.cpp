@@ -9,7 +9,7 @@ namespace tchat {
 
 namespace {
 
-bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\f' || c == '\v'; }
+bool is_separator(char c) { return c == ' ' || c == '\t' || c == '\f' || c == '\v'; }
 
 /// Hands out the values of records one by one.
 class RecordReader {
@@ -82,7 +82,7 @@ class RecordReader {
 
   void skip_separators(const Constant& constant, const std::string& name) {
     while (true) {
-      while (!line_.empty() && is_blank(line_[0])) line_.remove_prefix(1);
+      while (!line_.empty() && is_separator(line_[0])) line_.remove_prefix(1);
       if (line_.empty()) {
         if (!next_line()) refuse(constant, name, place(), "the end of the file");
       } else if (line_[0] == ',') {

@@ -4,18 +4,21 @@
 #include <stdexcept>
 #include <string>
 
+#include "constants/printable.hpp"
+
 namespace tchat {
 
-/// what() is the whole message: file and line where there is one, what was found, what is allowed, the cure.
+/// what() is the whole message: file and line where there is one, what was found, what is allowed, the cure. Printable:
+/// words of files may hold any byte, and a zero byte would end the message.
 class UserError : public std::runtime_error {
  public:
-  using std::runtime_error::runtime_error;
+  explicit UserError(const std::string& message) : std::runtime_error(printable(message)) {}
 };
 
 /// The input was good but the computation failed (no convergence at the first point, disk full); exit status 1.
 class ComputationError : public std::runtime_error {
  public:
-  using std::runtime_error::runtime_error;
+  explicit ComputationError(const std::string& message) : std::runtime_error(printable(message)) {}
 };
 
 }  // namespace tchat

@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
+#include "bvp/orbit_accuracy.hpp"
 #include "continuation/solution_measure.hpp"
 
 namespace tchat {
@@ -20,7 +22,9 @@ class BoundTest : public TestFunction {
 
   std::string name() const override { return fmt::format("{} - {}", quantity_, keyword_); }
   std::optional<double> value(const TestedPoint& point) const override { return quantity(point) - bound_; }
-  double zero_level(const TestedPoint&) const override { return 1e-9 * (1.0 + std::abs(bound_)); }
+  double zero_level(const TestedPoint& point) const override {
+    return orbit_accuracy * std::max(std::abs(bound_), std::abs(quantity(point)));
+  }
   SpecialPoint classify(const TestedPoint&, bool) const override {
     return {PointType::end, {}, true, fmt::format("{} = {:.10g}, the bound {}", quantity_, bound_, keyword_)};
   }

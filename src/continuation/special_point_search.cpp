@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "bvp/critical_multiplier.hpp"
 #include "bvp/transversality.hpp"
 #include "continuation/value_trend.hpp"
 #include "special_points/bifurcation_tests.hpp"
@@ -29,6 +30,19 @@ bool is_the_same(const SpecialPoint& special, const SpecialPoint& other) {
   if (special.kind.kind == velocity && other.kind.kind == velocity) return special.kind.segment == other.kind.segment;
   return special.type == PointType::branch_point && other.kind.kind == UserPointKind::grazing_codimension_two &&
          other.kind.index == 1;
+}
+
+/// On a curve of folds or period doublings one multiplier is known by the curve's own condition, also where the curve
+/// ends on the grazing curve.
+void put_critical(FloquetMultipliers& multipliers, int critical) {
+  constexpr double accuracy = 1e-3;
+  const bool listed = std::any_of(multipliers.values.begin(), multipliers.values.end(), [&](const auto& mu) {
+    return std::abs(mu - static_cast<double>(critical)) < accuracy;
+  });
+  if (multipliers.undetermined == 0 || listed) return;
+  // Sorted: the one closest to 1 first, then by the distance to the unit circle.
+  multipliers.values.insert(multipliers.values.begin() + (critical < 0 ? 1 : 0), critical);
+  --multipliers.undetermined;
 }
 
 /// What vanishes besides the label's own function.
@@ -75,7 +89,11 @@ std::vector<std::string> SpecialPointSearch::details(const PathPoint& at) const 
 }
 
 void SpecialPointSearch::evaluate(const PathPoint& at) {
-  if (settings_.multipliers) data_.multipliers = floquet_.compute(follower_.condensed(), at.orbit);
+  if (settings_.multipliers) {
+    data_.multipliers = floquet_.compute(follower_.condensed(), at.orbit);
+    if (const auto* critical = dynamic_cast<const CriticalMultiplier*>(follower_.condition()))
+      put_critical(data_.multipliers, critical->multiplier());
+  }
   for (int s = 0; s < system_.segments(); ++s)
     data_.transversalities[static_cast<std::size_t>(s)] = crossing_at_end(system_, at.orbit, s).transversality();
   data_.singular_distance = follower_.condensed().signed_distance();
@@ -346,6 +364,7 @@ SpecialPointSearch::Zero SpecialPointSearch::locate(std::size_t test, const Path
   const auto has_sign = [&] { return value && data_.signs[test] == signs_[test]; };
   SignChange bracket{0.0, ds, 0.0, end_value};
   bool arrived = arrive(bracket.low);
+  const bool genuine_at_start = arrived && tests_[test]->is_genuine(tested(here));
   while (arrived && !has_sign() && bracket.length() > settings_.tolerance) {
     const double middle = 0.5 * (bracket.low + bracket.high);
     arrived = arrive(middle);
@@ -355,7 +374,7 @@ SpecialPointSearch::Zero SpecialPointSearch::locate(std::size_t test, const Path
       bracket.low = middle;
   }
   if (!arrived) return {test, 0.0, Search::failed};
-  if (!has_sign()) return {test, bracket.high, zero_at_start(test)};
+  if (!has_sign()) return {test, bracket.high, genuine_at_start ? zero_at_start(test) : Search::no_special_point};
   bracket.low_value = *value;
   double least = std::numeric_limits<double>::infinity();
   bool genuine = true;

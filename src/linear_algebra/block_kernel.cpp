@@ -33,7 +33,8 @@ void BlockKernel::use() {
   };
 }
 
-/// Interval blocks of dimension N with C collocation points for one or two free parameters, and (C = 0) chain blocks.
+/// Interval blocks of dimension N with C collocation points for one or two free parameters, and (C = 0) the blocks of
+/// joins.
 template <int N, int C>
 bool BlockKernel::try_sizes() {
   constexpr int rows = C == 0 ? 2 * N : C * N;
@@ -58,6 +59,6 @@ BlockKernel::BlockKernel(int rows, int pivots, int width) : rows_(rows), pivots_
 
 BlockKernel interval_kernel(int n, int c, int scalars) { return {c * n, (c - 1) * n, padded((c + 1) * n + scalars)}; }
 
-BlockKernel chain_kernel(int n, int scalars) { return {2 * n, n, padded(3 * n + scalars)}; }
+BlockKernel join_kernel(int n, int scalars) { return {2 * n, n, padded(3 * n + scalars)}; }
 
 }  // namespace tchat

@@ -42,6 +42,6 @@ class BlockKernel {
 BlockKernel interval_kernel(int n, int c, int scalars);
 
 /// The kernel that joins two neighbouring condensed blocks: 2n rows, columns (middle | first | last | scalars).
-BlockKernel chain_kernel(int n, int scalars);
+BlockKernel join_kernel(int n, int scalars);
 
 }  // namespace tchat

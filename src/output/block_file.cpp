@@ -10,6 +10,7 @@
 
 #include "constants/user_error.hpp"
 #include "output/block_write.hpp"
+#include "output/disk_sync.hpp"
 
 namespace tchat {
 
@@ -50,6 +51,10 @@ void BlockFile::write(std::string_view block) {
 void BlockFile::write_unread(std::string_view block) {
   const BlockOutcome outcome = append_block(descriptor_, block);
   if (outcome.error != 0) fail("cannot be written", outcome.error);
+}
+
+void BlockFile::sync() {
+  if (is_open()) sync_file(descriptor_, path_);
 }
 
 void BlockFile::close() {

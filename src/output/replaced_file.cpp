@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "output/disk_sync.hpp"
 #include "output/writable_file.hpp"
 
 namespace tchat {
@@ -15,13 +16,19 @@ std::string checked(std::string path) {
 
 }  // namespace
 
-ReplacedFile::ReplacedFile(std::string path) : path_(checked(std::move(path))), file_(path_) {}
+ReplacedFile::ReplacedFile(std::string path) : path_(checked(std::move(path))), file_(path_) {
+  remove_abandoned({path_ + "~"});
+}
 
 void ReplacedFile::finish() {
   file_.close();
   std::error_code error;
-  if (std::filesystem::exists(path_, error)) keep_as(path_, path_ + "~");
+  if (std::filesystem::exists(path_, error)) {
+    keep_as(path_, path_ + "~");
+    sync_folder_of(path_);
+  }
   file_.put_in_place();
+  sync_folder_of(path_);
 }
 
 }  // namespace tchat

@@ -7,14 +7,15 @@
 #include <utility>
 #include <vector>
 
+#include "constants/text_file.hpp"
 #include "constants/user_error.hpp"
 #include "output/diagnostics_file.hpp"
+#include "output/disk_sync.hpp"
 #include "output/output_lock.hpp"
 #include "output/temporary_file.hpp"
 #include "output/writable_file.hpp"
 #include "start/fortran_number.hpp"
 #include "start/solution_file_reader.hpp"
-#include "start/text_file.hpp"
 
 namespace tchat {
 
@@ -75,11 +76,6 @@ void mend_solutions(const std::string& path) {
   if (complete > 0 && text[complete - 1] != '\n') BlockFile(path).write("\n");
 }
 
-bool exists(const std::string& path) {
-  std::error_code error;
-  return fs::exists(path, error);
-}
-
 }  // namespace
 
 RunFiles::RunFiles(std::string name, Mode mode) : name_(std::move(name)), mode_(mode) {}
@@ -138,9 +134,14 @@ void RunFiles::mend_existing() const {
 
 void RunFiles::finish() {
   if (!is_open()) return;
+  // The closing line says that all is there: on the disk it is the last one to come.
+  points_.sync();
+  solutions_.sync();
+  sync_folder_of(name_);
+  diagnostics_.write(format_end_of_run());
+  diagnostics_.sync();
   points_.close();
   solutions_.close();
-  diagnostics_.write(format_end_of_run());
   diagnostics_.close();
   lock_.reset();
 }

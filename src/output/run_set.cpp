@@ -4,14 +4,14 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <optional>
 #include <vector>
 
 #include "constants/constant_value.hpp"
+#include "constants/text_file.hpp"
 #include "constants/user_error.hpp"
 #include "output/diagnostics_file.hpp"
+#include "output/disk_sync.hpp"
 #include "output/output_lock.hpp"
 #include "output/temporary_file.hpp"
 #include "output/writable_file.hpp"
@@ -32,16 +32,11 @@ struct PointKey {
   bool operator==(const PointKey&) const = default;
 };
 
-bool exists(const std::string& path) {
-  std::error_code error;
-  return fs::exists(path, error);
-}
-
 /// BR, PT, LAB of the points of a p-file, a cut last line left out; nothing when it is no p-file.
 std::optional<std::vector<PointKey>> points_of(const std::string& path) {
   std::vector<PointKey> points;
-  std::ifstream in(path, std::ios::binary);
-  for (std::string line; std::getline(in, line) && !in.eof();) {
+  TextLines in(path, "points of branches");
+  for (std::string line; in.next(line) && !in.ended_within_line();) {
     const auto words = split_words(line);
     if (words.empty() || words[0] == "0") continue;
     if (words.size() < 5) return std::nullopt;
@@ -54,8 +49,7 @@ std::optional<std::vector<PointKey>> points_of(const std::string& path) {
 
 /// A d-file up to its last closing line, that line included; nothing when it closes no run.
 std::optional<std::string> closed_part(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  const std::string text((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+  const std::string text = read_text_if_there(path, "diagnostics of a run").value_or("");
   for (std::size_t end = text.size(); end > 0;) {
     const std::size_t newline = text.rfind('\n', end - 1);
     if (newline == std::string::npos) return std::nullopt;
@@ -105,6 +99,8 @@ void keep_run_set(const std::string& name) {
     suffix = "~~";
   }
   std::error_code error;
+  // A set that comes from elsewhere need not be on the disk yet; the one whose place it takes is.
+  for (const char letter : {'p', 'q', 'r', 'd'}) sync_file(output_path(letter, name));
   if (exists(output_path('d', name))) fs::remove(output_path('d', name) + suffix, error);
   for (const char letter : {'p', 'q', 'r', 'd'}) {
     const std::string path = output_path(letter, name);
@@ -114,6 +110,7 @@ void keep_run_set(const std::string& name) {
       fs::remove(path + suffix, error);
     if (error) throw ComputationError(fmt::format("{}{}: cannot be replaced ({})", path, suffix, error.message()));
   }
+  sync_folder_of(name);  // before anything takes the first names
 }
 
 void replace_solution_file(const std::string& name, std::string_view solutions) {
@@ -125,6 +122,7 @@ void replace_solution_file(const std::string& name, std::string_view solutions) 
   file.close();
   keep_run_set(name);
   file.put_in_place();
+  sync_folder_of(name);
 }
 
 }  // namespace tchat

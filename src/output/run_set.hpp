@@ -2,7 +2,9 @@
 ///
 /// At every instant, whatever is killed, a complete set that there was is complete as p.O, q.O, d.O or as p.O~, q.O~,
 /// d.O~: the old set gets its second names while it still stands, its d-file last, and only then are its files replaced
-/// one by one, the d-file first. A set whose d-file does not close a run is never taken for a complete one.
+/// one by one, the d-file first. A set whose d-file does not close a run is never taken for a complete one. The same
+/// holds when the power fails: a set is on the disk before its d-file closes it, and its second names are there before
+/// the first ones go.
 #pragma once
 
 #include <string>

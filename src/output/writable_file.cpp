@@ -30,6 +30,11 @@ void check_folder(const std::string& path) {
 
 }  // namespace
 
+bool exists(const std::string& path) {
+  std::error_code error;
+  return fs::exists(path, error);
+}
+
 void require_writable(const std::string& path) {
   check_folder(path);
   std::error_code error;

@@ -4,14 +4,13 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <sstream>
 
 #include "constants/constant_value.hpp"
+#include "constants/text_file.hpp"
 #include "constants/user_error.hpp"
 #include "start/fortran_number.hpp"
 #include "start/point_file_reader.hpp"
-#include "start/text_file.hpp"
 
 namespace tchat {
 
@@ -33,8 +32,8 @@ bool is_comment(const std::string& line) {
 }  // namespace
 
 bool looks_like_data(const std::string& path) {
-  std::ifstream file(path);
-  for (std::string line; std::getline(file, line);)
+  TextLines file(path, "something to draw");
+  for (std::string line; file.next(line);)
     if (!is_comment(line)) return is_row(line);
   return false;
 }

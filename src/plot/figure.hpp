@@ -4,6 +4,7 @@
 /// paper by layout and label_placement; how gnuplot is told by gnuplot_script.
 #pragma once
 
+#include <cmath>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,6 +17,8 @@ struct PicturePoint {
   double x = 0.0;
   double y = 0.0;
 };
+
+inline bool is_finite(const PicturePoint& p) { return std::isfinite(p.x) && std::isfinite(p.y); }
 
 enum class Dash { solid, dashed, dash_dot, dotted, fine_dotted };
 

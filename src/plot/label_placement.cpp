@@ -30,8 +30,6 @@ struct Candidate {
   double cost = 0.0;  // without other labels
 };
 
-bool is_finite(const PicturePoint& p) { return std::isfinite(p.x) && std::isfinite(p.y); }
-
 Box box_around(const PicturePoint& centre, double width, double height) {
   return {centre.x - 0.5 * width, centre.x + 0.5 * width, centre.y - 0.5 * height, centre.y + 0.5 * height};
 }

@@ -5,9 +5,9 @@
 #include <cctype>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <memory>
 
+#include "constants/text_file.hpp"
 #include "constants/user_error.hpp"
 #include "output/temporary_file.hpp"
 #include "plot/gnuplot.hpp"
@@ -37,9 +37,7 @@ void write_text(const std::string& path, const std::string& text) {
 
 /// A PDF says when it was made: digits of these dates become a fixed day, so that lengths stay.
 void remove_dates(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::string text((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
-  in.close();
+  std::string text = read_text_if_there(path, "a picture").value_or("");
   for (const std::string key : {"/CreationDate", "/ModDate"}) {
     const std::size_t at = text.find(key);
     if (at == std::string::npos) continue;

@@ -11,8 +11,6 @@ constexpr double fine_enough = 0.008;  // parts of the picture
 constexpr int most_parts = 12;
 constexpr double corner_cosine = 0.5;  // turns by more than 60 degrees are corners
 
-bool is_finite(const PicturePoint& p) { return std::isfinite(p.x) && std::isfinite(p.y); }
-
 class SmoothLine {
  public:
   SmoothLine(const std::vector<PicturePoint>& points, const PicturePoint& scale) : points_(points), scale_(scale) {}

@@ -3,13 +3,12 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <fstream>
 #include <sstream>
 
 #include "constants/constant_value.hpp"
+#include "constants/text_file.hpp"
 #include "constants/user_error.hpp"
 #include "start/fortran_number.hpp"
-#include "start/text_file.hpp"
 
 namespace tchat {
 
@@ -50,10 +49,9 @@ TraceSegment segment_of(const Rows& rows, Eigen::Index n) {
 }  // namespace
 
 bool looks_like_trajectory(const std::string& path) {
-  std::ifstream file(path);
+  TextLines file(path, "something to draw");
   std::string heading, columns;
-  return std::getline(file, heading) && std::getline(file, columns) && columns.starts_with("#segment") &&
-         !columns.ends_with(" what");
+  return file.next(heading) && file.next(columns) && columns.starts_with("#segment") && !columns.ends_with(" what");
 }
 
 TrajectoryFile read_trajectory_file(const std::string& path) {

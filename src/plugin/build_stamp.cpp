@@ -10,6 +10,8 @@
 #include <sstream>
 #include <string_view>
 
+#include "constants/text_file.hpp"
+
 namespace tchat {
 
 namespace {
@@ -32,11 +34,6 @@ std::string read_rest(std::ifstream& in) {
   std::ostringstream text;
   text << in.rdbuf();  // an error while reading ends it
   return text.str();
-}
-
-std::string read_file(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  return read_rest(in);
 }
 
 /// The last bytes of a file, at most longest_stamp of them.
@@ -74,15 +71,15 @@ std::string hash_files(const std::vector<BuildInput>& files, const BuildPlaces& 
   std::uint64_t hash = hash_start;
   for (const BuildInput& input : files) {
     const std::string file = input.found_from(places);
-    const bool readable = static_cast<bool>(std::ifstream(file));
-    hash = hash_bytes(readable ? "+" : "-", hash_bytes(input.path, hash));
-    hash = hash_bytes(read_file(file), hash);
+    const std::optional<std::string> text = read_text_if_there(file, "source of the plugin");
+    hash = hash_bytes(text ? "+" : "-", hash_bytes(input.path, hash));
+    hash = hash_bytes(text.value_or(""), hash);
   }
   return fmt::format("{:016x}", hash);
 }
 
 std::vector<std::string> read_dependencies(const std::string& path) {
-  const std::string text = read_file(path);
+  const std::string text = read_text_if_there(path, "dependencies of the plugin").value_or("");
   std::vector<std::string> files;
   std::string word;
   const auto end_word = [&] {

@@ -169,8 +169,8 @@ void register_exit_handlers() {
 }  // namespace
 
 ExitGuard::ExitGuard(const std::string& plugin) {
+  Watch& state = watch();  // before the handlers that use it: there may be no memory for it
   register_exit_handlers();
-  Watch& state = watch();
   if (state.plugins.empty()) install_signal_handlers();
   name_ = state.plugins.insert(state.plugins.end(), plugin.empty() ? "(unnamed)" : plugin);
   state.plugin = name_->c_str();

@@ -4,9 +4,10 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <optional>
 #include <string_view>
+
+#include "constants/text_file.hpp"
 
 namespace tchat {
 
@@ -46,8 +47,8 @@ FortranFiles fortran_files(const std::string& source, const std::vector<std::str
   files.own_header = fs::path(source).stem().string() + ".h";
   for (std::size_t k = 0; k < files.found.size(); ++k) {  // the list grows while it is read
     const fs::path folder = fs::path(files.found[k]).parent_path();
-    std::ifstream in(files.found[k]);
-    for (std::string line; std::getline(in, line);) {
+    TextLines in(files.found[k], "source of the plugin");
+    for (std::string line; in.next(line);) {
       const std::optional<std::string> file = included_file(line);
       if (!file) continue;
       const std::optional<std::string> path = locate(*file, folder, folders);

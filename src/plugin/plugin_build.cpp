@@ -15,6 +15,7 @@
 #include <fstream>
 #include <optional>
 
+#include "constants/text_file.hpp"
 #include "constants/user_error.hpp"
 #include "plugin/build_stamp.hpp"
 #include "plugin/file_lock.hpp"
@@ -49,29 +50,38 @@ bool is_file(const fs::path& path) {
   return fs::is_regular_file(path, failed);
 }
 
-/// A file that is removed again unless it was renamed away.
-class TemporaryFile {
- public:
-  explicit TemporaryFile(std::string path) : path_(std::move(path)) {}
-  ~TemporaryFile() { unlink(path_.c_str()); }
-  TemporaryFile(const TemporaryFile&) = delete;
-  TemporaryFile& operator=(const TemporaryFile&) = delete;
-  const std::string& path() const { return path_; }
-
- private:
-  std::string path_;
-};
-
-/// A folder that is removed again with all that is in it.
+/// A folder of our own beside the library, with a name that nobody can foresee, .LIBRARY.XXXXXX, which is removed with
+/// all that is in it. Those that killed processes have left are removed too: who makes one holds the library's lock.
 class TemporaryFolder {
  public:
-  explicit TemporaryFolder(std::string path) : path_(std::move(path)) { fs::create_directory(path_, ignored_); }
+  explicit TemporaryFolder(const fs::path& library) {
+    const std::string begin = fmt::format(".{}.", library.filename().string());
+    remove_abandoned(library.parent_path(), begin);
+    path_ = (library.parent_path() / (begin + std::string(random_part))).string();
+    if (::mkdtemp(path_.data()) == nullptr)
+      throw UserError(fmt::format("The plugin cannot be compiled to {}: {}.\n  Make room, or make the folder writable.",
+                                  library.string(), std::strerror(errno)));
+  }
   ~TemporaryFolder() { fs::remove_all(path_, ignored_); }
   TemporaryFolder(const TemporaryFolder&) = delete;
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;
   const std::string& path() const { return path_; }
+  std::string file(const std::string& name) const { return path_ + "/" + name; }
 
  private:
+  static constexpr std::string_view random_part = "XXXXXX";
+
+  static void remove_abandoned(const fs::path& folder, const std::string& begin) {
+    std::error_code error;
+    std::vector<fs::path> found;
+    for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error)) {
+      const std::string name = at->path().filename().string();
+      if (name.starts_with(begin) && name.size() == begin.size() + random_part.size() && at->is_directory(error))
+        found.push_back(at->path());
+    }
+    for (const fs::path& one : found) fs::remove_all(one, error);
+  }
+
   std::string path_;
   std::error_code ignored_;
 };
@@ -153,19 +163,20 @@ struct Build {
 
   /// Compiles to a temporary name in the library's folder and renames. The lock is the caller's.
   void make(const fs::path& library) const {
-    const std::string temporary_name =
-        fmt::format("{}/.{}.{}", library.parent_path().string(), library.filename().string(), getpid());
-    const TemporaryFile temporary(temporary_name);
+    // A device that fails is no fault of the source, as which the compiler would report it.
+    static_cast<void>(read_text_if_there(source.string(), "source of the plugin"));
+    const TemporaryFolder scratch(library);
+    const std::string made = scratch.file(library.filename().string());
     timespec begun{};
     timespec_get(&begun, TIME_UTC);
     const std::vector<BuildInput> files =
-        placed(language == Language::cpp ? compile_cpp(temporary_name) : compile_fortran(temporary_name));
+        placed(language == Language::cpp ? compile_cpp(made, scratch) : compile_fortran(made, scratch));
     const BuildStamp stamp{hash_text(compiler_identity()), hash_files(files, places()), files};
-    const bool written = append_stamp(temporary.path(), stamp);
+    const bool written = append_stamp(made, stamp);
     // The library is as old as the begin of its compilation: a source saved meanwhile is newer.
     const std::array<timespec, 2> times = {begun, begun};
-    utimensat(AT_FDCWD, temporary.path().c_str(), times.data(), 0);
-    if (!written || std::rename(temporary.path().c_str(), library.c_str()) != 0)
+    utimensat(AT_FDCWD, made.c_str(), times.data(), 0);
+    if (!written || std::rename(made.c_str(), library.c_str()) != 0)
       throw UserError(
           fmt::format("The compiled plugin cannot be stored as {} ({}).\n"
                       "  Make room, or make the folder writable.",
@@ -173,17 +184,16 @@ struct Build {
   }
 
   /// Both compile to a file and return what decides whether it is up to date.
-  std::vector<std::string> compile_cpp(const std::string& library) const {
-    const TemporaryFile dependencies(library + ".d");
-    compiler.compile({source.string(), library, include_folder, dependencies.path(), ""});
-    return read_dependencies(dependencies.path());
+  std::vector<std::string> compile_cpp(const std::string& library, const TemporaryFolder& scratch) const {
+    const std::string dependencies = scratch.file("dependencies");
+    compiler.compile({source.string(), library, include_folder, dependencies, ""});
+    return read_dependencies(dependencies);
   }
 
-  std::vector<std::string> compile_fortran(const std::string& library) const {
-    const TemporaryFolder scratch(library + ".scratch");
+  std::vector<std::string> compile_fortran(const std::string& library, const TemporaryFolder& scratch) const {
     FortranFiles files = fortran();
     if (files.lacks_own_header) {
-      const std::ofstream empty(scratch.path() + "/" + files.own_header);
+      const std::ofstream empty(scratch.file(files.own_header));
       files.found.push_back((fs::absolute(source).parent_path() / files.own_header).string());
     }
     compiler.compile({source.string(), library, include_folder, "", scratch.path()});

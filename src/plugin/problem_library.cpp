@@ -3,6 +3,7 @@
 #include <dlfcn.h>
 #include <elf.h>
 #include <fmt/format.h>
+#include <sys/statvfs.h>
 
 #include <cstring>
 #include <exception>
@@ -32,6 +33,8 @@ std::string load_cure(std::string_view said) {
     return "It is not a shared library: give the .cpp source, or delete the file so that it is compiled again.";
   if (said.find("wrong ELF class") != std::string_view::npos || said.find("cannot open") != std::string_view::npos)
     return "It, or a library it needs, is missing, unreadable or for another machine: compile it here.";
+  if (said.find("failed to map segment") != std::string_view::npos)
+    return "Programs may not be run from the disk it is on (mount option noexec): copy it to another one.";
   return "Compile it again from its source; a shared library is made with -shared -fPIC.";
 }
 
@@ -66,6 +69,18 @@ bool is_truncated(const std::string& path) {
   return false;
 }
 
+bool is_on_noexec_disk(const std::string& path) {
+  struct statvfs disk {};
+  return ::statvfs(path.c_str(), &disk) == 0 && (disk.f_flag & ST_NOEXEC) != 0;
+}
+
+/// The loader gives no reason where a part of the file cannot be mapped: no memory, or no right to run it.
+bool lacks_memory(std::string_view said, const std::string& path) {
+  const auto has = [said](std::string_view part) { return said.find(part) != std::string_view::npos; };
+  if (has("failed to map segment")) return !is_on_noexec_disk(path);
+  return (has("annot allocate") && !has("static TLS")) || has("out of memory");
+}
+
 void* open_library(const std::string& path) {
   require_file(path);
   if (is_truncated(path))
@@ -80,6 +95,11 @@ void* open_library(const std::string& path) {
     throw ComputationError(
         fmt::format("Plugin {}: reading fails; the loader says: {}.\n"
                     "  The disk or the connection to it is at fault; copy the source elsewhere.",
+                    path, text));
+  if (lacks_memory(text, path))
+    throw ComputationError(
+        fmt::format("Plugin {}: there is no memory to load it; the loader says: {}.\n"
+                    "  End other programs, or raise the limit (ulimit -v).",
                     path, text));
   refuse(path, fmt::format("it cannot be loaded; the loader says: {}", text), load_cure(text));
 }

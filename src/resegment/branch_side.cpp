@@ -11,7 +11,7 @@ namespace tchat {
 namespace {
 
 /// Of a parameter or a duration: what the correction of a start may change.
-constexpr double unmoved = 1e-5;
+constexpr double correction_moves_at_most = 1e-5;
 /// A smaller part of the tangent is no change.
 constexpr double no_change = 1e-10;
 
@@ -43,7 +43,7 @@ double event_along_tangent(const HybridSystem& system, const DefiningSystem& def
 /// PAR holds parameters and durations.
 bool has_moved(const Orbit& found, const Orbit& start) {
   const double scale = 1.0 + std::abs(start.period());
-  return ((found.par - start.par).array().abs() > unmoved * (scale + start.par.array().abs())).any();
+  return ((found.par - start.par).array().abs() > correction_moves_at_most * (scale + start.par.array().abs())).any();
 }
 
 int sign_of(double rate) { return std::abs(rate) > no_change ? (rate > 0.0 ? 1 : -1) : 0; }

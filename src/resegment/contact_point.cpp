@@ -14,7 +14,7 @@ namespace {
 /// A contact nearer to a segment's end than this share of it lies on the end.
 constexpr double at_the_end = 1e-6;
 /// The jump of a section moves the point of contact by no more than this.
-constexpr double unmoved = 1e-6;
+constexpr double section_moves_at_most = 1e-6;
 
 int checked(int number, int count, const char* what, const std::string& source) {
   if (number >= 1 && number <= count) return number;
@@ -33,7 +33,9 @@ void require_section(const ContactPoint& contact, const Orbit& x, const HybridSy
   Eigen::VectorXd after(x.shape.dimension);
   system.value(FunctionKind::jump, index.jump, end.data(), x.par.data(), after.data());
   const bool same_field = settings.segments[static_cast<std::size_t>(next)].index.field == index.field;
-  if (same_field && (after - end).lpNorm<Eigen::Infinity>() <= unmoved * (1.0 + end.lpNorm<Eigen::Infinity>())) return;
+  if (same_field &&
+      (after - end).lpNorm<Eigen::Infinity>() <= section_moves_at_most * (1.0 + end.lpNorm<Eigen::Infinity>()))
+    return;
   throw UserError(fmt::format(
       "{}: the contact with event {} ({}) coincides with the end of segment {}, where event {} ({}) {}: two events at "
       "once. Where they change places, or a segment of no duration vanishes or appears, the run goes on with another "

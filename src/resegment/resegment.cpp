@@ -30,33 +30,12 @@
 #include "run/run_request.hpp"
 #include "start/orbit_start.hpp"
 #include "start/point_type.hpp"
+#include "start/run_file_names.hpp"
 #include "start/solution_file_reader.hpp"
 
 namespace tchat {
 
 namespace {
-
-StartLabel read_label(const std::string& text) {
-  if (const auto number = parse_integer(text); number && *number >= 1) return {"", *number};
-  if (const auto typed = parse_typed_label(text)) return *typed;
-  throw UserError(fmt::format("{} is no label; a number or a type with its count is needed, such as 5, GR1 or PD1",
-                              in_quotes(text)));
-}
-
-/// "results/q.mems" -> "results/mems"
-std::string run_name(const std::string& solutions) {
-  const std::filesystem::path path(solutions);
-  const std::string file = path.filename().string();
-  return (path.parent_path() / (file.starts_with("q.") ? file.substr(2) : file)).string();
-}
-
-std::string constants_of(const ResegmentRequest& request, const std::string& solutions) {
-  if (request.constants) return constants_path(*request.constants);
-  const std::string used = output_path('r', run_name(solutions));
-  if (std::filesystem::exists(used)) return used;
-  throw UserError(
-      fmt::format("there is no {} with the constants of the run that wrote {}; give them with -c C", used, solutions));
-}
 
 LabelledOrbit read_source(const ResegmentRequest& request, const std::string& path, const std::string& constants,
                           const SolutionFile& file, std::vector<std::string>& warnings) {
@@ -250,10 +229,10 @@ std::vector<std::string> resegment(const ResegmentRequest& request, std::ostream
   std::vector<std::string> warnings;
   const std::string path = resolve_solution_path(request.solutions);
   const SolutionFile file = read_solution_file(path);
-  const std::string constants = constants_of(request, path);
+  const std::string constants = constants_of_run(request.constants, path);
   const LabelledOrbit source = read_source(request, path, constants, file, warnings);
 
-  const std::string plugin = resolve_plugin(request.problem.value_or(run_name(path)));
+  const std::string plugin = resolve_plugin(request.problem.value_or(run_path(path)));
   const ProblemLibrary library(plugin, [&] { return sizes_for(request, source.settings); });
   const HybridSystem& system = library.system();
   check_settings_against(system, source.settings, constants);
@@ -271,6 +250,8 @@ std::vector<std::string> resegment(const ResegmentRequest& request, std::ostream
   warnings.insert(warnings.end(), contradictions.begin(), contradictions.end());
   require_fit(system, settings.signature(), start.orbit);
   start.direction = kept_direction(source, target, start.direction, settings);
+  if (start.direction && !target.birth.is_any() && !gives(request.overrides, "DS"))
+    settings.step = std::abs(settings.step);  // on in the direction that is kept
   const std::string side = target.birth.is_any() ? choose_side(request, system, target, start, settings) : "";
 
   const std::string solutions_out = output_path('q', request.output);

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <tuple>
 
+#include "bvp/no_duration.hpp"
 #include "bvp/periodic_orbit_system.hpp"
+#include "bvp/transversality.hpp"
 #include "hybrid/identity_jump.hpp"
 #include "special_points/contact_test.hpp"
 
@@ -12,11 +14,9 @@ namespace tchat {
 
 namespace {
 
-/// Of the range of h on the segment: what the location of the label and its mesh leave of a contact.
+/// Of the size of h on the segment: what the location of the label and its mesh leave of a contact.
 constexpr double touching = 1e-6;
-/// Of |h_x| |f|: the slope of h at a contact on a segment's end.
-constexpr double tangent = 1e-5;
-/// Ends of segments, in tau; two contacts nearer than this are one.
+/// In tau: a contact nearer than this to a segment's end is on it, two contacts nearer than this are one.
 constexpr double same_place = 1e-6;
 
 struct Slope {
@@ -24,7 +24,7 @@ struct Slope {
   double rate = 0.0;   ///< h_x f
   double scale = 0.0;  ///< |h_x| |f|
 
-  bool is_tangent() const { return std::abs(rate) <= tangent * scale; }
+  bool is_tangent() const { return std::abs(rate) <= tangent_contact * scale; }
 };
 
 Slope slope_at(const HybridSystem& system, int field, int event, const double* x, const double* par) {
@@ -67,7 +67,7 @@ class Search {
     for (int s = 0; s < x_.shape.segments; ++s)
       if (own.where == ContactPoint::impact)
         add_vanishing_impact(s);
-      else if (!lasts_no_time(s))
+      else if (!lasts_no_time(x_, s))
         for (const int event : settings_.segments[static_cast<std::size_t>(s)].monitor) add_contacts(s, event);
     std::sort(found_.begin(), found_.end(), [](const ContactPoint& a, const ContactPoint& b) {
       return std::tie(a.segment, a.tau) < std::tie(b.segment, b.tau);
@@ -77,8 +77,6 @@ class Search {
 
  private:
   const IndexVector& index(int s) const { return settings_.segments[static_cast<std::size_t>(s)].index; }
-
-  bool lasts_no_time(int s) const { return !(x_.duration(s) > same_place * std::abs(x_.period())); }
 
   void add(const ContactPoint& contact) {
     for (const ContactPoint& known : found_)

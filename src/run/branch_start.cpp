@@ -126,18 +126,20 @@ FirstPoint first_point(PathFollower& follower, const DefiningSystem& system, con
     }
     along = result.converged() && std::abs(follower.alignment(point, *start.direction)) > parallel;
   }
-  FirstPoint first{std::move(point), {}, {}};
+  FirstPoint first{std::move(point), {}, {}, along};
   std::string refusal;
   if (!along) {
     FirstCorrection corrected = correct_start(follower, system, selected, settings);
     refusal = std::move(corrected.refusal);
-    first = {std::move(corrected.point), std::move(corrected.history), std::move(corrected.note)};
+    first = {std::move(corrected.point), std::move(corrected.history), std::move(corrected.note), false};
     // Close to a branch point the tangent found from the nearly singular matrix may be that of the other branch.
     if (start_is_branch_point(selected) && fitting_direction && !selected.parameters_changed)
       use_direction(follower, *start.direction, first.point);
     // Another parameter value turns the tangent somewhat; without one, another signature has made the direction new.
     const double least = selected.parameters_changed ? 0.0 : parallel;
-    if (fitting_direction && follower.alignment(first.point, *start.direction) < -least) follower.reverse(first.point);
+    const double cosine = fitting_direction ? follower.alignment(first.point, *start.direction) : 0.0;
+    if (cosine < -least) follower.reverse(first.point);
+    first.stored_direction = std::abs(cosine) > least;
   } else if (!as_stored) {
     first.correction = follower.newton().history();
   }

@@ -12,14 +12,16 @@ struct FirstPoint {
   PathPoint point;
   std::vector<NewtonIteration> correction;  ///< how the start was corrected
   std::string note;                         ///< what the user has to know of it, or empty
+  bool stored_direction = false;            ///< DS > 0 goes on in the direction that is stored with the start
 };
 
 /// From data: correct_start(). From a label with its
 /// direction: orthogonally to the direction, unless a parameter was changed or the direction is no tangent of this
-/// problem (another signature); then as from data. DS > 0 goes on in the stored direction when there is one that fits,
-/// otherwise ICP(1) grows; a changed parameter value keeps the side that the stored direction points to. Throws
-/// ComputationError with the residual of every boundary condition when no way converges, when Newton arrives at a point
-/// instead of an orbit, and when the bordered matrix is singular, naming the undetermined direction.
+/// problem (another signature); then as from data. DS > 0 goes on in the stored direction, in which the run of the
+/// label went, when there is one that fits, otherwise ICP(1) grows; a changed parameter value keeps the side that the
+/// stored direction points to. Throws ComputationError with the residual of every boundary condition when no way
+/// converges, when Newton arrives at a point instead of an orbit, and when the bordered matrix is singular, naming the
+/// undetermined direction.
 FirstPoint first_point(PathFollower& follower, const DefiningSystem& system, const SelectedStart& selected,
                        const RunSettings& settings);
 

@@ -24,6 +24,8 @@ struct Bifurcation {
 
 /// A first point that is nearer to the known branch than this share of its step lies on it.
 constexpr double left_behind = 0.1;
+/// A difference of so many tolerances of Newton's method is one.
+constexpr double visible = 3.0;
 /// Of the step asked for: what is tried, one after the other, to leave the known branch.
 constexpr double displacements[] = {1.0, 3.0, 0.3, 10.0, 0.1};
 
@@ -126,25 +128,49 @@ double largest_difference(const Orbit& a, const Orbit& b, const std::vector<int>
   return largest;
 }
 
+/// The point of the known branch in the plane through `reached` across the tangent there, by as many steps as it takes;
+/// nothing where they do not get there.
+std::optional<Orbit> beside_on_branch(PathFollower& follower, const PathPoint& start, const Orbit& reached) {
+  constexpr int most_steps = 40;
+  constexpr int most_halvings = 6;
+  const std::vector<int>& free = follower.condensed().system().free_parameters();
+  PathPoint here = start;
+  PathPoint next = start;
+  int halvings = 0;
+  for (int k = 0; k < most_steps && halvings <= most_halvings; ++k) {
+    const double rest = dot_difference(here.dual, reached, here.orbit, free);
+    if (follower.step(here, std::ldexp(rest, -halvings), next).converged()) {
+      if (halvings == 0) return next.orbit;
+      std::swap(here, next);
+      halvings = 0;
+    } else {
+      ++halvings;
+    }
+  }
+  return std::nullopt;
+}
+
 /// Is `reached`, by a step of length ds from `from`, another point than the one that the known branch has as far along
-/// its own tangent?
-bool has_left(PathFollower& follower, const PathPoint& from, const OrbitVector& known, double ds,
-              const Orbit& reached) {
+/// its own tangent? Not after a step so short that Newton's tolerance for the states hides the difference.
+bool has_left(PathFollower& follower, const PathPoint& from, const OrbitVector& known, double ds, const Orbit& reached,
+              double tolerance) {
   const std::vector<int>& free = follower.condensed().system().free_parameters();
   Orbit displaced = from.orbit;
   advance(displaced, ds, from.tangent, free);
   const double displacement = largest_difference(displaced, from.orbit, free);
+  if (left_behind * displacement < visible * tolerance * (1.0 + from.orbit.states.cwiseAbs().maxCoeff())) return false;
   PathPoint start = from;
   start.tangent = known;
   follower.renormalise(start);
   const double along = dot_difference(start.dual, reached, start.orbit, free);
-  PathPoint expected = start;
+  std::optional<Orbit> expected;
   const bool close = std::abs(along) < left_behind * std::abs(ds);  // to the bifurcation, where Newton goes anywhere
-  if (close || !follower.step(start, along, expected).converged()) {
-    expected.orbit = start.orbit;
-    advance(expected.orbit, along, start.tangent, free);
+  if (!close) expected = beside_on_branch(follower, start, reached);
+  if (!expected) {
+    expected = start.orbit;
+    advance(*expected, along, start.tangent, free);
   }
-  return largest_difference(reached, expected.orbit, free) > left_behind * displacement;
+  return largest_difference(reached, *expected, free) > left_behind * displacement;
 }
 
 /// The longest step that converges, of at most so much; nothing when none does.
@@ -199,7 +225,9 @@ BranchSetup switch_branch(const HybridSystem& system, const RunSettings& setting
     if (!ds) continue;
     any = true;
     const std::vector<NewtonIteration> history = setup.follower->newton().history();
-    if (!has_left(*setup.follower, from, bifurcation.known, *ds, first.orbit)) continue;
+    if (!has_left(*setup.follower, from, bifurcation.known, *ds, first.orbit,
+                  newton_settings(settings).tolerance_states))
+      continue;
     setup.start = {std::move(first), history, {}};
     return setup;
   }

@@ -12,6 +12,7 @@
 #include "output/screen_table.hpp"
 #include "output/solution_file.hpp"
 #include "run/problem_setup.hpp"
+#include "special_points/grazing_curve_tests.hpp"
 #include "start/orbit_start.hpp"
 #include "start/point_type.hpp"
 
@@ -164,16 +165,39 @@ bool BranchWriter::shown_stable(const BranchPoint& point) {
   return last_stable_;
 }
 
+/// At labels of grazing curves, but for those that NPR asks for: a* and xi_n. What the d-file has beside them (x*, beta
+/// and A) is told once: a matrix under every label would hide the table.
+void BranchWriter::show_contact(const BranchPoint& point) {
+  constexpr std::size_t width = 120;
+  const std::string indent(7, ' ');
+  std::string line;
+  for (const TestValue& test : point.tests) {
+    if (!tells_of_contact(test.name) || !test.value) continue;
+    const std::string text = fmt::format("{}{} = {:.8g}", line.empty() ? indent : ", ", test.name, *test.value);
+    if (line.size() + text.size() > width) {
+      *screen_ << line << ",\n";
+      line = indent + text.substr(2);
+    } else {
+      line += text;
+    }
+  }
+  *screen_ << line << '\n';
+  if (!contact_shown_) *screen_ << indent << "(contact x*, beta and return map A at each label: see the d-file)\n";
+  contact_shown_ = true;
+}
+
 /// Labelled points, the first one, and where orbits become inadmissible (with what is violated) or admissible again.
 void BranchWriter::show(const BranchPoint& point, const PointLine& line) {
   const bool change = point.number > 1 && line.admissible != last_admissible_;
   if (point.labelled() || point.number == 1 || change) *screen_ << format_table_line(line, columns_);
   if (!line.admissible && (change || point.number == 1))
     for (const Violation& violation : point.violations) *screen_ << "       " << describe(violation, system_) << '\n';
+  if (point.labelled() && point.special.type != PointType::regular && !point.details.empty()) show_contact(point);
   last_admissible_ = line.admissible;
   *screen_ << std::flush;
 }
 
+/// With the direction in which the run goes: a restart with DS > 0 goes on whatever the sign of DS is here.
 void BranchWriter::write_solution(const BranchPoint& point, const PointLine& line) {
   const Orbit& x = point.path.orbit;
   const std::vector<int> free_parameters = [&] {
@@ -182,7 +206,9 @@ void BranchWriter::write_solution(const BranchPoint& point, const PointLine& lin
       if (!is_duration(k, x.shape.segments)) list.push_back(k);
     return list;
   }();
-  LabelledSolution solution = labelled_solution(x, point.path.tangent, free_parameters, setup_.active_parameters);
+  OrbitVector direction = point.path.tangent;
+  if (setup_.settings.step < 0.0) direction.scale(-1.0);  // the branch goes against its tangents
+  LabelledSolution solution = labelled_solution(x, direction, free_parameters, setup_.active_parameters);
   solution.branch = line.branch;
   solution.point = line.point;
   solution.type = line.type;

@@ -56,6 +56,7 @@ class BranchWriter final : public BranchSink {
   std::string place(const PointLine& line) const;
   bool shown_stable(const BranchPoint& point);
   void show(const BranchPoint& point, const PointLine& line);
+  void show_contact(const BranchPoint& point);
   void tell_unknown_user_values(const PointLine& line);
   void write_diagnostics(const BranchPoint& point, const PointLine& line);
   void write_solution(const BranchPoint& point, const PointLine& line);
@@ -74,6 +75,7 @@ class BranchWriter final : public BranchSink {
   bool has_points_ = false;                        // the section
   bool last_admissible_ = true;
   bool last_stable_ = false;
+  bool contact_shown_ = false;
   std::set<int> told_user_functions_;
 };
 

@@ -22,7 +22,7 @@ constexpr double told_move = 1e-9;
 constexpr double smallest_part = 1.0 / 1024;
 /// The largest change of the states in such a step, relative to 1 + max |u|: further away are other branches.
 constexpr double largest_change = 0.3;
-constexpr int most_meshes = 5;
+constexpr int most_meshes = 10;
 /// Meshes whose points have moved by less than this part of an interval are the same.
 constexpr double settled = 0.1;
 
@@ -131,6 +131,22 @@ std::string values_at(const SelectedStart& selected, const HybridSystem& system,
                   selected.source, trouble, residual_report(follower.condensed(), system, start)));
 }
 
+/// The orbit on the mesh adapted to it, or on one that is half or a quarter of the way there: on a coarse mesh the
+/// whole way takes it out of reach of Newton's method. False when all fail.
+bool adapt_mesh(PathFollower& follower, const std::vector<double>& adapted, PathPoint& point) {
+  const std::vector<double> old = point.orbit.mesh;
+  for (const double share : {1.0, 0.5, 0.25}) {
+    std::vector<double> mesh = adapted;
+    for (std::size_t j = 0; j < mesh.size(); ++j) mesh[j] = old[j] + share * (adapted[j] - old[j]);
+    PathPoint trial = point;
+    follower.change_mesh(trial, mesh);
+    if (!follower.start_at_fixed_parameter(trial).converged()) continue;
+    std::swap(point, trial);
+    return true;
+  }
+  return false;
+}
+
 /// On meshes adapted to the point until they settle; the last good one is kept.
 void settle_mesh(PathFollower& follower, PathPoint& point) {
   const int intervals = point.orbit.shape.intervals;
@@ -140,12 +156,25 @@ void settle_mesh(PathFollower& follower, PathPoint& point) {
     double moved = 0.0;
     for (std::size_t j = 1; j + 1 < mesh.size(); ++j)
       moved = std::max(moved, std::abs(mesh[j] - old[j]) / (mesh[j + 1] - mesh[j - 1]));
-    if (moved < settled) return;
-    PathPoint trial = point;
-    follower.change_mesh(trial, mesh);
-    if (!follower.start_at_fixed_parameter(trial).converged()) break;
-    std::swap(point, trial);
+    if (moved < settled || !adapt_mesh(follower, mesh, point)) return;
   }
+}
+
+/// The free parameters beside ICP(1) that Newton's method has moved by more than data of five digits explain; "" when
+/// there is none.
+std::string moved_beside(const Orbit& start, const Orbit& found, const DefiningSystem& system, int principal,
+                         const std::string& source) {
+  std::string text;
+  for (const int k : system.free_parameters()) {
+    const double asked = start.par(k - 1);
+    const double value = found.par(k - 1);
+    if (k == principal || !(std::abs(value - asked) > relative_move * std::abs(asked) + absolute_move)) continue;
+    const HybridSystem& problem = system.system();
+    text += fmt::format(
+        "{}the first point has {} = {:.12g}, the start from {} {:.12g}: it is free, and found with {} fixed",
+        text.empty() ? "" : "; ", problem.parameter_name(k), value, source, asked, problem.parameter_name(principal));
+  }
+  return text;
 }
 
 }  // namespace
@@ -174,6 +203,11 @@ FirstCorrection correct_start(PathFollower& follower, const DefiningSystem& syst
                              values_at(selected, problem, changed, 0.0), values_at(selected, problem, changed, 1.0),
                              values_at(selected, problem, changed, way.reached));
   }
+  if (!result.converged() && selected.second) {
+    point = follower.make_point(*selected.second);
+    result = follower.start_at_fixed_parameter(point);
+    corrected.history = follower.newton().history();
+  }
   if (!result.converged()) {
     point = follower.make_point(start);
     result = follower.start_by_minimum_norm(point);
@@ -201,6 +235,7 @@ FirstCorrection correct_start(PathFollower& follower, const DefiningSystem& syst
     return corrected;
   }
   if (!selected.from_solution && settings.adapt_mesh_every > 0) settle_mesh(follower, point);
+  corrected.note = moved_beside(start, point.orbit, system, principal, selected.source);
   corrected.point = std::move(point);
   return corrected;
 }

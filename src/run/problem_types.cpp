@@ -38,8 +38,6 @@ constexpr std::array<ProblemType, 3> types{{
 
 bool contains(const std::vector<int>& list, int k) { return std::find(list.begin(), list.end(), k) != list.end(); }
 
-int segment_count(const RunSettings& settings) { return static_cast<int>(settings.segments.size()); }
-
 }  // namespace
 
 const ProblemType& problem_type(const RunSettings& settings) {

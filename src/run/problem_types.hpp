@@ -18,6 +18,8 @@ struct ProblemType {
   std::unique_ptr<DefiningSystem> (*make)(const HybridSystem&, const RunSettings&, std::vector<int> free_parameters);
 };
 
+inline int segment_count(const RunSettings& settings) { return static_cast<int>(settings.segments.size()); }
+
 /// Throws UserError with the list of what there is.
 const ProblemType& problem_type(const RunSettings& settings);
 

@@ -45,11 +45,6 @@ std::function<bool(const SpecialPoint&)> make_stop_rule(const RunSettings& setti
   };
 }
 
-bool same_file(const std::string& a, const std::string& b) {
-  std::error_code error;
-  return std::filesystem::equivalent(a, b, error) && !error;
-}
-
 void refuse_to_replace_start(const RunRequest& request, const SelectedStart& start, const std::string& output) {
   if (request.output || request.append || !same_file(output_path('q', output), start.source)) return;
   throw UserError(
@@ -72,6 +67,12 @@ void refuse_start_outside(const Orbit& start, const CollocationRule& rule, const
   refuse(parameter, start.par(settings.principal - 1), settings.parameter_min, settings.parameter_max, "RL0, RL1");
   refuse("the solution measure", solution_measure(start, rule, settings.state_weights, settings.measure),
          settings.measure_min, settings.measure_max, "A0, A1");
+}
+
+/// Where a restart goes, for the sign of DS alone does not tell it.
+std::string direction_text(double step, const SelectedStart& start) {
+  return fmt::format("DS {} 0: {} the direction stored with label {} of {}\n", step > 0.0 ? ">" : "<",
+                     step > 0.0 ? "on in" : "back against", start.label, start.source);
 }
 
 RunSettings read_settings(const RunRequest& request, const std::string& constants, const ParameterNames& names,
@@ -127,6 +128,7 @@ int run_problem(const RunRequest& request, std::ostream& screen, std::ostream& w
   // Files are touched only now.
   files.open(positional_text(settings));
   std::ostream* table = request.quiet ? nullptr : &screen;
+  if (table != nullptr && setup.start.stored_direction) *table << direction_text(settings.step, selected);
   const int last_label = request.append ? std::max(files.last_label(), 0) : selected.last_label;
   BranchWriter writer(
       system, setup.follower->condensed().rule(),

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "constants/user_error.hpp"
+#include "start/run_file_names.hpp"
 
 namespace tchat {
 
@@ -30,6 +31,16 @@ std::string constants_path(const std::string& c) {
                   prefixed.string(), path == prefixed ? "" : " or " + path.string()));
 }
 
+std::string constants_of_run(const std::optional<std::string>& given, const std::string& solutions) {
+  if (given) return constants_path(*given);
+  const std::string used = sibling_path(solutions, 'r');
+  if (!used.empty() && is_file(used)) return used;
+  const fs::path made = fs::path(solutions).parent_path() / ("gc." + run_name(solutions));
+  if (is_file(made)) return made.string();
+  throw UserError(fmt::format("there is no {} with the constants of the run that wrote {}; give them with -c C",
+                              used.empty() ? "r-file" : used, solutions));
+}
+
 std::string data_path(const std::string& d) {
   const fs::path path(d);
   const fs::path with_suffix = d + ".dat";
@@ -52,6 +63,11 @@ std::string solution_path(const std::string& s) {
   if (is_file(s)) return s;
   throw UserError(
       fmt::format("there is no q-file {} to restart from; give the name of an earlier run's output with -s", prefixed));
+}
+
+bool same_file(const std::string& a, const std::string& b) {
+  std::error_code error;
+  return fs::equivalent(a, b, error) && !error;
 }
 
 }  // namespace tchat

@@ -24,11 +24,17 @@ struct RunRequest {
 
 /// gc.C in the folder of C, or C itself when only that exists. Throws UserError when neither does.
 std::string constants_path(const std::string& c);
+/// The constants of the run that wrote the q-file `solutions`: `given` like constants_path(), else the r-file beside
+/// it, or gc.NAME of `tchat resegment`. Throws UserError when there is none.
+std::string constants_of_run(const std::optional<std::string>& given, const std::string& solutions);
 /// D.dat, or D itself when only that exists. Throws UserError when neither does.
 std::string data_path(const std::string& d);
 /// q.S in the folder of S, or S itself when only that exists. Throws UserError when neither does.
 std::string solution_path(const std::string& s);
 /// q.S in the folder of S, whether it exists or not.
 std::string default_solution_path(const std::string& s);
+
+/// Both exist and are one file, whatever their paths.
+bool same_file(const std::string& a, const std::string& b);
 
 }  // namespace tchat

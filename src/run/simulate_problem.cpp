@@ -16,6 +16,7 @@
 #include "run/orbit_hand_over.hpp"
 #include "run/parameter_values.hpp"
 #include "run/problem_setup.hpp"
+#include "run/run_request.hpp"
 #include "run/simulation_start.hpp"
 #include "run/simulation_summary.hpp"
 #include "simulation/found_orbit.hpp"
@@ -97,11 +98,6 @@ struct OrbitPaths {
 OrbitPaths orbit_paths(const std::string& name) {
   const fs::path path(name);
   return {name + ".dat", (path.parent_path() / ("gc." + path.filename().string())).string()};
-}
-
-bool same_file(const std::string& a, const std::string& b) {
-  std::error_code error;
-  return fs::equivalent(a, b, error) && !error;
 }
 
 /// Files NAME.*, gc.NAME can be made from `name`.

@@ -4,20 +4,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 
 #include "constants/constants_table.hpp"
 #include "constants/user_error.hpp"
+#include "output/writable_file.hpp"
 #include "run/parameter_values.hpp"
 #include "run/problem_setup.hpp"
+#include "run/problem_types.hpp"
 #include "start/point_type.hpp"
 #include "start/solution_file_reader.hpp"
 
 namespace tchat {
 
 namespace {
-
-int segment_count(const RunSettings& settings) { return static_cast<int>(settings.segments.size()); }
 
 OrbitShape shape_of(const RunSettings& settings) {
   return {settings.dimension, segment_count(settings), settings.mesh_intervals, settings.collocation_points};
@@ -57,6 +56,7 @@ SelectedStart start_from_data(const std::string& path, const RunSettings& settin
   SelectedStart selected;
   selected.source = path;
   selected.start.orbit = orbit_from_data(data, shape_of(settings), par);
+  selected.second = orbit_from_rows(data, shape_of(settings), par);
   selected.known_parameters = known;
   selected.known_parameters.segment(first_duration - 1, m) = par.segment(first_duration - 1, m);
   selected.label_start = settings.start.from_data();
@@ -102,11 +102,6 @@ SelectedStart start_from_solution(const std::string& path, const RunSettings& se
   selected.types = basic_types(solution, settings.start.type);
   selected.warnings = file.warnings;
   return selected;
-}
-
-bool exists(const std::string& path) {
-  std::error_code ignored;
-  return std::filesystem::exists(path, ignored);
 }
 
 [[noreturn]] void refuse_solution_without_label(const std::string& path) {

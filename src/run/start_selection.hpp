@@ -1,4 +1,4 @@
-/// Which starting solution a run uses: D.dat or a label of q.S, and the parameter values that go with it (SPEC: plugin
+/// Which starting solution a run uses: D.dat or a label of q.S, and the parameter values that go with it (plugin
 /// < comments in the .dat < q-file < command line).
 #pragma once
 
@@ -14,6 +14,7 @@ namespace tchat {
 
 struct SelectedStart {
   OrbitStart start;
+  std::optional<Orbit> second;      ///< the same data on another mesh, for when no correction of the first converges
   std::string source;               ///< the file it came from
   bool from_solution = false;       ///< a label of a q-file
   bool label_start = true;          ///< IRS = 0: the first point gets a label

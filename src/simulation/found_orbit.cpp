@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
 #include "hybrid/identity_jump.hpp"
+#include "linear_algebra/dense_matrix.hpp"
 
 namespace tchat {
 
@@ -86,7 +86,7 @@ std::vector<std::complex<double>> multipliers_without(const MatrixXd& m, const s
   std::vector<Eigen::Index> kept;
   for (Eigen::Index i = 0; i < m.rows(); ++i)
     if (std::find(ignorable.begin(), ignorable.end(), i) == ignorable.end()) kept.push_back(i);
-  const Eigen::VectorXcd values = MatrixXd(m(kept, kept)).eigenvalues();
+  const Eigen::VectorXcd values = eigenvalues(MatrixXd(m(kept, kept)));
   std::vector<std::complex<double>> sorted(values.begin(), values.end());
   std::sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) {
     return std::abs(a) != std::abs(b) ? std::abs(a) > std::abs(b) : a.imag() > b.imag();

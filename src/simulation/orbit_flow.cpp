@@ -2,12 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
 #include "constants/user_error.hpp"
+#include "linear_algebra/dense_matrix.hpp"
 
 namespace tchat {
 
@@ -41,7 +40,7 @@ struct EndPoint {
 
 VectorXcd sorted_eigenvalues(const MatrixXd& m) {
   if (!m.allFinite()) return VectorXcd::Constant(m.rows(), NAN);
-  VectorXcd values = m.eigenvalues();
+  VectorXcd values = eigenvalues(m);
   std::sort(values.begin(), values.end(), [](const auto& a, const auto& b) {
     const double difference = std::abs(a) - std::abs(b);
     return difference != 0.0 ? difference > 0.0 : a.imag() > b.imag();
@@ -128,7 +127,7 @@ PeriodicOrbit shoot(const HybridSystem& system, const Signature& signature, cons
     }
     MatrixXd matrix = MatrixXd::Identity(residual.size(), residual.size()) - orbit.map.derivative;
     for (const Eigen::Index k : options.ignorable) matrix.row(k) = VectorXd::Unit(residual.size(), k).transpose();
-    const VectorXd step = -matrix.fullPivLu().solve(residual);
+    const VectorXd step = -solve_with_complete_pivoting(matrix, residual);
     last_step = step.lpNorm<Eigen::Infinity>() / (1.0 + orbit.start.lpNorm<Eigen::Infinity>());
     orbit.start += step;
     ++orbit.iterations;

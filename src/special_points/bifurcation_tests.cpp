@@ -18,7 +18,11 @@ constexpr double structural_limit = 5e-2;
 constexpr double complex_level = 1e-7;
 
 bool trusted(const FloquetMultipliers& multipliers) {
-  return multipliers.determined() && multipliers.structural <= structural_limit;
+  return multipliers.valid && multipliers.structural <= structural_limit;
+}
+
+const MultiplierProduct& product_of(const FloquetMultipliers& multipliers, int target) {
+  return target > 0 ? multipliers.with_one : multipliers.with_minus_one;
 }
 
 bool is_upper(const std::complex<double>& mu) { return mu.imag() > complex_level * std::abs(mu); }
@@ -55,9 +59,9 @@ const std::complex<double>* nearest_pair(const FloquetMultipliers& multipliers) 
   return nearest;
 }
 
-double distance_to_minus_one(const FloquetMultipliers& multipliers) {
+double distance_to(const FloquetMultipliers& multipliers, double target) {
   double nearest = std::numeric_limits<double>::infinity();
-  for (const auto& mu : multipliers.values) nearest = std::min(nearest, std::abs(1.0 + mu));
+  for (const auto& mu : multipliers.values) nearest = std::min(nearest, std::abs(mu - target));
   return nearest;
 }
 
@@ -72,23 +76,19 @@ std::string state_text(const HybridSystem& system, const double* x) {
 
 std::optional<double> multiplier_product(const TestedPoint& point, int target) {
   if (!trusted(point.multipliers)) return std::nullopt;
-  std::complex<double> product = 1.0;
-  for (const auto& mu : point.multipliers.values) product *= 1.0 - mu / static_cast<double>(target);
-  double result = product.real();
-  for (const double a : point.transversalities) {
-    if (std::abs(a) <= no_transversality) return std::nullopt;
-    result *= a;
-  }
-  return result;
+  return product_of(point.multipliers, target).value;
 }
 
 double multiplier_product_level(const TestedPoint& point, int target) {
-  constexpr double rounding = 1e-9;
-  double nearest = std::numeric_limits<double>::infinity();
-  for (const auto& mu : point.multipliers.values)
-    nearest = std::min(nearest, std::abs(mu - static_cast<double>(target)));
-  const std::optional<double> size = multiplier_product(point, target);
-  return size && nearest > 0.0 ? rounding * std::abs(*size) / nearest : rounding;
+  const double nearest = distance_to(point.multipliers, target);
+  const MultiplierProduct& product = product_of(point.multipliers, target);
+  const double level = nearest > 0.0 ? orbit_accuracy * std::abs(product.value) / nearest : orbit_accuracy;
+  return std::max(level, product.uncertainty);
+}
+
+bool is_multiplier_at(const TestedPoint& point, int target) {
+  constexpr double close = 0.05;  // far more than a located zero misses it by, unless the multiplier is about infinite
+  return distance_to(point.multipliers, target) <= close;
 }
 
 FoldTest::FoldTest(int parameter, const std::vector<int>& free_parameters, int segments, bool stop)
@@ -122,10 +122,7 @@ std::optional<double> PeriodDoublingTest::value(const TestedPoint& point) const 
   return multiplier_product(point, -1);
 }
 
-bool PeriodDoublingTest::is_genuine(const TestedPoint& point) const {
-  constexpr double close = 0.05;  // far more than a located zero misses -1 by, unless the multiplier is about infinite
-  return distance_to_minus_one(point.multipliers) <= close;
-}
+bool PeriodDoublingTest::is_genuine(const TestedPoint& point) const { return is_multiplier_at(point, -1); }
 
 double PeriodDoublingTest::zero_level(const TestedPoint& point) const { return multiplier_product_level(point, -1); }
 
@@ -134,7 +131,7 @@ SpecialPoint PeriodDoublingTest::classify(const TestedPoint&, bool) const {
 }
 
 std::optional<double> TorusTest::value(const TestedPoint& point) const {
-  if (!trusted(point.multipliers)) return std::nullopt;
+  if (!trusted(point.multipliers) || !point.multipliers.determined()) return std::nullopt;
   const std::complex<double>* nearest = nearest_pair(point.multipliers);
   if (nearest == nullptr) return std::nullopt;
   double sign = 1.0;

@@ -1,12 +1,14 @@
 /// Test functions of the bifurcations of orbits: fold, branch point, period doubling, torus (7).
 ///
-/// None has a pole where an impact velocity a_s = h_x f goes through zero and a multiplier through infinity: the
-/// product over (1 + mu) is multiplied by the product of the a_s. The branch point's function has the sign of the
-/// determinant of the boundary value problem bordered by the tangent, regular at a_s = 0 and of constant sign through
-/// folds. The determinant's size tells nothing: it has factors of the mesh and goes like exp(-1/2 integral of tr f_x),
-/// over many decades along a branch. The function's size is the distance to a singular matrix.
+/// None has a pole or a gap where an impact velocity a_s = h_x f goes through zero and a multiplier through infinity:
+/// the product over (1 + mu) is taken with that of the a_s, as one determinant (floquet_multipliers.hpp). The branch
+/// point's function has the sign of the determinant of the boundary value problem bordered by the tangent, regular at
+/// a_s = 0 and of constant sign through folds. The determinant's size tells nothing: it has factors of the mesh and
+/// goes like exp(-1/2 integral of tr f_x), over many decades along a branch. The function's size is the distance to a
+/// singular matrix.
 #pragma once
 
+#include "bvp/orbit_accuracy.hpp"
 #include "special_points/test_function.hpp"
 
 namespace tchat {
@@ -42,15 +44,15 @@ class BranchPointTest final : public TestFunction {
   bool stop_;
 };
 
-/// PD: product of 1 + mu over the multipliers times the product of the scaled a_s. Undefined while the structural
-/// multiplier is off by more than 5e-2.
+/// PD: product of 1 + mu over the multipliers times the product of the scaled a_s, also where an a_s is zero: a run
+/// that starts at grazing sees the period doubling beside it. Undefined while the structural multiplier is off by more
+/// than 5e-2.
 class PeriodDoublingTest final : public TestFunction {
  public:
   explicit PeriodDoublingTest(bool stop) : stop_(stop) {}
   std::string name() const override { return "period doubling"; }
   std::optional<double> value(const TestedPoint& point) const override;
   double zero_level(const TestedPoint& point) const override;
-  /// Where no multiplier goes through infinity with an a_s, as in the plane, the product vanishes with that a_s.
   bool is_genuine(const TestedPoint& point) const override;
   SpecialPoint classify(const TestedPoint& point, bool rising) const override;
 
@@ -65,7 +67,7 @@ class TorusTest final : public TestFunction {
   explicit TorusTest(bool stop) : stop_(stop) {}
   std::string name() const override { return "torus"; }
   std::optional<double> value(const TestedPoint& point) const override;
-  double zero_level(const TestedPoint&) const override { return 1e-9; }
+  double zero_level(const TestedPoint&) const override { return orbit_accuracy; }
   SpecialPoint classify(const TestedPoint& point, bool rising) const override;
 
  private:
@@ -89,12 +91,15 @@ class ImpactVelocityTest final : public TestFunction {
   bool stop_;
 };
 
-/// Product of 1 - mu / target over the multipliers times the product of the scaled a_s, which keeps it finite where one
-/// of them and a multiplier go through zero and infinity together. Undefined where multipliers are not trusted and
-/// where an a_s is zero. `target` is 1 or -1.
+/// Product of 1 - mu / target over the nontrivial multipliers times the product of the scaled a_s of all segments: the
+/// one function behind every multiplier +1 or -1, on curves of grazing orbits too. `target` is 1 or -1. Nothing where
+/// multipliers are not trusted.
 std::optional<double> multiplier_product(const TestedPoint& point, int target);
 /// What of this product is rounding: it is small only against the other factors.
 double multiplier_product_level(const TestedPoint& point, int target);
+/// Is a multiplier at the target where this product vanishes? Where none goes through infinity with an a_s, as in the
+/// plane, the product vanishes with that a_s.
+bool is_multiplier_at(const TestedPoint& point, int target);
 
 /// "x1 = 1, x2 = 0, ..."
 std::string state_text(const HybridSystem& system, const double* x);

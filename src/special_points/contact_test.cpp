@@ -9,6 +9,7 @@
 
 #include "bvp/admissibility.hpp"
 #include "bvp/no_duration.hpp"
+#include "bvp/transversality.hpp"
 #include "special_points/bifurcation_tests.hpp"
 
 namespace tchat {
@@ -205,6 +206,10 @@ std::optional<double> ContactTest::value(const TestedPoint& point) const {
   return contact->value;
 }
 
+double ContactTest::zero_level(const TestedPoint& point) const {
+  return orbit_accuracy * event_scale(system_.system(), point.orbit, event_);
+}
+
 int ContactTest::sign_where_undefined(const TestedPoint& point) const {
   const Orbit& x = point.orbit;
   if (!(x.duration(segment_) > 0.0)) return 0;
@@ -215,7 +220,6 @@ int ContactTest::sign_where_undefined(const TestedPoint& point) const {
 
 /// At an end of the segment h may pass zero with a slope: its surface is met there, where another event cuts the orbit.
 bool ContactTest::crosses(const TestedPoint& point, const Contact& contact) const {
-  constexpr double slow = 1e-5;
   if (contact.tau > 0.0 && contact.tau < 1.0) return false;
   const HybridSystem& system = system_.system();
   const int field = system_.signature()[static_cast<std::size_t>(segment_)].field;
@@ -225,7 +229,7 @@ bool ContactTest::crosses(const TestedPoint& point, const Contact& contact) cons
   double h = 0.0;
   system.value(FunctionKind::field, field, contact.state.data(), par, f.data());
   system.first(FunctionKind::event, event_, contact.state.data(), par, {}, &h, gradient.data(), nullptr);
-  return std::abs(gradient.dot(f)) > slow * (1.0 + gradient.norm() * f.norm());
+  return std::abs(gradient.dot(f)) > tangent_contact * gradient.norm() * f.norm();
 }
 
 SpecialPoint ContactTest::vanishing_segment(bool ends_branch) const {

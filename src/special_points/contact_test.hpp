@@ -35,7 +35,7 @@ class ContactTest final : public TestFunction {
   std::optional<double> value(const TestedPoint& point) const override;
   /// Between pinned ends h may rise and fall without a minimum in between: no contact, positive.
   int sign_where_undefined(const TestedPoint& point) const override;
-  double zero_level(const TestedPoint&) const override { return 1e-9; }
+  double zero_level(const TestedPoint& point) const override;
   SpecialPoint classify(const TestedPoint& point, bool rising) const override;
 
  private:

@@ -6,6 +6,12 @@
 
 namespace tchat {
 
+double CuspTest::zero_level(const TestedPoint&) const {
+  const OrbitVector& gradient = condition_.gradient();
+  const OrbitVector& v = condition_.null_vector();
+  return orbit_accuracy * std::sqrt(dot(gradient, gradient) * dot(v, v));
+}
+
 std::optional<double> ResonanceTest::value(const TestedPoint& point) const {
   double result = condition_.multiplicity_function();
   for (const double a : point.transversalities) {
@@ -17,7 +23,7 @@ std::optional<double> ResonanceTest::value(const TestedPoint& point) const {
 
 /// Against the a_s, with which the function and the factors that it is multiplied by vanish.
 double ResonanceTest::zero_level(const TestedPoint& point) const {
-  double level = 1e-9;
+  double level = orbit_accuracy;
   for (const double a : point.transversalities) level *= a * a;
   return level;
 }

@@ -3,6 +3,7 @@
 
 #include "bvp/critical_multiplier.hpp"
 #include "bvp/critical_pair.hpp"
+#include "bvp/orbit_accuracy.hpp"
 #include "special_points/test_function.hpp"
 
 namespace tchat {
@@ -14,7 +15,8 @@ class CuspTest final : public TestFunction {
   explicit CuspTest(const CriticalMultiplier& condition) : condition_(condition) {}
   std::string name() const override { return "cusp"; }
   std::optional<double> value(const TestedPoint&) const override { return condition_.cusp_function(); }
-  double zero_level(const TestedPoint&) const override { return 1e-9; }
+  /// Against the sizes of the two vectors.
+  double zero_level(const TestedPoint&) const override;
   SpecialPoint classify(const TestedPoint&, bool) const override { return {PointType::cusp, {}, false, "cusp"}; }
 
  private:
@@ -44,7 +46,7 @@ class AngleTest final : public TestFunction {
   AngleTest(const CriticalPair& condition, PointType type) : condition_(condition), type_(type) {}
   std::string name() const override;
   std::optional<double> value(const TestedPoint& point) const override;
-  double zero_level(const TestedPoint&) const override { return 1e-9; }
+  double zero_level(const TestedPoint&) const override { return orbit_accuracy; }
   SpecialPoint classify(const TestedPoint&, bool) const override;
 
  private:

@@ -2,9 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+
+#include "bvp/transversality.hpp"
+#include "linear_algebra/dense_matrix.hpp"
+#include "special_points/bifurcation_tests.hpp"
 
 namespace tchat {
 
@@ -45,7 +48,7 @@ Matrix once_around(const GrazingOrbitSystem& system, const CondensedSystem& cond
         v;
     const RowMajorBlock first(condensed.first_block(s), n, n);
     const RowMajorBlock last(condensed.last_block(s), n, n);
-    v = project(system, x, s, Matrix(last).partialPivLu().solve(Matrix(-(first * v))));
+    v = project(system, x, s, solve(last, -(first * v)));
   }
   return v;
 }
@@ -152,15 +155,27 @@ GrazingUnfolding grazing_unfolding(const GrazingOrbitSystem& system, const Conde
   return result;
 }
 
-std::string XiTest::name() const { return fmt::format("xi_{}", n_); }
+namespace {
+
+constexpr const char* acceleration_name = "a*";
+constexpr const char* xi_name = "xi_";
+
+}  // namespace
+
+bool tells_of_contact(const std::string& test_name) {
+  return test_name == acceleration_name || test_name.starts_with(xi_name);
+}
+
+std::string XiTest::name() const { return fmt::format("{}{}", xi_name, n_); }
+
+std::string AccelerationTest::name() const { return acceleration_name; }
 
 std::optional<double> XiTest::value(const TestedPoint& point) const {
   return grazing_unfolding(system_, point.condensed, point.orbit, jump_, n_).xi;
 }
 
 double XiTest::zero_level(const TestedPoint& point) const {
-  constexpr double rounding = 1e-9;  // each turn's share, with that of the orbit's own error
-  return rounding * grazing_unfolding(system_, point.condensed, point.orbit, jump_, n_).scale;
+  return orbit_accuracy * grazing_unfolding(system_, point.condensed, point.orbit, jump_, n_).scale;
 }
 
 SpecialPoint XiTest::classify(const TestedPoint&, bool) const {
@@ -172,6 +187,10 @@ SpecialPoint XiTest::classify(const TestedPoint&, bool) const {
 
 std::optional<double> AccelerationTest::value(const TestedPoint& point) const {
   return grazing_unfolding(system_, point.condensed, point.orbit, jump_, 0).acceleration;
+}
+
+double AccelerationTest::zero_level(const TestedPoint& point) const {
+  return no_transversality * crossing_at_end(system_, point.orbit, system_.grazing_segment()).sizes;
 }
 
 std::string AccelerationTest::details(const TestedPoint& point) const {
@@ -191,11 +210,14 @@ SpecialPoint AccelerationTest::classify(const TestedPoint&, bool) const {
 }
 
 std::optional<double> SmoothMultiplierTest::value(const TestedPoint& point) const {
-  if (!point.multipliers.determined()) return std::nullopt;
-  std::complex<double> product = 1.0;
-  for (const auto& mu : point.multipliers.values) product *= static_cast<double>(target_) - mu;
-  return product.real();
+  return multiplier_product(point, target_);
 }
+
+double SmoothMultiplierTest::zero_level(const TestedPoint& point) const {
+  return multiplier_product_level(point, target_);
+}
+
+bool SmoothMultiplierTest::is_genuine(const TestedPoint& point) const { return is_multiplier_at(point, target_); }
 
 SpecialPoint SmoothMultiplierTest::classify(const TestedPoint&, bool) const {
   return {PointType::user,

@@ -34,6 +34,9 @@ GrazingMatrices grazing_matrices(const GrazingOrbitSystem& system, const Condens
 GrazingUnfolding grazing_unfolding(const GrazingOrbitSystem& system, const CondensedSystem& condensed, const Orbit& x,
                                    int jump, int n);
 
+/// Is this the name of one of the test functions by whose values the dynamics near grazing go: a* and xi_n?
+bool tells_of_contact(const std::string& test_name);
+
 class XiTest final : public TestFunction {
  public:
   XiTest(const GrazingOrbitSystem& system, int jump, int n) : system_(system), jump_(jump), n_(n) {}
@@ -54,9 +57,9 @@ class XiTest final : public TestFunction {
 class AccelerationTest final : public TestFunction {
  public:
   AccelerationTest(const GrazingOrbitSystem& system, int jump) : system_(system), jump_(jump) {}
-  std::string name() const override { return "a*"; }
+  std::string name() const override;
   std::optional<double> value(const TestedPoint& point) const override;
-  double zero_level(const TestedPoint&) const override { return 1e-9; }
+  double zero_level(const TestedPoint& point) const override;
   std::string details(const TestedPoint& point) const override;
   SpecialPoint classify(const TestedPoint& point, bool rising) const override;
 
@@ -65,14 +68,16 @@ class AccelerationTest final : public TestFunction {
   int jump_;
 };
 
-/// Multiplier +1 (grazing-fold) or -1 (grazing-flip) of the smooth return map.
+/// Multiplier +1 (grazing-fold) or -1 (grazing-flip) of the smooth return map: the product of all such functions,
+/// without a pole where another segment's impact velocity vanishes.
 class SmoothMultiplierTest final : public TestFunction {
  public:
   /// `target` is 1 or -1.
   explicit SmoothMultiplierTest(int target) : target_(target) {}
   std::string name() const override { return target_ > 0 ? "grazing-fold" : "grazing-flip"; }
   std::optional<double> value(const TestedPoint& point) const override;
-  double zero_level(const TestedPoint&) const override { return 1e-10; }
+  double zero_level(const TestedPoint& point) const override;
+  bool is_genuine(const TestedPoint& point) const override;
   SpecialPoint classify(const TestedPoint& point, bool rising) const override;
 
  private:

@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+
+#include "bvp/orbit_accuracy.hpp"
 
 namespace tchat {
 
@@ -12,7 +15,10 @@ std::optional<double> UserValueTest::value(const TestedPoint& point) const {
   return point.orbit.par(parameter_ - 1) - wanted_;
 }
 
-double UserValueTest::zero_level(const TestedPoint&) const { return 1e-9 * (1.0 + std::abs(wanted_)); }
+/// Of the parameter's own size, which may be far from 1.
+double UserValueTest::zero_level(const TestedPoint& point) const {
+  return orbit_accuracy * std::max(std::abs(wanted_), std::abs(point.orbit.par(parameter_ - 1)));
+}
 
 SpecialPoint UserValueTest::classify(const TestedPoint&, bool) const {
   return {PointType::user,

@@ -1,10 +1,11 @@
 #include "stability/floquet_multipliers.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Householder>
 #include <algorithm>
 #include <cmath>
 
 #include "bvp/transversality.hpp"
+#include "linear_algebra/dense_matrix.hpp"
 
 namespace tchat {
 
@@ -41,6 +42,19 @@ Matrix complement(const Vector& v) {
   return q.rightCols(n - 1);
 }
 
+/// Least change, relative to each, of f0 and f1 with which they satisfy first f0 + last f1 = 0. Where errors grow along
+/// the segment it is f0 that they are measured at, where they decay f1: neither is divided by what the other lost.
+double flow_defect(const RowMajorBlock& first, const Vector& f0, const RowMajorBlock& last, const Vector& f1) {
+  const Eigen::Index n = f0.size();
+  const double size0 = f0.norm() > 0.0 ? f0.norm() : 1.0;
+  const double size1 = f1.norm() > 0.0 ? f1.norm() : 1.0;
+  Matrix rows(n, 2 * n);
+  rows << size0 * first, size1 * last;
+  Vector both(2 * n);
+  both << f0 / size0, f1 / size1;
+  return distance_to_null_space(rows, both);
+}
+
 }  // namespace
 
 bool FloquetMultipliers::stable() const { return valid && stable_count() == static_cast<int>(values.size()); }
@@ -52,12 +66,32 @@ int FloquetMultipliers::stable_count() const {
 
 /// What the end of one segment contributes.
 struct FloquetSolver::SegmentEnd {
-  Matrix tangent;         // Z_s: n x (n - 1)
-  Matrix jump_tangent;    // g_x Z_s: n x (n - 1)
-  Matrix projection;      // F_s: n x (n - 1)
-  double transversality;  // h_x f / (|h_x| |f|)
+  Matrix tangent;                // Z_s: n x (n - 1)
+  Matrix jump_tangent;           // g_x Z_s: n x (n - 1)
+  Matrix projection;             // F_s: n x (n - 1)
+  double transversality;         // a_s = h_x f / (|h_x| |f|)
+  ScaledReal determinant_share;  // det E_s / a_s
   double flow_defect;
 };
+
+/// det E_s / a_s. [F, u]^T C [Z, f] with u = C f / |C f| is block triangular, with E_s and |C f| on its diagonal, and
+/// det [Z, f] = det [Z, h_x / |h_x|] a_s |f|.
+ScaledReal FloquetSolver::determinant_share(const SegmentEnd& end, const Matrix& last, const Vector& hx,
+                                            const Vector& f) {
+  const auto unit = [](const Vector& v) {
+    return v.norm() > 0.0 ? Vector(v / v.norm()) : Vector(Vector::Unit(v.size(), 0));
+  };
+  Matrix rows(hx.size(), hx.size());
+  Matrix columns(hx.size(), hx.size());
+  rows << end.projection, unit(last * f);
+  columns << end.tangent, unit(hx);
+  ScaledReal result = determinant(last);
+  result *= determinant(rows);
+  result *= determinant(columns);
+  const double flow = (last * f).norm();
+  if (flow > 0.0) result *= f.norm() / flow;
+  return result;
+}
 
 FloquetSolver::FloquetSolver(const OrbitShape& shape)
     : shape_(shape),
@@ -67,21 +101,35 @@ FloquetSolver::FloquetSolver(const OrbitShape& shape)
       e_sizes_(a_.size()),
       qz_(shape.dimension - 1, shape.segments) {}
 
-/// Of the product of E_s^-1 A'_s, whose entries are disturbed by this share of the blocks that they are projected from
-/// (what is left of these at h_x f = 0 may be rounding); none when the iteration fails.
-std::vector<std::complex<double>> FloquetSolver::eigenvalues(double disturbance) {
+/// The blocks, with entries disturbed by this share of the blocks that they are projected from: what is left of these
+/// at h_x f = 0 may be rounding. `way` chooses one of many such disturbances.
+FloquetSolver::Blocks FloquetSolver::disturbed(double disturbance, int way) const {
+  Blocks blocks{e_, a_};
+  if (disturbance == 0.0) return blocks;
   double k = 0.0;
-  const auto disturbed = [&](const Matrix& matrix, double size, int i, int j) {
-    k += 1.0;
-    return matrix(i, j) + size * std::cos(k * k);  // any fixed numbers without pattern
+  const auto disturb = [&](Matrix& block, double size) {
+    for (double& entry : block.reshaped()) {
+      k += 1.0;
+      entry += disturbance * size * std::cos((k + 0.1 * way) * k);  // any fixed numbers without pattern
+    }
   };
+  for (std::size_t s = 0; s < a_.size(); ++s) {
+    disturb(blocks.a[s], a_sizes_[s]);
+    disturb(blocks.e[s], e_sizes_[s]);
+  }
+  return blocks;
+}
+
+/// Of the product of E_s^-1 A'_s, disturbed; none when the iteration fails.
+std::vector<std::complex<double>> FloquetSolver::eigenvalues(double disturbance, int way) {
+  const Blocks blocks = disturbed(disturbance, way);
   const int n = shape_.dimension - 1;
   for (int s = 0; s < shape_.segments; ++s) {
     const auto at = static_cast<std::size_t>(s);
     for (int i = 0; i < n; ++i)
       for (int j = 0; j < n; ++j) {
-        qz_.a(s, i, j) = disturbed(a_[at], disturbance * a_sizes_[at], i, j);
-        qz_.e(s, i, j) = disturbed(e_[at], disturbance * e_sizes_[at], i, j);
+        qz_.a(s, i, j) = blocks.a[at](i, j);
+        qz_.e(s, i, j) = blocks.e[at](i, j);
       }
   }
   std::vector<std::complex<double>> values;
@@ -91,19 +139,42 @@ std::vector<std::complex<double>> FloquetSolver::eigenvalues(double disturbance)
   return values;
 }
 
-/// Those that are elsewhere when everything is known a little less well.
+/// Those that are elsewhere when everything is known a little less well, in any of several ways: what is noise may come
+/// out near the same place once.
 void FloquetSolver::leave_out_undetermined(FloquetMultipliers& result) {
-  std::vector<std::complex<double>> others = eigenvalues(no_transversality);
-  std::vector<std::complex<double>> known;
-  for (const auto& mu : result.values) {
-    const auto nearer = [&mu](const auto& a, const auto& b) { return chord(a, mu) < chord(b, mu); };
-    const auto nearest = std::min_element(others.begin(), others.end(), nearer);
-    if (nearest == others.end() || chord(*nearest, mu) > unknown) continue;
-    known.push_back(mu);
-    others.erase(nearest);
+  constexpr int ways = 5;
+  const std::size_t all = result.values.size();
+  for (int way = 1; way <= ways; ++way) {
+    std::vector<std::complex<double>> others = eigenvalues(no_transversality, way);
+    std::vector<std::complex<double>> known;
+    for (const auto& mu : result.values) {
+      const auto nearer = [&mu](const auto& a, const auto& b) { return chord(a, mu) < chord(b, mu); };
+      const auto nearest = std::min_element(others.begin(), others.end(), nearer);
+      if (nearest == others.end() || chord(*nearest, mu) > unknown) continue;
+      known.push_back(mu);
+      others.erase(nearest);
+    }
+    result.values = std::move(known);
   }
-  result.undetermined = static_cast<int>(result.values.size() - known.size());
-  result.values = std::move(known);
+  result.undetermined = static_cast<int>(all - result.values.size());
+}
+
+void FloquetSolver::form_products(const std::vector<SegmentEnd>& ends, bool touches, FloquetMultipliers& result) const {
+  ScaledReal regular;  // det E_1 ... det E_m / (a_1 ... a_m)
+  for (const SegmentEnd& end : ends) regular *= end.determinant_share;
+  const CyclicDeterminant exact(e_, a_);
+  const auto value = [&regular](const CyclicDeterminant& determinant, double t) {
+    ScaledReal product = determinant.at(t);
+    product /= regular;
+    return product.value(infinite_multiplier);
+  };
+  result.with_one.value = value(exact, 1.0);
+  result.with_minus_one.value = value(exact, -1.0);
+  if (!touches) return;
+  const Blocks blocks = disturbed(no_transversality, 1);
+  const CyclicDeterminant nearby(blocks.e, blocks.a);
+  result.with_one.uncertainty = std::abs(value(nearby, 1.0) - result.with_one.value);
+  result.with_minus_one.uncertainty = std::abs(value(nearby, -1.0) - result.with_minus_one.value);
 }
 
 FloquetMultipliers FloquetSolver::compute(const CondensedSystem& condensed, const Orbit& x) {
@@ -133,8 +204,8 @@ FloquetMultipliers FloquetSolver::compute(const CondensedSystem& condensed, cons
     end.projection = complement(last * f1);
     const double sizes = hx.norm() * f1.norm();
     end.transversality = sizes > 0.0 ? hx.dot(f1) / sizes : 0.0;
-    const Vector defect = Matrix(last).partialPivLu().solve(first * f0 + last * f1);
-    end.flow_defect = f1.norm() > 0.0 ? defect.norm() / f1.norm() : defect.norm();
+    end.flow_defect = flow_defect(first, f0, last, f1);
+    end.determinant_share = determinant_share(end, last, hx, f1);
     structural = std::max(structural, end.flow_defect);
     least_transversality = std::min(least_transversality, std::abs(end.transversality));
   }
@@ -151,10 +222,12 @@ FloquetMultipliers FloquetSolver::compute(const CondensedSystem& condensed, cons
 
   FloquetMultipliers result;
   result.structural = std::isfinite(structural) ? std::min(structural, infinite_multiplier) : infinite_multiplier;
-  result.values = eigenvalues(0.0);
+  result.values = eigenvalues(0.0, 0);
   result.valid = n == 1 || !result.values.empty();
   if (!result.valid) return result;
-  if (least_transversality < near_grazing) leave_out_undetermined(result);
+  const bool touches = least_transversality < near_grazing;
+  form_products(ends, touches, result);
+  if (touches) leave_out_undetermined(result);
   if (least_transversality <= no_transversality && !result.values.empty()) {
     const auto by_size = [](const auto& a, const auto& b) { return std::abs(a) < std::abs(b); };
     const auto largest = std::max_element(result.values.begin(), result.values.end(), by_size);

@@ -16,21 +16,36 @@
 /// folds or period doublings ends at grazing) the pencil is singular, and a multiplier has a finite limit that cannot
 /// be read off it any more: it is 0/0. Such a one is known by what an error of the orbit's size makes of it.
 ///
+/// The functions of the multipliers that vanish where one is +1 or -1 are determinants of the same pencils,
+///
+///     det(1 - t E_m^-1 A'_m ... E_1^-1 A'_1) a_1 ... a_m,     t = 1 or -1,     a_s = h_x f / (|h_x| |f|),
+///
+/// the product of 1 - t mu over the nontrivial multipliers and of the a_s. Each det E_s is a_s times what never
+/// vanishes, so that nothing is divided by a_s, and nothing has a pole or a gap where one is zero.
+///
 /// The projection removes the structural zero multiplier. What is printed in its place is its size as the
-/// discretisation sees it: how far Phi_s f(x_s(0)) misses f(x_s(1)), relatively, on the worst segment. It is 0 for the
-/// exact flow, and an error figure of the mesh.
+/// discretisation sees it: the least relative change of f(x_s(0)) and f(x_s(1)) with which Phi_s takes one to the
+/// other, on the worst segment. It is 0 for the exact flow, and an error figure of the mesh.
 #pragma once
 
 #include <complex>
 #include <vector>
 
 #include "bvp/condensed_system.hpp"
+#include "stability/cyclic_determinant.hpp"
 #include "stability/periodic_qz.hpp"
 
 namespace tchat {
 
 /// What is printed for a multiplier that is infinite (grazing) or too large for files.
 inline constexpr double infinite_multiplier = 1e99;
+
+/// det(1 - t M) a_1 ... a_m, see above.
+struct MultiplierProduct {
+  double value = 0.0;
+  /// What errors of the size `no_transversality` make of it where an a_s is about zero; 0 elsewhere.
+  double uncertainty = 0.0;
+};
 
 struct FloquetMultipliers {
   /// n multipliers, the structural zero among them: the one closest to 1 first, then by | |mu| - 1 |.
@@ -40,6 +55,8 @@ struct FloquetMultipliers {
   /// Nontrivial multipliers that are left out of `values`: where h_x f = 0 they may be 0/0, and what comes out is
   /// noise.
   int undetermined = 0;
+  MultiplierProduct with_one = {};        ///< t = 1: vanishes with a multiplier +1
+  MultiplierProduct with_minus_one = {};  ///< t = -1: vanishes with a multiplier -1
 
   bool determined() const { return valid && undetermined == 0; }
 
@@ -58,8 +75,15 @@ class FloquetSolver {
 
  private:
   struct SegmentEnd;
-  std::vector<std::complex<double>> eigenvalues(double disturbance);
+  struct Blocks {
+    std::vector<Eigen::MatrixXd> e, a;
+  };
+  Blocks disturbed(double disturbance, int way) const;
+  std::vector<std::complex<double>> eigenvalues(double disturbance, int way);
   void leave_out_undetermined(FloquetMultipliers& result);
+  static ScaledReal determinant_share(const SegmentEnd& end, const Eigen::MatrixXd& last, const Eigen::VectorXd& hx,
+                                      const Eigen::VectorXd& f);
+  void form_products(const std::vector<SegmentEnd>& ends, bool touches, FloquetMultipliers& result) const;
 
   OrbitShape shape_;
   std::vector<Eigen::MatrixXd> a_;  // A'_s

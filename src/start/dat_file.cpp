@@ -6,10 +6,10 @@
 #include <cmath>
 
 #include "constants/constant_value.hpp"
+#include "constants/text_file.hpp"
 #include "constants/user_error.hpp"
 #include "hybrid/parameter_vector.hpp"
 #include "start/fortran_number.hpp"
-#include "start/text_file.hpp"
 
 namespace tchat {
 

@@ -4,8 +4,8 @@
 #include <optional>
 
 #include "constants/constant_value.hpp"
+#include "constants/text_file.hpp"
 #include "start/fortran_number.hpp"
-#include "start/text_file.hpp"
 
 namespace tchat {
 

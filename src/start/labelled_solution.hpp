@@ -57,7 +57,8 @@ struct LabelledSolution {
   std::vector<double> tau;                  ///< NTPL = mesh_intervals * collocation_points + 1 values from 0 to 1
   Eigen::MatrixXd states;                   ///< (n m) x NTPL, segment 1's states first
   std::vector<int> free_parameters;         ///< ICP really used, durations included
-  std::vector<double> parameter_direction;  ///< d PAR(free_parameters[i]) / ds; empty without direction
+  std::vector<double> parameter_direction;  ///< d PAR(free_parameters[i]) / ds, ds > 0 on along the branch as
+                                            ///< its run went; empty without direction
   Eigen::MatrixXd state_direction;          ///< like states; 0 x 0 without direction
   std::vector<double> parameters;           ///< PAR(1..NPAR - NPARI)
   UserPointKind kind;                       ///< from the NPARI internal values

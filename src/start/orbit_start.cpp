@@ -121,8 +121,26 @@ std::optional<OrbitVector> stored_direction(const LabelledSolution& solution, co
 
 }  // namespace
 
+std::optional<Orbit> orbit_from_rows(const DatFile& data, const OrbitShape& shape, const ParameterVector& par) {
+  constexpr int highest_degree = 7;
+  const int rows = static_cast<int>(data.tau.size()) - 1;
+  for (int degree = highest_degree; degree > 1; --degree) {
+    if (rows % degree != 0) continue;
+    const OrbitShape stored{shape.dimension, shape.segments, rows / degree, degree};
+    const std::vector<double> mesh = mesh_of_rows(data, stored);
+    if (mesh.empty()) continue;
+    Orbit orbit{shape, resampled_mesh(mesh, shape.intervals), {}, par};
+    orbit.states = interpolate_states(unstack(data.states, shape.dimension), stored, mesh, shape, orbit.mesh);
+    return orbit;
+  }
+  return std::nullopt;
+}
+
 Orbit orbit_from_data(const DatFile& data, const OrbitShape& shape, const ParameterVector& par) {
   if (const std::vector<double> mesh = mesh_of_rows(data, shape); !mesh.empty()) return on_mesh(data, mesh, shape, par);
+  std::optional<Orbit> same_density = orbit_from_rows(data, shape, par);
+  // On a coarser mesh every interval covers several, and which of them it had best unite is seen anew.
+  if (same_density && shape.nodes() >= static_cast<int>(data.tau.size())) return *std::move(same_density);
   Orbit orbit = on_mesh(data, mesh_of_data(data, shape.intervals), shape, par);
   // Fewer rows than nodes say nothing of the derivatives between them.
   if (static_cast<int>(data.tau.size()) < shape.nodes()) return orbit;

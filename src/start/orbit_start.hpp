@@ -16,10 +16,14 @@ struct OrbitStart {
 };
 
 /// Fits a mesh to the rows of a .dat file and interpolates the states by cubics through four neighbouring rows: the
-/// mesh that the rows lie on, when there is one of this shape; otherwise one that equidistributes the estimated error
-/// of the data, or, where there are fewer rows than nodes, time and arclength of the scaled states. `par` holds the
-/// parameters and the durations.
+/// mesh that the rows lie on, when there is one of this shape; that of orbit_from_rows(), when it is not coarser than
+/// the rows; otherwise one that equidistributes the estimated error of the data, or, where there are fewer rows than
+/// nodes, time and arclength of the scaled states. `par` holds the parameters and the durations.
 Orbit orbit_from_data(const DatFile& data, const OrbitShape& shape, const ParameterVector& par);
+
+/// Rows that divide mesh intervals of different length into equal parts, as those of a simulated orbit do, are an orbit
+/// of piecewise polynomials: that one on a mesh of the same density. Nothing when the rows lie on no mesh.
+std::optional<Orbit> orbit_from_rows(const DatFile& data, const OrbitShape& shape, const ParameterVector& par);
 
 /// The labelled solution on a mesh of shape.intervals and shape.collocation: its own where they agree, otherwise one of
 /// the same density. The direction is kept when it has one and its free problem parameters are `free_parameters`, in

@@ -28,4 +28,8 @@ std::string run_name(const std::string& path) {
   return prefixed ? name.substr(2) : name;
 }
 
+std::string run_path(const std::string& path) {
+  return (std::filesystem::path(path).parent_path() / run_name(path)).string();
+}
+
 }  // namespace tchat

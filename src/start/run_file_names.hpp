@@ -11,5 +11,7 @@ std::string sibling_path(const std::string& path, char letter);
 
 /// "results/p.mems" -> "mems".
 std::string run_name(const std::string& path);
+/// "results/p.mems" -> "results/mems", where the problem of a run is looked for.
+std::string run_path(const std::string& path);
 
 }  // namespace tchat

@@ -9,11 +9,11 @@
 #include <optional>
 
 #include "constants/constant_value.hpp"
+#include "constants/text_file.hpp"
 #include "constants/user_error.hpp"
 #include "hybrid/parameter_vector.hpp"
 #include "start/fortran_number.hpp"
 #include "start/solution_identifier.hpp"
-#include "start/text_file.hpp"
 
 namespace tchat {
 
@@ -370,6 +370,13 @@ const LabelledSolution& find_solution(const std::vector<LabelledSolution>& solut
   throw UserError(solutions.empty()
                       ? fmt::format("{}: no {}; the file holds no solution", path, wanted)
                       : fmt::format("{}: no {}; there are the labels {}", path, wanted, label_list(solutions)));
+}
+
+StartLabel read_label(const std::string& word) {
+  if (const auto number = parse_integer(word); number && *number >= 0) return {"", *number};
+  if (const auto typed = parse_typed_label(word)) return *typed;
+  throw UserError(fmt::format("{} is no label; a number or a type with its count is needed, such as 5, GR1 or PD1",
+                              in_quotes(word)));
 }
 
 int segment_count(const LabelledSolution& solution) {

@@ -40,6 +40,9 @@ std::string resolve_solution_path(const std::string& path);
 const LabelledSolution& find_solution(const std::vector<LabelledSolution>& solutions, const StartLabel& label,
                                       const std::string& path);
 
+/// A label as users name it: a number, or a type with its count, GR1. Throws UserError.
+StartLabel read_label(const std::string& word);
+
 /// Number of segments m: rows / n; for files of the older generation the number of durations among the free parameters.
 /// 0 when neither tells.
 int segment_count(const LabelledSolution& solution);

@@ -1,8 +1,7 @@
 #include "start/solution_labels.hpp"
 
-#include <fstream>
-
 #include "constants/constant_value.hpp"
+#include "constants/text_file.hpp"
 #include "start/fortran_number.hpp"
 
 namespace tchat {
@@ -26,10 +25,10 @@ std::optional<std::vector<int>> identifier(const std::string& line) {
 }
 
 /// False when the file ends before so many lines, or in the last one.
-bool skip(std::istream& in, int lines) {
+bool skip(TextLines& in, int lines) {
   std::string line;
   for (int k = 0; k < lines; ++k)
-    if (!std::getline(in, line) || in.eof()) return false;
+    if (!in.next(line) || in.ended_within_line()) return false;
   return true;
 }
 
@@ -37,11 +36,11 @@ bool skip(std::istream& in, int lines) {
 
 std::optional<std::vector<int>> whole_solution_labels(const std::string& path) {
   std::vector<int> labels;
-  std::ifstream in(path, std::ios::binary);
-  for (std::string line; std::getline(in, line);) {
+  TextLines in(path, "labelled solutions");
+  for (std::string line; in.next(line);) {
     if (split_words(line).empty()) continue;
     const auto integers = identifier(line);
-    if (!integers) return in.eof() ? std::optional(labels) : std::nullopt;
+    if (!integers) return in.ended_within_line() ? std::optional(labels) : std::nullopt;
     if (!skip(in, (*integers)[lines_place])) break;
     if ((*integers)[points_place] > 0) labels.push_back((*integers)[label_place]);
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "resegment/contact_point.hpp"
 
@@ -88,6 +89,16 @@ double jump_defect(const HybridSystem& system, const IndexVector& index, const O
   return (after - next).cwiseAbs().cwiseQuotient(scale).maxCoeff();
 }
 
+void compare_critical(const std::vector<std::complex<double>>& critical, const ReturnPencil& pencil,
+                      OrbitCheck& check) {
+  for (const std::complex<double>& wanted : critical) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const std::complex<double>& mu : check.multipliers) least = std::min(least, std::abs(mu - wanted));
+    check.critical_difference = std::max(check.critical_difference.value_or(0.0), least);
+    check.critical_error = std::max(check.critical_error, pencil.backward_error(wanted));
+  }
+}
+
 }  // namespace
 
 VectorXd state_scales(const Orbit& x) {
@@ -97,7 +108,8 @@ VectorXd state_scales(const Orbit& x) {
 }
 
 OrbitCheck check_orbit(const HybridSystem& system, const RunSettings& settings, const Orbit& x,
-                       const std::vector<std::complex<double>>& stored, double tolerance) {
+                       const std::vector<std::complex<double>>& stored, double tolerance,
+                       const CriticalMultipliers& critical) {
   OrbitCheck check;
   const VectorXd scale = state_scales(x);
   const VectorXd par = x.par;
@@ -118,6 +130,7 @@ OrbitCheck check_orbit(const HybridSystem& system, const RunSettings& settings, 
   const ReturnPencil pencil(links);
   if (!pencil.determines_multipliers(tolerance)) return check;
   check.multipliers = pencil.multipliers();
+  if (critical) compare_critical(critical(check.multipliers), pencil, check);
   if (stored.size() != check.multipliers.size()) return check;
   check.multiplier_difference = largest_difference(stored, check.multipliers);
   for (const std::complex<double>& mu : stored)
@@ -142,6 +155,11 @@ std::vector<Defect> defects_of(const OrbitCheck& check, std::size_t s, double to
 bool are_multipliers_wrong(const OrbitCheck& check, double tolerance) {
   return check.multiplier_difference && *check.multiplier_difference > tolerance &&
          check.multiplier_error > explained * tolerance;
+}
+
+bool are_critical_ones_wrong(const OrbitCheck& check, double tolerance) {
+  return check.critical_difference && *check.critical_difference > tolerance &&
+         check.critical_error > explained * tolerance;
 }
 
 }  // namespace tchat

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <complex>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -22,22 +23,32 @@ struct OrbitCheck {
   std::vector<std::complex<double>> multipliers;
   std::optional<double> multiplier_difference;  ///< from the stored ones (largest_difference)
   double multiplier_error = 0.0;                ///< largest backward error of a stored one
+  /// Of the multipliers that the label must have (critical_label.hpp): the largest distance from the nearest one, and
+  /// the largest backward error.
+  std::optional<double> critical_difference;
+  double critical_error = 0.0;
 };
 
 /// Sizes by which defects of the states are measured: max |x_k| over the orbit, but at least a thousandth of the
 /// largest.
 Eigen::VectorXd state_scales(const Orbit& x);
 
-/// `stored`: the multipliers of the d-file; empty when there are none.
+/// `stored`: the multipliers of the d-file; empty when there are none. `critical`: those that the label must have, by
+/// the computed ones.
+using CriticalMultipliers =
+    std::function<std::vector<std::complex<double>>(const std::vector<std::complex<double>>& computed)>;
 OrbitCheck check_orbit(const HybridSystem& system, const RunSettings& settings, const Orbit& x,
-                       const std::vector<std::complex<double>>& stored, double tolerance);
+                       const std::vector<std::complex<double>>& stored, double tolerance,
+                       const CriticalMultipliers& critical = {});
 
 /// What is beyond `tolerance`, with the growth of errors (growth * 1e-9 where that is more): one list for a segment,
 /// one for the multipliers.
-enum class Defect { not_integrated, state, time, event, multipliers };
+enum class Defect { not_integrated, state, time, event, multipliers, critical };
 std::vector<Defect> defects_of(const OrbitCheck& check, std::size_t segment, double tolerance);
 /// They differ by more than `tolerance`, and by more than a change of the map by a hundredth of it explains:
 /// multipliers that are many times as sensitive as the map (Jordan blocks, impacts of low velocity) are known to less.
 bool are_multipliers_wrong(const OrbitCheck& check, double tolerance);
+/// The same of the multipliers that the label must have: it is no point of its kind.
+bool are_critical_ones_wrong(const OrbitCheck& check, double tolerance);
 
 }  // namespace tchat

@@ -1,10 +1,9 @@
 #include "verification/return_pencil.hpp"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
+
+#include "linear_algebra/dense_matrix.hpp"
 
 namespace tchat {
 
@@ -73,15 +72,15 @@ std::vector<Complex> ReturnPencil::multipliers() const {
   std::vector<Complex> values;
   if (!a_.allFinite()) return values;
   if (a_.rows() == n) {
-    const Eigen::VectorXcd mu = a_.eigenvalues();
+    const Eigen::VectorXcd mu = eigenvalues(a_);
     values.assign(mu.begin(), mu.end());
     sort_by_modulus(values);
     return values;
   }
   MatrixXd b = MatrixXd::Zero(a_.rows(), a_.cols());
   b.topLeftCorner(n, n).setIdentity();
-  const MatrixXd inverted = (a_ - shift * b).fullPivLu().solve(b);
-  const Eigen::VectorXcd nu = inverted.eigenvalues();
+  const MatrixXd inverted = solve_with_complete_pivoting(a_ - shift * b, b);
+  const Eigen::VectorXcd nu = eigenvalues(inverted);
   std::vector<Complex> reciprocals(nu.begin(), nu.end());
   sort_by_modulus(reciprocals);
   reciprocals.resize(static_cast<std::size_t>(n));  // those dropped are the conditions' own, infinite
@@ -99,8 +98,7 @@ bool ReturnPencil::determines_multipliers(double tolerance) const {
 double ReturnPencil::backward_error(Complex mu) const {
   MatrixXcd difference = a_.cast<Complex>();
   for (Index i = 0; i < dimension_; ++i) difference(i, i) -= mu;
-  const Eigen::VectorXd singular = Eigen::JacobiSVD<MatrixXcd>(difference).singularValues();
-  return singular(singular.size() - 1) / (a_.norm() + std::abs(mu));
+  return least_singular_value(difference) / (a_.norm() + std::abs(mu));
 }
 
 double largest_difference(std::vector<Complex> stored, std::vector<Complex> computed) {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
+#include <optional>
 
 #include "bvp/admissibility.hpp"
 #include "constants/constant_value.hpp"
@@ -23,28 +24,12 @@
 #include "start/point_type.hpp"
 #include "start/run_file_names.hpp"
 #include "start/solution_file_reader.hpp"
+#include "verification/critical_label.hpp"
 #include "verification/orbit_check.hpp"
 
 namespace tchat {
 
 namespace {
-
-StartLabel read_label(const std::string& text) {
-  if (const auto number = parse_integer(text); number && *number >= 1) return {"", *number};
-  if (const auto typed = parse_typed_label(text)) return *typed;
-  throw UserError(fmt::format("{} is no label; a number or a type with its count is needed, such as 5, GR1 or PD1",
-                              in_quotes(text)));
-}
-
-std::string constants_of(const VerifyRequest& request, const std::string& solutions) {
-  if (request.constants) return constants_path(*request.constants);
-  const std::string used = sibling_path(solutions, 'r');
-  if (!used.empty() && std::filesystem::exists(used)) return used;
-  const std::string made = (std::filesystem::path(solutions).parent_path() / ("gc." + run_name(solutions))).string();
-  if (std::filesystem::exists(made)) return made;  // of `tchat resegment`
-  throw UserError(fmt::format("there is no {} with the constants of the run that wrote {}; give them with -c C",
-                              used.empty() ? "r-file" : used, solutions));
-}
 
 std::vector<LabelledSolution> chosen(const VerifyRequest& request, const SolutionFile& file, const std::string& path) {
   if (request.labels.empty()) return file.solutions;
@@ -84,6 +69,8 @@ const char* word_for(Defect defect) {
       return "time";
     case Defect::event:
       return "event";
+    case Defect::critical:
+      return "no critical multiplier";
     default:
       return "multipliers";
   }
@@ -109,7 +96,7 @@ class Table {
  public:
   Table(const HybridSystem& system, const RunSettings& settings, double tolerance, std::ostream& screen)
       : system_(system), settings_(settings), tolerance_(tolerance), screen_(screen) {
-    screen_ << " LAB  TY SEG              T    STATE     TIME   GROWTH  MULTIPL.  EVENT\n";
+    screen_ << " LAB  TY SEG              T    STATE     TIME   GROWTH  MULTIPL.  CRITICAL  EVENT\n";
   }
 
   Verdict add(const LabelledSolution& solution, const DiagnosticPoint* recorded) {
@@ -120,7 +107,10 @@ class Table {
     }
     const Orbit x = orbit_of(solution);
     const auto stored = recorded != nullptr ? recorded->multipliers : std::vector<std::complex<double>>{};
-    const OrbitCheck check = check_orbit(system_, settings_, x, stored, tolerance_);
+    const OrbitCheck check =
+        check_orbit(system_, settings_, x, stored, tolerance_, [&](const std::vector<std::complex<double>>& computed) {
+          return critical_multipliers(solution, stored, computed);
+        });
     const bool is_inadmissible = recorded != nullptr
                                      ? !recorded->admissible
                                      : !inadmissibilities(system_, settings_.signature(), monitored(), x).empty();
@@ -128,8 +118,10 @@ class Table {
   }
 
   std::string worst() const {
-    return fmt::format("Largest defects: states {:.1e} ({}), times {:.1e} ({}), multipliers {:.1e} ({}).\n",
-                       state_.value, state_.where, time_.value, time_.where, multipliers_.value, multipliers_.where);
+    return fmt::format(
+        "Largest defects: states {:.1e} ({}), times {:.1e} ({}), multipliers {:.1e} ({}), critical ones {:.1e} ({}).\n",
+        state_.value, state_.where, time_.value, time_.where, multipliers_.value, multipliers_.where, critical_.value,
+        critical_.where);
   }
 
  private:
@@ -182,6 +174,7 @@ class Table {
       std::vector<Defect> defects = defects_of(check, s, tolerance_);
       const bool excused = is_inadmissible && std::erase(defects, Defect::event) > 0;
       if (s == 0 && are_multipliers_wrong(check, tolerance_)) defects.push_back(Defect::multipliers);
+      if (s == 0 && are_critical_ones_wrong(check, tolerance_)) defects.push_back(Defect::critical);
       verdict.is_right = verdict.is_right && defects.empty();
       verdict.is_inadmissible = verdict.is_inadmissible || excused;
       std::vector<const char*> words;
@@ -194,15 +187,17 @@ class Table {
       state_.take(segment.state_defect, place);
       time_.take(time, place);
       const std::string name = s == 0 ? fmt::format("{:>4}  {:<2}", solution.label, type_name(solution)) : "";
-      const std::string multipliers =
-          s == 0 && check.multiplier_difference ? fmt::format("{:.1e}", *check.multiplier_difference) : "";
-      screen_ << fmt::format("{:<8}{:>4}{:>15.7g}{:>9.1e}{:>9.1e}{:>9.1e}{:>10}  {}{}\n", name, s + 1,
-                             check.durations[s], segment.state_defect, time, segment.growth, multipliers,
-                             events(check, s), end);
+      const auto once = [s](const std::optional<double>& value) {
+        return s == 0 && value ? fmt::format("{:.1e}", *value) : "";
+      };
+      screen_ << fmt::format("{:<8}{:>4}{:>15.7g}{:>9.1e}{:>9.1e}{:>9.1e}{:>10}{:>10}  {}{}\n", name, s + 1,
+                             check.durations[s], segment.state_defect, time, segment.growth,
+                             once(check.multiplier_difference), once(check.critical_difference), events(check, s), end);
     }
     if (!check.multiplier_difference) screen_ << multipliers_of(check);
     if (check.multiplier_difference)
       multipliers_.take(*check.multiplier_difference, fmt::format("label {}", solution.label));
+    if (check.critical_difference) critical_.take(*check.critical_difference, fmt::format("label {}", solution.label));
     return verdict;
   }
 
@@ -210,7 +205,7 @@ class Table {
   const RunSettings& settings_;
   double tolerance_;
   std::ostream& screen_;
-  Largest state_, time_, multipliers_;
+  Largest state_, time_, multipliers_, critical_;
 };
 
 /// Labels in a summary.
@@ -238,12 +233,11 @@ bool verify_solutions(const VerifyRequest& request, std::ostream& screen, std::o
   const std::string path = resolve_solution_path(request.solutions);
   const SolutionFile file = read_solution_file(path);
   const std::vector<LabelledSolution> solutions = chosen(request, file, path);
-  const std::string constants = constants_of(request, path);
+  const std::string constants = constants_of_run(request.constants, path);
   bool named_parameters = false;
   RunSettings settings = read_constants_file(constants, nullptr, names_to_come(named_parameters));
 
-  const std::string plugin =
-      resolve_plugin(request.problem.value_or((std::filesystem::path(path).parent_path() / run_name(path)).string()));
+  const std::string plugin = resolve_plugin(request.problem.value_or(run_path(path)));
   const ExitGuard guard(plugin);
   const ProblemLibrary library(plugin, [&] { return problem_sizes(settings); });
   const HybridSystem& system = library.system();

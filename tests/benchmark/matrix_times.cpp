@@ -125,14 +125,14 @@ void print_matrix_times(int rounds) {
   std::vector<double> fp(n);
 
   RandomBlocks interval_blocks(intervals, 16, 12, 24);
-  const BlockKernel chain = chain_kernel(n, scalars);
-  RandomBlocks chain_blocks(intervals - 1, chain.rows(), chain.pivots(), chain.width());
+  const BlockKernel join = join_kernel(n, scalars);
+  RandomBlocks join_blocks(intervals - 1, join.rows(), join.pivots(), join.width());
   Remainder remainder;
 
   const auto eliminate_interval = [](double* a, int* swaps) {
     keep(eliminate(FixedSizes<16, 12, 24>{}, a, border, swaps));
   };
-  const auto eliminate_chain = [&](double* a, int* swaps) { keep(chain.eliminate(a, border, swaps)); };
+  const auto eliminate_join = [&](double* a, int* swaps) { keep(join.eliminate(a, border, swaps)); };
   const auto derivatives = [&] {
     for (int k = 0; k + 1 < x.shape.nodes(); ++k)
       system.first(FunctionKind::field, 1, x.node(0, k), x.par.data(), walk.system().free_parameters(), f.data(),
@@ -145,8 +145,8 @@ void print_matrix_times(int rounds) {
     linearization,
     solution,
     derivative,
-    chain_work,
-    chain_copy,
+    join_work,
+    join_copy,
     factors,
     sparse_solve,
     residuals,
@@ -159,8 +159,8 @@ void print_matrix_times(int rounds) {
   parts[linearization].work = [&] { keep(condensed.linearize(x, rows, residual)); };
   parts[solution].work = [&] { condensed.solve(residual, targets, dx); };
   parts[derivative].work = derivatives;
-  parts[chain_work].work = [&] { chain_blocks.run(eliminate_chain); };
-  parts[chain_copy].work = [&] { chain_blocks.copy(); };
+  parts[join_work].work = [&] { join_blocks.run(eliminate_join); };
+  parts[join_copy].work = [&] { join_blocks.copy(); };
   parts[factors].work = [&] { remainder.factorize(); };
   parts[sparse_solve].work = [&] { remainder.solve(); };
   parts[residuals].work = [&] { condensed.evaluate(x, residual); };
@@ -183,7 +183,7 @@ void print_matrix_times(int rounds) {
   const double linearize_units = in_units({linearization});
   const double solve_units = in_units({solution});
   const double derivative_units = in_units({derivative});
-  const double chain_units = in_units({chain_work}, chain_copy);
+  const double join_units = in_units({join_work}, join_copy);
   const double factor_units = in_units({factors});
   const double sparse_units = in_units({sparse_solve});
 
@@ -194,10 +194,10 @@ void print_matrix_times(int rounds) {
   print_line("  linearize", linearize_units, second);
   print_line("    derivatives of the field at the collocation points", derivative_units, second);
   print_line("    local eliminations (1 by definition)", 1.0, second);
-  print_line("    chain of mesh nodes: its eliminations, on random blocks", chain_units, second);
+  print_line("    joins of intervals: their eliminations, on random blocks", join_units, second);
   print_line("    UMFPACK: factors of a matrix of the same pattern", factor_units, second);
   print_line("    the rest: interpolation, filling, gathering",
-             linearize_units - derivative_units - 1.0 - chain_units - factor_units, second);
+             linearize_units - derivative_units - 1.0 - join_units - factor_units, second);
   print_line("  solve", solve_units, second);
   print_line("    UMFPACK: forward and back-substitution", sparse_units, second);
   print_line("    the rest: forward sweep, back-substitution to all nodes", solve_units - sparse_units, second);

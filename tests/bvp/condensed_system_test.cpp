@@ -1,10 +1,10 @@
 // The condensed linearisation against finite differences of the residual and against the integrated flow.
 #include <Eigen/Dense>
 #include <catch2/catch.hpp>
-#include <random>
 
 #include "bvp/condensed_system.hpp"
 #include "bvp/periodic_orbit_system.hpp"
+#include "directional_derivative.hpp"
 #include "support/linear_oscillator.hpp"
 #include "support/three_modes.hpp"
 
@@ -12,37 +12,6 @@ using namespace tchat;
 using namespace tchat::test;
 
 namespace {
-
-OrbitVector random_vector(const CondensedSystem& condensed, unsigned seed) {
-  std::mt19937 generator(seed);
-  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-  OrbitVector v = condensed.make_vector();
-  for (double& entry : v.states.reshaped()) entry = uniform(generator);
-  for (double& entry : v.durations) entry = uniform(generator);
-  for (double& entry : v.globals) entry = uniform(generator);
-  return v;
-}
-
-/// dF/d(step along v) by central differences of fourth order.
-OrbitResidual directional_derivative(CondensedSystem& condensed, const Orbit& x, const OrbitVector& v) {
-  const double h = 1e-3;
-  OrbitResidual sum = condensed.make_residual(), part = condensed.make_residual();
-  const auto add = [&](double at, double weight) {
-    Orbit moved = x;
-    advance(moved, at, v, condensed.system().free_parameters());
-    condensed.evaluate(moved, part);
-    for (std::size_t i = 0; i < part.collocation.size(); ++i) sum.collocation[i] += weight * part.collocation[i];
-    for (std::size_t i = 0; i < part.end.size(); ++i) sum.end[i] += weight * part.end[i];
-    for (std::size_t i = 0; i < part.connection.size(); ++i) sum.connection[i] += weight * part.connection[i];
-  };
-  add(h, 8 / (12 * h)), add(-h, -8 / (12 * h)), add(2 * h, -1 / (12 * h)), add(-2 * h, 1 / (12 * h));
-  return sum;
-}
-
-void negate(OrbitResidual& r) {
-  for (std::vector<double>* part : {&r.collocation, &r.end, &r.connection})
-    for (double& entry : *part) entry = -entry;
-}
 
 double largest_difference(const OrbitVector& a, const OrbitVector& b) {
   return std::max({(a.states - b.states).cwiseAbs().maxCoeff(), (a.durations - b.durations).cwiseAbs().maxCoeff(),
@@ -68,7 +37,7 @@ struct Case {
 }  // namespace
 
 TEST_CASE("solving with the differences of the residual along a direction gives the direction back") {
-  // N = 1 has no chain; two free parameters need two border rows; c = 6 has no compiled-in kernel.
+  // N = 1 has no joins; two free parameters need two border rows; c = 6 has no compiled-in kernel.
   const Case c = GENERATE(Case{1, 3, {1}}, Case{2, 2, {2}}, Case{7, 4, {1}}, Case{5, 6, {2, 1}}, Case{3, 7, {1, 2}});
   CAPTURE(c.intervals, c.collocation, c.free_parameters.size());
   const PeriodicOrbitSystem system(system_of<ThreeModes>(), ThreeModes::signature(), c.free_parameters);

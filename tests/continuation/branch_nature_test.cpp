@@ -1,5 +1,6 @@
 // Turning points that are no folds of orbits, and ends that a branch has of itself: a section that becomes tangent, an
 // orbit that shrinks to an equilibrium, a period without bound, a torus curve beyond its 1:1 resonance.
+#include <Eigen/LU>
 #include <catch2/catch.hpp>
 
 #include "bvp/critical_pair.hpp"

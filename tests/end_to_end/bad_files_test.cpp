@@ -172,11 +172,30 @@ TEST_CASE("plugin sources that do not compile or compile to something else") {
 TEST_CASE("files whose device fails while they are read: a sentence, status 1") {
   const Workspace workspace;
   // The first page of a process cannot be read: input/output error.
-  for (const char* name : {"q.fails", "p.fails", "d.fails", "fails.so"})
+  for (const char* name : {"q.fails", "p.fails", "d.fails", "fails.so", "gc.fails", "fails.dat", "fails.trajectory",
+                           "table", "source.cpp", "fortran.f", "p.output", "d.output", "r.fails"})
     std::filesystem::create_symlink("/proc/self/mem", workspace.file(name));
-  for (const char* arguments :
-       {"labels q.fails", "orbit q.fails 1", "plot p.fails -o a.png", "plot --multipliers q.fails -o a.png",
-        "run linosc -c impacting -s fails IRS=1", "run linosc -c impacting -d impacting -p fails.so", "check fails"}) {
+  for (const char* arguments : {"labels q.fails",
+                                "orbit q.fails 1",
+                                "plot p.fails -o a.png",
+                                "plot --multipliers q.fails -o a.png",
+                                "plot fails.trajectory -o a.png",
+                                "plot table -o a.png",
+                                "run linosc -c impacting -s fails IRS=1",
+                                "run linosc -c impacting -d fails",
+                                "run linosc -c fails -d impacting",
+                                "run linosc -c impacting -d impacting -o output",
+                                "run linosc -c impacting -d impacting -p fails.so",
+                                "run linosc -c impacting -d impacting -p source",
+                                "run linosc -c impacting -d impacting -p fortran",
+                                "check fails",
+                                "check source",
+                                "check fortran",
+                                "constants fails",
+                                "dat linosc -c fails -d impacting",
+                                "verify q.fails -p linosc",
+                                "simulate linosc -d fails",
+                                "resegment q.fails 1 --to rotate -o a -p linosc"}) {
     const Outcome outcome = workspace.tchat(arguments);
     INFO(arguments << "\n" << outcome.text());
     CHECK(outcome.status == 1);

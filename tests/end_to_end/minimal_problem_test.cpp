@@ -113,7 +113,7 @@ class MinimalProblem {
 
 }  // namespace
 
-TEST_CASE("a problem without any optional member: run, check, dat, labels, orbit, constants, plot") {
+TEST_CASE("a problem without any optional member: run, check, dat, labels, orbit, verify, constants, plot") {
   for (const std::string kind : {"cpp", "f"}) {
     CAPTURE(kind);
     const MinimalProblem minimal(kind);
@@ -126,6 +126,7 @@ TEST_CASE("a problem without any optional member: run, check, dat, labels, orbit
     minimal.tchat("run minimal -o grazing");
     CHECK(contains(minimal.tchat("labels q.grazing").out, "PAR(1) = 3.006"));
     CHECK(contains(minimal.tchat("orbit q.grazing GR1").out, "U(1)"));
+    minimal.tchat("verify grazing -p minimal");
     minimal.tchat("constants minimal");
     minimal.tchat("constants minimal -e");
     minimal.tchat("plot p.grazing -o branch.svg");
@@ -146,6 +147,7 @@ TEST_CASE("a problem without any optional member: simulate with a signature, fro
     minimal.tchat("plot motion.trajectory -o motion.svg");
     minimal.tchat("run minimal -c found -d found -o found1 NMX=2");
     CHECK(std::abs(minimal.first_alpha("found1") - 2.9) < 1e-9);
+    minimal.tchat("verify found1 -p minimal");
     minimal.tchat("simulate minimal --signature 1,1,1;1,2,2 -s found1 IRS=1 --events 3");
     const Outcome unsaid = minimal.workspace.tchat("simulate minimal -c nowhere --state 0,0,0,1");
     CHECK(unsaid.status == 2);
@@ -165,6 +167,8 @@ TEST_CASE("a problem without any optional member: resegment to every kind, and t
       const SolutionEntry start = minimal.workspace.solutions(name).front();
       CHECK(std::abs(start.parameter(1) - amplitude_one(start.parameter(2))) < 1e-6);
       CHECK(std::abs(minimal.first_alpha(name + "1") - start.parameter(1)) < 1e-6);
+      minimal.tchat("verify " + name + " -p minimal");
+      minimal.tchat("verify " + name + "1 -p minimal --tolerance 1e-5");
     };
     resegment("q.grazing GR1 --to grazing-curve -o curve ICP=[1,2,61]");
     run("curve");

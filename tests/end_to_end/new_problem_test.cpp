@@ -23,6 +23,12 @@ TEST_CASE("a new problem runs as it is: its Makefile arrives at the closed forms
   REQUIRE(built.status == 0);
   CHECK(built.err.empty());
 
+  const Outcome verified = workspace.make("two_walls", "verify");
+  INFO(verified.text());
+  CHECK(verified.status == 0);
+  CHECK(contains(verified.out, "q.period_doubling_curve: "));
+  CHECK_FALSE(contains(verified.out, "<<"));
+
   // Amplitude of the linear response = 1; period doubling of the orbit with one impact: reference value at omega = 2.1.
   const double omega = 2.1, zeta = 0.05;
   const double grazing = std::hypot(1 - omega * omega, 2 * zeta * omega);

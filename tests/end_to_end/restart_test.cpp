@@ -1,8 +1,10 @@
 // From a label of a q-file: the same point again, other meshes, other parameters, direction, the older file form.
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <iomanip>
 #include <sstream>
 
+#include "end_to_end/bad_input.hpp"
 #include "end_to_end/closed_forms.hpp"
 #include "end_to_end/workspace.hpp"
 
@@ -204,7 +206,62 @@ TEST_CASE("a restart has the parameters of the label to the last bit") {
   CHECK(restarted_point(workspace, "-c impacting -s branch ICP=[2,61] RL0=1 IRS=EP2").parameter(1) == end.parameter(1));
 }
 
-TEST_CASE("DS > 0 goes on in the stored direction, or where ICP(1) grows when the free parameter is another") {
+TEST_CASE("DS > 0 goes on in the direction of the label's run whatever the sign of DS was there, DS < 0 goes back") {
+  const Workspace workspace;
+  struct Run {
+    const char* arguments;
+    const char* restart;
+  };
+  // The impacting branch both ways, with a turning point of alpha on its way down; the grazing curve both ways.
+  for (const Run& run :
+       {Run{"-c impacting -d impacting -o branch --both GRSTOP=0 DS=0.02", "-c impacting GRSTOP=0"},
+        Run{"-c impacting -d impacting -o branch --both GRSTOP=0 DS=-0.02", "-c impacting GRSTOP=0"},
+        Run{"-c grazing_curve -s grazing -o branch --both NPR=5 NMX=16 DS=-0.02", "-c grazing_curve"}}) {
+    INFO(run.arguments);
+    if (std::string(run.restart).find("curve") != std::string::npos)
+      workspace.run("-c to_grazing -d nonimpacting -o grazing");
+    workspace.run(run.arguments);
+    const std::vector<PointSection> sections = workspace.points("branch");
+    REQUIRE(sections.size() == 2);
+    int restarts = 0;
+    for (const PointSection& section : sections)
+      for (std::size_t k = 1; k < section.rows.size(); ++k) {
+        const PointRow& here = section.rows[k];
+        if (here.label == 0) continue;
+        INFO("label " << here.label);
+        const std::vector<double>& before = section.rows[k - 1].values;
+        double way = 0.0, on = 0.0, back = 0.0;  // of all columns, for at a turning point the first one tells nothing
+        for (const auto& [step, along] : {std::pair{"0.002", &on}, std::pair{"-0.002", &back}}) {
+          workspace.run(std::string(run.restart) + " -s branch -o next NMX=2 RL0=0.1 RL1=99 UZR={} THL={} IRS=" +
+                        std::to_string(here.label) + " DS=" + step);
+          const std::vector<double> next = workspace.points("next").front().rows.at(1).values;
+          REQUIRE(next.size() == before.size());
+          way = 0.0;
+          for (std::size_t c = 0; c < next.size(); ++c) {
+            *along += (next[c] - here.values[c]) * (here.values[c] - before[c]);
+            way += (here.values[c] - before[c]) * (here.values[c] - before[c]);
+          }
+        }
+        CHECK(way > 0.0);
+        CHECK(on > 0.0);
+        CHECK(back < 0.0);
+        ++restarts;
+      }
+    CHECK(restarts >= 6);
+  }
+}
+
+TEST_CASE("a restart tells where it goes") {
+  const Workspace workspace;
+  workspace.run("-c impacting -d impacting -o branch DS=-0.02");
+  const std::string restart = "-c impacting -s branch -o next NMX=2 IRS=2 DS=";
+  CHECK(contains(workspace.run(restart + "0.02").out, "DS > 0: on in the direction stored with label 2 of q.branch"));
+  CHECK(contains(workspace.run(restart + "-0.02").out, "DS < 0: back against the direction stored with label 2"));
+  CHECK_FALSE(contains(workspace.run(restart + "0.02 ICP=[2,61]").out, "stored"));
+  CHECK_FALSE(contains(workspace.run("-c impacting -d impacting -o next NMX=2").out, "stored"));
+}
+
+TEST_CASE("a changed parameter keeps the side of the stored direction, another free parameter grows for DS > 0") {
   const Workspace workspace;
   workspace.run("-c impacting -d impacting -o back DS=-0.02 GRSTOP=0");
   // The branch has turned: alpha rises again where the impact velocity is negative.
@@ -213,22 +270,16 @@ TEST_CASE("DS > 0 goes on in the stored direction, or where ICP(1) grows when th
   for (const SolutionEntry& solution : solutions)
     if (velocity(solution) < -1.0 && turned == nullptr) turned = &solution;
   REQUIRE(turned != nullptr);
-  REQUIRE(turned->parameter_direction.front() < 0.0);  // towards DS > 0, back to where the branch came from
+  REQUIRE(turned->parameter_direction.front() > 0.0);
   const std::string restart = "-c impacting -s back -o on NMX=4 GRSTOP=0 IRS=" + std::to_string(turned->label);
-  workspace.run(restart + " DS=0.02");
-  auto rows = workspace.points("on").front().rows;
-  CHECK(rows[1].values.front() < rows[0].values.front());
-  workspace.run(restart + " DS=-0.02");
-  rows = workspace.points("on").front().rows;
-  CHECK(rows[1].values.front() > rows[0].values.front());
-
-  workspace.run(restart + " DS=0.02 PAR(zeta)=0.052");
-  rows = workspace.points("on").front().rows;
-  CHECK(rows[1].values.front() < rows[0].values.front());
-
+  for (const double sign : {1.0, -1.0}) {
+    workspace.run(restart + " PAR(zeta)=0.052 DS=" + (sign > 0.0 ? "0.02" : "-0.02"));
+    const auto rows = workspace.points("on").front().rows;
+    CHECK(sign * (rows[1].values.front() - rows[0].values.front()) > 0.0);
+  }
   for (const char* label : {"EP1", "2", "EP2"}) {
     workspace.run(std::string("-c impacting -s back -o other NMX=3 GRSTOP=0 RL0=1 DS=0.001 ICP=[2,61] IRS=") + label);
-    rows = workspace.points("other").front().rows;
+    const auto rows = workspace.points("other").front().rows;
     CHECK(rows[1].values.front() > rows[0].values.front());
     CHECK(workspace.points("other").front().names.front() == "omega");
   }
@@ -273,4 +324,32 @@ TEST_CASE("restart from a q-file of the older generation") {
   }
   workspace.run("-c impacting -s old -o by_type IRS=UZ1 NMX=1");
   CHECK(workspace.solutions("by_type").front().parameter(1) == Approx(3.2).epsilon(1e-9));
+}
+
+TEST_CASE("ISW = -1 at a label that is no branch point is refused, the known branch is not followed again") {
+  const Workspace workspace;
+  workspace.run("-q -c impacting -d impacting -o known NMX=40 NPR=5 NTST=20");
+  const std::string solutions = workspace.read("q.known");
+  int leads_back = 0;
+  for (int label = 2; label <= 8; ++label) {
+    // The first line of an entry: BR PT TY LAB ..., six places each.
+    std::ostringstream line;
+    line << std::setw(6) << label << std::setw(6) << 2 << std::setw(6) << 1;  // LAB NFPR ISW
+    const std::size_t at = solutions.find(line.str());
+    REQUIRE(at != std::string::npos);
+    std::string changed = solutions;
+    changed.replace(at - 6, 6, "     6");
+    workspace.write("q.known", changed);
+    for (const std::string step : {"0.01", "-0.01"}) {
+      const Outcome outcome = workspace.tchat(
+          "run linosc -c impacting -s known -o other ISW=-1 NMX=5 NTST=20 DSMAX=0.5 IRS=" + std::to_string(label) +
+          " DS=" + step);
+      INFO(label << ", DS = " << step << "\n" << outcome.text());
+      CHECK(outcome.status == 1);
+      CHECK(outcome.err.find("no step") != std::string::npos);
+      CHECK_FALSE(workspace.has("p.other"));
+      leads_back += outcome.err.find("leads away from the branch") != std::string::npos;
+    }
+  }
+  CHECK(leads_back >= 1);
 }

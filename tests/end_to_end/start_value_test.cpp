@@ -63,6 +63,44 @@ TEST_CASE("a start at parameter values without an orbit is refused, with both va
   CHECK(workspace.points("branch").front().rows.front().values.front() >= impact_cosine(1.0, 0.7) - 1e-9);
 }
 
+TEST_CASE("a start from which Newton's method comes to the equilibrium is refused, and so named") {
+  const Workspace workspace;
+  // r' = r (mu - r^2): the cycle r = sqrt(mu) for mu > 0, the equilibrium 0 for all mu and any duration.
+  workspace.write("hopf.cpp", R"(#include <tchat/problem.hpp>
+struct Hopf {
+  static constexpr int dimension = 2, parameters = 1, fields = 1, events = 1, jumps = 1;
+  template <class T> void field(int, const T* x, const T* p, T* f) const {
+    const T growth = p[0] - x[0] * x[0] - x[1] * x[1];
+    f[0] = growth * x[0] - x[1], f[1] = growth * x[1] + x[0];
+  }
+  template <class T> T event(int, const T* x, const T*) const { return x[1]; }
+  template <class T> void jump(int, const T* x, const T*, T* g) const { g[0] = x[0], g[1] = x[1]; }
+};
+TCHAT_PROBLEM(Hopf)
+)");
+  workspace.write("gc.hopf", "NDIM = 2\nIPS = 180\nICP = [1, 61]\nNTST = 20\nNMX = 2\nDS = 0.001\n");
+  const auto start = [&](double mu, double radius) {
+    std::string text = "# PAR(1) = " + std::to_string(mu) + "\n";
+    for (int k = 0; k <= 100; ++k) {
+      const double angle = pi * k / 50.0;
+      text += std::to_string(angle) + " " + std::to_string(-radius * std::cos(angle)) + " " +
+              std::to_string(-radius * std::sin(angle)) + "\n";
+    }
+    workspace.write("hopf.dat", text);
+    return workspace.tchat("run hopf -o branch");
+  };
+  for (const double mu : {-1.0, -0.3, -0.001, 0.2})
+    for (const double radius : {0.003, 0.03}) {
+      const Outcome refused = start(mu, radius);
+      INFO(mu << ", " << radius << "\n" << refused.text());
+      CHECK(refused.status == 1);
+      CHECK(contains(refused.err, "an equilibrium, no orbit"));
+      CHECK_FALSE(workspace.has("p.branch"));
+    }
+  REQUIRE(start(0.2, 0.4).status == 0);
+  CHECK(workspace.points("branch").front().rows.front().values.back() == Approx(2.0 * pi).epsilon(1e-7));
+}
+
 TEST_CASE("a start at other parameter values is followed to them") {
   const Workspace workspace;
   workspace.write("ball.cpp", ball);
@@ -80,4 +118,19 @@ TEST_CASE("a start at other parameter values is followed to them") {
       for (const SolutionEntry& entry : workspace.solutions("on"))
         CHECK(entry.states.front()[3] == Approx(impact_cosine(entry.parameter(1), 0.7)).epsilon(1e-6));
     }
+}
+
+TEST_CASE("a second free parameter that cannot have the value asked for is told") {
+  const Workspace workspace;
+  workspace.run("-q -c to_grazing -d nonimpacting -o grazing");
+  const std::string run = "-q -c grazing_curve -s grazing -o curve NMX=2";
+  const Outcome from_label = workspace.run(run);
+  INFO(from_label.text());
+  CHECK_FALSE(contains(from_label.text() + workspace.read("d.curve"), "the first point has"));
+  const double alpha = workspace.solutions("curve").front().parameter(1);
+  const Outcome asked = workspace.run(run + " PAR(alpha)=2.9");
+  INFO(asked.text());
+  CHECK(contains(asked.err, "the first point has alpha = "));
+  CHECK(contains(asked.err, "2.9: it is free, and found with omega fixed"));
+  CHECK(workspace.solutions("curve").front().parameter(1) == Approx(alpha).epsilon(1e-9));
 }

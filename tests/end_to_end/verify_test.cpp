@@ -81,6 +81,25 @@ TEST_CASE("a digit changed in the q-file or the d-file is found, its label named
   CHECK(contains(line_of(multipliers.out, "   1  EP"), "<< multipliers"));
 }
 
+TEST_CASE("a label whose multipliers are not those of its type is found") {
+  const Workspace workspace;
+  run_branch(workspace);
+  // "     1    10     4     2 ...": label 2 becomes a fold, a period doubling, a torus bifurcation.
+  const std::string solutions = workspace.read("q.branch");
+  const std::size_t at = solutions.find("\n     1    10     4     2");
+  REQUIRE(at != std::string::npos);
+  for (const char type : {'5', '6', '7', '8'}) {
+    std::string changed = solutions;
+    changed[at + 18] = type;
+    workspace.write("q.branch", changed);
+    const Outcome outcome = workspace.tchat("verify q.branch -p linosc");
+    INFO(outcome.text());
+    CHECK(outcome.status == 1);
+    CHECK(contains(line_of(outcome.out, "   2  "), "<< no critical multiplier"));
+    CHECK(contains(outcome.out, "beyond the tolerance 1e-06: 2\n"));
+  }
+}
+
 TEST_CASE("inadmissible points pass when the run has said so, not when it has not") {
   const Workspace workspace;
   workspace.run("-c impacting -d impacting -o branch DS=-0.02 GRSTOP=0 NMX=60 NTST=20 -q");

@@ -50,8 +50,20 @@ Outcome Workspace::tchat_on_small_disk(int blocks, const std::string& arguments)
   return Process({"/bin/sh", "-c", script}, file(""), logs_.file(std::to_string(++runs_))).wait(time_limit);
 }
 
+Outcome Workspace::tchat_in_memory(int kilobytes, const std::string& arguments) const {
+  const std::string script = "ulimit -v " + std::to_string(kilobytes) + "; exec '" TCHAT_EXECUTABLE "' " + arguments;
+  return Process({"/bin/sh", "-c", script}, file(""), logs_.file(std::to_string(++runs_))).wait(time_limit);
+}
+
 Outcome Workspace::tchat_redirected(const std::string& arguments, const std::string& redirection) const {
   const std::string script = "exec '" TCHAT_EXECUTABLE "' " + arguments + " " + redirection;
+  return Process({"/bin/sh", "-c", script}, file(""), logs_.file(std::to_string(++runs_))).wait(time_limit);
+}
+
+Outcome Workspace::tchat_preloaded(const std::string& library, const std::string& record,
+                                   const std::string& arguments) const {
+  const std::string script =
+      "RECORDED_CALLS='" + record + "' LD_PRELOAD='" + library + "' exec '" TCHAT_EXECUTABLE "' " + arguments;
   return Process({"/bin/sh", "-c", script}, file(""), logs_.file(std::to_string(++runs_))).wait(time_limit);
 }
 

@@ -25,6 +25,11 @@ class Workspace {
   Outcome tchat_redirected(const std::string& arguments, const std::string& redirection) const;
   /// As tchat(), with files of at most so many blocks of 512 bytes, as on a full disk.
   Outcome tchat_on_small_disk(int blocks, const std::string& arguments) const;
+  /// As tchat(), with at most so many kB of address space.
+  Outcome tchat_in_memory(int kilobytes, const std::string& arguments) const;
+
+  /// As tchat(), with a library in it that writes to the file `record`, whose name it finds in RECORDED_CALLS.
+  Outcome tchat_preloaded(const std::string& library, const std::string& record, const std::string& arguments) const;
 
   /// make -C FOLDER TARGETS, with this tchat.
   Outcome make(const std::string& folder, const std::string& targets) const;

@@ -69,21 +69,21 @@ void check_transposed(const Kernel& k, unsigned seed) {
 
 }  // namespace
 
-TEST_CASE("interval and chain blocks of all sizes, compiled in or not, with and without border rows") {
+TEST_CASE("interval and join blocks of all sizes, compiled in or not, with and without border rows") {
   // n = 2..6 with c = 2..5 have code of their own for one and two scalars; 1, 7 and 20, c = 7, three scalars have not.
   for (const int n : {1, 2, 3, 4, 5, 6, 7, 20})
     for (const int scalars : {1, 2, 3})
       for (const int border : {0, 1, 2}) {
         for (const int c : {2, 3, 4, 5, 7})
           if (n < 20 || c < 5) check({interval_kernel(n, c, scalars), (c + 1) * n + scalars}, border, 7);
-        check({chain_kernel(n, scalars), 3 * n + scalars}, border, 8);
+        check({join_kernel(n, scalars), 3 * n + scalars}, border, 8);
       }
 }
 
 TEST_CASE("forward elimination and its transpose agree") {
   for (const int n : {1, 3, 4, 8}) {
     for (const int c : {2, 4, 7}) check_transposed({interval_kernel(n, c, 2), (c + 1) * n + 2}, 3);
-    check_transposed({chain_kernel(n, 2), 3 * n + 2}, 4);
+    check_transposed({join_kernel(n, 2), 3 * n + 2}, 4);
   }
 }
 

@@ -84,3 +84,23 @@ TEST_CASE("A file keeps its first name when it gets a second one") {
   folder.write("q.x", "more");
   CHECK(folder.read("q.x~") == "text");
 }
+
+TEST_CASE("What a killed process left is removed with the next file of the name, what another one is writing is not") {
+  const TemporaryFolder folder;
+  folder.write(".a.png.aB3dE6.new", "abandoned");
+  folder.write(".b.png.aB3dE6.new", "another name's");
+  const TemporaryFile first(folder.file("a.png"));
+  CHECK_FALSE(folder.has(".a.png.aB3dE6.new"));
+  CHECK(folder.has(".b.png.aB3dE6.new"));
+  TemporaryFile closed(folder.file("a.png"));  // as one that another program writes into
+  closed.close();
+  const TemporaryFile third(folder.file("a.png"));
+  CHECK(fs::exists(first.name()));
+  CHECK(fs::exists(closed.name()));
+  closed.put_in_place();
+  CHECK(folder.has("a.png"));
+
+  folder.write(".q.x~.aB3dE6.new", "abandoned");
+  write_whole_file(folder.file("q.x"), "new");
+  CHECK_FALSE(folder.has(".q.x~.aB3dE6.new"));
+}

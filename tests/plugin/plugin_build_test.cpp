@@ -96,6 +96,16 @@ TEST_CASE("every way to name a plugin") {
   CHECK(dimension_of(resolve_plugin(folder / "with space/it's (1)", options)) == 2);
 }
 
+TEST_CASE("what a killed compilation left is removed by the next one") {
+  const PluginFolder folder;
+  folder.write("dir/.small.so.aB3dE6/small.so", "half a library");
+  folder.write("dir/.other.so.aB3dE6/other.so", "another name's");
+  folder.write("dir/small.cpp", small_plugin());
+  CHECK(dimension_of(resolve_plugin(folder / "dir/small.cpp", folder.counting_compiler())) == 2);
+  CHECK_FALSE(fs::exists(folder / "dir/.small.so.aB3dE6"));
+  CHECK(fs::exists(folder / "dir/.other.so.aB3dE6"));
+}
+
 TEST_CASE("names of nothing") {
   const PluginFolder folder;
   CHECK_THROWS_WITH(resolve_plugin(folder / "none"), Contains("none.cpp") && Contains("none.so"));

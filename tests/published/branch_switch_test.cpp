@@ -65,7 +65,7 @@ TEST_CASE("coupled pendula: the branch points of the rotations out of phase, on 
       const std::string size = " NTST=" + std::to_string(mesh);
       run(workspace, "pendula -d pendula -o in_phase ICP=[I] DS=-0.01 NMX=40" + size);
       run(workspace,
-          "pendula -c r.in_phase -s in_phase -o out_of_phase IRS=PD1 ISW=-1 DS=-0.01 DSMAX=0.5 NMX=70 "
+          "pendula -c r.in_phase -s in_phase -o out_of_phase IRS=PD1 ISW=-1 DS=-0.01 DSMAX=0.5 NMX=90 "
           "RL0=0.1 RL1=15 EPSS=" +
               std::string(tolerance) + size);
       const auto points = of_type(read_diagnostics(workspace.read("d.out_of_phase")), "BP");

@@ -59,8 +59,34 @@ void check_multipliers(const Workspace& workspace, const Curve& curve, const std
   const double critical = curve.curve_type == 5 ? 1.0 : -1.0;
   for (const DiagnosticPoint& point : read_diagnostics(workspace.read("d." + name))) {
     INFO("branch " << point.branch << " point " << point.point);
-    if (point.type != "GR") CHECK(distance_to(point.multipliers, critical) < 1e-6);
+    CHECK(distance_to(point.multipliers, critical) < 1e-6);
   }
+}
+
+/// Where the curve ends on the grazing curve, multipliers are 0/0. What is printed there is right: the critical one,
+/// and of the others only what is near one of the point before; what is missing is counted.
+void check_end_multipliers(const Workspace& workspace, const std::string& name) {
+  const std::vector<DiagnosticPoint> points = read_diagnostics(workspace.read("d." + name));
+  const auto end = std::find_if(points.begin(), points.end(), [](const DiagnosticPoint& p) { return p.type == "GR"; });
+  REQUIRE(end != points.end());
+  REQUIRE(end != points.begin());
+  const DiagnosticPoint& before = *(end - 1);
+  REQUIRE(before.branch == end->branch);
+  REQUIRE(before.multipliers.size() == 4);
+  const double critical = distance_to(before.multipliers, 1.0) < 1e-4 ? 1.0 : -1.0;
+  CHECK(distance_to(end->multipliers, critical) < 1e-9);
+  for (const auto& mu : end->multipliers) {
+    INFO("multiplier " << mu.real() << " " << mu.imag());
+    CHECK(distance_to(before.multipliers, mu) < 1e-2);
+  }
+  int missing = 0;
+  for (const std::string& note : end->notes) {
+    if (note.find("one multiplier is not determined") != std::string::npos) missing = 1;
+    if (const auto at = note.find(" multipliers are not determined"); at != std::string::npos)
+      missing = std::stoi(note.substr(note.rfind(' ', at - 1) == std::string::npos ? 0 : note.rfind(' ', at - 1)));
+  }
+  CHECK(static_cast<int>(end->multipliers.size()) + missing == 4);
+  CHECK(missing >= 1);
 }
 
 void check_codimension_two_point(const Workspace& workspace, const std::string& name, double tolerance = 1e-7) {
@@ -101,6 +127,7 @@ void check_curve(const Workspace& workspace, const Curve& curve) {
   check_values(workspace, curve, "curve");
   check_multipliers(workspace, curve, "curve");
   check_codimension_two_point(workspace, "curve");
+  check_end_multipliers(workspace, "curve");
   const auto sections = workspace.points("curve");
   const PointRow& last = *std::find_if(sections.begin(), sections.end(), [](const PointSection& s) {
                             return std::abs(s.rows.back().values.front() - codimension_two()) < 1e-6;
@@ -145,6 +172,7 @@ void check_robustness(const Workspace& workspace, const Curve& curve) {
     INFO(v.changes);
     run_curve(workspace, curve, v.changes, "curve");
     check_codimension_two_point(workspace, "curve", v.tolerance);
+    check_end_multipliers(workspace, "curve");
   }
 }
 

@@ -170,6 +170,42 @@ TEST_CASE("across grazing: no pole, no false fold, branch point, period doubling
   }
 }
 
+TEST_CASE("the function of the period doubling has no gap at grazing: its limit in closed form") {
+  for (const double omega : {2.0072, grazing_omega, 1.8901})
+    for (const bool two : {false, true}) {
+      CAPTURE(omega, two);
+      const OscillatorOrbit orbit = one_impact_orbit(omega, 0.0);
+      const RecordedBranch branch = impacting(two ? twice(orbit) : whole(orbit), orbit, 1e-5, 1e-5, 2);
+      // (1 + mu_1) ... h_x f / (|h_x| |f|), for the orbit taken twice with the squares of the multipliers.
+      const auto product = [&](double v) {
+        std::complex<double> result = 1.0;
+        for (const auto& mu : one_impact_multipliers(omega, v)) result *= 1.0 + (two ? mu * mu : mu);
+        const double crossing = -v / (omega * std::hypot(omega, 1.0));  // f = (0, -omega^2) with a phase of speed omega
+        return (result * (two ? crossing * crossing : crossing)).real();
+      };
+      const double limit = 2 * product(1e-6) - product(2e-6);
+      REQUIRE(branch.points.front().values[doubling]);
+      CHECK(std::abs(branch.points.front().orbit.end(0)[1]) < 1e-9);
+      CHECK(*branch.points.front().values[doubling] == Approx(limit).epsilon(1e-4));
+    }
+}
+
+TEST_CASE("period doubling beside grazing: found on the way out of the grazing orbit itself") {
+  const double v = root_between([](double u) { return characteristic(grazing_omega, u, -1.0); }, 1e-4, 1e-2);
+  const double expected = one_impact_orbit(grazing_omega, v).alpha;
+  REQUIRE(expected - 3.0 < 1e-5);
+  for (const double ds : {1e-3, 0.02, 0.1}) {
+    CAPTURE(ds);
+    const OscillatorOrbit orbit = one_impact_orbit(grazing_omega, 0.0);
+    const RecordedBranch branch = impacting(whole(orbit), orbit, ds, ds, 6);
+    const auto found = branch.of_type(PointType::period_doubling);
+    REQUIRE(found.size() == 1);
+    CHECK(found[0]->orbit.par(0) == Approx(expected).epsilon(1e-11));
+    CHECK(branch.special().size() == 1);
+    CHECK(branch.notes.empty());
+  }
+}
+
 TEST_CASE("period doubling of the impacting orbit: from both sides, multiplier -1") {
   for (const double v : {0.06, 0.02}) {
     const OscillatorOrbit orbit = one_impact_orbit(2.0072, v);
@@ -214,7 +250,8 @@ TEST_CASE("period doubling and torus are not looked for with untrusted multiplie
   const Orbit x{};
   const OrbitVector tangent;
   const TestedPoint point{x, tangent, condensed, multipliers, transversalities, 1.0};
-  CHECK(*PeriodDoublingTest(false).value(point) == Approx(-0.5 * (1.3 * 1.3 + 0.81)));
+  multipliers.with_minus_one.value = -0.5 * (1.3 * 1.3 + 0.81);
+  CHECK(*PeriodDoublingTest(false).value(point) == multipliers.with_minus_one.value);
   CHECK(*TorusTest(false).value(point) == Approx(std::sqrt(0.9) - 1));
   multipliers.structural = 0.06;
   CHECK_FALSE(PeriodDoublingTest(false).value(point));

@@ -1,5 +1,6 @@
 // The minimal conditions of fold, period-doubling and torus curves: zero where the closed forms have the bifurcation,
 // gradients against differences of the values.
+#include <Eigen/LU>
 #include <catch2/catch.hpp>
 #include <random>
 

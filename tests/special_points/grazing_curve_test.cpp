@@ -148,8 +148,10 @@ TEST_CASE("xi_n and the smooth multipliers of the linear oscillator along the gr
     }
     for (const int target : {1, -1}) {
       std::complex<double> product = 1.0;
-      for (const auto& mu : nonimpacting_multipliers(omega)) product *= static_cast<double>(target) - mu;
-      CHECK(*p.values[target == 1 ? 5 : 6] == Approx(product.real()).epsilon(1e-7));
+      for (const auto& mu : nonimpacting_multipliers(omega)) product *= 1.0 - mu / static_cast<double>(target);
+      // On h_P = -x2 = 0 at the contact, where x2' = -omega^2 and the phase has the speed omega.
+      const double crossing = omega / std::hypot(1.0, omega);
+      CHECK(*p.values[target == 1 ? 5 : 6] == Approx(crossing * product.real()).epsilon(1e-7));
     }
   }
 }
@@ -250,7 +252,9 @@ TEST_CASE("grazing-fold and grazing-flip of the normal forms") {
     CHECK(branch.special()[0]->orbit.par(1) == Approx(1.0).margin(1e-8));
     for (const RecordedPoint& p : branch.points) {
       const double z = p.orbit.par(1) - 1;
-      const double expected = (1 - std::exp(-4 * pi)) * (1 - std::exp(-4 * pi * z));
+      // The gradient of h_P at the contact is (2, 1, 2 z), the field (0, 1, 0).
+      const double crossing = 1 / std::sqrt(5 + 4 * z * z);
+      const double expected = crossing * (1 - std::exp(-4 * pi)) * (1 - std::exp(-4 * pi * z));
       CHECK(*p.values[0] == Approx(expected).epsilon(1e-5).margin(1e-7));
     }
   }

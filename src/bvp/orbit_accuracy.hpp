@@ -1,0 +1,17 @@
+/// How well a computed orbit is known: the one level below which a value says nothing.
+#pragma once
+
+#include "bvp/orbit.hpp"
+#include "hybrid/hybrid_system.hpp"
+
+namespace tchat {
+
+/// Relative error of a corrected orbit: Newton's method ends with 1e-12 to 1e-10, the discretisation adds its own.
+/// Whatever is computed from the orbit is zero up to this share of the sizes that it is made of.
+inline constexpr double orbit_accuracy = 1e-9;
+
+/// The size of an event function, against which a value of it is small: the largest |h| at the mesh points of the whole
+/// orbit, for on a segment that is about to vanish all of them are small.
+double event_scale(const HybridSystem& system, const Orbit& x, int event);
+
+}  // namespace tchat

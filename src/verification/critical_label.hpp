@@ -1,0 +1,19 @@
+/// Multipliers that an orbit must have to be what its label says.
+#pragma once
+
+#include <complex>
+#include <vector>
+
+#include "start/labelled_solution.hpp"
+
+namespace tchat {
+
+/// +1 of a fold and of a branch point, also along a curve of folds; -1 of a period doubling and along a curve of them;
+/// exp(i theta) of a torus bifurcation and along a curve of them, with the angle theta of the stored multiplier nearest
+/// to the unit circle (off the real axis; without one, of the nearest in `computed`). On grazing curves +1 of a
+/// grazing-fold and -1 of a grazing-flip. Empty for every other label.
+std::vector<std::complex<double>> critical_multipliers(const LabelledSolution& solution,
+                                                       const std::vector<std::complex<double>>& stored,
+                                                       const std::vector<std::complex<double>>& computed);
+
+}  // namespace tchat
