@@ -14,6 +14,7 @@ namespace {
 /// x' = 1 until x = p, then x -> 0: the orbit x = t, T = p. Its user function misbehaves at the fourth point, in the
 /// way that the environment says; files tell how far it is.
 const char* const source = R"(#include <tchat/problem.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -25,9 +26,15 @@ static void misbehave(const char* how) {
   if (strcmp(how, "_exit") == 0) _exit(0);
   if (strcmp(how, "throw") == 0) throw 1;
   if (strcmp(how, "loop") == 0) {
+    // A signal between the mark and the wait would be waited for in vain: it is held back until the wait takes it.
+    sigset_t held, none;
+    sigemptyset(&none);
+    sigfillset(&held);
+    sigprocmask(SIG_SETMASK, &held, nullptr);
     mark("looping");
-    pause();
+    sigsuspend(&none);
     mark("signalled");
+    sigprocmask(SIG_SETMASK, &none, nullptr);
     while (true) pause();
   }
 }
