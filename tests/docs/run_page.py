@@ -211,7 +211,7 @@ def main():
     blocks, prose = read_page(page)
     check_prose(blocks, prose)
     check_links(page, prose)
-    if any(block.kind == "python" for block in blocks):
+    if any("python" in block.kind or block.kind == "sh" and "python" in block.text for block in blocks):
         with_numpy()
     with tempfile.TemporaryDirectory(prefix="tchat_page_") as scratch:
         for folder in ("bin", "page"):
@@ -219,7 +219,9 @@ def main():
         os.symlink(tchat, os.path.join(scratch, "bin", "tchat"))
         os.symlink(sys.executable, os.path.join(scratch, "bin", "python3"))
         os.environ["PATH"] = os.path.join(scratch, "bin") + os.pathsep + os.environ["PATH"]
-        os.environ.update(TCHAT_SOURCE=source, LC_ALL="C.UTF-8", MPLBACKEND="Agg")
+        os.environ.update(TCHAT_SOURCE=source, PYTHONPATH=os.path.join(source, "src", "python"), LC_ALL="C.UTF-8",
+                          MPLBACKEND="Agg")
+        sys.path.insert(0, os.environ["PYTHONPATH"])
         os.environ.pop("DISPLAY", None)
         if len(sys.argv) > 4:
             os.environ["XDG_CACHE_HOME"] = os.path.abspath(sys.argv[4])
