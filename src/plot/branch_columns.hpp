@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "plot/branch_file.hpp"
+#include "start/branch_file.hpp"
 
 namespace tchat {
 

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "plot/branch_file.hpp"
 #include "plot/figure.hpp"
+#include "start/branch_file.hpp"
 
 namespace tchat {
 

@@ -1,4 +1,4 @@
-#include "plot/branch_file.hpp"
+#include "start/branch_file.hpp"
 
 #include <fmt/format.h>
 
