@@ -22,6 +22,7 @@
 #include "app/simulate_command.hpp"
 #include "app/standard_descriptors.hpp"
 #include "app/standard_output.hpp"
+#include "app/table_command.hpp"
 #include "app/usage_error.hpp"
 #include "app/verify_command.hpp"
 #include "constants/printable.hpp"
@@ -69,6 +70,7 @@ int run_program(int argc, char** argv) {
   tchat::add_simulate_command(app, chosen);
   tchat::add_labels_command(app, chosen);
   tchat::add_orbit_command(app, chosen);
+  tchat::add_table_command(app, chosen);
   tchat::add_verify_command(app, chosen);
   tchat::add_plot_command(app, chosen);
   tchat::add_check_command(app, chosen);

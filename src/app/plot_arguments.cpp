@@ -9,14 +9,12 @@
 #include <filesystem>
 
 #include "constants/constant_value.hpp"
-#include "constants/text_file.hpp"
 #include "constants/user_error.hpp"
 #include "plot/data_file.hpp"
 #include "plot/label_text.hpp"
 #include "plot/picture_styles.hpp"
 #include "plot/trajectory_file.hpp"
-#include "start/fortran_number.hpp"
-#include "start/point_file_reader.hpp"
+#include "start/run_file_kind.hpp"
 
 namespace tchat {
 
@@ -47,27 +45,13 @@ std::string file_of(const std::string& word, bool label_follows) {
   return is_file(word + ".trajectory") ? word + ".trajectory" : "";
 }
 
-std::string first_line(const std::string& path) {
-  TextLines file(path, "something to draw");
-  std::string line;
-  file.next(line);
-  return line;
-}
-
-/// By the first line: of a q-file it holds 12 or 16 integers, of a p-file it is a header line or a point.
 PlotItem::Kind kind_of(const std::string& path) {
   if (looks_like_trajectory(path)) return PlotItem::Kind::trajectory;
-  const std::string line = first_line(path);
-  const auto words = split_words(line);
-  const bool integers =
-      std::all_of(words.begin(), words.end(), [](std::string_view word) { return parse_integer(word).has_value(); });
-  if (integers && (words.size() == 12 || words.size() == 16)) return PlotItem::Kind::solutions;
+  const RunFileKind kind = run_file_kind(path);
+  if (kind == RunFileKind::solutions) return PlotItem::Kind::solutions;
   const std::string name = fs::path(path).filename().string();
   if (name.find('.') != 1 && looks_like_data(path)) return PlotItem::Kind::data;  // p.NAME is meant to be a p-file
-  if (looks_like_point_file(line)) return PlotItem::Kind::points;
-  if (name.starts_with("d.") || name == "fort.9") return PlotItem::Kind::diagnostics;
-  if (name.starts_with("q.") || name.starts_with("s.")) return PlotItem::Kind::solutions;
-  return PlotItem::Kind::points;
+  return kind == RunFileKind::diagnostics ? PlotItem::Kind::diagnostics : PlotItem::Kind::points;
 }
 
 /// Why a word that is no file cannot mean anything else either.

@@ -13,6 +13,8 @@ namespace tchat {
 namespace {
 
 constexpr const char* line_start = "   0";
+constexpr int point_column_width = 19;
+constexpr std::size_t longest_heading = point_column_width - 2;
 
 /// One header line of `KEY = value` pairs in AUTO's columns.
 class ConstantsLine {
@@ -68,6 +70,15 @@ std::string name_dictionary(const std::vector<std::string>& names, const char* s
   for (std::size_t k = 1; k <= names.size(); ++k)
     if (names[k - 1] != fmt::format("{}({})", symbol, k))
       list += fmt::format("{}{}: '{}'", list.empty() ? "" : ", ", k, plain_name(names[k - 1]));
+  return list.empty() ? "" : "{" + list + "}";
+}
+
+/// Names of columns whose headings are cut, in full, by the number of the column.
+std::string long_names(const std::vector<PointColumn>& columns) {
+  std::string list;
+  for (std::size_t k = 1; k <= columns.size(); ++k)
+    if (const std::string name = plain_name(columns[k - 1].name); name.size() > longest_heading)
+      list += fmt::format("{}{}: '{}'", list.empty() ? "" : ", ", k, name);
   return list.empty() ? "" : "{" + list + "}";
 }
 
@@ -170,8 +181,10 @@ std::string format_point_header(const PointFileHeader& header, const std::vector
   if (header.curve_type != 0)
     text +=
         fmt::format("{}   Branch type: {}  TY = '{}'\n", line_start, header.curve_type, type_name(header.curve_type));
+  if (const std::string names = long_names(columns); !names.empty())
+    text += ConstantsLine().pair("columns", names).str();
   text += std::string(line_start) + '\n' + line_start + "    PT  TY  LAB ";
-  for (const PointColumn& column : columns) text += heading_field(column.name, 19);
+  for (const PointColumn& column : columns) text += heading_field(column.name, point_column_width);
   return text + '\n';
 }
 

@@ -2,8 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+#include <vector>
+
 #include "constants/user_error.hpp"
 #include "hybrid/parameter_vector.hpp"
+#include "output/table_format.hpp"
 
 namespace tchat {
 
@@ -62,6 +66,29 @@ std::string heading(const LabelledSolution& solution, const std::string& name, c
   return text + '\n';
 }
 
+/// A point of an orbit in physical time.
+struct OrbitPoint {
+  int segment;  ///< from 1
+  double tau;
+  double t;
+  Eigen::Ref<const Eigen::VectorXd> states;  ///< n
+};
+
+/// Calls use(OrbitPoint) for every point, segment after segment.
+template <class Use>
+void for_each_point(const LabelledSolution& solution, const OrbitSizes& sizes, const Use& use) {
+  double start = 0.0;
+  for (int s = 0; s < sizes.segments; ++s) {
+    const double duration = parameter(solution, first_duration + s);
+    for (std::size_t k = 0; k < solution.tau.size(); ++k) {
+      const double tau = solution.tau[k];
+      const auto states = solution.states.col(static_cast<Eigen::Index>(k));
+      use(OrbitPoint{s + 1, tau, start + tau * duration, states.segment(s * sizes.dimension, sizes.dimension)});
+    }
+    start += duration;
+  }
+}
+
 }  // namespace
 
 std::string format_label_table(const SolutionFile& file, const ProblemNames& names) {
@@ -85,19 +112,29 @@ std::string format_orbit_table(const LabelledSolution& solution, const std::stri
                                int dimension) {
   const OrbitSizes sizes = sizes_of(solution, name, dimension > 0 ? dimension : solution.dimension);
   std::string text = heading(solution, name, sizes, names);
-  double start = 0.0;
-  for (int s = 0; s < sizes.segments; ++s) {
-    const double duration = parameter(solution, first_duration + s);
-    if (s > 0) text += '\n';
-    for (std::size_t point = 0; point < solution.tau.size(); ++point) {
-      const double tau = solution.tau[point];
-      text += fmt::format("{:4}{:19.10E}{:19.10E}", s + 1, tau, start + tau * duration);
-      for (int k = 0; k < sizes.dimension; ++k)
-        text += fmt::format("{:19.10E}", solution.states(s * sizes.dimension + k, static_cast<Eigen::Index>(point)));
-      text += '\n';
-    }
-    start += duration;
-  }
+  int last_segment = 1;
+  for_each_point(solution, sizes, [&](const OrbitPoint& point) {
+    if (std::exchange(last_segment, point.segment) != point.segment) text += '\n';
+    text += fmt::format("{:4}{:19.10E}{:19.10E}", point.segment, point.tau, point.t);
+    for (const double state : point.states) text += fmt::format("{:19.10E}", state);
+    text += '\n';
+  });
+  return text;
+}
+
+std::string format_orbit_csv(const LabelledSolution& solution, const std::string& name, const ProblemNames& names,
+                             int dimension) {
+  const OrbitSizes sizes = sizes_of(solution, name, dimension > 0 ? dimension : solution.dimension);
+  std::vector<std::string> fields{"segment", "tau", "t"};
+  for (int k = 1; k <= sizes.dimension; ++k) fields.push_back(names.state(k));
+  fields = distinct_headings(fields);
+  for (std::string& field : fields) field = csv_field(field);
+  std::string text = csv_line(fields);
+  for_each_point(solution, sizes, [&](const OrbitPoint& point) {
+    fields = {csv_field(point.segment), csv_field(point.tau), csv_field(point.t)};
+    for (const double state : point.states) fields.push_back(csv_field(state));
+    text += csv_line(fields);
+  });
   return text;
 }
 

@@ -22,4 +22,8 @@ std::string format_label_table(const SolutionFile& file, const ProblemNames& nam
 std::string format_orbit_table(const LabelledSolution& solution, const std::string& name,
                                const ProblemNames& names = {}, int dimension = 0);
 
+/// The same numbers as CSV: segment,tau,t and the states by their names, every number with all the digits it has.
+std::string format_orbit_csv(const LabelledSolution& solution, const std::string& name, const ProblemNames& names = {},
+                             int dimension = 0);
+
 }  // namespace tchat

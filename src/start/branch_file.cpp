@@ -3,11 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <functional>
+#include <optional>
 
 #include "constants/user_error.hpp"
-#include "start/diagnostics_file_reader.hpp"
 #include "start/point_type.hpp"
 #include "start/run_file_names.hpp"
 #include "start/solution_file_reader.hpp"
@@ -15,13 +18,6 @@
 namespace tchat {
 
 namespace {
-
-namespace fs = std::filesystem;
-
-bool is_file(const std::string& path) {
-  std::error_code error;
-  return !path.empty() && fs::is_regular_file(path, error);
-}
 
 /// A new branch begins where the points are counted from 1 again; after 9999 that is only the count's end.
 std::vector<BranchPiece> split_into_pieces(const std::vector<PointSection>& sections) {
@@ -40,66 +36,179 @@ std::vector<BranchPiece> split_into_pieces(const std::vector<PointSection>& sect
   return pieces;
 }
 
-void take_from_solutions(BranchFile& file) {
-  const std::string path = sibling_path(file.path, 'q');
-  if (!is_file(path)) return;
-  SolutionFile solutions;
-  try {
-    solutions = read_solution_file(path);
-  } catch (const UserError& error) {
-    file.warnings.push_back(fmt::format("{}\n  (names of UZ points and fixed parameters are left out)", error.what()));
-    return;
+/// Same number as far as a file shows it: d-files and older p-files have 6 digits.
+bool agree(double a, double b) {
+  constexpr double six_digits = 1e-5;
+  return !(std::abs(a - b) > six_digits * std::max(std::abs(a), std::abs(b)));
+}
+
+[[noreturn]] void tell_other_run(const BranchFile& file, const std::string& path, char letter,
+                                 const std::string& what) {
+  throw UserError(fmt::format("{}: {}; it is of another run, the one needed is {}", path, what,
+                              sibling_path(file.path, letter).empty()
+                                  ? fmt::format("the {}-file of {}", letter, file.path)
+                                  : sibling_path(file.path, letter)));
+}
+
+/// Refuses a value of ICP(1) that is not that of the row.
+void check_value(const BranchFile& file, std::size_t section, const PointRow& row, double value,
+                 const std::string& path, char letter) {
+  if (agree(value, row.values.front())) return;
+  tell_other_run(file, path, letter,
+                 fmt::format("point {}, label {} has {:.6g} where {} has {} = {:.6g}", std::abs(row.point), row.label,
+                             value, file.path, file.sections[section].columns.front(), row.values.front()));
+}
+
+/// Calls use(section, row index, row) for every point.
+void for_each_row(const BranchFile& file, const std::function<void(std::size_t, std::size_t, const PointRow&)>& use) {
+  for (std::size_t s = 0; s < file.sections.size(); ++s)
+    for (std::size_t k = 0; k < file.sections[s].rows.size(); ++k) use(s, k, file.sections[s].rows[k]);
+}
+
+/// ICP(1) of a section at a solution, when its column is a parameter.
+std::optional<double> first_parameter(const PointSection& section, const LabelledSolution& solution) {
+  const auto k = section.parameter_of_column(0);
+  if (!k || *k < 1 || static_cast<std::size_t>(*k) > solution.parameters.size()) return std::nullopt;
+  return solution.parameters[static_cast<std::size_t>(*k) - 1];
+}
+
+void match_solutions(BranchFile& file, const std::string& path) {
+  std::map<int, int> by_label;
+  for (std::size_t k = 0; k < file.solutions.size(); ++k) by_label[file.solutions[k].label] = static_cast<int>(k);
+  int missing = 0;
+  bool any = false;
+  for_each_row(file, [&](std::size_t s, std::size_t k, const PointRow& row) {
+    const auto found = row.label > 0 ? by_label.find(row.label) : by_label.end();
+    if (row.label > 0 && found == by_label.end()) ++missing;
+    if (found == by_label.end()) return;
+    const LabelledSolution& solution = file.solutions[static_cast<std::size_t>(found->second)];
+    if (solution.point != std::abs(row.point)) return;
+    if (const auto value = first_parameter(file.sections[s], solution)) check_value(file, s, row, *value, path, 'q');
+    file.solution[s][k] = found->second;
+    any = true;
+  });
+  if (!any && missing > 0 && !file.solutions.empty())
+    tell_other_run(file, path, 'q', fmt::format("it has none of the labels of {}", file.path));
+  if (missing > 0)
+    file.warnings.push_back(
+        fmt::format("{}: {} of the labels of {} {} not in it (was the run that wrote it interrupted?)", path, missing,
+                    file.path, missing == 1 ? "is" : "are"));
+}
+
+/// Both files list the points in the order of their computation; the d-file may lack some (IID = 0).
+void match_diagnostics(BranchFile& file, const std::string& path) {
+  if (file.diagnostics.empty())
+    throw UserError(fmt::format("{}: no point in it; a run writes its diagnostics to d.NAME (fort.9)", path));
+  using Key = std::array<int, 3>;
+  std::map<Key, std::vector<int>> places;  // in descending order: the next one is the last
+  for (int k = static_cast<int>(file.diagnostics.size()) - 1; k >= 0; --k) {
+    const DiagnosticPoint& point = file.diagnostics[static_cast<std::size_t>(k)];
+    places[{point.branch, point.point, point.label}].push_back(k);
   }
-  std::map<int, const LabelledSolution*> by_label;
-  for (const LabelledSolution& solution : solutions.solutions) by_label[solution.label] = &solution;
-  for (std::size_t s = 0; s < file.sections.size(); ++s) {
-    for (std::size_t k = 0; k < file.sections[s].rows.size(); ++k) {
-      const PointRow& row = file.sections[s].rows[k];
-      const auto found = row.label > 0 ? by_label.find(row.label) : by_label.end();
-      if (found == by_label.end() || found->second->point != std::abs(row.point)) continue;
-      const LabelledSolution& solution = *found->second;
-      file.types[s][k] = type_name(solution);
-      for (const UserPointKind& kind : all_kinds(solution))
-        if (kind.kind == UserPointKind::xi) file.xi_zeros[row.label].push_back(kind.index);
-      if (file.parameters[s].empty())
-        for (std::size_t p = 0; p < solution.parameters.size(); ++p)
-          file.parameters[s][static_cast<int>(p) + 1] = solution.parameters[p];
-    }
+  std::size_t matched = 0;
+  for_each_row(file, [&](std::size_t s, std::size_t k, const PointRow& row) {
+    const auto found = places.find({row.branch, row.point, row.label});
+    if (found == places.end() || found->second.empty()) return;
+    const int place = found->second.back();
+    found->second.pop_back();
+    if (const auto value = file.diagnostics[static_cast<std::size_t>(place)].parameter)
+      check_value(file, s, row, *value, path, 'd');
+    file.diagnostic[s][k] = place;
+    ++matched;
+  });
+  if (matched == file.diagnostics.size()) return;
+  if (matched == 0) tell_other_run(file, path, 'd', fmt::format("it has none of the points of {}", file.path));
+  file.warnings.push_back(fmt::format("{}: {} of its {} points are not in {}", path, file.diagnostics.size() - matched,
+                                      file.diagnostics.size(), file.path));
+}
+
+void take_from_solutions(BranchFile& file) {
+  for_each_row(file, [&file](std::size_t s, std::size_t k, const PointRow& row) {
+    const LabelledSolution* solution = file.solution_of(s, k);
+    if (solution == nullptr) return;
+    file.types[s][k] = type_name(*solution);
+    for (const UserPointKind& kind : all_kinds(*solution))
+      if (kind.kind == UserPointKind::xi) file.xi_zeros[row.label].push_back(kind.index);
+    if (file.parameters[s].empty())
+      for (std::size_t p = 0; p < solution->parameters.size(); ++p)
+        file.parameters[s][static_cast<int>(p) + 1] = solution->parameters[p];
+  });
+}
+
+void take_from_diagnostics(BranchFile& file) {
+  for_each_row(file, [&file](std::size_t s, std::size_t k, const PointRow& row) {
+    const DiagnosticPoint* point = file.diagnostic_of(s, k);
+    if (point == nullptr) return;
+    file.admissible[s][k] = point->admissible;
+    if (row.label > 0 && !point->xi_zeros.empty())
+      file.xi_zeros[row.label] = point->xi_zeros;  // older q-files have one n
+    if (file.types[s][k] == "UZ" && !point->type.empty()) file.types[s][k] = point->type;
+  });
+}
+
+/// Only what a branch needs of them: the states are most of a q-file.
+std::vector<LabelledSolution> without_states(std::vector<LabelledSolution> solutions) {
+  for (LabelledSolution& solution : solutions) {
+    solution.tau = {};
+    solution.states.resize(0, 0);
+    solution.state_direction.resize(0, 0);
+    solution.parameter_direction = {};
+  }
+  return solutions;
+}
+
+void read_solutions(BranchFile& file, const std::string& path) {
+  SolutionFile read = read_solution_file(path);
+  file.solutions = without_states(std::move(read.solutions));
+  file.warnings.insert(file.warnings.end(), read.warnings.begin(), read.warnings.end());
+  match_solutions(file, path);
+  take_from_solutions(file);
+}
+
+void read_diagnostics(BranchFile& file, const std::string& path) {
+  file.diagnostics = read_diagnostics_file(path);
+  match_diagnostics(file, path);
+  take_from_diagnostics(file);
+}
+
+/// Forgets what has been matched.
+void reset(std::vector<std::vector<int>>& places, const std::vector<PointSection>& sections) {
+  places.clear();
+  for (const PointSection& section : sections) places.emplace_back(section.rows.size(), -1);
+}
+
+/// The file named, or the one beside the p-file; what cannot be used of that one is a warning with `lost`.
+void read_further(BranchFile& file, const std::string& named, char letter, const std::string& lost,
+                  const std::function<void(const std::string&)>& read, const std::function<void()>& forget) {
+  if (!named.empty()) return read(named);
+  const std::string path = sibling_path(file.path, letter);
+  std::error_code error;
+  if (path.empty() || !std::filesystem::is_regular_file(path, error)) return;
+  try {
+    read(path);
+  } catch (const UserError& refused) {
+    forget();
+    file.warnings.push_back(fmt::format("{}\n  ({} are left out)", refused.what(), lost));
   }
 }
 
-/// Both files list the points in the order of their computation; the d-file may lack some (IID = 0) at its end.
-void take_from_diagnostics(BranchFile& file) {
-  const std::string path = sibling_path(file.path, 'd');
-  if (!is_file(path)) return;
-  std::vector<DiagnosticPoint> points;
-  try {
-    points = read_diagnostics_file(path);
-  } catch (const UserError& error) {
-    file.warnings.push_back(error.what());
-    return;
-  }
-  std::size_t next = 0;
-  for (std::size_t s = 0; s < file.sections.size(); ++s) {
-    for (std::size_t k = 0; k < file.sections[s].rows.size(); ++k) {
-      const PointRow& row = file.sections[s].rows[k];
-      const auto same = [&row](const DiagnosticPoint& p) {
-        return p.branch == row.branch && p.point == row.point && p.label == row.label;
-      };
-      const auto found = std::find_if(points.begin() + static_cast<std::ptrdiff_t>(next), points.end(), same);
-      if (found == points.end()) continue;
-      next = static_cast<std::size_t>(found - points.begin()) + 1;
-      file.admissible[s][k] = found->admissible;
-      if (row.label > 0 && !found->xi_zeros.empty())
-        file.xi_zeros[row.label] = found->xi_zeros;  // older q-files have one n
-      if (file.types[s][k] == "UZ" && !found->type.empty()) file.types[s][k] = found->type;
-    }
-  }
+/// all[place], nullptr at -1.
+template <class T>
+const T* element(const std::vector<T>& all, int place) {
+  return place < 0 ? nullptr : &all[static_cast<std::size_t>(place)];
 }
 
 }  // namespace
 
-BranchFile read_branch_file(const std::string& path) {
+const LabelledSolution* BranchFile::solution_of(std::size_t section, std::size_t row) const {
+  return element(solutions, solution[section][row]);
+}
+
+const DiagnosticPoint* BranchFile::diagnostic_of(std::size_t section, std::size_t row) const {
+  return element(diagnostics, diagnostic[section][row]);
+}
+
+BranchFile read_branch_file(const std::string& path, const std::string& solutions, const std::string& diagnostics) {
   PointFile points = read_point_file(path);
   BranchFile file;
   file.path = path;
@@ -113,9 +222,17 @@ BranchFile read_branch_file(const std::string& path) {
     file.types.emplace_back();
     for (const PointRow& row : section.rows) file.types.back().push_back(type_name(row.type));
   }
-  take_from_solutions(file);
-  take_from_diagnostics(file);
+  reset(file.solution, file.sections);
+  reset(file.diagnostic, file.sections);
+  read_further(
+      file, solutions, 'q', "names of UZ points and fixed parameters",
+      [&file](const std::string& q) { read_solutions(file, q); }, [&file] { reset(file.solution, file.sections); });
+  read_further(
+      file, diagnostics, 'd', "multipliers and admissibility",
+      [&file](const std::string& d) { read_diagnostics(file, d); }, [&file] { reset(file.diagnostic, file.sections); });
   return file;
 }
+
+BranchFile read_branch_file(const std::string& path) { return read_branch_file(path, "", ""); }
 
 }  // namespace tchat

@@ -1,11 +1,16 @@
-/// A p-file with what the q-file and d-file beside it add: names of UZ points, values of fixed parameters, and which
-/// points violate the model.
+/// A p-file with what the q-file and d-file of the run add: names of UZ points, values of fixed parameters,
+/// multipliers, Newton iterations, and which points violate the model.
+///
+/// Points of the three files belong together by branch, point and label; the first number of each, ICP(1), tells files
+/// of another run apart.
 #pragma once
 
 #include <map>
 #include <string>
 #include <vector>
 
+#include "start/diagnostics_file_reader.hpp"
+#include "start/labelled_solution.hpp"
 #include "start/point_file_reader.hpp"
 
 namespace tchat {
@@ -26,10 +31,22 @@ struct BranchFile {
   std::vector<std::vector<bool>> admissible;    ///< true where the d-file does not say otherwise
   std::map<int, std::vector<int>> xi_zeros;     ///< by label: the n of every xi_n that vanishes there
   std::vector<std::map<int, double>> parameters;  ///< by section: PAR(k) at one of its labels, if the q-file is there
+  std::vector<LabelledSolution> solutions;        ///< of the q-file, without mesh, states and direction
+  std::vector<DiagnosticPoint> diagnostics;       ///< of the d-file
+  std::vector<std::vector<int>> solution;         ///< by section and row: where in `solutions`, -1 without
+  std::vector<std::vector<int>> diagnostic;       ///< likewise in `diagnostics`
   std::vector<std::string> warnings;
+
+  /// What the q-file and the d-file have of a point; nullptr when they have nothing.
+  const LabelledSolution* solution_of(std::size_t section, std::size_t row) const;
+  const DiagnosticPoint* diagnostic_of(std::size_t section, std::size_t row) const;
 };
 
-/// Reads p.NAME, and q.NAME and d.NAME if they are beside it and can be read (a warning if not).
+/// Reads p.NAME, and q.NAME and d.NAME if they are beside it, can be read and are of the same run (a warning if not).
 BranchFile read_branch_file(const std::string& path);
+
+/// The same with a q-file and a d-file that the user has named; "" for the one beside the p-file. Throws UserError when
+/// a named one cannot be read or is of another run.
+BranchFile read_branch_file(const std::string& path, const std::string& solutions, const std::string& diagnostics);
 
 }  // namespace tchat

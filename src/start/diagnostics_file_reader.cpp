@@ -33,10 +33,12 @@ std::optional<DiagnosticPoint> read_point(const Words& words) {
   result.type = third ? "" : std::string(words[2]);
   result.label = *label;
   result.admissible = words.back() != "inadmissible";
+  const std::size_t first_value = third ? 3 : 4;
+  if (first_value < words.size()) result.parameter = parse_fortran_real(words[first_value]);
   return result;
 }
 
-/// The multipliers of a block may stand before or after its point.
+/// The multipliers and the iterations of a block may stand before or after its point.
 class Blocks {
  public:
   void read(std::string_view line) {
@@ -50,6 +52,8 @@ class Blocks {
       multipliers_.clear();
     else if (contains(words, "NOTE:"))
       take_xi_zeros(words);
+    else if (contains(words, "Iterations"))
+      take_iterations(words);
     else
       take_multiplier(words);
     after_heading_ = is_heading(words);
@@ -83,6 +87,12 @@ class Blocks {
     }
   }
 
+  /// `Iterations : n`, after the numbers of branch and point.
+  void take_iterations(const Words& words) {
+    const auto at = std::find(words.begin(), words.end(), "Iterations");
+    if (words.end() - at >= 3 && at[1] == ":") iterations_ = parse_integer(at[2]);
+  }
+
   /// `Multiplier k re im`, in AUTO's files after the numbers of branch and point.
   void take_multiplier(const Words& words) {
     const auto at = std::find(words.begin(), words.end(), "Multiplier");
@@ -93,13 +103,18 @@ class Blocks {
   }
 
   void close() {
-    if (open_) points_.back().multipliers = std::move(multipliers_);
+    if (open_) {
+      points_.back().multipliers = std::move(multipliers_);
+      points_.back().iterations = iterations_;
+    }
     multipliers_.clear();
+    iterations_.reset();
     open_ = false;
   }
 
   std::vector<DiagnosticPoint> points_;
   std::vector<std::complex<double>> multipliers_;
+  std::optional<int> iterations_;
   bool after_heading_ = false;
   bool open_ = false;  // the last point's block goes on
 };

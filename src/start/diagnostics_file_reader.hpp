@@ -1,12 +1,13 @@
-/// Reads d-files (fort.9) for what the p-file does not hold: the multipliers of every point, the letters of its type
-/// whether the orbit is one of the model, and which xi_n vanish there.
+/// Reads d-files (fort.9) for what the p-file does not hold: the multipliers of every point, the letters of its type,
+/// whether the orbit is one of the model, which xi_n vanish there, and how many Newton iterations it took.
 ///
 /// Only what AUTO's own readers rely on is looked at: the bars of 47 `=` between blocks, the line below a
-/// `BR PT TY LAB` heading, lines `Multiplier k re im`; and of this program the word `inadmissible` and notes
-/// `xi_1 = 0, xi_2 = 0`.
+/// `BR PT TY LAB` heading, lines `Multiplier k re im` and `Iterations : n`; and of this program the word `inadmissible`
+/// and notes `xi_1 = 0, xi_2 = 0`.
 #pragma once
 
 #include <complex>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,6 +22,8 @@ struct DiagnosticPoint {
   bool admissible = true;
   std::vector<int> xi_zeros;  ///< n of every xi_n = 0 in its notes
   std::vector<std::complex<double>> multipliers;
+  std::optional<double> parameter;  ///< the first number after the label: ICP(1), to 6 digits
+  std::optional<int> iterations;    ///< Newton iterations
 };
 
 /// The points in file order; lines that are not understood are skipped. Throws UserError when the file cannot be read.

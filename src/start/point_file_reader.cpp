@@ -100,6 +100,7 @@ class Header {
     integer(line, "NSEG", section_.segments);
     names(line, "unames", section_.states);
     names(line, "parnames", section_.parameters);
+    names(line, "columns", long_names_);
     if (auto rest = text_after(line, "Branch"); rest && skip(*rest, "type:")) {
       skip_blanks(*rest);
       section_.curve_type = leading_integer(*rest).value_or(0);
@@ -113,6 +114,8 @@ class Header {
   const PointSection& section() const { return section_; }
   /// The last header line: headings of the columns, or nothing of use.
   const std::string& headings() const { return headings_; }
+  /// Names of columns, from 1, that are longer than their headings.
+  const std::map<int, std::string>& long_names() const { return long_names_; }
 
  private:
   static void integer(std::string_view line, std::string_view key, int& value) {
@@ -135,13 +138,16 @@ class Header {
   }
 
   PointSection section_;
+  std::map<int, std::string> long_names_;
   std::string headings_;
 };
 
-/// The heading above each number of `line`: headings begin one column to the right of the numbers' fields.
-std::vector<std::string> headings_above(std::string_view line, const std::vector<std::string_view>& words,
-                                        const std::string& headings) {
+/// The name of each number's column in `line`: the heading above it, where the header does not give it in full.
+/// Headings begin one column to the right of the numbers' fields.
+std::vector<std::string> column_names(std::string_view line, const std::vector<std::string_view>& words,
+                                      const Header& header) {
   std::vector<std::string> names;
+  const std::string& headings = header.headings();
   const bool there = headings.find(" PT ") != std::string::npos;
   const auto end_of = [line](std::string_view word) {
     return static_cast<std::size_t>(word.data() - line.data()) + word.size();
@@ -154,6 +160,8 @@ std::vector<std::string> headings_above(std::string_view line, const std::vector
     name.erase(name.find_last_not_of(" \r") + 1);
     names.push_back(name.empty() ? fmt::format("COLUMN({})", k - prefix_words + 1) : name);
   }
+  for (const auto& [k, name] : header.long_names())
+    if (k >= 1 && static_cast<std::size_t>(k) <= names.size()) names[static_cast<std::size_t>(k) - 1] = name;
   return names;
 }
 
@@ -206,7 +214,7 @@ class PointFileReader {
     PointRow row = read_row(words);
     if (first) {
       file_.sections.push_back(header_.section());
-      file_.sections.back().columns = headings_above(line, words, header_.headings());
+      file_.sections.back().columns = column_names(line, words, header_);
       in_header_ = false;
     }
     PointSection& section = file_.sections.back();
@@ -286,6 +294,14 @@ std::vector<int> PointSection::free_problem_parameters() const {
     if (!not_own) result.push_back(k);
   }
   return result;
+}
+
+std::optional<int> PointSection::parameter_of_column(std::size_t column) const {
+  for (const auto& [k, name] : parameters)
+    if (name == columns[column]) return k;
+  std::string_view heading = columns[column];
+  return skip(heading, "PAR(") && heading.ends_with(')') ? parse_integer(heading.substr(0, heading.size() - 1))
+                                                         : std::nullopt;
 }
 
 bool PointSection::is_two_parameter_curve() const {

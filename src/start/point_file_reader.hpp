@@ -4,12 +4,14 @@
 ///
 ///     BR  +-PT  TY  LAB  values ...        PT negative: stable
 ///
-/// The header's last line holds the headings of the columns. A section without header has the constants and headings
+/// The header's last line holds the headings of the columns; a line `columns = {3: 'name'}` has the names that are too
+/// long for theirs. A section without header has the constants and headings
 /// of the one before. Numbers are list-directed (any width; `1.0-100`, `E+000`, `D+00`); a NaN, an infinity or a field
 /// of stars is a gap (NaN) and gives one warning. A last line that was cut off is left out with a warning.
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -36,7 +38,7 @@ struct PointSection {
   std::vector<int> active_parameters;  ///< PAR indices free in the computation, durations and periods included
   std::map<int, std::string> states;   ///< names of states that have one, by number
   std::map<int, std::string> parameters;
-  std::vector<std::string> columns;  ///< headings; COLUMN(k) without header
+  std::vector<std::string> columns;  ///< names in full, headings in files without them; COLUMN(k) without header
   std::vector<PointRow> rows;
 
   /// PAR(k) by its name or as "PAR(k)".
@@ -44,6 +46,8 @@ struct PointSection {
   std::string state_name(int k) const;
   /// The free parameters that are no durations (PAR(61), ...) and no period (PAR(11) of AUTO's periodic orbits).
   std::vector<int> free_problem_parameters() const;
+  /// The k of a column that is PAR(k), by its name or as "PAR(k)".
+  std::optional<int> parameter_of_column(std::size_t column) const;
   /// A curve of special points in two parameters (|ISW| = 2), or of grazing orbits (IPS 150).
   bool is_two_parameter_curve() const;
   /// Does the sign of PT tell stability? Not for ISP = 0 and for boundary value problems without multipliers (IPS 4).

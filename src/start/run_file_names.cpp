@@ -22,6 +22,13 @@ std::string sibling_path(const std::string& path, char letter) {
   return "";
 }
 
+std::string resolve_run_file(const std::string& path, char letter) {
+  const fs::path given(path);
+  const fs::path prefixed = given.parent_path() / (std::string{letter, '.'} + given.filename().string());
+  std::error_code error;
+  return !fs::exists(given, error) && fs::exists(prefixed, error) ? prefixed.string() : path;
+}
+
 std::string run_name(const std::string& path) {
   const std::string name = fs::path(path).filename().string();
   const bool prefixed = name.size() > 2 && name[1] == '.' && std::string("pqdbs").find(name[0]) != std::string::npos;

@@ -9,6 +9,9 @@ namespace tchat {
 /// 'q', 'd' or 'r' (the constants). Empty when the name does not tell.
 std::string sibling_path(const std::string& path, char letter);
 
+/// `path`, or LETTER.NAME in the same folder when there is no file NAME but that one: "mems" -> "q.mems".
+std::string resolve_run_file(const std::string& path, char letter);
+
 /// "results/p.mems" -> "mems".
 std::string run_name(const std::string& path);
 /// "results/p.mems" -> "results/mems", where the problem of a run is looked for.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 
 #include "constants/constant_value.hpp"
@@ -13,6 +14,7 @@
 #include "constants/user_error.hpp"
 #include "hybrid/parameter_vector.hpp"
 #include "start/fortran_number.hpp"
+#include "start/run_file_names.hpp"
 #include "start/solution_identifier.hpp"
 
 namespace tchat {
@@ -350,13 +352,7 @@ SolutionFile read_solution_file(const std::string& path) {
                              path);
 }
 
-std::string resolve_solution_path(const std::string& path) {
-  const std::filesystem::path given(path);
-  const std::filesystem::path prefixed = given.parent_path() / ("q." + given.filename().string());
-  std::error_code error;
-  if (!std::filesystem::exists(given, error) && std::filesystem::exists(prefixed, error)) return prefixed.string();
-  return path;
-}
+std::string resolve_solution_path(const std::string& path) { return resolve_run_file(path, 'q'); }
 
 const LabelledSolution& find_solution(const std::vector<LabelledSolution>& solutions, const StartLabel& label,
                                       const std::string& path) {
@@ -370,6 +366,17 @@ const LabelledSolution& find_solution(const std::vector<LabelledSolution>& solut
   throw UserError(solutions.empty()
                       ? fmt::format("{}: no {}; the file holds no solution", path, wanted)
                       : fmt::format("{}: no {}; there are the labels {}", path, wanted, label_list(solutions)));
+}
+
+std::vector<std::vector<std::string>> counted_names(const std::vector<LabelledSolution>& solutions) {
+  std::map<std::string, int> counts;
+  std::vector<std::vector<std::string>> names;
+  for (const LabelledSolution& solution : solutions) {
+    names.emplace_back();
+    for (const std::string& type : type_names(solution))
+      if (!type.empty()) names.back().push_back(fmt::format("{}{}", type, ++counts[type]));
+  }
+  return names;
 }
 
 StartLabel read_label(const std::string& word) {

@@ -40,6 +40,9 @@ std::string resolve_solution_path(const std::string& path);
 const LabelledSolution& find_solution(const std::vector<LabelledSolution>& solutions, const StartLabel& label,
                                       const std::string& path);
 
+/// By which names find_solution() finds each solution, its own first: {"GR1", "UZ3"}.
+std::vector<std::vector<std::string>> counted_names(const std::vector<LabelledSolution>& solutions);
+
 /// A label as users name it: a number, or a type with its count, GR1. Throws UserError.
 StartLabel read_label(const std::string& word);
 

@@ -43,8 +43,8 @@ std::string rows(const std::vector<Row>& list) {
 }
 
 /// One point of a d-file.
-std::string diagnostics(int point, const char* type, int label, bool admissible) {
-  return fmt::format("  BR    PT  TY  LAB       alpha\n{:4}{:6}{:>4}{:5}   1.0E+00{}\n{}\n", 1, point, type, label,
+std::string diagnostics(int point, const char* type, int label, double x, bool admissible) {
+  return fmt::format("  BR    PT  TY  LAB       alpha\n{:4}{:6}{:>4}{:5}{:14.5E}{}\n{}\n", 1, point, type, label, x,
                      admissible ? "" : "  inadmissible", std::string(47, '='));
 }
 
@@ -110,7 +110,7 @@ TEST_CASE("inadmissible points and names of UZ points come from the d-file") {
                         : r.type == 7 ? "PD"
                         : r.type == 9 ? "EP"
                                       : "",
-                        r.label, r.point != -6);
+                        r.label, r.x, r.point != -6);
   folder.write("d.a", text);
   const BranchFile file = read_branch_file(path);
   CHECK(line_kind(file, 0, 4) == LineKind::stable);
@@ -242,10 +242,10 @@ TEST_CASE("a zero of xi_n is labelled with its n") {
       header(150, 1) + rows({{1, 9, 1, 0.0, 1.0, 2.0}, {2, -4, 2, 0.5, 1.1, 2.0}, {3, -4, 3, 1.0, 1.2, 2.0}});
   folder.write(
       "d.a",
-      diagnostics(1, "EP", 1, true) +
-          "  BR    PT  TY  LAB       alpha\n   1     2  XI    2   1.0E+00\n   1     2  NOTE: codimension two: xi_2 "
+      diagnostics(1, "EP", 1, 0.0, true) +
+          "  BR    PT  TY  LAB       alpha\n   1     2  XI    2   5.0E-01\n   1     2  NOTE: codimension two: xi_2 "
           "= 0, xi_4 = 0\n" +
-          std::string(47, '=') + '\n' + diagnostics(3, "GC", 3, true));
+          std::string(47, '=') + '\n' + diagnostics(3, "GC", 3, 1.0, true));
   const BranchFile file = read_branch_file(folder.write("p.a", grazing));
   CHECK(labels_of(branch_figure({file}, {})) == std::vector<std::string>{"ξ_{2,4}", "GC"});
   BranchFigureOptions numbered;
@@ -264,6 +264,9 @@ TEST_CASE("inadmissible parts set no range where there are admissible ones") {
                           point == 1   ? 1
                           : point == 3 ? 2
                                        : 0,
+                          point == 1   ? 0.0
+                          : point == 3 ? 9.0
+                                       : 1.0,
                           point <= admissible_points);
     folder.write("d.a", text);
     BranchFigureOptions options;

@@ -1,0 +1,92 @@
+#include "app/table_command.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "constants/user_error.hpp"
+#include "output/branch_table.hpp"
+#include "run/warnings.hpp"
+#include "start/branch_file.hpp"
+#include "start/run_file_kind.hpp"
+#include "start/run_file_names.hpp"
+
+namespace tchat {
+
+namespace {
+
+struct TableArguments {
+  std::vector<std::string> files;
+  bool csv = false;
+  bool json = false;
+};
+
+/// The files of one run, "" for those that are not named.
+struct RunPaths {
+  std::string points;
+  std::string solutions;
+  std::string diagnostics;
+};
+
+std::string& path_for(RunPaths& paths, RunFileKind kind) {
+  if (kind == RunFileKind::solutions) return paths.solutions;
+  return kind == RunFileKind::diagnostics ? paths.diagnostics : paths.points;
+}
+
+RunPaths read_paths(const std::vector<std::string>& words) {
+  RunPaths paths;
+  for (const std::string& word : words) {
+    const std::string path = resolve_run_file(word, 'p');
+    std::string& place = path_for(paths, run_file_kind(path));
+    if (!place.empty())
+      throw UserError(fmt::format(
+          "{} and {} are files of one kind; a table is of one run: its p-file, and its q- and d-file if they are not "
+          "beside it",
+          place, path));
+    place = path;
+  }
+  if (paths.points.empty()) paths.points = sibling_path(words.front(), 'p');
+  if (paths.points.empty())
+    throw UserError(
+        fmt::format("{} is no p-file; give the p-file of the run, as in tchat table p.mems", words.front()));
+  return paths;
+}
+
+int print_table(const TableArguments& arguments) {
+  const RunPaths paths = read_paths(arguments.files);
+  const BranchFile file = read_branch_file(paths.points, paths.solutions, paths.diagnostics);
+  print_warnings(std::cerr, file.warnings);
+  if (arguments.json)
+    write_branch_json(std::cout, file);
+  else
+    write_branch_csv(std::cout, file);
+  return 0;
+}
+
+}  // namespace
+
+void add_table_command(CLI::App& app, std::function<int()>& chosen) {
+  CLI::App* command =
+      app.add_subcommand("table", "The points of a run with all that its files know of them, as CSV or JSON");
+  command->footer(
+      "One line a point: section, branch, point, type, name (as in IRS: GR1), label, kind (what a UZ label\n"
+      "is), stable and admissible (1 or 0), the columns of the p-file by their full names, parameters that\n"
+      "are fixed, durations, multipliers (real and imaginary parts), Newton iterations. Names, kinds and fixed\n"
+      "parameters come from q.NAME, multipliers, admissibility and iterations from d.NAME. What is not known\n"
+      "is empty (null in JSON), infinite multipliers are inf (null in JSON).\n"
+      "Example: tchat table p.mems > mems.csv");
+  const auto arguments = std::make_shared<TableArguments>();
+  command
+      ->add_option("FILES", arguments->files,
+                   "p-file (`mems` is taken for p.mems); q- and d-file where they are not beside it")
+      ->required();
+  CLI::Option* csv = command->add_flag("--csv", arguments->csv, "CSV (this is the default)");
+  command->add_flag("--json", arguments->json, "JSON: an array of objects, one a point")->excludes(csv);
+  command->callback([&chosen, arguments] { chosen = [arguments] { return print_table(*arguments); }; });
+}
+
+}  // namespace tchat
