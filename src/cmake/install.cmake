@@ -1,5 +1,5 @@
 # What `cmake --install` puts where: the program with TC-HAT's commands beside it, the plugin headers (the program looks
-# for them in ../include beside its own folder), the README that messages name, the problems with their constants, and a
+# for them in ../include beside its own folder), the README and the pages, the problems with their constants, and a
 # package so that find_package(tchat) gives tchat::plugin.
 include(CMakePackageConfigHelpers)
 
@@ -8,6 +8,10 @@ file(GLOB tc_hat_commands CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/scripts/@*")
 install(PROGRAMS ${tc_hat_commands} TYPE BIN)
 install(FILES scripts/tc-hat TYPE BIN)
 install(FILES README.md LICENSE TYPE DOC)
+# The pages lie as in the source tree, with a link to the problems, so that their links and those of the README hold.
+install(DIRECTORY src/docs DESTINATION "${CMAKE_INSTALL_DOCDIR}/src" FILES_MATCHING PATTERN "*.md")
+install(CODE "file(CREATE_LINK \"../../tchat/problems\"
+  \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DOCDIR}/problems\" SYMBOLIC)")
 install(TARGETS tchat_plugin EXPORT tchatConfig FILE_SET HEADERS)
 install(DIRECTORY problems constants DESTINATION "${CMAKE_INSTALL_DATADIR}/tchat"
         PATTERN "*.so" EXCLUDE PATTERN "*.o" EXCLUDE PATTERN "*~" EXCLUDE)

@@ -1,5 +1,5 @@
 /// `tchat resegment`: from a labelled orbit to starting data and constants of the next run, where the signature changes
-/// (5.1.1, 5.3; README, "Where the signature changes").
+/// (5.1.1, 5.3; src/docs/resegment.md).
 #pragma once
 
 #include <optional>

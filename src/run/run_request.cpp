@@ -26,8 +26,8 @@ std::string constants_path(const std::string& c) {
   if (is_file(prefixed)) return prefixed.string();
   if (is_file(path)) return path.string();
   throw UserError(
-      fmt::format("there is no constants file {}{}; give its name with -c, or write one (README, "
-                  "\"Constants files\")",
+      fmt::format("there is no constants file {}{}; give its name with -c, or write one "
+                  "(src/docs/constants.md)",
                   prefixed.string(), path == prefixed ? "" : " or " + path.string()));
 }
 

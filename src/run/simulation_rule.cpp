@@ -65,7 +65,7 @@ bool has_one_of_each(const HybridSystem& system) {
   throw UserError(
       fmt::format("{} has no index jump function (successors), so a simulation follows a signature; give it with "
                   "--signature '1,2,2;...' or a constants file with -c C (there is no gc.{}), or give the problem a "
-                  "member `successors` (README, \"From equations to an orbit\")",
+                  "member `successors` (src/docs/simulation.md)",
                   system.name(), request.name));
 }
 

@@ -1,4 +1,4 @@
-/// One solution of a q-file: an orbit with its direction and everything a restart needs. FORMATS: README, "Files".
+/// One solution of a q-file: an orbit with its direction and everything a restart needs. Formats: src/docs/files.md.
 #pragma once
 
 #include <Eigen/Core>
@@ -6,7 +6,7 @@
 
 namespace tchat {
 
-/// Type numbers of AUTO (README, "Labels"); on two-parameter curves the file adds a tens digit.
+/// Type numbers of AUTO (src/docs/files.md); on two-parameter curves the file adds a tens digit.
 enum class PointType {
   ordinary = 0,
   regular = 4,  ///< every NPR points

@@ -1,4 +1,4 @@
-/// A strict reader of NAME.events as README describes it.
+/// A strict reader of NAME.events as src/docs/simulation.md describes it.
 #pragma once
 
 #include <catch2/catch.hpp>

@@ -1,5 +1,5 @@
-// `tchat new` and `tchat constants`, and what the README advises: a problem from the template runs, and the period can
-// be held while another parameter is free.
+// `tchat new` and `tchat constants`, and what src/docs/forcing.md advises: a problem from the template runs, and the
+// period can be held while another parameter is free.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <iomanip>
@@ -105,7 +105,7 @@ TEST_CASE("constants: the other form says the same, also of itself, explained in
 
 namespace {
 
-// The README's way to hold the period: the parameter that is to be free is a state, a clock measures the period.
+// The way of src/docs/forcing.md to hold the period: the parameter that is to be free is a state, a clock measures the period.
 constexpr const char* held_period = R"(#include <tchat/problem.hpp>
 struct VanDerPol {
   static constexpr int dimension = 4, parameters = 2, fields = 1, events = 1, jumps = 1;
