@@ -1,0 +1,316 @@
+"""tchat.py against `tchat table`, AUTO-07p's own readers, closed forms of the linear oscillator, and files by hand.
+
+usage: tchat_py_test.py TCHAT PLUGIN FOLDER WRITE_SAMPLE_RUN     plugin library of linosc, folder of its constants
+
+Exit status 77 (skipped) without numpy.
+"""
+
+import csv
+import io
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+import warnings
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path.insert(0, os.path.join(HERE, "..", "..", "src", "python"))
+sys.path.insert(0, os.path.join(HERE, "..", "output"))
+try:
+    import numpy as np
+except ImportError:
+    print("skipped: no numpy (Debian package python3-numpy)")
+    sys.exit(77)
+import tchat  # noqa: E402
+from auto_readers import allow_new_numpy, find_auto  # noqa: E402
+
+TCHAT, PLUGIN, CONSTANTS, WRITE_SAMPLE_RUN = (os.path.abspath(word) for word in sys.argv[1:5])
+RUNS = {
+    "alpha": ["-c", "nonimpacting_alpha", "-d", "nonimpacting"],
+    "grazing": ["-c", "to_grazing", "-d", "nonimpacting"],
+    "curve": ["-c", "grazing_curve", "-s", "grazing", "--both"],
+    "both": ["-c", "impacting", "-d", "impacting", "--both", "NMX=15"],
+    "impacting": ["-c", "impacting_20072", "-s", "curve"],
+    "doubling": ["-c", "period_doubling_curve", "-s", "impacting", "NMX=5"],
+    "unknown": ["-c", "impacting", "-d", "impacting", "IID=0", "NMX=5"],
+}
+
+
+def setUpModule():
+    folder = tempfile.mkdtemp()
+    os.chdir(folder)
+    for file in os.listdir(CONSTANTS):
+        shutil.copy(os.path.join(CONSTANTS, file), folder)
+    shutil.copy(PLUGIN, folder)
+    os.environ["TCHAT"] = TCHAT
+    for name, words in RUNS.items():
+        tchat.run("linosc", *words, "-o", name)
+    tchat.run("linosc", "-c", "impacting", "-s", "both", "--append", "-o", "both", IRS=1, NMX=4)
+    subprocess.run([WRITE_SAMPLE_RUN], check=True)
+
+
+def tearDownModule():
+    folder = os.getcwd()
+    os.chdir("/")
+    shutil.rmtree(folder)
+
+
+def table(*words):
+    return subprocess.run([TCHAT, "table", *words], check=True, stdout=subprocess.PIPE, universal_newlines=True).stdout
+
+
+def write(name, text):
+    with open(name, "w") as file:
+        file.write(text)
+
+
+def read(name):
+    with open(name) as file:
+        return file.read()
+
+
+class Tables(unittest.TestCase):
+    """Two readers, written apart, find the same in the same files."""
+
+    def compare(self, name):
+        lines = list(csv.reader(io.StringIO(table(name))))
+        run = tchat.load(name)
+        columns = run.table()
+        self.assertEqual(list(columns), lines[0], name)
+        self.assertEqual(len(run), len(lines) - 1, name)
+        for k, heading in enumerate(lines[0]):
+            words = [line[k] for line in lines[1:]]
+            if columns[heading].dtype == object:
+                self.assertEqual(words, list(columns[heading]), (name, heading))
+            else:
+                values = [float(word) if word else np.nan for word in words]
+                np.testing.assert_array_equal(values, columns[heading].astype(float), "%s: %s" % (name, heading))
+
+    def test_same_as_tchat_table(self):
+        for name in list(RUNS) + ["sample"]:
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")
+                self.compare(name)
+
+    def test_json_is_the_csv(self):
+        for name in ("both", "curve"):
+            lines = list(csv.DictReader(io.StringIO(table(name, "--csv"))))
+            objects = json.loads(table(name, "--json"), parse_constant=self.fail)
+            self.assertEqual(len(lines), len(objects))
+            for line, point in zip(lines, objects):
+                for key, value in point.items():
+                    if key == "multipliers":
+                        flat = [np.inf if part is None else part for pair in value for part in pair]
+                        self.assertEqual(flat, [float(line["multiplier%d_%s" % (k // 2 + 1, ("re", "im")[k % 2])])
+                                                for k in range(len(flat))])
+                    elif value is None:
+                        self.assertEqual(line[key], "")
+                    elif isinstance(value, str):
+                        self.assertEqual(line[key], value)
+                    else:
+                        self.assertEqual(float(line[key]), float(value))
+
+    def test_pandas_reads_the_csv(self):
+        try:
+            import pandas
+        except ImportError:
+            self.skipTest("no pandas")
+        frame = pandas.read_csv(io.StringIO(table("both")), float_precision="round_trip")
+        own = tchat.load("both").frame()
+        self.assertEqual(list(frame.columns), list(own.columns))
+        np.testing.assert_array_equal(frame["alpha"], own["alpha"])
+        self.assertEqual(list(frame[frame.label > 0].name), list(own[own.label > 0].name))
+
+    def test_what_points_are(self):
+        run = tchat.load("grazing")
+        self.assertEqual(list(run["name"]), ["EP1", "GR1"])
+        self.assertIn("contact inside segment 1, event function 1", run["kind"][1])
+        doubling = tchat.load("doubling")
+        self.assertTrue(np.isnan(doubling["stable"]).all())  # along a curve of period doublings it says nothing
+        self.assertTrue((np.min(np.abs(doubling.multipliers + 1.0), axis=1) < 1e-5).all())
+        self.assertEqual(set(tchat.load("both")["section"]), {1, 2, 3})
+        without = tchat.load("unknown")  # IID = 0: the d-file has labelled points only
+        self.assertEqual(list(np.isnan(without["admissible"])), list(without["label"] == 0))
+
+    def test_orbit_in_physical_time(self):
+        text = subprocess.run([TCHAT, "orbit", "sample", "4", "--csv"], check=True, stdout=subprocess.PIPE,
+                              universal_newlines=True).stdout
+        rows = list(csv.DictReader(io.StringIO(text)))
+        orbit = tchat.read_solutions("sample").find(4)
+        self.assertEqual(list(rows[0]), ["segment", "tau", "t", "x1", "x2", "y1", "y2"])
+        np.testing.assert_array_equal([float(row["x2"]) for row in rows], orbit["x2"].ravel())
+        np.testing.assert_allclose([float(row["t"]) for row in rows], orbit.t.ravel(), rtol=1e-15)
+        self.assertEqual([int(row["segment"]) for row in rows], [1] * len(orbit.tau) + [2] * len(orbit.tau))
+
+
+class ClosedForms(unittest.TestCase):
+    def test_orbit_without_impacts(self):
+        run = tchat.load("alpha")
+        omega, zeta = 2.0, 0.05
+        np.testing.assert_allclose(run["PERIOD"], 2.0 * np.pi / omega, rtol=1e-9)
+        amplitude = run["alpha"] / np.hypot(1.0 - omega ** 2, 2.0 * zeta * omega)
+        np.testing.assert_allclose(run["MAX x1"], amplitude, rtol=1e-4)  # on the mesh points
+        of_oscillator = np.exp((-zeta + 1j * np.sqrt(1.0 - zeta ** 2)) * 2.0 * np.pi / omega)
+        for row in run.multipliers:
+            self.assertLess(np.min(np.abs(row - of_oscillator)), 1e-7)
+            self.assertLess(np.min(np.abs(row - np.exp(-4.0 * np.pi / omega))), 1e-7)  # of the limit cycle
+
+    def test_orbit_of_a_label(self):
+        orbit = tchat.load("alpha").orbit("UZ1")
+        omega = orbit.parameter("omega")
+        self.assertAlmostEqual(orbit.period, 2.0 * np.pi / omega, places=11)
+        self.assertEqual(orbit.parameter(1), orbit.parameter("PAR(1)"))
+        self.assertEqual(orbit.parameter("zeta"), 0.05)
+        x1, t = orbit["x1"][0], orbit.t[0]
+        phase = np.arctan2(orbit["y1"][0, 0], orbit["y2"][0, 0])
+        forced = orbit.parameter("alpha") / (1.0 - omega ** 2 + 2j * 0.05 * omega) * np.exp(1j * (omega * t + phase))
+        np.testing.assert_allclose(x1, forced.real, atol=1e-7)
+
+    def test_impacts_of_a_simulation(self):
+        simulation = tchat.simulate("linosc", "PAR(alpha)=3", "-o", "sim", "--events", 6)
+        events, r = simulation.events, simulation.events.parameters["r"]
+        impacts = events.index[:, 2] == 1
+        self.assertTrue(impacts.any())
+        np.testing.assert_allclose(events["x1"][impacts], 1.0, atol=1e-12)
+        np.testing.assert_allclose(events["x2_after"][impacts], -r * events["x2"][impacts], rtol=1e-14)
+        segments = simulation.trajectory.segments()
+        self.assertEqual(sum(len(rows) for rows in segments), len(simulation.trajectory))
+        for k, rows in enumerate(segments[:-1]):
+            np.testing.assert_allclose(simulation.trajectory.t[rows[-1]], events.t[k], rtol=1e-14)
+        swept = list(tchat.sweep("linosc", "alpha", [2.0, 3.0], "--transient-events", 2, "--events", 3))
+        self.assertEqual([value for value, _ in swept], [2.0, 3.0])
+        self.assertEqual(swept[1][1].parameters["alpha"], 3.0)
+
+
+class Auto(unittest.TestCase):
+    def test_same_as_autos_readers(self):
+        folder = find_auto()
+        if folder is None:
+            self.skipTest("AUTO-07p is not installed")
+        sys.path.insert(0, folder)
+        warnings.simplefilter("ignore")
+        allow_new_numpy()
+        from auto import parseB, parseD, parseS
+        for name in ("alpha", "curve", "doubling"):
+            branches, run = parseB.parseBR("p." + name), tchat.load(name)
+            for column in branches[0].coordnames:
+                theirs = np.concatenate([branch[column] for branch in branches])
+                np.testing.assert_array_equal(theirs, run[column.strip()])
+            labels = parseS.parseS("q." + name)
+            self.assertEqual(labels.getLabels(), [solution.label for solution in run.solutions])
+            for solution in run.solutions:
+                theirs = labels.getLabel(solution.label)
+                np.testing.assert_array_equal(theirs.indepvararray, solution.tau)
+                np.testing.assert_array_equal(theirs.coordarray, solution.states[0])
+                np.testing.assert_array_equal(theirs.PAR.toarray()[:len(solution.parameters)], solution.parameters)
+                np.testing.assert_array_equal(theirs["rldot"], solution.direction)
+                self.assertEqual(list(theirs["Active ICP"]), solution.free)
+            blocks = parseD.parseD("d." + name)
+            blocks = [block for block in (blocks[k] for k in range(len(blocks.data))) if block["Multipliers"]]
+            ours = [np.nan_to_num(row[~np.isnan(row)], posinf=1e99, neginf=-1e99) for row in run.multipliers]
+            self.assertEqual([[complex(*pair) for pair in block["Multipliers"]] for block in blocks], [list(row) for row in ours])
+
+
+class Running(unittest.TestCase):
+    def test_progress_sees_every_point(self):
+        write("p.new", read("p.alpha"))  # what another run has left is not its own
+        points = []
+        run = tchat.run("linosc", *RUNS["alpha"], "-o", "new", progress=points.append)
+        self.assertEqual([point["alpha"] for point in points], list(run["alpha"]))
+        self.assertEqual([point.label for point in points], list(run["label"]))
+        self.assertIn("points,", run.screen)
+
+    def test_points_appended_are_told_alone(self):
+        before = len(tchat.run("linosc", *RUNS["alpha"], "-o", "more"))
+        points = []
+        run = tchat.run("linosc", *RUNS["alpha"], "-o", "more", "--append", progress=points.append)
+        self.assertEqual(len(points), len(run) - before)
+
+    def test_stopped_from_the_callback(self):
+        words = ["-c", "impacting", "-d", "impacting", "-o", "long", "NMX=9000", "DSMAX=1e-5", "DS=1e-5", "NTST=100"]
+        run = tchat.run("linosc", *words, progress=lambda point: point.point < 3)
+        self.assertTrue(3 <= len(run) < 5000)
+
+        def fail(point):
+            raise KeyError("mine")
+        with self.assertRaises(KeyError):
+            tchat.run("linosc", *words, progress=fail)
+        self.assertLess(len(tchat.load("long")), 5000)
+
+    def refused(self, *words, **constants):
+        with self.assertRaises(tchat.Error) as caught:
+            tchat.run(*words, **constants)
+        return caught.exception
+
+    def test_messages_are_those_of_tchat(self):
+        error = self.refused("linosc", "-c", "impacting", "-d", "impacting", NTST="x")
+        self.assertEqual(error.status, 2)
+        self.assertIn("NTST (number of mesh intervals of each segment): found 'x'", str(error))
+        self.assertIn("no constants file", str(self.refused("linosc", "-c", "none")))
+        error = self.refused("linosc", "-c", "impacting", "-d", "impacting", "PAR(r)=40", "-o", "not", ITNW=1)
+        self.assertEqual(error.status, 1)
+        self.assertIn("no program", str(self.refused("linosc", program="/nowhere/tchat")).replace("no such", "no"))
+
+
+class Refused(unittest.TestCase):
+    """One sentence for files that are another kind, cut off, or of another run."""
+
+    def message(self, call, *arguments):
+        with self.assertRaises(tchat.Error) as caught:
+            call(*arguments)
+        return str(caught.exception)
+
+    def test_wrong_kinds(self):
+        self.assertIn("this is no p-file", self.message(tchat.read_points, "q.alpha"))
+        self.assertIn("this is no q-file", self.message(tchat.read_solutions, "p.alpha"))
+        self.assertIn("no point in it", self.message(tchat.read_diagnostics, "q.alpha"))
+        self.assertIn("#segment", self.message(tchat.read_trajectory, "p.alpha"))
+        self.assertIn("No such file", self.message(tchat.load, "nothing"))
+        self.assertIn("no column 'beta'; there are section", self.message(tchat.load("alpha").__getitem__, "beta"))
+        self.assertIn("no label GR7; there are 1 (EP1)", self.message(tchat.load("alpha").orbit, "GR7"))
+
+    def test_cut_files_lose_only_their_end(self):
+        points, solutions = read("p.alpha"), read("q.alpha")
+        labels = [solution.label for solution in tchat.read_solutions("alpha")]
+        write("p.cut", points[:-7])
+        write("q.cut", solutions[:-20])
+        with warnings.catch_warnings(record=True) as told:
+            warnings.simplefilter("always")
+            run = tchat.load("cut")
+        self.assertEqual(len(run), len(tchat.load("alpha")) - 1)
+        self.assertEqual([solution.label for solution in run.solutions], labels[:-1])
+        self.assertEqual(sum("not complete" in str(warning.message) for warning in told), 2)
+
+    def test_files_of_another_run_are_left_out(self):
+        for letter in "qd":
+            name = "mixed" + letter
+            shutil.copy("p.alpha", "p." + name)
+            shutil.copy(letter + ".impacting", letter + "." + name)
+            with self.assertWarnsRegex(tchat.TchatWarning, "of another run"):
+                run = tchat.load(name)
+            self.assertIsNone(run.solutions)
+            self.assertIsNone(run.diagnostics)
+
+    def test_numbers_as_fortran_writes_them(self):
+        write("p.odd", "   0    PT  TY  LAB       a            b\n   1    -1   9    1   1.5D-03   1.25-101\n"
+                       "   1     2   0    0   ********   -Infinity\n")
+        section, = tchat.read_points("odd")
+        self.assertEqual(list(section.data[0]), [1.5e-3, 1.25e-101])
+        self.assertTrue(np.isnan(section.data[1]).all())
+        self.assertEqual(list(section.stable), [True, False])
+
+    def test_parts_of_a_branch(self):
+        header = "   0   IPS = 180   ISP =   2   NSEG=   1\n   0    PT  TY  LAB                 a\n"
+        numbers = [-1, -2, 3, 4, -5]
+        write("p.parts", header + "".join("   1%6d   0    0%19.10E\n" % (n, abs(n)) for n in numbers))
+        parts = tchat.load("parts").parts()
+        self.assertEqual([(list(part["COLUMN(1)" if "COLUMN(1)" in tchat.load("parts").headings() else "a"]),
+                           bool(part.stable)) for part in parts],
+                         [([1.0, 2.0], True), ([2.0, 3.0, 4.0], False), ([4.0, 5.0], True)])
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
