@@ -23,9 +23,9 @@ import warnings
 
 import numpy as np
 
-__all__ = ["Error", "TchatWarning", "load", "run", "simulate", "sweep", "read_points", "read_solutions", "read_diagnostics",
-           "read_trajectory", "read_events", "Run", "Section", "Solution", "Solutions", "Diagnostic", "Point",
-           "Trajectory"]
+__all__ = ["Error", "TchatWarning", "load", "run", "simulate", "sweep", "read_points", "read_solutions",
+           "read_diagnostics", "read_trajectory", "read_events", "Run", "Section", "Solution", "Solutions", "Diagnostic",
+           "Point", "Trajectory"]
 
 FIRST_DURATION = 61    # PAR(60 + s) is the duration of segment s
 MOST_SEGMENTS = 64
@@ -238,7 +238,8 @@ class _Header:
             match = re.search(r"(?:^|[ ,])%s *= *\{([^}]*)\}" % key, line)
             if match:
                 names.clear()
-                names.update((int(k), a or b) for k, a, b in re.findall(r"([0-9]+): *(?:'([^']+)'|\"([^\"]+)\")", match[1]))
+                entries = re.findall(r"([0-9]+): *(?:'([^']+)'|\"([^\"]+)\")", match[1])
+                names.update((int(k), single or double) for k, single, double in entries)
         match = re.search(r"Branch *type: *(-?[0-9]+)", line)
         if match:
             self.section.curve_type = int(match[1])
@@ -305,7 +306,7 @@ class _PointParser:
 
 
 def read_points(path):
-    """The sections of a p-file (b-file, fort.7), `impacting` for p.impacting. A last line that is cut off is left out."""
+    """The sections of a p-file (b-file, fort.7), `mems` for p.mems. A last line that is cut off is left out."""
     path = _resolve(path, "p")
     parser = _PointParser(path)
     lines = _read_text(path, "points of branches").splitlines(keepends=True)
@@ -439,7 +440,8 @@ def _entry(path, line, identifier, words):
     solution = Solution()
     solution.branch, solution.point, solution.type, solution.label = (abs(identifier[0]), abs(identifier[1]),
                                                                       identifier[2], identifier[3])
-    solution.isw, solution.ntst, solution.ncol, solution.ips = identifier[5], identifier[9], identifier[10], identifier[14]
+    solution.isw, solution.ntst, solution.ncol = identifier[5], identifier[9], identifier[10]
+    solution.ips = identifier[14]
     table = numbers[:points * width].reshape(points, width)
     solution.tau, at = table[:, 0], points * width
     solution.free = []
@@ -467,7 +469,7 @@ def _states_of(free, width):
 
 
 def read_solutions(path, names=True):
-    """The solutions of a q-file (s-file, fort.8), `impacting` for q.impacting. A last one that is cut off is left out.
+    """The solutions of a q-file (s-file, fort.8), `mems` for q.mems. A last one that is cut off is left out.
 
     names: take the names of states and parameters from the p-file beside it.
     """
@@ -607,7 +609,7 @@ class _DiagnosticParser:
 
 
 def read_diagnostics(path):
-    """The points of a d-file (fort.9), `impacting` for d.impacting."""
+    """The points of a d-file (fort.9), `mems` for d.mems."""
     path = _resolve(path, "d")
     parser = _DiagnosticParser()
     for line in _read_text(path, "diagnostics of a run").split("\n"):
@@ -666,6 +668,9 @@ class Run:
             if wanted in self._columns:
                 return self._columns[wanted]
         raise Error("%s: no column %r; there are %s" % (self.path, name, ", ".join(self._columns)))
+
+    def __repr__(self):
+        return "%s: %d points, %d of them with labels" % (self.path, len(self), len(self.labels()))
 
     def headings(self):
         return list(self._columns)
@@ -756,7 +761,8 @@ class Run:
     def _match_diagnostics(self, diagnostics):
         places = {}
         for point in reversed(diagnostics):
-            places.setdefault((point.branch, -point.point if point.stable else point.point, point.label), []).append(point)
+            number = -point.point if point.stable else point.point
+            places.setdefault((point.branch, number, point.label), []).append(point)
         found = []
         for _, integers, values in self._rows():
             left = places.get((integers[0], integers[1], integers[3]))
@@ -810,8 +816,8 @@ class Run:
         """The parameters worth a column: those with a name, those that are not zero, durations."""
         solution = self._first_solution(section)
         values = [] if solution is None else solution.parameters
-        shown = [k + 1 for k, value in enumerate(values)
-                 if FIRST_DURATION <= k + 1 < FIRST_DURATION + section.nseg or (k + 1 < FIRST_DURATION and value != 0.0)]
+        shown = [k for k, value in enumerate(values, 1)
+                 if FIRST_DURATION <= k < FIRST_DURATION + section.nseg or (k < FIRST_DURATION and value != 0.0)]
         return sorted(set(shown) | set(section.parameters))
 
     def _number_names(self):
@@ -843,7 +849,7 @@ class Run:
         if section.active and k not in section.active and not duration:
             known = first is not None and k <= len(first.parameters)
             return np.full(len(section), first.parameters[k - 1] if known else np.nan)
-        return np.array([s.parameters[k - 1] if s is not None and k <= len(s.parameters) else np.nan for s in solutions])
+        return np.array([np.nan if s is None or k > len(s.parameters) else s.parameters[k - 1] for s in solutions])
 
 
 def load(name):
@@ -874,7 +880,7 @@ def load(name):
 
 class Trajectory:
     """Rows of O.trajectory or O.events: segment, index (rows x 3: field, event, jump), t, and columns by their
-    headings, trajectory["x1"]; parameters: PAR by name as the heading has them; what: what each event is (else None)."""
+    headings, trajectory["x1"]; parameters: values by name, from the heading; what: what each event is (else None)."""
 
     def __init__(self, path):
         lines = _read_text(path, "what tchat simulate writes").splitlines()

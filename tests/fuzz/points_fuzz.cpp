@@ -18,6 +18,10 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
       fuzz::require(row.values.size() <= section.columns.size(), "no value without a column");
     for (const int k : section.active_parameters) fuzz::require(!section.parameter_name(k).empty(), "a name");
     for (int k = 1; k <= section.dimension && k <= 20; ++k) fuzz::require(!section.state_name(k).empty(), "a name");
+    for (std::size_t k = 0; k < section.columns.size(); ++k) {
+      fuzz::require(!section.columns[k].empty(), "a column has a name");
+      section.parameter_of_column(k);
+    }
     section.free_problem_parameters();
     section.is_two_parameter_curve();
     section.has_stability();

@@ -211,7 +211,8 @@ class Auto(unittest.TestCase):
             blocks = parseD.parseD("d." + name)
             blocks = [block for block in (blocks[k] for k in range(len(blocks.data))) if block["Multipliers"]]
             ours = [np.nan_to_num(row[~np.isnan(row)], posinf=1e99, neginf=-1e99) for row in run.multipliers]
-            self.assertEqual([[complex(*pair) for pair in block["Multipliers"]] for block in blocks], [list(row) for row in ours])
+            theirs = [[complex(*pair) for pair in block["Multipliers"]] for block in blocks]
+            self.assertEqual(theirs, [list(row) for row in ours])
 
 
 class Running(unittest.TestCase):
@@ -245,6 +246,17 @@ class Running(unittest.TestCase):
             tchat.run(*words, **constants)
         return caught.exception
 
+    def test_names_of_columns_in_full(self):
+        """A heading of the p-file is cut at 17 characters; the run's record has the name."""
+        name = "displacement of the proof mass"
+        write("p.long", "   0   unames = {1: '%s'}\n   0   columns = {2: 'MAX %s'}\n"
+                        "   0    PT  TY  LAB                 a  MAX displacement \n"
+                        "   1    -1   9    1  1.0000000000E+000  2.0000000000E+000\n" % (name, name))
+        section, = tchat.read_points("long")
+        self.assertEqual(section.columns, ["a", "MAX " + name])
+        self.assertEqual(list(section["MAX U(1)"]), [2.0])
+        self.assertEqual(table("long").split("\n")[0].split(",")[9:11], ["a", "MAX " + name])
+
     def test_messages_are_those_of_tchat(self):
         error = self.refused("linosc", "-c", "impacting", "-d", "impacting", NTST="x")
         self.assertEqual(error.status, 2)
@@ -271,6 +283,30 @@ class Refused(unittest.TestCase):
         self.assertIn("No such file", self.message(tchat.load, "nothing"))
         self.assertIn("no column 'beta'; there are section", self.message(tchat.load("alpha").__getitem__, "beta"))
         self.assertIn("no label GR7; there are 1 (EP1)", self.message(tchat.load("alpha").orbit, "GR7"))
+
+    def test_table_refuses_in_one_sentence(self):
+        cases = [(["p.alpha", "d.impacting"], "it is of another run, the one needed is d.alpha"),
+                 (["p.alpha", "q.impacting"], "it is of another run, the one needed is q.alpha"),
+                 (["p.alpha", "p.impacting"], "files of one kind"),
+                 (["gc.impacting"], "this is no p-file"),
+                 (["nothing"], "there is no such file"),
+                 (["p.alpha", "--csv", "--json"], "excludes"),
+                 (["p.alpha", "d.empty"], "no point in it")]
+        write("d.empty", "")
+        for words, text in cases:
+            done = subprocess.run([TCHAT, "table", *words], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                  universal_newlines=True)
+            self.assertEqual((done.returncode, done.stdout), (2, ""), words)
+            self.assertIn(text, done.stderr)
+            self.assertEqual(done.stderr.count("\n"), 1)
+
+    def test_table_leaves_out_what_does_not_belong(self):
+        shutil.copy("p.alpha", "p.odd_one")
+        shutil.copy("d.impacting", "d.odd_one")
+        done = subprocess.run([TCHAT, "table", "odd_one"], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                              universal_newlines=True, check=True)
+        self.assertIn("warning: d.odd_one: point 1, label 1 has", done.stderr)
+        self.assertNotIn("multiplier1_re", done.stdout)
 
     def test_cut_files_lose_only_their_end(self):
         points, solutions = read("p.alpha"), read("q.alpha")
@@ -307,8 +343,7 @@ class Refused(unittest.TestCase):
         numbers = [-1, -2, 3, 4, -5]
         write("p.parts", header + "".join("   1%6d   0    0%19.10E\n" % (n, abs(n)) for n in numbers))
         parts = tchat.load("parts").parts()
-        self.assertEqual([(list(part["COLUMN(1)" if "COLUMN(1)" in tchat.load("parts").headings() else "a"]),
-                           bool(part.stable)) for part in parts],
+        self.assertEqual([(list(part["a"]), bool(part.stable)) for part in parts],
                          [([1.0, 2.0], True), ([2.0, 3.0, 4.0], False), ([4.0, 5.0], True)])
 
 
