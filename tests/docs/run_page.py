@@ -11,6 +11,7 @@ usage: run_page.py PAGE TCHAT SOURCE [CACHE]   page, executable, root of the rep
 Other blocks are not run. Links to files and to headings must lead somewhere.
 """
 
+import contextlib
 import os
 import re
 import subprocess
@@ -149,6 +150,11 @@ class Shell:
             return file.read(), folder or None
 
 
+    def close(self):
+        self.bash.stdin.close()
+        self.bash.wait()
+
+
 def run_python(block, page, names, scratch):
     """Output and whether the block ran to its end."""
     sys.stdout.flush()
@@ -171,8 +177,8 @@ def run_python(block, page, names, scratch):
         return file.read(), good
 
 
-def run_blocks(blocks, page, scratch):
-    shell, names, shown_by, output = Shell(scratch), {"__name__": "__main__"}, None, ""
+def run_blocks(blocks, page, scratch, shell):
+    names, shown_by, output = {"__name__": "__main__"}, None, ""
     for block in blocks:
         if block.kind in ("sh", "python"):
             if block.kind == "sh":
@@ -227,7 +233,8 @@ def main():
             os.environ["XDG_CACHE_HOME"] = os.path.abspath(sys.argv[4])
         os.chdir(os.path.join(scratch, "page"))
         try:
-            run_blocks(blocks, page, scratch)
+            with contextlib.closing(Shell(scratch)) as shell:
+                run_blocks(blocks, page, scratch, shell)
         finally:
             os.chdir("/")
     count = {kind: sum(block.kind == kind for block in blocks) for kind in ("sh", "python", "text", "console")}
