@@ -44,10 +44,10 @@ bool agree(double a, double b) {
 
 [[noreturn]] void tell_other_run(const BranchFile& file, const std::string& path, char letter,
                                  const std::string& what) {
-  throw UserError(fmt::format("{}: {}; it is of another run, the one needed is {}", path, what,
-                              sibling_path(file.path, letter).empty()
-                                  ? fmt::format("the {}-file of {}", letter, file.path)
-                                  : sibling_path(file.path, letter)));
+  const std::string own = sibling_path(file.path, letter);
+  const bool is_beside = own.empty() || own == path;
+  throw UserError(fmt::format("{}: {}; it is of another run{}", path, what,
+                              is_beside ? ": take it away, or compute the run anew" : ", the one needed is " + own));
 }
 
 /// Refuses a value of ICP(1) that is not that of the row.

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "constants/constant_value.hpp"
 #include "fuzz_target.hpp"
 #include "start/solution_file_reader.hpp"
 
@@ -36,6 +37,11 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     if (solution.label > 0)
       fuzz::require(find_solution(file.solutions, wanted, fuzz::source).label == solution.label, "labels are found");
   }
+  const auto names = counted_names(file.solutions);
+  for (std::size_t k = 0; k < names.size(); ++k)
+    for (const std::string& name : names[k])
+      if (const auto wanted = parse_typed_label(name))
+        fuzz::require(&find_solution(file.solutions, *wanted, fuzz::source) == &file.solutions[k], "names are found");
   StartLabel absent;
   absent.type = "PD";
   absent.number = 7;

@@ -112,6 +112,15 @@ TEST_CASE("Header lines by hand", "[output]") {
   for (std::size_t k = 0; k < lines.size(); ++k) CHECK(lines[k] == expected[k]);
 }
 
+TEST_CASE("Names longer than their headings stand in the header in full", "[output]") {
+  PointFileHeader header{oscillator_settings(), {1, 61, 62}, oscillator_names(), 0};
+  header.names.states[1] = "velocity of \"the\" mass";
+  header.names.states[2] = "thirteen long";  // MAX and 13 letters fill a heading
+  const std::string text = format_point_header(header, point_columns(header.settings, header.names));
+  CHECK_THAT(text, Contains("\n   0   columns = {4: 'MAX velocity of _the_ mass'}\n   0\n   0    PT  TY  LAB "));
+  CHECK_THAT(text, Contains("MAX velocity of _  MAX thirteen long  "));
+}
+
 TEST_CASE("Two-parameter runs name the curve's type", "[output]") {
   PointFileHeader header{oscillator_settings(), {1, 2, 61, 62}, oscillator_names(), 7};
   const std::string text = format_point_header(header, point_columns(header.settings, header.names));

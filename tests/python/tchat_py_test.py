@@ -305,7 +305,7 @@ class Refused(unittest.TestCase):
         shutil.copy("d.impacting", "d.odd_one")
         done = subprocess.run([TCHAT, "table", "odd_one"], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                               universal_newlines=True, check=True)
-        self.assertIn("warning: d.odd_one: point 1, label 1 has", done.stderr)
+        self.assertIn("warning: d.odd_one: it has none of the points of p.odd_one; it is of another run", done.stderr)
         self.assertNotIn("multiplier1_re", done.stdout)
 
     def test_cut_files_lose_only_their_end(self):
