@@ -55,10 +55,11 @@ set_target_properties(ball PROPERTIES PREFIX "")
 TEST_CASE("installed, and moved elsewhere: everything works outside the source tree") {
   const Installation installation;
   const Workspace& workspace = installation.workspace();
-  for (const char* file : {"bin/tchat", "bin/@gc", "bin/@sv", "bin/tc-hat", "include/tchat/problem.hpp",
-                           "include/tchat/problem.h", "include/tchat/gccont.h", "share/tchat/problems/mems/mems.cpp",
-                           "share/tchat/constants/linosc/gc.impacting", "share/doc/tchat/README.md",
-                           "share/doc/tchat/src/docs/tutorial.md", "share/doc/tchat/problems/linosc/README.md"}) {
+  for (const char* file :
+       {"bin/tchat", "bin/@gc", "bin/@sv", "bin/tc-hat", "include/tchat/problem.hpp", "include/tchat/problem.h",
+        "include/tchat/gccont.h", "share/tchat/problems/mems/mems.cpp", "share/tchat/constants/linosc/gc.impacting",
+        "share/doc/tchat/README.md", "share/tchat/python/tchat.py", "share/doc/tchat/src/docs/tutorial.md",
+        "share/doc/tchat/problems/linosc/README.md"}) {
     INFO(file);
     CHECK(workspace.has(std::string("prefix/") + file));
   }
