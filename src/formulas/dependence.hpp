@@ -1,0 +1,57 @@
+/// How expressions depend on states: through which definitions and functions, and where not smoothly.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "formulas/formula_file.hpp"
+#include "formulas/name_table.hpp"
+
+namespace tchat {
+
+/// The first call of a function that is not smooth in something that moves with the states.
+struct Roughness {
+  std::string function;  ///< as written
+  Position at;
+};
+
+struct StateDependence {
+  bool on_states = false;
+  std::optional<Roughness> step;  ///< a jump in value: sign, heav, floor, mod
+  std::optional<Roughness> kink;  ///< a jump in slope: abs, max, min
+
+  void join(const StateDependence& other);
+};
+
+/// The dependences of all definitions and functions.
+class DependenceTable {
+ public:
+  /// Names must be those of the table. A definition that leads back to itself is a mistake; then of() is not to be
+  /// called.
+  DependenceTable(const FormulaFile& file, const NameTable& names, FormulaErrors& errors);
+
+  StateDependence of(const Expression& expression) const;
+
+ private:
+  enum class Progress { open, begun, done };
+  struct Entry {
+    Progress progress = Progress::open;
+    StateDependence result;
+  };
+
+  const StateDependence& resolve(const Symbol& symbol, const std::string& name, Position at);
+  /// `arguments` are names that move as states do; `look_up` gives the dependence of a definition or function.
+  template <class LookUp>
+  StateDependence of(const Expression& expression, const std::vector<Token>& arguments, const LookUp& look_up) const;
+  Entry& entry(const Symbol& symbol);
+  const Entry& entry(const Symbol& symbol) const;
+
+  const FormulaFile& file_;
+  const NameTable& names_;
+  std::vector<Entry> definitions_;
+  std::vector<Entry> functions_;
+  std::vector<std::string> path_;  ///< names that are being resolved
+};
+
+}  // namespace tchat

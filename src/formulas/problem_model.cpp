@@ -1,0 +1,479 @@
+#include "formulas/problem_model.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <set>
+#include <string_view>
+
+#include "formulas/dependence.hpp"
+#include "formulas/expression_value.hpp"
+#include "formulas/function_table.hpp"
+
+namespace tchat {
+
+namespace {
+
+constexpr std::size_t most_parameters = 60;
+constexpr std::size_t most_states = 1000;
+constexpr std::size_t most_definitions = 1000;
+
+/// What a name that is not known may have been meant as.
+std::string cure_for(const std::string& name, const NameTable& names) {
+  if (name == "t")
+    return ": time does not appear in formulas; give the forcing two states, or a clock as a state (t' = 1)";
+  if (name == "U" || name == "PAR") return ": states and parameters are used by their names here, not by numbers";
+  if (name == "if" || name == "then" || name == "else")
+    return ": each piece is a field of its own, and an event ends it";
+  if (const std::string meant = did_you_mean(name, names.all()); !meant.empty()) return meant;
+  return "; define it, as 'par NAME=VALUE' or 'NAME = EXPRESSION'";
+}
+
+/// The names and the kinds of values in one expression.
+class ExpressionCheck {
+ public:
+  ExpressionCheck(const FormulaFile& file, const NameTable& names, FormulaErrors& errors)
+      : file_(file), names_(names), errors_(errors) {}
+
+  void value(const Expression& expression, const std::vector<Token>& arguments = {}) const {
+    check(expression, arguments);
+    if (const Node& root = expression.nodes.back(); root.is_condition())
+      errors_.add(root.at, fmt::format("'{}' gives a condition where a number is needed", root.text));
+  }
+
+  void condition(const Expression& expression) const {
+    check(expression, {});
+    if (const Node& root = expression.nodes.back(); !root.is_condition())
+      errors_.add(root.at, "a condition is needed behind 'if', such as x < 0");
+  }
+
+ private:
+  void check(const Expression& expression, const std::vector<Token>& arguments) const {
+    for (const Node& node : expression.nodes) collecting(errors_, [&] { check_node(expression, node, arguments); });
+  }
+
+  void check_node(const Expression& expression, const Node& node, const std::vector<Token>& arguments) const {
+    if (node.kind == Node::Kind::name) check_name(node, arguments);
+    if (node.kind == Node::Kind::call) check_call(node);
+    const bool takes_conditions = node.kind == Node::Kind::logic || node.kind == Node::Kind::inversion;
+    for (const int place : node.operands)
+      if (const Node& operand = expression.node(place); operand.is_condition() != takes_conditions)
+        throw FormulaError{operand.at, takes_conditions
+                                           ? fmt::format("'{}' joins conditions, such as x < 0", node.text)
+                                           : "a condition stands where a number is needed; each piece of a system is a "
+                                             "field of its own, and an event ends it"};
+  }
+
+  void check_name(const Node& node, const std::vector<Token>& arguments) const {
+    const auto is_same = [&](const Token& token) { return token.text == node.text; };
+    if (node.text == "pi" || std::any_of(arguments.begin(), arguments.end(), is_same)) return;
+    const Symbol* const symbol = names_.find(node.text);
+    if ((symbol != nullptr && symbol->kind == Symbol::Kind::function) || find_function(node.text) != nullptr)
+      throw FormulaError{node.at, fmt::format("'{0}' is a function; write its argument, as {0}(...)", node.text)};
+    if (symbol == nullptr) refuse_unknown(node);
+  }
+
+  void check_call(const Node& node) const {
+    const Symbol* const symbol = names_.find(node.text);
+    const bool is_ours = symbol != nullptr && symbol->kind == Symbol::Kind::function;
+    const BuiltInFunction* const built_in = is_ours ? nullptr : find_function(node.text);
+    if (symbol != nullptr && !is_ours)
+      throw FormulaError{
+          node.at, fmt::format("'{}' is {}, no function; write * between factors", node.text, in_words(symbol->kind))};
+    if (!is_ours && built_in == nullptr) refuse_unknown(node);
+    const std::size_t wanted =
+        is_ours ? file_.functions[symbol->index].arguments.size() : static_cast<std::size_t>(built_in->arguments);
+    if (node.operands.size() != wanted)
+      throw FormulaError{node.at, fmt::format("the function {} has {} argument{}, here are {}", node.text, wanted,
+                                              wanted == 1 ? "" : "s", node.operands.size())};
+  }
+
+  [[noreturn]] void refuse_unknown(const Node& node) const {
+    throw FormulaError{node.at,
+                       fmt::format("'{}' is not known{}", node.text.substr(0, 60), cure_for(node.text, names_))};
+  }
+
+  const FormulaFile& file_;
+  const NameTable& names_;
+  FormulaErrors& errors_;
+};
+
+/// Names of fields, events or jumps, with their numbers.
+class PartNames {
+ public:
+  explicit PartNames(std::string kind) : kind_(std::move(kind)) {}
+
+  void add(const Token& name) {
+    refuse_reserved_word(name);
+    if (number(name.text) != 0)
+      throw FormulaError{name.at,
+                         fmt::format("there are two {}s with the name '{}'; choose another one", kind_, name.text)};
+    names_.push_back(name.text);
+  }
+
+  /// From 1; 0 when there is none.
+  int number(std::string_view name) const {
+    const auto found = std::find(names_.begin(), names_.end(), name);
+    return found != names_.end() ? static_cast<int>(found - names_.begin()) + 1 : 0;
+  }
+
+  int required(const Token& name) const {
+    const int found = number(name.text);
+    if (found == 0)
+      throw FormulaError{name.at, fmt::format("there is no {} '{}'{}; there {} {}", kind_, name.text,
+                                              did_you_mean(name.text, names_), names_.size() == 1 ? "is" : "are",
+                                              names_.empty() ? "none" : fmt::format("{}", fmt::join(names_, ", ")))};
+    return found;
+  }
+
+  const std::vector<std::string>& all() const { return names_; }
+
+ private:
+  static void refuse_reserved_word(const Token& name) {
+    for (const char* word : {"start", "any", "if", "until"})
+      if (name.text == word)
+        throw FormulaError{name.at, fmt::format("'{}' is a word of 'after' lines; choose another name", word)};
+  }
+
+  std::string kind_;
+  std::vector<std::string> names_;
+};
+
+class ModelCheck {
+ public:
+  ModelCheck(ProblemModel& model, FormulaErrors& errors) : model_(model), errors_(errors) {}
+
+  void all() {
+    sizes();
+    expressions();
+    const DependenceTable* const table = dependences();
+    parameters();
+    initial_state();
+    fields();
+    events();
+    jumps();
+    user_values();
+    successors();
+    if (table != nullptr) smoothness(*table);
+  }
+
+ private:
+  const FormulaFile& file() const { return model_.file; }
+
+  template <class Work>
+  void collect(Work&& work) {
+    collecting(errors_, std::forward<Work>(work));
+  }
+
+  void sizes() {
+    const Position end{1, 1};
+    if (model_.names.states().empty()) errors_.add(end, "there is no equation; write one for each state, as x' = v");
+    if (model_.names.states().size() > most_states)
+      errors_.add(
+          end, fmt::format("there are {} states, at most {} are allowed", model_.names.states().size(), most_states));
+    if (file().parameters.size() > most_parameters)
+      errors_.add(file().parameters[most_parameters].name.at,
+                  fmt::format("there are {} parameters, at most {} are allowed; write those that never change as "
+                              "'number NAME=VALUE'",
+                              file().parameters.size(), most_parameters));
+    if (file().definitions.size() + file().functions.size() > most_definitions)
+      errors_.add(end, fmt::format("there are more than {} definitions", most_definitions));
+    if (file().events.empty())
+      errors_.add(end, "there is no event, so no segment of an orbit could end; write one, as event wall = 1 - x");
+  }
+
+  /// Every expression of the file.
+  void expressions() {
+    const ExpressionCheck check(file(), model_.names, errors_);
+    const auto values = [&](const std::vector<Assignment>& list) {
+      for (const Assignment& one : list) check.value(one.value);
+    };
+    values(file().definitions);
+    values(file().shared_equations);
+    values(file().events);
+    values(file().user_values);
+    for (const Block& field : file().fields) values(field.lines);
+    for (const Block& jump : file().jumps) values(jump.lines);
+    for (const FunctionDefinition& function : file().functions) {
+      check_arguments(function);
+      check.value(function.body, function.arguments);
+    }
+    for (const SuccessorLine& line : file().successors)
+      if (line.condition) check.condition(*line.condition);
+  }
+
+  void check_arguments(const FunctionDefinition& function) {
+    std::set<std::string> seen;
+    for (const Token& argument : function.arguments)
+      collect([&] {
+        refuse_reserved(argument);
+        if (!seen.insert(argument.text).second)
+          throw FormulaError{argument.at, fmt::format("'{}' is an argument twice", argument.text)};
+      });
+  }
+
+  /// Nothing when names are not as they must be for it.
+  const DependenceTable* dependences() {
+    if (!errors_.empty()) return nullptr;
+    dependences_.emplace(file(), model_.names, errors_);
+    return errors_.empty() ? &*dependences_ : nullptr;
+  }
+
+  void parameters() {
+    for (const Assignment& parameter : file().parameters)
+      collect([&] {
+        model_.parameter_values.push_back(
+            constant_value(parameter.value, fmt::format("the starting value of {}", parameter.name.text)));
+      });
+  }
+
+  void initial_state() {
+    if (file().initial.empty()) return;
+    model_.initial_state.assign(model_.names.states().size(), 0.0);
+    std::set<std::string> seen;
+    for (const Assignment& value : file().initial)
+      collect([&] {
+        model_.initial_state[state_of(value.name)] =
+            constant_value(value.value, fmt::format("the starting value of {}", value.name.text));
+        if (!seen.insert(value.name.text).second)
+          throw FormulaError{value.name.at, fmt::format("{} has two starting values", value.name.text)};
+      });
+  }
+
+  std::size_t state_of(const Token& name) const {
+    const Symbol* const symbol = model_.names.find(name.text);
+    if (symbol != nullptr && symbol->kind == Symbol::Kind::state) return symbol->index;
+    throw FormulaError{name.at, symbol != nullptr
+                                    ? fmt::format("'{}' is {}, no state", name.text, in_words(symbol->kind))
+                                    : fmt::format("there is no equation for '{0}'{1}; write {0}' = EXPRESSION",
+                                                  name.text, did_you_mean(name.text, model_.names.states()))};
+  }
+
+  /// One for each state; null: none.
+  using Equations = std::vector<const Assignment*>;
+
+  Equations equations_of(const std::vector<Assignment>& lines) {
+    Equations found(model_.names.states().size(), nullptr);
+    for (const Assignment& line : lines)
+      collect([&] {
+        const Assignment*& equation = found[state_of(line.name)];
+        if (equation != nullptr)
+          throw FormulaError{line.name.at, fmt::format("{} has an equation already, in line {}; another field begins "
+                                                       "with 'field NAME'",
+                                                       line.name.text, equation->name.at.line)};
+        equation = &line;
+      });
+    return found;
+  }
+
+  /// The equations before the first field hold in all fields that have none of their own.
+  void fields() {
+    const Equations shared = equations_of(file().shared_equations);
+    if (file().fields.empty()) field({Token::Kind::name, "flow", 0.0, {}}, shared);
+    for (const Block& block : file().fields)
+      collect([&] {
+        field_names_.add(block.name);
+        Equations own = equations_of(block.lines);
+        for (std::size_t k = 0; k < own.size(); ++k)
+          if (own[k] == nullptr) own[k] = shared[k];
+        field(block.name, own);
+      });
+  }
+
+  void field(const Token& name, const Equations& equations) {
+    ProblemModel::Field made{name.text, {}};
+    for (std::size_t k = 0; k < equations.size(); ++k)
+      if (equations[k] != nullptr)
+        made.rates.push_back(equations[k]->value);
+      else
+        errors_.add(name.at, fmt::format("the field {0} has no equation for {1}; write one below it, as {1}' = 0",
+                                         name.text, model_.names.states()[k]));
+    model_.fields.push_back(std::move(made));
+  }
+
+  void events() {
+    for (const Assignment& event : file().events)
+      collect([&] {
+        event_names_.add(event.name);
+        model_.events.push_back({event.name.text, event.value});
+      });
+  }
+
+  void jumps() {
+    for (const Block& block : file().jumps) collect([&] { jump(block); });
+    if (jump_names_.number("identity") != 0) return;
+    jump_names_.add({Token::Kind::name, "identity", 0.0, {}});
+    model_.jumps.push_back({"identity", {}});
+  }
+
+  void jump(const Block& block) {
+    jump_names_.add(block.name);
+    if (event_names_.number(block.name.text) != 0)
+      throw FormulaError{block.name.at,
+                         fmt::format("'{}' is an event already; a jump needs another name, for 'after {}' "
+                                     "would mean both",
+                                     block.name.text, block.name.text)};
+    ProblemModel::Jump made{block.name.text, {}};
+    std::set<std::size_t> seen;
+    for (const Assignment& line : block.lines)
+      collect([&] {
+        made.values.emplace_back(state_of(line.name), line.value);
+        if (!seen.insert(made.values.back().first).second)
+          throw FormulaError{line.name.at,
+                             fmt::format("the jump {} gives {} two values", block.name.text, line.name.text)};
+      });
+    model_.jumps.push_back(std::move(made));
+  }
+
+  void user_values() {
+    std::set<std::string> seen;
+    for (const Assignment& value : file().user_values)
+      collect([&] {
+        if (!seen.insert(value.name.text).second)
+          throw FormulaError{value.name.at, fmt::format("there are two values with the name '{}'", value.name.text)};
+        model_.user_values.push_back({value.name.text, value.value});
+      });
+  }
+
+  void successors() {
+    if (file().successors.empty()) return;
+    for (const SuccessorLine& line : file().successors) collect([&] { model_.successors.push_back(rule(line)); });
+    if (errors_.empty()) require_complete();
+  }
+
+  ProblemModel::SuccessorRule rule(const SuccessorLine& line) const {
+    ProblemModel::SuccessorRule made;
+    made.condition = line.condition;
+    for (const Token& name : line.from) add_condition(made, name, line.from.size() == 1);
+    if (!line.field && model_.fields.size() > 1)
+      throw FormulaError{line.ends.front().first.at,
+                         fmt::format("which field is followed? write 'FIELD until {} -> {}'; there are {}",
+                                     line.ends.front().first.text, line.ends.front().second.text,
+                                     fmt::join(field_names_.all(), ", "))};
+    const int field = line.field ? field_number(*line.field) : 1;
+    for (const auto& [event, jump] : line.ends)
+      made.next.push_back({field, event_names_.required(event), jump_names_.required(jump)});
+    return made;
+  }
+
+  int field_number(const Token& name) const {
+    return file().fields.empty() && name.text == model_.fields.front().name ? 1 : field_names_.required(name);
+  }
+
+  void add_condition(ProblemModel::SuccessorRule& made, const Token& name, bool is_alone) const {
+    if (name.text == "start" || name.text == "any") {
+      if (!is_alone)
+        throw FormulaError{name.at, fmt::format("'{}' stands alone, as 'after {}: ...'", name.text, name.text)};
+      made.at_start = name.text == "start";
+      return;
+    }
+    const std::array<const PartNames*, 3> parts = {&field_names_, &event_names_, &jump_names_};
+    std::array<int, 3> found{};
+    for (std::size_t k = 0; k < 3; ++k) found[k] = parts[k]->number(name.text);
+    const long matches = 3 - std::count(found.begin(), found.end(), 0);
+    if (matches == 0) refuse_unknown_part(name);
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (found[k] == 0) continue;
+      if (matches > 1)
+        throw FormulaError{name.at,
+                           fmt::format("'{}' is a field as well as an event or a jump; rename one", name.text)};
+      if (made.from[k] != 0)
+        throw FormulaError{name.at,
+                           fmt::format("behind 'after' stand one field, one event and one jump at most; '{}' is "
+                                       "one too many, write a line of its own for it",
+                                       name.text)};
+      made.from[k] = found[k];
+    }
+  }
+
+  [[noreturn]] void refuse_unknown_part(const Token& name) const {
+    std::vector<std::string> known = {"start", "any"};
+    for (const PartNames* part : {&field_names_, &event_names_, &jump_names_})
+      known.insert(known.end(), part->all().begin(), part->all().end());
+    throw FormulaError{name.at, fmt::format("there is no field, event or jump '{}'{}; there are {}", name.text,
+                                            did_you_mean(name.text, known), fmt::join(known, ", "))};
+  }
+
+  static bool matches(const ProblemModel::SuccessorRule& rule, const std::array<int, 3>& from) {
+    if (rule.condition || (rule.at_start && from[0] != 0)) return false;
+    for (std::size_t k = 0; k < 3; ++k)
+      if (rule.from[k] != 0 && rule.from[k] != from[k]) return false;
+    return true;
+  }
+
+  /// Something must follow the start and everything that can happen, whatever the conditions say.
+  void require_complete() {
+    std::set<std::array<int, 3>> all = {{0, 0, 0}};
+    for (const auto& rule : model_.successors) all.insert(rule.next.begin(), rule.next.end());
+    for (const std::array<int, 3>& from : all) {
+      const auto follows = [&](const ProblemModel::SuccessorRule& rule) { return matches(rule, from); };
+      if (std::none_of(model_.successors.begin(), model_.successors.end(), follows))
+        errors_.add(file().successors.back().at,
+                    fmt::format("what follows {} is not said for every state; add a line '{}: ...' without 'if'",
+                                in_words_of(from), after_words(from)));
+    }
+  }
+
+  std::string in_words_of(const std::array<int, 3>& from) const {
+    if (from[0] == 0) return "the start";
+    const auto at = [&](std::size_t k) { return static_cast<std::size_t>(from[k] - 1); };
+    return fmt::format("{} -> {}{}", model_.events[at(1)].name, model_.jumps[at(2)].name,
+                       model_.fields.size() > 1 ? " of field " + model_.fields[at(0)].name : "");
+  }
+
+  std::string after_words(const std::array<int, 3>& from) const {
+    return from[0] == 0 ? "after start" : "after " + model_.jumps[static_cast<std::size_t>(from[2] - 1)].name;
+  }
+
+  /// Fields and events are differentiated along orbits: a jump in their values has no derivative that could be right.
+  void smoothness(const DependenceTable& table) {
+    for (const auto& field : model_.fields)
+      for (const Expression& rate : field.rates) smooth(table.of(rate), "field " + field.name);
+    for (const auto& event : model_.events) refuse_step(table.of(event.value), "event " + event.name);
+  }
+
+  void smooth(const StateDependence& dependence, const std::string& where) {
+    refuse_step(dependence, where);
+    if (!dependence.kink) return;
+    const Roughness& kink = *dependence.kink;
+    const auto is_same = [&](const FormulaError& remark) {
+      return remark.at.line == kink.at.line && remark.at.column == kink.at.column;
+    };
+    if (std::any_of(model_.remarks.begin(), model_.remarks.end(), is_same)) return;
+    model_.remarks.push_back(
+        {kink.at, fmt::format("{}(...) has a kink, and {} uses it with something that moves: where an orbit passes the "
+                              "kink, derivatives are one-sided and the mesh must be fine there; two fields with an "
+                              "event between them are exact",
+                              kink.function, where)});
+  }
+
+  void refuse_step(const StateDependence& dependence, const std::string& where) {
+    if (!dependence.step) return;
+    const Roughness& step = *dependence.step;
+    if (!refused_.insert({step.at.line, step.at.column}).second) return;
+    errors_.add(step.at, fmt::format("{}(...) jumps in value, and {} uses it with something that moves, where "
+                                     "derivatives and multipliers would be wrong; write two fields and an event at "
+                                     "which one ends",
+                                     step.function, where));
+  }
+
+  ProblemModel& model_;
+  FormulaErrors& errors_;
+  std::optional<DependenceTable> dependences_;
+  PartNames field_names_{"field"};
+  PartNames event_names_{"event"};
+  PartNames jump_names_{"jump"};
+  std::set<std::pair<int, int>> refused_;
+};
+
+}  // namespace
+
+ProblemModel check_formulas(FormulaFile file, FormulaErrors& errors) {
+  NameTable names(file, errors);
+  ProblemModel model{std::move(file), std::move(names), {}, {}, {}, {}, {}, {}, {}, {}};
+  ModelCheck(model, errors).all();
+  return model;
+}
+
+}  // namespace tchat

@@ -1,0 +1,50 @@
+/// A problem written as formulas, checked: every name stands for something, every state has its equation.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "formulas/formula_file.hpp"
+#include "formulas/name_table.hpp"
+
+namespace tchat {
+
+struct ProblemModel {
+  struct Field {
+    std::string name;
+    std::vector<Expression> rates;  ///< one for each state
+  };
+  struct Function {
+    std::string name;
+    Expression value;
+  };
+  struct Jump {
+    std::string name;
+    std::vector<std::pair<std::size_t, Expression>> values;  ///< of the states that change
+  };
+  /// Index vectors and parts of them count from 1; 0 stands for any.
+  struct SuccessorRule {
+    bool at_start = false;
+    std::array<int, 3> from{};
+    std::optional<Expression> condition;
+    std::vector<std::array<int, 3>> next;
+  };
+
+  FormulaFile file;  ///< with its definitions and functions
+  NameTable names;
+  std::vector<double> parameter_values;
+  std::vector<double> initial_state;  ///< empty: not given
+  std::vector<Field> fields;
+  std::vector<Function> events;
+  std::vector<Jump> jumps;
+  std::vector<Function> user_values;
+  std::vector<SuccessorRule> successors;
+  std::vector<FormulaError> remarks;  ///< no mistakes, but things to know
+};
+
+/// Mistakes are collected; where there is one, the model is not to be used.
+ProblemModel check_formulas(FormulaFile file, FormulaErrors& errors);
+
+}  // namespace tchat

@@ -1,0 +1,51 @@
+#include "formulas/translation.hpp"
+
+#include <fmt/format.h>
+
+#include <cctype>
+#include <filesystem>
+
+#include "constants/text_file.hpp"
+#include "formulas/cpp_writer.hpp"
+#include "formulas/problem_model.hpp"
+
+namespace tchat {
+
+namespace {
+
+/// two-walls -> TwoWalls
+std::string problem_name(const std::string& path) {
+  std::string name;
+  bool capital = true;
+  for (const char c : std::filesystem::path(path).stem().string()) {
+    const auto byte = static_cast<unsigned char>(c);
+    const bool is_part = byte < 0x80 && std::isalnum(byte) != 0;
+    if (is_part) name += capital ? static_cast<char>(std::toupper(byte)) : c;
+    capital = !is_part;
+  }
+  return name.empty() || std::isdigit(static_cast<unsigned char>(name[0])) != 0 ? "Problem" + name : name;
+}
+
+}  // namespace
+
+Translation translate_formulas(std::string_view text, const std::string& path) {
+  FormulaErrors errors;
+  FormulaFile file = read_formula_file(text, errors);
+  errors.throw_if_any(path, text);
+  const ProblemModel model = check_formulas(std::move(file), errors);
+  errors.throw_if_any(path, text);
+
+  Translation result;
+  const std::string file_name = std::filesystem::path(path).filename().string();
+  result.cpp = cpp_source(model, problem_name(path), fmt::format("Translated from the formulas of {}.", file_name));
+  for (const FormulaError& remark : model.remarks)
+    result.remarks.push_back(fmt::format("{}:{}:{}: {}", path, remark.at.line, remark.at.column, remark.message));
+  result.has_successors = !model.successors.empty();
+  return result;
+}
+
+Translation translate_formula_file(const std::string& path) {
+  return translate_formulas(read_text_file(path, "formulas of a problem", "give the path of NAME.tch"), path);
+}
+
+}  // namespace tchat
