@@ -4,7 +4,7 @@
 
 #include "formulas/function_table.hpp"
 
-namespace tchat {
+namespace tchat::formulas {
 
 namespace {
 
@@ -96,4 +96,4 @@ std::string cpp_expression(const Expression& expression, const std::function<std
   return pieces.back().text;
 }
 
-}  // namespace tchat
+}  // namespace tchat::formulas

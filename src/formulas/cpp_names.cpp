@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cctype>
 
-namespace tchat {
+namespace tchat::formulas {
 
 namespace {
 
@@ -59,4 +59,4 @@ std::string CppNames::unique(const std::string& name) {
     if (taken_names().count(free) == 0 && used_.insert(free).second) return free;
 }
 
-}  // namespace tchat
+}  // namespace tchat::formulas

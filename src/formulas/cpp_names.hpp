@@ -5,7 +5,7 @@
 #include <set>
 #include <string>
 
-namespace tchat {
+namespace tchat::formulas {
 
 /// Gives every name one of C++: itself where that is possible, else with underscores behind it (keywords, macros of the
 /// standard headers, names that the translation uses itself).
@@ -18,4 +18,4 @@ class CppNames {
   std::set<std::string> used_;
 };
 
-}  // namespace tchat
+}  // namespace tchat::formulas

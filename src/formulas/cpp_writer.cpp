@@ -10,7 +10,7 @@
 #include "formulas/cpp_expression.hpp"
 #include "formulas/cpp_names.hpp"
 
-namespace tchat {
+namespace tchat::formulas {
 
 namespace {
 
@@ -309,4 +309,4 @@ std::string cpp_source(const ProblemModel& model, const std::string& class_name,
   return CppWriter(model, class_name).source(origin);
 }
 
-}  // namespace tchat
+}  // namespace tchat::formulas

@@ -7,7 +7,7 @@
 
 #include "formulas/function_table.hpp"
 
-namespace tchat {
+namespace tchat::formulas {
 
 namespace {
 
@@ -95,4 +95,4 @@ StateDependence DependenceTable::of(const Expression& expression) const {
   return of(expression, none, [&](const Symbol& symbol, const Node&) { return entry(symbol).result; });
 }
 
-}  // namespace tchat
+}  // namespace tchat::formulas

@@ -8,7 +8,7 @@
 #include "formulas/formula_file.hpp"
 #include "formulas/name_table.hpp"
 
-namespace tchat {
+namespace tchat::formulas {
 
 /// The first call of a function that is not smooth in something that moves with the states.
 struct Roughness {
@@ -54,4 +54,4 @@ class DependenceTable {
   std::vector<std::string> path_;  ///< names that are being resolved
 };
 
-}  // namespace tchat
+}  // namespace tchat::formulas

@@ -6,7 +6,7 @@
 
 #include "formulas/formula_errors.hpp"
 
-namespace tchat {
+namespace tchat::formulas {
 
 /// One node; its operands are given by their places in Expression::nodes, always before its own.
 struct Node {
@@ -37,4 +37,4 @@ struct Expression {
   Position at;  ///< where it begins
 };
 
-}  // namespace tchat
+}  // namespace tchat::formulas

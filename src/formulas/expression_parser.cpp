@@ -4,7 +4,7 @@
 
 #include <string_view>
 
-namespace tchat {
+namespace tchat::formulas {
 
 namespace {
 
@@ -152,4 +152,4 @@ class ExpressionParser {
 
 Expression parse_expression(TokenReader& in) { return ExpressionParser(in).whole(); }
 
-}  // namespace tchat
+}  // namespace tchat::formulas

@@ -8,10 +8,10 @@
 #include "formulas/expression.hpp"
 #include "formulas/tokens.hpp"
 
-namespace tchat {
+namespace tchat::formulas {
 
 /// Reads the longest expression from here on. Throws FormulaError where there is none, a parenthesis is missing, or it
 /// is longer than a compiler should be asked to take.
 Expression parse_expression(TokenReader& in);
 
-}  // namespace tchat
+}  // namespace tchat::formulas

@@ -6,7 +6,7 @@
 
 #include "formulas/function_table.hpp"
 
-namespace tchat {
+namespace tchat::formulas {
 
 namespace {
 
@@ -65,4 +65,4 @@ double constant_value(const Expression& expression, const std::string& role) {
   return values.back();
 }
 
-}  // namespace tchat
+}  // namespace tchat::formulas

@@ -8,7 +8,7 @@
 #include "constants/near_words.hpp"
 #include "constants/user_error.hpp"
 
-namespace tchat {
+namespace tchat::formulas {
 
 namespace {
 
@@ -58,4 +58,4 @@ std::string did_you_mean(std::string_view word, const std::vector<std::string>& 
   return fmt::format(" (did you mean '{}'?)", near.front());
 }
 
-}  // namespace tchat
+}  // namespace tchat::formulas

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace tchat {
+namespace tchat::formulas {
 
 /// A place in the text, both counted from 1.
 struct Position {
@@ -47,4 +47,4 @@ void collecting(FormulaErrors& errors, Work&& work) {
 /// " (did you mean 'omega'?)" for a word that is not known, "" when nothing is near.
 std::string did_you_mean(std::string_view word, const std::vector<std::string>& known);
 
-}  // namespace tchat
+}  // namespace tchat::formulas

@@ -7,7 +7,7 @@
 
 #include "formulas/expression_parser.hpp"
 
-namespace tchat {
+namespace tchat::formulas {
 
 namespace {
 
@@ -203,4 +203,4 @@ FormulaFile read_formula_file(std::string_view text, FormulaErrors& errors) {
   return file;
 }
 
-}  // namespace tchat
+}  // namespace tchat::formulas

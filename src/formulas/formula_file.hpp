@@ -9,7 +9,7 @@
 #include "formulas/expression.hpp"
 #include "formulas/tokens.hpp"
 
-namespace tchat {
+namespace tchat::formulas {
 
 /// par a = 1, x' = v, v -> -r*v, event wall = 1 - x, aux E = v^2: a name and what it is.
 struct Assignment {
@@ -55,4 +55,4 @@ struct FormulaFile {
 /// Reads all statements; mistakes are collected, the statements that have them left out.
 FormulaFile read_formula_file(std::string_view text, FormulaErrors& errors);
 
-}  // namespace tchat
+}  // namespace tchat::formulas

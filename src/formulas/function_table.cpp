@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-namespace tchat {
+namespace tchat::formulas {
 
 namespace {
 
@@ -70,4 +70,4 @@ std::vector<std::string> function_names() {
   return names;
 }
 
-}  // namespace tchat
+}  // namespace tchat::formulas

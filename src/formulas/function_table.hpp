@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace tchat {
+namespace tchat::formulas {
 
 struct BuiltInFunction {
   /// How it behaves where its argument is a state that moves.
@@ -23,4 +23,4 @@ const BuiltInFunction* find_function(std::string_view name);
 
 std::vector<std::string> function_names();
 
-}  // namespace tchat
+}  // namespace tchat::formulas

@@ -6,7 +6,7 @@
 
 #include "formulas/function_table.hpp"
 
-namespace tchat {
+namespace tchat::formulas {
 
 std::string in_words(Symbol::Kind kind) {
   switch (kind) {
@@ -83,4 +83,4 @@ std::vector<std::string> NameTable::all() const {
   return names;
 }
 
-}  // namespace tchat
+}  // namespace tchat::formulas

@@ -8,7 +8,7 @@
 
 #include "formulas/formula_file.hpp"
 
-namespace tchat {
+namespace tchat::formulas {
 
 struct Symbol {
   enum class Kind { state, parameter, definition, function };
@@ -43,4 +43,4 @@ class NameTable {
 /// Throws FormulaError for a name that means something in every file: pi, a function, a word of conditions.
 void refuse_reserved(const Token& name);
 
-}  // namespace tchat
+}  // namespace tchat::formulas

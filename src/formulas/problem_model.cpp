@@ -11,7 +11,7 @@
 #include "formulas/expression_value.hpp"
 #include "formulas/function_table.hpp"
 
-namespace tchat {
+namespace tchat::formulas {
 
 namespace {
 
@@ -476,4 +476,4 @@ ProblemModel check_formulas(FormulaFile file, FormulaErrors& errors) {
   return model;
 }
 
-}  // namespace tchat
+}  // namespace tchat::formulas

@@ -9,7 +9,7 @@
 #include "formulas/formula_file.hpp"
 #include "formulas/name_table.hpp"
 
-namespace tchat {
+namespace tchat::formulas {
 
 struct ProblemModel {
   struct Field {
@@ -47,4 +47,4 @@ struct ProblemModel {
 /// Mistakes are collected; where there is one, the model is not to be used.
 ProblemModel check_formulas(FormulaFile file, FormulaErrors& errors);
 
-}  // namespace tchat
+}  // namespace tchat::formulas

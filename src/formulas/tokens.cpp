@@ -7,7 +7,7 @@
 #include <charconv>
 #include <cmath>
 
-namespace tchat {
+namespace tchat::formulas {
 
 namespace {
 
@@ -214,4 +214,4 @@ std::string shown(const Token& token) {
   return token.is_end() ? "the end of the line" : fmt::format("'{}'", token.text.substr(0, 40));
 }
 
-}  // namespace tchat
+}  // namespace tchat::formulas

@@ -7,7 +7,7 @@
 
 #include "formulas/formula_errors.hpp"
 
-namespace tchat {
+namespace tchat::formulas {
 
 struct Token {
   enum class Kind { name, number, symbol, end };
@@ -54,4 +54,4 @@ class TokenReader {
 /// "'x'", or "the end of the line".
 std::string shown(const Token& token);
 
-}  // namespace tchat
+}  // namespace tchat::formulas

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cctype>
 #include <filesystem>
 
@@ -26,19 +27,26 @@ std::string problem_name(const std::string& path) {
   return name.empty() || std::isdigit(static_cast<unsigned char>(name[0])) != 0 ? "Problem" + name : name;
 }
 
+/// For a comment of one line, whatever the file is called.
+std::string origin(const std::string& path) {
+  std::string name = std::filesystem::path(path).filename().string();
+  std::replace_if(
+      name.begin(), name.end(), [](char c) { return c < 0x20 || c > 0x7e || c == '\\'; }, '_');
+  return fmt::format("Translated from the formulas of {}.", name);
+}
+
 }  // namespace
 
 Translation translate_formulas(std::string_view text, const std::string& path) {
-  FormulaErrors errors;
-  FormulaFile file = read_formula_file(text, errors);
+  formulas::FormulaErrors errors;
+  formulas::FormulaFile file = formulas::read_formula_file(text, errors);
   errors.throw_if_any(path, text);
-  const ProblemModel model = check_formulas(std::move(file), errors);
+  const formulas::ProblemModel model = formulas::check_formulas(std::move(file), errors);
   errors.throw_if_any(path, text);
 
   Translation result;
-  const std::string file_name = std::filesystem::path(path).filename().string();
-  result.cpp = cpp_source(model, problem_name(path), fmt::format("Translated from the formulas of {}.", file_name));
-  for (const FormulaError& remark : model.remarks)
+  result.cpp = formulas::cpp_source(model, problem_name(path), origin(path));
+  for (const formulas::FormulaError& remark : model.remarks)
     result.remarks.push_back(fmt::format("{}:{}:{}: {}", path, remark.at.line, remark.at.column, remark.message));
   result.has_successors = !model.successors.empty();
   return result;

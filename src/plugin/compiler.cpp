@@ -111,7 +111,7 @@ struct CompilerWords {
 const CompilerWords& words_of(Language language) {
   static constexpr CompilerWords cpp = {"C++", "CXX", "c++", "g++"};
   static constexpr CompilerWords fortran = {"Fortran", "FC", "gfortran", "gfortran"};
-  return language == Language::cpp ? cpp : fortran;
+  return language == Language::fortran ? fortran : cpp;
 }
 
 [[noreturn]] void refuse_missing_compiler(Language language, const std::string& command, const std::string& source,
@@ -158,7 +158,7 @@ bool has_interface(const std::string& folder) {
 }  // namespace
 
 Compiler::Compiler(const PluginBuildOptions& options, Language language) : language_(language) {
-  command_ = split_words(language == Language::cpp ? options.compiler : options.fortran_compiler);
+  command_ = split_words(language == Language::fortran ? options.fortran_compiler : options.compiler);
   if (command_.empty()) command_ = split_words(environment(words_of(language).variable));
   if (command_.empty()) command_ = {words_of(language).usual};
 }

@@ -12,7 +12,7 @@ struct PluginBuildOptions {
   std::string fortran_compiler = {};  ///< empty: $FC, else gfortran
 };
 
-enum class Language { cpp, fortran };
+enum class Language { cpp, fortran, formulas };  // formulas are translated to C++
 
 /// What is compiled, and to what.
 struct Compilation {

@@ -17,6 +17,7 @@
 
 #include "constants/text_file.hpp"
 #include "constants/user_error.hpp"
+#include "formulas/translation.hpp"
 #include "plugin/build_stamp.hpp"
 #include "plugin/file_lock.hpp"
 #include "plugin/fortran_source.hpp"
@@ -31,12 +32,13 @@ struct SourceSuffix {
   const char* text;
   Language language;
 };
-constexpr std::array<SourceSuffix, 6> source_suffixes = {{{".cpp", Language::cpp},
+constexpr std::array<SourceSuffix, 7> source_suffixes = {{{".cpp", Language::cpp},
                                                           {".cc", Language::cpp},
                                                           {".cxx", Language::cpp},
                                                           {".f90", Language::fortran},
                                                           {".f", Language::fortran},
-                                                          {".for", Language::fortran}}};
+                                                          {".for", Language::fortran},
+                                                          {".tch", Language::formulas}}};
 
 /// Nothing when the suffix is that of no source.
 std::optional<Language> language_of(const fs::path& path) {
@@ -98,6 +100,7 @@ struct Build {
   Language language;
   std::string include_folder;
   Compiler compiler;
+  std::string translation = {};  ///< C++ of formulas
 
   FortranFiles fortran() const { return fortran_files(source.string(), {include_folder + "/tchat"}); }
 
@@ -127,12 +130,14 @@ struct Build {
     return placed(files);
   }
 
-  /// Options such as -I may mean other files for a source that lies elsewhere.
+  /// Options such as -I may mean other files for a source that lies elsewhere. What formulas are translated to belongs
+  /// to it: another version of tchat may translate them otherwise.
   std::string compiler_identity() const {
     const std::string identity = compiler.identity();
+    if (identity.empty()) return "";
     const bool options = std::any_of(compiler.command().begin(), compiler.command().end(),
                                      [](const std::string& word) { return word.starts_with('-'); });
-    return options && !identity.empty() ? identity + places().source_folder : identity;
+    return identity + (options ? places().source_folder : "") + translation;
   }
 
   bool same_compiler(const BuildStamp& stamp) const {
@@ -169,8 +174,7 @@ struct Build {
     const std::string made = scratch.file(library.filename().string());
     timespec begun{};
     timespec_get(&begun, TIME_UTC);
-    const std::vector<BuildInput> files =
-        placed(language == Language::cpp ? compile_cpp(made, scratch) : compile_fortran(made, scratch));
+    const std::vector<BuildInput> files = placed(compile(made, scratch));
     const BuildStamp stamp{hash_text(compiler_identity()), hash_files(files, places()), files};
     const bool written = append_stamp(made, stamp);
     // The library is as old as the begin of its compilation: a source saved meanwhile is newer.
@@ -183,7 +187,28 @@ struct Build {
                       library.string(), std::strerror(errno)));
   }
 
-  /// Both compile to a file and return what decides whether it is up to date.
+  /// All compile to a file and return what decides whether it is up to date.
+  std::vector<std::string> compile(const std::string& library, const TemporaryFolder& scratch) const {
+    switch (language) {
+      case Language::fortran:
+        return compile_fortran(library, scratch);
+      case Language::formulas:
+        return compile_formulas(library, scratch);
+      default:
+        return compile_cpp(library, scratch);
+    }
+  }
+
+  std::vector<std::string> compile_formulas(const std::string& library, const TemporaryFolder& scratch) const {
+    const std::string translated = scratch.file(source.stem().string() + ".cpp");
+    std::ofstream(translated) << translation;
+    const std::string dependencies = scratch.file("dependencies");
+    compiler.compile({translated, library, include_folder, dependencies, ""});
+    std::vector<std::string> files = read_dependencies(dependencies);
+    std::replace(files.begin(), files.end(), fs::absolute(translated).string(), fs::absolute(source).string());
+    return files;
+  }
+
   std::vector<std::string> compile_cpp(const std::string& library, const TemporaryFolder& scratch) const {
     const std::string dependencies = scratch.file("dependencies");
     compiler.compile({source.string(), library, include_folder, dependencies, ""});
@@ -232,11 +257,18 @@ int make_under_lock(const Build& build, const fs::path& library) {
 
 bool is_read_only(int error) { return error == EACCES || error == EROFS || error == EPERM; }
 
+/// Formulas may lie beside the same problem in C++, whose library is another one.
+fs::path library_of(const fs::path& source) {
+  return language_of(source) == Language::formulas ? fs::path(source.string() + ".so")
+                                                   : fs::path(source).replace_extension(".so");
+}
+
 std::string build_source(const fs::path& given, const PluginBuildOptions& options) {
   const fs::path source = given.has_parent_path() ? given : "." / given;  // messages show the path as it was given
   const Language language = language_of(source).value();
-  const Build build{source, language, find_include_folder(options), Compiler(options, language)};
-  fs::path library = fs::path(source).replace_extension(".so");
+  Build build{source, language, find_include_folder(options), Compiler(options, language)};
+  if (language == Language::formulas) build.translation = translate_formula_file(source.string()).cpp;
+  fs::path library = library_of(source);
   if (build.is_current(library)) return library.string();
 
   int error = make_under_lock(build, library);
@@ -255,20 +287,22 @@ std::string build_source(const fs::path& given, const PluginBuildOptions& option
   std::error_code failed;
   const bool folder = fs::is_directory(name, failed);
   const std::string inside = (fs::path(name) / fs::path(name).filename()).string();
-  throw UserError(fmt::format("There is no plugin {0}: none of {0}.cpp, {0}.f90, {0}.f and {0}.so exists.\n  {1}", name,
-                              folder ? fmt::format("{} is a folder: the plugin in it would be {}.", name, inside)
-                                     : "Give its path with -p: P.cpp, P.f, P.so, or P for any of them."));
+  throw UserError(
+      fmt::format("There is no plugin {0}: none of {0}.cpp, {0}.f90, {0}.f, {0}.tch and {0}.so exists.\n  {1}", name,
+                  folder ? fmt::format("{} is a folder: the plugin in it would be {}.", name, inside)
+                         : "Give its path with -p: P.cpp, P.f, P.tch, P.so, or P for any of them."));
 }
 
 }  // namespace
 
 std::string resolve_plugin(const std::string& name_or_path, const PluginBuildOptions& options) {
-  if (name_or_path.empty()) throw UserError("The plugin's name is empty.\n  Give -p P for P.cpp, P.f or P.so.");
+  if (name_or_path.empty()) throw UserError("The plugin's name is empty.\n  Give -p P for P.cpp, P.f, P.tch or P.so.");
   const fs::path given(name_or_path);
   if (given.extension() == ".so" || language_of(given)) {
     if (!is_file(given))
-      throw UserError(fmt::format(
-          "There is no plugin file {}.\n  Give the path of an existing P.cpp, P.f or P.so with -p.", name_or_path));
+      throw UserError(
+          fmt::format("There is no plugin file {}.\n  Give the path of an existing P.cpp, P.f, P.tch or P.so with -p.",
+                      name_or_path));
     return language_of(given) ? build_source(given, options) : name_or_path;
   }
   for (const SourceSuffix& suffix : source_suffixes)

@@ -1,9 +1,10 @@
-/// From what the user names to a shared library that can be loaded: P.so as it is, or P.cpp, P.f compiled when needed.
+/// From what the user names to a shared library that can be loaded: P.so as it is, or P.cpp, P.f, P.tch compiled when
+/// needed.
 ///
 /// Searching order for P, which may contain folders (dir/P):
 ///   1. P ends in .so: that file as it is.
 ///   2. P ends in .cpp, .cc, .cxx, .f90 (Fortran, free form), .f or .for (fixed form): that source; the library is the
-///      same name with .so.
+///      same name with .so. P ends in .tch: these formulas, translated to C++; the library is P.tch.so.
 ///   3. otherwise P with one of these endings, in this order, then P.so.
 ///
 /// A source is compiled when its library is missing, or when the source, a header that it includes (tchat's interface
