@@ -12,6 +12,7 @@
 
 #include "constants/constants_file.hpp"
 #include "constants/user_error.hpp"
+#include "formulas/translation.hpp"
 #include "hybrid/derivative_check.hpp"
 #include "hybrid/parameter_vector.hpp"
 #include "plugin/plugin_build.hpp"
@@ -91,7 +92,8 @@ Eigen::VectorXd read_parameters(const HybridSystem& system, const std::vector<st
 }
 
 int check_problem(const CheckArguments& arguments) {
-  const std::string path = resolve_plugin(arguments.plugin.empty() ? arguments.name : arguments.plugin);
+  const std::string& plugin = arguments.plugin.empty() ? arguments.name : arguments.plugin;
+  const std::string path = resolve_plugin(plugin);
   const ProblemLibrary library(path, [&arguments] {
     const std::string constants = arguments.constants.empty() ? arguments.name : arguments.constants;
     ProblemSizes sizes = problem_sizes(read_constants_file(constants_path(constants)));
@@ -104,6 +106,8 @@ int check_problem(const CheckArguments& arguments) {
   options.random_states = arguments.random_states;
   const DerivativeCheck check = check_derivatives(library.system(), options);
   fmt::print("{}", to_text(library.system(), check));
+  if (const std::optional<std::string> formulas = formulas_of(plugin))
+    for (const std::string& remark : translate_formula_file(*formulas).remarks) fmt::print("Note: {}\n", remark);
   return check.fine() ? 0 : 1;
 }
 
@@ -113,9 +117,9 @@ void add_check_command(CLI::App& app, std::function<int()>& chosen) {
   const auto arguments = std::make_shared<CheckArguments>();
   CLI::App* const command =
       app.add_subcommand("check", "Compare a problem's derivatives with finite differences; exit status 1 on a fault");
-  command->add_option("NAME", arguments->name, "problem: NAME.cpp, NAME.f or NAME.so")->required();
+  command->add_option("NAME", arguments->name, "problem: NAME.cpp, NAME.f, NAME.tch or NAME.so")->required();
   command->add_option("values", arguments->parameters, "parameter values, as 'PAR(2)=0.8'");
-  command->add_option("-p,--problem", arguments->plugin, "plugin, when it is not NAME: P.so, P.cpp, P.f or P");
+  command->add_option("-p,--problem", arguments->plugin, "plugin, when it is not NAME: P.so, P.cpp, P.f, P.tch or P");
   command->add_option("-c,--constants", arguments->constants,
                       "gc.C of a Fortran plugin, which does not say its sizes itself (default: gc.NAME)");
   command

@@ -4,6 +4,7 @@
 
 #include <memory>
 
+#include "app/problem_argument.hpp"
 #include "run/data_conversion.hpp"
 
 namespace tchat {
@@ -13,12 +14,13 @@ void add_dat_command(CLI::App& app, std::function<int()>& chosen) {
   const auto request = std::make_shared<RunRequest>();
   command->add_option("NAME", request->name, "reads NAME.dat, gc.NAME and the plugin NAME; writes q.NAME")->required();
   command->add_option("-c,--constants", request->constants, "take dimension, signature and mesh from gc.C");
-  command->add_option("-p,--problem", request->problem, "plugin P.so, or P.cpp to compile if newer");
+  command->add_option("-p,--problem", request->problem, "plugin P.so, or P.cpp, P.tch to compile if newer");
   command->add_option("-d,--data", request->data, "read D.dat");
   command->add_option("-o,--output", request->output, "write q.O");
   command->add_option("KEY=VALUE", request->overrides, "constants and parameters, as for tchat run");
   command->callback([&chosen, request] {
     chosen = [request] {
+      take_source_as_problem(request->name, request->problem);
       fmt::print("{} written, label 1\n", convert_data(*request));
       return 0;
     };

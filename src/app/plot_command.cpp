@@ -103,7 +103,7 @@ void add_plot_command(CLI::App& app, std::function<int()>& chosen) {
   command->add_flag("--numbers", a->numbers, "labels with their numbers");
   command
       ->add_option("-p,--problem", a->plugin,
-                   "plugin P.so or P.cpp, which draws event surfaces; without it no plugin is loaded")
+                   "plugin P.so, P.cpp or P.tch, which draws event surfaces; without it no plugin is loaded")
       ->type_name("P");
   command->add_option("--surfaces", a->surfaces, "event functions to draw, as 1,3; none")->type_name("LIST");
   command

@@ -52,7 +52,8 @@ void add_resegment_command(CLI::App& app, std::function<int()>& chosen) {
                    "what the new run is to continue: grazing-curve, impacting, signature, rotate or double")
       ->required();
   command->add_option("-o,--output", request->output, "write q.O and gc.O")->required();
-  command->add_option("-p,--problem", request->problem, "plugin P.so, or P.cpp (default: the name of the q-file)");
+  command->add_option("-p,--problem", request->problem,
+                      "plugin P.so, P.cpp or P.tch (default: the name of the q-file)");
   command->add_option("-c,--constants", request->constants,
                       "constants of the run that wrote the label (default: its r-file)");
   command->add_option("--signature", request->signature,

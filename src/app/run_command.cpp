@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "app/interruption.hpp"
+#include "app/problem_argument.hpp"
 #include "run/run_problem.hpp"
 
 namespace tchat {
@@ -25,10 +26,10 @@ void add_run_command(CLI::App& app, std::function<int()>& chosen) {
   CLI::App* command = app.add_subcommand("run", "compute a branch of orbits");
   const auto request = std::make_shared<RunRequest>();
   command
-      ->add_option("NAME", request->name, "reads gc.NAME, NAME.so or NAME.cpp, NAME.dat; writes p.NAME q.NAME d.NAME")
+      ->add_option("NAME", request->name, "reads gc.NAME, NAME.cpp or NAME.tch, NAME.dat; writes p.NAME q.NAME d.NAME")
       ->required();
   command->add_option("-c,--constants", request->constants, "read gc.C instead (a path is also accepted)");
-  command->add_option("-p,--problem", request->problem, "plugin P.so, or P.cpp to compile if newer");
+  command->add_option("-p,--problem", request->problem, "plugin P.so, or P.cpp, P.tch to compile if newer");
   command->add_option("-d,--data", request->data, "start from D.dat (a path is also accepted)");
   command->add_option("-s,--start", request->start, "restart from q.S, at the label that IRS names");
   command->add_option("-o,--output", request->output, "write p.O q.O d.O and r.O");
@@ -47,7 +48,12 @@ void add_run_command(CLI::App& app, std::function<int()>& chosen) {
       "the\n"
       "first step, 2 bad usage or bad input, 3 ended by MX with --strict, 130 or 143 interrupted (files are "
       "complete).");
-  command->callback([&chosen, request] { chosen = [request] { return do_run(*request); }; });
+  command->callback([&chosen, request] {
+    chosen = [request] {
+      take_source_as_problem(request->name, request->problem);
+      return do_run(*request);
+    };
+  });
 }
 
 }  // namespace tchat

@@ -10,6 +10,7 @@
 #include <memory>
 
 #include "app/interruption.hpp"
+#include "app/problem_argument.hpp"
 #include "run/simulate_problem.hpp"
 
 namespace tchat {
@@ -138,9 +139,9 @@ void add_detail_options(CLI::App& command, SimulationRequest& request) {
 void add_simulate_command(CLI::App& app, std::function<int()>& chosen) {
   CLI::App* command = app.add_subcommand("simulate", "integrate forward with events, from a state to the attractor");
   const auto request = std::make_shared<SimulationRequest>();
-  command->add_option("NAME", request->name, "reads NAME.so or NAME.cpp, and gc.NAME if there is one")->required();
+  command->add_option("NAME", request->name, "reads NAME.cpp or NAME.tch, and gc.NAME if there is one")->required();
   command->add_option("-c,--constants", request->constants, "signature, monitored events and constants from gc.C");
-  command->add_option("-p,--problem", request->problem, "plugin P.so, or P.cpp to compile if newer");
+  command->add_option("-p,--problem", request->problem, "plugin P.so, or P.cpp, P.tch to compile if newer");
   command->add_option("-o,--output", request->output, "write O.trajectory and O.events [NAME]");
   command->add_flag("-q,--quiet", request->quiet, "no summary on the screen");
   add_start_options(*command, *request);
@@ -181,7 +182,10 @@ void add_simulate_command(CLI::App& app, std::function<int()>& chosen) {
       request->overrides.push_back(request->orbit_name);
       request->orbit_name.clear();
     }
-    chosen = [request] { return do_simulate(*request); };
+    chosen = [request] {
+      take_source_as_problem(request->name, request->problem);
+      return do_simulate(*request);
+    };
   });
 }
 

@@ -4,6 +4,8 @@
 
 #include <string_view>
 
+#include "formulas/function_table.hpp"
+
 namespace tchat::formulas {
 
 namespace {
@@ -90,6 +92,9 @@ class ExpressionParser {
 
   int name_or_call() {
     const Token& name = in_.next();
+    if (find_function(name.text) != nullptr && (in_.peek().is_name() || in_.peek().kind == Token::Kind::number))
+      throw FormulaError{in_.peek().at, fmt::format("the argument of {} stands in parentheses, as {}({})", name.text,
+                                                    name.text, in_.peek().text.substr(0, 40))};
     if (!in_.peek().is("(")) return add({Node::Kind::name, name.text, 0.0, {}, name.at});
     const Token& open = in_.next();
     Node call{Node::Kind::call, name.text, 0.0, {}, name.at};

@@ -26,6 +26,9 @@ const char* replacement_for(const Token& token) {
   if (token.is("global")) return "write 'event NAME = EXPRESSION' and 'jump NAME: STATE -> EXPRESSION'";
   if (is_one_of(token, {"wiener", "markov"})) return "tchat continues orbits of problems without noise";
   if (is_one_of(token, {"table", "volt", "solv", "bdry", "bd"})) return "tchat has nothing like it";
+  if (token.is("@")) return "constants of a computation are in the file gc.NAME";
+  if (token.is("\"") || token.is("%")) return "comments begin with #";
+  if (token.is("!")) return "write a definition, NAME = EXPRESSION";
   if (is_one_of(token, {"set", "only", "options"})) return "constants of a computation are in the file gc.NAME";
   return nullptr;
 }
@@ -55,8 +58,8 @@ class StatementReader {
     if (word.is("aux")) return in_.next(), list(file_.user_values, "a value", "values are written aux E = v^2/2"), true;
     if (word.is("event"))
       return in_.next(), list(file_.events, "an event", "events are written event wall = 1 - x"), true;
-    if (word.is("field")) return in_.next(), block(file_.fields, "a field"), true;
-    if (word.is("jump")) return in_.next(), block(file_.jumps, "a jump"), true;
+    if (word.is("field")) return in_.next(), field(), true;
+    if (word.is("jump")) return in_.next(), jump(), true;
     if (word.is("after")) return in_.next(), successor(word.at), true;
     refuse_unknown(word);
   }
@@ -81,14 +84,30 @@ class StatementReader {
     in_.expect_end();
   }
 
-  void block(std::vector<Block>& target, const std::string& role) {
-    Block made{in_.expect_name(role), {}};
-    if (in_.accept(":") && !in_.peek().is_end()) {
-      do made.lines.push_back(role == "a field" ? equation() : new_value());
+  void field() {
+    Block made{in_.expect_name("a field"), {}};
+    if (opens_lines("field NAME: STATE' = EXPRESSION")) {
+      do made.lines.push_back(equation());
       while (in_.accept(",") || in_.accept(";"));
     }
     in_.expect_end();
-    target.push_back(std::move(made));
+    file_.fields.push_back(std::move(made));
+  }
+
+  void jump() {
+    Block made{in_.expect_name("a jump"), {}};
+    if (opens_lines("jump NAME: STATE -> EXPRESSION")) {
+      do made.lines.push_back(new_value());
+      while (in_.accept(",") || in_.accept(";"));
+    }
+    in_.expect_end();
+    file_.jumps.push_back(std::move(made));
+  }
+
+  /// False when the statement ends behind the name, with a colon or without one: lines may follow.
+  bool opens_lines(const std::string& form) {
+    if (!in_.peek().is_end()) in_.expect(":", fmt::format("it is written '{}'", form));
+    return !in_.peek().is_end();
   }
 
   /// x' = EXPRESSION or dx/dt = EXPRESSION
@@ -115,6 +134,7 @@ class StatementReader {
 
   /// Everything that begins with a name of the user's.
   void formula() {
+    if (!in_.peek().is_name() && replacement_for(in_.peek()) != nullptr) refuse_unknown(in_.peek());
     if (!in_.peek().is_name())
       throw FormulaError{in_.peek().at, fmt::format("a statement cannot begin with {}; it begins with a word or a name",
                                                     shown(in_.peek()))};

@@ -16,10 +16,11 @@ bool begins_name(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z
 bool continues_name(char c) { return begins_name(c) || is_digit(c); }
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\f' || c == '\v'; }
 
-/// Longer ones first.
-constexpr std::array<std::string_view, 26> symbols = {"**", "->", "<=", ">=", "==", "!=", "&&", "||", "+",
-                                                      "-",  "*",  "/",  "^",  "(",  ")",  ",",  ";",  ":",
-                                                      "=",  "'",  "<",  ">",  "&",  "|",  "[",  "]"};
+/// Longer ones first; the last ones have no meaning but in what users bring from elsewhere, which is told in better
+/// words.
+constexpr std::array<std::string_view, 32> symbols = {"**", "->", "<=", ">=", "==", "!=", "&&", "||", "+",  "-", "*",
+                                                      "/",  "^",  "(",  ")",  ",",  ";",  ":",  "=",  "'",  "<", ">",
+                                                      "&",  "|",  "[",  "]",  "{",  "}",  "@",  "!",  "\"", "%"};
 
 /// One spelling for each meaning.
 std::string spelled(std::string_view symbol) {
@@ -121,12 +122,18 @@ class Tokenizer {
     }
     Token result = taken(Token::Kind::number, length, std::string(text_.substr(0, length)));
     result.number = value_of(digits, result);
-    if (!text_.empty() && (continues_name(text_[0]) || text_[0] == '.'))
-      throw FormulaError{at_,
-                         fmt::format("'{}' follows the number {} directly; write an operator between them, as "
-                                     "{}*{}",
-                                     text_[0], result.text, result.text, begins_name(text_[0]) ? name().text : "x")};
+    refuse_directly_after(result);
     return result;
+  }
+
+  /// 2x and 1.2.3
+  void refuse_directly_after(const Token& number) {
+    if (text_.empty() || (!continues_name(text_[0]) && text_[0] != '.')) return;
+    const Position at = at_;
+    const std::string follows = begins_name(text_[0]) ? name().text : std::string(1, text_[0]);
+    throw FormulaError{at,
+                       fmt::format("'{1}' follows the number {0} directly; write an operator between them, as {0}*{1}",
+                                   number.text, follows)};
   }
 
   static std::size_t exponent_length(std::string_view text) {
@@ -207,7 +214,8 @@ const Token& TokenReader::expect_name(const std::string& role) {
 
 void TokenReader::expect_end() const {
   if (peek().is_end()) return;
-  throw FormulaError{peek().at, fmt::format("the statement should end before {}; one statement a line", shown(peek()))};
+  throw FormulaError{peek().at,
+                     fmt::format("an operator or the end of the line is expected here, not {}", shown(peek()))};
 }
 
 std::string shown(const Token& token) {

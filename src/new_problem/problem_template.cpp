@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "constants/user_error.hpp"
+#include "formulas/translation.hpp"
 #include "new_problem/template_files.hpp"
 
 namespace tchat {
@@ -62,9 +63,15 @@ std::vector<NewFile> problem_template(const std::string& name) {
   return files;
 }
 
-std::vector<NewFile> create_problem(const std::string& path) {
+std::vector<NewFile> translated_problem(const std::string& name, const std::string& formulas_path) {
+  require_name(name);
+  return {{name + ".cpp", translate_formula_file(formulas_path).cpp}};
+}
+
+std::vector<NewFile> create_problem(const std::string& path, const std::optional<std::string>& formulas_path) {
   const fs::path folder = fs::path(path).has_filename() ? fs::path(path) : fs::path(path).parent_path();
-  const std::vector<NewFile> files = problem_template(folder.filename().string());
+  const std::string name = folder.filename().string();
+  const std::vector<NewFile> files = formulas_path ? translated_problem(name, *formulas_path) : problem_template(name);
   std::error_code failed;
   if (fs::exists(folder, failed) && !(fs::is_directory(folder, failed) && fs::is_empty(folder, failed)))
     throw UserError(fmt::format("{} exists already and is left as it is; choose another name", folder.string()));

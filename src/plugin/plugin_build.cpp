@@ -267,7 +267,7 @@ std::string build_source(const fs::path& given, const PluginBuildOptions& option
   const fs::path source = given.has_parent_path() ? given : "." / given;  // messages show the path as it was given
   const Language language = language_of(source).value();
   Build build{source, language, find_include_folder(options), Compiler(options, language)};
-  if (language == Language::formulas) build.translation = translate_formula_file(source.string()).cpp;
+  if (language == Language::formulas) build.translation = translate_formula_file(given.string()).cpp;
   fs::path library = library_of(source);
   if (build.is_current(library)) return library.string();
 
@@ -293,7 +293,26 @@ std::string build_source(const fs::path& given, const PluginBuildOptions& option
                          : "Give its path with -p: P.cpp, P.f, P.tch, P.so, or P for any of them."));
 }
 
+/// The source that a name without ending stands for; "" when there is none.
+std::string source_named(const std::string& name) {
+  for (const SourceSuffix& suffix : source_suffixes)
+    if (is_file(name + suffix.text)) return name + suffix.text;
+  return "";
+}
+
 }  // namespace
+
+NamedProblem named_problem(const std::string& given) {
+  if (!language_of(given) || !is_file(given)) return {given, std::nullopt};
+  const std::string name = fs::path(given).replace_extension().string();
+  return {name, source_named(name) == given ? std::nullopt : std::optional(given)};
+}
+
+std::optional<std::string> formulas_of(const std::string& name_or_path) {
+  const std::string source = language_of(name_or_path) ? name_or_path : source_named(name_or_path);
+  if (source.empty() || language_of(source) != Language::formulas) return std::nullopt;
+  return source;
+}
 
 std::string resolve_plugin(const std::string& name_or_path, const PluginBuildOptions& options) {
   if (name_or_path.empty()) throw UserError("The plugin's name is empty.\n  Give -p P for P.cpp, P.f, P.tch or P.so.");
@@ -305,8 +324,7 @@ std::string resolve_plugin(const std::string& name_or_path, const PluginBuildOpt
                       name_or_path));
     return language_of(given) ? build_source(given, options) : name_or_path;
   }
-  for (const SourceSuffix& suffix : source_suffixes)
-    if (is_file(name_or_path + suffix.text)) return build_source(name_or_path + suffix.text, options);
+  if (const std::string source = source_named(name_or_path); !source.empty()) return build_source(source, options);
   if (is_file(name_or_path + ".so")) return name_or_path + ".so";
   refuse_missing(name_or_path);
 }

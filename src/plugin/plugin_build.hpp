@@ -14,6 +14,7 @@
 /// $XDG_CACHE_HOME/tchat, else ~/.cache/tchat.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "plugin/compiler.hpp"
@@ -23,5 +24,18 @@ namespace tchat {
 /// Path of a shared library that is up to date. Throws UserError: nothing there under that name, no compiler, the
 /// compiler's own message, no folder to write to.
 std::string resolve_plugin(const std::string& name_or_path, const PluginBuildOptions& options = {});
+
+/// What a problem is called, and its plugin where that is not the one of this name.
+struct NamedProblem {
+  std::string name;
+  std::optional<std::string> plugin;
+};
+
+/// "dir/ball.tch", an existing source where a problem's name is asked for, means the problem "dir/ball" with this
+/// plugin; any other text is a name.
+NamedProblem named_problem(const std::string& given);
+
+/// The file of formulas that a plugin's name or path stands for; nothing when it is another source, or none.
+std::optional<std::string> formulas_of(const std::string& name_or_path);
 
 }  // namespace tchat
