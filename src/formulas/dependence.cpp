@@ -24,24 +24,25 @@ void StateDependence::join(const StateDependence& other) {
 }
 
 DependenceTable::DependenceTable(const FormulaFile& file, const NameTable& names, FormulaErrors& errors)
-    : file_(file), names_(names), definitions_(file.definitions.size()), functions_(file.functions.size()) {
-  const auto resolve_name = [&](const Token& name) {
+    : file_(file), names_(names), entries_(file.definitions.size() + 2 * file.functions.size()) {
+  const auto resolve_name = [&](const Token& name, bool moving) {
     path_.clear();
-    collecting(errors, [&] { resolve(*names_.find(name.text), name.text, name.at); });
+    collecting(errors, [&] { resolve({*names_.find(name.text), moving}, name.text, name.at); });
   };
-  for (const Assignment& definition : file.definitions) resolve_name(definition.name);
-  for (const FunctionDefinition& function : file.functions) resolve_name(function.name);
+  for (const Assignment& definition : file.definitions) resolve_name(definition.name, false);
+  for (const FunctionDefinition& function : file.functions) resolve_name(function.name, false);
+  if (!errors.empty()) return;
+  for (const FunctionDefinition& function : file.functions) resolve_name(function.name, true);
 }
 
-DependenceTable::Entry& DependenceTable::entry(const Symbol& symbol) {
-  return symbol.kind == Symbol::Kind::function ? functions_[symbol.index] : definitions_[symbol.index];
-}
-const DependenceTable::Entry& DependenceTable::entry(const Symbol& symbol) const {
-  return symbol.kind == Symbol::Kind::function ? functions_[symbol.index] : definitions_[symbol.index];
+std::size_t DependenceTable::place(const Use& use) const {
+  if (use.symbol.kind == Symbol::Kind::definition) return use.symbol.index;
+  return file_.definitions.size() + (use.moving_arguments ? file_.functions.size() : 0) + use.symbol.index;
 }
 
-const StateDependence& DependenceTable::resolve(const Symbol& symbol, const std::string& name, Position at) {
-  Entry& found = entry(symbol);
+const StateDependence& DependenceTable::resolve(const Use& use, const std::string& name, Position at) {
+  const Symbol& symbol = use.symbol;
+  Entry& found = entries_[place(use)];
   if (found.progress == Progress::done) return found.result;
   path_.push_back(name);
   if (found.progress == Progress::begun)
@@ -52,15 +53,15 @@ const StateDependence& DependenceTable::resolve(const Symbol& symbol, const std:
   const bool is_function = symbol.kind == Symbol::Kind::function;
   const Expression& body = is_function ? file_.functions[symbol.index].body : file_.definitions[symbol.index].value;
   const std::vector<Token>& arguments = is_function ? file_.functions[symbol.index].arguments : none;
-  found.result =
-      of(body, arguments, [&](const Symbol& next, const Node& node) { return resolve(next, node.text, node.at); });
+  found.result = of(body, {arguments, use.moving_arguments},
+                    [&](const Use& next, const Node& node) { return resolve(next, node.text, node.at); });
   found.progress = Progress::done;
   path_.pop_back();
   return found.result;
 }
 
 template <class LookUp>
-StateDependence DependenceTable::of(const Expression& expression, const std::vector<Token>& arguments,
+StateDependence DependenceTable::of(const Expression& expression, const Arguments& arguments,
                                     const LookUp& look_up) const {
   StateDependence all;
   std::vector<bool> moves(expression.nodes.size());
@@ -70,14 +71,14 @@ StateDependence DependenceTable::of(const Expression& expression, const std::vec
                               [&](int place) { return moves[static_cast<std::size_t>(place)]; });
     const bool is_used = node.kind == Node::Kind::name || node.kind == Node::Kind::call;
     const Symbol* const symbol = is_used ? names_.find(node.text) : nullptr;
-    if (node.kind == Node::Kind::name && is_argument(arguments, node.text)) {
-      moving = true;
+    if (node.kind == Node::Kind::name && is_argument(arguments.names, node.text)) {
+      moving = arguments.move;
     } else if (symbol != nullptr && symbol->kind == Symbol::Kind::state) {
       moving = true;
     } else if (symbol != nullptr && symbol->kind != Symbol::Kind::parameter) {
-      const StateDependence inner = look_up(*symbol, node);
+      const StateDependence inner = look_up({*symbol, moving && symbol->kind == Symbol::Kind::function}, node);
       moving = inner.on_states || moving;
-      if (moving) all.join(inner);
+      all.join(inner);
     } else if (const BuiltInFunction* const function = is_used ? find_function(node.text) : nullptr;
                function != nullptr && moving) {
       const Roughness here{node.text, node.at};
@@ -92,7 +93,7 @@ StateDependence DependenceTable::of(const Expression& expression, const std::vec
 
 StateDependence DependenceTable::of(const Expression& expression) const {
   static const std::vector<Token> none;
-  return of(expression, none, [&](const Symbol& symbol, const Node&) { return entry(symbol).result; });
+  return of(expression, {none, false}, [&](const Use& use, const Node&) { return entries_[place(use)].result; });
 }
 
 }  // namespace tchat::formulas

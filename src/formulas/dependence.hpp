@@ -40,17 +40,25 @@ class DependenceTable {
     StateDependence result;
   };
 
-  const StateDependence& resolve(const Symbol& symbol, const std::string& name, Position at);
-  /// `arguments` are names that move as states do; `look_up` gives the dependence of a definition or function.
+  /// A function has two entries: with arguments that move with the states, and with such that do not.
+  struct Use {
+    const Symbol& symbol;
+    bool moving_arguments = false;
+  };
+
+  const StateDependence& resolve(const Use& use, const std::string& name, Position at);
+  struct Arguments {
+    const std::vector<Token>& names;
+    bool move = false;
+  };
+  /// `look_up` gives the dependence of a definition or function.
   template <class LookUp>
-  StateDependence of(const Expression& expression, const std::vector<Token>& arguments, const LookUp& look_up) const;
-  Entry& entry(const Symbol& symbol);
-  const Entry& entry(const Symbol& symbol) const;
+  StateDependence of(const Expression& expression, const Arguments& arguments, const LookUp& look_up) const;
+  std::size_t place(const Use& use) const;
 
   const FormulaFile& file_;
   const NameTable& names_;
-  std::vector<Entry> definitions_;
-  std::vector<Entry> functions_;
+  std::vector<Entry> entries_;     ///< definitions, functions, functions of what moves
   std::vector<std::string> path_;  ///< names that are being resolved
 };
 
