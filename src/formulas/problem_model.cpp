@@ -287,7 +287,8 @@ class ModelCheck {
       if (equations[k] != nullptr)
         made.rates.push_back(equations[k]->value);
       else
-        errors_.add(name.at, fmt::format("the field {0} has no equation for {1}; write one below it, as {1}' = 0",
+        errors_.add(name.at, fmt::format("the field {0} has no equation for {1}; write one below it, as {1}' = 0, or "
+                                         "above the first field, where it holds in all",
                                          name.text, model_.names.states()[k]));
     model_.fields.push_back(std::move(made));
   }

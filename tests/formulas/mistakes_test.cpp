@@ -81,7 +81,7 @@ TEST_CASE("states and equations") {
   check_mistake("jump other: y -> 1", 13, "no equation for 'y'");
   check_mistake("jump other: x -> 1, x -> 2", 21, "two values");
   const std::string fields = "x' = 1\nevent e = x\nfield slip\nu' = 1\nfield stick\n";
-  CHECK_THAT(mistake_in(fields), StartsWith("mine.tch:5:7: the field stick has no equation for u; write one below it"));
+  CHECK_THAT(mistake_in(fields), StartsWith("mine.tch:5:7: the field stick has no equation for u; write one below it, as u' = 0, or above"));
   CHECK_THAT(mistake_in("x -> 3\n"), Contains("there is none above it"));
 }
 

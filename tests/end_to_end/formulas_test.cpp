@@ -1,0 +1,115 @@
+// Problems written as formulas, run by the program: the numbers of the same problems in C++, and what is said of
+// mistakes.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+
+#include "end_to_end/bad_input.hpp"
+#include "end_to_end/workspace.hpp"
+
+using namespace test_support;
+
+namespace {
+
+constexpr const char* oscillator = R"(# The linear impact oscillator of problems/linosc
+par alpha=3, omega=2, zeta=0.05, r=0.8
+init x1=0, x2=0, y1=0, y2=1
+radius2 = y1^2 + y2^2
+x1' = x2
+x2' = alpha*y2 - 2*zeta*x2 - x1
+y1' = y1 + omega*y2 - y1*radius2
+y2' = y2 - omega*y1 - y2*radius2
+event wall = 1 - x1
+event maximum = x2
+event minimum = -x2
+jump impact: x2 -> -r*x2
+jump identity
+after any: wall -> impact, maximum -> identity
+)";
+
+std::string contents_of(const std::string& path) {
+  std::ifstream in(path);
+  REQUIRE(in);
+  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+}
+
+/// The same rows, every number to 1e-12 of its column's size.
+void check_same_points(const Workspace& workspace, const std::string& a, const std::string& b) {
+  const auto rows = rows_of(workspace.points(a)), others = rows_of(workspace.points(b));
+  REQUIRE(rows.size() == others.size());
+  CHECK(rows.size() > 5);
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    INFO("row " << k);
+    CHECK(rows[k].point == others[k].point);
+    CHECK(rows[k].type == others[k].type);
+    REQUIRE(rows[k].values.size() == others[k].values.size());
+    for (std::size_t c = 0; c < rows[k].values.size(); ++c)
+      CHECK(rows[k].values[c] == Approx(others[k].values[c]).epsilon(1e-12).margin(1e-12));
+  }
+}
+
+}  // namespace
+
+TEST_CASE("the linear impact oscillator as formulas gives the numbers of its C++") {
+  const Workspace workspace;
+  workspace.write("written.tch", oscillator);
+  for (const char* name : {"impacting", "nonimpacting_alpha"}) {
+    const std::string data = std::string(name) == "impacting" ? "impacting" : "nonimpacting";
+    const std::string files = " -c " + std::string(name) + " -d " + data;
+    REQUIRE(workspace.tchat("run linosc" + files + " -o cpp").status == 0);
+    const Outcome run = workspace.tchat("run written.tch" + files + " -o formulas");
+    INFO(run.text());
+    REQUIRE(run.status == 0);
+    check_same_points(workspace, "formulas", "cpp");
+  }
+  CHECK(workspace.has("written.tch.so"));
+  CHECK(workspace.tchat("verify q.formulas -p written").status == 0);
+}
+
+TEST_CASE("the bouncing ball as formulas gives the numbers of its C++, and those of its closed form") {
+  const Workspace workspace;
+  const std::string source = BALL_SOURCE;  // ball.cpp and ball.tch beside each other, as the user has them
+  for (const char* kind : {".cpp", ".tch"}) workspace.write("ball" + std::string(kind), contents_of(source + kind));
+  workspace.write("gc.ball", contents_of(BALL_CONSTANTS));
+  REQUIRE(workspace.tchat("simulate ball.tch --dat bounce -o bounce").status == 0);
+  REQUIRE(workspace.tchat("run ball.tch -c gc.ball -d bounce -o formulas").status == 0);
+  REQUIRE(workspace.tchat("run ball -c gc.ball -d bounce -o cpp").status == 0);
+  check_same_points(workspace, "formulas", "cpp");
+  const double pi = std::acos(-1.0), r = 0.5;
+  bool doubles = false;
+  for (const SolutionEntry& solution : workspace.solutions("formulas"))
+    if (solution.type == 7) {
+      doubles = true;
+      CHECK(solution.parameter(1) ==
+            Approx(std::hypot(pi * (1 - r) / (1 + r), 2 * (1 + r * r) / ((1 + r) * (1 + r)))).epsilon(1e-8));
+    }
+  CHECK(doubles);
+}
+
+TEST_CASE("formulas become a folder with C++, which simulates to the same orbit") {
+  const Workspace workspace;
+  workspace.write("mine.tch", oscillator);
+  const Outcome made = workspace.tchat("new translated --from mine.tch");
+  INFO(made.text());
+  REQUIRE(made.status == 0);
+  CHECK(contains(workspace.read("translated/translated.cpp"), "rate[1] = alpha * y2 - 2.0 * zeta * x2 - x1;"));
+  CHECK(workspace.tchat("check translated/translated").status == 0);
+  check_refused(workspace.tchat("new translated --from mine.tch"), {"exists"});
+  check_refused(workspace.tchat("new other --from none.tch"), {"none.tch"});
+  CHECK_FALSE(workspace.has("other"));
+}
+
+TEST_CASE("mistakes in formulas are told by every command, and an edit is taken at once") {
+  const Workspace workspace;
+  workspace.write("mine.tch", oscillator);
+  workspace.edit("mine.tch", "2*zeta*x2", "2*zeto*x2");
+  for (const char* command : {"check mine", "simulate mine", "run mine -c impacting -d impacting", "check mine.tch"})
+    check_refused(workspace.tchat(command), {"mine.tch:6:", "'zeto' is not known (did you mean 'zeta'?)", "^"});
+  CHECK_FALSE(workspace.has("mine.tch.so"));
+  workspace.edit("mine.tch", "2*zeto*x2", "2*zeta*x2*abs(x2)");
+  const Outcome checked = workspace.tchat("check mine");
+  CHECK(checked.status == 0);
+  CHECK(contains(checked.out, "mine.tch:6:"));
+  CHECK(contains(checked.out, "kink"));
+}
