@@ -110,6 +110,19 @@ PlotRange read_plot_range(const std::string& text, const char* option) {
   return range;
 }
 
+std::optional<PlotView> read_plot_view(const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  const auto parts = split_at_commas(text);
+  const auto tilt = parts.size() == 2 ? parse_real(parts[0]) : std::nullopt;
+  const auto turn = parts.size() == 2 ? parse_real(parts[1]) : std::nullopt;
+  if (!tilt || !turn || !(*tilt >= 0.0 && *tilt <= 180.0) || !(*turn >= 0.0 && *turn <= 360.0))
+    throw UserError(
+        fmt::format("--view {}: a view is a tilt from 0 to 180 and a turn from 0 to 360 degrees, as in "
+                    "--view 65,35",
+                    in_quotes(text)));
+  return PlotView{*tilt, *turn};
+}
+
 PlotSize read_plot_size(const std::string& text) {
   if (text.empty()) return {};
   const std::size_t cross = text.find_first_of("xX");

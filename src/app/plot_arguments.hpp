@@ -18,9 +18,11 @@ struct PlotArguments {
   bool one_panel = false;
   std::string x;
   std::string y;
-  std::string x_range, y_range;
+  std::string z;
+  std::string view;
+  std::string x_range, y_range, z_range;
   bool log_x = false, log_y = false;
-  std::string title, x_label, y_label;
+  std::string title, x_label, y_label, z_label;
   std::vector<std::string> legend;
   std::string labels;
   bool no_labels = false;
@@ -51,6 +53,12 @@ struct PlotRange {
   std::optional<double> low, high;
 };
 PlotRange read_plot_range(const std::string& text, const char* option);
+
+/// "65,35"; nothing when the text is empty. Throws UserError.
+struct PlotView {
+  double tilt = 0.0, turn = 0.0;  ///< degrees, 0 to 180 and 0 to 360
+};
+std::optional<PlotView> read_plot_view(const std::string& text);
 
 struct PlotSize {
   int width = 0, height = 0;

@@ -28,11 +28,15 @@ void apply_taste(const PlotArguments& arguments, Figure& figure) {
   }
   const PlotRange x = read_plot_range(arguments.x_range, "--xrange");
   const PlotRange y = read_plot_range(arguments.y_range, "--yrange");
+  const PlotRange z = read_plot_range(arguments.z_range, "--zrange");
+  if (const auto view = read_plot_view(arguments.view)) figure.view_tilt = view->tilt, figure.view_turn = view->turn;
   for (Panel& panel : figure.panels) {
     panel.x.low = x.low, panel.x.high = x.high, panel.x.logarithmic = arguments.log_x;
     panel.y.low = y.low, panel.y.high = y.high, panel.y.logarithmic = arguments.log_y;
+    if (panel.z) panel.z->low = z.low, panel.z->high = z.high;
     if (!arguments.x_label.empty()) panel.x.label = plain_text(arguments.x_label);
     if (!arguments.y_label.empty()) panel.y.label = plain_text(arguments.y_label);
+    if (panel.z && !arguments.z_label.empty()) panel.z->label = plain_text(arguments.z_label);
   }
 }
 
@@ -57,15 +61,25 @@ constexpr const char* footer =
     "                                     labels are numbers or types with a count (5, PD1, GR1), or all\n"
     "  tchat plot A.trajectory            a simulation: time series, or with -x a phase portrait\n"
     "  tchat plot --multipliers q.A ...   Floquet multipliers (from d.A) along the branch, or at labels\n"
-    "Stable branches are solid, unstable ones dashed, inadmissible ones (from d.A) dotted; these set no range of the\n"
-    "axes where there are others (--xrange, --yrange show more). Columns are named by their heading (alpha, 'MAX x1',\n"
-    "L2-NORM), as PAR(k), or by number; a parameter that is fixed has its value from q.A.\n"
+    "What is stable is solid, what is unstable dashed, what is inadmissible (by d.A) dotted; this sets no range of "
+    "the\n"
+    "axes where there is more (--xrange, --yrange show it). A branch is drawn up to the bounds RL0, RL1, A0, A1 of its "
+    "run.\n"
+    "Columns are named by their heading (alpha, 'MAX x1', L2-NORM), as PAR(k), or by number; a parameter that is fixed "
+    "has\n"
+    "its value from q.A. x2@wall is the state x2 at the end of each segment that ends in the event or jump of that "
+    "name\n"
+    "(x2@1: of segment 1), x2@after:wall that behind the jump: an arm for each in a period, of the orbits in q.A "
+    "(NPR=1:\n"
+    "of every point). Expressions of all of these are gnuplot's: 1/omega, 'sqrt(x2@wall**2)', 'MAX x1 - alpha'.\n"
     "Without -o the picture is shown in a window; without a display it goes to A.png.\n"
     "Examples:\n"
     "  tchat plot p.impacting                                  to impacting.png, or a window\n"
     "  tchat plot p.impacting -y 'MAX x2' -o impacting.pdf\n"
+    "  tchat plot p.impacting p.doubled -x 1/omega -y x2@wall -o arms.png\n"
     "  tchat plot p.grazing_curve p.fold_curve p.period_doubling_curve -o diagram.png\n"
     "  tchat plot q.impacting GR1 PD1 -p linosc -o orbits.png\n"
+    "  tchat plot q.impacting PD1 -x x1 -y x2 -z y1 -o space.png\n"
     "  tchat plot --time q.impacting PD1 -y x1,x2,y1 -o series.svg\n"
     "  tchat plot linosc.trajectory -y x1,x2 --xrange 0:50     what tchat simulate linosc has written\n"
     "  tchat plot --multipliers q.impacting -o multipliers.png";
@@ -85,17 +99,24 @@ void add_plot_command(CLI::App& app, std::function<int()>& chosen) {
   command->add_flag("--time", a->time, "orbits as time series");
   command->add_flag("--one-panel", a->one_panel, "time series of several states in one panel");
   command->add_option("-o,--output", a->output, "picture FILE.png, FILE.svg or FILE.pdf")->type_name("FILE");
-  command->add_option("-x", a->x, "column, or state of a phase portrait, along x")->type_name("COLUMN");
-  command->add_option("-y", a->y, "column or state along y; time series take several states, as x1,x2")
+  command->add_option("-x", a->x, "along x: a column, STATE@EVENT, an expression such as omega/2; a state of an orbit")
       ->type_name("COLUMN");
+  command->add_option("-y", a->y, "along y; time series take several states, as x1,x2")->type_name("COLUMN");
+  command->add_option("-z", a->z, "a third state: the phase portrait is drawn in space")->type_name("STATE");
   command->add_option("--xrange", a->x_range, "range of x, as 0.5:2 or 0.5:")->type_name("A:B");
   command->add_option("--yrange", a->y_range, "range of y")->type_name("A:B");
+  command->add_option("--zrange", a->z_range, "range of z")->type_name("A:B");
+  command->add_option("--view", a->view, "of -z: tilt from the z-axis and turn around it in degrees (default: 65,35)")
+      ->type_name("TILT,TURN");
   command->add_flag("--logx", a->log_x, "logarithmic x-axis");
   command->add_flag("--logy", a->log_y, "logarithmic y-axis");
   command->add_option("--title", a->title, "text above the picture");
   command->add_option("--xlabel", a->x_label, "text of the x-axis");
   command->add_option("--ylabel", a->y_label, "text of the y-axis");
-  command->add_option("--legend", a->legend, "text in the key for a file or an orbit; once for each, in their order")
+  command->add_option("--zlabel", a->z_label, "text of the z-axis");
+  command
+      ->add_option("--legend", a->legend,
+                   "text in the key for a file, an orbit or a line of --one-panel; once for each, in order")
       ->type_name("TEXT")
       ->allow_extra_args(false);
   command->add_option("--labels", a->labels, "types of points to label, as LP,PD,EP; all; none")->type_name("TYPES");

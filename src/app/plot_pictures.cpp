@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 
@@ -13,6 +14,7 @@
 #include "plot/data_file.hpp"
 #include "plot/multiplier_figure.hpp"
 #include "plot/orbit_figure.hpp"
+#include "plot/orbit_stability.hpp"
 #include "plot/problem_finder.hpp"
 #include "plot/trajectory_file.hpp"
 #include "start/diagnostics_file_reader.hpp"
@@ -57,7 +59,7 @@ NamedFigure branches(const std::vector<PlotItem>& items, const PlotArguments& ar
     files.push_back(read_branch_file(item.path));
     for (const std::string& warning : files.back().warnings) result.warnings.push_back(warning);
   }
-  result.figure = branch_figure(files, options);
+  result.figure = branch_figure(files, options, &result.warnings);
   if (!files.empty()) result.name = files.front().name;
   return result;
 }
@@ -80,9 +82,11 @@ void add_orbits(const PlotItem& item, bool several_files, int dimension, Orbits&
   if (item.kind == PlotItem::Kind::trajectory) return add_trajectory(item, orbits);
   const SolutionFile file = read_solution_file(item.path);
   for (const std::string& warning : file.warnings) orbits.warnings.push_back(warning);
+  const std::map<int, LineKind> kinds = label_kinds(item.path);
   const auto add = [&](const LabelledSolution& solution, const std::string& word) {
     const std::string name = several_files ? fmt::format("{} {}", run_name(item.path), word) : word;
     orbits.traces.push_back(orbit_trace(solution, name, dimension, item.path));
+    if (const auto kind = kinds.find(solution.label); kind != kinds.end()) orbits.traces.back().kind = kind->second;
   };
   if (item.labels.empty() && !file.solutions.empty()) {
     std::string list;
@@ -114,8 +118,6 @@ NamedFigure orbit_picture(const std::vector<PlotItem>& items, const PlotArgument
     add_orbits(item, items.size() > 1, arguments.dimension, orbits);
   }
   if (orbits.traces.empty()) throw UserError(fmt::format("{}: there are no solutions in it", items.front().path));
-  check_legend(arguments, orbits.traces.size(), "orbit");
-
   const bool is_trajectory = items.front().kind == PlotItem::Kind::trajectory;
   const std::string name = is_trajectory ? orbits.traces.front().name : run_name(items.front().path);
   const std::string run = (fs::path(items.front().path).parent_path() / ("q." + name)).string();
@@ -126,6 +128,7 @@ NamedFigure orbit_picture(const std::vector<PlotItem>& items, const PlotArgument
   options.parameters = choice.parameters;
   options.x = arguments.x;
   options.y = split_at_commas(arguments.y);
+  options.z = arguments.z;
   options.one_panel = arguments.one_panel;
   options.legend = arguments.legend;
   options.surfaces = arguments.surfaces != "none";
@@ -144,8 +147,13 @@ NamedFigure orbit_picture(const std::vector<PlotItem>& items, const PlotArgument
       throw UserError(
           fmt::format("--surfaces {}: the problem's plugin is needed; give it with -p", arguments.surfaces));
   }
+  const bool in_time = arguments.time || (is_trajectory && arguments.x.empty() && arguments.z.empty());
+  if (in_time && !arguments.z.empty())
+    throw UserError("-z is for phase portraits in space; leave --time out, or name the states as in --time -y x1,x2");
+  const bool by_state = in_time && options.one_panel && options.y.size() != 1;
+  const std::size_t states = options.y.empty() ? 2 : options.y.size();
+  check_legend(arguments, orbits.traces.size() * (by_state ? states : 1), by_state ? "line" : "orbit");
   NamedFigure result;
-  const bool in_time = arguments.time || (is_trajectory && arguments.x.empty());
   result.figure = in_time ? time_series(orbits.traces, options) : phase_portrait(orbits.traces, options);
   result.name = name + (in_time ? "_time" : "_orbits");
   result.warnings = orbits.warnings;
@@ -217,6 +225,8 @@ NamedFigure make_figure(const std::vector<PlotItem>& items, const PlotArguments&
   for (const PlotItem& item : items)
     if (item.kind == PlotItem::Kind::diagnostics)
       throw UserError(fmt::format("{} holds multipliers: tchat plot --multipliers {}", item.path, item.path));
+  if (!orbits && !arguments.z.empty())
+    throw UserError("-z is for orbits: give a q-file and labels, as in tchat plot q.mems PD1 -x x1 -y x2 -z x3");
   return orbits ? orbit_picture(items, arguments) : branches(items, arguments);
 }
 

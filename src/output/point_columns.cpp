@@ -33,6 +33,10 @@ ProblemNames ProblemNames::of(const HybridSystem& system) {
     const bool named = table.user_value_names != nullptr && table.user_value_names[k] != nullptr;
     names.user_functions.push_back(named ? table.user_value_names[k] : fmt::format("PVLS({})", k + 1));
   }
+  for (int k = 1; k <= system.count(FunctionKind::event); ++k)
+    names.events.push_back(system.function_name(FunctionKind::event, k));
+  for (int k = 1; k <= system.count(FunctionKind::jump); ++k)
+    names.jumps.push_back(system.function_name(FunctionKind::jump, k));
   return names;
 }
 

@@ -10,11 +10,13 @@
 
 namespace tchat {
 
-/// The names of a problem that heads columns; element k - 1 names U(k), PAR(k).
+/// The names of a problem that heads columns; element k - 1 names U(k), PAR(k), event function k, jump k.
 struct ProblemNames {
   std::vector<std::string> states;
   std::vector<std::string> parameters;
   std::vector<std::string> user_functions;
+  std::vector<std::string> events = {};
+  std::vector<std::string> jumps = {};
 
   static ProblemNames of(const HybridSystem& system);
   /// The name, or U(k), PAR(k) beyond the problem's own.

@@ -156,6 +156,8 @@ std::string list_lines(const PointFileHeader& header) {
   if (!s.stop_rules.empty()) add("STOP", stop_text(s.stop_rules));
   add("unames", name_dictionary(header.names.states, "U"));
   add("parnames", name_dictionary(header.names.parameters, "PAR"));
+  add("eventnames", name_dictionary(header.names.events, "h"));
+  add("jumpnames", name_dictionary(header.names.jumps, "g"));
   text += ConstantsLine()
               .integer("NSEG", segments)
               .integer("GRSTOP", s.stop_at_grazing ? 1 : 0)

@@ -109,7 +109,7 @@ std::vector<std::string> shared_free_parameters(const std::vector<BranchFile>& f
 
 }  // namespace
 
-ColumnSource find_column(const BranchFile& file, std::size_t section, const std::string& wanted, const char* option) {
+std::optional<ColumnSource> column_source(const BranchFile& file, std::size_t section, const std::string& wanted) {
   const PointSection& s = file.sections[section];
   const std::string name = normal(wanted);
   ColumnSource source;
@@ -126,6 +126,12 @@ ColumnSource find_column(const BranchFile& file, std::size_t section, const std:
       return source;
     }
   }
+  return std::nullopt;
+}
+
+ColumnSource find_column(const BranchFile& file, std::size_t section, const std::string& wanted, const char* option) {
+  if (const auto source = column_source(file, section, wanted)) return *source;
+  const PointSection& s = file.sections[section];
   throw UserError(fmt::format("{}: no column {} for {}; its columns are {} (or numbers 1..{})", file.path,
                               in_quotes(wanted), option, fmt::join(s.columns, ", "), s.columns.size()));
 }

@@ -23,6 +23,9 @@ struct ColumnSource {
 /// that has no column has its value from the q-file. Throws UserError that lists the columns there are.
 ColumnSource find_column(const BranchFile& file, std::size_t section, const std::string& wanted, const char* option);
 
+/// The same; nothing when there is no such column.
+std::optional<ColumnSource> column_source(const BranchFile& file, std::size_t section, const std::string& wanted);
+
 struct AxisColumns {
   std::string x, y;  ///< names that find_column takes
 };

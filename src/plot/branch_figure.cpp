@@ -3,13 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <optional>
 #include <set>
 
+#include "constants/user_error.hpp"
 #include "plot/axis_scale.hpp"
 #include "plot/branch_columns.hpp"
-#include "plot/picture_styles.hpp"
+#include "plot/branch_end.hpp"
+#include "plot/branch_quantity.hpp"
 #include "plot/smooth_line.hpp"
 
 namespace tchat {
@@ -17,17 +18,7 @@ namespace tchat {
 namespace {
 
 constexpr const char* neutral = "#000000";
-
-Stroke branch_stroke(LineKind kind, const std::string& colour) {
-  switch (kind) {
-    case LineKind::stable:
-      return {Dash::solid, 3.0, colour};
-    case LineKind::unstable:
-      return {Dash::dashed, 2.2, colour};
-    default:
-      return {Dash::fine_dotted, 2.0, colour};
-  }
-}
+constexpr double line_width = 3.0;
 
 /// Letters that all points of a two-parameter curve share: from the header, or from the tens digit of a type.
 int curve_type_of(const PointSection& section) {
@@ -61,8 +52,9 @@ void add_once(std::vector<T>& list, T entry) {
 
 class BranchFigureBuilder {
  public:
-  BranchFigureBuilder(const std::vector<BranchFile>& files, const BranchFigureOptions& options)
-      : files_(files), options_(options) {
+  BranchFigureBuilder(const std::vector<BranchFile>& files, const BranchFigureOptions& options,
+                      std::vector<std::string>* warnings)
+      : files_(files), options_(options), warnings_(warnings) {
     if (!files.empty()) axes_ = default_columns(files);
     if (!options.x.empty()) axes_.x = options.x;
     if (!options.y.empty()) axes_.y = options.y;
@@ -75,19 +67,18 @@ class BranchFigureBuilder {
       }
     std::vector<CurveKind> kinds;
     for (const FileCurve& curve : curves_) kinds.push_back(curve.kind);
-    curve_strokes_ = curve_strokes(kinds);
+    curve_kinds_ = with_own_colours(kinds);
   }
 
   Figure build() {
     std::vector<Piece> pieces;
-    for (std::size_t f = 0; f < files_.size(); ++f)
-      for (const BranchPiece& piece : files_[f].pieces) pieces.push_back(read_piece(f, piece));
+    for (std::size_t f = 0; f < files_.size(); ++f) read_file(f, pieces);
     const PicturePoint scale = size_of(pieces);
     for (const Piece& piece : pieces) add_piece(piece, scale);
     add_clouds();
     add_key();
-    panel_.x.label = mathematical_name(x_name_);
-    panel_.y.label = mathematical_name(y_name_);
+    panel_.x.label = x_label_;
+    panel_.y.label = y_label_;
     Figure figure;
     figure.panels.push_back(std::move(panel_));
     figure.key = std::move(key_);
@@ -95,23 +86,60 @@ class BranchFigureBuilder {
   }
 
  private:
-  /// A piece of a file with its points in the picture.
+  /// A line of the picture: points of a section that lie on one branch.
   struct Piece {
-    std::size_t file;
-    BranchPiece rows;
-    std::vector<PicturePoint> points;
+    std::size_t file, section;
+    std::vector<std::size_t> rows;
+    std::vector<PicturePoint> points;  // of each row
   };
 
-  Piece read_piece(std::size_t f, const BranchPiece& piece) {
+  void read_file(std::size_t f, std::vector<Piece>& pieces) {
     const BranchFile& file = files_[f];
-    const PointSection& section = file.sections[piece.section];
-    const ColumnSource x = find_column(file, piece.section, axes_.x, "-x");
-    const ColumnSource y = find_column(file, piece.section, axes_.y, "-y");
-    if (x_name_.empty()) x_name_ = x.name, y_name_ = y.name;
-    Piece result{f, piece, {}};
-    for (std::size_t k = piece.begin; k < piece.end; ++k)
-      result.points.push_back({x.value(section.rows[k]), y.value(section.rows[k])});
+    for (std::size_t s = 0; s < file.sections.size(); ++s) {
+      const BranchQuantity x = read_quantity(file, s, axes_.x, "-x");
+      const BranchQuantity y = read_quantity(file, s, axes_.y, "-y");
+      if (x_label_.empty()) x_label_ = x.label, y_label_ = y.label;
+      if (x.arms.size() > 1 && y.arms.size() > 1 && x.arms.size() != y.arms.size())
+        throw UserError(fmt::format("{}: {} has {} values in a period and {} has {}; the axes take states at one event",
+                                    file.path, x.orbits_of, x.arms.size(), y.orbits_of, y.arms.size()));
+      tell_missing_orbits(file, s, x, y);
+      for (std::size_t arm = 0; arm < std::max(x.arms.size(), y.arms.size()); ++arm)
+        for (const BranchPiece& piece : file.pieces)
+          if (piece.section == s) pieces.push_back(read_piece(f, piece, x, y, arm));
+    }
+  }
+
+  Piece read_piece(std::size_t f, const BranchPiece& piece, const BranchQuantity& x, const BranchQuantity& y,
+                   std::size_t arm) const {
+    const auto& across = x.arms[arm % x.arms.size()];
+    const auto& up = y.arms[arm % y.arms.size()];
+    Piece result{f, piece.section, {}, {}};
+    for (std::size_t k = piece.begin; k < piece.end; ++k) {
+      if (!x.known[k] || !y.known[k]) continue;
+      PicturePoint point{across[k], up[k]};
+      const double part = k > piece.begin ? part_within_bounds(files_[f], piece.section, k) : 1.0;
+      if (part < 1.0 && !result.points.empty() && result.rows.back() + 1 == k) {
+        const PicturePoint before = result.points.back();
+        point = {before.x + part * (point.x - before.x), before.y + part * (point.y - before.y)};
+      }
+      result.rows.push_back(k);
+      result.points.push_back(point);
+    }
     return result;
+  }
+
+  void tell_missing_orbits(const BranchFile& file, std::size_t s, const BranchQuantity& x, const BranchQuantity& y) {
+    const std::string& what = y.orbits_of.empty() ? x.orbits_of : y.orbits_of;
+    if (what.empty() || warnings_ == nullptr) return;
+    std::size_t all = 0, known = 0;
+    for (const BranchPiece& piece : file.pieces)  // the first point of a restart never has a label
+      for (std::size_t k = piece.begin + 1; k < piece.end && piece.section == s; ++k)
+        ++all, known += x.known[k] && y.known[k];
+    if (known < all)
+      warnings_->push_back(
+          fmt::format("{}: {} is known at the {} of {} points that have an orbit in the q-file; the line "
+                      "goes through these alone (a run with NPR=1 writes all orbits)",
+                      file.path, what, known, all));
   }
 
   /// Width and height of what is shown.
@@ -124,23 +152,25 @@ class BranchFigureBuilder {
   }
 
   void add_piece(const Piece& piece, const PicturePoint& scale) {
-    const PointSection& section = files_[piece.file].sections[piece.rows.section];
+    if (piece.rows.empty()) return;
     const auto intervals = smooth_intervals(piece.points, scale);
-    if (section.is_two_parameter_curve())
-      add_curve(piece.file, piece.rows, intervals);
+    if (section_of(piece).is_two_parameter_curve())
+      add_curve(piece, intervals);
     else
-      add_branch(piece.file, piece.rows, intervals);
-    add_markers(files_[piece.file], piece.rows, piece.points);
+      add_branch(piece, intervals);
+    add_markers(piece);
   }
+
+  const PointSection& section_of(const Piece& piece) const { return files_[piece.file].sections[piece.section]; }
 
   using Intervals = std::vector<std::vector<PicturePoint>>;  // the line from each point to the next
 
   /// Runs of points whose lines look alike share their end points.
   template <class StrokeOf>
-  void add_runs(const BranchPiece& piece, const Intervals& intervals, const BranchFile& file, StrokeOf stroke_of) {
+  void add_runs(const Piece& piece, const Intervals& intervals, StrokeOf stroke_of) {
     std::optional<LineKind> before;
     for (std::size_t k = 0; k < intervals.size(); ++k) {
-      const LineKind kind = line_kind(file, piece.section, piece.begin + k + 1);
+      const LineKind kind = line_kind(files_[piece.file], piece.section, piece.rows[k + 1]);
       if (kind != before)
         panel_.curves.push_back({{intervals[k].front()}, stroke_of(kind), false, kind == LineKind::inadmissible});
       auto& points = panel_.curves.back().points;
@@ -149,39 +179,51 @@ class BranchFigureBuilder {
     }
   }
 
-  void add_branch(std::size_t f, const BranchPiece& piece, const Intervals& intervals) {
-    const std::string colour = !curves_.empty() ? unused_colour(curve_strokes_, position(plain_files_, files_[f].path))
-                               : plain_files_.size() > 1 ? series_colour(f)
+  void add_branch(const Piece& piece, const Intervals& intervals) {
+    const BranchFile& file = files_[piece.file];
+    const std::string colour = !curves_.empty() ? unused_colour(curve_kinds_, position(plain_files_, file.path))
+                               : plain_files_.size() > 1 ? series_colour(piece.file)
                                                          : neutral;
-    add_runs(piece, intervals, files_[f], [this, &colour](LineKind kind) {
+    knows_stability_ = knows_stability_ || section_of(piece).has_stability();
+    add_runs(piece, intervals, [this, &colour](LineKind kind) {
       kinds_.insert(kind);
-      return branch_stroke(kind, colour);
+      return line_stroke(kind, colour, line_width);
     });
-    add_file_entry(f, {Dash::solid, 3.0, colour}, files_[f].name);
+    add_file_entry(piece.file, {Dash::solid, line_width, colour}, std::nullopt, file.name);
   }
 
-  void add_curve(std::size_t f, const BranchPiece& piece, const Intervals& intervals) {
-    const PointSection& section = files_[f].sections[piece.section];
-    const FileCurve curve{files_[f].path, kind_of(section)};
-    const Stroke& stroke = curve_strokes_[position(curves_, curve)];
-    add_runs(piece, intervals, files_[f], [this, &stroke](LineKind line) {
-      if (line != LineKind::inadmissible) return stroke;
-      kinds_.insert(line);
-      return branch_stroke(line, stroke.colour);
+  void add_curve(const Piece& piece, const Intervals& intervals) {
+    const FileCurve curve{files_[piece.file].path, kind_of(section_of(piece))};
+    const CurveKind& kind = curve_kinds_[position(curves_, curve)];
+    const std::size_t first = panel_.curves.size();
+    add_runs(piece, intervals, [this, &kind](LineKind line) {
+      if (line == LineKind::inadmissible) kinds_.insert(line);
+      return line_stroke(line, kind.colour, 0.85 * line_width);
     });
-    const std::string& name = curve.kind.name;
+    Marker symbol;
+    symbol.symbol = kind.symbol;
+    symbol.filled = kind.filled;
+    symbol.size = 0.6;
+    symbol.colour = kind.colour;
+    for (std::size_t k = first; k < panel_.curves.size(); ++k)
+      if (curves_.size() > 1 && !panel_.curves[k].minor) panel_.curves[k].symbol = symbol;
+    const std::string& name = kind.name;
     const bool several = std::count_if(curves_.begin(), curves_.end(),
                                        [&name](const FileCurve& other) { return other.kind.name == name; }) > 1;
-    add_file_entry(f, stroke, several ? fmt::format("{} ({})", name, files_[f].name) : name);
+    add_file_entry(piece.file, {Dash::solid, 0.85 * line_width, kind.colour},
+                   curves_.size() > 1 ? std::optional(symbol) : std::nullopt,
+                   several ? fmt::format("{} ({})", name, files_[piece.file].name) : name);
   }
 
-  void add_markers(const BranchFile& file, const BranchPiece& piece, const std::vector<PicturePoint>& points) {
-    for (std::size_t k = 0; k < points.size(); ++k) {
-      const std::string& type = file.types[piece.section][piece.begin + k];
-      const int label = file.sections[piece.section].rows[piece.begin + k].label;
+  void add_markers(const Piece& piece) {
+    const BranchFile& file = files_[piece.file];
+    for (std::size_t k = 0; k < piece.points.size(); ++k) {
+      const std::size_t row = piece.rows[k];
+      const std::string& type = file.types[piece.section][row];
+      const int label = section_of(piece).rows[row].label;
       if (label == 0 || type.empty() || !options_.labels.includes(type)) continue;
-      Marker marker = special_point_marker(type, points[k]);
-      marker.minor = !file.admissible[piece.section][piece.begin + k];
+      Marker marker = special_point_marker(type, piece.points[k]);
+      marker.minor = !file.admissible[piece.section][row];
       const auto zeros = file.xi_zeros.find(label);
       if (options_.labels.numbers)
         marker.label = plain_text(fmt::format("{} {}", type, label));
@@ -196,40 +238,39 @@ class BranchFigureBuilder {
       const std::string colour = cloud_colour(panel_.clouds.size());
       panel_.clouds.push_back({cloud.points, colour});
       key_.push_back({plain_text(cloud.name), std::nullopt, cloud_marker(colour)});
-      if (x_name_.empty()) x_name_ = cloud.x_name;
-      if (y_name_.empty()) y_name_ = cloud.y_name;
+      if (x_label_.empty()) x_label_ = mathematical_name(cloud.x_name);
+      if (y_label_.empty()) y_label_ = mathematical_name(cloud.y_name);
     }
   }
 
   /// One entry a file, or a kind of curve.
-  void add_file_entry(std::size_t f, const Stroke& stroke, const std::string& name) {
+  void add_file_entry(std::size_t f, const Stroke& stroke, const std::optional<Marker>& marker,
+                      const std::string& name) {
     const bool own = f < options_.legend.size();
     const LabelText text = plain_text(own ? options_.legend[f] : name);
     for (const KeyEntry& entry : key_)
       if (entry.text.text == text.text) return;
-    key_.push_back({text, stroke, std::nullopt});
+    key_.push_back({text, stroke, marker});
   }
 
-  /// What the dashes mean, where more than one of them is in the picture; a lone name is left out.
+  /// What the dashes mean; the name of a lone branch is left out where they say enough.
   void add_key() {
-    if (key_.size() == 1 && options_.legend.empty()) key_.clear();
-    if (kinds_.size() > 1 || kinds_.contains(LineKind::inadmissible)) {
-      static constexpr std::array<std::pair<LineKind, const char*>, 3> names = {
-          {{LineKind::stable, "stable"}, {LineKind::unstable, "unstable"}, {LineKind::inadmissible, "inadmissible"}}};
-      const std::string colour = key_.size() > 1 ? "#606060" : neutral;
-      for (const auto& [kind, name] : names)
-        if (kinds_.contains(kind)) key_.push_back({plain_text(name), branch_stroke(kind, colour), std::nullopt});
-    }
+    if (knows_stability_ && key_.size() == 1 && options_.legend.empty()) key_.clear();
+    if (!knows_stability_) kinds_.erase(LineKind::stable);
+    const std::string colour = key_.empty() || (key_.size() == 1 && key_[0].stroke) ? neutral : "#606060";
+    for (KeyEntry& entry : line_kind_entries(kinds_, colour, line_width)) key_.push_back(std::move(entry));
   }
 
   const std::vector<BranchFile>& files_;
   const BranchFigureOptions& options_;
+  std::vector<std::string>* warnings_;
   AxisColumns axes_;
   std::vector<FileCurve> curves_;  // in the order given
-  std::vector<Stroke> curve_strokes_;
+  std::vector<CurveKind> curve_kinds_;
   std::vector<std::string> plain_files_;  // files with branches in one parameter
   std::set<LineKind> kinds_;
-  std::string x_name_, y_name_;
+  bool knows_stability_ = false;
+  LabelText x_label_, y_label_;
   Panel panel_;
   std::vector<KeyEntry> key_;
 };
@@ -250,8 +291,9 @@ LineKind line_kind(const BranchFile& file, std::size_t section, std::size_t row)
   return s.rows[row].point < 0 ? LineKind::stable : LineKind::unstable;
 }
 
-Figure branch_figure(const std::vector<BranchFile>& files, const BranchFigureOptions& options) {
-  return BranchFigureBuilder(files, options).build();
+Figure branch_figure(const std::vector<BranchFile>& files, const BranchFigureOptions& options,
+                     std::vector<std::string>* warnings) {
+  return BranchFigureBuilder(files, options, warnings).build();
 }
 
 }  // namespace tchat

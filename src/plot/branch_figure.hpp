@@ -2,15 +2,16 @@
 ///
 /// A branch against one parameter is solid where the orbits are stable and dashed where they are not (sign of PT); the
 /// line from a point to the next is that of the next point, for at a located bifurcation the sign of the point before
-/// is written. Inadmissible orbits are thin and dotted and leave the ranges of the axes
-/// to the others. A curve in two parameters has the line of its kind (grazing,
-/// fold, period doubling, torus) and no stability.
+/// is written. Inadmissible orbits are thin and dotted and leave the ranges of the axes to the others. A curve in two
+/// parameters is solid and has the colour of its kind (grazing, fold, period doubling, torus); several of them have
+/// symbols along them, too. Lines end at the bounds of their runs.
 #pragma once
 
 #include <string>
 #include <vector>
 
 #include "plot/figure.hpp"
+#include "plot/picture_styles.hpp"
 #include "start/branch_file.hpp"
 
 namespace tchat {
@@ -32,17 +33,18 @@ struct NamedCloud {
 };
 
 struct BranchFigureOptions {
-  std::string x, y;  ///< columns; empty: default_columns
+  std::string x, y;  ///< what read_quantity takes; empty: default_columns
   LabelSelection labels;
   std::vector<std::string> legend = {};  ///< a text for each file; empty: chosen here
   std::vector<NamedCloud> clouds = {};
 };
 
-/// `files` may be empty when there are clouds. Throws UserError for columns that a file does not have.
-Figure branch_figure(const std::vector<BranchFile>& files, const BranchFigureOptions& options);
+/// `files` may be empty when there are clouds. Throws UserError for columns and expressions that a file does not have.
+/// A quantity that is not known at every point gives a warning.
+Figure branch_figure(const std::vector<BranchFile>& files, const BranchFigureOptions& options,
+                     std::vector<std::string>* warnings = nullptr);
 
 /// How the line from point k - 1 to point k of a branch is drawn.
-enum class LineKind { stable, unstable, inadmissible };
 LineKind line_kind(const BranchFile& file, std::size_t section, std::size_t row);
 
 }  // namespace tchat

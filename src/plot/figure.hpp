@@ -16,25 +16,19 @@ namespace tchat {
 struct PicturePoint {
   double x = 0.0;
   double y = 0.0;
+  double z = 0.0;  ///< of panels in space
 };
 
-inline bool is_finite(const PicturePoint& p) { return std::isfinite(p.x) && std::isfinite(p.y); }
+inline bool is_finite(const PicturePoint& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
 
-enum class Dash { solid, dashed, dash_dot, dotted, fine_dotted };
+/// Dashes tell stability and nothing else: what is stable or has no stability is solid, what is unstable dashed, what
+/// the model forbids dotted.
+enum class Dash { solid, dashed, dotted };
 
 struct Stroke {
   Dash dash = Dash::solid;
   double width = 2.5;  ///< for a picture 1200 pixels wide
   std::string colour = "#000000";
-  int variant = 0;  ///< of the dashes: 0 the usual ones, 1 to 3 others of the same character
-};
-
-/// A polyline; a point that is not finite interrupts it.
-struct Curve {
-  std::vector<PicturePoint> points;
-  Stroke stroke;
-  bool background = false;  ///< event surfaces, axes: neither part of the range nor avoided by labels
-  bool minor = false;       ///< inadmissible: part of the range only where a panel has nothing else
 };
 
 enum class Symbol { square, circle, triangle, diamond, pentagon, reversed_triangle, dot };
@@ -48,6 +42,15 @@ struct Marker {
   LabelText label;           ///< empty: none
   bool one_of_many = false;  ///< where they are crowded some go without label
   bool minor = false;        ///< as that of a curve
+};
+
+/// A polyline; a point that is not finite interrupts it.
+struct Curve {
+  std::vector<PicturePoint> points;
+  Stroke stroke;
+  bool background = false;            ///< event surfaces, axes: neither part of the range nor avoided by labels
+  bool minor = false;                 ///< inadmissible: part of the range only where a panel has nothing else
+  std::optional<Marker> symbol = {};  ///< repeated along it
 };
 
 /// Dots beneath everything else.
@@ -73,6 +76,7 @@ struct AxisSettings {
 struct Panel {
   AxisSettings x;
   AxisSettings y;
+  std::optional<AxisSettings> z;  ///< present: a picture in space, the only panel of its figure, without labels
   std::vector<Cloud> clouds;
   std::vector<Curve> curves;
   std::vector<Marker> markers;
@@ -94,6 +98,8 @@ struct Figure {
   LabelText note;  ///< a line below the title: what the picture leaves out
   int width = 1200;
   int height = 900;
+  double view_tilt = 65.0;  ///< of pictures in space: degrees from looking down along z
+  double view_turn = 35.0;  ///< and around z
 };
 
 }  // namespace tchat

@@ -57,10 +57,11 @@ struct Ending {
 };
 
 [[noreturn]] void refuse_missing_gnuplot(int error) {
-  throw UserError(fmt::format(
-      "pictures are drawn by the program gnuplot, which cannot be started ({}).\n"
-      "  Install it (Debian: apt install gnuplot-nox; with windows: gnuplot-qt), or put its folder on PATH.",
-      std::strerror(error)));
+  throw UserError(
+      fmt::format("pictures are drawn by the program gnuplot, which cannot be started ({}).\n"
+                  "  Install it (Debian: apt install gnuplot-nox; with windows: gnuplot-qt or gnuplot-x11), or put its "
+                  "folder on PATH.",
+                  std::strerror(error)));
 }
 
 Ending run(const std::string& script, bool stay) {
@@ -92,10 +93,12 @@ Ending run(const std::string& script, bool stay) {
 
 std::vector<std::string> gnuplot_terminals() {
   std::vector<std::string> terminals;
-  for (const std::string_view word : split_words(run("print GPVAL_TERMINALS\n", false).output))
-    terminals.emplace_back(word);
+  const std::string output = gnuplot_output("print GPVAL_TERMINALS\n");
+  for (const std::string_view word : split_words(output)) terminals.emplace_back(word);
   return terminals;
 }
+
+std::string gnuplot_output(const std::string& script) { return run(script, false).output; }
 
 void run_gnuplot(const std::string& script, bool stay) {
   const Ending ending = run(script, stay);

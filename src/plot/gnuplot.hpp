@@ -11,6 +11,9 @@ namespace tchat {
 /// The terminals that the installed gnuplot has. Throws UserError with the cure when there is no gnuplot.
 std::vector<std::string> gnuplot_terminals();
 
+/// What gnuplot prints when it runs a script, complaints included. Throws UserError when there is no gnuplot.
+std::string gnuplot_output(const std::string& script);
+
 /// Runs a script. Throws UserError when there is no gnuplot, ComputationError with gnuplot's message when it fails.
 /// `stay`: windows stay open after gnuplot's end.
 void run_gnuplot(const std::string& script, bool stay = false);

@@ -22,24 +22,15 @@ std::string quoted(const LabelText& text) {
 /// The name of a file as gnuplot takes it: one that begins with | would be a command, with ~ a home folder.
 std::string file_name(const std::string& path) { return path.find_first_of("|~") == 0 ? "./" + path : path; }
 
-const char* dash_pattern(Dash dash, int variant) {
-  using Variants = std::array<const char*, 4>;
-  static constexpr Variants solid = {"solid", "(40,8)", "(40,6,10,6)", "(40,6,6,6,6,6)"};
-  static constexpr Variants dashed = {"(14,8)", "(7,5)", "(24,12)", "(18,6,6,6)"};
-  static constexpr Variants dash_dot = {"(16,6,3,6)", "(16,5,3,5,3,5)", "(30,6,3,6)", "(8,5,2,5)"};
-  static constexpr Variants dotted = {"(3,5)", "(3,10)", "(2,3,2,10)", "(6,10)"};
-  const auto k = static_cast<std::size_t>(variant) % 4;
+/// `scale`: of the lengths, 1 for the usual ones.
+std::string dash_pattern(Dash dash, double scale) {
   switch (dash) {
     case Dash::solid:
-      return solid[k];
+      return "solid";
     case Dash::dashed:
-      return dashed[k];
-    case Dash::dash_dot:
-      return dash_dot[k];
-    case Dash::dotted:
-      return dotted[k];
+      return fmt::format("({:.3g},{:.3g})", 14.0 * scale, 8.0 * scale);
     default:
-      return "(2,5)";
+      return fmt::format("({:.3g},{:.3g})", 2.0 * scale, 5.0 * scale);
   }
 }
 
@@ -92,7 +83,7 @@ class ScriptWriter {
     texts_of_figure();
     key();
     if (figure_.panels.size() > 1) line("set multiplot");
-    for (std::size_t k = 0; k < figure_.panels.size(); ++k) panel(k);
+    for (std::size_t k = 0; k < figure_.panels.size(); ++k) figure_.panels[k].z ? panel_in_space() : panel(k);
     if (figure_.panels.size() > 1) line("unset multiplot");
     if (target_.format != PictureFormat::window) line("unset output");
     return std::move(text_);
@@ -101,8 +92,8 @@ class ScriptWriter {
  private:
   void line(const std::string& command) { text_ += command + '\n'; }
 
-  std::string stroke(const Stroke& s) const {
-    return fmt::format("dt {} lw {:.3g} lc rgb '{}'", dash_pattern(s.dash, s.variant), s.width * units_.line_width,
+  std::string stroke(const Stroke& s, double dash_scale = 1.0) const {
+    return fmt::format("dt {} lw {:.3g} lc rgb '{}'", dash_pattern(s.dash, dash_scale), s.width * units_.line_width,
                        s.colour);
   }
 
@@ -150,14 +141,13 @@ class ScriptWriter {
     count = 0;
     for (const Curve& curve : panel.curves) {
       line(fmt::format("$curve{}_{} << END", number + 1, ++count));
-      for (const PicturePoint& p : curve.points)
-        line(std::isfinite(p.x) && std::isfinite(p.y) ? fmt::format("{:.10g} {:.10g}", p.x, p.y) : "");
+      for (const PicturePoint& p : curve.points) line(is_finite(p) ? numbers(panel, p, " ") : "");
       line("END");
     }
     count = 0;
-    for (const auto& [style, group] : marker_groups(panel)) {
+    for (const auto& [style, group] : marker_groups(panel, number)) {
       line(fmt::format("$points{}_{} << END", number + 1, ++count));
-      for (const Marker* marker : group) line(fmt::format("{:.10g} {:.10g}", marker->at.x, marker->at.y));
+      for (const Marker& marker : group) line(numbers(panel, marker.at, " "));
       line("END");
     }
     line("");
@@ -166,11 +156,22 @@ class ScriptWriter {
   using MarkerStyle = std::tuple<Symbol, bool, double, std::string>;
 
   /// Markers that look alike are drawn together.
-  static std::map<MarkerStyle, std::vector<const Marker*>> marker_groups(const Panel& panel) {
-    std::map<MarkerStyle, std::vector<const Marker*>> groups;
-    for (const Marker& marker : panel.markers)
-      groups[{marker.symbol, marker.filled, marker.size, marker.colour}].push_back(&marker);
+  std::map<MarkerStyle, std::vector<Marker>> marker_groups(const Panel& panel, std::size_t number) const {
+    std::map<MarkerStyle, std::vector<Marker>> groups;
+    for (std::size_t k = 0; k < panel.markers.size(); ++k) {
+      Marker marker = panel.markers[k];
+      marker.size *= layout_.panels[number].marker_scales[k];
+      groups[{marker.symbol, marker.filled, marker.size, marker.colour}].push_back(marker);
+    }
+    for (const Marker& symbol : layout_.panels[number].symbols)
+      groups[{symbol.symbol, symbol.filled, symbol.size, symbol.colour}].push_back(symbol);
     return groups;
+  }
+
+  /// Two coordinates, three in space.
+  static std::string numbers(const Panel& panel, const PicturePoint& p, const char* between) {
+    return panel.z ? fmt::format("{:.10g}{}{:.10g}{}{:.10g}", p.x, between, p.y, between, p.z)
+                   : fmt::format("{:.10g}{}{:.10g}", p.x, between, p.y);
   }
 
   // What belongs to the whole figure -----------------------------------------------------------------------------
@@ -243,11 +244,9 @@ class ScriptWriter {
 
   void arrows(const Panel& panel, const PanelLayout& place) {
     for (const Arrow& arrow : panel.arrows)
-      line(
-          fmt::format("set arrow from {:.10g},{:.10g} to {:.10g},{:.10g} head filled size screen {:.4f},18 fixed lw "
-                      "{:.3g} lc rgb '{}'",
-                      arrow.from.x, arrow.from.y, arrow.to.x, arrow.to.y, 0.9 * layout_.font / figure_.width,
-                      1.5 * units_.line_width, arrow.colour));
+      line(fmt::format("set arrow from {} to {} head filled size screen {:.4f},18 fixed lw {:.3g} lc rgb '{}'",
+                       numbers(panel, arrow.from, ","), numbers(panel, arrow.to, ","),
+                       0.9 * layout_.font / figure_.width, 1.5 * units_.line_width, arrow.colour));
     for (std::size_t k = 0; k < panel.markers.size(); ++k) {
       if (k >= place.labels.size() || !place.labels[k] || !place.labels[k]->far) continue;
       const Box& box = place.labels[k]->box;
@@ -273,17 +272,38 @@ class ScriptWriter {
       elements.push_back(fmt::format("$cloud{}_{} with points {} notitle", number + 1, c + 1,
                                      points(cloud_marker(""), true, panel.clouds[c].colour)));
     for (std::size_t c = 0; c < panel.curves.size(); ++c)
-      elements.push_back(
-          fmt::format("$curve{}_{} with lines {} notitle", number + 1, c + 1, stroke(panel.curves[c].stroke)));
+      elements.push_back(fmt::format("$curve{}_{} with lines {} notitle", number + 1, c + 1,
+                                     stroke(panel.curves[c].stroke, layout_.panels[number].dash_scales[c])));
     int count = 0;
-    for (const auto& [style, group] : marker_groups(panel)) {
-      const Marker& marker = *group.front();
+    for (const auto& [style, group] : marker_groups(panel, number)) {
+      const Marker& marker = group.front();
       const std::string block = fmt::format("$points{}_{}", number + 1, ++count);
       elements.push_back(fmt::format("{} with points {} notitle", block, background(marker)));
       elements.push_back(fmt::format("{} with points {} notitle", block, points(marker, marker.filled, marker.colour)));
     }
     if (elements.empty()) elements.emplace_back("NaN notitle");
-    line(fmt::format("plot {}", fmt::join(elements, ", \\\n     ")));
+    line(fmt::format("{} {}", panel.z ? "splot" : "plot", fmt::join(elements, ", \\\n     ")));
+  }
+
+  // In space -----------------------------------------------------------------------------------------------------
+
+  void panel_in_space() {
+    const Panel& panel = figure_.panels.front();
+    const PanelLayout& place = layout_.panels.front();
+    // gnuplot's own margins leave the middle of the picture to the box; a tall key takes more of it.
+    const double height = place.frame.top / figure_.height;
+    line(fmt::format("set view {:.4g},{:.4g},{:.3g},1.05", figure_.view_tilt, figure_.view_turn,
+                     std::min(1.0, height + 0.08)));
+    line("set xyplane relative 0");
+    line(fmt::format("set border 4095 lw {:.3g} lc rgb '#909090'", 1.0 * units_.line_width));
+    axis('x', place.x, panel.x.label, true);
+    axis('y', place.y, panel.y.label, true);
+    axis('z', place.z, panel.z->label, true);
+    for (const char name : {'x', 'y', 'z'}) line(fmt::format("set {}tics textcolor rgb '#000000'", name));
+    line("set xtics offset 0,-0.3\nset ytics offset 0.5,-0.2\nset xlabel offset 0,-0.8\nset ylabel offset 1,-0.5");
+    line("set zlabel offset 1.5,0");
+    arrows(panel, place);
+    plot(panel, 0);
   }
 
   const Figure& figure_;
@@ -294,6 +314,22 @@ class ScriptWriter {
 };
 
 }  // namespace
+
+std::string values_script(const std::string& formula, std::size_t columns,
+                          const std::vector<std::vector<double>>& rows) {
+  std::string names, values;
+  for (std::size_t k = 1; k <= columns; ++k) {
+    names += fmt::format("{}c{}", k > 1 ? "," : "", k);
+    values += fmt::format("{}${}", k > 1 ? "," : "", k);
+  }
+  std::string text = fmt::format("f({}) = {}\n", names, formula);
+  text += "v(z) = abs(imag(z)) <= 1e-9*abs(z) ? real(z) : NaN\n$rows << END\n";
+  for (const std::vector<double>& row : rows) text += fmt::format("{:.17g}\n", fmt::join(row, " "));
+  return text + fmt::format(
+                    "END\nset table $values\nplot $rows using (sprintf('%.17g', v(f({})))) with table\n"
+                    "unset table\nset print '-'\nprint $values\n",
+                    values);
+}
 
 std::string gnuplot_script(const Figure& figure, const FigureLayout& layout, const PictureTarget& target) {
   return ScriptWriter(figure, layout, target).write();

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "plot/figure.hpp"
 #include "plot/layout.hpp"
@@ -17,6 +18,10 @@ struct PictureTarget {
   std::string path;    ///< of a file
   std::string window;  ///< terminal of a window
 };
+
+/// A script that prints the value of a formula of c1, c2, ... (`columns` of them) for every row, NaN where it has none.
+std::string values_script(const std::string& formula, std::size_t columns,
+                          const std::vector<std::vector<double>>& rows);
 
 std::string gnuplot_script(const Figure& figure, const FigureLayout& layout, const PictureTarget& target);
 

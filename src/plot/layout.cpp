@@ -4,7 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include "plot/curve_symbols.hpp"
 #include "plot/key_placement.hpp"
+#include "plot/short_pieces.hpp"
 
 namespace tchat {
 
@@ -76,6 +78,11 @@ Obstacles obstacles_of(const Panel& panel, const PanelLayout& layout, const std:
     const double radius = marker.size * marker_radius * font;
     obstacles.markers.push_back({at.x - radius, at.x + radius, at.y - radius, at.y + radius});
   }
+  for (const Marker& symbol : layout.symbols) {
+    const PicturePoint at = layout.on_paper(symbol.at);
+    const double radius = symbol.size * marker_radius * font;
+    obstacles.markers.push_back({at.x - radius, at.x + radius, at.y - radius, at.y + radius});
+  }
   if (key && key->inside) obstacles.forbidden.push_back(key->box);
   return obstacles;
 }
@@ -106,6 +113,39 @@ void place_marker_labels(const Panel& panel, PanelLayout& layout, const Obstacle
   for (std::size_t k = 0; k < owners.size(); ++k) layout.labels[owners[k]] = places[k];
 }
 
+double font_of(const Figure& figure) {
+  return std::max(least_font, font_for_1200_pixels * std::min(figure.width / 1200.0, figure.height / 700.0));
+}
+
+/// What stands above the panels, without the key.
+double height_of_texts(const Figure& figure, double font) {
+  return (0.8 + (figure.title.empty() ? 0.0 : 1.7) + (figure.note.empty() ? 0.0 : 1.3)) * font;
+}
+
+/// gnuplot projects the box and writes at its edges: only ranges, tics and what is above it are decided here.
+FigureLayout lay_out_in_space(const Figure& figure) {
+  constexpr int tics = 3;
+  FigureLayout layout;
+  layout.font = font_of(figure);
+  const Panel& panel = figure.panels.front();
+  Values values;
+  add_values(panel, values);
+  PanelLayout place;
+  place.x = choose_scale(panel.x, visible(values, &PicturePoint::x, &PicturePoint::y, {}), tics);
+  place.y = choose_scale(panel.y, visible(values, &PicturePoint::y, &PicturePoint::x, {}), tics);
+  place.z = choose_scale(*panel.z, visible(values, &PicturePoint::z, &PicturePoint::x, {}), tics);
+  place.frame = {0.0, static_cast<double>(figure.width), 0.0, figure.height - height_of_texts(figure, layout.font)};
+  const KeyGrid rows(figure.key, layout.font, figure.width - layout.font, 0.35 * place.frame.height());
+  if (!rows.empty()) {
+    place.frame.top -= rows.height();
+    layout.key = rows.place_above(place.frame, figure.width);
+  }
+  place.dash_scales.assign(panel.curves.size(), 1.0);
+  place.marker_scales.assign(panel.markers.size(), 1.0);
+  layout.panels.push_back(std::move(place));
+  return layout;
+}
+
 }  // namespace
 
 PicturePoint PanelLayout::on_paper(const PicturePoint& p) const {
@@ -121,9 +161,9 @@ PicturePoint PanelLayout::in_data(const PicturePoint& p) const {
 }
 
 FigureLayout lay_out(const Figure& figure) {
+  if (figure.panels.front().z) return lay_out_in_space(figure);
   FigureLayout layout;
-  const double scale = std::min(figure.width / 1200.0, figure.height / 700.0);
-  layout.font = std::max(least_font, font_for_1200_pixels * scale);
+  layout.font = font_of(figure);
   const double font = layout.font;
   const auto panels = static_cast<int>(figure.panels.size());
 
@@ -141,8 +181,8 @@ FigureLayout lay_out(const Figure& figure) {
     layout.panels.push_back(place);
   }
 
-  const double above = (figure.title.empty() ? 0.0 : 1.7) + (figure.note.empty() ? 0.0 : 1.3);
-  Box inner{(widest + 3.0) * font, figure.width - 1.5 * font, 3.7 * font, figure.height - (0.8 + above) * font};
+  Box inner{(widest + 3.0) * font, figure.width - 1.5 * font, 3.7 * font,
+            figure.height - height_of_texts(figure, font)};
   const KeyGrid list(figure.key, font);
   const KeyGrid rows(figure.key, font, figure.width - font, 0.35 * inner.height());
   const bool may_be_inside = panels == 1;
@@ -166,9 +206,16 @@ FigureLayout lay_out(const Figure& figure) {
     }
   }
   if (!rows.empty() && !layout.key) layout.key = rows.place_above(layout.panels[0].frame, figure.width);
-  for (std::size_t k = 0; k < layout.panels.size(); ++k)
-    place_marker_labels(figure.panels[k], layout.panels[k],
-                        obstacles_of(figure.panels[k], layout.panels[k], layout.key, font), font);
+  for (std::size_t k = 0; k < layout.panels.size(); ++k) {
+    PanelLayout& place = layout.panels[k];
+    ShortPieces pieces = find_short_pieces(figure.panels[k], place, font);
+    place.dash_scales = std::move(pieces.dash_scales);
+    place.marker_scales = std::move(pieces.marker_scales);
+    place.symbols = symbols_along_curves(figure.panels[k], place, font);
+    Obstacles obstacles = obstacles_of(figure.panels[k], place, layout.key, font);
+    obstacles.markers.insert(obstacles.markers.end(), pieces.boxes.begin(), pieces.boxes.end());
+    place_marker_labels(figure.panels[k], place, obstacles, font);
+  }
   return layout;
 }
 

@@ -15,7 +15,11 @@ struct PanelLayout {
   Box frame;
   AxisScale x;
   AxisScale y;
+  AxisScale z;                                     ///< of a picture in space
   std::vector<std::optional<PlacedLabel>> labels;  ///< one for each marker; nothing where there is no label to show
+  std::vector<double> dash_scales;                 ///< one for each curve, see ShortPieces
+  std::vector<Marker> symbols;                     ///< along the curves
+  std::vector<double> marker_scales;               ///< one for each marker
 
   PicturePoint on_paper(const PicturePoint& p) const;
   /// The point of the data at a place on the paper.

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "constants/user_error.hpp"
+#include "plot/orbit_stability.hpp"
 #include "plot/picture_styles.hpp"
 
 namespace tchat {
@@ -14,7 +15,7 @@ namespace tchat {
 namespace {
 
 constexpr double farthest = 2.5;
-constexpr double critical_width = 1e-4;  // of what counts as on the circle
+constexpr double critical_width = 1e-4;  // of what has a label on the circle
 
 Curve unit_circle() {
   constexpr int corners = 360;
@@ -33,12 +34,6 @@ Curve axis_line(PicturePoint from, PicturePoint to) { return {{from, to}, {Dash:
 std::string shade(double part) {
   const int level = static_cast<int>(std::lround(170.0 * part));
   return fmt::format("#{0:02x}{0:02x}{0:02x}", level);
-}
-
-/// The sign of a located bifurcation is that of the point before: at single labels the multipliers tell more.
-bool has_outside(const DiagnosticPoint& point) {
-  return std::any_of(point.multipliers.begin(), point.multipliers.end(),
-                     [](const auto& mu) { return std::abs(mu) > 1.0 + critical_width; });
 }
 
 KeyEntry dot(const std::string& text, const std::string& colour, bool filled) {
@@ -88,7 +83,7 @@ Figure multiplier_figure(const std::vector<MultiplierSeries>& series, const Mult
         Marker marker;
         marker.at = {mu.real(), mu.imag()};
         marker.size = options.labelled_points ? 0.9 : 0.6;
-        marker.filled = options.labelled_points ? !has_outside(points[k]) : points[k].point < 0;
+        marker.filled = options.labelled_points ? !has_multiplier_outside(points[k]) : points[k].point < 0;
         marker.colour =
             shaded ? shade(static_cast<double>(k) / static_cast<double>(std::max<std::size_t>(points.size(), 2) - 1))
                    : series_colour(s);

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "constants/constant_value.hpp"
 #include "constants/user_error.hpp"
@@ -18,16 +19,6 @@ namespace tchat {
 namespace {
 
 constexpr double orbit_width = 2.5;
-constexpr double jump_width = 1.3;
-
-Marker impact_marker(const PicturePoint& at, bool before, const std::string& colour) {
-  Marker marker;
-  marker.at = at;
-  marker.filled = before;
-  marker.size = 0.8;
-  marker.colour = colour;
-  return marker;
-}
 
 /// Rectangle around all orbits, half as large again on each side, and what the user's ranges may ask for is cut there.
 StateWindow window_of(const std::vector<OrbitTrace>& orbits, int a, int b) {
@@ -104,56 +95,161 @@ LabelText orbit_name(const std::vector<OrbitTrace>& orbits, std::size_t k, const
                   joined(mathematical_name(name), joined(plain_text(" = "), number_text(value))));
     first = false;
   }
+  if (orbit.kind == LineKind::unstable) text = joined(text, plain_text(first ? ": unstable" : ", unstable"));
+  if (orbit.kind == LineKind::inadmissible)
+    text = joined(text, plain_text(first ? ": inadmissible" : ", inadmissible"));
   return text;
 }
 
-KeyEntry surface_entry(const std::string& name, std::size_t number) {
-  static constexpr std::array<Dash, 3> dashes = {Dash::solid, Dash::dash_dot, Dash::dotted};
-  return {plain_text(name), Stroke{dashes[number % dashes.size()], 4.0, "#a0a0a0"}, std::nullopt};
+Stroke orbit_stroke(const std::vector<OrbitTrace>& orbits, std::size_t k) {
+  return line_stroke(orbits[k].kind, series_colour(k), orbit_width);
 }
 
-Figure phase_portrait(const std::vector<OrbitTrace>& orbits, const OrbitFigureOptions& options) {
-  check_dimensions(orbits);
+Marker jump_marker(std::size_t k, const PicturePoint& at, bool before) {
+  Marker marker;
+  marker.at = at;
+  marker.symbol = series_symbol(k);
+  marker.filled = before;
+  marker.size = 0.8;
+  marker.colour = series_colour(k);
+  return marker;
+}
+
+KeyEntry orbit_entry(const std::vector<OrbitTrace>& orbits, std::size_t k, const OrbitFigureOptions& options) {
+  KeyEntry entry{orbit_name(orbits, k, options), orbit_stroke(orbits, k), std::nullopt};
+  for (std::size_t s = 0; s < orbits[k].segments.size() && !entry.marker; ++s)
+    if (orbits[k].jumps_after(s)) entry.marker = jump_marker(k, {}, true);
+  return entry;
+}
+
+void explain_dashes(Figure& figure, const std::vector<OrbitTrace>& orbits) {
+  std::set<LineKind> kinds;
+  for (const OrbitTrace& orbit : orbits)
+    if (orbit.kind != LineKind::stable) kinds.insert(orbit.kind);
+  for (KeyEntry& entry : line_kind_entries(kinds, "#606060", orbit_width)) figure.key.push_back(std::move(entry));
+}
+
+KeyEntry surface_entry(const std::string& name, std::size_t number) {
+  static constexpr std::array<const char*, 4> greys = {"#a0a0a0", "#d0c4b0", "#b8c8d8", "#808080"};
+  return {plain_text(name), Stroke{Dash::solid, 4.0, greys[number % greys.size()]}, std::nullopt};
+}
+
+namespace {
+
+/// The states along the axes, from 0; two of them in the plane.
+std::vector<int> states_along(const std::vector<OrbitTrace>& orbits, const OrbitFigureOptions& options) {
   const int n = orbits.front().dimension();
   if (options.y.size() > 1)
     throw UserError("a phase portrait has one state along y; several of them are for --time, as in --time -y x1,x2");
   const int a = options.x.empty() ? 0 : find_state(options.x, n, options, "-x");
   const int b = options.y.empty() ? std::min(a == 1 ? 0 : 1, n - 1) : find_state(options.y.front(), n, options, "-y");
-  const StateWindow window = window_of(orbits, a, b);
-  Figure figure;
-  Panel panel;
-  panel.x.label = mathematical_name(state_name(a, options));
-  panel.y.label = mathematical_name(state_name(b, options));
-  if (options.system != nullptr && options.surfaces) {
-    const EventSurfaces surfaces(*options.system, orbits, options.events);
-    std::size_t number = 0;
-    for (auto& line : surfaces.in_plane(a, b, window)) {
-      const KeyEntry entry = surface_entry(line.name, number++);
-      for (auto& piece : line.pieces) panel.curves.push_back({std::move(piece), *entry.stroke, true});
+  if (options.z.empty()) return {a, b};
+  return {a, b, find_state(options.z, n, options, "-z")};
+}
+
+PicturePoint shown(const Eigen::VectorXd& x, const std::vector<int>& states) {
+  return {x(states[0]), x(states[1]), states.size() > 2 ? x(states[2]) : 0.0};
+}
+
+void add_orbit(Panel& panel, const std::vector<OrbitTrace>& orbits, std::size_t k, const std::vector<int>& states,
+               const StateWindow& window) {
+  const OrbitTrace& orbit = orbits[k];
+  for (std::size_t s = 0; s < orbit.segments.size(); ++s) {
+    Curve curve;
+    curve.stroke = orbit_stroke(orbits, k);
+    const Eigen::MatrixXd& points = orbit.segments[s].states;
+    for (Eigen::Index i = 0; i < points.cols(); ++i) curve.points.push_back(shown(points.col(i), states));
+    add_arrow(panel, curve, window);
+    panel.curves.push_back(std::move(curve));
+    if (!orbit.jumps_after(s)) continue;
+    const PicturePoint before = shown(orbit.end_of(s), states), after = shown(orbit.start_after(s), states);
+    panel.curves.push_back({{before, after}, jump_stroke(series_colour(k)), false});
+    panel.markers.push_back(jump_marker(k, after, false));
+    panel.markers.push_back(jump_marker(k, before, true));
+  }
+}
+
+void add_lines_of_events(Figure& figure, Panel& panel, const EventSurfaces& surfaces, const std::vector<int>& states,
+                         const StateWindow& window) {
+  std::size_t number = 0;
+  for (auto& line : surfaces.in_plane(states[0], states[1], window)) {
+    const KeyEntry entry = surface_entry(line.name, number++);
+    for (auto& piece : line.pieces) panel.curves.push_back({std::move(piece), *entry.stroke, true});
+    figure.key.push_back(entry);
+  }
+}
+
+struct StateRange {
+  double low = std::numeric_limits<double>::infinity();
+  double high = -std::numeric_limits<double>::infinity();
+};
+
+StateRange range_along(const std::vector<OrbitTrace>& orbits, int state) {
+  StateRange range;
+  for (const OrbitTrace& orbit : orbits)
+    for (const TraceSegment& segment : orbit.segments) {
+      range.low = std::min(range.low, segment.states.row(state).minCoeff());
+      range.high = std::max(range.high, segment.states.row(state).maxCoeff());
+    }
+  return range;
+}
+
+/// In space: where an event function depends on one of the states alone, the edges of its plane around the orbits.
+void add_planes_of_events(Figure& figure, Panel& panel, const EventSurfaces& surfaces, const std::vector<int>& states,
+                          const std::vector<OrbitTrace>& orbits) {
+  std::size_t number = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const StateRange own = range_along(orbits, states[axis]);
+    const double more = 0.1 * (own.high - own.low);
+    const std::size_t second = (axis + 1) % 3, third = (axis + 2) % 3;
+    const StateRange one = range_along(orbits, states[second]), other = range_along(orbits, states[third]);
+    for (const EventSurfaces::Level& level : surfaces.of_state(states[axis], own.low - more, own.high + more)) {
+      const KeyEntry entry = surface_entry(level.name, number++);
+      for (const double value : level.values) {
+        Curve edge;
+        edge.stroke = *entry.stroke;
+        edge.background = true;
+        for (const auto& [a, b] : {std::pair(one.low, other.low),
+                                   {one.high, other.low},
+                                   {one.high, other.high},
+                                   {one.low, other.high},
+                                   {one.low, other.low}}) {
+          std::array<double, 3> corner{};
+          corner[axis] = value, corner[second] = a, corner[third] = b;
+          edge.points.push_back({corner[0], corner[1], corner[2]});
+        }
+        panel.curves.push_back(std::move(edge));
+      }
       figure.key.push_back(entry);
     }
   }
-  std::vector<KeyEntry> entries;
-  for (std::size_t k = 0; k < orbits.size(); ++k) {
-    const OrbitTrace& orbit = orbits[k];
-    const Stroke stroke = series_stroke(k, orbit_width);
-    const auto point = [a, b](const Eigen::VectorXd& x) { return PicturePoint{x(a), x(b)}; };
-    for (std::size_t s = 0; s < orbit.segments.size(); ++s) {
-      Curve curve;
-      curve.stroke = stroke;
-      const Eigen::MatrixXd& states = orbit.segments[s].states;
-      for (Eigen::Index i = 0; i < states.cols(); ++i) curve.points.push_back(point(states.col(i)));
-      add_arrow(panel, curve, window);
-      panel.curves.push_back(std::move(curve));
-      if (!orbit.jumps_after(s)) continue;
-      const PicturePoint before = point(orbit.end_of(s)), after = point(orbit.start_after(s));
-      panel.curves.push_back({{before, after}, {Dash::dashed, jump_width, stroke.colour}, false});
-      panel.markers.push_back(impact_marker(after, false, stroke.colour));
-      panel.markers.push_back(impact_marker(before, true, stroke.colour));
-    }
-    if (is_in_key(orbits, options)) entries.push_back({orbit_name(orbits, k, options), stroke, std::nullopt});
+}
+
+}  // namespace
+
+Figure phase_portrait(const std::vector<OrbitTrace>& orbits, const OrbitFigureOptions& options) {
+  check_dimensions(orbits);
+  const std::vector<int> states = states_along(orbits, options);
+  const StateWindow window = window_of(orbits, states[0], states[1]);
+  Figure figure;
+  Panel panel;
+  const auto name = [&options, &states](std::size_t axis) {
+    return mathematical_name(state_name(states[axis], options));
+  };
+  panel.x.label = name(0);
+  panel.y.label = name(1);
+  if (states.size() > 2) panel.z = AxisSettings{name(2), {}, {}, false};
+  for (std::size_t k = 0; k < orbits.size(); ++k)
+    if (is_in_key(orbits, options)) figure.key.push_back(orbit_entry(orbits, k, options));
+  if (options.system != nullptr && options.surfaces) {
+    const EventSurfaces surfaces(*options.system, orbits, options.events);
+    if (panel.z)
+      add_planes_of_events(figure, panel, surfaces, states, orbits);
+    else
+      add_lines_of_events(figure, panel, surfaces, states, window);
   }
-  figure.key.insert(figure.key.begin(), entries.begin(), entries.end());
+  if (!options.legend.empty()) explain_dashes(figure, orbits);
+  for (std::size_t k = 0; k < orbits.size(); ++k) add_orbit(panel, orbits, k, states, window);
   figure.panels.push_back(std::move(panel));
   return figure;
 }

@@ -1,7 +1,9 @@
-/// Pictures of labelled orbits: phase portraits, and time series in panels one below the other or in one.
+/// Pictures of labelled orbits: phase portraits in the plane and in space, and time series in panels one below the
+/// other or in one.
 ///
-/// Jumps are thin dashed lines, from a filled circle (before) to an open one (after). An arrowhead shows the direction
-/// of time. Event surfaces are grey lines.
+/// Each orbit has a colour and a symbol; a stable one is solid, an unstable one dashed, an inadmissible one dotted, and
+/// the key says so. Jumps are thin pale lines, from a filled symbol (before) to an open one (after). An arrowhead shows
+/// the direction of time. Event surfaces are grey lines.
 #pragma once
 
 #include <string>
@@ -18,14 +20,16 @@ struct OrbitFigureOptions {
   std::vector<std::string> parameters;  ///< likewise PAR(k)
   std::string x;                        ///< state along x of a phase portrait: name, U(k) or number; empty: the first
   std::vector<std::string> y;  ///< states along y; one for a phase portrait; empty: the second, or the first two
+  std::string z;               ///< state along z; empty: a portrait in the plane
   bool one_panel = false;      ///< time series of all states in one panel
   const HybridSystem* system = nullptr;  ///< for event surfaces
   bool surfaces = true;
   std::vector<int> events;          ///< these event surfaces; empty: chosen, see EventSurfaces
-  std::vector<std::string> legend;  ///< a text for each orbit; empty: label and free parameters
+  std::vector<std::string> legend;  ///< a text for each entry of the key: orbit, or state of an orbit in one panel
 };
 
 /// Throws UserError for states that there are not, and for orbits of different dimensions.
+/// Three states need `z`.
 Figure phase_portrait(const std::vector<OrbitTrace>& orbits, const OrbitFigureOptions& options);
 Figure time_series(const std::vector<OrbitTrace>& orbits, const OrbitFigureOptions& options);
 
@@ -38,6 +42,18 @@ LabelText orbit_name(const std::vector<OrbitTrace>& orbits, std::size_t k, const
 
 /// A single trajectory needs no name in the key.
 bool is_in_key(const std::vector<OrbitTrace>& orbits, const OrbitFigureOptions& options);
+
+/// The line of an orbit.
+Stroke orbit_stroke(const std::vector<OrbitTrace>& orbits, std::size_t k);
+
+/// The symbol of the k-th orbit at the ends of its jumps, filled before them.
+Marker jump_marker(std::size_t k, const PicturePoint& at, bool before);
+
+/// The orbit's line and, if it jumps, its symbol with its name.
+KeyEntry orbit_entry(const std::vector<OrbitTrace>& orbits, std::size_t k, const OrbitFigureOptions& options);
+
+/// What dashes mean, for the key whose other entries do not say it.
+void explain_dashes(Figure& figure, const std::vector<OrbitTrace>& orbits);
 
 /// Key entry of an event surface, the number-th in the picture (from 0).
 KeyEntry surface_entry(const std::string& name, std::size_t number);

@@ -46,15 +46,16 @@ double duration(const LabelledSolution& solution, int s) {
 }  // namespace
 
 bool OrbitTrace::jumps_after(std::size_t s) const {
-  if (!is_closed && s + 1 == segments.size()) return false;
-  const Eigen::VectorXd from = end_of(s);
-  const Eigen::VectorXd to = start_after(s);
-  for (Eigen::Index i = 0; i < from.size(); ++i) {
-    double size = 0.0;
-    for (const TraceSegment& segment : segments) size = std::max(size, segment.states.row(i).cwiseAbs().maxCoeff());
-    if (std::abs(to(i) - from(i)) > jump_tolerance * std::max(size, 1e-300)) return true;
-  }
+  for (Eigen::Index i = 0; i < dimension(); ++i)
+    if (jumps_after(s, i)) return true;
   return false;
+}
+
+bool OrbitTrace::jumps_after(std::size_t s, Eigen::Index i) const {
+  if (!is_closed && s + 1 == segments.size()) return false;
+  double size = 0.0;
+  for (const TraceSegment& segment : segments) size = std::max(size, segment.states.row(i).cwiseAbs().maxCoeff());
+  return std::abs(start_after(s)(i) - end_of(s)(i)) > jump_tolerance * std::max(size, 1e-300);
 }
 
 OrbitTrace orbit_trace(const LabelledSolution& solution, const std::string& name, int dimension,

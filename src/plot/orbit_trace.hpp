@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "plot/picture_styles.hpp"
 #include "start/labelled_solution.hpp"
 
 namespace tchat {
@@ -21,11 +22,14 @@ struct OrbitTrace {
   std::vector<double> parameters;                       ///< PAR(1), PAR(2), ...
   std::vector<TraceSegment> segments;
   bool is_closed = true;  ///< periodic; a trajectory is not
+  LineKind kind = LineKind::stable;
 
   int dimension() const { return static_cast<int>(segments.front().states.rows()); }
   double period() const { return segments.back().times.back(); }
   /// Does the state jump at the end of segment s (from 0)? Judged by the sizes of the states.
   bool jumps_after(std::size_t s) const;
+  /// The same of state i alone.
+  bool jumps_after(std::size_t s, Eigen::Index i) const;
   Eigen::VectorXd end_of(std::size_t s) const { return segments[s].states.rightCols(1); }
   Eigen::VectorXd start_after(std::size_t s) const { return segments[(s + 1) % segments.size()].states.leftCols(1); }
 };

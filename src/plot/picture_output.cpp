@@ -84,7 +84,8 @@ std::string output_picture(const Figure& figure, const PictureWish& wish) {
   keep_script({PictureFormat::png, path, ""});
   draw_to_file(figure, layout, path);
   return fmt::format("{} (no window: {}; -o FILE chooses another name or form)", path,
-                     has_display() ? "this gnuplot cannot open one" : "there is no display");
+                     has_display() ? "this gnuplot has none, those of Debian's packages gnuplot-qt and gnuplot-x11 have"
+                                   : "there is no display");
 }
 
 }  // namespace tchat

@@ -1,8 +1,9 @@
 #include "plot/picture_styles.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
-#include <map>
 
 namespace tchat {
 
@@ -48,6 +49,14 @@ constexpr std::array<PointStyle, 26> point_styles = {{
 constexpr std::array<const char*, 12> colours = {"#000000", "#0060a8", "#c04000", "#3a9a4a", "#9a5aa0", "#d09a00",
                                                  "#50b8e8", "#e060a0", "#7a4420", "#008a8a", "#8a9a20", "#8888d8"};
 
+/// Half way to white.
+std::string paler(const std::string& colour) {
+  std::string result = "#";
+  for (std::size_t k = 1; k + 1 < colour.size(); k += 2)
+    result += fmt::format("{:02x}", (std::stoi(colour.substr(k, 2), nullptr, 16) + 255) / 2);
+  return result;
+}
+
 const PointStyle& style_of(const std::string& type) {
   const auto found = std::find_if(point_styles.begin(), point_styles.end(),
                                   [&type](const PointStyle& style) { return type == style.type; });
@@ -71,9 +80,33 @@ Marker cloud_marker(const std::string& colour) {
 
 std::string series_colour(std::size_t k) { return colours[k % colours.size()]; }
 
-Stroke series_stroke(std::size_t k, double width) {
-  static constexpr std::array<Dash, 4> dashes = {Dash::solid, Dash::dashed, Dash::dash_dot, Dash::dotted};
-  return {dashes[k % dashes.size()], width, series_colour(k), static_cast<int>(k / dashes.size() % 4)};
+Symbol series_symbol(std::size_t k) {
+  constexpr std::array<Symbol, 5> symbols = {Symbol::circle, Symbol::square, Symbol::triangle, Symbol::diamond,
+                                             Symbol::reversed_triangle};
+  return symbols[k % symbols.size()];
+}
+
+Stroke line_stroke(LineKind kind, const std::string& colour, double width) {
+  switch (kind) {
+    case LineKind::stable:
+      return {Dash::solid, width, colour};
+    case LineKind::unstable:
+      return {Dash::dashed, 0.75 * width, colour};
+    default:
+      return {Dash::dotted, 0.7 * width, paler(colour)};
+  }
+}
+
+Stroke jump_stroke(const std::string& colour) { return {Dash::solid, 1.3, paler(colour)}; }
+
+std::vector<KeyEntry> line_kind_entries(const std::set<LineKind>& kinds, const std::string& colour, double width) {
+  const auto name = [](LineKind kind) {
+    return kind == LineKind::stable ? "stable" : kind == LineKind::unstable ? "unstable" : "inadmissible";
+  };
+  std::vector<KeyEntry> entries;
+  for (const LineKind kind : kinds)
+    entries.push_back({plain_text(name(kind)), line_stroke(kind, colour, width), std::nullopt});
+  return entries;
 }
 
 Marker special_point_marker(const std::string& type, const PicturePoint& at) {
@@ -98,45 +131,48 @@ std::vector<std::string> all_point_types() {
 }
 
 CurveKind curve_kind(int curve_type, bool grazing) {
-  if (grazing) return {"grazing", {Dash::solid, 2.6, "#000000"}};
+  if (grazing) return {"grazing", "#000000", Symbol::circle, false};
   switch (curve_type) {
     case 2:
     case 5:
-      return {"fold", {Dash::dashed, 2.6, "#0060a8"}};
+      return {"fold", "#0060a8", Symbol::square, true};
     case 7:
-      return {"period doubling", {Dash::dash_dot, 2.6, "#c04000"}};
+      return {"period doubling", "#c04000", Symbol::triangle, true};
     case 8:
-      return {"torus", {Dash::dotted, 3.2, "#3a9a4a"}};
+      return {"torus", "#3a9a4a", Symbol::diamond, true};
     case 3:
-      return {"Hopf", {Dash::dash_dot, 2.6, "#9a5aa0"}};
+      return {"Hopf", "#9a5aa0", Symbol::reversed_triangle, true};
     case 1:
     case 6:
-      return {"branch points", {Dash::dotted, 3.2, "#7a4420"}};
+      return {"branch points", "#7a4420", Symbol::pentagon, true};
     default:
-      return {"two-parameter curve", {Dash::solid, 2.6, "#000000"}};
+      return {"two-parameter curve", "#000000", Symbol::dot, true};
   }
 }
 
-std::string unused_colour(const std::vector<Stroke>& lines, std::size_t k) {
+std::string unused_colour(const std::vector<CurveKind>& curves, std::size_t k) {
   std::vector<std::string> unused;
   for (const char* colour : colours)
-    if (std::none_of(lines.begin(), lines.end(), [colour](const Stroke& line) { return line.colour == colour; }))
+    if (std::none_of(curves.begin(), curves.end(), [colour](const CurveKind& curve) { return curve.colour == colour; }))
       unused.emplace_back(colour);
   return unused.empty() ? series_colour(k) : unused[k % unused.size()];
 }
 
-std::vector<Stroke> curve_strokes(const std::vector<CurveKind>& kinds) {
-  std::map<std::string, int> count;
-  std::vector<Stroke> strokes, own_colours;
-  for (const CurveKind& kind : kinds) {
-    strokes.push_back(kind.stroke);
-    strokes.back().variant = count[kind.name]++;
-    if (strokes.back().variant == 0) own_colours.push_back(kind.stroke);
+std::vector<CurveKind> with_own_colours(std::vector<CurveKind> kinds) {
+  std::vector<CurveKind> first_ones;
+  const auto is_first = [&first_ones](const CurveKind& kind) {
+    return std::none_of(first_ones.begin(), first_ones.end(),
+                        [&kind](const CurveKind& other) { return other.name == kind.name; });
+  };
+  std::vector<CurveKind*> further;
+  for (CurveKind& kind : kinds) {
+    if (is_first(kind))
+      first_ones.push_back(kind);
+    else
+      further.push_back(&kind);
   }
-  std::size_t further = 0;
-  for (Stroke& stroke : strokes)
-    if (stroke.variant > 0) stroke.colour = unused_colour(own_colours, further++);
-  return strokes;
+  for (std::size_t k = 0; k < further.size(); ++k) further[k]->colour = unused_colour(first_ones, k);
+  return kinds;
 }
 
 }  // namespace tchat

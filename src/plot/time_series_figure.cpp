@@ -11,7 +11,7 @@ namespace tchat {
 namespace {
 
 /// One state of one orbit over a period.
-void add_series(Panel& panel, const OrbitTrace& orbit, int state, const Stroke& stroke) {
+void add_series(Panel& panel, const OrbitTrace& orbit, int state, const Stroke& stroke, const Marker& jump) {
   for (std::size_t s = 0; s < orbit.segments.size(); ++s) {
     const TraceSegment& segment = orbit.segments[s];
     Curve curve;
@@ -19,16 +19,14 @@ void add_series(Panel& panel, const OrbitTrace& orbit, int state, const Stroke& 
     for (std::size_t k = 0; k < segment.times.size(); ++k)
       curve.points.push_back({segment.times[k], segment.states(state, static_cast<Eigen::Index>(k))});
     panel.curves.push_back(std::move(curve));
-    if (!orbit.jumps_after(s)) continue;
+    if (!orbit.jumps_after(s, state)) continue;
     const PicturePoint before{segment.times.back(), orbit.end_of(s)(state)};
     const PicturePoint after{segment.times.back(), orbit.start_after(s)(state)};
-    panel.curves.push_back({{before, after}, {Dash::dashed, 1.3, stroke.colour}, false});
+    panel.curves.push_back({{before, after}, jump_stroke(jump.colour), false});
     for (const bool filled : {false, true}) {
-      Marker marker;
+      Marker marker = jump;
       marker.at = filled ? before : after;
       marker.filled = filled;
-      marker.size = 0.7;
-      marker.colour = stroke.colour;
       panel.markers.push_back(marker);
     }
   }
@@ -80,7 +78,7 @@ Figure time_series(const std::vector<OrbitTrace>& orbits, const OrbitFigureOptio
   figure.panels.resize(one_panel ? 1 : states.size());
   for (std::size_t k = 0; k < orbits.size(); ++k)
     if ((!one_panel || states.size() == 1) && is_in_key(orbits, options))
-      figure.key.push_back({orbit_name(orbits, k, options), series_stroke(k, 2.5), std::nullopt});
+      figure.key.push_back(orbit_entry(orbits, k, options));
   for (std::size_t i = 0; i < states.size(); ++i) {
     Panel& panel = figure.panels[one_panel ? 0 : i];
     const LabelText name = mathematical_name(state_name(states[i], options));
@@ -90,17 +88,25 @@ Figure time_series(const std::vector<OrbitTrace>& orbits, const OrbitFigureOptio
     if (options.system != nullptr && options.surfaces)
       add_levels(figure, panel, EventSurfaces(*options.system, orbits, options.events), orbits, states[i], duration);
     for (std::size_t k = 0; k < orbits.size(); ++k) {
-      // Several states in one panel: a colour a state, a dash an orbit.
+      // Several states in one panel: a colour for each state of each orbit, a symbol for each orbit.
       const bool by_state = one_panel && states.size() > 1;
-      Stroke stroke = series_stroke(k, 2.5);
-      if (by_state) stroke.colour = series_colour(i);
-      add_series(panel, orbits[k], states[i], stroke);
-      if (by_state)
-        figure.key.push_back(
-            {orbits.size() > 1 ? joined(joined(name, plain_text(", ")), orbit_name(orbits, k, options)) : name, stroke,
-             std::nullopt});
+      Stroke stroke = orbit_stroke(orbits, k);
+      Marker jump = jump_marker(k, {}, true);
+      jump.size = 0.7;
+      if (by_state) {
+        jump.colour = series_colour(k * states.size() + i);
+        stroke = line_stroke(orbits[k].kind, jump.colour, 2.5);
+        const LabelText comma = plain_text(", ");
+        const std::size_t index = i * orbits.size() + k;
+        const LabelText own = index < options.legend.size() ? plain_text(options.legend[index]) : LabelText{};
+        const LabelText chosen = orbits.size() > 1 ? joined(joined(name, comma), orbit_name(orbits, k, options)) : name;
+        figure.key.push_back({own.empty() ? chosen : own, stroke, std::nullopt});
+      }
+      add_series(panel, orbits[k], states[i], stroke, jump);
     }
   }
+  const bool states_alone = one_panel && states.size() > 1 && orbits.size() == 1;
+  if (!options.legend.empty() || states_alone) explain_dashes(figure, orbits);
   return figure;
 }
 

@@ -146,6 +146,18 @@ void take_from_diagnostics(BranchFile& file) {
   });
 }
 
+SegmentEnds ends_of_segments(const LabelledSolution& solution) {
+  const int segments = segment_count(solution);
+  if (segments == 0 || solution.states.cols() == 0 || solution.states.rows() % segments != 0) return {};
+  const Eigen::Index n = solution.states.rows() / segments, last = solution.states.cols() - 1;
+  SegmentEnds ends{Eigen::MatrixXd(n, segments), Eigen::MatrixXd(n, segments)};
+  for (Eigen::Index s = 0; s < segments; ++s) {
+    ends.first.col(s) = solution.states.col(0).segment(s * n, n);
+    ends.last.col(s) = solution.states.col(last).segment(s * n, n);
+  }
+  return ends;
+}
+
 /// Only what a branch needs of them: the states are most of a q-file.
 std::vector<LabelledSolution> without_states(std::vector<LabelledSolution> solutions) {
   for (LabelledSolution& solution : solutions) {
@@ -159,6 +171,8 @@ std::vector<LabelledSolution> without_states(std::vector<LabelledSolution> solut
 
 void read_solutions(BranchFile& file, const std::string& path) {
   SolutionFile read = read_solution_file(path);
+  file.ends.clear();
+  for (const LabelledSolution& solution : read.solutions) file.ends.push_back(ends_of_segments(solution));
   file.solutions = without_states(std::move(read.solutions));
   file.warnings.insert(file.warnings.end(), read.warnings.begin(), read.warnings.end());
   match_solutions(file, path);
@@ -202,6 +216,10 @@ const T* element(const std::vector<T>& all, int place) {
 
 const LabelledSolution* BranchFile::solution_of(std::size_t section, std::size_t row) const {
   return element(solutions, solution[section][row]);
+}
+
+const SegmentEnds* BranchFile::ends_of(std::size_t section, std::size_t row) const {
+  return element(ends, solution[section][row]);
 }
 
 const DiagnosticPoint* BranchFile::diagnostic_of(std::size_t section, std::size_t row) const {

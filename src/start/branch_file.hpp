@@ -5,6 +5,7 @@
 /// of another run apart.
 #pragma once
 
+#include <Eigen/Core>
 #include <map>
 #include <string>
 #include <vector>
@@ -14,6 +15,12 @@
 #include "start/point_file_reader.hpp"
 
 namespace tchat {
+
+/// The states at which the segments of an orbit begin and end.
+struct SegmentEnds {
+  Eigen::MatrixXd first;  ///< n x m
+  Eigen::MatrixXd last;   ///< n x m, before the jumps
+};
 
 /// One continuous branch: rows [begin, end) of a section.
 struct BranchPiece {
@@ -32,6 +39,7 @@ struct BranchFile {
   std::map<int, std::vector<int>> xi_zeros;     ///< by label: the n of every xi_n that vanishes there
   std::vector<std::map<int, double>> parameters;  ///< by section: PAR(k) at one of its labels, if the q-file is there
   std::vector<LabelledSolution> solutions;        ///< of the q-file, without mesh, states and direction
+  std::vector<SegmentEnds> ends;                  ///< of each solution; empty matrices where m is not known
   std::vector<DiagnosticPoint> diagnostics;       ///< of the d-file
   std::vector<std::vector<int>> solution;         ///< by section and row: where in `solutions`, -1 without
   std::vector<std::vector<int>> diagnostic;       ///< likewise in `diagnostics`
@@ -39,6 +47,7 @@ struct BranchFile {
 
   /// What the q-file and the d-file have of a point; nullptr when they have nothing.
   const LabelledSolution* solution_of(std::size_t section, std::size_t row) const;
+  const SegmentEnds* ends_of(std::size_t section, std::size_t row) const;
   const DiagnosticPoint* diagnostic_of(std::size_t section, std::size_t row) const;
 };
 

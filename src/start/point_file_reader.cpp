@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -89,6 +90,32 @@ std::map<int, std::string> dictionary(std::string_view text) {
   return names;
 }
 
+/// "[[1, 1, 1], [2, 2, 2]]"; empty for what is no such list.
+std::vector<std::array<int, 3>> signature_of(std::string_view text) {
+  std::string numbers(text);
+  std::replace_if(
+      numbers.begin(), numbers.end(), [](char c) { return c == '[' || c == ']' || c == ','; }, ' ');
+  const auto words = split_words(numbers);
+  std::vector<std::array<int, 3>> signature;
+  if (words.empty() || words.size() % 3 != 0) return {};
+  for (std::size_t k = 0; k < words.size(); k += 3) {
+    const auto field = parse_integer(words[k]), event = parse_integer(words[k + 1]), jump = parse_integer(words[k + 2]);
+    if (!field || !event || !jump) return {};
+    signature.push_back({*field, *event, *jump});
+  }
+  return signature;
+}
+
+/// The first line of a header: 0 RL0 RL1 A0 A1.
+std::vector<double> bounds_of(std::string_view line) {
+  constexpr std::size_t count = 5;
+  const auto words = split_words(line);
+  std::vector<double> bounds;
+  for (std::size_t k = 1; k < words.size() && words.size() == count; ++k)
+    if (const auto value = parse_fortran_real(words[k])) bounds.push_back(*value);
+  return bounds.size() + 1 == count ? bounds : std::vector<double>();
+}
+
 /// What the lines of a header say; kept for sections that have none of their own.
 class Header {
  public:
@@ -101,6 +128,11 @@ class Header {
     names(line, "unames", section_.states);
     names(line, "parnames", section_.parameters);
     names(line, "columns", long_names_);
+    names(line, "eventnames", section_.events);
+    names(line, "jumpnames", section_.jumps);
+    if (const auto text = value_of_key(line, "SIGNATURE")) section_.signature = signature_of(*text);
+    if (is_first_) section_.bounds = bounds_of(line);
+    is_first_ = false;
     if (auto rest = text_after(line, "Branch"); rest && skip(*rest, "type:")) {
       skip_blanks(*rest);
       section_.curve_type = leading_integer(*rest).value_or(0);
@@ -140,6 +172,7 @@ class Header {
   PointSection section_;
   std::map<int, std::string> long_names_;
   std::string headings_;
+  bool is_first_ = true;  // of the header's lines
 };
 
 /// The name of each number's column in `line`: the heading above it, where the header does not give it in full.

@@ -10,6 +10,7 @@
 /// of stars is a gap (NaN) and gives one warning. A last line that was cut off is left out with a warning.
 #pragma once
 
+#include <array>
 #include <map>
 #include <optional>
 #include <string>
@@ -38,6 +39,10 @@ struct PointSection {
   std::vector<int> active_parameters;  ///< PAR indices free in the computation, durations and periods included
   std::map<int, std::string> states;   ///< names of states that have one, by number
   std::map<int, std::string> parameters;
+  std::map<int, std::string> events;  ///< names of event functions and jumps, likewise
+  std::map<int, std::string> jumps;
+  std::vector<std::array<int, 3>> signature;  ///< field, event and jump of each segment; empty in files of others
+  std::vector<double> bounds;                 ///< RL0, RL1, A0, A1 to the digits of the header; empty without them
   std::vector<std::string> columns;  ///< names in full, headings in files without them; COLUMN(k) without header
   std::vector<PointRow> rows;
 

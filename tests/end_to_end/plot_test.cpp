@@ -129,20 +129,48 @@ TEST_CASE("taste: columns, ranges, texts, logarithmic axes") {
   CHECK(contains(script, "set label 'one branch'"));
 }
 
-TEST_CASE("orbits: names and wall from the plugin, jumps dashed") {
+TEST_CASE("orbits: names and wall from the plugin, jumps thin, unstable ones dashed") {
   const Workspace& workspace = impacting();
   const std::string portrait = script_of(workspace, "q.branch PD1 EP1 -p linosc");
   CHECK(contains(portrait, "set xlabel 'x_{1}'"));
   CHECK(contains(portrait, "set ylabel 'x_{2}'"));
   CHECK(contains(portrait, "set label 'wall'"));
   CHECK(contains(portrait, "PD1: α = 3.0362"));
-  CHECK(contains(portrait, "dt (14,8) lw 1.3"));
+  CHECK(contains(portrait, "dt solid lw 1.3"));
   CHECK_FALSE(contains(script_of(workspace, "q.branch PD1 -p linosc --surfaces none"), "wall"));
+  const std::string unstable = script_of(workspace, "q.branch PD1 GR1");
+  CHECK(contains(unstable, "unstable"));
+  CHECK(contains(unstable, "dt (14,8) lw 1.88 lc rgb '#0060a8'"));
+  CHECK_FALSE(contains(portrait, "dt (14,8)"));
+  const std::string space = script_of(workspace, "q.branch PD1 -x x1 -y x2 -z y1 -p linosc --view 50,120");
+  CHECK(contains(space, "splot $curve1_1"));
+  CHECK(contains(space, "set zlabel 'y_{1}'"));
+  CHECK(contains(space, "set view 50,120"));
+  CHECK(contains(space, "set label 'wall'"));
   const std::string series = script_of(workspace, "--time q.branch PD1 -y x1,y1,y2 -p linosc");
   CHECK(contains(series, "set multiplot"));
   CHECK(contains(series, "set xlabel 'time'"));
   CHECK(contains(series, "set ylabel 'y_{2}'"));
   CHECK(contains(series, "set label 'wall'"));
+}
+
+TEST_CASE("expressions and states at events: values of the orbits in the script, the velocity of impact too") {
+  const Workspace workspace;
+  workspace.run("-c impacting -d impacting -o all NMX=8 NTST=20 DS=-0.02 NPR=1 -q");
+  const std::string script = script_of(workspace, "p.all -x alpha/omega -y x2@wall");
+  CHECK(contains(script, "set xlabel 'α/ω'"));
+  CHECK(contains(script, "set ylabel 'x_{2} at wall'"));
+  const std::string block = script.substr(script.find("$curve1_1 << END\n") + 17);
+  const SolutionEntry first = workspace.solutions("all").front();
+  const std::vector<std::string> words = words_of(block.substr(0, block.find('\n')));
+  REQUIRE(words.size() == 2);
+  CHECK(std::stod(words[0]) == Approx(first.parameter(1) / first.parameter(2)).epsilon(1e-9));
+  CHECK(std::stod(words[1]) == Approx(first.states.back().at(1)).epsilon(1e-9));
+  // The impact law, which brings the orbit back: r times as fast away from the wall.
+  const std::string law = script_of(workspace, "p.all -y=-x2@after:impact/r");
+  CHECK(law.substr(law.find("$curve1_1"), 2000).find("nan") == std::string::npos);
+  const std::string same = law.substr(law.find("$curve1_1 << END\n") + 17);
+  CHECK(std::stod(words_of(same.substr(0, same.find('\n'))).at(1)) == Approx(std::stod(words[1])).epsilon(1e-6));
 }
 
 TEST_CASE("orbits without -p: names from the run, no plugin is compiled or loaded") {
@@ -292,6 +320,13 @@ TEST_CASE("bad usage of plot is refused with what there is") {
   };
   for (const Bad& bad : {Bad{"p.branch -y nosuch", {"'nosuch'", "alpha, L2-NORM, MAX x1", "1.."}},
                          Bad{"nosuch", {"'nosuch'", "p.nosuch"}},
+                         Bad{"p.branch -y 1/omga", {"'1/omga'", "'omga'", "alpha, L2-NORM"}},
+                         Bad{"p.branch -y (alpha", {"'(alpha'", "does not understand"}},
+                         Bad{"p.branch -y x1@floor", {"'floor'", "wall, impact", "1..1"}},
+                         Bad{"p.branch -z y1", {"-z", "q-file"}},
+                         Bad{"--time q.branch PD1 -z y1", {"-z", "--time"}},
+                         Bad{"q.branch PD1 -z nosuch", {"-z", "x1, x2, y1, y2"}},
+                         Bad{"q.branch PD1 -z y1 --view 5", {"--view", "65,35"}},
                          Bad{"p.branch PD1", {"q.branch PD1"}},
                          Bad{"q.branch", {"which orbits", "(PD)"}},
                          Bad{"q.branch PD9", {"PD9", "(EP)"}},

@@ -7,6 +7,7 @@
 
 #include "constants/user_error.hpp"
 #include "plot/branch_columns.hpp"
+#include "plot/branch_end.hpp"
 #include "plot/data_file.hpp"
 #include "plot/layout.hpp"
 #include "plot/picture_styles.hpp"
@@ -117,7 +118,7 @@ TEST_CASE("inadmissible points and names of UZ points come from the d-file") {
   CHECK(line_kind(file, 0, 5) == LineKind::inadmissible);
   const Figure figure = branch_figure({file}, {});
   CHECK(labels_of(figure) == std::vector<std::string>{"PD", "GR"});
-  const auto dotted = with_dash(figure, Dash::fine_dotted);
+  const auto dotted = with_dash(figure, Dash::dotted);
   REQUIRE(dotted.size() == 1);
   CHECK(dotted[0]->points.front().x == 0.4);
   CHECK(figure.key.back().text.text == "inadmissible");
@@ -129,7 +130,9 @@ TEST_CASE("where stability is not known there is none to show") {
   const BranchFile file =
       read_branch_file(folder.write("b.a", text + rows({{1, 9, 1, 0.0, 1.0, 2.0}, {2, 9, 2, 1.0, 1.0, 2.0}})));
   CHECK(line_kind(file, 0, 1) == LineKind::stable);
-  CHECK(branch_figure({file}, {}).key.empty());
+  const Figure figure = branch_figure({file}, {});
+  REQUIRE(figure.key.size() == 1);
+  CHECK(figure.key[0].text.text == "a");
 }
 
 TEST_CASE("two-parameter curves: free parameters as axes, a line and a name for each kind") {
@@ -150,9 +153,15 @@ TEST_CASE("two-parameter curves: free parameters as axes, a line and a name for 
   CHECK(figure.key[2].text.text == "period doubling (doublings)");
   CHECK(figure.key[3].text.text == "period doubling (from_types)");
   CHECK(figure.key[2].stroke->colour != figure.key[3].stroke->colour);
-  CHECK(with_dash(figure, Dash::solid).size() == 1);
-  CHECK(with_dash(figure, Dash::dashed).size() == 1);
-  CHECK(with_dash(figure, Dash::dash_dot).size() == 2);
+  CHECK(with_dash(figure, Dash::solid).size() == 4);  // dashes would say unstable
+  std::set<std::pair<std::string, Symbol>> looks;
+  for (const KeyEntry& entry : figure.key) looks.insert({entry.stroke->colour, entry.marker.value().symbol});
+  CHECK(looks.size() == 4);
+  const std::vector<Marker> symbols = lay_out(figure).panels[0].symbols;
+  for (const KeyEntry& entry : figure.key)
+    CHECK(std::any_of(symbols.begin(), symbols.end(), [&entry](const Marker& symbol) {
+      return symbol.colour == entry.stroke->colour && symbol.symbol == entry.marker->symbol;
+    }));
 
   const Figure named = branch_figure(files, {"", "", {}, {"G", "F", "P", "P2"}});
   CHECK(named.key[2].text.text == "P");
@@ -231,7 +240,8 @@ TEST_CASE("dots beneath branches, and alone") {
   CHECK(layout.panels[0].x.low <= 0.5);
   CHECK(layout.panels[0].y.high >= 8.0);
   const Figure alone = branch_figure({}, options);
-  CHECK(alone.key.empty());
+  REQUIRE(alone.key.size() == 1);
+  CHECK(alone.key[0].text.text == "brute force");
   CHECK(alone.panels[0].x.label.text == mathematical_name("a").text);
   CHECK(alone.panels[0].y.label.text == mathematical_name("v").text);
 }
@@ -287,7 +297,42 @@ TEST_CASE("inadmissible parts set no range where there are admissible ones") {
   CHECK(frame_of(2, beyond).y.high > 50.0);
 }
 
-TEST_CASE("eight curves in one picture: no colour and no dashes twice, none of them grey") {
+TEST_CASE("a single curve has a key") {
+  const TemporaryFolder folder;
+  const std::vector<Row> curve = {{1, 0, 0, 0.0, 1.0, 2.0}, {2, 59, 8, 1.0, 1.1, 2.5}};
+  const auto key_of = [&](const std::string& text) {
+    std::vector<std::string> names;
+    for (const KeyEntry& entry : branch_figure({read_branch_file(folder.write("p.a", text))}, {}).key)
+      names.push_back(entry.text.text);
+    return names;
+  };
+  CHECK(key_of(header(180, 2, 7) + rows(curve)) == std::vector<std::string>{"period doubling"});
+  CHECK(key_of(header(180, 1) + rows({{-1, 9, 1, 0.0, 1.0, 2.0}, {-2, 9, 2, 0.5, 1.0, 2.0}})) ==
+        std::vector<std::string>{"stable"});
+  CHECK(key_of(header(180, 1) + rows({{1, 9, 1, 0.0, 1.0, 2.0}, {2, 9, 2, 0.5, 1.0, 2.0}})) ==
+        std::vector<std::string>{"unstable"});
+}
+
+TEST_CASE("lines end at the bounds of the run") {
+  const TemporaryFolder folder;
+  const std::string beyond = rows({{-1, 9, 1, 0.5, 0.5, 2.0}, {-2, 0, 0, 0.9, 0.7, 2.0}, {-3, 9, 2, 1.1, 0.9, 2.0}});
+  const auto end_of = [&] {
+    const BranchFile file = read_branch_file(folder.file("p.a"));
+    CHECK(part_within_bounds(file, 0, 1) == 1.0);
+    return branch_figure({file}, {}).panels[0].curves.back().points.back();
+  };
+  folder.write("p.a", header(180, 1) + beyond);
+  CHECK(end_of().x == Approx(1.0).epsilon(1e-14));
+  CHECK(end_of().y == Approx(0.8).epsilon(1e-14));
+  folder.write("r.a", "NDIM = 2, ICP = [1, 61], RL0 = 0, RL1 = 1.00001, A1 = 1\n");  // more digits than in the header
+  CHECK(end_of().x == Approx(1.00001).epsilon(1e-14));
+  folder.write("r.a", "NDIM = 2, ICP = [1, 61], RL0 = 0, RL1 = 1.5, A1 = 1\n");  // of another run
+  CHECK(end_of().x == Approx(1.0).epsilon(1e-14));
+  folder.write("p.a", header(180, 1) + rows({{-1, 9, 1, 0.5, 0.5, 2.0}, {-2, 9, 2, 0.75, 1.5, 2.0}}));
+  CHECK(end_of().x == Approx(0.625).epsilon(1e-14));  // A1
+}
+
+TEST_CASE("eight curves in one picture: no colour twice, none of them grey, all of them solid") {
   const TemporaryFolder folder;
   std::vector<BranchFile> files;
   const auto add = [&](const std::string& name, int ips, int type) {
@@ -303,24 +348,21 @@ TEST_CASE("eight curves in one picture: no colour and no dashes twice, none of t
   CHECK(figure.key[0].text.text == "grazing (z)");
   CHECK(figure.key[0].stroke->colour == "#000000");  // the first in the command line, not in the alphabet
   std::set<std::string> colours;
-  std::set<std::pair<Dash, int>> dashes;
   for (const KeyEntry& entry : figure.key) {
     const std::string& colour = entry.stroke->colour;
     colours.insert(colour);
-    dashes.insert({entry.stroke->dash, entry.stroke->variant});
+    CHECK(entry.stroke->dash == Dash::solid);
     CHECK(
         (colour == "#000000" || colour.substr(1, 2) != colour.substr(3, 2) || colour.substr(1, 2) != colour.substr(5)));
   }
   CHECK(colours.size() == 8);
-  CHECK(dashes.size() == 8);
-  for (std::size_t k = 0; k < 4; ++k) CHECK(figure.key[k].stroke->dash == Dash::solid);
 }
 
 TEST_CASE("twelve branches have twelve colours") {
   std::set<std::string> colours;
   for (std::size_t k = 0; k < 12; ++k) colours.insert(series_colour(k));
   CHECK(colours.size() == 12);
-  std::set<std::pair<Dash, int>> dashes;
-  for (std::size_t k = 0; k < 12; ++k) dashes.insert({series_stroke(k, 2.0).dash, series_stroke(k, 2.0).variant});
-  CHECK(dashes.size() == 12);
+  std::set<Symbol> symbols;
+  for (std::size_t k = 0; k < 5; ++k) symbols.insert(series_symbol(k));
+  CHECK(symbols.size() == 5);
 }

@@ -111,16 +111,41 @@ TEST_CASE("equal points side by side share a label, the key hides nothing") {
   for (const PicturePoint& p : curve.points) CHECK_FALSE(layout.key->box.contains(layout.panels[0].on_paper(p)));
 }
 
-TEST_CASE("variants of dashes differ in the script") {
-  std::set<std::string> patterns;
-  for (const Dash dash : {Dash::solid, Dash::dashed, Dash::dash_dot, Dash::dotted})
-    for (int variant = 0; variant < 4; ++variant) {
-      Figure figure = sample();
-      figure.key.clear();
-      figure.panels[0].curves[0].stroke = {dash, 2.0, "#123456", variant};
-      const std::string script = script_of(figure, {PictureFormat::png, "x.png", ""});
-      const std::size_t at = script.find("with lines dt ");
-      patterns.insert(script.substr(at, script.find(" lw", at) - at));
-    }
-  CHECK(patterns.size() == 16);
+TEST_CASE("dashes of a short piece are shorter, the symbol at its end is smaller, no label on it") {
+  Figure figure;
+  Panel panel;
+  const Stroke unstable{Dash::dashed, 2.0, "#000000"};
+  panel.curves.push_back({{{0.0, 0.0}, {1.0, 1.0}}, Stroke{}, false});
+  panel.curves.push_back({{{1.0, 1.0}, {1.02, 1.0}}, unstable, false});
+  panel.curves.push_back({{{0.0, 0.5}, {1.0, 0.5}}, unstable, false});
+  panel.markers.push_back(special_point_marker("LP", {1.0, 1.0}));
+  panel.markers.push_back(special_point_marker("PD", {0.5, 0.5}));
+  figure.panels.push_back(panel);
+  const FigureLayout layout = lay_out(figure);
+  const PanelLayout& place = layout.panels[0];
+  CHECK(place.dash_scales[1] < 0.7);
+  CHECK(place.dash_scales[2] == 1.0);
+  CHECK(place.marker_scales[0] < 1.0);
+  CHECK(place.marker_scales[1] == 1.0);
+  REQUIRE(place.labels[0]);
+  CHECK(length_inside(place.labels[0]->box, place.on_paper({1.0, 1.0}), place.on_paper({1.02, 1.0})) == 0.0);
+  const std::string script = script_of(figure, {PictureFormat::png, "x.png", ""});
+  CHECK(contains(script, "dt (14,8)"));
+  CHECK(script.find("dt (") != script.rfind("dt ("));
+}
+
+TEST_CASE("a panel in space: three coordinates, three axes, no place for labels") {
+  Figure figure;
+  Panel panel;
+  panel.z = AxisSettings{mathematical_name("y1"), {}, {}, false};
+  panel.curves.push_back({{{0.0, 0.0, 1.0}, {1.0, 2.0, 3.0}}, Stroke{}, false});
+  panel.arrows.push_back({{0.0, 0.0, 1.0}, {1.0, 2.0, 3.0}, "#000000"});
+  figure.panels.push_back(panel);
+  figure.key.push_back({plain_text("orbit"), Stroke{}, std::nullopt});
+  const std::string script = script_of(figure, {PictureFormat::png, "x.png", ""});
+  CHECK(contains(script, "$curve1_1 << END\n0 0 1\n1 2 3\nEND\n"));
+  CHECK(contains(script, "splot $curve1_1 with lines"));
+  CHECK(contains(script, "set zlabel 'y_{1}' enhanced"));
+  CHECK(contains(script, "set arrow from 0,0,1 to 1,2,3 head"));
+  CHECK(contains(script, "set view 65,35"));
 }

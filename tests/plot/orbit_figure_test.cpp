@@ -1,10 +1,14 @@
 // Orbits with jumps as phase portraits and time series, from solutions made by hand.
 #include "plot/orbit_figure.hpp"
 
+#include <fmt/format.h>
+
 #include <catch2/catch.hpp>
+#include <set>
 
 #include "constants/user_error.hpp"
 #include "plot/multiplier_figure.hpp"
+#include "plot/orbit_stability.hpp"
 #include "start/temporary_folder.hpp"
 
 using namespace tchat;
@@ -67,7 +71,7 @@ TEST_CASE("solutions of other programs: the dimension, or the period in PAR(11)"
   CHECK_THROWS_AS(orbit_trace(point, "1", 0, "s.x"), UserError);
 }
 
-TEST_CASE("phase portrait: jumps dashed between a filled and an open circle") {
+TEST_CASE("phase portrait: jumps thin between a filled and an open circle") {
   OrbitFigureOptions options;
   options.states = {"x1", "x2", "y"};
   options.parameters = {"alpha"};
@@ -76,7 +80,8 @@ TEST_CASE("phase portrait: jumps dashed between a filled and an open circle") {
   CHECK(panel.x.label.text == "x_{1}");
   CHECK(panel.y.label.text == "x_{2}");
   REQUIRE(panel.curves.size() == 3);
-  CHECK(panel.curves[1].stroke.dash == Dash::dashed);
+  CHECK(panel.curves[1].stroke.dash == Dash::solid);
+  CHECK(panel.curves[1].stroke.width < 0.7 * panel.curves[0].stroke.width);
   CHECK(panel.curves[1].points.front().y == -1.0);
   CHECK(panel.curves[1].points.back().y == 1.0);
   REQUIRE(panel.markers.size() == 2);
@@ -94,12 +99,65 @@ TEST_CASE("phase portrait: jumps dashed between a filled and an open circle") {
         }).find("x1, x2, y") != std::string::npos);
 }
 
-TEST_CASE("several orbits differ in dash and colour") {
+TEST_CASE("several orbits differ in colour and symbol, dashes say unstable") {
   const OrbitTrace trace = orbit_trace(solution(), "PD1", 0, "q.x");
-  const Figure figure = phase_portrait({trace, trace}, {});
-  REQUIRE(figure.key.size() == 2);
-  CHECK(figure.key[0].stroke->dash != figure.key[1].stroke->dash);
-  CHECK(figure.key[0].stroke->colour != figure.key[1].stroke->colour);
+  std::vector<OrbitTrace> orbits{trace, trace, trace};
+  orbits[1].kind = LineKind::unstable;
+  orbits[2].kind = LineKind::inadmissible;
+  const Figure figure = phase_portrait(orbits, {});
+  REQUIRE(figure.key.size() == 3);
+  const Dash dashes[] = {Dash::solid, Dash::dashed, Dash::dotted};
+  const std::string words[] = {"3.5", ", unstable", ", inadmissible"};
+  std::set<std::string> colours;
+  std::set<Symbol> symbols;
+  for (std::size_t k = 0; k < 3; ++k) {
+    CHECK(figure.key[k].stroke->dash == dashes[k]);
+    CHECK(figure.panels[0].curves[3 * k].stroke.dash == dashes[k]);
+    CHECK(figure.panels[0].curves[3 * k + 1].stroke.dash == Dash::solid);  // the jump
+    CHECK(figure.key[k].text.text.ends_with(words[k]));
+    colours.insert(figure.key[k].stroke->colour);
+    symbols.insert(figure.key[k].marker.value().symbol);
+  }
+  CHECK(colours.size() == 3);
+  CHECK(symbols.size() == 3);
+
+  OrbitFigureOptions named;
+  named.legend = {"a", "b", "c"};
+  for (const Figure& other : {phase_portrait(orbits, named), time_series(orbits, named)}) {
+    REQUIRE(other.key.size() >= 5);
+    CHECK(other.key[other.key.size() - 2].text.text == "unstable");
+    CHECK(other.key[other.key.size() - 2].stroke->dash == Dash::dashed);
+    CHECK(other.key.back().text.text == "inadmissible");
+  }
+}
+
+TEST_CASE("what a label is: the multipliers of the d-file, else the sign of the p-file") {
+  const test_support::TemporaryFolder folder;
+  const auto block = [](int label, const char* what, double multiplier) {
+    return fmt::format(
+        "  BR    PT  TY  LAB       alpha\n   1     {}  EP {:4}   1.0E+00{}\n   Multiplier   1  {} 0.0\n{}\n", label,
+        label, what, multiplier, std::string(47, '='));
+  };
+  folder.write("p.a", "   1   1   9   1   1.0\n   1  -2   9   2   1.0\n");
+  CHECK(label_kinds(folder.file("q.a")) == std::map<int, LineKind>{{1, LineKind::unstable}});
+  folder.write("d.a", block(1, "", 0.5) + block(2, "", -1.0) + block(3, "", 1.5) + block(4, "  inadmissible", 0.5));
+  CHECK(label_kinds(folder.file("q.a")) ==
+        std::map<int, LineKind>{{3, LineKind::unstable}, {4, LineKind::inadmissible}});
+  CHECK(label_kinds(folder.file("q.none")).empty());
+}
+
+TEST_CASE("three states: a portrait in space") {
+  OrbitFigureOptions options;
+  options.states = {"x1", "x2", "y"};
+  options.x = "y", options.y = {"x1"}, options.z = "x2";
+  const Panel panel = phase_portrait({orbit_trace(solution(), "PD1", 0, "q.x")}, options).panels[0];
+  REQUIRE(panel.z);
+  CHECK(panel.z->label.text == "x_{2}");
+  const PicturePoint end = panel.curves[0].points.back();
+  CHECK(end.x == 0.0);
+  CHECK(end.y == 1.0);
+  CHECK(end.z == -1.0);
+  CHECK(panel.markers[1].at.z == -1.0);
 }
 
 TEST_CASE("time series: a panel a state, or all in one") {
