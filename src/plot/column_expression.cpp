@@ -140,7 +140,8 @@ std::string complaint(const std::string& output) {
 }  // namespace
 
 bool looks_like_expression(std::string_view text) {
-  return text.find_first_of("@+*/()<>=?") != std::string_view::npos || text.find('-') != std::string_view::npos;
+  return std::any_of(text.begin(), text.end(),
+                     [](char c) { return std::ispunct(static_cast<unsigned char>(c)) != 0 && c != '_' && c != '.'; });
 }
 
 ColumnExpression parse_expression(std::string_view text, const KnownNames& known, const std::string& where) {

@@ -30,7 +30,7 @@ std::string dash_pattern(Dash dash, double scale) {
     case Dash::dashed:
       return fmt::format("({:.3g},{:.3g})", 14.0 * scale, 8.0 * scale);
     default:
-      return fmt::format("({:.3g},{:.3g})", 2.0 * scale, 5.0 * scale);
+      return fmt::format("({:.3g},{:.3g})", 3.0 * scale, 5.0 * scale);
   }
 }
 

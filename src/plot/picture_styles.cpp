@@ -49,11 +49,11 @@ constexpr std::array<PointStyle, 26> point_styles = {{
 constexpr std::array<const char*, 12> colours = {"#000000", "#0060a8", "#c04000", "#3a9a4a", "#9a5aa0", "#d09a00",
                                                  "#50b8e8", "#e060a0", "#7a4420", "#008a8a", "#8a9a20", "#8888d8"};
 
-/// Half way to white.
+/// A third of the way to white.
 std::string paler(const std::string& colour) {
   std::string result = "#";
   for (std::size_t k = 1; k + 1 < colour.size(); k += 2)
-    result += fmt::format("{:02x}", (std::stoi(colour.substr(k, 2), nullptr, 16) + 255) / 2);
+    result += fmt::format("{:02x}", (2 * std::stoi(colour.substr(k, 2), nullptr, 16) + 255) / 3);
   return result;
 }
 
@@ -93,7 +93,7 @@ Stroke line_stroke(LineKind kind, const std::string& colour, double width) {
     case LineKind::unstable:
       return {Dash::dashed, 0.75 * width, colour};
     default:
-      return {Dash::dotted, 0.7 * width, paler(colour)};
+      return {Dash::dotted, 0.8 * width, paler(colour)};
   }
 }
 

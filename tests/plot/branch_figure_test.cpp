@@ -318,7 +318,7 @@ TEST_CASE("lines end at the bounds of the run") {
   const std::string beyond = rows({{-1, 9, 1, 0.5, 0.5, 2.0}, {-2, 0, 0, 0.9, 0.7, 2.0}, {-3, 9, 2, 1.1, 0.9, 2.0}});
   const auto end_of = [&] {
     const BranchFile file = read_branch_file(folder.file("p.a"));
-    CHECK(part_within_bounds(file, 0, 1) == 1.0);
+    CHECK(part_within_bounds(file, 0, 0) == 1.0);
     return branch_figure({file}, {}).panels[0].curves.back().points.back();
   };
   folder.write("p.a", header(180, 1) + beyond);

@@ -71,7 +71,7 @@ TEST_CASE("expressions over columns and fixed parameters, by gnuplot") {
   CHECK(values(file, "omega/2") == std::vector<double>{1.0, 2.0, 3.0});
   CHECK(values(file, "1/2*PAR(2)") == std::vector<double>{1.0, 2.0, 3.0});  // no division of integers
   CHECK(values(file, "L2-NORM**2 - alpha") == std::vector<double>{8.0, 8.0, 8.0});
-  CHECK(values(file, "MAX x1 + max  x2 - MAX x2") == values(file, "MAX x1"));
+  CHECK(values(file, "MAX x1 + max x2 - MAX x2") == values(file, "MAX x1"));
   CHECK(values(file, "omega > 3 ? 2e0*omega : -omega") == std::vector<double>{-2.0, 8.0, 12.0});
   CHECK(values(file, "sqrt(omega**2)")[2] == Approx(6.0));
   CHECK(std::isnan(values(file, "sqrt(L2-NORM)")[0]));
@@ -118,7 +118,7 @@ TEST_CASE("a branch of two impacts has two arms in the picture") {
   CHECK(gap.panels[0].curves[1].points.size() >= 2);
   CHECK(gap.panels[0].curves[1].points.back().y == 6.0);
   REQUIRE(warnings.size() == 1);
-  CHECK(contains(warnings[0], "2 of 3 points"));
+  CHECK(contains(warnings[0], "1 of 2 points"));
   CHECK(contains(warnings[0], "NPR=1"));
 }
 
