@@ -168,7 +168,8 @@ Token SettingsDraft::index_token(const Constant& constant, const std::string& sh
     return token;
   }
   if (!names_)
-    refuse_token("indices here; names are understood by tchat run, simulate and resegment, which know the problem");
+    refuse_token(
+        "indices here; names are understood by tchat run, simulate, resegment, verify and dat, which know the problem");
   const std::string where = fmt::format("{}: {} ({})", token.place.text(), constant.keyword, constant.meaning);
   return {fmt::format("{}{}", negative ? "-" : "", names_(name, where)), token.place};
 }

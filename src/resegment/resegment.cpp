@@ -38,9 +38,9 @@ namespace tchat {
 namespace {
 
 LabelledOrbit read_source(const ResegmentRequest& request, const std::string& path, const std::string& constants,
-                          const SolutionFile& file, std::vector<std::string>& warnings) {
+                          const SolutionFile& file, std::vector<std::string>& warnings, const ParameterNames& names) {
   LabelledOrbit source;
-  source.settings = read_constants_file(constants, &warnings);
+  source.settings = read_constants_file(constants, &warnings, names);
   warnings.insert(warnings.end(), file.warnings.begin(), file.warnings.end());
   source.solution = find_solution(file.solutions, read_label(request.label), path);
   const LabelledSolution& solution = source.solution;
@@ -230,11 +230,13 @@ std::vector<std::string> resegment(const ResegmentRequest& request, std::ostream
   const std::string path = resolve_solution_path(request.solutions);
   const SolutionFile file = read_solution_file(path);
   const std::string constants = constants_of_run(request.constants, path);
-  const LabelledOrbit source = read_source(request, path, constants, file, warnings);
+  bool named_parameters = false;
+  LabelledOrbit source = read_source(request, path, constants, file, warnings, names_to_come(named_parameters));
 
   const std::string plugin = resolve_plugin(request.problem.value_or(run_path(path)));
   const ProblemLibrary library(plugin, [&] { return sizes_for(request, source.settings); });
   const HybridSystem& system = library.system();
+  if (named_parameters) source.settings = read_constants_file(constants, nullptr, names_of(system));
   check_settings_against(system, source.settings, constants);
 
   NewOrbit target = new_orbit(request, source, system);

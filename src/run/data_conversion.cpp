@@ -6,6 +6,7 @@
 #include "output/solution_file.hpp"
 #include "plugin/plugin_build.hpp"
 #include "plugin/problem_library.hpp"
+#include "run/named_parameters.hpp"
 #include "run/problem_setup.hpp"
 #include "run/problem_types.hpp"
 #include "run/start_selection.hpp"
@@ -14,11 +15,17 @@ namespace tchat {
 
 std::string convert_data(const RunRequest& request) {
   const std::string constants = constants_path(request.constants.value_or(request.name));
-  RunSettings settings = read_constants_file(constants);
-  apply_overrides(settings, request.overrides);
-  settings.start = {};
+  const auto settings_with = [&](const ParameterNames& names) {
+    RunSettings settings = read_constants_file(constants, nullptr, names);
+    apply_overrides(settings, request.overrides, nullptr, names);
+    settings.start = {};
+    return settings;
+  };
+  bool named_parameters = false;
+  RunSettings settings = settings_with(names_to_come(named_parameters));
   const std::string plugin = resolve_plugin(request.problem.value_or(request.name));
   const ProblemLibrary library(plugin, [&settings] { return problem_sizes(settings); });
+  if (named_parameters) settings = settings_with(names_of(library.system()));
   check_settings_against(library.system(), settings, constants);
 
   RunRequest from_data = request;

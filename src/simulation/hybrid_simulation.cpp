@@ -138,15 +138,25 @@ void HybridSimulation::mark_walls_behind(SimulatedSegment& segment) const {
   }
 }
 
-/// Events that happen at the very start: they came together with the last one, or the start lies on a wall and moves
-/// into it.
+/// Does the jump take the state from the surface to another place?
+bool HybridSimulation::moves(const IndexVector& index, const VectorXd& x) const {
+  VectorXd g(x.size());
+  system_.value(FunctionKind::jump, index.jump, x.data(), par_.data(), g.data());
+  return (g - x).norm() > settings_.flow.surface_tolerance * (1.0 + x.norm());
+}
+
+/// Events that happen at the very start: they came together with the last one; or the start lies on a wall and moves
+/// into it; or the simulation begins on a surface, moves through it, and something happens there. (A section does not
+/// count where the simulation begins.)
 std::vector<int> HybridSimulation::due_at_start(const SimulatedSegment& segment) const {
   std::vector<int> due;
   for (const IndexVector& index : segment.mode.index_vectors) {
     const bool is_pending = contains(pending_, index.event);
     if ((!is_pending && index.event == last_.event) || contains(due, index.event)) continue;
     const Surface at = surface(index.field, index.event, x_);
-    if (at.is_near && at.rate < 0.0 && (is_pending || is_wall(index, x_))) due.push_back(index.event);
+    const bool begins = last_.field == 0;
+    if (at.is_near && at.rate < 0.0 && (is_pending || is_wall(index, x_) || (begins && moves(index, x_))))
+      due.push_back(index.event);
   }
   return due;
 }

@@ -103,6 +103,7 @@ class HybridSimulation {
   };
   Surface surface(int field, int event, const Eigen::VectorXd& x) const;
   bool is_wall(const IndexVector& index, const Eigen::VectorXd& x) const;
+  bool moves(const IndexVector& index, const Eigen::VectorXd& x) const;
 
   SimulatedSegment begin_segment();
   std::vector<int> due_at_start(const SimulatedSegment& segment) const;

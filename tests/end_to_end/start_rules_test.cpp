@@ -129,4 +129,11 @@ TEST_CASE("parameters by name or by index: the same run") {
   // Names in the file, other constants on the command line.
   workspace.write("gc.named", "NDIM = 4\nICP = [omega, 61]\nGCHIND = [2]\nGCGIND = [2]\nGCSEGTYP = [0]\n");
   workspace.run("-c named -d nonimpacting -o both_ways NMX=2");
+  for (const char* other : {"dat nonimpacting -c named -p linosc -o label THL={omega:0.5}",
+                            "resegment q.both_ways 1 --to double -c named -p linosc -o double"}) {
+    const Outcome outcome = workspace.tchat(other);
+    INFO(outcome.text());
+    CHECK(outcome.status == 0);
+  }
+  CHECK(workspace.read("gc.double").find("ICP = [2, 61") != std::string::npos);
 }

@@ -170,6 +170,23 @@ TEST_CASE("a start beyond a wall is told, a monitored function below zero is a v
   CHECK(run.segments[0].marks[0].time == Approx(pi / 6.0 / w).epsilon(1e-10));
 }
 
+TEST_CASE(
+    "a start on a surface that the motion goes through: a jump that changes the state happens, a section does not") {
+  const double a = 3.2, c = 0.3;
+  const Simulated clock =
+      simulate(always<LogisticClock>({{1, 1, 1}}), Eigen::Vector3d(1.0, c, 0.0), parameters({a}), so_many_events(2));
+  REQUIRE(clock.segments.size() == 2);
+  CHECK(clock.segments[0].duration == 0.0);
+  CHECK(clock.segments[0].after(1) == Approx(a * c * (1.0 - c)));
+  CHECK(clock.segments[1].duration == Approx(1.0));
+
+  const double w = 1.3;  // at a maximum of x, event 3
+  const Simulated cut =
+      simulate(always<TwoWalls>({{1, 3, 3}}), Vector4d(0.5, 0.0, 1.0, 0.0), parameters({w, 0.5}), so_many_events(1));
+  REQUIRE(cut.segments.size() == 1);
+  CHECK(cut.segments[0].duration == Approx(2.0 * pi / w));
+}
+
 TEST_CASE("lengths: time after a transient, events after a transient, no event within the patience") {
   const ParameterVector par = parameters({1.3, 1.0});
   const double period = 2.0 * pi / 1.3;
