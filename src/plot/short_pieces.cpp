@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace tchat {
 
@@ -24,15 +23,20 @@ double length_on_paper(const Curve& curve, const PanelLayout& layout) {
   return length;
 }
 
-Box box_around(const Curve& curve, const PanelLayout& layout) {
-  constexpr double far = std::numeric_limits<double>::infinity();
-  Box box{far, -far, far, -far};
-  for (const PicturePoint& point : curve.points) {
-    const PicturePoint at = layout.on_paper(point);
-    box.left = std::min(box.left, at.x), box.right = std::max(box.right, at.x);
-    box.bottom = std::min(box.bottom, at.y), box.top = std::max(box.top, at.y);
+/// Small boxes along the curve.
+void add_boxes(const Curve& curve, const PanelLayout& layout, double font, std::vector<Box>& boxes) {
+  constexpr double size = 0.4;
+  for (std::size_t k = 1; k < curve.points.size(); ++k) {
+    const PicturePoint a = layout.on_paper(curve.points[k - 1]), b = layout.on_paper(curve.points[k]);
+    if (!is_finite(a) || !is_finite(b)) continue;
+    const int parts = 1 + static_cast<int>(std::hypot(b.x - a.x, b.y - a.y) / (size * font));
+    for (int i = 0; i < parts; ++i) {
+      const double from = static_cast<double>(i) / parts, to = static_cast<double>(i + 1) / parts;
+      const auto [left, right] = std::minmax({a.x + from * (b.x - a.x), a.x + to * (b.x - a.x)});
+      const auto [bottom, top] = std::minmax({a.y + from * (b.y - a.y), a.y + to * (b.y - a.y)});
+      boxes.push_back(Box{left, right, bottom, top}.grown(1.0));
+    }
   }
-  return box;
 }
 
 bool is_at_end_of(const Curve& curve, const PicturePoint& at) {
@@ -49,7 +53,7 @@ ShortPieces find_short_pieces(const Panel& panel, const PanelLayout& layout, dou
     if (curve.stroke.dash == Dash::solid || curve.points.size() < 2) continue;
     const double length = length_on_paper(curve, layout) / font;
     result.dash_scales[c] = std::clamp(length / few_dashes, smallest_dashes, 1.0);
-    if (length < label_length) result.boxes.push_back(box_around(curve, layout));
+    if (length < label_length) add_boxes(curve, layout, font, result.boxes);
     if (length > marker_length) continue;
     for (std::size_t m = 0; m < panel.markers.size(); ++m)
       if (is_at_end_of(curve, panel.markers[m].at)) result.marker_scales[m] = smaller_marker;

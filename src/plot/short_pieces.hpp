@@ -11,7 +11,7 @@ namespace tchat {
 struct ShortPieces {
   std::vector<double> dash_scales;    ///< by curve: shorter dashes where few of them would fit
   std::vector<double> marker_scales;  ///< by marker: smaller at the end of a very short piece
-  std::vector<Box> boxes;             ///< around short dashed and dotted pieces, for labels to keep clear of
+  std::vector<Box> boxes;             ///< along short dashed and dotted pieces, for labels to keep clear of
 };
 
 /// Of a panel whose frame and scales are known; `font` is the size of the axes' font.
