@@ -29,6 +29,7 @@ __all__ = ["Error", "TchatWarning", "load", "run", "simulate", "sweep", "read_po
 
 FIRST_DURATION = 61    # PAR(60 + s) is the duration of segment s
 MOST_SEGMENTS = 64
+AUTO_PERIOD = 11       # PAR(11) is the period in AUTO's own files
 NOT_FINITE = 1e99      # stands in the files for NaN and infinity
 POLL_SECONDS = 0.1
 
@@ -266,7 +267,7 @@ class _PointParser:
 
     def __init__(self, path):
         self.path, self.line, self.sections = path, 0, []
-        self._header, self._in_header = _Header(), False
+        self._header, self._in_header, self._new_header = _Header(), False, False
 
     def feed(self, line):
         """Takes a whole line; the point in it, None for any other line."""
@@ -275,9 +276,10 @@ class _PointParser:
         if not words:
             return None
         if words[0] == "0":
-            if not self._in_header:
-                self._header = _Header()
+            self._new_header = self._new_header or not self._in_header
             self._in_header = True
+            if self._new_header and "=" in line:  # headings alone: the constants go on
+                self._header, self._new_header = _Header(), False
             self._header.read(line.rstrip("\r\n"))
             return None
         return self._point(line, words)
@@ -293,7 +295,7 @@ class _PointParser:
         if self._in_header or not self.sections:
             self.sections.append(Section(self._header.section))
             self.sections[-1].columns = self._header.columns(line)
-            self._in_header = False
+            self._in_header = self._new_header = False
         section = self.sections[-1]
         if len(values) != len(section.columns):
             self._refuse("%d values after BR, PT, TY and LAB, but the points before have %d; the file is damaged" %
@@ -346,7 +348,9 @@ class Solution:
 
     @property
     def durations(self):
-        return self.parameters[FIRST_DURATION - 1:FIRST_DURATION - 1 + len(self.states)]
+        own = self.parameters[FIRST_DURATION - 1:FIRST_DURATION - 1 + len(self.states)]
+        of_auto = self.ips not in (150, 180) and len(self.states) == 1 and not np.any(own)
+        return self.parameters[AUTO_PERIOD - 1:AUTO_PERIOD] if of_auto else own
 
     @property
     def period(self):

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include "constants/constant_value.hpp"
 #include "constants/text_file.hpp"
@@ -231,8 +232,10 @@ class PointFileReader {
   }
 
   void read_header_line(std::string_view line) {
-    if (!in_header_) header_ = Header();
+    in_new_header_ = in_new_header_ || !in_header_;
     in_header_ = true;
+    const bool has_constants = line.find('=') != std::string_view::npos;
+    if (has_constants && std::exchange(in_new_header_, false)) header_ = Header();
     header_.read(line);
   }
 
@@ -249,6 +252,7 @@ class PointFileReader {
       file_.sections.push_back(header_.section());
       file_.sections.back().columns = column_names(line, words, header_);
       in_header_ = false;
+      in_new_header_ = false;
     }
     PointSection& section = file_.sections.back();
     if (row.values.size() != section.columns.size())
@@ -303,6 +307,7 @@ class PointFileReader {
   int line_ = 0;
   bool ended_ = true;
   bool in_header_ = false;
+  bool in_new_header_ = false;  // of whose constants nothing has come
   Header header_;
   int gaps_ = 0;
   PointFile file_;

@@ -5,9 +5,10 @@
 ///     BR  +-PT  TY  LAB  values ...        PT negative: stable
 ///
 /// The header's last line holds the headings of the columns; a line `columns = {3: 'name'}` has the names that are too
-/// long for theirs. A section without header has the constants and headings
-/// of the one before. Numbers are list-directed (any width; `1.0-100`, `E+000`, `D+00`); a NaN, an infinity or a field
-/// of stars is a gap (NaN) and gives one warning. A last line that was cut off is left out with a warning.
+/// long for theirs. A section without header has the constants and headings of the one before, one with headings alone
+/// (AUTO's further branches of a run) the constants. Numbers are list-directed (any width; `1.0-100`, `E+000`, `D+00`);
+/// a NaN, an infinity or a field of stars is a gap (NaN) and gives one warning. A last line that was cut off is left
+/// out with a warning.
 #pragma once
 
 #include <array>

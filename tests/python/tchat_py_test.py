@@ -338,6 +338,15 @@ class Refused(unittest.TestCase):
         self.assertTrue(np.isnan(section.data[1]).all())
         self.assertEqual(list(section.stable), [True, False])
 
+    def test_further_branches_of_auto(self):
+        write("b.three", "   0   IPS =   1\n   0   parnames = {1: 'rho'}\n   0    PT  TY  LAB               rho\n"
+                         "   1     1   9    1  1.0000000000E+000\n   0\n   0    PT  TY  LAB               rho\n"
+                         "   2     1   9    2  1.0000000000E+000\n   0   IPS =   2\n"
+                         "   0    PT  TY  LAB               rho\n   3     1   9    3  1.0000000000E+000\n")
+        sections = tchat.read_points("b.three")
+        self.assertEqual([section.parameters for section in sections], [{1: "rho"}, {1: "rho"}, {}])
+        self.assertEqual([section.ips for section in sections], [1, 1, 2])
+
     def test_parts_of_a_branch(self):
         header = "   0   IPS = 180   ISP =   2   NSEG=   1\n   0    PT  TY  LAB                 a\n"
         numbers = [-1, -2, 3, 4, -5]

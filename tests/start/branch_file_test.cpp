@@ -125,6 +125,23 @@ TEST_CASE("names of columns that are longer than their headings") {
   CHECK_FALSE(file.sections[0].parameter_of_column(1));
 }
 
+TEST_CASE("a further branch of AUTO has headings alone and the constants of the first") {
+  const PointFile file = parse_point_file(
+      "   0   0.0E+00  1.0E+00  0.0E+00  1.0E+00\n   0   IPS =   1\n   0   parnames = {1: 'rho'}\n"
+      "   0    PT  TY  LAB               rho\n   1     1   9    1  1.0000000000E+000\n"
+      "   0\n   0    PT  TY  LAB               rho                 x\n"
+      "   2     1   9    2  1.0000000000E+000  2.0000000000E+000\n"
+      "   0   0.0E+00  1.0E+00  0.0E+00  1.0E+00\n   0   IPS =   2\n   0    PT  TY  LAB               rho\n"
+      "   3     1   9    3  1.0000000000E+000\n",
+      "b.a");
+  REQUIRE(file.sections.size() == 3);
+  CHECK(file.sections[1].parameter_of_column(0) == 1);
+  CHECK(file.sections[1].problem_type == 1);
+  CHECK(file.sections[1].columns == std::vector<std::string>{"rho", "x"});
+  CHECK(file.sections[2].problem_type == 2);
+  CHECK_FALSE(file.sections[2].parameter_of_column(0));
+}
+
 TEST_CASE("solutions by counted names") {
   const TemporaryFolder folder;
   const BranchFile file = [&] {
