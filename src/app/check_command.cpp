@@ -116,12 +116,15 @@ int check_problem(const CheckArguments& arguments) {
 void add_check_command(CLI::App& app, std::function<int()>& chosen) {
   const auto arguments = std::make_shared<CheckArguments>();
   CLI::App* const command =
-      app.add_subcommand("check", "Compare a problem's derivatives with finite differences; exit status 1 on a fault");
+      app.add_subcommand("check", "compare a problem's derivatives with finite differences; exit status 1 on a fault");
   command->add_option("NAME", arguments->name, "problem: NAME.cpp, NAME.f, NAME.tch or NAME.so")->required();
   command->add_option("values", arguments->parameters, "parameter values, as 'PAR(2)=0.8'");
-  command->add_option("-p,--problem", arguments->plugin, "plugin, when it is not NAME: P.so, P.cpp, P.f, P.tch or P");
-  command->add_option("-c,--constants", arguments->constants,
-                      "gc.C of a Fortran plugin, which does not say its sizes itself (default: gc.NAME)");
+  command->add_option("-p,--problem", arguments->plugin, "plugin, when it is not NAME: P.so, P.cpp, P.f, P.tch or P")
+      ->type_name("P");
+  command
+      ->add_option("-c,--constants", arguments->constants,
+                   "gc.C of a Fortran plugin, which does not say its sizes itself (default: gc.NAME)")
+      ->type_name("C");
   command
       ->add_option("--state", arguments->states,
                    "a state to check at, as 1,0.5,0,1 (may be repeated); also random states near it")

@@ -8,6 +8,7 @@
 #include <memory>
 #include <string>
 
+#include "output/recorded_labels.hpp"
 #include "output/recorded_names.hpp"
 #include "output/solution_tables.hpp"
 #include "run/warnings.hpp"
@@ -24,7 +25,7 @@ int print_labels(const std::string& given) {
   if (file.solutions.empty())
     fmt::print("{} holds no labelled solution.\n", path);
   else
-    fmt::print("{}", format_label_table(file, recorded.names));
+    fmt::print("{}", format_label_table(file, recorded.names, recorded_labels(path, file)));
   print_warnings(std::cerr, file.warnings);
   if (!recorded.warning.empty()) print_warnings(std::cerr, {recorded.warning});
   return 0;
@@ -33,9 +34,10 @@ int print_labels(const std::string& given) {
 }  // namespace
 
 void add_labels_command(CLI::App& app, std::function<int()>& chosen) {
-  CLI::App* command = app.add_subcommand("labels", "Table of the labelled solutions of a q-file, with what each is");
+  CLI::App* command = app.add_subcommand("labels", "table of the labelled solutions of a q-file, with what each is");
   command->footer(
-      "SEG is the number of segments. Parameters have their names when p.NAME is beside q.NAME.\n"
+      "SEG is the number of segments. Names of parameters and STABLE are from p.NAME beside q.NAME, the run's own\n"
+      "words and what is inadmissible from d.NAME.\n"
       "A UZ label is a user value; contacts and zero impact velocities are\n"
       "called GR, zeros of xi_n XI: IRS, STOP and `tchat orbit` know them by these names (UZ1, GR1, XI1).\n"
       "Example: tchat labels q.mems");

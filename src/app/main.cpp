@@ -9,11 +9,15 @@
 #include <functional>
 #include <iostream>
 #include <new>
+#include <string_view>
 
 #include "app/check_command.hpp"
+#include "app/complete_command.hpp"
 #include "app/constants_command.hpp"
 #include "app/dat_command.hpp"
+#include "app/help_format.hpp"
 #include "app/labels_command.hpp"
+#include "app/manual_page.hpp"
 #include "app/new_command.hpp"
 #include "app/orbit_command.hpp"
 #include "app/plot_command.hpp"
@@ -25,6 +29,7 @@
 #include "app/table_command.hpp"
 #include "app/usage_error.hpp"
 #include "app/verify_command.hpp"
+#include "app/version_text.hpp"
 #include "constants/printable.hpp"
 #include "constants/user_error.hpp"
 
@@ -61,7 +66,8 @@ int run_program(int argc, char** argv) {
   tchat::occupy_standard_descriptors();
   std::signal(SIGXFSZ, SIG_IGN);  // a file size limit is then an error of the write, reported like a full disk
   CLI::App app{"tchat: numerical continuation of periodic orbits of hybrid dynamical systems", "tchat"};
-  app.set_version_flag("--version", "tchat " TCHAT_VERSION);
+  tchat::set_help_format(app);
+  app.set_version_flag("--version", tchat::version_text(), "show version, commit and libraries");
   app.require_subcommand(1);
   app.footer("tchat COMMAND --help explains a command.");
   std::function<int()> chosen;
@@ -77,6 +83,9 @@ int run_program(int argc, char** argv) {
   tchat::add_dat_command(app, chosen);
   tchat::add_constants_command(app, chosen);
   tchat::add_new_command(app, chosen);
+  tchat::add_manual_command(app, chosen);
+  if (argc > 1 && std::string_view(argv[1]) == "complete")
+    return run_command([&] { return tchat::print_completions(app, {argv + 2, argv + argc}); });
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

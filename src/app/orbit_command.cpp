@@ -44,7 +44,7 @@ int print_orbit(const OrbitArguments& arguments) {
 }  // namespace
 
 void add_orbit_command(CLI::App& app, std::function<int()>& chosen) {
-  CLI::App* command = app.add_subcommand("orbit", "One orbit of a q-file in physical time, all segments, as a table");
+  CLI::App* command = app.add_subcommand("orbit", "one orbit of a q-file in physical time, all segments, as a table");
   command->footer(
       "Lines: number of the segment, tau in [0,1], time t since the start of segment 1, states (named\n"
       "when p.NAME is beside q.NAME).\n"

@@ -88,7 +88,7 @@ constexpr const char* footer =
 
 void add_plot_command(CLI::App& app, std::function<int()>& chosen) {
   CLI::App* command =
-      app.add_subcommand("plot", "Bifurcation diagrams, orbits and multipliers to PNG, SVG, PDF or a window");
+      app.add_subcommand("plot", "bifurcation diagrams, orbits and multipliers to PNG, SVG, PDF or a window");
   command->footer(footer);
   const auto a = std::make_shared<PlotArguments>();
   command

@@ -51,11 +51,13 @@ void add_resegment_command(CLI::App& app, std::function<int()>& chosen) {
       ->add_option("--to", *kind,
                    "what the new run is to continue: grazing-curve, impacting, signature, rotate or double")
       ->required();
-  command->add_option("-o,--output", request->output, "write q.O and gc.O")->required();
-  command->add_option("-p,--problem", request->problem,
-                      "plugin P.so, P.cpp or P.tch (default: the name of the q-file)");
-  command->add_option("-c,--constants", request->constants,
-                      "constants of the run that wrote the label (default: its r-file)");
+  command->add_option("-o,--output", request->output, "write q.O and gc.O")->type_name("O")->required();
+  command->add_option("-p,--problem", request->problem, "plugin P.so, P.cpp or P.tch (default: the name of the q-file)")
+      ->type_name("P");
+  command
+      ->add_option("-c,--constants", request->constants,
+                   "constants of the run that wrote the label (default: its r-file)")
+      ->type_name("C");
   command->add_option("--signature", request->signature,
                       "index vectors of the new orbit, as \"1,1,1;2,2,2\"; those beyond the segments that there are "
                       "are segments of zero duration after the contact");

@@ -1,6 +1,7 @@
 #include "app/run_command.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <CLI/Validators.hpp>
 #include <iostream>
@@ -15,8 +16,9 @@ namespace tchat {
 namespace {
 
 int do_run(const RunRequest& request) {
+  std::ostream* const progress = ::isatty(STDERR_FILENO) != 0 && !request.quiet ? &std::cerr : nullptr;
   return run_interruptibly([&](const std::function<bool()>& interrupted) {
-    return run_problem(request, std::cout, std::cerr, interrupted);
+    return run_problem(request, std::cout, std::cerr, interrupted, progress);
   });
 }
 
@@ -28,11 +30,13 @@ void add_run_command(CLI::App& app, std::function<int()>& chosen) {
   command
       ->add_option("NAME", request->name, "reads gc.NAME, NAME.cpp or NAME.tch, NAME.dat; writes p.NAME q.NAME d.NAME")
       ->required();
-  command->add_option("-c,--constants", request->constants, "read gc.C instead (a path is also accepted)");
-  command->add_option("-p,--problem", request->problem, "plugin P.so, or P.cpp, P.tch to compile if newer");
-  command->add_option("-d,--data", request->data, "start from D.dat (a path is also accepted)");
-  command->add_option("-s,--start", request->start, "restart from q.S, at the label that IRS names");
-  command->add_option("-o,--output", request->output, "write p.O q.O d.O and r.O");
+  command->add_option("-c,--constants", request->constants, "read gc.C instead (a path is also accepted)")
+      ->type_name("C");
+  command->add_option("-p,--problem", request->problem, "plugin P.so, or P.cpp, P.tch to compile if newer")
+      ->type_name("P");
+  command->add_option("-d,--data", request->data, "start from D.dat (a path is also accepted)")->type_name("D");
+  command->add_option("-s,--start", request->start, "restart from q.S, at the label that IRS names")->type_name("S");
+  command->add_option("-o,--output", request->output, "write p.O q.O d.O and r.O")->type_name("O");
   command->add_flag("-q,--quiet", request->quiet, "no table and no summary on the screen");
   command->add_flag("--both", request->both_directions, "both directions of DS, one after the other");
   command->add_flag("--append", request->append, "add to p.O q.O d.O instead of replacing them");

@@ -53,8 +53,11 @@ void add_start_options(CLI::App& command, SimulationRequest& request) {
   const char* const group = "Start";
   command.add_option("--state", request.state, "all states, as 0,0.1,-2, or some by name, as x1=0.1,x2=3")
       ->group(group);
-  command.add_option("-d,--data", request.data, "start in the first row of D.dat, with its parameters")->group(group);
+  command.add_option("-d,--data", request.data, "start in the first row of D.dat, with its parameters")
+      ->type_name("D")
+      ->group(group);
   command.add_option("-s,--start", request.start, "start in the orbit that IRS names in q.S, with its parameters")
+      ->type_name("S")
       ->group(group);
   command
       .add_option("--mode", request.modes,
@@ -73,9 +76,8 @@ void add_start_options(CLI::App& command, SimulationRequest& request) {
 
 void add_length_options(CLI::App& command, SimulationRequest& request) {
   const char* const group =
-      "Length [until a periodic orbit is recognised, at most 10000 events; of a longer motion O.trajectory then holds "
-      "the "
-      "last 10 MB]";
+      "Length [until a periodic orbit is recognised, at most 10000 events; "
+      "of a longer motion O.trajectory then holds the last 10 MB]";
   SimulationPlan& plan = request.plan;
   command.add_option("--time", plan.time, "so long after the transient")
       ->type_name("T")
@@ -140,9 +142,11 @@ void add_simulate_command(CLI::App& app, std::function<int()>& chosen) {
   CLI::App* command = app.add_subcommand("simulate", "integrate forward with events, from a state to the attractor");
   const auto request = std::make_shared<SimulationRequest>();
   command->add_option("NAME", request->name, "reads NAME.cpp or NAME.tch, and gc.NAME if there is one")->required();
-  command->add_option("-c,--constants", request->constants, "signature, monitored events and constants from gc.C");
-  command->add_option("-p,--problem", request->problem, "plugin P.so, or P.cpp, P.tch to compile if newer");
-  command->add_option("-o,--output", request->output, "write O.trajectory and O.events [NAME]");
+  command->add_option("-c,--constants", request->constants, "signature, monitored events and constants from gc.C")
+      ->type_name("C");
+  command->add_option("-p,--problem", request->problem, "plugin P.so, or P.cpp, P.tch to compile if newer")
+      ->type_name("P");
+  command->add_option("-o,--output", request->output, "write O.trajectory and O.events [NAME]")->type_name("O");
   command->add_flag("-q,--quiet", request->quiet, "no summary on the screen");
   add_start_options(*command, *request);
   add_length_options(*command, *request);

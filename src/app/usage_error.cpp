@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "app/commands.hpp"
 #include "constants/constant_value.hpp"
 #include "constants/near_words.hpp"
 
@@ -14,8 +15,7 @@ namespace {
 
 std::vector<std::string> command_names(const CLI::App& app) {
   std::vector<std::string> names;
-  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
-    names.push_back(command->get_name());
+  for (const CLI::App* command : visible_commands(app)) names.push_back(command->get_name());
   return names;
 }
 

@@ -27,10 +27,12 @@ void add_verify_command(CLI::App& app, std::function<int()>& chosen) {
   command->add_option("FILE", request->solutions, "q-file; `mems` is taken for q.mems when there is no file mems")
       ->required();
   command->add_option("LABELS", request->labels, "label numbers, or types with a count: PD1, GR1 (default: all)");
-  command->add_option("-p,--problem", request->problem,
-                      "plugin P.so, P.cpp or P.tch (default: the name of the q-file)");
-  command->add_option("-c,--constants", request->constants,
-                      "constants of the run that wrote the q-file (default: its r-file)");
+  command->add_option("-p,--problem", request->problem, "plugin P.so, P.cpp or P.tch (default: the name of the q-file)")
+      ->type_name("P");
+  command
+      ->add_option("-c,--constants", request->constants,
+                   "constants of the run that wrote the q-file (default: its r-file)")
+      ->type_name("C");
   command->add_option("--tolerance", request->tolerance, "largest defect that passes")->capture_default_str();
   command->add_flag("-q,--quiet", *quiet, "nothing on the screen: the exit status tells");
   command->footer(

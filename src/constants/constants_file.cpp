@@ -132,6 +132,14 @@ void apply_overrides(RunSettings& settings, std::span<const std::string> key_val
   settings = std::move(changed);
 }
 
+bool is_overridden(std::span<const std::string> key_values, std::string_view keyword) {
+  return std::any_of(key_values.begin(), key_values.end(), [&](const std::string& text) {
+    const std::vector<Assignment> assignments = parse_assignments(text, Place{"command line"});
+    return std::any_of(assignments.begin(), assignments.end(),
+                       [&](const Assignment& a) { return constant_of(a).keyword == keyword; });
+  });
+}
+
 void apply_override(RunSettings& settings, const std::string& key_value) {
   apply_overrides(settings, std::span<const std::string>(&key_value, 1));
 }

@@ -34,6 +34,9 @@ RunSettings read_constants_text(std::string_view text, const std::string& name, 
 void apply_overrides(RunSettings& settings, std::span<const std::string> key_values, Warnings* warnings = nullptr,
                      const ParameterNames& names = {});
 
+/// Is the constant among what the overrides set?
+bool is_overridden(std::span<const std::string> key_values, std::string_view keyword);
+
 /// A single one.
 void apply_override(RunSettings& settings, const std::string& key_value);
 

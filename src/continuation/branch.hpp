@@ -71,6 +71,7 @@ struct BranchSummary {
   EndReason reason = EndReason::max_points;
   std::string detail;               ///< which bound, which special point, what was tried
   bool undefined_function = false;  ///< no convergence, for a function of the problem has no value there
+  bool stopped_at_grazing = false;  ///< by GRSTOP
   std::string remark;               ///< what becomes of the orbit at the end; "" if nothing is to be said
   int points = 0;
   int inadmissible_points = 0;

@@ -193,6 +193,7 @@ SpecialPoint ContinuationRun::end_conditions(SpecialPoint special) {
     special = {};  // what lies beyond the bound was not asked for: the branch ends there with an ordinary end point
   if (ended_) return special;
   const bool is_special = special.type != PointType::ordinary && special.type != PointType::end;
+  summary_.stopped_at_grazing = special.ends_branch;
   if (is_special && (special.ends_branch || (settings_.stop_at && settings_.stop_at(special))))
     end(EndReason::special_point, special.description);
   else if (special.ends_branch)

@@ -242,7 +242,7 @@ std::vector<TestPoint> test_points(const HybridSystem& system, const DerivativeC
   std::vector<TestPoint> points;
   for (const VectorXd& base : bases) {
     if (base.size() != system.dimension() || !base.allFinite())
-      throw UserError(fmt::format("A state with {} entries was given; {} needs {} finite numbers.", base.size(),
+      throw UserError(fmt::format("a state with {} entries was given; {} needs {} finite numbers.", base.size(),
                                   system.name(), system.dimension()));
     if (!options.states.empty()) points.push_back({base, par, false});
     for (int k = 0; k < random_states; ++k) {

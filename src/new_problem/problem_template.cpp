@@ -9,6 +9,7 @@
 #include "constants/user_error.hpp"
 #include "formulas/translation.hpp"
 #include "new_problem/template_files.hpp"
+#include "plugin/compiler.hpp"
 
 namespace tchat {
 
@@ -51,6 +52,11 @@ void write_new(const fs::path& path, const std::string& text) {
     throw UserError(fmt::format("{} cannot be written; is the folder writable and the disk not full?", path.string()));
 }
 
+/// What clangd and other language servers read, so that an editor finds the header and knows the standard.
+std::string editor_flags() {
+  return fmt::format("-xc++\n-std=c++20\n-I{}\n", fs::absolute(find_include_folder({})).string());
+}
+
 }  // namespace
 
 std::vector<NewFile> problem_template(const std::string& name) {
@@ -71,13 +77,15 @@ std::vector<NewFile> translated_problem(const std::string& name, const std::stri
 std::vector<NewFile> create_problem(const std::string& path, const std::optional<std::string>& formulas_path) {
   const fs::path folder = fs::path(path).has_filename() ? fs::path(path) : fs::path(path).parent_path();
   const std::string name = folder.filename().string();
-  const std::vector<NewFile> files = formulas_path ? translated_problem(name, *formulas_path) : problem_template(name);
+  std::vector<NewFile> files = formulas_path ? translated_problem(name, *formulas_path) : problem_template(name);
   std::error_code failed;
   if (fs::exists(folder, failed) && !(fs::is_directory(folder, failed) && fs::is_empty(folder, failed)))
     throw UserError(fmt::format("{} exists already and is left as it is; choose another name", folder.string()));
   fs::create_directories(folder, failed);
   if (failed) throw UserError(fmt::format("the folder {} cannot be made: {}", folder.string(), failed.message()));
   for (const NewFile& file : files) write_new(folder / file.name, file.text);
+  write_new(folder / "compile_flags.txt", editor_flags());
+  files.push_back({"compile_flags.txt", editor_flags()});
   return files;
 }
 

@@ -21,7 +21,8 @@ std::vector<NewFile> problem_template(const std::string& name);
 std::vector<NewFile> translated_problem(const std::string& name, const std::string& formulas_path);
 
 /// Writes them into the new folder `path`, whose last part is the problem's name. Throws UserError when the folder has
-/// files already or cannot be written; what is there is never touched.
+/// files already or cannot be written; what is there is never touched. The folder also gets compile_flags.txt for
+/// editors.
 /// `formulas_path`: a translated problem instead of the template.
 std::vector<NewFile> create_problem(const std::string& path,
                                     const std::optional<std::string>& formulas_path = std::nullopt);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numeric>
 
 #include "hybrid/parameter_vector.hpp"
 #include "output/number_format.hpp"
@@ -12,27 +13,27 @@ namespace tchat {
 
 namespace {
 
-constexpr std::size_t most_columns = 7;
-constexpr int column_width = 14;
+constexpr std::size_t most_columns = 5;
+constexpr int column_width = 13;
 
-bool is_free_parameter(const PointColumn& column) {
-  return column.kind == PointColumn::Kind::parameter && column.index < first_duration;
+/// What the screen shows first: 0 always, then in this order as far as there is room.
+int rank(const PointColumn& column, std::size_t place) {
+  using Kind = PointColumn::Kind;
+  const bool is_duration = column.kind == Kind::parameter && column.index >= first_duration;
+  if (column.kind == Kind::period || (column.kind == Kind::parameter && !is_duration)) return 0;
+  if (place == 1) return 1;  // the solution measure
+  if (column.kind == Kind::user_function) return 2;
+  return is_duration ? 4 : 3;
 }
 
-/// The first seven; where that would cut off free parameters, these instead of the last maxima.
+/// The columns shown, in the file's order.
 std::vector<std::size_t> shown(const std::vector<PointColumn>& columns) {
-  std::vector<std::size_t> chosen;
-  for (std::size_t k = 0; k < columns.size(); ++k) chosen.push_back(k);
-  const auto last_maximum = [&] {
-    return std::find_if(chosen.rbegin(), chosen.rend(),
-                        [&](std::size_t k) { return columns[k].kind == PointColumn::Kind::maximum; });
-  };
-  const auto cuts_off = [&] {
-    return std::any_of(chosen.begin() + std::min(chosen.size(), most_columns), chosen.end(),
-                       [&](std::size_t k) { return is_free_parameter(columns[k]); });
-  };
-  while (cuts_off() && last_maximum() != chosen.rend()) chosen.erase(std::next(last_maximum()).base());
+  std::vector<std::size_t> chosen(columns.size());
+  std::iota(chosen.begin(), chosen.end(), std::size_t{0});
+  std::stable_sort(chosen.begin(), chosen.end(),
+                   [&](std::size_t a, std::size_t b) { return rank(columns[a], a) < rank(columns[b], b); });
   chosen.resize(std::min(chosen.size(), most_columns));
+  std::sort(chosen.begin(), chosen.end());
   return chosen;
 }
 
@@ -50,7 +51,8 @@ std::string format_table_line(const PointLine& point, const std::vector<PointCol
   std::string line = fmt::format("{:>4}", point.branch) + integer_field(point.stable ? -number : number, 6) +
                      fmt::format("{:>4}", shows_type ? type_name(point.type, point.kind) : "") +
                      integer_field(point.label, 5);
-  for (const std::size_t k : shown(columns)) line += fmt::format("{:>{}.5E}", finite(point.values[k]), column_width);
+  for (const std::size_t k : shown(columns))
+    line += fmt::format(" {:>{}.5E}", finite(point.values[k]), column_width - 1);
   if (!point.admissible) line += "  inadmissible";
   return line + '\n';
 }

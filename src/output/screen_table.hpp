@@ -1,8 +1,8 @@
-/// The table on the screen: branch, point, type in letters, label and at most seven columns of 14 (maxima give way to
-/// free parameters),
+/// The table on the screen: branch, point, type in letters, label and at most five columns of 13, so that a line fits
+/// 100 characters: the free parameters and the period, then the solution measure, user functions and maxima,
 ///
-///       BR    PT  TY  LAB       alpha        L2-NORM  ...
-///        1   -12  GR    4   1.99833E+00   1.41421E+00
+///       BR    PT  TY  LAB        alpha      L2-NORM  ...
+///        1   -12  GR    4  1.99833E+00  1.41421E+00
 ///
 /// PT is negative when the orbit is stable, as in the p-file. The d-file has the same lines.
 #pragma once

@@ -28,6 +28,40 @@ std::string free_parameters(const LabelledSolution& solution, int segments, cons
   return list;
 }
 
+std::string yes_or_no(const std::optional<bool>& answer) { return !answer ? "-" : *answer ? "yes" : "no"; }
+
+/// What a point is, as the run has said it, else as the q-file tells it; and what it violates.
+std::vector<std::string> remarks(const LabelledSolution& solution, const RecordedLabel& label,
+                                 const ProblemNames& names) {
+  std::vector<std::string> list;
+  const std::string what =
+      !label.words.empty() ? label.words : description(solution, [&names](int k) { return names.parameter(k); });
+  if (!what.empty()) list.push_back(what);
+  if (!label.admissible) list.push_back("inadmissible" + (label.violation.empty() ? "" : ": " + label.violation));
+  return list;
+}
+
+/// A line of at most 100 characters where a remark fits, else lines of their own for the remarks.
+std::string with_remarks(std::string line, const std::vector<std::string>& remarks) {
+  constexpr std::size_t width = 100;
+  const std::string indent(10, ' ');
+  std::string below;
+  for (const std::string& remark : remarks) {
+    if (below.empty() && line.size() + 3 + remark.size() <= width) {
+      line += "   " + remark;
+      continue;
+    }
+    std::string rest = remark;
+    for (std::size_t blank = 0; indent.size() + rest.size() > width; rest = rest.substr(blank + 1)) {
+      blank = rest.rfind(' ', width - indent.size());
+      if (blank == std::string::npos || blank == 0) break;
+      below += indent + rest.substr(0, blank) + '\n';
+    }
+    below += indent + rest + '\n';
+  }
+  return line + '\n' + below;
+}
+
 /// n and m of an orbit, from the solution or from the n that the user gave.
 struct OrbitSizes {
   int dimension;
@@ -91,19 +125,21 @@ void for_each_point(const LabelledSolution& solution, const OrbitSizes& sizes, c
 
 }  // namespace
 
-std::string format_label_table(const SolutionFile& file, const ProblemNames& names) {
-  std::string text = fmt::format("{:>5} {:>3} {:>4} {:>5} {:>5} {:>4} {:>9} {:>15}  {}\n", "LAB", "TY", "BR", "PT",
-                                 "IPS", "SEG", "NTSTxNCOL", "PERIOD", "FREE PARAMETERS");
+std::string format_label_table(const SolutionFile& file, const ProblemNames& names,
+                               const std::map<int, RecordedLabel>& recorded) {
+  std::string text = fmt::format("{:>5} {:>3} {:>3} {:>5} {:>4} {:>4} {:>9} {:>6} {:>13}  {}\n", "LAB", "TY", "BR",
+                                 "PT", "IPS", "SEG", "NTSTxNCOL", "STABLE", "PERIOD", "FREE PARAMETERS");
   for (const LabelledSolution& solution : file.solutions) {
     const int segments = segment_count(solution);
-    const double duration = period(solution);
-    const std::string mesh = fmt::format("{}x{}", solution.mesh_intervals, solution.collocation_points);
-    const std::string what = description(solution, [&names](int k) { return names.parameter(k); });
-    text += fmt::format("{:>5} {:>3} {:>4} {:>5} {:>5} {:>4} {:>9} {:>15}  {}{}{}\n", solution.label,
-                        type_name(solution), solution.branch, solution.point, number_or_dash(solution.problem_type),
-                        number_or_dash(segments), mesh, segments > 0 ? fmt::format("{:.9g}", duration) : "-",
-                        free_parameters(solution, segments > 0 ? segments : max_segments, names),
-                        what.empty() ? "" : "   ", what);
+    const auto found = recorded.find(solution.label);
+    const RecordedLabel label = found != recorded.end() ? found->second : RecordedLabel{};
+    const std::string line =
+        fmt::format("{:>5} {:>3} {:>3} {:>5} {:>4} {:>4} {:>9} {:>6} {:>13}  {}", solution.label, type_name(solution),
+                    solution.branch, solution.point, number_or_dash(solution.problem_type), number_or_dash(segments),
+                    fmt::format("{}x{}", solution.mesh_intervals, solution.collocation_points), yes_or_no(label.stable),
+                    segments > 0 ? fmt::format("{:.9g}", period(solution)) : "-",
+                    free_parameters(solution, segments > 0 ? segments : max_segments, names));
+    text += with_remarks(line, remarks(solution, label, names));
   }
   return text;
 }

@@ -1,17 +1,21 @@
 /// Labelled solutions as tables for people: what a q-file holds, and one orbit in physical time.
 #pragma once
 
+#include <map>
 #include <string>
 
 #include "output/point_columns.hpp"
+#include "output/recorded_labels.hpp"
 #include "start/solution_file_reader.hpp"
 
 namespace tchat {
 
 /// One line for each solution: label, type, branch, point, problem type, segments, mesh, period, the free parameters
-/// that are not durations with their values, by their names where there are some, and what a UZ point is. "-" where an
-/// older file does not tell.
-std::string format_label_table(const SolutionFile& file, const ProblemNames& names = {});
+/// that are not durations with their values, by their names where there are some, and what a special point is. "-"
+/// where an older file does not tell. With what the run recorded: stability, and its own words where they are known;
+/// what does not fit 100 columns stands on lines of its own.
+std::string format_label_table(const SolutionFile& file, const ProblemNames& names = {},
+                               const std::map<int, RecordedLabel>& recorded = {});
 
 /// All segments of an orbit, one after the other, in physical time: '#' heading, then lines
 ///

@@ -15,6 +15,7 @@
 #include <sstream>
 
 #include "constants/user_error.hpp"
+#include "plugin/compiler_errors.hpp"
 
 namespace tchat {
 
@@ -63,6 +64,24 @@ std::string read_all(int descriptor) {
   }
 }
 
+/// This process's environment with the compiler's words in English, which is what is read in them.
+std::vector<std::string> english_environment() {
+  std::vector<std::string> variables;
+  for (char** variable = environ; *variable != nullptr; ++variable)
+    if (const std::string text = *variable;
+        !text.starts_with("LC_ALL=") && !text.starts_with("LC_MESSAGES=") && !text.starts_with("LANGUAGE="))
+      variables.push_back(text);
+  variables.emplace_back("LC_ALL=C.UTF-8");
+  return variables;
+}
+
+std::vector<char*> pointers(const std::vector<std::string>& words) {
+  std::vector<char*> result;
+  for (const std::string& word : words) result.push_back(const_cast<char*>(word.c_str()));
+  result.push_back(nullptr);
+  return result;
+}
+
 ProcessResult run_process(const std::vector<std::string>& words) {
   ProcessResult result;
   int ends[2];
@@ -75,12 +94,12 @@ ProcessResult run_process(const std::vector<std::string>& words) {
   posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
   posix_spawn_file_actions_adddup2(&actions, ends[1], STDOUT_FILENO);
   posix_spawn_file_actions_adddup2(&actions, ends[1], STDERR_FILENO);
-  std::vector<char*> arguments;
-  for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
-  arguments.push_back(nullptr);
+  const std::vector<std::string> variables = english_environment();
+  const std::vector<char*> arguments = pointers(words);
 
   pid_t child = 0;
-  result.spawn_error = posix_spawnp(&child, arguments[0], &actions, nullptr, arguments.data(), environ);
+  result.spawn_error =
+      posix_spawnp(&child, arguments[0], &actions, nullptr, arguments.data(), pointers(variables).data());
   posix_spawn_file_actions_destroy(&actions);
   close(ends[1]);
   if (result.spawn_error == 0) {
@@ -118,29 +137,29 @@ const CompilerWords& words_of(Language language) {
                                           int error) {
   const CompilerWords& words = words_of(language);
   throw UserError(
-      fmt::format("No {} compiler to compile {}: '{}' cannot be started ({}).\n"
+      fmt::format("no {} compiler to compile {}: '{}' cannot be started ({}).\n"
                   "  Install one (Debian: apt install {}), or name yours in the environment variable {}, or compile "
                   "the plugin on another computer and give the .so file.",
                   words.language, source, command, std::strerror(error), words.package, words.variable));
 }
 
-/// What a problem's author most often overlooks, from the compiler's words about it; "" when it is something else.
-std::string advice(const std::string& output) {
-  const bool narrows =
-      output.find("cannot convert") != std::string::npos || output.find("no viable conversion") != std::string::npos;
-  if (!narrows || output.find("Dual") == std::string::npos) return "";
-  return "  Derivatives come from calling the functions with dual numbers: a local variable that depends on x or par "
-         "is "
-         "of type T\n  (or auto), not double.\n";
+/// A command that shows all that the compiler says; what was compiled to is gone.
+std::string whole_text_command(const std::vector<std::string>& command, const Compilation& what) {
+  return fmt::format("{} -std=c++20 -fsyntax-only -I{} {}", fmt::join(command, " "), what.include_folder, what.source);
 }
 
-void require_success(const ProcessResult& result, const std::vector<std::string>& command, const std::string& source) {
+void require_success(const ProcessResult& result, const std::vector<std::string>& compiler, const Compilation& what,
+                     Language language) {
   if (WIFEXITED(result.status) && WEXITSTATUS(result.status) == 0) return;
+  if (const std::string errors =
+          language == Language::cpp ? short_errors(result.output, what.include_folder) : std::string();
+      !errors.empty())
+    throw UserError(fmt::format("{}  All that the compiler says: {}", errors, whole_text_command(compiler, what)));
   const std::string ending = WIFSIGNALED(result.status)
                                  ? fmt::format("it was ended by signal {}", WTERMSIG(result.status))
                                  : fmt::format("exit status {}", WEXITSTATUS(result.status));
-  throw UserError(fmt::format("The compiler refused {} ({}). It says:\n\n{}\n{}  The command was: {}", source, ending,
-                              first_lines(result.output, 60), advice(result.output), fmt::join(command, " ")));
+  throw UserError(fmt::format("the compiler {} refused {} ({}). It says:\n\n{}", fmt::join(compiler, " "), what.source,
+                              ending, first_lines(result.output, 60)));
 }
 
 /// -fno-gnu-unique keeps a reloaded plugin from sharing its statics with an earlier one; only g++ knows it.
@@ -196,7 +215,7 @@ void Compiler::compile(const Compilation& what) const {
   for (const std::string& word : {std::string("-o"), what.library, what.source}) words.push_back(word);
   const ProcessResult result = run_process(words);
   if (result.spawn_error != 0) refuse_missing_compiler(language_, command_[0], what.source, result.spawn_error);
-  require_success(result, words, what.source);
+  require_success(result, command_, what, language_);
 }
 
 std::string find_include_folder(const PluginBuildOptions& options) {
@@ -204,7 +223,7 @@ std::string find_include_folder(const PluginBuildOptions& options) {
   if (has_interface(wanted)) return wanted;
   if (!wanted.empty())
     throw UserError(
-        fmt::format("There is no tchat/problem.hpp in {}, the folder that TCHAT_INCLUDE names.\n"
+        fmt::format("there is no tchat/problem.hpp in {}, the folder that TCHAT_INCLUDE names.\n"
                     "  Set it to the folder that contains tchat/problem.hpp, or unset it.",
                     wanted));
   std::error_code failed;
@@ -213,7 +232,7 @@ std::string find_include_folder(const PluginBuildOptions& options) {
   if (has_interface(installed)) return installed;
   if (has_interface(TCHAT_SOURCE_INCLUDE)) return TCHAT_SOURCE_INCLUDE;
   throw UserError(
-      fmt::format("The header tchat/problem.hpp that plugins are compiled with is not at {}.\n"
+      fmt::format("the header tchat/problem.hpp that plugins are compiled with is not at {}.\n"
                   "  Set the environment variable TCHAT_INCLUDE to the folder that contains "
                   "tchat/problem.hpp, or install tchat again.",
                   installed));

@@ -1,6 +1,7 @@
 /// The C++ or Fortran compiler that turns a plugin's source into a shared library, as a process of its own.
 #pragma once
 
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,7 @@ struct PluginBuildOptions {
   std::string compiler = {};          ///< command, with arguments if any; empty: $CXX, else c++
   std::string include_folder = {};    ///< folder with tchat/problem.hpp; empty: see find_include_folder
   std::string fortran_compiler = {};  ///< empty: $FC, else gfortran
+  std::ostream* progress = nullptr;   ///< a terminal on which a compilation is told; null: none
 };
 
 enum class Language { cpp, fortran, formulas };  // formulas are translated to C++

@@ -30,7 +30,7 @@ template <class Function>
 Function require(const std::string& path, void* library, const char* symbol, const char* subroutine) {
   if (const Function function = find<Function>(library, symbol)) return function;
   throw UserError(
-      fmt::format("Plugin {}: SUBROUTINE {} is missing (the library does not export {}).\n"
+      fmt::format("plugin {}: SUBROUTINE {} is missing (the library does not export {}).\n"
                   "  A Fortran problem has GCFUNC (fields), GCBOUND (event functions) and JUMPMAP (jumps).",
                   path, subroutine, symbol));
 }

@@ -52,7 +52,7 @@ void FortranProblem::read_starting_values(const std::string& path) {
     if (FortranCalls::is_unset(value) && other == 0.0) continue;
     if (!std::isfinite(value))
       throw UserError(
-          fmt::format("Plugin {}: GCSTPNT sets PAR({}) to a value that is not finite.\n"
+          fmt::format("plugin {}: GCSTPNT sets PAR({}) to a value that is not finite.\n"
                       "  Compute it from entries of PAR that are set before it, or leave it out.",
                       path, k));
     if (k < first_duration) sizes_.parameters = std::max(sizes_.parameters, k);
@@ -182,7 +182,7 @@ void FortranProblem::try_function(const std::string& path, FunctionKind kind, in
   const int n = sizes_.dimension;
   if (calls_.wrote_beyond())
     throw UserError(
-        fmt::format("Plugin {}: {} with SEGNO = {} sets more than GCNDIM = {} entries of {}.\n"
+        fmt::format("plugin {}: {} with SEGNO = {} sets more than GCNDIM = {} entries of {}.\n"
                     "  It is written for more states: set NDIM in the constants file to their number.",
                     path, subroutine, index, n, output));
   const int rows = kind == FunctionKind::event ? 1 : n;
@@ -190,7 +190,7 @@ void FortranProblem::try_function(const std::string& path, FunctionKind kind, in
     if (!calls_.left_unset(i)) continue;
     const std::string entry = kind == FunctionKind::event ? output : fmt::format("{}({})", output, i + 1);
     throw UserError(
-        fmt::format("Plugin {}: {} with SEGNO = {} leaves {} unset.\n"
+        fmt::format("plugin {}: {} with SEGNO = {} leaves {} unset.\n"
                     "  Set it there, or correct NDIM = {} or the index {} of {} in the constants file.",
                     path, subroutine, index, entry, n, index,
                     kind == FunctionKind::field   ? "GCFIND"

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <cstdlib>
 #include <cstring>
 #include <ctime>
@@ -61,7 +62,7 @@ class TemporaryFolder {
     remove_abandoned(library.parent_path(), begin);
     path_ = (library.parent_path() / (begin + std::string(random_part))).string();
     if (::mkdtemp(path_.data()) == nullptr)
-      throw UserError(fmt::format("The plugin cannot be compiled to {}: {}.\n  Make room, or make the folder writable.",
+      throw UserError(fmt::format("the plugin cannot be compiled to {}: {}.\n  Make room, or make the folder writable.",
                                   library.string(), std::strerror(errno)));
   }
   ~TemporaryFolder() { fs::remove_all(path_, ignored_); }
@@ -182,7 +183,7 @@ struct Build {
     utimensat(AT_FDCWD, made.c_str(), times.data(), 0);
     if (!written || std::rename(made.c_str(), library.c_str()) != 0)
       throw UserError(
-          fmt::format("The compiled plugin cannot be stored as {} ({}).\n"
+          fmt::format("the compiled plugin cannot be stored as {} ({}).\n"
                       "  Make room, or make the folder writable.",
                       library.string(), std::strerror(errno)));
   }
@@ -249,10 +250,20 @@ fs::path cached_library(const fs::path& source) {
 }
 
 /// Makes the library unless another process did so while we waited. Returns 0, or the errno of creating the lock file.
-int make_under_lock(const Build& build, const fs::path& library) {
+int make_under_lock(const Build& build, const fs::path& library, std::ostream* progress) {
   const FileLock lock(fmt::format("{}/.{}.lock", library.parent_path().string(), library.filename().string()));
-  if (lock.error() == 0 && !build.is_current(library)) build.make(library);
-  return lock.error();
+  if (lock.error() != 0 || build.is_current(library)) return lock.error();
+  const auto begun = std::chrono::steady_clock::now();
+  if (progress != nullptr) *progress << fmt::format("compiling {} ... ", build.source.string()) << std::flush;
+  try {
+    build.make(library);
+  } catch (...) {
+    if (progress != nullptr) *progress << '\n' << std::flush;
+    throw;
+  }
+  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begun;
+  if (progress != nullptr) *progress << fmt::format("done in {:.1f} s\n", taken.count()) << std::flush;
+  return 0;
 }
 
 bool is_read_only(int error) { return error == EACCES || error == EROFS || error == EPERM; }
@@ -271,14 +282,14 @@ std::string build_source(const fs::path& given, const PluginBuildOptions& option
   fs::path library = library_of(source);
   if (build.is_current(library)) return library.string();
 
-  int error = make_under_lock(build, library);
+  int error = make_under_lock(build, library, options.progress);
   if (is_read_only(error)) {
     library = cached_library(source);
     if (build.is_current(library)) return library.string();
-    error = make_under_lock(build, library);
+    error = make_under_lock(build, library, options.progress);
   }
   if (error != 0)
-    throw UserError(fmt::format("The plugin {} cannot be compiled to {}: {}.\n  Make the folder writable.",
+    throw UserError(fmt::format("the plugin {} cannot be compiled to {}: {}.\n  Make the folder writable.",
                                 given.string(), library.string(), std::strerror(error)));
   return library.string();
 }
@@ -288,8 +299,8 @@ std::string build_source(const fs::path& given, const PluginBuildOptions& option
   const bool folder = fs::is_directory(name, failed);
   const std::string inside = (fs::path(name) / fs::path(name).filename()).string();
   throw UserError(
-      fmt::format("There is no plugin {0}: none of {0}.cpp, {0}.f90, {0}.f, {0}.tch and {0}.so exists.\n  {1}", name,
-                  folder ? fmt::format("{} is a folder: the plugin in it would be {}.", name, inside)
+      fmt::format("there is no plugin {0}: none of {0}.cpp, {0}.f90, {0}.f, {0}.tch and {0}.so exists.\n  {1}", name,
+                  folder ? fmt::format("{} is a folder, and there is no plugin {} in it either.", name, inside)
                          : "Give its path with -p: P.cpp, P.f, P.tch, P.so, or P for any of them."));
 }
 
@@ -315,17 +326,20 @@ std::optional<std::string> formulas_of(const std::string& name_or_path) {
 }
 
 std::string resolve_plugin(const std::string& name_or_path, const PluginBuildOptions& options) {
-  if (name_or_path.empty()) throw UserError("The plugin's name is empty.\n  Give -p P for P.cpp, P.f, P.tch or P.so.");
+  if (name_or_path.empty()) throw UserError("the plugin's name is empty.\n  Give -p P for P.cpp, P.f, P.tch or P.so.");
   const fs::path given(name_or_path);
   if (given.extension() == ".so" || language_of(given)) {
     if (!is_file(given))
       throw UserError(
-          fmt::format("There is no plugin file {}.\n  Give the path of an existing P.cpp, P.f, P.tch or P.so with -p.",
+          fmt::format("there is no plugin file {}.\n  Give the path of an existing P.cpp, P.f, P.tch or P.so with -p.",
                       name_or_path));
     return language_of(given) ? build_source(given, options) : name_or_path;
   }
-  if (const std::string source = source_named(name_or_path); !source.empty()) return build_source(source, options);
-  if (is_file(name_or_path + ".so")) return name_or_path + ".so";
+  const std::string in_own_folder = (given / given.filename()).string();
+  for (const std::string& name : {name_or_path, in_own_folder}) {
+    if (const std::string source = source_named(name); !source.empty()) return build_source(source, options);
+    if (is_file(name + ".so")) return name + ".so";
+  }
   refuse_missing(name_or_path);
 }
 

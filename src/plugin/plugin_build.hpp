@@ -5,7 +5,7 @@
 ///   1. P ends in .so: that file as it is.
 ///   2. P ends in .cpp, .cc, .cxx, .f90 (Fortran, free form), .f or .for (fixed form): that source; the library is the
 ///      same name with .so. P ends in .tch: these formulas, translated to C++; the library is P.tch.so.
-///   3. otherwise P with one of these endings, in this order, then P.so.
+///   3. otherwise P with one of these endings, in this order, then P.so; then the same in the folder P: P/P.cpp, ...
 ///
 /// A source is compiled when its library is missing, or when the source, a header that it includes (tchat's interface
 /// among them) or the compiler has changed since; in a copy of a folder the copy's own files count. The library is

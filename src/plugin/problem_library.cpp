@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 [[noreturn]] void refuse(const std::string& path, const std::string& what, const std::string& cure) {
-  throw UserError(fmt::format("Plugin {}: {}.\n  {}", path, what, cure));
+  throw UserError(fmt::format("plugin {}: {}.\n  {}", path, what, cure));
 }
 
 std::string load_cure(std::string_view said) {
@@ -93,12 +93,12 @@ void* open_library(const std::string& path) {
   const std::string text = said != nullptr ? said : "no reason was given";
   if (text.find("cannot read file data") != std::string::npos)
     throw ComputationError(
-        fmt::format("Plugin {}: reading fails; the loader says: {}.\n"
+        fmt::format("plugin {}: reading fails; the loader says: {}.\n"
                     "  The disk or the connection to it is at fault; copy the source elsewhere.",
                     path, text));
   if (lacks_memory(text, path))
     throw ComputationError(
-        fmt::format("Plugin {}: there is no memory to load it; the loader says: {}.\n"
+        fmt::format("plugin {}: there is no memory to load it; the loader says: {}.\n"
                     "  End other programs, or raise the limit (ulimit -v).",
                     path, text));
   refuse(path, fmt::format("it cannot be loaded; the loader says: {}", text), load_cure(text));

@@ -129,14 +129,6 @@ std::string summary(const LabelledOrbit& source, const RunSettings& settings, co
   return text + fmt::format("  free: {}\n", free);
 }
 
-bool gives(const std::vector<std::string>& overrides, std::string_view keyword) {
-  return std::any_of(overrides.begin(), overrides.end(), [&](const std::string& text) {
-    const std::vector<Assignment> assignments = parse_assignments(text, Place{"command line"});
-    return std::any_of(assignments.begin(), assignments.end(),
-                       [&](const Assignment& a) { return constant_of(a).keyword == keyword; });
-  });
-}
-
 /// On one side of this point the orbit has the new event and segments, on the other it is inadmissible. Gives DS the
 /// sign for them unless the user gave DS, and says so.
 std::string choose_side(const ResegmentRequest& request, const HybridSystem& system, const NewOrbit& target,
@@ -160,7 +152,7 @@ std::string choose_side(const ResegmentRequest& request, const HybridSystem& sys
         "both with --both.\n",
         born);
   const double step = std::copysign(settings.step, side);
-  if (!gives(request.overrides, "DS")) settings.step = step;
+  if (!is_overridden(request.overrides, "DS")) settings.step = step;
   if (settings.step == step)
     return fmt::format("DS = {} leads to the side with {}; on the other side the orbit is inadmissible.\n", step, born);
   return fmt::format("DS = {} leads to the side where the orbit is inadmissible; {} is on the side of DS = {}.\n",
@@ -213,6 +205,12 @@ void choose_contact_jump(const ResegmentRequest& request, const LabelledOrbit& s
       fmt::format("The run will not begin: {}\nAnother jump at the contact may help: --jump", why));
 }
 
+/// NAME of `tchat run`, with the plugin's path where NAME alone does not find it.
+std::string problem_arguments(const std::string& plugin) {
+  const std::string name = std::filesystem::path(plugin).stem().string();
+  return name == plugin ? name : fmt::format("{} -p {}", name, plugin);
+}
+
 /// The functions of the orbit and of what is made of it, for a plugin that does not say what it has.
 ProblemSizes sizes_for(const ResegmentRequest& request, const RunSettings& settings) {
   ProblemSizes sizes = problem_sizes(settings);
@@ -237,10 +235,10 @@ std::vector<std::string> resegment(const ResegmentRequest& request, std::ostream
   const ProblemLibrary library(plugin, [&] { return sizes_for(request, source.settings); });
   const HybridSystem& system = library.system();
   if (named_parameters) source.settings = read_constants_file(constants, nullptr, names_of(system));
-  check_settings_against(system, source.settings, constants);
+  check_settings_against(system, source.settings, {constants});
 
   NewOrbit target = new_orbit(request, source, system);
-  target.problem.names_parameters = gives(request.overrides, "ICP");
+  target.problem.names_parameters = is_overridden(request.overrides, "ICP");
   choose_contact_jump(request, source, system, target);
   OrbitStart start = assemble(source.start, pieces_of(target));
   RunSettings settings = new_settings(source.settings, target.segments, target.problem, system);
@@ -248,11 +246,12 @@ std::vector<std::string> resegment(const ResegmentRequest& request, std::ostream
   apply_overrides(settings, request.overrides, &warnings, names_of(system));
   if (!settings.parameter_values.empty())
     throw UserError("values of parameters are not kept in a constants file; give PAR(...)= to `tchat run`");
-  const std::vector<std::string> contradictions = check_settings_against(system, settings, "the new constants");
+  const std::vector<std::string> contradictions =
+      check_settings_against(system, settings, {"the new constants", request.overrides});
   warnings.insert(warnings.end(), contradictions.begin(), contradictions.end());
   require_fit(system, settings.signature(), start.orbit);
   start.direction = kept_direction(source, target, start.direction, settings);
-  if (start.direction && !target.birth.is_any() && !gives(request.overrides, "DS"))
+  if (start.direction && !target.birth.is_any() && !is_overridden(request.overrides, "DS"))
     settings.step = std::abs(settings.step);  // on in the direction that is kept
   const std::string side = target.birth.is_any() ? choose_side(request, system, target, start, settings) : "";
 
@@ -272,8 +271,8 @@ std::vector<std::string> resegment(const ResegmentRequest& request, std::ostream
 
   screen << summary(source, settings, start.orbit, system)
          << fmt::format("{} and {} written; next: tchat run {} -c {} {} {}\n", start_out, constants_out,
-                        std::filesystem::path(plugin).stem().string(), request.output, request.data ? "-d" : "-s",
-                        request.output)
+                        problem_arguments(request.problem.value_or(run_path(path))), request.output,
+                        request.data ? "-d" : "-s", request.output)
          << side;
   for (const std::string& remark : target.remarks) screen << remark << '\n';
   return warnings;

@@ -38,12 +38,13 @@ std::string told(const BranchPoint& point) {
 }  // namespace
 
 BranchWriter::BranchWriter(const HybridSystem& system, const CollocationRule& rule, Setup setup, RunFiles& files,
-                           std::ostream* screen)
+                           std::ostream* screen, std::ostream* terminal)
     : system_(system),
       rule_(rule),
       setup_(std::move(setup)),
       files_(files),
       screen_(screen),
+      progress_(terminal),
       names_(ProblemNames::of(system)),
       columns_(point_columns(setup_.settings, names_)),
       weights_(state_weights(setup_.settings)) {}
@@ -139,7 +140,9 @@ void BranchWriter::tell_unknown_user_values(const PointLine& line) {
     const std::string text = fmt::format("User function {} has no finite value here, the files show {:g}",
                                          columns_[k].name, finite(line.values[k]));
     note(line.point, text);
-    if (screen_ != nullptr) *screen_ << "       " << text << '\n' << std::flush;
+    if (screen_ == nullptr) continue;
+    progress_.clear();
+    *screen_ << "       " << text << '\n' << std::flush;
   }
 }
 
@@ -189,7 +192,13 @@ void BranchWriter::show_contact(const BranchPoint& point) {
 /// Labelled points, the first one, and where orbits become inadmissible (with what is violated) or admissible again.
 void BranchWriter::show(const BranchPoint& point, const PointLine& line) {
   const bool change = point.number > 1 && line.admissible != last_admissible_;
-  if (point.labelled() || point.number == 1 || change) *screen_ << format_table_line(line, columns_);
+  if (point.labelled() || point.number == 1 || change) {
+    progress_.clear();
+    *screen_ << format_table_line(line, columns_);
+  } else if (progress_.is_due()) {
+    progress_.show(fmt::format("point {}, {} = {:.8g}, step {:.2g} ", point.number, columns_.front().name,
+                               line.values.front(), point.step));
+  }
   if (!line.admissible && (change || point.number == 1))
     for (const Violation& violation : point.violations) *screen_ << "       " << describe(violation, system_) << '\n';
   if (point.labelled() && point.special.type != PointType::regular && !point.details.empty()) show_contact(point);
@@ -265,6 +274,7 @@ void BranchWriter::note(int point_number, const std::string& text) {
 void BranchWriter::lost(const LostPoint& point) {
   note(point.number, point.text);
   if (screen_ == nullptr) return;
+  progress_.clear();
   *screen_ << fmt::format("       warning: point {}, {} = {:.8g} to {:.8g}: {}\n", point.number, columns_.front().name,
                           point.from, point.to, point.text)
            << std::flush;

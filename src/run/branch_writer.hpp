@@ -10,6 +10,7 @@
 #include "output/point_columns.hpp"
 #include "output/point_file.hpp"
 #include "output/run_files.hpp"
+#include "run/progress_line.hpp"
 
 namespace tchat {
 
@@ -23,9 +24,10 @@ class BranchWriter final : public BranchSink {
     int last_label = 0;
   };
 
-  /// `files` are open; `screen` may be null (quiet).
+  /// `files` are open; `screen` may be null (quiet). `terminal`, which may be null, shows where the branch is while no
+  /// line of the table is due.
   BranchWriter(const HybridSystem& system, const CollocationRule& rule, Setup setup, RunFiles& files,
-               std::ostream* screen);
+               std::ostream* screen, std::ostream* terminal = nullptr);
 
   struct Section {
     int branch = 1;                           ///< counts sections that continue in other directions
@@ -36,6 +38,8 @@ class BranchWriter final : public BranchSink {
   /// reader refuses a header without points.
   void begin_section(Section section);
   void point(const BranchPoint& point) override;
+  /// Nothing of the line that shows where the branch is stays on the terminal.
+  void clear_progress() { progress_.clear(); }
   void next_step(int point_number, double ds) override;
   void note(int point_number, const std::string& text) override;
   void lost(const LostPoint& point) override;
@@ -66,6 +70,7 @@ class BranchWriter final : public BranchSink {
   Setup setup_;
   RunFiles& files_;
   std::ostream* screen_;
+  ProgressLine progress_;
   ProblemNames names_;
   std::vector<PointColumn> columns_;
   Eigen::VectorXd weights_;

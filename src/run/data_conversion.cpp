@@ -26,7 +26,7 @@ std::string convert_data(const RunRequest& request) {
   const std::string plugin = resolve_plugin(request.problem.value_or(request.name));
   const ProblemLibrary library(plugin, [&settings] { return problem_sizes(settings); });
   if (named_parameters) settings = settings_with(names_of(library.system()));
-  check_settings_against(library.system(), settings, constants);
+  check_settings_against(library.system(), settings, {constants, request.overrides});
 
   RunRequest from_data = request;
   from_data.data = request.data.value_or(request.name);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <fstream>
 
+#include "constants/constants_file.hpp"
 #include "constants/user_error.hpp"
 
 namespace tchat {
@@ -13,10 +14,11 @@ namespace tchat {
 namespace {
 
 void check_index(const HybridSystem& system, FunctionKind kind, int index, const char* keyword, const char* what, int s,
-                 const std::string& constants_name) {
+                 const SettingsSource& source) {
   if (index >= 1 && index <= system.count(kind)) return;
-  throw UserError(fmt::format("{}: {} of segment {} is {}, but problem {} has {} {}; allowed: 1..{}", constants_name,
-                              keyword, s, index, system.name(), system.count(kind), what, system.count(kind)));
+  throw UserError(fmt::format("{}: {} of segment {} is {}, but problem {} has {} {}; allowed: 1..{}",
+                              source.of(keyword), keyword, s, index, system.name(), system.count(kind), what,
+                              system.count(kind)));
 }
 
 /// Bytes that the system could still give; 0 when it does not say.
@@ -53,12 +55,12 @@ std::string parameter_list(const HybridSystem& system) {
 
 /// PAR(name) = v and UZR beyond the problem's parameters would do nothing, and so would the run's free parameter: they
 /// are refused. Further entries of ICP are mere columns of the output and weights are harmless: a warning.
-void check_parameters(const HybridSystem& system, const RunSettings& settings, const std::string& constants_name,
+void check_parameters(const HybridSystem& system, const RunSettings& settings, const SettingsSource& source,
                       std::vector<std::string>& warnings) {
   for (const RunSettings::ParameterValue& value : settings.parameter_values)
     parameter_index(system, value.name, "command line");
   const auto no_parameter = [&](const char* keyword, int k) {
-    return fmt::format("{}: {}: PAR({}) is no parameter of problem {}; it has {}", constants_name, keyword, k,
+    return fmt::format("{}: {}: PAR({}) is no parameter of problem {}; it has {}", source.of(keyword), keyword, k,
                        system.name(), parameter_list(system));
   };
   std::size_t free = settings.problem_type == 150 || settings.branch_mode == 2 ? 2 : 1;
@@ -78,29 +80,33 @@ void check_parameters(const HybridSystem& system, const RunSettings& settings, c
 
 }  // namespace
 
+std::string SettingsSource::of(std::string_view keyword) const {
+  return is_overridden(overrides, keyword) ? "command line" : file;
+}
+
 std::vector<std::string> check_settings_against(const HybridSystem& system, const RunSettings& settings,
-                                                const std::string& constants_name) {
+                                                const SettingsSource& source) {
   if (settings.dimension != system.dimension())
-    throw UserError(fmt::format("{}: NDIM is {}, but problem {} has {} states; set NDIM = {}", constants_name,
+    throw UserError(fmt::format("{}: NDIM is {}, but problem {} has {} states; set NDIM = {}", source.of("NDIM"),
                                 settings.dimension, system.name(), system.dimension(), system.dimension()));
   std::vector<std::string> warnings;
   int s = 0;
   for (const SegmentSettings& segment : settings.segments) {
     ++s;
-    check_index(system, FunctionKind::field, segment.index.field, "GCFIND", "vector fields", s, constants_name);
-    check_index(system, FunctionKind::event, segment.index.event, "GCHIND", "event functions", s, constants_name);
-    check_index(system, FunctionKind::jump, segment.index.jump, "GCGIND", "jump functions", s, constants_name);
+    check_index(system, FunctionKind::field, segment.index.field, "GCFIND", "vector fields", s, source);
+    check_index(system, FunctionKind::event, segment.index.event, "GCHIND", "event functions", s, source);
+    check_index(system, FunctionKind::jump, segment.index.jump, "GCGIND", "jump functions", s, source);
     for (const int event : segment.monitor)
-      check_index(system, FunctionKind::event, event, "GCHGRZIND", "event functions", s, constants_name);
+      check_index(system, FunctionKind::event, event, "GCHGRZIND", "event functions", s, source);
     const bool identity = is_identity_jump(system, segment.index.jump);
     if ((segment.type == 0 && !identity) || (segment.type == 1 && identity))
-      warnings.push_back(
-          fmt::format("{}: GCSEGTYP of segment {} is {} ({} jump), but jump {} ({}) is {}the identity; "
-                      "the jump decides",
-                      constants_name, s, segment.type, segment.type == 0 ? "identity" : "another", segment.index.jump,
-                      system.function_name(FunctionKind::jump, segment.index.jump), identity ? "" : "not "));
+      warnings.push_back(fmt::format(
+          "{}: GCSEGTYP of segment {} is {} ({} jump), but jump {} ({}) is {}the identity; "
+          "the jump decides",
+          source.of("GCSEGTYP"), s, segment.type, segment.type == 0 ? "identity" : "another", segment.index.jump,
+          system.function_name(FunctionKind::jump, segment.index.jump), identity ? "" : "not "));
   }
-  check_parameters(system, settings, constants_name, warnings);
+  check_parameters(system, settings, source, warnings);
   return warnings;
 }
 

@@ -13,12 +13,21 @@
 
 namespace tchat {
 
+/// Where constants are from, for messages about them.
+struct SettingsSource {
+  std::string file;
+  std::vector<std::string> overrides = {};  ///< KEY=VALUE of the command line
+
+  /// "command line" or the file.
+  std::string of(std::string_view keyword) const;
+};
+
 /// Throws UserError when the constants ask for what the problem does not have: another dimension, a field, event
 /// function or jump that does not exist, a parameter beyond the problem's own (its value on the command line, a user
 /// value of it, the run's free ones). Returns warnings: a GCSEGTYP that contradicts the jump, such a parameter printed
 /// or weighted. What the Fortran interface reads of PAR is not known: any of PAR(1..60) will do there.
 std::vector<std::string> check_settings_against(const HybridSystem& system, const RunSettings& settings,
-                                                const std::string& constants_name);
+                                                const SettingsSource& source);
 
 /// PAR index of a name given by the user: a number, or one of the problem's names. Throws UserError that begins with
 /// `where` and lists the names.

@@ -85,7 +85,7 @@ RunSettings read_settings(const RunRequest& request, const std::string& constant
 }  // namespace
 
 int run_problem(const RunRequest& request, std::ostream& screen, std::ostream& warnings,
-                const std::function<bool()>& interrupted) {
+                const std::function<bool()>& interrupted, std::ostream* progress) {
   const auto warn = [&](const std::vector<std::string>& texts) { print_warnings(warnings, texts); };
 
   // Constants.
@@ -97,14 +97,14 @@ int run_problem(const RunRequest& request, std::ostream& screen, std::ostream& w
   std::vector<int> free_parameters = free_problem_parameters(problem_type(settings), settings);
 
   // Plugin.
-  const std::string plugin = resolve_plugin(request.problem.value_or(request.name));
+  const std::string plugin = resolve_plugin(request.problem.value_or(request.name), {.progress = progress});
   const ProblemLibrary library(plugin, [&settings] { return problem_sizes(settings); });
   const HybridSystem& system = library.system();
   if (named_parameters) {
     settings = read_settings(request, constants, names_of(system), nullptr);
     free_parameters = free_problem_parameters(problem_type(settings), settings);
   }
-  warn(check_settings_against(system, settings, constants));
+  warn(check_settings_against(system, settings, {constants, request.overrides}));
 
   // Start.
   SelectedStart selected = select_start(request, settings, system, free_parameters);
@@ -133,7 +133,7 @@ int run_problem(const RunRequest& request, std::ostream& screen, std::ostream& w
   BranchWriter writer(
       system, setup.follower->condensed().rule(),
       {settings, active_parameters(problem_type(settings), settings), setup.curve_type, selected.branch, last_label},
-      files, table);
+      files, table, table != nullptr ? progress : nullptr);
   continuation.label_start = selected.label_start;
   continuation.interrupted = interrupted;
 
@@ -163,6 +163,7 @@ int run_problem(const RunRequest& request, std::ostream& screen, std::ostream& w
     ContinuationRun run(*side->follower, *side->defining, continuation,
                         select_tests(*side->defining, settings, side->follower->condition(), side->curve_type), writer);
     const BranchSummary summary = run.run(side->start.point);
+    writer.clear_progress();
     const std::vector<BranchWriter::Labelled> labels(
         writer.labels().begin() + static_cast<std::ptrdiff_t>(labels_before), writer.labels().end());
     if (table != nullptr)

@@ -23,11 +23,14 @@ struct RunRequest {
 };
 
 /// gc.C in the folder of C, or C itself when only that exists. Throws UserError when neither does.
+/// Where C is a folder, gc.C in it counts too: `tchat new` makes NAME/gc.NAME.
 std::string constants_path(const std::string& c);
+/// gc.NAME, or NAME/gc.NAME where NAME is a folder; empty when there is neither.
+std::string own_constants_path(const std::string& name);
 /// The constants of the run that wrote the q-file `solutions`: `given` like constants_path(), else the r-file beside
 /// it, or gc.NAME of `tchat resegment`. Throws UserError when there is none.
 std::string constants_of_run(const std::optional<std::string>& given, const std::string& solutions);
-/// D.dat, or D itself when only that exists. Throws UserError when neither does.
+/// D.dat, D/D.dat, or D itself when only that exists. Throws UserError when neither does.
 std::string data_path(const std::string& d);
 /// q.S in the folder of S, or S itself when only that exists. Throws UserError when neither does.
 std::string solution_path(const std::string& s);

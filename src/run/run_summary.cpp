@@ -23,7 +23,8 @@ std::string reason_text(const BranchSummary& summary, const std::string& paramet
     case EndReason::curve_end:
       return summary.detail;
     case EndReason::special_point:
-      return "at the last special point above, where the run was to end";
+      return summary.stopped_at_grazing ? "at the grazing point above; with GRSTOP=0 the branch goes on beyond it"
+                                        : "at the last special point above, where the run was to end";
     case EndReason::interrupted:
       return "interrupted; all files are complete up to the last point";
     case EndReason::no_convergence:
@@ -97,7 +98,7 @@ bool is_special(const BranchWriter::Labelled& label) {
 std::string summary_text(const BranchSummary& summary, const std::vector<BranchWriter::Labelled>& labels,
                          const std::string& parameter, const std::string& output) {
   std::string text = fmt::format("\n{} points", summary.points);
-  if (summary.multipliers_computed)
+  if (summary.multipliers_computed && !summary.critical_curve)
     text +=
         fmt::format(", {} stable and {} unstable", summary.points - summary.unstable_points, summary.unstable_points);
   if (!labels.empty())

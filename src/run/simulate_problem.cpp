@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <filesystem>
 
 #include "constants/constants_writer.hpp"
@@ -16,6 +15,7 @@
 #include "run/orbit_hand_over.hpp"
 #include "run/parameter_values.hpp"
 #include "run/problem_setup.hpp"
+#include "run/progress_line.hpp"
 #include "run/run_request.hpp"
 #include "run/simulation_start.hpp"
 #include "run/simulation_summary.hpp"
@@ -67,29 +67,6 @@ SimulationSettings simulation_settings(const SimulationRequest& request, const s
   settings.interrupted = interrupted;
   return settings;
 }
-
-/// A line on a terminal that is renewed every second.
-class ProgressLine {
- public:
-  explicit ProgressLine(std::ostream* out) : out_(out), last_(Clock::now()) {}
-  ProgressLine(const ProgressLine&) = delete;
-  ProgressLine& operator=(const ProgressLine&) = delete;
-  ~ProgressLine() {
-    if (out_ != nullptr && shown_) *out_ << "\r\033[K" << std::flush;
-  }
-  void show(long segment, double t) {
-    if (out_ == nullptr || Clock::now() - last_ < std::chrono::seconds(1)) return;
-    last_ = Clock::now();
-    shown_ = true;
-    *out_ << fmt::format("\r{} events, t = {:.6g} ", segment, t) << std::flush;
-  }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  std::ostream* out_;
-  Clock::time_point last_;
-  bool shown_ = false;
-};
 
 struct OrbitPaths {
   std::string data, constants;
@@ -179,13 +156,13 @@ int simulate_problem(const SimulationRequest& request, std::ostream& screen, std
     if (!request.quiet) screen << text << std::flush;
   };
 
-  const std::string plugin = resolve_plugin(request.problem.value_or(request.name));
+  const std::string plugin = resolve_plugin(request.problem.value_or(request.name), {.progress = progress});
   bool named_parameters = false;
   SimulationConstants constants = read_simulation_constants(request, names_to_come(named_parameters));
   const ProblemLibrary library(plugin, [&] { return sizes_of(request, constants); });
   const HybridSystem& system = library.system();
   if (named_parameters) constants = read_simulation_constants(request, names_of(system));
-  fit_to_problem(constants, system);
+  fit_to_problem(constants, system, request.overrides);
   const SimulationStart start = simulation_start(request, constants, system);
   const std::string output = request.output.value_or(request.name);
   const std::string orbit_name = request.orbit_name.empty() ? output : request.orbit_name;
@@ -207,7 +184,7 @@ int simulate_problem(const SimulationRequest& request, std::ostream& screen, std
     ProgressLine line(progress);
     result = run_simulation(simulation, request.plan, [&](const SimulatedSegment& segment) {
       files.write(segment);
-      line.show(segment.number, segment.end_time());
+      if (line.is_due()) line.show(fmt::format("{} events, t = {:.6g} ", segment.number, segment.end_time()));
     });
   }
   files.finish();

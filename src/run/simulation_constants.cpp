@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 
 #include "constants/constants_file.hpp"
 #include "constants/user_error.hpp"
@@ -33,15 +32,11 @@ std::vector<SegmentSettings> segments_of_signature(const std::string& text, cons
 }  // namespace
 
 SimulationConstants read_simulation_constants(const SimulationRequest& request, const ParameterNames& names) {
-  namespace fs = std::filesystem;
   SimulationConstants constants;
-  const fs::path name(request.name);
-  const fs::path own = name.parent_path() / ("gc." + name.filename().string());
-  std::error_code ignored;
   if (request.constants)
     constants.path = constants_path(*request.constants);
-  else if (fs::is_regular_file(own, ignored))
-    constants.path = own.string();
+  else
+    constants.path = own_constants_path(request.name);
   RunSettings& settings = constants.settings;
   if (constants.is_given()) {
     settings = read_constants_file(constants.path, nullptr, names);
@@ -70,12 +65,15 @@ ProblemSizes sizes_of(const SimulationRequest& request, const SimulationConstant
   return sizes;
 }
 
-void fit_to_problem(SimulationConstants& constants, const HybridSystem& system) {
+void fit_to_problem(SimulationConstants& constants, const HybridSystem& system,
+                    const std::vector<std::string>& overrides) {
   if (!constants.is_given()) constants.settings.dimension = system.dimension();
   for (const SegmentSettings& segment : constants.settings.segments)
     if (const std::string fault = fault_of(system, {segment.index}); constants.has_signature && !fault.empty())
-      throw UserError(fmt::format("{}: {}", constants.is_given() ? constants.path : "--signature", fault));
-  if (constants.is_given()) check_settings_against(system, constants.settings, constants.path);
+      throw UserError(fmt::format(
+          "{}: {}", constants.is_given() ? SettingsSource{constants.path, overrides}.of("GCFIND") : "--signature",
+          fault));
+  if (constants.is_given()) check_settings_against(system, constants.settings, {constants.path, overrides});
 }
 
 }  // namespace tchat

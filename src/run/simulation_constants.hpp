@@ -28,6 +28,7 @@ ProblemSizes sizes_of(const SimulationRequest& request, const SimulationConstant
 
 /// What a constants file says goes for this problem; without one its numbers are the problem's. Throws UserError when
 /// they do not fit.
-void fit_to_problem(SimulationConstants& constants, const HybridSystem& system);
+void fit_to_problem(SimulationConstants& constants, const HybridSystem& system,
+                    const std::vector<std::string>& overrides);
 
 }  // namespace tchat

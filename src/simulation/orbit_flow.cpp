@@ -75,10 +75,10 @@ bool add_segment(const HybridSystem& system, const IndexVector& index, const Vec
 }
 
 void require_signature(const HybridSystem& system, const Signature& signature) {
-  if (signature.empty()) throw UserError("Integration: the signature is empty, one index vector at least is needed.");
+  if (signature.empty()) throw UserError("integration: the signature is empty, one index vector at least is needed.");
   for (const IndexVector& index : signature)
     if (index.jump < 1 || index.jump > system.count(FunctionKind::jump))
-      throw UserError(fmt::format("Integration: jump {} does not exist, {} has 1..{}.", index.jump, system.name(),
+      throw UserError(fmt::format("integration: jump {} does not exist, {} has 1..{}.", index.jump, system.name(),
                                   system.count(FunctionKind::jump)));
 }
 

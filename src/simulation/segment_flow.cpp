@@ -16,7 +16,7 @@ using Eigen::RowVectorXd;
 using Eigen::VectorXd;
 
 void require(bool condition, const std::string& what) {
-  if (!condition) throw UserError("Integration: " + what);
+  if (!condition) throw UserError("integration: " + what);
 }
 
 void require_index(const HybridSystem& system, FunctionKind kind, int index, const char* what) {

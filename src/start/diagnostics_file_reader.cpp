@@ -51,7 +51,7 @@ class Blocks {
     else if (contains(words, "Multipliers:"))
       multipliers_.clear();
     else if (contains(words, "NOTE:"))
-      take_xi_zeros(words);
+      take_note(line, words);
     else if (contains(words, "Iterations"))
       take_iterations(words);
     else
@@ -77,9 +77,15 @@ class Blocks {
     return std::find(words.begin(), words.end(), wanted) != words.end();
   }
 
+  void take_note(std::string_view line, const Words& words) {
+    if (!open_) return;
+    const std::size_t text = line.find_first_not_of(' ', line.find("NOTE:") + 5);
+    if (text != std::string_view::npos) points_.back().notes.emplace_back(line.substr(text));
+    take_xi_zeros(words);
+  }
+
   /// `... xi_1 = 0, xi_2 = 0`
   void take_xi_zeros(const Words& words) {
-    if (!open_) return;
     for (std::size_t k = 0; k + 2 < words.size(); ++k) {
       if (!words[k].starts_with("xi_") || words[k + 1] != "=" || (words[k + 2] != "0" && words[k + 2] != "0,"))
         continue;

@@ -3,7 +3,7 @@
 ///
 /// Only what AUTO's own readers rely on is looked at: the bars of 47 `=` between blocks, the line below a
 /// `BR PT TY LAB` heading, lines `Multiplier k re im` and `Iterations : n`; and of this program the word `inadmissible`
-/// and notes `xi_1 = 0, xi_2 = 0`.
+/// and notes, among them `xi_1 = 0, xi_2 = 0`.
 #pragma once
 
 #include <complex>
@@ -20,7 +20,8 @@ struct DiagnosticPoint {
   std::string type;  ///< letters, "" for an ordinary point
   int label = 0;
   bool admissible = true;
-  std::vector<int> xi_zeros;  ///< n of every xi_n = 0 in its notes
+  std::vector<std::string> notes;  ///< the first line of each, in their order
+  std::vector<int> xi_zeros;       ///< n of every xi_n = 0 in its notes
   std::vector<std::complex<double>> multipliers;
   std::optional<double> parameter;  ///< the first number after the label: ICP(1), to 6 digits
   std::optional<int> iterations;    ///< Newton iterations

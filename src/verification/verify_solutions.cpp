@@ -242,7 +242,7 @@ bool verify_solutions(const VerifyRequest& request, std::ostream& screen, std::o
   const ProblemLibrary library(plugin, [&] { return problem_sizes(settings); });
   const HybridSystem& system = library.system();
   if (named_parameters) settings = read_constants_file(constants, nullptr, names_of(system));
-  check_settings_against(system, settings, constants);
+  check_settings_against(system, settings, {constants});
   for (const std::string& warning : file.warnings) warnings << "tchat: warning: " << warning << '\n';
 
   const std::string diagnostics = sibling_path(path, 'd');

@@ -127,8 +127,8 @@ TEST_CASE("parameters beyond the problem's own that do no harm are warned of") {
   const Workspace workspace;
   const Outcome outcome = workspace.run(
       {"-c", "impacting", "-d", "impacting", "-o", "some", "NMX=1", "ICP=[1,61,7]", "THL={11: 0, 61: 0}"});
-  CHECK(contains(outcome.err, "warning: gc.impacting: ICP: PAR(7)"));
-  CHECK(contains(outcome.err, "warning: gc.impacting: THL: PAR(11)"));
+  CHECK(contains(outcome.err, "warning: command line: ICP: PAR(7)"));
+  CHECK(contains(outcome.err, "warning: command line: THL: PAR(11)"));
 }
 
 TEST_CASE("overrides that cannot be") {

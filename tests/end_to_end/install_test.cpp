@@ -56,10 +56,11 @@ TEST_CASE("installed, and moved elsewhere: everything works outside the source t
   const Installation installation;
   const Workspace& workspace = installation.workspace();
   for (const char* file :
-       {"bin/tchat", "bin/@gc", "bin/@sv", "bin/tc-hat", "include/tchat/problem.hpp", "include/tchat/problem.h",
-        "include/tchat/gccont.h", "share/tchat/problems/mems/mems.cpp", "share/tchat/constants/linosc/gc.impacting",
-        "share/doc/tchat/README.md", "share/tchat/python/tchat.py", "share/doc/tchat/src/docs/tutorial.md",
-        "share/doc/tchat/problems/linosc/README.md"}) {
+       {"bin/tchat", "libexec/tchat/@gc", "libexec/tchat/@sv", "libexec/tchat/tc-hat", "share/man/man1/tchat.1",
+        "share/man/man1/tchat-run.1", "share/bash-completion/completions/tchat", "include/tchat/problem.hpp",
+        "include/tchat/problem.h", "include/tchat/gccont.h", "share/tchat/problems/mems/mems.cpp",
+        "share/tchat/constants/linosc/gc.impacting", "share/doc/tchat/README.md", "share/tchat/python/tchat.py",
+        "share/doc/tchat/src/docs/tutorial.md", "share/doc/tchat/problems/linosc/README.md"}) {
     INFO(file);
     CHECK(workspace.has(std::string("prefix/") + file));
   }
@@ -79,7 +80,9 @@ TEST_CASE("installed, and moved elsewhere: everything works outside the source t
     CHECK(workspace.has("out/q.grazing"));
   }
   SECTION("Fortran, by the Makefile in TC-HAT's manner") {
-    installation.shell("cp -rL prefix/share/tchat/problems/mems_fortran . && make -C mems_fortran 1 2");
+    installation.shell(
+        "cp -rL prefix/share/tchat/problems/mems_fortran . && PATH=\"$PWD/prefix/libexec/tchat:$PATH\" make -C "
+        "mems_fortran 1 2");
     CHECK(workspace.has("mems_fortran/q.mems.2"));
   }
   SECTION("another project") {

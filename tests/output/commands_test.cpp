@@ -75,7 +75,7 @@ TEST_CASE("tchat labels", "[output]") {
   const TemporaryFolder folder;
   folder.write("q.x", sample_file());
   const std::string text = output_of(folder, {"labels", folder.file("q.x")});
-  CHECK_THAT(text, Contains("    5  PD    2    17") && Contains("    6  EP    2    17"));
+  CHECK_THAT(text, Contains("    5  PD   2    17") && Contains("    6  EP   2    17"));
   CHECK(output_of(folder, {"labels", folder.file("x")}) == text);
   folder.write("q.empty", "");
   CHECK_THAT(output_of(folder, {"labels", folder.file("q.empty")}), Contains("holds no labelled solution"));

@@ -71,10 +71,17 @@ TEST_CASE("The table of labels", "[output]") {
   file.solutions[1].kind = {UserPointKind::contact, 1, 2, 0.5};
   const std::string text = format_label_table(file);
   CHECK(text ==
-        "  LAB  TY   BR    PT   IPS  SEG NTSTxNCOL          PERIOD  FREE PARAMETERS\n"
-        "    5  PD    2    17   180    2      50x4             3.5  PAR(1) = 3\n"
-        "    6  GR    2    17   180    1      10x2             1.5  PAR(1) = 3   contact inside segment 1, event "
-        "function 2, tau = 0.5\n");
+        "  LAB  TY  BR    PT  IPS  SEG NTSTxNCOL STABLE        PERIOD  FREE PARAMETERS\n"
+        "    5  PD   2    17  180    2      50x4      -           3.5  PAR(1) = 3\n"
+        "    6  GR   2    17  180    1      10x2      -           1.5  PAR(1) = 3\n"
+        "          contact inside segment 1, event function 2, tau = 0.5\n");
+  RecordedLabel recorded;
+  recorded.stable = false;
+  recorded.admissible = false;
+  recorded.words = "period doubling";
+  recorded.violation = "h_1 < 0";
+  CHECK_THAT(format_label_table(file, {}, {{5, recorded}}),
+             Contains("50x4     no           3.5  PAR(1) = 3   period doubling\n          inadmissible: h_1 < 0\n"));
 }
 
 TEST_CASE("Names of the problem in both tables", "[output]") {

@@ -93,5 +93,5 @@ TEST_CASE("a Fortran source that does not compile, and no Fortran compiler") {
   CHECK_THROWS_AS(resolve_plugin(folder / "pend", build_options), UserError);
   CHECK(folder.entries() == 1);
   CHECK_THROWS_WITH(resolve_plugin(folder / "pend", {"", TCHAT_TEST_INCLUDE, "no-such-fortran"}),
-                    Contains("No Fortran compiler") && Contains("no-such-fortran") && Contains("FC"));
+                    Contains("no Fortran compiler") && Contains("no-such-fortran") && Contains("FC"));
 }

@@ -296,7 +296,7 @@ TEST_CASE("a source that does not compile: the compiler's message, and the old l
   const std::string library = resolve_plugin(folder / "dir/small", options);
   folder.write("dir/small.cpp", small_plugin("table.dimensoin = 3;"));
   CHECK_THROWS_WITH(resolve_plugin(folder / "dir/small", options),
-                    Contains("small.cpp") && Contains("dimensoin") && Contains("error") && Contains("-shared"));
+                    Contains("small.cpp") && Contains("dimensoin") && Contains("-fsyntax-only"));
   CHECK_THROWS_AS(resolve_plugin(folder / "dir/small", options), UserError);
   CHECK(dimension_of(library) == 2);
   CHECK(folder.entries("dir") == 2);
@@ -337,8 +337,8 @@ TEST_CASE("a long list of errors is cut") {
     FAIL("a source with 500 errors was compiled");
   } catch (const UserError& error) {
     const std::string text = error.what();
-    CHECK(std::count(text.begin(), text.end(), '\n') < 80);
-    CHECK_THAT(text, Contains("left out"));
+    CHECK(std::count(text.begin(), text.end(), '\n') < 12);
+    CHECK_THAT(text, Contains("and 495 errors more"));
   }
 }
 
@@ -346,7 +346,7 @@ TEST_CASE("no compiler") {
   const PluginFolder folder;
   folder.write("small.cpp", small_plugin());
   CHECK_THROWS_WITH(resolve_plugin(folder / "small", {"no-such-compiler -x", TCHAT_TEST_INCLUDE}),
-                    Contains("No C++ compiler") && Contains("no-such-compiler") && Contains("CXX"));
+                    Contains("no C++ compiler") && Contains("no-such-compiler") && Contains("CXX"));
   const Environment cxx("CXX", "not-installed-c++");
   CHECK_THROWS_WITH(resolve_plugin(folder / "small", {"", TCHAT_TEST_INCLUDE}), Contains("not-installed-c++"));
   CHECK(folder.entries() == 1);

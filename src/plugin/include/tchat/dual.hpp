@@ -9,6 +9,9 @@
 /// ones.
 #pragma once
 
+#include <math.h>    // unqualified sin(double) and, with
+#include <stdlib.h>  // this one, abs(double): without it abs(0.5) is the integer one, 0
+
 #include <array>
 #include <cmath>
 #include <type_traits>
@@ -213,6 +216,22 @@ template <int N, class B>
 Dual<N, B> max(const Dual<N, B>& a, const Dual<N, B>& b) {
   return a < b ? b : a;
 }
+template <int N, class B>
+Dual<N, B> fmin(const Dual<N, B>& a, const Dual<N, B>& b) {
+  return min(a, b);
+}
+template <int N, class B>
+Dual<N, B> fmax(const Dual<N, B>& a, const Dual<N, B>& b) {
+  return max(a, b);
+}
+/// a - m b, with the whole number m of std::fmod; m counts as a constant.
+template <int N, class B>
+Dual<N, B> fmod(const Dual<N, B>& a, const Dual<N, B>& b) {
+  using std::fmod;
+  Dual<N, B> c = a - std::trunc(plain(a) / plain(b)) * b;
+  c.value = fmod(a.value, b.value);
+  return c;
+}
 #define TCHAT_DUAL_MIXED(NAME)                     \
   template <int N, class B>                        \
   Dual<N, B> NAME(const Dual<N, B>& a, double b) { \
@@ -226,6 +245,9 @@ TCHAT_DUAL_MIXED(atan2)
 TCHAT_DUAL_MIXED(hypot)
 TCHAT_DUAL_MIXED(min)
 TCHAT_DUAL_MIXED(max)
+TCHAT_DUAL_MIXED(fmin)
+TCHAT_DUAL_MIXED(fmax)
+TCHAT_DUAL_MIXED(fmod)
 #undef TCHAT_DUAL_MIXED
 
 template <int N, class B>

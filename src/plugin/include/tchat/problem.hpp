@@ -14,8 +14,8 @@
 ///
 /// The indices i, j, k count from 1; x[0] is U(1) and par[0] is PAR(1); par has `parameters` entries. T is double or a
 /// dual number, so constants and local variables that depend on x or par must be of type T (or auto), and the usual
-/// mathematical functions are called unqualified: sin(x[0]), pow(x[1], 3). Where a function cannot be evaluated it
-/// gives NaN or throws; an output left unset is NaN.
+/// mathematical functions are called unqualified: sin(x[0]), pow(x[1], 3), fmax(x[0], 0.0). Where a function cannot be
+/// evaluated it gives NaN or throws; an output left unset is NaN.
 ///
 /// Optional members of the class:
 ///     static constexpr const char* state_names[]      = {"x", "v"};      // and parameter_names, field_names,
@@ -57,15 +57,55 @@ class ProblemTable {
     return &table;
   }
 
+  // Each is the message for one slip; the words in backticks are looked up in the author's file.
+  static_assert(
+      requires { Problem::dimension; },
+      "tchat: the number of states is missing, or is not public: write struct, and "
+      "in it static constexpr int `dimension` = ...;");
+  static_assert(
+      requires { Problem::parameters; },
+      "tchat: the number of parameters is missing, or is not public: write struct, "
+      "and in it static constexpr int `parameters` = ...;");
+  static_assert(
+      requires { Problem::fields; },
+      "tchat: the number of vector fields is missing, or is not public: write struct, "
+      "and in it static constexpr int `fields` = ...;");
+  static_assert(
+      requires { Problem::events; },
+      "tchat: the number of event functions is missing, or is not public: write "
+      "struct, and in it static constexpr int `events` = ...;");
+  static_assert(
+      requires { Problem::jumps; },
+      "tchat: the number of jump functions is missing, or is not public: write struct, "
+      "and in it static constexpr int `jumps` = ...;");
+
  private:
+  template <class T>
+  static constexpr bool has_field = requires(const Problem& p, const T* x, T* f) {
+    p.field(1, x, x, f);
+  };
+  template <class T>
+  static constexpr bool has_event = requires(const Problem& p, const T* x) {
+    p.event(1, x, x);
+  };
+  template <class T>
+  static constexpr bool has_jump = requires(const Problem& p, const T* x, T* g) {
+    p.jump(1, x, x, g);
+  };
+  static_assert(has_field<double> && has_field<Dual<1>>,
+                "tchat: `field` must be: template <class T> void field(int i, const T* x, const T* par, T* f) const");
+  static_assert(has_event<double> && has_event<Dual<1>>,
+                "tchat: `event` must be: template <class T> T event(int j, const T* x, const T* par) const");
+  static_assert(has_jump<double> && has_jump<Dual<1>>,
+                "tchat: `jump` must be: template <class T> void jump(int k, const T* x, const T* par, T* g) const");
+
   static constexpr int n = Problem::dimension;
   static constexpr int q = Problem::parameters;
   static_assert(n >= 1, "tchat: `dimension` must be at least 1");
   static_assert(q >= 0 && q <= 60, "tchat: `parameters` must be between 0 and 60");
-  static_assert(Problem::fields >= 1, "tchat: say how many vector fields there are: static constexpr int fields = ...");
-  static_assert(Problem::events >= 1,
-                "tchat: say how many event functions there are: static constexpr int events = ...");
-  static_assert(Problem::jumps >= 1, "tchat: say how many jump functions there are: static constexpr int jumps = ...");
+  static_assert(Problem::fields >= 1, "tchat: `fields`, the number of vector fields, must be at least 1");
+  static_assert(Problem::events >= 1, "tchat: `events`, the number of event functions, must be at least 1");
+  static_assert(Problem::jumps >= 1, "tchat: `jumps`, the number of jump functions, must be at least 1");
 
   /// Derivatives carried at once: all states and two parameters where that is cheap, else eight at a time.
   static constexpr int width = n + 2 <= 10 ? n + 2 : 8;
@@ -203,11 +243,16 @@ class ProblemTable {
   static constexpr bool successors_of_state = requires(const Problem& p, const double* v) {
     IndexVectors(p.successors(std::array<int, 3>{}, v, v));
   };
+  static constexpr bool successors_of_x = requires(const Problem& p, const double* v) {
+    IndexVectors(p.successors(std::array<int, 3>{}, v));
+  };
   static constexpr bool successors_alone = requires(const Problem& p) {
     IndexVectors(p.successors(std::array<int, 3>{}));
   };
-  static_assert(!names_successors || successors_of_state || successors_alone,
-                "tchat: write std::vector<std::array<int, 3>> successors(std::array<int, 3> from, const double* x, "
+  static constexpr bool has_successors = successors_of_state || successors_of_x || successors_alone;
+  static_assert(!names_successors || has_successors,
+                "tchat: `successors` must be: std::vector<std::array<int, 3>> successors(std::array<int, 3> from, "
+                "const double* x, "
                 "const double* par) const");
 
   static std::int32_t successors(const void* self, const std::int32_t from[3], const double* x, const double* par,
@@ -218,6 +263,8 @@ class ProblemTable {
       IndexVectors next;
       if constexpr (successors_of_state)
         next = object(self).successors(last, x, par);
+      else if constexpr (successors_of_x)
+        next = object(self).successors(last, x);
       else if constexpr (successors_alone)
         next = object(self).successors(last);
       for (const auto& index_vector : next) {
@@ -251,22 +298,23 @@ class ProblemTable {
     table.first = &first;
     table.second = &second;
     table.user_value = &user_value;
-    if constexpr (successors_of_state || successors_alone) table.successors = &successors;
+    if constexpr (has_successors) table.successors = &successors;
     if constexpr (requires { Problem::user_values; }) table.user_values = Problem::user_values;
 
-#define TCHAT_OPTIONAL_ARRAY(MEMBER, LENGTH)                                                             \
-  if constexpr (requires { Problem::MEMBER; }) {                                                         \
-    static_assert(std::size(Problem::MEMBER) == LENGTH, "tchat: " #MEMBER " needs " #LENGTH " entries"); \
-    table.MEMBER = std::data(Problem::MEMBER);                                                           \
+#define TCHAT_OPTIONAL_ARRAY(MEMBER, COUNT)                                         \
+  if constexpr (requires { Problem::MEMBER; }) {                                    \
+    static_assert(std::size(Problem::MEMBER) == Problem::COUNT,                     \
+                  "tchat: `" #MEMBER "` needs as many entries as " #COUNT " says"); \
+    table.MEMBER = std::data(Problem::MEMBER);                                      \
   }
-    TCHAT_OPTIONAL_ARRAY(state_names, n)
-    TCHAT_OPTIONAL_ARRAY(parameter_names, q)
-    TCHAT_OPTIONAL_ARRAY(field_names, Problem::fields)
-    TCHAT_OPTIONAL_ARRAY(event_names, Problem::events)
-    TCHAT_OPTIONAL_ARRAY(jump_names, Problem::jumps)
-    TCHAT_OPTIONAL_ARRAY(initial_parameters, q)
-    TCHAT_OPTIONAL_ARRAY(initial_state, n)
-    TCHAT_OPTIONAL_ARRAY(user_value_names, Problem::user_values)
+    TCHAT_OPTIONAL_ARRAY(state_names, dimension)
+    TCHAT_OPTIONAL_ARRAY(parameter_names, parameters)
+    TCHAT_OPTIONAL_ARRAY(field_names, fields)
+    TCHAT_OPTIONAL_ARRAY(event_names, events)
+    TCHAT_OPTIONAL_ARRAY(jump_names, jumps)
+    TCHAT_OPTIONAL_ARRAY(initial_parameters, parameters)
+    TCHAT_OPTIONAL_ARRAY(initial_state, dimension)
+    TCHAT_OPTIONAL_ARRAY(user_value_names, user_values)
 #undef TCHAT_OPTIONAL_ARRAY
     return table;
   }

@@ -1,0 +1,22 @@
+# Run at every build (cmake -DSOURCE=... -DHEADER=... -P commit.cmake): writes HEADER with the commit that SOURCE is at,
+# when it has changed. In an unpacked archive the commit is in archive_commit.txt, put there by git archive.
+set(commit "")
+find_program(git git)
+if(git AND EXISTS "${SOURCE}/.git")
+  execute_process(COMMAND "${git}" -C "${SOURCE}" describe --always --dirty=+changes --abbrev=10 --exclude=*
+                  OUTPUT_VARIABLE commit OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+endif()
+if(NOT commit)
+  file(STRINGS "${CMAKE_CURRENT_LIST_DIR}/archive_commit.txt" commit LIMIT_COUNT 1)
+  if(NOT commit MATCHES "^[0-9a-f]+$")
+    set(commit "unknown")
+  endif()
+endif()
+set(text "#define TCHAT_COMMIT \"${commit}\"\n")
+set(before "")
+if(EXISTS "${HEADER}")
+  file(READ "${HEADER}" before)
+endif()
+if(NOT before STREQUAL text)
+  file(WRITE "${HEADER}" "${text}")
+endif()
