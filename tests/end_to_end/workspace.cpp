@@ -13,6 +13,12 @@ namespace {
 
 constexpr std::chrono::seconds time_limit{120};
 
+/// The program under test: the one that the build has made, or the sanitized one that the environment names.
+std::string executable() {
+  const char* const chosen = std::getenv("TCHAT_EXECUTABLE");
+  return chosen ? chosen : TCHAT_EXECUTABLE;
+}
+
 }  // namespace
 
 std::vector<std::string> words_of(const std::string& text) {
@@ -30,7 +36,7 @@ Workspace::Workspace(Plugin plugin) {
 }
 
 Outcome Workspace::tchat(const std::vector<std::string>& words) const {
-  std::vector<std::string> all{TCHAT_EXECUTABLE};
+  std::vector<std::string> all{executable()};
   all.insert(all.end(), words.begin(), words.end());
   return Process(all, file(""), logs_.file(std::to_string(++runs_))).wait(time_limit);
 }
@@ -39,36 +45,36 @@ Outcome Workspace::tchat(const std::string& arguments) const { return tchat(word
 
 std::unique_ptr<Process> Workspace::start_tchat(const std::string& arguments) const {
   std::vector<std::string> all = words_of(arguments);
-  all.insert(all.begin(), TCHAT_EXECUTABLE);
+  all.insert(all.begin(), executable());
   return std::make_unique<Process>(all, file(""), logs_.file(std::to_string(++runs_)));
 }
 
 Outcome Workspace::tchat_on_small_disk(int blocks, const std::string& arguments) const {
   // Without the trap the system would end the program before it is told that its file is full.
   const std::string script =
-      "trap '' XFSZ; ulimit -f " + std::to_string(blocks) + "; exec '" TCHAT_EXECUTABLE "' " + arguments;
+      "trap '' XFSZ; ulimit -f " + std::to_string(blocks) + "; exec '" + executable() + "' " + arguments;
   return Process({"/bin/sh", "-c", script}, file(""), logs_.file(std::to_string(++runs_))).wait(time_limit);
 }
 
 Outcome Workspace::tchat_in_memory(int kilobytes, const std::string& arguments) const {
-  const std::string script = "ulimit -v " + std::to_string(kilobytes) + "; exec '" TCHAT_EXECUTABLE "' " + arguments;
+  const std::string script = "ulimit -v " + std::to_string(kilobytes) + "; exec '" + executable() + "' " + arguments;
   return Process({"/bin/sh", "-c", script}, file(""), logs_.file(std::to_string(++runs_))).wait(time_limit);
 }
 
 Outcome Workspace::tchat_redirected(const std::string& arguments, const std::string& redirection) const {
-  const std::string script = "exec '" TCHAT_EXECUTABLE "' " + arguments + " " + redirection;
+  const std::string script = "exec '" + executable() + "' " + arguments + " " + redirection;
   return Process({"/bin/sh", "-c", script}, file(""), logs_.file(std::to_string(++runs_))).wait(time_limit);
 }
 
 Outcome Workspace::tchat_preloaded(const std::string& library, const std::string& record,
                                    const std::string& arguments) const {
   const std::string script =
-      "RECORDED_CALLS='" + record + "' LD_PRELOAD='" + library + "' exec '" TCHAT_EXECUTABLE "' " + arguments;
+      "RECORDED_CALLS='" + record + "' LD_PRELOAD='" + library + "' exec '" + executable() + "' " + arguments;
   return Process({"/bin/sh", "-c", script}, file(""), logs_.file(std::to_string(++runs_))).wait(time_limit);
 }
 
 Outcome Workspace::make(const std::string& folder, const std::string& targets) const {
-  std::vector<std::string> words{"/usr/bin/env", "make", "-C", folder, "TCHAT=" TCHAT_EXECUTABLE};
+  std::vector<std::string> words{"/usr/bin/env", "make", "-C", folder, "TCHAT=" + executable()};
   for (const std::string& target : words_of(targets)) words.push_back(target);
   return Process(words, file(""), logs_.file(std::to_string(++runs_))).wait(time_limit);
 }

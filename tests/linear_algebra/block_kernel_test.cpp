@@ -1,10 +1,11 @@
 // Partial elimination of dense blocks: every size by the same checks, against Eigen where the result is unique.
-#include <Eigen/Dense>
 #include <catch2/catch.hpp>
 #include <random>
 
 #include "linear_algebra/block_kernel.hpp"
+#include "linear_algebra/dense_matrix.hpp"
 #include "linear_algebra/partial_lu.hpp"
+#include "support/random_matrices.hpp"
 
 using namespace tchat;
 using Block = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -111,9 +112,9 @@ TEST_CASE(
       double determinant = 1.0;
       for (int k = 0; k < n; ++k)  // the diagonal holds reciprocals
         determinant /= swaps[static_cast<std::size_t>(k)] == k ? lu(k, k) : -lu(k, k);
-      CHECK(determinant == Approx(pivots.determinant()).epsilon(1e-9));
+      CHECK(determinant == Approx(test::determinant(pivots)).epsilon(1e-9));
       const Eigen::MatrixXd schur =
-          a.block(n, n, border, rest) - a.block(n, 0, border, n) * pivots.partialPivLu().solve(a.block(0, n, n, rest));
+          a.block(n, n, border, rest) - a.block(n, 0, border, n) * solve(pivots, a.block(0, n, n, rest));
       CHECK((lu.block(n, n, border, rest) - schur).norm() < 1e-9 * (1 + schur.norm()));
     }
   }

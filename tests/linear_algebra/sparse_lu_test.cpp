@@ -1,9 +1,10 @@
 // The sparse solver against dense linear algebra.
-#include <Eigen/Dense>
 #include <catch2/catch.hpp>
 #include <random>
 
+#include "linear_algebra/dense_matrix.hpp"
 #include "linear_algebra/sparse_lu.hpp"
+#include "support/random_matrices.hpp"
 
 using namespace tchat;
 using Eigen::MatrixXd;
@@ -39,10 +40,9 @@ struct Sparse {
   }
 };
 
-MatrixXd random_orthogonal(int n, unsigned seed) {
+MatrixXd orthogonal(int n, unsigned seed) {
   std::mt19937 generator(seed);
-  std::normal_distribution<double> normal;
-  return MatrixXd(MatrixXd::NullaryExpr(n, n, [&] { return normal(generator); }).householderQr().householderQ());
+  return test::random_orthogonal(generator, n);
 }
 
 }  // namespace
@@ -59,14 +59,14 @@ TEST_CASE("solutions with the matrix and its transpose, for several matrices of 
       REQUIRE(lu.factorize(a.values));
       const VectorXd x = VectorXd::NullaryExpr(n, [&] { return normal(generator); });
       const double condition =
-          a.dense().jacobiSvd().singularValues()(0) / a.dense().jacobiSvd().singularValues()(n - 1);
+          test::condition_number(a.dense());
       VectorXd b = a.dense() * x, found(n);
       lu.solve(b.data(), found.data());
       CHECK((found - x).norm() < 1e-14 * condition * (1 + x.norm()));
       b = a.dense().transpose() * x;
       lu.solve_transposed(b.data(), found.data());
       CHECK((found - x).norm() < 1e-14 * condition * (1 + x.norm()));
-      const double determinant = a.dense().determinant();
+      const double determinant = test::determinant(a.dense());
       CHECK(lu.determinant().sign == (determinant > 0 ? 1 : -1));
       CHECK(lu.determinant().log2_size == Approx(std::log2(std::abs(determinant))).margin(1e-10));
       for (double& value : a.values) value = normal(generator);
@@ -115,8 +115,8 @@ TEST_CASE("entries at the end of the range of double precision") {
 TEST_CASE("a determinant far beyond the range of double precision") {
   Sparse a(40);
   MatrixXd scaled = a.dense();
-  const double before = std::log2(std::abs(scaled.determinant()));
-  const int sign = scaled.determinant() > 0 ? 1 : -1;
+  const double before = std::log2(std::abs(test::determinant(scaled)));
+  const int sign = test::determinant(scaled) > 0 ? 1 : -1;
   const Sparse large(scaled * 1e100);
   SparseLu lu(40, large.rows, large.columns);
   REQUIRE(lu.factorize(large.values));
@@ -130,8 +130,8 @@ TEST_CASE("condition and null direction against the singular value decomposition
     CAPTURE(smallest);
     VectorXd singular_values = VectorXd::Ones(n);
     singular_values(n - 1) = smallest;
-    const MatrixXd right = random_orthogonal(n, 2);
-    const MatrixXd a = random_orthogonal(n, 1) * singular_values.asDiagonal() * right.transpose();
+    const MatrixXd right = orthogonal(n, 2);
+    const MatrixXd a = orthogonal(n, 1) * singular_values.asDiagonal() * right.transpose();
     // Rows and columns scaled far apart: the condition is that of the matrix scaled back.
     VectorXd rows(n), columns(n);
     for (int i = 0; i < n; ++i) rows(i) = std::pow(10.0, i % 5 - 2), columns(i) = std::pow(10.0, (3 * i) % 7 - 3);
@@ -150,7 +150,7 @@ TEST_CASE("condition and null direction against the singular value decomposition
 }
 
 TEST_CASE("the null direction of an exactly singular matrix") {
-  MatrixXd a = random_orthogonal(8, 4);
+  MatrixXd a = orthogonal(8, 4);
   a.col(5).setZero();
   Sparse sparse(a);
   SparseLu lu(8, sparse.rows, sparse.columns);

@@ -17,6 +17,8 @@
 using namespace tchat;
 using Catch::Matchers::Contains;
 
+extern "C" void __asan_init() __attribute__((weak));
+
 namespace {
 
 struct Ended {
@@ -172,9 +174,7 @@ TEST_CASE("a plugin dies: it is named, with where it was, status 2") {
                          {"division", "divided by zero"},
                          {"abort", "SIGABRT"},
                          {"trap", "SIGILL"},
-#ifndef __SANITIZE_ADDRESS__  // which ends the process itself, with its own report
                          {"bad free", "SIGABRT"},
-#endif
                          {"noexcept", "broken promise"},
                          {"terminate", "SIGABRT"},
                          {"raise", "SIGUSR1"},
@@ -187,6 +187,7 @@ TEST_CASE("a plugin dies: it is named, with where it was, status 2") {
                          {"thread throws", "in a thread of its own"},
                          {"thread segfaults", "in a thread of its own"},
                          {"thread exits", "in a thread of its own"}}) {
+    if (__asan_init != nullptr && way.how == std::string("bad free")) continue;  // ASan ends it, with its own report
     const Ended ended = in_process(folder, [&] {
       choose("event", way.how);
       use(library);

@@ -14,17 +14,15 @@ namespace {
 
 constexpr int systems = 200;
 
-template <int N>
-void follow(const RandomForm<N>& form, int number, int intervals, double direction) {
-  CAPTURE(number, N, intervals, direction, form.branch_points, form.epsilon, form.kappa, form.pitchfork);
-  RandomSystem<N>::form = &form;
+/// `hybrid` shows the form.
+void follow(const HybridSystem& hybrid, const RandomForm& form, int number, int intervals, double direction) {
+  CAPTURE(number, form.n, intervals, direction, form.branch_points, form.epsilon, form.kappa, form.pitchfork);
   const double from = direction > 0.0 ? form.least_mu : form.most_mu;
   const Orbit start = form.orbit(from, intervals, 4);
-  const HybridSystem& hybrid = system_of<RandomSystem<N>>();
   const PeriodicOrbitSystem system(hybrid, {{1, 1, 1}}, {1});
   Eigen::VectorXd weights = Eigen::VectorXd::Zero(parameter_length);
   weights(0) = 1.0;
-  PathFollower follower(system, start.shape, WeightedNorm(Eigen::VectorXd::Ones(N), weights), tight_newton(), 1);
+  PathFollower follower(system, start.shape, WeightedNorm(Eigen::VectorXd::Ones(form.n), weights), tight_newton(), 1);
   PathPoint point = follower.make_point(start);
   const bool started = follower.start_at_fixed_parameter(point).converged();
   CHECK(started);
@@ -62,9 +60,10 @@ void follow_systems(int intervals, int every, int first) {
   std::mt19937 random(1000 + N);
   for (int number = 0; number < systems; ++number) {
     if (2 + number % 7 != N) continue;
-    const RandomForm<N> form(random, number);
+    const RandomForm form(N, random, number);
     if (number % every != first) continue;
-    for (const double direction : {1.0, -1.0}) follow(form, number, intervals, direction);
+    RandomSystem<N>::form = &form;
+    for (const double direction : {1.0, -1.0}) follow(system_of<RandomSystem<N>>(), form, number, intervals, direction);
   }
 }
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include <Eigen/Dense>
+#include "support/random_matrices.hpp"
 
 using namespace tchat;
 
@@ -35,7 +35,7 @@ double whole_determinant(const Blocks& blocks, double t) {
     matrix.block(s * n, s * n, n, n) += blocks.e[static_cast<std::size_t>(s)];
     matrix.block(s * n, (s + m - 1) % m * n, n, n) -= (s == 0 ? t : 1.0) * blocks.a[static_cast<std::size_t>(s)];
   }
-  return matrix.determinant();
+  return test::determinant(matrix);
 }
 
 }  // namespace

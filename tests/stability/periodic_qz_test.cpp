@@ -1,10 +1,11 @@
 // The periodic QZ algorithm alone: random products, factors with known eigenvalues, singular factors.
-#include <Eigen/Dense>
 #include <catch2/catch.hpp>
 #include <random>
 
+#include "linear_algebra/dense_matrix.hpp"
 #include "stability/periodic_qz.hpp"
 #include "support/multiplier_sets.hpp"
+#include "support/random_matrices.hpp"
 
 using namespace tchat;
 using namespace tchat::test;
@@ -15,15 +16,6 @@ namespace {
 struct Product {
   std::vector<MatrixXd> a, e;
 };
-
-MatrixXd random_matrix(std::mt19937& generator, int rows, int columns) {
-  std::normal_distribution<double> normal;
-  return MatrixXd::NullaryExpr(rows, columns, [&] { return normal(generator); });
-}
-
-MatrixXd random_orthogonal(std::mt19937& generator, int n) {
-  return random_matrix(generator, n, n).householderQr().householderQ();
-}
 
 Product random_product(std::mt19937& generator, int n, int m) {
   Product p;
@@ -58,11 +50,8 @@ Multipliers block_cyclic_qz(const Product& p) {
     a.block(s * n, (s + m - 1) % m * n, n, n) = p.a[static_cast<std::size_t>(s)];
     e.block(s * n, s * n, n, n) = p.e[static_cast<std::size_t>(s)];
   }
-  const Eigen::GeneralizedEigenSolver<MatrixXd> solver(a, e, false);
   Multipliers values;
-  for (Eigen::Index k = 0; k < n * m; ++k)
-    if (std::abs(solver.betas()(k)) > 1e-10 * std::abs(solver.alphas()(k)))
-      values.push_back(std::pow(solver.alphas()(k) / solver.betas()(k), static_cast<int>(m)));
+  for (const std::complex<double>& value : finite_eigenvalues(a, e)) values.push_back(std::pow(value, static_cast<int>(m)));
   return values;
 }
 
@@ -108,7 +97,7 @@ TEST_CASE("periodic QZ of one factor is the eigenvalue problem of a matrix, of a
   std::mt19937 generator(2);
   for (const int n : {1, 2, 5, 12, 30}) {
     Product p{{random_matrix(generator, n, n)}, {MatrixXd::Identity(n, n)}};
-    const Eigen::VectorXcd exact = p.a[0].eigenvalues();
+    const Eigen::VectorXcd exact = eigenvalues(p.a[0]);
     CHECK(mixed_distance(periodic_qz(p), {exact.begin(), exact.end()}) < 1e-10);
   }
   CHECK(PeriodicQz(0, 3).compute());

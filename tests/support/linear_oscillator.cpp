@@ -1,6 +1,5 @@
 #include "support/linear_oscillator.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <cmath>
 
@@ -67,8 +66,9 @@ std::vector<std::complex<double>> one_impact_multipliers(double omega, double v)
   Eigen::Matrix2d map;
   map.row(0) = -k.r * (before.row(1) + acceleration * delay);
   map.row(1) = before.row(2) + k.omega * delay;
-  const Eigen::Vector2cd nontrivial = map.eigenvalues();
-  return {nontrivial(0), nontrivial(1), std::exp(-2 * k.period()), 0.0};
+  const double half = 0.5 * map.trace();
+  const std::complex<double> root = std::sqrt(std::complex<double>(half * half - map.determinant()));
+  return {half + root, half - root, std::exp(-2 * k.period()), 0.0};
 }
 
 }  // namespace tchat::test

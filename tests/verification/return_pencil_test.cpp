@@ -1,10 +1,10 @@
 // Multipliers of return maps against plain products, and where a product does not exist.
 #include "verification/return_pencil.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "linear_algebra/dense_matrix.hpp"
 #include "support/multiplier_sets.hpp"
 
 using namespace tchat;
@@ -30,7 +30,7 @@ std::vector<std::complex<double>> of_product(const std::vector<SegmentLink>& all
   MatrixXd map = MatrixXd::Identity(4, 4);
   for (const SegmentLink& link : all)
     map = link.gx * (link.flow * map - link.f * (link.hx * link.flow * map) / link.hx.dot(link.f)).eval();
-  const Eigen::VectorXcd values = map.eigenvalues();
+  const Eigen::VectorXcd values = eigenvalues(map);
   return {values.begin(), values.end()};
 }
 

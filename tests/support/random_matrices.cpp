@@ -1,0 +1,47 @@
+#include "support/random_matrices.hpp"
+
+#include <Eigen/LU>
+#include <Eigen/QR>
+#include <Eigen/SVD>
+#include <stdexcept>
+
+// LAPACK: generalised eigenvalues (alpha_r + i alpha_i) / beta of the pair (a, b), which are overwritten.
+extern "C" void dggev_(const char* left, const char* right, const int* n, double* a, const int* lda, double* b,
+                       const int* ldb, double* alpha_r, double* alpha_i, double* beta, double* vl, const int* ldvl,
+                       double* vr, const int* ldvr, double* work, const int* length, int* info);
+
+namespace tchat::test {
+
+Eigen::MatrixXd random_matrix(std::mt19937& generator, int rows, int columns) {
+  std::normal_distribution<double> normal;
+  return Eigen::MatrixXd::NullaryExpr(rows, columns, [&] { return normal(generator); });
+}
+
+Eigen::MatrixXd random_orthogonal(std::mt19937& generator, int n) {
+  return random_matrix(generator, n, n).householderQr().householderQ();
+}
+
+double determinant(const Eigen::MatrixXd& matrix) { return matrix.determinant(); }
+
+double condition_number(const Eigen::MatrixXd& matrix) {
+  const Eigen::VectorXd values = matrix.jacobiSvd().singularValues();
+  return values(0) / values(values.size() - 1);
+}
+
+std::vector<std::complex<double>> finite_eigenvalues(Eigen::MatrixXd a, Eigen::MatrixXd e) {
+  const int n = static_cast<int>(a.rows()), length = 16 * n, one = 1;
+  Eigen::VectorXd real(n), imaginary(n), beta(n), work(length);
+  int info = 0;
+  double none = 0.0;
+  dggev_("N", "N", &n, a.data(), &n, e.data(), &n, real.data(), imaginary.data(), beta.data(), &none, &one, &none, &one,
+         work.data(), &length, &info);
+  if (info != 0) throw std::runtime_error("dggev found no eigenvalues");
+  std::vector<std::complex<double>> values;
+  for (int k = 0; k < n; ++k) {
+    const std::complex<double> alpha(real(k), imaginary(k));
+    if (std::abs(beta(k)) > 1e-10 * std::abs(alpha)) values.push_back(alpha / beta(k));
+  }
+  return values;
+}
+
+}  // namespace tchat::test

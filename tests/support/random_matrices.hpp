@@ -1,0 +1,24 @@
+/// Random matrices, and what is compared with on them: dense linear algebra of other hands, compiled once for all tests.
+#pragma once
+
+#include <Eigen/Core>
+#include <complex>
+#include <random>
+#include <vector>
+
+namespace tchat::test {
+
+/// Entries are normally distributed.
+Eigen::MatrixXd random_matrix(std::mt19937& generator, int rows, int columns);
+
+Eigen::MatrixXd random_orthogonal(std::mt19937& generator, int n);
+
+double determinant(const Eigen::MatrixXd& matrix);
+
+/// Quotient of the largest and the least singular value.
+double condition_number(const Eigen::MatrixXd& matrix);
+
+/// mu with det(A - mu E) = 0, by LAPACK's dggev; values beyond 1e10 (E singular) are left out.
+std::vector<std::complex<double>> finite_eigenvalues(Eigen::MatrixXd a, Eigen::MatrixXd e);
+
+}  // namespace tchat::test
