@@ -176,7 +176,7 @@ int simulate_problem(const SimulationRequest& request, std::ostream& screen, std
 
   HybridSimulation simulation(start.rule, start.state, start.par, simulation_settings(request, interrupted));
   say(start_text(system, start, simulation.mode()));
-  warnings << start_warnings(system, start, simulation.mode());
+  warnings << start_warnings(start, simulation);
   SimulationFiles files(system, output, problem_text(system, start.par), start.par,
                         has_length(request.plan) ? SimulationFiles::everything : kept_size);
   SimulationResult result;

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <set>
 
 #include "hybrid/identity_jump.hpp"
+#include "hybrid/relevant_events.hpp"
 
 namespace tchat {
 
@@ -32,6 +32,16 @@ double clear_value(const HybridSystem& system, int event, const VectorXd& x, con
   Eigen::RowVectorXd gradient(x.size());
   system.first(FunctionKind::event, event, x.data(), par.data(), {}, &h, gradient.data(), &no_parameters);
   return std::abs(h) <= rounding * (1.0 + gradient.norm() * x.norm()) ? 0.0 : h;
+}
+
+/// Those of the first mode that change something: by their jump or, where the problem says what follows, the field.
+std::vector<int> events_that_matter(const SimulationStart& start, const Mode& mode, const HybridSystem& system) {
+  if (!start.rule.is_cyclic())
+    return relevant_events(system, mode.index_vectors, mode.field(), start.state.data(), start.par.data());
+  std::vector<int> events;
+  for (const IndexVector& v : mode.index_vectors)
+    if (!is_identity_jump(system, v.jump)) events.push_back(v.event);
+  return events;
 }
 
 std::string multiplier_text(const std::complex<double>& mu) {
@@ -97,17 +107,24 @@ std::string start_text(const HybridSystem& system, const SimulationStart& start,
   return text;
 }
 
-std::string start_warnings(const HybridSystem& system, const SimulationStart& start, const Mode& mode) {
+std::string start_warnings(const SimulationStart& start, const HybridSimulation& simulation) {
+  const HybridSystem& system = simulation.system();
+  const Mode& mode = simulation.mode();
   std::string text;
-  std::set<int> told;
-  for (const IndexVector& v : mode.index_vectors) {
-    const double h = clear_value(system, v.event, start.state, start.par);
-    if (!(h < 0.0) || is_identity_jump(system, v.jump) || !told.insert(v.event).second) continue;
+  for (const int event : events_that_matter(start, mode, system)) {
+    const IndexVector& v = mode.ended_by(event);
+    const double h = clear_value(system, event, start.state, start.par);
+    const bool is_left = simulation.leaves_downwards(v);
+    if (!(h < 0.0) && !is_left) continue;
     text += fmt::format(
-        "tchat: the start is behind {}: its function is {:.6g} there, and nothing happens until it has risen above "
-        "zero.\n  If that is a wall the motion is outside the model; start where the function is positive, with "
-        "--state, -d or -s.\n",
-        event_name(system, v.event), h);
+        "tchat: the start {} {}: its function is {:.6g} there{}, and nothing happens until it has risen "
+        "above zero.\n",
+        is_left ? "lies on" : "is behind", event_name(system, event), h, is_left ? " and falls" : "");
+    text += is_left
+                ? "  If something changes there, start a little before it or behind it, or let the problem say what "
+                  "follows (0,0,0) at such a state.\n"
+                : "  If that is a wall the motion is outside the model; start where the function is positive, with "
+                  "--state, -d or -s.\n";
   }
   return text;
 }

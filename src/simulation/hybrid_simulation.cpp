@@ -88,6 +88,11 @@ bool HybridSimulation::is_wall(const IndexVector& index, const VectorXd& x) cons
   return before * after < 0.0;
 }
 
+bool HybridSimulation::leaves_downwards(const IndexVector& index) const {
+  const Surface at = surface(index.field, index.event, x_);
+  return at.is_near && at.rate < 0.0 && !is_wall(index, x_);
+}
+
 SimulatedSegment HybridSimulation::next(double end_time) {
   SimulatedSegment segment = begin_segment();
   if (segment.ended_by != SegmentEnd::event) return segment;

@@ -94,6 +94,9 @@ class HybridSimulation {
   const Eigen::VectorXd& state() const { return x_; }
   /// Of the last segment; before any, that of the start.
   const Mode& mode() const { return mode_; }
+  /// Whether the state lies on the surface of this index vector's event and goes to h < 0 without being ended by it, as
+  /// after a section: nothing happens there until h has risen above zero.
+  bool leaves_downwards(const IndexVector& index) const;
 
  private:
   /// h_j and h_x f under field i at x.
