@@ -33,7 +33,7 @@ std::string harmless(std::string_view text) {
 
 }  // namespace
 
-std::string format_bar() { return std::string(47, '=') + '\n'; }
+std::string format_bar() { return fmt::format("{:=<47}\n", ""); }
 
 std::string format_newton_history(int branch, int point, const std::vector<NewtonLine>& iterations) {
   std::string text = "  BR    PT  IT     PARAMETER      RESIDUAL      PAR. STEP     STATE STEP\n";
