@@ -90,7 +90,7 @@ bool HybridSimulation::is_wall(const IndexVector& index, const VectorXd& x) cons
 
 bool HybridSimulation::leaves_downwards(const IndexVector& index) const {
   const Surface at = surface(index.field, index.event, x_);
-  return at.is_near && at.rate < 0.0 && !is_wall(index, x_);
+  return at.is_near && at.rate < 0.0 && !is_wall(index, x_) && !moves(index, x_);
 }
 
 SimulatedSegment HybridSimulation::next(double end_time) {

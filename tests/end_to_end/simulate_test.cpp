@@ -294,31 +294,31 @@ TEST_CASE("simulate: chattering is told with its limit in time, no orbit is writ
   CHECK(contains(simulate(workspace, "ball PAR(r)=0").out, "the contact lasts"));
 }
 
-/// x' = v, v' = -x; at x = 0 from above the velocity is halved, from below nothing changes. Begins with (1,1,1).
-const char* const brake = R"(#include <tchat/problem.hpp>
+/// x' = v, v' = -p x, with another p on the other side of x = 0. Begins with (1,1,1).
+const char* const switching = R"(#include <tchat/problem.hpp>
 #include <array>
 #include <vector>
-struct Brake {
-  static constexpr int dimension = 2, parameters = 1, fields = 2, events = 2, jumps = 2;
+struct Switching {
+  static constexpr int dimension = 2, parameters = 1, fields = 2, events = 2, jumps = 1;
   static constexpr double initial_parameters[] = {1.0};
-  template <class T> void field(int, const T* x, const T* par, T* f) const { f[0] = x[1], f[1] = -par[0] * x[0]; }
+  template <class T> void field(int i, const T* x, const T* par, T* f) const { f[0] = x[1], f[1] = -i * par[0] * x[0]; }
   template <class T> T event(int j, const T* x, const T*) const { return j == 1 ? x[0] : -x[0]; }
-  template <class T> void jump(int k, const T* x, const T*, T* g) const { g[0] = x[0], g[1] = x[1] * (k == 1 ? 0.5 : 1.0); }
+  template <class T> void jump(int, const T* x, const T*, T* g) const { g[0] = x[0], g[1] = x[1]; }
   std::vector<std::array<int, 3>> successors(std::array<int, 3> from) const {
-    if (from[0] == 1) return {{2, 2, 2}};
+    if (from[0] == 1) return {{2, 2, 1}};
     return {{1, 1, 1}};
   }
 };
-TCHAT_PROBLEM(Brake)
+TCHAT_PROBLEM(Switching)
 )";
 
 TEST_CASE("simulate: a start on a switching surface that the motion leaves to the wrong side is told") {
   const Workspace workspace;
-  workspace.write("brake.cpp", brake);
-  CHECK(contains(simulate(workspace, "brake --state 0,-1 --events 1").err, "the start lies on event 1"));
-  CHECK(contains(simulate(workspace, "brake --state -1,-1 --events 1").err, "the start is behind event 1"));
-  CHECK(simulate(workspace, "brake --state 0,1 --events 1").err.empty());
-  CHECK(simulate(workspace, "brake --state 1,-1 --events 1").err.empty());
+  workspace.write("switching.cpp", switching);
+  CHECK(contains(simulate(workspace, "switching --state 0,-1 --events 1").err, "the start lies on event 1"));
+  CHECK(contains(simulate(workspace, "switching --state -1,-1 --events 1").err, "the start is behind event 1"));
+  CHECK(simulate(workspace, "switching --state 0,1 --events 1").err.empty());
+  CHECK(simulate(workspace, "switching --state 1,-1 --events 1").err.empty());
 }
 
 TEST_CASE("simulate: several events at once, a start beyond a wall, rest and near-grazing contacts are told") {
