@@ -7,15 +7,16 @@
 
 namespace tchat {
 
+bool keeps_field(const HybridSystem& system, const IndexVector& v, int field, const double* x, const double* par) {
+  const auto next = system.successors(v, x, par).value_or(std::vector<IndexVector>{});
+  return std::any_of(next.begin(), next.end(), [&](const IndexVector& w) { return w.field == field; });
+}
+
 std::vector<int> relevant_events(const HybridSystem& system, std::span<const IndexVector> following, int field,
                                  const double* x, const double* par) {
-  const auto keeps_field = [&](const IndexVector& v) {
-    const auto next = system.successors(v, x, par).value_or(std::vector<IndexVector>{});
-    return std::any_of(next.begin(), next.end(), [&](const IndexVector& w) { return w.field == field; });
-  };
   std::set<int> events;
   for (const IndexVector& v : following)
-    if (!is_identity_jump(system, v.jump) || !keeps_field(v)) events.insert(v.event);
+    if (!is_identity_jump(system, v.jump) || !keeps_field(system, v, field, x, par)) events.insert(v.event);
   return {events.begin(), events.end()};
 }
 

@@ -8,6 +8,9 @@
 
 namespace tchat {
 
+/// Whether `field` goes on after index vector v ends in state x, by the index jump function.
+bool keeps_field(const HybridSystem& system, const IndexVector& v, int field, const double* x, const double* par);
+
 /// Event functions of `following`, rising, each once, without those of sections: an identity jump after which, by the
 /// index jump function in state x, `field` goes on.
 std::vector<int> relevant_events(const HybridSystem& system, std::span<const IndexVector> following, int field,

@@ -114,17 +114,17 @@ std::string start_warnings(const SimulationStart& start, const HybridSimulation&
   for (const int event : events_that_matter(start, mode, system)) {
     const IndexVector& v = mode.ended_by(event);
     const double h = clear_value(system, event, start.state, start.par);
-    const bool is_left = simulation.leaves_downwards(v);
+    const bool is_left = simulation.leaves_downwards(v) && !start.rule.is_cyclic() &&
+                         !keeps_field(system, v, v.field, start.state.data(), start.par.data());
     if (!(h < 0.0) && !is_left) continue;
     text += fmt::format(
         "tchat: the start {} {}: its function is {:.6g} there{}, and nothing happens until it has risen "
         "above zero.\n",
         is_left ? "lies on" : "is behind", event_name(system, event), h, is_left ? " and falls" : "");
-    text += is_left
-                ? "  If something changes there, start a little before it or behind it, or let the problem say what "
-                  "follows (0,0,0) at such a state.\n"
-                : "  If that is a wall the motion is outside the model; start where the function is positive, with "
-                  "--state, -d or -s.\n";
+    text += is_left ? "  The field changes there: start a little before it, or let the problem say what "
+                      "follows (0,0,0) at such a state.\n"
+                    : "  If that is a wall the motion is outside the model; start where the function is positive, with "
+                      "--state, -d or -s.\n";
   }
   return text;
 }
