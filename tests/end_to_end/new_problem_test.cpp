@@ -105,7 +105,8 @@ TEST_CASE("constants: the other form says the same, also of itself, explained in
 
 namespace {
 
-// The way of src/docs/forcing.md to hold the period: the parameter that is to be free is a state, a clock measures the period.
+// The way of src/docs/forcing.md to hold the period: the parameter that is to be free is a state, a clock measures the
+// period.
 constexpr const char* held_period = R"(#include <tchat/problem.hpp>
 struct VanDerPol {
   static constexpr int dimension = 4, parameters = 2, fields = 1, events = 1, jumps = 1;

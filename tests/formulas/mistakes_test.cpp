@@ -81,7 +81,9 @@ TEST_CASE("states and equations") {
   check_mistake("jump other: y -> 1", 13, "no equation for 'y'");
   check_mistake("jump other: x -> 1, x -> 2", 21, "two values");
   const std::string fields = "x' = 1\nevent e = x\nfield slip\nu' = 1\nfield stick\n";
-  CHECK_THAT(mistake_in(fields), StartsWith("mine.tch:5:7: the field stick has no equation for u; write one below it, as u' = 0, or above"));
+  CHECK_THAT(
+      mistake_in(fields),
+      StartsWith("mine.tch:5:7: the field stick has no equation for u; write one below it, as u' = 0, or above"));
   CHECK_THAT(mistake_in("x -> 3\n"), Contains("there is none above it"));
 }
 
@@ -102,7 +104,7 @@ TEST_CASE("what follows an event") {
   check_mistake("after any wall -> impact", 16, "':' is expected");
   check_mistake("after any: wall", 16, "behind an event comes its jump");
   check_mistake("after start: wall -> impact", 1, "'after impact: ...' without 'if'");
-CHECK_THAT(mistake_in(sound + "after any if x < 0: wall -> impact\n"),
+  CHECK_THAT(mistake_in(sound + "after any if x < 0: wall -> impact\n"),
              Contains("what follows the start is not said") && Contains("what follows wall -> impact is not said"));
   const std::string fields = "x' = 1\nfield a\nfield b\nevent e = x\n";
   CHECK_THAT(mistake_in(fields + "after any: e -> identity\n"), Contains("which field is followed?"));

@@ -58,8 +58,7 @@ TEST_CASE("solutions with the matrix and its transpose, for several matrices of 
       CAPTURE(n, turn);
       REQUIRE(lu.factorize(a.values));
       const VectorXd x = VectorXd::NullaryExpr(n, [&] { return normal(generator); });
-      const double condition =
-          test::condition_number(a.dense());
+      const double condition = test::condition_number(a.dense());
       VectorXd b = a.dense() * x, found(n);
       lu.solve(b.data(), found.data());
       CHECK((found - x).norm() < 1e-14 * condition * (1 + x.norm()));

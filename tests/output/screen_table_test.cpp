@@ -46,7 +46,8 @@ TEST_CASE("At most five columns, so that a line fits 100 characters") {
   CHECK(format_table_heading(columns(std::vector<std::string>(12, "P"))).size() == 19 + 5 * 13 - 2 + 1);
 }
 
-TEST_CASE("Free parameters and the period are always shown, then the measure and maxima, durations are not", "[output]") {
+TEST_CASE("Free parameters and the period are always shown, then the measure and maxima, durations are not",
+          "[output]") {
   using Kind = PointColumn::Kind;
   std::vector<PointColumn> columns{{Kind::parameter, 2, "omega"}, {Kind::l2_norm, 0, "L2-NORM"},
                                    {Kind::maximum, 1, "MAX q1"},  {Kind::maximum, 2, "MAX v1"},

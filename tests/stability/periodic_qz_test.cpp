@@ -51,7 +51,8 @@ Multipliers block_cyclic_qz(const Product& p) {
     e.block(s * n, s * n, n, n) = p.e[static_cast<std::size_t>(s)];
   }
   Multipliers values;
-  for (const std::complex<double>& value : finite_eigenvalues(a, e)) values.push_back(std::pow(value, static_cast<int>(m)));
+  for (const std::complex<double>& value : finite_eigenvalues(a, e))
+    values.push_back(std::pow(value, static_cast<int>(m)));
   return values;
 }
 

@@ -1,4 +1,5 @@
-/// Random matrices, and what is compared with on them: dense linear algebra of other hands, compiled once for all tests.
+/// Random matrices, and what is compared with on them: dense linear algebra of other hands, compiled once for all
+/// tests.
 #pragma once
 
 #include <Eigen/Core>
