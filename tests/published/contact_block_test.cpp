@@ -32,12 +32,12 @@ Vector read_vector(std::istringstream& words) {
   return v;
 }
 
-/// BR, PT, TY (at some), LAB and seven columns.
+/// BR, PT, TY (at some), LAB and five columns.
 std::optional<ContactBlock> point_line(const std::string& line) {
   std::istringstream text(line);
   std::vector<std::string> words;
   for (std::string word; text >> word;) words.push_back(word);
-  if (words.size() < 10 || (words[0] != "1" && words[0] != "2")) return std::nullopt;
+  if (words.size() < 8 || (words[0] != "1" && words[0] != "2")) return std::nullopt;
   const bool typed = std::isalpha(static_cast<unsigned char>(words[2].front()));
   const std::string& label = words[typed ? 3 : 2];
   if (label.find_first_not_of("0123456789") != std::string::npos) return std::nullopt;
