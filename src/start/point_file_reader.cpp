@@ -232,10 +232,16 @@ class PointFileReader {
   }
 
   void read_header_line(std::string_view line) {
-    in_new_header_ = in_new_header_ || !in_header_;
-    in_header_ = true;
+    if (!std::exchange(in_header_, true)) {
+      in_new_header_ = true;
+      first_of_header_ = line;
+    }
     const bool has_constants = line.find('=') != std::string_view::npos;
-    if (has_constants && std::exchange(in_new_header_, false)) header_ = Header();
+    if (has_constants && std::exchange(in_new_header_, false)) {
+      header_ = Header();
+      header_.read(first_of_header_);
+      if (line.data() == first_of_header_.data()) return;
+    }
     header_.read(line);
   }
 
@@ -308,6 +314,7 @@ class PointFileReader {
   bool ended_ = true;
   bool in_header_ = false;
   bool in_new_header_ = false;  // of whose constants nothing has come
+  std::string_view first_of_header_;
   Header header_;
   int gaps_ = 0;
   PointFile file_;
