@@ -140,7 +140,7 @@ TEST_CASE("a motion that dies out is no periodic orbit") {
   CHECK_FALSE(slow.result.is_periodic());
 }
 
-TEST_CASE("periodic orbits of 1 to 32 events: the logistic map's cascade") {
+TEST_CASE("periodic orbits of 1 to 32 events: the logistic map's cascade", "[slow]") {
   struct Cycle {
     double a;
     int period;

@@ -99,7 +99,8 @@ void check_passed(int field, const Variant& v) {
 
 }  // namespace
 
-TEST_CASE("branch point: located and passed with steps 20 times smaller and larger, straight and bent branches") {
+TEST_CASE("branch point: located and passed with steps 20 times smaller and larger, straight and bent branches",
+          "[slow]") {
   for (const double bend : {0.0, 1.0, 5.0})
     for (const int field : {1, 2})
       for (const double step : steps()) {
@@ -108,7 +109,7 @@ TEST_CASE("branch point: located and passed with steps 20 times smaller and larg
       }
 }
 
-TEST_CASE("branch point: located and passed on several meshes, with usual and with tight tolerances") {
+TEST_CASE("branch point: located and passed on several meshes, with usual and with tight tolerances", "[slow]") {
   for (const int field : {1, 2})
     for (const double tolerance : {1e-7, 1e-10, 1e-12})
       for (const double step : {0.013, -0.04, 0.1})

@@ -33,7 +33,8 @@ RecordedBranch follow(PeriodicOrbits& orbits, const Orbit& start, int parameter,
 
 }  // namespace
 
-TEST_CASE("nonimpacting orbits of the linear oscillator from omega = 0.1 to 8 and back: no branch point, no fold") {
+TEST_CASE("nonimpacting orbits of the linear oscillator from omega = 0.1 to 8 and back: no branch point, no fold",
+          "[slow]") {
   const double low = 0.1, high = 8.0;
   const double direction = GENERATE(1.0, -1.0);
   const int intervals = GENERATE(50, 100, 400);

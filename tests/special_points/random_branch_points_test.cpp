@@ -79,12 +79,12 @@ void follow_all(int intervals, int every = 1, int first = 0) {
 
 }  // namespace
 
-TEST_CASE("random branch points: 200 systems in both directions on coarse meshes") {
+TEST_CASE("random branch points: 200 systems in both directions on coarse meshes", "[slow]") {
   follow_all(10);
   follow_all(20, 4, 1);
 }
 
-TEST_CASE("random branch points: some of the systems on fine meshes") {
+TEST_CASE("random branch points: some of the systems on fine meshes", "[slow]") {
   follow_all(50, 20, 3);
   follow_all(100, 40, 7);
   follow_all(400, 100, 11);
