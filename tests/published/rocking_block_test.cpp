@@ -14,6 +14,7 @@
 #include <cmath>
 
 #include "published/makefile_run.hpp"
+#include "published/newton.hpp"
 
 using namespace test_support;
 
@@ -82,15 +83,7 @@ double critical_beta(const Eigen::VectorXd& times, const Eigen::VectorXd& veloci
     values(2 * n) = (map - critical * Eigen::Matrix2d::Identity()).determinant();
     return values;
   };
-  for (int i = 0; i < 20; ++i) {
-    Eigen::MatrixXd jacobian(z.size(), z.size());
-    for (Eigen::Index k = 0; k < z.size(); ++k) {
-      const Eigen::VectorXd h = Eigen::VectorXd::Unit(z.size(), k) * 1e-6;
-      jacobian.col(k) = (defect(z + h) - defect(z - h)) / 2e-6;
-    }
-    z -= jacobian.partialPivLu().solve(defect(z));
-  }
-  REQUIRE(defect(z).norm() < 1e-9);
+  z = newton(z, 1e-9, defect);
   return z(2 * n);
 }
 
