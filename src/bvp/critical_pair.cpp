@@ -3,10 +3,9 @@
 #include <fmt/format.h>
 
 #include <Eigen/LU>
-#include <Eigen/QR>
-#include <Eigen/SparseCore>
-#include <Eigen/SparseLU>
 #include <cmath>
+
+#include "linear_algebra/dense_matrix.hpp"
 
 namespace tchat {
 
@@ -79,33 +78,41 @@ std::complex<double> CriticalPair::multiplier() const {
   return larger == 0.0 ? 0.0 : pair_.determinant() / larger;
 }
 
-/// The plane of the real and imaginary part of the eigenvector next to the first multiplier, by inverse iteration.
+/// The plane of the real and imaginary part of the eigenvector next to the first multiplier, by inverse iteration; real
+/// parts first, then imaginary ones.
 bool CriticalPair::begin() {
-  using Complex = std::complex<double>;
   constexpr double beside = 1e-5;  // the shift is not to be an eigenvalue itself
   constexpr int rounds = 3;
-  const Complex shift = first_multiplier_ * (1.0 + beside);
-  std::vector<Eigen::Triplet<Complex>> entries;
-  for (std::size_t k = 0; k < values_.size(); ++k) entries.emplace_back(map_.rows()[k], map_.columns()[k], values_[k]);
-  for (const std::size_t first : map_.factor_positions())
-    entries.emplace_back(map_.rows()[first], map_.columns()[first], shift);
-  Eigen::SparseMatrix<Complex> matrix(map_.size(), map_.size());
-  matrix.setFromTriplets(entries.begin(), entries.end());
-  Eigen::SparseLU<Eigen::SparseMatrix<Complex>> lu(matrix);
-  if (lu.info() != Eigen::Success) return false;
+  const std::complex<double> shift = first_multiplier_ * (1.0 + beside);
+  const int size = map_.size();
+  std::vector<int> rows, columns;
+  std::vector<double> entries;
+  const auto add = [&](int row, int column, double entry) {
+    rows.push_back(row), columns.push_back(column), entries.push_back(entry);
+  };
+  for (const int part : {0, size})
+    for (std::size_t k = 0; k < values_.size(); ++k) add(part + map_.rows()[k], part + map_.columns()[k], values_[k]);
+  for (const std::size_t k : map_.factor_positions()) {
+    add(map_.rows()[k], map_.columns()[k], shift.real());
+    add(map_.rows()[k], size + map_.columns()[k], -shift.imag());
+    add(size + map_.rows()[k], map_.columns()[k], shift.imag());
+    add(size + map_.rows()[k], size + map_.columns()[k], shift.real());
+  }
+  SparseLu lu(2 * size, rows, columns);
+  if (!lu.factorize(entries)) return false;
   const int first = map_.last_connectivity_row();
-  const Eigen::Index n = map_.size() - first;
-  Eigen::VectorXcd v(map_.size());
-  for (Eigen::Index i = 0; i < v.size(); ++i) v(i) = std::sin(1.0 + 0.7 * static_cast<double>(i));
+  const int n = size - first;
+  Eigen::VectorXd v = Eigen::VectorXd::Zero(2 * size);
+  for (int i = 0; i < size; ++i) v(i) = std::sin(1.0 + 0.7 * i);
   for (int round = 0; round < rounds; ++round) {
-    Eigen::VectorXcd rhs = Eigen::VectorXcd::Zero(map_.size());
-    rhs.tail(n) = v.head(n);
-    v = lu.solve(rhs);
+    Eigen::VectorXd rhs = Eigen::VectorXd::Zero(2 * size);
+    for (const int part : {0, size}) rhs.segment(part + first, n) = v.segment(part, n);
+    lu.solve(rhs.data(), v.data());
     if (!v.allFinite()) return false;
     v.normalize();
   }
-  plane_.col(0) = v.real();
-  plane_.col(1) = v.imag();
+  plane_.col(0) = v.head(size);
+  plane_.col(1) = v.tail(size);
   pair_.setIdentity();
   if (!orthonormalise()) return false;
   // L fits the last connectivity best.
@@ -113,7 +120,7 @@ bool CriticalPair::begin() {
   set_right_hand_side();
   Plane wanted(n, 2);
   for (int k = 0; k < 2; ++k) wanted.col(k) = rhs_.segment(k * map_.size() + first, n);
-  pair_ = Plane(plane_.topRows(n)).colPivHouseholderQr().solve(wanted);
+  pair_ = least_squares(plane_.topRows(n), wanted);
   return pair_.allFinite();
 }
 

@@ -1,31 +1,144 @@
 #include "linear_algebra/dense_matrix.hpp"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
-#include <Eigen/QR>
-#include <Eigen/SVD>
+#include <algorithm>
+#include <limits>
+#include <vector>
+
+#include "linear_algebra/lapack.hpp"
 
 namespace tchat {
 
-Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& matrix) { return matrix.eigenvalues(); }
+namespace {
 
-Eigen::MatrixXd solve(const Eigen::MatrixXd& matrix, const Eigen::MatrixXd& right) {
-  return matrix.partialPivLu().solve(right);
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+
+int size_of(Eigen::Index k) { return static_cast<int>(k); }
+
+/// More than any of the routines here needs for matrices of so many rows and columns together.
+std::vector<double> workspace(Eigen::Index rows_and_columns) {
+  constexpr Eigen::Index blocks = 64;
+  return std::vector<double>(static_cast<std::size_t>(blocks * (rows_and_columns + 1)));
 }
 
-Eigen::MatrixXd solve_with_complete_pivoting(const Eigen::MatrixXd& matrix, const Eigen::MatrixXd& right) {
-  return matrix.fullPivLu().solve(right);
+}  // namespace
+
+Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& matrix) {
+  const int n = size_of(matrix.rows());
+  if (n == 0) return {};
+  if (!matrix.allFinite()) return Eigen::VectorXcd::Constant(n, not_a_number);
+  Eigen::MatrixXd a = matrix;
+  Eigen::VectorXd real(n);
+  Eigen::VectorXd imag(n);
+  std::vector<double> work = workspace(n);
+  const int work_size = static_cast<int>(work.size());
+  const int one = 1;
+  int info = 0;
+  dgeev_("N", "N", &n, a.data(), &n, real.data(), imag.data(), nullptr, &one, nullptr, &one, work.data(), &work_size,
+         &info, 1, 1);
+  if (info != 0) return Eigen::VectorXcd::Constant(n, not_a_number);
+  Eigen::VectorXcd result(n);
+  result.real() = real;
+  result.imag() = imag;
+  return result;
+}
+
+PivotedLu::PivotedLu(const Eigen::MatrixXd& matrix) : factors_(matrix), pivots_(factors_.rows()) {
+  const int n = size_of(factors_.rows());
+  int info = 0;
+  if (n > 0) dgetrf_(&n, &n, factors_.data(), &n, pivots_.data(), &info);
+}
+
+int PivotedLu::parity() const {
+  int sign = 1;
+  for (Eigen::Index k = 0; k < pivots_.size(); ++k) sign = pivots_(k) == k + 1 ? sign : -sign;
+  return sign;
+}
+
+Eigen::MatrixXd PivotedLu::solve(const Eigen::MatrixXd& right) const {
+  const int n = size_of(factors_.rows());
+  const int right_sides = size_of(right.cols());
+  Eigen::MatrixXd x = right;
+  int info = 0;
+  if (x.size() > 0) dgetrs_("N", &n, &right_sides, factors_.data(), &n, pivots_.data(), x.data(), &n, &info, 1);
+  return x;
+}
+
+Eigen::MatrixXd solve(const Eigen::MatrixXd& matrix, const Eigen::MatrixXd& right) {
+  return PivotedLu(matrix).solve(right);
+}
+
+Eigen::MatrixXd least_squares(const Eigen::MatrixXd& matrix, const Eigen::MatrixXd& right) {
+  const int rows = size_of(matrix.rows());
+  const int columns = size_of(matrix.cols());
+  const int right_sides = size_of(right.cols());
+  const int longer = std::max(rows, columns);
+  Eigen::MatrixXd x = Eigen::MatrixXd::Zero(longer, right_sides);
+  x.topRows(rows) = right;
+  if (!matrix.allFinite() || !right.allFinite()) return Eigen::MatrixXd::Constant(columns, right_sides, not_a_number);
+  Eigen::MatrixXd a = matrix;
+  Eigen::VectorXi order = Eigen::VectorXi::Zero(columns);
+  std::vector<double> work = workspace(rows + columns + right_sides);
+  const int work_size = static_cast<int>(work.size());
+  const double least_condition = std::numeric_limits<double>::epsilon() * longer;
+  int rank = 0;
+  int info = 0;
+  if (a.size() > 0)
+    dgelsy_(&rows, &columns, &right_sides, a.data(), &rows, x.data(), &longer, order.data(), &least_condition, &rank,
+            work.data(), &work_size, &info);
+  return x.topRows(columns);
+}
+
+HouseholderQr::HouseholderQr(const Eigen::MatrixXd& matrix)
+    : factors_(matrix), scalars_(Eigen::VectorXd::Zero(std::min(matrix.rows(), matrix.cols()))) {
+  const int rows = size_of(factors_.rows());
+  const int columns = size_of(factors_.cols());
+  std::vector<double> work = workspace(columns);
+  const int work_size = static_cast<int>(work.size());
+  int info = 0;
+  if (factors_.size() > 0)
+    dgeqrf_(&rows, &columns, factors_.data(), &rows, scalars_.data(), work.data(), &work_size, &info);
+}
+
+int HouseholderQr::parity() const {
+  int sign = 1;
+  for (const double scalar : scalars_) sign = scalar == 0.0 ? sign : -sign;
+  return sign;
+}
+
+Eigen::MatrixXd HouseholderQr::turned(const Eigen::MatrixXd& right) const {
+  const int rows = size_of(right.rows());
+  const int columns = size_of(right.cols());
+  const int reflections = size_of(scalars_.size());
+  Eigen::MatrixXd result = right;
+  std::vector<double> work = workspace(columns);
+  work.resize(work.size() + 64 * 65);  // for the block reflectors
+  const int work_size = static_cast<int>(work.size());
+  int info = 0;
+  if (result.size() > 0 && reflections > 0)
+    dormqr_("L", "T", &rows, &columns, &reflections, factors_.data(), &rows, scalars_.data(), result.data(), &rows,
+            work.data(), &work_size, &info, 1, 1);
+  return result;
 }
 
 double distance_to_null_space(const Eigen::MatrixXd& rows, const Eigen::VectorXd& x) {
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(rows.transpose());
-  const Eigen::VectorXd turned = qr.householderQ().adjoint() * x;
-  return turned.head(rows.rows()).norm();
+  return HouseholderQr(rows.transpose()).turned(x).topRows(rows.rows()).norm();
 }
 
 double least_singular_value(const Eigen::MatrixXcd& matrix) {
-  const Eigen::VectorXd singular = Eigen::JacobiSVD<Eigen::MatrixXcd>(matrix).singularValues();
-  return singular(singular.size() - 1);
+  const int rows = size_of(matrix.rows());
+  const int columns = size_of(matrix.cols());
+  const int shorter = std::min(rows, columns);
+  if (!matrix.allFinite()) return not_a_number;
+  Eigen::MatrixXcd a = matrix;
+  Eigen::VectorXd singular(shorter);
+  Eigen::VectorXcd work(64 * (rows + columns));
+  Eigen::VectorXd real_work(5 * shorter);
+  const int work_size = size_of(work.size());
+  const int one = 1;
+  int info = 0;
+  zgesvd_("N", "N", &rows, &columns, a.data(), &rows, singular.data(), nullptr, &one, nullptr, &one, work.data(),
+          &work_size, real_work.data(), &info, 1, 1);
+  return info == 0 ? singular(shorter - 1) : not_a_number;
 }
 
 }  // namespace tchat

@@ -2,7 +2,7 @@
 
 #include <umfpack.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>

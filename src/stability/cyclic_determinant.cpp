@@ -1,8 +1,9 @@
 #include "stability/cyclic_determinant.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+
+#include "linear_algebra/dense_matrix.hpp"
 
 namespace tchat {
 
@@ -32,9 +33,9 @@ double ScaledReal::value(double cap) const {
 ScaledReal determinant(const Eigen::MatrixXd& matrix) {
   ScaledReal result;
   if (matrix.size() == 0) return result;
-  const Eigen::PartialPivLU<Eigen::MatrixXd> lu(matrix);
-  result *= static_cast<double>(lu.permutationP().determinant());
-  for (const double pivot : lu.matrixLU().diagonal()) result *= pivot;
+  const PivotedLu lu(matrix);
+  result *= static_cast<double>(lu.parity());
+  for (const double pivot : lu.pivots()) result *= pivot;
   return result;
 }
 
@@ -47,15 +48,13 @@ CyclicDeterminant::CyclicDeterminant(const std::vector<Eigen::MatrixXd>& e, cons
   for (std::size_t s = 1; s < e.size(); ++s) {
     Eigen::MatrixXd column(2 * n, n);
     column << e_, -a[s];
-    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(column);
-    for (Eigen::Index k = 0; k < n; ++k) {
-      eliminated_ *= qr.matrixQR()(k, k);
-      if (qr.hCoeffs()(k) != 0.0) eliminated_ *= -1.0;  // the determinant of a reflection
-    }
+    const HouseholderQr qr(column);
+    for (const double entry : qr.diagonal()) eliminated_ *= entry;
+    eliminated_ *= static_cast<double>(qr.parity());
     Eigen::MatrixXd rest = Eigen::MatrixXd::Zero(2 * n, 2 * n);
     rest.topLeftCorner(n, n) = a_;
     rest.bottomRightCorner(n, n) = e[s];
-    rest.applyOnTheLeft(qr.householderQ().adjoint());
+    rest = qr.turned(rest);
     a_ = rest.bottomLeftCorner(n, n);
     e_ = rest.bottomRightCorner(n, n);
   }
