@@ -71,7 +71,7 @@ int print_table(const TableArguments& arguments) {
 
 void add_table_command(CLI::App& app, std::function<int()>& chosen) {
   CLI::App* command =
-      app.add_subcommand("table", "The points of a run with all that its files know of them, as CSV or JSON");
+      app.add_subcommand("table", "the points of a run with all that its files know of them, as CSV or JSON");
   command->footer(
       "One line a point: section, branch, point, type, name (as in IRS: GR1), label, kind (what a UZ label\n"
       "is), stable and admissible (1 or 0), the columns of the p-file by their full names, parameters that\n"
