@@ -1,0 +1,120 @@
+#include "app/program.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <csignal>
+#include <cstdio>
+#include <functional>
+#include <iostream>
+#include <new>
+#include <string_view>
+
+#include "app/check_command.hpp"
+#include "app/complete_command.hpp"
+#include "app/constants_command.hpp"
+#include "app/dat_command.hpp"
+#include "app/help_format.hpp"
+#include "app/labels_command.hpp"
+#include "app/manual_page.hpp"
+#include "app/new_command.hpp"
+#include "app/orbit_command.hpp"
+#include "app/plot_command.hpp"
+#include "app/resegment_command.hpp"
+#include "app/run_command.hpp"
+#include "app/simulate_command.hpp"
+#include "app/standard_descriptors.hpp"
+#include "app/standard_output.hpp"
+#include "app/table_command.hpp"
+#include "app/usage_error.hpp"
+#include "app/verify_command.hpp"
+#include "app/version_text.hpp"
+#include "constants/printable.hpp"
+#include "constants/user_error.hpp"
+
+namespace tchat {
+
+namespace {
+
+constexpr int computation_failed = 1;
+constexpr int bad_input = 2;
+
+int report(const std::string& message, int status) {
+  std::cout << std::flush;
+  std::cerr << "tchat: " << printable(message) << '\n';
+  return status;
+}
+
+int run_command(const std::function<int()>& command) {
+  try {
+    return command();
+  } catch (const UserError& error) {
+    return report(error.what(), bad_input);
+  } catch (const ComputationError& error) {
+    return report(error.what(), computation_failed);
+  } catch (const std::bad_alloc&) {
+    return report(
+        "out of memory; end other programs, raise the limit (ulimit -v), or use a smaller NTST, NCOL or number of "
+        "segments",
+        computation_failed);
+  } catch (const std::exception& error) {
+    if (std::ferror(stdout) != 0) return computation_failed;  // printing failed, and main says so
+    return report(fmt::format("internal error: {}", error.what()), computation_failed);
+  }
+}
+
+int parse_and_run(int argc, char** argv) {
+  occupy_standard_descriptors();
+  std::signal(SIGXFSZ, SIG_IGN);  // a file size limit is then an error of the write, reported like a full disk
+  CLI::App app{"tchat: numerical continuation of periodic orbits of hybrid dynamical systems", "tchat"};
+  set_help_format(app);
+  app.set_version_flag("--version", version_text(), "show version, commit and libraries");
+  app.require_subcommand(1);
+  app.footer("tchat COMMAND --help explains a command.");
+  std::function<int()> chosen;
+  add_run_command(app, chosen);
+  add_resegment_command(app, chosen);
+  add_simulate_command(app, chosen);
+  add_labels_command(app, chosen);
+  add_orbit_command(app, chosen);
+  add_table_command(app, chosen);
+  add_verify_command(app, chosen);
+  add_plot_command(app, chosen);
+  add_check_command(app, chosen);
+  add_dat_command(app, chosen);
+  add_constants_command(app, chosen);
+  add_new_command(app, chosen);
+  add_manual_command(app, chosen);
+  if (argc > 1 && std::string_view(argv[1]) == "complete")
+    return run_command([&] { return print_completions(app, {argv + 2, argv + argc}); });
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error, std::cout, std::cerr);  // --help, --version
+    return report(usage_error(app, error), bad_input);
+  }
+  return run_command(chosen);
+}
+
+}  // namespace
+
+int run_program(int argc, char** argv) {
+  try {
+    const int status = parse_and_run(argc, argv);
+    const std::string lost = lost_output();
+    if (lost.empty()) return status;
+    std::cerr << "tchat: " << lost << '\n';
+    return status == 0 ? computation_failed : status;
+  } catch (const std::bad_alloc&) {
+    std::fputs("tchat: out of memory before the command began; end other programs, or raise the limit (ulimit -v)\n",
+               stderr);
+    return computation_failed;
+  } catch (...) {
+    std::fputs("tchat: internal error before the command began\n", stderr);
+    return computation_failed;
+  }
+}
+
+}  // namespace tchat
