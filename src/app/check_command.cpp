@@ -11,13 +11,14 @@
 #include <vector>
 
 #include "constants/constants_file.hpp"
-#include "constants/user_error.hpp"
 #include "formulas/translation.hpp"
 #include "hybrid/derivative_check.hpp"
 #include "hybrid/parameter_vector.hpp"
 #include "plugin/plugin_build.hpp"
 #include "plugin/problem_library.hpp"
-#include "run/run_request.hpp"
+#include "setup/run_request.hpp"
+#include "text/number.hpp"
+#include "text/user_error.hpp"
 
 namespace tchat {
 
@@ -33,13 +34,8 @@ struct CheckArguments {
 };
 
 double read_number(const std::string& text, const std::string& context) {
-  double value = 0.0;
-  const char* const begin = text.data() + (text.starts_with('+') ? 1 : 0);
-  const char* const end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(begin, end, value);
-  if (error != std::errc() || stop != end || !std::isfinite(value))
-    throw UserError(fmt::format("'{}' in {} is not a number.\n  Example: 0.25 or 2.5e-1", text, context));
-  return value;
+  if (const std::optional<double> value = parse_real(text)) return *value;
+  throw UserError(fmt::format("'{}' in {} is not a number.\n  Example: 0.25 or 2.5e-1", text, context));
 }
 
 /// "1,0.5,-2"

@@ -15,9 +15,9 @@
 
 #include "app/commands.hpp"
 #include "constants/constants_table.hpp"
-#include "constants/user_error.hpp"
+#include "files/solution_file_reader.hpp"
 #include "plugin/problem_library.hpp"
-#include "start/solution_file_reader.hpp"
+#include "text/user_error.hpp"
 
 namespace tchat {
 

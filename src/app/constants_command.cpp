@@ -11,8 +11,8 @@
 #include "constants/constants_file.hpp"
 #include "constants/constants_guide.hpp"
 #include "constants/constants_writer.hpp"
-#include "run/run_request.hpp"
-#include "run/warnings.hpp"
+#include "setup/run_request.hpp"
+#include "setup/warnings.hpp"
 
 namespace tchat {
 

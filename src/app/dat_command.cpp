@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "app/problem_argument.hpp"
-#include "run/data_conversion.hpp"
+#include "start/data_conversion.hpp"
 
 namespace tchat {
 

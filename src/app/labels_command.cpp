@@ -8,11 +8,11 @@
 #include <memory>
 #include <string>
 
-#include "output/recorded_labels.hpp"
-#include "output/recorded_names.hpp"
-#include "output/solution_tables.hpp"
-#include "run/warnings.hpp"
-#include "start/solution_file_reader.hpp"
+#include "files/recorded_labels.hpp"
+#include "files/recorded_names.hpp"
+#include "files/solution_file_reader.hpp"
+#include "setup/warnings.hpp"
+#include "tables/solution_tables.hpp"
 
 namespace tchat {
 

@@ -10,11 +10,11 @@
 #include <string>
 
 #include "constants/constant_value.hpp"
-#include "constants/user_error.hpp"
-#include "output/recorded_names.hpp"
-#include "output/solution_tables.hpp"
-#include "run/warnings.hpp"
-#include "start/solution_file_reader.hpp"
+#include "files/recorded_names.hpp"
+#include "files/solution_file_reader.hpp"
+#include "setup/warnings.hpp"
+#include "tables/solution_tables.hpp"
+#include "text/user_error.hpp"
 
 namespace tchat {
 

@@ -9,12 +9,14 @@
 #include <filesystem>
 
 #include "constants/constant_value.hpp"
-#include "constants/user_error.hpp"
+#include "files/run_file_kind.hpp"
 #include "plot/data_file.hpp"
 #include "plot/label_text.hpp"
 #include "plot/picture_styles.hpp"
 #include "plot/trajectory_file.hpp"
-#include "start/run_file_kind.hpp"
+#include "text/number.hpp"
+#include "text/user_error.hpp"
+#include "text/words.hpp"
 
 namespace tchat {
 

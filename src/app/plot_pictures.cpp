@@ -9,7 +9,9 @@
 #include <optional>
 
 #include "constants/constant_value.hpp"
-#include "constants/user_error.hpp"
+#include "files/diagnostics_file_reader.hpp"
+#include "files/run_file_names.hpp"
+#include "files/solution_file_reader.hpp"
 #include "plot/branch_figure.hpp"
 #include "plot/data_file.hpp"
 #include "plot/multiplier_figure.hpp"
@@ -17,9 +19,9 @@
 #include "plot/orbit_stability.hpp"
 #include "plot/problem_finder.hpp"
 #include "plot/trajectory_file.hpp"
-#include "start/diagnostics_file_reader.hpp"
-#include "start/run_file_names.hpp"
-#include "start/solution_file_reader.hpp"
+#include "text/number.hpp"
+#include "text/user_error.hpp"
+#include "text/words.hpp"
 
 namespace tchat {
 

@@ -31,8 +31,8 @@
 #include "app/usage_error.hpp"
 #include "app/verify_command.hpp"
 #include "app/version_text.hpp"
-#include "constants/printable.hpp"
-#include "constants/user_error.hpp"
+#include "text/printable.hpp"
+#include "text/user_error.hpp"
 
 namespace tchat {
 

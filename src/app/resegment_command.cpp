@@ -9,9 +9,10 @@
 #include <sstream>
 
 #include "constants/constant_value.hpp"
-#include "constants/user_error.hpp"
 #include "resegment/resegment.hpp"
-#include "run/warnings.hpp"
+#include "setup/warnings.hpp"
+#include "text/user_error.hpp"
+#include "text/words.hpp"
 
 namespace tchat {
 

@@ -11,7 +11,7 @@
 
 #include "app/interruption.hpp"
 #include "app/problem_argument.hpp"
-#include "run/simulate_problem.hpp"
+#include "simulate/simulate_problem.hpp"
 
 namespace tchat {
 

@@ -8,12 +8,12 @@
 #include <string>
 #include <vector>
 
-#include "constants/user_error.hpp"
-#include "output/branch_table.hpp"
-#include "run/warnings.hpp"
-#include "start/branch_file.hpp"
-#include "start/run_file_kind.hpp"
-#include "start/run_file_names.hpp"
+#include "files/branch_file.hpp"
+#include "files/run_file_kind.hpp"
+#include "files/run_file_names.hpp"
+#include "setup/warnings.hpp"
+#include "tables/branch_table.hpp"
+#include "text/user_error.hpp"
 
 namespace tchat {
 

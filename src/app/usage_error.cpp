@@ -7,7 +7,8 @@
 
 #include "app/commands.hpp"
 #include "constants/constant_value.hpp"
-#include "constants/near_words.hpp"
+#include "text/near_words.hpp"
+#include "text/words.hpp"
 
 namespace tchat {
 

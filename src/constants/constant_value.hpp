@@ -46,14 +46,6 @@ struct RawPair {
   RawValue value;
 };
 
-/// The number in a token (blanks and a sign allowed; exponent letters e, E, d, D); nothing when it is none, not finite
-/// or out of the type's range. An integer whose negative is no int is out of range too: signs are taken off everywhere.
-std::optional<int> parse_integer(std::string_view text);
-std::optional<double> parse_real(std::string_view text);
-
-/// A token of a message: cut when long, unprintable characters replaced, in quotes.
-std::string in_quotes(std::string_view text);
-
 /// "CONSTANT (meaning): found ...; allowed: ...; for example: ..." with its place, thrown as UserError. `name` is the
 /// constant or one of its values ("ICP(2)"), `found` complete with quotes; empty `allowed`: as the table says.
 [[noreturn]] void refuse(const Constant& constant, const std::string& name, const Place& place,

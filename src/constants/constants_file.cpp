@@ -13,8 +13,9 @@
 #include "constants/keyword_form.hpp"
 #include "constants/positional_form.hpp"
 #include "constants/settings_check.hpp"
-#include "constants/text_file.hpp"
-#include "constants/user_error.hpp"
+#include "text/text_file.hpp"
+#include "text/user_error.hpp"
+#include "text/words.hpp"
 
 namespace tchat {
 

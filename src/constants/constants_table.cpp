@@ -8,7 +8,7 @@
 #include <cctype>
 #include <cmath>
 
-#include "constants/near_words.hpp"
+#include "text/near_words.hpp"
 
 namespace tchat {
 

@@ -5,7 +5,9 @@
 
 #include <cctype>
 
-#include "constants/user_error.hpp"
+#include "text/number.hpp"
+#include "text/user_error.hpp"
+#include "text/words.hpp"
 
 namespace tchat {
 

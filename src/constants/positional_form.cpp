@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include "constants/keyword_form.hpp"
-#include "constants/user_error.hpp"
+#include "text/number.hpp"
+#include "text/user_error.hpp"
+#include "text/words.hpp"
 
 namespace tchat {
 

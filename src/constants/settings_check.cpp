@@ -5,6 +5,8 @@
 #include <algorithm>
 
 #include "hybrid/parameter_vector.hpp"
+#include "text/number.hpp"
+#include "text/words.hpp"
 
 namespace tchat {
 

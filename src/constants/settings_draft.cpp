@@ -7,7 +7,9 @@
 #include <numeric>
 
 #include "constants/settings_check.hpp"
-#include "constants/user_error.hpp"
+#include "text/number.hpp"
+#include "text/user_error.hpp"
+#include "text/words.hpp"
 
 namespace tchat {
 

@@ -9,7 +9,7 @@
 #include <memory>
 
 #include "bvp/weighted_norm.hpp"
-#include "corrector/newton_chord.hpp"
+#include "continuation/newton_chord.hpp"
 
 namespace tchat {
 

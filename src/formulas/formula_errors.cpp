@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <tuple>
 
-#include "constants/near_words.hpp"
-#include "constants/user_error.hpp"
+#include "text/near_words.hpp"
+#include "text/user_error.hpp"
 
 namespace tchat::formulas {
 

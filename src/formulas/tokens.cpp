@@ -1,4 +1,5 @@
 #include "formulas/tokens.hpp"
+#include "text/number.hpp"
 
 #include <fmt/format.h>
 
@@ -115,13 +116,9 @@ class Tokenizer {
     };
     take_digits();
     if (length < text_.size() && text_[length] == '.') ++length, take_digits();
-    std::string digits(text_.substr(0, length));
-    if (const std::size_t exponent = exponent_length(text_.substr(length)); exponent > 0) {
-      digits += "e" + std::string(text_.substr(length + 1, exponent - 1));
-      length += exponent;
-    }
+    length += exponent_length(text_.substr(length));
     Token result = taken(Token::Kind::number, length, std::string(text_.substr(0, length)));
-    result.number = value_of(digits, result);
+    result.number = value_of(result);
     refuse_directly_after(result);
     return result;
   }
@@ -145,15 +142,10 @@ class Tokenizer {
     return length > digits ? length : 0;
   }
 
-  static double value_of(std::string digits, const Token& token) {
-    const std::size_t sign = digits.find("e+");
-    if (sign != std::string::npos) digits.erase(sign + 1, 1);
-    double value = 0.0;
-    const auto [end, failed] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-    if (failed != std::errc() || end != digits.data() + digits.size() || !std::isfinite(value))
-      throw FormulaError{token.at, fmt::format("the number {} is out of the range of numbers, about 1e-308 to 1e308",
-                                               token.text.substr(0, 40))};
-    return value;
+  static double value_of(const Token& token) {
+    if (const std::optional<double> value = parse_real(token.text)) return *value;
+    throw FormulaError{token.at, fmt::format("the number {} is out of the range of numbers, about 1e-308 to 1e308",
+                                             token.text.substr(0, 40))};
   }
 
   Token taken(Token::Kind kind, std::size_t length, std::string text) {

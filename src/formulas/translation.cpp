@@ -6,9 +6,9 @@
 #include <cctype>
 #include <filesystem>
 
-#include "constants/text_file.hpp"
 #include "formulas/cpp_writer.hpp"
 #include "formulas/problem_model.hpp"
+#include "text/text_file.hpp"
 
 namespace tchat {
 

@@ -8,9 +8,9 @@
 #include <random>
 #include <set>
 
-#include "constants/user_error.hpp"
 #include "hybrid/checked_function.hpp"
 #include "hybrid/parameter_vector.hpp"
+#include "text/user_error.hpp"
 
 namespace tchat {
 

@@ -3,6 +3,7 @@
 
 #include <compare>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace tchat {
@@ -20,5 +21,12 @@ using Signature = std::vector<IndexVector>;
 
 /// "{(1,3,2), (1,1,1)}"
 std::string to_string(const Signature& signature);
+
+/// "1,1,1;2,2,2", blanks, parentheses and braces as wanted. Throws UserError that begins with `option` when it is no
+/// list of triples of whole numbers; whether they exist is for the problem to say.
+std::vector<IndexVector> parse_index_vectors(std::string_view text, const std::string& option);
+
+/// The same, where all count from 1 and there are no more of them than an orbit has segments.
+Signature parse_signature(std::string_view text, const std::string& option = "--signature");
 
 }  // namespace tchat

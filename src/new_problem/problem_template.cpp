@@ -6,10 +6,10 @@
 #include <filesystem>
 #include <fstream>
 
-#include "constants/user_error.hpp"
 #include "formulas/translation.hpp"
 #include "new_problem/template_files.hpp"
 #include "plugin/compiler.hpp"
+#include "text/user_error.hpp"
 
 namespace tchat {
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "constants/user_error.hpp"
+#include "text/user_error.hpp"
 
 namespace tchat {
 

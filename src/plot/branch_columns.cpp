@@ -7,8 +7,9 @@
 #include <cctype>
 
 #include "constants/constant_value.hpp"
-#include "constants/user_error.hpp"
-#include "start/fortran_number.hpp"
+#include "text/number.hpp"
+#include "text/user_error.hpp"
+#include "text/words.hpp"
 
 namespace tchat {
 

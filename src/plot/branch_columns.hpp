@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "start/branch_file.hpp"
+#include "files/branch_file.hpp"
 
 namespace tchat {
 

@@ -6,9 +6,10 @@
 #include <vector>
 
 #include "constants/constants_file.hpp"
-#include "constants/user_error.hpp"
-#include "start/point_type.hpp"
-#include "start/run_file_names.hpp"
+#include "files/labelled_solution.hpp"
+#include "files/run_file_names.hpp"
+#include "special_points/point_type.hpp"
+#include "text/user_error.hpp"
 
 namespace tchat {
 

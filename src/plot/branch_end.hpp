@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-#include "start/branch_file.hpp"
+#include "files/branch_file.hpp"
 
 namespace tchat {
 

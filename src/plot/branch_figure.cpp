@@ -6,12 +6,12 @@
 #include <optional>
 #include <set>
 
-#include "constants/user_error.hpp"
 #include "plot/axis_scale.hpp"
 #include "plot/branch_columns.hpp"
 #include "plot/branch_end.hpp"
 #include "plot/branch_quantity.hpp"
 #include "plot/smooth_line.hpp"
+#include "text/user_error.hpp"
 
 namespace tchat {
 

@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
+#include "files/branch_file.hpp"
 #include "plot/figure.hpp"
 #include "plot/picture_styles.hpp"
-#include "start/branch_file.hpp"
 
 namespace tchat {
 

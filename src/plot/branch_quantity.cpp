@@ -9,9 +9,11 @@
 #include <optional>
 
 #include "constants/constant_value.hpp"
-#include "constants/user_error.hpp"
 #include "plot/branch_columns.hpp"
 #include "plot/column_expression.hpp"
+#include "text/number.hpp"
+#include "text/user_error.hpp"
+#include "text/words.hpp"
 
 namespace tchat {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "files/branch_file.hpp"
 #include "plot/label_text.hpp"
-#include "start/branch_file.hpp"
 
 namespace tchat {
 

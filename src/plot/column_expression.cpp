@@ -10,10 +10,11 @@
 #include <sstream>
 
 #include "constants/constant_value.hpp"
-#include "constants/user_error.hpp"
 #include "plot/gnuplot.hpp"
 #include "plot/gnuplot_script.hpp"
-#include "start/fortran_number.hpp"
+#include "text/number.hpp"
+#include "text/user_error.hpp"
+#include "text/words.hpp"
 
 namespace tchat {
 

@@ -7,10 +7,11 @@
 #include <sstream>
 
 #include "constants/constant_value.hpp"
-#include "constants/text_file.hpp"
-#include "constants/user_error.hpp"
-#include "start/fortran_number.hpp"
-#include "start/point_file_reader.hpp"
+#include "files/point_file_reader.hpp"
+#include "text/number.hpp"
+#include "text/text_file.hpp"
+#include "text/user_error.hpp"
+#include "text/words.hpp"
 
 namespace tchat {
 

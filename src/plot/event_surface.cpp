@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "constants/user_error.hpp"
 #include "plot/zero_contour.hpp"
+#include "text/user_error.hpp"
 
 namespace tchat {
 

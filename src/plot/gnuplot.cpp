@@ -12,8 +12,8 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "constants/user_error.hpp"
-#include "start/fortran_number.hpp"
+#include "text/user_error.hpp"
+#include "text/words.hpp"
 
 namespace tchat {
 

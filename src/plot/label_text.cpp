@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "constants/constant_value.hpp"
-#include "constants/user_error.hpp"
-#include "start/fortran_number.hpp"
+#include "text/user_error.hpp"
+#include "text/words.hpp"
 
 namespace tchat {
 

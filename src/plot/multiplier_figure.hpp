@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "files/diagnostics_file_reader.hpp"
 #include "plot/figure.hpp"
-#include "start/diagnostics_file_reader.hpp"
 
 namespace tchat {
 

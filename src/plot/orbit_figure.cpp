@@ -10,9 +10,10 @@
 #include <set>
 
 #include "constants/constant_value.hpp"
-#include "constants/user_error.hpp"
 #include "plot/event_surface.hpp"
 #include "plot/picture_styles.hpp"
+#include "text/user_error.hpp"
+#include "text/words.hpp"
 
 namespace tchat {
 

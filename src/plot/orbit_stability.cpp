@@ -4,9 +4,9 @@
 #include <complex>
 #include <filesystem>
 
-#include "constants/user_error.hpp"
-#include "start/point_file_reader.hpp"
-#include "start/run_file_names.hpp"
+#include "files/point_file_reader.hpp"
+#include "files/run_file_names.hpp"
+#include "text/user_error.hpp"
 
 namespace tchat {
 

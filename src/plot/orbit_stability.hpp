@@ -4,8 +4,8 @@
 #include <map>
 #include <string>
 
+#include "files/diagnostics_file_reader.hpp"
 #include "plot/picture_styles.hpp"
-#include "start/diagnostics_file_reader.hpp"
 
 namespace tchat {
 

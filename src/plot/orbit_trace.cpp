@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "constants/user_error.hpp"
+#include "files/solution_file_reader.hpp"
 #include "hybrid/parameter_vector.hpp"
-#include "start/solution_file_reader.hpp"
+#include "text/user_error.hpp"
 
 namespace tchat {
 

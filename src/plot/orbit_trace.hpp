@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "files/labelled_solution.hpp"
 #include "plot/picture_styles.hpp"
-#include "start/labelled_solution.hpp"
 
 namespace tchat {
 

@@ -7,7 +7,7 @@
 #include <cctype>
 #include <filesystem>
 
-#include "constants/user_error.hpp"
+#include "text/user_error.hpp"
 
 namespace tchat {
 

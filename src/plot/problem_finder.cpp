@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include "constants/constants_file.hpp"
-#include "constants/user_error.hpp"
-#include "output/recorded_names.hpp"
+#include "files/recorded_names.hpp"
+#include "files/run_file_names.hpp"
 #include "plugin/plugin_build.hpp"
-#include "start/run_file_names.hpp"
+#include "text/user_error.hpp"
 
 namespace tchat {
 

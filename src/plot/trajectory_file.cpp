@@ -6,9 +6,10 @@
 #include <sstream>
 
 #include "constants/constant_value.hpp"
-#include "constants/text_file.hpp"
-#include "constants/user_error.hpp"
-#include "start/fortran_number.hpp"
+#include "text/number.hpp"
+#include "text/text_file.hpp"
+#include "text/user_error.hpp"
+#include "text/words.hpp"
 
 namespace tchat {
 

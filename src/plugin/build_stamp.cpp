@@ -10,7 +10,7 @@
 #include <sstream>
 #include <string_view>
 
-#include "constants/text_file.hpp"
+#include "text/text_file.hpp"
 
 namespace tchat {
 

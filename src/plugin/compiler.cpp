@@ -14,8 +14,9 @@
 #include <filesystem>
 #include <sstream>
 
-#include "constants/user_error.hpp"
 #include "plugin/compiler_errors.hpp"
+#include "text/user_error.hpp"
+#include "text/words.hpp"
 
 namespace tchat {
 

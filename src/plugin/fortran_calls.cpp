@@ -10,8 +10,8 @@
 #include <cstdlib>
 #include <new>
 
-#include "constants/user_error.hpp"
 #include "hybrid/parameter_vector.hpp"
+#include "text/user_error.hpp"
 
 namespace tchat {
 

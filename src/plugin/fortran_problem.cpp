@@ -7,9 +7,9 @@
 #include <cmath>
 #include <filesystem>
 
-#include "constants/user_error.hpp"
 #include "hybrid/difference_derivatives.hpp"
 #include "hybrid/parameter_vector.hpp"
+#include "text/user_error.hpp"
 
 namespace tchat {
 

@@ -7,7 +7,7 @@
 #include <optional>
 #include <string_view>
 
-#include "constants/text_file.hpp"
+#include "text/text_file.hpp"
 
 namespace tchat {
 

@@ -16,12 +16,12 @@
 #include <fstream>
 #include <optional>
 
-#include "constants/text_file.hpp"
-#include "constants/user_error.hpp"
 #include "formulas/translation.hpp"
 #include "plugin/build_stamp.hpp"
 #include "plugin/file_lock.hpp"
 #include "plugin/fortran_source.hpp"
+#include "text/text_file.hpp"
+#include "text/user_error.hpp"
 
 namespace tchat {
 

@@ -12,8 +12,8 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "constants/user_error.hpp"
 #include "plugin/plugin_call.hpp"
+#include "text/user_error.hpp"
 
 namespace tchat {
 

@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "bvp/grazing_orbit_system.hpp"
-#include "constants/user_error.hpp"
 #include "run/branch_setup.hpp"
+#include "text/user_error.hpp"
 
 namespace tchat {
 

@@ -5,7 +5,7 @@
 
 #include "constants/run_settings.hpp"
 #include "hybrid/hybrid_system.hpp"
-#include "run/start_selection.hpp"
+#include "start/start_selection.hpp"
 
 namespace tchat {
 

@@ -4,8 +4,9 @@
 
 #include <algorithm>
 
-#include "constants/user_error.hpp"
-#include "start/point_type.hpp"
+#include "files/labelled_solution.hpp"
+#include "special_points/point_type.hpp"
+#include "text/user_error.hpp"
 
 namespace tchat {
 

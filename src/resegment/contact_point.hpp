@@ -5,8 +5,8 @@
 
 #include "bvp/orbit.hpp"
 #include "constants/run_settings.hpp"
+#include "files/labelled_solution.hpp"
 #include "hybrid/hybrid_system.hpp"
-#include "start/labelled_solution.hpp"
 
 namespace tchat {
 

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "run/parameter_values.hpp"
+#include "setup/parameter_values.hpp"
 
 namespace tchat {
 

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "constants/user_error.hpp"
 #include "hybrid/identity_jump.hpp"
 #include "hybrid/relevant_events.hpp"
+#include "text/user_error.hpp"
 
 namespace tchat {
 

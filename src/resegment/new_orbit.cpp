@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "constants/user_error.hpp"
 #include "hybrid/identity_jump.hpp"
 #include "resegment/contact_point.hpp"
 #include "resegment/empty_segments.hpp"
 #include "resegment/segment_list.hpp"
 #include "resegment/signature_match.hpp"
 #include "resegment/simultaneous_contacts.hpp"
+#include "text/user_error.hpp"
 
 namespace tchat {
 

@@ -4,12 +4,12 @@
 #include <string>
 #include <vector>
 
+#include "files/labelled_solution.hpp"
 #include "resegment/branch_side.hpp"
 #include "resegment/new_settings.hpp"
 #include "resegment/resegment.hpp"
-#include "start/labelled_solution.hpp"
+#include "special_points/point_type.hpp"
 #include "start/orbit_start.hpp"
-#include "start/point_type.hpp"
 
 namespace tchat {
 

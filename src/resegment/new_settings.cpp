@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
-#include "constants/user_error.hpp"
 #include "hybrid/parameter_vector.hpp"
-#include "run/problem_setup.hpp"
+#include "setup/problem_setup.hpp"
+#include "text/user_error.hpp"
 
 namespace tchat {
 

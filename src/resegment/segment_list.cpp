@@ -7,30 +7,13 @@
 
 #include "bvp/no_duration.hpp"
 #include "constants/constant_value.hpp"
-#include "constants/user_error.hpp"
+#include "text/number.hpp"
+#include "text/user_error.hpp"
+#include "text/words.hpp"
 
 namespace tchat {
 
-namespace {
-
-std::vector<std::string_view> split(std::string_view text, char separator) {
-  std::vector<std::string_view> parts;
-  for (std::size_t begin = 0; begin <= text.size();) {
-    const std::size_t end = std::min(text.find(separator, begin), text.size());
-    parts.push_back(text.substr(begin, end - begin));
-    begin = end + 1;
-  }
-  return parts;
-}
-
-[[noreturn]] void refuse_signature(std::string_view text, const std::string& found) {
-  throw UserError(fmt::format(
-      "--signature {}: {}; allowed: index vectors (field, event, jump) of whole numbers from 1, separated by "
-      "semicolons, for example --signature \"1,1,1;2,2,2\"",
-      in_quotes(text), found));
-}
-
-}  // namespace
+namespace {}  // namespace
 
 SegmentList segments_of(const RunSettings& settings) {
   SegmentList segments;
@@ -113,33 +96,6 @@ CutList with_empty_segments(CutList cut, std::size_t k, int count) {
   for (std::size_t later = k + 1; later < cut.contacts.size(); ++later)
     cut.contacts[later] += static_cast<std::size_t>(count);
   return cut;
-}
-
-Signature parse_signature(std::string_view text) {
-  std::string plain;  // "1,1,1;2,2,2;", whatever parentheses there were
-  for (const char c : text)
-    if (c == ')')
-      plain += ';';
-    else if (c != ' ' && c != '(' && c != '{' && c != '}')
-      plain += c;
-  Signature signature;
-  for (const std::string_view part : split(plain, ';')) {
-    const std::string_view vector = part.starts_with(',') ? part.substr(1) : part;
-    if (vector.empty()) continue;
-    std::vector<int> numbers;
-    for (const std::string_view word : split(vector, ',')) {
-      const auto value = parse_integer(word);
-      if (!value || *value < 1) refuse_signature(text, fmt::format("found {}", in_quotes(word)));
-      numbers.push_back(*value);
-    }
-    if (numbers.size() != 3)
-      refuse_signature(text, fmt::format("index vector {} has {} numbers", signature.size() + 1, numbers.size()));
-    signature.push_back({numbers[0], numbers[1], numbers[2]});
-  }
-  if (signature.empty()) refuse_signature(text, "found no index vector");
-  if (signature.size() > static_cast<std::size_t>(max_segments))
-    refuse_signature(text, fmt::format("{} segments, at most {} are allowed", signature.size(), max_segments));
-  return signature;
 }
 
 }  // namespace tchat

@@ -59,7 +59,4 @@ CutList without_empty_segments(CutList cut, std::size_t k, const Orbit& x);
 /// With `count` segments of zero duration after contact k, constant there; index vectors are still to be set.
 CutList with_empty_segments(CutList cut, std::size_t k, int count);
 
-/// "1,1,1;2,2,2" (blanks and parentheses are ignored, braces too). Throws UserError when it is no list of triples.
-Signature parse_signature(std::string_view text);
-
 }  // namespace tchat

@@ -8,8 +8,8 @@
 #include <optional>
 
 #include "bvp/no_duration.hpp"
-#include "constants/user_error.hpp"
 #include "resegment/empty_segments.hpp"
+#include "text/user_error.hpp"
 
 namespace tchat {
 

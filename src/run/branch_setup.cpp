@@ -7,11 +7,12 @@
 #include "bvp/critical_multiplier.hpp"
 #include "bvp/critical_pair.hpp"
 #include "bvp/periodic_orbit_system.hpp"
-#include "constants/user_error.hpp"
+#include "files/labelled_solution.hpp"
 #include "run/branch_switch.hpp"
-#include "run/problem_setup.hpp"
+#include "setup/problem_setup.hpp"
+#include "special_points/point_type.hpp"
 #include "stability/floquet_multipliers.hpp"
-#include "start/point_type.hpp"
+#include "text/user_error.hpp"
 
 namespace tchat {
 

@@ -5,11 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "constants/user_error.hpp"
 #include "continuation/orbit_trend.hpp"
+#include "files/labelled_solution.hpp"
 #include "run/first_correction.hpp"
-#include "run/problem_setup.hpp"
-#include "start/point_type.hpp"
+#include "setup/problem_setup.hpp"
+#include "special_points/point_type.hpp"
+#include "text/user_error.hpp"
 
 namespace tchat {
 

@@ -7,9 +7,10 @@
 #include <optional>
 
 #include "bvp/critical_multiplier.hpp"
-#include "constants/user_error.hpp"
-#include "run/problem_setup.hpp"
-#include "start/point_type.hpp"
+#include "files/labelled_solution.hpp"
+#include "setup/problem_setup.hpp"
+#include "special_points/point_type.hpp"
+#include "text/user_error.hpp"
 
 namespace tchat {
 

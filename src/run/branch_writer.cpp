@@ -6,15 +6,16 @@
 #include <utility>
 
 #include "continuation/solution_measure.hpp"
+#include "files/diagnostics_file.hpp"
+#include "files/labelled_solution.hpp"
+#include "files/number_format.hpp"
+#include "files/point_table.hpp"
+#include "files/solution_file.hpp"
 #include "hybrid/parameter_vector.hpp"
-#include "output/diagnostics_file.hpp"
-#include "output/number_format.hpp"
-#include "output/screen_table.hpp"
-#include "output/solution_file.hpp"
-#include "run/problem_setup.hpp"
+#include "setup/problem_setup.hpp"
 #include "special_points/grazing_curve_tests.hpp"
+#include "special_points/point_type.hpp"
 #include "start/orbit_start.hpp"
-#include "start/point_type.hpp"
 
 namespace tchat {
 

@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "continuation/branch.hpp"
-#include "output/point_columns.hpp"
-#include "output/point_file.hpp"
-#include "output/run_files.hpp"
-#include "run/progress_line.hpp"
+#include "files/point_columns.hpp"
+#include "files/point_file.hpp"
+#include "files/run_files.hpp"
+#include "setup/progress_line.hpp"
 
 namespace tchat {
 

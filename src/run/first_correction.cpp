@@ -7,7 +7,7 @@
 
 #include "bvp/evaluation_failure.hpp"
 #include "bvp/mesh_adaptation.hpp"
-#include "constants/user_error.hpp"
+#include "text/user_error.hpp"
 
 namespace tchat {
 

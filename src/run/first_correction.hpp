@@ -3,7 +3,7 @@
 
 #include "constants/run_settings.hpp"
 #include "continuation/path_follower.hpp"
-#include "run/start_selection.hpp"
+#include "start/start_selection.hpp"
 
 namespace tchat {
 

@@ -7,8 +7,8 @@
 
 #include "bvp/grazing_orbit_system.hpp"
 #include "bvp/periodic_orbit_system.hpp"
-#include "constants/user_error.hpp"
 #include "hybrid/parameter_vector.hpp"
+#include "text/user_error.hpp"
 
 namespace tchat {
 

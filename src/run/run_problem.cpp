@@ -9,21 +9,22 @@
 
 #include "constants/constants_file.hpp"
 #include "constants/constants_writer.hpp"
-#include "constants/user_error.hpp"
 #include "continuation/continuation_run.hpp"
 #include "continuation/solution_measure.hpp"
+#include "files/labelled_solution.hpp"
 #include "plugin/plugin_build.hpp"
 #include "plugin/problem_library.hpp"
 #include "run/branch_setup.hpp"
 #include "run/branch_writer.hpp"
-#include "run/named_parameters.hpp"
-#include "run/problem_setup.hpp"
 #include "run/problem_types.hpp"
 #include "run/run_summary.hpp"
-#include "run/start_selection.hpp"
 #include "run/test_selection.hpp"
-#include "run/warnings.hpp"
-#include "start/point_type.hpp"
+#include "setup/named_parameters.hpp"
+#include "setup/problem_setup.hpp"
+#include "setup/warnings.hpp"
+#include "special_points/point_type.hpp"
+#include "start/start_selection.hpp"
+#include "text/user_error.hpp"
 
 namespace tchat {
 

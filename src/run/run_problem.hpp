@@ -4,7 +4,7 @@
 #include <functional>
 #include <ostream>
 
-#include "run/run_request.hpp"
+#include "setup/run_request.hpp"
 
 namespace tchat {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "run/problem_setup.hpp"
+#include "setup/problem_setup.hpp"
 #include "special_points/bifurcation_tests.hpp"
 #include "special_points/contact_test.hpp"
 #include "special_points/curve_tests.hpp"

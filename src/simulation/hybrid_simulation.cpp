@@ -6,8 +6,8 @@
 #include <cmath>
 #include <utility>
 
-#include "constants/user_error.hpp"
 #include "simulation/cvodes_flow.hpp"
+#include "text/user_error.hpp"
 
 namespace tchat {
 

@@ -5,8 +5,8 @@
 
 #include <algorithm>
 
-#include "constants/user_error.hpp"
 #include "hybrid/relevant_events.hpp"
+#include "text/user_error.hpp"
 
 namespace tchat {
 

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "constants/user_error.hpp"
 #include "linear_algebra/dense_matrix.hpp"
+#include "text/user_error.hpp"
 
 namespace tchat {
 

@@ -4,9 +4,9 @@
 
 #include <cmath>
 
-#include "constants/user_error.hpp"
 #include "hybrid/parameter_vector.hpp"
 #include "simulation/cvodes_flow.hpp"
+#include "text/user_error.hpp"
 
 namespace tchat {
 

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "bvp/condensed_system.hpp"
+#include "special_points/point_type.hpp"
 #include "stability/floquet_multipliers.hpp"
-#include "start/labelled_solution.hpp"
 
 namespace tchat {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "bvp/mesh_adaptation.hpp"
-#include "constants/user_error.hpp"
+#include "text/user_error.hpp"
 
 namespace tchat {
 

@@ -4,8 +4,8 @@
 #include <optional>
 
 #include "bvp/orbit.hpp"
-#include "start/dat_file.hpp"
-#include "start/labelled_solution.hpp"
+#include "files/dat_file.hpp"
+#include "files/labelled_solution.hpp"
 
 namespace tchat {
 

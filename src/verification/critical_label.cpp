@@ -5,7 +5,8 @@
 #include <cstdlib>
 #include <optional>
 
-#include "start/point_type.hpp"
+#include "files/labelled_solution.hpp"
+#include "special_points/point_type.hpp"
 
 namespace tchat {
 

@@ -4,7 +4,7 @@
 #include <complex>
 #include <vector>
 
-#include "start/labelled_solution.hpp"
+#include "files/labelled_solution.hpp"
 
 namespace tchat {
 

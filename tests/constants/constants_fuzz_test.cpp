@@ -5,7 +5,7 @@
 #include "constants/constants_file.hpp"
 #include "constants/constants_writer.hpp"
 #include "constants/sample_files.hpp"
-#include "constants/user_error.hpp"
+#include "text/user_error.hpp"
 
 using namespace tchat;
 

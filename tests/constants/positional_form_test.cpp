@@ -4,7 +4,7 @@
 
 #include "constants/constants_file.hpp"
 #include "constants/sample_files.hpp"
-#include "constants/user_error.hpp"
+#include "text/user_error.hpp"
 
 using namespace tchat;
 using tchat::testing::appendix_b;

@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "../plugin/plugin_folder.hpp"
-#include "constants/user_error.hpp"
 #include "hybrid/derivative_check.hpp"
 #include "plugin/problem_library.hpp"
+#include "text/user_error.hpp"
 
 using namespace tchat;
 

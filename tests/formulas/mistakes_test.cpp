@@ -1,8 +1,8 @@
 // What is wrong in a file of formulas is told with line, column and cure.
 #include <catch2/catch.hpp>
 
-#include "constants/user_error.hpp"
 #include "formulas/translation.hpp"
+#include "text/user_error.hpp"
 
 using namespace tchat;
 using Catch::Matchers::Contains;

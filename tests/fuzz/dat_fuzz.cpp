@@ -2,9 +2,9 @@
 
 #include <cmath>
 
+#include "files/dat_file.hpp"
 #include "fuzz_target.hpp"
 #include "hybrid/parameter_vector.hpp"
-#include "start/dat_file.hpp"
 
 using namespace tchat;
 

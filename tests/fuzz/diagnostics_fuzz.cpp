@@ -2,8 +2,8 @@
 
 #include <cmath>
 
+#include "files/diagnostics_file_reader.hpp"
 #include "fuzz_target.hpp"
-#include "start/diagnostics_file_reader.hpp"
 
 using namespace tchat;
 

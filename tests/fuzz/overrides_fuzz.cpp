@@ -5,6 +5,7 @@
 #include "constants/constants_file.hpp"
 #include "constants/constants_writer.hpp"
 #include "fuzz_target.hpp"
+#include "text/words.hpp"
 
 using namespace tchat;
 

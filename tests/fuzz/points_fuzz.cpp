@@ -1,7 +1,7 @@
 // p-files: every row of a section has a value for each column.
 
+#include "files/point_file_reader.hpp"
 #include "fuzz_target.hpp"
-#include "start/point_file_reader.hpp"
 
 using namespace tchat;
 

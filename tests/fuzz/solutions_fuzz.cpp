@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "constants/constant_value.hpp"
+#include "files/solution_file_reader.hpp"
 #include "fuzz_target.hpp"
-#include "start/solution_file_reader.hpp"
 
 using namespace tchat;
 

@@ -8,10 +8,10 @@
 
 #include "../plugin/plugin_folder.hpp"
 #include "app/check_command.hpp"
-#include "constants/user_error.hpp"
 #include "hand_differentiated.hpp"
 #include "hybrid/extrapolated_difference.hpp"
 #include "linear_oscillator.hpp"
+#include "text/user_error.hpp"
 
 using namespace tchat;
 using Catch::Matchers::Contains;

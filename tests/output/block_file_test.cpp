@@ -1,4 +1,4 @@
-#include "output/block_file.hpp"
+#include "files/block_file.hpp"
 
 #include <signal.h>
 #include <sys/wait.h>
@@ -11,9 +11,9 @@
 #include <thread>
 #include <utility>
 
-#include "constants/user_error.hpp"
 #include "output/file_size_limit.hpp"
 #include "start/temporary_folder.hpp"
+#include "text/user_error.hpp"
 
 using namespace tchat;
 using Catch::Matchers::Contains;

@@ -1,5 +1,5 @@
 // Tables for other programs: what CSV and JSON have to be, whatever names and numbers a run has.
-#include "output/branch_table.hpp"
+#include "tables/branch_table.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -7,8 +7,8 @@
 #include <limits>
 #include <sstream>
 
-#include "output/table_format.hpp"
 #include "start/temporary_folder.hpp"
+#include "tables/table_format.hpp"
 
 using namespace tchat;
 using test_support::TemporaryFolder;

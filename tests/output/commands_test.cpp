@@ -9,10 +9,10 @@
 
 #include "app/labels_command.hpp"
 #include "app/orbit_command.hpp"
-#include "constants/user_error.hpp"
+#include "files/solution_file.hpp"
 #include "output/sample_orbits.hpp"
-#include "output/solution_file.hpp"
 #include "start/temporary_folder.hpp"
+#include "text/user_error.hpp"
 
 using namespace tchat;
 using Catch::Matchers::Contains;

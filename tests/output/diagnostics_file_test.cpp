@@ -1,4 +1,4 @@
-#include "output/diagnostics_file.hpp"
+#include "files/diagnostics_file.hpp"
 
 #include <catch2/catch.hpp>
 #include <limits>

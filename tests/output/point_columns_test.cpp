@@ -1,4 +1,4 @@
-#include "output/point_columns.hpp"
+#include "files/point_columns.hpp"
 
 #include <catch2/catch.hpp>
 #include <limits>

@@ -1,4 +1,4 @@
-#include "output/point_file.hpp"
+#include "files/point_file.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

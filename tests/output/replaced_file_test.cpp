@@ -1,14 +1,14 @@
-#include "output/replaced_file.hpp"
+#include "files/replaced_file.hpp"
 
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <string>
 
-#include "constants/user_error.hpp"
+#include "files/temporary_file.hpp"
+#include "files/whole_file.hpp"
 #include "output/file_size_limit.hpp"
-#include "output/temporary_file.hpp"
-#include "output/whole_file.hpp"
 #include "start/temporary_folder.hpp"
+#include "text/user_error.hpp"
 
 using namespace tchat;
 using Catch::Matchers::Contains;

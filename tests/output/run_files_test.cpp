@@ -1,4 +1,4 @@
-#include "output/run_files.hpp"
+#include "files/run_files.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -7,13 +7,13 @@
 #include <filesystem>
 #include <string>
 
-#include "constants/user_error.hpp"
-#include "output/diagnostics_file.hpp"
+#include "files/diagnostics_file.hpp"
+#include "files/solution_file.hpp"
+#include "files/solution_file_reader.hpp"
 #include "output/file_size_limit.hpp"
 #include "output/sample_orbits.hpp"
-#include "output/solution_file.hpp"
-#include "start/solution_file_reader.hpp"
 #include "start/temporary_folder.hpp"
+#include "text/user_error.hpp"
 
 using namespace tchat;
 using Catch::Matchers::Contains;

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "start/labelled_solution.hpp"
+#include "files/labelled_solution.hpp"
 
 namespace test_support {
 

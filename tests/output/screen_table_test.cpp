@@ -1,4 +1,4 @@
-#include "output/screen_table.hpp"
+#include "files/point_table.hpp"
 
 #include <catch2/catch.hpp>
 #include <vector>

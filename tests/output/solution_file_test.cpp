@@ -1,4 +1,4 @@
-#include "output/solution_file.hpp"
+#include "files/solution_file.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "files/solution_file_reader.hpp"
 #include "output/sample_orbits.hpp"
-#include "start/solution_file_reader.hpp"
 
 using namespace tchat;
 using test_support::sample_orbit;

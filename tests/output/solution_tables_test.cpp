@@ -1,13 +1,13 @@
-#include "output/solution_tables.hpp"
+#include "tables/solution_tables.hpp"
 
 #include <catch2/catch.hpp>
 #include <sstream>
 #include <string>
 #include <vector>
 
-#include "constants/user_error.hpp"
 #include "output/sample_orbits.hpp"
 #include "start/temporary_folder.hpp"
+#include "text/user_error.hpp"
 
 using namespace tchat;
 using Catch::Matchers::Contains;

@@ -7,14 +7,14 @@
 #include <string>
 #include <vector>
 
-#include "output/diagnostics_file.hpp"
-#include "output/point_columns.hpp"
-#include "output/point_file.hpp"
-#include "output/run_files.hpp"
+#include "files/diagnostics_file.hpp"
+#include "files/point_columns.hpp"
+#include "files/point_file.hpp"
+#include "files/run_files.hpp"
+#include "files/solution_file.hpp"
+#include "files/solution_file_reader.hpp"
 #include "output/sample_orbits.hpp"
-#include "output/solution_file.hpp"
-#include "output/solution_tables.hpp"
-#include "start/solution_file_reader.hpp"
+#include "tables/solution_tables.hpp"
 
 using namespace tchat;
 

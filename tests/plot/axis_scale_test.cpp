@@ -5,7 +5,7 @@
 #include <limits>
 #include <random>
 
-#include "constants/user_error.hpp"
+#include "text/user_error.hpp"
 
 using namespace tchat;
 

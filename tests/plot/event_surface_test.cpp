@@ -3,8 +3,8 @@
 
 #include <catch2/catch.hpp>
 
-#include "constants/user_error.hpp"
 #include "support/linear_oscillator.hpp"
+#include "text/user_error.hpp"
 
 using namespace tchat;
 

@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "constants/user_error.hpp"
+#include "text/user_error.hpp"
 
 using namespace tchat;
 

@@ -6,10 +6,10 @@
 #include <catch2/catch.hpp>
 #include <set>
 
-#include "constants/user_error.hpp"
 #include "plot/multiplier_figure.hpp"
 #include "plot/orbit_stability.hpp"
 #include "start/temporary_folder.hpp"
+#include "text/user_error.hpp"
 
 using namespace tchat;
 using test_support::message_of;

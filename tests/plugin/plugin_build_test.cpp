@@ -10,9 +10,9 @@
 #include <cstdlib>
 #include <vector>
 
-#include "constants/user_error.hpp"
 #include "plugin/problem_library.hpp"
 #include "plugin_folder.hpp"
+#include "text/user_error.hpp"
 
 using namespace tchat;
 using Catch::Matchers::Contains;

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <vector>
 
-#include "constants/user_error.hpp"
 #include "plugin_folder.hpp"
+#include "text/user_error.hpp"
 
 using namespace tchat;
 using Catch::Matchers::Contains;

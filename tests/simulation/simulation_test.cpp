@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "../hybrid/linear_oscillator.hpp"
-#include "constants/user_error.hpp"
 #include "simulation/orbit_flow.hpp"
 #include "simulation/segment_flow.hpp"
 #include "support/van_der_pol.hpp"
+#include "text/user_error.hpp"
 
 using namespace tchat;
 using Catch::Matchers::Contains;

@@ -1,14 +1,14 @@
 // A p-file with its q- and d-file: what belongs together, and what is of another run.
-#include "start/branch_file.hpp"
+#include "files/branch_file.hpp"
 
 #include <fmt/format.h>
 
 #include <catch2/catch.hpp>
 
-#include "constants/user_error.hpp"
+#include "files/solution_file_reader.hpp"
 #include "start/sample_solutions.hpp"
-#include "start/solution_file_reader.hpp"
 #include "start/temporary_folder.hpp"
+#include "text/user_error.hpp"
 
 using namespace tchat;
 using namespace test_support;

@@ -2,9 +2,9 @@
 #include <string>
 #include <vector>
 
-#include "constants/user_error.hpp"
-#include "start/dat_file.hpp"
+#include "files/dat_file.hpp"
 #include "start/temporary_folder.hpp"
+#include "text/user_error.hpp"
 
 using namespace tchat;
 using Catch::Matchers::Contains;

@@ -1,4 +1,4 @@
-#include "start/dat_file.hpp"
+#include "files/dat_file.hpp"
 
 #include <catch2/catch.hpp>
 #include <string>

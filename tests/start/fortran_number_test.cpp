@@ -1,4 +1,5 @@
-#include "start/fortran_number.hpp"
+#include "text/number.hpp"
+#include "text/words.hpp"
 
 #include <catch2/catch.hpp>
 #include <string>

@@ -1,5 +1,5 @@
 // p-files of this program, of AUTO-07p and of AUTO 97, written out by hand.
-#include "start/point_file_reader.hpp"
+#include "files/point_file_reader.hpp"
 
 #include <pthread.h>
 
@@ -8,8 +8,8 @@
 #include <functional>
 #include <random>
 
-#include "constants/user_error.hpp"
 #include "start/temporary_folder.hpp"
+#include "text/user_error.hpp"
 
 using namespace tchat;
 using test_support::message_of;

@@ -1,4 +1,5 @@
-#include "start/point_type.hpp"
+#include "special_points/point_type.hpp"
+#include "files/labelled_solution.hpp"
 
 #include <catch2/catch.hpp>
 

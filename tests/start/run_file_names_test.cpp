@@ -1,4 +1,4 @@
-#include "start/run_file_names.hpp"
+#include "files/run_file_names.hpp"
 
 #include <catch2/catch.hpp>
 

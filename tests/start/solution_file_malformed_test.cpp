@@ -2,10 +2,10 @@
 #include <string>
 #include <vector>
 
-#include "constants/user_error.hpp"
+#include "files/solution_file_reader.hpp"
 #include "start/sample_solutions.hpp"
-#include "start/solution_file_reader.hpp"
 #include "start/temporary_folder.hpp"
+#include "text/user_error.hpp"
 
 using namespace tchat;
 using Catch::Matchers::Contains;

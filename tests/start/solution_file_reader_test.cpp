@@ -1,11 +1,11 @@
-#include "start/solution_file_reader.hpp"
+#include "files/solution_file_reader.hpp"
 
 #include <catch2/catch.hpp>
 #include <string>
 
-#include "constants/user_error.hpp"
 #include "start/sample_solutions.hpp"
 #include "start/temporary_folder.hpp"
+#include "text/user_error.hpp"
 
 using namespace tchat;
 using Catch::Matchers::Contains;

@@ -1,0 +1,125 @@
+#include "continuation/newton_chord.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tchat {
+
+namespace {
+
+constexpr double divergence_factor = 20.0;
+/// Residuals below this times 1 + max |u| are rounding.
+constexpr double rounding_residual = 200 * std::numeric_limits<double>::epsilon();
+/// A stalled iteration is accepted at rounding-level residual when its corrections are about sqrt(rounding) or less.
+constexpr double stalled_change = 1e-6;
+/// A correction larger than this multiple of a residual at rounding level says nothing: the matrix is nearly singular.
+constexpr double magnified = 1e6;
+
+NewtonStatus failure(Linearization outcome) {
+  if (outcome == Linearization::not_finite) return NewtonStatus::not_finite;
+  return outcome == Linearization::singular ? NewtonStatus::singular : NewtonStatus::condition_lost;
+}
+
+}  // namespace
+
+std::string describe(NewtonStatus status) {
+  switch (status) {
+    case NewtonStatus::converged:
+      return "converged";
+    case NewtonStatus::too_many_iterations:
+      return "no convergence within ITNW iterations";
+    case NewtonStatus::diverging:
+      return "the Newton corrections grow";
+    case NewtonStatus::not_finite:
+      return "a function of the problem is not finite";
+    case NewtonStatus::condition_lost:
+      return "the critical multiplier of the curve is lost (not found near the last one, or a pair that has become "
+             "real)";
+    default:
+      return "the Newton matrix is singular";
+  }
+}
+
+bool is_rounding(double residual, const Orbit& x) {
+  return residual < rounding_residual * (1.0 + x.states.cwiseAbs().maxCoeff());
+}
+
+NewtonChord::NewtonChord(BorderedProblem& problem, const NewtonSettings& settings)
+    : problem_(problem),
+      settings_(settings),
+      dx_(problem.condensed().make_vector()),
+      residual_(problem.condensed().make_residual()) {
+  history_.reserve(static_cast<std::size_t>(settings.max_iterations) + 2);
+}
+
+NewtonResult NewtonChord::correct(Orbit& x, const OrbitVector& row, const Orbit& base, double target) {
+  NewtonResult result;
+  history_.clear();
+  const std::vector<int>& free_parameters = problem_.system().free_parameters();
+  const int full_iterations =
+      problem_.allows_chord() ? std::max(settings_.full_iterations, 1) : settings_.max_iterations;
+  double first_change = 0.0;
+  for (int iteration = 1; iteration <= settings_.max_iterations; ++iteration) {
+    if (iteration <= full_iterations) {
+      const Linearization outcome = problem_.linearize(x, row, residual_);
+      if (outcome != Linearization::ready) {
+        result.status = failure(outcome);
+        return result;
+      }
+      result.change_since_factorization = 0.0;
+    } else {
+      problem_.evaluate(x, residual_);
+    }
+    result.residual = problem_.residual_size(residual_);
+    problem_.solve(residual_, target - dot_difference(row, x, base, free_parameters), dx_);
+    const Change change = apply(x);
+    const double larger = std::max(change.parameters, change.states);
+    result.iterations = iteration;
+    const double parameter = free_parameters.empty() ? 0.0 : x.par(free_parameters.front() - 1);
+    history_.push_back({iteration, parameter, change.parameters, change.states, result.residual});
+    if (!std::isfinite(larger)) {
+      result.status = NewtonStatus::not_finite;
+      return result;
+    }
+    result.change_since_factorization += larger;
+    if (change.parameters <= settings_.tolerance_parameters && change.states < settings_.tolerance_states) {
+      result.status = NewtonStatus::converged;
+      return result;
+    }
+    if (iteration == 1) first_change = larger;
+    const bool rounding = is_rounding(result.residual, x);
+    const bool diverges = iteration > 1 && larger > divergence_factor * first_change;
+    if (rounding && (diverges || larger > magnified * rounding_residual)) {
+      advance(x, -1.0, dx_, free_parameters);
+      result.status = NewtonStatus::converged;
+      return result;
+    }
+    if (diverges) {
+      result.status = NewtonStatus::diverging;
+      return result;
+    }
+    if (iteration > 2 && larger < stalled_change && rounding) {
+      result.status = NewtonStatus::converged;
+      return result;
+    }
+  }
+  result.status = NewtonStatus::too_many_iterations;
+  return result;
+}
+
+/// x += dx; the relative sizes of the correction as AUTO measures them.
+NewtonChord::Change NewtonChord::apply(Orbit& x) const {
+  const std::vector<int>& free_parameters = problem_.system().free_parameters();
+  advance(x, 1.0, dx_, free_parameters);
+  Change change{0.0, dx_.states.cwiseAbs().maxCoeff() / (1.0 + x.states.cwiseAbs().maxCoeff())};
+  for (int s = 0; s < x.shape.segments; ++s)
+    change.parameters = std::max(change.parameters, std::abs(dx_.durations(s)) / (1.0 + std::abs(x.duration(s))));
+  for (std::size_t g = 0; g < free_parameters.size(); ++g)
+    change.parameters = std::max(change.parameters, std::abs(dx_.globals(static_cast<Eigen::Index>(g))) /
+                                                        (1.0 + std::abs(x.par(free_parameters[g] - 1))));
+  if (!dx_.states.allFinite()) change.states = std::numeric_limits<double>::quiet_NaN();
+  return change;
+}
+
+}  // namespace tchat

@@ -1,0 +1,177 @@
+#include "files/dat_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "constants/constant_value.hpp"
+#include "hybrid/parameter_vector.hpp"
+#include "text/number.hpp"
+#include "text/text_file.hpp"
+#include "text/user_error.hpp"
+#include "text/words.hpp"
+
+namespace tchat {
+
+namespace {
+
+std::string_view trimmed(std::string_view text) {
+  const auto first = text.find_first_not_of(" \t\r");
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
+}
+
+/// Reads the file line by line; `rows` holds the numbers of all data rows, one after the other.
+class DatReader {
+ public:
+  DatReader(const std::string& path, int dimension, int segments)
+      : path_(path),
+        dimension_(dimension),
+        segments_(segments),
+        columns_(1 + std::size_t(dimension) * std::size_t(segments)) {}
+
+  void read_line(std::string_view line) {
+    ++line_;
+    const auto hash = line.find('#');
+    if (hash != std::string_view::npos) read_comment(line.substr(hash + 1));
+    std::string data(line.substr(0, hash));
+    std::replace(data.begin(), data.end(), ',', ' ');
+    const auto words = split_words(data);
+    if (words.empty()) return;
+    if (!header_possible_ || parse_fortran_real(words[0])) read_row(words);
+    header_possible_ = false;
+  }
+
+  DatFile result() const {
+    const std::size_t count = rows_.size() / columns_;
+    if (count < 2)
+      throw UserError(
+          fmt::format("{}: {} of data; at least 2 are needed, from the start of the period to its end, each "
+                      "with t and {} states",
+                      path_, count == 0 ? "no row" : "only one row", columns_ - 1));
+    DatFile file;
+    file.parameters = parameters_;
+    file.named_parameters = named_parameters_;
+    file.span = rows_[(count - 1) * columns_] - rows_[0];
+    if (!std::isfinite(file.span))
+      throw UserError(
+          fmt::format("{}: t runs from {} to {}, which is too far", path_, rows_[0], rows_[(count - 1) * columns_]));
+    file.states.resize(static_cast<Eigen::Index>(columns_ - 1), static_cast<Eigen::Index>(count));
+    for (std::size_t row = 0; row < count; ++row) {
+      const double* numbers = rows_.data() + row * columns_;
+      file.tau.push_back((numbers[0] - rows_[0]) / file.span);
+      file.states.col(static_cast<Eigen::Index>(row)) =
+          Eigen::Map<const Eigen::VectorXd>(numbers + 1, static_cast<Eigen::Index>(columns_ - 1));
+    }
+    file.tau.back() = 1.0;
+    return file;
+  }
+
+ private:
+  [[noreturn]] void refuse(const std::string& message) const {
+    throw UserError(fmt::format("{}:{}: {}", path_, line_, message));
+  }
+
+  void read_row(const std::vector<std::string_view>& words) {
+    const std::size_t begin = rows_.size();
+    for (const std::string_view word : words) rows_.push_back(number(word));
+    if (words.size() != columns_) refuse_columns(words.size());
+    if (begin > 0 && !(rows_[begin] > rows_[begin - columns_])) refuse_time(rows_[begin], rows_[begin - columns_]);
+    last_row_line_ = line_;
+  }
+
+  double number(std::string_view word) const {
+    const auto value = parse_fortran_real(word);
+    if (!value)
+      refuse(
+          fmt::format("{} is not a finite number; a row is t and {} states, such as 0.25 1.0 -3.5E-2; only one header "
+                      "line is skipped, other text needs a # before it",
+                      in_quotes(word), columns_ - 1));
+    return *value;
+  }
+
+  void refuse_columns(std::size_t found) const {
+    const std::size_t n = static_cast<std::size_t>(dimension_);
+    const std::string guess =
+        found > 1 && (found - 1) % n == 0
+            ? fmt::format("; the file seems to hold {} segment{}: the constants must say so, or the file be cut anew",
+                          (found - 1) / n, (found - 1) / n == 1 ? "" : "s")
+            : "; the dimension, the number of segments or the file is wrong";
+    refuse(fmt::format("found {} number{}, expected 1 + n m = {}: t and {} state{} of {} segment{} (n = {}, m = {}){}",
+                       found, found == 1 ? "" : "s", columns_, dimension_, dimension_ == 1 ? "" : "s", segments_,
+                       segments_ == 1 ? "" : "s", dimension_, segments_, guess));
+  }
+
+  void refuse_time(double t, double before) const {
+    refuse(fmt::format("t = {} {} t = {} of line {}; t must rise from row to row: {}", t,
+                       t == before ? "repeats" : "falls below", before, last_row_line_,
+                       t == before ? "remove one of the two rows" : "sort the rows; all segments share one t"));
+  }
+
+  /// `PAR(k) = v` and nothing but further ones; comments that say anything else are left alone.
+  void read_comment(std::string_view comment) {
+    comment = trimmed(comment);
+    while (comment.starts_with("PAR(") || comment.starts_with("par(")) {
+      const auto close = comment.find(')');
+      if (close == std::string_view::npos) return;
+      const std::string_view name = trimmed(comment.substr(4, close - 4));
+      std::string_view rest = trimmed(comment.substr(close + 1));
+      if (rest.empty() || rest[0] != '=') return;
+      rest = trimmed(rest.substr(1));
+      const auto end = std::min(rest.find_first_of(", \t"), rest.size());
+      const auto value = parse_fortran_real(rest.substr(0, end));
+      if (!value)
+        refuse(fmt::format("PAR({}) = {}: not a finite number; a value is given as `# PAR(2) = 0.8`", name,
+                           in_quotes(rest.substr(0, end))));
+      store(name, *value);
+      const auto next = rest.find_first_not_of(", \t", end);
+      comment = next == std::string_view::npos ? std::string_view() : rest.substr(next);
+    }
+  }
+
+  void store(std::string_view name, double value) {
+    const bool is_index = !name.empty() && name.find_first_not_of("+-0123456789") == std::string_view::npos;
+    if (!is_index && !name.empty()) {
+      named_parameters_.emplace_back(std::string(name), value);
+      return;
+    }
+    const auto index = parse_integer(name);
+    if (!index || *index < 1 || *index > parameter_length)
+      refuse(fmt::format("PAR({}): an index from 1 to {} or a parameter's name is needed, as in `# PAR(2) = 0.8`", name,
+                         parameter_length));
+    parameters_.emplace_back(*index, value);
+  }
+
+  std::string path_;
+  int dimension_;
+  int segments_;
+  std::size_t columns_;
+  int line_ = 0;
+  int last_row_line_ = 0;
+  bool header_possible_ = true;
+  std::vector<double> rows_;
+  std::vector<std::pair<int, double>> parameters_;
+  std::vector<std::pair<std::string, double>> named_parameters_;
+};
+
+}  // namespace
+
+DatFile parse_dat_file(std::string_view text, const std::string& path, int dimension, int segments) {
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // byte order mark of some editors
+  DatReader reader(path, dimension, segments);
+  while (!text.empty()) {
+    const auto end = text.find('\n');
+    reader.read_line(text.substr(0, end));
+    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+  }
+  return reader.result();
+}
+
+DatFile read_dat_file(const std::string& path, int dimension, int segments) {
+  const std::string cure =
+      "a row of it is t and the states of all segments; `tchat new` and `tchat simulate` write one";
+  return parse_dat_file(read_text_file(path, "starting data", cure), path, dimension, segments);
+}
+
+}  // namespace tchat

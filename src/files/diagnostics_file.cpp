@@ -1,0 +1,92 @@
+#include "files/diagnostics_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "files/number_format.hpp"
+#include "files/point_table.hpp"
+
+namespace tchat {
+
+namespace {
+
+constexpr std::string_view end_of_run = "end of run";
+constexpr std::string_view auto_end_of_run = "Total Time";
+constexpr double stable_modulus = 1.0 + 1e-5;
+
+std::string prefix(int branch, int point) {
+  return fmt::format("{:>4}", branch) + integer_field(wrapped_point(point), 6);
+}
+
+double capped(double value) { return std::clamp(finite(value), -capped_value, capped_value); }
+
+/// AUTO's parser takes every "Multiplier " and "Eigenvalue " for the beginning of a number pair.
+std::string harmless(std::string_view text) {
+  std::string result(text);
+  for (const std::string_view word : {"Multiplier", "Eigenvalue"})
+    for (auto at = result.find(word); at != std::string::npos; at = result.find(word, at + 1))
+      result[at] = static_cast<char>(result[at] - 'A' + 'a');
+  return result;
+}
+
+}  // namespace
+
+std::string format_bar() { return fmt::format("{:=<47}\n", ""); }
+
+std::string format_newton_history(int branch, int point, const std::vector<NewtonLine>& iterations) {
+  std::string text = "  BR    PT  IT     PARAMETER      RESIDUAL      PAR. STEP     STATE STEP\n";
+  for (const NewtonLine& line : iterations) {
+    text += prefix(branch, point) + integer_field(line.iteration, 4);
+    text += fmt::format("{:14.5E}{:14.5E}", finite(line.parameter), finite(line.residual));
+    if (line.iteration > 0)
+      text += fmt::format("{:14.5E}{:15.5E}", finite(line.step_parameters), finite(line.step_states));
+    text += '\n';
+  }
+  return text;
+}
+
+std::string format_diagnostics_point(const PointLine& point, const std::vector<PointColumn>& columns) {
+  return format_table_heading(columns) + format_table_line(point, columns);
+}
+
+std::string format_multipliers(std::span<const std::complex<double>> multipliers) {
+  const auto stable = std::count_if(multipliers.begin(), multipliers.end(),
+                                    [](const std::complex<double>& mu) { return std::abs(mu) <= stable_modulus; });
+  std::string text = fmt::format(" Multipliers:     Stable: {:3}\n", stable);
+  int index = 0;
+  for (const std::complex<double>& mu : multipliers)
+    text += fmt::format("   Multiplier{}{}{}   Abs. Val.{}\n", integer_field(++index, 4), e19(capped(mu.real())),
+                        e19(capped(mu.imag())), e19(capped(std::abs(mu))));
+  return text;
+}
+
+std::string format_test_functions(const std::vector<TestFunctionLine>& functions) {
+  std::string text;
+  for (const TestFunctionLine& function : functions)
+    text += fmt::format("   {:<44} {}\n", harmless(function.name) + ":",
+                        function.valid ? e19(function.value) : fmt::format("{:>19}", "undefined"));
+  return text;
+}
+
+std::string format_note(int branch, int point, std::string_view text) {
+  const std::string start = prefix(branch, point) + "  NOTE: ";
+  std::string note = start;
+  for (const char c : harmless(text)) note += c == '\n' ? "\n" + std::string(start.size(), ' ') : std::string(1, c);
+  return note + '\n';
+}
+
+std::string format_end_of_run() { return format_bar() + std::string(end_of_run) + '\n'; }
+
+bool ends_complete_run(std::string_view text) {
+  const auto last = text.find_last_not_of(" \t\r\n");
+  if (last == std::string_view::npos || text.find('\n', last) == std::string_view::npos) return false;
+  text = text.substr(0, last + 1);
+  const auto line_end = text.rfind('\n');
+  std::string_view line = line_end == std::string_view::npos ? text : text.substr(line_end + 1);
+  line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
+  return line == end_of_run || line.starts_with(auto_end_of_run);
+}
+
+}  // namespace tchat

@@ -1,0 +1,58 @@
+/// The d-file: what happened at each point, for people; AUTO's parser finds points, labels and multipliers in it.
+///
+/// A block belongs to one point and ends with a bar of 47 '='. Texts never hold times of day, durations of the
+/// computation or paths: files of two equal runs are equal.
+#pragma once
+
+#include <complex>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "files/point_columns.hpp"
+#include "files/point_file.hpp"
+
+namespace tchat {
+
+/// One Newton iteration; iteration 0 is the predictor and has no steps.
+struct NewtonLine {
+  int iteration = 0;
+  double parameter = 0.0;        ///< the first free problem parameter after the iteration
+  double residual = 0.0;         ///< largest residual before the iteration
+  double step_parameters = 0.0;  ///< largest |dp| / (1 + |p|)
+  double step_states = 0.0;      ///< max |du| / (1 + max |u|)
+};
+
+/// One test function at a point; not `valid`: undefined there (no candidate left, detection suspended).
+struct TestFunctionLine {
+  std::string name;
+  double value = 0.0;
+  bool valid = true;
+};
+
+/// The bar between blocks.
+std::string format_bar();
+
+/// The Newton iterations of one step: a `BR PT IT` table.
+std::string format_newton_history(int branch, int point, const std::vector<NewtonLine>& iterations);
+
+/// The `BR PT TY LAB` headings and the line of the point.
+std::string format_diagnostics_point(const PointLine& point, const std::vector<PointColumn>& columns);
+
+/// `Multipliers:` with the number of stable ones (|mu| <= 1 + 1e-5), then one line for each in the order given: index,
+/// real and imaginary part, modulus. Sizes that are not finite or exceed 1e99 are written as 1e99.
+std::string format_multipliers(std::span<const std::complex<double>> multipliers);
+
+std::string format_test_functions(const std::vector<TestFunctionLine>& functions);
+
+/// `    1    12  NOTE: text`, further lines of the text indented.
+std::string format_note(int branch, int point, std::string_view text);
+
+/// Bar and the last line of a complete file. Nothing may follow but another run's part.
+std::string format_end_of_run();
+
+/// True when the text ends like a complete file: with our end of run, or AUTO's total time.
+bool ends_complete_run(std::string_view text);
+
+}  // namespace tchat

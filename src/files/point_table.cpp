@@ -1,0 +1,61 @@
+#include "files/point_table.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "files/labelled_solution.hpp"
+#include "files/number_format.hpp"
+#include "hybrid/parameter_vector.hpp"
+#include "special_points/point_type.hpp"
+
+namespace tchat {
+
+namespace {
+
+constexpr std::size_t most_columns = 5;
+constexpr int column_width = 13;
+
+/// What the screen shows first: 0 always, then in this order as far as there is room.
+int rank(const PointColumn& column, std::size_t place) {
+  using Kind = PointColumn::Kind;
+  const bool is_duration = column.kind == Kind::parameter && column.index >= first_duration;
+  if (column.kind == Kind::period || (column.kind == Kind::parameter && !is_duration)) return 0;
+  if (place == 1) return 1;  // the solution measure
+  if (column.kind == Kind::user_function) return 2;
+  return is_duration ? 4 : 3;
+}
+
+/// The columns shown, in the file's order.
+std::vector<std::size_t> shown(const std::vector<PointColumn>& columns) {
+  std::vector<std::size_t> chosen(columns.size());
+  std::iota(chosen.begin(), chosen.end(), std::size_t{0});
+  std::stable_sort(chosen.begin(), chosen.end(),
+                   [&](std::size_t a, std::size_t b) { return rank(columns[a], a) < rank(columns[b], b); });
+  chosen.resize(std::min(chosen.size(), most_columns));
+  std::sort(chosen.begin(), chosen.end());
+  return chosen;
+}
+
+}  // namespace
+
+std::string format_table_heading(const std::vector<PointColumn>& columns) {
+  std::string line = "  BR    PT  TY  LAB";
+  for (const std::size_t k : shown(columns)) line += heading_field(columns[k].name, column_width);
+  return line.substr(0, line.find_last_not_of(' ') + 1) + '\n';
+}
+
+std::string format_table_line(const PointLine& point, const std::vector<PointColumn>& columns) {
+  const int number = wrapped_point(point.point);
+  const bool shows_type = basic_type(point.type) != static_cast<int>(PointType::regular);
+  std::string line = fmt::format("{:>4}", point.branch) + integer_field(point.stable ? -number : number, 6) +
+                     fmt::format("{:>4}", shows_type ? type_name(point.type, point.kind) : "") +
+                     integer_field(point.label, 5);
+  for (const std::size_t k : shown(columns))
+    line += fmt::format(" {:>{}.5E}", finite(point.values[k]), column_width - 1);
+  if (!point.admissible) line += "  inadmissible";
+  return line + '\n';
+}
+
+}  // namespace tchat

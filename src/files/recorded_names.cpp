@@ -1,0 +1,42 @@
+#include "files/recorded_names.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+
+#include "files/point_file_reader.hpp"
+#include "files/run_file_names.hpp"
+#include "text/user_error.hpp"
+
+namespace tchat {
+
+namespace {
+
+std::vector<std::string> list_of(const std::map<int, std::string>& names, const char* symbol) {
+  constexpr int most = 1000;  // whatever number a file says
+  std::vector<std::string> list;
+  const int last = names.empty() ? 0 : std::min(names.rbegin()->first, most);
+  for (int k = 1; k <= last; ++k) list.push_back(names.contains(k) ? names.at(k) : fmt::format("{}({})", symbol, k));
+  return list;
+}
+
+}  // namespace
+
+RecordedNames recorded_names(const std::string& solution_path) {
+  std::error_code error;
+  RecordedNames recorded;
+  const std::string path = sibling_path(solution_path, 'p');
+  if (path.empty() || !std::filesystem::is_regular_file(path, error)) return recorded;
+  try {
+    const PointFile file = read_point_file(path);
+    recorded.names.states = list_of(file.sections.front().states, "U");
+    recorded.names.parameters = list_of(file.sections.front().parameters, "PAR");
+  } catch (const UserError&) {
+    recorded.warning = fmt::format("{} cannot be read: names of states and parameters are left out", path);
+  }
+  return recorded;
+}
+
+}  // namespace tchat

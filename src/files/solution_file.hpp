@@ -1,0 +1,23 @@
+/// One labelled solution as an entry of a q-file, in AUTO-07p's layout:
+///
+///     16 integers:  BR PT TY LAB NFPR ISW NTPL NAR NROWPR NTST NCOL NPAR NPARI NDIM IPS 0
+///     t, U(1..n m)                    NTPL records, each on lines of at most 7 numbers of 19 columns after 4 blanks
+///     ICP; d PAR(ICP)/ds; dU/ds       only with direction
+///     PAR(1..NPAR)                    at most 7 numbers of 26 columns on a line, exact; the last NPARI = 4 are kind,
+///                                     segment, index and tau of a UZ point
+///
+/// NPAR = max(100, 60 + m) + 4: the parameters are padded with zeros. NaN and inf are written as 1e99 (capped_value).
+#pragma once
+
+#include <string>
+
+#include "files/labelled_solution.hpp"
+
+namespace tchat {
+
+/// The entry, every line with its newline. Throws std::invalid_argument when the parts of `solution` do not fit
+/// together: NTPL and mesh, states and dimension, direction and free parameters, more parameters than NPAR has room
+/// for.
+std::string format_solution(const LabelledSolution& solution);
+
+}  // namespace tchat

@@ -1,0 +1,407 @@
+#include "files/solution_file_reader.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+
+#include "constants/constant_value.hpp"
+#include "files/run_file_names.hpp"
+#include "files/solution_identifier.hpp"
+#include "hybrid/parameter_vector.hpp"
+#include "text/number.hpp"
+#include "text/text_file.hpp"
+#include "text/user_error.hpp"
+#include "text/words.hpp"
+
+namespace tchat {
+
+namespace {
+
+/// One line of the file and whether it ends in a newline.
+struct Line {
+  std::string_view text;
+  bool ended = true;
+};
+
+/// The blank-separated numbers of the lines of one entry, converted one by one.
+class NumberStream {
+ public:
+  NumberStream(const std::vector<Line>& lines, int first_line, const std::string& path)
+      : lines_(lines), next_line_(first_line), path_(path) {}
+
+  double real() {
+    const std::string_view word = next();
+    const auto value = parse_fortran_real(word);
+    if (!value)
+      refuse(
+          fmt::format("{} is not a finite number; the solution cannot be used: restore the file, or delete the entry",
+                      in_quotes(word)));
+    return *value;
+  }
+
+  int integer(int lowest, std::int64_t highest, const std::string& what) {
+    const std::string_view word = next();
+    const auto value = parse_integer(word);
+    if (!value || *value < lowest || *value > highest)
+      refuse(fmt::format("{} is not {}: an integer from {} to {} is needed; the file is damaged", in_quotes(word), what,
+                         lowest, highest));
+    return *value;
+  }
+
+  [[noreturn]] void refuse(const std::string& message) const {
+    throw UserError(fmt::format("{}:{}: {}", path_, next_line_, message));
+  }
+
+ private:
+  /// Callers never ask for more words than there are: the entry was counted before.
+  std::string_view next() {
+    while (word_ == words_.size() && used_ < lines_.size()) {
+      words_ = split_words(lines_[used_].text);
+      word_ = 0;
+      next_line_ += used_ > 0 ? 1 : 0;
+      ++used_;
+    }
+    return words_[word_++];
+  }
+
+  const std::vector<Line>& lines_;
+  std::size_t used_ = 0;
+  int next_line_;
+  std::vector<std::string_view> words_;
+  std::size_t word_ = 0;
+  const std::string& path_;
+};
+
+/// What a file is by its name, where that is no q-file.
+std::string other_kind(const std::string& path) {
+  const std::filesystem::path file = std::filesystem::path(path).filename();
+  const std::string name = file.string();
+  if (file.extension() == ".dat") return "this is starting data, no q-file";
+  if (name.starts_with("p.") || name.starts_with("b.")) return "this is a p-file (the branch's points), no q-file";
+  if (name.starts_with("d.")) return "this is a d-file (what the run noted), no q-file";
+  if (name.starts_with("gc.") || name.starts_with("r.")) return "this is a constants file, no q-file";
+  return "";
+}
+
+/// The q-file of the same run where there is one.
+std::string solution_file_cure(const std::string& path) {
+  const std::filesystem::path file(path);
+  const std::string name = file.filename().string();
+  const bool data = file.extension() == ".dat";
+  const std::string run = data ? file.stem().string() : name.substr(name.find('.') + 1);
+  const std::filesystem::path solutions = file.parent_path() / ("q." + run);
+  std::error_code ignored;
+  if (std::filesystem::exists(solutions, ignored)) return fmt::format("give {}", solutions.string());
+  const std::string made = data ? fmt::format("; `tchat dat {}` makes q.{} from the data", run, run) : "";
+  return fmt::format("labelled solutions are in a run's q-file, q.NAME{}", made);
+}
+
+class SolutionReader {
+ public:
+  SolutionReader(std::string_view text, const std::string& path) : text_(text), path_(path) {}
+
+  SolutionFile read() {
+    while (position_ < text_.size()) {
+      const Line line = next_line();
+      if (split_words(line.text).empty()) {
+        if (line.ended) file_.complete_bytes = position_;
+        continue;
+      }
+      if (!read_entry(line)) break;
+      file_.complete_bytes = position_;
+    }
+    return std::move(file_);
+  }
+
+ private:
+  std::string place(int line) const { return fmt::format("{}:{}", path_, line); }
+
+  Line next_line() {
+    const auto end = text_.find('\n', position_);
+    Line line;
+    line.ended = end != std::string_view::npos;
+    line.text = without_carriage_return(text_.substr(position_, line.ended ? end - position_ : std::string_view::npos));
+    position_ = line.ended ? end + 1 : text_.size();
+    ++line_;
+    return line;
+  }
+
+  /// Warns; false for "no entry was read".
+  bool truncated(int entry_line) {
+    file_.warnings.push_back(
+        fmt::format("{}:{}: the last solution is not complete and is left out (the run that wrote it was interrupted?)",
+                    path_, entry_line));
+    return false;
+  }
+
+  /// False when the entry is the cut-off last one.
+  bool read_entry(const Line& first) {
+    const int entry_line = line_;
+    const auto identifier = read_identifier(first);
+    if (!identifier) return truncated(entry_line);
+    if (first.ended) check_numbering(*identifier, place(entry_line));
+    if (identifier->is_empty_entry()) return count_in(*identifier);
+    if (!first.ended) return truncated(entry_line);
+    check_counts(*identifier, place(entry_line));
+    const auto lines = entry_lines(*identifier);
+    if (!lines) {
+      check_line_count(*identifier, place(entry_line));
+      return truncated(entry_line);
+    }
+    const std::int64_t found = count_words(*lines);
+    if (cut_inside_last_line(*identifier, *lines, found)) return truncated(entry_line);
+    const bool direction = has_direction(*identifier, found, entry_line);
+    NumberStream numbers(*lines, entry_line + 1, path_);
+    file_.solutions.push_back(read_solution(*identifier, direction, numbers, entry_line));
+    return count_in(*identifier);
+  }
+
+  bool count_in(const SolutionIdentifier& id) {
+    file_.last_branch = std::max(file_.last_branch, id.branch());
+    file_.last_label = std::max(file_.last_label, id.label());
+    return true;
+  }
+
+  /// Nothing when the line is the last one of the file and cut off.
+  std::optional<SolutionIdentifier> read_identifier(const Line& line) const {
+    const auto words = split_words(line.text);
+    SolutionIdentifier identifier;
+    for (const std::string_view word : words) {
+      const auto value = parse_integer(word);
+      const bool cut = !line.ended && &word == &words.back() && word == "-";
+      if (!value && !cut) refuse_identifier(fmt::format("found {}, not an integer", in_quotes(word)));
+      if (identifier.count == identifier.values.size()) refuse_identifier("found more than 16 integers");
+      identifier.values[identifier.count++] = value.value_or(0);
+    }
+    if (identifier.count == 12 || identifier.count == 16) return identifier;
+    if (!line.ended) return std::nullopt;
+    refuse_identifier(fmt::format("found {} integer{}", identifier.count, identifier.count == 1 ? "" : "s"));
+  }
+
+  [[noreturn]] void refuse_identifier(const std::string& found) const {
+    if (file_.solutions.empty())
+      if (const std::string other = other_kind(path_); !other.empty())
+        throw UserError(fmt::format("{}: {}; {}", place(line_), other, solution_file_cure(path_)));
+    throw UserError(
+        fmt::format("{}: a labelled solution begins with a line of 16 integers (12 in older files), {}; either this is "
+                    "no q-file, or "
+                    "the number of lines of the solution before (integer 9 of its first line) is wrong",
+                    place(line_), found));
+  }
+
+  /// The lines of the entry; nothing when the file ends before.
+  std::optional<std::vector<Line>> entry_lines(const SolutionIdentifier& id) {
+    const auto left = static_cast<std::int64_t>(text_.size() - position_);  // a line has one byte at least
+    if (id.lines() > left) return std::nullopt;
+    std::vector<Line> lines;
+    while (static_cast<std::int64_t>(lines.size()) < id.lines()) {
+      if (position_ >= text_.size()) return std::nullopt;
+      lines.push_back(next_line());
+    }
+    return lines;
+  }
+
+  static std::int64_t count_words(const std::vector<Line>& lines) {
+    std::size_t count = 0;
+    for (const Line& line : lines) count += split_words(line.text).size();
+    return static_cast<std::int64_t>(count);
+  }
+
+  /// A last line without newline is whole when it has the fixed width of 4 + 19 k or 4 + 26 k columns for its k numbers
+  /// and no number is missing.
+  static bool cut_inside_last_line(const SolutionIdentifier& id, const std::vector<Line>& lines, std::int64_t found) {
+    if (lines.back().ended) return false;
+    const bool all_numbers = found == id.numbers(false) || found == id.numbers(true);
+    const std::string_view text = lines.back().text;
+    const std::size_t count = split_words(text).size();
+    const bool whole = text.size() == 4 + 26 * count || (text.size() == 4 + 19 * count && !has_more_digits(text));
+    return !all_numbers || !whole;
+  }
+
+  /// Than the ten decimals of a number of 19 columns: part of one of 26.
+  static bool has_more_digits(std::string_view text) {
+    const std::string_view last = split_words(text).back();
+    const auto point = last.find('.');
+    return last.find_first_of("EeDd") == std::string_view::npos || last.find_first_of("EeDd") - point != 11;
+  }
+
+  bool has_direction(const SolutionIdentifier& id, std::int64_t found, int entry_line) const {
+    if (found == id.numbers(true)) return true;
+    if (found == id.numbers(false)) return false;
+    throw UserError(fmt::format(
+        "{}: the solution with label {} has {} numbers, its first line makes it {} or (with direction) {}; the file is "
+        "damaged: its number of lines is integer 9 of its first line",
+        place(entry_line), id.label(), found, id.numbers(false), id.numbers(true)));
+  }
+
+  LabelledSolution read_solution(const SolutionIdentifier& id, bool direction, NumberStream& numbers,
+                                 int entry_line) const {
+    LabelledSolution solution;
+    solution.branch = id.branch();
+    solution.point = id.point();
+    solution.type = id.type();
+    solution.label = id.label();
+    solution.branch_mode = id.branch_mode();
+    solution.problem_type = id.problem_type();
+    solution.dimension = id.dimension();
+    solution.mesh_intervals = static_cast<int>(id.mesh_intervals());
+    solution.collocation_points = static_cast<int>(id.collocation_points());
+    read_states(id, numbers, solution);
+    check_mesh(solution, entry_line);
+    if (direction) read_direction(id, numbers, solution);
+    const std::int64_t ordinary = id.parameters() - id.internal_parameters();
+    for (std::int64_t k = 0; k < ordinary; ++k) solution.parameters.push_back(numbers.real());
+    if (id.has_kind()) {
+      solution.kind = read_kind(numbers);
+      for (std::int64_t k = kind_values; k < id.internal_parameters(); k += kind_values)
+        solution.further.push_back(read_kind(numbers));
+    } else {
+      for (std::int64_t k = 0; k < id.internal_parameters(); ++k) numbers.real();
+    }
+    return solution;
+  }
+
+  static void read_states(const SolutionIdentifier& id, NumberStream& numbers, LabelledSolution& solution) {
+    solution.states.resize(id.numbers_per_point() - 1, id.time_points());
+    for (Eigen::Index point = 0; point < solution.states.cols(); ++point) {
+      solution.tau.push_back(numbers.real());
+      for (Eigen::Index row = 0; row < solution.states.rows(); ++row) solution.states(row, point) = numbers.real();
+    }
+  }
+
+  static void read_direction(const SolutionIdentifier& id, NumberStream& numbers, LabelledSolution& solution) {
+    for (std::int64_t i = 0; i < id.free_parameters(); ++i)
+      solution.free_parameters.push_back(numbers.integer(1, id.parameters(), "the number of a parameter"));
+    for (std::int64_t i = 0; i < id.free_parameters(); ++i) solution.parameter_direction.push_back(numbers.real());
+    solution.state_direction.resize(solution.states.rows(), solution.states.cols());
+    for (Eigen::Index point = 0; point < solution.states.cols(); ++point)
+      for (Eigen::Index row = 0; row < solution.states.rows(); ++row)
+        solution.state_direction(row, point) = numbers.real();
+  }
+
+  /// t runs from 0 to 1 and mesh points differ; ten decimals may make neighbouring points inside an interval equal.
+  void check_mesh(const LabelledSolution& solution, int entry_line) const {
+    if (solution.tau.size() < 2) return;
+    const auto refuse_here = [&](const std::string& what) {
+      throw UserError(fmt::format("{}: solution with label {}: {}; t must rise from 0 to 1", place(entry_line),
+                                  solution.label, what));
+    };
+    constexpr double rounding = 1e-8;
+    if (std::abs(solution.tau.front()) > rounding || std::abs(solution.tau.back() - 1.0) > rounding)
+      refuse_here(fmt::format("t runs from {} to {}", solution.tau.front(), solution.tau.back()));
+    const auto step = static_cast<std::size_t>(solution.collocation_points);
+    for (std::size_t k = 1; k < solution.tau.size(); ++k) {
+      const bool falls = solution.tau[k] < solution.tau[k - 1];
+      const bool empty_interval = k % step == 0 && !(solution.tau[k] > solution.tau[k - step]);
+      if (falls || empty_interval)
+        refuse_here(fmt::format("t = {} at time point {} after t = {}", solution.tau[k], k + 1, solution.tau[k - 1]));
+    }
+  }
+
+  static UserPointKind read_kind(NumberStream& numbers) {
+    const auto whole = [&numbers](double lowest, double highest, const std::string& what) {
+      const double value = numbers.real();
+      if (!(value >= lowest && value <= highest) || value != static_cast<double>(static_cast<int>(value)))
+        numbers.refuse(fmt::format(
+            "{} as {} of a UZ point (one of the internal values at the end of the parameters); the file is damaged",
+            value, what));
+      return static_cast<int>(value);
+    };
+    UserPointKind kind;
+    kind.kind = whole(0.0, UserPointKind::other_type, "kind");
+    kind.segment = whole(0.0, max_segments, "segment");
+    kind.index = whole(kind.kind == UserPointKind::other_type ? -9.0 : -1.0, 1e6, "index");
+    kind.tau = numbers.real();
+    return kind;
+  }
+
+  std::string_view text_;
+  std::string path_;
+  std::size_t position_ = 0;
+  int line_ = 0;
+  SolutionFile file_;
+};
+
+bool is_called(const LabelledSolution& solution, const std::string& type) {
+  const std::vector<std::string> names = type_names(solution);
+  return std::find(names.begin(), names.end(), type) != names.end();
+}
+
+std::string label_list(const std::vector<LabelledSolution>& solutions) {
+  std::string list;
+  for (const LabelledSolution& solution : solutions) {
+    const std::string type = fmt::format("{}", fmt::join(type_names(solution), " "));
+    list += fmt::format("{}{}{}", list.empty() ? "" : ", ", solution.label, type.empty() ? "" : " (" + type + ")");
+  }
+  return list;
+}
+
+}  // namespace
+
+SolutionFile parse_solution_file(std::string_view text, const std::string& path) {
+  return SolutionReader(text, path).read();
+}
+
+SolutionFile read_solution_file(const std::string& path) {
+  return parse_solution_file(read_text_file(path, "labelled solutions",
+                                            "a run writes them to q.NAME, `tchat dat NAME` makes them from NAME.dat"),
+                             path);
+}
+
+std::string resolve_solution_path(const std::string& path) { return resolve_run_file(path, 'q'); }
+
+const LabelledSolution& find_solution(const std::vector<LabelledSolution>& solutions, const StartLabel& label,
+                                      const std::string& path) {
+  int left = std::max(label.number, 1);
+  for (const LabelledSolution& solution : solutions) {
+    const bool matches = label.type.empty() ? solution.label == label.number : is_called(solution, label.type);
+    if (matches && (label.type.empty() || --left == 0)) return solution;
+  }
+  const std::string wanted = label.type.empty() ? fmt::format("label {}", label.number)
+                                                : fmt::format("point {}{}", label.type, std::max(label.number, 1));
+  throw UserError(solutions.empty()
+                      ? fmt::format("{}: no {}; the file holds no solution", path, wanted)
+                      : fmt::format("{}: no {}; there are the labels {}", path, wanted, label_list(solutions)));
+}
+
+std::vector<std::vector<std::string>> counted_names(const std::vector<LabelledSolution>& solutions) {
+  std::map<std::string, int> counts;
+  std::vector<std::vector<std::string>> names;
+  for (const LabelledSolution& solution : solutions) {
+    names.emplace_back();
+    for (const std::string& type : type_names(solution))
+      if (!type.empty()) names.back().push_back(fmt::format("{}{}", type, ++counts[type]));
+  }
+  return names;
+}
+
+StartLabel read_label(const std::string& word) {
+  if (const auto number = parse_integer(word); number && *number >= 0) return {"", *number};
+  if (const auto typed = parse_typed_label(word)) return *typed;
+  throw UserError(fmt::format("{} is no label; a number or a type with its count is needed, such as 5, GR1 or PD1",
+                              in_quotes(word)));
+}
+
+int segment_count(const LabelledSolution& solution) {
+  const auto rows = static_cast<int>(solution.states.rows());
+  if (solution.dimension > 0) return rows % solution.dimension == 0 ? rows / solution.dimension : 0;
+  const auto durations =
+      static_cast<int>(std::count_if(solution.free_parameters.begin(), solution.free_parameters.end(),
+                                     [](int k) { return is_duration(k, max_segments); }));
+  return durations > 0 && rows % durations == 0 ? durations : 0;
+}
+
+double period(const LabelledSolution& solution) {
+  const auto first = static_cast<std::size_t>(first_duration - 1);
+  const auto last = first + static_cast<std::size_t>(segment_count(solution));
+  double sum = 0.0;
+  for (std::size_t k = first; k < std::min(last, solution.parameters.size()); ++k) sum += solution.parameters[k];
+  return sum;
+}
+
+}  // namespace tchat

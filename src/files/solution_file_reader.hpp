@@ -1,0 +1,56 @@
+/// Reads q-files: labelled solutions of this program, of AUTO-07p (16 integers before each solution) and of AUTO 97
+/// and TC-HAT (12 integers).
+///
+/// Numbers are list-directed (any width; `1.0-100`, `E+000`, `D+00`). A last solution that was cut off is left out with
+/// a warning. Every count in the file is checked against the file before memory is asked for.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "constants/run_settings.hpp"
+#include "files/labelled_solution.hpp"
+#include "special_points/point_type.hpp"
+
+namespace tchat {
+
+struct SolutionFile {
+  std::vector<LabelledSolution> solutions;  ///< in file order
+  int last_branch = 0;                      ///< largest in the file, a trailing empty entry included; 0 without any
+  int last_label = 0;                       ///< likewise
+  std::size_t complete_bytes = 0;           ///< where the last complete entry ends, its newline included
+  std::vector<std::string> warnings;        ///< complete messages with path and line
+};
+
+/// Throws UserError with path:line, what was found and the cure: file missing, not a q-file, counts that contradict
+/// each other or the file, tokens that are no finite numbers. An empty file holds no solutions and is no error.
+SolutionFile read_solution_file(const std::string& path);
+
+/// The same for text already read; `path` is for the messages.
+SolutionFile parse_solution_file(std::string_view text, const std::string& path);
+
+/// `path`, or q.NAME in the same folder when there is no file NAME but that one.
+std::string resolve_solution_path(const std::string& path);
+
+/// The solution with a label number, or the n-th one of a type (PD1, UZ2, GR1; a number below 1 counts as 1). UZ means
+/// user values only, GR contacts and impact velocities zero, XI zeros of xi_n. A solution that is several things at
+/// once has all their names. Throws UserError that lists the labels there are.
+const LabelledSolution& find_solution(const std::vector<LabelledSolution>& solutions, const StartLabel& label,
+                                      const std::string& path);
+
+/// By which names find_solution() finds each solution, its own first: {"GR1", "UZ3"}.
+std::vector<std::vector<std::string>> counted_names(const std::vector<LabelledSolution>& solutions);
+
+/// A label as users name it: a number, or a type with its count, GR1. Throws UserError.
+StartLabel read_label(const std::string& word);
+
+/// Number of segments m: rows / n; for files of the older generation the number of durations among the free parameters.
+/// 0 when neither tells.
+int segment_count(const LabelledSolution& solution);
+
+/// Sum of the durations PAR(61..60+m); 0 when the number of segments is not known.
+double period(const LabelledSolution& solution);
+
+}  // namespace tchat

@@ -1,0 +1,175 @@
+#include "setup/problem_setup.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <fstream>
+
+#include "constants/constants_file.hpp"
+#include "text/number.hpp"
+#include "text/user_error.hpp"
+
+namespace tchat {
+
+namespace {
+
+void check_index(const HybridSystem& system, FunctionKind kind, int index, const char* keyword, const char* what, int s,
+                 const SettingsSource& source) {
+  if (index >= 1 && index <= system.count(kind)) return;
+  throw UserError(fmt::format("{}: {} of segment {} is {}, but problem {} has {} {}; allowed: 1..{}",
+                              source.of(keyword), keyword, s, index, system.name(), system.count(kind), what,
+                              system.count(kind)));
+}
+
+/// Bytes that the system could still give; 0 when it does not say.
+double available_memory() {
+  std::ifstream file("/proc/meminfo");
+  std::string key;
+  double kilobytes = 0.0;
+  std::string unit;
+  while (file >> key >> kilobytes) {
+    std::getline(file, unit);
+    if (key == "MemAvailable:") return 1024.0 * kilobytes;
+  }
+  return 0.0;
+}
+
+/// May the problem read entries of PAR beyond its parameters? The Fortran interface, which alone knows durations, has
+/// no number of parameters; entries that are set for output are among PAR(1..60) too.
+bool has_further_parameters(const HybridSystem& system) {
+  return system.table().initial_durations != nullptr || system.table().output_parameters != nullptr;
+}
+
+bool is_parameter(const HybridSystem& system, int k) {
+  return k >= 1 && (k <= system.parameters() || k >= first_duration || has_further_parameters(system));
+}
+
+std::string parameter_list(const HybridSystem& system) {
+  std::string names;
+  for (int i = 1; i <= system.parameters(); ++i)
+    names += fmt::format("{}{}", i > 1 ? ", " : "", system.parameter_name(i));
+  if (names.empty()) return "none";
+  return system.parameters() == 1 ? "PAR(1): " + names
+                                  : fmt::format("PAR(1) to PAR({}): {}", system.parameters(), names);
+}
+
+/// PAR(name) = v and UZR beyond the problem's parameters would do nothing, and so would the run's free parameter: they
+/// are refused. Further entries of ICP are mere columns of the output and weights are harmless: a warning.
+void check_parameters(const HybridSystem& system, const RunSettings& settings, const SettingsSource& source,
+                      std::vector<std::string>& warnings) {
+  for (const RunSettings::ParameterValue& value : settings.parameter_values)
+    parameter_index(system, value.name, "command line");
+  const auto no_parameter = [&](const char* keyword, int k) {
+    return fmt::format("{}: {}: PAR({}) is no parameter of problem {}; it has {}", source.of(keyword), keyword, k,
+                       system.name(), parameter_list(system));
+  };
+  std::size_t free = settings.problem_type == 150 || settings.branch_mode == 2 ? 2 : 1;
+  for (const int k : settings.free_parameters) {
+    if (k >= first_duration) continue;
+    const bool is_free = free > 0;
+    free -= is_free ? 1 : 0;
+    if (is_parameter(system, k)) continue;
+    if (is_free) throw UserError(no_parameter("ICP", k));
+    warnings.push_back(no_parameter("ICP", k));
+  }
+  for (const UserValue& value : settings.user_values)
+    if (!is_parameter(system, value.parameter)) throw UserError(no_parameter("UZR", value.parameter));
+  for (const IndexedValue& weight : settings.parameter_weights)
+    if (!is_parameter(system, weight.index)) warnings.push_back(no_parameter("THL", weight.index));
+}
+
+}  // namespace
+
+std::string SettingsSource::of(std::string_view keyword) const {
+  return is_overridden(overrides, keyword) ? "command line" : file;
+}
+
+std::vector<std::string> check_settings_against(const HybridSystem& system, const RunSettings& settings,
+                                                const SettingsSource& source) {
+  if (settings.dimension != system.dimension())
+    throw UserError(fmt::format("{}: NDIM is {}, but problem {} has {} states; set NDIM = {}", source.of("NDIM"),
+                                settings.dimension, system.name(), system.dimension(), system.dimension()));
+  std::vector<std::string> warnings;
+  int s = 0;
+  for (const SegmentSettings& segment : settings.segments) {
+    ++s;
+    check_index(system, FunctionKind::field, segment.index.field, "GCFIND", "vector fields", s, source);
+    check_index(system, FunctionKind::event, segment.index.event, "GCHIND", "event functions", s, source);
+    check_index(system, FunctionKind::jump, segment.index.jump, "GCGIND", "jump functions", s, source);
+    for (const int event : segment.monitor)
+      check_index(system, FunctionKind::event, event, "GCHGRZIND", "event functions", s, source);
+    const bool identity = is_identity_jump(system, segment.index.jump);
+    if ((segment.type == 0 && !identity) || (segment.type == 1 && identity))
+      warnings.push_back(fmt::format(
+          "{}: GCSEGTYP of segment {} is {} ({} jump), but jump {} ({}) is {}the identity; "
+          "the jump decides",
+          source.of("GCSEGTYP"), s, segment.type, segment.type == 0 ? "identity" : "another", segment.index.jump,
+          system.function_name(FunctionKind::jump, segment.index.jump), identity ? "" : "not "));
+  }
+  check_parameters(system, settings, source, warnings);
+  return warnings;
+}
+
+int parameter_index(const HybridSystem& system, const std::string& name, const std::string& where) {
+  if (const std::optional<int> k = parse_integer(name)) {
+    if (*k <= parameter_length && is_parameter(system, *k)) return *k;
+  } else if (const int named = system.parameter_index(name); named > 0) {
+    return named;
+  }
+  throw UserError(fmt::format("{}: PAR({}) is no parameter of problem {}; it has {}; PAR(61), ... are the durations",
+                              where, name, system.name(), parameter_list(system)));
+}
+
+Eigen::VectorXd state_weights(const RunSettings& settings) {
+  Eigen::VectorXd weights = Eigen::VectorXd::Ones(settings.dimension);
+  for (const IndexedValue& w : settings.state_weights) weights(w.index - 1) = w.value;
+  return weights;
+}
+
+WeightedNorm weighted_norm(const RunSettings& settings) {
+  Eigen::VectorXd weights = Eigen::VectorXd::Ones(parameter_length);
+  for (const IndexedValue& w : settings.parameter_weights) weights(w.index - 1) = w.value;
+  return {state_weights(settings), weights};
+}
+
+NewtonSettings newton_settings(const RunSettings& settings) {
+  return {settings.max_newton, settings.full_newton, settings.tolerance_parameters, settings.tolerance_states};
+}
+
+ContinuationSettings continuation_settings(const RunSettings& settings) {
+  ContinuationSettings c;
+  c.step = {settings.step, settings.step_min, settings.step_max, settings.adapt_step_every, settings.max_newton};
+  c.max_points = settings.max_points;
+  c.principal = settings.free_parameters.front();
+  c.parameter_min = settings.parameter_min;
+  c.parameter_max = settings.parameter_max;
+  c.measure_min = settings.measure_min;
+  c.measure_max = settings.measure_max;
+  c.measure = settings.measure;
+  c.state_weights = state_weights(settings);
+  c.print_every = settings.print_every;
+  c.adapt_mesh_every = settings.adapt_mesh_every;
+  c.multipliers = settings.detect_bifurcations != 0;
+  c.location_tolerance = settings.tolerance_special;
+  c.max_location = settings.max_location_iterations;
+  for (const SegmentSettings& segment : settings.segments) c.monitored.push_back(segment.monitor);
+  return c;
+}
+
+void check_memory(const OrbitShape& shape, int free_parameters) {
+  const double n = shape.dimension;
+  const double c = shape.collocation;
+  const double interval =
+      (c * n + 2) * ((c + 1) * n + 5 + free_parameters) + (2 * n + 2) * (3 * n + 5 + free_parameters);
+  const double vectors = 25 * n * c;  // orbits, tangents and right-hand sides
+  const double needed = 8.0 * shape.segments * shape.intervals * (interval + vectors);
+  const double available = available_memory();
+  if (available > 0.0 && needed > available)
+    throw UserError(fmt::format(
+        "{} segments of {} states with NTST = {} and NCOL = {} need about {:.1f} GB of memory, "
+        "{:.1f} GB are free; use a smaller NTST or NCOL",
+        shape.segments, shape.dimension, shape.intervals, shape.collocation, needed / 1e9, available / 1e9));
+}
+
+}  // namespace tchat

@@ -1,0 +1,168 @@
+#include "simulate/orbit_hand_over.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <set>
+
+#include "hybrid/identity_jump.hpp"
+#include "hybrid/parameter_vector.hpp"
+#include "setup/parameter_values.hpp"
+
+namespace tchat {
+
+namespace {
+
+constexpr double no_bound = 1e300;
+constexpr double surface = 1e-9;  // h below minus this, times its scale, is negative
+
+/// The values of an event function along a segment.
+struct EventValues {
+  double least = 0.0, scale = 1.0;
+
+  EventValues(const HybridSystem& system, int event, const Eigen::MatrixXd& states, const Eigen::VectorXd& par) {
+    least = no_bound;
+    for (const auto& column : states.colwise()) {
+      const Eigen::VectorXd x = column;
+      const double h = system.event(event, x.data(), par.data());
+      scale = std::max(scale, std::abs(h));
+      if (!(h >= least)) least = h;  // NaN is kept
+    }
+  }
+  bool is_negative() const { return !(least >= -surface * scale); }
+};
+
+/// Does the event change neither state nor field, as a Poincare section? What follows is seen where segment s ends by
+/// it; elsewhere the index jump function is asked all along the segment, for what follows may depend on the state. An
+/// event that is only monitored is none.
+bool is_section(const HybridSystem& system, const FoundOrbit& orbit, std::size_t s, int event,
+                const Eigen::MatrixXd& states, const Eigen::VectorXd& par) {
+  const std::vector<IndexVector>& watched = orbit.modes[s].index_vectors;
+  const auto v = std::find_if(watched.begin(), watched.end(), [&](const auto& w) { return w.event == event; });
+  if (v == watched.end() || !is_identity_jump(system, v->jump)) return false;
+  if (*v == orbit.signature[s]) return orbit.signature[(s + 1) % orbit.signature.size()].field == v->field;
+  const auto columns = states.colwise();
+  return std::all_of(columns.begin(), columns.end(), [&](const Eigen::VectorXd& x) {
+    const auto following = system.successors(*v, x.data(), par.data());
+    return following && !following->empty() && following->front().field == v->field;
+  });
+}
+
+/// Events of segment s' mode whose contact would matter: no sections, and none that is negative somewhere, which would
+/// make every point of the branch inadmissible.
+std::vector<int> monitored_events(const HybridSystem& system, const FoundOrbit& orbit, std::size_t s,
+                                  const Eigen::MatrixXd& states, const Eigen::VectorXd& par) {
+  std::vector<int> events;
+  for (const int event : orbit.modes[s].all_events()) {
+    const EventValues values(system, event, states, par);
+    if (values.is_negative() || is_section(system, orbit, s, event, states, par)) continue;
+    events.push_back(event);
+  }
+  std::sort(events.begin(), events.end());
+  return events;
+}
+
+/// The jump that contact with a monitored event brings, where all of them that change the state have the same one.
+std::optional<int> jump_of_contact(const HybridSystem& system, const FoundOrbit& orbit,
+                                   const std::vector<SegmentSettings>& segments) {
+  std::set<int> jumps;
+  for (std::size_t s = 0; s < segments.size(); ++s)
+    for (const IndexVector& v : orbit.modes[s].index_vectors) {
+      const std::vector<int>& monitored = segments[s].monitor;
+      const bool is_monitored = std::find(monitored.begin(), monitored.end(), v.event) != monitored.end();
+      if (is_monitored && !is_identity_jump(system, v.jump)) jumps.insert(v.jump);
+    }
+  if (jumps.size() != 1) return std::nullopt;
+  return *jumps.begin();
+}
+
+bool is_free(const std::vector<int>& free, int k) { return std::find(free.begin(), free.end(), k) != free.end(); }
+
+/// Weights of parameters: those given; durations have none, unless some have been given one.
+std::vector<IndexedValue> parameter_weights(const RunSettings& base, int segments) {
+  const auto is_weighted = [](const IndexedValue& w) { return w.index >= first_duration && w.value != 0.0; };
+  const bool durations_weighted =
+      std::any_of(base.parameter_weights.begin(), base.parameter_weights.end(), is_weighted);
+  std::vector<IndexedValue> weights;
+  for (const IndexedValue& weight : base.parameter_weights)
+    if (weight.index < first_duration) weights.push_back(weight);
+  if (!durations_weighted)
+    for (int s = 0; s < segments; ++s) weights.push_back({first_duration + s, 0.0});
+  return weights;
+}
+
+}  // namespace
+
+std::string orbit_data_text(const HybridSystem& system, const FoundOrbit& orbit, const OrbitSamples& samples,
+                            const Eigen::VectorXd& par) {
+  std::string text =
+      fmt::format("# Periodic orbit of {}, found by simulation and refined by shooting.\n# signature {}\n",
+                  system.name(), to_string(orbit.signature));
+  text += fmt::format("# period {}\n", orbit.map.period);
+  text += parameter_lines(system, par);
+  for (std::size_t s = 0; s < orbit.map.segments.size(); ++s)
+    text += fmt::format("# PAR({}) = {}\n", first_duration + static_cast<int>(s), orbit.map.segments[s].duration);
+  text += fmt::format("# tau, then the {} states of each segment\n", system.dimension());
+  for (std::size_t k = 0; k < samples.tau.size(); ++k) {
+    text += fmt::format("{:.17g}", samples.tau[k]);
+    for (const double value : samples.states.col(static_cast<Eigen::Index>(k))) text += fmt::format(" {:.17g}", value);
+    text += '\n';
+  }
+  return text;
+}
+
+RunSettings default_orbit_settings(const RunSettings& given) {
+  const RunSettings plain;
+  RunSettings settings = given;
+  const auto prefer = [&](auto member, auto value) {
+    if (given.*member == plain.*member) settings.*member = value;
+  };
+  prefer(&RunSettings::tolerance_parameters, 1e-10);
+  prefer(&RunSettings::tolerance_states, 1e-10);
+  prefer(&RunSettings::tolerance_special, 1e-9);
+  prefer(&RunSettings::derivative_order, 2);
+  return settings;
+}
+
+RunSettings orbit_settings(const HybridSystem& system, const RunSettings& base, const FoundOrbit& orbit,
+                           const OrbitSamples& samples, const Eigen::VectorXd& par, int parameter) {
+  const int m = static_cast<int>(orbit.signature.size());
+  const Eigen::Index n = system.dimension();
+  RunSettings settings = base;
+  settings.dimension = static_cast<int>(n);
+  settings.mesh_intervals = samples.intervals;
+  settings.problem_type = 180;
+  settings.branch_mode = 1;
+  settings.start = {};
+  settings.parameter_values.clear();
+
+  settings.free_parameters = {parameter};
+  for (int s = 0; s < m; ++s) settings.free_parameters.push_back(first_duration + s);
+  settings.parameter_weights = parameter_weights(base, m);
+  const bool same_parameter = !base.free_parameters.empty() && base.free_parameters.front() == parameter;
+  const double value = par(parameter - 1);
+  if (!same_parameter || value < settings.parameter_min) settings.parameter_min = -no_bound;
+  if (!same_parameter || value > settings.parameter_max) settings.parameter_max = no_bound;
+  std::erase_if(settings.user_values,
+                [&](const UserValue& u) { return !is_free(settings.free_parameters, std::abs(u.parameter)); });
+
+  settings.segments.clear();
+  settings.test_functions.clear();
+  for (int s = 0; s < m; ++s) {
+    SegmentSettings segment;
+    const auto k = static_cast<std::size_t>(s);
+    segment.index = orbit.signature[k];
+    segment.type = is_identity_jump(system, segment.index.jump) ? 0 : 1;
+    segment.monitor = monitored_events(system, orbit, k, samples.states.middleRows(s * n, n), par);
+    for (std::size_t i = 0; i < segment.monitor.size(); ++i)
+      settings.test_functions.push_back(static_cast<int>(settings.test_functions.size()) + 1);
+    settings.segments.push_back(std::move(segment));
+  }
+  if (base.grazing_jump == RunSettings{}.grazing_jump)
+    settings.grazing_jump = jump_of_contact(system, orbit, settings.segments).value_or(base.grazing_jump);
+  return settings;
+}
+
+}  // namespace tchat

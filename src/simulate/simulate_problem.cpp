@@ -1,0 +1,220 @@
+#include "simulate/simulate_problem.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "constants/constants_writer.hpp"
+#include "files/simulation_files.hpp"
+#include "files/whole_file.hpp"
+#include "files/writable_file.hpp"
+#include "plugin/plugin_build.hpp"
+#include "plugin/problem_library.hpp"
+#include "setup/named_parameters.hpp"
+#include "setup/parameter_values.hpp"
+#include "setup/problem_setup.hpp"
+#include "setup/progress_line.hpp"
+#include "setup/run_request.hpp"
+#include "simulate/orbit_hand_over.hpp"
+#include "simulate/simulation_start.hpp"
+#include "simulate/simulation_summary.hpp"
+#include "simulation/found_orbit.hpp"
+#include "text/user_error.hpp"
+
+namespace tchat {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Eigen::VectorXd;
+
+constexpr std::size_t megabyte = 1000000;
+constexpr std::size_t told_size = 10 * megabyte;  // of a file
+constexpr std::size_t kept_size = 9900000;        // of a trajectory when no length has been asked for
+
+/// Asked for a part of the motion: all of that is written.
+bool has_length(const SimulationPlan& plan) {
+  return plan.time || plan.events || plan.transient_time > 0.0 || plan.transient_events > 0;
+}
+
+/// "x.trajectory (377 MB)": sizes that may surprise are told.
+std::string sized(const std::string& path) {
+  std::error_code error;
+  const auto size = std::filesystem::file_size(path, error);
+  if (error || size <= told_size) return path;
+  return fmt::format("{} ({} MB)", path, (size + megabyte / 2) / megabyte);
+}
+
+std::string written_text(const std::string& output, const SimulationFiles& files) {
+  std::string text = fmt::format("Written: {}, {}\n", sized(SimulationFiles::trajectory_path(output)),
+                                 sized(SimulationFiles::events_path(output)));
+  if (files.dropped_segments() > 0)
+    text += fmt::format(
+        "  The trajectory holds the last {} of {} segments; with --events, --time or a transient it holds all.\n",
+        files.segments() - files.dropped_segments(), files.segments());
+  return text;
+}
+
+SimulationSettings simulation_settings(const SimulationRequest& request, const std::function<bool()>& interrupted) {
+  SimulationSettings settings;
+  settings.flow.method = request.stiff ? IntegrationMethod::bdf : IntegrationMethod::adams;
+  settings.flow.relative_tolerance = request.tolerance;
+  settings.flow.absolute_tolerance = 0.01 * request.tolerance;
+  settings.flow.max_duration = request.wait;
+  settings.flow.max_steps = 10000000;
+  settings.contact = request.contact;
+  settings.samples = static_cast<std::size_t>(request.rows);
+  settings.interrupted = interrupted;
+  return settings;
+}
+
+struct OrbitPaths {
+  std::string data, constants;
+};
+
+OrbitPaths orbit_paths(const std::string& name) {
+  const fs::path path(name);
+  return {name + ".dat", (path.parent_path() / ("gc." + path.filename().string())).string()};
+}
+
+/// Files NAME.*, gc.NAME can be made from `name`.
+void check_name(const std::string& name, const char* option) {
+  const std::string file = fs::path(name).filename().string();
+  if (file.empty() || file == "." || file == "..")
+    throw UserError(fmt::format("{} '{}' is no name for output files; an example is {} found", option, name, option));
+}
+
+/// The orbit's files must not replace what the simulation reads, unless they have been named.
+void check_orbit_name(const SimulationRequest& request, const std::string& name, const std::string& constants) {
+  check_name(name, "--dat");
+  const OrbitPaths paths = orbit_paths(name);
+  require_writable(paths.data);
+  require_writable(paths.constants);
+  if (!request.orbit_name.empty()) return;
+  std::string replaced;
+  if (!constants.empty() && same_file(paths.constants, constants)) replaced = paths.constants;
+  if (request.data && (same_file(paths.data, *request.data) || same_file(paths.data, *request.data + ".dat")))
+    replaced = paths.data;
+  if (!replaced.empty())
+    throw UserError(
+        fmt::format("--dat would replace {}, which the simulation starts from; give the orbit a name, as in "
+                    "--dat {}_orbit",
+                    replaced, request.name));
+}
+
+int continuation_parameter(const SimulationRequest& request, const SimulationConstants& constants,
+                           const HybridSystem& system) {
+  if (request.parameter) {
+    const int k = parameter_index(system, *request.parameter, "--free");
+    if (k <= system.parameters()) return k;
+    throw UserError(fmt::format("--free {}: {} has PAR(1) to PAR({}); one of them is to be free", *request.parameter,
+                                system.name(), system.parameters()));
+  }
+  for (const int k : constants.settings.free_parameters)
+    if (k <= system.parameters()) return k;
+  return 1;
+}
+
+/// Writes the orbit for `tchat run`; what to say about it.
+std::string hand_over(const SimulationRequest& request, const SimulationConstants& constants,
+                      const HybridSystem& system, const FoundOrbit& orbit, const VectorXd& par,
+                      const std::string& name) {
+  const RunSettings base = constants.is_given() ? constants.settings : default_orbit_settings(constants.settings);
+  const OrbitSamples samples = sample_orbit(system, orbit, par, base.mesh_intervals, base.collocation_points);
+  const RunSettings settings =
+      orbit_settings(system, base, orbit, samples, par, continuation_parameter(request, constants, system));
+  const OrbitPaths paths = orbit_paths(name);
+  write_whole_file(paths.data, orbit_data_text(system, orbit, samples, par));
+  write_whole_file(paths.constants, keyword_text(settings));
+  const std::string plugin = request.problem ? fmt::format(" -p {}", *request.problem) : "";
+  const std::string finer = samples.intervals == base.mesh_intervals
+                                ? ""
+                                : fmt::format("The orbit is sharp: NTST = {} instead of {}, for an error of {:.1e}.\n",
+                                              samples.intervals, base.mesh_intervals, samples.error);
+  return fmt::format("{}Written: {} and {}. Go on with\n  tchat run {}{} -c {} -d {} -o {}\n", finer, paths.data,
+                     paths.constants, request.name, plugin, name, name, name);
+}
+
+/// "" when the orbit can be continued; otherwise why not.
+std::string obstacle(const HybridSystem& system, const SimulationResult& result, const FoundOrbit& orbit) {
+  if (!result.is_periodic()) return "no periodic orbit was recognised";
+  if (!orbit.converged) return "the orbit could not be refined";
+  for (Eigen::Index i = 0; i < orbit.advance.size(); ++i)
+    if (std::abs(orbit.advance(i)) > 1e-9 * (1.0 + std::abs(orbit.start(i))))
+      return fmt::format("{} does not return; `tchat run` needs a problem without that state",
+                         system.state_name(static_cast<int>(i) + 1));
+  if (static_cast<int>(orbit.signature.size()) > max_segments)
+    return fmt::format("it has {} segments, at most {} can be continued", orbit.signature.size(), max_segments);
+  return "";
+}
+
+}  // namespace
+
+int simulate_problem(const SimulationRequest& request, std::ostream& screen, std::ostream& warnings,
+                     const std::function<bool()>& interrupted, std::ostream* progress) {
+  const auto say = [&](const std::string& text) {
+    if (!request.quiet) screen << text << std::flush;
+  };
+
+  const std::string plugin = resolve_plugin(request.problem.value_or(request.name), {.progress = progress});
+  bool named_parameters = false;
+  SimulationConstants constants = read_simulation_constants(request, names_to_come(named_parameters));
+  const ProblemLibrary library(plugin, [&] { return sizes_of(request, constants); });
+  const HybridSystem& system = library.system();
+  if (named_parameters) constants = read_simulation_constants(request, names_of(system));
+  fit_to_problem(constants, system, request.overrides);
+  const SimulationStart start = simulation_start(request, constants, system);
+  const std::string output = request.output.value_or(request.name);
+  const std::string orbit_name = request.orbit_name.empty() ? output : request.orbit_name;
+  check_name(output, "-o");
+  require_writable(SimulationFiles::trajectory_path(output));
+  require_writable(SimulationFiles::events_path(output));
+  if (request.hand_over) {
+    check_orbit_name(request, orbit_name, constants.path);
+    continuation_parameter(request, constants, system);
+  }
+
+  HybridSimulation simulation(start.rule, start.state, start.par, simulation_settings(request, interrupted));
+  say(start_text(system, start, simulation.mode()));
+  warnings << start_warnings(start, simulation);
+  SimulationFiles files(system, output, problem_text(system, start.par), start.par,
+                        has_length(request.plan) ? SimulationFiles::everything : kept_size);
+  SimulationResult result;
+  {
+    ProgressLine line(progress);
+    result = run_simulation(simulation, request.plan, [&](const SimulatedSegment& segment) {
+      files.write(segment);
+      if (line.is_due()) line.show(fmt::format("{} events, t = {:.6g} ", segment.number, segment.end_time()));
+    });
+  }
+  files.finish();
+  say(course_text(system, result, result.last.end_time(), request.contact));
+
+  FoundOrbit orbit;
+  if (result.is_periodic()) {
+    const IndexVector first =
+        constants.has_signature ? constants.settings.segments.front().index : IndexVector{0, 0, 0};
+    if (request.without_sections) result.turn = without_sections(system, std::move(result.turn));
+    orbit = refine(system, result, start.par, first);
+    say(orbit.converged
+            ? orbit_text(system, orbit)
+            : fmt::format("The motion repeats itself after {} event(s), but shooting does not find the orbit: {}\n",
+                          result.turn.size(), orbit.message));
+  } else {
+    say(no_orbit_text(result, request.plan));
+  }
+  say(written_text(output, files));
+  if (result.last.ended_by == SegmentEnd::failed) {
+    warnings << "tchat: " << result.last.message << '\n';
+    return 1;
+  }
+  if (!request.hand_over) return 0;
+  if (const std::string why = obstacle(system, result, orbit); !why.empty()) {
+    warnings << fmt::format("tchat: --dat: nothing written, {}\n", why);
+    return 1;
+  }
+  say(hand_over(request, constants, system, orbit, start.par, orbit_name));
+  return 0;
+}
+
+}  // namespace tchat

@@ -1,0 +1,79 @@
+#include "simulate/simulation_constants.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "constants/constants_file.hpp"
+#include "hybrid/index_vector.hpp"
+#include "setup/problem_setup.hpp"
+#include "setup/run_request.hpp"
+#include "simulate/simulation_rule.hpp"
+#include "simulation/mode_rule.hpp"
+#include "text/user_error.hpp"
+
+namespace tchat {
+
+namespace {
+
+/// The segments of --signature; those that the file has keep its monitored event functions.
+std::vector<SegmentSettings> segments_of_signature(const std::string& text, const std::vector<SegmentSettings>& known) {
+  std::vector<SegmentSettings> segments;
+  for (const IndexVector& index : parse_signature(text)) {
+    const auto same = std::find_if(known.begin(), known.end(), [&](const auto& s) { return s.index == index; });
+    SegmentSettings segment;
+    if (same != known.end()) segment = *same;
+    segment.index = index;
+    segments.push_back(std::move(segment));
+  }
+  return segments;
+}
+
+}  // namespace
+
+SimulationConstants read_simulation_constants(const SimulationRequest& request, const ParameterNames& names) {
+  SimulationConstants constants;
+  if (request.constants)
+    constants.path = constants_path(*request.constants);
+  else
+    constants.path = own_constants_path(request.name);
+  RunSettings& settings = constants.settings;
+  if (constants.is_given()) {
+    settings = read_constants_file(constants.path, nullptr, names);
+  } else {
+    settings.free_parameters = {1};
+    settings.segments.resize(1);
+  }
+  apply_overrides(settings, request.overrides, nullptr, names);
+  constants.file_segments = static_cast<int>(settings.segments.size());
+  if (request.signature)
+    settings.segments = segments_of_signature(
+        *request.signature, constants.is_given() ? settings.segments : std::vector<SegmentSettings>{});
+  constants.has_signature = constants.is_given() || request.signature.has_value();
+  return constants;
+}
+
+ProblemSizes sizes_of(const SimulationRequest& request, const SimulationConstants& constants) {
+  if (!constants.is_given())
+    throw UserError(
+        fmt::format("{} is a Fortran plugin, which does not say how many states and functions it has; give a constants "
+                    "file with -c C (or name one gc.{}), whose NDIM and signature say it",
+                    request.name, request.name));
+  ProblemSizes sizes = problem_sizes(constants.settings);
+  if (request.modes)
+    for (const IndexVector& index : parse_modes(*request.modes)) sizes.add(index);
+  return sizes;
+}
+
+void fit_to_problem(SimulationConstants& constants, const HybridSystem& system,
+                    const std::vector<std::string>& overrides) {
+  if (!constants.is_given()) constants.settings.dimension = system.dimension();
+  for (const SegmentSettings& segment : constants.settings.segments)
+    if (const std::string fault = fault_of(system, {segment.index}); constants.has_signature && !fault.empty())
+      throw UserError(fmt::format(
+          "{}: {}", constants.is_given() ? SettingsSource{constants.path, overrides}.of("GCFIND") : "--signature",
+          fault));
+  if (constants.is_given()) check_settings_against(system, constants.settings, {constants.path, overrides});
+}
+
+}  // namespace tchat

@@ -1,0 +1,150 @@
+#include "simulate/simulation_start.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <optional>
+#include <set>
+
+#include "files/dat_file.hpp"
+#include "files/solution_file_reader.hpp"
+#include "setup/parameter_values.hpp"
+#include "setup/problem_setup.hpp"
+#include "setup/run_request.hpp"
+#include "simulate/simulation_rule.hpp"
+#include "text/number.hpp"
+#include "text/user_error.hpp"
+
+namespace tchat {
+
+namespace {
+
+using Eigen::VectorXd;
+
+std::vector<std::string> split(const std::string& text, char separator) {
+  std::vector<std::string> parts;
+  std::size_t begin = 0;
+  while (true) {
+    const std::size_t end = text.find(separator, begin);
+    std::string part = text.substr(begin, end - begin);
+    part.erase(0, part.find_first_not_of(" \t"));
+    part.erase(part.find_last_not_of(" \t") + 1);
+    parts.push_back(part);
+    if (end == std::string::npos) return parts;
+    begin = end + 1;
+  }
+}
+
+double read_state_value(const std::string& text, const std::string& all) {
+  if (const std::optional<double> value = parse_real(text)) return *value;
+  throw UserError(fmt::format("--state {}: '{}' is no finite number; examples: --state 0,0.1,-2.5e-3 or --state x1=0.1",
+                              all, text));
+}
+
+int state_index(const HybridSystem& system, const std::string& name, const std::string& all) {
+  std::string list;
+  for (int k = 1; k <= system.dimension(); ++k) {
+    if (name == system.state_name(k) || name == fmt::format("U({})", k)) return k;
+    list += fmt::format("{}{}", k > 1 ? ", " : "", system.state_name(k));
+  }
+  throw UserError(fmt::format("--state {}: {} has no state '{}'; it has {}", all, system.name(), name, list));
+}
+
+/// "0,0.1" replaces the state, "x1=0.1,x2=3" changes it.
+void apply_state_option(const HybridSystem& system, const std::string& text, VectorXd& state) {
+  const std::vector<std::string> parts = split(text, ',');
+  if (text.find('=') != std::string::npos) {
+    std::set<int> given;
+    for (const std::string& part : parts) {
+      const std::size_t equals = part.find('=');
+      if (equals == std::string::npos)
+        throw UserError(fmt::format("--state {}: '{}' lacks its name; give NAME=VALUE for some states or all {} values",
+                                    text, part, system.dimension()));
+      const std::string name = split(part.substr(0, equals), ',').front();
+      const int k = state_index(system, name, text);
+      if (!given.insert(k).second) throw UserError(fmt::format("--state {}: '{}' is given twice", text, name));
+      state(k - 1) = read_state_value(split(part.substr(equals + 1), ',').front(), text);
+    }
+    return;
+  }
+  if (static_cast<int>(parts.size()) != system.dimension())
+    throw UserError(
+        fmt::format("--state {}: {} values, but {} has {} states; give them all, or some by name as in "
+                    "--state {}=0.1",
+                    text, parts.size(), system.name(), system.dimension(), system.state_name(1)));
+  for (std::size_t i = 0; i < parts.size(); ++i) state(static_cast<Eigen::Index>(i)) = read_state_value(parts[i], text);
+}
+
+/// Of an orbit of the signature, that of the constants file or --signature's, or of one segment: the first row is all
+/// that matters.
+DatFile read_start(const std::string& path, const SimulationConstants& constants, int n) {
+  const int m = constants.has_signature ? static_cast<int>(constants.settings.segments.size()) : 1;
+  for (const int other : {constants.file_segments, 1}) {
+    if (other == m) continue;
+    try {
+      return read_dat_file(path, n, other);
+    } catch (const UserError&) {
+      continue;  // what is wrong with it is told about the signature's number
+    }
+  }
+  return read_dat_file(path, n, m);
+}
+
+void apply_data(const SimulationRequest& request, const SimulationConstants& constants, const HybridSystem& system,
+                SimulationStart& start) {
+  const std::string path = data_path(*request.data);
+  const DatFile data = read_start(path, constants, system.dimension());
+  for (const auto& [k, value] : data.parameters) start.par(k - 1) = value;
+  for (const auto& [name, value] : data.named_parameters) start.par(parameter_index(system, name, path) - 1) = value;
+  start.state = data.states.col(0).head(system.dimension());
+  start.source = fmt::format("first row of {}", path);
+}
+
+void apply_label(const SimulationRequest& request, const SimulationConstants& constants, const HybridSystem& system,
+                 SimulationStart& start) {
+  const std::string path = solution_path(*request.start);
+  const SolutionFile file = read_solution_file(path);
+  if (constants.settings.start.from_data())
+    throw UserError(
+        fmt::format("-s {}: say which label with IRS=, as in IRS=3 or IRS=PD1; `tchat labels {}` lists them",
+                    *request.start, path));
+  const LabelledSolution& solution = find_solution(file.solutions, constants.settings.start, path);
+  if (solution.states.rows() < system.dimension() ||
+      (solution.dimension > 0 && solution.dimension != system.dimension()))
+    throw UserError(fmt::format("{}: label {} has {} states, {} has {}; give the q-file of this problem", path,
+                                solution.label,
+                                solution.dimension > 0 ? solution.dimension : static_cast<int>(solution.states.rows()),
+                                system.name(), system.dimension()));
+  for (std::size_t k = 0; k < solution.parameters.size() && k < static_cast<std::size_t>(parameter_length); ++k)
+    start.par(static_cast<Eigen::Index>(k)) = solution.parameters[k];
+  start.state = solution.states.col(0).head(system.dimension());
+  start.source = fmt::format("label {} of {}", solution.label, path);
+}
+
+}  // namespace
+
+SimulationStart simulation_start(const SimulationRequest& request, const SimulationConstants& constants,
+                                 const HybridSystem& system) {
+  if (request.data && request.start)
+    throw UserError("-d and -s are both given; a simulation starts from data (-d) or from a label of a q-file (-s)");
+  SimulationStart start{initial_parameters(system), VectorXd::Zero(system.dimension()), "zero", ModeRule(system)};
+  if (const double* const initial = system.table().initial_state) {
+    start.state = Eigen::Map<const VectorXd>(initial, system.dimension());
+    start.source = "the problem's starting state";
+  }
+  if (request.data) apply_data(request, constants, system, start);
+  if (request.start) apply_label(request, constants, system, start);
+  apply_command_line(system, constants.settings, start.par);
+  if (request.state) {
+    apply_state_option(system, *request.state, start.state);
+    start.source = "--state";
+  }
+  if (!start.state.allFinite())
+    throw UserError(fmt::format("the start {} ({}) is not finite", state_text(start.state), start.source));
+  SimulationStart result{start.par, start.state, start.source,
+                         simulation_rule(request, constants, system, start.state, start.par)};
+  return result;
+}
+
+}  // namespace tchat

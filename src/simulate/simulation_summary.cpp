@@ -1,0 +1,207 @@
+#include "simulate/simulation_summary.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "hybrid/identity_jump.hpp"
+#include "hybrid/relevant_events.hpp"
+
+namespace tchat {
+
+namespace {
+
+using Eigen::VectorXd;
+
+std::string event_name(const HybridSystem& system, int event) {
+  const std::string name = system.function_name(FunctionKind::event, event);
+  return name == fmt::format("event {}", event) ? name : fmt::format("event {} ({})", event, name);
+}
+
+/// "1 event", "3 events"
+std::string counted(long n, const char* what) { return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s"); }
+
+std::string index_text(const IndexVector& v) { return fmt::format("({},{},{})", v.field, v.event, v.jump); }
+
+constexpr double rounding = 1e-6;  // of the state at a label or in a .dat, relative
+
+/// h at x; 0 where it cannot be told from zero.
+double clear_value(const HybridSystem& system, int event, const VectorXd& x, const VectorXd& par) {
+  double h = 0.0;
+  double no_parameters = 0.0;
+  Eigen::RowVectorXd gradient(x.size());
+  system.first(FunctionKind::event, event, x.data(), par.data(), {}, &h, gradient.data(), &no_parameters);
+  return std::abs(h) <= rounding * (1.0 + gradient.norm() * x.norm()) ? 0.0 : h;
+}
+
+/// Those of the first mode that change something: by their jump or, where the problem says what follows, the field.
+std::vector<int> events_that_matter(const SimulationStart& start, const Mode& mode, const HybridSystem& system) {
+  if (!start.rule.is_cyclic())
+    return relevant_events(system, mode.index_vectors, mode.field(), start.state.data(), start.par.data());
+  std::vector<int> events;
+  for (const IndexVector& v : mode.index_vectors)
+    if (!is_identity_jump(system, v.jump)) events.push_back(v.event);
+  return events;
+}
+
+std::string multiplier_text(const std::complex<double>& mu) {
+  if (mu.imag() == 0.0) return fmt::format("{:.10g}", mu.real());
+  return fmt::format("{:.10g} {} {:.10g} i", mu.real(), mu.imag() < 0.0 ? '-' : '+', std::abs(mu.imag()));
+}
+
+std::string why_it_ended(const HybridSystem& system, const SimulationResult& result) {
+  const SimulatedSegment& last = result.last;
+  if (result.accumulation) {
+    const ChatteringDetector::Accumulation& limit = *result.accumulation;
+    return fmt::format(
+        "Events accumulate (chattering): the last {} are of pattern length {}, each duration {:.6g} times that of one "
+        "pattern before.\nThe limit is at t = {:.12g}, {:.3g} after the last event, at about x = {}. The simulation "
+        "ends there:\nwhat follows (sticking, rolling) needs a mode of its own in the problem.\n",
+        result.events > 20 ? 20 : result.events, limit.pattern, limit.ratio, last.end_time() + limit.remaining,
+        limit.remaining, state_text(last.after));
+  }
+  if (result.dies_out)
+    return fmt::format(
+        "The motion dies out: the last events are 1e-12 times as fast as the first. It rests near x = {}.\n",
+        state_text(last.after));
+  switch (last.ended_by) {
+    case SegmentEnd::event:
+    case SegmentEnd::end_time:
+      return "";
+    case SegmentEnd::interrupted:
+      return "Interrupted.\n";
+    case SegmentEnd::no_event: {
+      std::string watched;
+      for (const int event : last.mode.terminal_events())
+        watched += fmt::format("{}{}", watched.empty() ? "" : ", ", event_name(system, event));
+      return fmt::format(
+          "The end: {}. Watched: {}. The last state is x = {}.\nIt may be at rest, or wait longer (--wait), start "
+          "elsewhere (--state), watch other events (--mode, --signature).\n",
+          last.message, watched, state_text(last.end));
+    }
+    default:
+      return fmt::format("The end: {}.\n", last.message);
+  }
+}
+
+}  // namespace
+
+std::string problem_text(const HybridSystem& system, const VectorXd& par) {
+  std::string text = system.name();
+  for (int k = 1; k <= system.parameters(); ++k)
+    text += fmt::format("{}{} = {}", k == 1 ? " with " : ", ", system.parameter_name(k), par(k - 1));
+  return text;
+}
+
+std::string start_text(const HybridSystem& system, const SimulationStart& start, const Mode& mode) {
+  std::string watched;
+  for (const IndexVector& v : mode.index_vectors)
+    watched += fmt::format("{}{}", watched.empty() ? "" : ", ", index_text(v));
+  std::string text = fmt::format("{}\nStart: x = {} ({}), index vectors {}{}\n", problem_text(system, start.par),
+                                 state_text(start.state), start.source, watched,
+                                 start.rule.is_cyclic() ? ", then cyclically those of the signature" : "");
+  VectorXd f(start.state.size());
+  system.value(FunctionKind::field, mode.field(), start.state.data(), start.par.data(), f.data());
+  if (f.isZero(0.0))
+    text += "  The field is zero there, so nothing will move; give another start with --state, -d or -s.\n";
+  return text;
+}
+
+std::string start_warnings(const SimulationStart& start, const HybridSimulation& simulation) {
+  const HybridSystem& system = simulation.system();
+  const Mode& mode = simulation.mode();
+  std::string text;
+  for (const int event : events_that_matter(start, mode, system)) {
+    const IndexVector& v = mode.ended_by(event);
+    const double h = clear_value(system, event, start.state, start.par);
+    const bool is_left = simulation.leaves_downwards(v) && !start.rule.is_cyclic() &&
+                         !keeps_field(system, v, v.field, start.state.data(), start.par.data());
+    if (!(h < 0.0) && !is_left) continue;
+    text += fmt::format(
+        "tchat: the start {} {}: its function is {:.6g} there{}, and nothing happens until it has risen "
+        "above zero.\n",
+        is_left ? "lies on" : "is behind", event_name(system, event), h, is_left ? " and falls" : "");
+    text += is_left ? "  The field changes there: start a little before it, or let the problem say what "
+                      "follows (0,0,0) at such a state.\n"
+                    : "  If that is a wall the motion is outside the model; start where the function is positive, with "
+                      "--state, -d or -s.\n";
+  }
+  return text;
+}
+
+std::string course_text(const HybridSystem& system, const SimulationResult& result, double end_time, double contact) {
+  std::string text = fmt::format("{} up to t = {:.12g}", counted(result.events, "event"), end_time);
+  if (result.dropped > 0) text += fmt::format(", the first {} dropped as transient", result.dropped);
+  text += "\n" + why_it_ended(system, result);
+  if (result.contacts > 0)
+    text += fmt::format("{} (least values of an event function within {:g} of its range)\n",
+                        counted(result.contacts, "near-grazing contact"), contact);
+  if (result.simultaneous > 0)
+    text += fmt::format("{} several events came together; the first in the order of the index vectors went first\n",
+                        counted(result.simultaneous, "time"));
+  if (result.beyond > 0)
+    text += fmt::format("{} beyond a wall (`beyond` in the list of events): states outside the model\n",
+                        counted(result.beyond, "start"));
+  if (result.violations > 0) {
+    const SimulatedSegment& segment = *result.first_violation;
+    for (const SegmentMark& mark : segment.marks) {
+      if (mark.kind != SegmentMark::Kind::violation) continue;
+      text += fmt::format(
+          "{} a monitored event function fell below zero, first {} at t = {:.10g} in segment {}:\nthis signature "
+          "has no such orbit there. {} what follows.\n",
+          counted(result.violations, "time"), event_name(system, mark.event), mark.time, segment.number,
+          system.has_successors() ? "Without a signature to follow the index jump function (successors) chooses"
+                                  : "An index jump function (successors) would choose");
+      break;
+    }
+  }
+  return text;
+}
+
+std::string orbit_text(const HybridSystem& system, const FoundOrbit& orbit) {
+  std::string text =
+      fmt::format("Periodic orbit, signature {}, period {:.13g}\n", to_string(orbit.signature), orbit.map.period);
+  for (std::size_t s = 0; s < orbit.signature.size(); ++s) {
+    const IndexVector& v = orbit.signature[s];
+    const MapSegment& segment = orbit.map.segments[s];
+    text += fmt::format("  segment {}: {}, {} for {:.13g} until {}, h_x f = {:.10g}, then {}\n", s + 1, index_text(v),
+                        system.function_name(FunctionKind::field, v.field), segment.duration,
+                        system.function_name(FunctionKind::event, v.event), segment.event_velocity,
+                        system.function_name(FunctionKind::jump, v.jump));
+  }
+  text += "  start";
+  for (Eigen::Index i = 0; i < orbit.start.size(); ++i)
+    text +=
+        fmt::format("{} {} = {:.13g}", i > 0 ? "," : "", system.state_name(static_cast<int>(i) + 1), orbit.start(i));
+  text += "\n  multipliers";
+  for (std::size_t i = 0; i < orbit.multipliers.size(); ++i)
+    text += fmt::format("{} {}", i > 0 ? "," : "", multiplier_text(orbit.multipliers[i]));
+  text += orbit.is_stable() ? ": stable\n"
+                            : ": not stable, the simulation will leave it; look again after a longer transient\n";
+  for (Eigen::Index i = 0; i < orbit.advance.size(); ++i)
+    if (orbit.advance(i) != 0.0)
+      text += fmt::format(
+          "  {}, which nothing depends on, advances by {:.13g} in each period ({:.6g} per unit of time)\n",
+          system.state_name(static_cast<int>(i) + 1), orbit.advance(i), orbit.advance(i) / orbit.map.period);
+  return text;
+}
+
+std::string no_orbit_text(const SimulationResult& result, const SimulationPlan& plan) {
+  if (result.accumulation || result.dies_out) return "";
+  switch (result.last.ended_by) {
+    case SegmentEnd::failed:
+    case SegmentEnd::sticks:
+    case SegmentEnd::no_event:
+      return "";
+    default:
+      return fmt::format(
+          "No periodic orbit recognised: the last events do not repeat, within {:g} of the orbit's range, after 1 to "
+          "{} "
+          "events.\nIt may need longer (--transient-time, --events), have a longer period (--max-period), be "
+          "recognised "
+          "with a\nlooser --recognition or a smaller --tolerance; or the motion is quasi-periodic or chaotic.\n",
+          plan.recognition, plan.max_period);
+  }
+}
+
+}  // namespace tchat

@@ -1,0 +1,63 @@
+/// Names of the points of a branch: AUTO's two-letter types, and our own GR and XI which files carry as UZ.
+///
+/// On two-parameter curves the type number has a tens digit (the curve being followed): it is dropped, the sign kept,
+/// but for AUTO's codimension-two codes 23, 83, 28, 78, 77, 87, 88.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace tchat {
+
+/// Type numbers of AUTO (src/docs/files.md); on two-parameter curves the file adds a tens digit.
+enum class PointType {
+  ordinary = 0,
+  regular = 4,  ///< every NPR points
+  user = -4,    ///< UZ and every zero of a monitored function
+  fold = 5,
+  branch_point = 6,
+  period_doubling = 7,
+  torus = 8,
+  end = 9,
+  no_convergence = -9,
+  cusp = -2,         ///< on fold curves
+  resonance_1 = -5,  ///< 1:1, on fold and torus curves
+  resonance_2 = -6,  ///< 1:2, on period-doubling and torus curves
+  resonance_3 = -7,  ///< 1:3, on torus curves
+  resonance_4 = -8   ///< 1:4, on torus curves
+};
+
+/// What a UZ label is: the last PAR entries of a q-file entry, four internal values for each kind. What vanishes with
+/// the label's own function has a kind each, after the label's own.
+struct UserPointKind {
+  enum Kind {
+    none = 0,
+    user_value = 1,
+    contact = 2,
+    xi = 3,
+    impact_velocity = 4,
+    grazing_codimension_two = 5,
+    other_type = 6  ///< a point that has a type number of its own, beside the label's
+  };
+  int kind = none;
+  int segment = 0;  ///< from 1
+  int index = 0;    ///< event function, n of xi_n, PAR index of a user value, or type number (other_type)
+  double tau = 0.0;
+  bool operator==(const UserPointKind&) const = default;
+};
+
+/// -59 -> -9, 54 -> 4.
+int basic_type(int type);
+
+/// "EP", "LP", "BP", "PD", "TR", "RG", "MX", "R1", "CP", ...; of type UZ by kind: "UZ" (user value or not known),
+/// "GR" (contact, impact velocity), "XI", "GC" (grazing-fold or -flip). "" for an ordinary point and unknown numbers.
+std::string type_name(int type, const UserPointKind& kind = {});
+
+/// All names of a point that is several things at once, each once, its own first: {"GR", "UZ"}.
+std::vector<std::string> type_names(int type, const UserPointKind& kind, const std::vector<UserPointKind>& further);
+
+/// What a UZ label is, in words: "contact inside segment 1, event function 2, tau = 0.5"; "" for kind none. `parameter`
+/// is the name of the one whose value the user asked for, PAR(index) when empty.
+std::string description(const UserPointKind& kind, const std::string& parameter = "");
+
+}  // namespace tchat

@@ -1,0 +1,44 @@
+#include "start/data_conversion.hpp"
+
+#include "constants/constants_file.hpp"
+#include "files/run_set.hpp"
+#include "files/solution_file.hpp"
+#include "plugin/plugin_build.hpp"
+#include "plugin/problem_library.hpp"
+#include "run/problem_types.hpp"
+#include "setup/named_parameters.hpp"
+#include "setup/problem_setup.hpp"
+#include "start/start_selection.hpp"
+#include "text/user_error.hpp"
+
+namespace tchat {
+
+std::string convert_data(const RunRequest& request) {
+  const std::string constants = constants_path(request.constants.value_or(request.name));
+  const auto settings_with = [&](const ParameterNames& names) {
+    RunSettings settings = read_constants_file(constants, nullptr, names);
+    apply_overrides(settings, request.overrides, nullptr, names);
+    settings.start = {};
+    return settings;
+  };
+  bool named_parameters = false;
+  RunSettings settings = settings_with(names_to_come(named_parameters));
+  const std::string plugin = resolve_plugin(request.problem.value_or(request.name));
+  const ProblemLibrary library(plugin, [&settings] { return problem_sizes(settings); });
+  if (named_parameters) settings = settings_with(names_of(library.system()));
+  check_settings_against(library.system(), settings, {constants, request.overrides});
+
+  RunRequest from_data = request;
+  from_data.data = request.data.value_or(request.name);
+  from_data.start.reset();
+  const SelectedStart selected = select_start(from_data, settings, library.system(), {});
+  LabelledSolution solution = labelled_solution(selected.start.orbit, {}, {}, {});
+  solution.type = static_cast<int>(PointType::end);
+  solution.problem_type = settings.problem_type;
+  solution.branch_mode = settings.branch_mode;
+  const std::string name = request.output.value_or(request.name);
+  replace_solution_file(name, format_solution(solution));
+  return output_path('q', name);
+}
+
+}  // namespace tchat

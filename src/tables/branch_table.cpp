@@ -1,0 +1,243 @@
+#include "tables/branch_table.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <cstdlib>
+#include <limits>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "files/labelled_solution.hpp"
+#include "files/number_format.hpp"
+#include "files/solution_file_reader.hpp"
+#include "hybrid/parameter_vector.hpp"
+#include "special_points/point_type.hpp"
+#include "tables/table_format.hpp"
+
+namespace tchat {
+
+namespace {
+
+constexpr const char* point_headings[] = {"section", "branch", "point",  "type",      "name",
+                                          "label",   "kind",   "stable", "admissible"};
+constexpr const char* multipliers_heading = "multipliers";
+constexpr const char* iterations_heading = "newton_iterations";
+
+bool is_not_finite(double value) { return !std::isfinite(value) || std::abs(value) == capped_value; }
+
+TableCell number_cell(double value) { return is_not_finite(value) ? TableCell() : TableCell(value); }
+
+TableCell text_cell(const std::string& text) { return text.empty() ? TableCell() : TableCell(text); }
+
+TableCell multiplier_cell(double value) {
+  return is_not_finite(value) ? std::copysign(std::numeric_limits<double>::infinity(), value) : value;
+}
+
+/// The parameters worth a column: those with a name, those that are not zero, durations.
+std::set<int> parameters_of(const PointSection& section, const std::map<int, double>& values) {
+  std::set<int> result;
+  for (const auto& [k, name] : section.parameters) result.insert(k);
+  for (const auto& [k, value] : values)
+    if (is_duration(k, section.segments) || (k < first_duration && value != 0.0)) result.insert(k);
+  return result;
+}
+
+/// The numbers of a point: columns of the p-file and parameters, by their names over all sections.
+class PointNumbers {
+ public:
+  explicit PointNumbers(const BranchFile& file) : file_(file) {
+    for (const PointSection& section : file.sections) {
+      places_.emplace_back();
+      const std::vector<std::string> names = distinct_headings(section.columns);
+      for (std::size_t k = 0; k < names.size(); ++k) {
+        places_.back().emplace(names[k], k);
+        add(names[k]);
+      }
+    }
+    for (std::size_t s = 0; s < file.sections.size(); ++s) {
+      parameters_.emplace_back();
+      for (const int k : parameters_of(file.sections[s], file.parameters[s])) {
+        const std::string name = file.sections[s].parameter_name(k);
+        parameters_.back().emplace(name, k);
+        add(name);
+      }
+    }
+  }
+
+  const std::vector<std::string>& names() const { return names_; }
+
+  void append(std::vector<TableCell>& cells, std::size_t section, std::size_t row) const {
+    for (const std::string& name : names_) {
+      const auto place = places_[section].find(name);
+      const auto parameter = parameters_[section].find(name);
+      if (place != places_[section].end())
+        cells.push_back(number_cell(file_.sections[section].rows[row].values[place->second]));
+      else if (parameter != parameters_[section].end())
+        cells.push_back(parameter_cell(section, row, parameter->second));
+      else
+        cells.emplace_back();
+    }
+  }
+
+ private:
+  void add(const std::string& name) {
+    if (known_.insert(name).second) names_.push_back(name);
+  }
+
+  /// A parameter without a column: one that is free, or may be, is known at labels only.
+  TableCell parameter_cell(std::size_t s, std::size_t row, int k) const {
+    const PointSection& section = file_.sections[s];
+    const auto period = places_[s].find("PERIOD");
+    if (section.segments == 1 && k == first_duration && period != places_[s].end())
+      return number_cell(section.rows[row].values[period->second]);
+    const auto& active = section.active_parameters;
+    const bool fixed = !active.empty() && std::find(active.begin(), active.end(), k) == active.end();
+    if (fixed && !is_duration(k, section.segments)) {
+      const auto value = file_.parameters[s].find(k);
+      return value == file_.parameters[s].end() ? TableCell() : number_cell(value->second);
+    }
+    const LabelledSolution* solution = file_.solution_of(s, row);
+    const auto index = static_cast<std::size_t>(k - 1);
+    return solution == nullptr || index >= solution->parameters.size() ? TableCell()
+                                                                       : number_cell(solution->parameters[index]);
+  }
+
+  const BranchFile& file_;
+  std::vector<std::map<std::string, std::size_t>> places_;  // by section: columns by name
+  std::vector<std::map<std::string, int>> parameters_;      // by section: PAR indices by name
+  std::vector<std::string> names_;
+  std::set<std::string> known_;
+};
+
+class BranchTable {
+ public:
+  explicit BranchTable(const BranchFile& file) : file_(file), numbers_(file), names_(counted_names(file.solutions)) {}
+
+  /// All but the multipliers and the iterations.
+  std::vector<std::string> headings() const {
+    std::vector<std::string> all(std::begin(point_headings), std::end(point_headings));
+    all.insert(all.end(), {multipliers_heading, iterations_heading});  // a column of such a name gets another one
+    all.insert(all.end(), numbers_.names().begin(), numbers_.names().end());
+    all = distinct_headings(all);
+    const auto reserved = all.begin() + static_cast<std::ptrdiff_t>(std::size(point_headings));
+    all.erase(reserved, reserved + 2);
+    return all;
+  }
+
+  std::vector<TableCell> cells(std::size_t section, std::size_t row) const {
+    const PointRow& point = file_.sections[section].rows[row];
+    const LabelledSolution* solution = file_.solution_of(section, row);
+    const DiagnosticPoint* diagnostic = file_.diagnostic_of(section, row);
+    std::vector<TableCell> cells{static_cast<int>(section) + 1, std::abs(point.branch), std::abs(point.point),
+                                 text_cell(file_.types[section][row])};
+    cells.push_back(solution == nullptr ? TableCell() : name(section, row));
+    cells.emplace_back(point.label);
+    cells.push_back(solution == nullptr ? TableCell() : kind(section, *solution));
+    cells.push_back(tells_stability(section) ? TableCell(point.point < 0) : TableCell());
+    cells.push_back(diagnostic == nullptr ? TableCell() : TableCell(diagnostic->admissible));
+    numbers_.append(cells, section, row);
+    return cells;
+  }
+
+  const std::vector<std::complex<double>>* multipliers(std::size_t section, std::size_t row) const {
+    const DiagnosticPoint* diagnostic = file_.diagnostic_of(section, row);
+    return diagnostic == nullptr || diagnostic->multipliers.empty() ? nullptr : &diagnostic->multipliers;
+  }
+
+  TableCell iterations(std::size_t section, std::size_t row) const {
+    const DiagnosticPoint* diagnostic = file_.diagnostic_of(section, row);
+    return diagnostic == nullptr || !diagnostic->iterations ? TableCell() : TableCell(*diagnostic->iterations);
+  }
+
+  std::size_t most_multipliers() const {
+    std::size_t most = 0;
+    each_point([&](std::size_t s, std::size_t k) {
+      if (const auto* values = multipliers(s, k)) most = std::max(most, values->size());
+    });
+    return most;
+  }
+
+  template <class Use>
+  void each_point(const Use& use) const {
+    for (std::size_t s = 0; s < file_.sections.size(); ++s)
+      for (std::size_t k = 0; k < file_.sections[s].rows.size(); ++k) use(s, k);
+  }
+
+ private:
+  TableCell name(std::size_t section, std::size_t row) const {
+    const auto place = static_cast<std::size_t>(file_.solution[section][row]);
+    return text_cell(fmt::format("{}", fmt::join(names_[place], " ")));
+  }
+
+  TableCell kind(std::size_t section, const LabelledSolution& solution) const {
+    return text_cell(description(solution, [&](int k) { return file_.sections[section].parameter_name(k); }));
+  }
+
+  /// Not along curves of folds, period doublings and torus bifurcations.
+  bool tells_stability(std::size_t section) const {
+    const PointSection& s = file_.sections[section];
+    return s.has_stability() && s.curve_type == 0 && std::abs(s.branch_mode) != 2;
+  }
+
+  const BranchFile& file_;
+  PointNumbers numbers_;
+  std::vector<std::vector<std::string>> names_;
+};
+
+}  // namespace
+
+void write_branch_csv(std::ostream& out, const BranchFile& file) {
+  const BranchTable table(file);
+  const std::size_t most = table.most_multipliers();
+  std::vector<std::string> fields;
+  for (const std::string& heading : table.headings()) fields.push_back(csv_field(heading));
+  for (std::size_t k = 1; k <= most; ++k)
+    fields.insert(fields.end(), {fmt::format("multiplier{}_re", k), fmt::format("multiplier{}_im", k)});
+  fields.emplace_back(iterations_heading);
+  out << csv_line(fields);
+  table.each_point([&](std::size_t section, std::size_t row) {
+    fields.clear();
+    for (const TableCell& cell : table.cells(section, row)) fields.push_back(csv_field(cell));
+    const auto* multipliers = table.multipliers(section, row);
+    for (std::size_t k = 0; k < most; ++k) {
+      const bool there = multipliers != nullptr && k < multipliers->size();
+      fields.push_back(there ? csv_field(multiplier_cell((*multipliers)[k].real())) : "");
+      fields.push_back(there ? csv_field(multiplier_cell((*multipliers)[k].imag())) : "");
+    }
+    fields.push_back(csv_field(table.iterations(section, row)));
+    out << csv_line(fields);
+  });
+}
+
+void write_branch_json(std::ostream& out, const BranchFile& file) {
+  const BranchTable table(file);
+  std::vector<std::string> keys;
+  for (const std::string& heading : table.headings()) keys.push_back(json_value(heading));
+  const char* before = "[\n";
+  table.each_point([&](std::size_t section, std::size_t row) {
+    const std::vector<TableCell> cells = table.cells(section, row);
+    out << before << '{';
+    for (std::size_t k = 0; k < cells.size(); ++k) out << keys[k] << ": " << json_value(cells[k]) << ", ";
+    out << '"' << multipliers_heading << "\": ";
+    if (const auto* multipliers = table.multipliers(section, row)) {
+      std::vector<std::string> pairs;
+      for (const std::complex<double>& mu : *multipliers)
+        pairs.push_back(
+            fmt::format("[{}, {}]", json_value(multiplier_cell(mu.real())), json_value(multiplier_cell(mu.imag()))));
+      out << fmt::format("[{}]", fmt::join(pairs, ", "));
+    } else {
+      out << "null";
+    }
+    out << ", \"" << iterations_heading << "\": " << json_value(table.iterations(section, row)) << '}';
+    before = ",\n";
+  });
+  out << "\n]\n";
+}
+
+}  // namespace tchat

@@ -1,0 +1,43 @@
+#include "text/words.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstddef>
+
+#include "text/printable.hpp"
+
+namespace tchat {
+
+namespace {
+
+bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\v' || c == '\f' || c == '\r'; }
+
+}  // namespace
+
+std::string in_quotes(std::string_view text) {
+  constexpr std::size_t longest = 60;
+  std::string shown = printable(text.substr(0, longest));
+  std::replace(shown.begin(), shown.end(), '\n', '?');
+  return fmt::format("'{}{}'", shown, text.size() > longest ? "..." : "");
+}
+
+std::vector<std::string_view> split_words(std::string_view line) {
+  std::vector<std::string_view> words;
+  std::size_t begin = 0;
+  while (true) {
+    while (begin < line.size() && is_blank(line[begin])) ++begin;
+    if (begin == line.size()) return words;
+    std::size_t end = begin;
+    while (end < line.size() && !is_blank(line[end])) ++end;
+    words.push_back(line.substr(begin, end - begin));
+    begin = end;
+  }
+}
+
+std::string_view without_carriage_return(std::string_view line) {
+  if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+  return line;
+}
+
+}  // namespace tchat
