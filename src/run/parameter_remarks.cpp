@@ -31,7 +31,7 @@ std::string inherited_bounds(const HybridSystem& system, const RunSettings& in_f
 
 std::string idle_parameters(const HybridSystem& system, const RunSettings& settings, const SelectedStart& start,
                             std::size_t free_count) {
-  constexpr std::array curves{PointType::fold, PointType::period_doubling, PointType::torus};
+  static constexpr std::array curves{PointType::fold, PointType::period_doubling, PointType::torus};
   const auto begins_curve = [](int type) {
     return std::any_of(curves.begin(), curves.end(), [type](PointType t) { return type == static_cast<int>(t); });
   };
