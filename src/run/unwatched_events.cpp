@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
 
@@ -34,6 +35,19 @@ std::string monitor_lists(const RunSettings& settings, const std::map<int, std::
   return fmt::format("GCHGRZIND=[{}]", text);
 }
 
+/// Is the event's function negative somewhere on segment s? Then monitoring it would make every orbit inadmissible.
+bool is_negative(const HybridSystem& system, int event, const Orbit& x, int s) {
+  constexpr double rounding = 1e-6;
+  double least = 0.0;
+  double scale = 1.0;
+  for (int k = 0; k < x.shape.nodes(); ++k) {
+    const double h = system.event(event, x.node(s, k), x.par.data());
+    if (!(h >= least)) least = h;
+    scale = std::max(scale, std::abs(h));
+  }
+  return !(least >= -rounding * scale);
+}
+
 }  // namespace
 
 std::string unwatched_events(const HybridSystem& system, const RunSettings& settings, const Orbit& start) {
@@ -50,7 +64,8 @@ std::string unwatched_events(const HybridSystem& system, const RunSettings& sett
         std::none_of(following->begin(), following->end(), [field](const IndexVector& v) { return v.field == field; }))
       continue;
     for (const int event : relevant_events(system, *following, field, x, start.par.data()))
-      if (!seen.contains(event)) missing[event].insert(static_cast<int>(s) + 1);
+      if (!seen.contains(event) && !is_negative(system, event, start, static_cast<int>(s)))
+        missing[event].insert(static_cast<int>(s) + 1);
   }
   if (missing.empty()) return "";
   std::string list;
