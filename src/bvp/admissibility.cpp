@@ -41,7 +41,8 @@ bool is_pinned_start(const HybridSystem& system, const Signature& signature, con
 }
 
 std::vector<Violation> inadmissibilities(const HybridSystem& system, const Signature& signature,
-                                         const std::vector<std::vector<int>>& monitored, const Orbit& x) {
+                                         const std::vector<std::vector<int>>& monitored, const Orbit& x,
+                                         double leaving) {
   std::vector<Violation> result;
   const int m = x.shape.segments;
   const int last = x.shape.nodes() - 1;
@@ -66,7 +67,7 @@ std::vector<Violation> inadmissibilities(const HybridSystem& system, const Signa
     system.value(FunctionKind::field, v.field, x.end(s), par, f.data());
     const Vector gradient = event_gradient(system, v.event, x.end(s), par);
     const double slope = gradient.dot(f);
-    if (slope > no_transversality * gradient.norm() * f.norm())
+    if (slope > leaving * gradient.norm() * f.norm())
       result.push_back({Violation::leaving_terminal_surface, s + 1, v.event, 1.0, slope});
   }
   return result;

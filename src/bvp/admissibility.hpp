@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "bvp/orbit.hpp"
+#include "bvp/transversality.hpp"
 #include "hybrid/hybrid_system.hpp"
 
 namespace tchat {
@@ -23,9 +24,12 @@ struct Violation {
   double value = 0.0;  ///< T_s, h, or h_x f
 };
 
-/// `monitored[s]` lists the event functions monitored on segment s.
+/// `monitored[s]` lists the event functions monitored on segment s. A segment leaves its terminal surface when h_x f is
+/// more than `leaving` of |h_x| |f|: at a located special point, where two segments may meet their surfaces
+/// tangentially at once, that is known to the accuracy of the location.
 std::vector<Violation> inadmissibilities(const HybridSystem& system, const Signature& signature,
-                                         const std::vector<std::vector<int>>& monitored, const Orbit& x);
+                                         const std::vector<std::vector<int>>& monitored, const Orbit& x,
+                                         double leaving = no_transversality);
 
 /// Is the start of segment s (from 0) pinned for an event function: does the jump before it land on the surface h = 0
 /// by structure (h = 0 there, gradient of h o g parallel to that of the previous terminal event)?

@@ -78,6 +78,7 @@ struct BranchSummary {
   int unstable_points = 0;
   bool multipliers_computed = false;
   bool critical_curve = false;    ///< every point has a critical multiplier, so stability says nothing
+  bool without_contact = false;   ///< stability is that of the orbit without the contact that the curve keeps
   double worst_structural = 0.0;  ///< largest structural multiplier
   double worst_estimated_error = 0.0;
   std::vector<LostPoint> lost;  ///< special points that may be missing

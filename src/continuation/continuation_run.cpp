@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "bvp/evaluation_failure.hpp"
 #include "bvp/mesh_adaptation.hpp"
@@ -18,7 +19,8 @@ namespace {
 /// The principal parameter's part of the tangent, as a share of its largest one on the branch, that is rounding when
 /// one end of a step has no more.
 constexpr double insignificant_turn = 1e-7;
-/// A part that falls to rounding from this many times more within a step does not fade: the step ends on a fold.
+/// A part that falls to rounding from this many times more within a step does not fade: the step ends on a fold, or the
+/// one before has.
 constexpr double sudden = 1e3;
 /// An orbit whose states all move by a smaller share of what they did is a point: where the branch was found to turn,
 /// known to EPSS, and where Newton's matrix is singular anyway.
@@ -97,7 +99,8 @@ SpecialPoint ContinuationRun::advance() {
   steepest_ = std::max(steepest_, before);
   SpecialPoint special = search_.advance(here_, next_, ds_taken_, newton_, reports).value_or(SpecialPoint{});
   const double level = insignificant_turn * steepest_;
-  if (special.type != PointType::fold || turn > level || before > sudden * level)
+  const double earlier = std::exchange(before_, before);
+  if (special.type != PointType::fold || turn > level || std::max(before, earlier) > sudden * level)
     return shrunk_orbit(special, through_point);
   reports.note(fmt::format("ICP(1) turns by rounding only (its share of the tangent is {:.1e}): no fold", turn));
   return {};
@@ -227,8 +230,12 @@ void ContinuationRun::accept(const SpecialPoint& special) {
 }
 
 void ContinuationRun::record(const SpecialPoint& special, const PointData& data) {
+  constexpr double errors_of_location = 100.0;  // that h_x f of one segment may have where another one's vanishes
+  const bool is_located = special.kind.kind == UserPointKind::impact_velocity || !special.further.empty();
+  const double leaving =
+      is_located ? std::max(no_transversality, errors_of_location * settings_.location_tolerance) : no_transversality;
   const std::vector<Violation> violations =
-      inadmissibilities(system_.system(), system_.signature(), settings_.monitored, here_.orbit);
+      inadmissibilities(system_.system(), system_.signature(), settings_.monitored, here_.orbit, leaving);
   BranchPoint point{number_,
                     special,
                     here_,

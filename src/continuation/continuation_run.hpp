@@ -72,6 +72,7 @@ class ContinuationRun {
   double ds_taken_ = 0.0;  // length of that step
   bool limited_ = false;   // by zeros that are known to lie ahead: it says nothing of the next one
   double steepest_ = 0.0;  // largest part of the principal parameter in a tangent so far
+  double before_ = 0.0;    // that part at the last point but one
   double measure_ = 0.0;   // at here_
   int number_ = 1;         // of here_
   bool ended_ = false;

@@ -341,6 +341,12 @@ std::string label_list(const std::vector<LabelledSolution>& solutions) {
   return list;
 }
 
+/// Where the labels went that a run has replaced.
+std::string before_replacement(const std::string& path) {
+  const std::string earlier = path + "~";
+  return std::filesystem::exists(earlier) ? fmt::format("; the file that it replaced is {}", earlier) : "";
+}
+
 }  // namespace
 
 SolutionFile parse_solution_file(std::string_view text, const std::string& path) {
@@ -364,9 +370,9 @@ const LabelledSolution& find_solution(const std::vector<LabelledSolution>& solut
   }
   const std::string wanted = label.type.empty() ? fmt::format("label {}", label.number)
                                                 : fmt::format("point {}{}", label.type, std::max(label.number, 1));
-  throw UserError(solutions.empty()
-                      ? fmt::format("{}: no {}; the file holds no solution", path, wanted)
-                      : fmt::format("{}: no {}; there are the labels {}", path, wanted, label_list(solutions)));
+  throw UserError(solutions.empty() ? fmt::format("{}: no {}; the file holds no solution", path, wanted)
+                                    : fmt::format("{}: no {}; there are the labels {}{}", path, wanted,
+                                                  label_list(solutions), before_replacement(path)));
 }
 
 std::vector<std::vector<std::string>> counted_names(const std::vector<LabelledSolution>& solutions) {

@@ -45,8 +45,11 @@ double node_value(const Node& node, const std::vector<double>& operands, const s
       return call_value(node, operands, role);
     case Node::Kind::name:
       if (node.text == "pi") return 3.14159265358979323846;
-      throw FormulaError{node.at,
-                         fmt::format("{} is a number, so '{}' cannot be used in it; write its value", role, node.text)};
+      throw FormulaError{
+          node.at,
+          fmt::format(
+              "{} is a number, so '{}' cannot be used in it; write its value, or a definition: NAME = EXPRESSION", role,
+              node.text)};
     default:
       throw FormulaError{node.at, fmt::format("{} is a number, not a condition", role)};
   }

@@ -261,6 +261,7 @@ class ModelCheck {
     if (file().successors.empty()) return;
     for (const SuccessorLine& line : file().successors) collect([&] { model_.successors.push_back(rule(line)); });
     if (errors_.empty()) require_complete();
+    if (errors_.empty()) require_reachable_fields();
   }
 
   ProblemModel::SuccessorRule rule(const SuccessorLine& line) const {
@@ -336,6 +337,18 @@ class ModelCheck {
     }
   }
 
+  /// A field that nothing leads to has been forgotten in some line, and a simulation would go on in another one.
+  void require_reachable_fields() {
+    std::set<int> reached;
+    for (const auto& rule : model_.successors)
+      for (const std::array<int, 3>& next : rule.next) reached.insert(next[0]);
+    for (std::size_t k = 0; k < model_.fields.size(); ++k)
+      if (!reached.contains(static_cast<int>(k) + 1))
+        errors_.add(file().successors.back().at,
+                    fmt::format("no 'after' line leads to field {0}; write one, as after EVENT: {0} until EVENT -> JUMP",
+                                model_.fields[k].name));
+  }
+
   std::string in_words_of(const std::array<int, 3>& from) const {
     if (from[0] == 0) return "the start";
     const auto at = [&](std::size_t k) { return static_cast<std::size_t>(from[k] - 1); };
@@ -344,7 +357,7 @@ class ModelCheck {
   }
 
   std::string after_words(const std::array<int, 3>& from) const {
-    return from[0] == 0 ? "after start" : "after " + model_.jumps[static_cast<std::size_t>(from[2] - 1)].name;
+    return from[0] == 0 ? "after start" : "after " + model_.events[static_cast<std::size_t>(from[1] - 1)].name;
   }
 
   /// Fields and events are differentiated along orbits: a jump in their values has no derivative that could be right.

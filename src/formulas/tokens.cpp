@@ -200,14 +200,28 @@ void TokenReader::expect(std::string_view what, const std::string& cure) {
 
 const Token& TokenReader::expect_name(const std::string& role) {
   if (!peek().is_name())
-    throw FormulaError{peek().at, fmt::format("the name of {} is expected here, not {}", role, shown(peek()))};
+    throw FormulaError{peek().at,
+                       fmt::format("the name of {} is expected here, not {}{}", role, shown(peek()), hint())};
   return next();
 }
 
 void TokenReader::expect_end() const {
   if (peek().is_end()) return;
-  throw FormulaError{peek().at,
-                     fmt::format("an operator or the end of the line is expected here, not {}", shown(peek()))};
+  throw FormulaError{
+      peek().at, fmt::format("an operator or the end of the line is expected here, not {}{}", shown(peek()), hint())};
+}
+
+std::string TokenReader::hint() const {
+  const auto is_number = [](const Token& token) { return token.kind == Token::Kind::number; };
+  const std::size_t comma = peek().is(",") ? at_ : at_ - 1;  // "2,0*z", or "z=0,05" read as two settings
+  if (at_ > 1 && comma > 0 && tokens_[comma].is(",") && is_number(tokens_[comma - 1]) &&
+      is_number(peek(comma + 1 - at_)))
+    return fmt::format("; decimals are written with a point, as {}.{}", tokens_[comma - 1].text,
+                       peek(comma + 1 - at_).text);
+  const bool side_by_side = at_ > 0 && (tokens_[at_ - 1].is_name() || is_number(tokens_[at_ - 1]));
+  if (side_by_side && (peek().is_name() || is_number(peek())))
+    return fmt::format("; write an operator between them, as {}*{}", tokens_[at_ - 1].text, peek().text);
+  return "";
 }
 
 std::string shown(const Token& token) {

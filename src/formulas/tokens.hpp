@@ -47,6 +47,8 @@ class TokenReader {
   void expect_end() const;
 
  private:
+  /// What to write where two numbers stand beside a comma, or two operands side by side; "" elsewhere.
+  std::string hint() const;
   const Statement& tokens_;
   std::size_t at_ = 0;
 };

@@ -1,6 +1,7 @@
 #include "linear_algebra/dense_matrix.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -65,6 +66,33 @@ Eigen::MatrixXd PivotedLu::solve(const Eigen::MatrixXd& right) const {
 
 Eigen::MatrixXd solve(const Eigen::MatrixXd& matrix, const Eigen::MatrixXd& right) {
   return PivotedLu(matrix).solve(right);
+}
+
+Eigen::MatrixXd solve_with_complete_pivoting(const Eigen::MatrixXd& matrix, const Eigen::MatrixXd& right) {
+  const int n = size_of(matrix.rows());
+  Eigen::MatrixXd x = right;
+  if (n == 0) return x;
+  Eigen::MatrixXd a = matrix;
+  Eigen::VectorXi rows(n);
+  Eigen::VectorXi columns(n);
+  int info = 0;
+  dgetc2_(&n, a.data(), &n, rows.data(), columns.data(), &info);
+  for (int k = 0; k < n; ++k) x.row(k).swap(x.row(rows(k) - 1));
+  for (int k = 0; k < n; ++k)
+    for (int i = k + 1; i < n; ++i) x.row(i) -= a(i, k) * x.row(k);
+  // A pivot that vanishes is made a small number by the routine.
+  using Limits = std::numeric_limits<double>;
+  const double least =
+      std::max(Limits::epsilon() * n * matrix.cwiseAbs().maxCoeff(), Limits::min() / Limits::epsilon());
+  for (int k = n - 1; k >= 0; --k) {
+    for (int j = k + 1; j < n; ++j) x.row(k) -= a(k, j) * x.row(j);
+    if (std::abs(a(k, k)) > least)
+      x.row(k) /= a(k, k);
+    else
+      x.row(k).setZero();
+  }
+  for (int k = n - 1; k >= 0; --k) x.row(k).swap(x.row(columns(k) - 1));
+  return x;
 }
 
 Eigen::MatrixXd least_squares(const Eigen::MatrixXd& matrix, const Eigen::MatrixXd& right) {

@@ -12,6 +12,7 @@ void dgeev_(const char* left, const char* right, const int* n, double* a, const 
 void dgetrf_(const int* rows, const int* columns, double* a, const int* a_rows, int* pivots, int* info);
 void dgetrs_(const char* transposed, const int* n, const int* right_sides, const double* a, const int* a_rows,
              const int* pivots, double* b, const int* b_rows, int* info, std::size_t);
+void dgetc2_(const int* n, double* a, const int* a_rows, int* row_pivots, int* column_pivots, int* info);
 void dgelsy_(const int* rows, const int* columns, const int* right_sides, double* a, const int* a_rows, double* b,
              const int* b_rows, int* order, const double* condition, int* rank, double* work, const int* work_size,
              int* info);

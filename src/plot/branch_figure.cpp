@@ -105,8 +105,22 @@ class BranchFigureBuilder {
       tell_missing_orbits(file, s, x, y);
       for (std::size_t arm = 0; arm < std::max(x.arms.size(), y.arms.size()); ++arm)
         for (const BranchPiece& piece : file.pieces)
-          if (piece.section == s) pieces.push_back(read_piece(f, piece, x, y, arm));
+          if (piece.section == s) add_unbroken(read_piece(f, piece, x, y, arm), pieces);
     }
+  }
+
+  /// In parts, where so much of the section is not known between two points that a line would be invented.
+  void add_unbroken(const Piece& piece, std::vector<Piece>& pieces) const {
+    constexpr std::size_t longest_gap = 8;  // as a divisor of the section
+    const std::size_t gap = std::max<std::size_t>(section_of(piece).rows.size() / longest_gap, 2);
+    Piece part{piece.file, piece.section, {}, {}};
+    for (std::size_t k = 0; k < piece.rows.size(); ++k) {
+      if (!part.rows.empty() && piece.rows[k] - part.rows.back() > gap)
+        pieces.push_back(std::exchange(part, Piece{piece.file, piece.section, {}, {}}));
+      part.rows.push_back(piece.rows[k]);
+      part.points.push_back(piece.points[k]);
+    }
+    pieces.push_back(std::move(part));
   }
 
   Piece read_piece(std::size_t f, const BranchPiece& piece, const BranchQuantity& x, const BranchQuantity& y,
@@ -137,8 +151,9 @@ class BranchFigureBuilder {
         ++all, known += x.known[k] && y.known[k];
     if (known < all)
       warnings_->push_back(
-          fmt::format("{}: {} is known at the {} of {} points that have an orbit in the q-file; the line "
-                      "goes through these alone (a run with NPR=1 writes all orbits)",
+          fmt::format("{}: {} is known at the {} of {} points that have an orbit in the q-file; a line "
+                      "goes through these alone, and not over more than an eighth of the branch (a run with NPR=1 "
+                      "writes all orbits)",
                       file.path, what, known, all));
   }
 

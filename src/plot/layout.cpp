@@ -170,6 +170,7 @@ FigureLayout lay_out(const Figure& figure) {
   Values shared;
   for (const Panel& panel : figure.panels) add_values(panel, shared);
   double widest = 0.0;
+  double widest_below = 0.0;
   for (const Panel& panel : figure.panels) {
     Values own;
     add_values(panel, own);
@@ -178,10 +179,12 @@ FigureLayout lay_out(const Figure& figure) {
         panel.x, visible(shared, &PicturePoint::x, &PicturePoint::y, panels == 1 ? panel.y : AxisSettings{}), 4);
     place.y = choose_scale(panel.y, visible(own, &PicturePoint::y, &PicturePoint::x, panel.x), panels > 1 ? 3 : 4);
     widest = std::max(widest, place.y.widest_number);
+    widest_below = std::max(widest_below, place.x.widest_number);
     layout.panels.push_back(place);
   }
 
-  Box inner{(widest + 3.0) * font, figure.width - 1.5 * font, 3.7 * font,
+  const double right_margin = std::max(1.5, 0.5 * widest_below + 0.3) * font;  // the last number may stand at the edge
+  Box inner{(widest + 3.0) * font, figure.width - right_margin, 3.7 * font,
             figure.height - height_of_texts(figure, font)};
   const KeyGrid list(figure.key, font);
   const KeyGrid rows(figure.key, font, figure.width - font, 0.35 * inner.height());

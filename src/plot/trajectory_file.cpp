@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <optional>
 #include <sstream>
 
 #include "constants/constant_value.hpp"
@@ -15,7 +16,22 @@ namespace tchat {
 
 namespace {
 
-constexpr std::size_t columns_before_states = 5;  // segment, i, j, k, t
+/// The line that names the columns.
+struct Heading {
+  std::vector<std::string> states;
+  std::size_t before_states;  ///< columns; the last one is t
+};
+
+/// "#segment i j k t x1 ..." of `tchat simulate`, or "#seg tau t x1 ..." of `tchat orbit`; nothing for other lines.
+std::optional<Heading> heading_in(const std::string& line) {
+  const auto names = split_words(line);
+  if (names.empty()) return std::nullopt;
+  const std::size_t before = names.front() == "#segment" ? 5 : names.front() == "#seg" ? 3 : 0;
+  if (before == 0 || names.back() == "what") return std::nullopt;
+  Heading heading{{}, before};
+  for (std::size_t k = before; k < names.size(); ++k) heading.states.emplace_back(names[k]);
+  return heading;
+}
 
 /// "# LinearOscillator with alpha = 3, omega = 2": the values, PAR(1) first.
 std::vector<double> parameters_of(const std::string& heading) {
@@ -30,7 +46,9 @@ std::vector<double> parameters_of(const std::string& heading) {
 }
 
 [[noreturn]] void refuse(const std::string& path, int line, const std::string& what) {
-  throw UserError(fmt::format("{}:{}: {}; give a NAME.trajectory that tchat simulate has written", path, line, what));
+  throw UserError(
+      fmt::format("{}:{}: {}; give a NAME.trajectory that tchat simulate has written, or what tchat orbit prints", path,
+                  line, what));
 }
 
 struct Rows {
@@ -51,8 +69,9 @@ TraceSegment segment_of(const Rows& rows, Eigen::Index n) {
 
 bool looks_like_trajectory(const std::string& path) {
   TextLines file(path, "something to draw");
-  std::string heading, columns;
-  return file.next(heading) && file.next(columns) && columns.starts_with("#segment") && !columns.ends_with(" what");
+  for (std::string line; file.next(line) && line.starts_with('#');)
+    if (heading_in(line)) return true;
+  return false;
 }
 
 TrajectoryFile read_trajectory_file(const std::string& path) {
@@ -61,30 +80,33 @@ TrajectoryFile read_trajectory_file(const std::string& path) {
   file.trace.name = std::filesystem::path(path).stem().string();
   file.trace.is_closed = false;
   std::string line;
-  std::getline(in, line);
-  file.trace.parameters = parameters_of(line);
-  if (!std::getline(in, line) || !line.starts_with("#segment")) refuse(path, 2, "no heading #segment");
-  const std::string headings = line;
-  const auto names = split_words(headings);
-  if (names.size() <= columns_before_states) refuse(path, 2, "no states in the heading");
-  file.states.assign(names.begin() + columns_before_states, names.end());
+  std::optional<Heading> heading;
+  int number = 1;
+  for (; !heading && std::getline(in, line) && line.starts_with('#'); ++number) {
+    if (number == 1) file.trace.parameters = parameters_of(line);
+    heading = heading_in(line);
+  }
+  if (!heading) refuse(path, number, "no heading #segment or #seg");
+  if (heading->states.empty()) refuse(path, number - 1, "no states in the heading");
+  file.states = heading->states;
 
   const std::size_t n = file.states.size();
+  const std::size_t columns = heading->before_states + n;
   Rows rows;
   const auto end_segment = [&] {
     if (!rows.times.empty()) file.trace.segments.push_back(segment_of(rows, static_cast<Eigen::Index>(n)));
     rows = {};
   };
-  for (int number = 3; std::getline(in, line); ++number) {
+  std::string segment;
+  for (; std::getline(in, line); ++number) {
     const auto words = split_words(line);
-    if (words.empty()) {
-      end_segment();
-      continue;
-    }
-    if (words.size() != columns_before_states + n)
-      refuse(path, number, fmt::format("found {} numbers, expected {}", words.size(), columns_before_states + n));
+    if (words.empty() || words.front() != segment) end_segment();
+    if (words.empty()) continue;
+    segment = words.front();
+    if (words.size() != columns)
+      refuse(path, number, fmt::format("found {} numbers, expected {}", words.size(), columns));
     std::vector<double> values;
-    for (std::size_t k = columns_before_states - 1; k < words.size(); ++k) {
+    for (std::size_t k = heading->before_states - 1; k < words.size(); ++k) {
       const auto value = parse_real(words[k]);
       if (!value) refuse(path, number, fmt::format("found '{}', expected a number", words[k]));
       values.push_back(*value);

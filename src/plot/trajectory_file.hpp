@@ -1,4 +1,4 @@
-/// NAME.trajectory of `tchat simulate` as an orbit that need not close.
+/// NAME.trajectory of `tchat simulate`, or the table that `tchat orbit` prints, as an orbit that need not close.
 #pragma once
 
 #include <string>

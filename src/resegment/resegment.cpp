@@ -271,9 +271,9 @@ std::vector<std::string> resegment(const ResegmentRequest& request, std::ostream
   write_whole_file(constants_out, keyword_text(settings));
 
   screen << summary(source, settings, start.orbit, system)
-         << fmt::format("{} and {} written; next: tchat run {} -c {} {} {}\n", start_out, constants_out,
+         << fmt::format("{} and {} written; next: tchat run {} -c {} {} {} -o {}_branch\n", start_out, constants_out,
                         problem_arguments(request.problem.value_or(run_path(path))), request.output,
-                        request.data ? "-d" : "-s", request.output)
+                        request.data ? "-d" : "-s", request.output, request.output)
          << side;
   for (const std::string& remark : target.remarks) screen << remark << '\n';
   return warnings;

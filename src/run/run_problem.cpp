@@ -16,9 +16,11 @@
 #include "plugin/problem_library.hpp"
 #include "run/branch_setup.hpp"
 #include "run/branch_writer.hpp"
+#include "run/parameter_remarks.hpp"
 #include "run/problem_types.hpp"
 #include "run/run_summary.hpp"
 #include "run/test_selection.hpp"
+#include "run/unwatched_events.hpp"
 #include "setup/named_parameters.hpp"
 #include "setup/problem_setup.hpp"
 #include "setup/warnings.hpp"
@@ -76,11 +78,22 @@ std::string direction_text(double step, const SelectedStart& start) {
                      step > 0.0 ? "on in" : "back against", start.label, start.source);
 }
 
-RunSettings read_settings(const RunRequest& request, const std::string& constants, const ParameterNames& names,
-                          Warnings* warnings) {
-  RunSettings settings = read_constants_file(constants, warnings, names);
-  apply_overrides(settings, request.overrides, warnings, names);
-  return settings;
+struct ReadSettings {
+  RunSettings in_file;
+  RunSettings used;  ///< with the changes of the command line
+};
+
+ReadSettings read_settings(const RunRequest& request, const std::string& constants, const ParameterNames& names,
+                           Warnings* warnings) {
+  ReadSettings read;
+  read.in_file = read_constants_file(constants, warnings, names);
+  read.used = read.in_file;
+  apply_overrides(read.used, request.overrides, warnings, names);
+  return read;
+}
+
+void warn_of(std::ostream& warnings, const std::string& text) {
+  if (!text.empty()) print_warnings(warnings, {text});
 }
 
 }  // namespace
@@ -93,8 +106,9 @@ int run_problem(const RunRequest& request, std::ostream& screen, std::ostream& w
   Warnings constant_warnings;
   bool named_parameters = false;
   const std::string constants = constants_path(request.constants.value_or(request.name));
-  RunSettings settings = read_settings(request, constants, names_to_come(named_parameters), &constant_warnings);
+  ReadSettings read = read_settings(request, constants, names_to_come(named_parameters), &constant_warnings);
   warn(constant_warnings);
+  RunSettings settings = read.used;
   std::vector<int> free_parameters = free_problem_parameters(problem_type(settings), settings);
 
   // Plugin.
@@ -102,14 +116,17 @@ int run_problem(const RunRequest& request, std::ostream& screen, std::ostream& w
   const ProblemLibrary library(plugin, [&settings] { return problem_sizes(settings); });
   const HybridSystem& system = library.system();
   if (named_parameters) {
-    settings = read_settings(request, constants, names_of(system), nullptr);
+    read = read_settings(request, constants, names_of(system), nullptr);
+    settings = read.used;
     free_parameters = free_problem_parameters(problem_type(settings), settings);
   }
   warn(check_settings_against(system, settings, {constants, request.overrides}));
+  warn_of(warnings, inherited_bounds(system, read.in_file, settings, request.overrides, constants));
 
   // Start.
   SelectedStart selected = select_start(request, settings, system, free_parameters);
   warn(selected.warnings);
+  warn_of(warnings, idle_parameters(system, settings, selected, free_parameters.size()));
   const std::string output = request.output.value_or(request.name);
   refuse_to_replace_start(request, selected, output);
   RunFiles files(output, request.append ? RunFiles::Mode::append : RunFiles::Mode::replace);
@@ -119,7 +136,8 @@ int run_problem(const RunRequest& request, std::ostream& screen, std::ostream& w
   const RunSettings asked = settings;
   const BranchSetup setup = set_up_branch(system, asked, selected);
   settings = setup.settings;
-  if (!setup.start.note.empty()) warn({setup.start.note});
+  warn_of(warnings, setup.start.note);
+  warn_of(warnings, unwatched_events(system, settings, setup.start.point.orbit));
   ContinuationSettings continuation = continuation_settings(settings);
   continuation.clip = request.clip;
   if (!selected.from_solution || selected.parameters_changed)
@@ -163,7 +181,8 @@ int run_problem(const RunRequest& request, std::ostream& screen, std::ostream& w
     const std::size_t labels_before = writer.labels().size();
     ContinuationRun run(*side->follower, *side->defining, continuation,
                         select_tests(*side->defining, settings, side->follower->condition(), side->curve_type), writer);
-    const BranchSummary summary = run.run(side->start.point);
+    BranchSummary summary = run.run(side->start.point);
+    summary.without_contact = settings.problem_type == 150;
     writer.clear_progress();
     const std::vector<BranchWriter::Labelled> labels(
         writer.labels().begin() + static_cast<std::ptrdiff_t>(labels_before), writer.labels().end());

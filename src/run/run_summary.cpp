@@ -99,9 +99,10 @@ std::string summary_text(const BranchSummary& summary, const std::vector<BranchW
                          const std::string& parameter, const std::string& output) {
   std::string text = fmt::format("\n{} points", summary.points);
   if (summary.multipliers_computed && !summary.critical_curve)
-    text +=
-        fmt::format(", {} stable and {} unstable", summary.points - summary.unstable_points, summary.unstable_points);
-  if (!labels.empty())
+    text += fmt::format(", {} stable and {} unstable{}", summary.points - summary.unstable_points,
+                        summary.unstable_points, summary.without_contact ? " but for the contact" : "");
+  if (labels.size() == 1) text += fmt::format("; label {} in q.{}", labels.front().label, output);
+  if (labels.size() > 1)
     text += fmt::format("; labels {} to {} in q.{}", labels.front().label, labels.back().label, output);
   text += ".\n";
   for (const BranchWriter::Labelled& label : labels)

@@ -34,7 +34,10 @@ std::string constants_meant(const fs::path& path) {
       names.push_back(name.substr(3));
   const std::vector<std::string> near = near_words(path.filename().string(), names);
   if (!near.empty()) return fmt::format("did you mean {}?", fmt::join(near, ", "));
-  return "give its name with -c, or write one (`tchat constants` explains what is in it)";
+  return fmt::format(
+      "give its name with -c, let `tchat simulate {} --dat {}` write it with starting data, or write one "
+      "(`tchat constants` explains what is in it)",
+      path.filename().string(), path.filename().string());
 }
 
 /// NAME/NAME where NAME is a folder, as `tchat new NAME` makes it; else NAME.

@@ -95,6 +95,24 @@ std::vector<IndexedValue> parameter_weights(const RunSettings& base, int segment
 
 }  // namespace
 
+std::string unmonitored_events(const HybridSystem& system, const FoundOrbit& orbit, const OrbitSamples& samples,
+                               const Eigen::VectorXd& par) {
+  const Eigen::Index n = system.dimension();
+  std::string text;
+  for (std::size_t s = 0; s < orbit.signature.size(); ++s) {
+    const Eigen::MatrixXd states = samples.states.middleRows(static_cast<Eigen::Index>(s) * n, n);
+    for (const int event : orbit.modes[s].all_events())
+      if (EventValues(system, event, states, par).is_negative() && !is_section(system, orbit, s, event, states, par))
+        text += fmt::format(
+            "Event {} ({}) is negative on segment {}, so it is not monitored there: if field {} ({}) holds only where "
+            "it "
+            "is positive, its sign or what follows it is wrong.\n",
+            event, system.function_name(FunctionKind::event, event), s + 1, orbit.signature[s].field,
+            system.function_name(FunctionKind::field, orbit.signature[s].field));
+  }
+  return text;
+}
+
 std::string orbit_data_text(const HybridSystem& system, const FoundOrbit& orbit, const OrbitSamples& samples,
                             const Eigen::VectorXd& par) {
   std::string text =

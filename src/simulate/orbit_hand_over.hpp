@@ -25,4 +25,9 @@ RunSettings orbit_settings(const HybridSystem& system, const RunSettings& base, 
 /// sensible ones where it left the defaults.
 RunSettings default_orbit_settings(const RunSettings& given);
 
+/// What to say of events of an orbit's modes that the constants do not monitor, for they are negative on their segment:
+/// a switch of the wrong sign shows so. "" when there are none.
+std::string unmonitored_events(const HybridSystem& system, const FoundOrbit& orbit, const OrbitSamples& samples,
+                               const Eigen::VectorXd& par);
+
 }  // namespace tchat

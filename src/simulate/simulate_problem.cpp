@@ -131,8 +131,9 @@ std::string hand_over(const SimulationRequest& request, const SimulationConstant
                                 ? ""
                                 : fmt::format("The orbit is sharp: NTST = {} instead of {}, for an error of {:.1e}.\n",
                                               samples.intervals, base.mesh_intervals, samples.error);
-  return fmt::format("{}Written: {} and {}. Go on with\n  tchat run {}{} -c {} -d {} -o {}\n", finer, paths.data,
-                     paths.constants, request.name, plugin, name, name, name);
+  return fmt::format("{}{}Written: {} and {}. Go on with\n  tchat run {}{} -c {} -d {} -o {}\n", finer,
+                     unmonitored_events(system, orbit, samples, par), paths.data, paths.constants, request.name, plugin,
+                     name, name, name);
 }
 
 /// "" when the orbit can be continued; otherwise why not.

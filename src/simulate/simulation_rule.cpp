@@ -44,7 +44,8 @@ bool has_one_of_each(const HybridSystem& system) {
   throw UserError(
       fmt::format("{} has no index jump function (successors), so a simulation follows a signature; give it with "
                   "--signature '1,2,2;...' or a constants file with -c C (there is no gc.{}), or give the problem a "
-                  "member `successors` (src/docs/simulation.md)",
+                  "member `successors` (in a file of formulas: lines `after EVENT: FIELD until EVENT -> JUMP`; page "
+                  "simulation.md)",
                   system.name(), request.name));
 }
 

@@ -59,8 +59,10 @@ void apply_state_option(const HybridSystem& system, const std::string& text, Vec
     for (const std::string& part : parts) {
       const std::size_t equals = part.find('=');
       if (equals == std::string::npos)
-        throw UserError(fmt::format("--state {}: '{}' lacks its name; give NAME=VALUE for some states or all {} values",
-                                    text, part, system.dimension()));
+        throw UserError(fmt::format(
+            "--state {}: '{}' lacks its name; give NAME=VALUE for some states or all {} values; decimals are written "
+            "with a point",
+            text, part, system.dimension()));
       const std::string name = split(part.substr(0, equals), ',').front();
       const int k = state_index(system, name, text);
       if (!given.insert(k).second) throw UserError(fmt::format("--state {}: '{}' is given twice", text, name));

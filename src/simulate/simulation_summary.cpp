@@ -124,7 +124,8 @@ std::string start_warnings(const SimulationStart& start, const HybridSimulation&
     text += is_left ? "  The field changes there: start a little before it, or let the problem say what "
                       "follows (0,0,0) at such a state.\n"
                     : "  If that is a wall the motion is outside the model; start where the function is positive, with "
-                      "--state, -d or -s.\n";
+                      "--state, -d or -s;\n  if the field changes there, begin in the field that holds, with --mode "
+                      "FIELD,EVENT,JUMP, or let the problem say what follows (0,0,0) there.\n";
   }
   return text;
 }

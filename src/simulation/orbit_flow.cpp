@@ -127,7 +127,7 @@ PeriodicOrbit shoot(const HybridSystem& system, const Signature& signature, cons
     }
     MatrixXd matrix = MatrixXd::Identity(residual.size(), residual.size()) - orbit.map.derivative;
     for (const Eigen::Index k : options.ignorable) matrix.row(k) = VectorXd::Unit(residual.size(), k).transpose();
-    const VectorXd step = -least_squares(matrix, residual);
+    const VectorXd step = -solve_with_complete_pivoting(matrix, residual);
     last_step = step.lpNorm<Eigen::Infinity>() / (1.0 + orbit.start.lpNorm<Eigen::Infinity>());
     orbit.start += step;
     ++orbit.iterations;

@@ -165,7 +165,9 @@ SpecialPoint ImpactVelocityTest::classify(const TestedPoint& point, bool rising)
           {UserPointKind::impact_velocity, segment_ + 1, event, 1.0},
           stop_ && rising,
           fmt::format("{}: h_x f = 0 at the end of segment {}, event {} ({}), {}",
-                      is_section(system_, segment_) ? "section tangent, orbits go on with another section" : "grazing",
+                      is_section(system_, segment_)
+                          ? "section tangent: orbits go on, cut elsewhere (tchat simulate --without-sections)"
+                          : "grazing",
                       segment_ + 1, event, system_.system().function_name(FunctionKind::event, event),
                       state_text(system_.system(), point.orbit.end(segment_)))};
 }

@@ -79,7 +79,7 @@ std::vector<Complex> ReturnPencil::multipliers() const {
   }
   MatrixXd b = MatrixXd::Zero(a_.rows(), a_.cols());
   b.topLeftCorner(n, n).setIdentity();
-  const MatrixXd inverted = least_squares(a_ - shift * b, b);
+  const MatrixXd inverted = solve_with_complete_pivoting(a_ - shift * b, b);
   const Eigen::VectorXcd nu = eigenvalues(inverted);
   std::vector<Complex> reciprocals(nu.begin(), nu.end());
   sort_by_modulus(reciprocals);

@@ -119,10 +119,11 @@ class Table {
   }
 
   std::string worst() const {
-    return fmt::format(
-        "Largest defects: states {:.1e} ({}), times {:.1e} ({}), multipliers {:.1e} ({}), critical ones {:.1e} ({}).\n",
-        state_.value, state_.where, time_.value, time_.where, multipliers_.value, multipliers_.where, critical_.value,
-        critical_.where);
+    const std::string critical =
+        critical_.where == "none" ? "" : fmt::format(", critical ones {:.1e} ({})", critical_.value, critical_.where);
+    return fmt::format("Largest defects: states {:.1e} ({}), times {:.1e} ({}), multipliers {:.1e} ({}){}.\n",
+                       state_.value, state_.where, time_.value, time_.where, multipliers_.value, multipliers_.where,
+                       critical);
   }
 
  private:

@@ -137,3 +137,35 @@ TEST_CASE("parameters by name or by index: the same run") {
   }
   CHECK(workspace.read("gc.double").find("ICP = [2, 61") != std::string::npos);
 }
+
+TEST_CASE("events that may come next but are watched nowhere are told, with the cure") {
+  const Workspace workspace;
+  const std::string run = "run linosc -c nonimpacting_alpha -d nonimpacting -o branch" + quick;
+  CHECK(workspace.tchat(run).err.empty());
+  const Outcome blind = workspace.tchat(run + "GCHGRZIND=[[]] GCIPSI=[]");
+  INFO(blind.text());
+  CHECK(blind.status == 0);
+  CHECK(contains(blind.err, "event 1 (wall) on segment 1 may come next"));
+  CHECK(contains(blind.err, "GCHGRZIND=[[1]]"));
+}
+
+TEST_CASE("bounds of the constants file that come to bound another parameter are told") {
+  const Workspace workspace;
+  const std::string run = "run linosc -c impacting -d impacting -o branch ICP=omega" + quick;
+  const Outcome inherited = workspace.tchat(run + "DS=0.001");
+  INFO(inherited.text());
+  CHECK(contains(inherited.err, "was given for alpha and now bounds omega"));
+  CHECK(contains(inherited.err, "RL1 = "));
+  CHECK(workspace.tchat(run + "RL0=1.9 RL1=2.1 DS=0.001").err.empty());
+}
+
+TEST_CASE("parameters beyond the free one are told where the curve of the label may have been meant") {
+  const Workspace workspace;
+  workspace.run("-c impacting -d impacting -o branch NTST=20 DS=-0.01 NMX=200");
+  const std::string run = "run linosc -c impacting -s branch -o more IRS=PD1 ICP=[1,2]" + quick;
+  const Outcome idle = workspace.tchat(run);
+  INFO(idle.text());
+  CHECK(contains(idle.err, "omega of ICP stays fixed with ISW = 1"));
+  CHECK(contains(idle.err, "ISW=2"));
+  CHECK(workspace.tchat(run + "ISW=2 DS=0.001 NMX=3").err.empty());
+}

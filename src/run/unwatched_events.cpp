@@ -1,0 +1,81 @@
+#include "run/unwatched_events.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "hybrid/relevant_events.hpp"
+
+namespace tchat {
+
+namespace {
+
+std::set<int> watched(const RunSettings& settings) {
+  std::set<int> events;
+  for (const SegmentSettings& segment : settings.segments) {
+    events.insert(segment.index.event);
+    events.insert(segment.monitor.begin(), segment.monitor.end());
+  }
+  return events;
+}
+
+/// GCHGRZIND with the event on its segments besides what is there.
+std::string monitor_lists(const RunSettings& settings, const std::map<int, std::set<int>>& segments_of_event) {
+  std::string text;
+  for (std::size_t s = 0; s < settings.segments.size(); ++s) {
+    std::set<int> events(settings.segments[s].monitor.begin(), settings.segments[s].monitor.end());
+    for (const auto& [event, segments] : segments_of_event)
+      if (segments.contains(static_cast<int>(s) + 1)) events.insert(event);
+    text += fmt::format("{}[{}]", s == 0 ? "" : ", ", fmt::join(events, ", "));
+  }
+  return fmt::format("GCHGRZIND=[{}]", text);
+}
+
+/// Is the event's function negative somewhere on segment s? Then monitoring it would make every orbit inadmissible.
+bool is_negative(const HybridSystem& system, int event, const Orbit& x, int s) {
+  constexpr double rounding = 1e-6;
+  double least = 0.0;
+  double scale = 1.0;
+  for (int k = 0; k < x.shape.nodes(); ++k) {
+    const double h = system.event(event, x.node(s, k), x.par.data());
+    if (!(h >= least)) least = h;
+    scale = std::max(scale, std::abs(h));
+  }
+  return !(least >= -rounding * scale);
+}
+
+}  // namespace
+
+std::string unwatched_events(const HybridSystem& system, const RunSettings& settings, const Orbit& start) {
+  if (!system.has_successors()) return "";
+  const std::set<int> seen = watched(settings);
+  const Signature signature = settings.signature();
+  const std::size_t m = signature.size();
+  std::map<int, std::set<int>> missing;  // segments by event
+  for (std::size_t s = 0; s < m; ++s) {
+    const double* x = start.start(static_cast<int>(s));
+    const auto following = system.successors(signature[(s + m - 1) % m], x, start.par.data());
+    const int field = signature[s].field;
+    if (!following ||
+        std::none_of(following->begin(), following->end(), [field](const IndexVector& v) { return v.field == field; }))
+      continue;
+    for (const int event : relevant_events(system, *following, field, x, start.par.data()))
+      if (!seen.contains(event) && !is_negative(system, event, start, static_cast<int>(s)))
+        missing[event].insert(static_cast<int>(s) + 1);
+  }
+  if (missing.empty()) return "";
+  std::string list;
+  for (const auto& [event, segments] : missing)
+    list += fmt::format("{}event {} ({}) on segment {}", list.empty() ? "" : ", ", event,
+                        system.function_name(FunctionKind::event, event), fmt::join(segments, ", "));
+  return fmt::format(
+      "{} may come next by the problem's successors, but is watched nowhere: an orbit that it would end goes on "
+      "through it, and counts as admissible; {} watches it (GCIPSI numbers the events of these lists)",
+      list, monitor_lists(settings, missing));
+}
+
+}  // namespace tchat
