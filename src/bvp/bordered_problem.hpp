@@ -14,6 +14,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,8 @@ class OrbitCondition {
   virtual bool evaluate(CondensedSystem& condensed, const Orbit& x) = 0;
   virtual double value() const = 0;
   virtual const OrbitVector& gradient() const = 0;
+  /// The multiplier that is kept exactly, where it is one number: 1 or -1.
+  virtual std::optional<int> kept_multiplier() const { return std::nullopt; }
   /// "" on the curve, or why the last point, which solves the equations, lies beyond its end.
   virtual std::string beyond_end() const { return {}; }
 

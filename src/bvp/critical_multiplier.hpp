@@ -31,7 +31,7 @@ class CriticalMultiplier final : public OrbitCondition {
   void remember(std::vector<double>& memory) const override;
   void recall(const std::vector<double>& memory) override;
 
-  int multiplier() const { return multiplier_; }  ///< 1 or -1
+  std::optional<int> kept_multiplier() const override { return multiplier_; }
   /// The null vector v with the sigma_s as durations, of unit size at the ends of segments.
   const OrbitVector& null_vector() const { return v_; }
   /// w_1(0)-row times v_1(0): zero where the multiplier is a double one (1:1 and 1:2 resonance).

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include "constants/constants_writer.hpp"
+#include "problem_type/problem_type.hpp"
 
 namespace tchat {
 
@@ -56,7 +57,7 @@ std::string explained_text(const RunSettings& settings) {
   for (std::size_t s = 0; s < settings.segments.size(); ++s)
     text += segment_text(static_cast<int>(s + 1), settings.segments[s]);
   const std::string contacts = contacts_text(settings);
-  if (settings.problem_type == 180 && !contacts.empty()) text += "GCIPSI chooses from these:\n" + contacts;
+  if (!keeps_contact(settings.problem_type) && !contacts.empty()) text += "GCIPSI chooses from these:\n" + contacts;
   text += "\n";
   for (const Constant& constant : constants_table()) {
     const std::string value = value_text(constant, settings);

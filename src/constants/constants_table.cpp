@@ -8,6 +8,7 @@
 #include <cctype>
 #include <cmath>
 
+#include "problem_type/problem_type.hpp"
 #include "text/near_words.hpp"
 
 namespace tchat {
@@ -28,15 +29,20 @@ constexpr std::string_view kept = "read and kept, no effect";
 constexpr std::string_view type_with_count =
     "a type with a count: BP, LP, PD, TR, UZ, GR, XI, GC, CP, R1, R2, R3, R4, EP, MX or RG and a number";
 
+std::vector<int> with_zero(std::vector<int> choices) {
+  choices.push_back(0);
+  return choices;
+}
+
 std::vector<Constant> make_table() {
+  static const std::string families = problem_families();
   const SegmentInteger segment_type{&SegmentSettings::type, nullptr};
   const SegmentInteger field{nullptr, &IndexVector::field};
   const SegmentInteger event{nullptr, &IndexVector::event};
   const SegmentInteger jump{nullptr, &IndexVector::jump};
   return {
       {"NDIM", "number of states of one segment", 1, &R::dimension, range(1, 1000), "", "5", ""},
-      {"IPS", "problem type", 1, &R::problem_type, one_of({180, 150}),
-       "180 (periodic orbits) or 150 (periodic orbits in grazing contact)", "180", ""},
+      {"IPS", "problem type", 1, &R::problem_type, one_of(problem_type_numbers()), families, "180", ""},
       {"IRS", "label to start from, 0: from data", 1, &R::start, at_least(0),
        "a label number >= 0, or a type with a count (PD1: BP, LP, PD, TR, UZ, GR, XI, GC, CP, R1, R2, R3, R4, EP, MX "
        "or RG and a number)",
@@ -52,7 +58,7 @@ std::vector<Constant> make_table() {
       {"IAD", "points between mesh adaptations, 0: fixed mesh", 3, &R::adapt_mesh_every, at_least(0), "", "3", ""},
       {"ISP", "detection of bifurcations; negative: and stop there", 3, &R::detect_bifurcations, range(-4, 4),
        "0 (none), 1 (multipliers only), 2 (all), 3 (BP only), 4 (all but BP), or their negatives", "2", ""},
-      {"ISW", "branch mode", 3, &R::branch_mode, one_of({1, 2, -1, 0}),
+      {"ISW", "branch mode", 3, &R::branch_mode, one_of(with_zero(branch_modes())),
        "1 (normal), 2 (two-parameter curve of the point IRS), -1 (switch to the branch that bifurcates at IRS); 0 "
        "means 1",
        "1", ""},

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "hybrid/index_vector.hpp"
+#include "problem_type/problem_type.hpp"
 
 namespace tchat {
 
@@ -46,7 +47,7 @@ struct SegmentSettings {
 
 struct RunSettings {
   int dimension = 1;                                     ///< NDIM, of one segment
-  int problem_type = 180;                                ///< IPS
+  int problem_type = periodic_orbit.number;              ///< IPS
   StartLabel start;                                      ///< IRS
   int detect_folds = 1;                                  ///< ILP
   std::vector<int> free_parameters;                      ///< ICP, as given
@@ -54,7 +55,7 @@ struct RunSettings {
   int collocation_points = 4;                            ///< NCOL
   int adapt_mesh_every = 3;                              ///< IAD
   int detect_bifurcations = 2;                           ///< ISP
-  int branch_mode = 1;                                   ///< ISW
+  int branch_mode = periodic_orbit.branch_mode;          ///< ISW
   int measure = 0;                                       ///< IPLT
   int boundary_conditions = 0;                           ///< NBC, kept
   int integral_conditions = 0;                           ///< NINT, kept

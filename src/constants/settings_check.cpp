@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "constants/settings_type.hpp"
 #include "hybrid/parameter_vector.hpp"
 #include "text/number.hpp"
 #include "text/words.hpp"
@@ -30,12 +31,12 @@ class SettingsCheck {
         refuse_constant("ICP", name, fmt::format("{} twice", in_quotes(std::to_string(list[i]))),
                         "each parameter once");
     }
-    const bool two = settings_.problem_type == 150 || settings_.branch_mode == 2;
+    const int needed = free_parameter_count(settings_.problem_type, settings_.branch_mode);
     const auto of_problem =
         std::count_if(list.begin(), list.end(), [](int k) { return k < first_duration || k > last_index; });
-    if (of_problem < (two ? 2 : 1))
+    if (of_problem < needed)
       refuse_constant("ICP", "ICP", fmt::format("{} parameters that are not durations", of_problem),
-                      fmt::format("at least {} with IPS = {}, ISW = {}; durations are free in any case", two ? 2 : 1,
+                      fmt::format("at least {} with IPS = {}, ISW = {}; durations are free in any case", needed,
                                   settings_.problem_type, settings_.branch_mode));
   }
 
@@ -65,7 +66,7 @@ class SettingsCheck {
   }
 
   void test_functions() const {
-    if (settings_.problem_type != 180) return;
+    if (keeps_contact(settings_.problem_type)) return;
     std::size_t monitored = 0;
     for (const SegmentSettings& segment : settings_.segments) monitored += segment.monitor.size();
     for (std::size_t i = 0; i < settings_.test_functions.size(); ++i)
@@ -79,7 +80,7 @@ class SettingsCheck {
   void grazing_segment() const {
     const auto grazing = std::count_if(settings_.segments.begin(), settings_.segments.end(),
                                        [](const SegmentSettings& segment) { return segment.type == 2; });
-    if (settings_.problem_type == 150 && grazing > 1)
+    if (keeps_contact(settings_.problem_type) && grazing > 1)
       refuse_constant("GCSEGTYP", "GCSEGTYP", fmt::format("{} segments that end in grazing contact", grazing),
                       "one segment of type 2 with IPS = 150");
   }
@@ -94,7 +95,10 @@ class SettingsCheck {
   int segments() const { return static_cast<int>(settings_.segments.size()); }
 
   /// A switch to a period-doubled orbit doubles the segments.
-  int segments_of_run() const { return settings_.branch_mode == -1 ? 2 * segments() : segments(); }
+  int segments_of_run() const {
+    const ProblemType* type = nearest_problem_type(settings_.problem_type, settings_.branch_mode);
+    return type != nullptr && type->facts().may_double ? 2 * segments() : segments();
+  }
 
   void parameter_index(std::string_view keyword, const std::string& name, int k, int segment_count) const {
     const bool stands_in = k > last_index && keyword != "PAR";
@@ -154,7 +158,7 @@ void check_settings(const RunSettings& settings, const PlaceOf& place) {
 std::vector<std::string> settings_warnings(const RunSettings& settings, const std::string& source) {
   std::vector<std::string> sentences;
   for (std::size_t s = 0; s < settings.segments.size(); ++s)
-    if (settings.problem_type == 180 && settings.segments[s].type == 2)
+    if (!keeps_contact(settings.problem_type) && settings.segments[s].type == 2)
       sentences.push_back(
           fmt::format("{}: GCSEGTYP({}) = 2 (grazing contact) has no effect with IPS = 180; it belongs to IPS = 150",
                       source, s + 1));
@@ -165,7 +169,7 @@ std::string unlocated_contacts(const RunSettings& before, const RunSettings& now
   const std::vector<Contact> earlier = not_chosen(before);
   const std::vector<Contact> left = not_chosen(now);
   const bool none_wanted = before.test_functions.empty() && !earlier.empty();
-  if (now.problem_type != 180 || none_wanted || left.size() <= earlier.size()) return "";
+  if (keeps_contact(now.problem_type) || none_wanted || left.size() <= earlier.size()) return "";
   constexpr std::size_t most = 6;
   std::string list;
   for (std::size_t i = 0; i < std::min(left.size(), most); ++i)

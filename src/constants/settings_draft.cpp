@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "constants/settings_check.hpp"
+#include "problem_type/problem_type.hpp"
 #include "text/number.hpp"
 #include "text/user_error.hpp"
 #include "text/words.hpp"
@@ -369,7 +370,7 @@ void SettingsDraft::check_counts() const {
 RunSettings SettingsDraft::finish(Warnings* warnings) {
   settle_segments();
   check_counts();
-  if (settings_.branch_mode == 0) settings_.branch_mode = 1;
+  settings_.branch_mode = standard_branch_mode(settings_.branch_mode);
   check_settings(settings_, [this](std::string_view keyword) { return place_of(keyword); });
   if (warnings != nullptr)
     for (std::string& sentence : settings_warnings(settings_, source_)) warnings->push_back(std::move(sentence));

@@ -91,8 +91,9 @@ std::vector<std::string> SpecialPointSearch::details(const PathPoint& at) const 
 void SpecialPointSearch::evaluate(const PathPoint& at) {
   if (settings_.multipliers) {
     data_.multipliers = floquet_.compute(follower_.condensed(), at.orbit);
-    if (const auto* critical = dynamic_cast<const CriticalMultiplier*>(follower_.condition()))
-      put_critical(data_.multipliers, critical->multiplier());
+    const OrbitCondition* condition = follower_.condition();
+    const std::optional<int> kept = condition != nullptr ? condition->kept_multiplier() : std::nullopt;
+    if (kept) put_critical(data_.multipliers, *kept);
   }
   for (int s = 0; s < system_.segments(); ++s)
     data_.transversalities[static_cast<std::size_t>(s)] = crossing_at_end(system_, at.orbit, s).transversality();

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "problem_type/problem_type.hpp"
 #include "special_points/point_type.hpp"
 
 namespace tchat {
@@ -15,9 +16,9 @@ struct LabelledSolution {
   int point = 1;  ///< point number, positive
   int type = 0;   ///< type number as in the file, tens digit included
   int label = 1;
-  int branch_mode = 1;     ///< ISW of the run
-  int problem_type = 180;  ///< IPS; 0 in files of the older generation (12 integers)
-  int dimension = 0;       ///< n of one segment; 0 in files of the older generation
+  int branch_mode = periodic_orbit.branch_mode;  ///< ISW of the run
+  int problem_type = periodic_orbit.number;      ///< IPS; 0 in files of the older generation (12 integers)
+  int dimension = 0;                             ///< n of one segment; 0 in files of the older generation
   int mesh_intervals = 0;
   int collocation_points = 0;
 

@@ -11,6 +11,7 @@
 
 #include "constants/constant_value.hpp"
 #include "hybrid/parameter_vector.hpp"
+#include "problem_type/problem_type.hpp"
 #include "text/number.hpp"
 #include "text/text_file.hpp"
 #include "text/user_error.hpp"
@@ -332,11 +333,11 @@ std::string PointSection::parameter_name(int k) const { return name_in(parameter
 std::string PointSection::state_name(int k) const { return name_in(states, k, "U"); }
 
 std::vector<int> PointSection::free_problem_parameters() const {
-  const bool ours = problem_type == 180 || problem_type == 150;
-  constexpr int auto_period = 11;
+  const bool ours = is_own_problem_type(problem_type);
+  constexpr int auto_period_parameter = 11;
   std::vector<int> result;
   for (const int k : active_parameters) {
-    const bool not_own = ours ? is_duration(k, segments > 0 ? segments : max_segments) : k == auto_period;
+    const bool not_own = ours ? is_duration(k, segments > 0 ? segments : max_segments) : k == auto_period_parameter;
     if (!not_own) result.push_back(k);
   }
   return result;
@@ -351,10 +352,10 @@ std::optional<int> PointSection::parameter_of_column(std::size_t column) const {
 }
 
 bool PointSection::is_two_parameter_curve() const {
-  return problem_type == 150 || branch_mode == 2 || branch_mode == -2 || curve_type != 0;
+  return tchat::is_two_parameter_curve(problem_type, branch_mode) || curve_type != 0;
 }
 
-bool PointSection::has_stability() const { return detect_bifurcations != 0 && problem_type != 4; }
+bool PointSection::has_stability() const { return detect_bifurcations != 0 && has_multipliers(problem_type); }
 
 PointFile parse_point_file(std::string_view text, const std::string& path) {
   return PointFileReader(text, path).read();

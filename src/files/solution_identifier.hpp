@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <string>
+#include "problem_type/problem_type.hpp"
 
 namespace tchat {
 
@@ -38,7 +39,7 @@ struct SolutionIdentifier {
   /// A line that only carries the largest branch and label.
   bool is_empty_entry() const { return time_points() == 0 && lines() == 0; }
   /// Problem types of this program.
-  bool is_ours() const { return problem_type() == 180 || problem_type() == 150; }
+  bool is_ours() const { return is_own_problem_type(problem_type()); }
   bool has_kind() const { return is_ours() && internal_parameters() > 0 && internal_parameters() % kind_values == 0; }
 
   /// How many numbers the solution has after this line, and how many lines they take in AUTO's layout.

@@ -11,6 +11,7 @@
 #include "plot/branch_end.hpp"
 #include "plot/branch_quantity.hpp"
 #include "plot/smooth_line.hpp"
+#include "problem_type/problem_type.hpp"
 #include "text/user_error.hpp"
 
 namespace tchat {
@@ -29,7 +30,7 @@ int curve_type_of(const PointSection& section) {
 }
 
 CurveKind kind_of(const PointSection& section) {
-  return curve_kind(curve_type_of(section), section.problem_type == 150);
+  return curve_kind(curve_type_of(section), keeps_contact(section.problem_type));
 }
 
 /// The curves of one kind in one file share a line.

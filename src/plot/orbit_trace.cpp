@@ -7,6 +7,7 @@
 
 #include "files/solution_file_reader.hpp"
 #include "hybrid/parameter_vector.hpp"
+#include "problem_type/problem_type.hpp"
 #include "text/user_error.hpp"
 
 namespace tchat {
@@ -14,8 +15,6 @@ namespace tchat {
 namespace {
 
 constexpr double jump_tolerance = 1e-6;
-
-bool is_ours(const LabelledSolution& solution) { return solution.problem_type == 180 || solution.problem_type == 150; }
 
 int segments_of(const LabelledSolution& solution, int dimension, const std::string& path) {
   const auto rows = static_cast<int>(solution.states.rows());
@@ -35,12 +34,12 @@ double parameter(const LabelledSolution& solution, int k) {
 
 /// Orbits of AUTO itself have their period in PAR(11).
 double duration(const LabelledSolution& solution, int s) {
-  constexpr int auto_period = 11;
   const bool old_file = solution.problem_type == 0;
   const double own = parameter(solution, first_duration + s);
-  if (is_ours(solution) || (old_file && own != 0.0)) return own;
-  const double period = parameter(solution, auto_period);
-  return (solution.problem_type == 2 || solution.problem_type == 7) && period > 0.0 ? period : 1.0;
+  if (is_own_problem_type(solution.problem_type) || (old_file && own != 0.0)) return own;
+  const std::optional<int> k = auto_period(solution.problem_type);
+  const double period = k ? parameter(solution, *k) : 0.0;
+  return period > 0.0 ? period : 1.0;
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "hybrid/parameter_vector.hpp"
+#include "problem_type/problem_type.hpp"
 
 namespace tchat {
 
@@ -36,7 +37,7 @@ ProblemSizes problem_sizes(const RunSettings& settings) {
     sizes.add(segment.index);
     for (const int event : segment.monitor) insert(sizes.events, event);
   }
-  if (settings.problem_type == grazing_curve) sizes.add_jump(settings.grazing_jump);
+  if (keeps_contact(settings.problem_type)) sizes.add_jump(settings.grazing_jump);
   return sizes;
 }
 

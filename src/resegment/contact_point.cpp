@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "constants/settings_type.hpp"
 #include "files/labelled_solution.hpp"
 #include "special_points/point_type.hpp"
 #include "text/user_error.hpp"
@@ -74,16 +75,10 @@ int jump_at_contact(const HybridSystem& system, const RunSettings& settings, con
   return jumps.size() == 1 ? jumps.front() : settings.grazing_jump;
 }
 
-int grazing_segment(const RunSettings& settings) {
-  const auto marked = std::find_if(settings.segments.begin(), settings.segments.end(),
-                                   [](const SegmentSettings& segment) { return segment.type == 2; });
-  return marked == settings.segments.end() ? 0 : static_cast<int>(marked - settings.segments.begin());
-}
-
 ContactPoint contact_point(const LabelledSolution& solution, const Orbit& x, const HybridSystem& system,
                            const RunSettings& settings, const std::string& source) {
-  if (solution.problem_type == 150) {
-    const int s = grazing_segment(settings);
+  if (keeps_contact(solution.problem_type)) {
+    const int s = marked_segment(settings);
     return {ContactPoint::grazing_curve, s, settings.segments[static_cast<std::size_t>(s)].index.event, 1.0};
   }
   const std::vector<UserPointKind> kinds = all_kinds(solution);

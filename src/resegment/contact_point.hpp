@@ -33,7 +33,4 @@ ContactPoint contact_point(const LabelledSolution& solution, const Orbit& x, con
 int jump_at_contact(const HybridSystem& system, const RunSettings& settings, const Orbit& x,
                     const ContactPoint& contact);
 
-/// The segment (from 0) that ends in grazing contact: the one marked by GCSEGTYP = 2, else the first.
-int grazing_segment(const RunSettings& settings);
-
 }  // namespace tchat

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "constants/settings_type.hpp"
 #include "hybrid/identity_jump.hpp"
 #include "resegment/contact_point.hpp"
 #include "resegment/empty_segments.hpp"
@@ -265,15 +266,21 @@ NewOrbit to_impacting(const ResegmentRequest& request, const LabelledOrbit& sour
   return target;
 }
 
+/// The segment that ends in the contact which the problem type keeps.
+void mark_contact(const RunSettings& settings, SegmentList& segments) {
+  if (const std::optional<int> s = contact_segment(settings)) segments[static_cast<std::size_t>(*s)].grazes = true;
+}
+
 /// Two events at once change places, a segment of no duration vanishes or appears.
 NewOrbit to_signature(const ResegmentRequest& request, const LabelledOrbit& source, const HybridSystem& system) {
   if (!request.signature)
     throw UserError("--to signature needs the new signature, for example --signature \"1,1,1;2,2,2\"");
   const RunSettings& old = source.settings;
   SegmentList before = segments_of(old);
-  if (old.problem_type == 150) before[static_cast<std::size_t>(grazing_segment(old))].grazes = true;
+  mark_contact(old, before);
   SegmentList segments = matched(system, before, source.start.orbit, parse_signature(*request.signature));
-  if (old.problem_type == 150 && std::none_of(segments.begin(), segments.end(), [](const auto& s) { return s.grazes; }))
+  if (keeps_contact(old.problem_type) &&
+      std::none_of(segments.begin(), segments.end(), [](const auto& s) { return s.grazes; }))
     throw UserError(
         fmt::format("--signature {}: {} lies on a grazing curve, and no segment of this signature ends in "
                     "its contact",
@@ -288,7 +295,7 @@ NewOrbit to_rotated(const ResegmentRequest& request, const LabelledOrbit& source
   const RunSettings& old = source.settings;
   const int m = static_cast<int>(old.segments.size());
   SegmentList segments = segments_of(old);
-  if (old.problem_type == 150) segments[static_cast<std::size_t>(grazing_segment(old))].grazes = true;
+  mark_contact(old, segments);
   NewOrbit target{rotated(segments, request.rotation),
                   {old.problem_type, old.branch_mode, old.grazing_jump},
                   source.solution.type,
@@ -305,12 +312,14 @@ NewOrbit to_rotated(const ResegmentRequest& request, const LabelledOrbit& source
 /// At a period doubling, or anywhere on a curve of them, the doubled problem has a branch point: ISW = -1 goes from
 /// there to the doubled orbit.
 NewOrbit to_repeated(const LabelledOrbit& source) {
-  if (source.settings.problem_type != 180)
+  if (keeps_contact(source.settings.problem_type))
     throw UserError(fmt::format("{} lies on a grazing curve; an orbit of type IPS = 180 can be doubled", source.name));
   constexpr int period_doubling = static_cast<int>(PointType::period_doubling);
   const int type = source.solution.type;
   const bool doubling = basic_type(type) == period_doubling || std::abs(type) / 10 == period_doubling;
-  NewOrbit target{repeated(segments_of(source.settings)), {180, doubling ? -1 : 1, source.settings.grazing_jump}};
+  NewOrbit target{repeated(segments_of(source.settings)),
+                  {periodic_orbit.number, doubling ? branch_switch.branch_mode : periodic_orbit.branch_mode,
+                   source.settings.grazing_jump}};
   target.type = static_cast<int>(doubling ? PointType::branch_point : PointType::end);
   return target;
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "constants/settings_type.hpp"
 #include "hybrid/parameter_vector.hpp"
 #include "setup/problem_setup.hpp"
 #include "text/user_error.hpp"
@@ -17,17 +18,13 @@ int segment_type(const HybridSystem& system, const NewSegment& segment) {
   return is_identity_jump(system, segment.index.jump) ? 0 : 1;
 }
 
-std::size_t free_problem_parameters(int problem_type, int branch_mode) {
-  return problem_type == 150 || branch_mode == 2 ? 2 : 1;
-}
-
 std::vector<int> new_free_parameters(const RunSettings& old, std::size_t segments, const NewProblem& problem,
                                      const HybridSystem& system) {
   std::vector<int> list;
   for (const int k : old.free_parameters)
     if (!is_duration(k, static_cast<int>(old.segments.size()))) list.push_back(k);
-  const std::size_t had = free_problem_parameters(old.problem_type, old.branch_mode);
-  const std::size_t needed = free_problem_parameters(problem.problem_type, problem.branch_mode);
+  const auto had = static_cast<std::size_t>(free_parameter_count(old.problem_type, old.branch_mode));
+  const auto needed = static_cast<std::size_t>(free_parameter_count(problem.problem_type, problem.branch_mode));
   for (std::size_t k = needed; k < had && list.size() > needed; ++k)
     list.erase(list.begin() + static_cast<std::ptrdiff_t>(needed));  // free no longer; those printed only stay
   for (int k = 1; k <= system.parameters() && list.size() < needed; ++k)
@@ -54,7 +51,7 @@ std::vector<IndexedValue> new_weights(const RunSettings& old, const SegmentList&
 }
 
 std::vector<int> new_test_functions(const SegmentList& segments, int problem_type) {
-  if (problem_type == 150) return {1, 2, 3, 4, 5};
+  if (keeps_contact(problem_type)) return {1, 2, 3, 4, 5};
   std::vector<int> tests;
   int counted = 0;
   for (const NewSegment& segment : segments)

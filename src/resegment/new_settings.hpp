@@ -4,15 +4,16 @@
 
 #include "constants/run_settings.hpp"
 #include "hybrid/hybrid_system.hpp"
+#include "problem_type/problem_type.hpp"
 #include "resegment/segment_list.hpp"
 
 namespace tchat {
 
 struct NewProblem {
-  int problem_type = 180;         ///< IPS
-  int branch_mode = 1;            ///< ISW
-  int grazing_jump = 1;           ///< GRJUMP
-  bool names_parameters = false;  ///< the user gives ICP, so what is missing there is no fault
+  int problem_type = periodic_orbit.number;      ///< IPS
+  int branch_mode = periodic_orbit.branch_mode;  ///< ISW
+  int grazing_jump = 1;                          ///< GRJUMP
+  bool names_parameters = false;                 ///< the user gives ICP, so what is missing there is no fault
 };
 
 /// Free parameters: the problem's own in their order (a second one is added where the problem type needs it, and left

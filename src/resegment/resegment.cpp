@@ -11,6 +11,7 @@
 #include "constants/constants_file.hpp"
 #include "constants/constants_writer.hpp"
 #include "constants/keyword_form.hpp"
+#include "constants/settings_type.hpp"
 #include "files/labelled_solution.hpp"
 #include "files/run_file_names.hpp"
 #include "files/run_files.hpp"
@@ -26,7 +27,6 @@
 #include "resegment/new_settings.hpp"
 #include "resegment/segment_list.hpp"
 #include "run/branch_setup.hpp"
-#include "run/problem_types.hpp"
 #include "setup/named_parameters.hpp"
 #include "setup/problem_setup.hpp"
 #include "setup/run_request.hpp"
@@ -47,7 +47,7 @@ LabelledOrbit read_source(const ResegmentRequest& request, const std::string& pa
   const LabelledSolution& solution = source.solution;
   source.name = fmt::format("label {} of {}", solution.label, path);
   const int m = static_cast<int>(source.settings.segments.size());
-  if (solution.problem_type != 0 && solution.problem_type != source.settings.problem_type)
+  if (!is_same_problem_type(solution.problem_type, source.settings.problem_type))
     throw UserError(
         fmt::format("{} was computed with IPS = {}, but {} has IPS = {}; give the constants of that run "
                     "with -c",
@@ -60,16 +60,12 @@ LabelledOrbit read_source(const ResegmentRequest& request, const std::string& pa
   return source;
 }
 
-std::vector<int> free_parameters_of(const RunSettings& settings) {
-  return free_problem_parameters(problem_type(settings), settings);
-}
-
 /// A direction, computed with the label's free parameters, as one of the new problem: nothing when the problem is of
 /// another type, frees other parameters, or continues other orbits (an impact is born); the run then finds its own.
 std::optional<OrbitVector> kept_direction(const LabelledOrbit& source, const NewOrbit& target,
                                           const std::optional<OrbitVector>& direction, const RunSettings& settings) {
-  const std::vector<int> free = free_parameters_of(settings);
-  const bool other_problem = source.settings.problem_type != settings.problem_type ||
+  const std::vector<int> free = free_problem_parameters(settings);
+  const bool other_problem = !is_same_problem_type(source.settings.problem_type, settings.problem_type) ||
                              source.free_parameters.size() != free.size() || !target.birth.impacts.empty();
   if (!direction || other_problem) return std::nullopt;
   OrbitVector kept = *direction;
@@ -83,7 +79,7 @@ std::optional<OrbitVector> kept_direction(const LabelledOrbit& source, const New
 
 LabelledSolution make_solution(const LabelledOrbit& source, const NewOrbit& target, const OrbitStart& start,
                                const RunSettings& settings) {
-  const std::vector<int> free = free_parameters_of(settings);
+  const std::vector<int> free = free_problem_parameters(settings);
   std::vector<int> listed = free;
   for (int s = 0; s < start.orbit.shape.segments; ++s) listed.push_back(first_duration + s);
   LabelledSolution solution = labelled_solution(start.orbit, start.direction.value_or(OrbitVector{}), free,

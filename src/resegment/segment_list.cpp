@@ -7,6 +7,7 @@
 
 #include "bvp/no_duration.hpp"
 #include "constants/constant_value.hpp"
+#include "problem_type/problem_type.hpp"
 #include "text/number.hpp"
 #include "text/user_error.hpp"
 #include "text/words.hpp"
@@ -25,7 +26,7 @@ SegmentList segments_of(const RunSettings& settings) {
       ++counted;
       const auto& tests = settings.test_functions;
       const bool located =
-          settings.problem_type != 180 || std::find(tests.begin(), tests.end(), counted) != tests.end();
+          keeps_contact(settings.problem_type) || std::find(tests.begin(), tests.end(), counted) != tests.end();
       segment.watched.push_back({event, located});
     }
     segments.push_back(segment);

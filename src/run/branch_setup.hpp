@@ -6,18 +6,19 @@
 
 #include <memory>
 
+#include "bvp/defining_system.hpp"
+#include "constants/run_settings.hpp"
+#include "problem_type/problem_type.hpp"
 #include "run/branch_start.hpp"
-#include "run/problem_types.hpp"
 
 namespace tchat {
 
 struct BranchSetup {
-  RunSettings settings;  ///< really used: after a switch the signature of the new branch, and branch mode 1
-  std::unique_ptr<DefiningSystem> defining;
-  std::unique_ptr<PathFollower> follower;
-  FirstPoint start;
-  int curve_type =
-      0;  ///< type number of the points that make a two-parameter curve: 5 fold, 7 period doubling, 8 torus
+  const ProblemType* type = nullptr;  ///< really followed: after a switch that of the new branch
+  RunSettings settings = {};          ///< likewise: after a switch its signature and branch mode
+  std::unique_ptr<DefiningSystem> defining = nullptr;
+  std::unique_ptr<PathFollower> follower = nullptr;
+  FirstPoint start = {};
 };
 
 /// Throws UserError when the start is not of a kind that the branch mode can begin at, ComputationError when no first

@@ -7,6 +7,7 @@
 
 #include "continuation/orbit_trend.hpp"
 #include "files/labelled_solution.hpp"
+#include "problem_type/problem_type.hpp"
 #include "run/first_correction.hpp"
 #include "setup/problem_setup.hpp"
 #include "special_points/point_type.hpp"
@@ -111,8 +112,7 @@ FirstPoint first_point(PathFollower& follower, const DefiningSystem& system, con
   const OrbitStart& start = selected.start;
   PathPoint point = follower.make_point(start.orbit);
   NewtonResult result;
-  const bool fitting_direction =
-      start.direction && (selected.problem_type == 0 || selected.problem_type == settings.problem_type);
+  const bool fitting_direction = start.direction && is_same_problem_type(selected.problem_type, settings.problem_type);
   bool along = false;
   bool as_stored = false;
   if (fitting_direction && !selected.parameters_changed) {

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "bvp/critical_multiplier.hpp"
+#include "constants/settings_type.hpp"
 #include "files/labelled_solution.hpp"
 #include "setup/problem_setup.hpp"
 #include "special_points/point_type.hpp"
@@ -31,7 +32,7 @@ constexpr double visible = 3.0;
 constexpr double displacements[] = {1.0, 3.0, 0.3, 10.0, 0.1};
 
 RunSettings once(RunSettings settings) {
-  settings.branch_mode = 1;
+  settings.branch_mode = periodic_orbit.branch_mode;
   return settings;
 }
 
@@ -58,8 +59,7 @@ RunSettings doubled(RunSettings settings) {
 }
 
 std::unique_ptr<DefiningSystem> make_system(const HybridSystem& system, const RunSettings& settings) {
-  const ProblemType& type = problem_type(settings);
-  return type.make(system, settings, free_problem_parameters(type, settings));
+  return problem_type(settings).make_system(system, settings, free_problem_parameters(settings));
 }
 
 std::unique_ptr<PathFollower> make_follower(const DefiningSystem& defining, const OrbitShape& shape,
@@ -210,7 +210,7 @@ BranchSetup switch_branch(const HybridSystem& system, const RunSettings& setting
   const Bifurcation bifurcation =
       doubling ? double_at(*along_known, *known, at.point) : branch_at(*along_known, at.point);
 
-  BranchSetup setup{doubling ? doubled(before) : before, nullptr, nullptr, {}, 0};
+  BranchSetup setup{&problem_type(before), doubling ? doubled(before) : before, nullptr, nullptr, {}};
   setup.defining = make_system(system, setup.settings);
   check_memory(bifurcation.orbit.shape, setup.defining->free_count());
   setup.follower = make_follower(*setup.defining, bifurcation.orbit.shape, setup.settings);

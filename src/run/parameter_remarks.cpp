@@ -6,6 +6,7 @@
 #include <array>
 
 #include "constants/constants_file.hpp"
+#include "constants/settings_type.hpp"
 #include "hybrid/parameter_vector.hpp"
 #include "special_points/point_type.hpp"
 
@@ -35,7 +36,9 @@ std::string idle_parameters(const HybridSystem& system, const RunSettings& setti
   const auto begins_curve = [](int type) {
     return std::any_of(curves.begin(), curves.end(), [type](PointType t) { return type == static_cast<int>(t); });
   };
-  if (settings.branch_mode != 1 || std::none_of(start.types.begin(), start.types.end(), begins_curve)) return "";
+  if (problem_type(settings).facts().switches_branch || free_count != 1 ||
+      std::none_of(start.types.begin(), start.types.end(), begins_curve))
+    return "";
   std::string list;
   std::size_t count = 0;
   for (const int k : settings.free_parameters)

@@ -9,6 +9,7 @@
 
 #include "constants/constants_file.hpp"
 #include "constants/constants_writer.hpp"
+#include "constants/settings_type.hpp"
 #include "continuation/continuation_run.hpp"
 #include "continuation/solution_measure.hpp"
 #include "files/labelled_solution.hpp"
@@ -17,9 +18,7 @@
 #include "run/branch_setup.hpp"
 #include "run/branch_writer.hpp"
 #include "run/parameter_remarks.hpp"
-#include "run/problem_types.hpp"
 #include "run/run_summary.hpp"
-#include "run/test_selection.hpp"
 #include "run/unwatched_events.hpp"
 #include "setup/named_parameters.hpp"
 #include "setup/problem_setup.hpp"
@@ -109,7 +108,7 @@ int run_problem(const RunRequest& request, std::ostream& screen, std::ostream& w
   ReadSettings read = read_settings(request, constants, names_to_come(named_parameters), &constant_warnings);
   warn(constant_warnings);
   RunSettings settings = read.used;
-  std::vector<int> free_parameters = free_problem_parameters(problem_type(settings), settings);
+  std::vector<int> free_parameters = free_problem_parameters(settings);
 
   // Plugin.
   const std::string plugin = resolve_plugin(request.problem.value_or(request.name), {.progress = progress});
@@ -118,7 +117,7 @@ int run_problem(const RunRequest& request, std::ostream& screen, std::ostream& w
   if (named_parameters) {
     read = read_settings(request, constants, names_of(system), nullptr);
     settings = read.used;
-    free_parameters = free_problem_parameters(problem_type(settings), settings);
+    free_parameters = free_problem_parameters(settings);
   }
   warn(check_settings_against(system, settings, {constants, request.overrides}));
   warn_of(warnings, inherited_bounds(system, read.in_file, settings, request.overrides, constants));
@@ -149,10 +148,9 @@ int run_problem(const RunRequest& request, std::ostream& screen, std::ostream& w
   std::ostream* table = request.quiet ? nullptr : &screen;
   if (table != nullptr && setup.start.stored_direction) *table << direction_text(settings.step, selected);
   const int last_label = request.append ? std::max(files.last_label(), 0) : selected.last_label;
-  BranchWriter writer(
-      system, setup.follower->condensed().rule(),
-      {settings, active_parameters(problem_type(settings), settings), setup.curve_type, selected.branch, last_label},
-      files, table, table != nullptr ? progress : nullptr);
+  BranchWriter writer(system, setup.follower->condensed().rule(),
+                      {settings, active_parameters(settings), setup.type->facts().curve, selected.branch, last_label},
+                      files, table, table != nullptr ? progress : nullptr);
   continuation.label_start = selected.label_start;
   continuation.interrupted = interrupted;
 
@@ -166,7 +164,7 @@ int run_problem(const RunRequest& request, std::ostream& screen, std::ostream& w
       if (interrupted && interrupted()) break;
       continuation.step.initial = -continuation.step.initial;
       continuation.label_start = false;
-      if (asked.branch_mode == -1) {  // the two sides of a bifurcation are different branches
+      if (problem_type(asked).facts().switches_branch) {  // the two sides of a bifurcation are different branches
         RunSettings reversed = asked;
         reversed.step = -asked.step;
         other_side = set_up_branch(system, reversed, selected);
@@ -180,9 +178,9 @@ int run_problem(const RunRequest& request, std::ostream& screen, std::ostream& w
       for (const std::string& note : library.derivative_notes()) writer.note(1, note);
     const std::size_t labels_before = writer.labels().size();
     ContinuationRun run(*side->follower, *side->defining, continuation,
-                        select_tests(*side->defining, settings, side->follower->condition(), side->curve_type), writer);
+                        side->type->tests(*side->defining, settings, side->follower->condition()), writer);
     BranchSummary summary = run.run(side->start.point);
-    summary.without_contact = settings.problem_type == 150;
+    summary.without_contact = side->type->facts().stability == StabilityMeaning::without_contact;
     writer.clear_progress();
     const std::vector<BranchWriter::Labelled> labels(
         writer.labels().begin() + static_cast<std::ptrdiff_t>(labels_before), writer.labels().end());

@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "constants/constants_file.hpp"
+#include "constants/settings_type.hpp"
 #include "text/number.hpp"
 #include "text/user_error.hpp"
 
@@ -64,7 +65,7 @@ void check_parameters(const HybridSystem& system, const RunSettings& settings, c
     return fmt::format("{}: {}: PAR({}) is no parameter of problem {}; it has {}", source.of(keyword), keyword, k,
                        system.name(), parameter_list(system));
   };
-  std::size_t free = settings.problem_type == 150 || settings.branch_mode == 2 ? 2 : 1;
+  int free = free_parameter_count(settings.problem_type, settings.branch_mode);
   for (const int k : settings.free_parameters) {
     if (k >= first_duration) continue;
     const bool is_free = free > 0;

@@ -9,6 +9,7 @@
 
 #include "hybrid/identity_jump.hpp"
 #include "hybrid/parameter_vector.hpp"
+#include "problem_type/problem_type.hpp"
 #include "setup/parameter_values.hpp"
 
 namespace tchat {
@@ -151,8 +152,8 @@ RunSettings orbit_settings(const HybridSystem& system, const RunSettings& base, 
   RunSettings settings = base;
   settings.dimension = static_cast<int>(n);
   settings.mesh_intervals = samples.intervals;
-  settings.problem_type = 180;
-  settings.branch_mode = 1;
+  settings.problem_type = periodic_orbit.number;
+  settings.branch_mode = periodic_orbit.branch_mode;
   settings.start = {};
   settings.parameter_values.clear();
 

@@ -1,11 +1,11 @@
 #include "start/data_conversion.hpp"
 
 #include "constants/constants_file.hpp"
+#include "constants/settings_type.hpp"
 #include "files/run_set.hpp"
 #include "files/solution_file.hpp"
 #include "plugin/plugin_build.hpp"
 #include "plugin/problem_library.hpp"
-#include "run/problem_types.hpp"
 #include "setup/named_parameters.hpp"
 #include "setup/problem_setup.hpp"
 #include "start/start_selection.hpp"

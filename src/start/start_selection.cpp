@@ -6,10 +6,10 @@
 #include <cmath>
 
 #include "constants/constants_table.hpp"
+#include "constants/settings_type.hpp"
 #include "files/labelled_solution.hpp"
 #include "files/solution_file_reader.hpp"
 #include "files/writable_file.hpp"
-#include "run/problem_types.hpp"
 #include "setup/parameter_values.hpp"
 #include "setup/problem_setup.hpp"
 #include "special_points/point_type.hpp"

@@ -17,6 +17,7 @@
 #include "files/number_format.hpp"
 #include "files/solution_file_reader.hpp"
 #include "hybrid/parameter_vector.hpp"
+#include "problem_type/problem_type.hpp"
 #include "special_points/point_type.hpp"
 #include "tables/table_format.hpp"
 
@@ -182,7 +183,7 @@ class BranchTable {
   /// Not along curves of folds, period doublings and torus bifurcations.
   bool tells_stability(std::size_t section) const {
     const PointSection& s = file_.sections[section];
-    return s.has_stability() && s.curve_type == 0 && std::abs(s.branch_mode) != 2;
+    return s.has_stability() && s.curve_type == 0 && !has_critical_multiplier(s.problem_type, s.branch_mode);
   }
 
   const BranchFile& file_;

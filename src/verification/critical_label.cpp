@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "files/labelled_solution.hpp"
+#include "problem_type/problem_type.hpp"
 #include "special_points/point_type.hpp"
 
 namespace tchat {
@@ -14,8 +15,6 @@ namespace {
 
 using Complex = std::complex<double>;
 using Multipliers = std::vector<Complex>;
-
-constexpr int grazing_curve = 150;
 
 /// exp(i theta) of the one off the real axis that is nearest to the unit circle.
 std::optional<Complex> angle_of_pair(const Multipliers& multipliers) {
@@ -29,7 +28,7 @@ std::optional<Complex> angle_of_pair(const Multipliers& multipliers) {
 
 /// Type numbers of what is critical there: the tens digit of a point on a two-parameter curve, or its own number.
 std::vector<int> critical_types(const LabelledSolution& solution) {
-  if (solution.problem_type == grazing_curve) return {};
+  if (keeps_contact(solution.problem_type)) return {};
   if (std::abs(solution.type) >= 10) return {std::abs(solution.type) / 10};
   std::vector<int> types = {solution.type};
   for (const UserPointKind& kind : solution.further)

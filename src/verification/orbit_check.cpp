@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "constants/settings_type.hpp"
 #include "resegment/contact_point.hpp"
 
 namespace tchat {
@@ -29,7 +30,7 @@ StoredSegment stored_segment(const HybridSystem& system, const RunSettings& sett
   StoredSegment segment;
   segment.index = own.index;
   segment.next_field = after.index.field;
-  segment.grazing = settings.problem_type == 150 && s == grazing_segment(settings);
+  segment.grazing = contact_segment(settings) == s;
   segment.start = Eigen::Map<const VectorXd>(x.start(s), n);
   segment.end = Eigen::Map<const VectorXd>(x.end(s), n);
   segment.duration = x.duration(s);

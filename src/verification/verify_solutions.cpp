@@ -19,6 +19,7 @@
 #include "plugin/exit_guard.hpp"
 #include "plugin/plugin_build.hpp"
 #include "plugin/problem_library.hpp"
+#include "problem_type/problem_type.hpp"
 #include "setup/named_parameters.hpp"
 #include "setup/problem_setup.hpp"
 #include "setup/run_request.hpp"
@@ -52,7 +53,7 @@ std::map<int, DiagnosticPoint> recorded_points(const std::string& path) {
 /// Why this entry of a q-file is not an orbit of these constants; "" when it is.
 std::string mismatch(const LabelledSolution& solution, const RunSettings& settings) {
   const auto states = static_cast<Eigen::Index>(settings.segments.size()) * settings.dimension;
-  if (solution.problem_type != 0 && solution.problem_type != settings.problem_type)
+  if (!is_same_problem_type(solution.problem_type, settings.problem_type))
     return fmt::format("computed with IPS = {}, the constants have {}", solution.problem_type, settings.problem_type);
   if (solution.states.rows() != states)
     return fmt::format("has {} states, the constants {} segments of {}", solution.states.rows(),

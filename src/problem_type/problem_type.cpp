@@ -1,0 +1,109 @@
+#include "problem_type/problem_type.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "text/user_error.hpp"
+
+namespace tchat {
+
+namespace {
+
+constexpr int in_two_parameters = 2;     // ISW, of AUTO too
+constexpr int auto_periodic[] = {2, 7};  // AUTO's IPS of periodic orbits
+constexpr int auto_boundary_value = 4;   // and of boundary value problems
+
+template <class Value>
+std::vector<int> each_once(Value value) {
+  std::vector<int> list;
+  for (const ProblemType* type : problem_types())
+    if (const int v = value(type->facts()); std::find(list.begin(), list.end(), v) == list.end()) list.push_back(v);
+  return list;
+}
+
+}  // namespace
+
+std::vector<const ProblemType*> problem_types_of(int number, int branch_mode) {
+  std::vector<const ProblemType*> found;
+  for (const ProblemType* type : problem_types())
+    if (type->facts().number == number && type->facts().branch_mode == standard_branch_mode(branch_mode))
+      found.push_back(type);
+  return found;
+}
+
+const ProblemType* nearest_problem_type(int number, int branch_mode) {
+  if (const auto exact = problem_types_of(number, branch_mode); !exact.empty()) return exact.front();
+  for (const ProblemType* type : problem_types())
+    if (type->facts().number == number) return type;
+  return nullptr;
+}
+
+const ProblemType& problem_type(int number, int branch_mode) {
+  if (const auto found = problem_types_of(number, branch_mode); !found.empty()) return *found.front();
+  std::string list;
+  const ProblemFacts* before = nullptr;
+  for (const ProblemType* type : problem_types()) {
+    const ProblemFacts& facts = type->facts();
+    const bool again = before != nullptr && before->number == facts.number && before->branch_mode == facts.branch_mode;
+    list += again ? fmt::format("; {}", facts.title)
+                  : fmt::format("\n  IPS = {}, ISW = {}: {}", facts.number, facts.branch_mode, facts.title);
+    before = &facts;
+  }
+  throw UserError(fmt::format("IPS = {} with ISW = {} is not a problem that tchat solves; there are:{}", number,
+                              branch_mode, list));
+}
+
+int standard_branch_mode(int branch_mode) { return branch_mode == 0 ? 1 : branch_mode; }
+
+std::vector<int> problem_type_numbers() {
+  return each_once([](const ProblemFacts& facts) { return facts.number; });
+}
+
+std::vector<int> branch_modes() {
+  return each_once([](const ProblemFacts& facts) { return facts.branch_mode; });
+}
+
+std::string problem_families() {
+  std::string text;
+  for (const int number : problem_type_numbers())
+    text +=
+        fmt::format("{}{} ({})", text.empty() ? "" : " or ", number, nearest_problem_type(number, 1)->facts().family);
+  return text;
+}
+
+bool is_own_problem_type(int number) { return nearest_problem_type(number, 1) != nullptr; }
+
+bool is_same_problem_type(int number, int other) { return number == 0 || other == 0 || number == other; }
+
+bool keeps_contact(int number) {
+  const ProblemType* type = nearest_problem_type(number, 1);
+  return type != nullptr && type->facts().keeps_contact;
+}
+
+bool is_two_parameter_curve(int number, int branch_mode) {
+  const ProblemType* type = nearest_problem_type(number, branch_mode);
+  if (std::abs(branch_mode) == in_two_parameters) return true;
+  return type != nullptr && type->facts().free_parameters >= 2;
+}
+
+bool has_multipliers(int number) {
+  const ProblemType* type = nearest_problem_type(number, 1);
+  return type != nullptr ? type->facts().stability != StabilityMeaning::none : number != auto_boundary_value;
+}
+
+bool has_critical_multiplier(int number, int branch_mode) {
+  const auto types = problem_types_of(number, std::abs(branch_mode));
+  if (types.empty()) return std::abs(branch_mode) == in_two_parameters;
+  return types.front()->facts().stability == StabilityMeaning::critical;
+}
+
+std::optional<int> auto_period(int number) {
+  constexpr int parameter = 11;
+  const bool periodic =
+      std::find(std::begin(auto_periodic), std::end(auto_periodic), number) != std::end(auto_periodic);
+  return periodic ? std::optional(parameter) : std::nullopt;
+}
+
+}  // namespace tchat

@@ -1,0 +1,113 @@
+/// What a problem type is: all that other rooms ask of it. Each type is one class in one file of src/problem_types,
+/// named in the list of that folder's CMakeLists.txt; the classes they work with are known here by name only.
+///
+/// IPS and ISW, numbers in constants and files, are compared here and nowhere else.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace tchat {
+
+class DefiningSystem;
+class HybridSystem;
+class OrbitCondition;
+class TestFunction;
+struct BranchSetup;
+struct RunSettings;
+struct SelectedStart;
+
+/// What the multipliers of a point on a branch of this type say.
+enum class StabilityMeaning {
+  none,             ///< they are not computed
+  orbit,            ///< the orbit is stable or not
+  without_contact,  ///< so would it be but for the contact that is kept
+  critical          ///< one of them is critical all along
+};
+
+struct ProblemFacts {
+  int number;           ///< IPS
+  int branch_mode;      ///< ISW
+  int curve;            ///< type number of the points that such a two-parameter curve consists of; 0: no such curve
+  const char* family;   ///< what IPS says, in words
+  const char* title;    ///< what IPS and ISW say together
+  int free_parameters;  ///< problem parameters that are free, durations not counted
+  StabilityMeaning stability = StabilityMeaning::orbit;
+  bool keeps_contact = false;    ///< a segment ends in grazing contact (GCSEGTYP = 2); GCIPSI lists n of xi_n
+  bool may_double = false;       ///< the branch may have twice as many segments as its start
+  bool switches_branch = false;  ///< goes on as the type that ISW = 1 names, on either side of its start
+};
+
+class ProblemType {
+ public:
+  explicit ProblemType(const ProblemFacts& facts) : facts_(facts) {}
+  virtual ~ProblemType() = default;
+  ProblemType(const ProblemType&) = delete;
+  ProblemType& operator=(const ProblemType&) = delete;
+  const ProblemFacts& facts() const { return facts_; }
+
+  /// Can a branch of this type begin at a label of this type (type number without its tens digit)?
+  virtual bool begins_at(int) const { return true; }
+  /// The rows that tie the segments together.
+  virtual std::unique_ptr<DefiningSystem> make_system(const HybridSystem& system, const RunSettings& settings,
+                                                      std::vector<int> free_parameters) const = 0;
+  /// The scalar condition of a two-parameter curve; null for none.
+  virtual std::unique_ptr<OrbitCondition> make_condition(const DefiningSystem& defining,
+                                                         const SelectedStart& start) const;
+  /// Everything that a branch needs before it is computed. Throws UserError when it cannot begin at the start,
+  /// ComputationError when no first point is found.
+  virtual BranchSetup set_up(const HybridSystem& system, const RunSettings& settings, const SelectedStart& start) const;
+  /// The test functions of a branch; `condition` is what make_condition has given.
+  virtual std::vector<std::unique_ptr<TestFunction>> tests(const DefiningSystem& defining, const RunSettings& settings,
+                                                           const OrbitCondition* condition) const = 0;
+
+ private:
+  ProblemFacts facts_;
+};
+
+/// All there are, in the order of the list.
+std::span<const ProblemType* const> problem_types();
+
+/// Those of IPS and ISW (0 stands for 1); several where the label that a run starts from decides.
+std::vector<const ProblemType*> problem_types_of(int number, int branch_mode);
+/// The first of those, else the first of this IPS; null when there is no such IPS.
+const ProblemType* nearest_problem_type(int number, int branch_mode);
+/// The first of those. Throws UserError with the list of what there is.
+const ProblemType& problem_type(int number, int branch_mode);
+
+/// What ISW stands for: 1 for 0.
+int standard_branch_mode(int branch_mode);
+/// Each once, in the order of the list.
+std::vector<int> problem_type_numbers();
+std::vector<int> branch_modes();
+/// "180 (periodic orbits) or 150 (...)"
+std::string problem_families();
+
+// What files say, of which some are AUTO's own.
+
+/// One of ours, not AUTO's.
+bool is_own_problem_type(int number);
+/// The same problem, as far as files tell: 0 is not known.
+bool is_same_problem_type(int number, int other);
+bool keeps_contact(int number);
+bool is_two_parameter_curve(int number, int branch_mode);
+/// AUTO's own boundary value problems have no multipliers.
+bool has_multipliers(int number);
+/// One multiplier is critical all along, so that stability is none.
+bool has_critical_multiplier(int number, int branch_mode);
+/// PAR index of the period of AUTO's own periodic orbits; nothing for others.
+std::optional<int> auto_period(int number);
+
+/// Types whose constants other rooms make.
+struct ProblemId {
+  int number;
+  int branch_mode;
+};
+inline constexpr ProblemId periodic_orbit{180, 1};
+inline constexpr ProblemId branch_switch{180, -1};
+inline constexpr ProblemId grazing_orbit{150, 1};
+
+}  // namespace tchat

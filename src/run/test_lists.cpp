@@ -1,0 +1,65 @@
+#include "run/test_lists.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "hybrid/identity_jump.hpp"
+#include "special_points/bifurcation_tests.hpp"
+#include "special_points/contact_test.hpp"
+#include "special_points/user_value_test.hpp"
+
+namespace tchat {
+
+namespace {
+
+/// GCIPSI counts through the monitored events of all segments in order.
+void add_contacts(TestList& tests, const DefiningSystem& system, const RunSettings& settings) {
+  int k = 0;
+  for (int s = 0; s < system.segments(); ++s)
+    for (const int event : settings.segments[static_cast<std::size_t>(s)].monitor)
+      if (const auto& chosen = settings.test_functions; std::find(chosen.begin(), chosen.end(), ++k) != chosen.end())
+        tests.push_back(std::make_unique<ContactTest>(system, s, event, settings.stop_at_grazing));
+}
+
+}  // namespace
+
+void add_user_values(TestList& tests, const HybridSystem& system, const RunSettings& settings) {
+  for (const UserValue& u : settings.user_values)
+    tests.push_back(std::make_unique<UserValueTest>(u.parameter, u.value, u.stop, system.parameter_name(u.parameter)));
+}
+
+void add_bifurcations(TestList& tests, const DefiningSystem& system, const RunSettings& settings) {
+  const int kind = std::abs(settings.detect_bifurcations);
+  const bool stop = settings.detect_bifurcations < 0;
+  if (settings.detect_folds != 0)
+    tests.push_back(std::make_unique<FoldTest>(settings.free_parameters.front(), system.free_parameters(),
+                                               system.segments(), settings.detect_folds < 0));
+  if (kind == 2 || kind == 3) tests.push_back(std::make_unique<BranchPointTest>(stop));
+  if (kind == 2 || kind == 4) {
+    tests.push_back(std::make_unique<PeriodDoublingTest>(stop));
+    tests.push_back(std::make_unique<TorusTest>(stop));
+  }
+}
+
+void add_impact_velocities(TestList& tests, const DefiningSystem& system, const RunSettings& settings) {
+  for (int s = 0; s < system.segments(); ++s)
+    if (!is_identity_jump(system.system(), system.signature()[static_cast<std::size_t>(s)].jump))
+      tests.push_back(std::make_unique<ImpactVelocityTest>(system, s, settings.stop_at_grazing));
+}
+
+void add_section_tangencies(TestList& tests, const DefiningSystem& system, const RunSettings& settings, int except) {
+  for (int s = 0; s < system.segments(); ++s)
+    if (s != except && is_identity_jump(system.system(), system.signature()[static_cast<std::size_t>(s)].jump))
+      tests.push_back(std::make_unique<ImpactVelocityTest>(system, s, settings.stop_at_grazing));
+}
+
+TestList contact_tests(const DefiningSystem& system, const RunSettings& settings) {
+  TestList tests;
+  // Where an impact vanishes the contact that it brings does too: the label is to say the former, so it comes first.
+  add_impact_velocities(tests, system, settings);
+  add_contacts(tests, system, settings);
+  add_section_tangencies(tests, system, settings, -1);
+  return tests;
+}
+
+}  // namespace tchat
