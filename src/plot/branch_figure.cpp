@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <optional>
 #include <set>
+#include <utility>
 
 #include "plot/axis_scale.hpp"
 #include "plot/branch_columns.hpp"

@@ -9,7 +9,6 @@ namespace tchat {
 
 namespace {
 
-constexpr int grazing_curve = 150;
 
 void insert(std::vector<int>& ascending, int index) {
   const auto place = std::lower_bound(ascending.begin(), ascending.end(), index);
