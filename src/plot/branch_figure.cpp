@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <optional>
 #include <set>
+#include <utility>
 
 #include "constants/user_error.hpp"
 #include "plot/axis_scale.hpp"
