@@ -28,8 +28,8 @@ int create(const std::string& path) {
   fmt::print(
       "\nTry it:   cd {} && make\nThen edit the .cpp file; `tchat check` compares its derivatives, `tchat simulate` "
       "finds orbits to\n"
-      "start from, `tchat constants` explains the constants file; the page tutorial.md of the documentation goes "
-      "through a study.\n",
+      "start from, `tchat constants` explains the constants file; the page tutorial.md of the\n"
+      "documentation goes through a study.\n",
       path);
   return 0;
 }
