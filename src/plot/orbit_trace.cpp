@@ -34,7 +34,7 @@ double parameter(const LabelledSolution& solution, int k) {
 
 /// Orbits of AUTO itself have their period in PAR(11).
 double duration(const LabelledSolution& solution, int s) {
-  const bool old_file = solution.problem_type == 0;
+  const bool old_file = !tells_problem_type(solution.problem_type);
   const double own = parameter(solution, first_duration + s);
   if (is_own_problem_type(solution.problem_type) || (old_file && own != 0.0)) return own;
   const std::optional<int> k = auto_period(solution.problem_type);

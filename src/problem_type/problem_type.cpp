@@ -75,7 +75,11 @@ std::string problem_families() {
 
 bool is_own_problem_type(int number) { return nearest_problem_type(number, 1) != nullptr; }
 
-bool is_same_problem_type(int number, int other) { return number == 0 || other == 0 || number == other; }
+bool tells_problem_type(int number) { return number != 0; }
+
+bool is_same_problem_type(int number, int other) {
+  return !tells_problem_type(number) || !tells_problem_type(other) || number == other;
+}
 
 bool keeps_contact(int number) {
   const ProblemType* type = nearest_problem_type(number, 1);

@@ -90,7 +90,9 @@ std::string problem_families();
 
 /// One of ours, not AUTO's.
 bool is_own_problem_type(int number);
-/// The same problem, as far as files tell: 0 is not known.
+/// Files of the older generation hold 0.
+bool tells_problem_type(int number);
+/// The same problem, as far as files tell.
 bool is_same_problem_type(int number, int other);
 bool keeps_contact(int number);
 bool is_two_parameter_curve(int number, int branch_mode);

@@ -1,0 +1,73 @@
+"""The house keeps its order:
+
+- a room of src includes itself, the rooms before it in the list of src/CMakeLists.txt, and nothing after it;
+- IPS and ISW are compared with numbers by their owner alone, the rooms problem_type and problem_types;
+- every problem type is one file of less than 200 lines.
+
+    rooms_test.py SOURCE_FOLDER
+"""
+import os
+import re
+import sys
+import tempfile
+
+OWNERS = ("problem_type", "problem_types")
+
+
+def rooms(source):
+    listed = re.search(r"set\(rooms ([^)]*)\)", open(os.path.join(source, "CMakeLists.txt")).read()).group(1).split()
+    return ["contract", *listed, "plot", "app"]
+
+
+def sources(source):
+    for folder, _, names in os.walk(source):
+        for name in sorted(names):
+            if name.endswith((".cpp", ".hpp", ".h", ".in")):
+                path = os.path.join(folder, name)
+                yield os.path.relpath(path, source), open(path, encoding="utf-8").read()
+
+
+def includes_up(source):
+    order = rooms(source)
+    faults = []
+    for path, text in sources(source):
+        room = path.split(os.sep)[0]
+        if room not in order:
+            continue
+        for included in re.findall(r'#include "([^"]+)"', text):
+            other = "contract" if included.startswith("tchat/") else included.split("/")[0]
+            if other in order and order.index(other) > order.index(room):
+                faults.append(f"{path} includes {included}, of a room above it")
+    return faults
+
+
+def comparisons(source):
+    number = re.compile(r"\b(problem_type|branch_mode)(\(\))?\s*(==|!=|<=?|>=?)\s*-?\d"
+                        r"|-?\d+\s*(==|!=)\s*[\w.]*\b(problem_type|branch_mode)\b")
+    return [f"{path}: {line.strip()}" for path, text in sources(source) if path.split(os.sep)[0] not in OWNERS
+            for line in text.splitlines() if number.search(line)]
+
+
+def long_types(source):
+    return [f"{path} has {text.count(chr(10))} lines" for path, text in sources(source)
+            if path.startswith("problem_types" + os.sep) and text.count("\n") >= 200]
+
+
+def check_that_faults_are_found():
+    with tempfile.TemporaryDirectory() as folder:
+        for room in ("bvp", "text"):
+            os.mkdir(os.path.join(folder, room))
+        with open(os.path.join(folder, "CMakeLists.txt"), "w") as file:
+            file.write("set(rooms text\n          bvp)\n")
+        with open(os.path.join(folder, "text", "words.cpp"), "w") as file:
+            file.write('#include "bvp/orbit.hpp"\nbool f(int problem_type) { return problem_type == 180; }\n')
+        with open(os.path.join(folder, "bvp", "orbit.hpp"), "w") as file:
+            file.write('#include "text/words.hpp"\n#include "tchat/problem.h"\n')
+        assert includes_up(folder) == ["text/words.cpp includes bvp/orbit.hpp, of a room above it"]
+        assert len(comparisons(folder)) == 1
+
+
+check_that_faults_are_found()
+found = includes_up(sys.argv[1]) + comparisons(sys.argv[1]) + long_types(sys.argv[1])
+print("\n".join(found))
+sys.exit(1 if found else 0)
