@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "bvp/transversality.hpp"
+#include "hybrid/event_at.hpp"
 
 namespace tchat {
 
@@ -14,13 +15,6 @@ namespace {
 constexpr double structural_tolerance = 1e-6;
 
 using Vector = Eigen::VectorXd;
-
-Vector event_gradient(const HybridSystem& system, int event, const double* x, const double* par) {
-  Vector gradient(system.dimension());
-  double h = 0.0;
-  system.first(FunctionKind::event, event, x, par, {}, &h, gradient.data(), nullptr);
-  return gradient;
-}
 
 }  // namespace
 
@@ -34,8 +28,8 @@ bool is_pinned_start(const HybridSystem& system, const Signature& signature, con
   Vector g(n);
   Eigen::MatrixXd gx(n, n);
   system.first(FunctionKind::jump, v.jump, x.end(before), par, {}, g.data(), gx.data(), nullptr);
-  const Vector composed = gx.transpose() * event_gradient(system, event, x.start(s), par);
-  const Vector terminal = event_gradient(system, v.event, x.end(before), par);
+  const Vector composed = gx.transpose() * event_at(system, event, x.start(s), par).gradient;
+  const Vector terminal = event_at(system, v.event, x.end(before), par).gradient;
   const double sizes = composed.norm() * terminal.norm();
   return sizes > 0.0 && std::abs(std::abs(composed.dot(terminal)) / sizes - 1.0) < structural_tolerance;
 }
@@ -63,12 +57,9 @@ std::vector<Violation> inadmissibilities(const HybridSystem& system, const Signa
       if (worst.value < -orbit_accuracy * event_scale(system, x, event)) result.push_back(worst);
     }
 
-    Vector f(x.shape.dimension);
-    system.value(FunctionKind::field, v.field, x.end(s), par, f.data());
-    const Vector gradient = event_gradient(system, v.event, x.end(s), par);
-    const double slope = gradient.dot(f);
-    if (slope > leaving * gradient.norm() * f.norm())
-      result.push_back({Violation::leaving_terminal_surface, s + 1, v.event, 1.0, slope});
+    const EventAt end = event_at(system, v.event, v.field, x.end(s), par);
+    if (end.rate() > leaving * end.sizes())
+      result.push_back({Violation::leaving_terminal_surface, s + 1, v.event, 1.0, end.rate()});
   }
   return result;
 }

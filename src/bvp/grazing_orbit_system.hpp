@@ -1,4 +1,4 @@
-/// Problem type 150: periodic orbits in grazing contact, two free parameters (5.8-5.10, section 8 of the contract).
+/// Problem type 150: periodic orbits in grazing contact, two free parameters (5.8-5.10).
 ///
 /// The conditions of type 180 and, at the end of the grazing segment, h_x f = 0 besides h = 0.
 /// Unknowns: n m functions, m durations, 2 parameters. Conditions: n m + m + 1 boundary conditions and

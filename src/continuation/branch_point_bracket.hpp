@@ -1,4 +1,4 @@
-/// Location of a zero where Newton's matrix is singular: a branch point within a continuation step (2).
+/// Location of a zero where Newton's matrix is singular: a branch point within a continuation step.
 ///
 /// A trial step right on top of a branch point fails, or comes out anywhere within the square root of rounding, or on
 /// the other branch. So no trial step goes there. Trial points close in on the zero from both sides at a distance that

@@ -64,7 +64,7 @@ class PathFollower {
   /// Cosine of the angle between the point's tangent and a direction, in the weighted norm.
   double alignment(const PathPoint& point, const OrbitVector& direction) const;
 
-  /// Condition of the system bordered by the tangent, at the last point (2).
+  /// Condition of the system bordered by the tangent, at the last point.
   CondensedSystem::Singularity singularity(const PathPoint& point);
 
  private:

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hybrid/event_at.hpp"
 #include "plot/zero_contour.hpp"
 #include "text/user_error.hpp"
 
@@ -27,13 +28,6 @@ void for_samples(const std::vector<OrbitTrace>& orbits, const std::vector<std::v
         what(x, parameters[o].data());
       }
     }
-}
-
-Eigen::VectorXd gradient(const HybridSystem& system, int event, const Eigen::VectorXd& x, const double* par) {
-  Eigen::VectorXd result(x.size());
-  double h = 0.0;
-  system.first(FunctionKind::event, event, x.data(), par, {}, &h, result.data(), nullptr);
-  return result;
 }
 
 /// A root of a function that changes sign between low and high.
@@ -71,7 +65,7 @@ bool EventSurfaces::depends_only_on(int event, const std::vector<int>& states) c
   double largest = 0.0, others = 0.0;
   bool finite = true;
   for_samples(orbits_, parameters_, [&](const Eigen::VectorXd& x, const double* par) {
-    const Eigen::VectorXd h = gradient(system_, event, x, par);
+    const Eigen::VectorXd h = event_at(system_, event, x.data(), par).gradient;
     finite = finite && h.allFinite();
     for (Eigen::Index i = 0; i < h.size(); ++i) {
       largest = std::max(largest, std::abs(h(i)));
@@ -89,7 +83,7 @@ bool EventSurfaces::is_section(int event) const {
       for_samples(orbits_, parameters_, [&](const Eigen::VectorXd& x, const double* par) {
         Eigen::VectorXd f(x.size());
         system_.value(FunctionKind::field, field, x.data(), par, f.data());
-        const double slope = gradient(system_, other, x, par).dot(f);
+        const double slope = event_at(system_, other, x.data(), par).gradient.dot(f);
         const double h = system_.event(event, x.data(), par);
         product += h * slope;
         slope_square += slope * slope;

@@ -7,6 +7,7 @@
 #include "bvp/no_duration.hpp"
 #include "bvp/periodic_orbit_system.hpp"
 #include "bvp/transversality.hpp"
+#include "hybrid/event_at.hpp"
 #include "hybrid/identity_jump.hpp"
 #include "special_points/contact_test.hpp"
 
@@ -28,14 +29,8 @@ struct Slope {
 };
 
 Slope slope_at(const HybridSystem& system, int field, int event, const double* x, const double* par) {
-  Eigen::VectorXd f(system.dimension());
-  Eigen::VectorXd gradient(system.dimension());
-  Slope slope;
-  system.value(FunctionKind::field, field, x, par, f.data());
-  system.first(FunctionKind::event, event, x, par, {}, &slope.h, gradient.data(), nullptr);
-  slope.rate = gradient.dot(f);
-  slope.scale = gradient.norm() * f.norm();
-  return slope;
+  const EventAt at = event_at(system, event, field, x, par);
+  return {at.h, at.rate(), at.sizes()};
 }
 
 double largest_value(const HybridSystem& system, const Orbit& x, int s, int event) {

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "hybrid/event_at.hpp"
 #include "hybrid/identity_jump.hpp"
 #include "hybrid/relevant_events.hpp"
 
@@ -27,11 +28,8 @@ constexpr double rounding = 1e-6;  // of the state at a label or in a .dat, rela
 
 /// h at x; 0 where it cannot be told from zero.
 double clear_value(const HybridSystem& system, int event, const VectorXd& x, const VectorXd& par) {
-  double h = 0.0;
-  double no_parameters = 0.0;
-  Eigen::RowVectorXd gradient(x.size());
-  system.first(FunctionKind::event, event, x.data(), par.data(), {}, &h, gradient.data(), &no_parameters);
-  return std::abs(h) <= rounding * (1.0 + gradient.norm() * x.norm()) ? 0.0 : h;
+  const EventAt at = event_at(system, event, x.data(), par.data());
+  return std::abs(at.h) <= rounding * at.scale(x.data()) ? 0.0 : at.h;
 }
 
 /// Those of the first mode that change something: by their jump or, where the problem says what follows, the field.

@@ -1,4 +1,5 @@
 #include "simulation/event_watch.hpp"
+#include "hybrid/event_at.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -24,15 +25,10 @@ struct Rate {
   double h = 0.0, rate = 0.0, scale = 1.0;
 
   Rate(const HybridSystem& system, int field, int event, const double* x, const VectorXd& par) {
-    const int n = system.dimension();
-    VectorXd f(n);
-    RowVectorXd gradient(n);
-    double no_parameters = 0.0;
-    system.value(FunctionKind::field, field, x, par.data(), f.data());
-    system.first(FunctionKind::event, event, x, par.data(), {}, &h, gradient.data(), &no_parameters);
-    rate = gradient.dot(f);
-    scale = 1.0 + gradient.norm() * Eigen::Map<const VectorXd>(x, n).norm();
-    if (!std::isfinite(rate)) rate = 0.0;
+    const EventAt at = event_at(system, event, field, x, par.data());
+    h = at.h;
+    rate = std::isfinite(at.rate()) ? at.rate() : 0.0;
+    scale = at.scale(x);
   }
 };
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "hybrid/event_at.hpp"
 #include "simulation/cvodes_flow.hpp"
 #include "text/user_error.hpp"
 
@@ -67,15 +68,8 @@ HybridSimulation::HybridSimulation(ModeRule rule, const VectorXd& x0, const Vect
 }
 
 HybridSimulation::Surface HybridSimulation::surface(int field, int event, const VectorXd& x) const {
-  Surface at;
-  VectorXd f(x.size());
-  RowVectorXd gradient(x.size());
-  double no_parameters = 0.0;
-  system_.value(FunctionKind::field, field, x.data(), par_.data(), f.data());
-  system_.first(FunctionKind::event, event, x.data(), par_.data(), {}, &at.h, gradient.data(), &no_parameters);
-  at.rate = gradient.dot(f);
-  at.is_near = std::abs(at.h) <= settings_.flow.surface_tolerance * (1.0 + gradient.norm() * x.norm());
-  return at;
+  const EventAt at = event_at(system_, event, field, x.data(), par_.data());
+  return {at.h, at.rate(), std::abs(at.h) <= settings_.flow.surface_tolerance * at.scale(x.data())};
 }
 
 /// Does the jump send the flow back from the surface, as an impact does?

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "hybrid/event_at.hpp"
 #include "hybrid/parameter_vector.hpp"
 #include "simulation/cvodes_flow.hpp"
 #include "text/user_error.hpp"
@@ -34,17 +35,6 @@ VectorXd checked_parameters(const HybridSystem& system, int field, const VectorX
   for (const int k : options.active)
     require(k >= 1 && k < first_duration, fmt::format("PAR({}) is no parameter, allowed are 1..60.", k));
   return full_parameters(system, par);
-}
-
-/// h_x f of the terminal event function at x.
-double event_velocity(const HybridSystem& system, const IndexVector& index, const VectorXd& x, const VectorXd& par) {
-  VectorXd f(system.dimension());
-  RowVectorXd gradient(system.dimension());
-  double h = 0.0;
-  double no_parameters = 0.0;
-  system.value(FunctionKind::field, index.field, x.data(), par.data(), f.data());
-  system.first(FunctionKind::event, index.event, x.data(), par.data(), {}, &h, gradient.data(), &no_parameters);
-  return gradient.dot(f);
 }
 
 SegmentFlow result_at(const CvodesFlow& flow, FlowStatus status) {
@@ -80,7 +70,7 @@ SegmentFlow integrate_segment(const HybridSystem& system, const IndexVector& ind
   if (progress == Progress::failed) return result_at(flow, FlowStatus::failed);
   SegmentFlow result =
       result_at(flow, progress == Progress::root ? FlowStatus::event_reached : FlowStatus::time_reached);
-  result.event_velocity = event_velocity(system, index, result.end_state, par);
+  result.event_velocity = event_at(system, index.event, index.field, result.end_state.data(), par.data()).rate();
   if (result.status == FlowStatus::time_reached)
     result.message = fmt::format("{} did not fall to zero within time {:g}",
                                  system.function_name(FunctionKind::event, index.event), options.max_duration);

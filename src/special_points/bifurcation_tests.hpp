@@ -1,4 +1,4 @@
-/// Test functions of the bifurcations of orbits: fold, branch point, period doubling, torus (7).
+/// Test functions of the bifurcations of orbits: fold, branch point, period doubling, torus.
 ///
 /// None has a pole or a gap where an impact velocity a_s = h_x f goes through zero and a multiplier through infinity:
 /// the product over (1 + mu) is taken with that of the a_s, as one determinant (floquet_multipliers.hpp). The branch

@@ -10,6 +10,7 @@
 #include "bvp/admissibility.hpp"
 #include "bvp/no_duration.hpp"
 #include "bvp/transversality.hpp"
+#include "hybrid/event_at.hpp"
 #include "special_points/bifurcation_tests.hpp"
 
 namespace tchat {
@@ -69,12 +70,7 @@ class EventAlongSegment {
     return tau > 1.0 - rounding ? 1.0 : tau;
   }
 
-  Vector gradient(const Vector& u) const {
-    Vector result(u.size());
-    double h = 0.0;
-    system().first(FunctionKind::event, event_, u.data(), par(), {}, &h, result.data(), nullptr);
-    return result;
-  }
+  Vector gradient(const Vector& u) const { return event_at(system(), event_, u.data(), par()).gradient; }
 
   /// Nothing where the flow cannot be integrated: the field has no value near the orbit, or is too stiff for an
   /// explicit method of this accuracy.
@@ -221,15 +217,9 @@ int ContactTest::sign_where_undefined(const TestedPoint& point) const {
 /// At an end of the segment h may pass zero with a slope: its surface is met there, where another event cuts the orbit.
 bool ContactTest::crosses(const TestedPoint& point, const Contact& contact) const {
   if (contact.tau > 0.0 && contact.tau < 1.0) return false;
-  const HybridSystem& system = system_.system();
   const int field = system_.signature()[static_cast<std::size_t>(segment_)].field;
-  const double* par = point.orbit.par.data();
-  Eigen::VectorXd f(contact.state.size());
-  Eigen::VectorXd gradient(contact.state.size());
-  double h = 0.0;
-  system.value(FunctionKind::field, field, contact.state.data(), par, f.data());
-  system.first(FunctionKind::event, event_, contact.state.data(), par, {}, &h, gradient.data(), nullptr);
-  return std::abs(gradient.dot(f)) > tangent_contact * gradient.norm() * f.norm();
+  const EventAt at = event_at(system_.system(), event_, field, contact.state.data(), point.orbit.par.data());
+  return std::abs(at.rate()) > tangent_contact * at.sizes();
 }
 
 SpecialPoint ContactTest::vanishing_segment(bool ends_branch) const {

@@ -1,4 +1,4 @@
-/// Grazing contact inside a segment: psi, the least value of an event function along a segment (7).
+/// Grazing contact inside a segment: psi, the least value of an event function along a segment.
 ///
 /// Candidates are the interior minima of h on the collocation polynomial and both end points. Left out are pinned ends,
 /// where the boundary conditions themselves hold h at zero, and a minimum that a pinned end with the wrong slope brings

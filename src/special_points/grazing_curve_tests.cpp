@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "bvp/transversality.hpp"
+#include "hybrid/event_at.hpp"
 #include "linear_algebra/dense_matrix.hpp"
 #include "special_points/bifurcation_tests.hpp"
 
@@ -136,22 +137,17 @@ GrazingUnfolding grazing_unfolding(const GrazingOrbitSystem& system, const Conde
   const int n = system.dimension();
   const IndexVector& index = system.signature()[static_cast<std::size_t>(s)];
   const double* contact = x.end(s);
-  Vector f(n);
-  Vector event_gradient(n);
+  const EventAt event = event_at(system.system(), index.event, index.field, contact, x.par.data());
   Vector section(n);
-  double h = 0.0;
-  system.system().value(FunctionKind::field, index.field, contact, x.par.data(), f.data());
-  system.system().first(FunctionKind::event, index.event, contact, x.par.data(), {}, &h, event_gradient.data(),
-                        nullptr);
   system.section_gradient(s, contact, x.par.data(), section.data());
 
   GrazingUnfolding result;
-  result.acceleration = section.dot(f);
+  result.acceleration = section.dot(event.f);
   if (number == 0) return result;
   const Vector beta = impact_direction(system, x, jump);
   const Powers turns = powers(system, condensed, x, beta, number);
-  result.xi = -event_gradient.dot(turns.last);
-  result.scale = event_gradient.norm() * std::max(turns.before.norm(), turns.last.norm());
+  result.xi = -event.gradient.dot(turns.last);
+  result.scale = event.gradient.norm() * std::max(turns.before.norm(), turns.last.norm());
   return result;
 }
 

@@ -21,14 +21,14 @@ constexpr double shortest_duration = 1e-7;
 constexpr int samples_of_a_step = 8;
 
 /// h and its derivatives along the flow of a field, at one state.
-struct EventAt {
+struct EventToSecondOrder {
   double h = 0.0;
   double rate = 0.0;          // h_x f
   double acceleration = 0.0;  // d (h_x f) / dt = f' h_xx f + h_x f_x f
   double size = 1.0;          // sum |h_x| scale: what a change of all states by their scales makes of h
 
-  EventAt(const HybridSystem& system, int field, int event, const VectorXd& x, const VectorXd& par,
-          const VectorXd& scale) {
+  EventToSecondOrder(const HybridSystem& system, int field, int event, const VectorXd& x, const VectorXd& par,
+                     const VectorXd& scale) {
     const int n = system.dimension();
     VectorXd f(n), direction = VectorXd::Zero(n + par.size());
     MatrixXd fx(n, n);
@@ -112,7 +112,8 @@ class Watcher {
   void deepen(EventMet& met, const VectorXd& x) const {
     const double h = system_.event(met.event, x.data(), par_.data());
     if (!(h < 0.0)) return;
-    met.depth = std::max(met.depth, -h / EventAt(system_, segment_.index.field, met.event, x, par_, scale_).size);
+    met.depth =
+        std::max(met.depth, -h / EventToSecondOrder(system_, segment_.index.field, met.event, x, par_, scale_).size);
   }
 
   static std::vector<EventMet> deep_ones(std::vector<EventMet> all, double tolerance) {
@@ -219,10 +220,10 @@ SegmentCheck check_segment(const HybridSystem& system, const StoredSegment& segm
   const MatrixXd scaled = scale.cwiseInverse().asDiagonal() * check.flow * scale.asDiagonal();
   check.growth = std::max(1.0, scaled.cwiseAbs().rowwise().sum().maxCoeff());
   check.state_defect = largest(check.end - segment.end, scale);
-  const EventAt at(system, segment.index.field, segment.index.event, check.end, par, scale);
+  const EventToSecondOrder at(system, segment.index.field, segment.index.event, check.end, par, scale);
   check.event_level = std::abs(at.h) / at.size;
   check.time_defect = segment.grazing ? at.time_to_contact() : at.time_to_zero();
-  const EventAt stored(system, segment.index.field, segment.index.event, segment.end, par, scale);
+  const EventToSecondOrder stored(system, segment.index.field, segment.index.event, segment.end, par, scale);
   check.leaves_surface = !segment.grazing && stored.rate > tolerance * std::abs(stored.size);
   return check;
 }
