@@ -12,13 +12,12 @@ void CondensedSystem::solve(const OrbitResidual& residual, std::span<const doubl
   double* rhs = rhs_.data();
   double* border_rhs = rhs_.data() + lu_.size() - border_;
   std::copy_n(border.data(), border_, border_rhs);
-  const double* end = residual.end.data();
+  const double* coupling = residual.coupling.data();
   for (int s = 0; s < shape_.segments; ++s) {
     condense_right_hand_side(residual, s);
     const double* condensed = &segment_rhs_[index(s * (n_ + border_))];
     rhs = std::copy_n(condensed, n_, rhs);
-    for (int r = 0; r < system_.end_conditions(s); ++r) *rhs++ = -*end++;
-    for (int a = 0; a < n_; ++a) *rhs++ = -residual.connection[index(s * n_ + a)];
+    for (int r = 0; r < system_.coupling_rows(s); ++r) *rhs++ = -*coupling++;
     for (int r = 0; r < border_; ++r) border_rhs[r] += condensed[n_ + r];
   }
   lu_.solve(rhs_.data(), solution_.data());

@@ -16,32 +16,19 @@ double largest_of(const std::vector<double>& values, double so_far) {
   return so_far;
 }
 
-int total_end_conditions(const DefiningSystem& system) {
+int total_coupling_rows(const DefiningSystem& system) {
   int total = 0;
-  for (int s = 0; s < system.segments(); ++s) total += system.end_conditions(s);
+  for (int s = 0; s < system.segments(); ++s) total += system.coupling_rows(s);
   return total;
-}
-
-int most_end_conditions(const DefiningSystem& system) {
-  int most = 0;
-  for (int s = 0; s < system.segments(); ++s) most = std::max(most, system.end_conditions(s));
-  return most;
 }
 
 std::vector<double> zeros(std::ptrdiff_t count) { return std::vector<double>(static_cast<std::size_t>(count), 0.0); }
 
-/// Rows are numbered as they are met; repeated calls keep a running position in the triplet list.
-struct PatternBuilder {
-  std::vector<int>& rows;
-  std::vector<int>& columns;
-  void dense(int row, int row_count, int column, int column_count) {
-    for (int a = 0; a < row_count; ++a)
-      for (int b = 0; b < column_count; ++b) rows.push_back(row + a), columns.push_back(column + b);
-  }
-  void diagonal(int row, int column, int count) {
-    for (int a = 0; a < count; ++a) rows.push_back(row + a), columns.push_back(column + a);
-  }
-};
+/// `count` rows from `row` that are dense in some columns.
+void put_dense(int row, int count, int column, int columns, std::vector<int>& row_list, std::vector<int>& column_list) {
+  for (int a = 0; a < count; ++a)
+    for (int b = 0; b < columns; ++b) row_list.push_back(row + a), column_list.push_back(column + b);
+}
 
 /// Calls work with the dimension as a compile-time number where that is a common one: the loops over states are the
 /// innermost ones and short.
@@ -73,11 +60,11 @@ void put_node(Dimension n, double* __restrict columns, int width, double value, 
 
 }  // namespace
 
-double OrbitResidual::largest() const { return largest_of(connection, largest_of(end, largest_of(collocation, 0.0))); }
+double OrbitResidual::largest() const { return largest_of(coupling, largest_of(collocation, 0.0)); }
 
 bool OrbitResidual::finite() const {
   const auto good = [](const std::vector<double>& v) { return all_finite(v.data(), static_cast<int>(v.size())); };
-  return good(collocation) && good(end) && good(connection);
+  return good(collocation) && good(coupling);
 }
 
 CondensedSystem::CondensedSystem(const DefiningSystem& system, const OrbitShape& shape, int border_rows)
@@ -92,7 +79,7 @@ CondensedSystem::CondensedSystem(const DefiningSystem& system, const OrbitShape&
       join_(join_kernel(n_, scalars_)),
       joins_(joins_of_halves(shape.intervals)),
       lu_(make_sparse()) {
-  assert(shape.segments + globals_ == total_end_conditions(system) + border_rows);
+  assert((n_ + 1) * shape.segments + globals_ == total_coupling_rows(system) + border_rows);
   const std::ptrdiff_t blocks = block(shape.segments, 0);
   const int interval_rows = interval_.rows() + border_;
   const int join_rows = join_.rows() + border_;
@@ -111,15 +98,11 @@ CondensedSystem::CondensedSystem(const DefiningSystem& system, const OrbitShape&
   rhs_ = zeros(lu_.size());
   solution_ = rhs_;
 
-  const int conditions = most_end_conditions(system);
   x_ = slope_ = f_ = zeros(n_);
   fx_ = scaled_ = zeros(n_ * n_);
   fp_ = zeros(n_ * globals_);
   local_ = zeros(interval_.width());
   join_local_ = zeros(join_.width());
-  h_ = zeros(conditions);
-  hx_ = zeros(conditions * n_);
-  hp_ = zeros(conditions * globals_);
   zero_ = make_residual();
   zero_rhs_ = zeros(std::max(interval_rows, join_rows));
 }
@@ -141,23 +124,19 @@ std::vector<CondensedSystem::Join> CondensedSystem::joins_of_halves(int interval
 }
 
 SparseLu CondensedSystem::make_sparse() {
-  PatternBuilder pattern{triplet_rows_, triplet_columns_};
-  const int m = shape_.segments;
+  const auto dense = [this](int row, int count, int column, int columns) {
+    put_dense(row, count, column, columns, triplet_rows_, triplet_columns_);
+  };
   int row = 0;
-  for (int s = 0; s < m; ++s) {
-    const int conditions = system_.end_conditions(s);
-    pattern.dense(row, n_, start_unknown(s), 2 * n_ + 1);
-    pattern.dense(row, n_, global_unknown(0), globals_);
+  for (int s = 0; s < shape_.segments; ++s) {
+    dense(row, n_, start_unknown(s), 2 * n_ + 1);
+    dense(row, n_, global_unknown(0), globals_);
     row += n_;
-    pattern.dense(row, conditions, end_unknown(s), n_);
-    pattern.dense(row, conditions, global_unknown(0), globals_);
-    row += conditions;
-    pattern.diagonal(row, start_unknown((s + 1) % m), n_);
-    pattern.dense(row, n_, end_unknown(s), n_);
-    pattern.dense(row, n_, global_unknown(0), globals_);
-    row += n_;
+    CouplingPattern pattern(unknowns(), globals_, row, triplet_rows_, triplet_columns_);
+    system_.coupling_pattern(s, pattern);
+    row += system_.coupling_rows(s);
   }
-  pattern.dense(row, border_, 0, global_unknown(globals_));
+  dense(row, border_, 0, global_unknown(globals_));
   row += border_;
   return {row, triplet_rows_, triplet_columns_};
 }
@@ -165,8 +144,7 @@ SparseLu CondensedSystem::make_sparse() {
 OrbitResidual CondensedSystem::make_residual() const {
   OrbitResidual r;
   r.collocation = zeros(block(shape_.segments, 0) * shape_.collocation * n_);
-  r.end = zeros(total_end_conditions(system_));
-  r.connection = zeros(shape_.segments * n_);
+  r.coupling = zeros(total_coupling_rows(system_));
   return r;
 }
 
@@ -193,7 +171,7 @@ void CondensedSystem::evaluate(const Orbit& x, OrbitResidual& residual) {
   const HybridSystem& hybrid = system_.system();
   const double* par = x.par.data();
   double* collocation = residual.collocation.data();
-  double* end = residual.end.data();
+  double* coupling = residual.coupling.data();
   for (int s = 0; s < shape_.segments; ++s) {
     const IndexVector& v = system_.signature()[index(s)];
     for (int j = 0; j < shape_.intervals; ++j) {
@@ -204,12 +182,8 @@ void CondensedSystem::evaluate(const Orbit& x, OrbitResidual& residual) {
         for (int a = 0; a < n_; ++a) collocation[a] = slope_[index(a)] - scale * collocation[a];
       }
     }
-    system_.end_values(s, x.end(s), par, end);
-    end += system_.end_conditions(s);
-    double* connection = &residual.connection[index(s * n_)];
-    hybrid.value(FunctionKind::jump, v.jump, x.end(s), par, connection);
-    const double* next = x.start((s + 1) % shape_.segments);
-    for (int a = 0; a < n_; ++a) connection[a] = next[a] - connection[a];
+    system_.coupling_values(s, x, coupling);
+    coupling += system_.coupling_rows(s);
   }
 }
 
@@ -361,10 +335,8 @@ void CondensedSystem::keep_segment_blocks(int s) {
 
 /// The matrix that UMFPACK sees, in the order of make_sparse().
 bool CondensedSystem::assemble(const Orbit& x, std::span<const OrbitVector> rows, OrbitResidual& residual) {
-  const HybridSystem& hybrid = system_.system();
-  const double* par = x.par.data();
   double* value = triplet_values_.data();
-  double* end = residual.end.data();
+  double* coupling = residual.coupling.data();
   for (int s = 0; s < shape_.segments; ++s) {
     const double* scalars = &scalar_blocks_[index(s * n_ * scalars_)];
     for (int a = 0; a < n_; ++a) {
@@ -374,23 +346,8 @@ bool CondensedSystem::assemble(const Orbit& x, std::span<const OrbitVector> rows
     }
     for (int a = 0; a < n_; ++a) value = std::copy_n(scalars + a * scalars_ + 1, globals_, value);
 
-    const int conditions = system_.end_conditions(s);
-    system_.end_derivatives(s, x.end(s), par, end, hx_.data(), hp_.data());
-    end += conditions;
-    for (int r = 0; r < conditions; ++r)
-      for (int b = 0; b < n_; ++b) *value++ = hx_[index(b * conditions + r)];
-    for (int r = 0; r < conditions; ++r)
-      for (int g = 0; g < globals_; ++g) *value++ = hp_[index(g * conditions + r)];
-
-    hybrid.first(FunctionKind::jump, system_.signature()[index(s)].jump, x.end(s), par, system_.free_parameters(),
-                 f_.data(), fx_.data(), fp_.data());
-    const double* next = x.start((s + 1) % shape_.segments);
-    for (int a = 0; a < n_; ++a) residual.connection[index(s * n_ + a)] = next[a] - f_[index(a)];
-    value = std::fill_n(value, n_, 1.0);
-    for (int a = 0; a < n_; ++a)
-      for (int b = 0; b < n_; ++b) *value++ = -fx_[index(b * n_ + a)];
-    for (int a = 0; a < n_; ++a)
-      for (int g = 0; g < globals_; ++g) *value++ = -fp_[index(g * n_ + a)];
+    value = system_.coupling_derivatives(s, x, coupling, value);
+    coupling += system_.coupling_rows(s);
   }
   const int length = 2 * n_ + scalars_;
   for (int r = 0; r < border_; ++r) {

@@ -1,7 +1,7 @@
 /// The linearised boundary value problem of an orbit, condensed and factored.
 ///
-/// At an orbit x the linearisation of the collocation equations (5.29), end conditions and connectivity, bordered by
-/// b rows, reads J dx = -F. It is reduced in two sweeps that touch every mesh interval once:
+/// At an orbit x the linearisation of the collocation equations (5.29) and of the coupling rows, bordered by b rows,
+/// reads J dx = -F. It is reduced in two sweeps that touch every mesh interval once:
 ///   1. interval: the c - 1 interior nodes are eliminated from the c n collocation rows; n rows in (left, right)
 ///   remain;
 ///   2. joins: neighbouring pieces are joined by elimination of the mesh node between them with pivoting, halves of a
@@ -23,6 +23,7 @@
 #include <vector>
 
 #include "bvp/collocation_rule.hpp"
+#include "bvp/coupling.hpp"
 #include "bvp/defining_system.hpp"
 #include "bvp/orbit.hpp"
 #include "linear_algebra/block_kernel.hpp"
@@ -33,8 +34,7 @@ namespace tchat {
 /// F at an orbit, border rows excepted.
 struct OrbitResidual {
   std::vector<double> collocation;  ///< m N c n: segment, interval, Gauss point, component; scaled by the interval
-  std::vector<double> end;          ///< end conditions, segment by segment
-  std::vector<double> connection;   ///< n m: x_{s+1}(0) - g(x_s(1))
+  std::vector<double> coupling;     ///< the coupling rows, group by group
 
   double largest() const;
   bool finite() const;
@@ -46,7 +46,8 @@ enum class Linearization { ready, not_finite, singular, condition_lost };
 
 class CondensedSystem {
  public:
-  /// `border_rows` = b. The defining system must outlive this object and satisfy m + q = E + b.
+  /// `border_rows` = b. The defining system must outlive this object; its coupling rows and the border are as many
+  /// as the ends, durations and free parameters leave open: n m + m + q.
   CondensedSystem(const DefiningSystem& system, const OrbitShape& shape, int border_rows);
 
   const DefiningSystem& system() const { return system_; }
@@ -106,10 +107,11 @@ class CondensedSystem {
   static std::size_t index(std::ptrdiff_t i) { return static_cast<std::size_t>(i); }
   /// Number of an interval's blocks; their places in the arrays exceed the range of int for large problems.
   std::ptrdiff_t block(int s, int j) const { return static_cast<std::ptrdiff_t>(s) * shape_.intervals + j; }
-  int start_unknown(int s) const { return s * (2 * n_ + 1); }
-  int end_unknown(int s) const { return start_unknown(s) + n_; }
-  int duration_unknown(int s) const { return start_unknown(s) + 2 * n_; }
-  int global_unknown(int g) const { return shape_.segments * (2 * n_ + 1) + g; }
+  EndUnknowns unknowns() const { return {n_, shape_.segments}; }
+  int start_unknown(int s) const { return unknowns().start(s); }
+  int end_unknown(int s) const { return unknowns().end(s); }
+  int duration_unknown(int s) const { return unknowns().duration(s); }
+  int global_unknown(int g) const { return unknowns().global(g); }
 
   /// The elimination of mesh node `middle` joins intervals first..middle-1 to intervals middle..last-1; its block is
   /// the one of interval `middle`.
@@ -173,7 +175,7 @@ class CondensedSystem {
   std::vector<double> solution_;
 
   // scratch of one collocation point or one end of a segment
-  std::vector<double> x_, slope_, f_, fx_, scaled_, fp_, local_, join_local_, h_, hx_, hp_;
+  std::vector<double> x_, slope_, f_, fx_, scaled_, fp_, local_, join_local_;
   OrbitResidual zero_;
   std::vector<double> zero_rhs_;  // of one block
 };

@@ -113,8 +113,8 @@ Bifurcation branch_at(PathFollower& follower, const PathPoint& point) {
   OrbitResidual residual = condensed.make_residual();
   for (std::size_t i = 0; i < residual.collocation.size(); ++i)
     residual.collocation[i] = std::sin(1.0 + 0.83 * static_cast<double>(i));
-  for (std::size_t i = 0; i < residual.connection.size(); ++i)
-    residual.connection[i] = std::cos(0.4 + 1.7 * static_cast<double>(i));
+  for (std::size_t i = 0; i < residual.coupling.size(); ++i)
+    residual.coupling[i] = std::cos(0.4 + 1.7 * static_cast<double>(i));
   OrbitVector v = condensed.make_vector();
   condensed.solve(residual, std::vector<double>{0.0}, v);
   orient(point.orbit, v);

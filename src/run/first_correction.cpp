@@ -26,33 +26,21 @@ constexpr int most_meshes = 10;
 /// Meshes whose points have moved by less than this part of an interval are the same.
 constexpr double settled = 0.1;
 
-std::string state_label(const HybridSystem& system, int component, int s, bool at_end) {
-  return fmt::format("{} at the {} of segment {}", system.state_name(component), at_end ? "end" : "start", s + 1);
-}
-
 /// The residual of each boundary condition of the uncorrected start, largest collocation defect included.
 std::string residual_report(CondensedSystem& condensed, const DefiningSystem& defining, const Orbit& start) {
   OrbitResidual residual = condensed.make_residual();
   condensed.evaluate(start, residual);
-  const HybridSystem& system = defining.system();
-  const int n = defining.dimension();
   const int m = defining.segments();
   std::string text;
-  std::size_t end = 0;
+  std::size_t coupling = 0;
   const std::size_t per_segment = residual.collocation.size() / static_cast<std::size_t>(m);
   for (int s = 0; s < m; ++s) {
     double defect = 0.0;
     for (std::size_t i = 0; i < per_segment; ++i)
       defect = std::max(defect, std::abs(residual.collocation[static_cast<std::size_t>(s) * per_segment + i]));
     text += fmt::format("\n  {:11.4e}  differential equations on segment {} (largest defect)", defect, s + 1);
-    for (int r = 0; r < defining.end_conditions(s); ++r)
-      text += fmt::format("\n  {:11.4e}  {}", residual.end[end++], defining.end_condition_name(s, r));
-    for (int a = 0; a < n; ++a)
-      text += fmt::format(
-          "\n  {:11.4e}  {} minus jump {} ({}) of the end of segment {}",
-          residual.connection[static_cast<std::size_t>(s * n + a)], state_label(system, a + 1, (s + 1) % m, false),
-          defining.signature()[static_cast<std::size_t>(s)].jump,
-          system.function_name(FunctionKind::jump, defining.signature()[static_cast<std::size_t>(s)].jump), s + 1);
+    for (int r = 0; r < defining.coupling_rows(s); ++r)
+      text += fmt::format("\n  {:11.4e}  {}", residual.coupling[coupling++], defining.coupling_name(s, r));
   }
   return text;
 }

@@ -27,8 +27,7 @@ inline OrbitResidual directional_derivative(CondensedSystem& condensed, const Or
     advance(moved, at, v, condensed.system().free_parameters());
     condensed.evaluate(moved, part);
     for (std::size_t i = 0; i < part.collocation.size(); ++i) sum.collocation[i] += weight * part.collocation[i];
-    for (std::size_t i = 0; i < part.end.size(); ++i) sum.end[i] += weight * part.end[i];
-    for (std::size_t i = 0; i < part.connection.size(); ++i) sum.connection[i] += weight * part.connection[i];
+    for (std::size_t i = 0; i < part.coupling.size(); ++i) sum.coupling[i] += weight * part.coupling[i];
   };
   add(h, 8 / (12 * h)), add(-h, -8 / (12 * h)), add(2 * h, -1 / (12 * h)), add(-2 * h, 1 / (12 * h));
   return sum;
@@ -36,7 +35,7 @@ inline OrbitResidual directional_derivative(CondensedSystem& condensed, const Or
 
 /// Equations are J dx = -F.
 inline void negate(OrbitResidual& r) {
-  for (std::vector<double>* part : {&r.collocation, &r.end, &r.connection})
+  for (std::vector<double>* part : {&r.collocation, &r.coupling})
     for (double& entry : *part) entry = -entry;
 }
 
