@@ -226,6 +226,16 @@ SegmentList turn_without_contact(const LabelledOrbit& source, const std::vector<
   return segments;
 }
 
+/// Is there a contact that changes the field and not the state, and lasts no time yet?
+bool switches_field(const CutList& cut, const HybridSystem& system) {
+  return std::any_of(cut.contacts.begin(), cut.contacts.end(), [&](std::size_t k) {
+    const NewSegment& contact = cut.segments[k];
+    const NewSegment& next = cut.segments[(k + 1) % cut.segments.size()];
+    return is_identity_jump(system, contact.index.jump) && next.index.field != contact.index.field &&
+           next.piece.empty();
+  });
+}
+
 NewOrbit to_impacting(const ResegmentRequest& request, const LabelledOrbit& source, const HybridSystem& system) {
   const Orbit& orbit = source.start.orbit;
   const RunSettings& old = source.settings;
@@ -258,11 +268,16 @@ NewOrbit to_impacting(const ResegmentRequest& request, const LabelledOrbit& sour
     }
   }
   watch_after_events(cut.segments, source, system);
-  NewOrbit target{cut.segments, {180, 1, old.grazing_jump}};
+  NewOrbit target{cut.segments, {periodic_orbit.number, periodic_orbit.branch_mode, old.grazing_jump}};
   target.birth = {{cut.contacts.begin(), cut.contacts.end()}, empty_segments(cut.segments), {}};
   if (contacts.size() > 1)
     target.remarks.push_back(fmt::format("The orbit has {} contacts at once and is cut at all of them: {}.",
                                          contacts.size(), list_of(contacts, system)));
+  if (switches_field(cut, system))
+    target.remarks.emplace_back(
+        "The contact changes the field and not the state: the new segment lasts no time here, whatever the parameters "
+        "are, so that a run\nfrom this start finds its matrix singular. Begin beyond the contact, with an orbit of a "
+        "simulation (tchat simulate NAME --dat O),\nand come back to it.");
   return target;
 }
 
