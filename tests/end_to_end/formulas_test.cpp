@@ -177,3 +177,14 @@ TEST_CASE("switches written with the wrong sign, or reached by no line, are told
   workspace.edit("stop.tch", "z=0.05", "z=0,05");
   check_refused(workspace.tchat("check stop"), {"decimals are written with a point, as 0.05"});
 }
+
+TEST_CASE("elastic stop: a contact that changes the field alone is said to begin no branch") {
+  const Workspace workspace;
+  workspace.write("stop.tch", elastic_stop);
+  REQUIRE(workspace.tchat("simulate stop PAR(w)=2.5 PAR(a)=1 --dat free").status == 0);
+  REQUIRE(workspace.tchat("run stop -c free -d free -o free DS=-0.02 RL0=0.3 RL1=3").status == 0);
+  const Outcome born = workspace.tchat("resegment q.free GR1 --to impacting -o born -p stop");
+  INFO(born.text());
+  CHECK(born.status == 0);
+  CHECK(contains(born.out, "changes the field and not the state"));
+}
