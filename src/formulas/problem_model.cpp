@@ -344,9 +344,10 @@ class ModelCheck {
       for (const std::array<int, 3>& next : rule.next) reached.insert(next[0]);
     for (std::size_t k = 0; k < model_.fields.size(); ++k)
       if (!reached.contains(static_cast<int>(k) + 1))
-        errors_.add(file().successors.back().at,
-                    fmt::format("no 'after' line leads to field {0}; write one, as after EVENT: {0} until EVENT -> JUMP",
-                                model_.fields[k].name));
+        errors_.add(
+            file().successors.back().at,
+            fmt::format("no 'after' line leads to field {0}; write one, as after EVENT: {0} until EVENT -> JUMP",
+                        model_.fields[k].name));
   }
 
   std::string in_words_of(const std::array<int, 3>& from) const {

@@ -28,7 +28,8 @@ class PivotedLu {
 /// PivotedLu(matrix).solve(right).
 Eigen::MatrixXd solve(const Eigen::MatrixXd& matrix, const Eigen::MatrixXd& right);
 
-/// The same with complete pivoting: finite, where the matrix is singular too. Unknowns of pivots that are rounding are 0.
+/// The same with complete pivoting: finite, where the matrix is singular too. Unknowns of pivots that are rounding are
+/// 0.
 Eigen::MatrixXd solve_with_complete_pivoting(const Eigen::MatrixXd& matrix, const Eigen::MatrixXd& right);
 
 /// The shortest x that makes |matrix x - right| least, columns of `right` side by side; directions in which the matrix
