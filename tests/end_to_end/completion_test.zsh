@@ -26,7 +26,7 @@ bindkey '^I' complete-word '^X' show_line
 print '<ready>'
 END
 export TERM=dumb ZDOTDIR=$folder
-zpty shell zsh -i
+zpty shell zsh -i || { print 'no pseudo terminal'; exit 77 }
 zpty -r -m shell answer '*<ready>*'
 
 failed=0
