@@ -9,7 +9,6 @@ namespace tchat {
 
 namespace {
 
-
 void insert(std::vector<int>& ascending, int index) {
   const auto place = std::lower_bound(ascending.begin(), ascending.end(), index);
   if (place == ascending.end() || *place != index) ascending.insert(place, index);
