@@ -17,6 +17,8 @@ namespace tchat {
 
 namespace {
 
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
 std::string example_text(const Constant& constant, const Place& place) {
   if (!place.positional || constant.record < 1) return fmt::format("{} = {}", constant.keyword, constant.example);
   const PositionalRecord& record = positional_records()[static_cast<std::size_t>(constant.record - 1)];

@@ -95,10 +95,7 @@ class SettingsCheck {
   int segments() const { return static_cast<int>(settings_.segments.size()); }
 
   /// A switch to a period-doubled orbit doubles the segments.
-  int segments_of_run() const {
-    const ProblemType* type = nearest_problem_type(settings_.problem_type, settings_.branch_mode);
-    return type != nullptr && type->facts().may_double ? 2 * segments() : segments();
-  }
+  int segments_of_run() const { return may_double_segments(settings_.branch_mode) ? 2 * segments() : segments(); }
 
   void parameter_index(std::string_view keyword, const std::string& name, int k, int segment_count) const {
     const bool stands_in = k > last_index && keyword != "PAR";

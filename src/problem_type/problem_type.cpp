@@ -55,6 +55,13 @@ const ProblemType& problem_type(int number, int branch_mode) {
                               branch_mode, list));
 }
 
+bool may_double_segments(int branch_mode) {
+  const auto doubles = [branch_mode](const ProblemType* type) {
+    return type->facts().branch_mode == branch_mode && type->facts().may_double;
+  };
+  return std::any_of(problem_types().begin(), problem_types().end(), doubles);
+}
+
 int standard_branch_mode(int branch_mode) { return branch_mode == 0 ? 1 : branch_mode; }
 
 std::vector<int> problem_type_numbers() {

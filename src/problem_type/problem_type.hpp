@@ -78,6 +78,8 @@ const ProblemType* nearest_problem_type(int number, int branch_mode);
 /// The first of those. Throws UserError with the list of what there is.
 const ProblemType& problem_type(int number, int branch_mode);
 
+/// Is there a type of this ISW whose branch may have twice as many segments as its start?
+bool may_double_segments(int branch_mode);
 /// What ISW stands for: 1 for 0.
 int standard_branch_mode(int branch_mode);
 /// Each once, in the order of the list.
