@@ -26,7 +26,7 @@ std::vector<std::string_view> split(std::string_view text, char separator) {
 [[noreturn]] void refuse(std::string_view text, const std::string& option, const std::string& found) {
   throw UserError(fmt::format(
       "{} {}: {}; allowed: index vectors field,event,jump of whole numbers from 1, separated by semicolons, for "
-      "example {} \"1,1,1;2,2,2\"",
+      "example {} \"1,2,1;2,1,2\"",
       option, in_quotes(text), found, option));
 }
 

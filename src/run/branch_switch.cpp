@@ -113,8 +113,12 @@ Bifurcation branch_at(PathFollower& follower, const PathPoint& point) {
   OrbitResidual residual = condensed.make_residual();
   for (std::size_t i = 0; i < residual.collocation.size(); ++i)
     residual.collocation[i] = std::sin(1.0 + 0.83 * static_cast<double>(i));
-  for (std::size_t i = 0; i < residual.coupling.size(); ++i)
-    residual.coupling[i] = std::cos(0.4 + 1.7 * static_cast<double>(i));
+  std::size_t row = 0;
+  double phase = 0.4;
+  for (int s = 0; s < condensed.shape().segments; ++s) {  // the last n rows of each group
+    row += static_cast<std::size_t>(condensed.system().coupling_rows(s) - condensed.shape().dimension);
+    for (int a = 0; a < condensed.shape().dimension; ++a, phase += 1.7) residual.coupling[row++] = std::cos(phase);
+  }
   OrbitVector v = condensed.make_vector();
   condensed.solve(residual, std::vector<double>{0.0}, v);
   orient(point.orbit, v);
