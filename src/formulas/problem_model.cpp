@@ -41,9 +41,10 @@ class PartNames {
   int required(const Token& name) const {
     const int found = number(name.text);
     if (found == 0)
-      throw FormulaError{name.at, fmt::format("there is no {} '{}'{}; there {} {}", kind_, name.text,
-                                              did_you_mean(name.text, names_), names_.size() == 1 ? "is" : "are",
-                                              names_.empty() ? "none" : fmt::format("{}", fmt::join(names_, ", ")))};
+      throw FormulaError{name.at,
+                         fmt::format("there is no {0} '{1}'{2}; there {3} {4}; a line '{0} {1} ...' makes it", kind_,
+                                     name.text, did_you_mean(name.text, names_), names_.size() == 1 ? "is" : "are",
+                                     names_.empty() ? "none" : fmt::format("{}", fmt::join(names_, ", ")))};
     return found;
   }
 

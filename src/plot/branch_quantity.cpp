@@ -176,10 +176,10 @@ class QuantityReader {
   BranchQuantity at_segments(const std::string& name, const StateAt& at) const {
     const std::vector<int> segments = segments_at(section_, at.where);
     if (segments.empty())
-      throw UserError(
-          fmt::format("{}: no segment ends at {}; segments are named by the event or jump at their end ({}) "
-                      "or by their number (1..{}), as in x1@1",
-                      where(), in_quotes(at.where), fmt::join(places(section_), ", "), section_.segments));
+      throw UserError(fmt::format(
+          "{}: no segment ends at {}; segments are named by the event or jump at their end ({}) "
+          "or by their number (1..{}), as in {}@1",
+          where(), in_quotes(at.where), fmt::join(places(section_), ", "), section_.segments, section_.state_name(1)));
     BranchQuantity quantity{label_of(at), {}, {}, name};
     quantity.arms.resize(segments.size());
     for (std::size_t row = 0; row < section_.rows.size(); ++row) {

@@ -16,6 +16,7 @@ class GuardedProblem {
   GuardedProblem(const tchat_problem& plugin, const std::string& path);
   GuardedProblem(const GuardedProblem&) = delete;
   GuardedProblem& operator=(const GuardedProblem&) = delete;
+  ~GuardedProblem() = default;
 
   /// Lives as long as this object.
   const tchat_problem& table() const { return table_; }

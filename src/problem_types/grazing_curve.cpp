@@ -5,6 +5,7 @@
 
 #include "bvp/grazing_orbit_system.hpp"
 #include "constants/settings_type.hpp"
+#include "hybrid/identity_jump.hpp"
 #include "problem_type/problem_type.hpp"
 #include "run/test_lists.hpp"
 #include "special_points/bifurcation_tests.hpp"
@@ -52,7 +53,8 @@ class GrazingCurve final : public ProblemType {
     add_impact_velocities(tests, system, settings);
     add_further_contacts(tests, system, settings);
     add_section_tangencies(tests, system, settings, system.grazing_segment());
-    for (const int n : settings.test_functions)
+    const bool has_impact = !is_identity_jump(system.system(), settings.grazing_jump);  // else every xi_n is zero
+    for (const int n : has_impact ? settings.test_functions : std::vector<int>{})
       tests.push_back(std::make_unique<XiTest>(system, settings.grazing_jump, n));
     tests.push_back(std::make_unique<AccelerationTest>(system, settings.grazing_jump));
     const int kind = std::abs(settings.detect_bifurcations);
