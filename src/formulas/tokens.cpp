@@ -220,7 +220,8 @@ std::string TokenReader::hint() const {
                        peek(comma + 1 - at_).text);
   const bool side_by_side = at_ > 0 && (tokens_[at_ - 1].is_name() || is_number(tokens_[at_ - 1]));
   if (side_by_side && (peek().is_name() || is_number(peek())))
-    return fmt::format("; write an operator between them, as {}*{}", tokens_[at_ - 1].text, peek().text);
+    return fmt::format("; write an operator between them, as {}*{}, or the comma of a list", tokens_[at_ - 1].text,
+                       peek().text);
   return "";
 }
 

@@ -55,6 +55,21 @@ std::string parameter_list(const HybridSystem& system) {
                                   : fmt::format("PAR(1) to PAR({}): {}", system.parameters(), names);
 }
 
+/// The jump that contact would bring, which xi_n is made of on a grazing curve.
+void check_contact_jump(const HybridSystem& system, const RunSettings& settings, const SettingsSource& source,
+                        std::vector<std::string>& warnings) {
+  if (!keeps_contact(settings.problem_type)) return;
+  const int jumps = system.count(FunctionKind::jump);
+  if (settings.grazing_jump > jumps)
+    throw UserError(fmt::format("{}: GRJUMP is {}, but problem {} has {} jump functions; allowed: 1..{}",
+                                source.of("GRJUMP"), settings.grazing_jump, system.name(), jumps, jumps));
+  if (!settings.test_functions.empty() && is_identity_jump(system, settings.grazing_jump))
+    warnings.push_back(fmt::format(
+        "{}: GRJUMP = {} ({}) is the identity, for which there are no xi_n: GCIPSI has no effect; if contact is an "
+        "impact, GRJUMP is to name its jump",
+        source.of("GRJUMP"), settings.grazing_jump, system.function_name(FunctionKind::jump, settings.grazing_jump)));
+}
+
 /// PAR(name) = v and UZR beyond the problem's parameters would do nothing, and so would the run's free parameter: they
 /// are refused. Further entries of ICP are mere columns of the output and weights are harmless: a warning.
 void check_parameters(const HybridSystem& system, const RunSettings& settings, const SettingsSource& source,
@@ -108,6 +123,7 @@ std::vector<std::string> check_settings_against(const HybridSystem& system, cons
           source.of("GCSEGTYP"), s, segment.type, segment.type == 0 ? "identity" : "another", segment.index.jump,
           system.function_name(FunctionKind::jump, segment.index.jump), identity ? "" : "not "));
   }
+  check_contact_jump(system, settings, source, warnings);
   check_parameters(system, settings, source, warnings);
   return warnings;
 }

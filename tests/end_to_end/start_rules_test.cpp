@@ -169,3 +169,15 @@ TEST_CASE("parameters beyond the free one are told where the curve of the label 
   CHECK(contains(idle.err, "ISW=2"));
   CHECK(workspace.tchat(run + "ISW=2 DS=0.001 NMX=3").err.empty());
 }
+
+TEST_CASE("the jump that contact brings must be there, and no identity where xi_n are asked for") {
+  const Workspace workspace;
+  workspace.run("-c to_grazing -d nonimpacting -o grazing");
+  const std::string run = "run linosc -c grazing_curve -s grazing -o curve IRS=GR1 NMX=3 NTST=20 ";
+  check_refused(workspace.tchat(run + "GRJUMP=9"), {"GRJUMP is 9", "allowed: 1..2"});
+  const Outcome identity = workspace.tchat(run + "GRJUMP=2");
+  INFO(identity.text());
+  CHECK(contains(identity.err, "GRJUMP = 2 (identity) is the identity"));
+  CHECK_FALSE(contains(identity.out, "xi_1"));
+  CHECK(workspace.tchat(run).err.empty());
+}
