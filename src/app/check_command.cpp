@@ -11,11 +11,14 @@
 #include <vector>
 
 #include "constants/constants_file.hpp"
+#include "constants/settings_type.hpp"
+#include "files/writable_file.hpp"
 #include "formulas/translation.hpp"
 #include "hybrid/derivative_check.hpp"
 #include "hybrid/parameter_vector.hpp"
 #include "plugin/plugin_build.hpp"
 #include "plugin/problem_library.hpp"
+#include "setup/named_parameters.hpp"
 #include "setup/run_request.hpp"
 #include "text/number.hpp"
 #include "text/user_error.hpp"
@@ -90,8 +93,8 @@ Eigen::VectorXd read_parameters(const HybridSystem& system, const std::vector<st
 int check_problem(const CheckArguments& arguments) {
   const std::string& plugin = arguments.plugin.empty() ? arguments.name : arguments.plugin;
   const std::string path = resolve_plugin(plugin);
-  const ProblemLibrary library(path, [&arguments] {
-    const std::string constants = arguments.constants.empty() ? arguments.name : arguments.constants;
+  const std::string& constants = arguments.constants.empty() ? arguments.name : arguments.constants;
+  const ProblemLibrary library(path, [&] {
     ProblemSizes sizes = problem_sizes(read_constants_file(constants_path(constants)));
     sizes.parameters = std::max(sizes.parameters, largest_given_parameter(arguments.parameters));
     return sizes;
@@ -100,6 +103,10 @@ int check_problem(const CheckArguments& arguments) {
   for (const std::string& state : arguments.states) options.states.push_back(read_state(state));
   options.parameters = read_parameters(library.system(), arguments.parameters);
   options.random_states = arguments.random_states;
+  const bool are_given = !arguments.constants.empty() || exists("gc." + arguments.name);
+  if (library.system().boundary_conditions() > 0 && are_given)
+    options.segments =
+        segment_count(read_constants_file(constants_path(constants), nullptr, names_of(library.system())));
   const DerivativeCheck check = check_derivatives(library.system(), options);
   fmt::print("{}", to_text(library.system(), check));
   if (const std::optional<std::string> formulas = formulas_of(plugin))
@@ -119,7 +126,8 @@ void add_check_command(CLI::App& app, std::function<int()>& chosen) {
       ->type_name("P");
   command
       ->add_option("-c,--constants", arguments->constants,
-                   "gc.C of a Fortran plugin, which does not say its sizes itself (default: gc.NAME)")
+                   "gc.C of a Fortran plugin, which does not say its sizes itself, or of a boundary value problem, "
+                   "for its number of segments (default: gc.NAME)")
       ->type_name("C");
   command
       ->add_option("--state", arguments->states,

@@ -22,6 +22,7 @@ bool is_pinned_start(const HybridSystem& system, const Signature& signature, con
   const int before = (s + x.shape.segments - 1) % x.shape.segments;
   const IndexVector& v = signature[static_cast<std::size_t>(before)];
   const double* par = x.par.data();
+  if (v.jump == no_function) return false;
   if (std::abs(system.event(event, x.start(s), par)) > structural_tolerance * event_scale(system, x, event))
     return false;
   const int n = system.dimension();
@@ -57,6 +58,7 @@ std::vector<Violation> inadmissibilities(const HybridSystem& system, const Signa
       if (worst.value < -orbit_accuracy * event_scale(system, x, event)) result.push_back(worst);
     }
 
+    if (v.event == no_function) continue;
     const EventAt end = event_at(system, v.event, v.field, x.end(s), par);
     if (end.rate() > leaving * end.sizes())
       result.push_back({Violation::leaving_terminal_surface, s + 1, v.event, 1.0, end.rate()});

@@ -1,12 +1,13 @@
-/// The square problem that Newton's method solves for a point of a branch: the defining system, at most one scalar
-/// condition on the whole orbit (a critical multiplier), and one row of the branch (pseudo-arclength, or a fixed
-/// parameter).
+/// The square problem that Newton's method solves for a point of a branch: the defining system, its integral conditions
+/// among the border rows, at most one scalar condition on the whole orbit (a critical multiplier), and one row of the
+/// branch (pseudo-arclength, or a fixed parameter).
 ///
-///     J dx = -F,    grad G . dx = -G,    row . dx = target                 (n m N c + ... + m + q equations)
+///     J dx = -F,    grad I . dx = -I,    grad G . dx = -G,    row . dx = target       (n m N c + ... + m + q
+///     equations)
 ///
-/// The gradient of G is known only after J has been condensed. So J is condensed with a stand-in for it, the gradient
-/// of the last linearisation, and the true gradient enters by a rank-one correction: one more solution of the same
-/// factors.
+/// The gradient of an integral I is known before J is factored. That of G is known only after J has been condensed. So
+/// J is condensed with a stand-in for it, the gradient of the last linearisation, and the true gradient enters by a
+/// rank-one correction: one more solution of the same factors.
 ///
 /// A condition is found by iteration from where it was last: which multiplier it means, and the border of its own
 /// problem. A trial of Newton's method that fails leaves these anywhere. They belong to the point of the branch that
@@ -15,6 +16,7 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -48,8 +50,8 @@ struct ConditionMemory {
 
 class BorderedProblem {
  public:
-  /// `condition` may be null. The defining system must outlive this object; it has m + q = E + 1 end conditions, or
-  /// E + 2 with a condition.
+  /// `condition` may be null. The defining system must outlive this object; with R coupling rows and I integral
+  /// conditions n m + m + q = R + I + 1, or R + I + 2 with a condition.
   BorderedProblem(const DefiningSystem& system, const OrbitShape& shape, std::unique_ptr<OrbitCondition> condition);
 
   CondensedSystem& condensed() { return condensed_; }
@@ -75,10 +77,16 @@ class BorderedProblem {
 
  private:
   void correct(double condition_target, OrbitVector& dx) const;
+  OrbitVector& stand_in() { return rows_.back(); }
+  const OrbitVector& stand_in() const { return rows_.back(); }
+  /// The border's right-hand side with these in the branch's row and that of the stand-in, the integrals' in between.
+  std::span<const double> border(double branch, const std::vector<double>& integrals, double stand_in);
 
   CondensedSystem condensed_;
   std::unique_ptr<OrbitCondition> condition_;
-  std::vector<OrbitVector> rows_;  // the branch's row and the stand-in for the gradient
+  std::vector<OrbitVector> rows_;  // the branch's row, the integrals' gradients and the stand-in for that of G
+  std::vector<double> border_;     // right-hand side of these
+  std::vector<double> unchanged_;  // integrals that keep their values
   OrbitVector response_;           // solution for a unit in the stand-in's row
   double response_slope_ = 1.0;    // grad G . response
 };

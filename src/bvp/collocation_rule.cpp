@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <boost/math/special_functions/legendre.hpp>
 #include <cmath>
+#include <utility>
 
 namespace tchat {
 
@@ -49,7 +50,9 @@ CollocationRule::CollocationRule(int points)
     highest(i) = std::tgamma(points + 1.0) / product;
   }
 
-  gauss = gauss_rule(points).points;
+  GaussRule rule = gauss_rule(points);
+  gauss = std::move(rule.points);
+  weights = std::move(rule.weights);
   Eigen::VectorXd values(nodes);
   Eigen::VectorXd slopes(nodes);
   for (int j = 0; j < points; ++j) {

@@ -14,6 +14,7 @@ class CollocationRule {
   int points() const { return points_; }
 
   Eigen::VectorXd gauss;     ///< c: Gauss points
+  Eigen::VectorXd weights;   ///< c: Gauss weights of the interval, of unit sum
   Eigen::MatrixXd value;     ///< c x (c+1): value(j, i) = l_i(gauss_j)
   Eigen::MatrixXd slope;     ///< c x (c+1): slope(j, i) = l_i'(gauss_j)
   Eigen::MatrixXd mass;      ///< (c+1) x (c+1): integral of l_i l_k over the interval, exact

@@ -60,11 +60,13 @@ void put_node(Dimension n, double* __restrict columns, int width, double value, 
 
 }  // namespace
 
-double OrbitResidual::largest() const { return largest_of(coupling, largest_of(collocation, 0.0)); }
+double OrbitResidual::largest() const {
+  return largest_of(integral, largest_of(coupling, largest_of(collocation, 0.0)));
+}
 
 bool OrbitResidual::finite() const {
   const auto good = [](const std::vector<double>& v) { return all_finite(v.data(), static_cast<int>(v.size())); };
-  return good(collocation) && good(coupling);
+  return good(collocation) && good(coupling) && good(integral);
 }
 
 CondensedSystem::CondensedSystem(const DefiningSystem& system, const OrbitShape& shape, int border_rows)
@@ -145,6 +147,7 @@ OrbitResidual CondensedSystem::make_residual() const {
   OrbitResidual r;
   r.collocation = zeros(block(shape_.segments, 0) * shape_.collocation * n_);
   r.coupling = zeros(total_coupling_rows(system_));
+  r.integral = zeros(system_.integral_conditions());
   return r;
 }
 
@@ -185,6 +188,7 @@ void CondensedSystem::evaluate(const Orbit& x, OrbitResidual& residual) {
     system_.coupling_values(s, x, coupling);
     coupling += system_.coupling_rows(s);
   }
+  system_.integral_values(x, rule_, residual.integral.data());
 }
 
 // ---- linearisation --------------------------------------------------------------------------------------------------

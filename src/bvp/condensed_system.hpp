@@ -31,10 +31,11 @@
 
 namespace tchat {
 
-/// F at an orbit, border rows excepted.
+/// F at an orbit, the conditions of the branch excepted.
 struct OrbitResidual {
   std::vector<double> collocation;  ///< m N c n: segment, interval, Gauss point, component; scaled by the interval
   std::vector<double> coupling;     ///< the coupling rows, group by group
+  std::vector<double> integral;     ///< the integral conditions
 
   double largest() const;
   bool finite() const;
@@ -46,23 +47,26 @@ enum class Linearization { ready, not_finite, singular, condition_lost };
 
 class CondensedSystem {
  public:
-  /// `border_rows` = b. The defining system must outlive this object; its coupling rows and the border are as many
-  /// as the ends, durations and free parameters leave open: n m + m + q.
+  /// `border_rows` = b, integral conditions among them. The defining system must outlive this object; its coupling rows
+  /// and the border are as many as the ends, durations and free parameters leave open: n m + m + q.
   CondensedSystem(const DefiningSystem& system, const OrbitShape& shape, int border_rows);
 
   const DefiningSystem& system() const { return system_; }
   const OrbitShape& shape() const { return shape_; }
   const CollocationRule& rule() const { return rule_; }
+  int border_rows() const { return border_; }
   OrbitResidual make_residual() const;
   OrbitVector make_vector() const { return OrbitVector(shape_, system_.free_count()); }
 
   /// F(x). The result may hold entries that are not finite.
   void evaluate(const Orbit& x, OrbitResidual& residual);
 
-  /// J(x) bordered by `rows` (b dual vectors), factored; F(x) on the way.
+  /// J(x) bordered by `rows` (b dual vectors), factored; F(x) on the way, but for the integral conditions, whose
+  /// gradients are among the rows.
   Linearization linearize(const Orbit& x, std::span<const OrbitVector> rows, OrbitResidual& residual);
 
-  /// The solution of J dx = -F, rows dx = border. `border` has b entries.
+  /// The solution of J dx = -F, rows dx = border. `border` has b entries; the integral conditions of `residual` are not
+  /// read.
   void solve(const OrbitResidual& residual, std::span<const double> border, OrbitVector& dx);
   /// The same with F = 0.
   void solve(std::span<const double> border, OrbitVector& dx);

@@ -10,7 +10,7 @@ namespace {
 
 bool is_finite_at(const DefiningSystem& defining, FunctionKind kind, int index, const double* x, const double* par) {
   const int n = defining.dimension();
-  const int rows = kind == FunctionKind::event ? 1 : n;
+  const int rows = defining.system().rows(kind);
   const int free = defining.free_count();
   std::vector<double> value(static_cast<std::size_t>(rows));
   std::vector<double> by_state(static_cast<std::size_t>(rows * n));
@@ -22,7 +22,7 @@ bool is_finite_at(const DefiningSystem& defining, FunctionKind kind, int index, 
 }
 
 std::string place(const HybridSystem& system, FunctionKind kind, int index, int s, double tau, const double* x) {
-  const char* kinds[] = {"vector field", "event function", "jump function"};
+  const char* kinds[] = {"vector field", "event function", "jump function", "integrand"};
   std::string state;
   for (int k = 1; k <= system.dimension(); ++k)
     state += fmt::format("{}{} = {:.6g}", k > 1 ? ", " : "", system.state_name(k), x[k - 1]);
@@ -32,8 +32,12 @@ std::string place(const HybridSystem& system, FunctionKind kind, int index, int 
 
 }  // namespace
 
+std::string function_failure(const DefiningSystem& defining, FunctionKind kind, int index, int s, double tau,
+                             const double* x, const double* par) {
+  return is_finite_at(defining, kind, index, x, par) ? "" : place(defining.system(), kind, index, s, tau, x);
+}
+
 std::string evaluation_failure(const DefiningSystem& defining, const CollocationRule& rule, const Orbit& x) {
-  const HybridSystem& system = defining.system();
   const double* par = x.par.data();
   const int c = x.shape.collocation;
   for (int s = 0; s < x.shape.segments; ++s) {
@@ -44,14 +48,16 @@ std::string evaluation_failure(const DefiningSystem& defining, const Collocation
       const double h = x.mesh[static_cast<std::size_t>(j + 1)] - left;
       for (int g = 0; g < c; ++g) {
         const Eigen::VectorXd point = nodes * rule.value.row(g).transpose();
-        if (!is_finite_at(defining, FunctionKind::field, v.field, point.data(), par))
-          return place(system, FunctionKind::field, v.field, s, left + h * rule.gauss(g), point.data());
+        const double tau = left + h * rule.gauss(g);
+        const std::string field = function_failure(defining, FunctionKind::field, v.field, s, tau, point.data(), par);
+        if (!field.empty()) return field;
+        if (defining.integral_conditions() == 0) continue;
+        const std::string integrand =
+            function_failure(defining, FunctionKind::integrand, s + 1, s, tau, point.data(), par);
+        if (!integrand.empty()) return integrand;
       }
     }
-    if (!is_finite_at(defining, FunctionKind::event, v.event, x.end(s), par))
-      return place(system, FunctionKind::event, v.event, s, 1.0, x.end(s));
-    if (!is_finite_at(defining, FunctionKind::jump, v.jump, x.end(s), par))
-      return place(system, FunctionKind::jump, v.jump, s, 1.0, x.end(s));
+    if (const std::string ends = defining.coupling_failure(s, x); !ends.empty()) return ends;
   }
   return "";
 }

@@ -13,4 +13,8 @@ namespace tchat {
 /// value problem evaluates it, with its index, place and state; empty when there is none.
 std::string evaluation_failure(const DefiningSystem& system, const CollocationRule& rule, const Orbit& x);
 
+/// The same for one function at one state, tau on segment s (from 0).
+std::string function_failure(const DefiningSystem& system, FunctionKind kind, int index, int s, double tau,
+                             const double* x, const double* par);
+
 }  // namespace tchat

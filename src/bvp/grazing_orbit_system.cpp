@@ -6,7 +6,7 @@ namespace tchat {
 
 GrazingOrbitSystem::GrazingOrbitSystem(const HybridSystem& system, Signature signature,
                                        std::vector<int> free_parameters, int grazing_segment)
-    : DefiningSystem(system, std::move(signature), std::move(free_parameters)),
+    : RingSystem(system, std::move(signature), std::move(free_parameters)),
       grazing_segment_(grazing_segment),
       f_(dimension()),
       hx_(dimension()),

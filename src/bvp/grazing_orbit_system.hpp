@@ -10,11 +10,11 @@
 
 #include <Eigen/Core>
 
-#include "bvp/defining_system.hpp"
+#include "bvp/ring_system.hpp"
 
 namespace tchat {
 
-class GrazingOrbitSystem final : public DefiningSystem {
+class GrazingOrbitSystem final : public RingSystem {
  public:
   /// `grazing_segment` counts from 0.
   GrazingOrbitSystem(const HybridSystem& system, Signature signature, std::vector<int> free_parameters,

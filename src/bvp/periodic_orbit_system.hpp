@@ -6,13 +6,13 @@
 /// No phase condition: the event surfaces fix the phase.
 #pragma once
 
-#include "bvp/defining_system.hpp"
+#include "bvp/ring_system.hpp"
 
 namespace tchat {
 
-class PeriodicOrbitSystem final : public DefiningSystem {
+class PeriodicOrbitSystem final : public RingSystem {
  public:
-  using DefiningSystem::DefiningSystem;
+  using RingSystem::RingSystem;
 
   int end_conditions(int) const override { return 1; }
   void end_values(int s, const double* x, const double* par, double* values) const override;

@@ -25,7 +25,8 @@ struct Crossing {
   bool touches() const { return !(std::abs(transversality()) > no_transversality); }
 };
 
-/// At the end of segment s (from 0), with the gradient of the section there.
+/// At the end of segment s (from 0), with the gradient of the section there. Where no event ends it, nothing is
+/// touched: the flow crosses at a right angle.
 Crossing crossing_at_end(const DefiningSystem& system, const Orbit& x, int s);
 
 }  // namespace tchat

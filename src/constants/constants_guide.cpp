@@ -18,6 +18,7 @@ std::string limits_line(const Constant& constant) {
 }
 
 std::string segment_text(int number, const SegmentSettings& segment) {
+  if (segment.index.event == no_function) return fmt::format("  segment {}: field {}\n", number, segment.index.field);
   std::string text = fmt::format(
       "  segment {}: field {} until event function {} falls to zero{}, then jump {}", number, segment.index.field,
       segment.index.event, segment.type == 2 ? " in grazing contact (h = 0 and h_x f = 0)" : "", segment.index.jump);

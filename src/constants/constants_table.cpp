@@ -38,8 +38,8 @@ std::vector<Constant> make_table() {
   static const std::string families = problem_families();
   const SegmentInteger segment_type{&SegmentSettings::type, nullptr};
   const SegmentInteger field{nullptr, &IndexVector::field};
-  const SegmentInteger event{nullptr, &IndexVector::event};
-  const SegmentInteger jump{nullptr, &IndexVector::jump};
+  const SegmentInteger event{nullptr, &IndexVector::event, true};
+  const SegmentInteger jump{nullptr, &IndexVector::jump, true};
   return {
       {"NDIM", "number of states of one segment", 1, &R::dimension, range(1, 1000), "", "5", ""},
       {"IPS", "problem type", 1, &R::problem_type, one_of(problem_type_numbers()), families, "180", ""},
@@ -65,10 +65,10 @@ std::vector<Constant> make_table() {
       {"IPLT", "solution measure", 3, &R::measure, any(),
        "an integer; with n = NDIM, k = 1..n: 0 L2-norm, k or -k maximum or minimum, n+k integral, 2n+k L2-norm of U(k)",
        "0", ""},
-      {"NBC", "number of boundary conditions", 3, &R::boundary_conditions, at_least(0), "", "0",
-       "read and kept, no effect: follows from the signature"},
-      {"NINT", "number of integral conditions", 3, &R::integral_conditions, at_least(0), "", "0",
-       "read and kept, no effect: follows from the problem type"},
+      {"NBC", "number of boundary conditions", 3, &R::boundary_conditions, range(0, 1000), "", "0",
+       "of IPS = 4; else read and kept, no effect: follows from the signature"},
+      {"NINT", "number of integral conditions", 3, &R::integral_conditions, range(0, 1000), "", "0",
+       "of IPS = 4; else read and kept, no effect: follows from the problem type"},
       {"NMX", "largest number of points", 4, &R::max_points, at_least(0), "", "100", ""},
       {"RL0", "lower bound of the first free parameter", 4, &R::parameter_min, any(), "", "0.0", ""},
       {"RL1", "upper bound of the first free parameter", 4, &R::parameter_max, any(), "", "1.0", ""},
@@ -120,8 +120,10 @@ std::vector<Constant> make_table() {
       {"GCSEGTYP", "type of each segment", 14, segment_type, one_of({0, 1, 2}),
        "0 (ends in the identity jump), 1 (ends in another jump) or 2 (ends in grazing contact)", "[1, 0]", ""},
       {"GCFIND", "vector field of each segment", 15, field, at_least(1), "", "[1, 2]", ""},
-      {"GCHIND", "terminal event function of each segment", 16, event, at_least(1), "", "[1, 2]", ""},
-      {"GCGIND", "jump function of each segment", 17, jump, at_least(1), "", "[1, 2]", ""},
+      {"GCHIND", "terminal event function of each segment", 16, event, at_least(0),
+       "an integer >= 1; none, or 0, with IPS = 4", "[1, 2]", ""},
+      {"GCGIND", "jump function of each segment", 17, jump, at_least(0), "an integer >= 1; none, or 0, with IPS = 4",
+       "[1, 2]", ""},
       {"GCHNO", "number of event functions monitored on each segment", 18, MonitorCounts{}, range(0, 1000), "",
        "[1, 2]", ""},
       {"GCHGRZIND", "event functions monitored on each segment", 18, MonitorLists{}, at_least(1), "", "[[1], [2, 1]]",

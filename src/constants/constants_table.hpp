@@ -25,6 +25,7 @@ struct SegmentCount {};
 struct SegmentInteger {
   int SegmentSettings::*own = nullptr;
   int IndexVector::*of_index = nullptr;
+  bool of_ring = false;  ///< there is none where no ring ties the segments
 };
 /// GCHNO: how many event functions are monitored on each segment.
 struct MonitorCounts {};

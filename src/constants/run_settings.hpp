@@ -57,8 +57,8 @@ struct RunSettings {
   int detect_bifurcations = 2;                           ///< ISP
   int branch_mode = periodic_orbit.branch_mode;          ///< ISW
   int measure = 0;                                       ///< IPLT
-  int boundary_conditions = 0;                           ///< NBC, kept
-  int integral_conditions = 0;                           ///< NINT, kept
+  int boundary_conditions = 0;                           ///< NBC, of boundary value problems
+  int integral_conditions = 0;                           ///< NINT, likewise
   int max_points = 100;                                  ///< NMX
   double parameter_min = -1e300, parameter_max = 1e300;  ///< RL0, RL1
   double measure_min = -1e300, measure_max = 1e300;      ///< A0, A1

@@ -31,6 +31,7 @@ class SettingsCheck {
         refuse_constant("ICP", name, fmt::format("{} twice", in_quotes(std::to_string(list[i]))),
                         "each parameter once");
     }
+    if (!has_ring(settings_.problem_type)) return conditions();
     const int needed = free_parameter_count(settings_.problem_type, settings_.branch_mode);
     const auto of_problem =
         std::count_if(list.begin(), list.end(), [](int k) { return k < first_duration || k > last_index; });
@@ -38,6 +39,47 @@ class SettingsCheck {
       refuse_constant("ICP", "ICP", fmt::format("{} parameters that are not durations", of_problem),
                       fmt::format("at least {} with IPS = {}, ISW = {}; durations are free in any case", needed,
                                   settings_.problem_type, settings_.branch_mode));
+  }
+
+  /// The count of unknowns and conditions of a boundary value problem.
+  void conditions() const {
+    const RunSettings& s = settings_;
+    if (s.boundary_conditions == 0)
+      refuse_constant("NBC", "NBC", "'0'",
+                      fmt::format("the number of boundary conditions, with IPS = {}", s.problem_type));
+    const int functions = s.dimension * segments();
+    const int needed = s.boundary_conditions + s.integral_conditions - functions + 1;
+    const std::string count = fmt::format("NBC + NINT - n m + 1 = {} + {} - {} {} + 1 = {}", s.boundary_conditions,
+                                          s.integral_conditions, s.dimension, segments(), needed);
+    if (needed < 1)
+      refuse_constant("NBC", "NBC",
+                      fmt::format("{}, which leaves no parameter free: {}",
+                                  in_quotes(std::to_string(s.boundary_conditions)), count),
+                      fmt::format("at least {} conditions for {} functions and one parameter", functions, functions));
+    if (static_cast<int>(s.free_parameters.size()) < needed)
+      refuse_constant("ICP", "ICP", fmt::format("{} parameters", s.free_parameters.size()),
+                      fmt::format("as many as the conditions leave free, {}; a duration is fixed unless it is among "
+                                  "them",
+                                  count));
+  }
+
+  /// Events and jumps of the signature: each is one of the problem in a ring, and there is none without.
+  void signature() const {
+    const bool ring = has_ring(settings_.problem_type);
+    int s = 0;
+    for (const SegmentSettings& segment : settings_.segments) {
+      ++s;
+      const auto check = [&](const char* keyword, int index) {
+        if (ring == (index != no_function)) return;
+        refuse_constant(keyword, fmt::format("{}({})", keyword, s), in_quotes(std::to_string(index)),
+                        ring ? fmt::format("an integer >= 1 with IPS = {}", settings_.problem_type)
+                             : fmt::format("0, or leave it out: with IPS = {} the problem's boundary conditions tie "
+                                           "the segments",
+                                           settings_.problem_type));
+      };
+      check("GCHIND", segment.index.event);
+      check("GCGIND", segment.index.jump);
+    }
   }
 
   void bounds(std::string_view low_keyword, double low, std::string_view high_keyword, double high) const {
@@ -141,6 +183,7 @@ std::vector<Contact> not_chosen(const RunSettings& settings) {
 
 void check_settings(const RunSettings& settings, const PlaceOf& place) {
   const SettingsCheck check(settings, place);
+  check.signature();
   check.free_parameters();
   check.bounds("RL0", settings.parameter_min, "RL1", settings.parameter_max);
   check.bounds("A0", settings.measure_min, "A1", settings.measure_max);

@@ -254,9 +254,14 @@ int SettingsDraft::settle_segment_count() const {
   return std::max<int>(1, static_cast<int>(settings_.segments.size()));
 }
 
+/// Of a list that is not given.
+int SettingsDraft::missing_value(const SegmentInteger& member) const {
+  return member.of_ring && !has_ring(settings_.problem_type) ? no_function : 1;
+}
+
 void SettingsDraft::settle_segment_integers(const Constant& constant, const SegmentInteger& member) {
   const std::size_t count = settings_.segments.size();
-  std::vector<int> values(count, 1);
+  std::vector<int> values(count, missing_value(member));
   if (const auto list = lists_.find(constant.keyword); list != lists_.end()) values = list->second;
   if (values.size() != count)
     refuse(constant, std::string(constant.keyword), place_of(constant.keyword),
@@ -330,7 +335,7 @@ void SettingsDraft::settle_segments() {
     const auto* member = std::get_if<SegmentInteger>(&constant.member);
     if (member == nullptr) continue;
     const bool given = lists_.count(constant.keyword) > 0;
-    if (!given && !same_count && count > 1 && member->of_index != nullptr)
+    if (!given && !same_count && count > 1 && member->of_index != nullptr && missing_value(*member) != no_function)
       refuse(constant, std::string(constant.keyword), place_of(segment_count.keyword),
              fmt::format("nothing for {} segments", count), "one value for each segment");
     if (given || !same_count) settle_segment_integers(constant, *member);

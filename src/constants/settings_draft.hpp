@@ -54,6 +54,7 @@ class SettingsDraft {
   int settle_segment_count() const;
   void check_lengths_agree() const;
   void settle_segments();
+  int missing_value(const SegmentInteger& member) const;
   void settle_segment_integers(const Constant& constant, const SegmentInteger& member);
   void settle_monitors();
   Lists monitors_of_segments(const Constant& constant) const;

@@ -24,26 +24,51 @@ int free_parameter_count(int number, int branch_mode) {
   return type != nullptr ? type->facts().free_parameters : 1;
 }
 
-std::vector<int> free_problem_parameters(const RunSettings& settings) {
-  const int needed = problem_type(settings).facts().free_parameters;
+std::vector<int> free_entries(const RunSettings& settings) {
+  const ProblemType& type = problem_type(settings);
+  const bool ring = type.facts().has_ring;
+  const auto needed = static_cast<std::size_t>(type.free_entries(settings));
   std::vector<int> result;
   for (const int k : settings.free_parameters)
-    if (!is_duration(k, segment_count(settings)) && static_cast<int>(result.size()) < needed) result.push_back(k);
-  if (static_cast<int>(result.size()) < needed)
-    throw UserError(fmt::format(
-        "ICP lists {} problem parameters, IPS = {} with ISW = {} needs {}: durations are free in any case, so name the "
-        "parameters to vary, for example ICP = [1, 61]",
-        result.size(), settings.problem_type, settings.branch_mode, needed));
+    if (result.size() < needed && !(ring && is_duration(k, segment_count(settings)))) result.push_back(k);
+  if (result.size() == needed) return result;
+  throw UserError(
+      ring ? fmt::format(
+                 "ICP lists {} problem parameters, IPS = {} with ISW = {} needs {}: durations are free in any case, so "
+                 "name the parameters to vary, for example ICP = [1, 61]",
+                 result.size(), settings.problem_type, settings.branch_mode, needed)
+           : fmt::format("ICP lists {} free parameters, the conditions leave {} free (NBC + NINT - n m + 1, with n = "
+                         "{} states on m = {} segments): durations are fixed unless they are listed, so name what is "
+                         "to vary",
+                         result.size(), needed, settings.dimension, segment_count(settings)));
+}
+
+std::vector<int> free_problem_parameters(const RunSettings& settings) {
+  std::vector<int> result;
+  for (const int k : free_entries(settings))
+    if (!is_duration(k, segment_count(settings))) result.push_back(k);
   return result;
 }
 
+std::vector<bool> free_durations(const RunSettings& settings) {
+  std::vector<bool> free(settings.segments.size(), problem_type(settings).facts().has_ring);
+  for (const int k : free_entries(settings))
+    if (is_duration(k, segment_count(settings))) free[static_cast<std::size_t>(duration_segment(k))] = true;
+  return free;
+}
+
 std::vector<int> active_parameters(const RunSettings& settings) {
-  const std::vector<int> problem_parameters = free_problem_parameters(settings);
+  const std::vector<int> entries = free_entries(settings);
+  const std::vector<bool> durations = free_durations(settings);
+  const auto is_free = [&](int k) {
+    return is_duration(k, segment_count(settings)) ? durations[static_cast<std::size_t>(duration_segment(k))]
+                                                   : contains(entries, k);
+  };
   std::vector<int> result;
   for (const int k : settings.free_parameters)
-    if (is_duration(k, segment_count(settings)) || contains(problem_parameters, k)) result.push_back(k);
+    if (is_free(k)) result.push_back(k);
   for (int s = 0; s < segment_count(settings); ++s)
-    if (!contains(result, first_duration + s)) result.push_back(first_duration + s);
+    if (is_free(first_duration + s) && !contains(result, first_duration + s)) result.push_back(first_duration + s);
   return result;
 }
 

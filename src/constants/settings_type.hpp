@@ -14,14 +14,20 @@ inline int segment_count(const RunSettings& settings) { return static_cast<int>(
 /// Throws UserError with the list of what there is.
 const ProblemType& problem_type(const RunSettings& settings);
 
-/// How many problem parameters the type frees; that of the nearest type where there is none of this IPS and ISW.
+/// How many problem parameters a type with a ring frees; that of the nearest type where there is none of this IPS and
+/// ISW.
 int free_parameter_count(int number, int branch_mode);
 
-/// The free problem parameters of the run: the first ones in ICP that are no durations. Throws UserError when ICP names
-/// too few.
-std::vector<int> free_problem_parameters(const RunSettings& settings);
+/// The first entries of ICP that the type frees: in a ring problem parameters only. Throws UserError when ICP names too
+/// few.
+std::vector<int> free_entries(const RunSettings& settings);
 
-/// Those and all durations, in the order of ICP, missing durations last: what the run really frees.
+/// The problem parameters among them: what the run frees besides durations.
+std::vector<int> free_problem_parameters(const RunSettings& settings);
+/// One flag for each segment: in a ring every duration is free.
+std::vector<bool> free_durations(const RunSettings& settings);
+
+/// All that the run really frees, in the order of ICP, durations that are free without being in it last.
 std::vector<int> active_parameters(const RunSettings& settings);
 
 /// The segment (from 0) that GCSEGTYP = 2 marks, else the first one.

@@ -83,7 +83,7 @@ BranchSummary ContinuationRun::run(PathPoint start) {
     accept(end_conditions(curve_end(special)));
     if (!limited_) step_.converged(newton_.iterations, number_);
   }
-  summary_.remark = trend_.growing_period(system_.system().parameter_name(settings_.principal));
+  if (settings_.periodic) summary_.remark = trend_.growing_period(system_.system().parameter_name(settings_.principal));
   return summary_;
 }
 
@@ -109,7 +109,7 @@ SpecialPoint ContinuationRun::advance() {
 /// Has the step gone through an equilibrium, to the same orbits run through from another point? Then next_ is moved
 /// back to short of it. Whatever changes sign there is hardly located, for Newton's matrix is singular.
 bool ContinuationRun::leads_through_point() {
-  if (deviation_cosine(here_.orbit, next_.orbit) > opposite) return false;
+  if (!settings_.periodic || deviation_cosine(here_.orbit, next_.orbit) > opposite) return false;
   constexpr int max_steps = 30;
   PathPoint near = here_;
   PathPoint trial = here_;
@@ -139,6 +139,7 @@ bool ContinuationRun::leads_through_point() {
 
 /// Where the branch turns, or ends of itself, because its orbit has shrunk to a point: the end of the branch.
 SpecialPoint ContinuationRun::shrunk_orbit(SpecialPoint special, bool through_point) {
+  if (!settings_.periodic) return special;
   const bool turns =
       through_point || special.type == PointType::fold || special.kind.kind == UserPointKind::impact_velocity;
   if (!trend_.has_shrunk(next_.orbit, turns ? shrunk_where_located : shrunk)) return special;
@@ -196,7 +197,8 @@ SpecialPoint ContinuationRun::end_conditions(SpecialPoint special) {
     special = {};  // what lies beyond the bound was not asked for: the branch ends there with an ordinary end point
   if (ended_) return special;
   const bool is_special = special.type != PointType::ordinary && special.type != PointType::end;
-  summary_.stopped_at_grazing = special.ends_branch;
+  summary_.stopped_at_grazing = special.ends_branch && (special.kind.kind == UserPointKind::contact ||
+                                                        special.kind.kind == UserPointKind::impact_velocity);
   if (is_special && (special.ends_branch || (settings_.stop_at && settings_.stop_at(special))))
     end(EndReason::special_point, special.description);
   else if (special.ends_branch)

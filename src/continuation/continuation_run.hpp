@@ -25,6 +25,7 @@ struct ContinuationSettings {
   double location_tolerance = 1e-7;                      ///< EPSS
   int max_location = 10;                                 ///< ITMX
   bool label_start = true;                               ///< false at a restart: the first point is known already
+  bool periodic = true;                                  ///< a branch of orbits ends where they shrink to a point
   bool clip = false;                                     ///< end on the bounds, not at the first point beyond them
   /// Called for every labelled point; true ends the branch there (STOP).
   std::function<bool(const SpecialPoint&)> stop_at;

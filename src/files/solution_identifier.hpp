@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <string>
+#include "hybrid/parameter_vector.hpp"
 #include "problem_type/problem_type.hpp"
 
 namespace tchat {
@@ -38,8 +39,11 @@ struct SolutionIdentifier {
   std::int64_t states() const { return numbers_per_point() - 1; }
   /// A line that only carries the largest branch and label.
   bool is_empty_entry() const { return time_points() == 0 && lines() == 0; }
-  /// Problem types of this program.
-  bool is_ours() const { return is_own_problem_type(problem_type()); }
+  /// Written by this program; of a problem type that is AUTO's too, where PAR has room for durations.
+  bool is_ours() const {
+    return is_own_problem_type(problem_type()) &&
+           (!is_shared_problem_type(problem_type()) || parameters() - internal_parameters() >= first_duration);
+  }
   bool has_kind() const { return is_ours() && internal_parameters() > 0 && internal_parameters() % kind_values == 0; }
 
   /// How many numbers the solution has after this line, and how many lines they take in AUTO's layout.

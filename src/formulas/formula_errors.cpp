@@ -45,8 +45,9 @@ void FormulaErrors::throw_if_any(const std::string& path, std::string_view text)
   std::string message;
   for (std::size_t k = 0; k < std::min(most_told, sorted.size()); ++k) {
     const auto& [at, what] = sorted[k];
-    message +=
-        fmt::format("{}{}:{}:{}: {}{}", k == 0 ? "" : "\n", path, at.line, at.column, what, shown_place(text, at));
+    if (k > 0) message += '\n';
+    message += at.line == 0 ? fmt::format("{}: {}", path, what)
+                            : fmt::format("{}:{}:{}: {}{}", path, at.line, at.column, what, shown_place(text, at));
   }
   if (sorted.size() > most_told) message += fmt::format("\n{} more mistakes are not shown", sorted.size() - most_told);
   throw UserError(message);

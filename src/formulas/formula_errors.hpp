@@ -7,7 +7,7 @@
 
 namespace tchat::formulas {
 
-/// A place in the text, both counted from 1.
+/// A place in the text, both counted from 1; line 0 is the file as a whole.
 struct Position {
   int line = 1;
   int column = 1;

@@ -88,20 +88,22 @@ class ModelCheck {
   }
 
   void sizes() {
-    const Position end{1, 1};
-    if (model_.names.states().empty()) errors_.add(end, "there is no equation; write one for each state, as x' = v");
+    const Position file_as_a_whole{0, 0};
+    if (model_.names.states().empty())
+      errors_.add(file_as_a_whole, "there is no equation; write one for each state, as x' = v");
     if (model_.names.states().size() > most_states)
-      errors_.add(
-          end, fmt::format("there are {} states, at most {} are allowed", model_.names.states().size(), most_states));
+      errors_.add(file_as_a_whole, fmt::format("there are {} states, at most {} are allowed",
+                                               model_.names.states().size(), most_states));
     if (file().parameters.size() > most_parameters)
       errors_.add(file().parameters[most_parameters].name.at,
                   fmt::format("there are {} parameters, at most {} are allowed; write those that never change as "
                               "'number NAME=VALUE'",
                               file().parameters.size(), most_parameters));
     if (file().definitions.size() + file().functions.size() > most_definitions)
-      errors_.add(end, fmt::format("there are more than {} definitions", most_definitions));
+      errors_.add(file_as_a_whole, fmt::format("there are more than {} definitions", most_definitions));
     if (file().events.empty())
-      errors_.add(end, "there is no event, so no segment of an orbit could end; write one, as event wall = 1 - x");
+      errors_.add(file_as_a_whole,
+                  "there is no event, so no segment of an orbit could end; write one, as event wall = 1 - x");
   }
 
   /// Every expression of the file.

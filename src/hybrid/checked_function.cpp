@@ -69,9 +69,16 @@ std::string CheckedFunction::variable_name(int c) const {
 }
 
 std::string CheckedFunction::row_name(int row) const {
-  const char letter = kind_ == FunctionKind::field ? 'f' : kind_ == FunctionKind::event ? 'h' : 'g';
-  const std::string name = fmt::format("{}_{}", letter, index_);
-  return kind_ == FunctionKind::event ? name : fmt::format("{}[{}]", name, system_.state_name(row + 1));
+  switch (kind_) {
+    case FunctionKind::field:
+      return fmt::format("f_{}[{}]", index_, system_.state_name(row + 1));
+    case FunctionKind::event:
+      return fmt::format("h_{}", index_);
+    case FunctionKind::jump:
+      return fmt::format("g_{}[{}]", index_, system_.state_name(row + 1));
+    default:
+      return fmt::format("q_{}[{}]", index_, row + 1);
+  }
 }
 
 MatrixComparison compare_with_differences(const CheckedFunction& function, const TestPoint& at,

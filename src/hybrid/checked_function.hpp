@@ -27,7 +27,7 @@ class CheckedFunction {
   /// A view of `system`, which outlives this object.
   CheckedFunction(const HybridSystem& system, FunctionKind kind, int index);
 
-  int rows() const { return kind_ == FunctionKind::event ? 1 : system_.dimension(); }
+  int rows() const { return system_.rows(kind_); }
   int variables() const { return system_.dimension() + system_.parameters(); }
 
   Eigen::VectorXd value(const TestPoint& at) const;

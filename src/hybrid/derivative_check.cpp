@@ -274,7 +274,7 @@ std::vector<std::string> check_names(const HybridSystem& system) {
 }
 
 std::string function_line(const HybridSystem& system, const FunctionCheck& check, int order) {
-  static constexpr const char* kinds[] = {"field", "event", "jump"};
+  static constexpr const char* kinds[] = {"field", "event", "jump", "integrand"};
   const std::string name = system.function_name(check.kind, check.index);
   std::string line = fmt::format("  {:<5} {:<2} {:<20}", kinds[static_cast<int>(check.kind)], check.index, name);
   const bool was_compared = check.faults.empty() || !check.worst_first.empty();
@@ -289,16 +289,24 @@ std::string function_line(const HybridSystem& system, const FunctionCheck& check
 
 bool DerivativeCheck::fine() const {
   const auto is_fine = [](const FunctionCheck& check) { return check.faults.empty(); };
-  return faults.empty() && std::all_of(functions.begin(), functions.end(), is_fine);
+  return faults.empty() && (!boundary || boundary->faults.empty()) &&
+         std::all_of(functions.begin(), functions.end(), is_fine);
 }
 
 DerivativeCheck check_derivatives(const HybridSystem& system, const DerivativeCheckOptions& options) {
   const std::vector<TestPoint> points = test_points(system, options);
   DerivativeCheck check;
   check.faults = check_names(system);
-  for (const FunctionKind kind : {FunctionKind::field, FunctionKind::event, FunctionKind::jump})
-    for (int index = 1; index <= system.count(kind); ++index)
+  const auto check_all = [&](FunctionKind kind, int count) {
+    for (int index = 1; index <= count; ++index)
       check.functions.push_back(FunctionChecker(system, kind, index, points, options.seed).run());
+  };
+  for (const FunctionKind kind : {FunctionKind::field, FunctionKind::event, FunctionKind::jump})
+    check_all(kind, system.count(kind));
+  if (system.integral_conditions() > 0) check_all(FunctionKind::integrand, options.segments);
+  if (system.boundary_conditions() > 0)
+    check.boundary =
+        check_boundary(system, options.segments, base_parameters(system, options.parameters), options.seed);
   return check;
 }
 
@@ -314,9 +322,12 @@ std::string to_text(const HybridSystem& system, const DerivativeCheck& check) {
   text += fmt::format("\nSupplied derivatives of order {}; relative distance from finite differences:\n", order);
   if (order == 0) text += "  (none: tchat differentiates the values itself)\n";
   for (const FunctionCheck& function : check.functions) text += function_line(system, function, order);
+  if (check.boundary) text += to_text(*check.boundary);
   for (const std::string& fault : check.faults) text += fmt::format("fault: {}\n", fault);
   for (const FunctionCheck& function : check.functions)
     for (const std::string& fault : function.faults) text += fmt::format("fault: {}\n", fault);
+  if (check.boundary)
+    for (const std::string& fault : check.boundary->faults) text += fmt::format("fault: {}\n", fault);
   return text + (check.fine() ? "No fault found.\n" : "");
 }
 

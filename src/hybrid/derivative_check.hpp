@@ -1,6 +1,6 @@
 /// Compares everything a problem supplies with finite differences, entry by entry, and looks for the usual mistakes.
 ///
-/// For every field, event function and jump, at given states and at random ones near them:
+/// For every field, event function, jump and integrand, at given states and at random ones near them:
 ///   - outputs left unset (NaN at every state), outputs written beyond the end, results that change from call to call,
 ///     parameters read beyond the declared ones;
 ///   - F_x, F_p against extrapolated differences of F;
@@ -11,9 +11,11 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "hybrid/boundary_check.hpp"
 #include "hybrid/hybrid_system.hpp"
 
 namespace tchat {
@@ -24,6 +26,7 @@ struct DerivativeCheckOptions {
   int random_states = 5;                ///< near each given state
   double spread = 0.3;                  ///< x + spread (1 + |x|) times a number in (-1, 1); parameters a tenth of that
   unsigned seed = 1;
+  int segments = 1;  ///< of the orbits on whose ends boundary conditions are checked
 };
 
 /// What was found for one function.
@@ -40,6 +43,7 @@ struct FunctionCheck {
 
 struct DerivativeCheck {
   std::vector<FunctionCheck> functions;
+  std::optional<BoundaryCheck> boundary;
   std::vector<std::string> faults;  ///< of the problem as a whole (names)
   bool fine() const;
 };

@@ -179,15 +179,11 @@ class DifferencedDirectional {
   const double* direction_;
 };
 
-int row_count(const HybridSystem& system, FunctionKind kind) {
-  return kind == FunctionKind::event ? 1 : system.dimension();
-}
-
 }  // namespace
 
 void difference_first(const HybridSystem& system, FunctionKind kind, int index, const double* x, const double* par,
                       std::span<const int> active, double* out, double* dx, double* dp) {
-  difference_columns(Value(system, kind, index), system, row_count(system, kind), x, par, active, dx, dp);
+  difference_columns(Value(system, kind, index), system, system.rows(kind), x, par, active, dx, dp);
   system.value(kind, index, x, par, out);
 }
 
@@ -195,12 +191,12 @@ void difference_by_parameter(const HybridSystem& system, FunctionKind kind, int 
                              const double* par, int k, double* column) {
   MovablePoint point(x, system.dimension(), par);
   double& variable = point.par[static_cast<std::size_t>(k - 1)];
-  difference_column(Value(system, kind, index), point, variable, row_count(system, kind), column);
+  difference_column(Value(system, kind, index), point, variable, system.rows(kind), column);
 }
 
 void difference_second(const HybridSystem& system, FunctionKind kind, int index, const double* x, const double* par,
                        std::span<const int> active, const double* direction, double* out, double* dx, double* dp) {
-  const int rows = row_count(system, kind);
+  const int rows = system.rows(kind);
   const MovablePoint here(x, system.dimension(), par);
   const auto differentiate = [&](const auto& directional) {
     directional(here, out);
@@ -210,6 +206,35 @@ void difference_second(const HybridSystem& system, FunctionKind kind, int index,
     differentiate(SuppliedDirectional(system, kind, index, rows, active, direction));
   else
     differentiate(DifferencedDirectional(system, kind, index, rows, active, direction));
+}
+
+void difference_boundary(const HybridSystem& system, const OrbitEnds& at, std::span<const int> active, double* out,
+                         double* dstarts, double* dends, double* dp) {
+  const int rows = system.boundary_conditions();
+  const auto count = static_cast<std::size_t>(system.dimension()) * static_cast<std::size_t>(at.segments);
+  std::vector<double> starts(at.starts, at.starts + count);
+  std::vector<double> ends(at.ends, at.ends + count);
+  std::vector<double> par(at.par, at.par + parameter_length);
+  const OrbitEnds near{at.segments, starts.data(), ends.data(), par.data()};
+  const auto column = [&](double& variable, double* derivative) {
+    const double here = variable;
+    const auto moved = [&](double t, double* values) {
+      variable = here + t;
+      system.boundary(near, values);
+    };
+    difference(moved, computed, 1.0 + std::abs(here), rows, derivative);
+    variable = here;
+  };
+  for (std::size_t c = 0; c < count; ++c) {
+    const std::size_t place = c * static_cast<std::size_t>(rows);
+    column(starts[c], dstarts + place);
+    column(ends[c], dends + place);
+  }
+  for (const int k : active) {
+    column(par[static_cast<std::size_t>(k - 1)], dp);
+    dp += rows;
+  }
+  system.boundary(at, out);
 }
 
 }  // namespace tchat

@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "hybrid/difference_derivatives.hpp"
+#include "hybrid/parameter_vector.hpp"
 
 namespace tchat {
 
@@ -36,9 +37,16 @@ HybridSystem::HybridSystem(const tchat_problem& table) : table_(&table) {
           fmt::format("its dimension is {}, allowed are 1..1000", table.dimension));
   require(table.parameters >= 0 && table.parameters <= 60,
           fmt::format("it has {} parameters, allowed are 0..60", table.parameters));
-  require(table.fields >= 1 && table.events >= 1 && table.jumps >= 1,
+  // Boundary value problems need no events and jumps.
+  const int least = table.boundary_conditions > 0 ? 0 : 1;
+  require(table.fields >= 1 && table.events >= least && table.jumps >= least,
           fmt::format("it has {} fields, {} events and {} jumps, at least one of each is needed", table.fields,
                       table.events, table.jumps));
+  require(table.boundary_conditions >= 0 && table.boundary_conditions <= 1000 && table.integral_conditions >= 0 &&
+              table.integral_conditions <= 1000,
+          fmt::format("it has {} boundary and {} integral conditions, allowed are 0..1000 of each",
+                      table.boundary_conditions, table.integral_conditions));
+  require(table.boundary_conditions == 0 || table.boundary != nullptr, "its table has no function `boundary`");
   require(table.value != nullptr, "its table has no function `value`");
   require(table.derivative_order < 1 || table.first != nullptr, "its table has no function `first`");
   require(table.derivative_order < 2 || table.second != nullptr, "its table has no function `second`");
@@ -52,8 +60,10 @@ int HybridSystem::count(FunctionKind kind) const {
       return table_->fields;
     case FunctionKind::event:
       return table_->events;
-    default:
+    case FunctionKind::jump:
       return table_->jumps;
+    default:
+      return table_->integral_conditions > 0 ? max_segments : 0;
   }
 }
 
@@ -69,8 +79,10 @@ std::string HybridSystem::function_name(FunctionKind kind, int index) const {
       return name_or(table_->field_names, table_->fields, index, "field {}");
     case FunctionKind::event:
       return name_or(table_->event_names, table_->events, index, "event {}");
-    default:
+    case FunctionKind::jump:
       return name_or(table_->jump_names, table_->jumps, index, "jump {}");
+    default:
+      return fmt::format("integrand on segment {}", index);
   }
 }
 
@@ -118,6 +130,15 @@ void HybridSystem::second(FunctionKind kind, int index, const double* x, const d
                    direction, out, dx, dp);
   else
     difference_second(*this, kind, index, x, par, active, direction, out, dx, dp);
+}
+
+void HybridSystem::boundary_first(const OrbitEnds& at, std::span<const int> active, double* out, double* dstarts,
+                                  double* dends, double* dp) const {
+  if (table_->derivative_order >= 1 && table_->boundary_first != nullptr)
+    table_->boundary_first(table_->self, at.segments, at.starts, at.ends, at.par, active.data(),
+                           static_cast<int>(active.size()), out, dstarts, dends, dp);
+  else
+    difference_boundary(*this, at, active, out, dstarts, dends, dp);
 }
 
 bool all_finite(const double* values, int count) {

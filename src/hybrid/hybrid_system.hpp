@@ -1,5 +1,6 @@
 /// A hybrid dynamical system as the rest of tchat sees it: fields f_i, event functions h_j and jumps g_k with their
-/// derivatives, over a problem table (plugin, or a class compiled into a test).
+/// derivatives, over a problem table (plugin, or a class compiled into a test); and, for boundary value problems, the
+/// boundary conditions and integrands that the problem has of its own.
 ///
 /// Indices count from 1. x has `dimension()` entries, par is a ParameterVector's data (parameter_length entries).
 /// Matrices are column-major. Evaluation never allocates and never throws; a function that cannot be evaluated gives
@@ -16,7 +17,15 @@
 
 namespace tchat {
 
-enum class FunctionKind { field = TCHAT_FIELD, event = TCHAT_EVENT, jump = TCHAT_JUMP };
+enum class FunctionKind { field = TCHAT_FIELD, event = TCHAT_EVENT, jump = TCHAT_JUMP, integrand = TCHAT_INTEGRAND };
+
+/// The ends of the segments of an orbit, n x m each, and PAR with the durations, for the boundary conditions.
+struct OrbitEnds {
+  int segments;
+  const double* starts;
+  const double* ends;
+  const double* par;
+};
 
 class HybridSystem {
  public:
@@ -26,8 +35,15 @@ class HybridSystem {
 
   int dimension() const { return table_->dimension; }
   int parameters() const { return table_->parameters; }
-  /// How many functions of a kind there are.
+  /// How many functions of a kind there are; integrands are one for each segment, whatever their number.
   int count(FunctionKind kind) const;
+  /// How many values a function of a kind has.
+  int rows(FunctionKind kind) const {
+    if (kind == FunctionKind::event) return 1;
+    return kind == FunctionKind::integrand ? table_->integral_conditions : table_->dimension;
+  }
+  int boundary_conditions() const { return table_->boundary_conditions; }
+  int integral_conditions() const { return table_->integral_conditions; }
   const tchat_problem& table() const { return *table_; }
 
   std::string name() const { return table_->name; }
@@ -38,7 +54,7 @@ class HybridSystem {
   /// 1-based index of a parameter by its name; 0 if there is none.
   int parameter_index(const std::string& name) const;
 
-  /// out = F(x, p): 1 entry for an event function, dimension() otherwise.
+  /// out = F(x, p), rows(kind) entries. The index of an integrand is the number of its segment.
   void value(FunctionKind kind, int index, const double* x, const double* par, double* out) const {
     table_->value(table_->self, static_cast<int>(kind), index, x, par, out);
   }
@@ -62,6 +78,15 @@ class HybridSystem {
   /// D = F_x v + F_p w and its derivatives by x and the active parameters; direction = (v, w).
   void second(FunctionKind kind, int index, const double* x, const double* par, std::span<const int> active,
               const double* direction, double* out, double* dx, double* dp) const;
+
+  /// The boundary conditions: boundary_conditions() values.
+  void boundary(const OrbitEnds& at, double* out) const {
+    table_->boundary(table_->self, at.segments, at.starts, at.ends, at.par, out);
+  }
+  /// With their derivatives (rows: conditions) by all starts, all ends (n m columns each) and the active entries of
+  /// PAR, durations among them.
+  void boundary_first(const OrbitEnds& at, std::span<const int> active, double* out, double* dstarts, double* dends,
+                      double* dp) const;
 
  private:
   const tchat_problem* table_;

@@ -8,6 +8,9 @@
 
 namespace tchat {
 
+/// In the place of an event or a jump: there is none, as on the segments of boundary value problems.
+inline constexpr int no_function = 0;
+
 /// (i, j, k): flow with field i until event function j falls to zero, then apply jump k. All count from 1.
 struct IndexVector {
   int field = 1;

@@ -36,7 +36,8 @@ double parameter(const LabelledSolution& solution, int k) {
 double duration(const LabelledSolution& solution, int s) {
   const bool old_file = !tells_problem_type(solution.problem_type);
   const double own = parameter(solution, first_duration + s);
-  if (is_own_problem_type(solution.problem_type) || (old_file && own != 0.0)) return own;
+  const bool of_auto = is_shared_problem_type(solution.problem_type) && own == 0.0;
+  if ((is_own_problem_type(solution.problem_type) && !of_auto) || (old_file && own != 0.0)) return own;
   const std::optional<int> k = auto_period(solution.problem_type);
   const double period = k ? parameter(solution, *k) : 0.0;
   return period > 0.0 ? period : 1.0;
@@ -63,6 +64,7 @@ OrbitTrace orbit_trace(const LabelledSolution& solution, const std::string& name
     throw UserError(fmt::format("{}: label {} is an equilibrium, not an orbit", path, solution.label));
   OrbitTrace trace;
   trace.name = name;
+  trace.is_closed = has_ring(solution.problem_type);
   trace.parameters = solution.parameters;
   const int segments = segments_of(solution, dimension, path);
   const Eigen::Index n = solution.states.rows() / segments;

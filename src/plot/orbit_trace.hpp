@@ -21,7 +21,7 @@ struct OrbitTrace {
   std::vector<std::pair<int, double>> free_parameters;  ///< PAR index and value, durations left out
   std::vector<double> parameters;                       ///< PAR(1), PAR(2), ...
   std::vector<TraceSegment> segments;
-  bool is_closed = true;  ///< periodic; a trajectory is not
+  bool is_closed = true;  ///< periodic; a trajectory and the solution of a boundary value problem are not
   LineKind kind = LineKind::stable;
 
   int dimension() const { return static_cast<int>(segments.front().states.rows()); }

@@ -27,12 +27,14 @@ Function find(void* library, const char* name) {
 }
 
 template <class Function>
-Function require(const std::string& path, void* library, const char* symbol, const char* subroutine) {
-  if (const Function function = find<Function>(library, symbol)) return function;
-  throw UserError(
-      fmt::format("plugin {}: SUBROUTINE {} is missing (the library does not export {}).\n"
-                  "  A Fortran problem has GCFUNC (fields), GCBOUND (event functions) and JUMPMAP (jumps).",
-                  path, subroutine, symbol));
+Function require(const std::string& path, void* library, const char* symbol, const char* subroutine, bool is_needed) {
+  const Function function = find<Function>(library, symbol);
+  if (function != nullptr || !is_needed) return function;
+  throw UserError(fmt::format(
+      "plugin {}: SUBROUTINE {} is missing (the library does not export {}).\n"
+      "  A Fortran problem has GCFUNC (fields), GCBOUND (event functions) and JUMPMAP (jumps), for boundary "
+      "value problems GCFUNC, GCBCND (boundary conditions) and, with NINT > 0, GCICND (integrands).",
+      path, subroutine, symbol));
 }
 
 }  // namespace
@@ -44,24 +46,28 @@ bool is_fortran_problem(void* library) {
 
 void FortranCalls::Free::operator()(double* memory) const { std::free(memory); }
 
-FortranCalls::FortranCalls(const std::string& path, void* library, int n, int order)
-    : n_(n),
-      value_room_(n + beyond),
-      field_(require<Derivatives>(path, library, "gcfunc_", "GCFUNC")),
-      event_(require<Derivatives>(path, library, "gcbound_", "GCBOUND")),
-      jump_(require<Jump>(path, library, "jumpmap_", "JUMPMAP")),
+FortranCalls::FortranCalls(const std::string& path, void* library, const ProblemSizes& sizes)
+    : n_(sizes.dimension),
+      value_room_(std::max(n_, sizes.integral_conditions) + beyond),
+      field_(require<Derivatives>(path, library, "gcfunc_", "GCFUNC", true)),
+      event_(require<Derivatives>(path, library, "gcbound_", "GCBOUND", !sizes.events.empty())),
+      integrand_(require<Derivatives>(path, library, "gcicnd_", "GCICND", sizes.integral_conditions > 0)),
+      jump_(require<Jump>(path, library, "jumpmap_", "JUMPMAP", !sizes.jumps.empty())),
       starting_values_(find<StartingValues>(library, "gcstpnt_")),
-      output_parameters_(find<OutputParameters>(library, "gcpvls_")) {
-  const bool second = order >= 2 || n <= large;
-  const auto size = static_cast<std::size_t>(n);
-  const std::size_t room = size + beyond;
-  const std::size_t extents[] = {room,
+      output_parameters_(find<OutputParameters>(library, "gcpvls_")),
+      boundary_(require<Boundary>(path, library, "gcbcnd_", "GCBCND", sizes.boundary_conditions > 0)),
+      integrals_(sizes.integral_conditions),
+      count_(sizes.boundary_conditions) {
+  const bool second = sizes.derivative_order >= 2 || n_ <= large;
+  const auto size = static_cast<std::size_t>(n_);
+  const auto room = static_cast<std::size_t>(value_room_);
+  const std::size_t extents[] = {size + beyond,
                                  static_cast<std::size_t>(parameter_length) + beyond,
                                  room,
                                  size * room + beyond,
-                                 size * parameter_length + room,
+                                 room * parameter_length + room,
                                  second ? size * size * room + beyond : 1,
-                                 second ? size * size * parameter_length + room : 1};
+                                 second ? room * size * parameter_length + room : 1};
   std::size_t total = 0;
   for (const std::size_t extent : extents) total += extent;
   // Large arrays that are never touched cost nothing this way.
@@ -73,6 +79,28 @@ FortranCalls::FortranCalls(const std::string& path, void* library, int n, int or
     *arrays[k] = next;
     next += extents[k];
   }
+}
+
+void FortranCalls::boundary(const OrbitEnds& at, int order) {
+  const auto states = static_cast<std::size_t>(n_) * static_cast<std::size_t>(at.segments);
+  const auto count = static_cast<std::size_t>(count_);
+  starts_.assign(at.starts, at.starts + states);
+  ends_.assign(at.ends, at.ends + states);
+  std::copy(at.par, at.par + parameter_length, par_);
+  conditions_.assign(count + beyond, unset());
+  by_starts_.assign(count * states + beyond, 0.0);
+  by_ends_.assign(count * states + beyond, 0.0);
+  by_par_.assign(count * parameter_length + beyond, 0.0);
+  Integer n = n_;
+  Integer segments = at.segments;
+  Integer wanted = order;
+  Integer rows = count_;
+  boundary_(&n, &segments, starts_.data(), ends_.data(), par_, &wanted, &rows, conditions_.data(), by_starts_.data(),
+            by_ends_.data(), by_par_.data());
+}
+
+bool FortranCalls::wrote_beyond_conditions() const {
+  return !std::all_of(conditions_.begin() + count_, conditions_.end(), [](double value) { return is_unset(value); });
 }
 
 double FortranCalls::unset() { return std::bit_cast<double>(unset_bits); }
@@ -96,7 +124,7 @@ void FortranCalls::clear_derivatives(int order, std::span<const int> active) {
 
 void FortranCalls::evaluate(FunctionKind kind, int index, const double* x, const double* par, int order,
                             std::span<const int> active) {
-  rows_ = kind == FunctionKind::event ? 1 : n_;
+  rows_ = kind == FunctionKind::event ? 1 : kind == FunctionKind::integrand ? integrals_ : n_;
   load(x, par);
   std::fill(value_, value_ + value_room_, unset());
   clear_derivatives(order, active);
@@ -108,7 +136,9 @@ void FortranCalls::evaluate(FunctionKind kind, int index, const double* x, const
     jump_(&n, x_, par_, value_, &restitution, dx_, dp_, &number);
     return;
   }
-  const Derivatives function = kind == FunctionKind::field ? field_ : event_;
+  const Derivatives function = kind == FunctionKind::field       ? field_
+                               : kind == FunctionKind::integrand ? integrand_
+                                                                 : event_;
   function(&n, x_, par_, &wanted, value_, dx_, dp_, dxx_, dxp_, &number);
 }
 

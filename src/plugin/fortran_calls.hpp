@@ -11,14 +11,15 @@
 #include <vector>
 
 #include "hybrid/hybrid_system.hpp"
+#include "plugin/problem_sizes.hpp"
 
 namespace tchat {
 
 class FortranCalls {
  public:
-  /// Looks the subroutines up in the library; throws UserError, naming `path`, when a required one is missing. Room for
-  /// n states; for second derivatives only if `order` is 2 or n is not large.
-  FortranCalls(const std::string& path, void* library, int n, int order);
+  /// Looks the subroutines up in the library; throws UserError, naming `path`, when one that the sizes make necessary
+  /// is missing. Room for second derivatives only if their order is 2 or n is not large.
+  FortranCalls(const std::string& path, void* library, const ProblemSizes& sizes);
 
   /// F and, by `order`, its derivatives of order 1 and 2; those by parameters for the `active` ones only.
   void evaluate(FunctionKind kind, int index, const double* x, const double* par, int order,
@@ -30,6 +31,16 @@ class FortranCalls {
   const double* by_parameter(int k) const { return dp_ + k * rows_; }  // rows
   double by_states(int i, int j, int k) const { return dxx_[i + rows_ * (j + n_ * k)]; }
   double by_state_and_parameter(int i, int j, int k) const { return dxp_[i + rows_ * (j + n_ * k)]; }
+  /// GCBCND at the ends of all segments: the conditions and, with `order` 1, their derivatives.
+  void boundary(const OrbitEnds& at, int order);
+  // Results of the last boundary(): one for each condition, and columns of as many.
+  const double* conditions() const { return &conditions_[0]; }
+  const double* by_starts() const { return &by_starts_[0]; }
+  const double* by_ends() const { return &by_ends_[0]; }
+  const double* by_boundary_parameter(int k) const { return &by_par_[static_cast<std::size_t>(k * count_)]; }
+  bool left_condition_unset(int i) const { return is_unset(conditions_[static_cast<std::size_t>(i)]); }
+  bool wrote_beyond_conditions() const;
+
   /// Did the last evaluate() leave entry i unset, or write beyond its last entry?
   bool left_unset(int i) const;
   bool wrote_beyond() const;
@@ -50,6 +61,8 @@ class FortranCalls {
   using Derivatives = void (*)(Integer*, double*, double*, Integer*, double*, double*, double*, double*, double*,
                                Integer*);
   using Jump = void (*)(Integer*, double*, double*, double*, double*, double*, double*, Integer*);
+  using Boundary = void (*)(Integer*, Integer*, double*, double*, double*, Integer*, Integer*, double*, double*,
+                            double*, double*);
   using StartingValues = void (*)(Integer*, double*, double*, double*, Integer*);
   using OutputParameters = void (*)(Integer*, double*, double*, Integer*);
 
@@ -63,10 +76,14 @@ class FortranCalls {
   int n_;
   int rows_ = 1;
   int value_room_;
-  Derivatives field_ = nullptr, event_ = nullptr;
+  Derivatives field_ = nullptr, event_ = nullptr, integrand_ = nullptr;
   Jump jump_ = nullptr;
   StartingValues starting_values_ = nullptr;
   OutputParameters output_parameters_ = nullptr;
+  Boundary boundary_ = nullptr;
+  int integrals_;  // NINT
+  int count_;      // NBC
+  std::vector<double> starts_, ends_, conditions_, by_starts_, by_ends_, by_par_;
 
   std::unique_ptr<double, Free> memory_;
   double *x_, *par_, *value_, *dx_, *dp_, *dxx_, *dxp_;  // in memory_

@@ -15,14 +15,14 @@ namespace tchat {
 
 namespace {
 
-constexpr std::array<const char*, 3> subroutines = {"GCFUNC", "GCBOUND", "JUMPMAP"};
-constexpr std::array<const char*, 3> outputs = {"FI", "H", "UJUMP"};
+constexpr std::array<const char*, 4> subroutines = {"GCFUNC", "GCBOUND", "JUMPMAP", "GCICND"};
+constexpr std::array<const char*, 4> outputs = {"FI", "H", "UJUMP", "FI"};
 
 FunctionKind kind_of(std::int32_t kind) { return static_cast<FunctionKind>(kind); }
 
 std::size_t place(FunctionKind kind) { return static_cast<std::size_t>(kind); }
 
-int last_or_one(const std::vector<int>& indices) { return indices.empty() ? 1 : indices.back(); }
+int last_of(const std::vector<int>& indices, int least) { return indices.empty() ? least : indices.back(); }
 
 std::span<const int> list(const std::int32_t* active, std::int32_t count) {
   return {active, static_cast<std::size_t>(count)};
@@ -31,9 +31,7 @@ std::span<const int> list(const std::int32_t* active, std::int32_t count) {
 }  // namespace
 
 FortranProblem::FortranProblem(const std::string& path, void* library, const ProblemSizes& sizes)
-    : sizes_(sizes),
-      name_(std::filesystem::path(path).stem().string()),
-      calls_(path, library, sizes.dimension, sizes.derivative_order) {
+    : sizes_(sizes), name_(std::filesystem::path(path).stem().string()), calls_(path, library, sizes) {
   read_starting_values(path);
   fill_table();
   try_functions(path);
@@ -75,9 +73,10 @@ void FortranProblem::fill_table() {
   table_.struct_size = sizeof(tchat_problem);
   table_.dimension = sizes_.dimension;
   table_.parameters = sizes_.parameters;
-  table_.fields = last_or_one(sizes_.fields);
-  table_.events = last_or_one(sizes_.events);
-  table_.jumps = last_or_one(sizes_.jumps);
+  const int least = sizes_.boundary_conditions > 0 ? 0 : 1;
+  table_.fields = last_of(sizes_.fields, 1);
+  table_.events = last_of(sizes_.events, least);
+  table_.jumps = last_of(sizes_.jumps, least);
   table_.derivative_order = sizes_.derivative_order;
   table_.name = name_.c_str();
   table_.initial_parameters = parameters_.data();
@@ -88,7 +87,7 @@ void FortranProblem::fill_table() {
                     double* out) {
     const auto& problem = *static_cast<const FortranProblem*>(pointer);
     problem.calls_.evaluate(kind_of(kind), index, x, par, 0, {});
-    std::copy_n(problem.calls_.value(), kind == TCHAT_EVENT ? 1 : problem.sizes_.dimension, out);
+    std::copy_n(problem.calls_.value(), problem.rows(kind_of(kind)), out);
   };
   table_.first = [](const void* pointer, std::int32_t kind, std::int32_t index, const double* x, const double* par,
                     const std::int32_t* active, std::int32_t count, double* out, double* dx, double* dp) {
@@ -100,6 +99,7 @@ void FortranProblem::fill_table() {
     static_cast<const FortranProblem*>(pointer)->second(kind_of(kind), index, x, par, list(active, count), direction,
                                                         out, dx, dp);
   };
+  add_conditions();
   if (calls_.has_output_parameters())
     table_.output_parameters = [](const void* pointer, std::int32_t segment, const double* x, double* par) {
       static_cast<const FortranProblem*>(pointer)->calls_.output_parameters(segment, x, par);
@@ -109,9 +109,32 @@ void FortranProblem::fill_table() {
   first_order_system_.emplace(first_order_);
 }
 
+void FortranProblem::add_conditions() {
+  table_.boundary_conditions = sizes_.boundary_conditions;
+  table_.integral_conditions = sizes_.integral_conditions;
+  table_.boundary = [](const void* pointer, std::int32_t segments, const double* starts, const double* ends,
+                       const double* par, double* out) {
+    const auto& problem = *static_cast<const FortranProblem*>(pointer);
+    problem.calls_.boundary({segments, starts, ends, par}, 0);
+    std::copy_n(problem.calls_.conditions(), problem.sizes_.boundary_conditions, out);
+  };
+  table_.boundary_first = [](const void* pointer, std::int32_t segments, const double* starts, const double* ends,
+                             const double* par, const std::int32_t* active, std::int32_t count, double* out,
+                             double* dstarts, double* dends, double* dp) {
+    const auto& problem = *static_cast<const FortranProblem*>(pointer);
+    const int rows = problem.sizes_.boundary_conditions;
+    const int states = rows * problem.sizes_.dimension * segments;
+    problem.calls_.boundary({segments, starts, ends, par}, 1);
+    std::copy_n(problem.calls_.conditions(), rows, out);
+    std::copy_n(problem.calls_.by_starts(), states, dstarts);
+    std::copy_n(problem.calls_.by_ends(), states, dends);
+    for (const int k : list(active, count)) dp = std::copy_n(problem.calls_.by_boundary_parameter(k - 1), rows, dp);
+  };
+}
+
 void FortranProblem::first(FunctionKind kind, int index, const double* x, const double* par,
                            std::span<const int> active, double* out, double* dx, double* dp) const {
-  const int rows = kind == FunctionKind::event ? 1 : sizes_.dimension;
+  const int rows = this->rows(kind);
   calls_.evaluate(kind, index, x, par, 1, active);
   std::copy_n(calls_.value(), rows, out);
   std::copy_n(calls_.by_state(), rows * sizes_.dimension, dx);
@@ -132,7 +155,7 @@ void FortranProblem::second(FunctionKind kind, int index, const double* x, const
                             std::span<const int> active, const double* direction, double* out, double* dx,
                             double* dp) const {
   const int n = sizes_.dimension;
-  const int rows = kind == FunctionKind::event ? 1 : n;
+  const int rows = this->rows(kind);
   const int parameters = static_cast<int>(active.size());
   const double* const v = direction;
   const double* const w = direction + n;
@@ -171,6 +194,9 @@ void FortranProblem::try_functions(const std::string& path) const {
   for (const int i : sizes_.fields) try_function(path, FunctionKind::field, i);
   for (const int j : sizes_.events) try_function(path, FunctionKind::event, j);
   for (const int k : sizes_.jumps) try_function(path, FunctionKind::jump, k);
+  for (int s = 1; sizes_.integral_conditions > 0 && s <= sizes_.segments; ++s)
+    try_function(path, FunctionKind::integrand, s);
+  if (sizes_.boundary_conditions > 0) try_boundary(path);
 }
 
 void FortranProblem::try_function(const std::string& path, FunctionKind kind, int index) const {
@@ -182,10 +208,11 @@ void FortranProblem::try_function(const std::string& path, FunctionKind kind, in
   const int n = sizes_.dimension;
   if (calls_.wrote_beyond())
     throw UserError(
-        fmt::format("plugin {}: {} with SEGNO = {} sets more than GCNDIM = {} entries of {}.\n"
-                    "  It is written for more states: set NDIM in the constants file to their number.",
-                    path, subroutine, index, n, output));
-  const int rows = kind == FunctionKind::event ? 1 : n;
+        fmt::format("plugin {}: {} with SEGNO = {} sets more than {} = {} entries of {}.\n"
+                    "  It is written for more: set {} in the constants file to their number.",
+                    path, subroutine, index, kind == FunctionKind::integrand ? "NINT" : "GCNDIM", rows(kind), output,
+                    kind == FunctionKind::integrand ? "NINT" : "NDIM"));
+  const int rows = this->rows(kind);
   for (int i = 0; i < rows; ++i) {
     if (!calls_.left_unset(i)) continue;
     const std::string entry = kind == FunctionKind::event ? output : fmt::format("{}({})", output, i + 1);
@@ -195,8 +222,29 @@ void FortranProblem::try_function(const std::string& path, FunctionKind kind, in
                     path, subroutine, index, entry, n, index,
                     kind == FunctionKind::field   ? "GCFIND"
                     : kind == FunctionKind::event ? "GCHIND or GCHGRZIND"
-                                                  : "GCGIND or GRJUMP"));
+                    : kind == FunctionKind::jump  ? "GCGIND or GRJUMP"
+                                                  : "GCNOSEG"));
   }
+}
+
+void FortranProblem::try_boundary(const std::string& path) const {
+  std::vector<double> par(parameter_length, 0.0);
+  std::copy(parameters_.begin(), parameters_.end(), par.begin());
+  std::fill_n(par.begin() + first_duration - 1, sizes_.segments, 1.0);
+  std::vector<double> states;
+  for (int s = 0; s < sizes_.segments; ++s) states.insert(states.end(), state_.begin(), state_.end());
+  calls_.boundary({sizes_.segments, states.data(), states.data(), par.data()}, 0);
+  if (calls_.wrote_beyond_conditions())
+    throw UserError(
+        fmt::format("plugin {}: GCBCND sets more than NBC = {} entries of FB.\n"
+                    "  Set NBC in the constants file to their number.",
+                    path, sizes_.boundary_conditions));
+  for (int i = 0; i < sizes_.boundary_conditions; ++i)
+    if (calls_.left_condition_unset(i))
+      throw UserError(
+          fmt::format("plugin {}: GCBCND leaves FB({}) unset.\n"
+                      "  Set it there, or correct NBC = {} in the constants file.",
+                      path, i + 1, sizes_.boundary_conditions));
 }
 
 }  // namespace tchat

@@ -9,6 +9,10 @@
 ///         H, DHDX(N), DHDP(*), DHDXX(N,N), DHDXDP(N,*)
 ///     JUMPMAP(GCNDIM, U1, PAR, UJUMP, COEFFRES, UJUMPDX, UJUMPDP, SEGNO)              jump SEGNO
 ///         UJUMP(N), UJUMPDX(N,N), UJUMPDP(N,*)
+///     GCBCND (GCNDIM, NSEG, X0, X1, PAR, GCIDIFF, NBC, FB, DFBDX0, DFBDX1, DFBDP)     boundary conditions (IPS = 4)
+///         X0(N,NSEG), X1(N,NSEG), FB(NBC), DFBDX0(NBC,N,NSEG), DFBDX1(NBC,N,NSEG), DFBDP(NBC,*)
+///     GCICND (GCNDIM, X, PAR, GCIDIFF, FI, DFIDX, DFIDP, DFIDXDX, DFIDXDP, SEGNO)     integrands on segment SEGNO
+///         FI(NINT), DFIDX(NINT,N), DFIDP(NINT,*), DFIDXDX(NINT,N,N), DFIDXDP(NINT,N,*)
 ///     GCSTPNT(GCNDIM, X, PAR, T, SEGNO)    optional: starting values of PAR, durations included, and a state
 ///     GCPVLS (GCNDIM, X, PAR, SEGNO)       optional: sets entries of PAR that are output; X at the end of segment
 ///     SEGNO
@@ -47,8 +51,15 @@ class FortranProblem {
  private:
   void read_starting_values(const std::string& path);
   void fill_table();
+  void add_conditions();
   void try_functions(const std::string& path) const;
   void try_function(const std::string& path, FunctionKind kind, int index) const;
+  void try_boundary(const std::string& path) const;
+  int rows(FunctionKind kind) const {
+    return kind == FunctionKind::event       ? 1
+           : kind == FunctionKind::integrand ? sizes_.integral_conditions
+                                             : sizes_.dimension;
+  }
 
   void first(FunctionKind kind, int index, const double* x, const double* par, std::span<const int> active, double* out,
              double* dx, double* dp) const;

@@ -11,7 +11,9 @@ namespace tchat {
 namespace {
 
 const char* place_of(std::int32_t kind) {
-  return kind == TCHAT_FIELD ? "in field" : kind == TCHAT_EVENT ? "in event function" : "in jump";
+  if (kind == TCHAT_FIELD) return "in field";
+  if (kind == TCHAT_EVENT) return "in event function";
+  return kind == TCHAT_JUMP ? "in jump" : "in the integrand of segment";
 }
 
 void set_nan(double* values, int count) { std::fill(values, values + count, NAN); }
@@ -77,6 +79,33 @@ struct GuardedProblem::Calls {
     }
   }
 
+  static void boundary(const void* self, std::int32_t segments, const double* starts, const double* ends,
+                       const double* par, double* out) {
+    const tchat_problem& plugin = object(self).plugin_;
+    const PluginCall call(object(self).path_.c_str(), "in the boundary conditions");
+    try {
+      plugin.boundary(plugin.self, segments, starts, ends, par, out);
+    } catch (...) {
+      set_nan(out, plugin.boundary_conditions);
+    }
+  }
+
+  static void boundary_first(const void* self, std::int32_t segments, const double* starts, const double* ends,
+                             const double* par, const std::int32_t* active, std::int32_t count, double* out,
+                             double* dstarts, double* dends, double* dp) {
+    const tchat_problem& plugin = object(self).plugin_;
+    const PluginCall call(object(self).path_.c_str(), "in the boundary conditions");
+    try {
+      plugin.boundary_first(plugin.self, segments, starts, ends, par, active, count, out, dstarts, dends, dp);
+    } catch (...) {
+      const int rows = plugin.boundary_conditions;
+      set_nan(out, rows);
+      set_nan(dstarts, rows * plugin.dimension * segments);
+      set_nan(dends, rows * plugin.dimension * segments);
+      if (count > 0) set_nan(dp, rows * count);
+    }
+  }
+
   static void user_value(const void* self, const double* x, const double* par, double* out) {
     const tchat_problem& plugin = object(self).plugin_;
     const PluginCall call(object(self).path_.c_str(), "in the user functions (user_value)");
@@ -99,7 +128,10 @@ struct GuardedProblem::Calls {
   }
 
  private:
-  static int rows(const tchat_problem& plugin, std::int32_t kind) { return kind == TCHAT_EVENT ? 1 : plugin.dimension; }
+  static int rows(const tchat_problem& plugin, std::int32_t kind) {
+    if (kind == TCHAT_EVENT) return 1;
+    return kind == TCHAT_INTEGRAND ? plugin.integral_conditions : plugin.dimension;
+  }
 
   static void set_all(const tchat_problem& plugin, std::int32_t kind, int count, double* out, double* dx, double* dp) {
     const int r = rows(plugin, kind);
@@ -119,6 +151,8 @@ GuardedProblem::GuardedProblem(const tchat_problem& plugin, const std::string& p
   table_.value = &Calls::value;
   if (plugin.first != nullptr) table_.first = &Calls::first;
   if (plugin.second != nullptr) table_.second = &Calls::second;
+  if (plugin.boundary != nullptr) table_.boundary = &Calls::boundary;
+  if (plugin.boundary_first != nullptr) table_.boundary_first = &Calls::boundary_first;
   if (plugin.successors != nullptr) table_.successors = &Calls::successors;
   if (plugin.user_value != nullptr) table_.user_value = &Calls::user_value;
   if (plugin.output_parameters != nullptr) table_.output_parameters = &Calls::output_parameters;

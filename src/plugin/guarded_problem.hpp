@@ -12,7 +12,7 @@ namespace tchat {
 
 class GuardedProblem {
  public:
-  /// `plugin` outlives this object; `path` is what messages show.
+  /// A copy of the table, what it points to outlives this object; `path` is what messages show.
   GuardedProblem(const tchat_problem& plugin, const std::string& path);
   GuardedProblem(const GuardedProblem&) = delete;
   GuardedProblem& operator=(const GuardedProblem&) = delete;
@@ -26,7 +26,7 @@ class GuardedProblem {
  private:
   struct Calls;
 
-  const tchat_problem& plugin_;
+  tchat_problem plugin_;
   std::string path_;
   tchat_problem table_;
   mutable std::string thrown_;

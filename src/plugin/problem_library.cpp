@@ -141,10 +141,20 @@ const tchat_problem* find_table(const std::string& path, void* handle) {
   return table;
 }
 
+/// A table made before boundary value problems has none of their members.
+tchat_problem completed(const tchat_problem& table) {
+  if (table.struct_size != TCHAT_PROBLEM_FIRST_SIZE) return table;
+  tchat_problem whole{};
+  std::memcpy(&whole, &table, TCHAT_PROBLEM_FIRST_SIZE);
+  whole.struct_size = sizeof(tchat_problem);
+  return whole;
+}
+
 std::unique_ptr<GuardedProblem> guarded(const std::string& path, void* handle, const FortranProblem* fortran) {
   const tchat_problem* const table = fortran != nullptr ? &fortran->table() : find_table(path, handle);
   try {
-    const HybridSystem checked(*table);
+    const tchat_problem whole = completed(*table);
+    const HybridSystem checked(whole);
     return std::make_unique<GuardedProblem>(checked.table(), path);
   } catch (const std::invalid_argument& error) {
     const bool version = table->abi_version != TCHAT_PROBLEM_ABI || table->struct_size != sizeof(tchat_problem);

@@ -10,6 +10,7 @@ namespace tchat {
 namespace {
 
 void insert(std::vector<int>& ascending, int index) {
+  if (index == no_function) return;
   const auto place = std::lower_bound(ascending.begin(), ascending.end(), index);
   if (place == ascending.end() || *place != index) ascending.insert(place, index);
 }
@@ -29,6 +30,10 @@ ProblemSizes problem_sizes(const RunSettings& settings) {
   sizes.dimension = settings.dimension;
   sizes.segments = static_cast<int>(settings.segments.size());
   sizes.derivative_order = settings.derivative_order;
+  if (!has_ring(settings.problem_type)) {
+    sizes.boundary_conditions = settings.boundary_conditions;
+    sizes.integral_conditions = settings.integral_conditions;
+  }
   for (const int k : settings.free_parameters)
     if (k < first_duration) sizes.parameters = std::max(sizes.parameters, k);
   for (const SegmentSettings& segment : settings.segments) {

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int in_two_parameters = 2;     // ISW, of AUTO too
 constexpr int auto_periodic[] = {2, 7};  // AUTO's IPS of periodic orbits
-constexpr int auto_boundary_value = 4;   // and of boundary value problems
+constexpr int auto_boundary_value = boundary_value.number;
 
 template <class Value>
 std::vector<int> each_once(Value value) {
@@ -82,6 +82,13 @@ std::string problem_families() {
 
 bool is_own_problem_type(int number) { return nearest_problem_type(number, 1) != nullptr; }
 
+bool is_shared_problem_type(int number) { return is_own_problem_type(number) && number == auto_boundary_value; }
+
+bool has_ring(int number) {
+  const ProblemType* type = nearest_problem_type(number, 1);
+  return type == nullptr || type->facts().has_ring;
+}
+
 bool tells_problem_type(int number) { return number != 0; }
 
 bool is_same_problem_type(int number, int other) {
@@ -96,12 +103,12 @@ bool keeps_contact(int number) {
 bool is_two_parameter_curve(int number, int branch_mode) {
   const ProblemType* type = nearest_problem_type(number, branch_mode);
   if (std::abs(branch_mode) == in_two_parameters) return true;
-  return type != nullptr && type->facts().free_parameters >= 2;
+  return type != nullptr && type->facts().has_ring && type->facts().free_parameters >= 2;
 }
 
 bool has_multipliers(int number) {
   const ProblemType* type = nearest_problem_type(number, 1);
-  return type != nullptr ? type->facts().stability != StabilityMeaning::none : number != auto_boundary_value;
+  return type == nullptr || type->facts().stability != StabilityMeaning::none;
 }
 
 bool has_critical_multiplier(int number, int branch_mode) {

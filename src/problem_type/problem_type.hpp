@@ -29,12 +29,13 @@ enum class StabilityMeaning {
 };
 
 struct ProblemFacts {
-  int number;           ///< IPS
-  int branch_mode;      ///< ISW
-  int curve;            ///< type number of the points that such a two-parameter curve consists of; 0: no such curve
-  const char* family;   ///< what IPS says, in words
-  const char* title;    ///< what IPS and ISW say together
-  int free_parameters;  ///< problem parameters that are free, durations not counted
+  int number;            ///< IPS
+  int branch_mode;       ///< ISW
+  int curve;             ///< type number of the points that such a two-parameter curve consists of; 0: no such curve
+  const char* family;    ///< what IPS says, in words
+  const char* title;     ///< what IPS and ISW say together
+  int free_parameters;   ///< problem parameters that are free, durations not counted; 0: the settings decide
+  bool has_ring = true;  ///< events end the segments, jumps tie them in a ring, every duration is free
   StabilityMeaning stability = StabilityMeaning::orbit;
   bool keeps_contact = false;    ///< a segment ends in grazing contact (GCSEGTYP = 2); GCIPSI lists n of xi_n
   bool may_double = false;       ///< the branch may have twice as many segments as its start
@@ -49,6 +50,9 @@ class ProblemType {
   ProblemType& operator=(const ProblemType&) = delete;
   const ProblemFacts& facts() const { return facts_; }
 
+  /// How many entries of ICP are free: in a ring problem parameters, else durations too. Throws UserError where the
+  /// conditions leave none free.
+  virtual int free_entries(const RunSettings&) const { return facts_.free_parameters; }
   /// Can a branch of this type begin at a label of this type (type number without its tens digit)?
   virtual bool begins_at(int) const { return true; }
   /// The rows that tie the segments together.
@@ -90,8 +94,12 @@ std::string problem_families();
 
 // What files say, of which some are AUTO's own.
 
-/// One of ours, not AUTO's.
+/// One of ours; it may be AUTO's too.
 bool is_own_problem_type(int number);
+/// Is a number of ours AUTO's too, whose solutions have no durations but the interval from 0 to 1?
+bool is_shared_problem_type(int number);
+/// Do events end the segments and jumps tie them?
+bool has_ring(int number);
 /// Files of the older generation hold 0.
 bool tells_problem_type(int number);
 /// The same problem, as far as files tell.
@@ -113,5 +121,6 @@ struct ProblemId {
 inline constexpr ProblemId periodic_orbit{180, 1};
 inline constexpr ProblemId branch_switch{180, -1};
 inline constexpr ProblemId grazing_orbit{150, 1};
+inline constexpr ProblemId boundary_value{4, 1};
 
 }  // namespace tchat

@@ -52,6 +52,11 @@ LabelledOrbit read_source(const ResegmentRequest& request, const std::string& pa
         fmt::format("{} was computed with IPS = {}, but {} has IPS = {}; give the constants of that run "
                     "with -c",
                     source.name, solution.problem_type, constants, source.settings.problem_type));
+  if (!has_ring(source.settings.problem_type))
+    throw UserError(
+        fmt::format("{} is of a boundary value problem (IPS = {}): its segments have no signature that could "
+                    "change; `tchat run` restarts from it",
+                    source.name, source.settings.problem_type));
   for (const int k : solution.free_parameters)
     if (!is_duration(k, m)) source.free_parameters.push_back(k);
   source.start = orbit_from_solution(

@@ -144,7 +144,7 @@ FirstPoint first_point(PathFollower& follower, const DefiningSystem& system, con
   } else if (!as_stored) {
     first.correction = follower.newton().history();
   }
-  refuse_empty_orbit(first.point.orbit, start.orbit, selected.source);
+  if (has_ring(settings.problem_type)) refuse_empty_orbit(first.point.orbit, start.orbit, selected.source);
   // A branch point is where the matrix is singular.
   if (!start_is_branch_point(selected)) refuse_singular(follower, system, first.point);
   if (!refusal.empty()) throw ComputationError(refusal);

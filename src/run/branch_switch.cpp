@@ -116,11 +116,14 @@ Bifurcation branch_at(PathFollower& follower, const PathPoint& point) {
   std::size_t row = 0;
   double phase = 0.4;
   for (int s = 0; s < condensed.shape().segments; ++s) {  // the last n rows of each group
-    row += static_cast<std::size_t>(condensed.system().coupling_rows(s) - condensed.shape().dimension);
-    for (int a = 0; a < condensed.shape().dimension; ++a, phase += 1.7) residual.coupling[row++] = std::cos(phase);
+    const int rows = condensed.system().coupling_rows(s);
+    const int filled = std::min(rows, condensed.shape().dimension);
+    row += static_cast<std::size_t>(rows - filled);
+    for (int a = 0; a < filled; ++a, phase += 1.7) residual.coupling[row++] = std::cos(phase);
   }
   OrbitVector v = condensed.make_vector();
-  condensed.solve(residual, std::vector<double>{0.0}, v);
+  const std::vector<double> border(static_cast<std::size_t>(condensed.border_rows()), 0.0);
+  condensed.solve(residual, border, v);
   orient(point.orbit, v);
   return {point.orbit, v, point.tangent};
 }

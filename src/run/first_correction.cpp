@@ -42,6 +42,8 @@ std::string residual_report(CondensedSystem& condensed, const DefiningSystem& de
     for (int r = 0; r < defining.coupling_rows(s); ++r)
       text += fmt::format("\n  {:11.4e}  {}", residual.coupling[coupling++], defining.coupling_name(s, r));
   }
+  for (int r = 0; r < defining.integral_conditions(); ++r)
+    text += fmt::format("\n  {:11.4e}  {}", residual.integral[static_cast<std::size_t>(r)], defining.integral_name(r));
   return text;
 }
 

@@ -51,7 +51,7 @@ bool is_negative(const HybridSystem& system, int event, const Orbit& x, int s) {
 }  // namespace
 
 std::string unwatched_events(const HybridSystem& system, const RunSettings& settings, const Orbit& start) {
-  if (!system.has_successors()) return "";
+  if (!system.has_successors() || !has_ring(settings.problem_type)) return "";
   const std::set<int> seen = watched(settings);
   const Signature signature = settings.signature();
   const std::size_t m = signature.size();

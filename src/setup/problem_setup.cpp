@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <fstream>
@@ -55,6 +56,28 @@ std::string parameter_list(const HybridSystem& system) {
                                   : fmt::format("PAR(1) to PAR({}): {}", system.parameters(), names);
 }
 
+/// The conditions are the problem's; the constants say how many there are, for the count of free parameters.
+void check_conditions(const HybridSystem& system, const RunSettings& settings, const SettingsSource& source) {
+  if (system.boundary_conditions() == 0)
+    throw UserError(fmt::format(
+        "IPS = {} needs boundary conditions, and problem {} has none; write them as its member `boundary` (Fortran: "
+        "GCBCND)",
+        settings.problem_type, system.name()));
+  const auto check = [&](const char* keyword, int given, int own, const char* what) {
+    if (given == own) return;
+    throw UserError(fmt::format("{}: {} is {}, but problem {} has {} {} conditions; set {} = {}", source.of(keyword),
+                                keyword, given, system.name(), own, what, keyword, own));
+  };
+  check("NBC", settings.boundary_conditions, system.boundary_conditions(), "boundary");
+  check("NINT", settings.integral_conditions, system.integral_conditions(), "integral");
+  for (std::size_t s = 0; s < settings.segments.size(); ++s)
+    if (!settings.segments[s].monitor.empty())
+      throw UserError(
+          fmt::format("{}: GCHGRZIND lists events on segment {}, and none are watched with IPS = {}; give "
+                      "empty lists",
+                      source.of("GCHGRZIND"), s + 1, settings.problem_type));
+}
+
 /// The jump that contact would bring, which xi_n is made of on a grazing curve.
 void check_contact_jump(const HybridSystem& system, const RunSettings& settings, const SettingsSource& source,
                         std::vector<std::string>& warnings) {
@@ -80,13 +103,10 @@ void check_parameters(const HybridSystem& system, const RunSettings& settings, c
     return fmt::format("{}: {}: PAR({}) is no parameter of problem {}; it has {}", source.of(keyword), keyword, k,
                        system.name(), parameter_list(system));
   };
-  int free = free_parameter_count(settings.problem_type, settings.branch_mode);
+  const std::vector<int> free = free_problem_parameters(settings);
   for (const int k : settings.free_parameters) {
-    if (k >= first_duration) continue;
-    const bool is_free = free > 0;
-    free -= is_free ? 1 : 0;
-    if (is_parameter(system, k)) continue;
-    if (is_free) throw UserError(no_parameter("ICP", k));
+    if (k >= first_duration || is_parameter(system, k)) continue;
+    if (std::find(free.begin(), free.end(), k) != free.end()) throw UserError(no_parameter("ICP", k));
     warnings.push_back(no_parameter("ICP", k));
   }
   for (const UserValue& value : settings.user_values)
@@ -107,10 +127,13 @@ std::vector<std::string> check_settings_against(const HybridSystem& system, cons
     throw UserError(fmt::format("{}: NDIM is {}, but problem {} has {} states; set NDIM = {}", source.of("NDIM"),
                                 settings.dimension, system.name(), system.dimension(), system.dimension()));
   std::vector<std::string> warnings;
+  const bool ring = has_ring(settings.problem_type);
+  if (!ring) check_conditions(system, settings, source);
   int s = 0;
   for (const SegmentSettings& segment : settings.segments) {
     ++s;
     check_index(system, FunctionKind::field, segment.index.field, "GCFIND", "vector fields", s, source);
+    if (!ring) continue;
     check_index(system, FunctionKind::event, segment.index.event, "GCHIND", "event functions", s, source);
     check_index(system, FunctionKind::jump, segment.index.jump, "GCGIND", "jump functions", s, source);
     for (const int event : segment.monitor)
@@ -167,7 +190,8 @@ ContinuationSettings continuation_settings(const RunSettings& settings) {
   c.state_weights = state_weights(settings);
   c.print_every = settings.print_every;
   c.adapt_mesh_every = settings.adapt_mesh_every;
-  c.multipliers = settings.detect_bifurcations != 0;
+  c.multipliers = settings.detect_bifurcations != 0 && has_multipliers(settings.problem_type);
+  c.periodic = has_ring(settings.problem_type);
   c.location_tolerance = settings.tolerance_special;
   c.max_location = settings.max_location_iterations;
   for (const SegmentSettings& segment : settings.segments) c.monitored.push_back(segment.monitor);

@@ -29,6 +29,15 @@ std::vector<SegmentSettings> segments_of_signature(const std::string& text, cons
   return segments;
 }
 
+void require_events(const HybridSystem& system) {
+  if (system.count(FunctionKind::event) > 0 && system.count(FunctionKind::jump) > 0) return;
+  throw UserError(
+      fmt::format("problem {} has no event functions or no jumps, so no segment of a simulation could end; it is one "
+                  "for `tchat run` "
+                  "with IPS = 4",
+                  system.name()));
+}
+
 }  // namespace
 
 SimulationConstants read_simulation_constants(const SimulationRequest& request, const ParameterNames& names) {
@@ -67,6 +76,7 @@ ProblemSizes sizes_of(const SimulationRequest& request, const SimulationConstant
 
 void fit_to_problem(SimulationConstants& constants, const HybridSystem& system,
                     const std::vector<std::string>& overrides) {
+  require_events(system);
   if (!constants.is_given()) constants.settings.dimension = system.dimension();
   for (const SegmentSettings& segment : constants.settings.segments)
     if (const std::string fault = fault_of(system, {segment.index}); constants.has_signature && !fault.empty())

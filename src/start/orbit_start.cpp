@@ -182,6 +182,10 @@ OrbitStart orbit_from_solution(const LabelledSolution& solution, const OrbitShap
   start.orbit = {stored, mesh, unstack(solution.states, shape.dimension), ParameterVector::Zero(parameter_length)};
   for (std::size_t k = 0; k < solution.parameters.size() && k < static_cast<std::size_t>(parameter_length); ++k)
     start.orbit.par(static_cast<Eigen::Index>(k)) = solution.parameters[k];
+  // A boundary value problem of AUTO itself is one on the interval from 0 to 1.
+  if (is_shared_problem_type(solution.problem_type) &&
+      solution.parameters.size() < static_cast<std::size_t>(first_duration))
+    start.orbit.par.segment(first_duration - 1, shape.segments).setOnes();
   if (stored == shape) return start;
 
   const std::vector<double> new_mesh = resampled_mesh(mesh, shape.intervals);

@@ -90,6 +90,19 @@ double jump_defect(const HybridSystem& system, const IndexVector& index, const O
   return (after - next).cwiseAbs().cwiseQuotient(scale).maxCoeff();
 }
 
+/// The largest of the boundary conditions at the stored ends.
+double boundary_defect(const HybridSystem& system, const Orbit& x) {
+  const int m = x.shape.segments;
+  MatrixXd starts(x.shape.dimension, m), ends(x.shape.dimension, m);
+  for (int s = 0; s < m; ++s) {
+    starts.col(s) = Eigen::Map<const VectorXd>(x.start(s), x.shape.dimension);
+    ends.col(s) = Eigen::Map<const VectorXd>(x.end(s), x.shape.dimension);
+  }
+  VectorXd values(system.boundary_conditions());
+  system.boundary({m, starts.data(), ends.data(), x.par.data()}, values.data());
+  return values.cwiseAbs().maxCoeff();
+}
+
 void compare_critical(const std::vector<std::complex<double>>& critical, const ReturnPencil& pencil,
                       OrbitCheck& check) {
   for (const std::complex<double>& wanted : critical) {
@@ -115,19 +128,23 @@ OrbitCheck check_orbit(const HybridSystem& system, const RunSettings& settings, 
   const VectorXd scale = state_scales(x);
   const VectorXd par = x.par;
   std::vector<SegmentLink> links;
+  const bool ring = has_ring(settings.problem_type);
   for (int s = 0; s < x.shape.segments; ++s) {
     const IndexVector& index = settings.segments[static_cast<std::size_t>(s)].index;
     const StoredSegment stored_one = stored_segment(system, settings, x, s);
     SegmentCheck segment = check_segment(system, stored_one, par, scale, tolerance);
-    if (segment.message.empty()) links.push_back(link_at(system, stored_one, segment, par, scale));
-    const double jump = jump_defect(system, index, x, s, scale);
-    segment.state_defect = std::isfinite(jump) ? std::max(segment.state_defect, jump) : jump;
+    if (ring && segment.message.empty()) links.push_back(link_at(system, stored_one, segment, par, scale));
+    const double tie = ring                        ? jump_defect(system, index, x, s, scale)
+                       : s == x.shape.segments - 1 ? boundary_defect(system, x)
+                                                   : 0.0;
+    segment.state_defect = std::isfinite(tie) ? std::max(segment.state_defect, tie) : tie;
     check.segments.push_back(std::move(segment));
     check.durations.push_back(x.duration(s));
     check.period += std::abs(x.duration(s));
   }
   if (!(check.period > 0.0)) check.period = 1.0;
   if (links.size() != check.segments.size()) return check;
+  if (!ring) return check;
   const ReturnPencil pencil(links);
   if (!pencil.determines_multipliers(tolerance)) return check;
   check.multipliers = pencil.multipliers();

@@ -75,7 +75,7 @@ class Watcher {
   /// The segment's own event, the monitored ones and the alternatives, each once.
   std::vector<int> events() const {
     std::set<int> all(segment_.monitored.begin(), segment_.monitored.end());
-    all.insert(segment_.index.event);
+    if (segment_.index.event != no_function) all.insert(segment_.index.event);
     for (const IndexVector& v : segment_.alternatives) all.insert(v.event);
     return {all.begin(), all.end()};
   }
@@ -220,6 +220,7 @@ SegmentCheck check_segment(const HybridSystem& system, const StoredSegment& segm
   const MatrixXd scaled = scale.cwiseInverse().asDiagonal() * check.flow * scale.asDiagonal();
   check.growth = std::max(1.0, scaled.cwiseAbs().rowwise().sum().maxCoeff());
   check.state_defect = largest(check.end - segment.end, scale);
+  if (segment.index.event == no_function) return check;
   const EventToSecondOrder at(system, segment.index.field, segment.index.event, check.end, par, scale);
   check.event_level = std::abs(at.h) / at.size;
   check.time_defect = segment.grazing ? at.time_to_contact() : at.time_to_zero();

@@ -147,7 +147,8 @@ class Table {
   /// "front, but end of slip at t = 0.31 comes first"
   std::string events(const OrbitCheck& check, std::size_t s) const {
     const SegmentCheck& segment = check.segments[s];
-    std::string text = event_name(settings_.segments[s].index.event);
+    const int event = settings_.segments[s].index.event;
+    std::string text = event == no_function ? "-" : event_name(event);
     for (const EventMet& met : segment.wrong)
       text += fmt::format(", but {} at t = {:.6g} comes first (depth {:.1e})", event_name(met.event),
                           met.time > 1e-9 * check.period ? met.time : 0.0, met.depth);
@@ -197,7 +198,7 @@ class Table {
                              check.durations[s], segment.state_defect, time, segment.growth,
                              once(check.multiplier_difference), once(check.critical_difference), events(check, s), end);
     }
-    if (!check.multiplier_difference) screen_ << multipliers_of(check);
+    if (!check.multiplier_difference && has_ring(settings_.problem_type)) screen_ << multipliers_of(check);
     if (check.multiplier_difference)
       multipliers_.take(*check.multiplier_difference, fmt::format("label {}", solution.label));
     if (check.critical_difference) critical_.take(*check.critical_difference, fmt::format("label {}", solution.label));

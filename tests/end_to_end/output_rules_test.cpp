@@ -144,7 +144,10 @@ TEST_CASE("user values are met to 1e-9, a negative index ends the branch") {
   CHECK(std::abs(met[1] - 3.2) < 1e-9);
   CHECK(sections.front().integer("NUZR") == 2);
 
-  workspace.run({"-c", "impacting", "-d", "impacting", "-o", "branch", "UZR={1: 3.1, -1: 3.2}"});
+  const Outcome stopped =
+      workspace.run({"-c", "impacting", "-d", "impacting", "-o", "branch", "UZR={1: 3.1, -1: 3.2}"});
+  CHECK(stopped.out.find("stopped: at the last special point above") != std::string::npos);
+  CHECK(stopped.out.find("GRSTOP") == std::string::npos);
   sections = workspace.points("branch");
   CHECK(sections.front().rows.back().type == -4);
   CHECK(std::abs(sections.front().rows.back().values.front() - 3.2) < 1e-9);

@@ -12,13 +12,14 @@
  *
  * Shapes. x has `dimension` entries. par has at least TCHAT_PAR_LENGTH entries: par[k-1] is PAR(k), of which the first
  * `parameters` are the problem's own and par[60], par[61], ... are the segment durations. Matrices are column-major.
- * A function of kind TCHAT_EVENT has 1 row, the other kinds have `dimension` rows.
+ * A function of kind TCHAT_EVENT has 1 row, TCHAT_INTEGRAND `integral_conditions` rows, the others `dimension` rows.
  *
  * A function that cannot be evaluated at a point returns NaN there; tchat then shortens its step.
  */
 #ifndef TCHAT_PROBLEM_H
 #define TCHAT_PROBLEM_H
 
+#include <stddef.h>
 #include <stdint.h>
 
 #define TCHAT_PROBLEM_ABI 2
@@ -28,7 +29,7 @@
 extern "C" {
 #endif
 
-enum { TCHAT_FIELD = 0, TCHAT_EVENT = 1, TCHAT_JUMP = 2 };
+enum { TCHAT_FIELD = 0, TCHAT_EVENT = 1, TCHAT_JUMP = 2, TCHAT_INTEGRAND = 3 };
 
 typedef struct tchat_problem {
   uint32_t abi_version; /* TCHAT_PROBLEM_ABI */
@@ -37,8 +38,8 @@ typedef struct tchat_problem {
   int32_t dimension;  /* n >= 1 */
   int32_t parameters; /* 0..60 */
   int32_t fields;     /* number of fields, 1.. */
-  int32_t events;     /* number of event functions, 1.. */
-  int32_t jumps;      /* number of jump functions, 1.. */
+  int32_t events;     /* number of event functions, 1.. (0.. with boundary conditions) */
+  int32_t jumps;      /* number of jump functions, 1.. (0.. with boundary conditions) */
 
   /* Highest order of exact derivatives that the table supplies: 0 (`value` only), 1 (`first` too), 2 (`second` too).
    * tchat replaces what is missing by central differences. */
@@ -89,7 +90,25 @@ typedef struct tchat_problem {
   /* Sets entries of `par` that are only output (AUTO's PVLS), called for each segment (from 1) with its end x_s(1) and
    * a copy of PAR. NULL when there are none. */
   void (*output_parameters)(const void* self, int32_t segment, const double* x, double* par);
+
+  /* Boundary value problems (IPS = 4): `boundary_conditions` conditions, each zero, on the starts x_s(0) and ends
+   * x_s(1) of `segments` segments (dimension x segments each) and par, in which par[60 + s - 1] is T_s. 0 and NULL:
+   * none. */
+  int32_t boundary_conditions;
+  void (*boundary)(const void* self, int32_t segments, const double* starts, const double* ends, const double* par,
+                   double* out);
+  /* The same with derivatives, boundary_conditions rows each, by all starts and ends (dimension x segments columns) and
+   * by PAR(active[.]), durations among them. NULL: tchat takes central differences. */
+  void (*boundary_first)(const void* self, int32_t segments, const double* starts, const double* ends,
+                         const double* par, const int32_t* active, int32_t active_count, double* out, double* dstarts,
+                         double* dends, double* dp);
+  /* Number of integral conditions: the integrals of the functions of kind TCHAT_INTEGRAND over time, index s on segment
+   * s, added over all segments, are zero. */
+  int32_t integral_conditions;
 } tchat_problem;
+
+/* Size of the table before the conditions of boundary value problems were added: such a table has none. */
+#define TCHAT_PROBLEM_FIRST_SIZE offsetof(tchat_problem, boundary_conditions)
 
 typedef const tchat_problem* (*tchat_problem_entry)(void);
 #define TCHAT_PROBLEM_ENTRY "tchat_problem_table"

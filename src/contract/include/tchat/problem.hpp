@@ -27,6 +27,14 @@
 ///     std::vector<std::array<int, 3>> successors(std::array<int, 3> from, const double* x, const double* par) const;
 ///     static constexpr int user_values = 1;                               // PVLS, with user_value_names if wanted
 ///     void user_value(const double* x, const double* par, double* out) const;         // x is x_1(0)
+///     // boundary value problems (IPS = 4): conditions on the ends of all segments, each zero, and functions whose
+///     // integrals over time, added over the segments s = 1.., are zero; `events` and `jumps` may then be left out:
+///     static constexpr int boundary_conditions = 2;                       // NBC
+///     template <class T> void boundary(const tchat::Ends<T>& orbit, const T* par, T* b) const {
+///       b[0] = orbit.start(1)[0]; b[1] = orbit.end(1)[0];                 // and orbit.duration(1)
+///     }
+///     static constexpr int integral_conditions = 1;                       // NINT
+///     template <class T> void integrand(int s, const T* x, const T* par, T* q) const { q[0] = x[0] - par[1]; }
 ///     // hand-written first derivatives instead of automatic ones, column-major, zero before the call:
 ///     void field_derivatives(int i, const double* x, const double* par, double* dfdx, double* dfdp) const;
 ///     void event_derivatives(int j, const double* x, const double* par, double* dhdx, double* dhdp) const;
@@ -38,6 +46,7 @@
 #include <cmath>
 #include <cstdint>
 #include <iterator>
+#include <stdexcept>
 #include <type_traits>
 #include <vector>
 
@@ -45,6 +54,32 @@
 #include "tchat/problem.h"
 
 namespace tchat {
+
+/// The ends of the segments s = 1..m of an orbit and their durations, for boundary conditions. A segment that is not
+/// there throws, so that the conditions count as not to be evaluated.
+template <class T>
+class Ends {
+ public:
+  Ends(int segments, int dimension, const T* starts, const T* ends, const T* durations)
+      : segments_(segments), dimension_(dimension), starts_(starts), ends_(ends), durations_(durations) {}
+
+  int segments() const { return segments_; }
+  const T* start(int s) const { return starts_ + place(s) * dimension_; }  ///< x_s(0)
+  const T* end(int s) const { return ends_ + place(s) * dimension_; }      ///< x_s(1)
+  T duration(int s) const { return durations_[place(s)]; }
+
+ private:
+  int place(int s) const {
+    if (s < 1 || s > segments_) throw std::out_of_range("the orbit has no such segment");
+    return s - 1;
+  }
+
+  int segments_;
+  int dimension_;
+  const T* starts_;
+  const T* ends_;
+  const T* durations_;
+};
 
 /// Fills the C table of problem.h from a problem class. The class is default-constructed once and is never changed.
 template <class Problem>
@@ -71,15 +106,28 @@ class ProblemTable {
       "tchat: the number of vector fields is missing, or is not public: write struct, "
       "and in it static constexpr int `fields` = ...;");
   static_assert(
-      requires { Problem::events; },
+      requires { Problem::events; } || requires { Problem::boundary_conditions; },
       "tchat: the number of event functions is missing, or is not public: write "
       "struct, and in it static constexpr int `events` = ...;");
   static_assert(
-      requires { Problem::jumps; },
+      requires { Problem::jumps; } || requires { Problem::boundary_conditions; },
       "tchat: the number of jump functions is missing, or is not public: write struct, "
       "and in it static constexpr int `jumps` = ...;");
 
  private:
+#define TCHAT_COUNT(FUNCTION, MEMBER)            \
+  static constexpr int FUNCTION() {              \
+    if constexpr (requires { Problem::MEMBER; }) \
+      return Problem::MEMBER;                    \
+    else                                         \
+      return 0;                                  \
+  }
+  TCHAT_COUNT(event_count, events)
+  TCHAT_COUNT(jump_count, jumps)
+  TCHAT_COUNT(boundary_count, boundary_conditions)
+  TCHAT_COUNT(integral_count, integral_conditions)
+#undef TCHAT_COUNT
+
   template <class T>
   static constexpr bool has_field = requires(const Problem& p, const T* x, T* f) {
     p.field(1, x, x, f);
@@ -94,18 +142,39 @@ class ProblemTable {
   };
   static_assert(has_field<double> && has_field<Dual<1>>,
                 "tchat: `field` must be: template <class T> void field(int i, const T* x, const T* par, T* f) const");
-  static_assert(has_event<double> && has_event<Dual<1>>,
+  static_assert(event_count() == 0 || (has_event<double> && has_event<Dual<1>>),
                 "tchat: `event` must be: template <class T> T event(int j, const T* x, const T* par) const");
-  static_assert(has_jump<double> && has_jump<Dual<1>>,
+  static_assert(jump_count() == 0 || (has_jump<double> && has_jump<Dual<1>>),
                 "tchat: `jump` must be: template <class T> void jump(int k, const T* x, const T* par, T* g) const");
+
+  template <class T>
+  static constexpr bool has_boundary = requires(const Problem& p, const Ends<T>& orbit, const T* par, T* b) {
+    p.boundary(orbit, par, b);
+  };
+  template <class T>
+  static constexpr bool has_integrand = requires(const Problem& p, const T* x, T* q) {
+    p.integrand(1, x, x, q);
+  };
+  static_assert(boundary_count() == 0 || (has_boundary<double> && has_boundary<Dual<1>>),
+                "tchat: `boundary` must be: template <class T> void boundary(const tchat::Ends<T>& orbit, const T* "
+                "par, T* b) const");
+  static_assert(integral_count() == 0 || (has_integrand<double> && has_integrand<Dual<1>>),
+                "tchat: `integrand` must be: template <class T> void integrand(int s, const T* x, const T* par, T* q) "
+                "const");
 
   static constexpr int n = Problem::dimension;
   static constexpr int q = Problem::parameters;
   static_assert(n >= 1, "tchat: `dimension` must be at least 1");
   static_assert(q >= 0 && q <= 60, "tchat: `parameters` must be between 0 and 60");
   static_assert(Problem::fields >= 1, "tchat: `fields`, the number of vector fields, must be at least 1");
-  static_assert(Problem::events >= 1, "tchat: `events`, the number of event functions, must be at least 1");
-  static_assert(Problem::jumps >= 1, "tchat: `jumps`, the number of jump functions, must be at least 1");
+  static_assert(boundary_count() >= 0, "tchat: `boundary_conditions`, their number, must not be negative");
+  static_assert(integral_count() >= 0, "tchat: `integral_conditions`, their number, must not be negative");
+  static_assert(
+      event_count() >= 1 || boundary_count() > 0 || !requires { Problem::events; },
+      "tchat: `events`, the number of event functions, must be at least 1");
+  static_assert(
+      jump_count() >= 1 || boundary_count() > 0 || !requires { Problem::jumps; },
+      "tchat: `jumps`, the number of jump functions, must be at least 1");
 
   /// Derivatives carried at once: all states and two parameters where that is cheap, else eight at a time.
   static constexpr int width = n + 2 <= 10 ? n + 2 : 8;
@@ -113,11 +182,15 @@ class ProblemTable {
   template <class T>
   using States = std::array<T, static_cast<std::size_t>(n)>;
   template <class T>
+  using Values = std::array<T, static_cast<std::size_t>(n > integral_count() ? n : integral_count())>;
+  template <class T>
   using Parameters = std::array<T, static_cast<std::size_t>(q > 0 ? q : 1)>;
 
   static const Problem& object(const void* self) { return *static_cast<const Problem*>(self); }
 
-  static constexpr int rows(std::int32_t kind) { return kind == TCHAT_EVENT ? 1 : n; }
+  static constexpr int rows(std::int32_t kind) {
+    return kind == TCHAT_EVENT ? 1 : kind == TCHAT_INTEGRAND ? integral_count() : n;
+  }
 
   /// F(x, par), rows preset to NaN by the caller. A problem may throw where it cannot be evaluated: the callers are C
   /// code, so the exception ends here as NaN.
@@ -125,12 +198,13 @@ class ProblemTable {
   static void evaluate(const void* self, std::int32_t kind, int index, const T* x, const T* par, T* out) {
     const Problem& problem = object(self);
     try {
-      if (kind == TCHAT_FIELD)
-        problem.field(index, x, par, out);
-      else if (kind == TCHAT_EVENT)
-        out[0] = problem.event(index, x, par);
-      else
-        problem.jump(index, x, par, out);
+      if (kind == TCHAT_FIELD) problem.field(index, x, par, out);
+      if constexpr (event_count() > 0)
+        if (kind == TCHAT_EVENT) out[0] = problem.event(index, x, par);
+      if constexpr (jump_count() > 0)
+        if (kind == TCHAT_JUMP) problem.jump(index, x, par, out);
+      if constexpr (integral_count() > 0)
+        if (kind == TCHAT_INTEGRAND) problem.integrand(index, x, par, out);
     } catch (...) {
       std::fill(out, out + rows(kind), T(NAN));
     }
@@ -156,7 +230,7 @@ class ProblemTable {
     for (int begin = 0; begin < columns; begin += width) {
       States<T> xs;
       Parameters<T> ps;
-      States<T> ys;
+      Values<T> ys;
       load(x, par, xs, ps);
       for (int k = 0; k < width && begin + k < columns; ++k)
         if (T* seed = variable(begin + k, active, xs, ps)) seed->derivative[static_cast<std::size_t>(k)] = 1.0;
@@ -180,7 +254,7 @@ class ProblemTable {
     for (int begin = 0; begin < columns; begin += width) {
       States<T> xs;
       Parameters<T> ps;
-      States<T> ys;
+      Values<T> ys;
       load(x, par, xs, ps);
       for (int c = 0; c < columns; ++c)
         if (T* moved = variable(c, active, xs, ps)) moved->value.derivative[0] += direction[c];
@@ -206,7 +280,7 @@ class ProblemTable {
   }
 
   template <class T>
-  static void preset(States<T>& ys) {
+  static void preset(Values<T>& ys) {
     for (T& y : ys) y = T(NAN);
   }
 
@@ -236,6 +310,71 @@ class ProblemTable {
       for (int i = 0; i < r; ++i)
         dp[a * r + i] = is_problem_parameter(active[a]) ? all[static_cast<std::size_t>((active[a] - 1) * r + i)] : 0.0;
     return true;
+  }
+
+  /// The boundary conditions, preset to NaN.
+  template <class T>
+  static void evaluate_boundary(const void* self, int segments, const std::vector<T>& starts,
+                                const std::vector<T>& ends, const std::vector<T>& durations, const T* par, T* out) {
+    std::fill(out, out + boundary_count(), T(NAN));
+    if constexpr (boundary_count() > 0) try {
+        object(self).boundary(Ends<T>(segments, n, starts.data(), ends.data(), durations.data()), par, out);
+      } catch (...) {
+        std::fill(out, out + boundary_count(), T(NAN));
+      }
+  }
+
+  /// Variables of type T with these values. The memory is used again at the next call.
+  template <class T>
+  static std::vector<T>& variables(std::vector<T>& memory, const double* values, int count) {
+    memory.assign(values, values + count);
+    return memory;
+  }
+
+  static constexpr int durations_begin = 60;  // PAR(61) is T_1
+
+  static void boundary(const void* self, std::int32_t segments, const double* starts, const double* ends,
+                       const double* par, double* out) {
+    thread_local std::vector<double> memory[3];
+    evaluate_boundary<double>(self, segments, variables(memory[0], starts, n * segments),
+                              variables(memory[1], ends, n * segments),
+                              variables(memory[2], par + durations_begin, segments), par, out);
+  }
+
+  static void boundary_first(const void* self, std::int32_t segments, const double* starts, const double* ends,
+                             const double* par, const std::int32_t* active, std::int32_t active_count, double* out,
+                             double* dstarts, double* dends, double* dp) {
+    using T = Dual<width>;
+    thread_local std::vector<T> memory[3];
+    std::array<T, static_cast<std::size_t>(boundary_count() > 0 ? boundary_count() : 1)> values;
+    const int states = n * segments;
+    for (int begin = 0; begin < 2 * states + active_count; begin += width) {
+      std::vector<T>& first = variables(memory[0], starts, states);
+      std::vector<T>& last = variables(memory[1], ends, states);
+      std::vector<T>& durations = variables(memory[2], par + durations_begin, segments);
+      Parameters<T> ps;
+      for (std::size_t i = 0; i < static_cast<std::size_t>(q); ++i) ps[i] = T(par[i]);
+      const auto variable_of = [&](int c) -> T* {
+        if (c < states) return &first[static_cast<std::size_t>(c)];
+        if (c < 2 * states) return &last[static_cast<std::size_t>(c - states)];
+        const int k = active[c - 2 * states];
+        if (is_problem_parameter(k)) return &ps[static_cast<std::size_t>(k - 1)];
+        const int s = k - durations_begin;
+        return s >= 1 && s <= segments ? &durations[static_cast<std::size_t>(s - 1)] : nullptr;
+      };
+      for (int k = 0; k < width && begin + k < 2 * states + active_count; ++k)
+        if (T* seed = variable_of(begin + k)) seed->derivative[static_cast<std::size_t>(k)] = 1.0;
+      evaluate_boundary<T>(self, segments, first, last, durations, ps.data(), values.data());
+      for (int k = 0; k < width && begin + k < 2 * states + active_count; ++k) {
+        const int c = begin + k;
+        double* column = c < states       ? dstarts + c * boundary_count()
+                         : c < 2 * states ? dends + (c - states) * boundary_count()
+                                          : dp + (c - 2 * states) * boundary_count();
+        for (int i = 0; i < boundary_count(); ++i)
+          column[i] = values[static_cast<std::size_t>(i)].derivative[static_cast<std::size_t>(k)];
+      }
+      for (int i = 0; i < boundary_count(); ++i) out[i] = values[static_cast<std::size_t>(i)].value;
+    }
   }
 
   using IndexVectors = std::vector<std::array<int, 3>>;
@@ -289,8 +428,8 @@ class ProblemTable {
     table.dimension = n;
     table.parameters = q;
     table.fields = Problem::fields;
-    table.events = Problem::events;
-    table.jumps = Problem::jumps;
+    table.events = event_count();
+    table.jumps = jump_count();
     table.derivative_order = 2;
     table.name = name;
     table.self = &problem;
@@ -298,6 +437,12 @@ class ProblemTable {
     table.first = &first;
     table.second = &second;
     table.user_value = &user_value;
+    if constexpr (boundary_count() > 0) {
+      table.boundary_conditions = boundary_count();
+      table.boundary = &boundary;
+      table.boundary_first = &boundary_first;
+      table.integral_conditions = integral_count();
+    }
     if constexpr (has_successors) table.successors = &successors;
     if constexpr (requires { Problem::user_values; }) table.user_values = Problem::user_values;
 

@@ -1,0 +1,37 @@
+/// Segments in a ring (5.5-5.7): conditions at the end of each segment, and the connectivity
+///
+///     x_{s+1}(0) = g_{k_s}(x_s(1), p)     (s cyclic, so the last one is periodicity).
+///
+/// Coupling rows: R = n m + E, E the sum of the end conditions.
+#pragma once
+
+#include "bvp/defining_system.hpp"
+
+namespace tchat {
+
+class RingSystem : public DefiningSystem {
+ public:
+  using DefiningSystem::DefiningSystem;
+
+  int coupling_rows(int s) const final { return end_conditions(s) + dimension(); }
+  void coupling_pattern(int s, CouplingPattern& pattern) const final;
+  void coupling_values(int s, const Orbit& x, double* values) const final;
+  double* coupling_derivatives(int s, const Orbit& x, double* values, double* entries) const final;
+  std::string coupling_name(int s, int r) const final;
+  std::string coupling_failure(int s, const Orbit& x) const final;
+
+  /// Number of scalar conditions on x_s(1), s = 0..m-1.
+  virtual int end_conditions(int s) const = 0;
+  /// Their values (end_conditions(s) numbers), each zero on an orbit.
+  virtual void end_values(int s, const double* x, const double* par, double* values) const = 0;
+  /// Values with derivatives: dx is end_conditions(s) x n, dp is end_conditions(s) x free_count(), column-major.
+  virtual void end_derivatives(int s, const double* x, const double* par, double* values, double* dx,
+                               double* dp) const = 0;
+  /// What condition r at the end of segment s says, for messages.
+  virtual std::string end_condition_name(int s, int r) const = 0;
+
+ private:
+  mutable std::vector<double> value_, by_state_, by_parameter_;  // of one group, for Newton's loop is not to allocate
+};
+
+}  // namespace tchat
