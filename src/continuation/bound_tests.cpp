@@ -21,9 +21,9 @@ class BoundTest : public TestFunction {
       : quantity_(std::move(quantity)), keyword_(keyword), bound_(bound) {}
 
   std::string name() const override { return fmt::format("{} - {}", quantity_, keyword_); }
-  std::optional<double> value(const TestedPoint& point) const override { return quantity(point) - bound_; }
-  double zero_level(const TestedPoint& point) const override {
-    return orbit_accuracy * std::max(std::abs(bound_), std::abs(quantity(point)));
+  TestValue evaluate(const TestedPoint& point) const override {
+    const double here = quantity(point);
+    return TestValue::of(here - bound_, orbit_accuracy * std::max(std::abs(bound_), std::abs(here)));
   }
   SpecialPoint classify(const TestedPoint&, bool) const override {
     return {PointType::end, {}, true, fmt::format("{} = {:.10g}, the bound {}", quantity_, bound_, keyword_)};

@@ -11,7 +11,8 @@
 
 namespace tchat {
 
-struct TestValue {
+/// The value of a test function under its name.
+struct NamedTestValue {
   std::string name;
   std::optional<double> value;
 };
@@ -28,7 +29,7 @@ struct BranchPoint {
   int newton_iterations = 0;
   std::vector<NewtonIteration> newton;  ///< of the step that reached it
   double step = 0.0;                    ///< ds of that step, 0 at the start
-  std::vector<TestValue> tests;
+  std::vector<NamedTestValue> tests;
   std::vector<std::string> details;  ///< of a labelled point: what else its test functions know
   bool labelled() const { return special.type != PointType::ordinary; }
 };

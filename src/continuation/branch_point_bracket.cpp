@@ -29,19 +29,18 @@ constexpr double jump_share = 0.5;
 }  // namespace
 
 BranchPointBracket::BranchPointBracket(PathFollower& follower, const PathPoint& start, const PointData& start_data,
-                                       double ds, const PathPoint& end, const PointData& end_data, std::size_t test,
-                                       int sign)
+                                       const Candidate& end, std::size_t test, int sign)
     : follower_(follower),
       start_(start),
       test_(test),
       sign_(sign),
-      direction_(ds < 0.0 ? -1.0 : 1.0),
+      direction_(end.ds < 0.0 ? -1.0 : 1.0),
       low_(make_side(0.0, start, start_data)),
-      high_(make_side(std::abs(ds), end, end_data)),
+      high_(make_side(std::abs(end.ds), end.point, end.data)),
       nodes_{{low_.at, low_.value}, {high_.at, high_.value}} {}
 
 BranchPointBracket::Side BranchPointBracket::make_side(double at, const PathPoint& point, const PointData& data) const {
-  Side side{at, data.values[test_].value_or(0.0), point.orbit, point.tangent, data};
+  Side side{at, data.tests[test_].value.value_or(0.0), point.orbit, point.tangent, data};
   side.slope.scale(direction_ / dot(start_.dual, point.tangent));
   return side;
 }
@@ -88,7 +87,7 @@ bool BranchPointBracket::narrow(const Evaluate& evaluate, PathPoint& trial, doub
 
 /// At a zero located before, the function lacks the sign that the branch had there.
 bool BranchPointBracket::find_sign(const Evaluate& evaluate, PathPoint& trial) {
-  for (int halving = 0; low_.data.signs[test_] != sign_; ++halving) {
+  for (int halving = 0; low_.data.tests[test_].sign != sign_; ++halving) {
     if (halving == most_halvings) return false;
     if (!try_at(0.5 * (low_.at + high_.at), evaluate, trial)) return false;
   }
@@ -100,8 +99,8 @@ bool BranchPointBracket::try_at(double at, const Evaluate& evaluate, PathPoint& 
   if (!(at > low_.at && at < high_.at)) return false;
   put(at, trial);
   if (!follower_.step_near(start_, direction_ * at, trial).converged()) return false;
-  const PointData& data = evaluate(trial);
-  if (!data.values[test_]) return false;
+  const PointData data = evaluate(trial);
+  if (!data.tests[test_].value) return false;
   Side side = make_side(at, trial, data);
   nodes_.push_back({at, side.value});
   (side.value * sign_ > 0.0 ? low_ : high_) = std::move(side);

@@ -16,7 +16,6 @@
 #include <functional>
 #include <limits>
 
-#include "continuation/path_follower.hpp"
 #include "continuation/point_data.hpp"
 
 namespace tchat {
@@ -24,7 +23,7 @@ namespace tchat {
 class BranchPointBracket {
  public:
   /// Evaluates a converged point, whose linearisation the follower holds.
-  using Evaluate = std::function<const PointData&(const PathPoint&)>;
+  using Evaluate = std::function<PointData(const PathPoint&)>;
   /// A point of the branch at an arclength from the start of the step.
   struct Side {
     double at = 0.0;  ///< without the sign of the step
@@ -34,10 +33,10 @@ class BranchPointBracket {
     PointData data;
   };
 
-  /// From `start` (evaluated as `start_data`) a step of length ds has led to `end`, where the test function has another
-  /// sign than `sign`, which it had before the zero. The follower and the start must outlive this object.
-  BranchPointBracket(PathFollower& follower, const PathPoint& start, const PointData& start_data, double ds,
-                     const PathPoint& end, const PointData& end_data, std::size_t test, int sign);
+  /// From `start` (evaluated as `start_data`) a step has led to `end`, where the test function has another sign than
+  /// `sign`, which it had before the zero. The follower and the start must outlive this object.
+  BranchPointBracket(PathFollower& follower, const PathPoint& start, const PointData& start_data, const Candidate& end,
+                     std::size_t test, int sign);
 
   /// `trial` is overwritten. False when the function has no zero there that could be located.
   bool narrow(const Evaluate& evaluate, PathPoint& trial, double tolerance);

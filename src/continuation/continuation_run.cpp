@@ -65,8 +65,7 @@ ContinuationRun::ContinuationRun(PathFollower& follower, const DefiningSystem& s
 
 BranchSummary ContinuationRun::run(PathPoint start) {
   here_ = std::move(start);
-  next_ = here_;
-  search_.begin(here_);
+  next_ = {here_, 0.0, search_.begin(here_)};
   SpecialPoint special;
   if (settings_.label_start) special.type = PointType::end;
   accept(end_conditions(special));
@@ -78,7 +77,7 @@ BranchSummary ContinuationRun::run(PathPoint start) {
       break;
     }
     special = advance();
-    std::swap(here_, next_);
+    std::swap(here_, next_.point);
     ++number_;
     accept(end_conditions(curve_end(special)));
     if (!limited_) step_.converged(newton_.iterations, number_);
@@ -95,9 +94,9 @@ SpecialPoint ContinuationRun::advance() {
                                             [this](const std::string& text) { report_lost(text); }};
   const bool through_point = leads_through_point();
   const double before = std::abs(follower_.principal_direction(here_.tangent));
-  const double turn = std::min(before, std::abs(follower_.principal_direction(next_.tangent)));
+  const double turn = std::min(before, std::abs(follower_.principal_direction(next_.point.tangent)));
   steepest_ = std::max(steepest_, before);
-  SpecialPoint special = search_.advance(here_, next_, ds_taken_, newton_, reports).value_or(SpecialPoint{});
+  SpecialPoint special = search_.advance(here_, next_, newton_, reports).value_or(SpecialPoint{});
   const double level = insignificant_turn * steepest_;
   const double earlier = std::exchange(before_, before);
   if (special.type != PointType::fold || turn > level || std::max(before, earlier) > sudden * level)
@@ -109,7 +108,7 @@ SpecialPoint ContinuationRun::advance() {
 /// Has the step gone through an equilibrium, to the same orbits run through from another point? Then next_ is moved
 /// back to short of it. Whatever changes sign there is hardly located, for Newton's matrix is singular.
 bool ContinuationRun::leads_through_point() {
-  if (!settings_.periodic || deviation_cosine(here_.orbit, next_.orbit) > opposite) return false;
+  if (!settings_.periodic || deviation_cosine(here_.orbit, next_.point.orbit) > opposite) return false;
   constexpr int max_steps = 30;
   PathPoint near = here_;
   PathPoint trial = here_;
@@ -118,7 +117,7 @@ bool ContinuationRun::leads_through_point() {
   double length = 0.0;
   for (int k = 0; k < max_steps && !trend_.has_shrunk(near.orbit, shrunk_enough); ++k) {
     const double ds = -share / deviation_growth(near.orbit, near.tangent.states);
-    if (!(ds * ds_taken_ > 0.0)) break;
+    if (!(ds * next_.ds > 0.0)) break;
     newton = follower_.step(near, ds, trial);
     if (newton.converged() && deviation_cosine(near.orbit, trial.orbit) > -opposite) {
       std::swap(near, trial);
@@ -129,11 +128,12 @@ bool ContinuationRun::leads_through_point() {
   }
   const bool found = trend_.has_shrunk(near.orbit, shrunk_where_located);
   if (found) {
-    next_ = near;
-    ds_taken_ = length;
+    next_.point = near;
+    next_.ds = length;
     newton_ = newton;
   }
-  follower_.linearize_at(next_);
+  follower_.linearize_at(next_.point);
+  next_.data = search_.evaluate(next_.point);
   return found;
 }
 
@@ -142,11 +142,11 @@ SpecialPoint ContinuationRun::shrunk_orbit(SpecialPoint special, bool through_po
   if (!settings_.periodic) return special;
   const bool turns =
       through_point || special.type == PointType::fold || special.kind.kind == UserPointKind::impact_velocity;
-  if (!trend_.has_shrunk(next_.orbit, turns ? shrunk_where_located : shrunk)) return special;
+  if (!trend_.has_shrunk(next_.point.orbit, turns ? shrunk_where_located : shrunk)) return special;
   end(EndReason::equilibrium,
       fmt::format("the orbit has shrunk to a point, {}: an equilibrium, where the branch of periodic orbits ends (Hopf "
                   "bifurcation, if the flow is smooth there)",
-                  state_text(system_.system(), next_.orbit.start(0))));
+                  state_text(system_.system(), next_.point.orbit.start(0))));
   return {PointType::end, {}, false, summary_.detail};
 }
 
@@ -163,18 +163,16 @@ SpecialPoint ContinuationRun::curve_end(SpecialPoint special) {
 /// Predicts and corrects, halving the step until it succeeds. False when it cannot be made any smaller.
 bool ContinuationRun::take_step() {
   for (;;) {
-    ds_taken_ = search_.limited(step_.value());
-    limited_ = ds_taken_ != step_.value();
-    newton_ = follower_.step(here_, ds_taken_, next_);
+    next_.ds = search_.limited(step_.value());
+    limited_ = next_.ds != step_.value();
+    newton_ = follower_.step(here_, next_.ds, next_.point);
     const bool converged = newton_.converged();
     std::string trouble;
     if (!converged)
       trouble = describe(newton_.status);
-    else if (step_.is_short())
-      return true;
-    else if (!search_.same_branch(here_, next_))
+    else if (!step_.is_short() && !search_.same_branch(here_, next_.point))
       trouble = "it may have come to another branch";
-    else if (!search_.resolved(next_, ds_taken_))
+    else if (next_.data = search_.evaluate(next_.point); !step_.is_short() && !search_.resolved(next_))
       trouble = "a test function may have changed sign twice";
     else
       return true;
@@ -225,8 +223,8 @@ SpecialPoint ContinuationRun::end_conditions(SpecialPoint special) {
 /// here_ with what the search knows of it; kept, for the steps from it move it to another mesh.
 void ContinuationRun::accept(const SpecialPoint& special) {
   accepted_ = here_;
-  accepted_data_ = search_.data();
-  if (special.type != PointType::ordinary) accepted_data_.details = search_.details(here_);
+  accepted_data_ = next_.data;
+  if (special.type != PointType::ordinary) accepted_data_.details = search_.details(here_, accepted_data_);
   trend_.add(here_.orbit, here_.orbit.par(settings_.principal - 1));
   record(special, accepted_data_);
 }
@@ -247,11 +245,11 @@ void ContinuationRun::record(const SpecialPoint& special, const PointData& data)
                     estimated_error(here_.orbit, follower_.condensed().rule()),
                     newton_.iterations,
                     follower_.newton().history(),
-                    number_ > 1 ? ds_taken_ : 0.0,
+                    number_ > 1 ? next_.ds : 0.0,
                     {},
                     {}};
   for (std::size_t i = 0; i < search_.tests().size(); ++i)
-    point.tests.push_back({search_.tests()[i]->name(), data.values[i]});
+    point.tests.push_back({search_.tests()[i]->name(), data.tests[i].value});
   point.details = data.details;
   summary_.points = number_;
   summary_.inadmissible_points += !violations.empty();
@@ -271,7 +269,7 @@ void ContinuationRun::end(EndReason reason, std::string detail) {
 
 void ContinuationRun::report_lost(const std::string& text) {
   const auto parameter = [this](const PathPoint& point) { return point.orbit.par(settings_.principal - 1); };
-  summary_.lost.push_back({number_ + 1, text, parameter(here_), parameter(next_)});
+  summary_.lost.push_back({number_ + 1, text, parameter(here_), parameter(next_.point)});
   sink_.lost(summary_.lost.back());
 }
 
@@ -288,12 +286,12 @@ void ContinuationRun::prepare_next_step() {
 void ContinuationRun::give_up() {
   std::string trouble = describe(newton_.status);
   if (newton_.status == NewtonStatus::not_finite) {
-    const std::string where = evaluation_failure(system_, follower_.condensed().rule(), next_.orbit);
+    const std::string where = evaluation_failure(system_, follower_.condensed().rule(), next_.point.orbit);
     if (!where.empty()) trouble = where;
     summary_.undefined_function = true;
   }
   end(number_ == 1 ? EndReason::first_step_failed : EndReason::no_convergence,
-      fmt::format("{}; steps down to {:.3e} were tried", trouble, std::abs(ds_taken_)));
+      fmt::format("{}; steps down to {:.3e} were tried", trouble, std::abs(next_.ds)));
   sink_.note(number_ + 1, settings_.step.adapt_every == 0 ? "No convergence with fixed step size"
                                                           : "No convergence using minimum step size");
   ++number_;

@@ -68,9 +68,8 @@ class ContinuationRun {
   PathPoint here_;      // the last accepted point, moved to a new mesh where one was due
   PathPoint accepted_;  // the same as it was accepted
   PointData accepted_data_;
-  PathPoint next_;         // the point being computed
+  Candidate next_;         // the point being computed; once accepted its step and data, the point is here_
   NewtonResult newton_;    // of the step to it
-  double ds_taken_ = 0.0;  // length of that step
   bool limited_ = false;   // by zeros that are known to lie ahead: it says nothing of the next one
   double steepest_ = 0.0;  // largest part of the principal parameter in a tangent so far
   double before_ = 0.0;    // that part at the last point but one

@@ -1,21 +1,28 @@
 /// What is known about a converged point besides the orbit.
 #pragma once
 
-#include <optional>
+#include <string>
 #include <vector>
 
+#include "continuation/path_follower.hpp"
+#include "special_points/test_function.hpp"
 #include "stability/floquet_multipliers.hpp"
 
 namespace tchat {
 
 struct PointData {
   FloquetMultipliers multipliers;
-  std::vector<double> transversalities;       ///< h_x f / (|h_x| |f|) at the end of each segment
-  double singular_distance = 1.0;             ///< as in TestedPoint
-  std::vector<std::optional<double>> values;  ///< of the test functions
-  std::vector<double> zero_levels;
-  std::vector<std::string> details;  ///< of a labelled point
-  std::vector<int> signs;            ///< of the values; 0 for those up to the zero level
+  std::vector<double> transversalities;  ///< h_x f / (|h_x| |f|) at the end of each segment
+  double singular_distance = 1.0;        ///< as in TestedPoint
+  std::vector<TestValue> tests;          ///< one for each test function
+  std::vector<std::string> details;      ///< of a labelled point
+};
+
+/// A converged step of length ds and what is known of the point that it has come to.
+struct Candidate {
+  PathPoint point;
+  double ds = 0.0;
+  PointData data;
 };
 
 }  // namespace tchat

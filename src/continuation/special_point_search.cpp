@@ -69,83 +69,74 @@ SpecialPointSearch::SpecialPointSearch(PathFollower& follower, const DefiningSys
       tests_(std::move(tests)),
       settings_(settings),
       floquet_(follower.condensed().shape()),
-      signs_(tests_.size(), 0) {
-  data_.transversalities.resize(static_cast<std::size_t>(system.segments()));
-  data_.values.resize(tests_.size());
-  data_.zero_levels.resize(tests_.size());
-  data_.signs.resize(tests_.size());
+      signs_(tests_.size(), 0) {}
+
+TestedPoint SpecialPointSearch::tested(const PathPoint& at, const PointData& data) const {
+  return {at.orbit,
+          at.tangent,
+          follower_.condensed(),
+          data.multipliers,
+          data.transversalities,
+          data.singular_distance,
+          follower_.condition()};
 }
 
-TestedPoint SpecialPointSearch::tested(const PathPoint& at) const {
-  return {
-      at.orbit, at.tangent, follower_.condensed(), data_.multipliers, data_.transversalities, data_.singular_distance};
-}
-
-std::vector<std::string> SpecialPointSearch::details(const PathPoint& at) const {
+std::vector<std::string> SpecialPointSearch::details(const PathPoint& at, const PointData& data) const {
   std::vector<std::string> list;
   for (const auto& test : tests_)
-    if (const std::string text = test->details(tested(at)); !text.empty()) list.push_back(text);
+    if (const std::string text = test->details(tested(at, data)); !text.empty()) list.push_back(text);
   return list;
 }
 
-void SpecialPointSearch::evaluate(const PathPoint& at) {
+PointData SpecialPointSearch::evaluate(const PathPoint& at) {
+  PointData data;
   if (settings_.multipliers) {
-    data_.multipliers = floquet_.compute(follower_.condensed(), at.orbit);
+    data.multipliers = floquet_.compute(follower_.condensed(), at.orbit);
     const OrbitCondition* condition = follower_.condition();
     const std::optional<int> kept = condition != nullptr ? condition->kept_multiplier() : std::nullopt;
-    if (kept) put_critical(data_.multipliers, *kept);
+    if (kept) put_critical(data.multipliers, *kept);
   }
   for (int s = 0; s < system_.segments(); ++s)
-    data_.transversalities[static_cast<std::size_t>(s)] = crossing_at_end(system_, at.orbit, s).transversality();
-  data_.singular_distance = follower_.condensed().signed_distance();
-  const TestedPoint point = tested(at);
-  for (std::size_t i = 0; i < tests_.size(); ++i) {
-    data_.values[i] = tests_[i]->value(point);
-    data_.zero_levels[i] = tests_[i]->zero_level(point);
-    data_.signs[i] = sign_at(point, i);
-  }
+    data.transversalities.push_back(crossing_at_end(system_, at.orbit, s).transversality());
+  data.singular_distance = follower_.condensed().signed_distance();
+  const TestedPoint point = tested(at, data);
+  for (const auto& test : tests_) data.tests.push_back(test->evaluate(point));
+  return data;
 }
 
-void SpecialPointSearch::evaluate_again(const PathPoint& at) {
+PointData SpecialPointSearch::evaluate_again(const PathPoint& at) {
   follower_.linearize_at(at);
-  evaluate(at);
+  return evaluate(at);
 }
 
-int SpecialPointSearch::sign_at(const TestedPoint& point, std::size_t test) const {
-  const std::optional<double>& value = data_.values[test];
-  if (!value) return tests_[test]->sign_where_undefined(point);
-  if (!(std::abs(*value) > data_.zero_levels[test])) return 0;
-  return *value > 0.0 ? 1 : -1;
-}
-
-void SpecialPointSearch::begin(const PathPoint& start) {
-  evaluate_again(start);
-  signs_ = data_.signs;
+PointData SpecialPointSearch::begin(const PathPoint& start) {
+  PointData data = evaluate_again(start);
+  for (std::size_t i = 0; i < tests_.size(); ++i) signs_[i] = data.tests[i].sign;
   labelled_.assign(tests_.size(), false);
   rest_ = 0.0;
   history_.clear();
-  remember(0.0);
+  remember(data, 0.0);
+  return data;
 }
 
-void SpecialPointSearch::remember(double ds) {
+void SpecialPointSearch::remember(const PointData& data, double ds) {
   const double arclength = history_.empty() ? 0.0 : history_.back().arclength + std::abs(ds);
-  distance_here_ = data_.singular_distance;
-  signs_here_ = data_.signs;
+  distance_here_ = data.singular_distance;
   if (history_.size() == history_length) history_.erase(history_.begin());
-  history_.push_back({arclength, data_.values});
+  history_.push_back({arclength, data.tests});
 }
 
-bool SpecialPointSearch::resolved(const PathPoint& next, double ds) {
-  const auto oscillates = [](const auto& test) { return test->oscillates(); };
-  if (std::none_of(tests_.begin(), tests_.end(), oscillates)) return true;
-  evaluate(next);
-  const double at = history_.back().arclength + std::abs(ds);
+bool SpecialPointSearch::resolved(const Candidate& next) const {
+  const double at = history_.back().arclength + std::abs(next.ds);
   for (std::size_t i = 0; i < tests_.size(); ++i) {
-    if (!tests_[i]->oscillates() || !data_.values[i]) continue;
+    if (!next.data.tests[i].value) continue;
     std::vector<TrendValue> past;
     for (const Past& point : history_)
-      if (point.values[i]) past.push_back({point.arclength, *point.values[i]});
-    if (!follows_trend(past, {at, *data_.values[i]})) return false;
+      if (point.tests[i].value) past.push_back({point.arclength, *point.tests[i].value});
+    const TrendValue last{at, *next.data.tests[i].value};
+    const bool is_resolved =
+        tests_[i]->resolution() == Resolution::trend ? follows_trend(past, last) : !has_two_zeros(past, last);
+    if (!is_resolved) return false;
   }
   return true;
 }
@@ -153,103 +144,98 @@ bool SpecialPointSearch::resolved(const PathPoint& next, double ds) {
 bool SpecialPointSearch::same_branch(const PathPoint& here, const PathPoint& next) {
   const double cosine = dot(here.dual, next.tangent);
   if (cosine > same_direction) return true;
-  evaluate(next);
   // A border that is not the tangent makes the determinant smaller by the cosine.
-  return std::abs(data_.singular_distance) > small_distance * std::abs(cosine * distance_here_);
+  return std::abs(follower_.condensed().signed_distance()) > small_distance * std::abs(cosine * distance_here_);
 }
 
 /// Test functions that had a sign at the start of the step and have the other one at its end.
 std::vector<std::size_t> SpecialPointSearch::changed(const PointData& end) const {
   std::vector<std::size_t> result;
   for (std::size_t i = 0; i < tests_.size(); ++i)
-    if (end.values[i] && signs_[i] != 0 && end.signs[i] == -signs_[i]) result.push_back(i);
+    if (end.tests[i].value && signs_[i] != 0 && end.tests[i].sign == -signs_[i]) result.push_back(i);
   return result;
 }
 
-std::optional<SpecialPoint> SpecialPointSearch::advance(const PathPoint& here, PathPoint& next, double& ds,
-                                                        NewtonResult& newton, const Reports& reports) {
-  evaluate(next);
+std::optional<SpecialPoint> SpecialPointSearch::advance(const PathPoint& here, Candidate& next, NewtonResult& newton,
+                                                        const Reports& reports) {
   searches_.assign(tests_.size(), Search::none);
-  const Step step = searched_step(here, next, ds);
+  const Candidate step = searched_step(here, next);
   std::optional<SpecialPoint> special;
-  rest_ = std::max(rest_ - std::abs(ds), 0.0);
-  if (!changed(step.end).empty()) special = advance_to_first_zero(here, next, ds, newton, step);
-  report_lost(reports);
+  rest_ = std::max(rest_ - std::abs(next.ds), 0.0);
+  if (!changed(step.data).empty()) special = advance_to_first_zero(here, next, newton, step);
+  report_lost(next.data, reports);
   for (std::size_t i = 0; i < tests_.size(); ++i)
-    if (data_.signs[i] != 0) signs_[i] = data_.signs[i];
+    if (next.data.tests[i].sign != 0) signs_[i] = next.data.tests[i].sign;
   if (special)
-    keep_rest(step, next);
+    keep_rest(step, next.point);
   else
     labelled_.assign(tests_.size(), false);
-  remember(ds);
+  remember(next.data, next.ds);
   return special;
 }
 
-/// The step to `next`, evaluated last. A function that ends it within its zero level has not changed sign yet: whether
-/// it does is seen a little farther on.
-SpecialPointSearch::Step SpecialPointSearch::searched_step(const PathPoint& here, const PathPoint& next, double ds) {
+/// The step to `next`. A function that ends it within its zero level has not changed sign yet: whether it does is seen
+/// a little farther on; `next` is then linearised and evaluated again.
+Candidate SpecialPointSearch::searched_step(const PathPoint& here, Candidate& next) {
   constexpr double beyond = 1.1;
-  Step step{ds, next, data_};
-  const auto undecided = [&](std::size_t i) { return signs_[i] != 0 && step.end.values[i] && step.end.signs[i] == 0; };
-  std::vector<std::size_t> tests;
+  std::vector<std::size_t> undecided;
   for (std::size_t i = 0; i < tests_.size(); ++i)
-    if (undecided(i)) tests.push_back(i);
-  if (tests.empty()) return step;
-  Step farther{beyond * ds, next, {}};
+    if (signs_[i] != 0 && next.data.tests[i].value && next.data.tests[i].sign == 0) undecided.push_back(i);
+  if (undecided.empty()) return next;
+  Candidate farther{next.point, beyond * next.ds, {}};
   if (follower_.step(here, farther.ds, farther.point).converged() && same_branch(here, farther.point)) {
-    evaluate(farther.point);
-    farther.end = data_;
-    if (std::any_of(tests.begin(), tests.end(), [&](std::size_t i) { return data_.signs[i] == -signs_[i]; }))
+    farther.data = evaluate(farther.point);
+    if (std::any_of(undecided.begin(), undecided.end(),
+                    [&](std::size_t i) { return farther.data.tests[i].sign == -signs_[i]; }))
       return farther;
   }
-  evaluate_again(next);
+  Candidate step = next;
+  next.data = evaluate_again(next.point);
   return step;
 }
 
-/// `next` becomes the first zero, or stays the end of the step when there is none; it is evaluated last.
-std::optional<SpecialPoint> SpecialPointSearch::advance_to_first_zero(const PathPoint& here, PathPoint& next,
-                                                                      double& ds, NewtonResult& newton,
-                                                                      const Step& whole) {
-  const PathPoint end_point = next;
+/// `next` becomes the first zero, or stays the end of the step when there is none; the follower holds its
+/// linearisation.
+std::optional<SpecialPoint> SpecialPointSearch::advance_to_first_zero(const PathPoint& here, Candidate& next,
+                                                                      NewtonResult& newton, const Candidate& whole) {
+  PathPoint trial = next.point;
   std::optional<Cut> cut;
-  for (Step step = whole; !changed(step.end).empty();) {
-    const std::optional<Cut> earlier = first_in(here, next, step);
+  for (Candidate step = whole; !changed(step.data).empty();) {
+    std::optional<Cut> earlier = first_in(here, trial, step);
     if (!earlier) break;
-    cut = earlier;
+    cut = std::move(earlier);
     // What besides has another sign there than at both ends of the step has a zero before.
-    step = {cut->ds, cut->point, data_};
-    for (const std::size_t i : cut->group) step.end.signs[i] = signs_[i];
+    step = cut->at;
+    for (const std::size_t i : cut->group) step.data.tests[i].sign = signs_[i];
   }
-  next = cut ? cut->point : end_point;
-  evaluate_again(next);
+  if (cut) next = std::move(cut->at);
+  next.data = evaluate_again(next.point);
   if (!cut) return std::nullopt;
-  ds = cut->ds;
   if (cut->newton) newton = *cut->newton;
   return classify(cut->group, next);
 }
 
-/// The nearest of the zeros that can be located on a step; trial steps overwrite `trial`, data_ is that of the zero.
+/// The nearest of the zeros that can be located on a step; trial steps overwrite `trial`.
 std::optional<SpecialPointSearch::Cut> SpecialPointSearch::first_in(const PathPoint& here, PathPoint& trial,
-                                                                    const Step& step) {
+                                                                    const Candidate& step) {
   // A branch point before anything else: other functions are searched up to it only, so that no step leads onto it.
   const std::optional<BranchPointBracket> branch_point = find_branch_point(here, trial, step);
   // What vanishes within the bracket, vanishes with the branch point and not before it.
   const double length = branch_point ? branch_point->length_before() : step.ds;
-  const PointData& end = branch_point ? branch_point->before().data : step.end;
+  const PointData& end = branch_point ? branch_point->before().data : step.data;
   const std::vector<Zero> zeros = find_zeros(here, trial, length, end);
   if (!zeros.empty()) {
     const Zero first = first_sharp_zero(here, trial, length, zeros, end);
     const NewtonResult result = follower_.step(here, first.ds, trial);
     if (result.converged()) {
-      evaluate(trial);
-      return Cut{first.ds, trial, vanishing_with(first, zeros, length, step.end), result};
+      const PointData there = evaluate(trial);
+      return Cut{{trial, first.ds, there}, vanishing_with(first, zeros, there, length, step.data), result};
     }
     searches_[first.test] = Search::failed;
   }
   if (!branch_point) return std::nullopt;
   branch_point->put_zero(trial);
-  evaluate_again(trial);
-  return Cut{branch_point->length(), trial, vanishing_at(*branch_point), std::nullopt};
+  return Cut{{trial, branch_point->length(), evaluate_again(trial)}, vanishing_at(*branch_point), std::nullopt};
 }
 
 /// At a point `distance` from the place of its zero: is the function so small there that the point may be its zero as
@@ -257,8 +243,8 @@ std::optional<SpecialPointSearch::Cut> SpecialPointSearch::first_in(const PathPo
 bool SpecialPointSearch::is_flat(const Zero& zero, const PointData& there, double distance, double length,
                                  const PointData& end) const {
   constexpr double linear_share = 0.1;
-  const std::optional<double>& value = there.values[zero.test];
-  return value && std::abs(*value) <= linear_share * std::abs(distance / length * *end.values[zero.test]);
+  const std::optional<double>& value = there.tests[zero.test].value;
+  return value && std::abs(*value) <= linear_share * std::abs(distance / length * *end.tests[zero.test].value);
 }
 
 /// The nearest zero on a step of this length; where its function is flat and another one vanishes sharply beside it (a
@@ -270,8 +256,7 @@ SpecialPointSearch::Zero SpecialPointSearch::first_sharp_zero(const PathPoint& h
                                        [](const Zero& a, const Zero& b) { return std::abs(a.ds) < std::abs(b.ds); });
   const auto data_at = [&](const Zero& zero) -> std::optional<PointData> {
     if (!follower_.step(here, zero.ds, trial).converged()) return std::nullopt;
-    evaluate(trial);
-    return data_;
+    return evaluate(trial);
   };
   for (const Zero& other : zeros) {
     const double distance = other.ds - first.ds;
@@ -286,8 +271,8 @@ SpecialPointSearch::Zero SpecialPointSearch::first_sharp_zero(const PathPoint& h
 }
 
 /// After a step was cut at a zero: what has yet another sign at its end is found on the rest, if that is not passed.
-void SpecialPointSearch::keep_rest(const Step& whole, const PathPoint& cut) {
-  if (changed(whole.end).empty()) return;
+void SpecialPointSearch::keep_rest(const Candidate& whole, const PathPoint& cut) {
+  if (changed(whole.data).empty()) return;
   rest_ = std::abs(dot_difference(cut.dual, whole.point.orbit, cut.orbit, system_.free_parameters()));
 }
 
@@ -295,9 +280,9 @@ double SpecialPointSearch::limited(double ds) const {
   return rest_ > settings_.tolerance && rest_ < std::abs(ds) ? std::copysign(rest_, ds) : ds;
 }
 
-/// Changes of sign that `next`, evaluated last, leaves behind without a label.
-void SpecialPointSearch::report_lost(const Reports& reports) const {
-  for (const std::size_t i : changed(data_)) {
+/// Changes of sign that `next` leaves behind without a label.
+void SpecialPointSearch::report_lost(const PointData& next, const Reports& reports) const {
+  for (const std::size_t i : changed(next)) {
     const std::string name = tests_[i]->name();
     if (searches_[i] == Search::start)
       reports.note(fmt::format("The {} at a zero of {}: no label of its own",
@@ -316,17 +301,13 @@ bool SpecialPointSearch::is_start(double length) const {
 
 /// The zero of a function that Newton's method cannot come near to.
 std::optional<BranchPointBracket> SpecialPointSearch::find_branch_point(const PathPoint& here, PathPoint& trial,
-                                                                        const Step& step) {
-  const std::vector<std::size_t> candidates = changed(step.end);
+                                                                        const Candidate& step) {
+  const std::vector<std::size_t> candidates = changed(step.data);
   const auto found =
       std::find_if(candidates.begin(), candidates.end(), [&](std::size_t i) { return tests_[i]->singular_at_zero(); });
   if (found == candidates.end()) return std::nullopt;
-  evaluate_again(here);
-  BranchPointBracket bracket(follower_, here, data_, step.ds, step.point, step.end, *found, signs_[*found]);
-  const auto evaluated = [this](const PathPoint& point) -> const PointData& {
-    evaluate(point);
-    return data_;
-  };
+  BranchPointBracket bracket(follower_, here, evaluate_again(here), step, *found, signs_[*found]);
+  const auto evaluated = [this](const PathPoint& point) { return evaluate(point); };
   const bool narrowed = bracket.narrow(evaluated, trial, settings_.tolerance);
   searches_[*found] = !narrowed ? Search::failed : is_start(bracket.length()) ? Search::start : Search::located;
   if (searches_[*found] != Search::located) return std::nullopt;
@@ -339,7 +320,7 @@ std::vector<SpecialPointSearch::Zero> SpecialPointSearch::find_zeros(const PathP
   std::vector<Zero> zeros;
   for (const std::size_t i : changed(end)) {
     if (tests_[i]->singular_at_zero()) continue;
-    const Zero zero = locate(i, here, trial, ds, *end.values[i]);
+    const Zero zero = locate(i, here, trial, ds, *end.tests[i].value);
     searches_[i] = zero.search;
     if (zero.search != Search::located) continue;
     if (is_start(zero.ds))
@@ -355,65 +336,72 @@ std::vector<SpecialPointSearch::Zero> SpecialPointSearch::find_zeros(const PathP
 /// where it has it is found by bisection.
 SpecialPointSearch::Zero SpecialPointSearch::locate(std::size_t test, const PathPoint& here, PathPoint& trial,
                                                     double ds, double end_value) {
+  TestValue found;
+  bool genuine = true;
   const auto arrive = [&](double length) {
     const bool at_start = length == 0.0;
     if (!(at_start ? follower_.linearize_at(here) : follower_.step(here, length, trial).converged())) return false;
-    evaluate(at_start ? here : trial);
+    const PathPoint& there = at_start ? here : trial;
+    const PointData data = evaluate(there);
+    found = data.tests[test];
+    genuine = tests_[test]->is_genuine(tested(there, data));
     return true;
   };
-  const std::optional<double>& value = data_.values[test];
-  const auto has_sign = [&] { return value && data_.signs[test] == signs_[test]; };
+  const auto has_sign = [&] { return found.value && found.sign == signs_[test]; };
   SignChange bracket{0.0, ds, 0.0, end_value};
   bool arrived = arrive(bracket.low);
-  const bool genuine_at_start = arrived && tests_[test]->is_genuine(tested(here));
+  const bool genuine_at_start = arrived && genuine;
   while (arrived && !has_sign() && bracket.length() > settings_.tolerance) {
     const double middle = 0.5 * (bracket.low + bracket.high);
     arrived = arrive(middle);
-    if (value && data_.signs[test] == -signs_[test])
-      bracket.high = middle, bracket.high_value = *value;
+    if (found.value && found.sign == -signs_[test])
+      bracket.high = middle, bracket.high_value = *found.value;
     else
       bracket.low = middle;
   }
   if (!arrived) return {test, 0.0, Search::failed};
   if (!has_sign()) return {test, bracket.high, genuine_at_start ? zero_at_start(test) : Search::no_special_point};
-  bracket.low_value = *value;
+  bracket.low_value = *found.value;
   double least = std::numeric_limits<double>::infinity();
-  bool genuine = true;
+  bool genuine_at_least = true;
   const auto at = [&](double length) {
     if (!arrive(length)) return std::optional<double>();
-    if (value && std::abs(*value) < least) {
-      least = std::abs(*value);
-      genuine = tests_[test]->is_genuine(tested(trial));
+    if (found.value && std::abs(*found.value) < least) {
+      least = std::abs(*found.value);
+      genuine_at_least = genuine;
     }
-    return value;
+    return found.value;
   };
   // No level of rounding: where a function is flat, it is small far from its zero.
   const LocatedZero zero = locate_zero_surely(at, bracket, settings_.tolerance, 0.0, settings_.max_evaluations);
-  const Search search = !zero.converged() ? zero.status == ZeroSearch::jump ? Search::jump : Search::failed
-                        : genuine         ? Search::located
-                                          : Search::no_special_point;
+  const Search search = !zero.converged()  ? zero.status == ZeroSearch::jump ? Search::jump : Search::failed
+                        : genuine_at_least ? Search::located
+                                           : Search::no_special_point;
   return {test, zero.ds, search};
 }
 
 /// The branch leaves the start of the step with another sign than it came with.
 SpecialPointSearch::Search SpecialPointSearch::zero_at_start(std::size_t test) const {
-  if (!history_.back().values[test]) return Search::no_special_point;  // undefined there: nothing goes through zero
+  const TestValue& here = history_.back().tests[test];
+  if (!here.value) return Search::no_special_point;  // undefined there: nothing goes through zero
   if (labelled_[test]) return Search::start;
-  return signs_here_[test] == 0 ? Search::located : Search::jump;
+  return here.sign == 0 ? Search::located : Search::jump;
 }
 
-/// The functions that vanish at the point evaluated last, where one has its zero: whose own zeros are at the same
-/// place as far as can be told, or, where these were not located, that have become small.
+/// The functions that vanish where one has its zero, evaluated as `there`: whose own zeros are at the same place as far
+/// as can be told, or, where these were not located, that have become small.
 std::vector<std::size_t> SpecialPointSearch::vanishing_with(const Zero& first, const std::vector<Zero>& zeros,
-                                                            double length, const PointData& end) const {
+                                                            const PointData& there, double length,
+                                                            const PointData& end) const {
   const double same_place = 10.0 * settings_.tolerance;
   std::vector<std::size_t> group;
   for (const std::size_t i : changed(end)) {
     const auto zero = std::find_if(zeros.begin(), zeros.end(), [i](const Zero& z) { return z.test == i; });
-    const bool small = data_.values[i] && std::abs(*data_.values[i]) <= together * std::abs(*end.values[i]);
+    const std::optional<double>& value = there.tests[i].value;
+    const bool small = value && std::abs(*value) <= together * std::abs(*end.tests[i].value);
     const bool same = zero == zeros.end() ? small && searches_[i] == Search::failed
                                           : std::abs(zero->ds - first.ds) <= same_place ||
-                                                (small && is_flat(*zero, data_, zero->ds - first.ds, length, end));
+                                                (small && is_flat(*zero, there, zero->ds - first.ds, length, end));
     if (same) group.push_back(i);
   }
   return group;
@@ -425,19 +413,19 @@ std::vector<std::size_t> SpecialPointSearch::vanishing_at(const BranchPointBrack
   const PointData& before = branch_point.before().data;
   const PointData& after = branch_point.after().data;
   for (std::size_t i = 0; i < tests_.size(); ++i)
-    if (i != branch_point.test() && before.values[i] && after.values[i] && signs_[i] != 0 &&
-        after.signs[i] == -signs_[i])
+    if (i != branch_point.test() && before.tests[i].value && after.tests[i].value && signs_[i] != 0 &&
+        after.tests[i].sign == -signs_[i])
       group.push_back(i);
   return group;
 }
 
 /// Functions that vanish together make one special point, of the first one's type, and none of them is looked for
 /// again.
-SpecialPoint SpecialPointSearch::classify(const std::vector<std::size_t>& group, const PathPoint& at) {
+SpecialPoint SpecialPointSearch::classify(const std::vector<std::size_t>& group, Candidate& at) {
   SpecialPoint special;
   labelled_.assign(tests_.size(), false);
   for (const std::size_t i : group) {
-    const SpecialPoint found = tests_[i]->classify(tested(at), signs_[i] < 0);
+    const SpecialPoint found = tests_[i]->classify(tested(at.point, at.data), signs_[i] < 0);
     if (i == group.front()) {
       special = found;
     } else if (!is_the_same(special, found)) {
@@ -448,8 +436,8 @@ SpecialPoint SpecialPointSearch::classify(const std::vector<std::size_t>& group,
   }
   for (const std::size_t i : group) {
     signs_[i] = -signs_[i];
-    data_.values[i] = 0.0;
-    data_.signs[i] = 0;
+    at.data.tests[i].value = 0.0;
+    at.data.tests[i].sign = 0;
     labelled_[i] = true;
   }
   return special;

@@ -7,11 +7,8 @@
 #include <optional>
 
 #include "continuation/branch_point_bracket.hpp"
-#include "continuation/path_follower.hpp"
 #include "continuation/point_data.hpp"
 #include "special_points/locator.hpp"
-#include "special_points/test_function.hpp"
-#include "stability/floquet_multipliers.hpp"
 
 namespace tchat {
 
@@ -34,25 +31,25 @@ class SpecialPointSearch {
                      std::vector<std::unique_ptr<TestFunction>> tests, const LocationSettings& settings);
 
   const std::vector<std::unique_ptr<TestFunction>>& tests() const { return tests_; }
-  /// Of the point evaluated last.
-  const PointData& data() const { return data_; }
 
   /// Evaluates at the start of a branch. Functions that vanish there take their sign from the next point.
-  void begin(const PathPoint& start);
+  PointData begin(const PathPoint& start);
 
-  /// Are the oscillating test functions resolved by a converged step of length ds to `next`? False when one of them is
-  /// far from what its last values let expect, or when they let expect that it has come near to zero in between: it may
-  /// have changed sign twice, a shorter step will tell.
-  bool resolved(const PathPoint& next, double ds);
+  /// At a converged point, whose linearisation the follower holds.
+  PointData evaluate(const PathPoint& at);
+
+  /// Do the points of the branch follow each other as closely as the test functions ask for (Resolution)? Else one of
+  /// them may have changed sign twice on the step to `next`, and a shorter one will tell.
+  bool resolved(const Candidate& next) const;
 
   /// Does a converged step go on along the same branch? Close to a branch point Newton may come out on another one: the
   /// tangent turns much there and the problem is nearly singular.
   bool same_branch(const PathPoint& here, const PathPoint& next);
 
-  /// `next` is a converged step of length ds from `here`, whose linearisation the follower holds. When test functions
-  /// change sign on the way, `next`, `ds` and `newton` are moved to their first zero, and what it is is returned.
-  /// Afterwards data() belongs to `next`, which becomes the new `here`.
-  std::optional<SpecialPoint> advance(const PathPoint& here, PathPoint& next, double& ds, NewtonResult& newton,
+  /// `next` is a converged step from `here`, evaluated, whose linearisation the follower holds. When test functions
+  /// change sign on the way, `next` and `newton` are moved to their first zero, and what it is is returned. Afterwards
+  /// `next` becomes the new `here`.
+  std::optional<SpecialPoint> advance(const PathPoint& here, Candidate& next, NewtonResult& newton,
                                       const Reports& reports);
 
   /// A step that was cut at a zero has shown what lies beyond. As long as further zeros are known there, the next steps
@@ -60,7 +57,7 @@ class SpecialPointSearch {
   double limited(double ds) const;
 
   /// What the test functions know of `at`, whose linearisation the follower holds.
-  std::vector<std::string> details(const PathPoint& at) const;
+  std::vector<std::string> details(const PathPoint& at, const PointData& data) const;
 
  private:
   /// What came of the search for a zero.
@@ -70,59 +67,48 @@ class SpecialPointSearch {
     double ds;
     Search search;
   };
-  /// How far the zeros are searched, and what is known there.
-  struct Step {
-    double ds;
-    PathPoint point;
-    PointData end;
-  };
   /// Where a step is cut: the zero of a group of functions.
   struct Cut {
-    double ds;
-    PathPoint point;
+    Candidate at;
     std::vector<std::size_t> group;
     std::optional<NewtonResult> newton;  // nothing: interpolated
   };
 
-  void evaluate(const PathPoint& at);        // the follower holds its linearisation
-  void evaluate_again(const PathPoint& at);  // with a new one
-  TestedPoint tested(const PathPoint& at) const;
-  int sign_at(const TestedPoint& point, std::size_t test) const;
+  PointData evaluate_again(const PathPoint& at);  // with a new linearisation
+  TestedPoint tested(const PathPoint& at, const PointData& data) const;
   std::vector<std::size_t> changed(const PointData& end) const;
-  Step searched_step(const PathPoint& here, const PathPoint& next, double ds);
-  std::optional<SpecialPoint> advance_to_first_zero(const PathPoint& here, PathPoint& next, double& ds,
-                                                    NewtonResult& newton, const Step& whole);
-  std::optional<Cut> first_in(const PathPoint& here, PathPoint& trial, const Step& step);
-  void keep_rest(const Step& whole, const PathPoint& cut);
-  void report_lost(const Reports& reports) const;
+  Candidate searched_step(const PathPoint& here, Candidate& next);
+  std::optional<SpecialPoint> advance_to_first_zero(const PathPoint& here, Candidate& next, NewtonResult& newton,
+                                                    const Candidate& whole);
+  std::optional<Cut> first_in(const PathPoint& here, PathPoint& trial, const Candidate& step);
+  void keep_rest(const Candidate& whole, const PathPoint& cut);
+  void report_lost(const PointData& next, const Reports& reports) const;
   bool is_start(double length) const;
-  std::optional<BranchPointBracket> find_branch_point(const PathPoint& here, PathPoint& trial, const Step& step);
+  std::optional<BranchPointBracket> find_branch_point(const PathPoint& here, PathPoint& trial, const Candidate& step);
   std::vector<Zero> find_zeros(const PathPoint& here, PathPoint& trial, double ds, const PointData& end);
   Zero locate(std::size_t test, const PathPoint& here, PathPoint& trial, double ds, double end_value);
   Search zero_at_start(std::size_t test) const;
   bool is_flat(const Zero& zero, const PointData& there, double distance, double length, const PointData& end) const;
   Zero first_sharp_zero(const PathPoint& here, PathPoint& trial, double length, const std::vector<Zero>& zeros,
                         const PointData& end);
-  std::vector<std::size_t> vanishing_with(const Zero& first, const std::vector<Zero>& zeros, double length,
-                                          const PointData& end) const;
+  std::vector<std::size_t> vanishing_with(const Zero& first, const std::vector<Zero>& zeros, const PointData& there,
+                                          double length, const PointData& end) const;
   std::vector<std::size_t> vanishing_at(const BranchPointBracket& branch_point) const;
-  SpecialPoint classify(const std::vector<std::size_t>& group, const PathPoint& at);
-  void remember(double ds);
+  SpecialPoint classify(const std::vector<std::size_t>& group, Candidate& at);
+  void remember(const PointData& data, double ds);
 
   PathFollower& follower_;
   const DefiningSystem& system_;
   std::vector<std::unique_ptr<TestFunction>> tests_;
   LocationSettings settings_;
   FloquetSolver floquet_;
-  PointData data_;
   struct Past {
     double arclength;
-    std::vector<std::optional<double>> values;
+    std::vector<TestValue> tests;
   };
   double distance_here_ = 1.0;    // PointData::singular_distance at the last accepted point
   std::vector<Past> history_;     // the last accepted points, for resolved()
   std::vector<int> signs_;        // of the test functions at the last accepted point; 0: none yet
-  std::vector<int> signs_here_;   // of the values at the last accepted point; 0 within their zero levels
   std::vector<bool> labelled_;    // the last accepted point is labelled as their zero
   std::vector<Search> searches_;  // on the step being searched
   double rest_ = 0.0;             // of a step that was cut; 0: nothing more is known there

@@ -36,11 +36,11 @@ double interpolate(const std::vector<TrendValue>& values, double at) {
   return result;
 }
 
-/// Between two values of one sign, does the polynomial through `values` come near to zero?
-bool has_dip(const std::vector<TrendValue>& values, const TrendValue& last, const TrendValue& next) {
+/// Between two values of one sign, does the polynomial through `values` fall below this share of the smaller one?
+bool falls_below(double share, const std::vector<TrendValue>& values, const TrendValue& last, const TrendValue& next) {
   if (!(last.value * next.value > 0.0)) return false;
   const double sign = next.value > 0.0 ? 1.0 : -1.0;
-  const double least = dip * std::min(std::abs(last.value), std::abs(next.value));
+  const double least = share * std::min(std::abs(last.value), std::abs(next.value));
   for (int k = 1; k < looks; ++k)
     if (sign * interpolate(values, last.at + (next.at - last.at) * k / looks) < least) return true;
   return false;
@@ -56,7 +56,17 @@ bool follows_trend(const std::vector<TrendValue>& past, const TrendValue& next) 
   for (const TrendValue& one : past) size = std::max(size, std::abs(one.value));
   if (std::abs(interpolate(values, next.at) - next.value) > unexpected * size) return false;
   values.push_back(next);
-  return !has_dip(values, past.back(), next);
+  return !falls_below(dip, values, past.back(), next);
+}
+
+bool has_two_zeros(const std::vector<TrendValue>& past, const TrendValue& next) {
+  if (past.empty()) return false;
+  std::vector<TrendValue> values = last_ones(past, apart_enough * std::abs(next.at - past.back().at));
+  if (values.size() < most_past) return false;
+  values.push_back(next);
+  std::vector<TrendValue> parabola(values.begin(), values.begin() + most_past - 1);  // the newest come first
+  parabola.push_back(next);
+  return falls_below(0.0, values, past.back(), next) && falls_below(0.0, parabola, past.back(), next);
 }
 
 }  // namespace tchat

@@ -1,7 +1,8 @@
-/// Do the values of an oscillating test function along a branch lie close enough together to see every change of sign?
+/// Do the values of a test function along a branch lie close enough together to see every change of sign?
 ///
-/// The polynomial through earlier values foretells the next one, and tells with it what lies in between. Far from what
-/// was expected, or with a dip near to zero between two values of one sign, the function may have changed sign twice.
+/// The polynomial through earlier values foretells the next one, and tells with it what lies in between: two zeros
+/// between two values of one sign; for a function that oscillates, a dip near to zero there, or a value far from what
+/// was expected, is reason enough to look closer.
 #pragma once
 
 #include <vector>
@@ -16,5 +17,9 @@ struct TrendValue {
 /// `past` in the order of the branch, `next` beyond its last one. With fewer than two values there is no trend, and any
 /// next one follows it.
 bool follows_trend(const std::vector<TrendValue>& past, const TrendValue& next);
+
+/// Have the cubic through the last three values and the next one, and the parabola through the last two, two zeros
+/// between the last one and the next? With fewer than three values there is no cubic.
+bool has_two_zeros(const std::vector<TrendValue>& past, const TrendValue& next);
 
 }  // namespace tchat

@@ -64,9 +64,9 @@ class ProblemType {
   /// Everything that a branch needs before it is computed. Throws UserError when it cannot begin at the start,
   /// ComputationError when no first point is found.
   virtual BranchSetup set_up(const HybridSystem& system, const RunSettings& settings, const SelectedStart& start) const;
-  /// The test functions of a branch; `condition` is what make_condition has given.
-  virtual std::vector<std::unique_ptr<TestFunction>> tests(const DefiningSystem& defining, const RunSettings& settings,
-                                                           const OrbitCondition* condition) const = 0;
+  /// The test functions of a branch.
+  virtual std::vector<std::unique_ptr<TestFunction>> tests(const DefiningSystem& defining,
+                                                           const RunSettings& settings) const = 0;
 
  private:
   ProblemFacts facts_;

@@ -32,7 +32,7 @@ class BoundaryValues final : public ProblemType {
                                                  free_durations(settings));
   }
 
-  TestList tests(const DefiningSystem& defining, const RunSettings& settings, const OrbitCondition*) const override {
+  TestList tests(const DefiningSystem& defining, const RunSettings& settings) const override {
     TestList tests;
     add_bifurcations(tests, defining, settings);
     add_user_values(tests, defining.system(), settings);

@@ -17,9 +17,8 @@ BranchSetup BranchSwitch::set_up(const HybridSystem& system, const RunSettings& 
 }
 
 std::vector<std::unique_ptr<TestFunction>> BranchSwitch::tests(const DefiningSystem& defining,
-                                                               const RunSettings& settings,
-                                                               const OrbitCondition* condition) const {
-  return followed().tests(defining, settings, condition);
+                                                               const RunSettings& settings) const {
+  return followed().tests(defining, settings);
 }
 
 namespace types {

@@ -15,8 +15,8 @@ class BranchSwitch : public ProblemType {
                                               std::vector<int> free_parameters) const override;
   BranchSetup set_up(const HybridSystem& system, const RunSettings& settings,
                      const SelectedStart& start) const override;
-  std::vector<std::unique_ptr<TestFunction>> tests(const DefiningSystem& defining, const RunSettings& settings,
-                                                   const OrbitCondition* condition) const override;
+  std::vector<std::unique_ptr<TestFunction>> tests(const DefiningSystem& defining,
+                                                   const RunSettings& settings) const override;
 
  private:
   const ProblemType& followed() const { return problem_type(facts().number, 1); }

@@ -18,10 +18,9 @@ class FoldCurve final : public TwoParameterCurve {
   }
 
  protected:
-  void add_codimension_two(TestList& tests, const OrbitCondition& condition) const override {
-    const auto& multiplier = static_cast<const CriticalMultiplier&>(condition);
-    tests.push_back(std::make_unique<CuspTest>(multiplier));
-    tests.push_back(std::make_unique<ResonanceTest>(multiplier, PointType::resonance_1));
+  void add_codimension_two(TestList& tests) const override {
+    tests.push_back(std::make_unique<CuspTest>());
+    tests.push_back(std::make_unique<ResonanceTest>(PointType::resonance_1));
   }
 };
 

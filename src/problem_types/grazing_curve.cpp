@@ -47,7 +47,7 @@ class GrazingCurve final : public ProblemType {
 
   /// xi_n by GCIPSI, a*, branch points, multipliers +1 and -1 of the smooth orbit, impact velocities of the other
   /// segments, further contacts. A fold in the principal parameter means nothing here.
-  TestList tests(const DefiningSystem& defining, const RunSettings& settings, const OrbitCondition*) const override {
+  TestList tests(const DefiningSystem& defining, const RunSettings& settings) const override {
     const auto& system = static_cast<const GrazingOrbitSystem&>(defining);
     TestList tests;
     add_impact_velocities(tests, system, settings);

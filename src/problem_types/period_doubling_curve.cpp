@@ -18,9 +18,8 @@ class PeriodDoublingCurve final : public TwoParameterCurve {
   }
 
  protected:
-  void add_codimension_two(TestList& tests, const OrbitCondition& condition) const override {
-    const auto& multiplier = static_cast<const CriticalMultiplier&>(condition);
-    tests.push_back(std::make_unique<ResonanceTest>(multiplier, PointType::resonance_2));
+  void add_codimension_two(TestList& tests) const override {
+    tests.push_back(std::make_unique<ResonanceTest>(PointType::resonance_2));
   }
 };
 

@@ -23,7 +23,7 @@ class PeriodicOrbits final : public ProblemType {
     return std::make_unique<PeriodicOrbitSystem>(system, settings.signature(), std::move(free_parameters));
   }
 
-  TestList tests(const DefiningSystem& defining, const RunSettings& settings, const OrbitCondition*) const override {
+  TestList tests(const DefiningSystem& defining, const RunSettings& settings) const override {
     TestList tests = contact_tests(defining, settings);
     add_bifurcations(tests, defining, settings);
     add_user_values(tests, defining.system(), settings);

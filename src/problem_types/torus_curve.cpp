@@ -61,11 +61,10 @@ class TorusCurve final : public TwoParameterCurve {
   }
 
  protected:
-  void add_codimension_two(TestList& tests, const OrbitCondition& condition) const override {
+  void add_codimension_two(TestList& tests) const override {
     constexpr std::array resonances{PointType::resonance_1, PointType::resonance_2, PointType::resonance_3,
                                     PointType::resonance_4};
-    for (const PointType type : resonances)
-      tests.push_back(std::make_unique<AngleTest>(static_cast<const CriticalPair&>(condition), type));
+    for (const PointType type : resonances) tests.push_back(std::make_unique<AngleTest>(type));
   }
 };
 

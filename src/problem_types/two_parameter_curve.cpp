@@ -19,10 +19,9 @@ std::unique_ptr<DefiningSystem> TwoParameterCurve::make_system(const HybridSyste
   return std::make_unique<PeriodicOrbitSystem>(system, settings.signature(), std::move(free_parameters));
 }
 
-TestList TwoParameterCurve::tests(const DefiningSystem& defining, const RunSettings& settings,
-                                  const OrbitCondition* condition) const {
+TestList TwoParameterCurve::tests(const DefiningSystem& defining, const RunSettings& settings) const {
   TestList tests = contact_tests(defining, settings);
-  add_codimension_two(tests, *condition);
+  add_codimension_two(tests);
   add_user_values(tests, defining.system(), settings);
   return tests;
 }

@@ -15,12 +15,11 @@ class TwoParameterCurve : public ProblemType {
   bool begins_at(int label_type) const override { return label_type == facts().curve; }
   std::unique_ptr<DefiningSystem> make_system(const HybridSystem& system, const RunSettings& settings,
                                               std::vector<int> free_parameters) const override;
-  TestList tests(const DefiningSystem& defining, const RunSettings& settings,
-                 const OrbitCondition* condition) const override;
+  TestList tests(const DefiningSystem& defining, const RunSettings& settings) const override;
 
  protected:
   /// The points of codimension two on the curve.
-  virtual void add_codimension_two(TestList& tests, const OrbitCondition& condition) const = 0;
+  virtual void add_codimension_two(TestList& tests) const = 0;
 };
 
 }  // namespace tchat

@@ -175,7 +175,7 @@ void BranchWriter::show_contact(const BranchPoint& point) {
   constexpr std::size_t width = 120;
   const std::string indent(7, ' ');
   std::string line;
-  for (const TestValue& test : point.tests) {
+  for (const NamedTestValue& test : point.tests) {
     if (!tells_of_contact(test.name) || !test.value) continue;
     const std::string text = fmt::format("{}{} = {:.8g}", line.empty() ? indent : ", ", test.name, *test.value);
     if (line.size() + text.size() > width) {
@@ -252,7 +252,7 @@ void BranchWriter::write_diagnostics(const BranchPoint& point, const PointLine& 
     text += format_note(line.branch, line.point, missing);
   if (level >= 2) {
     std::vector<TestFunctionLine> tests;
-    for (const TestValue& test : point.tests)
+    for (const NamedTestValue& test : point.tests)
       tests.push_back({test.name, test.value.value_or(0.0), test.value.has_value()});
     text += format_test_functions(tests);
     text += fmt::format("{:4}{:6}  Structural multiplier {:.3e}   estimated error between mesh points {:.3e}\n",

@@ -177,8 +177,8 @@ int run_problem(const RunRequest& request, std::ostream& screen, std::ostream& w
     if (direction == 0)
       for (const std::string& note : library.derivative_notes()) writer.note(1, note);
     const std::size_t labels_before = writer.labels().size();
-    ContinuationRun run(*side->follower, *side->defining, continuation,
-                        side->type->tests(*side->defining, settings, side->follower->condition()), writer);
+    ContinuationRun run(*side->follower, *side->defining, continuation, side->type->tests(*side->defining, settings),
+                        writer);
     BranchSummary summary = run.run(side->start.point);
     summary.without_contact = side->type->facts().stability == StabilityMeaning::without_contact;
     writer.clear_progress();

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "bvp/orbit_accuracy.hpp"
 #include "bvp/transversality.hpp"
 #include "hybrid/identity_jump.hpp"
 
@@ -74,16 +75,12 @@ std::string state_text(const HybridSystem& system, const double* x) {
   return text;
 }
 
-std::optional<double> multiplier_product(const TestedPoint& point, int target) {
-  if (!trusted(point.multipliers)) return std::nullopt;
-  return product_of(point.multipliers, target).value;
-}
-
-double multiplier_product_level(const TestedPoint& point, int target) {
+TestValue multiplier_product(const TestedPoint& point, int target) {
+  if (!trusted(point.multipliers)) return TestValue::undefined();
   const double nearest = distance_to(point.multipliers, target);
   const MultiplierProduct& product = product_of(point.multipliers, target);
   const double level = nearest > 0.0 ? orbit_accuracy * std::abs(product.value) / nearest : orbit_accuracy;
-  return std::max(level, product.uncertainty);
+  return TestValue::of(product.value, std::max(level, product.uncertainty));
 }
 
 bool is_multiplier_at(const TestedPoint& point, int target) {
@@ -98,8 +95,9 @@ FoldTest::FoldTest(int parameter, const std::vector<int>& free_parameters, int s
                : std::find(free_parameters.begin(), free_parameters.end(), parameter) - free_parameters.begin();
 }
 
-std::optional<double> FoldTest::value(const TestedPoint& point) const {
-  return is_duration_ ? point.tangent.durations(index_) : point.tangent.globals(index_);
+TestValue FoldTest::evaluate(const TestedPoint& point) const {
+  constexpr double level = 1e-10;
+  return TestValue::of(is_duration_ ? point.tangent.durations(index_) : point.tangent.globals(index_), level);
 }
 
 /// The branch also turns where h_x f = 0: at a section that becomes tangent its two ways through the orbit meet, while
@@ -114,30 +112,31 @@ SpecialPoint FoldTest::classify(const TestedPoint& point, bool) const {
           fmt::format("turning point of the branch, no fold of orbits: h_x f = 0 at the end of segment {}", s + 1)};
 }
 
+TestValue BranchPointTest::evaluate(const TestedPoint& point) const {
+  constexpr double level = 1e-13;  // what rounding makes of a singular matrix
+  return TestValue::of(point.singular_distance, level);
+}
+
 SpecialPoint BranchPointTest::classify(const TestedPoint&, bool) const {
   return {PointType::branch_point, {}, stop_, "branch point"};
 }
 
-std::optional<double> PeriodDoublingTest::value(const TestedPoint& point) const {
-  return multiplier_product(point, -1);
-}
+TestValue PeriodDoublingTest::evaluate(const TestedPoint& point) const { return multiplier_product(point, -1); }
 
 bool PeriodDoublingTest::is_genuine(const TestedPoint& point) const { return is_multiplier_at(point, -1); }
-
-double PeriodDoublingTest::zero_level(const TestedPoint& point) const { return multiplier_product_level(point, -1); }
 
 SpecialPoint PeriodDoublingTest::classify(const TestedPoint&, bool) const {
   return {PointType::period_doubling, {}, stop_, "period doubling"};
 }
 
-std::optional<double> TorusTest::value(const TestedPoint& point) const {
-  if (!trusted(point.multipliers) || !point.multipliers.determined()) return std::nullopt;
+TestValue TorusTest::evaluate(const TestedPoint& point) const {
+  if (!trusted(point.multipliers) || !point.multipliers.determined()) return TestValue::undefined();
   const std::complex<double>* nearest = nearest_pair(point.multipliers);
-  if (nearest == nullptr) return std::nullopt;
+  if (nearest == nullptr) return TestValue::undefined();
   double sign = 1.0;
   for (const auto& mu : point.multipliers.values)
     if (is_upper(mu) && std::abs(mu) < 1.0) sign = -sign;
-  return sign * std::abs(std::abs(*nearest) - 1.0);
+  return TestValue::of(sign * std::abs(std::abs(*nearest) - 1.0), orbit_accuracy);
 }
 
 SpecialPoint TorusTest::classify(const TestedPoint& point, bool) const {
@@ -151,12 +150,9 @@ ImpactVelocityTest::ImpactVelocityTest(const DefiningSystem& system, int segment
 
 std::string ImpactVelocityTest::name() const { return fmt::format("h_x f at the end of segment {}", segment_ + 1); }
 
-std::optional<double> ImpactVelocityTest::value(const TestedPoint& point) const {
-  return crossing_at_end(system_, point.orbit, segment_).rate;
-}
-
-double ImpactVelocityTest::zero_level(const TestedPoint& point) const {
-  return no_transversality * crossing_at_end(system_, point.orbit, segment_).sizes;
+TestValue ImpactVelocityTest::evaluate(const TestedPoint& point) const {
+  const Crossing crossing = crossing_at_end(system_, point.orbit, segment_);
+  return TestValue::of(crossing.rate, no_transversality * crossing.sizes);
 }
 
 SpecialPoint ImpactVelocityTest::classify(const TestedPoint& point, bool rising) const {

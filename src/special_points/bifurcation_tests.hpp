@@ -8,7 +8,6 @@
 /// singular matrix.
 #pragma once
 
-#include "bvp/orbit_accuracy.hpp"
 #include "special_points/test_function.hpp"
 
 namespace tchat {
@@ -19,8 +18,7 @@ class FoldTest final : public TestFunction {
   /// `parameter` is a PAR index; `free_parameters` those of the tangent's globals.
   FoldTest(int parameter, const std::vector<int>& free_parameters, int segments, bool stop);
   std::string name() const override { return "fold"; }
-  std::optional<double> value(const TestedPoint& point) const override;
-  double zero_level(const TestedPoint&) const override { return 1e-10; }
+  TestValue evaluate(const TestedPoint& point) const override;
   SpecialPoint classify(const TestedPoint& point, bool rising) const override;
 
  private:
@@ -34,9 +32,7 @@ class BranchPointTest final : public TestFunction {
  public:
   explicit BranchPointTest(bool stop) : stop_(stop) {}
   std::string name() const override { return "branch point"; }
-  std::optional<double> value(const TestedPoint& point) const override { return point.singular_distance; }
-  /// What rounding makes of a singular matrix.
-  double zero_level(const TestedPoint&) const override { return 1e-13; }
+  TestValue evaluate(const TestedPoint& point) const override;
   bool singular_at_zero() const override { return true; }
   SpecialPoint classify(const TestedPoint& point, bool rising) const override;
 
@@ -51,8 +47,7 @@ class PeriodDoublingTest final : public TestFunction {
  public:
   explicit PeriodDoublingTest(bool stop) : stop_(stop) {}
   std::string name() const override { return "period doubling"; }
-  std::optional<double> value(const TestedPoint& point) const override;
-  double zero_level(const TestedPoint& point) const override;
+  TestValue evaluate(const TestedPoint& point) const override;
   bool is_genuine(const TestedPoint& point) const override;
   SpecialPoint classify(const TestedPoint& point, bool rising) const override;
 
@@ -66,8 +61,7 @@ class TorusTest final : public TestFunction {
  public:
   explicit TorusTest(bool stop) : stop_(stop) {}
   std::string name() const override { return "torus"; }
-  std::optional<double> value(const TestedPoint& point) const override;
-  double zero_level(const TestedPoint&) const override { return orbit_accuracy; }
+  TestValue evaluate(const TestedPoint& point) const override;
   SpecialPoint classify(const TestedPoint& point, bool rising) const override;
 
  private:
@@ -81,8 +75,7 @@ class ImpactVelocityTest final : public TestFunction {
   /// `segment` counts from 0. Beyond a rising zero the orbit violates the model: `stop` ends the branch there.
   ImpactVelocityTest(const DefiningSystem& system, int segment, bool stop);
   std::string name() const override;
-  std::optional<double> value(const TestedPoint& point) const override;
-  double zero_level(const TestedPoint& point) const override;
+  TestValue evaluate(const TestedPoint& point) const override;
   SpecialPoint classify(const TestedPoint& point, bool rising) const override;
 
  private:
@@ -92,11 +85,9 @@ class ImpactVelocityTest final : public TestFunction {
 };
 
 /// Product of 1 - mu / target over the nontrivial multipliers times the product of the scaled a_s of all segments: the
-/// one function behind every multiplier +1 or -1, on curves of grazing orbits too. `target` is 1 or -1. Nothing where
-/// multipliers are not trusted.
-std::optional<double> multiplier_product(const TestedPoint& point, int target);
-/// What of this product is rounding: it is small only against the other factors.
-double multiplier_product_level(const TestedPoint& point, int target);
+/// one function behind every multiplier +1 or -1, on curves of grazing orbits too. `target` is 1 or -1. Undefined where
+/// multipliers are not trusted. Its zero level is rounding against the other factors, for it is small only with them.
+TestValue multiplier_product(const TestedPoint& point, int target);
 /// Is a multiplier at the target where this product vanishes? Where none goes through infinity with an a_s, as in the
 /// plane, the product vanishes with that a_s.
 bool is_multiplier_at(const TestedPoint& point, int target);

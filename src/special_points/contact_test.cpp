@@ -196,18 +196,14 @@ ContactTest::ContactTest(const DefiningSystem& system, int segment, int event, b
 
 std::string ContactTest::name() const { return fmt::format("least h{} on segment {}", event_, segment_ + 1); }
 
-std::optional<double> ContactTest::value(const TestedPoint& point) const {
+TestValue ContactTest::evaluate(const TestedPoint& point) const {
   const auto contact = least_value(system_, point.condensed.rule(), point.orbit, segment_, event_);
-  if (!contact) return std::nullopt;
-  return contact->value;
+  if (!contact) return TestValue::undefined(sign_without_minimum(point.orbit));
+  return TestValue::of(contact->value, orbit_accuracy * event_scale(system_.system(), point.orbit, event_));
 }
 
-double ContactTest::zero_level(const TestedPoint& point) const {
-  return orbit_accuracy * event_scale(system_.system(), point.orbit, event_);
-}
-
-int ContactTest::sign_where_undefined(const TestedPoint& point) const {
-  const Orbit& x = point.orbit;
+/// Between pinned ends h may rise and fall without a minimum in between: no contact, positive.
+int ContactTest::sign_without_minimum(const Orbit& x) const {
   if (!(x.duration(segment_) > 0.0)) return 0;
   for (int k = 1; k + 1 < x.shape.nodes(); ++k)
     if (system_.system().event(event_, x.node(segment_, k), x.par.data()) > 0.0) return 1;

@@ -32,13 +32,11 @@ class ContactTest final : public TestFunction {
   /// `segment` counts from 0. Beyond a falling zero the orbit violates the model: `stop` ends the branch there.
   ContactTest(const DefiningSystem& system, int segment, int event, bool stop);
   std::string name() const override;
-  std::optional<double> value(const TestedPoint& point) const override;
-  /// Between pinned ends h may rise and fall without a minimum in between: no contact, positive.
-  int sign_where_undefined(const TestedPoint& point) const override;
-  double zero_level(const TestedPoint& point) const override;
+  TestValue evaluate(const TestedPoint& point) const override;
   SpecialPoint classify(const TestedPoint& point, bool rising) const override;
 
  private:
+  int sign_without_minimum(const Orbit& x) const;
   SpecialPoint vanishing_segment(bool ends_branch) const;
   bool crosses(const TestedPoint& point, const Contact& contact) const;
 

@@ -2,30 +2,41 @@
 
 #include <cmath>
 
+#include "bvp/critical_multiplier.hpp"
+#include "bvp/critical_pair.hpp"
+#include "bvp/orbit_accuracy.hpp"
 #include "bvp/transversality.hpp"
 
 namespace tchat {
 
-double CuspTest::zero_level(const TestedPoint&) const {
-  const OrbitVector& gradient = condition_.gradient();
-  const OrbitVector& v = condition_.null_vector();
-  return orbit_accuracy * std::sqrt(dot(gradient, gradient) * dot(v, v));
+namespace {
+
+/// The condition that the curve's problem type has made.
+template <class Condition>
+const Condition& condition_at(const TestedPoint& point) {
+  return static_cast<const Condition&>(*point.condition);
 }
 
-std::optional<double> ResonanceTest::value(const TestedPoint& point) const {
-  double result = condition_.multiplicity_function();
-  for (const double a : point.transversalities) {
-    if (std::abs(a) <= no_transversality) return std::nullopt;
-    result *= a;
-  }
-  return result;
+}  // namespace
+
+/// The zero level is against the sizes of the two vectors.
+TestValue CuspTest::evaluate(const TestedPoint& point) const {
+  const auto& condition = condition_at<CriticalMultiplier>(point);
+  const OrbitVector& gradient = condition.gradient();
+  const OrbitVector& v = condition.null_vector();
+  return TestValue::of(condition.cusp_function(), orbit_accuracy * std::sqrt(dot(gradient, gradient) * dot(v, v)));
 }
 
-/// Against the a_s, with which the function and the factors that it is multiplied by vanish.
-double ResonanceTest::zero_level(const TestedPoint& point) const {
+/// The zero level is against the a_s, with which the function and the factors that it is multiplied by vanish.
+TestValue ResonanceTest::evaluate(const TestedPoint& point) const {
+  double result = condition_at<CriticalMultiplier>(point).multiplicity_function();
   double level = orbit_accuracy;
-  for (const double a : point.transversalities) level *= a * a;
-  return level;
+  for (const double a : point.transversalities) {
+    if (std::abs(a) <= no_transversality) return TestValue::undefined();
+    result *= a;
+    level *= a * a;
+  }
+  return TestValue::of(result, level);
 }
 
 std::string AngleTest::name() const {
@@ -41,16 +52,18 @@ std::string AngleTest::name() const {
   }
 }
 
-std::optional<double> AngleTest::value(const TestedPoint&) const {
+TestValue AngleTest::evaluate(const TestedPoint& point) const {
+  const double cosine = condition_at<CriticalPair>(point).cosine();
+  const auto above = [cosine](double resonant) { return TestValue::of(cosine - resonant, orbit_accuracy); };
   switch (type_) {
     case PointType::resonance_1:
-      return condition_.cosine() - 1.0;
+      return above(1.0);
     case PointType::resonance_2:
-      return condition_.cosine() + 1.0;
+      return above(-1.0);
     case PointType::resonance_3:
-      return condition_.cosine() + 0.5;
+      return above(-0.5);
     default:
-      return condition_.cosine();
+      return above(0.0);
   }
 }
 

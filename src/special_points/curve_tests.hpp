@@ -1,9 +1,7 @@
-/// Codimension-two points on fold, period-doubling and torus curves: cusp and resonances.
+/// Codimension-two points on fold, period-doubling and torus curves: cusp and resonances. They read the curve's
+/// condition at the tested point: a CriticalMultiplier, on torus curves a CriticalPair.
 #pragma once
 
-#include "bvp/critical_multiplier.hpp"
-#include "bvp/critical_pair.hpp"
-#include "bvp/orbit_accuracy.hpp"
 #include "special_points/test_function.hpp"
 
 namespace tchat {
@@ -11,16 +9,9 @@ namespace tchat {
 /// The curve's null vector and the gradient of its condition are orthogonal: a cusp of a fold curve.
 class CuspTest final : public TestFunction {
  public:
-  /// The condition belongs to the follower; it is current wherever a test function is evaluated.
-  explicit CuspTest(const CriticalMultiplier& condition) : condition_(condition) {}
   std::string name() const override { return "cusp"; }
-  std::optional<double> value(const TestedPoint&) const override { return condition_.cusp_function(); }
-  /// Against the sizes of the two vectors.
-  double zero_level(const TestedPoint&) const override;
+  TestValue evaluate(const TestedPoint& point) const override;
   SpecialPoint classify(const TestedPoint&, bool) const override { return {PointType::cusp, {}, false, "cusp"}; }
-
- private:
-  const CriticalMultiplier& condition_;
 };
 
 /// The critical multiplier is a double one: 1:1 resonance on fold curves, 1:2 on period-doubling curves. The
@@ -28,14 +19,12 @@ class CuspTest final : public TestFunction {
 /// more, and undefined where one is about zero.
 class ResonanceTest final : public TestFunction {
  public:
-  ResonanceTest(const CriticalMultiplier& condition, PointType type) : condition_(condition), type_(type) {}
+  explicit ResonanceTest(PointType type) : type_(type) {}
   std::string name() const override { return type_ == PointType::resonance_1 ? "1:1 resonance" : "1:2 resonance"; }
-  std::optional<double> value(const TestedPoint& point) const override;
-  double zero_level(const TestedPoint& point) const override;
+  TestValue evaluate(const TestedPoint& point) const override;
   SpecialPoint classify(const TestedPoint&, bool) const override { return {type_, {}, false, name()}; }
 
  private:
-  const CriticalMultiplier& condition_;
   PointType type_;
 };
 
@@ -43,14 +32,12 @@ class ResonanceTest final : public TestFunction {
 /// 1:4 resonance, and 1:1 and 1:2, where the curve ends.
 class AngleTest final : public TestFunction {
  public:
-  AngleTest(const CriticalPair& condition, PointType type) : condition_(condition), type_(type) {}
+  explicit AngleTest(PointType type) : type_(type) {}
   std::string name() const override;
-  std::optional<double> value(const TestedPoint& point) const override;
-  double zero_level(const TestedPoint&) const override { return orbit_accuracy; }
+  TestValue evaluate(const TestedPoint& point) const override;
   SpecialPoint classify(const TestedPoint&, bool) const override;
 
  private:
-  const CriticalPair& condition_;
   PointType type_;
 };
 

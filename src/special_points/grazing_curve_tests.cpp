@@ -166,12 +166,9 @@ std::string XiTest::name() const { return fmt::format("{}{}", xi_name, n_); }
 
 std::string AccelerationTest::name() const { return acceleration_name; }
 
-std::optional<double> XiTest::value(const TestedPoint& point) const {
-  return grazing_unfolding(system_, point.condensed, point.orbit, jump_, n_).xi;
-}
-
-double XiTest::zero_level(const TestedPoint& point) const {
-  return orbit_accuracy * grazing_unfolding(system_, point.condensed, point.orbit, jump_, n_).scale;
+TestValue XiTest::evaluate(const TestedPoint& point) const {
+  const GrazingUnfolding unfolding = grazing_unfolding(system_, point.condensed, point.orbit, jump_, n_);
+  return TestValue::of(unfolding.xi, orbit_accuracy * unfolding.scale);
 }
 
 SpecialPoint XiTest::classify(const TestedPoint&, bool) const {
@@ -181,12 +178,10 @@ SpecialPoint XiTest::classify(const TestedPoint&, bool) const {
           fmt::format("codimension two: xi_{} = 0", n_)};
 }
 
-std::optional<double> AccelerationTest::value(const TestedPoint& point) const {
-  return grazing_unfolding(system_, point.condensed, point.orbit, jump_, 0).acceleration;
-}
-
-double AccelerationTest::zero_level(const TestedPoint& point) const {
-  return no_transversality * crossing_at_end(system_, point.orbit, system_.grazing_segment()).sizes;
+TestValue AccelerationTest::evaluate(const TestedPoint& point) const {
+  const double sizes = crossing_at_end(system_, point.orbit, system_.grazing_segment()).sizes;
+  return TestValue::of(grazing_unfolding(system_, point.condensed, point.orbit, jump_, 0).acceleration,
+                       no_transversality * sizes);
 }
 
 std::string AccelerationTest::details(const TestedPoint& point) const {
@@ -205,13 +200,7 @@ SpecialPoint AccelerationTest::classify(const TestedPoint&, bool) const {
           "codimension two: a* = 0, h is no longer least at the contact"};
 }
 
-std::optional<double> SmoothMultiplierTest::value(const TestedPoint& point) const {
-  return multiplier_product(point, target_);
-}
-
-double SmoothMultiplierTest::zero_level(const TestedPoint& point) const {
-  return multiplier_product_level(point, target_);
-}
+TestValue SmoothMultiplierTest::evaluate(const TestedPoint& point) const { return multiplier_product(point, target_); }
 
 bool SmoothMultiplierTest::is_genuine(const TestedPoint& point) const { return is_multiplier_at(point, target_); }
 

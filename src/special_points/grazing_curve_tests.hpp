@@ -41,9 +41,8 @@ class XiTest final : public TestFunction {
  public:
   XiTest(const GrazingOrbitSystem& system, int jump, int n) : system_(system), jump_(jump), n_(n) {}
   std::string name() const override;
-  std::optional<double> value(const TestedPoint& point) const override;
-  double zero_level(const TestedPoint& point) const override;
-  bool oscillates() const override { return true; }
+  TestValue evaluate(const TestedPoint& point) const override;
+  Resolution resolution() const override { return Resolution::trend; }
   SpecialPoint classify(const TestedPoint& point, bool rising) const override;
 
  private:
@@ -58,8 +57,7 @@ class AccelerationTest final : public TestFunction {
  public:
   AccelerationTest(const GrazingOrbitSystem& system, int jump) : system_(system), jump_(jump) {}
   std::string name() const override;
-  std::optional<double> value(const TestedPoint& point) const override;
-  double zero_level(const TestedPoint& point) const override;
+  TestValue evaluate(const TestedPoint& point) const override;
   std::string details(const TestedPoint& point) const override;
   SpecialPoint classify(const TestedPoint& point, bool rising) const override;
 
@@ -75,8 +73,7 @@ class SmoothMultiplierTest final : public TestFunction {
   /// `target` is 1 or -1.
   explicit SmoothMultiplierTest(int target) : target_(target) {}
   std::string name() const override { return target_ > 0 ? "grazing-fold" : "grazing-flip"; }
-  std::optional<double> value(const TestedPoint& point) const override;
-  double zero_level(const TestedPoint& point) const override;
+  TestValue evaluate(const TestedPoint& point) const override;
   bool is_genuine(const TestedPoint& point) const override;
   SpecialPoint classify(const TestedPoint& point, bool rising) const override;
 

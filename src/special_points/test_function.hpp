@@ -5,10 +5,12 @@
 /// A new kind of special point is one new class. Test functions are pure: the same point gives the same value.
 #pragma once
 
+#include <cmath>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "bvp/bordered_problem.hpp"
 #include "bvp/condensed_system.hpp"
 #include "special_points/point_type.hpp"
 #include "stability/floquet_multipliers.hpp"
@@ -23,6 +25,27 @@ struct TestedPoint {
   const FloquetMultipliers& multipliers;
   const std::vector<double>& transversalities;  ///< h_x f / (|h_x| |f|) at the end of each segment
   double singular_distance = 1.0;               ///< CondensedSystem::signed_distance() of the bordered problem
+  const OrbitCondition* condition = nullptr;    ///< of a two-parameter curve, evaluated at this point
+};
+
+/// What a test function says of a point.
+struct TestValue {
+  std::optional<double> value;  ///< nothing where the function is not defined: an undefined value has no zero
+  double zero_level = 0.0;      ///< |value| up to this counts as zero
+  int sign = 0;  ///< of the value, 0 within the zero level; of an undefined one the sign that it stands for, 0: none
+
+  static TestValue of(double value, double zero_level) {
+    const bool is_zero = !(std::abs(value) > zero_level);
+    return {value, zero_level, is_zero ? 0 : value > 0.0 ? 1 : -1};
+  }
+  static TestValue undefined(int sign = 0) { return {std::nullopt, 0.0, sign}; }
+};
+
+/// How closely points must follow each other along a branch, that no change of sign is missed between them. A step is
+/// shortened until they do.
+enum class Resolution {
+  crossings,  ///< the polynomial through the last values has no two zeros between two points
+  trend       ///< each value is about what the last ones let expect, and they do not come near to zero in between
 };
 
 /// What a point of the branch is; for a zero of a test function, what it found.
@@ -38,15 +61,9 @@ class TestFunction {
  public:
   virtual ~TestFunction() = default;
   virtual std::string name() const = 0;
-  /// Nothing where the function is not defined; an undefined value cannot change sign.
-  virtual std::optional<double> value(const TestedPoint& point) const = 0;
-  /// The sign that an undefined value stands for; 0: none.
-  virtual int sign_where_undefined(const TestedPoint&) const { return 0; }
-  /// |value| up to this counts as zero.
-  virtual double zero_level(const TestedPoint& point) const = 0;
-  /// True for functions that may change sign twice within a step that is otherwise fine; such a step is then shortened
-  /// until their trend is followed.
-  virtual bool oscillates() const { return false; }
+  virtual TestValue evaluate(const TestedPoint& point) const = 0;
+  std::optional<double> value(const TestedPoint& point) const { return evaluate(point).value; }
+  virtual Resolution resolution() const { return Resolution::crossings; }
   /// False at a zero that is none of the special points looked for: a factor that keeps the function regular vanishes.
   virtual bool is_genuine(const TestedPoint&) const { return true; }
   /// True when Newton's matrix is singular at the zeros, which are then located from both sides.

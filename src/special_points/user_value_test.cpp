@@ -11,13 +11,10 @@ namespace tchat {
 
 std::string UserValueTest::name() const { return fmt::format("{} - {:.10g}", parameter_name_, wanted_); }
 
-std::optional<double> UserValueTest::value(const TestedPoint& point) const {
-  return point.orbit.par(parameter_ - 1) - wanted_;
-}
-
-/// Of the parameter's own size, which may be far from 1.
-double UserValueTest::zero_level(const TestedPoint& point) const {
-  return orbit_accuracy * std::max(std::abs(wanted_), std::abs(point.orbit.par(parameter_ - 1)));
+/// The zero level is of the parameter's own size, which may be far from 1.
+TestValue UserValueTest::evaluate(const TestedPoint& point) const {
+  const double parameter = point.orbit.par(parameter_ - 1);
+  return TestValue::of(parameter - wanted_, orbit_accuracy * std::max(std::abs(wanted_), std::abs(parameter)));
 }
 
 SpecialPoint UserValueTest::classify(const TestedPoint&, bool) const {

@@ -12,8 +12,7 @@ class UserValueTest final : public TestFunction {
       : parameter_(parameter), wanted_(wanted), stop_(stop), parameter_name_(std::move(name)) {}
 
   std::string name() const override;
-  std::optional<double> value(const TestedPoint& point) const override;
-  double zero_level(const TestedPoint& point) const override;
+  TestValue evaluate(const TestedPoint& point) const override;
   SpecialPoint classify(const TestedPoint& point, bool rising) const override;
 
  private:

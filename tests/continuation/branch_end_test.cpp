@@ -49,13 +49,12 @@ struct Breakable : NormalForms {
 class Breaking final : public TestFunction {
  public:
   std::string name() const override { return "breaking"; }
-  std::optional<double> value(const TestedPoint& point) const override {
-    if (point.orbit.par(0) < -0.1) return 1.0;
+  TestValue evaluate(const TestedPoint& point) const override {
+    if (point.orbit.par(0) < -0.1) return TestValue::of(1.0, 0.0);
     Breakable::broken = true;
-    return 1e6;
+    return TestValue::of(1e6, 0.0);
   }
-  double zero_level(const TestedPoint&) const override { return 0.0; }
-  bool oscillates() const override { return true; }
+  Resolution resolution() const override { return Resolution::trend; }
   SpecialPoint classify(const TestedPoint&, bool) const override { return {}; }
 };
 

@@ -193,12 +193,11 @@ TEST_CASE("beyond the 1:1 resonance that it begins at a torus curve ends, it doe
   const OrbitShape shape{4, 1, 10, 4};
   const PeriodicOrbitSystem defining(system, {{1, 1, 1}}, {2, 1});
   auto pair = std::make_unique<CriticalPair>(defining, shape, std::polar(1.0, 2 * pi * std::sqrt(1e-6)));
-  const CriticalPair& condition = *pair;
   PathFollower follower(defining, shape, WeightedNorm::unit(4), tight_newton(), 2, std::move(pair));
   PathPoint start = follower.make_point(sampled_orbit({{2 * pi, state}}, 4, 10, 4, parameters({0.0, -1e-6})));
   REQUIRE(follower.start_at_fixed_parameter(start).converged());
   Tests tests;
-  if (direction < 0.0) tests.push_back(std::make_unique<AngleTest>(condition, PointType::resonance_1));
+  if (direction < 0.0) tests.push_back(std::make_unique<AngleTest>(PointType::resonance_1));
   const ContinuationSettings settings = branch_settings(shape, 2, 1e-3 * direction, 5e-3, 15);
   KeepingSink sink;
   ContinuationRun run(follower, defining, settings, std::move(tests), sink);

@@ -22,7 +22,7 @@ class RecordedBranch final : public BranchSink {
  public:
   void point(const BranchPoint& p) override {
     points.push_back({p.number, p.special, p.path.orbit, p.multipliers, {}});
-    for (const TestValue& test : p.tests) points.back().values.push_back(test.value);
+    for (const NamedTestValue& test : p.tests) points.back().values.push_back(test.value);
   }
   void next_step(int, double) override {}
   void note(int, const std::string& text) override { notes.push_back(text); }

@@ -18,12 +18,14 @@ using Function = std::function<std::optional<double>(double)>;
 
 class FunctionOfParameter final : public TestFunction {
  public:
-  FunctionOfParameter(std::string name, Function function, bool oscillates)
-      : name_(std::move(name)), function_(std::move(function)), oscillates_(oscillates) {}
+  FunctionOfParameter(std::string name, Function function, Resolution resolution)
+      : name_(std::move(name)), function_(std::move(function)), resolution_(resolution) {}
   std::string name() const override { return name_; }
-  std::optional<double> value(const TestedPoint& point) const override { return function_(point.orbit.par(0)); }
-  double zero_level(const TestedPoint&) const override { return 1e-9; }
-  bool oscillates() const override { return oscillates_; }
+  TestValue evaluate(const TestedPoint& point) const override {
+    const std::optional<double> value = function_(point.orbit.par(0));
+    return value ? TestValue::of(*value, 1e-9) : TestValue::undefined();
+  }
+  Resolution resolution() const override { return resolution_; }
   SpecialPoint classify(const TestedPoint&, bool rising) const override {
     return {PointType::user, {UserPointKind::contact, 1, 1, 0.5}, false, name_ + (rising ? " rising" : " falling")};
   }
@@ -31,13 +33,13 @@ class FunctionOfParameter final : public TestFunction {
  private:
   std::string name_;
   Function function_;
-  bool oscillates_;
+  Resolution resolution_;
 };
 
 struct Named {
   std::string name;
   Function function;
-  bool oscillates = false;
+  Resolution resolution = Resolution::crossings;
 };
 
 /// From mu = `from` in steps of at most 0.1 for `points` points.
@@ -52,7 +54,7 @@ RecordedBranch searched(double from, double ds, int points, const std::vector<Na
   settings.multipliers = false;
   Tests tests;
   for (const Named& f : functions)
-    tests.push_back(std::make_unique<FunctionOfParameter>(f.name, f.function, f.oscillates));
+    tests.push_back(std::make_unique<FunctionOfParameter>(f.name, f.function, f.resolution));
   return record(orbits.follower, orbits.system, point, settings, std::move(tests));
 }
 
@@ -176,7 +178,7 @@ TEST_CASE("search: what vanishes at a branch point keeps its kind") {
   settings.location_tolerance = 1e-9;
   Tests tests;
   tests.push_back(std::make_unique<FunctionOfParameter>(
-      "contact", [](double p) { return p; }, false));
+      "contact", [](double p) { return p; }, Resolution::crossings));
   tests.push_back(std::make_unique<BranchPointTest>(false));
   const RecordedBranch branch = record(orbits.follower, orbits.system, point, settings, std::move(tests));
   check_labels(branch, {0.0});
@@ -230,19 +232,31 @@ TEST_CASE("search: undefined values change no sign, and what was the sign before
   CHECK(branch.notes.empty());
 }
 
+TEST_CASE("search: two zeros within a step, where the last values tell of them") {
+  const auto parabola = [](double p) { return (p - 0.531) * (p - 0.571); };
+  check_labels(searched(0.0, 0.1, 60, {{"parabola", parabola}}), {0.531, 0.571});
+  const auto inverted = [](double p) { return -(p + 0.531) * (p + 0.571) * (2 + p); };
+  check_labels(searched(0.0, -0.1, 12, {{"inverted", inverted}}), {-0.531, -0.571});
+  // None where it comes near to zero and turns: steps stay as they are.
+  const auto above = [](double p) { return (p - 0.55) * (p - 0.55) + 1e-4; };
+  const RecordedBranch branch = searched(0.0, 0.1, 11, {{"above", above}});
+  check_labels(branch, {});
+  CHECK(branch.points.back().orbit.par(0) == Approx(1.0).margin(1e-9));
+}
+
 TEST_CASE("search: two zeros of an oscillating function within a step") {
   // A narrow dip out of a flat run, and the bottom of a parabola, which goes on exactly as it began.
   const auto dip = [](double p) { return 1 - 1.2 * std::exp(-std::pow((p - 0.62) / 0.12, 2)); };
   const double half_width = 0.12 * std::sqrt(std::log(1.2));
-  check_labels(searched(0.0, 0.1, 60, {{"dip", dip, true}}), {0.62 - half_width, 0.62 + half_width});
+  check_labels(searched(0.0, 0.1, 60, {{"dip", dip, Resolution::trend}}), {0.62 - half_width, 0.62 + half_width});
   const auto parabola = [](double p) { return (p - 0.531) * (p - 0.571); };
-  check_labels(searched(0.0, 0.1, 60, {{"parabola", parabola, true}}), {0.531, 0.571});
+  check_labels(searched(0.0, 0.1, 60, {{"parabola", parabola, Resolution::trend}}), {0.531, 0.571});
   const auto inverted = [](double p) { return -(p + 0.531) * (p + 0.571); };
-  check_labels(searched(0.0, -0.1, 60, {{"inverted", inverted, true}}), {-0.531, -0.571});
+  check_labels(searched(0.0, -0.1, 60, {{"inverted", inverted, Resolution::trend}}), {-0.531, -0.571});
   const auto wave = [](double p) { return std::sin(40 * (p + 0.013)); };
   std::vector<double> zeros;
   for (int k = 1; k * pi / 40 - 0.013 < 1.0; ++k) zeros.push_back(k * pi / 40 - 0.013);
-  const RecordedBranch branch = searched(0.0, 0.1, 200, {{"wave", wave, true}});
+  const RecordedBranch branch = searched(0.0, 0.1, 200, {{"wave", wave, Resolution::trend}});
   std::vector<double> found = labelled(branch);
   REQUIRE(found.size() >= zeros.size());
   for (std::size_t i = 0; i < zeros.size(); ++i) CHECK(found[i] == Approx(zeros[i]).margin(1e-8));

@@ -52,7 +52,7 @@ struct KeptPoint {
   double estimated_error;
   int newton_iterations;
   double step;
-  std::vector<TestValue> tests;
+  std::vector<NamedTestValue> tests;
 };
 
 class KeepingSink final : public BranchSink {
