@@ -15,7 +15,7 @@ void CondensedSystem::solve(const OrbitResidual& residual, std::span<const doubl
   const double* coupling = residual.coupling.data();
   for (int s = 0; s < shape_.segments; ++s) {
     condense_right_hand_side(residual, s);
-    const double* condensed = &segment_rhs_[index(s * (n_ + border_))];
+    const double* condensed = segment_rhs_[s];
     rhs = std::copy_n(condensed, n_, rhs);
     for (int r = 0; r < system_.coupling_rows(s); ++r) *rhs++ = -*coupling++;
     for (int r = 0; r < border_; ++r) border_rhs[r] += condensed[n_ + r];
@@ -28,8 +28,8 @@ void CondensedSystem::solve(const OrbitResidual& residual, std::span<const doubl
 
 /// The right-hand sides of a piece's n condensed rows and its border rows.
 double* CondensedSystem::piece_rhs(int s, int first, int last) {
-  return last - first == 1 ? &interval_rhs_[index(block(s, first) * (interval_.rows() + border_) + interval_.pivots())]
-                           : &join_rhs_[index(block(s, halfway(first, last)) * (2 * n_ + border_) + n_)];
+  return last - first == 1 ? interval_rhs_[block(s, first)] + interval_.pivots()
+                           : join_rhs_[block(s, halfway(first, last))] + n_;
 }
 
 void CondensedSystem::condense_right_hand_side(const OrbitResidual& residual, int s) {
@@ -37,24 +37,22 @@ void CondensedSystem::condense_right_hand_side(const OrbitResidual& residual, in
   const double* collocation = &residual.collocation[index(block(s, 0) * rows)];
   for (int j = 0; j < shape_.intervals; ++j, collocation += rows) {
     const std::ptrdiff_t b = block(s, j);
-    double* r = &interval_rhs_[index(b * (rows + border_))];
+    double* r = interval_rhs_[b];
     for (int i = 0; i < rows; ++i) r[i] = -collocation[i];
     std::fill_n(r + rows, border_, 0.0);
-    interval_.forward(&interval_blocks_[index(b * (rows + border_) * interval_.width())], border_,
-                      &interval_swaps_[index(b * interval_.pivots())], r);
+    interval_.forward(interval_blocks_[b], border_, interval_swaps_[b], r);
   }
   for (const Join& at : joins_) {
     const std::ptrdiff_t b = block(s, at.middle);
     const double* left = piece_rhs(s, at.first, at.middle);
     const double* right = piece_rhs(s, at.middle, at.last);
-    double* r = &join_rhs_[index(b * (2 * n_ + border_))];
+    double* r = join_rhs_[b];
     std::copy_n(left, n_, r);
     std::copy_n(right, n_, r + n_);
     for (int k = 0; k < border_; ++k) r[2 * n_ + k] = left[n_ + k] + right[n_ + k];
-    join_.forward(&join_blocks_[index(b * (2 * n_ + border_) * join_.width())], border_, &join_swaps_[index(b * n_)],
-                  r);
+    join_.forward(join_blocks_[b], border_, join_swaps_[b], r);
   }
-  std::copy_n(piece_rhs(s, 0, shape_.intervals), n_ + border_, &segment_rhs_[index(s * (n_ + border_))]);
+  std::copy_n(piece_rhs(s, 0, shape_.intervals), n_ + border_, segment_rhs_[s]);
 }
 
 /// From the ends of a segment back to its mesh nodes, joins in reverse, and on to the interior nodes.
@@ -62,7 +60,6 @@ void CondensedSystem::expand_segment(int s, const double* ends, const double* gl
                                      OrbitVector& dx) {
   const int c = shape_.collocation;
   const int p = interval_.pivots();
-  const int rows = interval_.rows();
   const double* start = ends;
   const double* end = ends + n_;
   const double duration = ends[2 * n_];
@@ -78,8 +75,7 @@ void CondensedSystem::expand_segment(int s, const double* ends, const double* gl
     std::copy_n(node(at->last * c), n_, join_local + 2 * n_);
     join_local[3 * n_] = duration;
     std::copy_n(globals, globals_, join_local + 3 * n_ + 1);
-    join_.backward(&join_blocks_[index(b * (2 * n_ + border_) * join_.width())],
-                   homogeneous ? zero_rhs_.data() : &join_rhs_[index(b * (2 * n_ + border_))], join_local);
+    join_.backward(join_blocks_[b], homogeneous ? zero_rhs_.data() : join_rhs_[b], join_local);
     std::copy_n(join_local, n_, node(at->middle * c));
   }
   for (int j = 0; j < shape_.intervals; ++j) {
@@ -88,14 +84,13 @@ void CondensedSystem::expand_segment(int s, const double* ends, const double* gl
     std::copy_n(node((j + 1) * c), n_, local + p + n_);
     local[p + 2 * n_] = duration;
     std::copy_n(globals, globals_, local + p + 2 * n_ + 1);
-    interval_.backward(&interval_blocks_[index(b * (rows + border_) * interval_.width())],
-                       homogeneous ? zero_rhs_.data() : &interval_rhs_[index(b * (rows + border_))], local);
+    interval_.backward(interval_blocks_[b], homogeneous ? zero_rhs_.data() : interval_rhs_[b], local);
     std::copy_n(local, p, node(j * c + 1));
   }
 }
 
 void CondensedSystem::duration_block(int s, double* column) const {
-  for (int a = 0; a < n_; ++a) column[a] = scalar_blocks_[index((s * n_ + a) * scalars_)];
+  for (int a = 0; a < n_; ++a) column[a] = scalar_blocks_[s][a * scalars_];
 }
 
 void CondensedSystem::extend(const double* small, OrbitVector& dx) {
@@ -111,10 +106,9 @@ void CondensedSystem::extend_adjoint(const double* weights, std::vector<double>&
     std::copy_n(weights + s * n_, n_, piece_rhs(s, 0, shape_.intervals));
     for (auto at = joins_.rbegin(); at != joins_.rend(); ++at) {
       const std::ptrdiff_t b = block(s, at->middle);
-      double* w = &join_rhs_[index(b * (2 * n_ + border_))];
+      double* w = join_rhs_[b];
       std::fill_n(w, n_, 0.0);
-      join_.forward_transposed(&join_blocks_[index(b * (2 * n_ + border_) * join_.width())],
-                               &join_swaps_[index(b * n_)], w);
+      join_.forward_transposed(join_blocks_[b], join_swaps_[b], w);
       std::copy_n(w, n_, piece_rhs(s, at->first, at->middle));
       std::copy_n(w + n_, n_, piece_rhs(s, at->middle, at->last));
     }
@@ -123,8 +117,7 @@ void CondensedSystem::extend_adjoint(const double* weights, std::vector<double>&
       double* own = &collocation[index(b * rows)];
       std::fill_n(own, p, 0.0);
       std::copy_n(piece_rhs(s, j, j + 1), n_, own + p);
-      interval_.forward_transposed(&interval_blocks_[index(b * (rows + border_) * interval_.width())],
-                                   &interval_swaps_[index(b * p)], own);
+      interval_.forward_transposed(interval_blocks_[b], interval_swaps_[b], own);
     }
   }
 }
@@ -143,12 +136,9 @@ CondensedSystem::Determinant CondensedSystem::determinant() const {
     product.log2_size -= std::log2(std::abs(mantissa));
   };
   const std::ptrdiff_t blocks = block(shape_.segments, 0);
-  const int interval_size = (interval_.rows() + border_) * interval_.width();
-  const int join_size = (join_.rows() + border_) * join_.width();
   for (std::ptrdiff_t b = 0; b < blocks; ++b) {
-    multiply(interval_, &interval_blocks_[index(b * interval_size)], &interval_swaps_[index(b * interval_.pivots())]);
-    if (b % shape_.intervals != 0)
-      multiply(join_, &join_blocks_[index(b * join_size)], &join_swaps_[index(b * join_.pivots())]);
+    multiply(interval_, interval_blocks_[b], interval_swaps_[b]);
+    if (b % shape_.intervals != 0) multiply(join_, join_blocks_[b], join_swaps_[b]);
   }
   return {product.sign, product.log2_size};
 }

@@ -85,17 +85,17 @@ CondensedSystem::CondensedSystem(const DefiningSystem& system, const OrbitShape&
   const std::ptrdiff_t blocks = block(shape.segments, 0);
   const int interval_rows = interval_.rows() + border_;
   const int join_rows = join_.rows() + border_;
-  interval_blocks_ = zeros(blocks * interval_rows * interval_.width());
-  interval_swaps_.resize(index(blocks * interval_.pivots()));
-  join_blocks_ = zeros(blocks * join_rows * join_.width());
-  join_swaps_.resize(index(blocks * join_.pivots()));
-  interval_rhs_ = zeros(blocks * interval_rows);
-  join_rhs_ = zeros(blocks * join_rows);
-  first_blocks_ = zeros(shape.segments * n_ * n_);
+  interval_blocks_ = {blocks, interval_rows * interval_.width()};
+  interval_swaps_ = {blocks, interval_.pivots()};
+  join_blocks_ = {blocks, join_rows * join_.width()};
+  join_swaps_ = {blocks, join_.pivots()};
+  interval_rhs_ = {blocks, interval_rows};
+  join_rhs_ = {blocks, join_rows};
+  first_blocks_ = {shape.segments, n_ * n_};
   last_blocks_ = first_blocks_;
-  scalar_blocks_ = zeros(shape.segments * n_ * scalars_);
-  border_blocks_ = zeros(shape.segments * border_ * (2 * n_ + scalars_));
-  segment_rhs_ = zeros(shape.segments * (n_ + border_));
+  scalar_blocks_ = {shape.segments, n_ * scalars_};
+  border_blocks_ = {shape.segments, border_ * (2 * n_ + scalars_)};
+  segment_rhs_ = {shape.segments, n_ + border_};
   triplet_values_.resize(triplet_rows_.size());
   rhs_ = zeros(lu_.size());
   solution_ = rhs_;
@@ -206,13 +206,11 @@ Linearization CondensedSystem::linearize(const Orbit& x, std::span<const OrbitVe
 
 Linearization CondensedSystem::condense_segment(const Orbit& x, int s, std::span<const OrbitVector> rows,
                                                 double* collocation) {
-  const int block_size = (interval_.rows() + border_) * interval_.width();
   for (int j = 0; j < shape_.intervals; ++j) {
-    double* a = &interval_blocks_[index(block(s, j) * block_size)];
+    double* a = interval_blocks_[block(s, j)];
     if (!fill_interval(x, s, j, a, collocation + j * shape_.collocation * n_)) return Linearization::not_finite;
     fill_border(s, j, rows, a);
-    if (!interval_.eliminate(a, border_, &interval_swaps_[index(block(s, j) * interval_.pivots())]))
-      return Linearization::singular;
+    if (!interval_.eliminate(a, border_, interval_swaps_[block(s, j)])) return Linearization::singular;
   }
   for (const Join& at : joins_)
     if (!join(s, at)) return Linearization::singular;
@@ -287,9 +285,8 @@ void CondensedSystem::fill_border(int s, int j, std::span<const OrbitVector> row
 CondensedSystem::Piece CondensedSystem::piece(int s, int first, int last) const {
   const bool one_interval = last - first == 1;
   const BlockKernel& kernel = one_interval ? interval_ : join_;
-  const std::ptrdiff_t size = (kernel.rows() + border_) * kernel.width();
-  const double* block = one_interval ? &interval_blocks_[index(this->block(s, first) * size)]
-                                     : &join_blocks_[index(this->block(s, halfway(first, last)) * size)];
+  const double* block =
+      one_interval ? interval_blocks_[this->block(s, first)] : join_blocks_[this->block(s, halfway(first, last))];
   const int p = kernel.pivots();
   return {block + p * kernel.width() + p, block + kernel.rows() * kernel.width() + p, kernel.width()};
 }
@@ -298,7 +295,7 @@ CondensedSystem::Piece CondensedSystem::piece(int s, int first, int last) const 
 bool CondensedSystem::join(int s, const Join& at) {
   const int width = join_.width();
   const int size = (join_.rows() + border_) * width;
-  double* target = &join_blocks_[index(block(s, at.middle) * size)];
+  double* target = join_blocks_[block(s, at.middle)];
   std::fill(target, target + size, 0.0);
   const auto put_left = [&](const double* from, double* to) {
     for (int a = 0; a < n_; ++a) {
@@ -321,20 +318,19 @@ bool CondensedSystem::join(int s, const Join& at) {
     put_left(left.border + r * left.width, target + (join_.rows() + r) * width);
     put_right(right.border + r * right.width, target + (join_.rows() + r) * width);
   }
-  return join_.eliminate(target, border_, &join_swaps_[index(block(s, at.middle) * join_.pivots())]);
+  return join_.eliminate(target, border_, join_swaps_[block(s, at.middle)]);
 }
 
 void CondensedSystem::keep_segment_blocks(int s) {
   const Piece whole = piece(s, 0, shape_.intervals);
   for (int a = 0; a < n_; ++a) {
     const double* from = whole.rows + a * whole.width;
-    std::copy_n(from, n_, &first_blocks_[index((s * n_ + a) * n_)]);
-    std::copy_n(from + n_, n_, &last_blocks_[index((s * n_ + a) * n_)]);
-    std::copy_n(from + 2 * n_, scalars_, &scalar_blocks_[index((s * n_ + a) * scalars_)]);
+    std::copy_n(from, n_, first_blocks_[s] + a * n_);
+    std::copy_n(from + n_, n_, last_blocks_[s] + a * n_);
+    std::copy_n(from + 2 * n_, scalars_, scalar_blocks_[s] + a * scalars_);
   }
   const int length = 2 * n_ + scalars_;
-  for (int r = 0; r < border_; ++r)
-    std::copy_n(whole.border + r * whole.width, length, &border_blocks_[index((s * border_ + r) * length)]);
+  for (int r = 0; r < border_; ++r) std::copy_n(whole.border + r * whole.width, length, border_blocks_[s] + r * length);
 }
 
 /// The matrix that UMFPACK sees, in the order of make_sparse().
@@ -342,7 +338,7 @@ bool CondensedSystem::assemble(const Orbit& x, std::span<const OrbitVector> rows
   double* value = triplet_values_.data();
   double* coupling = residual.coupling.data();
   for (int s = 0; s < shape_.segments; ++s) {
-    const double* scalars = &scalar_blocks_[index(s * n_ * scalars_)];
+    const double* scalars = scalar_blocks_[s];
     for (int a = 0; a < n_; ++a) {
       value = std::copy_n(first_block(s) + a * n_, n_, value);
       value = std::copy_n(last_block(s) + a * n_, n_, value);
@@ -358,7 +354,7 @@ bool CondensedSystem::assemble(const Orbit& x, std::span<const OrbitVector> rows
     double* globals = value + shape_.segments * (2 * n_ + 1);
     std::copy_n(rows[index(r)].globals.data(), globals_, globals);
     for (int s = 0; s < shape_.segments; ++s) {
-      const double* from = &border_blocks_[index((s * border_ + r) * length)];
+      const double* from = border_blocks_[s] + r * length;
       value = std::copy_n(from, 2 * n_ + 1, value);
       value[-1] += rows[index(r)].durations(s);
       for (int g = 0; g < globals_; ++g) globals[g] += from[2 * n_ + 1 + g];

@@ -26,6 +26,7 @@
 #include "bvp/coupling.hpp"
 #include "bvp/defining_system.hpp"
 #include "bvp/orbit.hpp"
+#include "linear_algebra/block_array.hpp"
 #include "linear_algebra/block_kernel.hpp"
 #include "linear_algebra/sparse_lu.hpp"
 
@@ -72,8 +73,8 @@ class CondensedSystem {
   void solve(std::span<const double> border, OrbitVector& dx);
 
   /// Row-major n x n blocks A_s and C_s: on every segment a flow perturbation satisfies A_s v(0) + C_s v(1) = 0.
-  const double* first_block(int s) const { return &first_blocks_[index(s * n_ * n_)]; }
-  const double* last_block(int s) const { return &last_blocks_[index(s * n_ * n_)]; }
+  const double* first_block(int s) const { return first_blocks_[s]; }
+  const double* last_block(int s) const { return last_blocks_[s]; }
 
   /// Effect (n) of the duration's change on the condensed rows of segment s: A_s v(0) + C_s v(1) + duration_block
   /// sigma.
@@ -109,7 +110,7 @@ class CondensedSystem {
 
  private:
   static std::size_t index(std::ptrdiff_t i) { return static_cast<std::size_t>(i); }
-  /// Number of an interval's blocks; their places in the arrays exceed the range of int for large problems.
+  /// Number of an interval's blocks.
   std::ptrdiff_t block(int s, int j) const { return static_cast<std::ptrdiff_t>(s) * shape_.intervals + j; }
   EndUnknowns unknowns() const { return {n_, shape_.segments}; }
   int start_unknown(int s) const { return unknowns().start(s); }
@@ -159,17 +160,19 @@ class CondensedSystem {
   BlockKernel join_;
   std::vector<Join> joins_;  // each after those that make its two pieces
 
-  std::vector<double> interval_blocks_;  // per interval (c n + b) x width
-  std::vector<int> interval_swaps_;
-  std::vector<double> join_blocks_;  // per interval (2 n + b) x width
-  std::vector<int> join_swaps_;
-  std::vector<double> interval_rhs_;
-  std::vector<double> join_rhs_;
-  std::vector<double> first_blocks_;   // m n x n
-  std::vector<double> last_blocks_;    // m n x n
-  std::vector<double> scalar_blocks_;  // m n x scalars
-  std::vector<double> border_blocks_;  // m b x (2 n + scalars): first | last | scalars
-  std::vector<double> segment_rhs_;    // m (n + b)
+  // of intervals
+  BlockArray<double> interval_blocks_;  // (c n + b) x width
+  BlockArray<int> interval_swaps_;
+  BlockArray<double> join_blocks_;  // (2 n + b) x width
+  BlockArray<int> join_swaps_;
+  BlockArray<double> interval_rhs_;
+  BlockArray<double> join_rhs_;
+  // of segments
+  BlockArray<double> first_blocks_;   // n x n
+  BlockArray<double> last_blocks_;    // n x n
+  BlockArray<double> scalar_blocks_;  // n x scalars
+  BlockArray<double> border_blocks_;  // b x (2 n + scalars): first | last | scalars
+  BlockArray<double> segment_rhs_;    // n + b
 
   std::vector<int> triplet_rows_;  // before lu_, whose constructor needs them
   std::vector<int> triplet_columns_;

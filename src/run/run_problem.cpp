@@ -77,6 +77,18 @@ std::string direction_text(double step, const SelectedStart& start) {
                      step > 0.0 ? "on in" : "back against", start.label, start.source);
 }
 
+/// What a run prints besides its table.
+struct Reports {
+  std::ostream& warnings;
+  std::ostream* table;     ///< null when quiet
+  std::ostream* progress;  ///< a terminal, or null
+
+  void warn(const std::vector<std::string>& texts) const { print_warnings(warnings, texts); }
+  void warn_of(const std::string& text) const {
+    if (!text.empty()) warn({text});
+  }
+};
+
 struct ReadSettings {
   RunSettings in_file;
   RunSettings used;  ///< with the changes of the command line
@@ -91,111 +103,156 @@ ReadSettings read_settings(const RunRequest& request, const std::string& constan
   return read;
 }
 
-void warn_of(std::ostream& warnings, const std::string& text) {
-  if (!text.empty()) print_warnings(warnings, {text});
+struct Problem {
+  std::unique_ptr<ProblemLibrary> library;
+  RunSettings settings;
+
+  const HybridSystem& system() const { return library->system(); }
+};
+
+/// Constants and plugin, checked against each other.
+Problem load_problem(const RunRequest& request, const Reports& reports) {
+  Warnings constant_warnings;
+  bool named_parameters = false;
+  const std::string constants = constants_path(request.constants.value_or(request.name));
+  ReadSettings read = read_settings(request, constants, names_to_come(named_parameters), &constant_warnings);
+  reports.warn(constant_warnings);
+  free_problem_parameters(read.used);  // refuses what no plugin can cure
+
+  const std::string plugin = resolve_plugin(request.problem.value_or(request.name), {.progress = reports.progress});
+  auto library = std::make_unique<ProblemLibrary>(plugin, [&read] { return problem_sizes(read.used); });
+  const HybridSystem& system = library->system();
+  if (named_parameters) read = read_settings(request, constants, names_of(system), nullptr);
+  reports.warn(check_settings_against(system, read.used, {constants, request.overrides}));
+  reports.warn_of(inherited_bounds(system, read.in_file, read.used, request.overrides, constants));
+  return {std::move(library), read.used};
+}
+
+SelectedStart start_of(const RunRequest& request, const Problem& problem, const Reports& reports) {
+  const std::vector<int> free_parameters = free_problem_parameters(problem.settings);
+  SelectedStart selected = select_start(request, problem.settings, problem.system(), free_parameters);
+  reports.warn(selected.warnings);
+  reports.warn_of(idle_parameters(problem.system(), problem.settings, selected, free_parameters.size()));
+  return selected;
+}
+
+/// The first point, checked before any file is touched.
+BranchSetup first_branch(const Problem& problem, const SelectedStart& selected, const Reports& reports) {
+  BranchSetup setup = set_up_branch(problem.system(), problem.settings, selected);
+  reports.warn_of(setup.start.note);
+  reports.warn_of(unwatched_events(problem.system(), setup.settings, setup.start.point.orbit));
+  return setup;
+}
+
+ContinuationSettings continuation_of(const RunRequest& request, const BranchSetup& setup, const SelectedStart& selected,
+                                     const HybridSystem& system, const std::function<bool()>& interrupted) {
+  ContinuationSettings continuation = continuation_settings(setup.settings);
+  continuation.clip = request.clip;
+  continuation.label_start = selected.label_start;
+  continuation.interrupted = interrupted;
+  if (!selected.from_solution || selected.parameters_changed)
+    refuse_start_outside(setup.start.point.orbit, setup.follower->condensed().rule(), continuation,
+                         system.parameter_name(continuation.principal), selected.source);
+  return continuation;
+}
+
+/// Exit status of a branch that ended so; says why on `warnings`.
+int status_of(const BranchSummary& summary, bool strict, std::ostream& warnings) {
+  if (summary.reason == EndReason::first_step_failed) {
+    warnings << "tchat: the first step failed: " << summary.detail << '\n';
+    return 1;
+  }
+  if (summary.reason != EndReason::no_convergence || !strict) return 0;
+  warnings << "tchat: the branch ended by MX: " << summary.detail << '\n';
+  return ended_by_mx;
+}
+
+/// One direction of a run: a section of its files.
+class Direction {
+ public:
+  Direction(const BranchSetup& setup, ContinuationSettings continuation, int branch)
+      : setup_(setup), continuation_(std::move(continuation)), branch_(branch) {}
+
+  /// `correction`: how Newton came to the first point, as far as this section is to tell it.
+  BranchSummary follow(BranchWriter& writer, std::vector<NewtonIteration> correction,
+                       const std::vector<std::string>& notes) {
+    continuation_.stop_at = make_stop_rule(setup_.settings);
+    writer.begin_section({branch_, continuation_.step.initial, std::move(correction)});
+    for (const std::string& note : notes) writer.note(1, note);
+    ContinuationRun run(*setup_.follower, *setup_.defining, continuation_,
+                        setup_.type->tests(*setup_.defining, setup_.settings), writer);
+    BranchSummary summary = run.run(setup_.start.point);
+    summary.without_contact = setup_.type->facts().stability == StabilityMeaning::without_contact;
+    writer.clear_progress();
+    return summary;
+  }
+
+ private:
+  const BranchSetup& setup_;
+  ContinuationSettings continuation_;
+  int branch_;
+};
+
+/// Against the direction of DS.
+ContinuationSettings reversed(ContinuationSettings continuation) {
+  continuation.step.initial = -continuation.step.initial;
+  continuation.label_start = false;
+  return continuation;
 }
 
 }  // namespace
 
 int run_problem(const RunRequest& request, std::ostream& screen, std::ostream& warnings,
                 const std::function<bool()>& interrupted, std::ostream* progress) {
-  const auto warn = [&](const std::vector<std::string>& texts) { print_warnings(warnings, texts); };
-
-  // Constants.
-  Warnings constant_warnings;
-  bool named_parameters = false;
-  const std::string constants = constants_path(request.constants.value_or(request.name));
-  ReadSettings read = read_settings(request, constants, names_to_come(named_parameters), &constant_warnings);
-  warn(constant_warnings);
-  RunSettings settings = read.used;
-  std::vector<int> free_parameters = free_problem_parameters(settings);
-
-  // Plugin.
-  const std::string plugin = resolve_plugin(request.problem.value_or(request.name), {.progress = progress});
-  const ProblemLibrary library(plugin, [&settings] { return problem_sizes(settings); });
-  const HybridSystem& system = library.system();
-  if (named_parameters) {
-    read = read_settings(request, constants, names_of(system), nullptr);
-    settings = read.used;
-    free_parameters = free_problem_parameters(settings);
-  }
-  warn(check_settings_against(system, settings, {constants, request.overrides}));
-  warn_of(warnings, inherited_bounds(system, read.in_file, settings, request.overrides, constants));
-
-  // Start.
-  SelectedStart selected = select_start(request, settings, system, free_parameters);
-  warn(selected.warnings);
-  warn_of(warnings, idle_parameters(system, settings, selected, free_parameters.size()));
+  const Reports reports{warnings, request.quiet ? nullptr : &screen, progress};
+  const Problem problem = load_problem(request, reports);
+  const HybridSystem& system = problem.system();
+  const SelectedStart selected = start_of(request, problem, reports);
   const std::string output = request.output.value_or(request.name);
   refuse_to_replace_start(request, selected, output);
   RunFiles files(output, request.append ? RunFiles::Mode::append : RunFiles::Mode::replace);
   files.check_writable();
+  const BranchSetup setup = first_branch(problem, selected, reports);
+  const ContinuationSettings continuation = continuation_of(request, setup, selected, system, interrupted);
 
-  // Discretisation and first point.
-  const RunSettings asked = settings;
-  const BranchSetup setup = set_up_branch(system, asked, selected);
-  settings = setup.settings;
-  warn_of(warnings, setup.start.note);
-  warn_of(warnings, unwatched_events(system, settings, setup.start.point.orbit));
-  ContinuationSettings continuation = continuation_settings(settings);
-  continuation.clip = request.clip;
-  if (!selected.from_solution || selected.parameters_changed)
-    refuse_start_outside(setup.start.point.orbit, setup.follower->condensed().rule(), continuation,
-                         system.parameter_name(continuation.principal), selected.source);
-
-  // Files are touched only now.
-  files.open(positional_text(settings));
-  std::ostream* table = request.quiet ? nullptr : &screen;
-  if (table != nullptr && setup.start.stored_direction) *table << direction_text(settings.step, selected);
+  files.open(positional_text(setup.settings));  // only now are files touched
+  if (reports.table != nullptr && setup.start.stored_direction)
+    *reports.table << direction_text(setup.settings.step, selected);
   const int last_label = request.append ? std::max(files.last_label(), 0) : selected.last_label;
-  BranchWriter writer(system, setup.follower->condensed().rule(),
-                      {settings, active_parameters(settings), setup.type->facts().curve, selected.branch, last_label},
-                      files, table, table != nullptr ? progress : nullptr);
-  continuation.label_start = selected.label_start;
-  continuation.interrupted = interrupted;
+  BranchWriter writer(
+      system, setup.follower->condensed().rule(),
+      {setup.settings, active_parameters(setup.settings), setup.type->facts().curve, selected.branch, last_label},
+      files, reports.table, reports.table != nullptr ? progress : nullptr);
 
   int status = 0;
-  int branch = request.append ? std::max(files.last_branch() + 1, 1) : selected.branch;
-  const int directions = request.both_directions ? 2 : 1;
-  const BranchSetup* side = &setup;
-  BranchSetup other_side;
-  for (int direction = 0; direction < directions; ++direction, ++branch) {
-    if (direction == 1) {
-      if (interrupted && interrupted()) break;
-      continuation.step.initial = -continuation.step.initial;
-      continuation.label_start = false;
-      if (problem_type(asked).facts().switches_branch) {  // the two sides of a bifurcation are different branches
-        RunSettings reversed = asked;
-        reversed.step = -asked.step;
-        other_side = set_up_branch(system, reversed, selected);
-        side = &other_side;
-      }
-    }
-    continuation.stop_at = make_stop_rule(settings);
-    writer.begin_section({branch, continuation.step.initial,
-                          side == &setup && direction == 1 ? std::vector<NewtonIteration>{} : side->start.correction});
-    if (direction == 0)
-      for (const std::string& note : library.derivative_notes()) writer.note(1, note);
-    const std::size_t labels_before = writer.labels().size();
-    ContinuationRun run(*side->follower, *side->defining, continuation, side->type->tests(*side->defining, settings),
-                        writer);
-    BranchSummary summary = run.run(side->start.point);
-    summary.without_contact = side->type->facts().stability == StabilityMeaning::without_contact;
-    writer.clear_progress();
+  const auto tell = [&](const BranchSummary& summary, std::size_t labels_before) {
     const std::vector<BranchWriter::Labelled> labels(
         writer.labels().begin() + static_cast<std::ptrdiff_t>(labels_before), writer.labels().end());
-    if (table != nullptr)
-      *table << summary_text(summary, labels, system.parameter_name(continuation.principal), output) << std::flush;
-    if (summary.reason == EndReason::first_step_failed) {
-      status = 1;
-      warnings << "tchat: the first step failed: " << summary.detail << '\n';
-    } else if (summary.reason == EndReason::no_convergence && request.strict) {
-      status = status == 0 ? ended_by_mx : status;
-      warnings << "tchat: the branch ended by MX: " << summary.detail << '\n';
+    if (reports.table != nullptr)
+      *reports.table << summary_text(summary, labels, system.parameter_name(continuation.principal), output)
+                     << std::flush;
+    const int of_branch = status_of(summary, request.strict, warnings);
+    status = of_branch == 1 || status == 0 ? of_branch : status;
+  };
+  const int branch = request.append ? std::max(files.last_branch() + 1, 1) : selected.branch;
+  tell(Direction(setup, continuation, branch)
+           .follow(writer, setup.start.correction, problem.library->derivative_notes()),
+       0);
+  if (request.both_directions && !(interrupted && interrupted())) {
+    const std::size_t labels_before = writer.labels().size();
+    BranchSetup other_side;
+    const bool is_other_branch = problem_type(problem.settings).facts().switches_branch;
+    if (is_other_branch) {  // the two sides of a bifurcation are different branches
+      RunSettings against = problem.settings;
+      against.step = -against.step;
+      other_side = set_up_branch(system, against, selected);
     }
+    tell(Direction(is_other_branch ? other_side : setup, reversed(continuation), branch + 1)
+             .follow(writer, other_side.start.correction, {}),
+         labels_before);
   }
   files.finish();
-  if (const std::string complaint = library.complaint(); !complaint.empty()) warn({complaint});
+  reports.warn_of(problem.library->complaint());
   return status;
 }
 

@@ -96,7 +96,7 @@ FoldTest::FoldTest(int parameter, const std::vector<int>& free_parameters, int s
 }
 
 TestValue FoldTest::evaluate(const TestedPoint& point) const {
-  constexpr double level = 1e-10;
+  constexpr double level = 1e-10;  // of a tangent of unit length, which Newton's tolerances leave
   return TestValue::of(is_duration_ ? point.tangent.durations(index_) : point.tangent.globals(index_), level);
 }
 

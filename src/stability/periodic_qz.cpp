@@ -23,18 +23,6 @@ void rescale(ScaledComplex& z) {
   z.exponent += exponent;
 }
 
-/// An upper triangular or full 2 x 2 block times a power of two.
-struct Block2 {
-  std::array<Scalar, 4> x;  // row-major
-
-  void rescale_entries() {
-    double size = 0.0;
-    for (const Scalar& z : x) size = std::max(size, size1(z));
-    if (size == 0.0 || !std::isfinite(size)) return;
-    for (Scalar& z : x) z /= size;
-  }
-};
-
 }  // namespace
 
 std::complex<double> ScaledComplex::value(double cap) const {
@@ -46,6 +34,18 @@ std::complex<double> ScaledComplex::value(double cap) const {
   const int e = static_cast<int>(exponent);
   return {std::ldexp(mantissa.real(), e), std::ldexp(mantissa.imag(), e)};
 }
+
+/// An upper triangular or full 2 x 2 block times a power of two.
+struct PeriodicQz::Block2 {
+  std::array<Scalar, 4> x;  // row-major
+
+  void rescale_entries() {
+    double size = 0.0;
+    for (const Scalar& z : x) size = std::max(size, size1(z));
+    if (size == 0.0 || !std::isfinite(size)) return;
+    for (Scalar& z : x) z /= size;
+  }
+};
 
 /// The unitary [c s; -conj(s) c] with c real.
 struct PeriodicQz::Rotation {
@@ -194,104 +194,112 @@ void PeriodicQz::regularise() {
     }
 }
 
-/// One implicit single-shift step on rows and columns low..high of the Hessenberg factor.
-void PeriodicQz::single_step(int low, int high, int iteration) {
-  // The 2 x 2 diagonal block of T = E_m^-1 A_m ... E_1^-1 at rows k-1, k, up to a scalar factor.
-  const auto triangular_block = [&](int k) {
-    Block2 t{{1.0, 0.0, 0.0, 1.0}};
-    const auto multiply_left = [&](const Scalar& p, const Scalar& q, const Scalar& r) {  // [p q; 0 r] t
-      t.x = {p * t.x[0] + q * t.x[2], p * t.x[1] + q * t.x[3], r * t.x[2], r * t.x[3]};
-      t.rescale_entries();
-    };
-    for (int s = 0; s < m_; ++s) {
-      if (s > 0) multiply_left(a(s, k - 1, k - 1), a(s, k - 1, k), a(s, k, k));
-      multiply_left(e(s, k, k), -e(s, k - 1, k), e(s, k - 1, k - 1));  // adjugate: the inverse up to a factor
-    }
-    return t;
+/// The 2 x 2 diagonal block of T = E_m^-1 A_m ... E_1^-1 at rows k-1, k, up to a scalar factor.
+PeriodicQz::Block2 PeriodicQz::triangular_block(int k) const {
+  Block2 t{{1.0, 0.0, 0.0, 1.0}};
+  const auto multiply_left = [&](const Scalar& p, const Scalar& q, const Scalar& r) {  // [p q; 0 r] t
+    t.x = {p * t.x[0] + q * t.x[2], p * t.x[1] + q * t.x[3], r * t.x[2], r * t.x[3]};
+    t.rescale_entries();
   };
-  const auto times_hessenberg = [&](const Block2& t, int k) {
-    Block2 h;
-    for (std::size_t i = 0; i < 2; ++i)
-      for (std::size_t j = 0; j < 2; ++j)
-        h.x[2 * i + j] = t.x[2 * i] * a(0, k - 1, k - 1 + static_cast<int>(j)) +
-                         t.x[2 * i + 1] * a(0, k, k - 1 + static_cast<int>(j));
-    return h;
-  };
+  for (int s = 0; s < m_; ++s) {
+    if (s > 0) multiply_left(a(s, k - 1, k - 1), a(s, k - 1, k), a(s, k, k));
+    multiply_left(e(s, k, k), -e(s, k - 1, k), e(s, k - 1, k - 1));  // adjugate: the inverse up to a factor
+  }
+  return t;
+}
 
-  // Shift: the eigenvalue of the trailing block nearest to its last entry. As both blocks are known up to factors only,
-  // the shift is carried as a ratio to the trailing block's scale.
-  const Block2 trailing = times_hessenberg(triangular_block(high), high);
+/// The block times that of the Hessenberg factor A_1 at rows and columns k-1, k.
+PeriodicQz::Block2 PeriodicQz::times_hessenberg(const Block2& t, int k) const {
+  Block2 h;
+  for (std::size_t i = 0; i < 2; ++i)
+    for (std::size_t j = 0; j < 2; ++j)
+      h.x[2 * i + j] =
+          t.x[2 * i] * a(0, k - 1, k - 1 + static_cast<int>(j)) + t.x[2 * i + 1] * a(0, k, k - 1 + static_cast<int>(j));
+  return h;
+}
+
+/// The diagonal entry k of T, with its scale.
+ScaledComplex PeriodicQz::triangular_entry(int k) const {
+  ScaledComplex product{1.0, 0};
+  const auto multiply = [&product](const Scalar& factor) {
+    product.mantissa *= factor;
+    rescale(product);
+  };
+  for (int s = 0; s < m_; ++s) {
+    if (s > 0) multiply(a(s, k, k));
+    multiply(1.0 / e(s, k, k));
+  }
+  return product;
+}
+
+/// The eigenvalue of the trailing block nearest to its last entry; now and then an exceptional one. The blocks are
+/// known up to factors only, so it is carried as a ratio to the block's last entry, whose scale is known.
+ScaledComplex PeriodicQz::shift(int high, int iteration) const {
+  const Block2 t = triangular_block(high);
+  const Block2 trailing = times_hessenberg(t, high);
   const Scalar half_difference = 0.5 * (trailing.x[0] - trailing.x[3]);
   const Scalar off = trailing.x[1] * trailing.x[2];
   const Scalar root = std::sqrt(half_difference * half_difference + off);
   const Scalar larger =
       size1(half_difference + root) > size1(half_difference - root) ? half_difference + root : half_difference - root;
-  Scalar shift = larger == 0.0 ? trailing.x[3] : trailing.x[3] - off / larger;
-  if (iteration % 10 == 9) shift = size1(trailing.x[2]) + size1(trailing.x[3]);  // exceptional
+  Scalar nearest = larger == 0.0 ? trailing.x[3] : trailing.x[3] - off / larger;
+  if (iteration % 10 == 9) nearest = size1(trailing.x[2]) + size1(trailing.x[3]);  // exceptional
+  const ScaledComplex scale = triangular_entry(high);
+  ScaledComplex result{t.x[3] == 0.0 ? Scalar(0.0) : nearest / t.x[3], 0};
+  result.mantissa *= scale.mantissa;
+  result.exponent += scale.exponent;
+  rescale(result);
+  return result;
+}
 
-  // First column of M - shift: compare the leading block in the scale of the trailing one by the eigen-relation
-  // E-side: multiply through, i.e. take A_1 v and shift T^-1 v for v = e_low, both as columns of length 2.
-  ScaledComplex leading_scale{1.0, 0};
-  ScaledComplex trailing_scale{1.0, 0};
-  const auto accumulate = [&](ScaledComplex& scale, const Scalar& factor) {
-    scale.mantissa *= factor;
-    rescale(scale);
-  };
-  for (int s = 0; s < m_; ++s) {
-    if (s > 0) accumulate(leading_scale, a(s, low, low)), accumulate(trailing_scale, a(s, high, high));
-    ScaledComplex inverse{1.0 / e(s, low, low), 0};
-    accumulate(leading_scale, inverse.mantissa);
-    inverse.mantissa = 1.0 / e(s, high, high);
-    accumulate(trailing_scale, inverse.mantissa);
-  }
-  // trailing block normalised: its (2,2) entry of T stands for trailing_scale.
-  const Block2 trailing_t = triangular_block(high);
-  ScaledComplex true_shift{trailing_t.x[3] == 0.0 ? Scalar(0.0) : shift / trailing_t.x[3], 0};
-  true_shift.mantissa *= trailing_scale.mantissa;
-  true_shift.exponent += trailing_scale.exponent;
-  rescale(true_shift);
-  const Block2 leading_t = triangular_block(low + 1);
-  const Block2 leading = times_hessenberg(leading_t, low + 1);
-  const Scalar unit = leading_t.x[0] == 0.0 ? Scalar(1.0) : leading_scale.mantissa / leading_t.x[0];
-  ScaledComplex first{leading.x[0] * unit, leading_scale.exponent};
-  ScaledComplex second{leading.x[2] * unit, leading_scale.exponent};
+/// Takes the first column of T A_1 - shift, of which two entries are not zero, to a multiple of the first unit vector.
+PeriodicQz::Rotation PeriodicQz::first_rotation(int low, const ScaledComplex& shift) const {
+  const ScaledComplex scale = triangular_entry(low);
+  const Block2 t = triangular_block(low + 1);
+  const Block2 leading = times_hessenberg(t, low + 1);
+  const Scalar unit = t.x[0] == 0.0 ? Scalar(1.0) : scale.mantissa / t.x[0];
+  ScaledComplex first{leading.x[0] * unit, scale.exponent};
+  ScaledComplex second{leading.x[2] * unit, scale.exponent};
   rescale(first);
   rescale(second);
-  const long reference = std::max({first.exponent, second.exponent, true_shift.exponent});
+  const long reference = std::max({first.exponent, second.exponent, shift.exponent});
   const auto aligned = [&](const ScaledComplex& z) {
     const long difference = std::max(z.exponent - reference, -2000L);
     return Scalar{std::ldexp(z.mantissa.real(), static_cast<int>(difference)),
                   std::ldexp(z.mantissa.imag(), static_cast<int>(difference))};
   };
-  Rotation r = Rotation::zero_second(aligned(first) - aligned(true_shift), aligned(second));
+  return Rotation::zero_second(aligned(first) - aligned(shift), aligned(second));
+}
 
-  // Columns low, low+1 of A_1 (and of E_m), then the bulge down the diagonal.
-  for (int k = low + 1; k <= high; ++k) {
-    if (k > low + 1) {
-      // Rows of A_1: remove the bulge at (k, k-2).
-      r = Rotation::zero_second(a(0, k - 1, k - 2), a(0, k, k - 2));
-      rotate_rows(a_, 0, k, r);
-      rotate_rows(e_, 0, k, r);
-      a(0, k, k - 2) = 0.0;
-      chase(k);
-      continue;
-    }
-    // The first rotation acts on the space of x_1: columns of A_1 and of E_m; carry it backwards through the cycle by
-    // restoring E_m from the left, then A_m from the right, ... until E_1 has been restored from the left.
-    rotate_columns(a_, 0, k, r);
-    rotate_columns(e_, m_ - 1, k, r);
-    for (int s = m_ - 1; s >= 0; --s) {
-      const Rotation rows = Rotation::zero_second(e(s, k - 1, k - 1), e(s, k, k - 1));
-      rotate_rows(e_, s, k, rows);
-      rotate_rows(a_, s, k, rows);
-      e(s, k, k - 1) = 0.0;
-      if (s == 0) break;
-      const Rotation z = Rotation::zero_second(std::conj(a(s, k, k)), std::conj(a(s, k, k - 1)));
-      const Rotation columns{z.c, -std::conj(z.s)};
-      rotate_columns(a_, s, k, columns);
-      rotate_columns(e_, s - 1, k, columns);
-      a(s, k, k - 1) = 0.0;
-    }
+/// A rotation of the space of x_1 acts on columns k-1, k of A_1 and of E_m; it is carried backwards through the cycle
+/// by restoring E_m from the left, then A_m from the right, ... until E_1 has been restored from the left.
+void PeriodicQz::chase_backwards(int k, const Rotation& r) {
+  rotate_columns(a_, 0, k, r);
+  rotate_columns(e_, m_ - 1, k, r);
+  for (int s = m_ - 1; s >= 0; --s) {
+    const Rotation rows = Rotation::zero_second(e(s, k - 1, k - 1), e(s, k, k - 1));
+    rotate_rows(e_, s, k, rows);
+    rotate_rows(a_, s, k, rows);
+    e(s, k, k - 1) = 0.0;
+    if (s == 0) return;
+    const Rotation z = Rotation::zero_second(std::conj(a(s, k, k)), std::conj(a(s, k, k - 1)));
+    const Rotation columns{z.c, -std::conj(z.s)};
+    rotate_columns(a_, s, k, columns);
+    rotate_columns(e_, s - 1, k, columns);
+    a(s, k, k - 1) = 0.0;
+  }
+}
+
+/// One implicit single-shift step on rows and columns low..high of the Hessenberg factor: the first rotation makes a
+/// bulge, which is chased down the diagonal.
+void PeriodicQz::single_step(int low, int high, int iteration) {
+  chase_backwards(low + 1, first_rotation(low, shift(high, iteration)));
+  for (int k = low + 2; k <= high; ++k) {
+    const Rotation r = Rotation::zero_second(a(0, k - 1, k - 2), a(0, k, k - 2));
+    rotate_rows(a_, 0, k, r);
+    rotate_rows(e_, 0, k, r);
+    a(0, k, k - 2) = 0.0;
+    chase(k);
   }
 }
 

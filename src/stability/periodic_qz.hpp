@@ -35,6 +35,8 @@ class PeriodicQz {
   /// Entries of A_s and E_s, s = 0..m-1, to be filled before compute(), which overwrites them.
   Scalar& a(int s, int row, int column) { return a_[at(s, row, column)]; }
   Scalar& e(int s, int row, int column) { return e_[at(s, row, column)]; }
+  const Scalar& a(int s, int row, int column) const { return a_[at(s, row, column)]; }
+  const Scalar& e(int s, int row, int column) const { return e_[at(s, row, column)]; }
 
   /// False when the iteration does not converge (then the eigenvalues are useless) or the input is not finite.
   bool compute();
@@ -42,6 +44,7 @@ class PeriodicQz {
   const std::vector<ScaledComplex>& eigenvalues() const { return eigenvalues_; }
 
  private:
+  struct Block2;
   struct Rotation;
   struct Active;
   std::size_t at(int s, int row, int column) const { return static_cast<std::size_t>((s * n_ + column) * n_ + row); }
@@ -52,6 +55,12 @@ class PeriodicQz {
   void chase(int k);
   void regularise();
   bool iterate();
+  Block2 triangular_block(int k) const;
+  Block2 times_hessenberg(const Block2& t, int k) const;
+  ScaledComplex triangular_entry(int k) const;
+  ScaledComplex shift(int high, int iteration) const;
+  Rotation first_rotation(int low, const ScaledComplex& shift) const;
+  void chase_backwards(int k, const Rotation& r);
   void single_step(int low, int high, int iteration);
   void deflate(int k);
   void rotate_rows(std::vector<Scalar>& matrix, int s, int k, const Rotation& r);

@@ -20,7 +20,9 @@ double parameter(const LabelledSolution& solution, int k) {
 
 std::string number_or_dash(int number) { return number > 0 ? fmt::format("{}", number) : "-"; }
 
+/// A start that was made by `tchat resegment` has no direction, and which parameters are free is for its constants.
 std::string free_parameters(const LabelledSolution& solution, int segments, const ProblemNames& names) {
+  if (solution.free_parameters.empty()) return "those of ICP";
   std::string list;
   for (const int k : solution.free_parameters)
     if (!is_duration(k, segments))

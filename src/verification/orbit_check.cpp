@@ -34,6 +34,7 @@ StoredSegment stored_segment(const HybridSystem& system, const RunSettings& sett
   segment.start = Eigen::Map<const VectorXd>(x.start(s), n);
   segment.end = Eigen::Map<const VectorXd>(x.end(s), n);
   segment.duration = x.duration(s);
+  segment.period = x.period();
   segment.monitored = own.monitor;
   if (!system.has_successors()) return segment;
   const auto following =

@@ -16,7 +16,7 @@ using Eigen::MatrixXd;
 using Eigen::RowVectorXd;
 using Eigen::VectorXd;
 
-/// A duration below this needs no integrator: two terms of the Taylor series are exact to rounding.
+/// A duration below this share of the period needs no integrator: two terms of the Taylor series are exact to rounding.
 constexpr double shortest_duration = 1e-7;
 constexpr int samples_of_a_step = 8;
 
@@ -191,7 +191,7 @@ Passage integrate(const HybridSystem& system, const StoredSegment& segment, cons
 /// Adams' method first; what is stiff for it goes to the other one.
 Passage pass(const HybridSystem& system, const StoredSegment& segment, const VectorXd& par, const VectorXd& scale,
              double tolerance) {
-  if (std::abs(segment.duration) < shortest_duration) return taylor(system, segment, par);
+  if (std::abs(segment.duration) < shortest_duration * std::abs(segment.period)) return taylor(system, segment, par);
   FlowOptions options;
   options.relative_tolerance = 1e-13;
   options.absolute_tolerance = 1e-15 * std::min(1.0, scale.minCoeff());

@@ -25,6 +25,7 @@ struct StoredSegment {
   Eigen::VectorXd start;  ///< x_s(0)
   Eigen::VectorXd end;    ///< x_s(1), before the jump
   double duration = 0.0;  ///< T_s
+  double period = 1.0;    ///< of the orbit
   /// Event functions that may not be negative anywhere on the segment (GCHGRZIND).
   std::vector<int> monitored;
   /// What else could have ended the segment, by the problem's index jump function: same field, other events.

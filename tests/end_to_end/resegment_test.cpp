@@ -275,6 +275,7 @@ TEST_CASE("a contact that falls on a user value has both names") {
     const std::string made =
         resegment(workspace, "q.both " + name + " --to grazing-curve -o curve ICP=[1,2,61,62]").out;
     CHECK(made.find("contact inside segment 1") != std::string::npos);
+    CHECK(workspace.tchat("labels q.curve").out.find("those of ICP") != std::string::npos);
   }
   // Either name ends the branch there.
   run_to("UZ1");

@@ -8,7 +8,7 @@
 #include "end_to_end/point_file_reader.hpp"
 #include "end_to_end/process.hpp"
 #include "end_to_end/solution_entry_reader.hpp"
-#include "start/temporary_folder.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace test_support {
 

@@ -10,7 +10,7 @@
 #include "plot/data_file.hpp"
 #include "plot/layout.hpp"
 #include "plot/picture_styles.hpp"
-#include "start/temporary_folder.hpp"
+#include "support/temporary_folder.hpp"
 #include "text/user_error.hpp"
 
 using namespace tchat;

@@ -8,7 +8,7 @@
 
 #include "plot/multiplier_figure.hpp"
 #include "plot/orbit_stability.hpp"
-#include "start/temporary_folder.hpp"
+#include "support/temporary_folder.hpp"
 #include "text/user_error.hpp"
 
 using namespace tchat;

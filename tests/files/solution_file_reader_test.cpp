@@ -3,8 +3,8 @@
 #include <catch2/catch.hpp>
 #include <string>
 
-#include "start/sample_solutions.hpp"
-#include "start/temporary_folder.hpp"
+#include "files/sample_solutions.hpp"
+#include "support/temporary_folder.hpp"
 #include "text/user_error.hpp"
 
 using namespace tchat;

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "output/sample_orbits.hpp"
-#include "start/temporary_folder.hpp"
+#include "files/sample_orbits.hpp"
+#include "support/temporary_folder.hpp"
 #include "text/user_error.hpp"
 
 using namespace tchat;

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "files/sample_orbits.hpp"
 #include "files/solution_file_reader.hpp"
-#include "output/sample_orbits.hpp"
 
 using namespace tchat;
 using test_support::sample_orbit;

@@ -11,8 +11,8 @@
 #include <thread>
 #include <utility>
 
-#include "output/file_size_limit.hpp"
-#include "start/temporary_folder.hpp"
+#include "files/file_size_limit.hpp"
+#include "support/temporary_folder.hpp"
 #include "text/user_error.hpp"
 
 using namespace tchat;

@@ -7,7 +7,7 @@
 #include <limits>
 #include <sstream>
 
-#include "start/temporary_folder.hpp"
+#include "support/temporary_folder.hpp"
 #include "tables/table_format.hpp"
 
 using namespace tchat;

@@ -4,10 +4,10 @@
 #include <filesystem>
 #include <string>
 
+#include "files/file_size_limit.hpp"
 #include "files/temporary_file.hpp"
 #include "files/whole_file.hpp"
-#include "output/file_size_limit.hpp"
-#include "start/temporary_folder.hpp"
+#include "support/temporary_folder.hpp"
 #include "text/user_error.hpp"
 
 using namespace tchat;

@@ -8,11 +8,11 @@
 #include <string>
 
 #include "files/diagnostics_file.hpp"
+#include "files/file_size_limit.hpp"
+#include "files/sample_orbits.hpp"
 #include "files/solution_file.hpp"
 #include "files/solution_file_reader.hpp"
-#include "output/file_size_limit.hpp"
-#include "output/sample_orbits.hpp"
-#include "start/temporary_folder.hpp"
+#include "support/temporary_folder.hpp"
 #include "text/user_error.hpp"
 
 using namespace tchat;

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "files/dat_file.hpp"
-#include "start/temporary_folder.hpp"
+#include "support/temporary_folder.hpp"
 #include "text/user_error.hpp"
 
 using namespace tchat;

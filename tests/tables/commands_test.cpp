@@ -9,9 +9,9 @@
 
 #include "app/labels_command.hpp"
 #include "app/orbit_command.hpp"
+#include "files/sample_orbits.hpp"
 #include "files/solution_file.hpp"
-#include "output/sample_orbits.hpp"
-#include "start/temporary_folder.hpp"
+#include "support/temporary_folder.hpp"
 #include "text/user_error.hpp"
 
 using namespace tchat;

@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <string>
 
-#include "start/temporary_folder.hpp"
+#include "support/temporary_folder.hpp"
 
 using namespace tchat;
 

@@ -2,9 +2,9 @@
 #include <string>
 #include <vector>
 
+#include "files/sample_solutions.hpp"
 #include "files/solution_file_reader.hpp"
-#include "start/sample_solutions.hpp"
-#include "start/temporary_folder.hpp"
+#include "support/temporary_folder.hpp"
 #include "text/user_error.hpp"
 
 using namespace tchat;

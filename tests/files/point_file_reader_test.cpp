@@ -8,7 +8,7 @@
 #include <functional>
 #include <random>
 
-#include "start/temporary_folder.hpp"
+#include "support/temporary_folder.hpp"
 #include "text/user_error.hpp"
 
 using namespace tchat;

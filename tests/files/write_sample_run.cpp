@@ -11,9 +11,9 @@
 #include "files/point_columns.hpp"
 #include "files/point_file.hpp"
 #include "files/run_files.hpp"
+#include "files/sample_orbits.hpp"
 #include "files/solution_file.hpp"
 #include "files/solution_file_reader.hpp"
-#include "output/sample_orbits.hpp"
 #include "tables/solution_tables.hpp"
 
 using namespace tchat;
