@@ -18,7 +18,7 @@ import warnings
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.join(HERE, "..", "..", "src", "python"))
-sys.path.insert(0, os.path.join(HERE, "..", "output"))
+sys.path.insert(0, os.path.join(HERE, "..", "files"))
 try:
     import numpy as np
 except ImportError:
