@@ -40,7 +40,7 @@ BoundaryValueSystem::BoundaryValueSystem(const HybridSystem& system, Signature s
       state_(size(dimension())),
       q_(size(integral_conditions())),
       q_by_state_(q_.size() * state_.size()),
-      q_by_parameter_(q_.size() * size(free_count())) {
+      q_by_parameter_(q_.size() * size(segments() + free_count())) {
   for (int s = 0; s < segments(); ++s) active_.push_back(first_duration + s);
   active_.insert(active_.end(), this->free_parameters().begin(), this->free_parameters().end());
   by_parameter_.resize(size(system.boundary_conditions()) * active_.size());
@@ -119,7 +119,7 @@ void BoundaryValueSystem::integral_values(const Orbit& x, const CollocationRule&
     });
 }
 
-/// With I = T sum w q(sum_i l_i u_i, p): by u_i T w l_i q_x, by T sum w q, by p T w q_p.
+/// With I = T sum w q(sum_i l_i u_i, T, p): by u_i T w l_i q_x, by T sum w q + T w q_T, by p T w q_p.
 void BoundaryValueSystem::integral_gradients(const Orbit& x, const CollocationRule& rule, double* values,
                                              std::span<OrbitVector> rows) const {
   const int n = dimension();
@@ -130,7 +130,7 @@ void BoundaryValueSystem::integral_gradients(const Orbit& x, const CollocationRu
   for (int s = 0; s < segments(); ++s)
     for_each_gauss_point(x, rule, [&](int j, int g, double weight) {
       interpolate(x, rule, s, j, g, state_.data());
-      system().first(FunctionKind::integrand, s + 1, state_.data(), x.par.data(), free_parameters(), q_.data(),
+      system().first(FunctionKind::integrand, s + 1, state_.data(), x.par.data(), active_, q_.data(),
                      q_by_state_.data(), q_by_parameter_.data());
       const double scale = x.duration(s) * weight;
       const int column = s * x.shape.nodes() + j * x.shape.collocation;
@@ -140,7 +140,9 @@ void BoundaryValueSystem::integral_gradients(const Orbit& x, const CollocationRu
         for (int i = 0; i <= rule.points(); ++i)
           for (int a = 0; a < n; ++a)
             rows[r].states(a, column + i) += scale * rule.value(g, i) * q_by_state_[size(a) * count + r];
-        for (int k = 0; k < free_count(); ++k) rows[r].globals(k) += scale * q_by_parameter_[size(k) * count + r];
+        const auto by_parameter = [&](int k) { return scale * q_by_parameter_[size(k) * count + r]; };
+        for (int t = 0; t < segments(); ++t) rows[r].durations(t) += by_parameter(t);
+        for (int k = 0; k < free_count(); ++k) rows[r].globals(k) += by_parameter(segments() + k);
       }
     });
 }

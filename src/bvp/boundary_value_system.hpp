@@ -2,7 +2,7 @@
 ///
 ///     x_s' = T_s f_{i_s}(x_s, p)                                                         s = 1..m
 ///     b(x_1(0), .., x_m(0), x_1(1), .., x_m(1), T_1, .., T_m, p) = 0                     NBC conditions
-///     T_1 integral_0^1 q_1(x_1, p) dtau + .. + T_m integral_0^1 q_m(x_m, p) dtau = 0     NINT conditions
+///     sum over s of T_s integral_0^1 q_s(x_s, T_1, .., T_m, p) dtau = 0                  NINT conditions
 ///
 /// There is no ring. Unknowns: n m functions, d durations that are free, q problem parameters. Conditions: NBC + NINT
 /// and pseudo-arclength. Well posed when n m + d + q = NBC + NINT + 1. A duration that is not free has a row of its

@@ -32,8 +32,8 @@ struct Coupled {
   }
   static constexpr int integral_conditions = 3;  // more than states
   template <class T>
-  void integrand(int s, const T* x, const T* par, T* q) const {
-    q[0] = x[0] * x[1] - par[2];
+  void integrand(int s, const T* x, const T* par, const T* durations, T* q) const {
+    q[0] = x[0] * x[1] - par[2] / (durations[0] + 2.0 * durations[1]);
     q[1] = s == 1 ? x[0] * x[0] * par[1] : x[1];
     q[2] = sin(x[0] + par[0]);
   }

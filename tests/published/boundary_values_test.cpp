@@ -132,6 +132,66 @@ TEST_CASE("Bratu's problem in closed form: C++ and Fortran, with derivatives by 
   for (const char* order : {"1", "0"}) check_bratu(workspace, "classic.f90", "GCIDIFF=" + std::string(order));
 }
 
+TEST_CASE("an integral is held while the duration is free: C++ and Fortran, with derivatives by hand and without") {
+  // x' = -x from 1, and its integral is A: T = -ln(1 - A).
+  const Workspace workspace;
+  workspace.write("decay.cpp", R"(#include <tchat/problem.hpp>
+struct Decay {
+  static constexpr int dimension = 1, parameters = 1, fields = 1, boundary_conditions = 1, integral_conditions = 1;
+  template <class T>
+  void field(int, const T* x, const T*, T* f) const {
+    f[0] = -x[0];
+  }
+  template <class T>
+  void boundary(const tchat::Ends<T>& x, const T*, T* b) const {
+    b[0] = x.start(1)[0] - 1.0;
+  }
+  template <class T>
+  void integrand(int, const T* x, const T* par, const T* durations, T* q) const {
+    q[0] = x[0] - par[0] / durations[0];
+  }
+};
+TCHAT_PROBLEM(Decay)
+)");
+  workspace.write("decay.f90", R"(subroutine gcfunc(n,x,par,idiff,f,fx,fp,fxx,fxp,i)
+  integer n,idiff,i
+  double precision x(n),par(*),f(n),fx(n,n),fp(n,*),fxx(n,n,n),fxp(n,n,*)
+  f(1)=-x(1)
+  fx(1,1)=-1
+end
+subroutine gcbcnd(n,nseg,x0,x1,par,idiff,nbc,fb,fb0,fb1,fbp)
+  integer n,nseg,idiff,nbc
+  double precision x0(n,nseg),x1(n,nseg),par(*),fb(nbc),fb0(nbc,n,nseg),fb1(nbc,n,nseg),fbp(nbc,*)
+  fb(1)=x0(1,1)-1
+  fb0(1,1,1)=1
+end
+subroutine gcicnd(n,x,par,idiff,f,fx,fp,fxx,fxp,i)
+  integer n,idiff,i
+  double precision x(n),par(*),f(1),fx(1,n),fp(1,*),fxx(1,n,n),fxp(1,n,*)
+  f(1)=x(1)-par(1)/par(61)
+  fx(1,1)=1
+  fp(1,1)=-1/par(61)
+  fp(1,61)=par(1)/par(61)**2
+end
+)");
+  workspace.write(
+      "gc.decay",
+      "NDIM = 1, IPS = 4, NBC = 1, NINT = 1, ICP = [1, 61], NTST = 10, NMX = 100\nEPSL = 1e-11, EPSU = 1e-11, "
+      "EPSS = 1e-10, RL0 = 0, RL1 = 0.97, DS = 0.05, DSMAX = 0.2\nUZR = {1: [0.5, 0.75, 0.9]}\n");
+  workspace.write("decay.dat", "# PAR(1) = 0.4\n# PAR(61) = 0.51\n0 1\n0.5 0.775\n1 0.6\n");
+  for (const std::string problem : {"decay.cpp", "decay.f90 GCIDIFF=1", "decay.f90 GCIDIFF=0"}) {
+    CAPTURE(problem);
+    const Outcome outcome = workspace.tchat("run decay -q -p " + problem);
+    INFO(outcome.err);
+    REQUIRE(outcome.status == 0);
+    const auto labels = workspace.solutions("decay");
+    REQUIRE(labels.size() == 5);
+    for (const SolutionEntry& x : labels) check_near(x.parameter(61), -std::log1p(-x.parameter(1)), 1e-9);
+    // A right matrix converges quadratically: two or three iterations a step.
+    CHECK(workspace.read("d.decay").find("Iterations   : 6") == std::string::npos);
+  }
+}
+
 TEST_CASE("a quarter of a pendulum's period on two segments, whose durations are free") {
   const Workspace workspace;
   workspace.write("pendulum.cpp", R"(#include <tchat/problem.hpp>

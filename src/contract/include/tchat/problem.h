@@ -103,7 +103,7 @@ typedef struct tchat_problem {
                          const double* par, const int32_t* active, int32_t active_count, double* out, double* dstarts,
                          double* dends, double* dp);
   /* Number of integral conditions: the integrals of the functions of kind TCHAT_INTEGRAND over time, index s on segment
-   * s, added over all segments, are zero. */
+   * s, added over all segments, are zero. They may depend on the durations in par. */
   int32_t integral_conditions;
 } tchat_problem;
 

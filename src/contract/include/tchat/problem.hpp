@@ -34,7 +34,9 @@
 ///       b[0] = orbit.start(1)[0]; b[1] = orbit.end(1)[0];                 // and orbit.duration(1)
 ///     }
 ///     static constexpr int integral_conditions = 1;                       // NINT
-///     template <class T> void integrand(int s, const T* x, const T* par, T* q) const { q[0] = x[0] - par[1]; }
+///     template <class T> void integrand(int s, const T* x, const T* par, const T* durations, T* q) const {
+///       q[0] = x[0] - par[1] / durations[0];                              // the durations may be left out
+///     }
 ///     // hand-written first derivatives instead of automatic ones, column-major, zero before the call:
 ///     void field_derivatives(int i, const double* x, const double* par, double* dfdx, double* dfdp) const;
 ///     void event_derivatives(int j, const double* x, const double* par, double* dhdx, double* dhdp) const;
@@ -152,15 +154,20 @@ class ProblemTable {
     p.boundary(orbit, par, b);
   };
   template <class T>
-  static constexpr bool has_integrand = requires(const Problem& p, const T* x, T* q) {
+  static constexpr bool has_integrand_of_durations = requires(const Problem& p, const T* x, T* q) {
+    p.integrand(1, x, x, x, q);
+  };
+  template <class T>
+  static constexpr bool has_integrand = has_integrand_of_durations<T> || requires(const Problem& p, const T* x, T* q) {
     p.integrand(1, x, x, q);
   };
   static_assert(boundary_count() == 0 || (has_boundary<double> && has_boundary<Dual<1>>),
                 "tchat: `boundary` must be: template <class T> void boundary(const tchat::Ends<T>& orbit, const T* "
                 "par, T* b) const");
-  static_assert(integral_count() == 0 || (has_integrand<double> && has_integrand<Dual<1>>),
-                "tchat: `integrand` must be: template <class T> void integrand(int s, const T* x, const T* par, T* q) "
-                "const");
+  static_assert(
+      integral_count() == 0 || (has_integrand<double> && has_integrand<Dual<1>>),
+      "tchat: `integrand` must be: template <class T> void integrand(int s, const T* x, const T* par, const T* "
+      "durations, T* q) const");
 
   static constexpr int n = Problem::dimension;
   static constexpr int q = Problem::parameters;
@@ -186,6 +193,11 @@ class ProblemTable {
   template <class T>
   using Parameters = std::array<T, static_cast<std::size_t>(q > 0 ? q : 1)>;
 
+  /// For integrands, which may depend on them.
+  static constexpr int durations_begin = 60;  // PAR(61) is T_1
+  template <class T>
+  using Durations = std::array<T, static_cast<std::size_t>(integral_count() > 0 ? 64 : 1)>;
+
   static const Problem& object(const void* self) { return *static_cast<const Problem*>(self); }
 
   static constexpr int rows(std::int32_t kind) {
@@ -195,7 +207,8 @@ class ProblemTable {
   /// F(x, par), rows preset to NaN by the caller. A problem may throw where it cannot be evaluated: the callers are C
   /// code, so the exception ends here as NaN.
   template <class T>
-  static void evaluate(const void* self, std::int32_t kind, int index, const T* x, const T* par, T* out) {
+  static void evaluate(const void* self, std::int32_t kind, int index, const T* x, const T* par,
+                       [[maybe_unused]] const T* durations, T* out) {
     const Problem& problem = object(self);
     try {
       if (kind == TCHAT_FIELD) problem.field(index, x, par, out);
@@ -204,7 +217,12 @@ class ProblemTable {
       if constexpr (jump_count() > 0)
         if (kind == TCHAT_JUMP) problem.jump(index, x, par, out);
       if constexpr (integral_count() > 0)
-        if (kind == TCHAT_INTEGRAND) problem.integrand(index, x, par, out);
+        if (kind == TCHAT_INTEGRAND) {
+          if constexpr (has_integrand_of_durations<T>)
+            problem.integrand(index, x, par, durations, out);
+          else
+            problem.integrand(index, x, par, out);
+        }
     } catch (...) {
       std::fill(out, out + rows(kind), T(NAN));
     }
@@ -213,7 +231,7 @@ class ProblemTable {
   static void value(const void* self, std::int32_t kind, std::int32_t index, const double* x, const double* par,
                     double* out) {
     std::fill(out, out + rows(kind), NAN);
-    evaluate<double>(self, kind, index, x, par, out);
+    evaluate<double>(self, kind, index, x, par, par + durations_begin, out);
   }
 
   /// Column c of the derivative belongs to state c, or to parameter active[c - n].
@@ -230,12 +248,13 @@ class ProblemTable {
     for (int begin = 0; begin < columns; begin += width) {
       States<T> xs;
       Parameters<T> ps;
+      Durations<T> ts;
       Values<T> ys;
-      load(x, par, xs, ps);
+      load(x, par, xs, ps, ts);
       for (int k = 0; k < width && begin + k < columns; ++k)
-        if (T* seed = variable(begin + k, active, xs, ps)) seed->derivative[static_cast<std::size_t>(k)] = 1.0;
+        if (T* seed = variable(begin + k, active, xs, ps, ts)) seed->derivative[static_cast<std::size_t>(k)] = 1.0;
       preset(ys);
-      evaluate<T>(self, kind, index, xs.data(), ps.data(), ys.data());
+      evaluate<T>(self, kind, index, xs.data(), ps.data(), ts.data(), ys.data());
       const int r = rows(kind);
       for (int k = 0; k < width && begin + k < columns; ++k) {
         const int c = begin + k;
@@ -254,14 +273,15 @@ class ProblemTable {
     for (int begin = 0; begin < columns; begin += width) {
       States<T> xs;
       Parameters<T> ps;
+      Durations<T> ts;
       Values<T> ys;
-      load(x, par, xs, ps);
+      load(x, par, xs, ps, ts);
       for (int c = 0; c < columns; ++c)
-        if (T* moved = variable(c, active, xs, ps)) moved->value.derivative[0] += direction[c];
+        if (T* moved = variable(c, active, xs, ps, ts)) moved->value.derivative[0] += direction[c];
       for (int k = 0; k < width && begin + k < columns; ++k)
-        if (T* seed = variable(begin + k, active, xs, ps)) seed->derivative[static_cast<std::size_t>(k)] = 1.0;
+        if (T* seed = variable(begin + k, active, xs, ps, ts)) seed->derivative[static_cast<std::size_t>(k)] = 1.0;
       preset(ys);
-      evaluate<T>(self, kind, index, xs.data(), ps.data(), ys.data());
+      evaluate<T>(self, kind, index, xs.data(), ps.data(), ts.data(), ys.data());
       const int r = rows(kind);
       for (int k = 0; k < width && begin + k < columns; ++k) {
         const int c = begin + k;
@@ -274,9 +294,10 @@ class ProblemTable {
   }
 
   template <class T>
-  static void load(const double* x, const double* par, States<T>& xs, Parameters<T>& ps) {
+  static void load(const double* x, const double* par, States<T>& xs, Parameters<T>& ps, Durations<T>& ts) {
     for (std::size_t i = 0; i < static_cast<std::size_t>(n); ++i) xs[i] = T(x[i]);
     for (std::size_t i = 0; i < static_cast<std::size_t>(q); ++i) ps[i] = T(par[i]);
+    for (std::size_t i = 0; integral_count() > 0 && i < ts.size(); ++i) ts[i] = T(par[durations_begin + i]);
   }
 
   template <class T>
@@ -286,10 +307,13 @@ class ProblemTable {
 
   /// The variable that column c differentiates by; null for a PAR that the problem does not own.
   template <class T>
-  static T* variable(int c, const std::int32_t* active, States<T>& xs, Parameters<T>& ps) {
+  static T* variable(int c, const std::int32_t* active, States<T>& xs, Parameters<T>& ps, Durations<T>& ts) {
     if (c < n) return &xs[static_cast<std::size_t>(c)];
     const int k = active[c - n];
-    return is_problem_parameter(k) ? &ps[static_cast<std::size_t>(k - 1)] : nullptr;
+    if (is_problem_parameter(k)) return &ps[static_cast<std::size_t>(k - 1)];
+    const int s = k - durations_begin - 1;
+    const bool is_duration = integral_count() > 0 && s >= 0 && s < static_cast<int>(ts.size());
+    return is_duration ? &ts[static_cast<std::size_t>(s)] : nullptr;
   }
 
   static bool hand_written(const void* self, std::int32_t kind, int index, const double* x, const double* par,
@@ -330,8 +354,6 @@ class ProblemTable {
     memory.assign(values, values + count);
     return memory;
   }
-
-  static constexpr int durations_begin = 60;  // PAR(61) is T_1
 
   static void boundary(const void* self, std::int32_t segments, const double* starts, const double* ends,
                        const double* par, double* out) {
