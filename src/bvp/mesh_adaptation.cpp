@@ -11,7 +11,8 @@ std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 double length(const std::vector<double>& mesh, int j) { return mesh[index(j + 1)] - mesh[index(j)]; }
 
-/// Estimates of |u^(c+1)| of every component of segment s on every interval: n x N.
+/// Estimates of |u^(c+1)| of every component of segment s on every interval: n x N. On a single interval no jump of the
+/// c-th derivative tells of the next one: it is taken for as large as one that falls to zero over the interval.
 Eigen::MatrixXd highest_derivatives(const Orbit& x, const CollocationRule& rule, int s) {
   const OrbitShape& shape = x.shape;
   const int c = shape.collocation;
@@ -21,8 +22,8 @@ Eigen::MatrixXd highest_derivatives(const Orbit& x, const CollocationRule& rule,
     const auto nodes = x.states.middleCols(s * shape.nodes() + j * c, c + 1);
     level.col(j) = nodes * rule.highest / std::pow(length(x.mesh, j), c);
   }
+  if (intervals == 1) return level.cwiseAbs() / length(x.mesh, 0);
   Eigen::MatrixXd result = Eigen::MatrixXd::Zero(shape.dimension, intervals);
-  if (intervals == 1) return result;
   Eigen::MatrixXd jump(shape.dimension, intervals - 1);  // at interior mesh points
   for (int j = 0; j + 1 < intervals; ++j)
     jump.col(j) = (level.col(j + 1) - level.col(j)).cwiseAbs() / (0.5 * (length(x.mesh, j) + length(x.mesh, j + 1)));

@@ -117,3 +117,21 @@ TEST_CASE("estimated error: the interpolation error of a power, exactly") {
   const double exact = std::pow(0.05, 3) * 2 / (3 * std::sqrt(3.0));
   CHECK(estimated_error(x, CollocationRule(2)) == Approx(exact / 2).epsilon(1e-3));  // relative to 1 + max |u| = 2
 }
+
+TEST_CASE("estimated error: one interval has no neighbour, and its error is not called zero") {
+  // exp on one interval: the error that interpolation makes, within a factor of ten.
+  for (const int c : {2, 4, 6}) {
+    CAPTURE(c);
+    const Orbit x = scalar_orbit([](double t) { return std::exp(3.0 * t); }, 1, c);
+    const CollocationRule rule(c);
+    Eigen::VectorXd basis(c + 1);
+    double worst = 0.0;
+    for (int k = 0; k <= 100; ++k) {
+      rule.basis(0.01 * k, basis.data(), nullptr);
+      worst = std::max(worst, std::abs((x.states * basis)(0) - std::exp(0.03 * k)));
+    }
+    const double error = worst / (1.0 + std::exp(3.0));
+    CHECK(estimated_error(x, rule) > 0.1 * error);
+    CHECK(estimated_error(x, rule) < 10.0 * error);
+  }
+}
