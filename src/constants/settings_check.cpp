@@ -200,8 +200,8 @@ std::vector<std::string> settings_warnings(const RunSettings& settings, const st
   for (std::size_t s = 0; s < settings.segments.size(); ++s)
     if (!keeps_contact(settings.problem_type) && settings.segments[s].type == 2)
       sentences.push_back(
-          fmt::format("{}: GCSEGTYP({}) = 2 (grazing contact) has no effect with IPS = 180; it belongs to IPS = 150",
-                      source, s + 1));
+          fmt::format("{}: GCSEGTYP({}) = 2 (grazing contact) has no effect with IPS = {}; it belongs to IPS = {}",
+                      source, s + 1, settings.problem_type, grazing_orbit.number));
   return sentences;
 }
 

@@ -30,6 +30,7 @@ __all__ = ["Error", "TchatWarning", "load", "run", "simulate", "sweep", "read_po
 FIRST_DURATION = 61    # PAR(60 + s) is the duration of segment s
 MOST_SEGMENTS = 64
 AUTO_PERIOD = 11       # PAR(11) is the period in AUTO's own files
+BOUNDARY_VALUES = 4  # IPS
 NOT_FINITE = 1e99      # stands in the files for NaN and infinity
 POLL_SECONDS = 0.1
 
@@ -350,6 +351,8 @@ class Solution:
     def durations(self):
         own = self.parameters[FIRST_DURATION - 1:FIRST_DURATION - 1 + len(self.states)]
         of_auto = self.ips not in (150, 180) and len(self.states) == 1 and not np.any(own)
+        if of_auto and self.ips == BOUNDARY_VALUES:  # on the interval from 0 to 1
+            return np.ones(1)
         return self.parameters[AUTO_PERIOD - 1:AUTO_PERIOD] if of_auto else own
 
     @property
@@ -458,7 +461,10 @@ def _entry(path, line, identifier, words):
     solution.states = table[:, 1:].T.reshape(shape)
     if len(words) == with_direction:
         solution.state_direction = numbers[at:at + points * (width - 1)].reshape(points, width - 1).T.reshape(shape)
-    internal = identifier[12] if identifier[14] in (180, 150) and identifier[12] % 4 == 0 else 0
+    # Boundary value problems are AUTO's too, whose PAR has no room for durations.
+    is_ours = identifier[14] in (180, 150) or (identifier[14] == BOUNDARY_VALUES
+                                               and parameters - identifier[12] >= FIRST_DURATION)
+    internal = identifier[12] if is_ours and identifier[12] % 4 == 0 else 0
     values = numbers[len(numbers) - parameters:]
     solution.parameters = values[:parameters - internal]
     groups = values[parameters - internal:].reshape(-1, 4)

@@ -144,6 +144,19 @@ def compare(name, mine, others, tolerance):
         sys.exit(f"{name}: {mine}\n{others}")
 
 
+def check_module(source, folder):
+    """tchat.py knows both files: durations 1, user values as what they are. Left out where there is no numpy."""
+    sys.path.insert(0, os.path.join(source, "src", "python"))
+    try:
+        import tchat
+    except ImportError:
+        return
+    for name, own in (("rod", True), ("auto", False)):
+        for solution in tchat.read_solutions(os.path.join(folder, "q." + name)):
+            if solution.period != 1.0 or (solution.type_name == "UZ" and bool(solution.kinds) != own):
+                sys.exit(f"tchat.py, q.{name}: period {solution.period}, kinds {solution.kinds}")
+
+
 def main():
     tchat, source = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
     objects = auto_objects()
@@ -187,6 +200,7 @@ def main():
         listing = run([tchat, "labels", "q.auto"], folder, env=environment)
         if "UZ" not in listing:
             sys.exit("tchat labels q.auto:\n" + listing)
+        check_module(source, folder)
 
 
 main()
