@@ -106,6 +106,8 @@ bool is_two_parameter_curve(int number, int branch_mode) {
   return type != nullptr && type->facts().has_ring && type->facts().free_parameters >= 2;
 }
 
+bool has_two_parameter_curves(int number) { return !problem_types_of(number, in_two_parameters).empty(); }
+
 bool has_multipliers(int number) {
   const ProblemType* type = nearest_problem_type(number, 1);
   return type == nullptr || type->facts().stability != StabilityMeaning::none;

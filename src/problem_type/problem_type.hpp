@@ -106,6 +106,8 @@ bool tells_problem_type(int number);
 bool is_same_problem_type(int number, int other);
 bool keeps_contact(int number);
 bool is_two_parameter_curve(int number, int branch_mode);
+/// Is there a type that follows folds and the like of this one in two parameters?
+bool has_two_parameter_curves(int number);
 /// AUTO's own boundary value problems have no multipliers.
 bool has_multipliers(int number);
 /// One multiplier is critical all along, so that stability is none.

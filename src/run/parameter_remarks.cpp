@@ -36,9 +36,8 @@ std::string idle_parameters(const HybridSystem& system, const RunSettings& setti
   const auto begins_curve = [](int type) {
     return std::any_of(curves.begin(), curves.end(), [type](PointType t) { return type == static_cast<int>(t); });
   };
-  constexpr int in_two_parameters = 2;
   if (problem_type(settings).facts().switches_branch || free_count != 1 ||
-      problem_types_of(settings.problem_type, in_two_parameters).empty() ||
+      !has_two_parameter_curves(settings.problem_type) ||
       std::none_of(start.types.begin(), start.types.end(), begins_curve))
     return "";
   std::string list;
