@@ -19,4 +19,16 @@ EventAt event_at(const HybridSystem& system, int event, int field, const double*
   return at;
 }
 
+Eigen::VectorXd rate_gradient(const HybridSystem& system, const EventAt& at, int event, int field, const double* x,
+                              const double* par) {
+  const int n = system.dimension();
+  Eigen::VectorXd f(n), gradient(n);
+  Eigen::MatrixXd fx(n, n);
+  double rate = 0.0;
+  system.first(FunctionKind::field, field, x, par, {}, f.data(), fx.data(), nullptr);
+  // h_xx f is the second derivative of h in the direction f.
+  system.second(FunctionKind::event, event, x, par, {}, at.f.data(), &rate, gradient.data(), nullptr);
+  return gradient + fx.transpose() * at.gradient;
+}
+
 }  // namespace tchat

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "constants/settings_type.hpp"
+#include "hybrid/event_at.hpp"
 #include "resegment/contact_point.hpp"
 
 namespace tchat {
@@ -44,36 +45,18 @@ StoredSegment stored_segment(const HybridSystem& system, const RunSettings& sett
   return segment;
 }
 
-/// The gradient of h_x f.
-RowVectorXd rate_gradient(const HybridSystem& system, const IndexVector& index, const VectorXd& x,
-                          const VectorXd& par) {
-  const int n = system.dimension();
-  VectorXd f(n), direction = VectorXd::Zero(n + par.size());
-  MatrixXd fx(n, n);
-  RowVectorXd hx(n), gradient(n);
-  double h = 0.0, rate = 0.0, no_parameters = 0.0;
-  system.first(FunctionKind::field, index.field, x.data(), par.data(), {}, f.data(), fx.data(), &no_parameters);
-  system.first(FunctionKind::event, index.event, x.data(), par.data(), {}, &h, hx.data(), &no_parameters);
-  direction.head(n) = f;
-  system.second(FunctionKind::event, index.event, x.data(), par.data(), {}, direction.data(), &rate, gradient.data(),
-                &no_parameters);
-  return gradient + hx * fx;
-}
-
 /// In states divided by their scales. A segment that ends in contact is a return to h_x f = 0, where the orbit that
 /// does not see the contact is cut.
 SegmentLink link_at(const HybridSystem& system, const StoredSegment& segment, const SegmentCheck& check,
                     const VectorXd& par, const VectorXd& scale) {
   const int n = system.dimension();
   const IndexVector& index = segment.index;
-  SegmentLink link{check.flow, VectorXd(n), RowVectorXd(n), MatrixXd(n, n)};
-  VectorXd after(n);
-  double h = 0.0, no_parameters = 0.0;
   const double* const x = check.end.data();
-  system.value(FunctionKind::field, index.field, x, par.data(), link.f.data());
-  system.first(FunctionKind::event, index.event, x, par.data(), {}, &h, link.hx.data(), &no_parameters);
-  if (segment.grazing) link.hx = rate_gradient(system, index, check.end, par);
-  system.first(FunctionKind::jump, index.jump, x, par.data(), {}, after.data(), link.gx.data(), &no_parameters);
+  const EventAt at = event_at(system, index.event, index.field, x, par.data());
+  SegmentLink link{check.flow, at.f, at.gradient.transpose(), MatrixXd(n, n)};
+  if (segment.grazing) link.hx = rate_gradient(system, at, index.event, index.field, x, par.data()).transpose();
+  VectorXd after(n);
+  system.first(FunctionKind::jump, index.jump, x, par.data(), {}, after.data(), link.gx.data(), nullptr);
   const auto divide = scale.cwiseInverse().asDiagonal();
   link.flow = divide * link.flow * scale.asDiagonal();
   link.f = divide * link.f;

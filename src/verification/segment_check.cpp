@@ -6,6 +6,7 @@
 #include <map>
 #include <set>
 
+#include "hybrid/event_at.hpp"
 #include "simulation/cvodes_flow.hpp"
 
 namespace tchat {
@@ -29,19 +30,11 @@ struct EventToSecondOrder {
 
   EventToSecondOrder(const HybridSystem& system, int field, int event, const VectorXd& x, const VectorXd& par,
                      const VectorXd& scale) {
-    const int n = system.dimension();
-    VectorXd f(n), direction = VectorXd::Zero(n + par.size());
-    MatrixXd fx(n, n);
-    RowVectorXd hx(n), rate_x(n);
-    double no_parameters = 0.0;
-    system.first(FunctionKind::field, field, x.data(), par.data(), {}, f.data(), fx.data(), &no_parameters);
-    system.first(FunctionKind::event, event, x.data(), par.data(), {}, &h, hx.data(), &no_parameters);
-    direction.head(n) = f;
-    system.second(FunctionKind::event, event, x.data(), par.data(), {}, direction.data(), &rate, rate_x.data(),
-                  &no_parameters);
-    rate = hx.dot(f);
-    acceleration = rate_x.dot(f) + hx.dot(fx * f);
-    size = hx.cwiseAbs().dot(scale);
+    const EventAt at = event_at(system, event, field, x.data(), par.data());
+    h = at.h;
+    rate = at.rate();
+    acceleration = rate_gradient(system, at, event, field, x.data(), par.data()).dot(at.f);
+    size = at.gradient.cwiseAbs().dot(scale);
     if (!(size > 0.0)) size = 1.0;
   }
 
