@@ -92,6 +92,27 @@ TEST_CASE("members that are missing, private, or no templates") {
              "`field` must be: template <class T> void");
 }
 
+TEST_CASE("conditions of boundary value problems without their number, or numbers without them") {
+  const std::string boundary =
+      "template <class T> void boundary(const tchat::Ends<T>&, const T*, T* b) const { b[0] = 0.0; }";
+  const std::string integrand =
+      "template <class T> void integrand(int, const T* x, const T*, T* q) const { q[0] = x[0]; }";
+  const std::string number = "static constexpr int boundary_conditions = 1;";
+  const auto says = [](const std::string& members, const std::string& sentence) {
+    CAPTURE(members);
+    const std::vector<std::string> lines = told(problem(field(""), members));
+    INFO(lines[0]);
+    CHECK(lines.size() == 2);
+    CHECK_THAT(lines[0], Contains(sentence));
+  };
+  says(boundary, "static constexpr int `boundary_conditions` = ...;");
+  says(number, "`boundary` must be: template <class T> void boundary(const tchat::Ends<T>& orbit");
+  says(number + boundary + integrand, "static constexpr int `integral_conditions` = ...;");
+  says(number + boundary + "static constexpr int integral_conditions = 1;",
+       "`integrand` must be: template <class T> void integrand(int s");
+  says(integrand + "static constexpr int integral_conditions = 1;", "`boundary_conditions` must be at least 1");
+}
+
 TEST_CASE("punctuation and the header") {
   check_told(problem(field("f[1] = x[0]")), 5, "a ; is missing");
   check_told(problem(field("if (x[0] > 0) {")), 10, "a } is missing above: the { of line 3 is not closed");

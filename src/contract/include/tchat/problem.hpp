@@ -161,6 +161,17 @@ class ProblemTable {
   static constexpr bool has_integrand = has_integrand_of_durations<T> || requires(const Problem& p, const T* x, T* q) {
     p.integrand(1, x, x, q);
   };
+  static_assert(
+      !has_boundary<double> || requires { Problem::boundary_conditions; },
+      "tchat: the number of boundary conditions is missing, or is not public: write in the "
+      "struct static constexpr int `boundary_conditions` = ...;");
+  static_assert(
+      !has_integrand<double> || requires { Problem::integral_conditions; },
+      "tchat: the number of integral conditions is missing, or is not public: write in the "
+      "struct static constexpr int `integral_conditions` = ...;");
+  static_assert(integral_count() == 0 || boundary_count() > 0,
+                "tchat: `integral_conditions` are those of boundary value problems: `boundary_conditions` must be at "
+                "least 1");
   static_assert(boundary_count() == 0 || (has_boundary<double> && has_boundary<Dual<1>>),
                 "tchat: `boundary` must be: template <class T> void boundary(const tchat::Ends<T>& orbit, const T* "
                 "par, T* b) const");
