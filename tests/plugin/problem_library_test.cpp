@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "hybrid/parameter_vector.hpp"
 #include "plugin_folder.hpp"
 #include "text/user_error.hpp"
 
@@ -105,6 +106,20 @@ TEST_CASE("libraries that are no usable plugins") {
   }
 }
 
+TEST_CASE("a table made before there were boundary value problems still loads, without conditions") {
+  const PluginFolder folder;
+  // What stands behind its end is not part of it.
+  const std::string spoil =
+      "table.struct_size = TCHAT_PROBLEM_FIRST_SIZE; table.boundary_conditions = 7; table.integral_conditions = 3;";
+  const ProblemLibrary library(resolve_plugin(folder.write("older.cpp", small_plugin(spoil)), build_options));
+  CHECK(library.system().boundary_conditions() == 0);
+  CHECK(library.system().integral_conditions() == 0);
+  const double x[] = {0.5, 0.25}, par[parameter_length] = {3.0};
+  double f[2] = {};
+  library.system().value(FunctionKind::field, 1, x, par, f);
+  CHECK(f[0] == 1.5);
+}
+
 TEST_CASE("tables that cannot be used") {
   const std::vector<BadPlugin> cases = {
       {"table.abi_version = 77;", {"interface version is 77", "another tchat", "delete it"}},
@@ -117,6 +132,8 @@ TEST_CASE("tables that cannot be used") {
       {"table.value = 0;", {"no function `value`"}},
       {"table.derivative_order = 1;", {"no function `first`"}},
       {"table.user_values = 2;", {"no function `user_value`"}},
+      {"table.boundary_conditions = 2;", {"no function `boundary`"}},
+      {"table.integral_conditions = -1;", {"-1 integral conditions", "allowed are 0..1000"}},
   };
   const PluginFolder folder;
   int number = 0;
