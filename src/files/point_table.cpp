@@ -20,8 +20,9 @@ constexpr int column_width = 13;
 /// What the screen shows first: 0 always, then in this order as far as there is room.
 int rank(const PointColumn& column, std::size_t place) {
   using Kind = PointColumn::Kind;
-  const bool is_duration = column.kind == Kind::parameter && column.index >= first_duration;
-  if (column.kind == Kind::period || (column.kind == Kind::parameter && !is_duration)) return 0;
+  const bool is_duration =
+      column.kind == Kind::parameter && column.index >= first_duration && column.index < first_monitor;
+  if (place == 0 || column.kind == Kind::period || (column.kind == Kind::parameter && !is_duration)) return 0;
   if (place == 1) return 1;  // the solution measure
   if (column.kind == Kind::user_function) return 2;
   return is_duration ? 4 : 3;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "bvp/bordered_problem.hpp"
 #include "bvp/critical_pair.hpp"
 #include "bvp/periodic_orbit_system.hpp"
 #include "problem_types/two_parameter_curve.hpp"
@@ -32,13 +33,14 @@ std::complex<double> double_multiplier(const std::vector<std::complex<double>>& 
 std::complex<double> pair_at(const DefiningSystem& defining, const SelectedStart& selected) {
   const Orbit& x = selected.start.orbit;
   const PeriodicOrbitSystem plain(defining.system(), defining.signature(), {defining.free_parameters().front()});
-  CondensedSystem condensed(plain, x.shape, 1);
-  OrbitResidual residual = condensed.make_residual();
-  std::vector<OrbitVector> row{condensed.make_vector()};
-  row.front().globals(0) = 1.0;
+  BorderedProblem problem(plain, x.shape, nullptr);
+  OrbitResidual residual = problem.make_residual();
+  OrbitVector row = problem.condensed().make_vector();
+  row.globals(0) = 1.0;
+  problem.set_reference(x);
   std::complex<double> nearest = 0.0;
-  if (condensed.linearize(x, row, residual) == Linearization::ready) {
-    const auto multipliers = FloquetSolver(x.shape).compute(condensed, x).values;
+  if (problem.linearize(x, row, residual) == Linearization::ready) {
+    const auto multipliers = FloquetSolver(x.shape).compute(problem.condensed(), x).values;
     for (const auto& mu : multipliers)
       if (mu.imag() > 0.0 && std::abs(std::abs(mu) - 1.0) < std::abs(std::abs(nearest) - 1.0)) nearest = mu;
     constexpr double on_circle = 1e-3;
