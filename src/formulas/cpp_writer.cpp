@@ -67,11 +67,14 @@ class CppWriter {
   void name(const Token& token) { cpp_[token.text] = names_.unique(token.text); }
 
   std::string sizes() const {
+    const auto count = [](const char* name, std::size_t number) {
+      return number == 0 ? "" : fmt::format(", {} = {}", name, number);
+    };
     return fmt::format(
         "  static constexpr int dimension = {}, parameters = {};\n"
-        "  static constexpr int fields = {}, events = {}, jumps = {};\n",
-        model_.names.states().size(), model_.parameter_values.size(), model_.fields.size(), model_.events.size(),
-        model_.jumps.size());
+        "  static constexpr int fields = {}{}{};\n",
+        model_.names.states().size(), model_.parameter_values.size(), model_.fields.size(),
+        count("events", model_.events.size()), count("jumps", model_.jumps.size()));
   }
 
   static std::string strings(const char* member, const std::vector<std::string>& texts) {
@@ -199,6 +202,7 @@ class CppWriter {
   }
 
   std::string events() const {
+    if (model_.events.empty()) return "";
     const auto body = [&](const ProblemModel::Function& event, bool) {
       Needs needs;
       need(needs, event.value);
@@ -211,6 +215,7 @@ class CppWriter {
   }
 
   std::string jumps() const {
+    if (model_.jumps.empty()) return "";
     const auto body = [&](const ProblemModel::Jump& jump, bool returns) {
       Needs needs;
       for (const auto& [state, value] : jump.values) need(needs, value);

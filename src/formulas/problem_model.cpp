@@ -101,9 +101,6 @@ class ModelCheck {
                               file().parameters.size(), most_parameters));
     if (file().definitions.size() + file().functions.size() > most_definitions)
       errors_.add(file_as_a_whole, fmt::format("there are more than {} definitions", most_definitions));
-    if (file().events.empty())
-      errors_.add(file_as_a_whole,
-                  "there is no event, so no segment of an orbit could end; write one, as event wall = 1 - x");
   }
 
   /// Every expression of the file.
