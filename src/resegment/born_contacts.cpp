@@ -92,6 +92,12 @@ bool is_contact_born(const CutList& cut, std::size_t k, const LabelledOrbit& sou
         fmt::format("beyond the surface {} curves away from it (h'' = {:.4g}, not > 0), so that the orbit does not "
                     "come back soon; a simulation shows where it goes (tchat simulate NAME --dat O)",
                     field_text(system, field), curvature));
+  const EventAt left = event_at(system, beyond.index.event, field, at.data(), x.par.data());
+  if (left.gradient.dot(met.gradient) > 0.0)
+    throw UserError(
+        fmt::format("{}: the contact cannot end in {}, which falls through zero where it begins and rises where it "
+                    "ends: name an event function of the other sign, -h, that is positive beyond the surface",
+                    source.name, event_name(system, beyond.index.event)));
   return true;
 }
 
