@@ -65,6 +65,9 @@ void add_resegment_command(CLI::App& app, std::function<int()>& chosen) {
   command->add_option("--jump", request->jump,
                       "jump at the contact (default: the identity on a grazing curve, else what the problem says of "
                       "that event, or GRJUMP)");
+  command->add_option("--contact", request->contact,
+                      "--to impacting: the index vector beyond a surface where another field holds, as 2,2,1 (default: "
+                      "what the problem's index jump function says)");
   command
       ->add_option("--repeat", request->repeats,
                    "--to impacting: the orbit N times over, with an impact in the first period only")
@@ -85,7 +88,9 @@ void add_resegment_command(CLI::App& app, std::function<int()>& chosen) {
       "A Poincare section that the contact lies on is replaced. From any label:\n"
       "  --to signature       the same orbit with --signature: where two events come at once they change places, "
       "segments\n"
-      "                       of zero duration vanish or appear\n"
+      "                       of zero duration vanish or appear; where a contact that another field holds in is lost, "
+      "the\n"
+      "                       segments before and after it are joined (--signature may be left out)\n"
       "  --to rotate          the cyclic order of segments: another one first\n"
       "  --to double          the signature twice; from a PD label the run switches to the doubled orbit\n"
       "Example: tchat resegment q.to_grazing GR1 --to impacting -o born -p mems ICP=[1,61,62]\n"

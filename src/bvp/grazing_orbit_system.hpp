@@ -8,9 +8,8 @@
 /// section h_P = h_x f = 0 there, transversal where a* = h_{P,x} f > 0; the event's own surface is not.
 #pragma once
 
-#include <Eigen/Core>
-
 #include "bvp/ring_system.hpp"
+#include "bvp/surface_rate.hpp"
 
 namespace tchat {
 
@@ -29,15 +28,10 @@ class GrazingOrbitSystem final : public RingSystem {
   void section_gradient(int s, const double* x, const double* par, double* gradient) const override;
 
  private:
-  /// h and h_P with their gradients at the end x of the grazing segment, into the scratch below.
-  void evaluate_contact(const double* x, const double* par) const;
+  const IndexVector& contact() const { return signature()[static_cast<std::size_t>(grazing_segment_)]; }
 
   int grazing_segment_;
-  // scratch of one contact, kept because Newton's loop is not to allocate; `direction_` stays zero in the parameters
-  mutable double h_ = 0.0;
-  mutable double slope_ = 0.0;  // h_P
-  mutable Eigen::VectorXd f_, hx_, slope_x_, direction_, hp_, slope_p_;
-  mutable Eigen::MatrixXd fx_, fp_;
+  mutable SurfaceRate rate_;  // at the contact, kept because Newton's loop is not to allocate
 };
 
 }  // namespace tchat

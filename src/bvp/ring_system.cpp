@@ -3,14 +3,34 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "bvp/evaluation_failure.hpp"
+#include "hybrid/contact_segment.hpp"
 
 namespace tchat {
 
+RingSystem::RingSystem(const HybridSystem& system, Signature signature, std::vector<int> free_parameters)
+    : DefiningSystem(system, std::move(signature), std::move(free_parameters)),
+      contact_row_(dimension(), free_count()) {
+  for (int s = 0; s < segments(); ++s) contacts_.push_back(is_contact_segment(system, this->signature(), s));
+}
+
+bool RingSystem::is_divided(int s, const Orbit& x) const {
+  if (!is_contact(s)) return false;
+  int longest = 0;
+  for (int k = 0; k < segments(); ++k) {
+    if (!is_contact(k)) return true;
+    if (std::abs(x.duration(k)) > std::abs(x.duration(longest))) longest = k;
+  }
+  return s != longest;
+}
+
 void RingSystem::coupling_pattern(int s, CouplingPattern& pattern) const {
   const int conditions = end_conditions(s);
+  if (is_contact(s)) pattern.start(0, conditions, s);
   pattern.end(0, conditions, s);
+  if (is_contact(s)) pattern.duration(0, conditions, s);
   pattern.globals(0, conditions);
   pattern.start_components(conditions, (s + 1) % segments());
   pattern.end(conditions, dimension(), s);
@@ -19,11 +39,34 @@ void RingSystem::coupling_pattern(int s, CouplingPattern& pattern) const {
 
 void RingSystem::coupling_values(int s, const Orbit& x, double* values) const {
   const double* par = x.par.data();
-  end_values(s, x.end(s), par, values);
+  const IndexVector& v = signature()[static_cast<std::size_t>(s)];
+  if (is_divided(s, x))
+    values[0] = contact_row_.value(system(), v, x, s, free_parameters());
+  else
+    end_values(s, x.end(s), par, values);
   double* connection = values + end_conditions(s);
-  system().value(FunctionKind::jump, signature()[static_cast<std::size_t>(s)].jump, x.end(s), par, connection);
+  system().value(FunctionKind::jump, v.jump, x.end(s), par, connection);
   const double* next = x.start((s + 1) % segments());
   for (int a = 0; a < dimension(); ++a) connection[a] = next[a] - connection[a];
+}
+
+/// Columns of derivatives, row by row.
+void RingSystem::put(const std::vector<double>& columns, int row_count, int column_count, double factor,
+                     double*& entries) const {
+  for (int a = 0; a < row_count; ++a)
+    for (int b = 0; b < column_count; ++b) *entries++ = factor * columns[static_cast<std::size_t>(b * row_count + a)];
+}
+
+double* RingSystem::end_rows(int s, const Orbit& x, double* values, double* entries) const {
+  if (is_divided(s, x))
+    return contact_row_.derivatives(system(), signature()[static_cast<std::size_t>(s)], x, s, free_parameters(),
+                                    values[0], entries);
+  end_derivatives(s, x.end(s), x.par.data(), values, by_state_.data(), by_parameter_.data());
+  if (is_contact(s)) entries = std::fill_n(entries, dimension(), 0.0);  // by the start
+  put(by_state_, end_conditions(s), dimension(), 1.0, entries);
+  if (is_contact(s)) *entries++ = 0.0;  // by the duration
+  put(by_parameter_, end_conditions(s), free_count(), 1.0, entries);
+  return entries;
 }
 
 double* RingSystem::coupling_derivatives(int s, const Orbit& x, double* values, double* entries) const {
@@ -34,22 +77,15 @@ double* RingSystem::coupling_derivatives(int s, const Orbit& x, double* values, 
   value_.resize(rows);
   by_state_.resize(rows * static_cast<std::size_t>(n));
   by_parameter_.resize(rows * static_cast<std::size_t>(q));
-  const auto put = [&entries](const std::vector<double>& columns, int row_count, int column_count, double factor) {
-    for (int a = 0; a < row_count; ++a)
-      for (int b = 0; b < column_count; ++b) *entries++ = factor * columns[static_cast<std::size_t>(b * row_count + a)];
-  };
-  const double* par = x.par.data();
-  end_derivatives(s, x.end(s), par, values, by_state_.data(), by_parameter_.data());
-  put(by_state_, conditions, n, 1.0);
-  put(by_parameter_, conditions, q, 1.0);
+  entries = end_rows(s, x, values, entries);
 
-  system().first(FunctionKind::jump, signature()[static_cast<std::size_t>(s)].jump, x.end(s), par, free_parameters(),
-                 value_.data(), by_state_.data(), by_parameter_.data());
+  system().first(FunctionKind::jump, signature()[static_cast<std::size_t>(s)].jump, x.end(s), x.par.data(),
+                 free_parameters(), value_.data(), by_state_.data(), by_parameter_.data());
   const double* next = x.start((s + 1) % segments());
   for (int a = 0; a < n; ++a) values[conditions + a] = next[a] - value_[static_cast<std::size_t>(a)];
   entries = std::fill_n(entries, n, 1.0);
-  put(by_state_, n, n, -1.0);
-  put(by_parameter_, n, q, -1.0);
+  put(by_state_, n, n, -1.0, entries);
+  put(by_parameter_, n, q, -1.0, entries);
   return entries;
 }
 

@@ -3,15 +3,22 @@
 ///     x_{s+1}(0) = g_{k_s}(x_s(1), p)     (s cyclic, so the last one is periodicity).
 ///
 /// Coupling rows: R = n m + E, E the sum of the end conditions.
+///
+/// A segment that begins and ends on one surface (hybrid/contact_segment.hpp) has its one end condition divided by its
+/// duration (contact_row.hpp): that it may last no time is then no singularity. Where all segments are such ones, as
+/// when an orbit is cut at its contact alone, the longest keeps h = 0, else nothing says where the surface is. Which
+/// one that is changes no solution and no sign of the determinant: the rows differ by combinations with each other and
+/// the connectivity, and by factors 1 / T_s.
 #pragma once
 
+#include "bvp/contact_row.hpp"
 #include "bvp/defining_system.hpp"
 
 namespace tchat {
 
 class RingSystem : public DefiningSystem {
  public:
-  using DefiningSystem::DefiningSystem;
+  RingSystem(const HybridSystem& system, Signature signature, std::vector<int> free_parameters);
 
   int coupling_rows(int s) const final { return end_conditions(s) + dimension(); }
   void coupling_pattern(int s, CouplingPattern& pattern) const final;
@@ -19,6 +26,9 @@ class RingSystem : public DefiningSystem {
   double* coupling_derivatives(int s, const Orbit& x, double* values, double* entries) const final;
   std::string coupling_name(int s, int r) const final;
   std::string coupling_failure(int s, const Orbit& x) const final;
+
+  /// Is the end condition of segment s divided by its duration at x?
+  bool is_divided(int s, const Orbit& x) const;
 
   /// Number of scalar conditions on x_s(1), s = 0..m-1.
   virtual int end_conditions(int s) const = 0;
@@ -31,6 +41,13 @@ class RingSystem : public DefiningSystem {
   virtual std::string end_condition_name(int s, int r) const = 0;
 
  private:
+  /// May it be divided?
+  bool is_contact(int s) const { return contacts_[static_cast<std::size_t>(s)] && end_conditions(s) == 1; }
+  double* end_rows(int s, const Orbit& x, double* values, double* entries) const;
+  void put(const std::vector<double>& columns, int row_count, int column_count, double factor, double*& entries) const;
+
+  std::vector<bool> contacts_;  // of each segment: does it begin and end on one surface?
+  mutable ContactRow contact_row_;
   mutable std::vector<double> value_, by_state_, by_parameter_;  // of one group, for Newton's loop is not to allocate
 };
 

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "bvp/grazing_orbit_system.hpp"
+#include "resegment/orbit_pieces.hpp"
 #include "run/branch_setup.hpp"
 #include "text/user_error.hpp"
 
@@ -40,6 +41,22 @@ double event_along_tangent(const HybridSystem& system, const DefiningSystem& def
   return by_state.dot(point.tangent.states.col(end)) + by_parameter.dot(point.tangent.globals);
 }
 
+/// dh along the tangent at a place where the surface is touched: as h_x f = 0 there, that of the least value of h.
+double least_along_tangent(const HybridSystem& system, const DefiningSystem& defining, const PathPoint& point,
+                           const Birth::InnerContact& at) {
+  const Orbit& x = point.orbit;
+  const CollocationRule rule(x.shape.collocation);
+  Orbit tangent = x;
+  tangent.states = point.tangent.states;
+  const Eigen::VectorXd state = state_at(x, rule, at.segment, at.tau);
+  Eigen::VectorXd by_state(defining.dimension());
+  Eigen::VectorXd by_parameter(defining.free_count());
+  double h = 0.0;
+  system.first(FunctionKind::event, at.event, state.data(), x.par.data(), defining.free_parameters(), &h,
+               by_state.data(), by_parameter.data());
+  return by_state.dot(state_at(tangent, rule, at.segment, at.tau)) + by_parameter.dot(point.tangent.globals);
+}
+
 /// PAR holds parameters and durations.
 bool has_moved(const Orbit& found, const Orbit& start) {
   const double scale = 1.0 + std::abs(start.period());
@@ -61,6 +78,8 @@ int side_of_birth(const HybridSystem& system, const RunSettings& settings, const
     for (const int s : birth.empty_segments) sides.push_back(sign_of(point.tangent.durations(s)));
     for (const Birth::EndEvent& late : birth.late_events)
       sides.push_back(sign_of(event_along_tangent(system, *setup.defining, point, late)));
+    for (const Birth::InnerContact& lost : birth.lost_contacts)
+      sides.push_back(sign_of(least_along_tangent(system, *setup.defining, point, lost)));
     for (const int side : sides)
       if (side != sides.front()) return 0;
     return sides.empty() ? 0 : sides.front();

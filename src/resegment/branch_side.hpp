@@ -19,7 +19,15 @@ struct Birth {
   };
   std::vector<EndEvent> late_events;  ///< zero just at the end of a segment that another event ends: to come later
 
-  bool is_any() const { return !impacts.empty() || !empty_segments.empty() || !late_events.empty(); }
+  struct InnerContact {
+    int segment, event;
+    double tau;
+  };
+  std::vector<InnerContact> lost_contacts = {};  ///< the surface is touched there: the orbit is to leave it
+
+  bool is_any() const {
+    return !impacts.empty() || !empty_segments.empty() || !late_events.empty() || !lost_contacts.empty();
+  }
 };
 
 /// The sign of DS with which the run of `settings` from `start` leads to where all of these exist. 0 when they

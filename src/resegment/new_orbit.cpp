@@ -7,6 +7,7 @@
 
 #include "constants/settings_type.hpp"
 #include "hybrid/identity_jump.hpp"
+#include "resegment/born_contacts.hpp"
 #include "resegment/contact_point.hpp"
 #include "resegment/empty_segments.hpp"
 #include "resegment/segment_list.hpp"
@@ -112,11 +113,6 @@ void end_in_section(NewSegment& segment, const Orbit& x, const HybridSystem& sys
   segment.index.event = *section;
   segment.grazes = false;
   watch(segment, event);
-}
-
-Eigen::VectorXd end_of(const OrbitPiece& piece, const Orbit& x) {
-  if (piece.constant.size() > 0) return piece.constant;
-  return state_at(x, CollocationRule(x.shape.collocation), piece.segment, piece.to);
 }
 
 std::vector<int> empty_segments(const SegmentList& segments) {
@@ -226,14 +222,31 @@ SegmentList turn_without_contact(const LabelledOrbit& source, const std::vector<
   return segments;
 }
 
-/// Is there a contact that changes the field and not the state, and lasts no time yet?
-bool switches_field(const CutList& cut, const HybridSystem& system) {
-  return std::any_of(cut.contacts.begin(), cut.contacts.end(), [&](std::size_t k) {
-    const NewSegment& contact = cut.segments[k];
-    const NewSegment& next = cut.segments[(k + 1) % cut.segments.size()];
-    return is_identity_jump(system, contact.index.jump) && next.index.field != contact.index.field &&
-           next.piece.empty();
-  });
+/// The jump that a contact brings: the one given, else what the problem says, else the identity where another field is
+/// given for what is beyond the surface, else GRJUMP.
+int impact_jump(const ResegmentRequest& request, const LabelledOrbit& source, const ContactPoint& contact,
+                const HybridSystem& system) {
+  if (request.jump) return checked_jump(system, *request.jump, "--jump");
+  if (request.contact && !system.has_successors()) return identity_jump(system);
+  return checked_jump(system, jump_at_contact(system, source.settings, source.start.orbit, contact),
+                      "GRJUMP, the jump that contact brings,");
+}
+
+/// Segments of no duration after each contact, as they follow from the problem or --contact.
+CutList with_following_segments(const ResegmentRequest& request, CutList cut, const LabelledOrbit& source,
+                                const HybridSystem& system) {
+  const Orbit& orbit = source.start.orbit;
+  for (std::size_t k = 0; k < cut.contacts.size(); ++k) {
+    const NewSegment& impact = cut.segments[cut.contacts[k]];
+    const NewSegment& next = cut.segments[(cut.contacts[k] + 1) % cut.segments.size()];
+    const Signature between = request.contact ? Signature{given_contact(*request.contact, system)}
+                                              : segments_after_impact(system, impact.index, end_of(impact.piece, orbit),
+                                                                      orbit.par, next.index.field);
+    cut = with_empty_segments(std::move(cut), k, static_cast<int>(between.size()));
+    for (std::size_t i = 0; i < between.size(); ++i) cut.segments[cut.contacts[k] + 1 + i].index = between[i];
+    if (!request.jump) require_change(cut, k, source, system);
+  }
+  return cut;
 }
 
 NewOrbit to_impacting(const ResegmentRequest& request, const LabelledOrbit& source, const HybridSystem& system) {
@@ -248,36 +261,24 @@ NewOrbit to_impacting(const ResegmentRequest& request, const LabelledOrbit& sour
   const std::vector<ContactPoint> contacts = simultaneous_contacts(own, orbit, system, old);
   CutList cut{segments_of(old), {}};
   for (auto contact = contacts.rbegin(); contact != contacts.rend(); ++contact) {
-    const int jump = request.jump ? checked_jump(system, *request.jump, "--jump")
-                                  : checked_jump(system, jump_at_contact(system, old, orbit, *contact),
-                                                 "GRJUMP, the jump that contact brings,");
+    const int jump = impact_jump(request, source, *contact, system);
     cut = cut_at(std::move(cut), *contact, jump);
   }
   const SegmentList turn = turn_without_contact(source, contacts, request.repeats == 1 || request.signature, system);
   for (int k = 1; k < request.repeats; ++k) cut.segments = joined(std::move(cut.segments), turn);
-  if (request.signature) {
-    cut = with_signature(std::move(cut), parse_signature(*request.signature), true);
-  } else {
-    for (std::size_t k = 0; k < cut.contacts.size(); ++k) {
-      const NewSegment& impact = cut.segments[cut.contacts[k]];
-      const NewSegment& next = cut.segments[(cut.contacts[k] + 1) % cut.segments.size()];
-      const Signature between =
-          segments_after_impact(system, impact.index, end_of(impact.piece, orbit), orbit.par, next.index.field);
-      cut = with_empty_segments(std::move(cut), k, static_cast<int>(between.size()));
-      for (std::size_t i = 0; i < between.size(); ++i) cut.segments[cut.contacts[k] + 1 + i].index = between[i];
-    }
-  }
+  cut = request.signature ? with_signature(std::move(cut), parse_signature(*request.signature), true)
+                          : with_following_segments(request, std::move(cut), source, system);
   watch_after_events(cut.segments, source, system);
   NewOrbit target{cut.segments, {periodic_orbit.number, periodic_orbit.branch_mode, old.grazing_jump}};
   target.birth = {{cut.contacts.begin(), cut.contacts.end()}, empty_segments(cut.segments), {}};
   if (contacts.size() > 1)
     target.remarks.push_back(fmt::format("The orbit has {} contacts at once and is cut at all of them: {}.",
                                          contacts.size(), list_of(contacts, system)));
-  if (switches_field(cut, system))
-    target.remarks.emplace_back(
-        "The contact changes the field and not the state: the new segment lasts no time here, whatever the parameters "
-        "are, so that a run\nfrom this start finds its matrix singular. Begin beyond the contact, with an orbit of a "
-        "simulation (tchat simulate NAME --dat O),\nand come back to it.");
+  for (std::size_t k = 0; k < cut.contacts.size(); ++k)
+    if (is_contact_born(cut, k, source, system))
+      target.remarks.push_back(fmt::format(
+          "Segment {} lasts no time here; along the branch its duration grows like the square root of the parameter.",
+          cut.contacts[k] + 2 > cut.segments.size() ? 1 : cut.contacts[k] + 2));
   return target;
 }
 
@@ -344,6 +345,10 @@ NewOrbit to_repeated(const LabelledOrbit& source) {
 NewOrbit new_orbit(const ResegmentRequest& request, const LabelledOrbit& source, const HybridSystem& system) {
   if (request.repeats != 1 && request.kind != ResegmentKind::impacting)
     throw UserError("--repeat goes with --to impacting; --to double repeats any orbit twice");
+  if (request.contact && request.kind != ResegmentKind::impacting)
+    throw UserError("--contact goes with --to impacting: it says what follows a contact that is born");
+  if (request.contact && request.signature)
+    throw UserError("--contact and --signature both say what follows the contact; give one of them");
   switch (request.kind) {
     case ResegmentKind::grazing_curve:
       return to_grazing_curve(request, source, system);

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "constants/settings_type.hpp"
+#include "hybrid/identity_jump.hpp"
 #include "hybrid/parameter_vector.hpp"
 #include "setup/problem_setup.hpp"
 #include "text/user_error.hpp"
@@ -51,8 +52,11 @@ std::vector<IndexedValue> new_weights(const RunSettings& old, const SegmentList&
   return weights;
 }
 
-std::vector<int> new_test_functions(const SegmentList& segments, int problem_type) {
-  if (keeps_contact(problem_type)) return {1, 2, 3, 4, 5};
+/// A contact that changes no state has no xi_n.
+std::vector<int> new_test_functions(const SegmentList& segments, const NewProblem& problem,
+                                    const HybridSystem& system) {
+  if (keeps_contact(problem.problem_type))
+    return is_identity_jump(system, problem.grazing_jump) ? std::vector<int>{} : std::vector<int>{1, 2, 3, 4, 5};
   std::vector<int> tests;
   int counted = 0;
   for (const NewSegment& segment : segments)
@@ -82,7 +86,7 @@ RunSettings new_settings(const RunSettings& old, const SegmentList& segments, co
   }
   settings.free_parameters = new_free_parameters(settings.free_parameters, old, segments.size(), problem, system);
   settings.parameter_weights = new_weights(old, segments);
-  settings.test_functions = new_test_functions(segments, problem.problem_type);
+  settings.test_functions = new_test_functions(segments, problem, system);
   std::erase_if(settings.user_values, [&](const UserValue& value) { return is_duration(value.parameter, m); });
   settings.stop_rules.clear();
   return settings;

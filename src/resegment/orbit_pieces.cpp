@@ -67,7 +67,72 @@ void set_durations(const Orbit& x, const std::vector<OrbitPiece>& pieces, Orbit&
     target.duration(static_cast<int>(p)) = (pieces[p].to - pieces[p].from) * x.duration(pieces[p].segment);
 }
 
+/// A list of pieces as one segment in the time of their own.
+class JoinedPieces {
+ public:
+  JoinedPieces(const Orbit& x, const std::vector<OrbitPiece>& pieces) : pieces_(pieces) {
+    for (const OrbitPiece& piece : pieces)
+      ends_.push_back((ends_.empty() ? 0.0 : ends_.back()) + (piece.to - piece.from) * x.duration(piece.segment));
+  }
+
+  double duration() const { return ends_.back(); }
+
+  struct Place {
+    int segment;
+    double tau;
+    double rate;  ///< of the old tau by the new one
+  };
+  Place at(double tau) const {
+    const double time = tau * duration();
+    std::size_t k = 0;
+    while (k + 1 < ends_.size() && time > ends_[k]) ++k;
+    const OrbitPiece& piece = pieces_[k];
+    const double begin = k > 0 ? ends_[k - 1] : 0.0;
+    const double rate = (piece.to - piece.from) / (ends_[k] - begin);
+    return {piece.segment, std::clamp(piece.from + rate * (time - begin), 0.0, 1.0), rate * duration()};
+  }
+
+ private:
+  const std::vector<OrbitPiece>& pieces_;
+  std::vector<double> ends_;  // times
+};
+
 }  // namespace
+
+Orbit joined_orbit(const Orbit& old, const std::vector<std::vector<OrbitPiece>>& groups) {
+  Orbit result;
+  result.shape = old.shape;
+  result.shape.segments = static_cast<int>(groups.size());
+  result.par = old.par;
+  result.par.tail(parameter_length - first_duration + 1).setZero();
+  const int fine = 8 * old.shape.intervals;
+  const std::vector<double> grid = uniform_mesh(fine);
+  Eigen::VectorXd density = Eigen::VectorXd::Constant(fine, 1e-3);
+  std::vector<JoinedPieces> joined;
+  for (const auto& pieces : groups) {
+    joined.emplace_back(old, pieces);
+    result.duration(static_cast<int>(joined.size()) - 1) = joined.back().duration();
+    for (int j = 0; j < fine; ++j) {
+      const JoinedPieces::Place place = joined.back().at(0.5 * (grid[index(j)] + grid[index(j + 1)]));
+      density(j) += density_at(old.mesh, place.tau) * place.rate;
+    }
+  }
+  result.mesh = equal_parts(grid, density, old.shape.intervals);
+  const CollocationRule rule(old.shape.collocation);
+  result.states.resize(result.shape.dimension, result.shape.columns());
+  for (std::size_t s = 0; s < joined.size(); ++s)
+    for (int k = 0; k < result.shape.nodes(); ++k) {
+      const JoinedPieces::Place place = joined[s].at(result.tau(k));
+      result.states.col(static_cast<Eigen::Index>(s) * result.shape.nodes() + k) =
+          state_at(old, rule, place.segment, place.tau);
+    }
+  return result;
+}
+
+Eigen::VectorXd end_of(const OrbitPiece& piece, const Orbit& x) {
+  if (piece.constant.size() > 0) return piece.constant;
+  return state_at(x, CollocationRule(x.shape.collocation), piece.segment, piece.to);
+}
 
 Eigen::VectorXd state_at(const Orbit& x, const CollocationRule& rule, int s, double tau) {
   const auto right = std::upper_bound(x.mesh.begin(), x.mesh.end(), tau) - x.mesh.begin();

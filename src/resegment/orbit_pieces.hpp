@@ -28,6 +28,12 @@ struct OrbitPiece {
 /// The direction is kept when all pieces are whole segments, and dropped otherwise. Pieces must not be empty as a list.
 OrbitStart assemble(const OrbitStart& old, const std::vector<OrbitPiece>& pieces);
 
+/// Each list of pieces, none empty, joined to one segment, on a mesh whose density is the sum of those of all pieces.
+Orbit joined_orbit(const Orbit& old, const std::vector<std::vector<OrbitPiece>>& groups);
+
+/// The state at the end of a piece.
+Eigen::VectorXd end_of(const OrbitPiece& piece, const Orbit& x);
+
 /// The collocation polynomial of segment s (from 0) at tau in [0, 1].
 Eigen::VectorXd state_at(const Orbit& x, const CollocationRule& rule, int s, double tau);
 

@@ -23,6 +23,7 @@
 #include "resegment/branch_side.hpp"
 #include "resegment/data_text.hpp"
 #include "resegment/empty_segments.hpp"
+#include "resegment/lost_contacts.hpp"
 #include "resegment/new_orbit.hpp"
 #include "resegment/new_settings.hpp"
 #include "resegment/segment_list.hpp"
@@ -143,7 +144,8 @@ std::string choose_side(const ResegmentRequest& request, const HybridSystem& sys
   selected.type = target.type;
   selected.kind = target.kind;
   selected.types = {basic_type(target.type)};
-  const std::string born = !target.birth.impacts.empty()         ? "the new event"
+  const std::string born = !target.birth.lost_contacts.empty()   ? "no contact"
+                           : !target.birth.impacts.empty()       ? "the new event"
                            : target.birth.empty_segments.empty() ? "the new signature"
                                                                  : "the new segment";
   const int side = side_of_birth(system, settings, selected, target.birth);
@@ -213,11 +215,35 @@ std::string problem_arguments(const std::string& plugin) {
   return name == plugin ? name : fmt::format("{} -p {}", name, plugin);
 }
 
+/// The orbit that is to have another signature: where contacts are lost, without them, and then `request` has its
+/// signature.
+LabelledOrbit without_contacts(ResegmentRequest& request, LabelledOrbit source, const HybridSystem& system,
+                               std::vector<Birth::InnerContact>& lost) {
+  if (request.kind != ResegmentKind::signature) return source;
+  std::optional<Signature> wanted;
+  if (request.signature) wanted = parse_signature(*request.signature);
+  std::optional<OrbitWithoutContacts> found = without_lost_contacts(source, wanted, system);
+  if (!found) return source;
+  if (!request.signature) request.signature = to_string(found->signature);
+  lost = found->contacts;
+  return std::move(found->orbit);
+}
+
+/// In the segments that these pieces have become.
+void add_lost_contacts(const std::vector<Birth::InnerContact>& lost, NewOrbit& target) {
+  for (const Birth::InnerContact& contact : lost)
+    for (std::size_t s = 0; s < target.segments.size(); ++s)
+      if (const OrbitPiece& piece = target.segments[s].piece; !piece.empty() && piece.segment == contact.segment)
+        target.birth.lost_contacts.push_back({static_cast<int>(s), contact.event, contact.tau});
+}
+
 /// The functions of the orbit and of what is made of it, for a plugin that does not say what it has.
 ProblemSizes sizes_for(const ResegmentRequest& request, const RunSettings& settings) {
   ProblemSizes sizes = problem_sizes(settings);
   if (request.signature)
     for (const IndexVector& index : parse_signature(*request.signature)) sizes.add(index);
+  if (request.contact)
+    for (const IndexVector& index : parse_signature(*request.contact, "--contact")) sizes.add(index);
   if (request.jump && *request.jump >= 1) sizes.add_jump(*request.jump);
   if (request.kind == ResegmentKind::impacting) sizes.add_jump(request.jump.value_or(settings.grazing_jump));
   return sizes;
@@ -225,21 +251,25 @@ ProblemSizes sizes_for(const ResegmentRequest& request, const RunSettings& setti
 
 }  // namespace
 
-std::vector<std::string> resegment(const ResegmentRequest& request, std::ostream& screen) {
+std::vector<std::string> resegment(const ResegmentRequest& asked, std::ostream& screen) {
+  ResegmentRequest request = asked;
   std::vector<std::string> warnings;
   const std::string path = resolve_solution_path(request.solutions);
   const SolutionFile file = read_solution_file(path);
   const std::string constants = constants_of_run(request.constants, path);
   bool named_parameters = false;
-  LabelledOrbit source = read_source(request, path, constants, file, warnings, names_to_come(named_parameters));
+  LabelledOrbit labelled = read_source(request, path, constants, file, warnings, names_to_come(named_parameters));
 
   const std::string plugin = resolve_plugin(request.problem.value_or(run_path(path)));
-  const ProblemLibrary library(plugin, [&] { return sizes_for(request, source.settings); });
+  const ProblemLibrary library(plugin, [&] { return sizes_for(request, labelled.settings); });
   const HybridSystem& system = library.system();
-  if (named_parameters) source.settings = read_constants_file(constants, nullptr, names_of(system));
-  check_settings_against(system, source.settings, {constants});
+  if (named_parameters) labelled.settings = read_constants_file(constants, nullptr, names_of(system));
+  check_settings_against(system, labelled.settings, {constants});
 
+  std::vector<Birth::InnerContact> lost;
+  const LabelledOrbit source = without_contacts(request, labelled, system, lost);
   NewOrbit target = new_orbit(request, source, system);
+  add_lost_contacts(lost, target);
   target.problem.names_parameters = is_overridden(request.overrides, "ICP");
   choose_contact_jump(request, source, system, target);
   OrbitStart start = assemble(source.start, pieces_of(target));
@@ -271,7 +301,7 @@ std::vector<std::string> resegment(const ResegmentRequest& request, std::ostream
     replace_solution_file(request.output, format_solution(make_solution(source, target, start, settings)));
   write_whole_file(constants_out, keyword_text(settings));
 
-  screen << summary(source, settings, start.orbit, system)
+  screen << summary(labelled, settings, start.orbit, system)
          << fmt::format("{} and {} written; next: tchat run {} -c {} {} {} -o {}_branch\n", start_out, constants_out,
                         problem_arguments(request.problem.value_or(run_path(path))), request.output,
                         request.data ? "-d" : "-s", request.output, request.output)

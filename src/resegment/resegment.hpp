@@ -28,6 +28,7 @@ struct ResegmentRequest {
   std::string output;                    ///< -o
   std::optional<std::string> signature;  ///< of the new orbit, "1,1,1;2,2,2"
   std::optional<int> jump;               ///< at the contact
+  std::optional<std::string> contact;    ///< what holds beyond the surface, "2,2,1"
   bool data = false;                     ///< O.dat instead of q.O
   std::vector<std::string> overrides;    ///< KEY=VALUE, for gc.O
 };

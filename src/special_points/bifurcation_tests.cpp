@@ -6,8 +6,10 @@
 #include <cmath>
 #include <limits>
 
+#include "bvp/no_duration.hpp"
 #include "bvp/orbit_accuracy.hpp"
 #include "bvp/transversality.hpp"
+#include "hybrid/contact_segment.hpp"
 #include "hybrid/identity_jump.hpp"
 
 namespace tchat {
@@ -160,7 +162,28 @@ TestValue ImpactVelocityTest::evaluate(const TestedPoint& point) const {
   return TestValue::of(crossing.rate, no_transversality * crossing.sizes);
 }
 
+/// Of a contact segment that lasts no time both ends vanish: the label names the one where it begins.
+SpecialPoint ImpactVelocityTest::lost_contact(const TestedPoint& point, int contact, bool ends_branch) const {
+  const int m = system_.segments();
+  const int before = (contact + m - 1) % m;
+  const HybridSystem& system = system_.system();
+  const IndexVector& entered = system_.signature()[static_cast<std::size_t>(before)];
+  const int field = system_.signature()[static_cast<std::size_t>(contact)].field;
+  return {
+      PointType::user,
+      {UserPointKind::impact_velocity, before + 1, entered.event, 1.0},
+      ends_branch,
+      fmt::format("grazing: segment {} ({}), the contact after event {} ({}) of segment {}, has shrunk to T = 0, {}; "
+                  "orbits without it: tchat resegment --to signature",
+                  contact + 1, system.function_name(FunctionKind::field, field), entered.event,
+                  system.function_name(FunctionKind::event, entered.event), before + 1,
+                  state_text(system, point.orbit.end(before)))};
+}
+
 SpecialPoint ImpactVelocityTest::classify(const TestedPoint& point, bool rising) const {
+  for (const int s : {segment_, (segment_ + 1) % system_.segments()})
+    if (is_contact_segment(system_.system(), system_.signature(), s) && contact_lasts_no_time(point.orbit, s))
+      return lost_contact(point, s, stop_ && rising);
   const int event = system_.signature()[static_cast<std::size_t>(segment_)].event;
   return {PointType::user,
           {UserPointKind::impact_velocity, segment_ + 1, event, 1.0},

@@ -72,7 +72,8 @@ class TorusTest final : public TestFunction {
 };
 
 /// a_s = h_x f at the end of a segment: the impact velocity through zero, birth of an impacting orbit at grazing. At a
-/// mere section of the orbit (identity jump, the same field after it) the section becomes tangent there.
+/// mere section of the orbit (identity jump, the same field after it) the section becomes tangent there; where it is
+/// the beginning or the end of a contact segment, this has shrunk to nothing, in proportion to the arclength.
 class ImpactVelocityTest final : public TestFunction {
  public:
   /// `segment` counts from 0. Beyond a rising zero the orbit violates the model: `stop` ends the branch there.
@@ -82,6 +83,8 @@ class ImpactVelocityTest final : public TestFunction {
   SpecialPoint classify(const TestedPoint& point, bool rising) const override;
 
  private:
+  SpecialPoint lost_contact(const TestedPoint& point, int contact, bool ends_branch) const;
+
   const DefiningSystem& system_;
   int segment_;
   bool stop_;

@@ -5,7 +5,10 @@
 #include <cmath>
 #include <optional>
 
+#include "bvp/no_duration.hpp"
 #include "bvp/transversality.hpp"
+#include "hybrid/contact_segment.hpp"
+#include "hybrid/event_at.hpp"
 #include "linear_algebra/dense_matrix.hpp"
 
 namespace tchat {
@@ -70,6 +73,36 @@ void sort_by_interest(std::vector<std::complex<double>>& values) {
   std::stable_sort(values.begin() + 1, values.end(), [](const auto& a, const auto& b) {
     return std::abs(std::abs(a) - 1.0) < std::abs(std::abs(b) - 1.0);
   });
+}
+
+/// Does contact segment s last no time, in a field that is continuous where it begins? Perturbations then pass it as if
+/// it were not there.
+bool is_passed(const DefiningSystem& defining, const Orbit& x, int s) {
+  constexpr double continuous = 1e-6;
+  const int m = x.shape.segments;
+  if (m < 2 || !contact_lasts_no_time(x, s) || !is_contact_segment(defining.system(), defining.signature(), s))
+    return false;
+  const int before = defining.signature()[static_cast<std::size_t>((s + m - 1) % m)].field;
+  const int own = defining.signature()[static_cast<std::size_t>(s)].field;
+  Vector left(x.shape.dimension);
+  Vector entered(x.shape.dimension);
+  defining.system().value(FunctionKind::field, before, x.start(s), x.par.data(), left.data());
+  defining.system().value(FunctionKind::field, own, x.start(s), x.par.data(), entered.data());
+  return (entered - left).norm() <= continuous * left.norm();
+}
+
+/// The gradient of the section at the end of segment s; before and after a contact that is passed the orbit touches the
+/// event's own, but not h_x f = 0.
+Vector section_at_end(const DefiningSystem& defining, const Orbit& x, int s) {
+  Vector gradient(x.shape.dimension);
+  if (is_passed(defining, x, s) || is_passed(defining, x, (s + 1) % x.shape.segments)) {
+    const IndexVector& v = defining.signature()[static_cast<std::size_t>(s)];
+    const EventAt at = event_at(defining.system(), v.event, v.field, x.end(s), x.par.data());
+    gradient = rate_gradient(defining.system(), at, v.event, v.field, x.end(s), x.par.data());
+    return gradient.dot(at.f) > 0.0 ? Vector(-gradient) : gradient;  // falling, as all sections
+  }
+  defining.section_gradient(s, x.end(s), x.par.data(), gradient.data());
+  return gradient;
 }
 
 }  // namespace
@@ -208,14 +241,13 @@ FloquetMultipliers FloquetSolver::compute(const CondensedSystem& condensed, cons
   for (int s = 0; s < m; ++s) {
     const IndexVector& v = condensed.system().signature()[static_cast<std::size_t>(s)];
     SegmentEnd& end = ends[static_cast<std::size_t>(s)];
-    Vector hx(n);
+    const Vector hx = section_at_end(condensed.system(), x, s);
     Vector f0(n);
     Vector f1(n);
     Vector g(n);
     Matrix gx(n, n);
     system.value(FunctionKind::field, v.field, x.start(s), par, f0.data());
     system.value(FunctionKind::field, v.field, x.end(s), par, f1.data());
-    condensed.system().section_gradient(s, x.end(s), par, hx.data());
     system.first(FunctionKind::jump, v.jump, x.end(s), par, {}, g.data(), gx.data(), nullptr);
     const RowMajorBlock first(condensed.first_block(s), n, n);
     const RowMajorBlock last(condensed.last_block(s), n, n);

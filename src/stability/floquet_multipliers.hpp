@@ -16,6 +16,10 @@
 /// folds or period doublings ends at grazing) the pencil is singular, and a multiplier has a finite limit that cannot
 /// be read off it any more: it is 0/0. Such a one is known by what an error of the orbit's size makes of it.
 ///
+/// A contact segment (hybrid/contact_segment.hpp) that has shrunk to nothing begins and ends at grazing. Where the
+/// field is continuous there, perturbations pass as if it were not there, and h_x f = 0 takes the place of h = 0 as the
+/// section on both sides of it: all multipliers are known.
+///
 /// The functions of the multipliers that vanish where one is +1 or -1 are determinants of the same pencils,
 ///
 ///     det(1 - t E_m^-1 A'_m ... E_1^-1 A'_1) a_1 ... a_m,     t = 1 or -1,     a_s = h_x f / (|h_x| |f|),

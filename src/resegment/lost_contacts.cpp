@@ -1,0 +1,210 @@
+#include "resegment/lost_contacts.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <boost/math/tools/toms748_solve.hpp>
+#include <cmath>
+
+#include "bvp/no_duration.hpp"
+#include "hybrid/contact_segment.hpp"
+#include "hybrid/event_at.hpp"
+#include "hybrid/identity_jump.hpp"
+#include "resegment/simultaneous_contacts.hpp"
+#include "text/user_error.hpp"
+
+namespace tchat {
+
+namespace {
+
+/// Old segments (from 0) that become one, in their order.
+using Group = std::vector<int>;
+
+class LostContacts {
+ public:
+  LostContacts(const LabelledOrbit& source, const HybridSystem& system)
+      : source_(source), system_(system), signature_(source.settings.signature()), x_(source.start.orbit) {
+    for (int s = 0; s < count(); ++s) lost_.push_back(is_lost(s));
+  }
+
+  bool any() const { return std::find(lost_.begin(), lost_.end(), true) != lost_.end(); }
+
+  /// Segments that last some time.
+  std::size_t lasting() const {
+    std::size_t number = 0;
+    for (int s = 0; s < count(); ++s) number += lasts_no_time(x_, s) || is_lost_at(s) ? 0 : 1;
+    return number;
+  }
+
+  OrbitWithoutContacts remove(const std::optional<Signature>& wanted) {
+    find_groups();
+    OrbitWithoutContacts result{source_, {}, {}};
+    SegmentList list;
+    std::vector<std::vector<OrbitPiece>> pieces;
+    for (const Group& group : groups_) {
+      list.push_back(one_of(group));
+      pieces.emplace_back();
+      for (const int s : group) pieces.back().push_back({s, 0.0, 1.0});
+      add_contacts(group, static_cast<int>(list.size()) - 1, result.contacts);
+    }
+    LabelledOrbit& orbit = result.orbit;
+    orbit.start = {joined_orbit(x_, pieces), std::nullopt};
+    if (is_closed_) cut_again(wanted, list, result);
+    const RunSettings& old = source_.settings;
+    orbit.settings = new_settings(old, list, {old.problem_type, old.branch_mode, old.grazing_jump, false}, system_);
+    orbit.solution.type = static_cast<int>(PointType::end);
+    orbit.solution.kind = {};
+    orbit.solution.further.clear();
+    result.signature = orbit.settings.signature();
+    return result;
+  }
+
+ private:
+  int count() const { return x_.shape.segments; }
+  int after(int s) const { return (s + 1) % count(); }
+  int before(int s) const { return (s + count() - 1) % count(); }
+  const IndexVector& index(int s) const { return signature_[static_cast<std::size_t>(s)]; }
+  bool is_lost_at(int s) const { return lost_[static_cast<std::size_t>(s)]; }
+
+  /// A contact between two segments of one field, which end in its jump as if it were none.
+  bool is_lost(int s) const {
+    if (!is_contact_segment(system_, signature_, s) || !contact_lasts_no_time(x_, s)) return false;
+    return index(before(s)).field == index(after(s)).field && !is_lost_before(s);
+  }
+  /// Of two neighbours that both last no time the first is the contact.
+  bool is_lost_before(int s) const { return s > 0 && lost_[static_cast<std::size_t>(s - 1)]; }
+
+  /// Groups end where no lost contact follows; when one follows everywhere, the orbit is closed at the last of them.
+  void find_groups() {
+    int first = -1;
+    for (int s = 0; s < count() && first < 0; ++s)
+      if (!is_lost_at(s) && !is_lost_at(before(s))) first = s;
+    is_closed_ = first < 0;
+    for (int s = 0; is_closed_ && s < count(); ++s)
+      if (is_lost_at(s)) first = after(s);
+    groups_.clear();
+    for (int k = 0; k < count(); ++k) {
+      const int s = (first + k) % count();
+      if (is_lost_at(s)) continue;
+      if (k == 0 || !is_lost_at(before(s))) groups_.emplace_back();
+      groups_.back().push_back(s);
+    }
+  }
+
+  /// Index vector of the last one; what any of them watches, and the surfaces that are touched.
+  NewSegment one_of(const Group& group) const {
+    const SegmentList old = segments_of(source_.settings);
+    const int number = static_cast<int>(&group - groups_.data());
+    NewSegment joined{{number, 0.0, 1.0}, index(group.back()), false, {}};
+    for (const int s : group) {
+      for (const WatchedEvent& watched : old[static_cast<std::size_t>(s)].watched) watch(joined, watched.event);
+      if (s != group.back() || is_closed_) watch(joined, index(s).event);
+    }
+    return joined;
+  }
+
+  void add_contacts(const Group& group, int number, std::vector<Birth::InnerContact>& contacts) const {
+    double total = 0.0;
+    for (const int s : group) total += x_.duration(s);
+    double time = 0.0;
+    for (const int s : group) {
+      time += x_.duration(s);
+      if (s != group.back()) contacts.push_back({number, index(s).event, time / total});
+    }
+  }
+
+  int identity() const {
+    for (int k = 1; k <= system_.count(FunctionKind::jump); ++k)
+      if (is_identity_jump(system_, k)) return k;
+    throw UserError(fmt::format("problem {} has no identity jump, which a cut without contact needs: add one (g = x)",
+                                system_.name()));
+  }
+
+  /// The one segment of a closed orbit ends at a contact that is lost: another section is wanted.
+  void cut_again(const std::optional<Signature>& wanted, SegmentList& list, OrbitWithoutContacts& result) const {
+    NewSegment& only = list.front();
+    if (!wanted) {
+      const auto section = section_at_end(result.orbit.start.orbit, system_, 0, only.index.field, only.index.event);
+      if (!section)
+        throw UserError(fmt::format(
+            "{}: without its contact nothing cuts the orbit, and problem {} has no event function that falls through "
+            "zero at the contact, as a velocity does; name a section with --signature \"{},EVENT,JUMP\"",
+            source_.name, system_.name(), only.index.field));
+      only.index = {only.index.field, *section, identity()};
+      return;
+    }
+    if (wanted->size() != 1)
+      throw UserError(
+          fmt::format("{}: without its contact nothing cuts the orbit: --signature has to be one index vector, whose "
+                      "event is a section, not {}",
+                      source_.name, wanted->size()));
+    only.index = wanted->front();
+    require_function(FunctionKind::event, only.index.event);
+    require_function(FunctionKind::jump, only.index.jump);
+    Orbit& x = result.orbit.start.orbit;
+    const double at = place_of_section(x, only.index);
+    if (at == 1.0) return;
+    x = joined_orbit(x, {{{0, at, 1.0}, {0, 0.0, at}}});
+    for (Birth::InnerContact& contact : result.contacts) {
+      contact.tau -= at;
+      if (contact.tau < 0.0) contact.tau += 1.0;
+    }
+    result.contacts.push_back({0, index(groups_.front().back()).event, 1.0 - at});
+  }
+
+  void require_function(FunctionKind kind, int number) const {
+    if (number >= 1 && number <= system_.count(kind)) return;
+    throw UserError(fmt::format("--signature: problem {} has {} {}, there is no {}", system_.name(),
+                                system_.count(kind), kind == FunctionKind::event ? "event functions" : "jumps",
+                                number));
+  }
+
+  /// The end, where the section is met there; else the first place where it is met from above.
+  double place_of_section(const Orbit& x, const IndexVector& section) const {
+    constexpr double on_it = 1e-6;
+    const CollocationRule rule(x.shape.collocation);
+    const auto value = [&](double tau) {
+      return system_.event(section.event, state_at(x, rule, 0, tau).data(), x.par.data());
+    };
+    const EventAt end = event_at(system_, section.event, section.field, x.end(0), x.par.data());
+    if (std::abs(end.h) <= on_it * end.scale(x.end(0)) && end.rate() < 0.0) return 1.0;
+    for (int k = 1; k < x.shape.nodes(); ++k) {
+      const double from = x.tau(k - 1);
+      const double to = x.tau(k);
+      const double high = value(from);
+      const double low = value(to);
+      if (!(high > 0.0 && low <= 0.0)) continue;
+      if (low == 0.0) return to;
+      std::uintmax_t iterations = 60;
+      const auto bracket = boost::math::tools::toms748_solve(value, from, to, high, low,
+                                                             boost::math::tools::eps_tolerance<double>(48), iterations);
+      return 0.5 * (bracket.first + bracket.second);
+    }
+    throw UserError(
+        fmt::format("--signature: event {} ({}) does not fall through zero along the orbit of {}, so it cannot cut it",
+                    section.event, system_.function_name(FunctionKind::event, section.event), source_.name));
+  }
+
+  const LabelledOrbit& source_;
+  const HybridSystem& system_;
+  Signature signature_;
+  const Orbit& x_;
+  std::vector<bool> lost_;  // of each segment
+  std::vector<Group> groups_;
+  bool is_closed_ = false;
+};
+
+}  // namespace
+
+std::optional<OrbitWithoutContacts> without_lost_contacts(const LabelledOrbit& source,
+                                                          const std::optional<Signature>& wanted,
+                                                          const HybridSystem& system) {
+  LostContacts lost(source, system);
+  if (!lost.any()) return std::nullopt;
+  const std::size_t lasting = lost.lasting();
+  const bool is_cut_again = lasting == 1;
+  if (wanted && wanted->size() >= lasting && !(is_cut_again && wanted->size() == 1)) return std::nullopt;
+  return lost.remove(wanted);
+}
+
+}  // namespace tchat
