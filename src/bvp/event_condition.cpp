@@ -6,11 +6,7 @@ namespace tchat {
 
 EventCondition::EventCondition(const DefiningSystem& system, const OrbitShape& shape, int segment, int event,
                                bool at_end)
-    : system_(system),
-      segment_(segment),
-      event_(event),
-      at_end_(at_end),
-      gradient_(shape, system.free_count()) {
+    : system_(system), segment_(segment), event_(event), at_end_(at_end), gradient_(shape, system.free_count()) {
   gradient_.set_zero();
 }
 

@@ -79,9 +79,9 @@ HybridSystem::HybridSystem(const tchat_problem& table) : table_(&table) {
   require(table.derivative_order < 2 || table.second != nullptr, "its table has no function `second`");
   require(table.user_values == 0 || (table.user_values > 0 && table.user_value != nullptr),
           "its table has no function `user_value`");
-  require(table.sliding_modes >= 0 && table.sliding_modes <= 1000 &&
-              (table.sliding_modes == 0 || table.sliding != nullptr),
-          fmt::format("it has {} sliding modes, but its table does not list them", table.sliding_modes));
+  require(
+      table.sliding_modes >= 0 && table.sliding_modes <= 1000 && (table.sliding_modes == 0 || table.sliding != nullptr),
+      fmt::format("it has {} sliding modes, but its table does not list them", table.sliding_modes));
   for (const tchat_sliding& mode : sliding_modes()) {
     const std::string fault = fault_of(table, mode);
     require(fault.empty(), "a sliding mode of it " + fault);

@@ -58,9 +58,7 @@ class DoubleEventCurve final : public ProblemType {
                      .title = "two events at once, such as the onset of sliding, in two parameters",
                      .free_parameters = 2}) {}
 
-  bool begins_at(int label_type) const override {
-    return std::abs(label_type) == double_event_curve_type;
-  }
+  bool begins_at(int label_type) const override { return std::abs(label_type) == double_event_curve_type; }
   std::unique_ptr<DefiningSystem> make_system(const HybridSystem& system, const RunSettings& settings,
                                               std::vector<int> free_parameters) const override {
     return std::make_unique<PeriodicOrbitSystem>(system, settings.signature(), std::move(free_parameters));

@@ -9,7 +9,7 @@
 #include "bvp/no_duration.hpp"
 #include "bvp/orbit_accuracy.hpp"
 #include "bvp/transversality.hpp"
-#include "hybrid/event_at.hpp"
+#include "hybrid/sliding_modes.hpp"
 #include "special_points/bifurcation_tests.hpp"
 #include "special_points/contact_test.hpp"
 
@@ -22,15 +22,10 @@ constexpr const char* grazing_sliding = "grazing-sliding";
 constexpr const char* switching_sliding = "switching-sliding";
 constexpr const char* adding_sliding = "adding-sliding";
 
-bool is_side(const tchat_sliding& mode, int field) { return field == mode.minus || field == mode.plus; }
-int other_side(const tchat_sliding& mode, int side) { return side == mode.minus ? mode.plus : mode.minus; }
-bool ends_sliding(const tchat_sliding& mode, int event) { return event == mode.to_minus || event == mode.to_plus; }
-
 /// Does a field point at the surface of its mode in state x?
 bool points_at_surface(const HybridSystem& system, const tchat_sliding& mode, int side, const double* x,
                        const double* par) {
-  const EventAt at = event_at(system, mode.surface, side, x, par);
-  return side == mode.minus ? at.rate() > 0.0 : at.rate() < 0.0;
+  return side_rate(system, mode, side, x, par).away < 0.0;
 }
 
 /// Is the surface of an event function that of the mode, at a state that lies on the event's?
@@ -109,7 +104,7 @@ std::string at_meeting(const HybridSystem& system, const tchat_sliding& mode, co
   }
   if (from_side && to_sliding) {
     const int other = other_side(mode, pieces.before);
-    const bool other_vanishes = kind.index == (other == mode.minus ? mode.to_minus : mode.to_plus);
+    const bool other_vanishes = kind.index == ends_with(mode, other);
     return pieces.vanishing.contains(other) || other_vanishes ? switching_sliding : "";
   }
   if (from_sliding && to_sliding) {
@@ -144,7 +139,7 @@ SlidingOnsetTest::SlidingOnsetTest(const DefiningSystem& system, int segment, co
 
 int SlidingOnsetTest::field_after() const { return system_.signature()[static_cast<std::size_t>(next())].field; }
 
-int SlidingOnsetTest::event() const { return field_after() == mode_.minus ? mode_.to_minus : mode_.to_plus; }
+int SlidingOnsetTest::event() const { return ends_with(mode_, field_after()); }
 
 std::string SlidingOnsetTest::name() const {
   return fmt::format("h_x f of field {} at the start of segment {}", field_after(), next() + 1);
@@ -152,10 +147,10 @@ std::string SlidingOnsetTest::name() const {
 
 TestValue SlidingOnsetTest::evaluate(const TestedPoint& point) const {
   const double* x = point.orbit.start(next());
-  const EventAt at = event_at(system_.system(), mode_.surface, field_after(), x, point.orbit.par.data());
-  if (!(std::abs(at.h) <= orbit_accuracy * at.scale(x))) return TestValue::undefined();  // it meets another surface
-  const double onward = field_after() == mode_.plus ? at.rate() : -at.rate();
-  return TestValue::of(onward, no_transversality * at.sizes());
+  const double* par = point.orbit.par.data();
+  if (!is_on_surface(system_.system(), mode_, x, par, orbit_accuracy)) return TestValue::undefined();  // of another one
+  const SideRate rate = side_rate(system_.system(), mode_, field_after(), x, par);
+  return TestValue::of(rate.away, no_transversality * rate.sizes);
 }
 
 SpecialPoint SlidingOnsetTest::classify(const TestedPoint& point, bool rising) const {

@@ -12,11 +12,12 @@
 ///                                             .to_plus = 4};
 ///
 /// has that field as its field 3, and h_x f- and -h_x f+ as its event functions 3 and 4: these have the zeros and signs
-/// of lambda and 1 - lambda, and no pole. `fields` and `events` count them; field() is then called with the other fields
-/// only, event() with the other events. Several modes: static constexpr tchat::Sliding sliding[] = {{...}, {...}};
+/// of lambda and 1 - lambda, and no pole. `fields` and `events` count them; field() is then called with the other
+/// fields only, event() with the other events. Several modes: static constexpr tchat::Sliding sliding[] = {{...},
+/// {...}};
 ///
-/// h_x f is the derivative of event() in the direction f, by one more level of dual numbers, so that all derivatives are
-/// exact as those of field() and event() are. Hand-written derivatives are those of the other functions.
+/// h_x f is the derivative of event() in the direction f, by one more level of dual numbers, so that all derivatives
+/// are exact as those of field() and event() are. Hand-written derivatives are those of the other functions.
 ///
 /// The field keeps h constant: a segment ends at the h at which it starts, to the accuracy of integration, and a
 /// segment that begins where one ended on the surface stays there. An orbit that slides all the time has nothing that
@@ -110,8 +111,8 @@ auto sliding_sides(const Problem& problem, const Sliding& mode, const T* x, cons
     moved[i].derivative = {sides.minus[i], sides.plus[i]};
   }
   for (std::size_t i = 0; i < q; ++i) fixed[i].value = par[i];
-  const Along h = problem.event(mode.surface, static_cast<const Along*>(moved.data()),
-                                static_cast<const Along*>(fixed.data()));
+  const Along h =
+      problem.event(mode.surface, static_cast<const Along*>(moved.data()), static_cast<const Along*>(fixed.data()));
   sides.minus_rate = h.derivative[0];
   sides.plus_rate = h.derivative[1];
   return sides;
@@ -150,8 +151,8 @@ int next_field(const Problem& problem, const Sliding& mode, std::array<int, 3> f
     moved[i].derivative[i] = 1.0;
   }
   for (std::size_t i = 0; i + 1 < fixed.size(); ++i) fixed[i] = Dual<n>(par[i]);
-  const Dual<n> h = problem.event(mode.surface, static_cast<const Dual<n>*>(moved.data()),
-                                  static_cast<const Dual<n>*>(fixed.data()));
+  const Dual<n> h =
+      problem.event(mode.surface, static_cast<const Dual<n>*>(moved.data()), static_cast<const Dual<n>*>(fixed.data()));
   double scale = 1.0;
   for (std::size_t i = 0; i < moved.size(); ++i) scale += std::fabs(h.derivative[i] * x[i]);
   if (h.value > rounding * scale) return mode.plus;
