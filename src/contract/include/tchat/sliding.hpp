@@ -133,32 +133,63 @@ T sliding_end(const Problem& problem, const Sliding& mode, int index, const T* x
   return index == mode.to_minus ? sides.minus_rate : -sides.plus_rate;
 }
 
+/// An event function with its gradient.
+template <class Problem>
+auto event_with_gradient(const Problem& problem, int index, const double* x, const double* par) {
+  constexpr int n = Problem::dimension;
+  using Along = Dual<n>;
+  std::array<Along, static_cast<std::size_t>(n)> moved;
+  std::array<Along, static_cast<std::size_t>(Problem::parameters) + 1> fixed;
+  for (std::size_t i = 0; i < moved.size(); ++i) {
+    moved[i] = Along(x[i]);
+    moved[i].derivative[i] = 1.0;
+  }
+  for (std::size_t i = 0; i + 1 < fixed.size(); ++i) fixed[i] = Along(par[i]);
+  return problem.event(index, static_cast<const Along*>(moved.data()), static_cast<const Along*>(fixed.data()));
+}
+
+/// Is event function `index` that of the surface, or a multiple of it, as -h is?
+template <class Problem>
+bool is_surface_event(const Problem& problem, const Sliding& mode, int index, const double* x, const double* par) {
+  constexpr double rounding = 1e-12;
+  if (index == mode.surface) return true;
+  if (index < 1 || index > Problem::events || index == mode.to_minus || index == mode.to_plus) return false;
+  const auto h = event_with_gradient(problem, mode.surface, x, par);
+  const auto other = event_with_gradient(problem, index, x, par);
+  double along = h.value * other.value, own = h.value * h.value, others = other.value * other.value;
+  for (std::size_t i = 0; i < h.derivative.size(); ++i) {
+    along += h.derivative[i] * other.derivative[i];
+    own += h.derivative[i] * h.derivative[i];
+    others += other.derivative[i] * other.derivative[i];
+  }
+  return along * along >= (1.0 - rounding) * own * others && others > 0.0;
+}
+
 /// For `successors`: the field that is followed from the state x on, after the segment `from` (all zero at a start).
-/// Off the surface that of its side, on it (to rounding) the sliding field where both sides point at it, else the one
-/// that leads away; after an event that ends sliding the field that this event leads to. Throws std::domain_error where
-/// both lead away, as there Filippov's solution is not unique.
+/// After an event that ends sliding it is the field that this event leads to. After an event of the surface (h, or a
+/// multiple of it such as -h) that a side's segment ended in, or on the surface to rounding: the sliding field where
+/// both sides point at it, else the field that leads away. Elsewhere the field of the side. Throws std::domain_error
+/// where both lead away, as there Filippov's solution is not unique.
 template <class Problem>
 int next_field(const Problem& problem, const Sliding& mode, std::array<int, 3> from, const double* x,
                const double* par) {
   constexpr double rounding = 1e-8;
   if (from[0] == mode.field && from[1] == mode.to_minus) return mode.minus;
   if (from[0] == mode.field && from[1] == mode.to_plus) return mode.plus;
-  constexpr int n = Problem::dimension;
-  std::array<Dual<n>, static_cast<std::size_t>(n)> moved;
-  std::array<Dual<n>, static_cast<std::size_t>(Problem::parameters) + 1> fixed;
-  for (std::size_t i = 0; i < moved.size(); ++i) {
-    moved[i] = Dual<n>(x[i]);
-    moved[i].derivative[i] = 1.0;
+  const bool meets =
+      (from[0] == mode.minus || from[0] == mode.plus) && is_surface_event(problem, mode, from[1], x, par);
+  if (!meets) {
+    const auto h = event_with_gradient(problem, mode.surface, x, par);
+    double scale = 1.0;
+    for (std::size_t i = 0; i < h.derivative.size(); ++i) scale += std::fabs(h.derivative[i] * x[i]);
+    if (h.value > rounding * scale) return mode.plus;
+    if (h.value < -rounding * scale) return mode.minus;
   }
-  for (std::size_t i = 0; i + 1 < fixed.size(); ++i) fixed[i] = Dual<n>(par[i]);
-  const Dual<n> h =
-      problem.event(mode.surface, static_cast<const Dual<n>*>(moved.data()), static_cast<const Dual<n>*>(fixed.data()));
-  double scale = 1.0;
-  for (std::size_t i = 0; i < moved.size(); ++i) scale += std::fabs(h.derivative[i] * x[i]);
-  if (h.value > rounding * scale) return mode.plus;
-  if (h.value < -rounding * scale) return mode.minus;
   const auto sides = sliding_sides(problem, mode, x, par);
   const bool up = sides.plus_rate >= 0.0, down = sides.minus_rate <= 0.0;
+  // A side that the orbit comes from points at the surface.
+  if (meets && from[0] == mode.plus) return down ? mode.minus : mode.field;
+  if (meets) return up ? mode.plus : mode.field;
   if (up && down) throw std::domain_error("both fields lead away from the surface");
   return up ? mode.plus : down ? mode.minus : mode.field;
 }
