@@ -147,7 +147,7 @@ TEST_CASE("From the crossing side the onset of stops is the same point, and its 
   check_curve(chain, "onset_again", stops_begin);
 
   // Beyond it the orbit would slide.
-  chain.run("-c r.back -s back -o beyond IRS=GR1 DS=-0.02 NMX=5");
+  chain.run("-c r.back -s back -o beyond IRS=GR1 DS=0.02 NMX=5");
   const auto beyond = chain.read("d.beyond");
   CHECK(beyond.find("Inadmissible: segment 1 begins on a surface that its field 1 (slip forward) leads back to") !=
         std::string::npos);
