@@ -6,12 +6,13 @@
 namespace tchat {
 
 BorderedProblem::BorderedProblem(const DefiningSystem& system, const OrbitShape& shape,
-                                 std::unique_ptr<OrbitCondition> condition)
-    : condensed_(system, shape, 1 + system.integral_conditions() + (condition ? 1 : 0)),
+                                 std::unique_ptr<OrbitCondition> condition, std::vector<HeldMonitor> held)
+    : condensed_(system, shape, 1 + system.integral_conditions() + static_cast<int>(held.size()) + (condition ? 1 : 0)),
       condition_(std::move(condition)),
+      held_(std::move(held)),
       rows_(static_cast<std::size_t>(condensed_.border_rows()), condensed_.make_vector()),
       border_(rows_.size()),
-      unchanged_(static_cast<std::size_t>(system.integral_conditions()), 0.0),
+      unchanged_(static_cast<std::size_t>(system.integral_conditions()) + held_.size(), 0.0),
       response_(condensed_.make_vector()) {
   if (!condition_) return;
   // Any row serves the first time that is not orthogonal to what it stands for.
@@ -34,8 +35,14 @@ void BorderedProblem::recall(const ConditionMemory& memory) {
   stand_in() = memory.stand_in;
 }
 
+OrbitResidual BorderedProblem::make_residual() const {
+  OrbitResidual residual = condensed_.make_residual();
+  residual.integral.resize(unchanged_.size(), 0.0);
+  return residual;
+}
+
 void BorderedProblem::set_reference(const Orbit& x) {
-  if (unchanged_.empty()) return;
+  if (system().integral_conditions() == 0) return;
   reference_.shape = x.shape;
   reference_.mesh = x.mesh;
   reference_.states = x.states;
@@ -45,14 +52,20 @@ void BorderedProblem::set_reference(const Orbit& x) {
 void BorderedProblem::evaluate(const Orbit& x, OrbitResidual& residual) {
   condensed_.evaluate(x, residual);
   system().integral_values(x, reference_, condensed_.rule(), residual.integral.data());
+  double* rest = residual.integral.data() + system().integral_conditions();
+  for (const HeldMonitor& held : held_) *rest++ = held.monitor->value(x, condensed_.rule()) - held.value;
 }
 
 Linearization BorderedProblem::linearize(const Orbit& x, const OrbitVector& row, OrbitResidual& residual) {
   rows_[0].states = row.states;
   rows_[0].durations = row.durations;
   rows_[0].globals = row.globals;
+  const auto integrals = static_cast<std::size_t>(system().integral_conditions());
   system().integral_gradients(x, reference_, condensed_.rule(), residual.integral.data(),
-                              std::span(rows_).subspan(1, residual.integral.size()));
+                              std::span(rows_).subspan(1, integrals));
+  for (std::size_t h = 0; h < held_.size(); ++h)
+    residual.integral[integrals + h] =
+        held_[h].monitor->gradient(x, condensed_.rule(), rows_[1 + integrals + h]) - held_[h].value;
   const Linearization outcome = condensed_.linearize(x, rows_, residual);
   if (outcome != Linearization::ready || !condition_) return outcome;
   if (!condition_->evaluate(condensed_, x)) return Linearization::condition_lost;

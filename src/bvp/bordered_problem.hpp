@@ -1,13 +1,13 @@
 /// The square problem that Newton's method solves for a point of a branch: the defining system, its integral conditions
-/// among the border rows, at most one scalar condition on the whole orbit (a critical multiplier), and one row of the
-/// branch (pseudo-arclength, or a fixed parameter).
+/// and the monitors that are held among the border rows, at most one scalar condition on the whole orbit (a critical
+/// multiplier), and one row of the branch (pseudo-arclength, or a fixed parameter).
 ///
 ///     J dx = -F,    grad I . dx = -I,    grad G . dx = -G,    row . dx = target       (n m N c + ... + m + q
 ///     equations)
 ///
-/// The gradient of an integral I is known before J is factored. That of G is known only after J has been condensed. So
-/// J is condensed with a stand-in for it, the gradient of the last linearisation, and the true gradient enters by a
-/// rank-one correction: one more solution of the same factors.
+/// The gradient of an integral I, or of a monitor, is known before J is factored. That of G is known only after J has
+/// been condensed. So J is condensed with a stand-in for it, the gradient of the last linearisation, and the true
+/// gradient enters by a rank-one correction: one more solution of the same factors.
 ///
 /// A condition is found by iteration from where it was last: which multiplier it means, and the border of its own
 /// problem. A trial of Newton's method that fails leaves these anywhere. They belong to the point of the branch that
@@ -21,6 +21,7 @@
 #include <vector>
 
 #include "bvp/condensed_system.hpp"
+#include "bvp/monitor.hpp"
 
 namespace tchat {
 
@@ -48,16 +49,28 @@ struct ConditionMemory {
   OrbitVector stand_in;
 };
 
+/// A monitor that keeps this value.
+struct HeldMonitor {
+  std::shared_ptr<const Monitor> monitor;
+  double value = 0.0;
+  std::string name;  ///< for messages
+};
+
 class BorderedProblem {
  public:
-  /// `condition` may be null. The defining system must outlive this object; with R coupling rows and I integral
-  /// conditions n m + m + q = R + I + 1, or R + I + 2 with a condition.
-  BorderedProblem(const DefiningSystem& system, const OrbitShape& shape, std::unique_ptr<OrbitCondition> condition);
+  /// `condition` may be null. The defining system must outlive this object; with R coupling rows, I integral conditions
+  /// and H monitors held n m + m + q = R + I + H + 1, or one more with a condition.
+  BorderedProblem(const DefiningSystem& system, const OrbitShape& shape, std::unique_ptr<OrbitCondition> condition,
+                  std::vector<HeldMonitor> held = {});
 
   CondensedSystem& condensed() { return condensed_; }
   const CondensedSystem& condensed() const { return condensed_; }
   const DefiningSystem& system() const { return condensed_.system(); }
+  const std::vector<HeldMonitor>& held() const { return held_; }
   OrbitCondition* condition() { return condition_.get(); }
+
+  /// Zero, with an entry for each integral condition and each held monitor in `integral`.
+  OrbitResidual make_residual() const;
 
   /// Old factors may be used for another point: not with a condition, whose value comes with the factors.
   bool allows_chord() const { return condition_ == nullptr; }
@@ -86,9 +99,10 @@ class BorderedProblem {
 
   CondensedSystem condensed_;
   std::unique_ptr<OrbitCondition> condition_;
-  std::vector<OrbitVector> rows_;  // the branch's row, the integrals' gradients and the stand-in for that of G
+  std::vector<HeldMonitor> held_;
+  std::vector<OrbitVector> rows_;  // the branch's row, gradients of integrals and held monitors, stand-in for that of G
   std::vector<double> border_;     // right-hand side of these
-  std::vector<double> unchanged_;  // integrals that keep their values
+  std::vector<double> unchanged_;  // integrals and monitors that keep their values
   Orbit reference_;                // only where there are integrals
   OrbitVector response_;           // solution for a unit in the stand-in's row
   double response_slope_ = 1.0;    // grad G . response

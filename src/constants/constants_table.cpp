@@ -50,8 +50,9 @@ std::vector<Constant> make_table() {
       {"ILP", "detect folds; negative: and stop there", 1, &R::detect_folds, range(-1, 1), "", "1", ""},
       {"NICP", "number of free parameters listed", 2, ListCount{"ICP"}, range(1, 256), "", "3", ""},
       {"ICP", "free parameters, durations included", 2, &R::free_parameters, range(1, 256),
-       "PAR indices: 1 to 60 of the problem (or its names), 61, 62, ... the durations of the segments", "[1, 61, 62]",
-       ""},
+       "PAR indices: 1 to 60 of the problem (or its names), 61, 62, ... the durations of the segments; names of "
+       "monitors",
+       "[1, 61, 62]", ""},
       {"NTST", "number of mesh intervals of each segment", 3, &R::mesh_intervals, range(1, 5000), "", "50", ""},
       {"NCOL", "number of collocation points of each mesh interval", 3, &R::collocation_points, range(2, 7), "", "4",
        ""},
@@ -121,9 +122,9 @@ std::vector<Constant> make_table() {
        "0 (ends in the identity jump), 1 (ends in another jump) or 2 (ends in grazing contact)", "[1, 0]", ""},
       {"GCFIND", "vector field of each segment", 15, field, at_least(1), "", "[1, 2]", ""},
       {"GCHIND", "terminal event function of each segment", 16, event, at_least(0),
-       "an integer >= 1; none, or 0, with IPS = 4", "[1, 2]", ""},
-      {"GCGIND", "jump function of each segment", 17, jump, at_least(0), "an integer >= 1; none, or 0, with IPS = 4",
-       "[1, 2]", ""},
+       "an integer >= 1; 0 on the one segment of an orbit without a section; none, or 0, with IPS = 4", "[1, 2]", ""},
+      {"GCGIND", "jump function of each segment", 17, jump, at_least(0),
+       "an integer >= 1, or 0 for the identity; none, or 0, with IPS = 4", "[1, 2]", ""},
       {"GCHNO", "number of event functions monitored on each segment", 18, MonitorCounts{}, range(0, 1000), "",
        "[1, 2]", ""},
       {"GCHGRZIND", "event functions monitored on each segment", 18, MonitorLists{}, at_least(1), "", "[[1], [2, 1]]",
@@ -134,6 +135,9 @@ std::vector<Constant> make_table() {
        ""},
       {"STOP", "end the branch at the n-th point of a type", extension_record, &R::stop_rules, any(), type_with_count,
        "[PD1, GR2]", ""},
+      {"HOLD", "quantities that keep their values, one more parameter of ICP free for each", extension_record, &R::held,
+       any(), "names of monitors or durations with a value, or a list of names for the values of the start",
+       "{period: 36}", ""},
       {"ICPMOVE", "let ICP(1) move where no orbit is found at its first value", extension_record, &R::start_may_move,
        one_of({0, 1}), "0 (refuse such a start) or 1 (take an orbit near it, with another value)", "1", ""},
       {"PAR", "values of parameters", command_line_record, &R::parameter_values, any(),
@@ -204,6 +208,7 @@ bool has_real_values(const Constant& constant) {
   const ConstantMember& m = constant.member;
   return std::holds_alternative<double R::*>(m) || std::holds_alternative<std::vector<IndexedValue> R::*>(m) ||
          std::holds_alternative<std::vector<UserValue> R::*>(m) ||
+         std::holds_alternative<std::vector<HeldValue> R::*>(m) ||
          std::holds_alternative<std::vector<R::ParameterValue> R::*>(m);
 }
 

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+
 namespace tchat {
 
 namespace {
@@ -24,15 +26,25 @@ std::vector<int> segment_values(const RunSettings& settings, const SegmentIntege
 
 std::string list_text(const std::vector<std::string>& items) { return fmt::format("[{}]", fmt::join(items, ", ")); }
 
-int written_index(const UserValue& value) { return value.stop ? -value.parameter : value.parameter; }
+/// The number, or the name of a monitor, in quotes where it has blanks or commas.
+std::string index_text(const RunSettings& settings, int k) {
+  if (!is_monitor(settings, k)) return std::to_string(k);
+  const std::string& name = settings.monitors[static_cast<std::size_t>(k - first_monitor)];
+  return name.find_first_of(" \t:#=[]{}") == std::string::npos ? name : "\"" + name + "\"";
+}
+
+std::string written_index(const RunSettings& settings, const UserValue& value) {
+  return (value.stop ? "-" : "") + index_text(settings, value.parameter);
+}
 
 /// "{1: [2.5, 3], -2: 4}": values with the same index that follow each other share an entry.
-std::string user_values_text(const std::vector<UserValue>& values) {
+std::string user_values_text(const RunSettings& settings) {
+  const std::vector<UserValue>& values = settings.user_values;
   std::vector<std::string> entries;
   for (std::size_t i = 0; i < values.size();) {
     std::vector<std::string> same;
-    const int index = written_index(values[i]);
-    for (; i < values.size() && written_index(values[i]) == index; ++i)
+    const std::string index = written_index(settings, values[i]);
+    for (; i < values.size() && written_index(settings, values[i]) == index; ++i)
       same.push_back(fmt::format("{}", values[i].value));
     entries.push_back(fmt::format("{}: {}", index, same.size() == 1 ? same[0] : list_text(same)));
   }
@@ -48,14 +60,26 @@ struct KeywordValue {
   std::string operator()(bool RunSettings::*m) const { return settings.*m ? "1" : "0"; }
   std::string operator()(StartLabel RunSettings::*m) const { return label_text(settings.*m); }
   std::string operator()(std::vector<int> RunSettings::*m) const {
-    return fmt::format("[{}]", fmt::join(settings.*m, ", "));
+    if (m != &RunSettings::free_parameters) return fmt::format("[{}]", fmt::join(settings.*m, ", "));
+    std::vector<std::string> items;
+    for (const int k : settings.*m) items.push_back(index_text(settings, k));
+    return list_text(items);
   }
   std::string operator()(std::vector<IndexedValue> RunSettings::*m) const {
     std::vector<std::string> entries;
-    for (const IndexedValue& pair : settings.*m) entries.push_back(fmt::format("{}: {}", pair.index, pair.value));
+    for (const IndexedValue& pair : settings.*m)
+      entries.push_back(fmt::format("{}: {}", index_text(settings, pair.index), pair.value));
     return fmt::format("{{{}}}", fmt::join(entries, ", "));
   }
-  std::string operator()(std::vector<UserValue> RunSettings::*m) const { return user_values_text(settings.*m); }
+  std::string operator()(std::vector<UserValue> RunSettings::*) const { return user_values_text(settings); }
+  std::string operator()(std::vector<HeldValue> RunSettings::*m) const {
+    const auto valued = [](const HeldValue& held) { return held.value.has_value(); };
+    const bool pairs = !(settings.*m).empty() && std::all_of((settings.*m).begin(), (settings.*m).end(), valued);
+    std::vector<std::string> items;
+    for (const HeldValue& held : settings.*m)
+      items.push_back(index_text(settings, held.parameter) + (pairs ? fmt::format(": {}", *held.value) : ""));
+    return pairs ? fmt::format("{{{}}}", fmt::join(items, ", ")) : list_text(items);
+  }
   std::string operator()(std::vector<StopRule> RunSettings::*m) const {
     std::vector<std::string> items;
     for (const StopRule& rule : settings.*m) items.push_back(fmt::format("{}{}", rule.type, rule.count));
@@ -106,7 +130,9 @@ class PositionalWriter {
   /// What a constant adds to its record's first line.
   void append_values(const Constant& constant, std::vector<std::string>& values) const {
     if (const auto* list = std::get_if<std::vector<int> RunSettings::*>(&constant.member)) {
-      for (const int value : settings_.*(*list)) values.push_back(std::to_string(value));
+      const bool indices = *list == &RunSettings::free_parameters;
+      for (const int value : settings_.*(*list))
+        values.push_back(indices ? index_text(settings_, value) : std::to_string(value));
     } else if (const auto* member = std::get_if<SegmentInteger>(&constant.member)) {
       for (const int value : segment_values(settings_, *member)) values.push_back(std::to_string(value));
     } else if (const auto* count = std::get_if<ListCount>(&constant.member)) {
@@ -131,10 +157,10 @@ class PositionalWriter {
     std::vector<std::string> lines;
     if (const auto* weights = std::get_if<std::vector<IndexedValue> RunSettings::*>(&constant.member))
       for (const IndexedValue& pair : settings_.*(*weights))
-        lines.push_back(fmt::format("{} {}", pair.index, pair.value));
+        lines.push_back(fmt::format("{} {}", index_text(settings_, pair.index), pair.value));
     if (const auto* values = std::get_if<std::vector<UserValue> RunSettings::*>(&constant.member))
       for (const UserValue& value : settings_.*(*values))
-        lines.push_back(fmt::format("{} {}", written_index(value), value.value));
+        lines.push_back(fmt::format("{} {}", written_index(settings_, value), value.value));
     return lines;
   }
 

@@ -148,11 +148,22 @@ class AssignmentParser {
       position_ = end + 1;
       return token;
     }
-    while (!at_end() && !is_blank(peek()) && std::string_view("\n,[]{}:#='\"").find(peek()) == std::string_view::npos)
-      ++position_;
+    skip_word();
     if (position_ == begin) fail(rest_of_line(), "a value");
     token.text = std::string(text_.substr(begin, position_ - begin));
     return token;
+  }
+
+  /// Up to what separates words; blanks and commas inside of parentheses do not: max(x, 2) is one.
+  void skip_word() {
+    int depth = 0;
+    for (; !at_end() && peek() != '\n'; ++position_) {
+      const char c = peek();
+      const bool separates = is_blank(c) || std::string_view(",[]{}:#='\"").find(c) != std::string_view::npos;
+      const bool inside = depth > 0 && (is_blank(c) || c == ',');
+      if (separates && !inside) return;
+      depth += c == '(' ? 1 : c == ')' ? -1 : 0;
+    }
   }
 
   /// The separator after an item of a list or a pair: blanks, newlines and at most one comma.

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "hybrid/index_vector.hpp"
+#include "hybrid/parameter_vector.hpp"
 #include "problem_type/problem_type.hpp"
 
 namespace tchat {
@@ -30,6 +31,12 @@ struct UserValue {
   int parameter = 0;
   double value = 0.0;
   bool stop = false;
+};
+
+/// A monitor or duration that keeps a value along the branch (HOLD); without one that of the start.
+struct HeldValue {
+  int parameter = 0;
+  std::optional<double> value = {};
 };
 
 /// End the branch at the `count`-th point of a type (STOP = [PD1, GR2]).
@@ -89,6 +96,9 @@ struct RunSettings {
   int grazing_jump = 1;              ///< GRJUMP
   bool start_may_move = false;       ///< ICPMOVE
   std::vector<StopRule> stop_rules;  ///< STOP
+  std::vector<HeldValue> held;       ///< HOLD
+  /// Names of monitors in ICP, UZR, THL and HOLD: PAR(first_monitor), ... stand for them in this order.
+  std::vector<std::string> monitors;
 
   /// PAR(k) = v given on the command line, by index or by the problem's own name.
   struct ParameterValue {
@@ -103,5 +113,10 @@ struct RunSettings {
     return s;
   }
 };
+
+/// Does PAR(k) stand for a monitor of this run?
+inline bool is_monitor(const RunSettings& settings, int k) {
+  return k >= first_monitor && k < first_monitor + static_cast<int>(settings.monitors.size());
+}
 
 }  // namespace tchat

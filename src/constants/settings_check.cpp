@@ -32,13 +32,16 @@ class SettingsCheck {
                         "each parameter once");
     }
     if (!has_ring(settings_.problem_type)) return conditions();
-    const int needed = free_parameter_count(settings_.problem_type, settings_.branch_mode);
-    const auto of_problem =
-        std::count_if(list.begin(), list.end(), [](int k) { return k < first_duration || k > last_index; });
+    const auto held = static_cast<int>(settings_.held.size());
+    const int needed = free_parameter_count(settings_.problem_type, settings_.branch_mode) + held;
+    const auto of_problem = std::count_if(list.begin(), list.end(), [this](int k) {
+      return k < first_duration || (k > last_index && !is_monitor(settings_, k));
+    });
     if (of_problem < needed)
       refuse_constant("ICP", "ICP", fmt::format("{} parameters that are not durations", of_problem),
-                      fmt::format("at least {} with IPS = {}, ISW = {}; durations are free in any case", needed,
-                                  settings_.problem_type, settings_.branch_mode));
+                      fmt::format("at least {} with IPS = {}, ISW = {}{}; durations are free in any case", needed,
+                                  settings_.problem_type, settings_.branch_mode,
+                                  held == 0 ? "" : fmt::format(", HOLD of {}", held)));
   }
 
   /// The count of unknowns and conditions of a boundary value problem.
@@ -142,6 +145,14 @@ class SettingsCheck {
                       "one segment of type 2 with IPS = 150");
   }
 
+  void held_values() const {
+    for (const HeldValue& held : settings_.held)
+      if (!is_duration(held.parameter, segments_of_run()) && held.parameter <= last_index)
+        refuse_constant("HOLD", "HOLD", in_quotes(std::to_string(held.parameter)),
+                        "names of monitors, or durations (T1, T2, ...); a parameter of the problem keeps its value "
+                        "unless ICP frees it");
+  }
+
   void parameter_values() const {
     for (const RunSettings::ParameterValue& value : settings_.parameter_values)
       if (const auto index = parse_integer(value.name))
@@ -205,6 +216,7 @@ void check_settings(const RunSettings& settings, const PlaceOf& place) {
   check.steps();
   check.weights();
   check.user_values();
+  check.held_values();
   check.test_functions();
   check.grazing_segment();
   check.parameter_values();

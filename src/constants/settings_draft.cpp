@@ -52,7 +52,8 @@ const std::vector<RawPair>& pairs_of(const Constant& constant, const RawValue& v
 }
 
 bool has_parameter_indices(const Constant& constant) {
-  return constant.keyword == "ICP" || constant.keyword == "THL" || constant.keyword == "UZR";
+  return constant.keyword == "ICP" || constant.keyword == "THL" || constant.keyword == "UZR" ||
+         constant.keyword == "HOLD";
 }
 
 int pair_index(const Constant& constant, const Token& key) {
@@ -126,6 +127,23 @@ struct SettingsDraft::Assigner {
     }
     settings().*member = std::move(result);
   }
+  void operator()(std::vector<HeldValue> RunSettings::*member) const {
+    std::vector<HeldValue> result;
+    const auto add = [&](const Token& key, std::optional<double> held) {
+      const Token token = draft.index_token(constant, name(), key);
+      const int index = integer_value(constant, name(), RawValue::scalar(token), constant.index_limits);
+      const auto same = [index](const HeldValue& other) { return other.parameter == index; };
+      if (std::any_of(result.begin(), result.end(), same))
+        refuse(constant, name(), key.place, in_quotes(key.text) + " twice", "each name once");
+      result.push_back({index, held});
+    };
+    if (value.shape == Shape::pairs) {
+      for (const auto& [key, number] : value.pairs) add(key, real_value(constant, name(), number, constant.limits));
+    } else {
+      for (const RawValue& item : items_of(constant, value)) add(item.token, std::nullopt);
+    }
+    settings().*member = std::move(result);
+  }
   void operator()(std::vector<RunSettings::ParameterValue> RunSettings::*) const {
     for (const auto& [key, number] : pairs_of(constant, value)) draft.assign_parameter(constant, key, number);
   }
@@ -157,7 +175,7 @@ SettingsDraft::SettingsDraft(RunSettings base, std::string source, ParameterName
 
 /// The number in the place of a parameter's name, which may have the sign of an index; everything else as it is, but
 /// for indices in the place of stand-ins. `shown` is the value in messages, "ICP(2)".
-Token SettingsDraft::index_token(const Constant& constant, const std::string& shown, const Token& token) const {
+Token SettingsDraft::index_token(const Constant& constant, const std::string& shown, const Token& token) {
   const bool negative = token.text.starts_with('-');
   const std::string name = token.text.substr(negative ? 1 : 0);
   if (!has_parameter_indices(constant)) return token;
@@ -174,7 +192,20 @@ Token SettingsDraft::index_token(const Constant& constant, const std::string& sh
     refuse_token(
         "indices here; names are understood by tchat run, simulate, resegment, verify and dat, which know the problem");
   const std::string where = fmt::format("{}: {} ({})", token.place.text(), constant.keyword, constant.meaning);
-  return {fmt::format("{}{}", negative ? "-" : "", names_(name, where)), token.place};
+  int index = names_(name, where);
+  if (index == names_a_monitor) index = monitor_index(name, where);
+  return {fmt::format("{}{}", negative ? "-" : "", index), token.place};
+}
+
+/// Of a monitor that is named for the first time the next one.
+int SettingsDraft::monitor_index(const std::string& name, const std::string& where) {
+  std::vector<std::string>& list = settings_.monitors;
+  const auto known = std::find(list.begin(), list.end(), name);
+  const auto index = static_cast<int>(known - list.begin());
+  if (known != list.end()) return first_monitor + index;
+  if (index == max_monitors) throw UserError(fmt::format("{}: more than {} monitors are named", where, max_monitors));
+  list.push_back(name);
+  return first_monitor + index;
 }
 
 void SettingsDraft::assign(const Constant& constant, const RawValue& value) {

@@ -16,6 +16,9 @@ namespace tchat {
 /// Accepted without effect, or probably not what was meant: complete sentences for the user.
 using Warnings = std::vector<std::string>;
 
+/// What ParameterNames gives for the name of a monitor, to which the settings give an index.
+inline constexpr int names_a_monitor = 0;
+
 /// PAR index of a parameter's name, where names are known. `where` begins the message when there is no such name: the
 /// place and the constant.
 using ParameterNames = std::function<int(const std::string& name, const std::string& where)>;
@@ -61,7 +64,8 @@ class SettingsDraft {
   void check_count(const Constant& constant, std::size_t actual) const;
   void check_counts() const;
 
-  Token index_token(const Constant& constant, const std::string& shown, const Token& token) const;
+  Token index_token(const Constant& constant, const std::string& shown, const Token& token);
+  int monitor_index(const std::string& name, const std::string& where);
 
   RunSettings settings_;
   std::string source_;

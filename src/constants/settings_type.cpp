@@ -19,6 +19,10 @@ const ProblemType& problem_type(const RunSettings& settings) {
   return problem_type(settings.problem_type, settings.branch_mode);
 }
 
+int ProblemType::free_entries(const RunSettings& settings) const {
+  return facts_.free_parameters + static_cast<int>(settings.held.size());
+}
+
 int free_parameter_count(int number, int branch_mode) {
   const ProblemType* type = nearest_problem_type(number, branch_mode);
   return type != nullptr ? type->facts().free_parameters : 1;
@@ -30,13 +34,15 @@ std::vector<int> free_entries(const RunSettings& settings) {
   const auto needed = static_cast<std::size_t>(type.free_entries(settings));
   std::vector<int> result;
   for (const int k : settings.free_parameters)
-    if (result.size() < needed && !(ring && is_duration(k, segment_count(settings)))) result.push_back(k);
+    if (result.size() < needed && !is_monitor(settings, k) && !(ring && is_duration(k, segment_count(settings))))
+      result.push_back(k);
   if (result.size() == needed) return result;
   throw UserError(
-      ring ? fmt::format(
-                 "ICP lists {} problem parameters, IPS = {} with ISW = {} needs {}: durations are free in any case, so "
-                 "name the parameters to vary, for example ICP = [1, 61]",
-                 result.size(), settings.problem_type, settings.branch_mode, needed)
+      ring ? fmt::format("ICP lists {} problem parameters, IPS = {} with ISW = {}{} needs {}: durations are free in "
+                         "any case, so "
+                         "name the parameters to vary, for example ICP = [1, 61]",
+                         result.size(), settings.problem_type, settings.branch_mode,
+                         settings.held.empty() ? "" : fmt::format(" and {} held", settings.held.size()), needed)
            : fmt::format("ICP lists {} free parameters, the conditions leave {} free (NBC + NINT - n m + 1, with n = "
                          "{} states on m = {} segments): durations are fixed unless they are listed, so name what is "
                          "to vary",
@@ -80,6 +86,16 @@ int marked_segment(const RunSettings& settings) {
 
 std::optional<int> contact_segment(const RunSettings& settings) {
   return keeps_contact(settings.problem_type) ? std::optional(marked_segment(settings)) : std::nullopt;
+}
+
+bool leave_out_monitors(RunSettings& settings) {
+  if (settings.monitors.empty() && settings.held.empty()) return false;
+  std::erase_if(settings.free_parameters, [](int k) { return k >= first_monitor; });
+  std::erase_if(settings.user_values, [](const UserValue& value) { return value.parameter >= first_monitor; });
+  std::erase_if(settings.parameter_weights, [](const IndexedValue& weight) { return weight.index >= first_monitor; });
+  settings.held.clear();
+  settings.monitors.clear();
+  return true;
 }
 
 }  // namespace tchat

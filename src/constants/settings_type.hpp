@@ -35,4 +35,7 @@ int marked_segment(const RunSettings& settings);
 /// The segment that ends in the contact which the type keeps; nothing for types that keep none.
 std::optional<int> contact_segment(const RunSettings& settings);
 
+/// Takes monitors out of ICP, UZR, THL and HOLD, as where segments get other numbers. True when there were some.
+bool leave_out_monitors(RunSettings& settings);
+
 }  // namespace tchat

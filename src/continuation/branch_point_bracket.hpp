@@ -23,7 +23,7 @@ namespace tchat {
 class BranchPointBracket {
  public:
   /// Evaluates a converged point, whose linearisation the follower holds.
-  using Evaluate = std::function<PointData(const PathPoint&)>;
+  using Evaluate = std::function<PointData(PathPoint&)>;
   /// A point of the branch at an arclength from the start of the step.
   struct Side {
     double at = 0.0;  ///< without the sign of the step

@@ -38,11 +38,9 @@ LocationSettings location_settings(const ContinuationSettings& settings) {
 
 /// After all others: what else vanishes on a bound gives the point its type.
 std::vector<std::unique_ptr<TestFunction>> with_bounds(std::vector<std::unique_ptr<TestFunction>> tests,
-                                                       const ContinuationSettings& settings,
-                                                       const HybridSystem& system) {
+                                                       const ContinuationSettings& settings) {
   if (settings.clip)
-    for (auto& test : bound_tests(settings, system.parameter_name(settings.principal)))
-      tests.push_back(std::move(test));
+    for (auto& test : bound_tests(settings, settings.principal_name)) tests.push_back(std::move(test));
   return tests;
 }
 
@@ -59,8 +57,7 @@ ContinuationRun::ContinuationRun(PathFollower& follower, const DefiningSystem& s
       system_(system),
       settings_(std::move(settings)),
       sink_(sink),
-      search_(follower, system, with_bounds(std::move(tests), settings_, system.system()),
-              location_settings(settings_)),
+      search_(follower, system, with_bounds(std::move(tests), settings_), location_settings(settings_)),
       step_(settings_.step) {}
 
 BranchSummary ContinuationRun::run(PathPoint start) {
@@ -82,7 +79,7 @@ BranchSummary ContinuationRun::run(PathPoint start) {
     accept(end_conditions(curve_end(special)));
     if (!limited_) step_.converged(newton_.iterations, number_);
   }
-  if (settings_.periodic) summary_.remark = trend_.growing_period(system_.system().parameter_name(settings_.principal));
+  if (settings_.periodic) summary_.remark = trend_.growing_period(settings_.principal_name);
   return summary_;
 }
 
@@ -93,8 +90,8 @@ SpecialPoint ContinuationRun::advance() {
   const SpecialPointSearch::Reports reports{[this](const std::string& text) { sink_.note(number_ + 1, text); },
                                             [this](const std::string& text) { report_lost(text); }};
   const bool through_point = leads_through_point();
-  const double before = std::abs(follower_.principal_direction(here_.tangent));
-  const double turn = std::min(before, std::abs(follower_.principal_direction(next_.point.tangent)));
+  const double before = std::abs(follower_.principal_direction(here_));
+  const double turn = std::min(before, std::abs(follower_.principal_direction(next_.point)));
   steepest_ = std::max(steepest_, before);
   SpecialPoint special = search_.advance(here_, next_, newton_, reports).value_or(SpecialPoint{});
   const double level = insignificant_turn * steepest_;

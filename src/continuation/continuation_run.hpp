@@ -13,8 +13,9 @@ namespace tchat {
 
 struct ContinuationSettings {
   StepSettings step;
-  int max_points = 100;                                  ///< NMX; the start counts
-  int principal = 1;                                     ///< PAR index of ICP(1)
+  int max_points = 100;  ///< NMX; the start counts
+  int principal = 1;     ///< PAR index of ICP(1), or what stands for a monitor
+  std::string principal_name = "PAR(1)";
   double parameter_min = -1e300, parameter_max = 1e300;  ///< RL0, RL1
   double measure_min = -1e300, measure_max = 1e300;      ///< A0, A1
   int measure = 0;                                       ///< IPLT

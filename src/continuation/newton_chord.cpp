@@ -49,7 +49,7 @@ NewtonChord::NewtonChord(BorderedProblem& problem, const NewtonSettings& setting
     : problem_(problem),
       settings_(settings),
       dx_(problem.condensed().make_vector()),
-      residual_(problem.condensed().make_residual()) {
+      residual_(problem.make_residual()) {
   history_.reserve(static_cast<std::size_t>(settings.max_iterations) + 2);
 }
 

@@ -15,11 +15,13 @@ constexpr double current_enough = 1e-10;
 }  // namespace
 
 PathFollower::PathFollower(const DefiningSystem& system, const OrbitShape& shape, WeightedNorm norm,
-                           const NewtonSettings& settings, int principal, std::unique_ptr<OrbitCondition> condition)
+                           const NewtonSettings& settings, int principal, std::unique_ptr<OrbitCondition> condition,
+                           BranchMonitors monitors)
     : system_(system),
       norm_(std::move(norm)),
       principal_(principal),
-      problem_(system, shape, std::move(condition)),
+      monitors_(std::move(monitors.watched)),
+      problem_(system, shape, std::move(condition), std::move(monitors.held)),
       newton_(problem_, settings),
       settings_(settings),
       row_(condensed().make_vector()) {
@@ -30,9 +32,11 @@ PathPoint PathFollower::make_point(Orbit orbit) const {
   return {std::move(orbit), condensed().make_vector(), condensed().make_vector(), unused_};
 }
 
-OrbitVector PathFollower::principal_row() const {
+OrbitVector PathFollower::principal_row(const Orbit& x) const {
   OrbitVector row = condensed().make_vector();
-  if (is_duration(principal_, system_.segments())) {
+  if (monitors_.has_gradient(principal_)) {
+    monitors_.gradient(principal_, x, condensed().rule(), row);
+  } else if (is_duration(principal_, system_.segments())) {
     row.durations(duration_segment(principal_)) = 1.0;
   } else {
     const auto& free = system_.free_parameters();
@@ -41,7 +45,9 @@ OrbitVector PathFollower::principal_row() const {
   return row;
 }
 
-double PathFollower::principal_direction(const OrbitVector& v) const { return dot(principal_row(), v); }
+double PathFollower::principal_direction(const PathPoint& point) const {
+  return dot(principal_row(point.orbit), point.tangent);
+}
 
 double PathFollower::alignment(const PathPoint& point, const OrbitVector& direction) const {
   OrbitVector v = direction;
@@ -85,6 +91,7 @@ NewtonResult PathFollower::correct_and_orient(PathPoint& point, const Orbit& bas
   if ((!current && !linearize(point.orbit, row_)) || !find_tangent(point.orbit, point.tangent, point.dual))
     result.status = NewtonStatus::singular;
   problem_.remember(point.memory);
+  monitors_.store(point.orbit, condensed().rule());
   return result;
 }
 
@@ -114,7 +121,7 @@ bool PathFollower::solves(const Orbit& x) {
 /// The first component of the tangent that is not negligible decides: the principal parameter's when it varies.
 void PathFollower::orient(PathPoint& point) const {
   constexpr double negligible = 1e-8;
-  double direction = principal_direction(point.tangent);
+  double direction = principal_direction(point);
   for (Eigen::Index g = 0; std::abs(direction) < negligible && g < point.tangent.globals.size(); ++g)
     direction = point.tangent.globals(g);
   for (Eigen::Index s = 0; std::abs(direction) < negligible && s < point.tangent.durations.size(); ++s)
@@ -123,7 +130,7 @@ void PathFollower::orient(PathPoint& point) const {
 }
 
 NewtonResult PathFollower::start_at_fixed_parameter(PathPoint& point) {
-  row_ = principal_row();
+  row_ = principal_row(point.orbit);
   problem_.recall(point.memory);
   const Orbit base = point.orbit;
   problem_.set_reference(base);

@@ -9,6 +9,7 @@
 #include <memory>
 
 #include "bvp/weighted_norm.hpp"
+#include "continuation/monitor_set.hpp"
 #include "continuation/newton_chord.hpp"
 
 namespace tchat {
@@ -20,12 +21,18 @@ struct PathPoint {
   ConditionMemory memory;  ///< of a two-parameter curve's condition
 };
 
+/// What is watched along a branch, and what is held on it besides the defining system.
+struct BranchMonitors {
+  MonitorSet watched = {};
+  std::vector<HeldMonitor> held = {};
+};
+
 class PathFollower {
  public:
-  /// `principal` is the PAR index of the continuation parameter, a free problem parameter or a duration.
-  /// `condition` is the further scalar condition of a two-parameter curve, null for none.
+  /// `principal` is the PAR index of the continuation parameter: a free problem parameter, a duration or a monitor that
+  /// has a gradient. `condition` is the further scalar condition of a two-parameter curve, null for none.
   PathFollower(const DefiningSystem& system, const OrbitShape& shape, WeightedNorm norm, const NewtonSettings& settings,
-               int principal, std::unique_ptr<OrbitCondition> condition = nullptr);
+               int principal, std::unique_ptr<OrbitCondition> condition = nullptr, BranchMonitors monitors = {});
 
   PathPoint make_point(Orbit orbit) const;
 
@@ -60,7 +67,10 @@ class PathFollower {
   OrbitCondition* condition() { return problem_.condition(); }
   const NewtonChord& newton() const { return newton_; }
   int principal() const { return principal_; }  ///< PAR index of the continuation parameter
-  double principal_direction(const OrbitVector& v) const;
+  /// By how much the principal parameter grows along the tangent.
+  double principal_direction(const PathPoint& point) const;
+  const MonitorSet& monitors() const { return monitors_; }
+  const std::vector<HeldMonitor>& held() const { return problem_.held(); }
   /// Cosine of the angle between the point's tangent and a direction, in the weighted norm.
   double alignment(const PathPoint& point, const OrbitVector& direction) const;
 
@@ -73,11 +83,12 @@ class PathFollower {
   bool find_tangent(const Orbit& x, OrbitVector& tangent, OrbitVector& dual);
   void normalise(const Orbit& x, OrbitVector& tangent, OrbitVector& dual) const;
   void orient(PathPoint& point) const;
-  OrbitVector principal_row() const;
+  OrbitVector principal_row(const Orbit& x) const;
 
   const DefiningSystem& system_;
   WeightedNorm norm_;
   int principal_;
+  MonitorSet monitors_;
   BorderedProblem problem_;
   NewtonChord newton_;
   NewtonSettings settings_;

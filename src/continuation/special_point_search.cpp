@@ -92,7 +92,8 @@ TestedPoint SpecialPointSearch::tested(const PathPoint& at, const PointData& dat
           data.multipliers,
           data.transversalities,
           data.singular_distance,
-          follower_.condition()};
+          follower_.condition(),
+          follower_.principal_direction(at)};
 }
 
 std::vector<std::string> SpecialPointSearch::details(const PathPoint& at, const PointData& data) const {
@@ -102,13 +103,14 @@ std::vector<std::string> SpecialPointSearch::details(const PathPoint& at, const 
   return list;
 }
 
-PointData SpecialPointSearch::evaluate(const PathPoint& at) {
+PointData SpecialPointSearch::evaluate(PathPoint& at) {
   PointData data;
   if (settings_.multipliers) {
     data.multipliers = floquet_.compute(follower_.condensed(), at.orbit);
     const OrbitCondition* condition = follower_.condition();
     const std::optional<int> kept = condition != nullptr ? condition->kept_multiplier() : std::nullopt;
     if (kept) put_critical(data.multipliers, *kept);
+    follower_.monitors().store(at.orbit, data.multipliers);
   }
   for (int s = 0; s < system_.segments(); ++s)
     data.transversalities.push_back(crossing_at_end(system_, at.orbit, s).transversality());
@@ -118,12 +120,12 @@ PointData SpecialPointSearch::evaluate(const PathPoint& at) {
   return data;
 }
 
-PointData SpecialPointSearch::evaluate_again(const PathPoint& at) {
+PointData SpecialPointSearch::evaluate_again(PathPoint& at) {
   follower_.linearize_at(at);
   return evaluate(at);
 }
 
-PointData SpecialPointSearch::begin(const PathPoint& start) {
+PointData SpecialPointSearch::begin(PathPoint& start) {
   PointData data = evaluate_again(start);
   for (std::size_t i = 0; i < tests_.size(); ++i) signs_[i] = data.tests[i].sign;
   labelled_.assign(tests_.size(), false);
@@ -320,8 +322,9 @@ std::optional<BranchPointBracket> SpecialPointSearch::find_branch_point(const Pa
   const auto found =
       std::find_if(candidates.begin(), candidates.end(), [&](std::size_t i) { return tests_[i]->singular_at_zero(); });
   if (found == candidates.end()) return std::nullopt;
-  BranchPointBracket bracket(follower_, here, evaluate_again(here), step, *found, signs_[*found]);
-  const auto evaluated = [this](const PathPoint& point) { return evaluate(point); };
+  PathPoint start = here;
+  BranchPointBracket bracket(follower_, here, evaluate_again(start), step, *found, signs_[*found]);
+  const auto evaluated = [this](PathPoint& point) { return evaluate(point); };
   const bool narrowed = bracket.narrow(evaluated, trial, settings_.tolerance);
   searches_[*found] = !narrowed ? Search::failed : is_start(bracket.length()) ? Search::start : Search::located;
   if (searches_[*found] != Search::located) return std::nullopt;
@@ -352,10 +355,11 @@ SpecialPointSearch::Zero SpecialPointSearch::locate(std::size_t test, const Path
                                                     double ds, double end_value) {
   TestValue found;
   bool genuine = true;
+  PathPoint start = here;
   const auto arrive = [&](double length) {
     const bool at_start = length == 0.0;
     if (!(at_start ? follower_.linearize_at(here) : follower_.step(here, length, trial).converged())) return false;
-    const PathPoint& there = at_start ? here : trial;
+    PathPoint& there = at_start ? start : trial;
     const PointData data = evaluate(there);
     found = data.tests[test];
     genuine = tests_[test]->is_genuine(tested(there, data));

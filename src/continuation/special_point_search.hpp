@@ -33,10 +33,10 @@ class SpecialPointSearch {
   const std::vector<std::unique_ptr<TestFunction>>& tests() const { return tests_; }
 
   /// Evaluates at the start of a branch. Functions that vanish there take their sign from the next point.
-  PointData begin(const PathPoint& start);
+  PointData begin(PathPoint& start);
 
   /// At a converged point, whose linearisation the follower holds.
-  PointData evaluate(const PathPoint& at);
+  PointData evaluate(PathPoint& at);
 
   /// Do the points of the branch follow each other as closely as the test functions ask for (Resolution)? Else one of
   /// them may have changed sign twice on the step to `next`, and a shorter one will tell.
@@ -74,7 +74,7 @@ class SpecialPointSearch {
     std::optional<NewtonResult> newton;  // nothing: interpolated
   };
 
-  PointData evaluate_again(const PathPoint& at);  // with a new linearisation
+  PointData evaluate_again(PathPoint& at);  // with a new linearisation
   TestedPoint tested(const PathPoint& at, const PointData& data) const;
   std::vector<std::size_t> changed(const PointData& end) const;
   Candidate searched_step(const PathPoint& here, Candidate& next);

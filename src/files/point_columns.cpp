@@ -40,6 +40,15 @@ ProblemNames ProblemNames::of(const HybridSystem& system) {
   return names;
 }
 
+ProblemNames ProblemNames::of(const HybridSystem& system, const std::vector<std::string>& monitors) {
+  ProblemNames names = of(system);
+  if (monitors.empty()) return names;
+  while (names.parameters.size() + 1 < static_cast<std::size_t>(first_monitor))
+    names.parameters.push_back(fmt::format("PAR({})", names.parameters.size() + 1));
+  names.parameters.insert(names.parameters.end(), monitors.begin(), monitors.end());
+  return names;
+}
+
 std::string ProblemNames::state(int k) const { return name_at(states, k, "U"); }
 
 std::string ProblemNames::parameter(int k) const { return name_at(parameters, k, "PAR"); }

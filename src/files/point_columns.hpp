@@ -19,6 +19,8 @@ struct ProblemNames {
   std::vector<std::string> jumps = {};
 
   static ProblemNames of(const HybridSystem& system);
+  /// With the monitors of a run at PAR(first_monitor), ...
+  static ProblemNames of(const HybridSystem& system, const std::vector<std::string>& monitors);
   /// The name, or U(k), PAR(k) beyond the problem's own.
   std::string state(int k) const;
   std::string parameter(int k) const;

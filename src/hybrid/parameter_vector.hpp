@@ -9,6 +9,9 @@ namespace tchat {
 inline constexpr int first_duration = 61;
 inline constexpr int parameter_length = 256;
 inline constexpr int max_segments = 64;
+/// Values of monitors (bvp/monitor.hpp) stand behind the durations while a run lasts; no file has them as PAR.
+inline constexpr int first_monitor = 189;
+inline constexpr int max_monitors = 32;
 
 /// PAR(k) is par(k - 1); always parameter_length entries, unused ones zero.
 using ParameterVector = Eigen::VectorXd;

@@ -50,9 +50,9 @@ class ProblemType {
   ProblemType& operator=(const ProblemType&) = delete;
   const ProblemFacts& facts() const { return facts_; }
 
-  /// How many entries of ICP are free: in a ring problem parameters, else durations too. Throws UserError where the
-  /// conditions leave none free.
-  virtual int free_entries(const RunSettings&) const { return facts_.free_parameters; }
+  /// How many entries of ICP are free, monitors not counted: in a ring problem parameters, else durations too. One more
+  /// for each monitor that is held. Throws UserError where the conditions leave none free.
+  virtual int free_entries(const RunSettings& settings) const;
   /// Can a branch of this type begin at a label of this type (type number without its tens digit)?
   virtual bool begins_at(int) const { return true; }
   /// The rows that tie the segments together.

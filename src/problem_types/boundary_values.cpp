@@ -23,7 +23,7 @@ class BoundaryValues final : public ProblemType {
 
   int free_entries(const RunSettings& settings) const override {
     return settings.boundary_conditions + settings.integral_conditions - settings.dimension * segment_count(settings) +
-           1;
+           1 + static_cast<int>(settings.held.size());
   }
 
   std::unique_ptr<DefiningSystem> make_system(const HybridSystem& system, const RunSettings& settings,

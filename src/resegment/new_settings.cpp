@@ -18,12 +18,13 @@ int segment_type(const HybridSystem& system, const NewSegment& segment) {
   return is_identity_jump(system, segment.index.jump) ? 0 : 1;
 }
 
-std::vector<int> new_free_parameters(const RunSettings& old, std::size_t segments, const NewProblem& problem,
-                                     const HybridSystem& system) {
+/// `listed`: the old ICP without monitors.
+std::vector<int> new_free_parameters(const std::vector<int>& listed, const RunSettings& old, std::size_t segments,
+                                     const NewProblem& problem, const HybridSystem& system) {
   std::vector<int> list;
-  for (const int k : old.free_parameters)
+  for (const int k : listed)
     if (!is_duration(k, static_cast<int>(old.segments.size()))) list.push_back(k);
-  const auto had = static_cast<std::size_t>(free_parameter_count(old.problem_type, old.branch_mode));
+  const auto had = static_cast<std::size_t>(free_parameter_count(old.problem_type, old.branch_mode)) + old.held.size();
   const auto needed = static_cast<std::size_t>(free_parameter_count(problem.problem_type, problem.branch_mode));
   for (std::size_t k = needed; k < had && list.size() > needed; ++k)
     list.erase(list.begin() + static_cast<std::ptrdiff_t>(needed));  // free no longer; those printed only stay
@@ -68,6 +69,7 @@ RunSettings new_settings(const RunSettings& old, const SegmentList& segments, co
                          const HybridSystem& system) {
   const int m = static_cast<int>(old.segments.size());
   RunSettings settings = old;
+  leave_out_monitors(settings);
   settings.problem_type = problem.problem_type;
   settings.branch_mode = problem.branch_mode;
   settings.grazing_jump = problem.grazing_jump;
@@ -78,7 +80,7 @@ RunSettings new_settings(const RunSettings& old, const SegmentList& segments, co
     for (const WatchedEvent& watched : segment.watched) next.monitor.push_back(watched.event);
     settings.segments.push_back(next);
   }
-  settings.free_parameters = new_free_parameters(old, segments.size(), problem, system);
+  settings.free_parameters = new_free_parameters(settings.free_parameters, old, segments.size(), problem, system);
   settings.parameter_weights = new_weights(old, segments);
   settings.test_functions = new_test_functions(segments, problem.problem_type);
   std::erase_if(settings.user_values, [&](const UserValue& value) { return is_duration(value.parameter, m); });

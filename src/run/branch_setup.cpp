@@ -10,6 +10,7 @@
 #include "files/labelled_solution.hpp"
 #include "problem_type/problem_type.hpp"
 #include "setup/problem_setup.hpp"
+#include "setup/run_monitors.hpp"
 #include "special_points/point_type.hpp"
 #include "text/user_error.hpp"
 
@@ -47,9 +48,9 @@ BranchSetup ProblemType::set_up(const HybridSystem& system, const RunSettings& s
   setup.defining = make_system(system, settings, free_problem_parameters(settings));
   const OrbitShape& shape = start.start.orbit.shape;
   check_memory(shape, setup.defining->free_count());
-  setup.follower =
-      std::make_unique<PathFollower>(*setup.defining, shape, weighted_norm(settings), newton_settings(settings),
-                                     settings.free_parameters.front(), make_condition(*setup.defining, start));
+  setup.follower = std::make_unique<PathFollower>(
+      *setup.defining, shape, weighted_norm(settings), newton_settings(settings), settings.free_parameters.front(),
+      make_condition(*setup.defining, start), branch_monitors(*setup.defining, settings, start.start.orbit));
   setup.start = first_point(*setup.follower, *setup.defining, start, settings);
   return setup;
 }

@@ -10,6 +10,7 @@
 #include "constants/settings_type.hpp"
 #include "files/labelled_solution.hpp"
 #include "setup/problem_setup.hpp"
+#include "setup/run_monitors.hpp"
 #include "special_points/point_type.hpp"
 #include "text/user_error.hpp"
 
@@ -69,10 +70,11 @@ std::unique_ptr<DefiningSystem> make_system(const HybridSystem& system, const Ru
   return problem_type(settings).make_system(system, settings, free_problem_parameters(settings));
 }
 
-std::unique_ptr<PathFollower> make_follower(const DefiningSystem& defining, const OrbitShape& shape,
+std::unique_ptr<PathFollower> make_follower(const DefiningSystem& defining, const Orbit& start,
                                             const RunSettings& settings) {
-  return std::make_unique<PathFollower>(defining, shape, weighted_norm(settings), newton_settings(settings),
-                                        settings.free_parameters.front());
+  return std::make_unique<PathFollower>(defining, start.shape, weighted_norm(settings), newton_settings(settings),
+                                        settings.free_parameters.front(), nullptr,
+                                        branch_monitors(defining, settings, start));
 }
 
 /// The critical vector v, which changes sign after one period (5.21), on one segment of two periods. In the first its
@@ -266,8 +268,7 @@ BranchSetup switch_branch(const HybridSystem& system, const RunSettings& setting
 
   const RunSettings before = once(settings);
   const std::unique_ptr<DefiningSystem> known = make_system(system, before);
-  const OrbitShape& shape = selected.start.orbit.shape;
-  const std::unique_ptr<PathFollower> along_known = make_follower(*known, shape, before);
+  const std::unique_ptr<PathFollower> along_known = make_follower(*known, selected.start.orbit, before);
   const FirstPoint at = first_point(*along_known, *known, selected, before);
   along_known->linearize_at(at.point);
   const Bifurcation bifurcation =
@@ -276,7 +277,7 @@ BranchSetup switch_branch(const HybridSystem& system, const RunSettings& setting
   BranchSetup setup{&problem_type(before), doubling ? doubled(before) : before, nullptr, nullptr, {}};
   setup.defining = make_system(system, setup.settings);
   check_memory(bifurcation.orbit.shape, setup.defining->free_count());
-  setup.follower = make_follower(*setup.defining, bifurcation.orbit.shape, setup.settings);
+  setup.follower = make_follower(*setup.defining, bifurcation.orbit, setup.settings);
   PathPoint from = setup.follower->make_point(bifurcation.orbit);
   from.tangent = bifurcation.direction;
   setup.follower->renormalise(from);

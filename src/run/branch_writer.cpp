@@ -46,7 +46,7 @@ BranchWriter::BranchWriter(const HybridSystem& system, const CollocationRule& ru
       files_(files),
       screen_(screen),
       progress_(terminal),
-      names_(ProblemNames::of(system)),
+      names_(ProblemNames::of(system, setup_.settings.monitors)),
       columns_(point_columns(setup_.settings, names_)),
       weights_(state_weights(setup_.settings)) {}
 

@@ -7,6 +7,7 @@
 
 #include "bvp/evaluation_failure.hpp"
 #include "bvp/mesh_adaptation.hpp"
+#include "setup/run_monitors.hpp"
 #include "text/user_error.hpp"
 
 namespace tchat {
@@ -27,7 +28,8 @@ constexpr int most_meshes = 10;
 constexpr double settled = 0.1;
 
 /// The residual of each boundary condition of the uncorrected start, largest collocation defect included.
-std::string residual_report(CondensedSystem& condensed, const DefiningSystem& defining, const Orbit& start) {
+std::string residual_report(PathFollower& follower, const DefiningSystem& defining, const Orbit& start) {
+  CondensedSystem& condensed = follower.condensed();
   OrbitResidual residual = condensed.make_residual();
   condensed.evaluate(start, residual);
   defining.integral_values(start, start, condensed.rule(), residual.integral.data());
@@ -45,6 +47,9 @@ std::string residual_report(CondensedSystem& condensed, const DefiningSystem& de
   }
   for (int r = 0; r < defining.integral_conditions(); ++r)
     text += fmt::format("\n  {:11.4e}  {}", residual.integral[static_cast<std::size_t>(r)], defining.integral_name(r));
+  for (const HeldMonitor& held : follower.held())
+    text += fmt::format("\n  {:11.4e}  {} minus {:.10g}, at which it is held",
+                        held.monitor->value(start, condensed.rule()) - held.value, held.name, held.value);
   return text;
 }
 
@@ -119,7 +124,7 @@ std::string values_at(const SelectedStart& selected, const HybridSystem& system,
       fmt::format("no convergence at the first point, from {}: {} "
                   "Residuals of the start, condition by condition:{}\n  The largest ones say which part of the start, "
                   "of the parameters or of the signature is wrong; a better start, a larger NTST or ITNW may help.",
-                  selected.source, trouble, residual_report(follower.condensed(), system, start)));
+                  selected.source, trouble, residual_report(follower, system, start)));
 }
 
 /// The orbit on the mesh adapted to it, or on one that is half or a quarter of the way there: on a coarse mesh the
@@ -172,10 +177,11 @@ std::string moved_beside(const Orbit& start, const Orbit& found, const DefiningS
 
 FirstCorrection correct_start(PathFollower& follower, const DefiningSystem& system, const SelectedStart& selected,
                               const RunSettings& settings) {
-  const Orbit& start = selected.start.orbit;
+  Orbit start = selected.start.orbit;
+  follower.monitors().store(start, follower.condensed().rule());
   const HybridSystem& problem = system.system();
   const int principal = follower.principal();
-  const std::string name = problem.parameter_name(principal);
+  const std::string name = parameter_name(problem, settings, principal);
   const double asked = start.par(principal - 1);
   PathPoint point = follower.make_point(start);
   NewtonResult result = follower.start_at_fixed_parameter(point);

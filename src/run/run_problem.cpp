@@ -22,6 +22,7 @@
 #include "run/unwatched_events.hpp"
 #include "setup/named_parameters.hpp"
 #include "setup/problem_setup.hpp"
+#include "setup/run_monitors.hpp"
 #include "setup/warnings.hpp"
 #include "special_points/point_type.hpp"
 #include "start/start_selection.hpp"
@@ -148,11 +149,12 @@ ContinuationSettings continuation_of(const RunRequest& request, const BranchSetu
                                      const HybridSystem& system, const std::function<bool()>& interrupted) {
   ContinuationSettings continuation = continuation_settings(setup.settings);
   continuation.clip = request.clip;
+  continuation.principal_name = parameter_name(system, setup.settings, continuation.principal);
   continuation.label_start = selected.label_start;
   continuation.interrupted = interrupted;
   if (!selected.from_solution || selected.parameters_changed)
     refuse_start_outside(setup.start.point.orbit, setup.follower->condensed().rule(), continuation,
-                         system.parameter_name(continuation.principal), selected.source);
+                         continuation.principal_name, selected.source);
   return continuation;
 }
 
@@ -229,8 +231,7 @@ int run_problem(const RunRequest& request, std::ostream& screen, std::ostream& w
     const std::vector<BranchWriter::Labelled> labels(
         writer.labels().begin() + static_cast<std::ptrdiff_t>(labels_before), writer.labels().end());
     if (reports.table != nullptr)
-      *reports.table << summary_text(summary, labels, system.parameter_name(continuation.principal), output)
-                     << std::flush;
+      *reports.table << summary_text(summary, labels, continuation.principal_name, output) << std::flush;
     const int of_branch = status_of(summary, request.strict, warnings);
     status = of_branch == 1 || status == 0 ? of_branch : status;
   };

@@ -4,6 +4,7 @@
 #include <cstdlib>
 
 #include "hybrid/identity_jump.hpp"
+#include "setup/run_monitors.hpp"
 #include "special_points/bifurcation_tests.hpp"
 #include "special_points/contact_test.hpp"
 #include "special_points/sliding_bifurcation.hpp"
@@ -38,7 +39,8 @@ void add_sliding_onsets(TestList& tests, const DefiningSystem& system, const Run
 
 void add_user_values(TestList& tests, const HybridSystem& system, const RunSettings& settings) {
   for (const UserValue& u : settings.user_values)
-    tests.push_back(std::make_unique<UserValueTest>(u.parameter, u.value, u.stop, system.parameter_name(u.parameter)));
+    tests.push_back(
+        std::make_unique<UserValueTest>(u.parameter, u.value, u.stop, parameter_name(system, settings, u.parameter)));
 }
 
 void add_bifurcations(TestList& tests, const DefiningSystem& system, const RunSettings& settings) {
@@ -46,7 +48,8 @@ void add_bifurcations(TestList& tests, const DefiningSystem& system, const RunSe
   const bool stop = settings.detect_bifurcations < 0;
   if (settings.detect_folds != 0)
     tests.push_back(std::make_unique<FoldTest>(settings.free_parameters.front(), system.free_parameters(),
-                                               system.segments(), settings.detect_folds < 0));
+                                               system.segments(), settings.detect_folds < 0,
+                                               held_text(system.system(), settings)));
   if (kind == 2 || kind == 3) tests.push_back(std::make_unique<BranchPointTest>(stop));
   if ((kind == 2 || kind == 4) && has_multipliers(settings.problem_type)) {
     tests.push_back(std::make_unique<PeriodDoublingTest>(stop));

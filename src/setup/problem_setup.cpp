@@ -9,6 +9,7 @@
 
 #include "constants/constants_file.hpp"
 #include "constants/settings_type.hpp"
+#include "setup/run_monitors.hpp"
 #include "text/number.hpp"
 #include "text/user_error.hpp"
 
@@ -19,6 +20,12 @@ namespace {
 void check_index(const HybridSystem& system, FunctionKind kind, int index, const char* keyword, const char* what, int s,
                  const SettingsSource& source) {
   if (index >= 1 && index <= system.count(kind)) return;
+  const char* const zero = kind == FunctionKind::event  ? "0 (an orbit without a section)"
+                           : kind == FunctionKind::jump ? "0 (the identity)"
+                                                        : "";
+  if (system.count(kind) == 0)
+    throw UserError(fmt::format("{}: {} of segment {} is {}, but problem {} has no {}; allowed: {}", source.of(keyword),
+                                keyword, s, index, system.name(), what, zero));
   throw UserError(fmt::format("{}: {} of segment {} is {}, but problem {} has {} {}; allowed: 1..{}",
                               source.of(keyword), keyword, s, index, system.name(), system.count(kind), what,
                               system.count(kind)));
@@ -110,9 +117,14 @@ void check_parameters(const HybridSystem& system, const RunSettings& settings, c
     warnings.push_back(no_parameter("ICP", k));
   }
   for (const UserValue& value : settings.user_values)
-    if (!is_parameter(system, value.parameter)) throw UserError(no_parameter("UZR", value.parameter));
+    if (!is_monitor(settings, value.parameter) && !is_parameter(system, value.parameter))
+      throw UserError(no_parameter("UZR", value.parameter));
   for (const IndexedValue& weight : settings.parameter_weights)
-    if (!is_parameter(system, weight.index)) warnings.push_back(no_parameter("THL", weight.index));
+    if (is_monitor(settings, weight.index))
+      warnings.push_back(fmt::format("{}: THL: {} has no weight of its own; states, durations and parameters have",
+                                     source.of("THL"), parameter_name(system, settings, weight.index)));
+    else if (!is_parameter(system, weight.index))
+      warnings.push_back(no_parameter("THL", weight.index));
 }
 
 }  // namespace
@@ -150,6 +162,7 @@ std::vector<std::string> check_settings_against(const HybridSystem& system, cons
           system.function_name(FunctionKind::jump, segment.index.jump), identity ? "" : "not "));
   }
   check_contact_jump(system, settings, source, warnings);
+  check_monitors(system, settings, source);
   check_parameters(system, settings, source, warnings);
   return warnings;
 }

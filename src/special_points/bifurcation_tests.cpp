@@ -88,8 +88,11 @@ bool is_multiplier_at(const TestedPoint& point, int target) {
   return distance_to(point.multipliers, target) <= close;
 }
 
-FoldTest::FoldTest(int parameter, const std::vector<int>& free_parameters, int segments, bool stop)
-    : is_duration_(is_duration(parameter, segments)), stop_(stop) {
+FoldTest::FoldTest(int parameter, const std::vector<int>& free_parameters, int segments, bool stop, std::string held)
+    : is_duration_(is_duration(parameter, segments)),
+      is_monitor_(parameter >= first_monitor),
+      stop_(stop),
+      held_(std::move(held)) {
   index_ = is_duration_
                ? duration_segment(parameter)
                : std::find(free_parameters.begin(), free_parameters.end(), parameter) - free_parameters.begin();
@@ -97,6 +100,7 @@ FoldTest::FoldTest(int parameter, const std::vector<int>& free_parameters, int s
 
 TestValue FoldTest::evaluate(const TestedPoint& point) const {
   constexpr double level = 1e-10;  // of a tangent of unit length, which Newton's tolerances leave
+  if (is_monitor_) return TestValue::of(point.principal_rate, level);
   return TestValue::of(is_duration_ ? point.tangent.durations(index_) : point.tangent.globals(index_), level);
 }
 
@@ -105,6 +109,7 @@ TestValue FoldTest::evaluate(const TestedPoint& point) const {
 SpecialPoint FoldTest::classify(const TestedPoint& point, bool) const {
   const DefiningSystem& system = point.condensed.system();
   const int s = touching_segment(point);
+  if (!held_.empty()) return {PointType::fold, {}, stop_, "fold of the curve with " + held_ + " held"};
   if (s < 0 || has_multiplier_one(point.multipliers)) return {PointType::fold, {}, stop_, "fold"};
   return {PointType::user,
           {UserPointKind::impact_velocity, s + 1, system.signature()[static_cast<std::size_t>(s)].event, 1.0},

@@ -15,16 +15,19 @@ namespace tchat {
 /// LP: the component of the tangent along the principal parameter; where a section is tangent, its label (GR).
 class FoldTest final : public TestFunction {
  public:
-  /// `parameter` is a PAR index; `free_parameters` those of the tangent's globals.
-  FoldTest(int parameter, const std::vector<int>& free_parameters, int segments, bool stop);
+  /// `parameter` is a PAR index, of a monitor too; `free_parameters` those of the tangent's globals; `held`:
+  /// names of the monitors that are held: the curve followed turns, not the orbits of the problem.
+  FoldTest(int parameter, const std::vector<int>& free_parameters, int segments, bool stop, std::string held = {});
   std::string name() const override { return "fold"; }
   TestValue evaluate(const TestedPoint& point) const override;
   SpecialPoint classify(const TestedPoint& point, bool rising) const override;
 
  private:
   bool is_duration_;
+  bool is_monitor_;
   Eigen::Index index_ = 0;
   bool stop_;
+  std::string held_;
 };
 
 /// BP: the distance of the bordered problem to a singular one, with the determinant's sign.

@@ -33,6 +33,7 @@ bool is_surface(const HybridSystem& system, const tchat_sliding& mode, int event
   constexpr double parallel = 1.0 - 1e-9;
   constexpr double on_surface = 1e-6;  // a located contact is known to EPSS
   if (event == mode.surface) return true;
+  if (event == no_function) return false;
   const EventAt own = event_at(system, mode.surface, x, par);
   const EventAt other = event_at(system, event, x, par);
   return std::abs(own.h) <= on_surface * own.scale(x) &&

@@ -1,0 +1,89 @@
+#include "bvp/quantity.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "hybrid/parameter_vector.hpp"
+
+namespace tchat {
+
+namespace {
+
+std::string user_function_name(const HybridSystem& system, int k) {
+  const tchat_problem& table = system.table();
+  const bool named = table.user_value_names != nullptr && table.user_value_names[k - 1] != nullptr;
+  return named ? table.user_value_names[k - 1] : fmt::format("PVLS({})", k);
+}
+
+}  // namespace
+
+std::optional<Quantity> find_quantity(const HybridSystem& system, const std::string& name) {
+  for (int k = 1; k <= system.dimension(); ++k)
+    if (name == system.state_name(k) || name == fmt::format("U({})", k)) return Quantity{Quantity::Kind::state, k};
+  for (int k = 1; k <= system.table().user_values; ++k)
+    if (name == user_function_name(system, k) || name == fmt::format("PVLS({})", k))
+      return Quantity{Quantity::Kind::user_function, k};
+  for (int k = 1; k <= system.count(FunctionKind::event); ++k)
+    if (name == system.function_name(FunctionKind::event, k) || name == fmt::format("h{}", k))
+      return Quantity{Quantity::Kind::event, k};
+  return std::nullopt;
+}
+
+QuantityFunction::QuantityFunction(const HybridSystem& system, Quantity quantity, std::vector<int> active)
+    : system_(&system), quantity_(quantity), active_(std::move(active)) {
+  if (quantity_.kind != Quantity::Kind::user_function) return;
+  values_.resize(static_cast<std::size_t>(system.table().user_values));
+  state_.resize(static_cast<std::size_t>(system.dimension()));
+  par_.resize(parameter_length);
+}
+
+double QuantityFunction::value(const double* x, const double* par) const {
+  switch (quantity_.kind) {
+    case Quantity::Kind::state:
+      return x[quantity_.index - 1];
+    case Quantity::Kind::event:
+      return system_->event(quantity_.index, x, par);
+    default:
+      system_->table().user_value(system_->table().self, x, par, values_.data());
+      return values_[static_cast<std::size_t>(quantity_.index - 1)];
+  }
+}
+
+double QuantityFunction::first(const double* x, const double* par, double* by_state, double* by_parameter) const {
+  const int n = system_->dimension();
+  if (quantity_.kind == Quantity::Kind::event) {
+    double h = 0.0;
+    system_->first(FunctionKind::event, quantity_.index, x, par, active_, &h, by_state, by_parameter);
+    return h;
+  }
+  std::fill_n(by_state, n, 0.0);
+  std::fill_n(by_parameter, active_.size(), 0.0);
+  if (quantity_.kind == Quantity::Kind::state) {
+    by_state[quantity_.index - 1] = 1.0;
+    return x[quantity_.index - 1];
+  }
+  std::copy_n(x, n, state_.begin());
+  std::copy_n(par, parameter_length, par_.begin());
+  for (int a = 0; a < n; ++a)
+    by_state[a] = by_difference(state_[static_cast<std::size_t>(a)], state_.data(), par_.data());
+  for (std::size_t k = 0; k < active_.size(); ++k)
+    by_parameter[k] = by_difference(par_[static_cast<std::size_t>(active_[k] - 1)], state_.data(), par_.data());
+  return value(x, par);
+}
+
+double QuantityFunction::by_difference(double& variable, const double* x, const double* par) const {
+  const double here = variable;
+  const double step = 1e-3 * (1.0 + std::abs(here));
+  const auto at = [&](double steps) {
+    variable = here + steps * step;
+    return value(x, par);
+  };
+  const double near = at(1.0) - at(-1.0);
+  const double far = at(2.0) - at(-2.0);
+  variable = here;
+  return (8.0 * near - far) / (12.0 * step);
+}
+
+}  // namespace tchat
