@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "bvp/sliding_violations.hpp"
 #include "bvp/transversality.hpp"
 #include "hybrid/event_at.hpp"
 
@@ -58,6 +59,8 @@ std::vector<Violation> inadmissibilities(const HybridSystem& system, const Signa
       if (worst.value < -orbit_accuracy * event_scale(system, x, event)) result.push_back(worst);
     }
 
+    add_sliding_violations(result, system, signature, monitored[index], x, s, leaving);
+
     if (v.event == no_function) continue;
     const EventAt end = event_at(system, v.event, v.field, x.end(s), par);
     if (end.rate() > leaving * end.sizes())
@@ -73,6 +76,20 @@ std::string describe(const Violation& violation, const HybridSystem& system) {
     case Violation::event_crossed:
       return fmt::format("segment {}: h{} ({}) = {:.4g} at tau = {:.4g}", violation.segment, violation.event,
                          system.function_name(FunctionKind::event, violation.event), violation.value, violation.tau);
+    case Violation::off_surface:
+      return fmt::format("segment {} slides beside its surface: h{} ({}) = {:.4g} at its start", violation.segment,
+                         violation.event, system.function_name(FunctionKind::event, violation.event), violation.value);
+    case Violation::side_leads_away:
+      return fmt::format(
+          "segment {} slides where field {} ({}) leads away from the surface, |h_x f| = {:.4g} at its start",
+          violation.segment, violation.event, system.function_name(FunctionKind::field, violation.event),
+          violation.value);
+    case Violation::crosses_where_it_slides:
+      return fmt::format(
+          "segment {} begins on a surface that its field {} ({}) leads back to, |h_x f| = {:.4g}: the orbit slides "
+          "there",
+          violation.segment, violation.event, system.function_name(FunctionKind::field, violation.event),
+          violation.value);
     default:
       return fmt::format("segment {}: h_x f = {:.4g} > 0 at its end, h{} ({}) is crossed from below", violation.segment,
                          violation.value, violation.event, system.function_name(FunctionKind::event, violation.event));

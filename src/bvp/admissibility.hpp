@@ -1,7 +1,8 @@
 /// Is a solution of the boundary value problem an orbit of the model? (Fig. 5.10)
 ///
 /// Checked with the accuracy of orbits (orbit_accuracy.hpp), of the period, of the size of h and of |h_x| |f|: T_s >=
-/// 0; h >= 0 at the stored points of every event function monitored on a segment; h_x f <= 0 at every terminal point.
+/// 0; h >= 0 at the stored points of every event function monitored on a segment; h_x f <= 0 at every terminal point;
+/// and what sliding asks for at the starts of segments (sliding_violations.hpp).
 /// Pinned ends are left out: the segment's own terminal event at its end, and a start on the event surface just left (h
 /// = 0 there, and h o g has a gradient parallel to that of the previous terminal event).
 #pragma once
@@ -16,12 +17,19 @@
 namespace tchat {
 
 struct Violation {
-  enum Kind { negative_duration, event_crossed, leaving_terminal_surface };
+  enum Kind {
+    negative_duration,
+    event_crossed,
+    leaving_terminal_surface,
+    off_surface,             ///< a segment slides beside its surface
+    side_leads_away,         ///< a segment slides where one of the two fields leads away from the surface
+    crosses_where_it_slides  ///< a surface is crossed where both fields point at it
+  };
   Kind kind;
   int segment = 1;     ///< from 1
-  int event = 0;       ///< of an event function
+  int event = 0;       ///< of an event function; of the last two kinds the field
   double tau = 0.0;    ///< where it is worst
-  double value = 0.0;  ///< T_s, h, or h_x f
+  double value = 0.0;  ///< T_s, h, or h_x f; of the last two kinds h_x f in the direction that it must not have
 };
 
 /// `monitored[s]` lists the event functions monitored on segment s. A segment leaves its terminal surface when h_x f is

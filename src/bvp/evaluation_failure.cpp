@@ -21,13 +21,24 @@ bool is_finite_at(const DefiningSystem& defining, FunctionKind kind, int index, 
          all_finite(by_parameter.data(), rows * free);
 }
 
+/// Why Filippov's field is not finite where both of its fields are.
+std::string two_fold(const HybridSystem& system, FunctionKind kind, int index) {
+  const tchat_sliding* const mode = kind == FunctionKind::field ? system.sliding_mode(index) : nullptr;
+  if (mode == nullptr) return "";
+  return fmt::format(
+      "; it slides on event {} ({}), and its field has no value where h_x f of the fields {} and {} is "
+      "the same, as at a two-fold, where both are tangent",
+      mode->surface, system.function_name(FunctionKind::event, mode->surface), mode->minus, mode->plus);
+}
+
 std::string place(const HybridSystem& system, FunctionKind kind, int index, int s, double tau, const double* x) {
   const char* kinds[] = {"vector field", "event function", "jump function", "integrand"};
   std::string state;
   for (int k = 1; k <= system.dimension(); ++k)
     state += fmt::format("{}{} = {:.6g}", k > 1 ? ", " : "", system.state_name(k), x[k - 1]);
-  return fmt::format("{} {} ({}) or a derivative of it is not finite on segment {} at tau = {:.6g}, {}",
-                     kinds[static_cast<int>(kind)], index, system.function_name(kind, index), s + 1, tau, state);
+  return fmt::format("{} {} ({}) or a derivative of it is not finite on segment {} at tau = {:.6g}, {}{}",
+                     kinds[static_cast<int>(kind)], index, system.function_name(kind, index), s + 1, tau, state,
+                     two_fold(system, kind, index));
 }
 
 }  // namespace

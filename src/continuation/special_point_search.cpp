@@ -1,6 +1,7 @@
 #include "continuation/special_point_search.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -10,6 +11,7 @@
 #include "bvp/transversality.hpp"
 #include "continuation/value_trend.hpp"
 #include "special_points/bifurcation_tests.hpp"
+#include "special_points/sliding_bifurcation.hpp"
 
 namespace tchat {
 
@@ -57,6 +59,18 @@ std::string joined(const std::string& description, const std::string& further) {
   if (kind != std::string::npos && description.compare(0, kind + 2, further, 0, kind + 2) == 0)
     return ", " + further.substr(kind + 2);
   return "; " + further;
+}
+
+/// The description with the names of the sliding bifurcations that the point is, each once, before it.
+std::string with_sliding_names(const SpecialPoint& special, const TestedPoint& point) {
+  std::vector<UserPointKind> kinds = special.further;
+  if (special.type == PointType::user) kinds.insert(kinds.begin(), special.kind);
+  std::vector<std::string> names;
+  for (const UserPointKind& kind : kinds)
+    if (const std::string name = sliding_bifurcation(point, kind);
+        !name.empty() && std::find(names.begin(), names.end(), name) == names.end())
+      names.push_back(name);
+  return names.empty() ? special.description : fmt::format("{}: {}", fmt::join(names, ", "), special.description);
 }
 
 }  // namespace
@@ -438,6 +452,7 @@ SpecialPoint SpecialPointSearch::classify(const std::vector<std::size_t>& group,
       special.ends_branch = special.ends_branch || found.ends_branch;
     }
   }
+  special.description = with_sliding_names(special, tested(at.point, at.data));
   for (const std::size_t i : group) {
     signs_[i] = -signs_[i];
     at.data.tests[i].value = 0.0;

@@ -183,7 +183,7 @@ std::string format_point_header(const PointFileHeader& header, const std::vector
   text += parameter_line("Active continuation", header.active_parameters);
   if (header.curve_type != 0)
     text +=
-        fmt::format("{}   Branch type: {}  TY = '{}'\n", line_start, header.curve_type, type_name(header.curve_type));
+        fmt::format("{}   Branch type: {}  TY = '{}'\n", line_start, header.curve_type, curve_name(header.curve_type));
   if (const std::string names = long_names(columns); !names.empty())
     text += ConstantsLine().pair("columns", names).str();
   text += std::string(line_start) + '\n' + line_start + "    PT  TY  LAB ";

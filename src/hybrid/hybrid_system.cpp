@@ -19,6 +19,21 @@ void require(bool condition, const std::string& what) {
   if (!condition) throw std::invalid_argument(what);
 }
 
+/// "" or what is wrong with the numbers of a sliding mode.
+std::string fault_of(const tchat_problem& table, const tchat_sliding& mode) {
+  const auto outside = [](int number, int count) { return number < 1 || number > count; };
+  if (outside(mode.field, table.fields) || outside(mode.minus, table.fields) || outside(mode.plus, table.fields))
+    return fmt::format("has the fields {}, {} and {}, there are 1..{}", mode.field, mode.minus, mode.plus,
+                       table.fields);
+  if (outside(mode.surface, table.events) || outside(mode.to_minus, table.events) ||
+      outside(mode.to_plus, table.events))
+    return fmt::format("has the event functions {}, {} and {}, there are 1..{}", mode.surface, mode.to_minus,
+                       mode.to_plus, table.events);
+  if (mode.field == mode.minus || mode.field == mode.plus || mode.minus == mode.plus)
+    return fmt::format("has the fields {}, {} and {}, which must differ", mode.field, mode.minus, mode.plus);
+  return "";
+}
+
 std::string name_or(const char* const* names, int count, int k, const char* fallback) {
   if (names != nullptr && k >= 1 && k <= count && names[k - 1] != nullptr) return names[k - 1];
   return fmt::format(fmt::runtime(fallback), k);
@@ -64,6 +79,19 @@ HybridSystem::HybridSystem(const tchat_problem& table) : table_(&table) {
   require(table.derivative_order < 2 || table.second != nullptr, "its table has no function `second`");
   require(table.user_values == 0 || (table.user_values > 0 && table.user_value != nullptr),
           "its table has no function `user_value`");
+  require(
+      table.sliding_modes >= 0 && table.sliding_modes <= 1000 && (table.sliding_modes == 0 || table.sliding != nullptr),
+      fmt::format("it has {} sliding modes, but its table does not list them", table.sliding_modes));
+  for (const tchat_sliding& mode : sliding_modes()) {
+    const std::string fault = fault_of(table, mode);
+    require(fault.empty(), "a sliding mode of it " + fault);
+  }
+}
+
+const tchat_sliding* HybridSystem::sliding_mode(int field) const {
+  for (const tchat_sliding& mode : sliding_modes())
+    if (mode.field == field) return &mode;
+  return nullptr;
 }
 
 int HybridSystem::count(FunctionKind kind) const {

@@ -45,6 +45,12 @@ class HybridSystem {
   }
   int boundary_conditions() const { return table_->boundary_conditions; }
   int integral_conditions() const { return table_->integral_conditions; }
+  /// Which fields slide on the surface of an event function, as far as the problem tells.
+  std::span<const tchat_sliding> sliding_modes() const {
+    return {table_->sliding, static_cast<std::size_t>(table_->sliding_modes)};
+  }
+  /// The mode that a field belongs to; null when it is none that slides.
+  const tchat_sliding* sliding_mode(int field) const;
   const tchat_problem& table() const { return *table_; }
 
   std::string name() const { return table_->name; }

@@ -141,11 +141,11 @@ const tchat_problem* find_table(const std::string& path, void* handle) {
   return table;
 }
 
-/// A table made before boundary value problems has none of their members.
+/// A table made before boundary value problems, or before sliding modes, has none of their members.
 tchat_problem completed(const tchat_problem& table) {
-  if (table.struct_size != TCHAT_PROBLEM_FIRST_SIZE) return table;
+  if (table.struct_size != TCHAT_PROBLEM_FIRST_SIZE && table.struct_size != TCHAT_PROBLEM_SECOND_SIZE) return table;
   tchat_problem whole{};
-  std::memcpy(&whole, &table, TCHAT_PROBLEM_FIRST_SIZE);
+  std::memcpy(&whole, &table, table.struct_size);
   whole.struct_size = sizeof(tchat_problem);
   return whole;
 }

@@ -7,6 +7,7 @@
 #include "setup/run_monitors.hpp"
 #include "special_points/bifurcation_tests.hpp"
 #include "special_points/contact_test.hpp"
+#include "special_points/sliding_bifurcation.hpp"
 #include "special_points/user_value_test.hpp"
 
 namespace tchat {
@@ -20,6 +21,18 @@ void add_contacts(TestList& tests, const DefiningSystem& system, const RunSettin
     for (const int event : settings.segments[static_cast<std::size_t>(s)].monitor)
       if (const auto& chosen = settings.test_functions; std::find(chosen.begin(), chosen.end(), ++k) != chosen.end())
         tests.push_back(std::make_unique<ContactTest>(system, s, event, settings.stop_at_grazing));
+}
+
+/// Where a segment of one side of a sliding mode is followed by one of the other.
+void add_sliding_onsets(TestList& tests, const DefiningSystem& system, const RunSettings& settings) {
+  const Signature& signature = system.signature();
+  for (std::size_t s = 0; s < signature.size(); ++s)
+    for (const tchat_sliding& mode : system.system().sliding_modes()) {
+      const int from = signature[s].field, to = signature[(s + 1) % signature.size()].field;
+      if ((from == mode.minus && to == mode.plus) || (from == mode.plus && to == mode.minus))
+        tests.push_back(
+            std::make_unique<SlidingOnsetTest>(system, static_cast<int>(s), mode, settings.stop_at_grazing));
+    }
 }
 
 }  // namespace
@@ -63,6 +76,7 @@ TestList contact_tests(const DefiningSystem& system, const RunSettings& settings
   add_impact_velocities(tests, system, settings);
   add_contacts(tests, system, settings);
   add_section_tangencies(tests, system, settings, -1);
+  add_sliding_onsets(tests, system, settings);
   return tests;
 }
 

@@ -13,7 +13,7 @@ namespace tchat {
 using TestList = std::vector<std::unique_ptr<TestFunction>>;
 
 /// Impact velocities, the contacts that GCIPSI chooses, counted through the monitored events of all segments in order,
-/// and tangencies of the sections.
+/// tangencies of the sections, and where crossings of a surface begin to slide.
 TestList contact_tests(const DefiningSystem& system, const RunSettings& settings);
 
 void add_impact_velocities(TestList& tests, const DefiningSystem& system, const RunSettings& settings);

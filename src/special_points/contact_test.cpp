@@ -52,7 +52,9 @@ class EventAlongSegment {
     Vector curvature(n);
     system().second(FunctionKind::event, event_, u.data(), par(), {}, f.data(), &rate, curvature.data(), nullptr);
     const double rate_slope = curvature.dot(f) + gradient(u).dot(fx * f);  // of h_x f along the flow
-    const double correction = rate_slope > 0.0 ? -rate / rate_slope : 0.0;
+    const double to_zero = rate_slope > 0.0 ? -rate / rate_slope : 0.0;
+    // Farther off than the segment lasts (one that vanishes, whose slopes are rounding) it is no minimum of its.
+    const double correction = std::abs(to_zero) <= x_.duration(s_) ? to_zero : 0.0;
     const double value = system().event(event_, u.data(), par()) + 0.5 * rate * correction;
     u += correction * f;
     const double tau = x_.mesh[static_cast<std::size_t>(j)] + sigma * length(j) + correction / x_.duration(s_);

@@ -113,6 +113,27 @@ TEST_CASE("conditions of boundary value problems without their number, or number
   says(integrand + "static constexpr int integral_conditions = 1;", "`boundary_conditions` must be at least 1");
 }
 
+TEST_CASE("sliding modes of functions that are not there, or are the same") {
+  const auto says = [](const std::string& numbers, const std::string& sentence) {
+    CAPTURE(numbers);
+    const std::vector<std::string> lines =
+        told(problem(field(""),
+                     "static constexpr int dimension = 2, parameters = 1, fields = 3, events = 3, jumps = 1;"
+                     "static constexpr tchat::Sliding sliding{" +
+                         numbers + "};"));
+    INFO(lines[0]);
+    CHECK_THAT(lines[0], Contains(sentence) && Contains("ball.cpp:4: "));
+  };
+  says(".field = 4, .minus = 2, .plus = 1, .surface = 1, .to_minus = 2, .to_plus = 3",
+       "`sliding`: field, minus and plus must be numbers from 1 to `fields`");
+  says(".field = 3, .minus = 2, .plus = 1, .surface = 1, .to_minus = 2, .to_plus = 0",
+       "`sliding`: surface, to_minus and to_plus must be numbers from 1 to `events`");
+  says(".field = 3, .minus = 1, .plus = 1, .surface = 1, .to_minus = 2, .to_plus = 3",
+       "`sliding`: field, minus and plus must be three different fields");
+  says(".field = 3, .minus = 2, .plus = 1, .surface = 1, .to_minus = 2, .to_plus = 1",
+       "`sliding`: surface, to_minus and to_plus must be three different event functions");
+}
+
 TEST_CASE("punctuation and the header") {
   check_told(problem(field("f[1] = x[0]")), 5, "a ; is missing");
   check_told(problem(field("if (x[0] > 0) {")), 10, "a } is missing above: the { of line 3 is not closed");

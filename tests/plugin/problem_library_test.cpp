@@ -120,8 +120,18 @@ TEST_CASE("a table made before there were boundary value problems still loads, w
   CHECK(f[0] == 1.5);
 }
 
+TEST_CASE("a table made before it told of sliding modes still loads, without any") {
+  const PluginFolder folder;
+  const std::string spoil = "table.struct_size = TCHAT_PROBLEM_SECOND_SIZE; table.sliding_modes = 3;";
+  const ProblemLibrary library(resolve_plugin(folder.write("second.cpp", small_plugin(spoil)), build_options));
+  CHECK(library.system().sliding_modes().empty());
+}
+
 TEST_CASE("tables that cannot be used") {
   const std::vector<BadPlugin> cases = {
+      {"table.sliding_modes = 1;", {"1 sliding modes", "does not list them"}},
+      {"static const tchat_sliding mode{1, 2, 3, 1, 1, 1}; table.sliding_modes = 1; table.sliding = &mode;",
+       {"a sliding mode of it has the fields 1, 2 and 3, there are 1..1"}},
       {"table.abi_version = 77;", {"interface version is 77", "another tchat", "delete it"}},
       {"table.struct_size = 8;", {"table has 8 bytes", "another tchat"}},
       {"table.dimension = 0;", {"dimension is 0", "allowed are 1..1000"}},

@@ -27,6 +27,7 @@ MakefileRun::MakefileRun(const std::string& problem, const std::string& targets)
   for (const std::string kind : {"problems", "constants"}) {
     const fs::path source = fs::path(kind == "problems" ? PROBLEMS : CONSTANTS) / problem;
     const fs::path target = folder_.file(kind + "/" + problem);
+    if (!fs::exists(source)) continue;  // constants of a chain that begins with a simulation
     fs::create_directories(target);
     for (const auto& entry : fs::directory_iterator(source))
       if (entry.is_regular_file() && entry.path().extension() != ".so")

@@ -31,6 +31,18 @@ extern "C" {
 
 enum { TCHAT_FIELD = 0, TCHAT_EVENT = 1, TCHAT_JUMP = 2, TCHAT_INTEGRAND = 3 };
 
+/* A sliding mode (Filippov): the field `field` is that on the surface h = 0 of event function `surface`, between the
+ * fields `minus`, where h < 0, and `plus`, where h > 0. The event function `to_minus`, h_x f of `minus`, ends it where
+ * the orbit leaves with `minus`; `to_plus`, -h_x f of `plus`, where it leaves with `plus`. All count from 1. */
+typedef struct tchat_sliding {
+  int32_t field;
+  int32_t minus;
+  int32_t plus;
+  int32_t surface;
+  int32_t to_minus;
+  int32_t to_plus;
+} tchat_sliding;
+
 typedef struct tchat_problem {
   uint32_t abi_version; /* TCHAT_PROBLEM_ABI */
   uint32_t struct_size; /* sizeof(tchat_problem) */
@@ -105,10 +117,18 @@ typedef struct tchat_problem {
   /* Number of integral conditions: the integrals of the functions of kind TCHAT_INTEGRAND over time, index s on segment
    * s, added over all segments, are zero. They may depend on the durations in par. */
   int32_t integral_conditions;
+
+  /* Which of the fields are those of sliding: `sliding_modes` modes. The functions themselves are `value`'s as all
+   * others; this tells what they are, for the names of points where sliding begins and ends. 0 and NULL: none, or not
+   * told. */
+  int32_t sliding_modes;
+  const tchat_sliding* sliding;
 } tchat_problem;
 
 /* Size of the table before the conditions of boundary value problems were added: such a table has none. */
 #define TCHAT_PROBLEM_FIRST_SIZE offsetof(tchat_problem, boundary_conditions)
+/* And before it told of sliding modes. */
+#define TCHAT_PROBLEM_SECOND_SIZE offsetof(tchat_problem, sliding_modes)
 
 typedef const tchat_problem* (*tchat_problem_entry)(void);
 #define TCHAT_PROBLEM_ENTRY "tchat_problem_table"

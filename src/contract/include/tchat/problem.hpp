@@ -37,6 +37,10 @@
 ///     template <class T> void integrand(int s, const T* x, const T* par, const T* durations, T* q) const {
 ///       q[0] = x[0] - par[1] / durations[0];                              // the durations may be left out
 ///     }
+///     // sliding on the surface of event function 1 between field 2 (below it) and field 1 (above): field 3 and the
+///     // event functions 3 and 4, where it ends, are made by tchat (tchat/sliding.hpp)
+///     static constexpr tchat::Sliding sliding{.field = 3, .minus = 2, .plus = 1, .surface = 1, .to_minus = 3,
+///                                             .to_plus = 4};
 ///     // hand-written first derivatives instead of automatic ones, column-major, zero before the call:
 ///     void field_derivatives(int i, const double* x, const double* par, double* dfdx, double* dfdp) const;
 ///     void event_derivatives(int j, const double* x, const double* par, double* dhdx, double* dhdp) const;
@@ -54,6 +58,7 @@
 
 #include "tchat/dual.hpp"
 #include "tchat/problem.h"
+#include "tchat/sliding.hpp"
 
 namespace tchat {
 
@@ -182,6 +187,19 @@ class ProblemTable {
 
   static constexpr int n = Problem::dimension;
   static constexpr int q = Problem::parameters;
+
+  static constexpr auto modes = sliding_modes_of<Problem>();
+  static_assert(sliding_fault(modes, Problem::fields, event_count()) != SlidingFault::field_range,
+                "tchat: `sliding`: field, minus and plus must be numbers from 1 to `fields`");
+  static_assert(sliding_fault(modes, Problem::fields, event_count()) != SlidingFault::event_range,
+                "tchat: `sliding`: surface, to_minus and to_plus must be numbers from 1 to `events`");
+  static_assert(sliding_fault(modes, Problem::fields, event_count()) != SlidingFault::same_fields,
+                "tchat: `sliding`: field, minus and plus must be three different fields");
+  static_assert(sliding_fault(modes, Problem::fields, event_count()) != SlidingFault::same_events,
+                "tchat: `sliding`: surface, to_minus and to_plus must be three different event functions");
+  static_assert(sliding_fault(modes, Problem::fields, event_count()) != SlidingFault::made_twice,
+                "tchat: `sliding`: a field or an event function that one mode makes is also made by another, or is "
+                "what another is made of");
   static_assert(n >= 1, "tchat: `dimension` must be at least 1");
   static_assert(q >= 0 && q <= 60, "tchat: `parameters` must be between 0 and 60");
   static_assert(Problem::fields >= 1, "tchat: `fields`, the number of vector fields, must be at least 1");
@@ -215,6 +233,15 @@ class ProblemTable {
     return kind == TCHAT_EVENT ? 1 : kind == TCHAT_INTEGRAND ? integral_count() : n;
   }
 
+  /// The sliding mode that makes a function; null for the problem's own ones.
+  static const Sliding* mode_of(std::int32_t kind, int index) {
+    for (const Sliding& mode : modes)
+      if ((kind == TCHAT_FIELD && index == mode.field) ||
+          (kind == TCHAT_EVENT && (index == mode.to_minus || index == mode.to_plus)))
+        return &mode;
+    return nullptr;
+  }
+
   /// F(x, par), rows preset to NaN by the caller. A problem may throw where it cannot be evaluated: the callers are C
   /// code, so the exception ends here as NaN.
   template <class T>
@@ -222,6 +249,13 @@ class ProblemTable {
                        [[maybe_unused]] const T* durations, T* out) {
     const Problem& problem = object(self);
     try {
+      if (const Sliding* const mode = mode_of(kind, index)) {
+        if constexpr (!modes.empty()) {
+          if (kind == TCHAT_FIELD) sliding_field(problem, *mode, x, par, out);
+          if (kind == TCHAT_EVENT) out[0] = sliding_end(problem, *mode, index, x, par);
+        }
+        return;
+      }
       if (kind == TCHAT_FIELD) problem.field(index, x, par, out);
       if constexpr (event_count() > 0)
         if (kind == TCHAT_EVENT) out[0] = problem.event(index, x, par);
@@ -332,6 +366,7 @@ class ProblemTable {
     std::array<double, static_cast<std::size_t>(n * (q > 0 ? q : 1))> all{};
     const Problem& problem = object(self);
     bool given = false;
+    if (mode_of(kind, index) != nullptr) return false;
     std::fill(dx, dx + rows(kind) * n, 0.0);
     if constexpr (requires { problem.field_derivatives(index, x, par, dx, dp); })
       if (kind == TCHAT_FIELD) problem.field_derivatives(index, x, par, dx, all.data()), given = true;
@@ -476,6 +511,8 @@ class ProblemTable {
       table.boundary_first = &boundary_first;
       table.integral_conditions = integral_count();
     }
+    table.sliding_modes = static_cast<std::int32_t>(modes.size());
+    if constexpr (!modes.empty()) table.sliding = modes.data();
     if constexpr (has_successors) table.successors = &successors;
     if constexpr (requires { Problem::user_values; }) table.user_values = Problem::user_values;
 

@@ -1,0 +1,22 @@
+#include "bvp/event_condition.hpp"
+
+#include <cmath>
+
+namespace tchat {
+
+EventCondition::EventCondition(const DefiningSystem& system, const OrbitShape& shape, int segment, int event,
+                               bool at_end)
+    : system_(system), segment_(segment), event_(event), at_end_(at_end), gradient_(shape, system.free_count()) {
+  gradient_.set_zero();
+}
+
+bool EventCondition::evaluate(CondensedSystem&, const Orbit& x) {
+  const int node = at_end_ ? x.shape.nodes() - 1 : 0;
+  double* const by_state = gradient_.states.col(segment_ * x.shape.nodes() + node).data();
+  system_.system().first(FunctionKind::event, event_, x.node(segment_, node), x.par.data(), system_.free_parameters(),
+                         &value_, by_state, gradient_.globals.data());
+  return std::isfinite(value_) && all_finite(by_state, x.shape.dimension) &&
+         all_finite(gradient_.globals.data(), system_.free_count());
+}
+
+}  // namespace tchat
