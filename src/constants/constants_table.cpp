@@ -136,6 +136,8 @@ std::vector<Constant> make_table() {
        "[PD1, GR2]", ""},
       {"ICPMOVE", "let ICP(1) move where no orbit is found at its first value", extension_record, &R::start_may_move,
        one_of({0, 1}), "0 (refuse such a start) or 1 (take an orbit near it, with another value)", "1", ""},
+      {"CLSTOP", "end the branch where it comes back to its first point", extension_record, &R::stop_when_closed,
+       one_of({0, 1}), "0 (go on, round again) or 1 (end the branch)", "0", ""},
       {"PAR", "values of parameters", command_line_record, &R::parameter_values, any(),
        "a finite number for PAR(index) or PAR(name)", "{2: 0.8}", ""},
   };

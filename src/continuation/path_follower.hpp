@@ -59,10 +59,14 @@ class PathFollower {
   const CondensedSystem& condensed() const { return problem_.condensed(); }
   OrbitCondition* condition() { return problem_.condition(); }
   const NewtonChord& newton() const { return newton_; }
+  const NewtonSettings& newton_settings() const { return settings_; }
   int principal() const { return principal_; }  ///< PAR index of the continuation parameter
   double principal_direction(const OrbitVector& v) const;
   /// Cosine of the angle between the point's tangent and a direction, in the weighted norm.
   double alignment(const PathPoint& point, const OrbitVector& direction) const;
+
+  /// The length of the difference of two orbits on one mesh, in the weighted norm.
+  double distance(const Orbit& a, const Orbit& b) const;
 
   /// Condition of the system bordered by the tangent, at the last point.
   CondensedSystem::Singularity singularity(const PathPoint& point);
