@@ -101,9 +101,9 @@ BranchSummary ContinuationRun::run(PathPoint start) {
   return summary_;
 }
 
-/// Where the step to next_ passes the first point of the branch: next_ is moved to just beyond it, so that special points
-/// are looked for as far as there, also at the first point itself; here_ is moved to the mesh of the first point. The
-/// length of a step to it.
+/// Where the step to next_ passes the first point of the branch: next_ is moved to just beyond it, so that special
+/// points are looked for as far as there, also at the first point itself; here_ is moved to the mesh of the first
+/// point. The length of a step to it.
 std::optional<double> ContinuationRun::come_back() {
   if (!settings_.stop_when_closed) return std::nullopt;
   const std::optional<ClosedBranch::Return> way = closed_.on_step(here_, next_.point, next_.ds);
