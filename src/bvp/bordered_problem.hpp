@@ -1,19 +1,20 @@
 /// The square problem that Newton's method solves for a point of a branch: the defining system, its integral conditions
-/// among the border rows, at most one scalar condition on the whole orbit (a critical multiplier), and one row of the
-/// branch (pseudo-arclength, or a fixed parameter).
+/// among the border rows, a condition of one or two numbers on the whole orbit (a critical multiplier) or none, and one
+/// row of the branch (pseudo-arclength, or a fixed parameter).
 ///
 ///     J dx = -F,    grad I . dx = -I,    grad G . dx = -G,    row . dx = target       (n m N c + ... + m + q
 ///     equations)
 ///
 /// The gradient of an integral I is known before J is factored. That of G is known only after J has been condensed. So
 /// J is condensed with a stand-in for it, the gradient of the last linearisation, and the true gradient enters by a
-/// rank-one correction: one more solution of the same factors.
+/// correction of rank one for each number: one more solution of the same factors.
 ///
 /// A condition is found by iteration from where it was last: which multiplier it means, and the border of its own
 /// problem. A trial of Newton's method that fails leaves these anywhere. They belong to the point of the branch that
-/// the trial began from, together with the stand-in, and are brought back (`recall`) before the next one.
+/// the trial began from, together with the stand-ins, and are brought back (`recall`) before the next one.
 #pragma once
 
+#include <Eigen/LU>
 #include <memory>
 #include <optional>
 #include <span>
@@ -24,14 +25,19 @@
 
 namespace tchat {
 
-/// A scalar G of the orbit, durations and free parameters with its gradient.
+/// A function G of the orbit, durations and free parameters, of one number or two, with its gradients.
 class OrbitCondition {
  public:
+  static constexpr int most = 2;
+
   virtual ~OrbitCondition() = default;
-  /// G and its gradient at x, whose linearisation is in `condensed`. False when they cannot be found.
+  /// How many numbers; constant.
+  virtual int count() const { return 1; }
+  /// G and its gradients at x, whose linearisation is in `condensed`. False when they cannot be found.
   virtual bool evaluate(CondensedSystem& condensed, const Orbit& x) = 0;
-  virtual double value() const = 0;
-  virtual const OrbitVector& gradient() const = 0;
+  /// Of number k = 0 .. count() - 1.
+  virtual double value(int k) const = 0;
+  virtual const OrbitVector& gradient(int k) const = 0;
   /// The multiplier that is kept exactly, where it is one number: 1 or -1.
   virtual std::optional<int> kept_multiplier() const { return std::nullopt; }
   /// "" on the curve, or why the last point, which solves the equations, lies beyond its end.
@@ -45,13 +51,13 @@ class OrbitCondition {
 /// What linearisations near a point of the branch begin from; empty without a condition.
 struct ConditionMemory {
   std::vector<double> condition;
-  OrbitVector stand_in;
+  std::vector<OrbitVector> stand_ins;
 };
 
 class BorderedProblem {
  public:
   /// `condition` may be null. The defining system must outlive this object; with R coupling rows and I integral
-  /// conditions n m + m + q = R + I + 1, or R + I + 2 with a condition.
+  /// conditions and a condition of C numbers n m + m + q = R + I + C + 1.
   BorderedProblem(const DefiningSystem& system, const OrbitShape& shape, std::unique_ptr<OrbitCondition> condition);
 
   CondensedSystem& condensed() { return condensed_; }
@@ -76,19 +82,25 @@ class BorderedProblem {
   double residual_size(const OrbitResidual& residual) const;
 
  private:
-  void correct(double condition_target, OrbitVector& dx) const;
-  OrbitVector& stand_in() { return rows_.back(); }
-  const OrbitVector& stand_in() const { return rows_.back(); }
-  /// The border's right-hand side with these in the branch's row and that of the stand-in, the integrals' in between.
-  std::span<const double> border(double branch, const std::vector<double>& integrals, double stand_in);
+  using Numbers = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, OrbitCondition::most, 1>;
+  using Slopes = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, OrbitCondition::most, OrbitCondition::most>;
+
+  bool find_responses();
+  void follow_gradients();
+  void correct(Numbers wanted, OrbitVector& dx) const;
+  int conditions() const { return condition_ ? condition_->count() : 0; }
+  OrbitVector& stand_in(int k) { return rows_[rows_.size() - responses_.size() + static_cast<std::size_t>(k)]; }
+  /// The border's right-hand side with these in the branch's row and the integrals', zero in those of the stand-ins but
+  /// for a one in that of number `unit` (-1: none).
+  std::span<const double> border(double branch, const std::vector<double>& integrals, int unit = -1);
 
   CondensedSystem condensed_;
   std::unique_ptr<OrbitCondition> condition_;
-  std::vector<OrbitVector> rows_;  // the branch's row, the integrals' gradients and the stand-in for that of G
-  std::vector<double> border_;     // right-hand side of these
-  std::vector<double> unchanged_;  // integrals that keep their values
-  OrbitVector response_;           // solution for a unit in the stand-in's row
-  double response_slope_ = 1.0;    // grad G . response
+  std::vector<OrbitVector> rows_;       // the branch's row, the integrals' gradients and the stand-ins for those of G
+  std::vector<double> border_;          // right-hand side of these
+  std::vector<double> unchanged_;       // integrals that keep their values
+  std::vector<OrbitVector> responses_;  // solutions for a unit in the row of each stand-in
+  Eigen::PartialPivLU<Slopes> slopes_;  // of grad G . responses
 };
 
 }  // namespace tchat

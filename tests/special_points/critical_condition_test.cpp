@@ -25,7 +25,7 @@ class ConditionAt {
   double value(OrbitCondition& condition, const Orbit& x) {
     REQUIRE(condensed.linearize(x, border_, residual_) == Linearization::ready);
     REQUIRE(condition.evaluate(condensed, x));
-    return condition.value();
+    return condition.value(0);
   }
   bool evaluates(OrbitCondition& condition, const Orbit& x) {
     REQUIRE(condensed.linearize(x, border_, residual_) == Linearization::ready);
@@ -64,7 +64,7 @@ double difference(ConditionAt& at, OrbitCondition& condition, const Orbit& x, co
 /// The gradient against differences in random directions and along single unknowns of every kind.
 void check_gradient(ConditionAt& at, OrbitCondition& condition, const Orbit& x) {
   for (int round = 0; round < 12; ++round) at.value(condition, x);  // the border settles
-  const OrbitVector gradient = condition.gradient();
+  const OrbitVector gradient = condition.gradient(0);
   std::vector<OrbitVector> directions;
   for (int i = 0; i < 3; ++i) directions.push_back(at.random_vector(at.condensed.make_vector()));
   const OrbitVector zero = at.condensed.make_vector();
