@@ -111,10 +111,26 @@ std::string CriticalBranchPoint::beyond_end() const {
       b_);
 }
 
-double CriticalBranchPoint::breaking(int k) const {
-  const auto column = columns_.col(k).head(map_.size());
-  const double sizes = left_null().norm() * column.norm();
-  return sizes > 0.0 ? std::abs(left_null().dot(column)) / sizes : 0.0;
+BranchPointBreaking branch_point_breaking(const DefiningSystem& system, const Orbit& x) {
+  const int parameters = system.free_count();
+  CondensedSystem condensed(system, x.shape, parameters);
+  OrbitResidual residual = condensed.make_residual();
+  std::vector<OrbitVector> rows(static_cast<std::size_t>(parameters), condensed.make_vector());
+  for (int k = 0; k < parameters; ++k) rows[static_cast<std::size_t>(k)].globals(k) = 1.0;
+  CriticalMultiplier multiplier(system, x.shape, 1);
+  // Singular or not, the blocks are there.
+  if (condensed.linearize(x, rows, residual) == Linearization::not_finite || !multiplier.evaluate(condensed, x))
+    return {};
+  CondensedReturnMap map(system, x.shape);
+  Eigen::VectorXd column(map.size());
+  const Eigen::Map<const Eigen::VectorXd> psi(multiplier.left_null_vector().data(), map.size());
+  BranchPointBreaking result{true, {}};
+  for (int k = 0; k < parameters; ++k) {
+    map.parameter_column(condensed, x, k, column.data());
+    const double sizes = psi.norm() * column.norm();
+    result.shares.push_back(sizes > 0.0 ? std::abs(psi.dot(column)) / sizes : 0.0);
+  }
+  return result;
 }
 
 }  // namespace tchat

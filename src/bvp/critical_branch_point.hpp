@@ -53,10 +53,6 @@ class CriticalBranchPoint final : public RealMultiplierCondition {
   std::string beyond_end() const override;
   double multiplicity_function() const override { return multiplier_.multiplicity_function(); }
 
-  /// |psi^T F_{p_k}| as a share of |psi| |F_{p_k}|, at the last evaluation: how much parameter k (from 0) breaks the
-  /// branch point.
-  double breaking(int k) const;
-
  private:
   int directions() const { return unfolded_ != nullptr ? 2 : 1; }
   Eigen::Map<const Eigen::VectorXd> left_null() const {
@@ -80,5 +76,13 @@ class CriticalBranchPoint final : public RealMultiplierCondition {
   OrbitVector extended_;
   OrbitVector gradient_;
 };
+
+/// How much each free problem parameter breaks a branch point: |psi^T F_{p_k}| as a share of |psi| |F_{p_k}|, zero for
+/// the parameter in which it is one.
+struct BranchPointBreaking {
+  bool known = false;  ///< false where no null vector was found
+  std::vector<double> shares;
+};
+BranchPointBreaking branch_point_breaking(const DefiningSystem& system, const Orbit& x);
 
 }  // namespace tchat

@@ -42,9 +42,8 @@ class BranchPointCurve final : public TwoParameterCurve {
       direction->globals.conservativeResize(direction->globals.size() + 1);
       direction->globals(direction->globals.size() - 1) = 0.0;
     }
-    BranchSetup setup = TwoParameterCurve::set_up(system, settings, unfolded);
-    refuse_broken(*setup.follower, setup.start.point, system, settings, start);
-    return setup;
+    refuse_broken(system, settings, start);
+    return TwoParameterCurve::set_up(system, settings, unfolded);
   }
 
  protected:
@@ -54,13 +53,12 @@ class BranchPointCurve final : public TwoParameterCurve {
 
  private:
   /// A branch point that the second parameter breaks has no curve in two parameters.
-  static void refuse_broken(PathFollower& follower, const PathPoint& point, const HybridSystem& system,
-                            const RunSettings& settings, const SelectedStart& start) {
+  static void refuse_broken(const HybridSystem& system, const RunSettings& settings, const SelectedStart& start) {
     constexpr double broken = 1e-3;  // a share; the asymmetry of a mesh leaves far less
-    constexpr int second = 1;
-    follower.linearize_at(point);
-    if (static_cast<const CriticalBranchPoint&>(*follower.condition()).breaking(second) <= broken) return;
     const std::vector<int> free = free_problem_parameters(settings);
+    const PeriodicOrbitSystem plain(system, settings.signature(), free);
+    const BranchPointBreaking breaking = branch_point_breaking(plain, start.start.orbit);
+    if (!breaking.known || breaking.shares.back() <= broken) return;
     const std::string first_name = system.parameter_name(free[0]);
     const std::string second_name = system.parameter_name(free[1]);
     throw UserError(fmt::format(
