@@ -121,14 +121,18 @@ BranchPointBreaking branch_point_breaking(const DefiningSystem& system, const Or
   // Singular or not, the blocks are there.
   if (condensed.linearize(x, rows, residual) == Linearization::not_finite || !multiplier.evaluate(condensed, x))
     return {};
+  constexpr double rounding = 1e-6;  // of the matrix: a smaller column says nothing
   CondensedReturnMap map(system, x.shape);
+  std::vector<double> matrix;
+  map.values(condensed, x, 1.0, matrix);
+  const double least = rounding * Eigen::Map<const Eigen::VectorXd>(matrix.data(), std::ssize(matrix)).norm();
   Eigen::VectorXd column(map.size());
   const Eigen::Map<const Eigen::VectorXd> psi(multiplier.left_null_vector().data(), map.size());
   BranchPointBreaking result{true, {}};
   for (int k = 0; k < parameters; ++k) {
     map.parameter_column(condensed, x, k, column.data());
-    const double sizes = psi.norm() * column.norm();
-    result.shares.push_back(sizes > 0.0 ? std::abs(psi.dot(column)) / sizes : 0.0);
+    column *= 1.0 + std::abs(x.par(system.free_parameters()[static_cast<std::size_t>(k)] - 1));
+    result.shares.push_back(std::abs(psi.dot(column)) / (psi.norm() * (column.norm() + least)));
   }
   return result;
 }

@@ -78,10 +78,13 @@ class CriticalBranchPoint final : public RealMultiplierCondition {
 };
 
 /// How much each free problem parameter breaks a branch point: |psi^T F_{p_k}| as a share of |psi| |F_{p_k}|, zero for
-/// the parameter in which it is one.
+/// the parameter in which it is one. A column that is rounding against F_u counts as zero.
 struct BranchPointBreaking {
   bool known = false;  ///< false where no null vector was found
   std::vector<double> shares;
+
+  /// Does parameter k (from 0) break it? The asymmetry of a mesh leaves far less.
+  bool by(std::size_t k) const { return shares[k] > 1e-3; }
 };
 BranchPointBreaking branch_point_breaking(const DefiningSystem& system, const Orbit& x);
 

@@ -54,11 +54,10 @@ class BranchPointCurve final : public TwoParameterCurve {
  private:
   /// A branch point that the second parameter breaks has no curve in two parameters.
   static void refuse_broken(const HybridSystem& system, const RunSettings& settings, const SelectedStart& start) {
-    constexpr double broken = 1e-3;  // a share; the asymmetry of a mesh leaves far less
     const std::vector<int> free = free_problem_parameters(settings);
     const PeriodicOrbitSystem plain(system, settings.signature(), free);
     const BranchPointBreaking breaking = branch_point_breaking(plain, start.start.orbit);
-    if (!breaking.known || breaking.shares.back() <= broken) return;
+    if (!breaking.known || !breaking.by(1)) return;
     const std::string first_name = system.parameter_name(free[0]);
     const std::string second_name = system.parameter_name(free[1]);
     throw UserError(fmt::format(

@@ -1,8 +1,6 @@
 /// Generic branch points of periodic orbits, in three parameters. Conditions and counts: bvp/critical_branch_point.hpp.
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "bvp/critical_branch_point.hpp"
 #include "bvp/periodic_orbit_system.hpp"
 #include "constants/settings_type.hpp"
@@ -40,12 +38,11 @@ class GenericCurve final : public TwoParameterCurve {
  private:
   /// Where neither further parameter breaks the branch point, these are surfaces in three.
   static void refuse_persistent(const HybridSystem& system, const RunSettings& settings, const SelectedStart& start) {
-    constexpr double unbroken = 1e-6;  // a share; what a located branch point and the asymmetry of a mesh leave
     const std::vector<int> free = free_problem_parameters(settings);
     const PeriodicOrbitSystem plain(system, settings.signature(), free);
     const Orbit& x = start.start.orbit;
     const BranchPointBreaking breaking = branch_point_breaking(plain, x);
-    if (!breaking.known || *std::max_element(breaking.shares.begin() + 1, breaking.shares.end()) > unbroken) return;
+    if (!breaking.known || breaking.by(1) || breaking.by(2)) return;
     throw UserError(
         fmt::format("{}: the branch point of label {} persists when {} or {} changes, as that of a symmetric system "
                     "does: such points "
