@@ -7,32 +7,37 @@ namespace tchat {
 
 BorderedProblem::BorderedProblem(const DefiningSystem& system, const OrbitShape& shape,
                                  std::unique_ptr<OrbitCondition> condition, std::vector<HeldMonitor> held)
-    : condensed_(system, shape, 1 + system.integral_conditions() + static_cast<int>(held.size()) + (condition ? 1 : 0)),
+    : condensed_(system, shape,
+                 1 + system.integral_conditions() + static_cast<int>(held.size()) +
+                     (condition ? condition->count() : 0)),
       condition_(std::move(condition)),
       held_(std::move(held)),
       rows_(static_cast<std::size_t>(condensed_.border_rows()), condensed_.make_vector()),
       border_(rows_.size()),
       unchanged_(static_cast<std::size_t>(system.integral_conditions()) + held_.size(), 0.0),
-      response_(condensed_.make_vector()) {
-  if (!condition_) return;
-  // Any row serves the first time that is not orthogonal to what it stands for.
-  OrbitVector& any = stand_in();
-  for (Eigen::Index i = 0; i < any.states.size(); ++i)
-    any.states.data()[i] = std::sin(0.5 + 0.61 * static_cast<double>(i));
-  any.durations.setConstant(0.7);
-  for (Eigen::Index g = 0; g < any.globals.size(); ++g) any.globals(g) = g % 2 == 0 ? 1.0 : -1.3;
+      responses_(static_cast<std::size_t>(conditions()), condensed_.make_vector()),
+      slopes_(conditions()) {
+  // Any rows serve the first time that are not orthogonal to what they stand for.
+  for (int k = 0; k < conditions(); ++k) {
+    OrbitVector& any = stand_in(k);
+    for (Eigen::Index i = 0; i < any.states.size(); ++i)
+      any.states.data()[i] = std::sin(0.5 + k + (0.61 + 0.27 * k) * static_cast<double>(i));
+    any.durations.setConstant(0.7);
+    for (Eigen::Index g = 0; g < any.globals.size(); ++g) any.globals(g) = (g + k) % 2 == 0 ? 1.0 : -1.3;
+  }
 }
 
 void BorderedProblem::remember(ConditionMemory& memory) const {
   if (!condition_) return;
   condition_->remember(memory.condition);
-  memory.stand_in = stand_in();
+  memory.stand_ins.resize(responses_.size());
+  std::copy(rows_.end() - conditions(), rows_.end(), memory.stand_ins.begin());
 }
 
 void BorderedProblem::recall(const ConditionMemory& memory) {
   if (!condition_) return;
   condition_->recall(memory.condition);
-  stand_in() = memory.stand_in;
+  std::copy(memory.stand_ins.begin(), memory.stand_ins.end(), rows_.end() - conditions());
 }
 
 OrbitResidual BorderedProblem::make_residual() const {
@@ -69,46 +74,73 @@ Linearization BorderedProblem::linearize(const Orbit& x, const OrbitVector& row,
   const Linearization outcome = condensed_.linearize(x, rows_, residual);
   if (outcome != Linearization::ready || !condition_) return outcome;
   if (!condition_->evaluate(condensed_, x)) return Linearization::condition_lost;
-  condensed_.solve(border(0.0, unchanged_, 1.0), response_);
-  response_slope_ = dot(condition_->gradient(), response_);
-  if (!std::isfinite(response_slope_) || response_slope_ == 0.0) return Linearization::singular;
-  const OrbitVector& gradient = condition_->gradient();
-  const double size = std::max({gradient.states.cwiseAbs().maxCoeff(), gradient.durations.cwiseAbs().maxCoeff(),
-                                gradient.globals.cwiseAbs().maxCoeff()});
-  if (std::isfinite(size) && size > 0.0) {
-    stand_in() = gradient;
-    stand_in().scale(1.0 / size);
-  }
+  if (!find_responses()) return Linearization::singular;
+  follow_gradients();
   return Linearization::ready;
 }
 
-std::span<const double> BorderedProblem::border(double branch, const std::vector<double>& integrals, double stand_in) {
-  border_.back() = stand_in;  // where there is none, the branch's row or an integral's, set below
+/// False when they do not reach what the condition asks for.
+bool BorderedProblem::find_responses() {
+  Slopes slopes(conditions(), conditions());
+  for (int k = 0; k < conditions(); ++k) {
+    OrbitVector& response = responses_[static_cast<std::size_t>(k)];
+    condensed_.solve(border(0.0, unchanged_, k), response);
+    for (int i = 0; i < conditions(); ++i) slopes(i, k) = dot(condition_->gradient(i), response);
+  }
+  if (!slopes.allFinite()) return false;
+  slopes_.compute(slopes);
+  return slopes_.determinant() != 0.0;
+}
+
+/// The stand-ins of the next linearisation.
+void BorderedProblem::follow_gradients() {
+  for (int k = 0; k < conditions(); ++k) {
+    const OrbitVector& gradient = condition_->gradient(k);
+    const double size = std::max({gradient.states.cwiseAbs().maxCoeff(), gradient.durations.cwiseAbs().maxCoeff(),
+                                  gradient.globals.cwiseAbs().maxCoeff()});
+    if (!std::isfinite(size) || !(size > 0.0)) continue;
+    stand_in(k) = gradient;
+    stand_in(k).scale(1.0 / size);
+  }
+}
+
+std::span<const double> BorderedProblem::border(double branch, const std::vector<double>& integrals, int unit) {
+  std::fill(border_.begin(), border_.end(), 0.0);
   border_.front() = branch;
   std::transform(integrals.begin(), integrals.end(), border_.begin() + 1, [](double value) { return -value; });
+  if (unit >= 0) border_[border_.size() - responses_.size() + static_cast<std::size_t>(unit)] = 1.0;
   return border_;
 }
 
 void BorderedProblem::solve(const OrbitResidual& residual, double target, OrbitVector& dx) {
-  condensed_.solve(residual, border(target, residual.integral, 0.0), dx);
-  if (condition_) correct(-condition_->value(), dx);
+  condensed_.solve(residual, border(target, residual.integral), dx);
+  Numbers wanted(conditions());
+  for (int k = 0; k < conditions(); ++k) wanted(k) = -condition_->value(k);
+  correct(wanted, dx);
 }
 
 void BorderedProblem::solve(double target, OrbitVector& dx) {
-  condensed_.solve(border(target, unchanged_, 0.0), dx);
-  if (condition_) correct(0.0, dx);
+  condensed_.solve(border(target, unchanged_), dx);
+  correct(Numbers::Zero(conditions()), dx);
 }
 
-/// Adds what makes grad G . dx the target.
-void BorderedProblem::correct(double condition_target, OrbitVector& dx) const {
-  const double share = (condition_target - dot(condition_->gradient(), dx)) / response_slope_;
-  dx.states += share * response_.states;
-  dx.durations += share * response_.durations;
-  dx.globals += share * response_.globals;
+/// Adds what makes grad G . dx as wanted.
+void BorderedProblem::correct(Numbers wanted, OrbitVector& dx) const {
+  if (!condition_) return;
+  for (int k = 0; k < conditions(); ++k) wanted(k) -= dot(condition_->gradient(k), dx);
+  const Numbers shares = slopes_.solve(wanted);
+  for (int k = 0; k < conditions(); ++k) {
+    const OrbitVector& response = responses_[static_cast<std::size_t>(k)];
+    dx.states += shares(k) * response.states;
+    dx.durations += shares(k) * response.durations;
+    dx.globals += shares(k) * response.globals;
+  }
 }
 
 double BorderedProblem::residual_size(const OrbitResidual& residual) const {
-  return condition_ ? std::max(residual.largest(), std::abs(condition_->value())) : residual.largest();
+  double largest = residual.largest();
+  for (int k = 0; k < conditions(); ++k) largest = std::max(largest, std::abs(condition_->value(k)));
+  return largest;
 }
 
 }  // namespace tchat

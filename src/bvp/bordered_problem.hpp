@@ -1,19 +1,20 @@
 /// The square problem that Newton's method solves for a point of a branch: the defining system, its integral conditions
-/// and the monitors that are held among the border rows, at most one scalar condition on the whole orbit (a critical
-/// multiplier), and one row of the branch (pseudo-arclength, or a fixed parameter).
+/// and the monitors that are held among the border rows, a condition of one or two numbers on the whole orbit (a
+/// critical multiplier) or none, and one row of the branch (pseudo-arclength, or a fixed parameter).
 ///
 ///     J dx = -F,    grad I . dx = -I,    grad G . dx = -G,    row . dx = target       (n m N c + ... + m + q
 ///     equations)
 ///
 /// The gradient of an integral I, or of a monitor, is known before J is factored. That of G is known only after J has
 /// been condensed. So J is condensed with a stand-in for it, the gradient of the last linearisation, and the true
-/// gradient enters by a rank-one correction: one more solution of the same factors.
+/// gradient enters by a correction of rank one for each number: one more solution of the same factors.
 ///
 /// A condition is found by iteration from where it was last: which multiplier it means, and the border of its own
 /// problem. A trial of Newton's method that fails leaves these anywhere. They belong to the point of the branch that
-/// the trial began from, together with the stand-in, and are brought back (`recall`) before the next one.
+/// the trial began from, together with the stand-ins, and are brought back (`recall`) before the next one.
 #pragma once
 
+#include <Eigen/LU>
 #include <memory>
 #include <optional>
 #include <span>
@@ -25,14 +26,19 @@
 
 namespace tchat {
 
-/// A scalar G of the orbit, durations and free parameters with its gradient.
+/// A function G of the orbit, durations and free parameters, of one number or two, with its gradients.
 class OrbitCondition {
  public:
+  static constexpr int most = 2;
+
   virtual ~OrbitCondition() = default;
-  /// G and its gradient at x, whose linearisation is in `condensed`. False when they cannot be found.
+  /// How many numbers; constant.
+  virtual int count() const { return 1; }
+  /// G and its gradients at x, whose linearisation is in `condensed`. False when they cannot be found.
   virtual bool evaluate(CondensedSystem& condensed, const Orbit& x) = 0;
-  virtual double value() const = 0;
-  virtual const OrbitVector& gradient() const = 0;
+  /// Of number k = 0 .. count() - 1.
+  virtual double value(int k) const = 0;
+  virtual const OrbitVector& gradient(int k) const = 0;
   /// The multiplier that is kept exactly, where it is one number: 1 or -1.
   virtual std::optional<int> kept_multiplier() const { return std::nullopt; }
   /// "" on the curve, or why the last point, which solves the equations, lies beyond its end.
@@ -46,7 +52,7 @@ class OrbitCondition {
 /// What linearisations near a point of the branch begin from; empty without a condition.
 struct ConditionMemory {
   std::vector<double> condition;
-  OrbitVector stand_in;
+  std::vector<OrbitVector> stand_ins;
 };
 
 /// A monitor that keeps this value.
@@ -58,8 +64,8 @@ struct HeldMonitor {
 
 class BorderedProblem {
  public:
-  /// `condition` may be null. The defining system must outlive this object; with R coupling rows, I integral conditions
-  /// and H monitors held n m + m + q = R + I + H + 1, or one more with a condition.
+  /// `condition` may be null. The defining system must outlive this object; with R coupling rows, I integral
+  /// conditions, H monitors held and a condition of C numbers n m + m + q = R + I + H + C + 1.
   BorderedProblem(const DefiningSystem& system, const OrbitShape& shape, std::unique_ptr<OrbitCondition> condition,
                   std::vector<HeldMonitor> held = {});
 
@@ -91,21 +97,28 @@ class BorderedProblem {
   double residual_size(const OrbitResidual& residual) const;
 
  private:
-  void correct(double condition_target, OrbitVector& dx) const;
-  OrbitVector& stand_in() { return rows_.back(); }
-  const OrbitVector& stand_in() const { return rows_.back(); }
-  /// The border's right-hand side with these in the branch's row and that of the stand-in, the integrals' in between.
-  std::span<const double> border(double branch, const std::vector<double>& integrals, double stand_in);
+  using Numbers = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, OrbitCondition::most, 1>;
+  using Slopes = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, OrbitCondition::most, OrbitCondition::most>;
+
+  bool find_responses();
+  void follow_gradients();
+  void correct(Numbers wanted, OrbitVector& dx) const;
+  int conditions() const { return condition_ ? condition_->count() : 0; }
+  OrbitVector& stand_in(int k) { return rows_[rows_.size() - responses_.size() + static_cast<std::size_t>(k)]; }
+  /// The border's right-hand side with these in the branch's row and the integrals', zero in those of the stand-ins but
+  /// for a one in that of number `unit` (-1: none).
+  std::span<const double> border(double branch, const std::vector<double>& integrals, int unit = -1);
 
   CondensedSystem condensed_;
   std::unique_ptr<OrbitCondition> condition_;
   std::vector<HeldMonitor> held_;
-  std::vector<OrbitVector> rows_;  // the branch's row, gradients of integrals and held monitors, stand-in for that of G
-  std::vector<double> border_;     // right-hand side of these
-  std::vector<double> unchanged_;  // integrals and monitors that keep their values
-  Orbit reference_;                // only where there are integrals
-  OrbitVector response_;           // solution for a unit in the stand-in's row
-  double response_slope_ = 1.0;    // grad G . response
+  std::vector<OrbitVector> rows_;  // the branch's row, gradients of integrals and held monitors, stand-ins for those of
+                                   // G
+  std::vector<double> border_;          // right-hand side of these
+  std::vector<double> unchanged_;       // integrals and monitors that keep their values
+  Orbit reference_;                     // only where there are integrals
+  std::vector<OrbitVector> responses_;  // solutions for a unit in the row of each stand-in
+  Eigen::PartialPivLU<Slopes> slopes_;  // of grad G . responses
 };
 
 }  // namespace tchat

@@ -62,10 +62,24 @@ void CondensedReturnMap::values(const CondensedSystem& condensed, const Orbit& x
   }
 }
 
+void CondensedReturnMap::parameter_column(const CondensedSystem& condensed, const Orbit& x, int g, double* column) {
+  const HybridSystem& hybrid = system_.system();
+  const std::span<const int> parameter = std::span(system_.free_parameters()).subspan(static_cast<std::size_t>(g), 1);
+  for (int s = 0; s < shape_.segments; ++s, column += 2 * n_ + 1) {
+    const IndexVector& v = system_.signature()[static_cast<std::size_t>(s)];
+    condensed.parameter_block(s, g, column);
+    double h = 0.0;
+    hybrid.first(FunctionKind::event, v.event, x.end(s), x.par.data(), parameter, &h, hx_.data(), column + n_);
+    hybrid.first(FunctionKind::jump, v.jump, x.end(s), x.par.data(), parameter, f_.data(), fx_.data(), d_.data());
+    for (int a = 0; a < n_; ++a) column[n_ + 1 + a] = -d_(a);
+  }
+}
+
 void CondensedReturnMap::subtract_derivative(CondensedSystem& condensed, const Orbit& x, const double* v,
                                              const double* w, OrbitVector& extended, OrbitVector& gradient) {
   const int block = 2 * n_ + 1;
   condensed.extend(v, extended);
+  direction_.tail(system_.free_count()) = extended.globals;
   for (int s = 0; s < shape_.segments; ++s)
     std::copy_n(w + s * block, n_, condensed_weights_.begin() + static_cast<std::ptrdiff_t>(s) * n_);
   condensed.extend_adjoint(condensed_weights_.data(), collocation_weights_);

@@ -32,8 +32,12 @@ class CondensedReturnMap {
   /// S at x, whose linearisation is in `condensed`, with the factor `mu`.
   void values(const CondensedSystem& condensed, const Orbit& x, double mu, std::vector<double>& values);
 
+  /// The columns of free parameter g beside S = S(1): its effect on the same rows, size() entries.
+  void parameter_column(const CondensedSystem& condensed, const Orbit& x, int g, double* column);
+
   /// gradient -= w^T (dS) v for changes of the orbit, the durations and the free parameters; `v` and `w` have size()
-  /// entries. Second derivatives of f, h and g along v extended to all nodes, which `extended` keeps.
+  /// entries. Second derivatives of f, h and g along v extended to all nodes, which `extended` keeps. Its globals are
+  /// read: where they are not zero, S stands for S(1) with its parameters' columns, v for v with these globals.
   void subtract_derivative(CondensedSystem& condensed, const Orbit& x, const double* v, const double* w,
                            OrbitVector& extended, OrbitVector& gradient);
 
@@ -52,7 +56,7 @@ class CondensedReturnMap {
   std::vector<std::size_t> factor_positions_;
   std::vector<double> condensed_weights_;
   std::vector<double> collocation_weights_;
-  // scratch of one collocation point or end of a segment; the directions of the free parameters stay zero
+  // scratch of one collocation point or end of a segment
   Eigen::VectorXd point_, f_, d_, hx_, hp_, direction_;
   Eigen::MatrixXd fx_, dx_, fp_, dp_;
 };

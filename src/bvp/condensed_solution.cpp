@@ -93,9 +93,12 @@ void CondensedSystem::duration_block(int s, double* column) const {
   for (int a = 0; a < n_; ++a) column[a] = scalar_blocks_[s][a * scalars_];
 }
 
+void CondensedSystem::parameter_block(int s, int g, double* column) const {
+  for (int a = 0; a < n_; ++a) column[a] = scalar_blocks_[s][a * scalars_ + 1 + g];
+}
+
 void CondensedSystem::extend(const double* small, OrbitVector& dx) {
-  for (int s = 0; s < shape_.segments; ++s) expand_segment(s, small + s * (2 * n_ + 1), zero_rhs_.data(), true, dx);
-  dx.globals.setZero();
+  for (int s = 0; s < shape_.segments; ++s) expand_segment(s, small + s * (2 * n_ + 1), dx.globals.data(), true, dx);
 }
 
 void CondensedSystem::extend_adjoint(const double* weights, std::vector<double>& collocation) {

@@ -80,8 +80,11 @@ class CondensedSystem {
   /// sigma.
   void duration_block(int s, double* column) const;
 
+  /// The same (n) of the change of free problem parameter g.
+  void parameter_block(int s, int g, double* column) const;
+
   /// From the ends of segments to all nodes: `small` has v_s(0), v_s(1), sigma_s of every segment (m (2n + 1) numbers);
-  /// dx becomes the vector that has these ends, satisfies the linearised collocation equations, and has globals 0.
+  /// dx becomes the vector that has these ends and dx.globals, and satisfies the linearised collocation equations.
   void extend(const double* small, OrbitVector& dx);
   /// The adjoint: `weights` (m n) of the condensed rows to weights of all collocation rows (as OrbitResidual orders
   /// them), so that the weighted sum of the latter is that of the former for every vector that `extend` gives.

@@ -27,11 +27,12 @@ class CouplingPattern {
                   std::vector<int>& columns)
       : unknowns_(unknowns), globals_(globals), first_row_(first_row), rows_(rows), columns_(columns) {}
 
-  /// `count` rows in all of x_s(0), of x_s(1), in T_s, in the free problem parameters.
+  /// `count` rows in all of x_s(0), of x_s(1), in T_s, in the free problem parameters, in one of them.
   void start(int row, int count, int s) { dense(row, count, unknowns_.start(s), unknowns_.dimension); }
   void end(int row, int count, int s) { dense(row, count, unknowns_.end(s), unknowns_.dimension); }
   void duration(int row, int count, int s) { dense(row, count, unknowns_.duration(s), 1); }
   void globals(int row, int count) { dense(row, count, unknowns_.global(0), globals_); }
+  void global(int row, int count, int g) { dense(row, count, unknowns_.global(g), 1); }
   /// n rows, each in its own component of x_s(0).
   void start_components(int row, int s) {
     for (int a = 0; a < unknowns_.dimension; ++a) put(row + a, unknowns_.start(s) + a);

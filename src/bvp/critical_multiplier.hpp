@@ -19,14 +19,21 @@
 
 namespace tchat {
 
-class CriticalMultiplier final : public OrbitCondition {
+/// A condition that keeps a real multiplier.
+class RealMultiplierCondition : public OrbitCondition {
+ public:
+  /// w_1(0)-row times v_1(0) of its null vectors: zero where the multiplier is a double one (1:1 and 1:2 resonance).
+  virtual double multiplicity_function() const = 0;
+};
+
+class CriticalMultiplier final : public RealMultiplierCondition {
  public:
   /// `multiplier` is 1 or -1.
   CriticalMultiplier(const DefiningSystem& system, const OrbitShape& shape, int multiplier);
 
   bool evaluate(CondensedSystem& condensed, const Orbit& x) override;
-  double value() const override { return value_; }
-  const OrbitVector& gradient() const override { return gradient_; }
+  double value(int = 0) const override { return value_; }
+  const OrbitVector& gradient(int = 0) const override { return gradient_; }
   /// The border b, c; empty before the first evaluation.
   void remember(std::vector<double>& memory) const override;
   void recall(const std::vector<double>& memory) override;
@@ -34,10 +41,15 @@ class CriticalMultiplier final : public OrbitCondition {
   std::optional<int> kept_multiplier() const override { return multiplier_; }
   /// The null vector v with the sigma_s as durations, of unit size at the ends of segments.
   const OrbitVector& null_vector() const { return v_; }
-  /// w_1(0)-row times v_1(0): zero where the multiplier is a double one (1:1 and 1:2 resonance).
-  double multiplicity_function() const { return multiplicity_; }
+  double multiplicity_function() const override { return multiplicity_; }
   /// dG in the direction of the null vector: zero at a cusp of a fold curve.
   double cusp_function() const { return dot(gradient_, v_); }
+
+  // Of the last evaluation, at the ends of segments, in the unknowns of CondensedReturnMap:
+  /// w, its size() entries first.
+  const std::vector<double>& left_null_vector() const { return small_w_; }
+  /// z with S z + zeta b = column, c' z = 0; both have size() + 1 entries, the last one of `column` zero, of z zeta.
+  void solve_beside(const double* column, double* z) { lu_.solve(column, z); }
 
  private:
   bool solve_bordered(const CondensedSystem& condensed, const Orbit& x);

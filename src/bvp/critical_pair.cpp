@@ -36,9 +36,11 @@ SparseLu make_newton(const CondensedReturnMap& map) {
 
 }  // namespace
 
-CriticalPair::CriticalPair(const DefiningSystem& system, const OrbitShape& shape, std::complex<double> multiplier)
+CriticalPair::CriticalPair(const DefiningSystem& system, const OrbitShape& shape, std::complex<double> multiplier,
+                           std::optional<double> cosine)
     : map_(system, shape),
       first_multiplier_(multiplier),
+      kept_cosine_(cosine),
       lu_(make_newton(map_)),
       rhs_(2 * map_.size() + 4),
       change_(rhs_.size()),
@@ -46,7 +48,7 @@ CriticalPair::CriticalPair(const DefiningSystem& system, const OrbitShape& shape
       plane_(map_.size(), 2),
       border_(map_.size(), 2),
       extended_(shape, system.free_count()),
-      gradient_(shape, system.free_count()) {}
+      gradients_(static_cast<std::size_t>(CriticalPair::count()), extended_) {}
 
 void CriticalPair::remember(std::vector<double>& memory) const {
   memory.clear();
@@ -195,15 +197,25 @@ bool CriticalPair::evaluate(CondensedSystem& condensed, const Orbit& x) {
   if (!started_ && !begin()) return false;
   if (!find_plane()) return false;
   started_ = true;
+  const Eigen::Vector4d by_determinant(pair_(1, 1), -pair_(1, 0), -pair_(0, 1), pair_(0, 0));
+  const Eigen::Vector4d by_cosine(0.5, 0.0, 0.0, 0.5);
+  if (!find_gradient(condensed, x, by_determinant, gradients_.front())) return false;
+  if (kept_cosine_ && !find_gradient(condensed, x, by_cosine, gradients_.back())) return false;
+  return orthonormalise();
+}
+
+/// Of a function of L whose derivatives, row by row, are `by_pair`.
+bool CriticalPair::find_gradient(CondensedSystem& condensed, const Orbit& x, const Eigen::Vector4d& by_pair,
+                                 OrbitVector& gradient) {
   const Eigen::Index size = map_.size();
   rhs_.setZero();
-  rhs_.tail<4>() << pair_(1, 1), -pair_(1, 0), -pair_(0, 1), pair_(0, 0);  // d det / d L, row by row
+  rhs_.tail<4>() = by_pair;
   lu_.solve_transposed(rhs_.data(), change_.data());
   if (!change_.allFinite()) return false;
-  gradient_.set_zero();
+  gradient.set_zero();
   for (int k = 0; k < 2; ++k)
-    map_.subtract_derivative(condensed, x, plane_.col(k).data(), change_.data() + k * size, extended_, gradient_);
-  return orthonormalise();
+    map_.subtract_derivative(condensed, x, plane_.col(k).data(), change_.data() + k * size, extended_, gradient);
+  return true;
 }
 
 }  // namespace tchat

@@ -1,11 +1,13 @@
-/// Defining condition of torus curves: two multipliers of product one, G = det L - 1.
+/// Defining condition of torus curves: two multipliers of product one, G = det L - 1, and, where their angle theta is
+/// kept, H = tr L / 2 - cos theta = 0 too.
 ///
 /// The pair is followed as an invariant plane of the condensed return map S(mu) = S + mu E: the columns of V span it,
 ///
 ///     S V + E V L = 0,      V_last^T V = Id,
 ///
 /// by Newton's method on V and the 2 x 2 matrix L, whose eigenvalues are the pair, from the last plane. With the
-/// solution (W, K) of the transposed Newton system for the right-hand side (0, d det / d L)
+/// solution (W, K) of the transposed Newton system for the right-hand side (0, d det / d L), or (0, d tr / 2 d L) for
+/// H,
 ///
 ///     dG = -sum of w_k^T (dS) v_k:
 ///
@@ -16,6 +18,7 @@
 
 #include <Eigen/Core>
 #include <complex>
+#include <optional>
 #include <vector>
 
 #include "bvp/bordered_problem.hpp"
@@ -26,13 +29,16 @@ namespace tchat {
 
 class CriticalPair final : public OrbitCondition {
  public:
-  /// `multiplier`: where to begin, not a real number.
-  CriticalPair(const DefiningSystem& system, const OrbitShape& shape, std::complex<double> multiplier);
+  /// `multiplier`: where to begin, not a real number. `cosine`: of the angle that is kept, nothing where it is free.
+  CriticalPair(const DefiningSystem& system, const OrbitShape& shape, std::complex<double> multiplier,
+               std::optional<double> cosine = std::nullopt);
+
+  int count() const override { return kept_cosine_ ? 2 : 1; }
 
   /// False where no plane is found near the last one.
   bool evaluate(CondensedSystem& condensed, const Orbit& x) override;
-  double value() const override { return pair_.determinant() - 1.0; }
-  const OrbitVector& gradient() const override { return gradient_; }
+  double value(int k = 0) const override { return k == 0 ? pair_.determinant() - 1.0 : cosine() - *kept_cosine_; }
+  const OrbitVector& gradient(int k = 0) const override { return gradients_[static_cast<std::size_t>(k)]; }
   /// Where the pair is real.
   std::string beyond_end() const override;
   /// L and V.
@@ -52,9 +58,11 @@ class CriticalPair final : public OrbitCondition {
   bool factorize();
   void set_right_hand_side();
   bool orthonormalise();
+  bool find_gradient(CondensedSystem& condensed, const Orbit& x, const Eigen::Vector4d& by_pair, OrbitVector& gradient);
 
   CondensedReturnMap map_;
   std::complex<double> first_multiplier_;
+  std::optional<double> kept_cosine_;
   SparseLu lu_;                 // of Newton's matrix for (V, L)
   std::vector<double> values_;  // of S
   std::vector<double> matrix_;
@@ -65,7 +73,7 @@ class CriticalPair final : public OrbitCondition {
   Plane border_;          // V_last
   bool started_ = false;
   OrbitVector extended_;
-  OrbitVector gradient_;
+  std::vector<OrbitVector> gradients_;
 };
 
 }  // namespace tchat

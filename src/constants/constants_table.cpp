@@ -60,8 +60,8 @@ std::vector<Constant> make_table() {
       {"ISP", "detection of bifurcations; negative: and stop there", 3, &R::detect_bifurcations, range(-4, 4),
        "0 (none), 1 (multipliers only), 2 (all), 3 (BP only), 4 (all but BP), or their negatives", "2", ""},
       {"ISW", "branch mode", 3, &R::branch_mode, one_of(with_zero(branch_modes())),
-       "1 (normal), 2 (two-parameter curve of the point IRS), -1 (switch to the branch that bifurcates at IRS); 0 "
-       "means 1",
+       "1 (normal), 2 (two-parameter curve of the point IRS), 3 (curve in three parameters: generic BP, TR of a fixed "
+       "angle), -1 (switch to the branch that bifurcates at IRS); 0 means 1",
        "1", ""},
       {"IPLT", "solution measure", 3, &R::measure, any(),
        "an integer; with n = NDIM, k = 1..n: 0 L2-norm, k or -k maximum or minimum, n+k integral, 2n+k L2-norm of U(k)",
@@ -140,6 +140,8 @@ std::vector<Constant> make_table() {
        "{period: 36}", ""},
       {"ICPMOVE", "let ICP(1) move where no orbit is found at its first value", extension_record, &R::start_may_move,
        one_of({0, 1}), "0 (refuse such a start) or 1 (take an orbit near it, with another value)", "1", ""},
+      {"CLSTOP", "end the branch where it comes back to its first point", extension_record, &R::stop_when_closed,
+       one_of({0, 1}), "0 (go on, round again) or 1 (end the branch)", "0", ""},
       {"PAR", "values of parameters", command_line_record, &R::parameter_values, any(),
        "a finite number for PAR(index) or PAR(name)", "{2: 0.8}", ""},
   };

@@ -94,6 +94,7 @@ struct RunSettings {
 
   bool stop_at_grazing = true;       ///< GRSTOP
   int grazing_jump = 1;              ///< GRJUMP
+  bool stop_when_closed = true;      ///< CLSTOP
   bool start_may_move = false;       ///< ICPMOVE
   std::vector<StopRule> stop_rules;  ///< STOP
   std::vector<HeldValue> held;       ///< HOLD

@@ -63,6 +63,7 @@ enum class EndReason {
   special_point,
   curve_end,    ///< of a two-parameter curve, passed
   equilibrium,  ///< the orbit has shrunk to a point
+  closed,       ///< the branch has come back to its first point
   interrupted,
   no_convergence,
   first_step_failed

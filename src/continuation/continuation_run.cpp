@@ -30,6 +30,8 @@ constexpr double shrunk_enough = 1e-4;
 /// The deviations of orbits before and behind a point are opposite but for what a step changes.
 constexpr double opposite = -0.8;
 constexpr double shrunk = 1e-6;
+/// Special points that are so many tolerances of their location away from a point are at that point.
+constexpr double same_place = 10.0;
 
 LocationSettings location_settings(const ContinuationSettings& settings) {
   const double scale = 1.0 + std::sqrt(std::abs(settings.step.initial * settings.step.maximum));
@@ -42,6 +44,13 @@ std::vector<std::unique_ptr<TestFunction>> with_bounds(std::vector<std::unique_p
   if (settings.clip)
     for (auto& test : bound_tests(settings, settings.principal_name)) tests.push_back(std::move(test));
   return tests;
+}
+
+/// Do events fix the phase, or conditions of the problem's own?
+bool has_fixed_phase(const DefiningSystem& system, const ContinuationSettings& settings) {
+  const Signature& signature = system.signature();
+  return !settings.periodic || std::none_of(signature.begin(), signature.end(),
+                                            [](const IndexVector& index) { return index.event == no_function; });
 }
 
 }  // namespace
@@ -58,13 +67,15 @@ ContinuationRun::ContinuationRun(PathFollower& follower, const DefiningSystem& s
       settings_(std::move(settings)),
       sink_(sink),
       search_(follower, system, with_bounds(std::move(tests), settings_), location_settings(settings_)),
-      step_(settings_.step) {}
+      step_(settings_.step),
+      closed_(follower, system, has_fixed_phase(system, settings_)) {}
 
 BranchSummary ContinuationRun::run(PathPoint start) {
   here_ = std::move(start);
   next_ = {here_, 0.0, search_.begin(here_)};
   SpecialPoint special;
   if (settings_.label_start) special.type = PointType::end;
+  closed_.begin(here_, settings_.step.initial);
   accept(end_conditions(special));
 
   while (!ended_) {
@@ -73,7 +84,11 @@ BranchSummary ContinuationRun::run(PathPoint start) {
       give_up();
       break;
     }
-    special = advance();
+    const std::optional<double> to_first = come_back();
+    const bool is_there = to_first && std::abs(*to_first) <= same_place * location_settings(settings_).tolerance;
+    special = is_there ? SpecialPoint{} : advance();
+    if (to_first) special = arrive(special, *to_first);
+    closed_.went(next_.ds);
     std::swap(here_, next_.point);
     ++number_;
     accept(end_conditions(curve_end(special)));
@@ -81,6 +96,44 @@ BranchSummary ContinuationRun::run(PathPoint start) {
   }
   if (settings_.periodic) summary_.remark = trend_.growing_period(settings_.principal_name);
   return summary_;
+}
+
+/// Where the step to next_ passes the first point of the branch: next_ is moved to just beyond it, so that special
+/// points are looked for as far as there, also at the first point itself; here_ is moved to the mesh of the first
+/// point. The length of a step to it.
+std::optional<double> ContinuationRun::come_back() {
+  if (!settings_.stop_when_closed) return std::nullopt;
+  const std::optional<ClosedBranch::Return> way = closed_.on_step(here_, next_.point, next_.ds);
+  if (!way) return std::nullopt;
+  const double beyond = std::copysign(same_place * location_settings(settings_).tolerance, next_.ds);
+  Candidate past{next_.point, way->length + beyond, {}};
+  const NewtonResult newton = follower_.step(way->from, past.ds, past.point);
+  if (!newton.converged()) {
+    follower_.linearize_at(next_.point);
+    return std::nullopt;
+  }
+  newton_ = newton;
+  past.data = search_.evaluate(past.point);
+  here_ = way->from;
+  next_ = std::move(past);
+  return way->length;
+}
+
+/// The end of a closed branch, `length` from here_, unless a special point comes before it: next_ is moved there.
+SpecialPoint ContinuationRun::arrive(SpecialPoint special, double length) {
+  if (ended_) return special;
+  const double rest = std::abs(length) - std::abs(next_.ds);
+  const bool is_special = special.type != PointType::ordinary;
+  if (is_special && rest > same_place * location_settings(settings_).tolerance) return special;
+  if (!is_special) {
+    newton_ = follower_.step(here_, length, next_.point);
+    next_.ds = length;
+    next_.data = search_.evaluate(next_.point);
+  }
+  end(EndReason::closed,
+      fmt::format("the branch is closed: after {} steps it is back at its first point (CLSTOP=0 goes on)", number_));
+  if (!is_special) special = {PointType::end, {}, false, "back at the first point of the branch, which is closed"};
+  return special;
 }
 
 /// The first special point on the step to next_, which is moved to it. A turn of the parameter that an end of the

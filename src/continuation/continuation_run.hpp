@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "continuation/branch.hpp"
+#include "continuation/closed_branch.hpp"
 #include "continuation/orbit_trend.hpp"
 #include "continuation/special_point_search.hpp"
 #include "continuation/step_size.hpp"
@@ -27,6 +28,7 @@ struct ContinuationSettings {
   int max_location = 10;                                 ///< ITMX
   bool label_start = true;                               ///< false at a restart: the first point is known already
   bool periodic = true;                                  ///< a branch of orbits ends where they shrink to a point
+  bool stop_when_closed = true;                          ///< CLSTOP
   bool clip = false;                                     ///< end on the bounds, not at the first point beyond them
   /// Called for every labelled point; true ends the branch there (STOP).
   std::function<bool(const SpecialPoint&)> stop_at;
@@ -47,6 +49,8 @@ class ContinuationRun {
 
  private:
   bool take_step();
+  std::optional<double> come_back();
+  SpecialPoint arrive(SpecialPoint special, double length);
   SpecialPoint advance();
   bool leads_through_point();
   SpecialPoint shrunk_orbit(SpecialPoint special, bool through_point);
@@ -66,6 +70,7 @@ class ContinuationRun {
   SpecialPointSearch search_;
   StepSize step_;
   OrbitTrend trend_;
+  ClosedBranch closed_;
   PathPoint here_;      // the last accepted point, moved to a new mesh where one was due
   PathPoint accepted_;  // the same as it was accepted
   PointData accepted_data_;

@@ -56,6 +56,18 @@ double PathFollower::alignment(const PathPoint& point, const OrbitVector& direct
   return dot(dual, point.tangent);
 }
 
+double PathFollower::distance(const Orbit& a, const Orbit& b) const {
+  OrbitVector difference = condensed().make_vector();
+  OrbitVector dual = condensed().make_vector();
+  difference.states = a.states - b.states;
+  for (int s = 0; s < a.shape.segments; ++s) difference.durations(s) = a.duration(s) - b.duration(s);
+  const std::vector<int>& free = system_.free_parameters();
+  for (std::size_t g = 0; g < free.size(); ++g)
+    difference.globals(static_cast<Eigen::Index>(g)) = a.par(free[g] - 1) - b.par(free[g] - 1);
+  norm_.dual(a, condensed().rule(), free, difference, dual);
+  return std::sqrt(std::abs(dot(dual, difference)));
+}
+
 bool PathFollower::linearize_at(const PathPoint& point) {
   problem_.recall(point.memory);
   problem_.set_reference(point.orbit);

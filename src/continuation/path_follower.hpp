@@ -66,6 +66,7 @@ class PathFollower {
   const CondensedSystem& condensed() const { return problem_.condensed(); }
   OrbitCondition* condition() { return problem_.condition(); }
   const NewtonChord& newton() const { return newton_; }
+  const NewtonSettings& newton_settings() const { return settings_; }
   int principal() const { return principal_; }  ///< PAR index of the continuation parameter
   /// By how much the principal parameter grows along the tangent.
   double principal_direction(const PathPoint& point) const;
@@ -73,6 +74,9 @@ class PathFollower {
   const std::vector<HeldMonitor>& held() const { return problem_.held(); }
   /// Cosine of the angle between the point's tangent and a direction, in the weighted norm.
   double alignment(const PathPoint& point, const OrbitVector& direction) const;
+
+  /// The length of the difference of two orbits on one mesh, in the weighted norm.
+  double distance(const Orbit& a, const Orbit& b) const;
 
   /// Condition of the system bordered by the tangent, at the last point.
   CondensedSystem::Singularity singularity(const PathPoint& point);

@@ -335,6 +335,7 @@ std::optional<BranchPointBracket> SpecialPointSearch::find_branch_point(const Pa
 std::vector<SpecialPointSearch::Zero> SpecialPointSearch::find_zeros(const PathPoint& here, PathPoint& trial, double ds,
                                                                      const PointData& end) {
   std::vector<Zero> zeros;
+  if (ds == 0.0) return zeros;  // a branch point right behind the start of the step
   for (const std::size_t i : changed(end)) {
     if (tests_[i]->singular_at_zero()) continue;
     const Zero zero = locate(i, here, trial, ds, *end.tests[i].value);

@@ -10,7 +10,7 @@ namespace {
 
 class FoldCurve final : public TwoParameterCurve {
  public:
-  FoldCurve() : TwoParameterCurve(PointType::fold, "folds of periodic orbits in two parameters") {}
+  FoldCurve() : TwoParameterCurve(PointType::fold, two_parameters, "folds of periodic orbits in two parameters") {}
 
   std::unique_ptr<OrbitCondition> make_condition(const DefiningSystem& defining,
                                                  const SelectedStart& start) const override {

@@ -10,7 +10,8 @@ namespace {
 
 class PeriodDoublingCurve final : public TwoParameterCurve {
  public:
-  PeriodDoublingCurve() : TwoParameterCurve(PointType::period_doubling, "period doublings in two parameters") {}
+  PeriodDoublingCurve()
+      : TwoParameterCurve(PointType::period_doubling, two_parameters, "period doublings in two parameters") {}
 
   std::unique_ptr<OrbitCondition> make_condition(const DefiningSystem& defining,
                                                  const SelectedStart& start) const override {

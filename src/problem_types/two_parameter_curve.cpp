@@ -5,13 +5,13 @@
 
 namespace tchat {
 
-TwoParameterCurve::TwoParameterCurve(PointType curve, const char* title)
+TwoParameterCurve::TwoParameterCurve(PointType curve, Mode mode, const char* title)
     : ProblemType({.number = periodic_orbit.number,
-                   .branch_mode = 2,
+                   .branch_mode = mode.branch_mode,
                    .curve = static_cast<int>(curve),
                    .family = "periodic orbits",
                    .title = title,
-                   .free_parameters = 2,
+                   .free_parameters = mode.free_parameters,
                    .stability = StabilityMeaning::critical}) {}
 
 std::unique_ptr<DefiningSystem> TwoParameterCurve::make_system(const HybridSystem& system, const RunSettings& settings,

@@ -28,12 +28,20 @@ const ProblemType& type_at(const RunSettings& settings, const SelectedStart& sel
       if (type->begins_at(label_type)) return *type;
   if (first.facts().curve == 0) return first;
   const std::string name = type_name(selected.type, selected.kind);
-  throw UserError(
-      fmt::format("{}: ISW = 2 follows the curve of a fold (LP), period doubling (PD), torus bifurcation (TR) or two "
-                  "events at once "
-                  "(GR) in two parameters, but the run starts from {}; name such a label, for example IRS=LP1",
-                  selected.source,
-                  selected.from_solution ? fmt::format("a label of type {}", name.empty() ? "none" : name) : "data"));
+  std::string curves;
+  std::string example;
+  for (const ProblemType* type : problem_types_of(settings.problem_type, settings.branch_mode)) {
+    const int curve = type->facts().curve;
+    const bool of_contacts = curve == -static_cast<int>(PointType::user);
+    const std::string label = of_contacts ? "GR" : type_name(curve);
+    curves += fmt::format("{}{} ({})", curves.empty() ? "" : ", ", type->facts().title, label);
+    if (example.empty()) example = label;
+  }
+  throw UserError(fmt::format(
+      "{}: ISW = {} follows the curve of a label: {}; but the run starts from {}; name such a label, for example "
+      "IRS={}1",
+      selected.source, settings.branch_mode, curves,
+      selected.from_solution ? fmt::format("a label of type {}", name.empty() ? "none" : name) : "data", example));
 }
 
 }  // namespace

@@ -1,7 +1,8 @@
 /// Everything a branch needs before files are opened: the defining system, the follower, the first point.
 ///
 /// The branch mode (ISW) decides: 1 continues the orbit of the start; 2 follows the two-parameter curve of the fold,
-/// period doubling or torus bifurcation at the start; -1 switches at the start to the branch that bifurcates there.
+/// period doubling, torus bifurcation or branch point at the start, 3 one in three parameters; -1 switches at the start
+/// to the branch that bifurcates there.
 #pragma once
 
 #include <memory>

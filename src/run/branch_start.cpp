@@ -74,11 +74,13 @@ bool start_is_branch_point(const SelectedStart& selected) {
 }
 
 /// On top of a branch point Newton's matrix is singular and the iteration stalls. A stored orbit that satisfies every
-/// equation to the tolerance is taken as it is. To be called after an attempt to correct it.
+/// equation to the tolerance, or as well as a branch point can be interpolated, is taken as it is. To be called after
+/// an attempt to correct it.
 bool solves_without_correction(PathFollower& follower, const Orbit& stored, const RunSettings& settings) {
   const std::vector<NewtonIteration>& attempt = follower.newton().history();
   if (attempt.empty()) return follower.solves(stored);
-  return attempt.front().residual <= newton_settings(settings).tolerance_states;
+  constexpr double interpolated = 1e-8;
+  return attempt.front().residual <= std::max(newton_settings(settings).tolerance_states, interpolated);
 }
 
 /// A branch point has two tangents, and the computed one is any mixture of them: the stored one belongs to the branch.

@@ -227,7 +227,9 @@ int run_problem(const RunRequest& request, std::ostream& screen, std::ostream& w
       files, reports.table, reports.table != nullptr ? progress : nullptr);
 
   int status = 0;
+  bool closed = false;
   const auto tell = [&](const BranchSummary& summary, std::size_t labels_before) {
+    closed = summary.reason == EndReason::closed;
     const std::vector<BranchWriter::Labelled> labels(
         writer.labels().begin() + static_cast<std::ptrdiff_t>(labels_before), writer.labels().end());
     if (reports.table != nullptr)
@@ -239,7 +241,9 @@ int run_problem(const RunRequest& request, std::ostream& screen, std::ostream& w
   tell(Direction(setup, continuation, branch)
            .follow(writer, setup.start.correction, problem.library->derivative_notes()),
        0);
-  if (request.both_directions && !(interrupted && interrupted())) {
+  if (request.both_directions && closed && reports.table != nullptr)
+    *reports.table << "  --both: the other direction goes round the same closed branch, and is left out\n";
+  if (request.both_directions && !closed && !(interrupted && interrupted())) {
     const std::size_t labels_before = writer.labels().size();
     BranchSetup other_side;
     const bool is_other_branch = problem_type(problem.settings).facts().switches_branch;

@@ -21,6 +21,7 @@ std::string reason_text(const BranchSummary& summary, const std::string& paramet
     case EndReason::on_bound:
     case EndReason::equilibrium:
     case EndReason::curve_end:
+    case EndReason::closed:
       return summary.detail;
     case EndReason::special_point:
       return summary.stopped_at_grazing ? "at the grazing point above; with GRSTOP=0 the branch goes on beyond it"

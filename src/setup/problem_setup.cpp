@@ -208,6 +208,7 @@ ContinuationSettings continuation_settings(const RunSettings& settings) {
   c.adapt_mesh_every = settings.adapt_mesh_every;
   c.multipliers = settings.detect_bifurcations != 0 && has_multipliers(settings.problem_type);
   c.periodic = has_ring(settings.problem_type);
+  c.stop_when_closed = settings.stop_when_closed;
   c.location_tolerance = settings.tolerance_special;
   c.max_location = settings.max_location_iterations;
   for (const SegmentSettings& segment : settings.segments) c.monitored.push_back(segment.monitor);

@@ -22,14 +22,14 @@ const Condition& condition_at(const TestedPoint& point) {
 /// The zero level is against the sizes of the two vectors.
 TestValue CuspTest::evaluate(const TestedPoint& point) const {
   const auto& condition = condition_at<CriticalMultiplier>(point);
-  const OrbitVector& gradient = condition.gradient();
+  const OrbitVector& gradient = condition.gradient(0);
   const OrbitVector& v = condition.null_vector();
   return TestValue::of(condition.cusp_function(), orbit_accuracy * std::sqrt(dot(gradient, gradient) * dot(v, v)));
 }
 
 /// The zero level is against the a_s, with which the function and the factors that it is multiplied by vanish.
 TestValue ResonanceTest::evaluate(const TestedPoint& point) const {
-  double result = condition_at<CriticalMultiplier>(point).multiplicity_function();
+  double result = condition_at<RealMultiplierCondition>(point).multiplicity_function();
   double level = orbit_accuracy;
   for (const double a : point.transversalities) {
     if (std::abs(a) <= no_transversality) return TestValue::undefined();

@@ -1,5 +1,5 @@
 /// Codimension-two points on fold, period-doubling and torus curves: cusp and resonances. They read the curve's
-/// condition at the tested point: a CriticalMultiplier, on torus curves a CriticalPair.
+/// condition at the tested point: one of a real multiplier, on torus curves a CriticalPair.
 #pragma once
 
 #include "special_points/test_function.hpp"

@@ -200,6 +200,20 @@ SpecialPoint AccelerationTest::classify(const TestedPoint&, bool) const {
           "codimension two: a* = 0, h is no longer least at the contact"};
 }
 
+TestValue GrazingTurnTest::evaluate(const TestedPoint& point) const {
+  constexpr double level = 1e-10;  // of a tangent of unit length, which Newton's tolerances leave
+  return TestValue::of(point.tangent.globals(parameter_), level);
+}
+
+bool GrazingTurnTest::is_genuine(const TestedPoint& point) const {
+  constexpr double crossing = 1e-6;
+  return std::abs(point.singular_distance) > crossing;
+}
+
+SpecialPoint GrazingTurnTest::classify(const TestedPoint&, bool) const {
+  return {PointType::fold, {}, stop_, fmt::format("the grazing curve turns in {}", parameter_name_)};
+}
+
 TestValue SmoothMultiplierTest::evaluate(const TestedPoint& point) const { return multiplier_product(point, target_); }
 
 bool SmoothMultiplierTest::is_genuine(const TestedPoint& point) const { return is_multiplier_at(point, target_); }

@@ -60,6 +60,7 @@ RunSettings awkward() {
                                               "GCHGRZIND=[[], [3, 3]]",
                                               "GRSTOP=0",
                                               "GRJUMP=3",
+                                              "CLSTOP=0",
                                               "STOP=[PD1, GR2]"});
   return s;
 }

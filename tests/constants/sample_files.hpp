@@ -77,7 +77,8 @@ inline bool same_constants(const RunSettings& a, const RunSettings& b) {
                                static_cast<double>(s.grazing_start),
                                static_cast<double>(s.derivative_order),
                                s.stop_at_grazing ? 1.0 : 0.0,
-                               static_cast<double>(s.grazing_jump)};
+                               static_cast<double>(s.grazing_jump),
+                               s.stop_when_closed ? 1.0 : 0.0};
   };
   const auto pairs = [](const RunSettings& s) {
     std::vector<double> result;

@@ -144,3 +144,26 @@ TEST_CASE("grazing curve: alpha(omega), xi_n and all its zeros") {
   }
   CHECK(compared > 30);
 }
+
+// The wall is touched where alpha = |1 - omega^2 + 2 i zeta omega|: least at omega^2 = 1 - 2 zeta^2.
+TEST_CASE("the grazing curve turns in alpha at the closed-form resonance, and ILP = -1 ends it there") {
+  const Workspace workspace;
+  run_to_grazing_curve(workspace);
+  const double omega = std::sqrt(1.0 - 2.0 * zeta * zeta), alpha = 2.0 * zeta * std::sqrt(1.0 - zeta * zeta);
+  for (const char* step : {"-0.02 DSMAX=0.05", "-0.1 DSMAX=0.4"}) {
+    workspace.run(std::string("-c grazing_curve -s grazing -o turn ICP=[alpha,omega] RL0=0.05 RL1=4 UZR={} DS=") +
+                  step);
+    const SolutionEntry found = only(workspace, "turn", "LP");
+    CHECK(found.type == 5);
+    CHECK(std::abs(found.parameter(1) - alpha) < 1e-9);
+    CHECK(std::abs(found.parameter(2) - omega) < 1e-7);  // alpha is flat there
+  }
+  workspace.run("-c grazing_curve -s grazing -o ended ICP=[alpha,omega] RL0=0.05 RL1=4 UZR={} DS=-0.02 ILP=-1");
+  CHECK(workspace.solutions("ended").back().type == 5);
+  workspace.run("-c grazing_curve -s grazing -o none ICP=[alpha,omega] RL0=0.05 RL1=4 UZR={} DS=-0.02 ILP=0");
+  for (const SolutionEntry& solution : workspace.solutions("none")) CHECK(solution.type != 5);
+  // No curve in three parameters begins there.
+  const Outcome refused = workspace.tchat("run linosc -c grazing_curve -s turn -o refused IRS=LP1 ISW=2");
+  CHECK(refused.status != 0);
+  CHECK(refused.text().find("IPS = 150 with ISW = 2 is not a problem") != std::string::npos);
+}

@@ -85,6 +85,45 @@ TEST_CASE("torus curve: the closed form in two parameters, multipliers on the un
   CHECK(met == 3);
 }
 
+TEST_CASE("torus curve of a fixed angle in three parameters: the closed form, from TR and from a 1:3 resonance") {
+  const Workspace workspace;
+  enter(workspace);
+  run(workspace, "EPSS=1e-10");
+  run(workspace, std::string(curve) + " EPSS=1e-10");
+  // By d the angle over a period is 2 pi / d sqrt(2 r^2 (1 + e b)); the a of the curve does not depend on d.
+  const auto angle = [](double b, double turn) { return torus_angle(b) * d / turn; };
+  struct Start {
+    const char* label;
+    double angle;
+  };
+  for (const Start& start : {Start{"langford IRS=TR1", torus_angle(0.7)}, Start{"curve IRS=R31", 2.0 * M_PI / 3.0}}) {
+    INFO(start.label);
+    run(workspace,
+        std::string("-o fixed ISW=3 ICP=[2,1,4,61] RL0=0.1 RL1=2 --both NMX=40 NPR=5 DSMAX=0.2 -s ") + start.label);
+    int points = 0;
+    for (const PointSection& section : workspace.points("fixed"))
+      for (const PointRow& row : section.rows) {
+        const double b = row.values[section.column("b")], turn = row.values[section.column("d")];
+        INFO("b = " << b);
+        CHECK(std::abs(row.values[section.column("a")] - torus_a(b)) < 1e-8);
+        CHECK(std::abs(angle(b, turn) - start.angle) < 1e-8);
+        ++points;
+      }
+    CHECK(points > 40);
+    for (const DiagnosticPoint& point : read_diagnostics(workspace.read("d.fixed")))
+      CHECK(distance_to(point.multipliers, std::polar(1.0, start.angle)) < 1e-7);
+    for (const SolutionEntry& stored : workspace.solutions("fixed")) {
+      INFO("label " << stored.label);
+      run(workspace, "-c r.fixed -s fixed -o again NMX=1 IRS=" + std::to_string(stored.label));
+      CHECK(first_iterations(workspace.read("d.again")) <= 1);
+      CHECK(difference(stored, workspace.solutions("again").front()) < 2e-10);
+    }
+  }
+  const Outcome refused = workspace.tchat("run langford -s langford -o refused IRS=EP1 ISW=3 ICP=[2,1,4]");
+  CHECK(refused.status != 0);
+  CHECK(refused.text().find("torus bifurcations of the start's angle in three parameters (TR)") != std::string::npos);
+}
+
 TEST_CASE("torus bifurcation without symmetry: the multipliers by integration") {
   const Workspace workspace;
   enter(workspace);

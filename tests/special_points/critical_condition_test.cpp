@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <random>
 
+#include "bvp/critical_branch_point.hpp"
 #include "bvp/critical_multiplier.hpp"
 #include "bvp/critical_pair.hpp"
 #include "bvp/periodic_orbit_system.hpp"
@@ -22,10 +23,10 @@ class ConditionAt {
       : system(hybrid, signature, {1, 2}), condensed(system, like.shape, 2), residual_(condensed.make_residual()) {
     for (int r = 0; r < 2; ++r) border_.push_back(random_vector(condensed.make_vector()));
   }
-  double value(OrbitCondition& condition, const Orbit& x) {
+  double value(OrbitCondition& condition, const Orbit& x, int number = 0) {
     REQUIRE(condensed.linearize(x, border_, residual_) == Linearization::ready);
     REQUIRE(condition.evaluate(condensed, x));
-    return condition.value();
+    return condition.value(number);
   }
   bool evaluates(OrbitCondition& condition, const Orbit& x) {
     REQUIRE(condensed.linearize(x, border_, residual_) == Linearization::ready);
@@ -49,22 +50,27 @@ class ConditionAt {
 };
 
 /// d G in the direction v by extrapolated central differences. The condition's border follows the null vectors at every
-/// evaluation: it is brought back to those of x before each.
-double difference(ConditionAt& at, OrbitCondition& condition, const Orbit& x, const OrbitVector& v, double step) {
+/// evaluation: it is brought back to that of `memory` before each.
+double difference(ConditionAt& at, OrbitCondition& condition, int number, const std::vector<double>& memory,
+                  const Orbit& x, const OrbitVector& v, double step) {
   const auto moved = [&](double length) {
-    for (int round = 0; round < 4; ++round) at.value(condition, x);
+    condition.recall(memory);
     Orbit y = x;
     advance(y, length, v, at.system.free_parameters());
-    return at.value(condition, y);
+    return at.value(condition, y, number);
   };
   const auto central = [&](double h) { return (moved(h) - moved(-h)) / (2 * h); };
   return (4 * central(step / 2) - central(step)) / 3;
 }
 
 /// The gradient against differences in random directions and along single unknowns of every kind.
-void check_gradient(ConditionAt& at, OrbitCondition& condition, const Orbit& x) {
-  for (int round = 0; round < 12; ++round) at.value(condition, x);  // the border settles
-  const OrbitVector gradient = condition.gradient();
+void check_gradient_of(ConditionAt& at, OrbitCondition& condition, int number, const Orbit& x) {
+  at.value(condition, x);
+  std::vector<double> memory;
+  condition.remember(memory);
+  condition.recall(memory);
+  at.value(condition, x);
+  const OrbitVector gradient = condition.gradient(number);
   std::vector<OrbitVector> directions;
   for (int i = 0; i < 3; ++i) directions.push_back(at.random_vector(at.condensed.make_vector()));
   const OrbitVector zero = at.condensed.make_vector();
@@ -81,10 +87,14 @@ void check_gradient(ConditionAt& at, OrbitCondition& condition, const Orbit& x) 
   REQUIRE(largest > 0.0);
   for (std::size_t i = 0; i < directions.size(); ++i) {
     const double exact = dot(gradient, directions[i]);
-    const double found = difference(at, condition, x, directions[i], 2e-4);
+    const double found = difference(at, condition, number, memory, x, directions[i], 2e-4);
     CAPTURE(i, exact, found);
     CHECK(std::abs(found - exact) < 1e-6 * std::abs(exact) + 1e-9 * largest);
   }
+}
+
+void check_gradient(ConditionAt& at, OrbitCondition& condition, const Orbit& x) {
+  for (int number = 0; number < condition.count(); ++number) check_gradient_of(at, condition, number, x);
 }
 
 Orbit sampled(const CutOrbit& cut, const OscillatorOrbit& orbit, int intervals, int collocation) {
@@ -239,4 +249,37 @@ TEST_CASE("critical pair: gradient") {
     CriticalPair condition(at.system, x.shape, {0.5896957647, 0.34676174832});
     check_gradient(at, condition, x);
   }
+}
+
+TEST_CASE("critical pair of a fixed angle: the cosine in closed form, gradients of both conditions") {
+  LangfordCircle circle = LangfordCircle{}.at_torus();
+  circle.a += 0.05;
+  const Orbit fine = circle.orbit(40, 5);
+  ConditionAt exact(system_of<Langford>(), {{1, 1, 1}}, fine);
+  CriticalPair pair(exact.system, fine.shape, circle.multiplier(), 0.3);
+  REQUIRE(pair.count() == 2);
+  CHECK(exact.value(pair, fine, 1) == Approx(circle.multiplier().real() - 0.3).margin(1e-10));
+  const Orbit x = circle.orbit(9, 4);
+  ConditionAt at(system_of<Langford>(), {{1, 1, 1}}, x);
+  CriticalPair condition(at.system, x.shape, circle.multiplier(), 0.3);
+  check_gradient(at, condition, x);
+}
+
+TEST_CASE("critical branch point: gradients of both conditions") {
+  // At a fold, where the second number is not zero, and far from any bifurcation.
+  for (const double v : {fold_velocity(), 3.0}) {
+    const OscillatorOrbit orbit = one_impact_orbit(1.8901, v);
+    for (const CutOrbit& cut : all_cuts(orbit)) {
+      CAPTURE(v, cut.signature.size());
+      const Orbit x = sampled(cut, orbit, 7, 4);
+      ConditionAt at(linosc(), cut.signature, x);
+      CriticalBranchPoint condition(at.system, x.shape);
+      REQUIRE(condition.count() == 2);
+      check_gradient(at, condition, x);
+    }
+  }
+  const Orbit circle = LangfordCircle{}.orbit(9, 4);
+  ConditionAt at(system_of<Langford>(), {{1, 1, 1}}, circle);
+  CriticalBranchPoint condition(at.system, circle.shape);
+  check_gradient(at, condition, circle);
 }

@@ -1,0 +1,53 @@
+#include "problem_types/torus_pair.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "bvp/bordered_problem.hpp"
+#include "bvp/periodic_orbit_system.hpp"
+#include "stability/floquet_multipliers.hpp"
+#include "start/start_selection.hpp"
+#include "text/user_error.hpp"
+
+namespace tchat {
+
+namespace {
+
+/// A complex number between two real multipliers that have just met, or are about to.
+std::complex<double> double_multiplier(const std::vector<std::complex<double>>& multipliers) {
+  constexpr double distance = 0.05;
+  for (const auto& a : multipliers)
+    for (const auto& b : multipliers)
+      if (a.imag() == 0.0 && b.imag() == 0.0 && a.real() < b.real() && b.real() - a.real() < distance &&
+          std::abs(a.real() * b.real() - 1.0) < distance * distance)
+        return {0.5 * (a.real() + b.real()), 0.5 * distance * distance};
+  return 0.0;
+}
+
+}  // namespace
+
+std::complex<double> pair_at(const DefiningSystem& defining, const SelectedStart& selected) {
+  const Orbit& x = selected.start.orbit;
+  const PeriodicOrbitSystem plain(defining.system(), defining.signature(), {defining.free_parameters().front()});
+  BorderedProblem problem(plain, x.shape, nullptr);
+  OrbitResidual residual = problem.make_residual();
+  OrbitVector row = problem.condensed().make_vector();
+  row.globals(0) = 1.0;
+  problem.set_reference(x);
+  std::complex<double> nearest = 0.0;
+  if (problem.linearize(x, row, residual) == Linearization::ready) {
+    const auto multipliers = FloquetSolver(x.shape).compute(problem.condensed(), x).values;
+    for (const auto& mu : multipliers)
+      if (mu.imag() > 0.0 && std::abs(std::abs(mu) - 1.0) < std::abs(std::abs(nearest) - 1.0)) nearest = mu;
+    constexpr double on_circle = 1e-3;
+    if (std::abs(std::abs(nearest) - 1.0) > on_circle)
+      if (const auto meeting = double_multiplier(multipliers); meeting != 0.0) nearest = meeting;
+  }
+  if (nearest == 0.0)
+    throw UserError(fmt::format("{}: label {} has no complex pair of multipliers, so no torus curve begins there",
+                                selected.source, selected.label));
+  return nearest;
+}
+
+}  // namespace tchat
