@@ -31,14 +31,16 @@ class SettingsCheck {
         refuse_constant("ICP", name, fmt::format("{} twice", in_quotes(std::to_string(list[i]))),
                         "each parameter once");
     }
-    if (!has_ring(settings_.problem_type)) return conditions();
+    if (has_own_conditions(settings_.problem_type)) return conditions();
     const int needed = free_parameter_count(settings_.problem_type, settings_.branch_mode);
     const auto of_problem =
         std::count_if(list.begin(), list.end(), [](int k) { return k < first_duration || k > last_index; });
     if (of_problem < needed)
       refuse_constant("ICP", "ICP", fmt::format("{} parameters that are not durations", of_problem),
-                      fmt::format("at least {} with IPS = {}, ISW = {}; durations are free in any case", needed,
-                                  settings_.problem_type, settings_.branch_mode));
+                      fmt::format("at least {} with IPS = {}, ISW = {}; {}", needed, settings_.problem_type,
+                                  settings_.branch_mode,
+                                  is_point(settings_.problem_type) ? "an equilibrium has no duration"
+                                                                   : "durations are free in any case"));
   }
 
   /// The count of unknowns and conditions of a boundary value problem.
@@ -66,6 +68,10 @@ class SettingsCheck {
   /// Events and jumps of the signature: each is one of the problem in a ring, and there is none without.
   void signature() const {
     const bool ring = has_ring(settings_.problem_type);
+    if (is_point(settings_.problem_type) && segments() > 1)
+      refuse_constant("GCNOSEG", "GCNOSEG", in_quotes(std::to_string(segments())),
+                      fmt::format("1 with IPS = {}: an equilibrium is one state of one vector field",
+                                  settings_.problem_type));
     int s = 0;
     for (const SegmentSettings& segment : settings_.segments) {
       ++s;
@@ -73,9 +79,10 @@ class SettingsCheck {
         if (ring == (index != no_function)) return;
         refuse_constant(keyword, fmt::format("{}({})", keyword, s), in_quotes(std::to_string(index)),
                         ring ? fmt::format("an integer >= 1 with IPS = {}", settings_.problem_type)
-                             : fmt::format("0, or leave it out: with IPS = {} the problem's boundary conditions tie "
-                                           "the segments",
-                                           settings_.problem_type));
+                             : fmt::format("0, or leave it out: with IPS = {} {}", settings_.problem_type,
+                                           is_point(settings_.problem_type)
+                                               ? "nothing ends a segment; events to watch are in GCHGRZIND"
+                                               : "the problem's boundary conditions tie the segments"));
       };
       check("GCHIND", segment.index.event);
       check("GCGIND", segment.index.jump);

@@ -99,7 +99,7 @@ SpecialPoint ContinuationRun::advance() {
   SpecialPoint special = search_.advance(here_, next_, newton_, reports).value_or(SpecialPoint{});
   const double level = insignificant_turn * steepest_;
   const double earlier = std::exchange(before_, before);
-  if (special.type != PointType::fold || turn > level || std::max(before, earlier) > sudden * level)
+  if (!is_fold(special.type) || turn > level || std::max(before, earlier) > sudden * level)
     return shrunk_orbit(special, through_point);
   reports.note(fmt::format("ICP(1) turns by rounding only (its share of the tangent is {:.1e}): no fold", turn));
   return {};
@@ -254,6 +254,7 @@ void ContinuationRun::record(const SpecialPoint& special, const PointData& data)
   summary_.points = number_;
   summary_.inadmissible_points += !violations.empty();
   summary_.multipliers_computed = settings_.multipliers;
+  summary_.equilibria = system_.is_point();
   summary_.critical_curve = follower_.condition() != nullptr;
   summary_.unstable_points += settings_.multipliers && !data.multipliers.stable();
   summary_.worst_structural = std::max(summary_.worst_structural, data.multipliers.structural);

@@ -10,6 +10,7 @@
 #include "bvp/transversality.hpp"
 #include "continuation/value_trend.hpp"
 #include "special_points/bifurcation_tests.hpp"
+#include "stability/equilibrium_eigenvalues.hpp"
 
 namespace tchat {
 
@@ -91,7 +92,8 @@ std::vector<std::string> SpecialPointSearch::details(const PathPoint& at, const 
 PointData SpecialPointSearch::evaluate(const PathPoint& at) {
   PointData data;
   if (settings_.multipliers) {
-    data.multipliers = floquet_.compute(follower_.condensed(), at.orbit);
+    data.multipliers = system_.is_point() ? equilibrium_eigenvalues(system_, at.orbit)
+                                          : floquet_.compute(follower_.condensed(), at.orbit);
     const OrbitCondition* condition = follower_.condition();
     const std::optional<int> kept = condition != nullptr ? condition->kept_multiplier() : std::nullopt;
     if (kept) put_critical(data.multipliers, *kept);

@@ -198,8 +198,10 @@ std::optional<double> first_step(PathFollower& follower, const PathPoint& from, 
 
 BranchSetup switch_branch(const HybridSystem& system, const RunSettings& settings, const SelectedStart& selected) {
   constexpr int period_doubling = static_cast<int>(PointType::period_doubling);
+  constexpr int branch_point = static_cast<int>(PointType::branch_point);
+  constexpr int equilibrium_branch_point = static_cast<int>(PointType::equilibrium_branch_point);
   const auto bifurcation_type = std::find_if(selected.types.begin(), selected.types.end(), [](int type) {
-    return type == period_doubling || type == static_cast<int>(PointType::branch_point);
+    return type == period_doubling || type == branch_point || type == equilibrium_branch_point;
   });
   const bool doubling = bifurcation_type != selected.types.end() && *bifurcation_type == period_doubling;
   if (bifurcation_type == selected.types.end())

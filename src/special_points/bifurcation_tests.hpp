@@ -16,7 +16,8 @@ namespace tchat {
 class FoldTest final : public TestFunction {
  public:
   /// `parameter` is a PAR index; `free_parameters` those of the tangent's globals.
-  FoldTest(int parameter, const std::vector<int>& free_parameters, int segments, bool stop);
+  FoldTest(int parameter, const std::vector<int>& free_parameters, int segments, bool stop,
+           PointType type = PointType::fold);
   std::string name() const override { return "fold"; }
   TestValue evaluate(const TestedPoint& point) const override;
   SpecialPoint classify(const TestedPoint& point, bool rising) const override;
@@ -25,12 +26,13 @@ class FoldTest final : public TestFunction {
   bool is_duration_;
   Eigen::Index index_ = 0;
   bool stop_;
+  PointType type_;
 };
 
 /// BP: the distance of the bordered problem to a singular one, with the determinant's sign.
 class BranchPointTest final : public TestFunction {
  public:
-  explicit BranchPointTest(bool stop) : stop_(stop) {}
+  explicit BranchPointTest(bool stop, PointType type = PointType::branch_point) : stop_(stop), type_(type) {}
   std::string name() const override { return "branch point"; }
   TestValue evaluate(const TestedPoint& point) const override;
   bool singular_at_zero() const override { return true; }
@@ -38,6 +40,7 @@ class BranchPointTest final : public TestFunction {
 
  private:
   bool stop_;
+  PointType type_;
 };
 
 /// PD: product of 1 + mu over the multipliers times the product of the scaled a_s, also where an a_s is zero: a run

@@ -16,6 +16,8 @@ using Vector = Eigen::VectorXd;
 using RowMajorBlock = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>;
 
 constexpr double stability_tolerance = 1e-5;
+/// Of the largest modulus.
+constexpr double eigenvalue_rounding = 1e-14;
 /// h_x f / (|h_x| |f|) below which a multiplier may be 0/0: with errors of `no_transversality` it is then off by 1e-5.
 constexpr double near_grazing = 1e-4;
 /// A multiplier that such an error moves further, as a chord of the Riemann sphere, is not known.
@@ -60,8 +62,11 @@ double flow_defect(const RowMajorBlock& first, const Vector& f0, const RowMajorB
 bool FloquetMultipliers::stable() const { return valid && stable_count() == static_cast<int>(values.size()); }
 
 int FloquetMultipliers::stable_count() const {
-  return static_cast<int>(std::count_if(values.begin(), values.end(),
-                                        [](const auto& mu) { return std::abs(mu) <= 1.0 + stability_tolerance; }));
+  double largest = 0.0;
+  for (const auto& mu : values) largest = std::max(largest, std::abs(mu));
+  return static_cast<int>(std::count_if(values.begin(), values.end(), [&](const auto& mu) {
+    return are_eigenvalues ? mu.real() <= eigenvalue_rounding * largest : std::abs(mu) <= 1.0 + stability_tolerance;
+  }));
 }
 
 /// What the end of one segment contributes.

@@ -52,6 +52,9 @@ struct FloquetMultipliers {
   std::vector<std::complex<double>> values;
   double structural = 0.0;  ///< size of the structural zero
   bool valid = false;       ///< false: not computed, or the eigenvalue iteration failed
+  /// They are the eigenvalues of f_x at an equilibrium (equilibrium_eigenvalues.hpp): stable on the left of the
+  /// imaginary axis.
+  bool are_eigenvalues = false;
   /// Nontrivial multipliers that are left out of `values`: where h_x f = 0 they may be 0/0, and what comes out is
   /// noise.
   int undetermined = 0;
@@ -60,7 +63,7 @@ struct FloquetMultipliers {
 
   bool determined() const { return valid && undetermined == 0; }
 
-  /// All |mu| <= 1 + 1e-5 of those that are known.
+  /// All |mu| <= 1 + 1e-5 of those that are known; of eigenvalues all real parts <= 0 but for rounding.
   bool stable() const;
   int stable_count() const;
 };
