@@ -22,7 +22,7 @@ bool is_pinned_start(const HybridSystem& system, const Signature& signature, con
   const int before = (s + x.shape.segments - 1) % x.shape.segments;
   const IndexVector& v = signature[static_cast<std::size_t>(before)];
   const double* par = x.par.data();
-  if (v.jump == no_function) return false;
+  if (v.event == no_function) return false;
   if (std::abs(system.event(event, x.start(s), par)) > structural_tolerance * event_scale(system, x, event))
     return false;
   const int n = system.dimension();

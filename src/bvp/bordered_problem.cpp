@@ -34,11 +34,24 @@ void BorderedProblem::recall(const ConditionMemory& memory) {
   stand_in() = memory.stand_in;
 }
 
+void BorderedProblem::set_reference(const Orbit& x) {
+  if (unchanged_.empty()) return;
+  reference_.shape = x.shape;
+  reference_.mesh = x.mesh;
+  reference_.states = x.states;
+  reference_.par = x.par;
+}
+
+void BorderedProblem::evaluate(const Orbit& x, OrbitResidual& residual) {
+  condensed_.evaluate(x, residual);
+  system().integral_values(x, reference_, condensed_.rule(), residual.integral.data());
+}
+
 Linearization BorderedProblem::linearize(const Orbit& x, const OrbitVector& row, OrbitResidual& residual) {
   rows_[0].states = row.states;
   rows_[0].durations = row.durations;
   rows_[0].globals = row.globals;
-  system().integral_gradients(x, condensed_.rule(), residual.integral.data(),
+  system().integral_gradients(x, reference_, condensed_.rule(), residual.integral.data(),
                               std::span(rows_).subspan(1, residual.integral.size()));
   const Linearization outcome = condensed_.linearize(x, rows_, residual);
   if (outcome != Linearization::ready || !condition_) return outcome;

@@ -66,8 +66,10 @@ class BorderedProblem {
   void remember(ConditionMemory& memory) const;
   void recall(const ConditionMemory& memory);
 
+  /// The orbit that integral conditions compare phases with, on the mesh of those that follow. Copied.
+  void set_reference(const Orbit& x);
   Linearization linearize(const Orbit& x, const OrbitVector& row, OrbitResidual& residual);
-  void evaluate(const Orbit& x, OrbitResidual& residual) { condensed_.evaluate(x, residual); }
+  void evaluate(const Orbit& x, OrbitResidual& residual);
   /// Newton's correction: all conditions to zero, row . dx = target.
   void solve(const OrbitResidual& residual, double target, OrbitVector& dx);
   /// All conditions unchanged, row . dx = target.
@@ -87,6 +89,7 @@ class BorderedProblem {
   std::vector<OrbitVector> rows_;  // the branch's row, the integrals' gradients and the stand-in for that of G
   std::vector<double> border_;     // right-hand side of these
   std::vector<double> unchanged_;  // integrals that keep their values
+  Orbit reference_;                // only where there are integrals
   OrbitVector response_;           // solution for a unit in the stand-in's row
   double response_slope_ = 1.0;    // grad G . response
 };

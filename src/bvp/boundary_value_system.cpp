@@ -4,28 +4,14 @@
 
 #include <algorithm>
 
+#include "bvp/evaluation_failure.hpp"
+#include "bvp/gauss_points.hpp"
+
 namespace tchat {
 
 namespace {
 
 std::size_t size(int count) { return static_cast<std::size_t>(count); }
-
-/// Calls use(interval, Gauss point, h w): its weight in an integral over tau from 0 to 1.
-template <class Use>
-void for_each_gauss_point(const Orbit& x, const CollocationRule& rule, const Use& use) {
-  for (int j = 0; j < x.shape.intervals; ++j) {
-    const double h = x.mesh[size(j + 1)] - x.mesh[size(j)];
-    for (int g = 0; g < rule.points(); ++g) use(j, g, h * rule.weights(g));
-  }
-}
-
-/// The polynomial of interval j at Gauss point g.
-void interpolate(const Orbit& x, const CollocationRule& rule, int s, int j, int g, double* state) {
-  const double* node = x.node(s, j * x.shape.collocation);
-  std::fill_n(state, x.shape.dimension, 0.0);
-  for (int i = 0; i <= rule.points(); ++i)
-    for (int a = 0; a < x.shape.dimension; ++a) state[a] += rule.value(g, i) * *node++;
-}
 
 }  // namespace
 
@@ -108,7 +94,8 @@ std::string BoundaryValueSystem::coupling_failure(int s, const Orbit& x) const {
   return finite ? "" : "a derivative of the boundary conditions is not finite";
 }
 
-void BoundaryValueSystem::integral_values(const Orbit& x, const CollocationRule& rule, double* values) const {
+void BoundaryValueSystem::integral_values(const Orbit& x, const Orbit&, const CollocationRule& rule,
+                                          double* values) const {
   std::fill_n(values, integral_conditions(), 0.0);
   if (integral_conditions() == 0) return;
   for (int s = 0; s < segments(); ++s)
@@ -120,7 +107,7 @@ void BoundaryValueSystem::integral_values(const Orbit& x, const CollocationRule&
 }
 
 /// With I = T sum w q(sum_i l_i u_i, T, p): by u_i T w l_i q_x, by T sum w q + T w q_T, by p T w q_p.
-void BoundaryValueSystem::integral_gradients(const Orbit& x, const CollocationRule& rule, double* values,
+void BoundaryValueSystem::integral_gradients(const Orbit& x, const Orbit&, const CollocationRule& rule, double* values,
                                              std::span<OrbitVector> rows) const {
   const int n = dimension();
   const std::size_t count = q_.size();
@@ -148,5 +135,9 @@ void BoundaryValueSystem::integral_gradients(const Orbit& x, const CollocationRu
 }
 
 std::string BoundaryValueSystem::integral_name(int r) const { return fmt::format("integral condition {}", r + 1); }
+
+std::string BoundaryValueSystem::integral_failure(int s, double tau, const double* x, const double* par) const {
+  return integral_conditions() == 0 ? "" : function_failure(*this, FunctionKind::integrand, s + 1, s, tau, x, par);
+}
 
 }  // namespace tchat

@@ -29,10 +29,12 @@ class BoundaryValueSystem final : public DefiningSystem {
   std::string coupling_failure(int s, const Orbit& x) const override;
 
   int integral_conditions() const override { return system().integral_conditions(); }
-  void integral_values(const Orbit& x, const CollocationRule& rule, double* values) const override;
-  void integral_gradients(const Orbit& x, const CollocationRule& rule, double* values,
+  void integral_values(const Orbit& x, const Orbit& reference, const CollocationRule& rule,
+                       double* values) const override;
+  void integral_gradients(const Orbit& x, const Orbit& reference, const CollocationRule& rule, double* values,
                           std::span<OrbitVector> rows) const override;
   std::string integral_name(int r) const override;
+  std::string integral_failure(int s, double tau, const double* x, const double* par) const override;
 
  private:
   int kept_rows(int s) const { return free_durations_[static_cast<std::size_t>(s)] ? 0 : 1; }

@@ -53,8 +53,7 @@ void CondensedReturnMap::values(const CondensedSystem& condensed, const Orbit& x
       values.insert(values.end(), condensed.last_block(s) + a * n_, condensed.last_block(s) + (a + 1) * n_);
       values.push_back(d_(a));
     }
-    double h = 0.0;
-    hybrid.first(FunctionKind::event, v.event, x.end(s), par, {}, &h, hx_.data(), nullptr);
+    system_.section_gradient(s, x.end(s), par, hx_.data());
     values.insert(values.end(), hx_.begin(), hx_.end());
     hybrid.first(FunctionKind::jump, v.jump, x.end(s), par, {}, f_.data(), fx_.data(), nullptr);
     values.insert(values.end(), static_cast<std::size_t>(n_), s + 1 == shape_.segments ? mu : 1.0);
@@ -124,6 +123,23 @@ void CondensedReturnMap::add_interval(const CondensedSystem& condensed, const Or
   }
 }
 
+/// Derivatives of h_x v by the state and the free parameters at the end of segment s, into hx_ and hp_. The plane
+/// across the flow has the gradient f.
+void CondensedReturnMap::section_change(const Orbit& x, int s, const Eigen::Ref<const Eigen::VectorXd>& v) {
+  const HybridSystem& hybrid = system_.system();
+  const std::vector<int>& free = system_.free_parameters();
+  const IndexVector& index = system_.signature()[static_cast<std::size_t>(s)];
+  if (system_.has_event(s)) {
+    double rate = 0.0;
+    hybrid.second(FunctionKind::event, index.event, x.end(s), x.par.data(), free, direction_.data(), &rate, hx_.data(),
+                  hp_.data());
+    return;
+  }
+  hybrid.first(FunctionKind::field, index.field, x.end(s), x.par.data(), free, f_.data(), fx_.data(), fp_.data());
+  hx_.noalias() = fx_.transpose() * v;
+  hp_.noalias() = fp_.transpose() * v;
+}
+
 /// Event row h_x v and connectivity rows mu v_next - g_x v of segment s; `weights` are those of its rows of S.
 void CondensedReturnMap::add_ends(const Orbit& x, int s, const double* weights, const OrbitVector& v,
                                   OrbitVector& gradient) {
@@ -133,9 +149,7 @@ void CondensedReturnMap::add_ends(const Orbit& x, int s, const double* weights, 
   const int end = (s + 1) * shape_.nodes() - 1;
   direction_.head(n_) = v.states.col(end);
 
-  double rate = 0.0;
-  hybrid.second(FunctionKind::event, index.event, x.end(s), x.par.data(), free, direction_.data(), &rate, hx_.data(),
-                hp_.data());
+  section_change(x, s, v.states.col(end));
   gradient.states.col(end) -= weights[n_] * hx_;
   gradient.globals -= weights[n_] * hp_;
 

@@ -6,8 +6,8 @@
 ///
 /// is singular exactly when mu is a multiplier: sigma_s replaces the division by h_x f of (5.13), so nothing is special
 /// at grazing. A_s, C_s, B_s are the blocks of the condensed Newton matrix. h is the terminal event of the segment,
-/// whose second derivatives enter the derivative of S: the map belongs to problem types whose sections are these events
-/// (180).
+/// whose second derivatives enter the derivative of S, or where there is none the plane across the flow: the map
+/// belongs to problem types with these sections (180).
 #pragma once
 
 #include <vector>
@@ -40,6 +40,7 @@ class CondensedReturnMap {
  private:
   void add_interval(const CondensedSystem& condensed, const Orbit& x, int s, int j, const double* weights,
                     const OrbitVector& v, OrbitVector& gradient);
+  void section_change(const Orbit& x, int s, const Eigen::Ref<const Eigen::VectorXd>& v);
   void add_ends(const Orbit& x, int s, const double* weights, const OrbitVector& v, OrbitVector& gradient);
 
   const DefiningSystem& system_;

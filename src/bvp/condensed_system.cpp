@@ -188,7 +188,6 @@ void CondensedSystem::evaluate(const Orbit& x, OrbitResidual& residual) {
     system_.coupling_values(s, x, coupling);
     coupling += system_.coupling_rows(s);
   }
-  system_.integral_values(x, rule_, residual.integral.data());
 }
 
 // ---- linearisation --------------------------------------------------------------------------------------------------

@@ -34,6 +34,8 @@ class DefiningSystem {
   /// Are the orbits equilibria (OrbitShape::point), with eigenvalues of f_x in the place of multipliers?
   virtual bool is_point() const { return false; }
   int segments() const { return static_cast<int>(signature_.size()); }
+  /// Does an event end segment s?
+  bool has_event(int s) const { return signature_[static_cast<std::size_t>(s)].event != no_function; }
   int free_count() const { return static_cast<int>(free_parameters_.size()); }
 
   // The coupling rows, in m groups (some may be empty): group s stands behind the condensed rows of segment s.
@@ -52,17 +54,25 @@ class DefiningSystem {
   /// "".
   virtual std::string coupling_failure(int s, const Orbit& x) const = 0;
 
-  // Conditions on the whole orbit that are integrals of functions of the states; none unless a type has some.
+  // Conditions on the whole orbit that are integrals of functions of the states; none unless a type has some. The
+  // reference is the orbit that a step goes from, on the same mesh: phases are compared with it.
 
   virtual int integral_conditions() const { return 0; }
   /// Their values, each zero on an orbit.
-  virtual void integral_values(const Orbit&, const CollocationRule&, double*) const {}
+  virtual void integral_values(const Orbit& /*x*/, const Orbit& /*reference*/, const CollocationRule&,
+                               double* /*values*/) const {}
   /// Values and gradients: `rows` holds one dual vector for each, overwritten.
-  virtual void integral_gradients(const Orbit&, const CollocationRule&, double*, std::span<OrbitVector>) const {}
+  virtual void integral_gradients(const Orbit& /*x*/, const Orbit& /*reference*/, const CollocationRule&,
+                                  double* /*values*/, std::span<OrbitVector> /*rows*/) const {}
   virtual std::string integral_name(int) const { return {}; }
+  /// A function in them, or a derivative of it, that is not finite at x, a point of segment s at tau: what and where,
+  /// else "".
+  virtual std::string integral_failure(int /*s*/, double /*tau*/, const double* /*x*/, const double* /*par*/) const {
+    return {};
+  }
 
   /// Gradient (n) of the section that ends segment s, on which its part of the return map is taken: that of the
-  /// terminal event, unless the problem type says otherwise; zero where no event ends the segment.
+  /// terminal event, unless the problem type says otherwise; zero where there is no section.
   virtual void section_gradient(int s, const double* x, const double* par, double* gradient) const;
 
  private:

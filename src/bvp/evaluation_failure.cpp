@@ -51,9 +51,7 @@ std::string evaluation_failure(const DefiningSystem& defining, const Collocation
         const double tau = left + h * rule.gauss(g);
         const std::string field = function_failure(defining, FunctionKind::field, v.field, s, tau, point.data(), par);
         if (!field.empty()) return field;
-        if (defining.integral_conditions() == 0) continue;
-        const std::string integrand =
-            function_failure(defining, FunctionKind::integrand, s + 1, s, tau, point.data(), par);
+        const std::string integrand = defining.integral_failure(s, tau, point.data(), par);
         if (!integrand.empty()) return integrand;
       }
     }

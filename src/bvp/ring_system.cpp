@@ -63,8 +63,10 @@ std::string RingSystem::coupling_name(int s, int r) const {
 
 std::string RingSystem::coupling_failure(int s, const Orbit& x) const {
   const IndexVector& v = signature()[static_cast<std::size_t>(s)];
-  const std::string event = function_failure(*this, FunctionKind::event, v.event, s, 1.0, x.end(s), x.par.data());
-  return !event.empty() ? event : function_failure(*this, FunctionKind::jump, v.jump, s, 1.0, x.end(s), x.par.data());
+  const double* par = x.par.data();
+  const std::string event =
+      has_event(s) ? function_failure(*this, FunctionKind::event, v.event, s, 1.0, x.end(s), par) : "";
+  return !event.empty() ? event : function_failure(*this, FunctionKind::jump, v.jump, s, 1.0, x.end(s), par);
 }
 
 }  // namespace tchat

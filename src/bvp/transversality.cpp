@@ -3,7 +3,7 @@
 namespace tchat {
 
 Crossing crossing_at_end(const DefiningSystem& defining, const Orbit& x, int s) {
-  if (defining.signature()[static_cast<std::size_t>(s)].event == no_function) return {-1.0, 1.0};
+  if (!defining.has_event(s)) return {-1.0, 1.0};
   const int n = defining.dimension();
   Eigen::VectorXd f(n);
   Eigen::VectorXd gradient(n);

@@ -17,11 +17,14 @@ std::string limits_line(const Constant& constant) {
   return fmt::format("{:{}}   allowed: {}{}\n", "", keyword_width, allowed_text(constant), effect);
 }
 
-std::string segment_text(int number, const SegmentSettings& segment) {
-  if (segment.index.event == no_function) return fmt::format("  segment {}: field {}\n", number, segment.index.field);
-  std::string text = fmt::format(
-      "  segment {}: field {} until event function {} falls to zero{}, then jump {}", number, segment.index.field,
-      segment.index.event, segment.type == 2 ? " in grazing contact (h = 0 and h_x f = 0)" : "", segment.index.jump);
+std::string segment_text(int number, const SegmentSettings& segment, bool ring) {
+  std::string text = fmt::format("  segment {}: field {}", number, segment.index.field);
+  if (!ring) return text + "\n";
+  text += segment.index.event == no_function
+              ? " for one period, fixed by the integral phase condition"
+              : fmt::format(" until event function {} falls to zero{}", segment.index.event,
+                            segment.type == 2 ? " in grazing contact (h = 0 and h_x f = 0)" : "");
+  text += segment.index.jump == no_function ? ", no jump" : fmt::format(", then jump {}", segment.index.jump);
   if (!segment.monitor.empty())
     text += fmt::format("; watched along it: event functions {}", fmt::join(segment.monitor, ", "));
   return text + "\n";
@@ -56,7 +59,7 @@ std::string constants_guide() {
 std::string explained_text(const RunSettings& settings) {
   std::string text = "The signature:\n";
   for (std::size_t s = 0; s < settings.segments.size(); ++s)
-    text += segment_text(static_cast<int>(s + 1), settings.segments[s]);
+    text += segment_text(static_cast<int>(s + 1), settings.segments[s], has_ring(settings.problem_type));
   const std::string contacts = contacts_text(settings);
   if (!keeps_contact(settings.problem_type) && !contacts.empty()) text += "GCIPSI chooses from these:\n" + contacts;
   text += "\n";

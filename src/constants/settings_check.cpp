@@ -65,9 +65,9 @@ class SettingsCheck {
                                   count));
   }
 
-  /// Events and jumps of the signature: each is one of the problem in a ring, and there is none without.
+  /// Events and jumps of the signature: there is none where segments form no ring. In one, jump 0 is the identity, and
+  /// event 0 the phase condition of an orbit without a section.
   void signature() const {
-    const bool ring = has_ring(settings_.problem_type);
     if (is_point(settings_.problem_type) && segments() > 1)
       refuse_constant("GCNOSEG", "GCNOSEG", in_quotes(std::to_string(segments())),
                       fmt::format("1 with IPS = {}: an equilibrium is one state of one vector field",
@@ -75,18 +75,34 @@ class SettingsCheck {
     int s = 0;
     for (const SegmentSettings& segment : settings_.segments) {
       ++s;
-      const auto check = [&](const char* keyword, int index) {
-        if (ring == (index != no_function)) return;
-        refuse_constant(keyword, fmt::format("{}({})", keyword, s), in_quotes(std::to_string(index)),
-                        ring ? fmt::format("an integer >= 1 with IPS = {}", settings_.problem_type)
-                             : fmt::format("0, or leave it out: with IPS = {} {}", settings_.problem_type,
-                                           is_point(settings_.problem_type)
-                                               ? "nothing ends a segment; events to watch are in GCHGRZIND"
-                                               : "the problem's boundary conditions tie the segments"));
-      };
-      check("GCHIND", segment.index.event);
-      check("GCGIND", segment.index.jump);
+      if (has_ring(settings_.problem_type)) {
+        if (segment.index.event == no_function) phase_condition(s);
+      } else {
+        no_index("GCHIND", s, segment.index.event);
+        no_index("GCGIND", s, segment.index.jump);
+      }
     }
+  }
+
+  void phase_condition(int s) const {
+    const auto refuse_zero = [&](const std::string& allowed) {
+      refuse_constant("GCHIND", fmt::format("GCHIND({})", s), "'0'", allowed);
+    };
+    if (keeps_contact(settings_.problem_type))
+      refuse_zero(fmt::format("an integer >= 1 with IPS = {}, whose segments end in events", settings_.problem_type));
+    if (segments() > 1)
+      refuse_zero(
+          "an integer >= 1 in a signature of several segments: 0, the integral phase condition, stands for the one "
+          "event of a smooth orbit");
+  }
+
+  void no_index(const char* keyword, int s, int index) const {
+    if (index == no_function) return;
+    refuse_constant(keyword, fmt::format("{}({})", keyword, s), in_quotes(std::to_string(index)),
+                    fmt::format("0, or leave it out: with IPS = {} {}", settings_.problem_type,
+                                is_point(settings_.problem_type)
+                                    ? "nothing ends a segment; events to watch are in GCHGRZIND"
+                                    : "the problem's boundary conditions tie the segments"));
   }
 
   void bounds(std::string_view low_keyword, double low, std::string_view high_keyword, double high) const {

@@ -81,7 +81,8 @@ struct BranchSummary {
   bool equilibria = false;        ///< the multipliers are eigenvalues, and there is no mesh
   bool critical_curve = false;    ///< every point has a critical multiplier, so stability says nothing
   bool without_contact = false;   ///< stability is that of the orbit without the contact that the curve keeps
-  double worst_structural = 0.0;  ///< largest structural multiplier
+  double worst_structural = 0.0;  ///< largest structural multiplier, or distance of the trivial one from 1
+  bool has_trivial = false;       ///< orbits without a section have this one instead
   double worst_estimated_error = 0.0;
   std::vector<LostPoint> lost;  ///< special points that may be missing
 };

@@ -258,6 +258,7 @@ void ContinuationRun::record(const SpecialPoint& special, const PointData& data)
   summary_.critical_curve = follower_.condition() != nullptr;
   summary_.unstable_points += settings_.multipliers && !data.multipliers.stable();
   summary_.worst_structural = std::max(summary_.worst_structural, data.multipliers.structural);
+  summary_.has_trivial = data.multipliers.has_trivial;
   summary_.worst_estimated_error = std::max(summary_.worst_estimated_error, point.estimated_error);
   sink_.point(point);
 }

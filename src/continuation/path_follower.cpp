@@ -52,6 +52,7 @@ double PathFollower::alignment(const PathPoint& point, const OrbitVector& direct
 
 bool PathFollower::linearize_at(const PathPoint& point) {
   problem_.recall(point.memory);
+  problem_.set_reference(point.orbit);
   return linearize(point.orbit, point.dual);
 }
 
@@ -100,10 +101,12 @@ NewtonResult PathFollower::step_near(const PathPoint& from, double ds, PathPoint
   row_.durations = from.dual.durations;
   row_.globals = from.dual.globals;
   problem_.recall(from.memory);
+  problem_.set_reference(from.orbit);
   return correct_and_orient(to, from.orbit, ds);
 }
 
 bool PathFollower::solves(const Orbit& x) {
+  problem_.set_reference(x);
   problem_.evaluate(x, newton_.residual());
   return is_rounding(problem_.residual_size(newton_.residual()), x);
 }
@@ -123,6 +126,7 @@ NewtonResult PathFollower::start_at_fixed_parameter(PathPoint& point) {
   row_ = principal_row();
   problem_.recall(point.memory);
   const Orbit base = point.orbit;
+  problem_.set_reference(base);
   NewtonResult result = correct_and_orient(point, base, 0.0);
   if (result.converged()) orient(point);
   return result;
@@ -134,6 +138,7 @@ NewtonResult PathFollower::start_along(PathPoint& point, const OrbitVector& dire
   row_ = point.dual;
   problem_.recall(point.memory);
   const Orbit base = point.orbit;
+  problem_.set_reference(base);
   return correct_and_orient(point, base, 0.0);
 }
 
@@ -145,6 +150,7 @@ NewtonResult PathFollower::start_by_minimum_norm(PathPoint& point) {
   row_.durations.setOnes();
   row_.globals.setOnes();
   problem_.recall(point.memory);
+  problem_.set_reference(point.orbit);
   NewtonResult result;
   result.status = NewtonStatus::singular;
   if (!linearize(point.orbit, row_) || !find_tangent(point.orbit, point.tangent, point.dual)) return result;
@@ -152,6 +158,7 @@ NewtonResult PathFollower::start_by_minimum_norm(PathPoint& point) {
   for (int iteration = 0; iteration < settings_.max_iterations; ++iteration) {
     row_ = point.dual;
     const Orbit base = point.orbit;
+    problem_.set_reference(base);
     result = correct_and_orient(point, base, 0.0);
     if (result.converged() || result.status == NewtonStatus::not_finite) break;
     if (!linearize(point.orbit, row_) || !find_tangent(point.orbit, point.tangent, point.dual)) return result;
@@ -176,6 +183,7 @@ void PathFollower::reverse(PathPoint& point) const {
 CondensedSystem::Singularity PathFollower::singularity(const PathPoint& point) {
   row_ = point.dual;
   problem_.recall(point.memory);
+  problem_.set_reference(point.orbit);
   if (problem_.linearize(point.orbit, row_, newton_.residual()) == Linearization::not_finite) return {1.0, {}};
   return condensed().singularity();
 }

@@ -24,6 +24,19 @@ std::string name_or(const char* const* names, int count, int k, const char* fall
   return fmt::format(fmt::runtime(fallback), k);
 }
 
+void identity_first(int n, const double* x, int active, double* out, double* dx, double* dp) {
+  std::copy_n(x, n, out);
+  std::fill_n(dx, n * n, 0.0);
+  for (int a = 0; a < n; ++a) dx[a * n + a] = 1.0;
+  if (dp != nullptr) std::fill_n(dp, n * active, 0.0);
+}
+
+void identity_second(int n, int active, const double* direction, double* out, double* dx, double* dp) {
+  std::copy_n(direction, n, out);
+  std::fill_n(dx, n * n, 0.0);
+  if (dp != nullptr) std::fill_n(dp, n * active, 0.0);
+}
+
 }  // namespace
 
 HybridSystem::HybridSystem(const tchat_problem& table) : table_(&table) {
@@ -37,10 +50,9 @@ HybridSystem::HybridSystem(const tchat_problem& table) : table_(&table) {
           fmt::format("its dimension is {}, allowed are 1..1000", table.dimension));
   require(table.parameters >= 0 && table.parameters <= 60,
           fmt::format("it has {} parameters, allowed are 0..60", table.parameters));
-  // Boundary value problems need no events and jumps.
-  const int least = table.boundary_conditions > 0 ? 0 : 1;
-  require(table.fields >= 1 && table.events >= least && table.jumps >= least,
-          fmt::format("it has {} fields, {} events and {} jumps, at least one of each is needed", table.fields,
+  // Smooth problems and boundary value problems need no events and jumps.
+  require(table.fields >= 1 && table.events >= 0 && table.jumps >= 0,
+          fmt::format("it has {} fields, {} events and {} jumps, at least one field is needed", table.fields,
                       table.events, table.jumps));
   require(table.boundary_conditions >= 0 && table.boundary_conditions <= 1000 && table.integral_conditions >= 0 &&
               table.integral_conditions <= 1000,
@@ -78,8 +90,10 @@ std::string HybridSystem::function_name(FunctionKind kind, int index) const {
     case FunctionKind::field:
       return name_or(table_->field_names, table_->fields, index, "field {}");
     case FunctionKind::event:
+      if (index == no_function) return "phase condition";
       return name_or(table_->event_names, table_->events, index, "event {}");
     case FunctionKind::jump:
+      if (index == no_function) return "identity";
       return name_or(table_->jump_names, table_->jumps, index, "jump {}");
     default:
       return fmt::format("integrand on segment {}", index);
@@ -116,7 +130,9 @@ std::optional<std::vector<IndexVector>> HybridSystem::successors(const IndexVect
 
 void HybridSystem::first(FunctionKind kind, int index, const double* x, const double* par, std::span<const int> active,
                          double* out, double* dx, double* dp) const {
-  if (table_->derivative_order >= 1)
+  if (is_identity(kind, index))
+    identity_first(dimension(), x, static_cast<int>(active.size()), out, dx, dp);
+  else if (table_->derivative_order >= 1)
     table_->first(table_->self, static_cast<int>(kind), index, x, par, active.data(), static_cast<int>(active.size()),
                   out, dx, dp);
   else
@@ -125,7 +141,9 @@ void HybridSystem::first(FunctionKind kind, int index, const double* x, const do
 
 void HybridSystem::second(FunctionKind kind, int index, const double* x, const double* par, std::span<const int> active,
                           const double* direction, double* out, double* dx, double* dp) const {
-  if (table_->derivative_order >= 2)
+  if (is_identity(kind, index))
+    identity_second(dimension(), static_cast<int>(active.size()), direction, out, dx, dp);
+  else if (table_->derivative_order >= 2)
     table_->second(table_->self, static_cast<int>(kind), index, x, par, active.data(), static_cast<int>(active.size()),
                    direction, out, dx, dp);
   else

@@ -7,6 +7,7 @@
 /// entries that are not finite, which callers check (`all_finite`).
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <span>
 #include <string>
@@ -54,9 +55,13 @@ class HybridSystem {
   /// 1-based index of a parameter by its name; 0 if there is none.
   int parameter_index(const std::string& name) const;
 
-  /// out = F(x, p), rows(kind) entries. The index of an integrand is the number of its segment.
+  /// out = F(x, p), rows(kind) entries. The index of an integrand is the number of its segment. Jump 0 is the identity,
+  /// here and in the derivatives; no problem sees it.
   void value(FunctionKind kind, int index, const double* x, const double* par, double* out) const {
-    table_->value(table_->self, static_cast<int>(kind), index, x, par, out);
+    if (is_identity(kind, index))
+      std::copy_n(x, dimension(), out);
+    else
+      table_->value(table_->self, static_cast<int>(kind), index, x, par, out);
   }
   double event(int j, const double* x, const double* par) const {
     double h = 0.0;
@@ -89,6 +94,8 @@ class HybridSystem {
                       double* dp) const;
 
  private:
+  bool is_identity(FunctionKind kind, int index) const { return kind == FunctionKind::jump && index == no_function; }
+
   const tchat_problem* table_;
 };
 

@@ -8,10 +8,12 @@
 
 namespace tchat {
 
-/// In the place of an event or a jump: there is none, as on the segments of boundary value problems.
+/// In the place of an event or a jump: there is none, as on the segments of boundary value problems. In a ring jump 0
+/// is the identity, and no event: an integral phase condition in its place.
 inline constexpr int no_function = 0;
 
-/// (i, j, k): flow with field i until event function j falls to zero, then apply jump k. All count from 1.
+/// (i, j, k): flow with field i until event function j falls to zero, then apply jump k. All count from 1, but for
+/// `no_function`.
 struct IndexVector {
   int field = 1;
   int event = 1;

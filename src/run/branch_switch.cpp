@@ -36,7 +36,14 @@ RunSettings once(RunSettings settings) {
   return settings;
 }
 
+bool has_section(const RunSettings& settings) { return settings.segments.front().index.event != no_function; }
+
+/// The orbit twice over: every segment again, or, without a section, one segment of twice as many intervals.
 RunSettings doubled(RunSettings settings) {
+  if (!has_section(settings)) {
+    settings.mesh_intervals *= 2;
+    return settings;
+  }
   const std::size_t m = settings.segments.size();
   if (2 * m > static_cast<std::size_t>(max_segments))
     throw UserError(fmt::format("the doubled orbit has {} segments, at most {} are allowed", 2 * m, max_segments));
@@ -68,6 +75,48 @@ std::unique_ptr<PathFollower> make_follower(const DefiningSystem& defining, cons
                                         settings.free_parameters.front());
 }
 
+/// The critical vector v, which changes sign after one period (5.21), on one segment of two periods. In the first its
+/// duration changes by sigma, in the second by -sigma; at the time t of the one segment, whose duration stays, it is
+/// v - sigma f t / T in the first and -v - sigma f (2 - t / T) in the second.
+void double_segment(const DefiningSystem& defining, const Orbit& x, const OrbitVector& v, OrbitVector& direction) {
+  const int last = x.shape.nodes() - 1;
+  Eigen::VectorXd f(x.shape.dimension);
+  for (int k = 0; k <= last; ++k) {
+    defining.system().value(FunctionKind::field, defining.signature().front().field, x.node(0, k), x.par.data(),
+                            f.data());
+    f *= v.durations(0);
+    direction.states.col(k) = v.states.col(k) - x.tau(k) * f;
+    direction.states.col(last + k) = -v.states.col(k) - (1.0 - x.tau(k)) * f;
+  }
+}
+
+/// `states` of one period, twice.
+void repeat_segment(const Eigen::MatrixXd& states, Eigen::MatrixXd& twice) {
+  const Eigen::Index last = states.cols() - 1;
+  twice.leftCols(last + 1) = states;
+  twice.rightCols(last + 1) = states;
+}
+
+/// An orbit without a section twice over, as one segment of two periods.
+Bifurcation double_without_section(const DefiningSystem& defining, const PathPoint& point, const OrbitVector& v) {
+  const Orbit& x = point.orbit;
+  OrbitShape shape = x.shape;
+  shape.intervals *= 2;
+  std::vector<double> mesh;
+  for (const double tau : x.mesh) mesh.push_back(0.5 * tau);
+  for (std::size_t j = 1; j < x.mesh.size(); ++j) mesh.push_back(0.5 + 0.5 * x.mesh[j]);
+  Bifurcation result{{shape, mesh, Eigen::MatrixXd(shape.dimension, shape.columns()), x.par},
+                     OrbitVector(shape, defining.free_count()),
+                     OrbitVector(shape, defining.free_count())};
+  repeat_segment(x.states, result.orbit.states);
+  result.orbit.duration(0) = 2.0 * x.duration(0);
+  double_segment(defining, x, v, result.direction);
+  repeat_segment(point.tangent.states, result.known.states);
+  result.known.durations = 2.0 * point.tangent.durations;
+  result.known.globals = point.tangent.globals;
+  return result;
+}
+
 /// The orbit twice over; the critical vector changes sign after one period (5.21).
 Bifurcation double_at(PathFollower& follower, const DefiningSystem& defining, const PathPoint& point) {
   const Orbit& x = point.orbit;
@@ -75,6 +124,7 @@ Bifurcation double_at(PathFollower& follower, const DefiningSystem& defining, co
   if (!critical.evaluate(follower.condensed(), x))
     throw ComputationError("the critical vector of the period doubling was not found");
   const OrbitVector& v = critical.null_vector();
+  if (!defining.has_event(0)) return double_without_section(defining, point, v);
   OrbitShape shape = x.shape;
   shape.segments *= 2;
   Bifurcation result{{shape, x.mesh, Eigen::MatrixXd(shape.dimension, shape.columns()), x.par},
@@ -206,9 +256,24 @@ BranchSetup switch_branch(const HybridSystem& system, const RunSettings& setting
   const bool doubling = bifurcation_type != selected.types.end() && *bifurcation_type == period_doubling;
   if (bifurcation_type == selected.types.end())
     throw UserError(
-        fmt::format("{}: ISW = -1 switches at a period doubling (PD) or a branch point (BP), but the run does "
-                    "not start from such a label; name one, for example IRS=PD1",
-                    selected.source));
+        fmt::format("{}: ISW = -1 switches at {}, but the run does not start from such a label; name one, for example "
+                    "IRS={}1",
+                    selected.source,
+                    is_point(settings.problem_type) ? "a branch point (BP)"
+                    : has_ring(settings.problem_type) && !keeps_contact(settings.problem_type)
+                        ? "a period doubling (PD), a branch point (BP) or a Hopf bifurcation of equilibria (HB)"
+                        : "a period doubling (PD) or a branch point (BP)",
+                    is_point(settings.problem_type) ? "BP" : "PD"));
+  if (selected.start.orbit.shape.is_point() != is_point(settings.problem_type))
+    throw UserError(fmt::format("{}: label {} is an equilibrium: its branch point is left with IPS = {}, and periodic "
+                                "orbits (IPS = {}) begin at a Hopf bifurcation (HB)",
+                                selected.source, selected.label, equilibrium.number, periodic_orbit.number));
+
+  if (doubling && !has_section(settings) && settings.segments.front().index.jump != no_function)
+    throw UserError(fmt::format(
+        "{}: an orbit without a section that ends in jump {} cannot be doubled, for the jump would stand inside of a "
+        "segment; follow the whole period instead (GCGIND = [0]), or use a section (an event function)",
+        selected.source, settings.segments.front().index.jump));
 
   const RunSettings before = once(settings);
   const std::unique_ptr<DefiningSystem> known = make_system(system, before);

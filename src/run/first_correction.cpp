@@ -30,6 +30,7 @@ constexpr double settled = 0.1;
 std::string residual_report(CondensedSystem& condensed, const DefiningSystem& defining, const Orbit& start) {
   OrbitResidual residual = condensed.make_residual();
   condensed.evaluate(start, residual);
+  defining.integral_values(start, start, condensed.rule(), residual.integral.data());
   const int m = defining.segments();
   std::string text;
   std::size_t coupling = 0;

@@ -66,7 +66,10 @@ std::string trust(const BranchSummary& summary) {
   std::string text = fmt::format("  trust: estimated relative error between mesh points at most {:.1e}",
                                  summary.worst_estimated_error);
   if (summary.multipliers_computed)
-    text += fmt::format(", structural multiplier (0 for the exact orbit) at most {:.1e}", summary.worst_structural);
+    text += fmt::format(", {} {:.1e}",
+                        summary.has_trivial ? "trivial multiplier off from 1 by at most"
+                                            : "structural multiplier (0 for the exact orbit) at most",
+                        summary.worst_structural);
   text += "\n";
   if (summary.worst_structural > 1e-3 || summary.worst_estimated_error > 1e-3)
     text += "  the mesh is too coarse for this orbit: raise NTST or NCOL, or adapt it (IAD = 1)\n";

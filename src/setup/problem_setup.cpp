@@ -136,8 +136,11 @@ std::vector<std::string> check_settings_against(const HybridSystem& system, cons
     for (const int event : segment.monitor)
       check_index(system, FunctionKind::event, event, "GCHGRZIND", "event functions", s, source);
     if (!ring) continue;
-    check_index(system, FunctionKind::event, segment.index.event, "GCHIND", "event functions", s, source);
-    check_index(system, FunctionKind::jump, segment.index.jump, "GCGIND", "jump functions", s, source);
+    if (segment.index.event != no_function)
+      check_index(system, FunctionKind::event, segment.index.event, "GCHIND", "event functions", s, source);
+    if (segment.index.jump != no_function)
+      check_index(system, FunctionKind::jump, segment.index.jump, "GCGIND", "jump functions", s, source);
+    if (segment.index.jump == no_function) continue;
     const bool identity = is_identity_jump(system, segment.index.jump);
     if ((segment.type == 0 && !identity) || (segment.type == 1 && identity))
       warnings.push_back(fmt::format(

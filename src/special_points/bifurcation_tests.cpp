@@ -38,8 +38,8 @@ bool is_section(const DefiningSystem& system, int s) {
 
 /// A fold located to EPSS has this multiplier nearer to 1.
 bool has_multiplier_one(const FloquetMultipliers& multipliers) {
-  return std::any_of(multipliers.values.begin(), multipliers.values.end(),
-                     [](const auto& mu) { return std::abs(mu - 1.0) < 1e-3; });
+  const auto list = multipliers.telling();
+  return std::any_of(list.begin(), list.end(), [](const auto& mu) { return std::abs(mu - 1.0) < 1e-3; });
 }
 
 /// The segment (from 0) whose end touches its event's surface but for the accuracy of a located point, -1: none.
@@ -62,7 +62,7 @@ const std::complex<double>* nearest_pair(const FloquetMultipliers& multipliers) 
 
 double distance_to(const FloquetMultipliers& multipliers, double target) {
   double nearest = std::numeric_limits<double>::infinity();
-  for (const auto& mu : multipliers.values) nearest = std::min(nearest, std::abs(mu - target));
+  for (const auto& mu : multipliers.telling()) nearest = std::min(nearest, std::abs(mu - target));
   return nearest;
 }
 

@@ -3,6 +3,7 @@
 #include <Eigen/Householder>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "bvp/transversality.hpp"
 #include "linear_algebra/dense_matrix.hpp"
@@ -57,16 +58,34 @@ double flow_defect(const RowMajorBlock& first, const Vector& f0, const RowMajorB
   return distance_to_null_space(rows, both);
 }
 
+/// The t of least |first f0 + t last f1|.
+double trivial_multiplier(const RowMajorBlock& first, const Vector& f0, const RowMajorBlock& last, const Vector& f1) {
+  const Vector image = last * f1;
+  const double size = image.squaredNorm();
+  return size > 0.0 ? -image.dot(first * f0) / size : 0.0;
+}
+
+/// The one closest to 1 first, then by the distance to the unit circle.
+void sort_by_interest(std::vector<std::complex<double>>& values) {
+  const auto nearest_one = [](const auto& a, const auto& b) { return std::abs(a - 1.0) < std::abs(b - 1.0); };
+  std::iter_swap(values.begin(), std::min_element(values.begin(), values.end(), nearest_one));
+  std::stable_sort(values.begin() + 1, values.end(), [](const auto& a, const auto& b) {
+    return std::abs(std::abs(a) - 1.0) < std::abs(std::abs(b) - 1.0);
+  });
+}
+
 }  // namespace
 
 bool FloquetMultipliers::stable() const { return valid && stable_count() == static_cast<int>(values.size()); }
 
 int FloquetMultipliers::stable_count() const {
+  const auto list = telling();
   double largest = 0.0;
-  for (const auto& mu : values) largest = std::max(largest, std::abs(mu));
-  return static_cast<int>(std::count_if(values.begin(), values.end(), [&](const auto& mu) {
+  for (const auto& mu : list) largest = std::max(largest, std::abs(mu));
+  const auto stable = std::count_if(list.begin(), list.end(), [&](const auto& mu) {
     return are_eigenvalues ? mu.real() <= eigenvalue_rounding * largest : std::abs(mu) <= 1.0 + stability_tolerance;
-  }));
+  });
+  return static_cast<int>(stable) + (has_trivial ? 1 : 0);
 }
 
 /// What the end of one segment contributes.
@@ -190,6 +209,7 @@ FloquetMultipliers FloquetSolver::compute(const CondensedSystem& condensed, cons
   std::vector<SegmentEnd> ends(static_cast<std::size_t>(m));
   double structural = 0.0;
   double least_transversality = 1.0;
+  std::optional<double> trivial;
   for (int s = 0; s < m; ++s) {
     const IndexVector& v = condensed.system().signature()[static_cast<std::size_t>(s)];
     SegmentEnd& end = ends[static_cast<std::size_t>(s)];
@@ -210,6 +230,7 @@ FloquetMultipliers FloquetSolver::compute(const CondensedSystem& condensed, cons
     const double sizes = hx.norm() * f1.norm();
     end.transversality = sizes > 0.0 ? hx.dot(f1) / sizes : 0.0;
     end.flow_defect = flow_defect(first, f0, last, f1);
+    if (!condensed.system().has_event(s)) trivial = trivial_multiplier(first, f0, last, f1);
     end.determinant_share = determinant_share(end, last, hx, f1);
     structural = std::max(structural, end.flow_defect);
     least_transversality = std::min(least_transversality, std::abs(end.transversality));
@@ -238,13 +259,15 @@ FloquetMultipliers FloquetSolver::compute(const CondensedSystem& condensed, cons
     const auto largest = std::max_element(result.values.begin(), result.values.end(), by_size);
     if (std::abs(*largest) > large) *largest = infinite_multiplier;
   }
+  if (trivial) {
+    if (!result.values.empty()) sort_by_interest(result.values);
+    result.has_trivial = true;
+    result.structural = std::abs(*trivial - 1.0);
+    result.values.insert(result.values.begin(), *trivial);
+    return result;
+  }
   result.values.emplace_back(result.structural);
-
-  const auto nearest_one = [](const auto& a, const auto& b) { return std::abs(a - 1.0) < std::abs(b - 1.0); };
-  std::iter_swap(result.values.begin(), std::min_element(result.values.begin(), result.values.end(), nearest_one));
-  std::stable_sort(result.values.begin() + 1, result.values.end(), [](const auto& a, const auto& b) {
-    return std::abs(std::abs(a) - 1.0) < std::abs(std::abs(b) - 1.0);
-  });
+  sort_by_interest(result.values);
   return result;
 }
 

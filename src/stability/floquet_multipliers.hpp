@@ -26,9 +26,14 @@
 /// The projection removes the structural zero multiplier. What is printed in its place is its size as the
 /// discretisation sees it: the least relative change of f(x_s(0)) and f(x_s(1)) with which Phi_s takes one to the
 /// other, on the worst segment. It is 0 for the exact flow, and an error figure of the mesh.
+///
+/// An orbit without a section is cut by the plane across the flow. What is printed then in place of the zero is its
+/// trivial multiplier as the discretisation has it: of all t the one that comes nearest to A f(x(0)) + t C f(x(1)) = 0,
+/// 1 for the exact flow.
 #pragma once
 
 #include <complex>
+#include <span>
 #include <vector>
 
 #include "bvp/condensed_system.hpp"
@@ -48,9 +53,11 @@ struct MultiplierProduct {
 };
 
 struct FloquetMultipliers {
-  /// n multipliers, the structural zero among them: the one closest to 1 first, then by | |mu| - 1 |.
+  /// n multipliers, the structural zero among them: the one closest to 1 first, then by | |mu| - 1 |. Of an orbit
+  /// without a section the trivial one stands before these, in place of the zero.
   std::vector<std::complex<double>> values;
-  double structural = 0.0;  ///< size of the structural zero
+  bool has_trivial = false;
+  double structural = 0.0;  ///< size of the structural zero, or distance of the trivial one from 1
   bool valid = false;       ///< false: not computed, or the eigenvalue iteration failed
   /// They are the eigenvalues of f_x at an equilibrium (equilibrium_eigenvalues.hpp): stable on the left of the
   /// imaginary axis.
@@ -61,6 +68,8 @@ struct FloquetMultipliers {
   MultiplierProduct with_one = {};        ///< t = 1: vanishes with a multiplier +1
   MultiplierProduct with_minus_one = {};  ///< t = -1: vanishes with a multiplier -1
 
+  /// All but the trivial one, which tells nothing of the orbit; the structural zero is among them.
+  std::span<const std::complex<double>> telling() const { return std::span(values).subspan(has_trivial ? 1 : 0); }
   bool determined() const { return valid && undetermined == 0; }
 
   /// All |mu| <= 1 + 1e-5 of those that are known; of eigenvalues all real parts <= 0 but for rounding.

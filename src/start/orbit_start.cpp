@@ -111,7 +111,8 @@ std::optional<OrbitVector> stored_direction(const LabelledSolution& solution, co
   OrbitVector direction(stored, static_cast<int>(free_parameters.size()));
   std::size_t found = 0;
   for (std::size_t i = 0; i < solution.free_parameters.size() && i < solution.parameter_direction.size(); ++i) {
-    const int k = solution.free_parameters[i];
+    const bool is_period = solution.free_parameters[i] == auto_period(solution.problem_type);
+    const int k = is_period ? first_duration : solution.free_parameters[i];
     if (is_duration(k, stored.segments)) {
       direction.durations(duration_segment(k)) = solution.parameter_direction[i];
       continue;
@@ -223,6 +224,8 @@ OrbitStart orbit_from_solution(const LabelledSolution& solution, const OrbitShap
   if (is_shared_problem_type(solution.problem_type) &&
       solution.parameters.size() < static_cast<std::size_t>(first_duration))
     start.orbit.par.segment(first_duration - 1, shape.segments).setOnes();
+  if (const std::optional<int> period = auto_period(solution.problem_type))
+    std::swap(start.orbit.par(*period - 1), start.orbit.duration(0));
   if (stored == shape) return start;
 
   const std::vector<double> new_mesh = resampled_mesh(mesh, shape.intervals);

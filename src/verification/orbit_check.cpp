@@ -46,15 +46,23 @@ StoredSegment stored_segment(const HybridSystem& system, const RunSettings& sett
 }
 
 /// In states divided by their scales. A segment that ends in contact is a return to h_x f = 0, where the orbit that
-/// does not see the contact is cut.
+/// does not see the contact is cut; where no event ends it, the plane across the flow is its section.
 SegmentLink link_at(const HybridSystem& system, const StoredSegment& segment, const SegmentCheck& check,
                     const VectorXd& par, const VectorXd& scale) {
   const int n = system.dimension();
   const IndexVector& index = segment.index;
   const double* const x = check.end.data();
-  const EventAt at = event_at(system, index.event, index.field, x, par.data());
-  SegmentLink link{check.flow, at.f, at.gradient.transpose(), MatrixXd(n, n)};
-  if (segment.grazing) link.hx = rate_gradient(system, at, index.event, index.field, x, par.data()).transpose();
+  SegmentLink link{check.flow, VectorXd(n), Eigen::RowVectorXd(n), MatrixXd(n, n)};
+  if (index.event == no_function) {
+    system.value(FunctionKind::field, index.field, x, par.data(), link.f.data());
+    link.hx = link.f.transpose();
+  } else {
+    const EventAt at = event_at(system, index.event, index.field, x, par.data());
+    link.f = at.f;
+    const VectorXd section =
+        segment.grazing ? rate_gradient(system, at, index.event, index.field, x, par.data()) : at.gradient;
+    link.hx = section.transpose();
+  }
   VectorXd after(n);
   system.first(FunctionKind::jump, index.jump, x, par.data(), {}, after.data(), link.gx.data(), nullptr);
   const auto divide = scale.cwiseInverse().asDiagonal();
@@ -97,6 +105,15 @@ void compare_critical(const std::vector<std::complex<double>>& critical, const R
   }
 }
 
+/// Where the stored ones begin with the trivial one of an orbit without a section, the pencil has a structural zero.
+void compare_multipliers(std::vector<std::complex<double>> stored, bool has_trivial, const ReturnPencil& pencil,
+                         OrbitCheck& check) {
+  if (has_trivial) stored.front() = 0.0;
+  check.multiplier_difference = largest_difference(stored, check.multipliers);
+  for (const std::complex<double>& mu : stored)
+    if (std::abs(mu) < 1e98) check.multiplier_error = std::max(check.multiplier_error, pencil.backward_error(mu));
+}
+
 }  // namespace
 
 VectorXd state_scales(const Orbit& x) {
@@ -133,10 +150,9 @@ OrbitCheck check_orbit(const HybridSystem& system, const RunSettings& settings, 
   if (!pencil.determines_multipliers(tolerance)) return check;
   check.multipliers = pencil.multipliers();
   if (critical) compare_critical(critical(check.multipliers), pencil, check);
-  if (stored.size() != check.multipliers.size()) return check;
-  check.multiplier_difference = largest_difference(stored, check.multipliers);
-  for (const std::complex<double>& mu : stored)
-    if (std::abs(mu) < 1e98) check.multiplier_error = std::max(check.multiplier_error, pencil.backward_error(mu));
+  const bool has_trivial = settings.segments.front().index.event == no_function;
+  if (stored.size() == check.multipliers.size()) compare_multipliers(stored, has_trivial, pencil, check);
+  if (has_trivial) check.multipliers.back() = 1.0;
   return check;
 }
 

@@ -152,6 +152,6 @@ TEST_CASE("integral conditions: exact for polynomials, in time and not in tau") 
   const std::vector<double> tau = x.node_times();
   for (Eigen::Index k = 0; k < 7; ++k) x.states(0, k) = 3.0 * tau[static_cast<std::size_t>(k)];  // x = t
   double value = 0.0;
-  system.integral_values(x, CollocationRule(2), &value);
+  system.integral_values(x, x, CollocationRule(2), &value);
   CHECK(value == Approx(9.0).epsilon(1e-14));  // of t^2 from 0 to 3
 }

@@ -15,7 +15,7 @@
 /// The indices i, j, k count from 1; x[0] is U(1) and par[0] is PAR(1); par has `parameters` entries. T is double or a
 /// dual number, so constants and local variables that depend on x or par must be of type T (or auto), and the usual
 /// mathematical functions are called unqualified: sin(x[0]), pow(x[1], 3), fmax(x[0], 0.0). Where a function cannot be
-/// evaluated it gives NaN or throws; an output left unset is NaN.
+/// evaluated it gives NaN or throws; an output left unset is NaN. A smooth problem leaves events and jumps out.
 ///
 /// Optional members of the class:
 ///     static constexpr const char* state_names[]      = {"x", "v"};      // and parameter_names, field_names,
@@ -28,7 +28,7 @@
 ///     static constexpr int user_values = 1;                               // PVLS, with user_value_names if wanted
 ///     void user_value(const double* x, const double* par, double* out) const;         // x is x_1(0)
 ///     // boundary value problems (IPS = 4): conditions on the ends of all segments, each zero, and functions whose
-///     // integrals over time, added over the segments s = 1.., are zero; `events` and `jumps` may then be left out:
+///     // integrals over time, added over the segments s = 1.., are zero:
 ///     static constexpr int boundary_conditions = 2;                       // NBC
 ///     template <class T> void boundary(const tchat::Ends<T>& orbit, const T* par, T* b) const {
 ///       b[0] = orbit.start(1)[0]; b[1] = orbit.end(1)[0];                 // and orbit.duration(1)
@@ -107,14 +107,6 @@ class ProblemTable {
       requires { Problem::fields; },
       "tchat: the number of vector fields is missing, or is not public: write struct, "
       "and in it static constexpr int `fields` = ...;");
-  static_assert(
-      requires { Problem::events; } || requires { Problem::boundary_conditions; },
-      "tchat: the number of event functions is missing, or is not public: write "
-      "struct, and in it static constexpr int `events` = ...;");
-  static_assert(
-      requires { Problem::jumps; } || requires { Problem::boundary_conditions; },
-      "tchat: the number of jump functions is missing, or is not public: write struct, "
-      "and in it static constexpr int `jumps` = ...;");
 
  private:
 #define TCHAT_COUNT(FUNCTION, MEMBER)            \
@@ -142,6 +134,14 @@ class ProblemTable {
   static constexpr bool has_jump = requires(const Problem& p, const T* x, T* g) {
     p.jump(1, x, x, g);
   };
+  static_assert(
+      requires { Problem::events; } || !has_event<double>,
+      "tchat: the number of event functions is missing, or is not public: write "
+      "struct, and in it static constexpr int `events` = ...;");
+  static_assert(
+      requires { Problem::jumps; } || !has_jump<double>,
+      "tchat: the number of jump functions is missing, or is not public: write struct, "
+      "and in it static constexpr int `jumps` = ...;");
   static_assert(has_field<double> && has_field<Dual<1>>,
                 "tchat: `field` must be: template <class T> void field(int i, const T* x, const T* par, T* f) const");
   static_assert(event_count() == 0 || (has_event<double> && has_event<Dual<1>>),
