@@ -40,6 +40,9 @@ class HopfPair final : public OrbitCondition {
   /// omega^2 on the curve, negative where the pair is real.
   double square() const { return pair_(0, 0) * pair_(1, 1) - pair_(0, 1) * pair_(1, 0); }
 
+  /// The same as a share of |f_x|^2.
+  double relative_square() const { return square() / jacobian_.squaredNorm(); }
+
  private:
   using Plane = Eigen::Matrix<double, Eigen::Dynamic, 2>;
 

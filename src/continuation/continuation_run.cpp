@@ -4,13 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <optional>
 #include <utility>
 
 #include "bvp/evaluation_failure.hpp"
 #include "bvp/mesh_adaptation.hpp"
 #include "continuation/bound_tests.hpp"
 #include "continuation/solution_measure.hpp"
+#include "hybrid/identity_jump.hpp"
 #include "special_points/bifurcation_tests.hpp"
+#include "stability/equilibrium_eigenvalues.hpp"
 
 namespace tchat {
 
@@ -30,6 +34,22 @@ constexpr double shrunk_enough = 1e-4;
 /// The deviations of orbits before and behind a point are opposite but for what a step changes.
 constexpr double opposite = -0.8;
 constexpr double shrunk = 1e-6;
+
+/// The angular frequency with which an orbit that has shrunk to a point goes around it, if the flow is smooth there and
+/// the period is that of the linear oscillation: a Hopf bifurcation.
+std::optional<double> hopf_frequency(const DefiningSystem& system, const Orbit& x) {
+  constexpr double accuracy = 1e-2;
+  const Signature& signature = system.signature();
+  const bool smooth = std::all_of(signature.begin(), signature.end(), [&](const IndexVector& index) {
+    return index.field == signature.front().field && is_identity_jump(system.system(), index.jump);
+  });
+  if (!smooth) return std::nullopt;
+  const FloquetMultipliers eigenvalues = equilibrium_eigenvalues(system, x);
+  const EigenvaluePair pair = hopf_pairs(eigenvalues.values).nearest;
+  const double omega = std::abs(pair.first.imag());
+  const bool same_period = std::abs(omega * x.period() - 2.0 * std::numbers::pi) < accuracy * 2.0 * std::numbers::pi;
+  return pair.is_oscillation() && pair.distance < accuracy && same_period ? std::optional(omega) : std::nullopt;
+}
 
 LocationSettings location_settings(const ContinuationSettings& settings) {
   const double scale = 1.0 + std::sqrt(std::abs(settings.step.initial * settings.step.maximum));
@@ -143,11 +163,12 @@ SpecialPoint ContinuationRun::shrunk_orbit(SpecialPoint special, bool through_po
   const bool turns =
       through_point || special.type == PointType::fold || special.kind.kind == UserPointKind::impact_velocity;
   if (!trend_.has_shrunk(next_.point.orbit, turns ? shrunk_where_located : shrunk)) return special;
+  const std::optional<double> omega = hopf_frequency(system_, next_.point.orbit);
   end(EndReason::equilibrium,
-      fmt::format("the orbit has shrunk to a point, {}: an equilibrium, where the branch of periodic orbits ends (Hopf "
-                  "bifurcation, if the flow is smooth there)",
-                  state_text(system_.system(), next_.point.orbit.start(0))));
-  return {PointType::end, {}, false, summary_.detail};
+      fmt::format("the orbit has shrunk to a point, {}: an equilibrium, where the branch of periodic orbits ends{}",
+                  state_text(system_.system(), next_.point.orbit.start(0)),
+                  omega ? fmt::format(" (Hopf bifurcation, omega = {:.6g})", *omega) : ""));
+  return {omega ? PointType::hopf : PointType::end, {}, false, summary_.detail};
 }
 
 /// A two-parameter curve may be left without a special point where it ends: from a start there, or when it was missed.

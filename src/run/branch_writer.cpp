@@ -254,7 +254,8 @@ void BranchWriter::write_diagnostics(const BranchPoint& point, const PointLine& 
     for (const NamedTestValue& test : point.tests)
       tests.push_back({test.name, test.value.value_or(0.0), test.value.has_value()});
     text += format_test_functions(tests);
-    text += fmt::format("{:4}{:6}  Structural multiplier {:.3e}   estimated error between mesh points {:.3e}\n",
+    if (!point.path.orbit.shape.is_point())
+      text += fmt::format("{:4}{:6}  Structural multiplier {:.3e}   estimated error between mesh points {:.3e}\n",
                         line.branch, wrapped_point(line.point), point.multipliers.structural, point.estimated_error);
   }
   text += fmt::format("{:4}{:6}  Iterations   : {}\n", line.branch, wrapped_point(line.point), iterations);

@@ -59,9 +59,7 @@ TestValue DoubleZeroTest::evaluate(const TestedPoint& point) const {
 }
 
 TestValue ZeroFrequencyTest::evaluate(const TestedPoint& point) const {
-  const double largest = largest_modulus(point.multipliers.values);
-  const double size = largest > 0.0 ? largest * largest : 1.0;
-  return TestValue::of(made_by_curve<HopfPair>(point).square() / size, orbit_accuracy);
+  return TestValue::of(made_by_curve<HopfPair>(point).relative_square(), orbit_accuracy);
 }
 
 TestValue FoldHopfTest::evaluate(const TestedPoint& point) const {
