@@ -2,6 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+#include <complex>
+
+#include "linear_algebra/dense_matrix.hpp"
+
 namespace tchat {
 
 EquilibriumSystem::EquilibriumSystem(const HybridSystem& system, Signature signature, std::vector<int> free_parameters)
@@ -49,6 +54,33 @@ std::string EquilibriumSystem::coupling_failure(int s, const Orbit& x) const {
       return fmt::format("the {} by field {} ({}) is not finite", coupling_name(s, r), field(), name);
   const bool finite = all_finite(entries.data(), static_cast<int>(entries.size()));
   return finite ? "" : fmt::format("a derivative of field {} ({}) is not finite", field(), name);
+}
+
+double equilibrium_signed_distance(const DefiningSystem& system, const Orbit& x, const OrbitVector& tangent) {
+  const int n = system.dimension();
+  const HybridSystem& problem = system.system();
+  const int field = system.signature().front().field;
+  const std::vector<int>& free = system.free_parameters();
+  const double* state = x.end(0);
+  Eigen::VectorXd t(n + 1);
+  t << tangent.states.col(0), tangent.globals(0);
+  t.normalize();
+  Eigen::VectorXd f(n);
+  Eigen::MatrixXd rows(n, n + 1);
+  Eigen::MatrixXd slopes(n, n + 1);  // d rows / ds
+  problem.first(FunctionKind::field, field, state, x.par.data(), free, f.data(), rows.data(), rows.col(n).data());
+  problem.second(FunctionKind::field, field, state, x.par.data(), free, t.data(), f.data(), slopes.data(),
+                 slopes.col(n).data());
+  const double size = 1.0 + Eigen::Map<const Eigen::VectorXd>(state, n).norm() + std::abs(x.par(free.front() - 1));
+  Eigen::MatrixXd matrix(n + 1, n + 1);
+  matrix << rows, t.transpose();
+  for (int a = 0; a < n; ++a)
+    if (const double scale = rows.row(a).norm() + size * slopes.row(a).norm(); scale > 0.0) matrix.row(a) /= scale;
+  if (!matrix.allFinite()) return 0.0;
+  const PivotedLu lu(matrix);
+  int sign = lu.parity();
+  for (const double pivot : lu.pivots()) sign *= pivot > 0.0 ? 1 : pivot < 0.0 ? -1 : 0;
+  return sign * least_singular_value(matrix.cast<std::complex<double>>());
 }
 
 }  // namespace tchat

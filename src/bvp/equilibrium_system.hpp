@@ -32,4 +32,9 @@ class EquilibriumSystem final : public DefiningSystem {
   mutable std::vector<double> by_state_, by_parameter_;  // n x n, n x q: scratch, as Newton's loop is not to allocate
 };
 
+/// The sign of det [f_x f_p; t^T] for one free parameter, t the tangent at x, times the least singular value of this
+/// matrix scaled: zero at branch points, of constant sign through folds. At a branch point all of a row may vanish, so
+/// that none is scaled to unit size: a row r is divided by |r| + (1 + |x| + |p|) |dr/ds|, s the arclength. Allocates.
+double equilibrium_signed_distance(const DefiningSystem& system, const Orbit& x, const OrbitVector& tangent);
+
 }  // namespace tchat

@@ -273,10 +273,11 @@ def check_tor(pair):
     auto_only, own_only = periodic(period_stop=15, values={1: "[-0.6, -0.65]"})
     both(pair, "per", "aeq", "eq", {**auto_only, "IRS": "HB1"}, {**own_only, "IRS": "HB1"}, **orbits)
     pair.same_labels("per", "aper", LOOSE_ORBIT_TOLERANCE, 5)
-    # The orbits that break the symmetry, with their torus bifurcation.
+    # The orbits that break the symmetry, with their torus bifurcation and period doubling.
+    auto_only, own_only = periodic(values={-1: "-0.62"})
     both(pair, "per2", "aper", "per", {**auto_only, "IRS": "BP1", "ISW": -1}, {**own_only, "IRS": "BP1", "ISW": -1},
-         **{**orbits, "NMX": 60})
-    print("tor", pair.labels("per2"), pair.labels("aper2"))
+         **{**orbits, "DSMAX": 0.02})
+    pair.same_labels("per2", "aper2", LOOSE_ORBIT_TOLERANCE, 3)
 
 
 def main():
