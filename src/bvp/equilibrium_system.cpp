@@ -56,7 +56,10 @@ std::string EquilibriumSystem::coupling_failure(int s, const Orbit& x) const {
   return finite ? "" : fmt::format("a derivative of field {} ({}) is not finite", field(), name);
 }
 
-double equilibrium_signed_distance(const DefiningSystem& system, const Orbit& x, const OrbitVector& tangent) {
+namespace {
+
+/// [f_x f_p; t^T] with rows divided by |r| + (1 + |x| + |p|) |dr/ds|, as in equilibrium_signed_distance().
+Eigen::MatrixXd bordered_by_tangent(const DefiningSystem& system, const Orbit& x, const OrbitVector& tangent) {
   const int n = system.dimension();
   const HybridSystem& problem = system.system();
   const int field = system.signature().front().field;
@@ -76,11 +79,28 @@ double equilibrium_signed_distance(const DefiningSystem& system, const Orbit& x,
   matrix << rows, t.transpose();
   for (int a = 0; a < n; ++a)
     if (const double scale = rows.row(a).norm() + size * slopes.row(a).norm(); scale > 0.0) matrix.row(a) /= scale;
+  return matrix;
+}
+
+}  // namespace
+
+double equilibrium_signed_distance(const DefiningSystem& system, const Orbit& x, const OrbitVector& tangent) {
+  const Eigen::MatrixXd matrix = bordered_by_tangent(system, x, tangent);
   if (!matrix.allFinite()) return 0.0;
   const PivotedLu lu(matrix);
   int sign = lu.parity();
   for (const double pivot : lu.pivots()) sign *= pivot > 0.0 ? 1 : pivot < 0.0 ? -1 : 0;
   return sign * least_singular_value(matrix.cast<std::complex<double>>());
+}
+
+void find_crossing_branch(const DefiningSystem& system, const Orbit& x, const OrbitVector& tangent,
+                          OrbitVector& direction) {
+  const int n = system.dimension();
+  const Eigen::MatrixXd matrix = bordered_by_tangent(system, x, tangent);
+  const Eigen::VectorXd v = eigenvector(matrix.transpose() * matrix, 0.0).real().normalized();
+  direction.set_zero();
+  direction.states = v.head(n).replicate(1, direction.states.cols());
+  direction.globals(0) = v(n);
 }
 
 }  // namespace tchat

@@ -37,4 +37,9 @@ class EquilibriumSystem final : public DefiningSystem {
 /// that none is scaled to unit size: a row r is divided by |r| + (1 + |x| + |p|) |dr/ds|, s the arclength. Allocates.
 double equilibrium_signed_distance(const DefiningSystem& system, const Orbit& x, const OrbitVector& tangent);
 
+/// At a branch point, with the tangent of one branch: the direction of the other one, the null vector of that matrix.
+/// Newton's own, in which a row may be zero, need not have factors there. Allocates.
+void find_crossing_branch(const DefiningSystem& system, const Orbit& x, const OrbitVector& tangent,
+                          OrbitVector& direction);
+
 }  // namespace tchat

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "bvp/critical_multiplier.hpp"
+#include "bvp/equilibrium_system.hpp"
 #include "constants/settings_type.hpp"
 #include "files/labelled_solution.hpp"
 #include "setup/problem_setup.hpp"
@@ -160,6 +161,12 @@ void orient(const Orbit& x, OrbitVector& v) {
 /// nearly singular matrix.
 Bifurcation branch_at(PathFollower& follower, const PathPoint& point) {
   CondensedSystem& condensed = follower.condensed();
+  if (condensed.system().is_point()) {
+    OrbitVector crossing = condensed.make_vector();
+    find_crossing_branch(condensed.system(), point.orbit, point.tangent, crossing);
+    orient(point.orbit, crossing);
+    return {point.orbit, crossing, point.tangent};
+  }
   OrbitResidual residual = condensed.make_residual();
   for (std::size_t i = 0; i < residual.collocation.size(); ++i)
     residual.collocation[i] = std::sin(1.0 + 0.83 * static_cast<double>(i));

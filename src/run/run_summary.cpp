@@ -23,8 +23,9 @@ std::string reason_text(const BranchSummary& summary, const std::string& paramet
     case EndReason::curve_end:
       return summary.detail;
     case EndReason::special_point:
-      return summary.stopped_at_grazing ? "at the grazing point above; with GRSTOP=0 the branch goes on beyond it"
-                                        : "at the last special point above, where the run was to end";
+      if (!summary.stopped_at_grazing) return "at the last special point above, where the run was to end";
+      return fmt::format("at the {} above; with GRSTOP=0 the branch goes on beyond it",
+                         summary.equilibria ? "boundary equilibrium" : "grazing point");
     case EndReason::interrupted:
       return "interrupted; all files are complete up to the last point";
     case EndReason::no_convergence:
