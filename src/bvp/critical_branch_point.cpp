@@ -113,10 +113,13 @@ std::string CriticalBranchPoint::beyond_end() const {
 
 BranchPointBreaking branch_point_breaking(const DefiningSystem& system, const Orbit& x) {
   const int parameters = system.free_count();
-  CondensedSystem condensed(system, x.shape, parameters);
+  const int integrals = system.integral_conditions();
+  CondensedSystem condensed(system, x.shape, parameters + integrals);
   OrbitResidual residual = condensed.make_residual();
-  std::vector<OrbitVector> rows(static_cast<std::size_t>(parameters), condensed.make_vector());
+  std::vector<OrbitVector> rows(static_cast<std::size_t>(parameters + integrals), condensed.make_vector());
   for (int k = 0; k < parameters; ++k) rows[static_cast<std::size_t>(k)].globals(k) = 1.0;
+  system.integral_gradients(x, x, condensed.rule(), residual.integral.data(),
+                            std::span(rows).subspan(static_cast<std::size_t>(parameters)));
   CriticalMultiplier multiplier(system, x.shape, 1);
   // Singular or not, the blocks are there.
   if (condensed.linearize(x, rows, residual) == Linearization::not_finite || !multiplier.evaluate(condensed, x))

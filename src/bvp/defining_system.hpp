@@ -31,6 +31,8 @@ class DefiningSystem {
   const Signature& signature() const { return signature_; }
   const std::vector<int>& free_parameters() const { return free_parameters_; }
   int dimension() const { return system_.dimension(); }
+  /// Are the orbits equilibria (OrbitShape::point), with eigenvalues of f_x in the place of multipliers?
+  virtual bool is_point() const { return false; }
   int segments() const { return static_cast<int>(signature_.size()); }
   /// Does an event end segment s?
   bool has_event(int s) const { return signature_[static_cast<std::size_t>(s)].event != no_function; }

@@ -21,6 +21,9 @@ struct OrbitShape {
 
   int nodes() const { return intervals * collocation + 1; }  ///< of one segment
   int columns() const { return segments * nodes(); }
+  /// An equilibrium: one interval of degree 1, both of whose nodes are the same state.
+  static OrbitShape point(int dimension) { return {dimension, 1, 1, 1}; }
+  bool is_point() const { return segments == 1 && intervals == 1 && collocation == 1; }
   bool operator==(const OrbitShape&) const = default;
 };
 

@@ -11,7 +11,8 @@ namespace tchat {
 inline constexpr double orbit_accuracy = 1e-9;
 
 /// The size of an event function, against which a value of it is small: the largest |h| at the mesh points of the whole
-/// orbit, for on a segment that is about to vanish all of them are small.
+/// orbit, for on a segment that is about to vanish all of them are small. Of an equilibrium, whose h may be all there
+/// is and small, what a change of the state by its own size makes of h.
 double event_scale(const HybridSystem& system, const Orbit& x, int event);
 
 }  // namespace tchat

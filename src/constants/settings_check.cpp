@@ -31,7 +31,7 @@ class SettingsCheck {
         refuse_constant("ICP", name, fmt::format("{} twice", in_quotes(std::to_string(list[i]))),
                         "each parameter once");
     }
-    if (!has_ring(settings_.problem_type)) return conditions();
+    if (has_own_conditions(settings_.problem_type)) return conditions();
     const auto held = static_cast<int>(settings_.held.size());
     const int needed = free_parameter_count(settings_.problem_type, settings_.branch_mode) + held;
     const auto of_problem = std::count_if(list.begin(), list.end(), [this](int k) {
@@ -39,9 +39,10 @@ class SettingsCheck {
     });
     if (of_problem < needed)
       refuse_constant("ICP", "ICP", fmt::format("{} parameters that are not durations", of_problem),
-                      fmt::format("at least {} with IPS = {}, ISW = {}{}; durations are free in any case", needed,
-                                  settings_.problem_type, settings_.branch_mode,
-                                  held == 0 ? "" : fmt::format(", HOLD of {}", held)));
+                      fmt::format("at least {} with IPS = {}, ISW = {}{}; {}", needed, settings_.problem_type,
+                                  settings_.branch_mode, held == 0 ? "" : fmt::format(", HOLD of {}", held),
+                                  is_point(settings_.problem_type) ? "an equilibrium has no duration"
+                                                                   : "durations are free in any case"));
   }
 
   /// The count of unknowns and conditions of a boundary value problem.
@@ -69,6 +70,10 @@ class SettingsCheck {
   /// Events and jumps of the signature: there is none where segments form no ring. In one, jump 0 is the identity, and
   /// event 0 the phase condition of an orbit without a section.
   void signature() const {
+    if (is_point(settings_.problem_type) && segments() > 1)
+      refuse_constant("GCNOSEG", "GCNOSEG", in_quotes(std::to_string(segments())),
+                      fmt::format("1 with IPS = {}: an equilibrium is one state of one vector field",
+                                  settings_.problem_type));
     int s = 0;
     for (const SegmentSettings& segment : settings_.segments) {
       ++s;
@@ -96,8 +101,10 @@ class SettingsCheck {
   void no_index(const char* keyword, int s, int index) const {
     if (index == no_function) return;
     refuse_constant(keyword, fmt::format("{}({})", keyword, s), in_quotes(std::to_string(index)),
-                    fmt::format("0, or leave it out: with IPS = {} the problem's boundary conditions tie the segments",
-                                settings_.problem_type));
+                    fmt::format("0, or leave it out: with IPS = {} {}", settings_.problem_type,
+                                is_point(settings_.problem_type)
+                                    ? "nothing ends a segment; events to watch are in GCHGRZIND"
+                                    : "the problem's boundary conditions tie the segments"));
   }
 
   void bounds(std::string_view low_keyword, double low, std::string_view high_keyword, double high) const {

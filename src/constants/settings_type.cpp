@@ -30,23 +30,25 @@ int free_parameter_count(int number, int branch_mode) {
 
 std::vector<int> free_entries(const RunSettings& settings) {
   const ProblemType& type = problem_type(settings);
-  const bool ring = type.facts().has_ring;
+  const bool own_conditions = has_own_conditions(settings.problem_type);
   const auto needed = static_cast<std::size_t>(type.free_entries(settings));
   std::vector<int> result;
   for (const int k : settings.free_parameters)
-    if (result.size() < needed && !is_monitor(settings, k) && !(ring && is_duration(k, segment_count(settings))))
+    if (result.size() < needed && !is_monitor(settings, k) &&
+        (own_conditions || !is_duration(k, segment_count(settings))))
       result.push_back(k);
   if (result.size() == needed) return result;
-  throw UserError(
-      ring ? fmt::format("ICP lists {} problem parameters, IPS = {} with ISW = {}{} needs {}: durations are free in "
-                         "any case, so "
-                         "name the parameters to vary, for example ICP = [1, 61]",
-                         result.size(), settings.problem_type, settings.branch_mode,
-                         settings.held.empty() ? "" : fmt::format(" and {} held", settings.held.size()), needed)
-           : fmt::format("ICP lists {} free parameters, the conditions leave {} free (NBC + NINT - n m + 1, with n = "
-                         "{} states on m = {} segments): durations are fixed unless they are listed, so name what is "
-                         "to vary",
-                         result.size(), needed, settings.dimension, segment_count(settings)));
+  if (own_conditions)
+    throw UserError(
+        fmt::format("ICP lists {} free parameters, the conditions leave {} free (NBC + NINT - n m + 1, with n = {} "
+                    "states on m = {} segments): durations are fixed unless they are listed, so name what is to vary",
+                    result.size(), needed, settings.dimension, segment_count(settings)));
+  throw UserError(fmt::format("ICP lists {} problem parameters, IPS = {} with ISW = {}{} needs {}: {}, so name the "
+                              "parameters to vary, for example ICP = [{}]",
+                              result.size(), settings.problem_type, settings.branch_mode,
+                              settings.held.empty() ? "" : fmt::format(" and {} held", settings.held.size()), needed,
+                              type.facts().is_point ? "an equilibrium has no duration" : "durations are free in any case",
+                              type.facts().is_point ? "1" : "1, 61"));
 }
 
 std::vector<int> free_problem_parameters(const RunSettings& settings) {

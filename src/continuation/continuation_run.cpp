@@ -4,13 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <optional>
 #include <utility>
 
 #include "bvp/evaluation_failure.hpp"
 #include "bvp/mesh_adaptation.hpp"
 #include "continuation/bound_tests.hpp"
 #include "continuation/solution_measure.hpp"
+#include "hybrid/identity_jump.hpp"
 #include "special_points/bifurcation_tests.hpp"
+#include "stability/equilibrium_eigenvalues.hpp"
 
 namespace tchat {
 
@@ -32,6 +36,22 @@ constexpr double opposite = -0.8;
 constexpr double shrunk = 1e-6;
 /// Special points that are so many tolerances of their location away from a point are at that point.
 constexpr double same_place = 10.0;
+
+/// The angular frequency with which an orbit that has shrunk to a point goes around it, if the flow is smooth there and
+/// the period is that of the linear oscillation: a Hopf bifurcation.
+std::optional<double> hopf_frequency(const DefiningSystem& system, const Orbit& x) {
+  constexpr double accuracy = 1e-2;
+  const Signature& signature = system.signature();
+  const bool smooth = std::all_of(signature.begin(), signature.end(), [&](const IndexVector& index) {
+    return index.field == signature.front().field && is_identity_jump(system.system(), index.jump);
+  });
+  if (!smooth) return std::nullopt;
+  const FloquetMultipliers eigenvalues = equilibrium_eigenvalues(system, x);
+  const EigenvaluePair pair = hopf_pairs(eigenvalues.values).nearest;
+  const double omega = std::abs(pair.first.imag());
+  const bool same_period = std::abs(omega * x.period() - 2.0 * std::numbers::pi) < accuracy * 2.0 * std::numbers::pi;
+  return pair.is_oscillation() && pair.distance < accuracy && same_period ? std::optional(omega) : std::nullopt;
+}
 
 LocationSettings location_settings(const ContinuationSettings& settings) {
   const double scale = 1.0 + std::sqrt(std::abs(settings.step.initial * settings.step.maximum));
@@ -149,7 +169,7 @@ SpecialPoint ContinuationRun::advance() {
   SpecialPoint special = search_.advance(here_, next_, newton_, reports).value_or(SpecialPoint{});
   const double level = insignificant_turn * steepest_;
   const double earlier = std::exchange(before_, before);
-  if (special.type != PointType::fold || turn > level || std::max(before, earlier) > sudden * level)
+  if (!is_fold(special.type) || turn > level || std::max(before, earlier) > sudden * level)
     return shrunk_orbit(special, through_point);
   reports.note(fmt::format("ICP(1) turns by rounding only (its share of the tangent is {:.1e}): no fold", turn));
   return {};
@@ -193,11 +213,12 @@ SpecialPoint ContinuationRun::shrunk_orbit(SpecialPoint special, bool through_po
   const bool turns =
       through_point || special.type == PointType::fold || special.kind.kind == UserPointKind::impact_velocity;
   if (!trend_.has_shrunk(next_.point.orbit, turns ? shrunk_where_located : shrunk)) return special;
+  const std::optional<double> omega = hopf_frequency(system_, next_.point.orbit);
   end(EndReason::equilibrium,
-      fmt::format("the orbit has shrunk to a point, {}: an equilibrium, where the branch of periodic orbits ends (Hopf "
-                  "bifurcation, if the flow is smooth there)",
-                  state_text(system_.system(), next_.point.orbit.start(0))));
-  return {PointType::end, {}, false, summary_.detail};
+      fmt::format("the orbit has shrunk to a point, {}: an equilibrium, where the branch of periodic orbits ends{}",
+                  state_text(system_.system(), next_.point.orbit.start(0)),
+                  omega ? fmt::format(" (Hopf bifurcation, omega = {:.6g})", *omega) : ""));
+  return {omega ? PointType::hopf : PointType::end, {}, false, summary_.detail};
 }
 
 /// A two-parameter curve may be left without a special point where it ends: from a start there, or when it was missed.
@@ -246,7 +267,8 @@ SpecialPoint ContinuationRun::end_conditions(SpecialPoint special) {
   if (ended_) return special;
   const bool is_special = special.type != PointType::ordinary && special.type != PointType::end;
   summary_.stopped_at_grazing = special.ends_branch && (special.kind.kind == UserPointKind::contact ||
-                                                        special.kind.kind == UserPointKind::impact_velocity);
+                                                        special.kind.kind == UserPointKind::impact_velocity ||
+                                                        special.kind.kind == UserPointKind::boundary_equilibrium);
   if (is_special && (special.ends_branch || (settings_.stop_at && settings_.stop_at(special))))
     end(EndReason::special_point, special.description);
   else if (special.ends_branch)
@@ -304,6 +326,7 @@ void ContinuationRun::record(const SpecialPoint& special, const PointData& data)
   summary_.points = number_;
   summary_.inadmissible_points += !violations.empty();
   summary_.multipliers_computed = settings_.multipliers;
+  summary_.equilibria = system_.is_point();
   summary_.critical_curve = follower_.condition() != nullptr;
   summary_.unstable_points += settings_.multipliers && !data.multipliers.stable();
   summary_.worst_structural = std::max(summary_.worst_structural, data.multipliers.structural);

@@ -8,10 +8,12 @@
 #include <limits>
 
 #include "bvp/critical_multiplier.hpp"
+#include "bvp/equilibrium_system.hpp"
 #include "bvp/transversality.hpp"
 #include "continuation/value_trend.hpp"
 #include "special_points/bifurcation_tests.hpp"
 #include "special_points/sliding_bifurcation.hpp"
+#include "stability/equilibrium_eigenvalues.hpp"
 
 namespace tchat {
 
@@ -103,10 +105,18 @@ std::vector<std::string> SpecialPointSearch::details(const PathPoint& at, const 
   return list;
 }
 
+/// At a point whose linearisation the follower holds.
+double SpecialPointSearch::signed_distance(const PathPoint& at) const {
+  const bool one_parameter = follower_.condition() == nullptr;
+  return system_.is_point() && one_parameter ? equilibrium_signed_distance(system_, at.orbit, at.tangent)
+                                             : follower_.condensed().signed_distance();
+}
+
 PointData SpecialPointSearch::evaluate(PathPoint& at) {
   PointData data;
   if (settings_.multipliers) {
-    data.multipliers = floquet_.compute(follower_.condensed(), at.orbit);
+    data.multipliers = system_.is_point() ? equilibrium_eigenvalues(system_, at.orbit)
+                                          : floquet_.compute(follower_.condensed(), at.orbit);
     const OrbitCondition* condition = follower_.condition();
     const std::optional<int> kept = condition != nullptr ? condition->kept_multiplier() : std::nullopt;
     if (kept) put_critical(data.multipliers, *kept);
@@ -114,7 +124,7 @@ PointData SpecialPointSearch::evaluate(PathPoint& at) {
   }
   for (int s = 0; s < system_.segments(); ++s)
     data.transversalities.push_back(crossing_at_end(system_, at.orbit, s).transversality());
-  data.singular_distance = follower_.condensed().signed_distance();
+  data.singular_distance = signed_distance(at);
   const TestedPoint point = tested(at, data);
   for (const auto& test : tests_) data.tests.push_back(test->evaluate(point));
   return data;
@@ -161,7 +171,7 @@ bool SpecialPointSearch::same_branch(const PathPoint& here, const PathPoint& nex
   const double cosine = dot(here.dual, next.tangent);
   if (cosine > same_direction) return true;
   // A border that is not the tangent makes the determinant smaller by the cosine.
-  return std::abs(follower_.condensed().signed_distance()) > small_distance * std::abs(cosine * distance_here_);
+  return std::abs(signed_distance(next)) > small_distance * std::abs(cosine * distance_here_);
 }
 
 /// Test functions that had a sign at the start of the step and have the other one at its end.

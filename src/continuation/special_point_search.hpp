@@ -74,6 +74,7 @@ class SpecialPointSearch {
     std::optional<NewtonResult> newton;  // nothing: interpolated
   };
 
+  double signed_distance(const PathPoint& at) const;
   PointData evaluate_again(PathPoint& at);  // with a new linearisation
   TestedPoint tested(const PathPoint& at, const PointData& data) const;
   std::vector<std::size_t> changed(const PointData& end) const;

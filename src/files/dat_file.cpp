@@ -25,11 +25,22 @@ std::string_view trimmed(std::string_view text) {
 /// Reads the file line by line; `rows` holds the numbers of all data rows, one after the other.
 class DatReader {
  public:
+  static constexpr int one_state = 0;  ///< in the place of a number of segments: an equilibrium
+
   DatReader(const std::string& path, int dimension, int segments)
       : path_(path),
         dimension_(dimension),
         segments_(segments),
-        columns_(1 + std::size_t(dimension) * std::size_t(segments)) {}
+        columns_(1 + std::size_t(dimension) * std::size_t(std::max(segments, 1))) {}
+
+  void read(std::string_view text) {
+    if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // byte order mark of some editors
+    while (!text.empty()) {
+      const auto end = text.find('\n');
+      read_line(text.substr(0, end));
+      text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+    }
+  }
 
   void read_line(std::string_view line) {
     ++line_;
@@ -41,6 +52,19 @@ class DatReader {
     if (words.empty()) return;
     if (!header_possible_ || parse_fortran_real(words[0])) read_row(words);
     header_possible_ = false;
+  }
+
+  /// The one row of an equilibrium, t left out.
+  DatFile point() const {
+    if (rows_.empty())
+      throw UserError(fmt::format("{}: no row of data; of an equilibrium one line with its {} state{} is needed", path_,
+                                  dimension_, dimension_ == 1 ? "" : "s"));
+    DatFile file;
+    file.parameters = parameters_;
+    file.named_parameters = named_parameters_;
+    file.tau = {0.0};
+    file.states = Eigen::Map<const Eigen::VectorXd>(rows_.data() + rows_.size() - std::size_t(dimension_), dimension_);
+    return file;
   }
 
   DatFile result() const {
@@ -74,10 +98,24 @@ class DatReader {
   }
 
   void read_row(const std::vector<std::string_view>& words) {
+    if (segments_ == one_state) return read_state(words);
     const std::size_t begin = rows_.size();
     for (const std::string_view word : words) rows_.push_back(number(word));
     if (words.size() != columns_) refuse_columns(words.size());
     if (begin > 0 && !(rows_[begin] > rows_[begin - columns_])) refuse_time(rows_[begin], rows_[begin - columns_]);
+    last_row_line_ = line_;
+  }
+
+  void read_state(const std::vector<std::string_view>& words) {
+    if (!rows_.empty())
+      refuse(fmt::format("a second row, after that of line {}: an equilibrium is one line with its states; these are the "
+                         "data of an orbit, or the constants should have another IPS",
+                         last_row_line_));
+    for (const std::string_view word : words) rows_.push_back(number(word));
+    const std::size_t n = std::size_t(dimension_);
+    if (words.size() != n && words.size() != n + 1)
+      refuse(fmt::format("found {} number{}, expected the {} state{} of an equilibrium, with or without t before them",
+                         words.size(), words.size() == 1 ? "" : "s", n, n == 1 ? "" : "s"));
     last_row_line_ = line_;
   }
 
@@ -158,14 +196,20 @@ class DatReader {
 }  // namespace
 
 DatFile parse_dat_file(std::string_view text, const std::string& path, int dimension, int segments) {
-  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // byte order mark of some editors
   DatReader reader(path, dimension, segments);
-  while (!text.empty()) {
-    const auto end = text.find('\n');
-    reader.read_line(text.substr(0, end));
-    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
-  }
+  reader.read(text);
   return reader.result();
+}
+
+DatFile parse_point_dat_file(std::string_view text, const std::string& path, int dimension) {
+  DatReader reader(path, dimension, DatReader::one_state);
+  reader.read(text);
+  return reader.point();
+}
+
+DatFile read_point_dat_file(const std::string& path, int dimension) {
+  const std::string cure = "of an equilibrium: one line with its states, with or without t before them";
+  return parse_point_dat_file(read_text_file(path, "starting data", cure), path, dimension);
 }
 
 DatFile read_dat_file(const std::string& path, int dimension, int segments) {

@@ -28,7 +28,11 @@ struct DatFile {
 /// falling, fewer than two rows, PAR index out of range.
 DatFile read_dat_file(const std::string& path, int dimension, int segments);
 
+/// An equilibrium: one row of its states, with or without t before them, which is not read. tau is 0, span 1.
+DatFile read_point_dat_file(const std::string& path, int dimension);
+
 /// The same for text already read; `path` is for the messages.
+DatFile parse_point_dat_file(std::string_view text, const std::string& path, int dimension);
 DatFile parse_dat_file(std::string_view text, const std::string& path, int dimension, int segments);
 
 }  // namespace tchat

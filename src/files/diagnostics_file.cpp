@@ -62,6 +62,15 @@ std::string format_multipliers(std::span<const std::complex<double>> multipliers
   return text;
 }
 
+std::string format_eigenvalues(std::span<const std::complex<double>> eigenvalues, int stable) {
+  std::string text = fmt::format(" Eigenvalues:     Stable: {:3}\n", stable);
+  int index = 0;
+  for (const std::complex<double>& value : eigenvalues)
+    text += fmt::format("   Eigenvalue {}:{}{}\n", integer_field(++index, 3), e19(capped(value.real())),
+                        e19(capped(value.imag())));
+  return text;
+}
+
 std::string format_test_functions(const std::vector<TestFunctionLine>& functions) {
   std::string text;
   for (const TestFunctionLine& function : functions)

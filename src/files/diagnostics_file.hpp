@@ -44,6 +44,10 @@ std::string format_diagnostics_point(const PointLine& point, const std::vector<P
 /// real and imaginary part, modulus. Sizes that are not finite or exceed 1e99 are written as 1e99.
 std::string format_multipliers(std::span<const std::complex<double>> multipliers);
 
+/// `Eigenvalues:` of an equilibrium with the number of stable ones, then one line for each: index, real and imaginary
+/// part.
+std::string format_eigenvalues(std::span<const std::complex<double>> eigenvalues, int stable);
+
 std::string format_test_functions(const std::vector<TestFunctionLine>& functions);
 
 /// `    1    12  NOTE: text`, further lines of the text indented.

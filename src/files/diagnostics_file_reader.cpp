@@ -49,7 +49,7 @@ class Blocks {
       take_point(words);
     else if (is_bar(words))
       close();
-    else if (contains(words, "Multipliers:"))
+    else if (contains(words, "Multipliers:") || contains(words, "Eigenvalues:"))
       multipliers_.clear();
     else if (contains(words, "NOTE:"))
       take_note(line, words);
@@ -100,10 +100,12 @@ class Blocks {
     if (words.end() - at >= 3 && at[1] == ":") iterations_ = parse_integer(at[2]);
   }
 
-  /// `Multiplier k re im`, in AUTO's files after the numbers of branch and point.
+  /// `Multiplier k re im` or, of equilibria, `Eigenvalue k: re im`, in AUTO's files after the numbers of branch and
+  /// point.
   void take_multiplier(const Words& words) {
-    const auto at = std::find(words.begin(), words.end(), "Multiplier");
-    if (words.end() - at < 4 || !parse_integer(at[1])) return;
+    auto at = std::find(words.begin(), words.end(), "Multiplier");
+    if (at == words.end()) at = std::find(words.begin(), words.end(), "Eigenvalue");
+    if (words.end() - at < 4 || !parse_integer(at[1].substr(0, at[1].find(':')))) return;
     const auto real = parse_fortran_real(at[2]);
     const auto imaginary = parse_fortran_real(at[3]);
     if (real && imaginary) multipliers_.emplace_back(*real, *imaginary);

@@ -74,11 +74,12 @@ std::vector<PointColumn> point_columns(const RunSettings& settings, const Proble
   std::vector<PointColumn> columns;
   if (!free.empty()) columns.push_back(parameter_column(free.front(), names));
   columns.push_back(measure_column(settings.measure, settings.dimension, names));
-  for (int k = 1; k <= maxima; ++k) columns.push_back({PointColumn::Kind::maximum, k, "MAX " + names.state(k)});
+  const std::string of_orbit = is_point(settings.problem_type) ? "" : "MAX ";
+  for (int k = 1; k <= maxima; ++k) columns.push_back({PointColumn::Kind::maximum, k, of_orbit + names.state(k)});
   for (std::size_t i = 1; i < free.size(); ++i) columns.push_back(parameter_column(free[i], names));
   for (std::size_t i = 0; i < names.user_functions.size(); ++i)
     columns.push_back({PointColumn::Kind::user_function, static_cast<int>(i) + 1, names.user_functions[i]});
-  columns.push_back({PointColumn::Kind::period, 0, "PERIOD"});
+  if (!is_point(settings.problem_type)) columns.push_back({PointColumn::Kind::period, 0, "PERIOD"});
   return columns;
 }
 

@@ -31,7 +31,7 @@ struct PointColumn {
   enum class Kind {
     parameter,  ///< PAR(index)
     l2_norm,    ///< of the whole orbit, segments weighted by their durations
-    maximum,    ///< of U(index) over the whole orbit
+    maximum,    ///< of U(index) over the whole orbit; at an equilibrium U(index) itself
     minimum,
     integral,
     component_l2_norm,
@@ -48,7 +48,7 @@ struct PointColumn {
 PointColumn measure_column(int selector, int dimension, const ProblemNames& names);
 
 /// All columns of a run. `free_parameters` as in the settings, durations and output-only ones included; the number of
-/// maxima is min(n, 7 - free parameters that are not durations), none when that is negative.
+/// maxima is min(n, 7 - free parameters that are not durations), none when that is negative. Equilibria have no period.
 std::vector<PointColumn> point_columns(const RunSettings& settings, const ProblemNames& names);
 
 }  // namespace tchat

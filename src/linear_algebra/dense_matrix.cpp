@@ -43,6 +43,31 @@ Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& matrix) {
   return result;
 }
 
+Eigen::VectorXcd solve_shifted(const Eigen::MatrixXd& matrix, std::complex<double> shift,
+                               const Eigen::VectorXcd& right) {
+  const Eigen::Index n = matrix.rows();
+  const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(n, n);
+  Eigen::MatrixXd parts(2 * n, 2 * n);
+  parts << matrix - shift.real() * identity, shift.imag() * identity, -shift.imag() * identity,
+      matrix - shift.real() * identity;
+  Eigen::VectorXd both(2 * n);
+  both << right.real(), right.imag();
+  const Eigen::VectorXd solution = solve(parts, both);
+  Eigen::VectorXcd result(n);
+  result.real() = solution.head(n);
+  result.imag() = solution.tail(n);
+  return result;
+}
+
+Eigen::VectorXcd eigenvector(const Eigen::MatrixXd& matrix, std::complex<double> eigenvalue) {
+  constexpr double beside = 1e-13;  // the matrix is to be nearly singular, not singular
+  const std::complex<double> shift = eigenvalue + beside * (std::abs(eigenvalue) + matrix.norm());
+  Eigen::VectorXcd v(matrix.rows());
+  for (Eigen::Index i = 0; i < v.size(); ++i) v(i) = {std::cos(1.0 + 0.7 * static_cast<double>(i)), 0.3};
+  for (int round = 0; round < 3; ++round) v = solve_shifted(matrix, shift, v.normalized().eval());
+  return v.normalized();
+}
+
 PivotedLu::PivotedLu(const Eigen::MatrixXd& matrix) : factors_(matrix), pivots_(factors_.rows()) {
   const int n = size_of(factors_.rows());
   int info = 0;

@@ -3,11 +3,19 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <complex>
 
 namespace tchat {
 
 /// Of a square matrix, in no order.
 Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& matrix);
+
+/// The eigenvector of unit length that belongs to (about) this eigenvalue, by inverse iteration.
+Eigen::VectorXcd eigenvector(const Eigen::MatrixXd& matrix, std::complex<double> eigenvalue);
+
+/// x of (matrix - shift Id) x = right.
+Eigen::VectorXcd solve_shifted(const Eigen::MatrixXd& matrix, std::complex<double> shift,
+                               const Eigen::VectorXcd& right);
 
 /// Gaussian elimination of a square matrix with row pivoting.
 class PivotedLu {

@@ -30,7 +30,7 @@ ProblemSizes problem_sizes(const RunSettings& settings) {
   sizes.dimension = settings.dimension;
   sizes.segments = static_cast<int>(settings.segments.size());
   sizes.derivative_order = settings.derivative_order;
-  if (!has_ring(settings.problem_type)) {
+  if (has_own_conditions(settings.problem_type)) {
     sizes.boundary_conditions = settings.boundary_conditions;
     sizes.integral_conditions = settings.integral_conditions;
   }

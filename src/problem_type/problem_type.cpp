@@ -13,7 +13,7 @@ namespace {
 
 constexpr int in_two_parameters = 2;     // ISW, of AUTO too
 constexpr int auto_periodic[] = {2, 7};  // AUTO's IPS of periodic orbits
-constexpr int auto_boundary_value = boundary_value.number;
+constexpr int shared[] = {boundary_value.number, equilibrium.number};
 
 template <class Value>
 std::vector<int> each_once(Value value) {
@@ -82,12 +82,21 @@ std::string problem_families() {
 
 bool is_own_problem_type(int number) { return nearest_problem_type(number, 1) != nullptr; }
 
-bool is_shared_problem_type(int number) { return is_own_problem_type(number) && number == auto_boundary_value; }
+bool is_shared_problem_type(int number) {
+  return is_own_problem_type(number) && std::find(std::begin(shared), std::end(shared), number) != std::end(shared);
+}
 
 bool has_ring(int number) {
   const ProblemType* type = nearest_problem_type(number, 1);
   return type == nullptr || type->facts().has_ring;
 }
+
+bool is_point(int number) {
+  const ProblemType* type = nearest_problem_type(number, 1);
+  return type != nullptr && type->facts().is_point;
+}
+
+bool has_own_conditions(int number) { return !has_ring(number) && !is_point(number); }
 
 bool tells_problem_type(int number) { return number != 0; }
 

@@ -36,6 +36,7 @@ struct ProblemFacts {
   const char* title;     ///< what IPS and ISW say together
   int free_parameters;   ///< problem parameters that are free, durations not counted; 0: the settings decide
   bool has_ring = true;  ///< events end the segments, jumps tie them in a ring, every duration is free
+  bool is_point = false;  ///< an equilibrium: one state, no duration; eigenvalues take the place of multipliers
   StabilityMeaning stability = StabilityMeaning::orbit;
   bool keeps_contact = false;    ///< a segment ends in grazing contact (GCSEGTYP = 2); GCIPSI lists n of xi_n
   bool may_double = false;       ///< the branch may have twice as many segments as its start
@@ -96,10 +97,14 @@ std::string problem_families();
 
 /// One of ours; it may be AUTO's too.
 bool is_own_problem_type(int number);
-/// Is a number of ours AUTO's too, whose solutions have no durations but the interval from 0 to 1?
+/// Is a number of ours AUTO's too, whose files have no durations?
 bool is_shared_problem_type(int number);
 /// Do events end the segments and jumps tie them?
 bool has_ring(int number);
+/// Is every solution one state, an equilibrium?
+bool is_point(int number);
+/// Do conditions of the problem's own tie the segments?
+bool has_own_conditions(int number);
 /// Files of the older generation hold 0.
 bool tells_problem_type(int number);
 /// The same problem, as far as files tell.
@@ -124,5 +129,6 @@ inline constexpr ProblemId periodic_orbit{180, 1};
 inline constexpr ProblemId branch_switch{180, -1};
 inline constexpr ProblemId grazing_orbit{150, 1};
 inline constexpr ProblemId boundary_value{4, 1};
+inline constexpr ProblemId equilibrium{1, 1};
 
 }  // namespace tchat

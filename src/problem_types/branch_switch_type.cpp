@@ -1,10 +1,19 @@
 #include "problem_types/branch_switch_type.hpp"
 
+#include <algorithm>
+#include <array>
+
 #include "bvp/defining_system.hpp"
 #include "run/branch_switch.hpp"
+#include "special_points/point_type.hpp"
 #include "special_points/test_function.hpp"
 
 namespace tchat {
+
+bool BranchSwitch::begins_at(int label_type) const {
+  constexpr std::array types{PointType::period_doubling, PointType::branch_point, PointType::equilibrium_branch_point};
+  return std::any_of(types.begin(), types.end(), [=](PointType type) { return label_type == static_cast<int>(type); });
+}
 
 std::unique_ptr<DefiningSystem> BranchSwitch::make_system(const HybridSystem& system, const RunSettings& settings,
                                                           std::vector<int> free_parameters) const {

@@ -10,6 +10,8 @@ class BranchSwitch : public ProblemType {
  public:
   explicit BranchSwitch(const ProblemFacts& facts) : ProblemType(facts) {}
 
+  /// Period doublings and branch points.
+  bool begins_at(int label_type) const override;
   int free_entries(const RunSettings& settings) const override { return followed().free_entries(settings); }
   std::unique_ptr<DefiningSystem> make_system(const HybridSystem& system, const RunSettings& settings,
                                               std::vector<int> free_parameters) const override;

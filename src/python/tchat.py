@@ -30,7 +30,8 @@ __all__ = ["Error", "TchatWarning", "load", "run", "simulate", "sweep", "read_po
 FIRST_DURATION = 61    # PAR(60 + s) is the duration of segment s
 MOST_SEGMENTS = 64
 AUTO_PERIOD = 11       # PAR(11) is the period in AUTO's own files
-BOUNDARY_VALUES = 4  # IPS
+EQUILIBRIA = 1  # IPS
+BOUNDARY_VALUES = 4
 NOT_FINITE = 1e99      # stands in the files for NaN and infinity
 POLL_SECONDS = 0.1
 
@@ -131,12 +132,13 @@ def _distinct(names):
 _BASIC_TYPES = {1: "BP", 6: "BP", 2: "LP", 5: "LP", 3: "HB", 4: "RG", -4: "UZ", 7: "PD", 8: "TR", 9: "EP", -9: "MX",
                 -1: "BT", -2: "CP", -3: "ZH", -5: "R1", -6: "R2", -7: "R3", -8: "R4"}
 _PAIRS = {23: "LTR", 83: "LTR", 28: "LPD", 78: "LPD", 77: "PTR", 87: "PTR", 88: "TTR", -32: "GH"}
-_NO_KIND, _USER_VALUE, _CONTACT, _XI, _IMPACT_VELOCITY, _GRAZING_CODIMENSION_TWO, _OTHER_TYPE = range(7)
-_KIND_TYPES = {_CONTACT: "GR", _IMPACT_VELOCITY: "GR", _XI: "XI", _GRAZING_CODIMENSION_TWO: "GC"}
+_NO_KIND, _USER_VALUE, _CONTACT, _XI, _IMPACT_VELOCITY, _GRAZING_CODIMENSION_TWO, _OTHER_TYPE, _BOUNDARY_EQUILIBRIUM = range(8)
+_KIND_TYPES = {_CONTACT: "GR", _IMPACT_VELOCITY: "GR", _XI: "XI", _GRAZING_CODIMENSION_TWO: "GC",
+               _BOUNDARY_EQUILIBRIUM: "BE"}
 
 
 def type_name(number, kind=_NO_KIND):
-    """Letters of a type number: "PD"; of UZ points by their kind (GR, XI, GC); "" for an ordinary point."""
+    """Letters of a type number: "PD"; of UZ points by their kind (GR, XI, GC, BE); "" for an ordinary point."""
     if number in _PAIRS:
         return _PAIRS[number]
     basic = int(np.fmod(number, 10))
@@ -350,7 +352,7 @@ class Solution:
     @property
     def durations(self):
         own = self.parameters[FIRST_DURATION - 1:FIRST_DURATION - 1 + len(self.states)]
-        of_auto = self.ips not in (150, 180) and len(self.states) == 1 and not np.any(own)
+        of_auto = self.ips not in (EQUILIBRIA, 150, 180) and len(self.states) == 1 and not np.any(own)
         if of_auto and self.ips == BOUNDARY_VALUES:  # on the interval from 0 to 1
             return np.ones(1)
         return self.parameters[AUTO_PERIOD - 1:AUTO_PERIOD] if of_auto else own
@@ -382,6 +384,8 @@ class Solution:
                 return "a* = 0: h is no longer least at the contact"
             return "grazing-%s: multiplier %s1 of the orbit that grazes, without the contact" % (
                 ("flip", "-") if index < 0 else ("fold", "+"))
+        if kind == _BOUNDARY_EQUILIBRIUM:
+            return "boundary equilibrium, event function %d" % index
         return type_name(index) if kind == _OTHER_TYPE else ""
 
     def type_names(self):
@@ -461,8 +465,8 @@ def _entry(path, line, identifier, words):
     solution.states = table[:, 1:].T.reshape(shape)
     if len(words) == with_direction:
         solution.state_direction = numbers[at:at + points * (width - 1)].reshape(points, width - 1).T.reshape(shape)
-    # Boundary value problems are AUTO's too, whose PAR has no room for durations.
-    is_ours = identifier[14] in (180, 150) or (identifier[14] == BOUNDARY_VALUES
+    # Boundary value problems and equilibria are AUTO's too, whose PAR has no room for durations.
+    is_ours = identifier[14] in (180, 150) or (identifier[14] in (BOUNDARY_VALUES, EQUILIBRIA)
                                                and parameters - identifier[12] >= FIRST_DURATION)
     internal = identifier[12] if is_ours and identifier[12] % 4 == 0 else 0
     values = numbers[len(numbers) - parameters:]
@@ -561,9 +565,9 @@ def _diagnostic(words):
     return Diagnostic(branch, point, "" if third is not None else words[2], label, words)
 
 
-def _multiplier(words):
-    at = words.index("Multiplier")
-    if len(words) < at + 4 or _integer(words[at + 1]) is None:
+def _multiplier(words, name):
+    at = words.index(name)
+    if len(words) < at + 4 or _integer(words[at + 1].split(":")[0]) is None:
         return None
     try:
         parts = [_real(word) for word in words[at + 2:at + 4]]
@@ -603,7 +607,7 @@ class _DiagnosticParser:
                 self._open = True
         elif words == ["=" * 47]:
             self.close()
-        elif "Multipliers:" in words:
+        elif "Multipliers:" in words or "Eigenvalues:" in words:
             self._multipliers = []
         elif "NOTE:" in words:
             self._notes.append(" ".join(words[words.index("NOTE:") + 1:]))
@@ -611,8 +615,8 @@ class _DiagnosticParser:
             tail = words[words.index("Iterations") + 1:]
             if len(tail) > 1 and tail[0] == ":":
                 self._iterations = _integer(tail[1])
-        elif "Multiplier" in words:
-            multiplier = _multiplier(words)
+        elif "Multiplier" in words or "Eigenvalue" in words:
+            multiplier = _multiplier(words, "Multiplier" if "Multiplier" in words else "Eigenvalue")
             if multiplier is not None:
                 self._multipliers.append(multiplier)
         self._after_heading = words[:4] == ["BR", "PT", "TY", "LAB"]

@@ -68,9 +68,11 @@ void refuse_singular(PathFollower& follower, const DefiningSystem& defining, con
 
 bool start_is_branch_point(const SelectedStart& selected) {
   constexpr int branch_point = static_cast<int>(PointType::branch_point);
+  constexpr int of_equilibria = static_cast<int>(PointType::equilibrium_branch_point);
+  const auto is_branch_point = [](int type) { return type == branch_point || type == of_equilibria; };
   const std::vector<int>& types = selected.types;
-  return selected.from_solution && (basic_type(selected.type) == branch_point ||
-                                    std::find(types.begin(), types.end(), branch_point) != types.end());
+  return selected.from_solution && (is_branch_point(basic_type(selected.type)) ||
+                                    std::any_of(types.begin(), types.end(), is_branch_point));
 }
 
 /// On top of a branch point Newton's matrix is singular and the iteration stalls. A stored orbit that satisfies every

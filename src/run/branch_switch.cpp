@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "bvp/critical_multiplier.hpp"
+#include "bvp/equilibrium_system.hpp"
 #include "constants/settings_type.hpp"
 #include "files/labelled_solution.hpp"
 #include "setup/problem_setup.hpp"
@@ -162,6 +163,12 @@ void orient(const Orbit& x, OrbitVector& v) {
 /// nearly singular matrix.
 Bifurcation branch_at(PathFollower& follower, const PathPoint& point) {
   CondensedSystem& condensed = follower.condensed();
+  if (condensed.system().is_point()) {
+    OrbitVector crossing = condensed.make_vector();
+    find_crossing_branch(condensed.system(), point.orbit, point.tangent, crossing);
+    orient(point.orbit, crossing);
+    return {point.orbit, crossing, point.tangent};
+  }
   OrbitResidual residual = condensed.make_residual();
   for (std::size_t i = 0; i < residual.collocation.size(); ++i)
     residual.collocation[i] = std::sin(1.0 + 0.83 * static_cast<double>(i));
@@ -250,15 +257,26 @@ std::optional<double> first_step(PathFollower& follower, const PathPoint& from, 
 
 BranchSetup switch_branch(const HybridSystem& system, const RunSettings& settings, const SelectedStart& selected) {
   constexpr int period_doubling = static_cast<int>(PointType::period_doubling);
+  constexpr int branch_point = static_cast<int>(PointType::branch_point);
+  constexpr int equilibrium_branch_point = static_cast<int>(PointType::equilibrium_branch_point);
   const auto bifurcation_type = std::find_if(selected.types.begin(), selected.types.end(), [](int type) {
-    return type == period_doubling || type == static_cast<int>(PointType::branch_point);
+    return type == period_doubling || type == branch_point || type == equilibrium_branch_point;
   });
   const bool doubling = bifurcation_type != selected.types.end() && *bifurcation_type == period_doubling;
   if (bifurcation_type == selected.types.end())
     throw UserError(
-        fmt::format("{}: ISW = -1 switches at a period doubling (PD) or a branch point (BP), but the run does "
-                    "not start from such a label; name one, for example IRS=PD1",
-                    selected.source));
+        fmt::format("{}: ISW = -1 switches at {}, but the run does not start from such a label; name one, for example "
+                    "IRS={}1",
+                    selected.source,
+                    is_point(settings.problem_type) ? "a branch point (BP)"
+                    : has_ring(settings.problem_type) && !keeps_contact(settings.problem_type)
+                        ? "a period doubling (PD), a branch point (BP) or a Hopf bifurcation of equilibria (HB)"
+                        : "a period doubling (PD) or a branch point (BP)",
+                    is_point(settings.problem_type) ? "BP" : "PD"));
+  if (selected.start.orbit.shape.is_point() != is_point(settings.problem_type))
+    throw UserError(fmt::format("{}: label {} is an equilibrium: its branch point is left with IPS = {}, and periodic "
+                                "orbits (IPS = {}) begin at a Hopf bifurcation (HB)",
+                                selected.source, selected.label, equilibrium.number, periodic_orbit.number));
 
   if (doubling && !has_section(settings) && settings.segments.front().index.jump != no_function)
     throw UserError(fmt::format(

@@ -114,8 +114,7 @@ void BranchWriter::point(const BranchPoint& point) {
   line.branch = setup_.branch;
   line.point = point.number;
   line.stable = shown_stable(point);
-  const int basic = static_cast<int>(point.special.type);
-  line.type = basic < 0 ? basic - 10 * setup_.curve_type : basic > 0 ? basic + 10 * setup_.curve_type : 0;
+  line.type = file_type(point.special.type, setup_.curve_type);
   line.kind = point.special.kind;
   line.admissible = point.violations.empty();
   line.values = column_values(point);
@@ -161,10 +160,7 @@ std::string BranchWriter::place(const PointLine& line) const {
 /// stability says nothing.
 bool BranchWriter::shown_stable(const BranchPoint& point) {
   if (setup_.curve_type != 0) return false;
-  const PointType type = point.special.type;
-  const bool bifurcation = type == PointType::fold || type == PointType::branch_point ||
-                           type == PointType::period_doubling || type == PointType::torus;
-  const bool unknown = bifurcation || point.multipliers.undetermined > 0;
+  const bool unknown = is_bifurcation(point.special.type) || point.multipliers.undetermined > 0;
   if (!unknown || point.number == 1) last_stable_ = point.multipliers.stable();
   return last_stable_;
 }
@@ -247,7 +243,10 @@ void BranchWriter::write_diagnostics(const BranchPoint& point, const PointLine& 
   for (const std::string& details : point.details) text += format_note(line.branch, line.point, details);
   for (const Violation& violation : point.violations)
     text += format_note(line.branch, line.point, "Inadmissible: " + describe(violation, system_));
-  if (point.multipliers.valid) text += format_multipliers(point.multipliers.values);
+  const FloquetMultipliers& multipliers = point.multipliers;
+  if (multipliers.valid)
+    text += multipliers.are_eigenvalues ? format_eigenvalues(multipliers.values, multipliers.stable_count())
+                                        : format_multipliers(multipliers.values);
   if (const std::string missing = undetermined_text(point.multipliers); !missing.empty())
     text += format_note(line.branch, line.point, missing);
   if (level >= 2) {
@@ -255,7 +254,8 @@ void BranchWriter::write_diagnostics(const BranchPoint& point, const PointLine& 
     for (const NamedTestValue& test : point.tests)
       tests.push_back({test.name, test.value.value_or(0.0), test.value.has_value()});
     text += format_test_functions(tests);
-    text += fmt::format("{:4}{:6}  Structural multiplier {:.3e}   estimated error between mesh points {:.3e}\n",
+    if (!point.path.orbit.shape.is_point())
+      text += fmt::format("{:4}{:6}  Structural multiplier {:.3e}   estimated error between mesh points {:.3e}\n",
                         line.branch, wrapped_point(line.point), point.multipliers.structural, point.estimated_error);
   }
   text += fmt::format("{:4}{:6}  Iterations   : {}\n", line.branch, wrapped_point(line.point), iterations);

@@ -41,7 +41,8 @@ std::string residual_report(PathFollower& follower, const DefiningSystem& defini
     double defect = 0.0;
     for (std::size_t i = 0; i < per_segment; ++i)
       defect = std::max(defect, std::abs(residual.collocation[static_cast<std::size_t>(s) * per_segment + i]));
-    text += fmt::format("\n  {:11.4e}  differential equations on segment {} (largest defect)", defect, s + 1);
+    if (!start.shape.is_point())
+      text += fmt::format("\n  {:11.4e}  differential equations on segment {} (largest defect)", defect, s + 1);
     for (int r = 0; r < defining.coupling_rows(s); ++r)
       text += fmt::format("\n  {:11.4e}  {}", residual.coupling[coupling++], defining.coupling_name(s, r));
   }
@@ -231,7 +232,7 @@ FirstCorrection correct_start(PathFollower& follower, const DefiningSystem& syst
     corrected.point = std::move(point);
     return corrected;
   }
-  if (!selected.from_solution && settings.adapt_mesh_every > 0) settle_mesh(follower, point);
+  if (!selected.from_solution && settings.adapt_mesh_every > 0 && !start.shape.is_point()) settle_mesh(follower, point);
   corrected.note = moved_beside(start, point.orbit, system, principal, selected.source);
   corrected.point = std::move(point);
   return corrected;

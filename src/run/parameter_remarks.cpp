@@ -32,7 +32,8 @@ std::string inherited_bounds(const HybridSystem& system, const RunSettings& in_f
 
 std::string idle_parameters(const HybridSystem& system, const RunSettings& settings, const SelectedStart& start,
                             std::size_t free_count) {
-  static constexpr std::array curves{PointType::fold, PointType::period_doubling, PointType::torus};
+  static constexpr std::array curves{PointType::fold, PointType::period_doubling, PointType::torus,
+                                     PointType::equilibrium_fold, PointType::hopf};
   const auto begins_curve = [](int type) {
     return std::any_of(curves.begin(), curves.end(), [type](PointType t) { return type == static_cast<int>(t); });
   };

@@ -24,8 +24,9 @@ std::string reason_text(const BranchSummary& summary, const std::string& paramet
     case EndReason::closed:
       return summary.detail;
     case EndReason::special_point:
-      return summary.stopped_at_grazing ? "at the grazing point above; with GRSTOP=0 the branch goes on beyond it"
-                                        : "at the last special point above, where the run was to end";
+      if (!summary.stopped_at_grazing) return "at the last special point above, where the run was to end";
+      return fmt::format("at the {} above; with GRSTOP=0 the branch goes on beyond it",
+                         summary.equilibria ? "boundary equilibrium" : "grazing point");
     case EndReason::interrupted:
       return "interrupted; all files are complete up to the last point";
     case EndReason::no_convergence:
@@ -45,13 +46,25 @@ std::string advice(const BranchSummary& summary) {
            "of\n"
            "  what becomes negative, a division by what becomes 0); look at the last orbit (tchat orbit) for a border\n"
            "  of the model, which an event function should guard.\n";
+  if (summary.equilibria)
+    return "  tried: halving the step down to DSMIN, Newton with ITNW iterations, NWTN of them with a new Jacobian.\n"
+           "  you might: lower DSMIN (0 goes to 1e-10 DSMAX) or DSMAX; raise ITNW, NWTN; loosen EPSL and EPSU if they\n"
+           "  are near rounding.\n";
   return "  tried: halving the step down to DSMIN, Newton with ITNW iterations, NWTN of them with a new Jacobian.\n"
          "  you might: lower DSMIN (0 goes to 1e-10 DSMAX); raise NTST, NCOL or ITNW, NWTN; adapt the mesh more often\n"
          "  (IAD = 1); lower DSMAX; loosen EPSL and EPSU if they are near rounding; look at the last orbit\n"
          "  (tchat orbit) for an event that the signature misses.\n";
 }
 
+std::string inadmissible(const BranchSummary& summary) {
+  if (summary.inadmissible_points == 0) return "";
+  return fmt::format("  {} of {} points violate the model (inadmissible): see the d-file for what is violated\n",
+                     summary.inadmissible_points, summary.points);
+}
+
+/// An equilibrium has no mesh, whose error this is.
 std::string trust(const BranchSummary& summary) {
+  if (summary.equilibria) return "";
   std::string text = fmt::format("  trust: estimated relative error between mesh points at most {:.1e}",
                                  summary.worst_estimated_error);
   if (summary.multipliers_computed)
@@ -62,9 +75,6 @@ std::string trust(const BranchSummary& summary) {
   text += "\n";
   if (summary.worst_structural > 1e-3 || summary.worst_estimated_error > 1e-3)
     text += "  the mesh is too coarse for this orbit: raise NTST or NCOL, or adapt it (IAD = 1)\n";
-  if (summary.inadmissible_points > 0)
-    text += fmt::format("  {} of {} points violate the model (inadmissible): see the d-file for what is violated\n",
-                        summary.inadmissible_points, summary.points);
   return text;
 }
 
@@ -90,7 +100,8 @@ std::string lost_points(const BranchSummary& summary, const std::string& paramet
   for (const LostPoint& lost : summary.lost)
     text += folded(fmt::format("    between {} = {:.8g} and {:.8g} (point {}): {}", parameter, lost.from, lost.to,
                                lost.number, lost.text));
-  return text + "  you might: lower DSMAX; raise NTST or NCOL; EPSL and EPSU smaller than EPSS\n";
+  return text + (summary.equilibria ? "  you might: lower DSMAX; EPSL and EPSU smaller than EPSS\n"
+                                    : "  you might: lower DSMAX; raise NTST or NCOL; EPSL and EPSU smaller than EPSS\n");
 }
 
 bool is_special(const BranchWriter::Labelled& label) {
@@ -118,7 +129,7 @@ std::string summary_text(const BranchSummary& summary, const std::vector<BranchW
   });
   text += folded(fmt::format("  stopped: {}", reason_text(summary, parameter, told)));
   if (!summary.remark.empty()) text += folded("  " + summary.remark);
-  return text + advice(summary) + lost_points(summary, parameter) + trust(summary);
+  return text + advice(summary) + lost_points(summary, parameter) + trust(summary) + inadmissible(summary);
 }
 
 }  // namespace tchat

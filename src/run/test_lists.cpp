@@ -49,7 +49,7 @@ void add_bifurcations(TestList& tests, const DefiningSystem& system, const RunSe
   if (settings.detect_folds != 0)
     tests.push_back(std::make_unique<FoldTest>(settings.free_parameters.front(), system.free_parameters(),
                                                system.segments(), settings.detect_folds < 0,
-                                               held_text(system.system(), settings)));
+                                               PointType::fold, held_text(system.system(), settings)));
   if (kind == 2 || kind == 3) tests.push_back(std::make_unique<BranchPointTest>(stop));
   if ((kind == 2 || kind == 4) && has_multipliers(settings.problem_type)) {
     tests.push_back(std::make_unique<PeriodDoublingTest>(stop));

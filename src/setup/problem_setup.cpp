@@ -140,18 +140,18 @@ std::vector<std::string> check_settings_against(const HybridSystem& system, cons
                                 settings.dimension, system.name(), system.dimension(), system.dimension()));
   std::vector<std::string> warnings;
   const bool ring = has_ring(settings.problem_type);
-  if (!ring) check_conditions(system, settings, source);
+  if (has_own_conditions(settings.problem_type)) check_conditions(system, settings, source);
   int s = 0;
   for (const SegmentSettings& segment : settings.segments) {
     ++s;
     check_index(system, FunctionKind::field, segment.index.field, "GCFIND", "vector fields", s, source);
+    for (const int event : segment.monitor)
+      check_index(system, FunctionKind::event, event, "GCHGRZIND", "event functions", s, source);
     if (!ring) continue;
     if (segment.index.event != no_function)
       check_index(system, FunctionKind::event, segment.index.event, "GCHIND", "event functions", s, source);
     if (segment.index.jump != no_function)
       check_index(system, FunctionKind::jump, segment.index.jump, "GCGIND", "jump functions", s, source);
-    for (const int event : segment.monitor)
-      check_index(system, FunctionKind::event, event, "GCHGRZIND", "event functions", s, source);
     if (segment.index.jump == no_function) continue;
     const bool identity = is_identity_jump(system, segment.index.jump);
     if ((segment.type == 0 && !identity) || (segment.type == 1 && identity))
@@ -205,7 +205,7 @@ ContinuationSettings continuation_settings(const RunSettings& settings) {
   c.measure = settings.measure;
   c.state_weights = state_weights(settings);
   c.print_every = settings.print_every;
-  c.adapt_mesh_every = settings.adapt_mesh_every;
+  c.adapt_mesh_every = is_point(settings.problem_type) ? 0 : settings.adapt_mesh_every;
   c.multipliers = settings.detect_bifurcations != 0 && has_multipliers(settings.problem_type);
   c.periodic = has_ring(settings.problem_type);
   c.stop_when_closed = settings.stop_when_closed;

@@ -90,10 +90,12 @@ bool is_multiplier_at(const TestedPoint& point, int target) {
   return distance_to(point.multipliers, target) <= close;
 }
 
-FoldTest::FoldTest(int parameter, const std::vector<int>& free_parameters, int segments, bool stop, std::string held)
+FoldTest::FoldTest(int parameter, const std::vector<int>& free_parameters, int segments, bool stop, PointType type,
+                   std::string held)
     : is_duration_(is_duration(parameter, segments)),
       is_monitor_(parameter >= first_monitor),
       stop_(stop),
+      type_(type),
       held_(std::move(held)) {
   index_ = is_duration_
                ? duration_segment(parameter)
@@ -111,8 +113,8 @@ TestValue FoldTest::evaluate(const TestedPoint& point) const {
 SpecialPoint FoldTest::classify(const TestedPoint& point, bool) const {
   const DefiningSystem& system = point.condensed.system();
   const int s = touching_segment(point);
-  if (!held_.empty()) return {PointType::fold, {}, stop_, "fold of the curve with " + held_ + " held"};
-  if (s < 0 || has_multiplier_one(point.multipliers)) return {PointType::fold, {}, stop_, "fold"};
+  if (!held_.empty()) return {type_, {}, stop_, "fold of the curve with " + held_ + " held"};
+  if (s < 0 || has_multiplier_one(point.multipliers)) return {type_, {}, stop_, "fold"};
   return {PointType::user,
           {UserPointKind::impact_velocity, s + 1, system.signature()[static_cast<std::size_t>(s)].event, 1.0},
           stop_,
@@ -125,7 +127,7 @@ TestValue BranchPointTest::evaluate(const TestedPoint& point) const {
 }
 
 SpecialPoint BranchPointTest::classify(const TestedPoint&, bool) const {
-  return {PointType::branch_point, {}, stop_, "branch point"};
+  return {type_, {}, stop_, "branch point"};
 }
 
 TestValue PeriodDoublingTest::evaluate(const TestedPoint& point) const { return multiplier_product(point, -1); }

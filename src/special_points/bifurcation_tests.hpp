@@ -17,7 +17,8 @@ class FoldTest final : public TestFunction {
  public:
   /// `parameter` is a PAR index, of a monitor too; `free_parameters` those of the tangent's globals; `held`:
   /// names of the monitors that are held: the curve followed turns, not the orbits of the problem.
-  FoldTest(int parameter, const std::vector<int>& free_parameters, int segments, bool stop, std::string held = {});
+  FoldTest(int parameter, const std::vector<int>& free_parameters, int segments, bool stop,
+           PointType type = PointType::fold, std::string held = {});
   std::string name() const override { return "fold"; }
   TestValue evaluate(const TestedPoint& point) const override;
   SpecialPoint classify(const TestedPoint& point, bool rising) const override;
@@ -27,13 +28,14 @@ class FoldTest final : public TestFunction {
   bool is_monitor_;
   Eigen::Index index_ = 0;
   bool stop_;
+  PointType type_;
   std::string held_;
 };
 
 /// BP: the distance of the bordered problem to a singular one, with the determinant's sign.
 class BranchPointTest final : public TestFunction {
  public:
-  explicit BranchPointTest(bool stop) : stop_(stop) {}
+  explicit BranchPointTest(bool stop, PointType type = PointType::branch_point) : stop_(stop), type_(type) {}
   std::string name() const override { return "branch point"; }
   TestValue evaluate(const TestedPoint& point) const override;
   bool singular_at_zero() const override { return true; }
@@ -41,6 +43,7 @@ class BranchPointTest final : public TestFunction {
 
  private:
   bool stop_;
+  PointType type_;
 };
 
 /// PD: product of 1 + mu over the multipliers times the product of the scaled a_s, also where an a_s is zero: a run

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
 
 namespace tchat {
 
@@ -17,6 +18,8 @@ std::string user_point_name(const UserPointKind& kind) {
       return "XI";
     case UserPointKind::grazing_codimension_two:
       return "GC";
+    case UserPointKind::boundary_equilibrium:
+      return "BE";
     default:
       return "UZ";
   }
@@ -46,6 +49,29 @@ std::string codimension_two_name(int type) {
 }  // namespace
 
 int basic_type(int type) { return type % 10; }
+
+int file_type(PointType type, int curve) {
+  const int number = static_cast<int>(type);
+  if (number == 0 || std::abs(number) >= 10) return number;
+  return number < 0 ? number - 10 * curve : number + 10 * curve;
+}
+
+bool is_fold(PointType type) { return type == PointType::fold || type == PointType::equilibrium_fold; }
+
+bool is_bifurcation(PointType type) {
+  switch (type) {
+    case PointType::fold:
+    case PointType::equilibrium_fold:
+    case PointType::branch_point:
+    case PointType::equilibrium_branch_point:
+    case PointType::hopf:
+    case PointType::period_doubling:
+    case PointType::torus:
+      return true;
+    default:
+      return false;
+  }
+}
 
 std::string type_name(int type, const UserPointKind& kind) {
   if (const std::string name = codimension_two_name(type); !name.empty()) return name;
@@ -119,6 +145,8 @@ std::string description(const UserPointKind& kind, const std::string& parameter)
       if (kind.index == 0) return "a* = 0: h is no longer least at the contact";
       return kind.index < 0 ? "grazing-flip: multiplier -1 of the orbit that grazes, without the contact"
                             : "grazing-fold: multiplier +1 of the orbit that grazes, without the contact";
+    case UserPointKind::boundary_equilibrium:
+      return fmt::format("boundary equilibrium, event function {}", kind.index);
     case UserPointKind::other_type:
       return type_name(kind.index);
     default:

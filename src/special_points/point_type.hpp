@@ -12,7 +12,10 @@ namespace tchat {
 /// Type numbers of AUTO (src/docs/files.md); on two-parameter curves the file adds a tens digit.
 enum class PointType {
   ordinary = 0,
-  regular = 4,  ///< every NPR points
+  equilibrium_branch_point = 1,
+  equilibrium_fold = 2,
+  hopf = 3,
+  regular = 4,                   ///< every NPR points
   user = -4,    ///< UZ and every zero of a monitored function
   fold = 5,
   branch_point = 6,
@@ -20,7 +23,10 @@ enum class PointType {
   torus = 8,
   end = 9,
   no_convergence = -9,
-  cusp = -2,         ///< on fold curves
+  bogdanov_takens = -1,     ///< on curves of folds and Hopf points of equilibria
+  cusp = -2,                ///< on fold curves
+  zero_hopf = -3,           ///< on curves of folds and Hopf points of equilibria
+  generalized_hopf = -32,   ///< on curves of Hopf points; with its tens digit, for -2 is the cusp
   resonance_1 = -5,  ///< 1:1, on fold and torus curves
   resonance_2 = -6,  ///< 1:2, on period-doubling and torus curves
   resonance_3 = -7,  ///< 1:3, on torus curves
@@ -37,7 +43,8 @@ struct UserPointKind {
     xi = 3,
     impact_velocity = 4,
     grazing_codimension_two = 5,
-    other_type = 6  ///< a point that has a type number of its own, beside the label's
+    other_type = 6,           ///< a point that has a type number of its own, beside the label's
+    boundary_equilibrium = 7
   };
   int kind = none;
   int segment = 0;  ///< from 1
@@ -48,9 +55,15 @@ struct UserPointKind {
 
 /// -59 -> -9, 54 -> 4.
 int basic_type(int type);
+/// The number in files: with the tens digit of the curve that is followed, 0 for none.
+int file_type(PointType type, int curve);
+
+bool is_fold(PointType type);
+/// A multiplier or eigenvalue is on the border of stability there.
+bool is_bifurcation(PointType type);
 
 /// "EP", "LP", "BP", "PD", "TR", "RG", "MX", "R1", "CP", ...; of type UZ by kind: "UZ" (user value or not known),
-/// "GR" (contact, impact velocity), "XI", "GC" (grazing-fold or -flip). "" for an ordinary point and unknown numbers.
+/// "GR" (contact, impact velocity), "XI", "GC" (grazing-fold or -flip), "BE" (boundary equilibrium). "" for an ordinary point and unknown numbers.
 std::string type_name(int type, const UserPointKind& kind = {});
 
 /// The name of the points that a two-parameter curve consists of, by its tens digit: "LP", ..., "GR" for 4.

@@ -20,6 +20,8 @@ using Vector = Eigen::VectorXd;
 using RowMajorBlock = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>;
 
 constexpr double stability_tolerance = 1e-5;
+/// Of the largest modulus.
+constexpr double eigenvalue_rounding = 1e-14;
 /// h_x f / (|h_x| |f|) below which a multiplier may be 0/0: with errors of `no_transversality` it is then off by 1e-5.
 constexpr double near_grazing = 1e-4;
 /// A multiplier that such an error moves further, as a chord of the Riemann sphere, is not known.
@@ -111,8 +113,11 @@ bool FloquetMultipliers::stable() const { return valid && stable_count() == stat
 
 int FloquetMultipliers::stable_count() const {
   const auto list = telling();
-  const auto stable =
-      std::count_if(list.begin(), list.end(), [](const auto& mu) { return std::abs(mu) <= 1.0 + stability_tolerance; });
+  double largest = 0.0;
+  for (const auto& mu : list) largest = std::max(largest, std::abs(mu));
+  const auto stable = std::count_if(list.begin(), list.end(), [&](const auto& mu) {
+    return are_eigenvalues ? mu.real() <= eigenvalue_rounding * largest : std::abs(mu) <= 1.0 + stability_tolerance;
+  });
   return static_cast<int>(stable) + (has_trivial ? 1 : 0);
 }
 

@@ -63,6 +63,9 @@ struct FloquetMultipliers {
   bool has_trivial = false;
   double structural = 0.0;  ///< size of the structural zero, or distance of the trivial one from 1
   bool valid = false;       ///< false: not computed, or the eigenvalue iteration failed
+  /// They are the eigenvalues of f_x at an equilibrium (equilibrium_eigenvalues.hpp): stable on the left of the
+  /// imaginary axis.
+  bool are_eigenvalues = false;
   /// Nontrivial multipliers that are left out of `values`: where h_x f = 0 they may be 0/0, and what comes out is
   /// noise.
   int undetermined = 0;
@@ -73,7 +76,7 @@ struct FloquetMultipliers {
   std::span<const std::complex<double>> telling() const { return std::span(values).subspan(has_trivial ? 1 : 0); }
   bool determined() const { return valid && undetermined == 0; }
 
-  /// All |mu| <= 1 + 1e-5 of those that are known.
+  /// All |mu| <= 1 + 1e-5 of those that are known; of eigenvalues all real parts <= 0 but for rounding.
   bool stable() const;
   int stable_count() const;
 };

@@ -97,6 +97,13 @@ Orbit on_mesh(const DatFile& data, const std::vector<double>& mesh, const OrbitS
   return orbit;
 }
 
+bool is_stored_point(const LabelledSolution& solution) { return solution.tau.size() == 1; }
+
+/// A point is stored with one state, its shape has two nodes.
+Eigen::MatrixXd at_nodes(const Eigen::MatrixXd& states, const OrbitShape& shape) {
+  return shape.is_point() ? states.replicate(1, shape.nodes()) : unstack(states, shape.dimension);
+}
+
 /// The stored direction on the stored mesh; nothing when it belongs to other free parameters.
 std::optional<OrbitVector> stored_direction(const LabelledSolution& solution, const OrbitShape& stored,
                                             const std::vector<int>& free_parameters) {
@@ -116,8 +123,24 @@ std::optional<OrbitVector> stored_direction(const LabelledSolution& solution, co
     ++found;
   }
   if (found != free_parameters.size()) return std::nullopt;
-  direction.states = unstack(solution.state_direction, stored.dimension);
+  direction.states = at_nodes(solution.state_direction, stored);
   return direction;
+}
+
+ParameterVector stored_parameters(const LabelledSolution& solution) {
+  ParameterVector par = ParameterVector::Zero(parameter_length);
+  for (std::size_t k = 0; k < solution.parameters.size() && k < static_cast<std::size_t>(parameter_length); ++k)
+    par(static_cast<Eigen::Index>(k)) = solution.parameters[k];
+  return par;
+}
+
+OrbitStart point_start(const LabelledSolution& solution, const OrbitShape& shape,
+                       const std::vector<int>& free_parameters) {
+  OrbitStart start;
+  start.direction = stored_direction(solution, shape, free_parameters);
+  start.orbit = {shape, uniform_mesh(1), at_nodes(solution.states, shape), stored_parameters(solution)};
+  start.orbit.duration(0) = 0.0;
+  return start;
 }
 
 }  // namespace
@@ -151,6 +174,11 @@ Orbit orbit_from_data(const DatFile& data, const OrbitShape& shape, const Parame
   return orbit;
 }
 
+Orbit point_from_data(const DatFile& data, const ParameterVector& par) {
+  const OrbitShape shape = OrbitShape::point(static_cast<int>(data.states.rows()));
+  return {shape, uniform_mesh(1), at_nodes(data.states.leftCols(1), shape), par};
+}
+
 OrbitStart orbit_from_solution(const LabelledSolution& solution, const OrbitShape& shape,
                                const std::vector<int>& free_parameters, const std::string& source) {
   const int rows = static_cast<int>(solution.states.rows());
@@ -164,6 +192,16 @@ OrbitStart orbit_from_solution(const LabelledSolution& solution, const OrbitShap
         solution.dimension > 0 ? fmt::format("{} segments of {}", rows / solution.dimension, solution.dimension)
                                : "dimension of a segment not recorded",
         shape.segments, shape.dimension));
+  if (is_stored_point(solution) != shape.is_point())
+    throw UserError(
+        shape.is_point()
+            ? fmt::format("{}: label {} is an orbit, not an equilibrium; restart from a label of a run with IPS = {}, "
+                          "or from data",
+                          source, solution.label, equilibrium.number)
+            : fmt::format("{}: label {} is an equilibrium, not an orbit; at a Hopf bifurcation (HB) ISW = -1 begins "
+                          "the periodic orbits, and IPS = {} goes on with equilibria",
+                          source, solution.label, equilibrium.number));
+  if (shape.is_point()) return point_start(solution, shape, free_parameters);
   if (solution.collocation_points < 1 || solution.collocation_points > 7 || solution.mesh_intervals < 1)
     throw UserError(
         fmt::format("{}: label {} has {} collocation points on {} mesh intervals, not an orbit; restart "
@@ -180,9 +218,8 @@ OrbitStart orbit_from_solution(const LabelledSolution& solution, const OrbitShap
 
   OrbitStart start;
   start.direction = stored_direction(solution, stored, free_parameters);
-  start.orbit = {stored, mesh, unstack(solution.states, shape.dimension), ParameterVector::Zero(parameter_length)};
-  for (std::size_t k = 0; k < solution.parameters.size() && k < static_cast<std::size_t>(parameter_length); ++k)
-    start.orbit.par(static_cast<Eigen::Index>(k)) = solution.parameters[k];
+  start.orbit = {stored, mesh, unstack(solution.states, shape.dimension), {}};
+  start.orbit.par = stored_parameters(solution);
   // A boundary value problem of AUTO itself is one on the interval from 0 to 1.
   if (is_shared_problem_type(solution.problem_type) &&
       solution.parameters.size() < static_cast<std::size_t>(first_duration))
@@ -206,10 +243,11 @@ LabelledSolution labelled_solution(const Orbit& orbit, const OrbitVector& direct
   LabelledSolution solution;
   solution.dimension = shape.dimension;
   solution.mesh_intervals = shape.intervals;
-  solution.collocation_points = shape.collocation;
-  solution.tau = orbit.node_times();
-  solution.states = stack(orbit.states, shape);
-  if (direction.states.size() > 0) solution.state_direction = stack(direction.states, shape);
+  solution.collocation_points = shape.is_point() ? 0 : shape.collocation;
+  solution.tau = shape.is_point() ? std::vector<double>{0.0} : orbit.node_times();
+  const Eigen::Index points = static_cast<Eigen::Index>(solution.tau.size());
+  solution.states = stack(orbit.states, shape).leftCols(points);
+  if (direction.states.size() > 0) solution.state_direction = stack(direction.states, shape).leftCols(points);
   solution.free_parameters = listed;
   for (const int k : listed) {
     if (is_duration(k, shape.segments)) {

@@ -20,6 +20,7 @@ namespace tchat {
 namespace {
 
 OrbitShape shape_of(const RunSettings& settings) {
+  if (is_point(settings.problem_type)) return OrbitShape::point(settings.dimension);
   return {settings.dimension, segment_count(settings), settings.mesh_intervals, settings.collocation_points};
 }
 
@@ -29,7 +30,34 @@ bool given_on_command_line(const HybridSystem& system, const RunSettings& settin
   return false;
 }
 
+/// Of a label: at a Hopf bifurcation a run of periodic orbits begins from an equilibrium.
+OrbitShape shape_of(const RunSettings& settings, const LabelledSolution& solution) {
+  const bool begins_at_point = problem_type(settings).facts().switches_branch && solution.tau.size() == 1;
+  return begins_at_point ? OrbitShape::point(settings.dimension) : shape_of(settings);
+}
+
+void set_parameters(const DatFile& data, const HybridSystem& system, const std::string& path, ParameterVector& par) {
+  for (const auto& [k, value] : data.parameters) par(k - 1) = value;
+  for (const auto& [name, value] : data.named_parameters) par(parameter_index(system, name, path) - 1) = value;
+}
+
+SelectedStart point_from_data(const std::string& path, const RunSettings& settings, const HybridSystem& system) {
+  const DatFile data = read_point_dat_file(path, settings.dimension);
+  SelectedStart selected;
+  selected.source = path;
+  selected.known_parameters = initial_parameters(system);
+  set_parameters(data, system, path, selected.known_parameters);
+  ParameterVector par = selected.known_parameters;
+  apply_command_line(system, settings, par);
+  par(first_duration - 1) = 0.0;
+  selected.start.orbit = point_from_data(data, par);
+  selected.label_start = settings.start.from_data();
+  selected.last_label = selected.label_start ? 0 : 1;
+  return selected;
+}
+
 SelectedStart start_from_data(const std::string& path, const RunSettings& settings, const HybridSystem& system) {
+  if (is_point(settings.problem_type)) return point_from_data(path, settings, system);
   const int m = segment_count(settings);
   const DatFile data = read_dat_file(path, settings.dimension, m);
   ParameterVector par = initial_parameters(system);
@@ -91,7 +119,7 @@ SelectedStart start_from_solution(const std::string& path, const RunSettings& se
   selected.source = path;
   selected.from_solution = true;
   selected.label_start = false;
-  selected.start = orbit_from_solution(solution, shape_of(settings), free_parameters, path);
+  selected.start = orbit_from_solution(solution, shape_of(settings, solution), free_parameters, path);
   selected.known_parameters = selected.start.orbit.par;
   selected.parameters_changed = apply_command_line(system, settings, selected.start.orbit.par);
   selected.branch = std::max(solution.branch, 1);

@@ -155,7 +155,7 @@ TEST_CASE("a branch that shrinks to an equilibrium ends there, and is not retrac
   INFO(summary.detail);
   CHECK(summary.reason == EndReason::equilibrium);
   CHECK(folds(sink) == 0);
-  CHECK(sink.points.back().special.type == PointType::end);
+  CHECK(sink.points.back().special.type == PointType::hopf);
   CHECK(std::abs(sink.points.back().orbit.par(0)) < 1e-8);
   CHECK(sink.points.back().orbit.period() == Approx(2 * pi).epsilon(1e-6));
 }

@@ -1,0 +1,14 @@
+/// The test functions of equilibria, by what the constants ask for: ILP, ISP, GCHGRZIND, GRSTOP.
+#pragma once
+
+#include "run/test_lists.hpp"
+
+namespace tchat {
+
+/// Contact with every monitored event function.
+TestList boundary_equilibrium_tests(const DefiningSystem& system, const RunSettings& settings);
+
+/// |ISP| = 2 all, 3 branch points only, 4 Hopf bifurcations only; negative: stop at the first. Folds by ILP.
+void add_equilibrium_bifurcations(TestList& tests, const RunSettings& settings);
+
+}  // namespace tchat

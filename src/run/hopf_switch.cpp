@@ -1,0 +1,166 @@
+#include "run/hopf_switch.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "bvp/equilibrium_system.hpp"
+#include "constants/settings_type.hpp"
+#include "hybrid/event_at.hpp"
+#include "hybrid/identity_jump.hpp"
+#include "linear_algebra/dense_matrix.hpp"
+#include "setup/problem_setup.hpp"
+#include "stability/equilibrium_eigenvalues.hpp"
+#include "text/user_error.hpp"
+
+namespace tchat {
+
+namespace {
+
+using Complex = std::complex<double>;
+
+/// A pair whose sum is a larger share of its size is on neither side of the imaginary axis by the accuracy of a label.
+constexpr double on_axis = 1e-3;
+/// The share of its scale by which the event function of a section through the equilibrium may miss zero there.
+constexpr double on_section = 1e-5;
+/// An oscillation that moves across the section by a smaller share of what it moves lies in it.
+constexpr double in_section = 1e-6;
+
+/// The eigenvector of i omega.
+struct Oscillation {
+  double omega;
+  Eigen::VectorXcd vector;
+};
+
+RunSettings of_equilibrium(RunSettings settings) {
+  settings.problem_type = equilibrium.number;
+  settings.branch_mode = equilibrium.branch_mode;
+  settings.segments.front().index.event = no_function;
+  settings.segments.front().index.jump = no_function;
+  return settings;
+}
+
+RunSettings of_periodic_orbit(RunSettings settings) {
+  settings.branch_mode = periodic_orbit.branch_mode;
+  settings.step = std::abs(settings.step);
+  return settings;
+}
+
+void check_signature(const HybridSystem& system, const RunSettings& settings, const SelectedStart& selected) {
+  const IndexVector& index = settings.segments.front().index;
+  if (settings.segments.size() > 1)
+    throw UserError(
+        fmt::format("{}: a smooth orbit is born at a Hopf bifurcation, and the signature has {} segments; give one, "
+                    "such as GCFIND = [{}], GCHIND = [0], GCGIND = [0] (no section)",
+                    selected.source, settings.segments.size(), index.field));
+  if (index.jump != no_function && !is_identity_jump(system, index.jump))
+    throw UserError(
+        fmt::format("{}: a smooth orbit is born at a Hopf bifurcation, and jump {} ({}) at the end of the segment is not "
+                    "the identity; give GCGIND = [0]",
+                    selected.source, index.jump, system.function_name(FunctionKind::jump, index.jump)));
+}
+
+Oscillation oscillation_at(const DefiningSystem& equilibria, const Orbit& x, const SelectedStart& selected) {
+  const FloquetMultipliers eigenvalues = equilibrium_eigenvalues(equilibria, x);
+  const EigenvaluePair pair = hopf_pairs(eigenvalues.values).nearest;
+  if (!pair.is_oscillation() || pair.distance > on_axis) {
+    std::string list;
+    for (const Complex& value : eigenvalues.values)
+      list += fmt::format("{}{:.6g}{}", list.empty() ? "" : ", ", value.real(),
+                          value.imag() == 0.0 ? "" : fmt::format(" {} {:.6g} i", value.imag() < 0.0 ? "-" : "+",
+                                                                 std::abs(value.imag())));
+    throw UserError(
+        fmt::format("{}: label {} is a Hopf point that is none: no pair of eigenvalues of f_x is on the imaginary axis "
+                    "there ({}); a parameter or the problem is another one than that of the label",
+                    selected.source, selected.label, list));
+  }
+  return {std::abs(pair.first.imag()),
+          eigenvector(equilibrium_jacobian(equilibria, x), {0.0, std::abs(pair.first.imag())})};
+}
+
+/// Turns the phase so that h_x v is a positive multiple of i: h is zero at the ends of the period, and falls there.
+void begin_on_section(const HybridSystem& system, int event, const Orbit& x, const SelectedStart& selected,
+                      Eigen::VectorXcd& v) {
+  const EventAt at = event_at(system, event, x.end(0), x.par.data());
+  const std::string name = fmt::format("event function {} ({})", event, system.function_name(FunctionKind::event, event));
+  constexpr const char* cure = "choose a section through the equilibrium, or none (GCHIND = [0], GCGIND = [0])";
+  if (std::abs(at.h) > on_section * at.scale(x.end(0)))
+    throw UserError(fmt::format("{}: the orbits that are born at label {} do not meet the section: {} is {:.6g} at the "
+                                "equilibrium; {}",
+                                selected.source, selected.label, name, at.h, cure));
+  const Complex across = at.gradient.cast<Complex>().dot(v);
+  if (std::abs(across) < in_section * at.gradient.norm())
+    throw UserError(fmt::format("{}: the oscillation that is born at label {} lies in the section of {}; {}",
+                                selected.source, selected.label, name, cure));
+  v *= Complex(0.0, 1.0) * std::abs(across) / across;
+}
+
+/// Re(v exp(2 pi i tau)) at the nodes.
+void set_oscillation(const Eigen::VectorXcd& v, const Orbit& orbit, OrbitVector& direction) {
+  for (int k = 0; k < orbit.shape.nodes(); ++k)
+    direction.states.col(k) = (v * std::polar(1.0, 2.0 * std::numbers::pi * orbit.tau(k))).real();
+}
+
+/// The orbit of the largest amplitude, up to |DS|, that converges.
+std::optional<FirstPoint> first_orbit(PathFollower& follower, const Orbit& still, const OrbitVector& direction,
+                                      const StepSettings& steps, NewtonStatus& trouble) {
+  StepSize step(steps);
+  do {
+    Orbit orbit = still;
+    orbit.states += step.value() * direction.states;
+    PathPoint point = follower.make_point(std::move(orbit));
+    const NewtonResult result = follower.start_along(point, direction);
+    trouble = result.status;
+    if (result.converged() && point.orbit.duration(0) > 0.0)
+      return FirstPoint{std::move(point), follower.newton().history(), {}, false};
+  } while (step.failed());
+  return std::nullopt;
+}
+
+}  // namespace
+
+BranchSetup begin_periodic_orbits(const HybridSystem& system, const RunSettings& settings,
+                                  const SelectedStart& selected) {
+  if (!selected.start.orbit.shape.is_point())
+    throw UserError(
+        fmt::format("{}: label {} (HB) is where a branch of orbits has shrunk to a point, not an equilibrium; start from "
+                    "the HB label of a run with IPS = {}",
+                    selected.source, selected.label, equilibrium.number));
+  check_signature(system, settings, selected);
+
+  const RunSettings before = of_equilibrium(settings);
+  const EquilibriumSystem equilibria(system, before.signature(), free_problem_parameters(before));
+  PathFollower along(equilibria, selected.start.orbit.shape, weighted_norm(before), newton_settings(before),
+                     before.free_parameters.front());
+  const Orbit x = first_point(along, equilibria, selected, before).point.orbit;
+  Oscillation oscillation = oscillation_at(equilibria, x, selected);
+  const int event = settings.segments.front().index.event;
+  if (event != no_function) begin_on_section(system, event, x, selected, oscillation.vector);
+
+  const RunSettings of_orbit = of_periodic_orbit(settings);
+  BranchSetup setup{&problem_type(of_orbit), of_orbit, nullptr, nullptr, {}};
+  setup.defining = setup.type->make_system(system, of_orbit, free_problem_parameters(of_orbit));
+  const OrbitShape shape{settings.dimension, 1, settings.mesh_intervals, settings.collocation_points};
+  check_memory(shape, setup.defining->free_count());
+  setup.follower = std::make_unique<PathFollower>(*setup.defining, shape, weighted_norm(of_orbit),
+                                                  newton_settings(of_orbit), of_orbit.free_parameters.front());
+  Orbit still{shape, uniform_mesh(shape.intervals), x.states.col(0).replicate(1, shape.columns()), x.par};
+  still.duration(0) = 2.0 * std::numbers::pi / oscillation.omega;
+  PathPoint from = setup.follower->make_point(still);
+  set_oscillation(oscillation.vector, still, from.tangent);
+  setup.follower->renormalise(from);
+
+  NewtonStatus trouble = NewtonStatus::converged;
+  std::optional<FirstPoint> first =
+      first_orbit(*setup.follower, still, from.tangent, continuation_settings(of_orbit).step, trouble);
+  if (!first)
+    throw ComputationError(fmt::format("no periodic orbit beside the Hopf bifurcation of label {} of {} for an amplitude "
+                                       "of {:.3g} or less: {}; try another DS",
+                                       selected.label, selected.source, std::abs(settings.step), describe(trouble)));
+  setup.start = std::move(*first);
+  return setup;
+}
+
+}  // namespace tchat
