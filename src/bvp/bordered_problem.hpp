@@ -114,9 +114,9 @@ class BorderedProblem {
   std::vector<HeldMonitor> held_;
   std::vector<OrbitVector> rows_;  // the branch's row, gradients of integrals and held monitors, stand-ins for those of
                                    // G
-  std::vector<double> border_;          // right-hand side of these
-  std::vector<double> unchanged_;       // integrals and monitors that keep their values
-  Orbit reference_;                     // only where there are integrals
+  std::vector<double> border_;     // right-hand side of these
+  std::vector<double> unchanged_;  // integrals and monitors that keep their values
+  Orbit reference_;                // only where there are integrals
   std::vector<OrbitVector> responses_;  // solutions for a unit in the row of each stand-in
   Eigen::PartialPivLU<Slopes> slopes_;  // of grad G . responses
 };

@@ -22,8 +22,8 @@ class EquilibriumFold final : public OrbitCondition {
   EquilibriumFold(const DefiningSystem& system, const OrbitShape& shape);
 
   bool evaluate(CondensedSystem& condensed, const Orbit& x) override;
-  double value() const override { return value_; }
-  const OrbitVector& gradient() const override { return gradient_; }
+  double value(int = 0) const override { return value_; }
+  const OrbitVector& gradient(int = 0) const override { return gradient_; }
   /// The border b, c; empty before the first evaluation.
   void remember(std::vector<double>& memory) const override;
   void recall(const std::vector<double>& memory) override;

@@ -16,8 +16,8 @@ class EventCondition final : public OrbitCondition {
   EventCondition(const DefiningSystem& system, const OrbitShape& shape, int segment, int event, bool at_end);
 
   bool evaluate(CondensedSystem& condensed, const Orbit& x) override;
-  double value() const override { return value_; }
-  const OrbitVector& gradient() const override { return gradient_; }
+  double value(int = 0) const override { return value_; }
+  const OrbitVector& gradient(int = 0) const override { return gradient_; }
   /// Nothing is found by iteration.
   void remember(std::vector<double>& memory) const override { memory.clear(); }
   void recall(const std::vector<double>&) override {}

@@ -29,8 +29,8 @@ class HopfPair final : public OrbitCondition {
   /// False where no plane is found near the last one. The first plane is that of the oscillation nearest to the
   /// imaginary axis.
   bool evaluate(CondensedSystem& condensed, const Orbit& x) override;
-  double value() const override { return pair_.trace(); }
-  const OrbitVector& gradient() const override { return gradient_; }
+  double value(int = 0) const override { return pair_.trace(); }
+  const OrbitVector& gradient(int = 0) const override { return gradient_; }
   /// Where the pair is real.
   std::string beyond_end() const override;
   /// L and V.

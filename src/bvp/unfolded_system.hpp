@@ -37,12 +37,13 @@ class UnfoldedSystem final : public DefiningSystem {
   std::string coupling_name(int s, int r) const override { return ring_->coupling_name(s, r); }
   std::string coupling_failure(int s, const Orbit& x) const override { return ring_->coupling_failure(s, x); }
   int integral_conditions() const override { return ring_->integral_conditions(); }
-  void integral_values(const Orbit& x, const CollocationRule& rule, double* values) const override {
-    ring_->integral_values(x, rule, values);
+  void integral_values(const Orbit& x, const Orbit& reference, const CollocationRule& rule,
+                       double* values) const override {
+    ring_->integral_values(x, reference, rule, values);
   }
-  void integral_gradients(const Orbit& x, const CollocationRule& rule, double* values,
+  void integral_gradients(const Orbit& x, const Orbit& reference, const CollocationRule& rule, double* values,
                           std::span<OrbitVector> rows) const override {
-    ring_->integral_gradients(x, rule, values, rows);
+    ring_->integral_gradients(x, reference, rule, values, rows);
   }
   std::string integral_name(int r) const override { return ring_->integral_name(r); }
   void section_gradient(int s, const double* x, const double* par, double* gradient) const override {

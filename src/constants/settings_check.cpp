@@ -71,9 +71,9 @@ class SettingsCheck {
   /// event 0 the phase condition of an orbit without a section.
   void signature() const {
     if (is_point(settings_.problem_type) && segments() > 1)
-      refuse_constant("GCNOSEG", "GCNOSEG", in_quotes(std::to_string(segments())),
-                      fmt::format("1 with IPS = {}: an equilibrium is one state of one vector field",
-                                  settings_.problem_type));
+      refuse_constant(
+          "GCNOSEG", "GCNOSEG", in_quotes(std::to_string(segments())),
+          fmt::format("1 with IPS = {}: an equilibrium is one state of one vector field", settings_.problem_type));
     int s = 0;
     for (const SegmentSettings& segment : settings_.segments) {
       ++s;
@@ -100,11 +100,11 @@ class SettingsCheck {
 
   void no_index(const char* keyword, int s, int index) const {
     if (index == no_function) return;
-    refuse_constant(keyword, fmt::format("{}({})", keyword, s), in_quotes(std::to_string(index)),
-                    fmt::format("0, or leave it out: with IPS = {} {}", settings_.problem_type,
-                                is_point(settings_.problem_type)
-                                    ? "nothing ends a segment; events to watch are in GCHGRZIND"
-                                    : "the problem's boundary conditions tie the segments"));
+    refuse_constant(
+        keyword, fmt::format("{}({})", keyword, s), in_quotes(std::to_string(index)),
+        fmt::format("0, or leave it out: with IPS = {} {}", settings_.problem_type,
+                    is_point(settings_.problem_type) ? "nothing ends a segment; events to watch are in GCHGRZIND"
+                                                     : "the problem's boundary conditions tie the segments"));
   }
 
   void bounds(std::string_view low_keyword, double low, std::string_view high_keyword, double high) const {

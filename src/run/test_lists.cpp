@@ -48,8 +48,8 @@ void add_bifurcations(TestList& tests, const DefiningSystem& system, const RunSe
   const bool stop = settings.detect_bifurcations < 0;
   if (settings.detect_folds != 0)
     tests.push_back(std::make_unique<FoldTest>(settings.free_parameters.front(), system.free_parameters(),
-                                               system.segments(), settings.detect_folds < 0,
-                                               PointType::fold, held_text(system.system(), settings)));
+                                               system.segments(), settings.detect_folds < 0, PointType::fold,
+                                               held_text(system.system(), settings)));
   if (kind == 2 || kind == 3) tests.push_back(std::make_unique<BranchPointTest>(stop));
   if ((kind == 2 || kind == 4) && has_multipliers(settings.problem_type)) {
     tests.push_back(std::make_unique<PeriodDoublingTest>(stop));

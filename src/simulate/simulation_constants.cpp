@@ -31,10 +31,10 @@ std::vector<SegmentSettings> segments_of_signature(const std::string& text, cons
 
 void require_events(const HybridSystem& system) {
   if (system.count(FunctionKind::event) > 0 && system.count(FunctionKind::jump) > 0) return;
-  throw UserError(
-      fmt::format("problem {} has no event functions or no jumps, so no segment of a simulation could end; write one, a "
-                  "section of the orbit, or use `tchat run`: IPS = 4, or event function 0 for smooth orbits",
-                  system.name()));
+  throw UserError(fmt::format(
+      "problem {} has no event functions or no jumps, so no segment of a simulation could end; write one, a "
+      "section of the orbit, or use `tchat run`: IPS = 4, or event function 0 for smooth orbits",
+      system.name()));
 }
 
 }  // namespace
