@@ -226,7 +226,9 @@ std::optional<SpecialPoint> SpecialPointSearch::advance_to_first_zero(const Path
                                                                       NewtonResult& newton, const Candidate& whole) {
   PathPoint trial = next.point;
   std::optional<Cut> cut;
-  for (Candidate step = whole; !changed(step.data).empty();) {
+  Candidate step = whole;
+  // Each round leaves a shorter step, or two functions vanish at one place of which each is found after the other.
+  for (std::size_t round = 0; round < tests_.size() && !changed(step.data).empty(); ++round) {
     std::optional<Cut> earlier = first_in(here, trial, step);
     if (!earlier) break;
     cut = std::move(earlier);

@@ -74,14 +74,18 @@ class LostContacts {
   /// Of two neighbours that both last no time the first is the contact.
   bool is_lost_before(int s) const { return s > 0 && lost_[static_cast<std::size_t>(s - 1)]; }
 
-  /// Groups end where no lost contact follows; when one follows everywhere, the orbit is closed at the last of them.
+  /// Groups end where no lost contact follows; when one follows everywhere, the orbit is closed at one of them: where a
+  /// section is met there, else at the last one.
   void find_groups() {
     int first = -1;
     for (int s = 0; s < count() && first < 0; ++s)
       if (!is_lost_at(s) && !is_lost_at(before(s))) first = s;
     is_closed_ = first < 0;
-    for (int s = 0; is_closed_ && s < count(); ++s)
-      if (is_lost_at(s)) first = after(s);
+    for (int s = 0; is_closed_ && s < count(); ++s) {
+      if (!is_lost_at(s)) continue;
+      first = after(s);
+      if (section_at_end(x_, system_, before(s), index(before(s)).field, index(before(s)).event)) break;
+    }
     groups_.clear();
     for (int k = 0; k < count(); ++k) {
       const int s = (first + k) % count();

@@ -274,11 +274,21 @@ NewOrbit to_impacting(const ResegmentRequest& request, const LabelledOrbit& sour
   if (contacts.size() > 1)
     target.remarks.push_back(fmt::format("The orbit has {} contacts at once and is cut at all of them: {}.",
                                          contacts.size(), list_of(contacts, system)));
-  for (std::size_t k = 0; k < cut.contacts.size(); ++k)
-    if (is_contact_born(cut, k, source, system))
-      target.remarks.push_back(fmt::format(
-          "Segment {} lasts no time here; along the branch its duration grows like the square root of the parameter.",
-          cut.contacts[k] + 2 > cut.segments.size() ? 1 : cut.contacts[k] + 2));
+  std::size_t contacts_born = 0;
+  for (std::size_t k = 0; k < cut.contacts.size(); ++k) {
+    if (!is_contact_born(cut, k, source, system)) continue;
+    ++contacts_born;
+    target.remarks.push_back(
+        fmt::format("Segment {} lasts no time here; along the branch its duration grows like the square root of the "
+                    "parameter.",
+                    (cut.contacts[k] + 1) % cut.segments.size() + 1));
+  }
+  if (contacts_born > 1)
+    throw UserError(fmt::format(
+        "{}: {} contacts begin here at once ({}), and how their durations grow is not determined by an "
+        "orbit where none lasts any time. Begin beyond it with an orbit of a simulation (tchat simulate "
+        "NAME --dat O) and come back to it; or follow half of a symmetric orbit, with the symmetry as a jump",
+        source.name, contacts_born, list_of(contacts, system)));
   return target;
 }
 
