@@ -42,6 +42,7 @@ class CppWriter {
  public:
   CppWriter(const ProblemModel& model, const std::string& class_name) : model_(model) {
     class_ = names_.unique(class_name);
+    if (!model.slides.empty()) names_.unique(slides_member);  // hidden by nothing of the user's
     for (const std::string& state : model.names.states()) cpp_[state] = names_.unique(state);
     for (const Assignment& parameter : model.file.parameters) name(parameter.name);
     for (const Assignment& definition : model.file.definitions) name(definition.name);
@@ -55,7 +56,7 @@ class CppWriter {
         "carries derivatives.\n#include <array>\n#include <cmath>\n#include <tchat/problem.hpp>\n#include "
         "<vector>\n\nstruct {} {{\n",
         origin, class_);
-    text += sizes() + names() + "\n";
+    text += sizes() + names() + slides() + "\n";
     for (const Helper& helper : helpers)
       if (functions.find(helper.use) != std::string::npos) text += std::string(helper.text) + "\n";
     return text + functions + fmt::format("}};\n\nTCHAT_PROBLEM({})\n", class_);
@@ -73,8 +74,22 @@ class CppWriter {
     return fmt::format(
         "  static constexpr int dimension = {}, parameters = {};\n"
         "  static constexpr int fields = {}{}{};\n",
-        model_.names.states().size(), model_.parameter_values.size(), model_.fields.size(),
-        count("events", model_.events.size()), count("jumps", model_.jumps.size()));
+        model_.names.states().size(), model_.parameter_values.size(), model_.fields.size() + model_.slides.size(),
+        count("events", model_.events.size() + 2 * model_.slides.size()), count("jumps", model_.jumps.size()));
+  }
+
+  static constexpr const char* slides_member = "sliding";
+
+  /// The sliding modes, whose fields and events tchat makes.
+  std::string slides() const {
+    if (model_.slides.empty()) return "";
+    std::vector<std::string> modes;
+    for (const ProblemModel::Slide& slide : model_.slides)
+      modes.push_back(
+          fmt::format("{{.field = {}, .minus = {}, .plus = {}, .surface = {}, .to_minus = {}, .to_plus = {}}}",
+                      slide.field, slide.minus, slide.plus, slide.surface, slide.to_minus, slide.to_plus));
+    return fmt::format("  static constexpr tchat::Sliding {}[] = {{\n      {}}};\n", slides_member,
+                       fmt::join(modes, ",\n      "));
   }
 
   static std::string strings(const char* member, const std::vector<std::string>& texts) {
@@ -99,9 +114,14 @@ class CppWriter {
   std::string names() const {
     std::vector<std::string> parameters;
     for (const Assignment& parameter : model_.file.parameters) parameters.push_back(parameter.name.text);
+    std::vector<std::string> fields = names_of_parts(model_.fields), events = names_of_parts(model_.events);
+    for (const ProblemModel::Slide& slide : model_.slides) {
+      fields.push_back(slide.name);
+      events.insert(events.end(), slide.end_names.begin(), slide.end_names.end());
+    }
     return strings("state_names", model_.names.states()) + strings("parameter_names", parameters) +
-           strings("field_names", names_of_parts(model_.fields)) +
-           strings("event_names", names_of_parts(model_.events)) + strings("jump_names", names_of_parts(model_.jumps)) +
+           strings("field_names", fields) + strings("event_names", events) +
+           strings("jump_names", names_of_parts(model_.jumps)) +
            numbers("initial_parameters", model_.parameter_values) + numbers("initial_state", model_.initial_state);
   }
 
@@ -291,6 +311,9 @@ class CppWriter {
     std::vector<std::string> vectors;
     for (const std::array<int, 3>& next : rule.next) vectors.push_back(fmt::format("{{{}}}", fmt::join(next, ", ")));
     const std::string result = fmt::format("return {{{}}};", fmt::join(vectors, ", "));
+    if (rule.following)
+      tests.push_back(fmt::format("tchat::next_field(*this, {}[{}], from, state, par) == {}", slides_member,
+                                  rule.following->slide, rule.following->field));
     is_last = tests.empty() && !rule.condition;
     if (!rule.condition) return {is_last ? result : fmt::format("if ({}) {}", fmt::join(tests, " && "), result)};
     Needs needs;

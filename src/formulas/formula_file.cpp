@@ -12,8 +12,8 @@ namespace tchat::formulas {
 namespace {
 
 const std::vector<std::string>& statement_words() {
-  static const std::vector<std::string> words = {"par",   "init", "number", "aux", "field",
-                                                 "event", "jump", "after",  "done"};
+  static const std::vector<std::string> words = {"par",   "init", "number", "aux",   "field",
+                                                 "event", "jump", "slide",  "after", "done"};
   return words;
 }
 
@@ -60,6 +60,7 @@ class StatementReader {
       return in_.next(), list(file_.events, "an event", "events are written event wall = 1 - x"), true;
     if (word.is("field")) return in_.next(), field(), true;
     if (word.is("jump")) return in_.next(), jump(), true;
+    if (word.is("slide")) return in_.next(), slide(), true;
     if (word.is("after")) return in_.next(), successor(word.at), true;
     refuse_unknown(word);
   }
@@ -70,7 +71,7 @@ class StatementReader {
     throw FormulaError{
         word.at, fmt::format("a statement cannot begin with '{}' before {}{}; it is NAME = EXPRESSION, "
                              "STATE' = EXPRESSION, or begins with par, init, number, aux, field, event, "
-                             "jump or after",
+                             "jump, slide or after",
                              word.text.substr(0, 40), shown(in_.peek(1)), did_you_mean(word.text, statement_words()))};
   }
 
@@ -181,6 +182,24 @@ class StatementReader {
     in_.expect("=", "a function is written f(a, b) = EXPRESSION");
     made.body = parse_expression(in_);
     file_.functions.push_back(std::move(made));
+  }
+
+  void slide() {
+    const std::string form =
+        "it is written 'slide NAME on EVENT: EVENT -> FIELD, EVENT -> FIELD', the field below first";
+    SlideStatement made;
+    made.name = in_.expect_name("a field");
+    in_.expect("on", form);
+    made.surface = in_.expect_name("an event");
+    in_.expect(":", form);
+    for (std::size_t k = 0; k < 2; ++k) {
+      if (k > 0) in_.expect(",", form);
+      made.ends[k].first = in_.expect_name("an event");
+      in_.expect("->", form);
+      made.ends[k].second = in_.expect_name("a field");
+    }
+    in_.expect_end();
+    file_.slides.push_back(std::move(made));
   }
 
   void successor(Position at) {

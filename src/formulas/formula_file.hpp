@@ -1,6 +1,7 @@
 /// A file of formulas as it is written: its statements, sorted, with nothing checked between them.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -30,6 +31,14 @@ struct Block {
   std::vector<Assignment> lines;
 };
 
+/// slide NAME on SURFACE: EVENT -> FIELD, EVENT -> FIELD: the field NAME slides where the event SURFACE is 0, until one
+/// of two events leads to the field below it (first) or above it. NAME and both events are made by the statement.
+struct SlideStatement {
+  Token name;
+  Token surface;
+  std::array<std::pair<Token, Token>, 2> ends;  ///< event, field: below, above
+};
+
 /// after FROM... [if CONDITION]: [FIELD until] EVENT -> JUMP, ...
 struct SuccessorLine {
   Position at;
@@ -48,6 +57,7 @@ struct FormulaFile {
   std::vector<Block> fields;
   std::vector<Assignment> events;
   std::vector<Block> jumps;
+  std::vector<SlideStatement> slides;
   std::vector<SuccessorLine> successors;
   std::vector<Assignment> user_values;
 };

@@ -73,6 +73,7 @@ class ModelCheck {
     initial_state();
     fields();
     events();
+    slides();
     jumps();
     user_values();
     successors();
@@ -120,7 +121,17 @@ class ModelCheck {
       check.value(function.body, function.arguments);
     }
     for (const SuccessorLine& line : file().successors)
-      if (line.condition) check.condition(*line.condition);
+      if (line.condition && !field_in(*line.condition)) check.condition(*line.condition);
+  }
+
+  /// A condition that is the name of a field of a sliding mode alone: is that the field that follows? Null for others.
+  const std::string* field_in(const Expression& condition) const {
+    if (condition.nodes.size() != 1 || condition.nodes.front().kind != Node::Kind::name) return nullptr;
+    const std::string& name = condition.nodes.front().text;
+    const auto has = [&](const SlideStatement& slide) {
+      return slide.name.text == name || slide.ends[0].second.text == name || slide.ends[1].second.text == name;
+    };
+    return std::any_of(file().slides.begin(), file().slides.end(), has) ? &name : nullptr;
   }
 
   void check_arguments(const FunctionDefinition& function) {
@@ -221,6 +232,45 @@ class ModelCheck {
       });
   }
 
+  /// The fields and events that slide statements make, behind all others.
+  void slides() {
+    const std::size_t own_fields = field_names_.all().size(), own_events = event_names_.all().size();
+    for (const SlideStatement& slide : file().slides)
+      collect([&] {
+        field_names_.add(slide.name);
+        for (const auto& [event, field] : slide.ends) event_names_.add(event);
+      });
+    for (const SlideStatement& slide : file().slides)
+      collect([&] {
+        const int surface = own_part(event_names_.required(slide.surface), own_events, slide.surface);
+        std::array<int, 2> sides{};
+        for (std::size_t k = 0; k < 2; ++k)
+          sides[k] = own_part(field_names_.required(slide.ends[k].second), own_fields, slide.ends[k].second);
+        if (sides[0] == sides[1])
+          throw FormulaError{slide.ends[1].second.at,
+                             fmt::format("on both sides of {} is the field {}; a surface to slide on has two fields",
+                                         slide.surface.text, slide.ends[1].second.text)};
+        model_.slides.push_back({slide.name.text,
+                                 {slide.ends[0].first.text, slide.ends[1].first.text},
+                                 field_names_.number(slide.name.text),
+                                 sides[0],
+                                 sides[1],
+                                 surface,
+                                 event_names_.number(slide.ends[0].first.text),
+                                 event_names_.number(slide.ends[1].first.text)});
+      });
+  }
+
+  /// What a sliding mode is made of is not made by one itself.
+  static int own_part(int number, std::size_t own, const Token& name) {
+    if (static_cast<std::size_t>(number) > own)
+      throw FormulaError{name.at,
+                         fmt::format("'{}' is made by a slide statement; a surface and the fields on its sides "
+                                     "have formulas of their own",
+                                     name.text)};
+    return number;
+  }
+
   void jumps() {
     for (const Block& block : file().jumps) collect([&] { jump(block); });
     if (jump_names_.number("identity") != 0) return;
@@ -266,9 +316,12 @@ class ModelCheck {
 
   ProblemModel::SuccessorRule rule(const SuccessorLine& line) const {
     ProblemModel::SuccessorRule made;
-    made.condition = line.condition;
+    if (const std::string* const field = line.condition ? field_in(*line.condition) : nullptr)
+      made.following = following(*field, line.condition->nodes.front().at);
+    else
+      made.condition = line.condition;
     for (const Token& name : line.from) add_condition(made, name, line.from.size() == 1);
-    if (!line.field && model_.fields.size() > 1)
+    if (!line.field && field_count() > 1)
       throw FormulaError{line.ends.front().first.at,
                          fmt::format("which field is followed? write 'FIELD until {} -> {}'; there are {}",
                                      line.ends.front().first.text, line.ends.front().second.text,
@@ -277,6 +330,23 @@ class ModelCheck {
     for (const auto& [event, jump] : line.ends)
       made.next.push_back({field, event_names_.required(event), jump_names_.required(jump)});
     return made;
+  }
+
+  std::size_t field_count() const { return model_.fields.size() + model_.slides.size(); }
+
+  ProblemModel::Following following(const std::string& field, Position at) const {
+    const int number = field_names_.number(field);
+    std::vector<std::size_t> found;
+    for (std::size_t k = 0; k < model_.slides.size(); ++k) {
+      const ProblemModel::Slide& slide = model_.slides[k];
+      if (number == slide.field || number == slide.minus || number == slide.plus) found.push_back(k);
+    }
+    if (found.size() != 1)
+      throw FormulaError{at,
+                         fmt::format("the field {} is a side of {} surfaces to slide on, so that 'if {}' does not say "
+                                     "which is meant; write the lines for their sliding fields",
+                                     field, found.size(), field)};
+    return {found.front(), number};
   }
 
   int field_number(const Token& name) const {
@@ -318,7 +388,7 @@ class ModelCheck {
   }
 
   static bool matches(const ProblemModel::SuccessorRule& rule, const std::array<int, 3>& from) {
-    if (rule.condition || (rule.at_start && from[0] != 0)) return false;
+    if (rule.condition || rule.following || (rule.at_start && from[0] != 0)) return false;
     for (std::size_t k = 0; k < 3; ++k)
       if (rule.from[k] != 0 && rule.from[k] != from[k]) return false;
     return true;
@@ -342,23 +412,27 @@ class ModelCheck {
     std::set<int> reached;
     for (const auto& rule : model_.successors)
       for (const std::array<int, 3>& next : rule.next) reached.insert(next[0]);
-    for (std::size_t k = 0; k < model_.fields.size(); ++k)
+    for (std::size_t k = 0; k < field_count(); ++k)
       if (!reached.contains(static_cast<int>(k) + 1))
         errors_.add(
             file().successors.back().at,
             fmt::format("no 'after' line leads to field {0}; write one, as after EVENT: {0} until EVENT -> JUMP",
-                        model_.fields[k].name));
+                        field_name(k)));
+  }
+
+  const std::string& field_name(std::size_t k) const {
+    return k < model_.fields.size() ? model_.fields[k].name : model_.slides[k - model_.fields.size()].name;
   }
 
   std::string in_words_of(const std::array<int, 3>& from) const {
     if (from[0] == 0) return "the start";
     const auto at = [&](std::size_t k) { return static_cast<std::size_t>(from[k] - 1); };
-    return fmt::format("{} -> {}{}", model_.events[at(1)].name, model_.jumps[at(2)].name,
-                       model_.fields.size() > 1 ? " of field " + model_.fields[at(0)].name : "");
+    return fmt::format("{} -> {}{}", event_names_.all()[at(1)], model_.jumps[at(2)].name,
+                       field_count() > 1 ? " of field " + field_name(at(0)) : "");
   }
 
   std::string after_words(const std::array<int, 3>& from) const {
-    return from[0] == 0 ? "after start" : "after " + model_.events[static_cast<std::size_t>(from[1] - 1)].name;
+    return from[0] == 0 ? "after start" : "after " + event_names_.all()[static_cast<std::size_t>(from[1] - 1)];
   }
 
   /// Fields and events are differentiated along orbits: a jump in their values has no derivative that could be right.
@@ -406,7 +480,7 @@ class ModelCheck {
 
 ProblemModel check_formulas(FormulaFile file, FormulaErrors& errors) {
   NameTable names(file, errors);
-  ProblemModel model{std::move(file), std::move(names), {}, {}, {}, {}, {}, {}, {}, {}};
+  ProblemModel model{std::move(file), std::move(names), {}, {}, {}, {}, {}, {}, {}, {}, {}};
   ModelCheck(model, errors).all();
   return model;
 }

@@ -24,11 +24,24 @@ struct ProblemModel {
     std::string name;
     std::vector<std::pair<std::size_t, Expression>> values;  ///< of the states that change
   };
+  /// A sliding mode (tchat_sliding), numbers from 1: `field` and the events at its ends count behind `fields`,
+  /// `events`.
+  struct Slide {
+    std::string name;
+    std::array<std::string, 2> end_names;
+    int field, minus, plus, surface, to_minus, to_plus;
+  };
+  /// Which field follows at a surface, by a sliding mode (from 0).
+  struct Following {
+    std::size_t slide;
+    int field;
+  };
   /// Index vectors and parts of them count from 1; 0 stands for any.
   struct SuccessorRule {
     bool at_start = false;
     std::array<int, 3> from{};
     std::optional<Expression> condition;
+    std::optional<Following> following;  ///< instead of a condition
     std::vector<std::array<int, 3>> next;
   };
 
@@ -38,6 +51,7 @@ struct ProblemModel {
   std::vector<double> initial_state;  ///< empty: not given
   std::vector<Field> fields;
   std::vector<Function> events;
+  std::vector<Slide> slides;
   std::vector<Jump> jumps;
   std::vector<Function> user_values;
   std::vector<SuccessorRule> successors;

@@ -141,7 +141,7 @@ CurveKind curve_kind(int curve_type, bool grazing) {
     case 8:
       return {"torus", "#3a9a4a", Symbol::diamond, true};
     case 4:
-      return {"two events at once", "#000000", Symbol::circle, false};
+      return {"two events at once", "#008080", Symbol::circle, false};
     case 3:
       return {"Hopf", "#9a5aa0", Symbol::reversed_triangle, true};
     case 1:

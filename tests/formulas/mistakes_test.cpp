@@ -110,6 +110,28 @@ TEST_CASE("what follows an event") {
   CHECK_THAT(mistake_in(fields + "after any: c until e -> identity\n"), Contains("no field 'c'"));
 }
 
+TEST_CASE("sliding: fields and events that are not there, are made twice, or lie on one side only") {
+  const std::string fields = "par V=1\nv' = 1\nfield up\nfield down\nevent falls = v - V\nevent rises = V - v\n";
+  const auto says = [&](const std::string& lines, const std::string& place, const std::string& part) {
+    INFO(lines);
+    CHECK_THAT(mistake_in(fields + lines + "\n"), StartsWith("mine.tch:" + place + ": ") && Contains(part));
+  };
+  CHECK(mistake_in(fields + "slide stuck on falls: lets_down -> down, lets_up -> up\n") == "none");
+  says("slide stuck on fall: lets_down -> down, lets_up -> up", "7:16", "no event 'fall' (did you mean 'falls'?)");
+  says("slide stuck on falls: lets_down -> dwn, lets_up -> up", "7:36", "no field 'dwn' (did you mean 'down'?)");
+  says("slide stuck on falls: lets_down -> up, lets_up -> up", "7:51", "on both sides of falls is the field up");
+  says("slide stuck on falls: lets_down -> down", "7:40", "it is written 'slide NAME on EVENT: EVENT -> FIELD, EVENT");
+  says("slide stuck on falls: falls -> down, lets_up -> up", "7:23", "two events with the name 'falls'");
+  says("slide up on falls: lets_down -> down, lets_up -> up", "7:7", "two fields with the name 'up'");
+  says("slide stuck on falls: lets_down -> down, lets_up -> up\nslide more on rises: a -> stuck, b -> down", "8:27",
+       "'stuck' is made by a slide statement");
+  const std::string two =
+      "slide stuck on falls: lets_down -> down, lets_up -> up\nslide held on rises: a -> up, b -> down\n";
+  says(two + "after any if up: up until falls -> identity", "9:14", "the field up is a side of 2 surfaces");
+  says("slide stuck on falls: lets_down -> down, lets_up -> up\nafter any: up until falls -> identity", "8:1",
+       "no 'after' line leads to field");
+}
+
 TEST_CASE("functions that jump in value are refused where derivatives are taken, also behind definitions") {
   check_mistake("field own: v' = -sign(v)", 18, "sign(...) jumps in value");
   check_mistake("event other = heav(x) - 0.5", 15, "heav(...) jumps in value");

@@ -60,6 +60,26 @@ TEST_CASE("a jump identity is the last one unless there is one, and others keep 
   CHECK_THAT(cpp_of("x' = 1\njump identity\njump b: x -> 1\n" + end), Contains("{\"identity\", \"b\"}"));
 }
 
+TEST_CASE("sliding: fields and events behind all others, what follows by the sides of the surface") {
+  const std::string cpp =
+      translate_formulas(
+          "par sliding=1\nv' = sliding\nfield up\nslide stuck on falls: lets_down -> down, "
+          "lets_up -> up\nfield down\nevent falls = v\nevent rises = -v\n"
+          "after any if stuck: stuck until lets_down -> identity, lets_up -> identity\n"
+          "after falls if up: up until falls -> identity\nafter any: down until rises -> identity\n",
+          "mine.tch")
+          .cpp;
+  CHECK_THAT(cpp, Contains("fields = 3, events = 4, jumps = 1;"));
+  CHECK_THAT(cpp, Contains("{.field = 3, .minus = 2, .plus = 1, .surface = 1, .to_minus = 3, .to_plus = 4}"));
+  CHECK_THAT(cpp, Contains("field_names[] = {\"up\", \"down\", \"stuck\"}"));
+  CHECK_THAT(cpp, Contains("event_names[] = {\"falls\", \"rises\", \"lets_down\", \"lets_up\"}"));
+  CHECK_THAT(cpp, Contains("if (tchat::next_field(*this, sliding[0], from, state, par) == 3) return {{3, 3, 1}, {3, 4, "
+                           "1}};"));
+  CHECK_THAT(cpp, Contains("if (from[1] == 1 && tchat::next_field(*this, sliding[0], from, state, par) == 1) return "
+                           "{{1, 1, 1}};"));
+  CHECK_THAT(cpp, !Contains("&sliding = par[0]"));  // the user's name gives way to the member
+}
+
 TEST_CASE("what follows an event: names, conditions, the first line that holds") {
   const Translation translation = translate_formulas(
       "x' = 1\nfield slip\nfield stick\nevent wall = x\nevent rest = x - 1\njump hit: x -> 0\njump stop\n"

@@ -151,4 +151,17 @@ TEST_CASE("From the crossing side the onset of stops is the same point, and its 
   const auto beyond = chain.read("d.beyond");
   CHECK(beyond.find("Inadmissible: segment 1 begins on a surface that its field 1 (slip forward) leads back to") !=
         std::string::npos);
+
+  // No curve of two events at once begins where the orbit touches a surface, or at a label that is none.
+  const auto refused = [&](std::vector<std::string> words, const std::string& sentence) {
+    words.insert(words.begin(), {"run", "coulomb", "-p", chain.plugin(), "-o", "none", "ISW=2"});
+    const Outcome outcome = chain.tchat(words);
+    INFO(outcome.text());
+    CHECK(outcome.status != 0);
+    CHECK(outcome.text().find(sentence) != std::string::npos);
+  };
+  refused({"-c", "r.slipping", "-s", "slipping", "IRS=GR1", "ICP=[omega,A]"},
+          "no curve with ISW = 2 begins at label 2 (GR): the contact is inside segment 1");
+  refused({"-c", "r.two_stops", "-s", "two_stops", "IRS=GR1", "ICP=[omega,A]"}, "tchat resegment --to grazing-curve");
+  refused({"-c", "r.back", "-s", "back", "IRS=GR1", "ICP=[A]"}, "ICP");
 }
