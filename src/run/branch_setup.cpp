@@ -28,10 +28,10 @@ const ProblemType& type_at(const RunSettings& settings, const SelectedStart& sel
   if (first.facts().curve == 0) return first;
   const std::string name = type_name(selected.type, selected.kind);
   throw UserError(fmt::format(
-      "{}: ISW = 2 follows the curve of a fold (LP), {} in two parameters, but the run starts from {}; name such a "
+      "{}: ISW = 2 follows the curve of a fold (LP){} in two parameters, but the run starts from {}; name such a "
       "label, for example IRS=LP1",
       selected.source,
-      first.facts().is_point ? "or Hopf bifurcation (HB)" : "period doubling (PD) or torus bifurcation (TR)",
+      first.facts().is_point ? " or Hopf bifurcation (HB)" : ", period doubling (PD) or torus bifurcation (TR)",
       selected.from_solution ? fmt::format("a label of type {}", name.empty() ? "none" : name) : "data"));
 }
 
