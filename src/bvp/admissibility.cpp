@@ -50,7 +50,7 @@ std::vector<Violation> inadmissibilities(const HybridSystem& system, const Signa
       result.push_back({Violation::negative_duration, s + 1, 0, 0.0, x.duration(s)});
 
     for (const int event : monitored[index]) {
-      Violation worst{Violation::event_crossed, s + 1, event, 0.0, 0.0};
+      Violation worst{Violation::event_crossed, x.shape.is_point() ? 0 : s + 1, event, 0.0, 0.0};
       const int first = is_pinned_start(system, signature, x, s, event) ? 1 : 0;
       for (int k = first; k <= (event == v.event ? last - 1 : last); ++k) {
         const double h = system.event(event, x.node(s, k), par);
@@ -74,6 +74,9 @@ std::string describe(const Violation& violation, const HybridSystem& system) {
     case Violation::negative_duration:
       return fmt::format("segment {}: negative duration {:.4g}", violation.segment, violation.value);
     case Violation::event_crossed:
+      if (violation.segment == 0)
+        return fmt::format("h{} ({}) = {:.4g} at the equilibrium", violation.event,
+                           system.function_name(FunctionKind::event, violation.event), violation.value);
       return fmt::format("segment {}: h{} ({}) = {:.4g} at tau = {:.4g}", violation.segment, violation.event,
                          system.function_name(FunctionKind::event, violation.event), violation.value, violation.tau);
     case Violation::off_surface:

@@ -16,13 +16,14 @@ struct PointStyle {
   bool by_default;
 };
 
-constexpr std::array<PointStyle, 26> point_styles = {{
+constexpr std::array<PointStyle, 27> point_styles = {{
     {"LP", Symbol::square, true, true},
     {"PD", Symbol::triangle, true, true},
     {"TR", Symbol::diamond, true, true},
     {"BP", Symbol::pentagon, true, true},
     {"HB", Symbol::reversed_triangle, true, true},
     {"GR", Symbol::circle, false, true},
+    {"BE", Symbol::pentagon, false, true},
     {"XI", Symbol::circle, true, true},
     {"GC", Symbol::diamond, false, true},
     {"CP", Symbol::square, false, true},
