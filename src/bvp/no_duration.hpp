@@ -16,8 +16,8 @@ inline bool lasts_no_time(const Orbit& x, int s) {
   return std::abs(x.duration(s)) <= no_duration * std::abs(x.period());
 }
 
-/// A contact segment (hybrid/contact_segment.hpp) that shrinks to nothing passes zero in proportion to the arclength, so
-/// that a located point knows its duration to EPSS, which may be coarse. At a tangency a shorter one is zero.
+/// A contact segment (hybrid/contact_segment.hpp) that shrinks to nothing passes zero in proportion to the arclength,
+/// so that a located point knows its duration to EPSS, which may be coarse. At a tangency a shorter one is zero.
 inline constexpr double no_contact = 1e-4;
 
 inline bool contact_lasts_no_time(const Orbit& x, int s) {
