@@ -43,7 +43,8 @@ struct ElasticStop {
     for (int i = 0; i < dimension; ++i) g[i] = x[i];
   }
 
-  /// After the touch the spring holds until the mass leaves it. A free orbit that misses the stop is cut at its maximum.
+  /// After the touch the spring holds until the mass leaves it. A free orbit that misses the stop is cut at its
+  /// maximum.
   std::vector<std::array<int, 3>> successors(std::array<int, 3> from) const {
     if (from[1] == 1) return {{2, 2, 1}};
     return {{1, 1, 1}, {1, 3, 1}};

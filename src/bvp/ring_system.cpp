@@ -17,13 +17,16 @@ RingSystem::RingSystem(const HybridSystem& system, Signature signature, std::vec
 }
 
 bool RingSystem::is_divided(int s, const Orbit& x) const {
+  constexpr double long_enough = 0.1;  // of the longest
   if (!is_contact(s)) return false;
-  int longest = 0;
+  double longest = 0.0;
   for (int k = 0; k < segments(); ++k) {
     if (!is_contact(k)) return true;
-    if (std::abs(x.duration(k)) > std::abs(x.duration(longest))) longest = k;
+    longest = std::max(longest, std::abs(x.duration(k)));
   }
-  return s != longest;
+  int kept = 0;
+  while (std::abs(x.duration(kept)) < long_enough * longest) ++kept;
+  return s != kept;
 }
 
 void RingSystem::coupling_pattern(int s, CouplingPattern& pattern) const {

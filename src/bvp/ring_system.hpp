@@ -6,9 +6,9 @@
 ///
 /// A segment that begins and ends on one surface (hybrid/contact_segment.hpp) has its one end condition divided by its
 /// duration (contact_row.hpp): that it may last no time is then no singularity. Where all segments are such ones, as
-/// when an orbit is cut at its contact alone, the longest keeps h = 0, else nothing says where the surface is. Which
-/// one that is changes no solution and no sign of the determinant: the rows differ by combinations with each other and
-/// the connectivity, and by factors 1 / T_s.
+/// when an orbit is cut at its contact alone, the first that is not far shorter than the longest keeps h = 0, else
+/// nothing says where the surface is. Which one that is changes no solution and no sign of the determinant: the rows
+/// differ by combinations with each other and the connectivity, and by factors 1 / T_s.
 #pragma once
 
 #include "bvp/contact_row.hpp"

@@ -40,13 +40,11 @@ std::optional<bool> returns_at(const HybridSystem& system, const IndexVector& be
                                const Eigen::VectorXd& x, const ParameterVector& par) {
   Eigen::VectorXd after(x.size());
   system.value(FunctionKind::jump, before.jump, x.data(), par.data(), after.data());
-  const EventAt left = event_at(system, before.event, x.data(), par.data());
   const EventAt met = event_at(system, own.event, x.data(), par.data());
   if (!after.allFinite() || !std::isfinite(met.h) || !met.gradient.allFinite()) return std::nullopt;
   const bool stays = (after - x).lpNorm<Eigen::Infinity>() <= rounding * (1.0 + x.lpNorm<Eigen::Infinity>());
   const bool is_same_surface = std::abs(met.h) <= rounding * met.scale(x.data());
-  const bool has_other_side = met.gradient.dot(left.gradient) < 0.0;
-  return stays && is_same_surface && (has_other_side || own.field != before.field);
+  return stays && is_same_surface;
 }
 
 }  // namespace
@@ -54,6 +52,7 @@ std::optional<bool> returns_at(const HybridSystem& system, const IndexVector& be
 bool is_contact_segment(const HybridSystem& system, const IndexVector& before, const IndexVector& own) {
   constexpr int trials = 6;
   if (before.event == no_function || own.event == no_function || before.jump == no_function) return false;
+  if (own.field == before.field) return false;
   const ParameterVector par = generic_parameters(system);
   bool is_found = false;
   for (int trial = 0; trial < trials; ++trial) {

@@ -11,9 +11,8 @@
 namespace tchat {
 
 /// Is `own`, where it follows `before`, such a segment? The jump of `before` leaves the states of its surface as they
-/// are, and these lie on the surface on which `own` ends; fields or sides of the surface differ (else both are ends of
-/// one turn in a section). Tried at generic states of the surface: false where the functions have no finite values at
-/// any of them.
+/// are, and these lie on the surface on which `own` ends; the fields differ (else the surface only cuts the orbit).
+/// Tried at generic states of the surface: false where the functions have no finite values at any of them.
 bool is_contact_segment(const HybridSystem& system, const IndexVector& before, const IndexVector& own);
 
 /// The same for segment s (from 0) of a cyclic signature; never the only one.

@@ -249,6 +249,14 @@ CutList with_following_segments(const ResegmentRequest& request, CutList cut, co
   return cut;
 }
 
+/// Beyond the surface the event function that led there is negative: watched is the one that ends the contact.
+void watch_contact(SegmentList& segments, std::size_t before) {
+  NewSegment& contact = segments[(before + 1) % segments.size()];
+  if (contact.index.event == segments[before].index.event) return;
+  std::erase_if(contact.watched, [&](const WatchedEvent& w) { return w.event == segments[before].index.event; });
+  watch(contact, contact.index.event);
+}
+
 NewOrbit to_impacting(const ResegmentRequest& request, const LabelledOrbit& source, const HybridSystem& system) {
   const Orbit& orbit = source.start.orbit;
   const RunSettings& old = source.settings;
@@ -278,6 +286,7 @@ NewOrbit to_impacting(const ResegmentRequest& request, const LabelledOrbit& sour
   for (std::size_t k = 0; k < cut.contacts.size(); ++k) {
     if (!is_contact_born(cut, k, source, system)) continue;
     ++contacts_born;
+    watch_contact(target.segments, cut.contacts[k]);
     target.remarks.push_back(
         fmt::format("Segment {} lasts no time here; along the branch its duration grows like the square root of the "
                     "parameter.",
