@@ -68,8 +68,10 @@ void CondensedReturnMap::parameter_column(const CondensedSystem& condensed, cons
   for (int s = 0; s < shape_.segments; ++s, column += 2 * n_ + 1) {
     const IndexVector& v = system_.signature()[static_cast<std::size_t>(s)];
     condensed.parameter_block(s, g, column);
+    column[n_] = 0.0;  // a plane across the flow is left there
     double h = 0.0;
-    hybrid.first(FunctionKind::event, v.event, x.end(s), x.par.data(), parameter, &h, hx_.data(), column + n_);
+    if (system_.has_event(s))
+      hybrid.first(FunctionKind::event, v.event, x.end(s), x.par.data(), parameter, &h, hx_.data(), column + n_);
     hybrid.first(FunctionKind::jump, v.jump, x.end(s), x.par.data(), parameter, f_.data(), fx_.data(), d_.data());
     for (int a = 0; a < n_; ++a) column[n_ + 1 + a] = -d_(a);
   }
