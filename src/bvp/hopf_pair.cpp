@@ -43,8 +43,8 @@ bool HopfPair::begin() {
   const Eigen::VectorXcd values = eigenvalues(jacobian_);
   const std::complex<double>* nearest = nullptr;
   for (const auto& value : values)
-    if (value.imag() > 0.0 && (nearest == nullptr || std::abs(value.real() / value.imag()) <
-                                                         std::abs(nearest->real() / nearest->imag())))
+    if (value.imag() > 0.0 &&
+        (nearest == nullptr || std::abs(value.real() / value.imag()) < std::abs(nearest->real() / nearest->imag())))
       nearest = &value;
   if (nearest == nullptr) return false;
   const Eigen::VectorXcd vector = eigenvector(jacobian_, *nearest);

@@ -36,11 +36,11 @@ class SettingsCheck {
     const auto of_problem =
         std::count_if(list.begin(), list.end(), [](int k) { return k < first_duration || k > last_index; });
     if (of_problem < needed)
-      refuse_constant("ICP", "ICP", fmt::format("{} parameters that are not durations", of_problem),
-                      fmt::format("at least {} with IPS = {}, ISW = {}; {}", needed, settings_.problem_type,
-                                  settings_.branch_mode,
-                                  is_point(settings_.problem_type) ? "an equilibrium has no duration"
-                                                                   : "durations are free in any case"));
+      refuse_constant(
+          "ICP", "ICP", fmt::format("{} parameters that are not durations", of_problem),
+          fmt::format(
+              "at least {} with IPS = {}, ISW = {}; {}", needed, settings_.problem_type, settings_.branch_mode,
+              is_point(settings_.problem_type) ? "an equilibrium has no duration" : "durations are free in any case"));
   }
 
   /// The count of unknowns and conditions of a boundary value problem.
@@ -69,9 +69,9 @@ class SettingsCheck {
   /// event 0 the phase condition of an orbit without a section.
   void signature() const {
     if (is_point(settings_.problem_type) && segments() > 1)
-      refuse_constant("GCNOSEG", "GCNOSEG", in_quotes(std::to_string(segments())),
-                      fmt::format("1 with IPS = {}: an equilibrium is one state of one vector field",
-                                  settings_.problem_type));
+      refuse_constant(
+          "GCNOSEG", "GCNOSEG", in_quotes(std::to_string(segments())),
+          fmt::format("1 with IPS = {}: an equilibrium is one state of one vector field", settings_.problem_type));
     int s = 0;
     for (const SegmentSettings& segment : settings_.segments) {
       ++s;
@@ -98,11 +98,11 @@ class SettingsCheck {
 
   void no_index(const char* keyword, int s, int index) const {
     if (index == no_function) return;
-    refuse_constant(keyword, fmt::format("{}({})", keyword, s), in_quotes(std::to_string(index)),
-                    fmt::format("0, or leave it out: with IPS = {} {}", settings_.problem_type,
-                                is_point(settings_.problem_type)
-                                    ? "nothing ends a segment; events to watch are in GCHGRZIND"
-                                    : "the problem's boundary conditions tie the segments"));
+    refuse_constant(
+        keyword, fmt::format("{}({})", keyword, s), in_quotes(std::to_string(index)),
+        fmt::format("0, or leave it out: with IPS = {} {}", settings_.problem_type,
+                    is_point(settings_.problem_type) ? "nothing ends a segment; events to watch are in GCHGRZIND"
+                                                     : "the problem's boundary conditions tie the segments"));
   }
 
   void bounds(std::string_view low_keyword, double low, std::string_view high_keyword, double high) const {
@@ -232,7 +232,8 @@ std::string unlocated_contacts(const RunSettings& before, const RunSettings& now
   const std::vector<Contact> earlier = not_chosen(before);
   const std::vector<Contact> left = not_chosen(now);
   const bool none_wanted = before.test_functions.empty() && !earlier.empty();
-  if (keeps_contact(now.problem_type) || is_point(now.problem_type) || none_wanted || left.size() <= earlier.size()) return "";
+  if (keeps_contact(now.problem_type) || is_point(now.problem_type) || none_wanted || left.size() <= earlier.size())
+    return "";
   constexpr std::size_t most = 6;
   std::string list;
   for (std::size_t i = 0; i < std::min(left.size(), most); ++i)

@@ -37,11 +37,12 @@ std::vector<int> free_entries(const RunSettings& settings) {
         fmt::format("ICP lists {} free parameters, the conditions leave {} free (NBC + NINT - n m + 1, with n = {} "
                     "states on m = {} segments): durations are fixed unless they are listed, so name what is to vary",
                     result.size(), needed, settings.dimension, segment_count(settings)));
-  throw UserError(fmt::format("ICP lists {} problem parameters, IPS = {} with ISW = {} needs {}: {}, so name the "
-                              "parameters to vary, for example ICP = [{}]",
-                              result.size(), settings.problem_type, settings.branch_mode, needed,
-                              type.facts().is_point ? "an equilibrium has no duration" : "durations are free in any case",
-                              type.facts().is_point ? "1" : "1, 61"));
+  throw UserError(
+      fmt::format("ICP lists {} problem parameters, IPS = {} with ISW = {} needs {}: {}, so name the "
+                  "parameters to vary, for example ICP = [{}]",
+                  result.size(), settings.problem_type, settings.branch_mode, needed,
+                  type.facts().is_point ? "an equilibrium has no duration" : "durations are free in any case",
+                  type.facts().is_point ? "1" : "1, 61"));
 }
 
 std::vector<int> free_problem_parameters(const RunSettings& settings) {

@@ -108,9 +108,10 @@ class DatReader {
 
   void read_state(const std::vector<std::string_view>& words) {
     if (!rows_.empty())
-      refuse(fmt::format("a second row, after that of line {}: an equilibrium is one line with its states; these are the "
-                         "data of an orbit, or the constants should have another IPS",
-                         last_row_line_));
+      refuse(
+          fmt::format("a second row, after that of line {}: an equilibrium is one line with its states; these are the "
+                      "data of an orbit, or the constants should have another IPS",
+                      last_row_line_));
     for (const std::string_view word : words) rows_.push_back(number(word));
     const std::size_t n = std::size_t(dimension_);
     if (words.size() != n && words.size() != n + 1)

@@ -2,8 +2,8 @@
 /// whether the orbit is one of the model, which xi_n vanish there, and how many Newton iterations it took.
 ///
 /// Only what AUTO's own readers rely on is looked at: the bars of 47 `=` between blocks, the line below a
-/// `BR PT TY LAB` heading, lines `Multiplier k re im`, `Eigenvalue k: re im` and `Iterations : n`; and of this program the word `inadmissible`
-/// and notes, among them `xi_1 = 0, xi_2 = 0`.
+/// `BR PT TY LAB` heading, lines `Multiplier k re im`, `Eigenvalue k: re im` and `Iterations : n`; and of this program
+/// the word `inadmissible` and notes, among them `xi_1 = 0, xi_2 = 0`.
 #pragma once
 
 #include <complex>
@@ -20,11 +20,11 @@ struct DiagnosticPoint {
   std::string type;  ///< letters, "" for an ordinary point
   int label = 0;
   bool admissible = true;
-  std::vector<std::string> notes;  ///< the first line of each, in their order
-  std::vector<int> xi_zeros;       ///< n of every xi_n = 0 in its notes
+  std::vector<std::string> notes;                 ///< the first line of each, in their order
+  std::vector<int> xi_zeros;                      ///< n of every xi_n = 0 in its notes
   std::vector<std::complex<double>> multipliers;  ///< of an equilibrium the eigenvalues
-  std::optional<double> parameter;  ///< the first number after the label: ICP(1), to 6 digits
-  std::optional<int> iterations;    ///< Newton iterations
+  std::optional<double> parameter;                ///< the first number after the label: ICP(1), to 6 digits
+  std::optional<int> iterations;                  ///< Newton iterations
 };
 
 /// The points in file order; lines that are not understood are skipped. Throws UserError when the file cannot be read.

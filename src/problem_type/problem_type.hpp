@@ -29,13 +29,13 @@ enum class StabilityMeaning {
 };
 
 struct ProblemFacts {
-  int number;            ///< IPS
-  int branch_mode;       ///< ISW
-  int curve;             ///< type number of the points that such a two-parameter curve consists of; 0: no such curve
-  const char* family;    ///< what IPS says, in words
-  const char* title;     ///< what IPS and ISW say together
-  int free_parameters;   ///< problem parameters that are free, durations not counted; 0: the settings decide
-  bool has_ring = true;  ///< events end the segments, jumps tie them in a ring, every duration is free
+  int number;             ///< IPS
+  int branch_mode;        ///< ISW
+  int curve;              ///< type number of the points that such a two-parameter curve consists of; 0: no such curve
+  const char* family;     ///< what IPS says, in words
+  const char* title;      ///< what IPS and ISW say together
+  int free_parameters;    ///< problem parameters that are free, durations not counted; 0: the settings decide
+  bool has_ring = true;   ///< events end the segments, jumps tie them in a ring, every duration is free
   bool is_point = false;  ///< an equilibrium: one state, no duration; eigenvalues take the place of multipliers
   StabilityMeaning stability = StabilityMeaning::orbit;
   bool keeps_contact = false;    ///< a segment ends in grazing contact (GCSEGTYP = 2); GCIPSI lists n of xi_n

@@ -1,5 +1,5 @@
-/// What the curves of folds and Hopf bifurcations of equilibria share: the equilibria are those of one parameter, with a
-/// second one free and one more condition on their eigenvalues.
+/// What the curves of folds and Hopf bifurcations of equilibria share: the equilibria are those of one parameter, with
+/// a second one free and one more condition on their eigenvalues.
 #pragma once
 
 #include "problem_type/problem_type.hpp"

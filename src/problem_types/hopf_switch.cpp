@@ -1,6 +1,6 @@
 /// From a Hopf bifurcation of equilibria to the periodic orbits (run/hopf_switch.hpp).
-#include "problem_types/branch_switch_type.hpp"
 #include "run/hopf_switch.hpp"
+#include "problem_types/branch_switch_type.hpp"
 #include "special_points/point_type.hpp"
 
 namespace tchat::types {

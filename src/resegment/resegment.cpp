@@ -53,11 +53,10 @@ LabelledOrbit read_source(const ResegmentRequest& request, const std::string& pa
                     "with -c",
                     source.name, solution.problem_type, constants, source.settings.problem_type));
   if (!has_ring(source.settings.problem_type))
-    throw UserError(
-        fmt::format("{} is {} (IPS = {}): {} no signature that could change; `tchat run` restarts from it", source.name,
-                    is_point(source.settings.problem_type) ? "an equilibrium" : "of a boundary value problem",
-                    source.settings.problem_type,
-                    is_point(source.settings.problem_type) ? "it has" : "its segments have"));
+    throw UserError(fmt::format(
+        "{} is {} (IPS = {}): {} no signature that could change; `tchat run` restarts from it", source.name,
+        is_point(source.settings.problem_type) ? "an equilibrium" : "of a boundary value problem",
+        source.settings.problem_type, is_point(source.settings.problem_type) ? "it has" : "its segments have"));
   for (const int k : solution.free_parameters)
     if (!is_duration(k, m)) source.free_parameters.push_back(k);
   source.start = orbit_from_solution(

@@ -71,8 +71,8 @@ bool start_is_branch_point(const SelectedStart& selected) {
   constexpr int of_equilibria = static_cast<int>(PointType::equilibrium_branch_point);
   const auto is_branch_point = [](int type) { return type == branch_point || type == of_equilibria; };
   const std::vector<int>& types = selected.types;
-  return selected.from_solution && (is_branch_point(basic_type(selected.type)) ||
-                                    std::any_of(types.begin(), types.end(), is_branch_point));
+  return selected.from_solution &&
+         (is_branch_point(basic_type(selected.type)) || std::any_of(types.begin(), types.end(), is_branch_point));
 }
 
 /// On top of a branch point Newton's matrix is singular and the iteration stalls. A stored orbit that satisfies every

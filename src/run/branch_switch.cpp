@@ -272,9 +272,10 @@ BranchSetup switch_branch(const HybridSystem& system, const RunSettings& setting
                         : "a period doubling (PD) or a branch point (BP)",
                     is_point(settings.problem_type) ? "BP" : "PD"));
   if (selected.start.orbit.shape.is_point() != is_point(settings.problem_type))
-    throw UserError(fmt::format("{}: label {} is an equilibrium: its branch point is left with IPS = {}, and periodic "
-                                "orbits (IPS = {}) begin at a Hopf bifurcation (HB)",
-                                selected.source, selected.label, equilibrium.number, periodic_orbit.number));
+    throw UserError(
+        fmt::format("{}: label {} is an equilibrium: its branch point is left with IPS = {}, and periodic "
+                    "orbits (IPS = {}) begin at a Hopf bifurcation (HB)",
+                    selected.source, selected.label, equilibrium.number, periodic_orbit.number));
 
   if (doubling && !has_section(settings) && settings.segments.front().index.jump != no_function)
     throw UserError(fmt::format(

@@ -256,7 +256,7 @@ void BranchWriter::write_diagnostics(const BranchPoint& point, const PointLine& 
     text += format_test_functions(tests);
     if (!point.path.orbit.shape.is_point())
       text += fmt::format("{:4}{:6}  Structural multiplier {:.3e}   estimated error between mesh points {:.3e}\n",
-                        line.branch, wrapped_point(line.point), point.multipliers.structural, point.estimated_error);
+                          line.branch, wrapped_point(line.point), point.multipliers.structural, point.estimated_error);
   }
   text += fmt::format("{:4}{:6}  Iterations   : {}\n", line.branch, wrapped_point(line.point), iterations);
   files_.write_diagnostics(text);

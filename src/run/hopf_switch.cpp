@@ -56,10 +56,10 @@ void check_signature(const HybridSystem& system, const RunSettings& settings, co
                     "such as GCFIND = [{}], GCHIND = [0], GCGIND = [0] (no section)",
                     selected.source, settings.segments.size(), index.field));
   if (index.jump != no_function && !is_identity_jump(system, index.jump))
-    throw UserError(
-        fmt::format("{}: a smooth orbit is born at a Hopf bifurcation, and jump {} ({}) at the end of the segment is not "
-                    "the identity; give GCGIND = [0]",
-                    selected.source, index.jump, system.function_name(FunctionKind::jump, index.jump)));
+    throw UserError(fmt::format(
+        "{}: a smooth orbit is born at a Hopf bifurcation, and jump {} ({}) at the end of the segment is not "
+        "the identity; give GCGIND = [0]",
+        selected.source, index.jump, system.function_name(FunctionKind::jump, index.jump)));
 }
 
 Oscillation oscillation_at(const DefiningSystem& equilibria, const Orbit& x, const SelectedStart& selected) {
@@ -69,8 +69,9 @@ Oscillation oscillation_at(const DefiningSystem& equilibria, const Orbit& x, con
     std::string list;
     for (const Complex& value : eigenvalues.values)
       list += fmt::format("{}{:.6g}{}", list.empty() ? "" : ", ", value.real(),
-                          value.imag() == 0.0 ? "" : fmt::format(" {} {:.6g} i", value.imag() < 0.0 ? "-" : "+",
-                                                                 std::abs(value.imag())));
+                          value.imag() == 0.0
+                              ? ""
+                              : fmt::format(" {} {:.6g} i", value.imag() < 0.0 ? "-" : "+", std::abs(value.imag())));
     throw UserError(
         fmt::format("{}: label {} is a Hopf point that is none: no pair of eigenvalues of f_x is on the imaginary axis "
                     "there ({}); a parameter or the problem is another one than that of the label",
@@ -84,12 +85,14 @@ Oscillation oscillation_at(const DefiningSystem& equilibria, const Orbit& x, con
 void begin_on_section(const HybridSystem& system, int event, const Orbit& x, const SelectedStart& selected,
                       Eigen::VectorXcd& v) {
   const EventAt at = event_at(system, event, x.end(0), x.par.data());
-  const std::string name = fmt::format("event function {} ({})", event, system.function_name(FunctionKind::event, event));
+  const std::string name =
+      fmt::format("event function {} ({})", event, system.function_name(FunctionKind::event, event));
   constexpr const char* cure = "choose a section through the equilibrium, or none (GCHIND = [0], GCGIND = [0])";
   if (std::abs(at.h) > on_section * at.scale(x.end(0)))
-    throw UserError(fmt::format("{}: the orbits that are born at label {} do not meet the section: {} is {:.6g} at the "
-                                "equilibrium; {}",
-                                selected.source, selected.label, name, at.h, cure));
+    throw UserError(
+        fmt::format("{}: the orbits that are born at label {} do not meet the section: {} is {:.6g} at the "
+                    "equilibrium; {}",
+                    selected.source, selected.label, name, at.h, cure));
   const Complex across = at.gradient.cast<Complex>().dot(v);
   if (std::abs(across) < in_section * at.gradient.norm())
     throw UserError(fmt::format("{}: the oscillation that is born at label {} lies in the section of {}; {}",
@@ -124,10 +127,10 @@ std::optional<FirstPoint> first_orbit(PathFollower& follower, const Orbit& still
 BranchSetup begin_periodic_orbits(const HybridSystem& system, const RunSettings& settings,
                                   const SelectedStart& selected) {
   if (!selected.start.orbit.shape.is_point())
-    throw UserError(
-        fmt::format("{}: label {} (HB) is where a branch of orbits has shrunk to a point, not an equilibrium; start from "
-                    "the HB label of a run with IPS = {}",
-                    selected.source, selected.label, equilibrium.number));
+    throw UserError(fmt::format(
+        "{}: label {} (HB) is where a branch of orbits has shrunk to a point, not an equilibrium; start from "
+        "the HB label of a run with IPS = {}",
+        selected.source, selected.label, equilibrium.number));
   check_signature(system, settings, selected);
 
   const RunSettings before = of_equilibrium(settings);
@@ -156,9 +159,10 @@ BranchSetup begin_periodic_orbits(const HybridSystem& system, const RunSettings&
   std::optional<FirstPoint> first =
       first_orbit(*setup.follower, still, from.tangent, continuation_settings(of_orbit).step, trouble);
   if (!first)
-    throw ComputationError(fmt::format("no periodic orbit beside the Hopf bifurcation of label {} of {} for an amplitude "
-                                       "of {:.3g} or less: {}; try another DS",
-                                       selected.label, selected.source, std::abs(settings.step), describe(trouble)));
+    throw ComputationError(
+        fmt::format("no periodic orbit beside the Hopf bifurcation of label {} of {} for an amplitude "
+                    "of {:.3g} or less: {}; try another DS",
+                    selected.label, selected.source, std::abs(settings.step), describe(trouble)));
   setup.start = std::move(*first);
   return setup;
 }

@@ -14,8 +14,9 @@
 
 namespace tchat {
 
-/// Throws UserError when the label is no equilibrium, has no pair of eigenvalues on the imaginary axis, or the signature
-/// is not one segment whose section, if it has one, the orbits cross; ComputationError when no orbit is found.
+/// Throws UserError when the label is no equilibrium, has no pair of eigenvalues on the imaginary axis, or the
+/// signature is not one segment whose section, if it has one, the orbits cross; ComputationError when no orbit is
+/// found.
 BranchSetup begin_periodic_orbits(const HybridSystem& system, const RunSettings& settings,
                                   const SelectedStart& selected);
 

@@ -99,8 +99,9 @@ std::string lost_points(const BranchSummary& summary, const std::string& paramet
   for (const LostPoint& lost : summary.lost)
     text += folded(fmt::format("    between {} = {:.8g} and {:.8g} (point {}): {}", parameter, lost.from, lost.to,
                                lost.number, lost.text));
-  return text + (summary.equilibria ? "  you might: lower DSMAX; EPSL and EPSU smaller than EPSS\n"
-                                    : "  you might: lower DSMAX; raise NTST or NCOL; EPSL and EPSU smaller than EPSS\n");
+  return text + (summary.equilibria
+                     ? "  you might: lower DSMAX; EPSL and EPSU smaller than EPSS\n"
+                     : "  you might: lower DSMAX; raise NTST or NCOL; EPSL and EPSU smaller than EPSS\n");
 }
 
 bool is_special(const BranchWriter::Labelled& label) {

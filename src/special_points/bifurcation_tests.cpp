@@ -117,9 +117,7 @@ TestValue BranchPointTest::evaluate(const TestedPoint& point) const {
   return TestValue::of(point.singular_distance, level);
 }
 
-SpecialPoint BranchPointTest::classify(const TestedPoint&, bool) const {
-  return {type_, {}, stop_, "branch point"};
-}
+SpecialPoint BranchPointTest::classify(const TestedPoint&, bool) const { return {type_, {}, stop_, "branch point"}; }
 
 TestValue PeriodDoublingTest::evaluate(const TestedPoint& point) const { return multiplier_product(point, -1); }
 

@@ -75,7 +75,8 @@ bool FoldHopfTest::is_genuine(const TestedPoint& point) const {
 
 SpecialPoint FoldHopfTest::classify(const TestedPoint& point, bool) const {
   const EigenvaluePair pair = hopf_pairs(without_zero(point.multipliers.values)).nearest;
-  return {PointType::zero_hopf, {}, false, fmt::format("zero-Hopf point, omega = {:.10g}", std::abs(pair.first.imag()))};
+  return {
+      PointType::zero_hopf, {}, false, fmt::format("zero-Hopf point, omega = {:.10g}", std::abs(pair.first.imag()))};
 }
 
 TestValue HopfFoldTest::evaluate(const TestedPoint& point) const {
@@ -92,7 +93,8 @@ TestValue HopfFoldTest::evaluate(const TestedPoint& point) const {
 
 SpecialPoint HopfFoldTest::classify(const TestedPoint& point, bool) const {
   const double square = made_by_curve<HopfPair>(point).square();
-  return {PointType::zero_hopf, {}, false, fmt::format("zero-Hopf point, omega = {:.10g}", std::sqrt(std::abs(square)))};
+  return {
+      PointType::zero_hopf, {}, false, fmt::format("zero-Hopf point, omega = {:.10g}", std::sqrt(std::abs(square)))};
 }
 
 /// Scaled to omega, with which it goes to infinity at a Bogdanov-Takens point.

@@ -15,7 +15,7 @@ enum class PointType {
   equilibrium_branch_point = 1,
   equilibrium_fold = 2,
   hopf = 3,
-  regular = 4,                   ///< every NPR points
+  regular = 4,  ///< every NPR points
   user = -4,    ///< UZ and every zero of a monitored function
   fold = 5,
   branch_point = 6,
@@ -23,14 +23,14 @@ enum class PointType {
   torus = 8,
   end = 9,
   no_convergence = -9,
-  bogdanov_takens = -1,     ///< on curves of folds and Hopf points of equilibria
-  cusp = -2,                ///< on fold curves
-  zero_hopf = -3,           ///< on curves of folds and Hopf points of equilibria
-  generalized_hopf = -32,   ///< on curves of Hopf points; with its tens digit, for -2 is the cusp
-  resonance_1 = -5,  ///< 1:1, on fold and torus curves
-  resonance_2 = -6,  ///< 1:2, on period-doubling and torus curves
-  resonance_3 = -7,  ///< 1:3, on torus curves
-  resonance_4 = -8   ///< 1:4, on torus curves
+  bogdanov_takens = -1,    ///< on curves of folds and Hopf points of equilibria
+  cusp = -2,               ///< on fold curves
+  zero_hopf = -3,          ///< on curves of folds and Hopf points of equilibria
+  generalized_hopf = -32,  ///< on curves of Hopf points; with its tens digit, for -2 is the cusp
+  resonance_1 = -5,        ///< 1:1, on fold and torus curves
+  resonance_2 = -6,        ///< 1:2, on period-doubling and torus curves
+  resonance_3 = -7,        ///< 1:3, on torus curves
+  resonance_4 = -8         ///< 1:4, on torus curves
 };
 
 /// What a UZ label is: the last PAR entries of a q-file entry, four internal values for each kind. What vanishes with
@@ -43,7 +43,7 @@ struct UserPointKind {
     xi = 3,
     impact_velocity = 4,
     grazing_codimension_two = 5,
-    other_type = 6,           ///< a point that has a type number of its own, beside the label's
+    other_type = 6,  ///< a point that has a type number of its own, beside the label's
     boundary_equilibrium = 7
   };
   int kind = none;
@@ -63,7 +63,8 @@ bool is_fold(PointType type);
 bool is_bifurcation(PointType type);
 
 /// "EP", "LP", "BP", "PD", "TR", "RG", "MX", "R1", "CP", ...; of type UZ by kind: "UZ" (user value or not known),
-/// "GR" (contact, impact velocity), "XI", "GC" (grazing-fold or -flip), "BE" (boundary equilibrium). "" for an ordinary point and unknown numbers.
+/// "GR" (contact, impact velocity), "XI", "GC" (grazing-fold or -flip), "BE" (boundary equilibrium). "" for an ordinary
+/// point and unknown numbers.
 std::string type_name(int type, const UserPointKind& kind = {});
 
 /// All names of a point that is several things at once, each once, its own first: {"GR", "UZ"}.

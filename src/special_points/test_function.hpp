@@ -24,8 +24,8 @@ struct TestedPoint {
   const CondensedSystem& condensed;
   const FloquetMultipliers& multipliers;
   const std::vector<double>& transversalities;  ///< h_x f / (|h_x| |f|) at the end of each segment
-  double singular_distance = 1.0;               ///< of the bordered problem to a singular one, with its determinant's sign
-  const OrbitCondition* condition = nullptr;    ///< of a two-parameter curve, evaluated at this point
+  double singular_distance = 1.0;  ///< of the bordered problem to a singular one, with its determinant's sign
+  const OrbitCondition* condition = nullptr;  ///< of a two-parameter curve, evaluated at this point
 };
 
 /// What a test function says of a point.

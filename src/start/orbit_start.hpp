@@ -30,8 +30,8 @@ Orbit point_from_data(const DatFile& data, const ParameterVector& par);
 
 /// The labelled solution on a mesh of shape.intervals and shape.collocation: its own where they agree, otherwise one of
 /// the same density. The direction is kept when it has one and its free problem parameters are `free_parameters`, in
-/// any order. An equilibrium is one where `shape` says so. Throws UserError (naming `source`) when the number of states is
-/// not n m, and when one is an equilibrium and the other is not.
+/// any order. An equilibrium is one where `shape` says so. Throws UserError (naming `source`) when the number of states
+/// is not n m, and when one is an equilibrium and the other is not.
 OrbitStart orbit_from_solution(const LabelledSolution& solution, const OrbitShape& shape,
                                const std::vector<int>& free_parameters, const std::string& source);
 

@@ -242,9 +242,10 @@ bool verify_solutions(const VerifyRequest& request, std::ostream& screen, std::o
   RunSettings settings = read_constants_file(constants, nullptr, names_to_come(named_parameters));
 
   if (is_point(settings.problem_type))
-    throw UserError(fmt::format("{}: these are equilibria (IPS = {}), with nothing to integrate; their eigenvalues are in "
-                                "the d-file",
-                                path, settings.problem_type));
+    throw UserError(
+        fmt::format("{}: these are equilibria (IPS = {}), with nothing to integrate; their eigenvalues are in "
+                    "the d-file",
+                    path, settings.problem_type));
 
   const std::string plugin = resolve_plugin(request.problem.value_or(run_path(path)));
   const ExitGuard guard(plugin);
