@@ -243,7 +243,8 @@ std::string unlocated_contacts(const RunSettings& before, const RunSettings& now
   const std::vector<Contact> earlier = not_chosen(before);
   const std::vector<Contact> left = not_chosen(now);
   const bool none_wanted = before.test_functions.empty() && !earlier.empty();
-  if (keeps_contact(now.problem_type) || is_point(now.problem_type) || none_wanted || left.size() <= earlier.size()) return "";
+  if (keeps_contact(now.problem_type) || is_point(now.problem_type) || none_wanted || left.size() <= earlier.size())
+    return "";
   constexpr std::size_t most = 6;
   std::string list;
   for (std::size_t i = 0; i < std::min(left.size(), most); ++i)

@@ -174,7 +174,8 @@ TEST_CASE("constants and data that are none of an equilibrium are refused") {
   const Workspace workspace;
   write_round(workspace);
   check_refused(workspace, "run round GCHIND=1", {"GCHIND(1)", "nothing ends a segment"});
-  check_refused(workspace, "run round GCFIND=[1,1] GCHIND=[0,0] GCGIND=[0,0]", {"GCNOSEG", "one state of one vector field"});
+  check_refused(workspace, "run round GCFIND=[1,1] GCHIND=[0,0] GCGIND=[0,0]",
+                {"GCNOSEG", "one state of one vector field"});
   check_refused(workspace, "run round GCHGRZIND=[[5]]", {"GCHGRZIND of segment 1 is 5", "4 event functions"});
   workspace.write("two.dat", "0 0 0 0\n1 0 0 0\n");
   check_refused(workspace, "run round -d two", {"two.dat:2: a second row", "one line with its states"});
@@ -186,14 +187,16 @@ TEST_CASE("constants and data that are none of an equilibrium are refused") {
   check_refused(workspace, "run round -d word", {"word.dat:1: 'x' is not a finite number"});
 
   // x' = 1 + x^2 + p^2 has none.
-  workspace.write("no.cpp",
-                  "#include <tchat/problem.hpp>\nstruct No {\n  static constexpr int dimension = 1, parameters = 1, "
-                  "fields = 1;\n  template <class T>\n  void field(int, const T* x, const T* p, T* f) const {\n    f[0] "
-                  "= T(1.0) + x[0] * x[0] + p[0] * p[0];\n  }\n};\nTCHAT_PROBLEM(No)\n");
+  workspace.write(
+      "no.cpp",
+      "#include <tchat/problem.hpp>\nstruct No {\n  static constexpr int dimension = 1, parameters = 1, "
+      "fields = 1;\n  template <class T>\n  void field(int, const T* x, const T* p, T* f) const {\n    f[0] "
+      "= T(1.0) + x[0] * x[0] + p[0] * p[0];\n  }\n};\nTCHAT_PROBLEM(No)\n");
   workspace.write("gc.no", "NDIM = 1, IPS = 1, ICP = [1]\n");
   workspace.write("no.dat", "0.3\n");
-  check_refused(workspace, "run no", {"no convergence at the first point, from no.dat", "rate of U(1)",
-                                      "There may be no equilibrium near the start"});
+  check_refused(
+      workspace, "run no",
+      {"no convergence at the first point, from no.dat", "rate of U(1)", "There may be no equilibrium near the start"});
 }
 
 TEST_CASE("other commands say of an equilibrium that it is one") {
