@@ -25,8 +25,7 @@ struct Coulomb {
   static constexpr double initial_parameters[] = {1.15, 0.7, 1.0, 0.0, 0.0};
   static constexpr double initial_state[] = {0.0, 0.5, 0.0, 1.0};
 
-  static constexpr tchat::Sliding sliding{
-      .field = 3, .minus = 2, .plus = 1, .surface = 1, .to_minus = 3, .to_plus = 4};
+  static constexpr tchat::Sliding sliding{.field = 3, .minus = 2, .plus = 1, .surface = 1, .to_minus = 3, .to_plus = 4};
 
   template <class T>
   void field(int i, const T* x, const T* par, T* f) const {

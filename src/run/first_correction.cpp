@@ -121,14 +121,15 @@ std::string values_at(const SelectedStart& selected, const HybridSystem& system,
   if (!failure.empty())
     throw ComputationError(
         fmt::format("the starting solution from {} cannot be evaluated: {}", selected.source, failure));
-  const char* cure = start.shape.is_point()
-                         ? "There may be no equilibrium near the start with these parameters; a better start or a larger "
-                           "ITNW may help."
-                         : "The largest ones say which part of the start, of the parameters or of the signature is "
-                           "wrong; a better start, a larger NTST or ITNW may help.";
-  throw ComputationError(
-      fmt::format("no convergence at the first point, from {}: {} Residuals of the start, condition by condition:{}\n  {}",
-                  selected.source, trouble, residual_report(follower, system, start), cure));
+  const char* cure =
+      start.shape.is_point()
+          ? "There may be no equilibrium near the start with these parameters; a better start or a larger "
+            "ITNW may help."
+          : "The largest ones say which part of the start, of the parameters or of the signature is "
+            "wrong; a better start, a larger NTST or ITNW may help.";
+  throw ComputationError(fmt::format(
+      "no convergence at the first point, from {}: {} Residuals of the start, condition by condition:{}\n  {}",
+      selected.source, trouble, residual_report(follower, system, start), cure));
 }
 
 /// The orbit on the mesh adapted to it, or on one that is half or a quarter of the way there: on a coarse mesh the
