@@ -55,7 +55,7 @@ TEST_CASE("Malformed positional files", "[constants]") {
       {appendix_b_with(1, "99999999999 180 1 1"), {"gc.bad:1: NDIM (", "'99999999999'"}},
       {appendix_b_with(1, "5 2 1 1"), {"gc.bad:1: IPS (", "found '2'", "180 (", "150 ("}},
       {appendix_b_with(1, "5 180 -1 1"), {"gc.bad:1: IRS (", "found '-1'", "label number"}},
-      {appendix_b_with(1, "5 180 HB1 1"), {"gc.bad:1: IRS (", "found 'HB1'", "BP, LP, PD"}},
+      {appendix_b_with(1, "5 180 AB1 1"), {"gc.bad:1: IRS (", "found 'AB1'", "BP, LP, HB, PD"}},
       {appendix_b_with(1, "5 180 PD 1"), {"gc.bad:1: IRS (", "found 'PD'"}},
       {appendix_b_with(1, "5 180 PD0 1"), {"gc.bad:1: IRS (", "found 'PD0'"}},
       {appendix_b_with(1, "5 180 1 NDIM, IPS"), {"gc.bad:1: ILP (", "found 'NDIM'"}},
