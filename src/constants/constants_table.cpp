@@ -27,7 +27,8 @@ Limits any() { return {}; }
 constexpr double max_list = 1000;  // length of lists that nothing else bounds
 constexpr std::string_view kept = "read and kept, no effect";
 constexpr std::string_view type_with_count =
-    "a type with a count: BP, LP, PD, TR, UZ, GR, XI, GC, CP, R1, R2, R3, R4, EP, MX or RG and a number";
+    "a type with a count (BP, LP, HB, PD, TR, UZ, GR, BE, XI, GC, CP, R1, ..., R4, BT, ZH, GH, EP, MX or RG) and a "
+    "number";
 
 std::vector<int> with_zero(std::vector<int> choices) {
   choices.push_back(0);
@@ -44,8 +45,8 @@ std::vector<Constant> make_table() {
       {"NDIM", "number of states of one segment", 1, &R::dimension, range(1, 1000), "", "5", ""},
       {"IPS", "problem type", 1, &R::problem_type, one_of(problem_type_numbers()), families, "180", ""},
       {"IRS", "label to start from, 0: from data", 1, &R::start, at_least(0),
-       "a label number >= 0, or a type with a count (PD1: BP, LP, PD, TR, UZ, GR, XI, GC, CP, R1, R2, R3, R4, EP, MX "
-       "or RG and a number)",
+       "a label number >= 0, or a type with a count (PD1: BP, LP, HB, PD, TR, UZ, GR, BE, XI, GC, CP, R1, ..., R4, BT, "
+       "ZH, GH, EP, MX or RG and a number)",
        "PD1", ""},
       {"ILP", "detect folds; negative: and stop there", 1, &R::detect_folds, range(-1, 1), "", "1", ""},
       {"NICP", "number of free parameters listed", 2, ListCount{"ICP"}, range(1, 256), "", "3", ""},

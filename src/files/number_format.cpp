@@ -70,8 +70,7 @@ std::string plain_name(std::string_view name) {
 
 std::string heading_field(std::string_view name, int width) {
   const std::string cut = plain_name(name).substr(0, static_cast<std::size_t>(width - 2));
-  // A blank before it always, two after it where there is room.
-  return static_cast<int>(cut.size()) == width - 2 ? fmt::format(" {} ", cut) : fmt::format("{:>{}}  ", cut, width - 2);
+  return fmt::format("{:>{}}  ", cut, width - 2);
 }
 
 }  // namespace tchat

@@ -43,7 +43,11 @@ std::vector<std::size_t> shown(const std::vector<PointColumn>& columns) {
 
 std::string format_table_heading(const std::vector<PointColumn>& columns) {
   std::string line = "  BR    PT  TY  LAB";
-  for (const std::size_t k : shown(columns)) line += heading_field(columns[k].name, column_width);
+  for (const std::size_t k : shown(columns)) {
+    const std::string heading = heading_field(columns[k].name, column_width);
+    const bool touches = line.back() != ' ' && heading.front() != ' ';  // a long name in the first column
+    line += touches ? " " + heading.substr(0, heading.size() - 1) : heading;
+  }
   return line.substr(0, line.find_last_not_of(' ') + 1) + '\n';
 }
 

@@ -121,8 +121,12 @@ std::string values_at(const SelectedStart& selected, const HybridSystem& system,
   if (!failure.empty())
     throw ComputationError(
         fmt::format("the starting solution from {} cannot be evaluated: {}", selected.source, failure));
+  const bool rests = !start.shape.is_point() && !system.has_event(0) &&
+                     (start.states.colwise() - start.states.col(0)).cwiseAbs().maxCoeff() == 0.0;
   const char* cure =
-      start.shape.is_point()
+      rests ? "The start does not move: without a section (GCHIND = [0]) an orbit needs a start that goes round; "
+              "IPS = 1 follows equilibria."
+      : start.shape.is_point()
           ? "There may be no equilibrium near the start with these parameters; a better start or a larger "
             "ITNW may help."
           : "The largest ones say which part of the start, of the parameters or of the signature is "

@@ -106,7 +106,10 @@ TEST_CASE("The table knows each constant once, with an example that is accepted"
     if (std::holds_alternative<ListCount>(constant.member) || std::holds_alternative<MonitorCounts>(constant.member))
       continue;
     RunSettings s = appendix();
-    CHECK_NOTHROW(apply_override(s, std::string(constant.keyword) + " = " + std::string(constant.example)));
+    const ParameterNames monitors = [](const std::string&, const std::string&) { return names_a_monitor; };
+    std::vector<std::string> overrides{std::string(constant.keyword) + " = " + std::string(constant.example)};
+    if (constant.keyword == "HOLD") overrides.emplace_back("ICP = [1, 2, 61, 62]");  // one more parameter is free
+    CHECK_NOTHROW(apply_overrides(s, overrides, nullptr, monitors));
   }
 }
 

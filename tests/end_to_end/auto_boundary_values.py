@@ -9,9 +9,10 @@ D (integral of 1 - D - cos(angle)) and stay on one line (integral of sin(angle))
 
 import math
 import os
-import subprocess
 import sys
 import tempfile
+
+from auto_runs import auto_objects, run
 
 SOURCE_OF_AUTO = """
 subroutine func(ndim,u,icp,par,ijac,f,dfdu,dfdp)
@@ -91,20 +92,6 @@ UZR = {1: [0.1, 0.3, 0.5]}
 """
 
 
-def auto_objects():
-    """AUTO's object files, or none."""
-    candidates = [os.path.join(os.environ.get("AUTO_DIR", ""), "lib")]
-    try:
-        listing = subprocess.run(["dpkg", "-L", "auto-07p"], capture_output=True, text=True, check=False).stdout
-        candidates += [os.path.dirname(f) for f in listing.split() if f.endswith("/lib/main.o")]
-    except OSError:
-        pass
-    for folder in candidates:
-        if os.path.isfile(os.path.join(folder, "main.o")):
-            return [os.path.join(folder, f) for f in sorted(os.listdir(folder)) if f.endswith(".o")]
-    return []
-
-
 def solutions(path):
     """(type, PAR(1..3)) of the entries of a q-file, AUTO's or tchat's."""
     words = open(path).read().split()
@@ -126,13 +113,6 @@ def loads(path):
             if abs(shortening - wanted) < 1e-7:
                 found[wanted] = (load, side)
     return found
-
-
-def run(words, folder, **more):
-    result = subprocess.run(words, cwd=folder, capture_output=True, text=True, check=False, **more)
-    if result.returncode != 0:
-        sys.exit(f"{' '.join(words)} failed:\n{result.stdout}\n{result.stderr}")
-    return result.stdout
 
 
 def compare(name, mine, others, tolerance):
@@ -160,8 +140,6 @@ def check_module(source, folder):
 def main():
     tchat, source = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
     objects = auto_objects()
-    if not objects:
-        sys.exit(77)
     # The linear rod: tan(k / 2) = k / 2, angle = q (1 - cos ks - (k / 2) sin ks).
     k = 2 * 4.493409457909064
     shortening = 0.02

@@ -9,9 +9,10 @@ the reverse, and curves of folds and Hopf bifurcations are compared. Exit status
 """
 
 import os
-import subprocess
 import sys
 import tempfile
+
+from auto_runs import auto_objects, run
 
 # The equations in a notation that both languages read: u1, p1 and so on.
 DEMOS = {
@@ -39,20 +40,6 @@ LOOSE_ORBIT_TOLERANCE = 1e-5  # with EPSS = 1e-6
 CURVE_TOLERANCE = 1e-5
 NAMES = {1: "BP", 2: "LP", 3: "HB", 5: "LP", 6: "BP", 7: "PD", 8: "TR", -4: "UZ", 9: "EP", -9: "MX",
          -1: "BT", -2: "CP", -3: "ZH"}
-
-
-def auto_objects():
-    """AUTO's object files, or none."""
-    candidates = [os.path.join(os.environ.get("AUTO_DIR", ""), "lib")]
-    try:
-        listing = subprocess.run(["dpkg", "-L", "auto-07p"], capture_output=True, text=True, check=False).stdout
-        candidates += [os.path.dirname(f) for f in listing.split() if f.endswith("/lib/main.o")]
-    except OSError:
-        pass
-    for folder in candidates:
-        if os.path.isfile(os.path.join(folder, "main.o")):
-            return [os.path.join(folder, f) for f in sorted(os.listdir(folder)) if f.endswith(".o")]
-    return []
 
 
 def numbered(text, symbols):
@@ -107,13 +94,6 @@ struct Demo {{
   template <class T>
   void field(int, const T* x, const T* p, T* f) const {{
 """ + "\n".join(lines) + "\n  }\n};\nTCHAT_PROBLEM(Demo)\n"
-
-
-def run(words, folder, **more):
-    result = subprocess.run(words, cwd=folder, capture_output=True, text=True, check=False, **more)
-    if result.returncode != 0:
-        sys.exit(f"{' '.join(words)} failed:\n{result.stdout}\n{result.stderr}")
-    return result.stdout
 
 
 class Pair:
@@ -283,8 +263,6 @@ def check_tor(pair):
 def main():
     tchat, source = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
     objects = auto_objects()
-    if not objects:
-        sys.exit(77)
     environment = {**os.environ, "TCHAT_SOURCE": source}
     with tempfile.TemporaryDirectory() as folder:
         for name, check in (("ab", check_ab), ("lor", check_lor), ("tor", check_tor)):

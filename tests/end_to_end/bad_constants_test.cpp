@@ -163,7 +163,7 @@ TEST_CASE("overrides that cannot be") {
       {"ICP=[61]", {"ICP"}},
       {"STOP=PD", {"STOP"}},
       {"GCNOSEG=2", {"GC"}},
-      {"IPS=1", {"IPS", "180"}},
+      {"IPS=1", {"GCHIND", "IPS = 1"}},
       {"RL0=5 RL1=4", {"RL1", "RL0"}},
   };
   for (const BadOverride& bad : table) {

@@ -165,7 +165,7 @@ TEST_CASE("what is no Hopf point, or no start of its periodic orbits, is refused
                 {"label 2 is an equilibrium, not an orbit", "ISW = -1"});
   check_refused(workspace, "run round -s round -o e IRS=EP1 ISW=-1", {"ISW = -1 switches at a branch point (BP)"});
   check_refused(workspace, "run round -s round -o e IRS=EP1 ISW=2 ICP=[1,2]",
-                {"a fold (LP) or Hopf bifurcation (HB)", "a label of type EP"});
+                {"Hopf bifurcations of equilibria", "a label of type EP"});
   check_refused(workspace, "run round -s round -o e IRS=HB1 ISW=2", {"at least 2 with IPS = 1, ISW = 2"});
   CHECK_FALSE(workspace.has("q.e"));
 }

@@ -346,7 +346,7 @@ TEST_CASE("bad usage of plot is refused with what there is") {
                          Bad{"p.branch --yrange 3:2", {"--yrange", "smaller"}},
                          Bad{"p.branch --size 10", {"1200x900"}},
                          Bad{"p.branch --size 10x99999", {"10000"}},
-                         Bad{"p.branch --labels LP,ZZ", {"'ZZ'", "GR, XI"}},
+                         Bad{"p.branch --labels LP,ZZ", {"'ZZ'", "GR, BE, XI"}},
                          Bad{"p.branch --legend a --legend b", {"2 times"}},
                          Bad{"p.branch --logx --xrange=-1:2", {"positive"}},
                          Bad{"p.broken", {"p.broken:2"}},

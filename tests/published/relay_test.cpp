@@ -5,6 +5,7 @@
 //
 // All fields are affine, and half of a symmetric orbit determines it: from (0, 1, w), where it has left the surface
 // with u = -1, back to x1 = 0, and along it to (0, -1, -w).
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -126,4 +127,33 @@ TEST_CASE("make -j2 in problems/relay: cycles with sliding, their beginning and 
 
   // Two sliding segments in each half, on to where the second one parts from the first.
   CHECK(chain.solutions("multisliding").front().states.front().size() == 24);
+}
+
+TEST_CASE("a relay with hysteresis and a plant of first order: the textbooks' period 2 ln((1 + e) / (1 - e))") {
+  const Workspace workspace;
+  workspace.write("relay.tch",
+                  "par e = 0.5\n"
+                  "field up: x' = 1 - x\n"
+                  "field down: x' = -1 - x\n"
+                  "event high = e - x\n"
+                  "event low = x + e\n");
+  workspace.write("gc.relay",
+                  "NDIM = 1, IPS = 180, ICP = [e, period]\nNTST = 10, NMX = 100, NPR = 5, RL0 = 0.05, RL1 = 0.95\n"
+                  "GCFIND = [1, 2], GCHIND = [1, 2], GCGIND = [0, 0]\n"
+                  "EPSL = 1e-11, EPSU = 1e-11, DS = 0.02, DSMAX = 0.1, UZR = {period: 4}\n");
+  workspace.write("relay.dat", "# PAR(61) = 1\n# PAR(62) = 1\n0 -0.5 0.5\n0.5 0 0\n1 0.5 -0.5\n");
+  const Outcome outcome = workspace.tchat(std::vector<std::string>{"run", "relay", "-q", "--both"});
+  INFO(outcome.err);
+  REQUIRE(outcome.status == 0);
+  const std::vector<SolutionEntry> labels = workspace.solutions("relay");
+  REQUIRE(labels.size() > 8);
+  for (const SolutionEntry& u : labels) {
+    const double e = u.parameter(1);
+    check_near(u.parameter(61) + u.parameter(62), 2 * std::log((1 + e) / (1 - e)), 1e-9);
+  }
+  // A period of 4: e = tanh 1.
+  const auto is_four = [](const SolutionEntry& u) { return u.type == -4; };
+  const auto four = std::find_if(labels.begin(), labels.end(), is_four);
+  REQUIRE(four != labels.end());
+  check_near(four->parameter(1), std::tanh(1.0), 1e-9);
 }
