@@ -73,6 +73,11 @@ Call split(const std::string& text) {
   return call;
 }
 
+std::string symbol_of(const Quantity& quantity) {
+  const char* const symbols[] = {"U({})", "h{}", "PVLS({})"};
+  return fmt::format(fmt::runtime(symbols[static_cast<int>(quantity.kind)]), quantity.index);
+}
+
 std::string quantity_list(const HybridSystem& system) {
   std::string list;
   for (int k = 1; k <= system.dimension(); ++k) list += (k > 1 ? ", " : "") + system.state_name(k);
@@ -379,6 +384,8 @@ MonitorName parse_monitor(const HybridSystem& system, const std::string& text, c
     if (!quantity)
       refuse(fmt::format("{} is no state, event function or user function of {}; it has {}", in_quotes(wanted),
                          system.name(), quantity_list(system)));
+    if (wanted.find_first_of(" \t") != std::string::npos)
+      refuse(fmt::format("a name with blanks cannot stand here; write {} for it", symbol_of(*quantity)));
     name.quantity = *quantity;
     ++next;
   }

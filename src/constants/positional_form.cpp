@@ -11,6 +11,17 @@ namespace tchat {
 
 namespace {
 
+/// Where the first word of a line ends. A comma inside of parentheses is of the word: max(x,2).
+std::size_t word_end(std::string_view line) {
+  int depth = 0;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    const char c = line[i];
+    if (c == ' ' || c == '\t' || c == '\f' || c == '\v' || c == '/' || (c == ',' && depth == 0)) return i;
+    depth += c == '(' ? 1 : c == ')' ? -1 : 0;
+  }
+  return line.size();
+}
+
 bool is_separator(char c) { return c == ' ' || c == '\t' || c == '\f' || c == '\v'; }
 
 /// Hands out the values of records one by one.
@@ -33,8 +44,7 @@ class RecordReader {
       return repeated_;
     }
     skip_separators(constant, name);
-    const std::size_t end = line_.find_first_of(" \t\f\v,/");
-    Token token{std::string(line_.substr(0, end)), place()};
+    Token token{std::string(line_.substr(0, word_end(line_))), place()};
     note_continuation(constant);
     line_.remove_prefix(token.text.size());
     comma_seen_ = false;

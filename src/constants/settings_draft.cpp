@@ -197,8 +197,9 @@ Token SettingsDraft::index_token(const Constant& constant, const std::string& sh
   return {fmt::format("{}{}", negative ? "-" : "", index), token.place};
 }
 
-/// Of a monitor that is named for the first time the next one.
-int SettingsDraft::monitor_index(const std::string& name, const std::string& where) {
+/// Of a monitor that is named for the first time the next one. Blanks in names would separate values in files.
+int SettingsDraft::monitor_index(std::string name, const std::string& where) {
+  std::erase_if(name, [](char c) { return c == ' ' || c == '\t'; });
   std::vector<std::string>& list = settings_.monitors;
   const auto known = std::find(list.begin(), list.end(), name);
   const auto index = static_cast<int>(known - list.begin());

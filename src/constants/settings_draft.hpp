@@ -65,7 +65,7 @@ class SettingsDraft {
   void check_counts() const;
 
   Token index_token(const Constant& constant, const std::string& shown, const Token& token);
-  int monitor_index(const std::string& name, const std::string& where);
+  int monitor_index(std::string name, const std::string& where);
 
   RunSettings settings_;
   std::string source_;

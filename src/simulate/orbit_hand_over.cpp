@@ -7,6 +7,7 @@
 #include <optional>
 #include <set>
 
+#include "constants/settings_type.hpp"
 #include "hybrid/identity_jump.hpp"
 #include "hybrid/parameter_vector.hpp"
 #include "problem_type/problem_type.hpp"
@@ -156,6 +157,7 @@ RunSettings orbit_settings(const HybridSystem& system, const RunSettings& base, 
   settings.branch_mode = periodic_orbit.branch_mode;
   settings.start = {};
   settings.parameter_values.clear();
+  leave_out_monitors(settings);
 
   settings.free_parameters = {parameter};
   for (int s = 0; s < m; ++s) settings.free_parameters.push_back(first_duration + s);

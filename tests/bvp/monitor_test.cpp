@@ -17,7 +17,7 @@ struct Watched {
   static constexpr int dimension = 2, parameters = 2, fields = 2, events = 2, jumps = 1, user_values = 1;
   static constexpr const char* state_names[] = {"x", "v"};
   static constexpr const char* user_value_names[] = {"energy"};
-  static constexpr const char* event_names[] = {"wall", "turn"};
+  static constexpr const char* event_names[] = {"wall", "turn of x"};
   template <class T>
   void field(int i, const T* x, const T* par, T* f) const {
     f[0] = x[1] * par[0];
@@ -85,7 +85,7 @@ double value_of(const std::string& name) {
 TEST_CASE("gradients of monitors") {
   for (const char* name : {"period", "velocity(1)", "velocity(2)", "start(x)", "start(v, 2)", "start(energy, 2)",
                            "end(wall, 1)", "end(energy)", "max(x)", "min(x, 1)", "max(v, 2)", "max(energy)",
-                           "min(turn)", "mean(x)", "mean(energy, 2)", "integral(v)", "integral(h1, 1)"})
+                           "min(h2)", "mean(x)", "mean(energy, 2)", "integral(v)", "integral(h1, 1)"})
     check_gradient(name);
 }
 
@@ -133,6 +133,7 @@ TEST_CASE("names that are no monitors") {
   CHECK_THAT(message("max(y)"), Contains("'y' is no state") && Contains("x, v, energy, h1 to h2"));
   CHECK_THAT(message("max(x"), Contains("parenthesis"));
   CHECK_THAT(message("max()"), Contains("is no state"));
+  CHECK_THAT(message("max(turn of x)"), Contains("write h2"));
   CHECK_THAT(message("velocity"), Contains("velocity(S)"));
   CHECK_THAT(message("velocity(0)"), Contains("count from 1"));
   CHECK_THAT(message("max(x, 1, 2)"), Contains("too many arguments"));

@@ -120,3 +120,16 @@ TEST_CASE("period doublings with a held duration: a curve in three parameters") 
   REQUIRE(labels.size() > 2);
   for (const SolutionEntry& label : labels) check_near(velocity(label), velocity(labels.front()), 1e-9);
 }
+
+TEST_CASE("resegment leaves monitors out of its constants, and says so") {
+  const Workspace workspace;
+  run_watched(workspace);
+  workspace.write("gc.watched", workspace.read("r.watched"));
+  const Outcome outcome = workspace.tchat(std::vector<std::string>{"resegment", "q.watched", "UZ1", "--to", "signature",
+                                                                   "--signature", "1,3,2;1,1,1", "-c", "watched", "-o",
+                                                                   "cut", "-p", workspace.file("linosc")});
+  INFO(outcome.text());
+  REQUIRE(outcome.status == 0);
+  CHECK(workspace.read("gc.cut").find("velocity") == std::string::npos);
+  CHECK(outcome.err.find("monitors and HOLD are left out") != std::string::npos);
+}
