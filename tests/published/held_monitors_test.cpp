@@ -126,7 +126,7 @@ TEST_CASE("resegment leaves monitors out of its constants, and says so") {
   run_watched(workspace);
   workspace.write("gc.watched", workspace.read("r.watched"));
   const Outcome outcome = workspace.tchat(std::vector<std::string>{"resegment", "q.watched", "UZ1", "--to", "signature",
-                                                                   "--signature", "1,3,2;1,1,1", "-c", "watched", "-o",
+                                                                   "--signature", "1,1,1;1,1,1", "-c", "watched", "-o",
                                                                    "cut", "-p", workspace.file("linosc")});
   INFO(outcome.text());
   REQUIRE(outcome.status == 0);
