@@ -123,13 +123,11 @@ TEST_CASE("period doublings with a held duration: a curve in three parameters") 
 
 TEST_CASE("resegment leaves monitors out of its constants, and says so") {
   const Workspace workspace;
-  run_watched(workspace);
-  workspace.write("gc.watched", workspace.read("r.watched"));
-  const Outcome outcome = workspace.tchat(std::vector<std::string>{"resegment", "q.watched", "UZ1", "--to", "signature",
-                                                                   "--signature", "1,1,1;1,1,1", "-c", "watched", "-o",
-                                                                   "cut", "-p", workspace.file("linosc")});
+  workspace.run({"-c", "to_grazing", "-d", "nonimpacting", "-o", "watched", "ICP=[omega, 61, max(x1, 1)]"});
+  const Outcome outcome = workspace.tchat("resegment q.watched GR1 --to impacting --jump 1 -c r.watched -o born -p " +
+                                          workspace.file("linosc"));
   INFO(outcome.text());
   REQUIRE(outcome.status == 0);
-  CHECK(workspace.read("gc.cut").find("velocity") == std::string::npos);
   CHECK(outcome.err.find("monitors and HOLD are left out") != std::string::npos);
+  CHECK(workspace.read("gc.born").find("max(") == std::string::npos);
 }
