@@ -84,8 +84,8 @@ double value_of(const std::string& name) {
 
 TEST_CASE("gradients of monitors") {
   for (const char* name : {"period", "velocity(1)", "velocity(2)", "start(x)", "start(v, 2)", "start(energy, 2)",
-                           "end(wall, 1)", "end(energy)", "max(x)", "min(x, 1)", "max(v, 2)", "max(energy)",
-                           "min(h2)", "mean(x)", "mean(energy, 2)", "integral(v)", "integral(h1, 1)"})
+                           "end(wall, 1)", "end(energy)", "max(x)", "min(x, 1)", "max(v, 2)", "max(energy)", "min(h2)",
+                           "mean(x)", "mean(energy, 2)", "integral(v)", "integral(h1, 1)"})
     check_gradient(name);
 }
 
