@@ -178,13 +178,14 @@ class QuantityMonitor : public Monitor {
 
  protected:
   /// Adds `factor` times the quantity's gradient at sigma of interval j of segment s, where `weights` are those of the
-  /// nodes and state_ is the state.
-  void add(const Orbit& x, int s, int j, const double* weights, double factor, OrbitVector& row) const {
-    function_.first(state_.data(), x.par.data(), by_state_.data(), by_parameter_.data());
+  /// nodes and state_ is the state. Returns the quantity.
+  double add(const Orbit& x, int s, int j, const double* weights, double factor, OrbitVector& row) const {
+    const double value = function_.first(state_.data(), x.par.data(), by_state_.data(), by_parameter_.data());
     const int column = s * x.shape.nodes() + j * x.shape.collocation;
     for (int i = 0; i <= x.shape.collocation; ++i)
       for (int a = 0; a < x.shape.dimension; ++a) row.states(a, column + i) += factor * weights[i] * by_state_(a);
     row.globals += factor * by_parameter_;
+    return value;
   }
 
   QuantityFunction function_;
@@ -231,18 +232,20 @@ class IntegralMonitor final : public QuantityMonitor {
 
   /// By u_i: T w l_i X_x / t, by T_s: (integral_s - mean) / t, by p: T w X_p / t, with t = sum T_s or 1.
   double gradient(const Orbit& x, const CollocationRule& rule, OrbitVector& row) const override {
-    const double result = value(x, rule);
     const double divisor = mean_ ? time(x) : 1.0;
+    weights_.resize(static_cast<std::size_t>(rule.points() + 1));
     row.set_zero();
+    double result = 0.0;
     for (int s = first_; s <= last_; ++s) {
-      row.durations(s) = (of_segment(x, rule, s) - (mean_ ? result : 0.0)) / divisor;
+      const double scale = x.duration(s) / divisor;
       for_each_gauss_point(x, rule, [&](int j, int g, double weight) {
         interpolate(x, rule, s, j, g, state_.data());
-        weights_.resize(static_cast<std::size_t>(rule.points() + 1));
         for (int i = 0; i <= rule.points(); ++i) weights_[static_cast<std::size_t>(i)] = rule.value(g, i);
-        add(x, s, j, weights_.data(), x.duration(s) * weight / divisor, row);
+        row.durations(s) += weight / divisor * add(x, s, j, weights_.data(), scale * weight, row);
       });
+      result += x.duration(s) * row.durations(s);
     }
+    if (mean_) row.durations.segment(first_, last_ - first_ + 1).array() -= result / divisor;
     return result;
   }
 

@@ -39,14 +39,20 @@ OrbitVector PathFollower::principal_row(const Orbit& x) const {
   } else if (is_duration(principal_, system_.segments())) {
     row.durations(duration_segment(principal_)) = 1.0;
   } else {
-    const auto& free = system_.free_parameters();
-    row.globals(std::find(free.begin(), free.end(), principal_) - free.begin()) = 1.0;
+    row.globals(principal_global()) = 1.0;
   }
   return row;
 }
 
 double PathFollower::principal_direction(const PathPoint& point) const {
-  return dot(principal_row(point.orbit), point.tangent);
+  if (monitors_.has_gradient(principal_)) return dot(principal_row(point.orbit), point.tangent);
+  if (is_duration(principal_, system_.segments())) return point.tangent.durations(duration_segment(principal_));
+  return point.tangent.globals(principal_global());
+}
+
+Eigen::Index PathFollower::principal_global() const {
+  const auto& free = system_.free_parameters();
+  return std::find(free.begin(), free.end(), principal_) - free.begin();
 }
 
 double PathFollower::alignment(const PathPoint& point, const OrbitVector& direction) const {

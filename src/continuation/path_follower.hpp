@@ -88,6 +88,7 @@ class PathFollower {
   void normalise(const Orbit& x, OrbitVector& tangent, OrbitVector& dual) const;
   void orient(PathPoint& point) const;
   OrbitVector principal_row(const Orbit& x) const;
+  Eigen::Index principal_global() const;  // of a problem parameter: its place among the free ones
 
   const DefiningSystem& system_;
   WeightedNorm norm_;
