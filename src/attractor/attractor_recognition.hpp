@@ -1,4 +1,12 @@
 /// What a simulation has settled on.
+///
+/// periodic        its events repeat (simulation/recurrence.hpp)
+/// chaotic         they do not, and an exponent is positive by more than three error bars
+/// quasi-periodic  they do not, two exponents are zero within their bars and none is positive
+/// rest            the events get ever slower, or there are none any more and all exponents are negative
+/// chattering      events accumulate, or a contact lasts
+/// escape          a state beyond all bounds, or no event any more
+/// none            it has not repeated itself and exponents were not wanted or do not tell; interrupted; failed
 #pragma once
 
 #include <Eigen/Core>
@@ -7,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "attractor/attractor_kind.hpp"
 #include "attractor/lyapunov_exponents.hpp"
 #include "hybrid/index_vector.hpp"
 #include "simulation/hybrid_simulation.hpp"
@@ -14,24 +23,8 @@
 
 namespace tchat {
 
-enum class AttractorKind {
-  periodic,        ///< the events repeat: signature and period
-  equilibrium,     ///< comes to rest, all exponents negative
-  quasi_periodic,  ///< no repetition, two exponents zero at least and none positive
-  chaotic,         ///< an exponent is positive
-  chattering,      ///< events accumulate: no mode for what follows
-  escape,          ///< a state beyond all bounds, or the integration failed on the way there
-  no_event,        ///< nothing happens for so long that one gives up
-  sticks,          ///< a contact lasts: no mode for what follows
-  undecided,       ///< not periodic so far, and the exponents do not tell
-  interrupted,
-};
-
-/// "periodic", "quasi-periodic", "chaotic", ...
-const char* kind_name(AttractorKind kind);
-
 struct Attractor {
-  AttractorKind kind = AttractorKind::undecided;
+  AttractorKind kind = AttractorKind::none;
   std::string reason;   ///< a sentence for people: what was seen
   Signature signature;  ///< periodic: the index vectors of one turn, rotated so that the smallest sequence comes first
   double period = 0.0;  ///< periodic: in time; else nan
@@ -53,8 +46,8 @@ struct RecognitionSettings {
   double escape = 1e6;  ///< |x_i| above this is beyond all bounds, except for states that nothing depends on
 };
 
-/// By the exponents of the flow (not of a section): which of chaotic, quasi_periodic, equilibrium; undecided where bars
-/// are too large to tell.
+/// By the exponents of the flow (not of a section): chaotic, quasi_periodic (two zero, none positive), periodic (one
+/// zero), rest (all negative); none where bars are too large to tell.
 AttractorKind kind_by_exponents(const LyapunovSpectrum& spectrum);
 
 /// Simulates from x0 and says what the motion has settled on. `kept`, if given, is handed every segment after the
