@@ -28,12 +28,12 @@ struct ImpactingOrbit {
   ModeRule rule{linosc(), std::vector<Mode>{Mode{{IndexVector{1, 1, 1}}, {}}}};
 };
 
-void check_orbit_exponents(const LyapunovSpectrum& s, const std::vector<double>& expected) {
+void check_orbit_exponents(const LyapunovSpectrum& s, const std::vector<double>& expected, double tolerance = 1e-6) {
   REQUIRE(static_cast<std::size_t>(s.exponents.size()) == expected.size());
   for (std::size_t j = 0; j < expected.size(); ++j) {
     CAPTURE(j, s.exponents.transpose(), s.errors.transpose(), expected);
     const double error = std::abs(s.exponents(static_cast<Eigen::Index>(j)) - expected[j]);
-    CHECK(error < 1e-6);
+    CHECK(error < tolerance);
     CHECK(error <= 2.0 * s.errors(static_cast<Eigen::Index>(j)));
     CHECK(s.errors(static_cast<Eigen::Index>(j)) < 1e-4);
   }
@@ -72,7 +72,7 @@ TEST_CASE("exponents of return maps: of the wall, and of a minimum that ends no 
     LyapunovSettings settings;
     settings.section = section;
     check_orbit_exponents(measure(known.rule, known.orbit.state(0.0), known.orbit.par(), 30, 2000, settings).spectrum,
-                          expected);
+                          expected, 5e-6);  // per turn of length 3: 1.6e-6 per unit of time
   }
 }
 
@@ -156,7 +156,7 @@ TEST_CASE("a torus: two zeros") {
 }
 
 TEST_CASE("where sticking begins a direction is lost") {
-  const Measured m = measure(ModeRule(system_of<Belt>()), Eigen::Vector2d(-1.0, 0.0), parameters({0.5, 0.0}), 2, 60);
+  const Measured m = measure(ModeRule(system_of<Belt>()), Eigen::Vector2d(-1.0, 0.0), parameters({0.5, 0.0}), 2, 400);
   REQUIRE(m.last.ended_by == SegmentEnd::event);
   CHECK(std::abs(m.spectrum.exponents(0)) < 1e-6);
   CHECK(m.spectrum.exponents(1) == -INFINITY);
