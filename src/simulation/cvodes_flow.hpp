@@ -46,6 +46,8 @@ class CvodesFlow {
   bool is_armed(int event) const;
   /// x(t) on the piece passed last.
   Eigen::VectorXd state_at(double t) const;
+  /// The same without a copy, as long as this object lives.
+  const DenseOutput& dense_output() const;
 
   double time() const;
   Eigen::VectorXd state() const;
