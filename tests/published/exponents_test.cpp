@@ -1,5 +1,5 @@
 // Lyapunov exponents by the real program: of periodic orbits ln |mu| / T with the multipliers of tchat run, of a torus,
-// of problems without derivatives, in Fortran and as formulas.
+// of problems as formulas and in Fortran, which has no derivatives.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -47,7 +47,8 @@ std::vector<double> by_multipliers(const Workspace& workspace, const std::string
   for (const int k : start.free_parameters) period += k >= 61 ? start.parameter(k) : 0.0;
   std::vector<double> exponents;
   bool has_flow = false;
-  for (const auto& mu : read_diagnostics(workspace.read("d.onward")).front().multipliers) {
+  const std::vector<DiagnosticPoint> points = read_diagnostics(workspace.read("d.onward"));
+  for (const auto& mu : points.front().multipliers) {
     // Of several zeros, to rounding, one is structural; the others are directions lost in the jumps.
     const bool is_zero = std::abs(mu) < 1e-9;
     const double lost = has_flow ? -std::numeric_limits<double>::infinity() : 0.0;
@@ -85,18 +86,12 @@ void copy_problem(const Workspace& workspace, const std::string& library) {
   fs::copy_file(library, workspace.file(fs::path(library).filename().string()));
 }
 
-const std::string doubles_only = R"(#include <tchat/problem.hpp>
-struct Logistic {
-  static constexpr int dimension = 2, parameters = 1, fields = 1, events = 1, jumps = 1;
-  static constexpr double initial_parameters[] = {4.0};
-  static constexpr double initial_state[] = {0.0, 0.4};
-  void field(int, const double*, const double*, double* f) const { f[0] = 1.0, f[1] = 0.0; }
-  double event(int, const double* x, const double*) const { return 1.0 - x[0]; }
-  void jump(int, const double* x, const double* p, double* g) const {
-    g[0] = x[0] - 1.0, g[1] = p[0] * x[1] * (1.0 - x[1]);
-  }
-};
-TCHAT_PROBLEM(Logistic)
+const std::string logistic = R"(par a=4
+init clock=0, c=0.4
+clock' = 1
+c' = 0
+event tick = 1 - clock
+jump iterate: clock -> clock - 1, c -> a*c*(1 - c)
 )";
 
 }  // namespace
@@ -140,9 +135,9 @@ TEST_CASE("exponents of a torus: two zeros, the others as published for it") {
         std::string::npos);
 }
 
-TEST_CASE("exponents without derivatives, of formulas, in Fortran") {
+TEST_CASE("exponents of formulas, and in Fortran without derivatives") {
   const Workspace workspace;
-  workspace.write("logistic.cpp", doubles_only);
+  workspace.write("logistic.tch", logistic);
   const Outcome chaotic = workspace.tchat("simulate logistic --lyapunov --accuracy 0.01 --rows 0");
   INFO(chaotic.text());
   REQUIRE(chaotic.status == 0);
