@@ -41,7 +41,7 @@ void check_orbit_exponents(const LyapunovSpectrum& s, const std::vector<double>&
 
 }  // namespace
 
-TEST_CASE("exponents of an impacting orbit in closed form") {
+TEST_CASE("exponents of an impacting orbit in closed form", "[slow]") {
   const ImpactingOrbit known;
   const double period = known.orbit.constants.period();
   std::vector<double> expected = logarithms(one_impact_multipliers(known.omega, known.velocity), period);
@@ -49,11 +49,11 @@ TEST_CASE("exponents of an impacting orbit in closed form") {
   std::sort(expected.rbegin(), expected.rend());
 
   const VectorXd start = known.orbit.state(0.0);
-  const Measured along = measure(known.rule, start, known.orbit.par(), 30, 2000);
+  const Measured along = measure(known.rule, start, known.orbit.par(), 30, 1500);
   REQUIRE(along.last.ended_by == SegmentEnd::event);
   check_orbit_exponents(along.spectrum, expected);
-  CHECK(along.spectrum.events == 2000);
-  CHECK(along.spectrum.time == Approx(2000 * period).epsilon(1e-9));
+  CHECK(along.spectrum.events == 1500);
+  CHECK(along.spectrum.time == Approx(1500 * period).epsilon(1e-9));
 
   const Measured again = measure(known.rule, start, known.orbit.par(), 30, 300, {}, false);
   LyapunovSettings two;
@@ -63,7 +63,7 @@ TEST_CASE("exponents of an impacting orbit in closed form") {
   CHECK((again.spectrum.exponents.head(2) - largest.spectrum.exponents).norm() < 1e-8);
 }
 
-TEST_CASE("exponents of return maps: of the wall, and of a minimum that ends no segment") {
+TEST_CASE("exponents of return maps: of the wall, and of a minimum that ends no segment", "[slow]") {
   const ImpactingOrbit known;
   std::vector<double> expected = logarithms(one_impact_multipliers(known.omega, known.velocity), 1.0);
   expected.pop_back();
@@ -71,7 +71,7 @@ TEST_CASE("exponents of return maps: of the wall, and of a minimum that ends no 
     CAPTURE(section);
     LyapunovSettings settings;
     settings.section = section;
-    check_orbit_exponents(measure(known.rule, known.orbit.state(0.0), known.orbit.par(), 30, 2000, settings).spectrum,
+    check_orbit_exponents(measure(known.rule, known.orbit.state(0.0), known.orbit.par(), 30, 1500, settings).spectrum,
                           expected, 5e-6);  // per turn of length 3: 1.6e-6 per unit of time
   }
 }
@@ -87,7 +87,7 @@ TEST_CASE("exponents of a chaotic hybrid motion in closed form: the logistic map
   CHECK(std::abs(s.exponents(2)) <= 3.0 * s.errors(2));
 }
 
-TEST_CASE("bars are honest: of 40 chaotic hybrid runs at least 36 within two bars") {
+TEST_CASE("bars are honest: of 40 chaotic hybrid runs at least 36 within two bars", "[slow]") {
   double long_run = 0.0, x = 0.2345;
   constexpr int iterates = 5000000;
   for (int i = 0; i < iterates; ++i, x = 3.8 * x * (1.0 - x)) long_run += std::log(std::abs(3.8 * (1.0 - 2.0 * x)));
@@ -104,7 +104,7 @@ TEST_CASE("bars are honest: of 40 chaotic hybrid runs at least 36 within two bar
   CHECK(within >= 36);
 }
 
-TEST_CASE("Lorenz: the published exponents, and their sum") {
+TEST_CASE("Lorenz: the published exponents, and their sum", "[slow]") {
   // 0.9056, 0, -14.5723 (Sprott, Chaos and Time-Series Analysis, 2003); the divergence is -(10 + 1 + 8 / 3).
   const Measured m = measure(always<Lorenz>({{1, 1, 1}}), Eigen::Vector3d(1.0, 2.0, 20.0), lorenz_parameters(), 50,
                              1500, {}, true, settings_for_tests(1e-9));
@@ -149,9 +149,9 @@ TEST_CASE("an equilibrium without events: real parts of eigenvalues, however lar
   CHECK(m.spectrum.exponents(2) == Approx(-2000.0).epsilon(1e-8));
 }
 
-TEST_CASE("a torus: two zeros") {
+TEST_CASE("a torus: two zeros", "[slow]") {
   const Measured m = measure(always<TwoCircles>({{1, 1, 1}}), Eigen::Vector4d(1.0, 0.1, 0.6, 0.8),
-                             parameters({1.0, 0.5 * (std::sqrt(5.0) - 1.0)}), 10, 1000);
+                             parameters({1.0, 0.5 * (std::sqrt(5.0) - 1.0)}), 10, 700);
   check_orbit_exponents(m.spectrum, {0.0, 0.0, -2.0, -2.0});
 }
 

@@ -92,6 +92,7 @@ clock' = 1
 c' = 0
 event tick = 1 - clock
 jump iterate: clock -> clock - 1, c -> a*c*(1 - c)
+after any: tick -> iterate
 )";
 
 }  // namespace
