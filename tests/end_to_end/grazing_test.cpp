@@ -86,7 +86,7 @@ TEST_CASE("grazing: labels of a grazing curve") {
   const Workspace workspace;
   run_to_contact(workspace);
   workspace.run("-c grazing_curve -s smooth -o curve NMX=20 -q");
-  for (const char* label : {"UZ1", "EP1"}) {
+  for (const char* label : {"UZ1", "XI1"}) {
     CAPTURE(label);
     const Outcome outcome = succeed(workspace, {"grazing", "curve", label, "-p", "linosc", "--parameter", "alpha"});
     const std::size_t at = outcome.out.find("omega = ");
