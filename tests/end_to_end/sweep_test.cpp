@@ -254,3 +254,25 @@ jump impact: x2 -> -0.8*x2
     }
   }
 }
+
+TEST_CASE("sweep: a plugin that dies in a worker's thread is named, and what is computed is kept") {
+  const Workspace workspace(Workspace::Plugin::source);
+  std::string source = workspace.read("linosc.cpp");
+  const std::string line = "    f[0] = x[1];";
+  REQUIRE(source.find(line) != std::string::npos);
+  source.replace(source.find(line), line.size(), line + " if (par[0] > 2.97) { volatile int* p = nullptr; *p = 1; }");
+  workspace.write("dying.cpp", source);
+  const Outcome outcome = workspace.tchat("sweep dying --over alpha=2.9:3:40 -j 2");
+  CHECK(outcome.status == 2);
+  CHECK(contains(outcome.err, "dying.so died in field 1 by signal 11"));
+  CHECK_FALSE(workspace.has("dying.sweep"));
+  CHECK(contains(workspace.read("dying.sweep.journal"), " periodic "));
+}
+
+TEST_CASE("sweep: a library whose copies would share their data has one worker, with a word") {
+  const Workspace workspace;
+  const Outcome outcome = workspace.tchat("sweep linosc --over alpha=2.9:2.91:3 -j 2");
+  CHECK(outcome.status == 0);
+  CHECK(contains(outcome.err, "-fno-gnu-unique"));
+  CHECK(contains(outcome.err, "one worker computes instead of 2"));
+}
