@@ -90,6 +90,8 @@ TorusReturn::TorusReturn(std::shared_ptr<const SuspendedSystem> suspended, Invar
                                 settings.nodes, interpolation_error_));
 }
 
+VectorXd TorusReturn::on_curve(double phi) const { return reduced(curve_, curve_.at(phi)); }
+
 TorusReturn::Deviation TorusReturn::deviation(const VectorXd& x, const ParameterVector& par) const {
   const Index n = x.size();
   const double phi = projection_.phase(x);

@@ -20,7 +20,8 @@ namespace tchat {
 struct TorusSettings {
   int nodes = 101;  ///< phases at which derivatives are computed, odd
   int order = 1;    ///< or 2
-  FlowOptions flow;
+  /// Points of the curve lie on the section to the accuracy of the simulation alone.
+  FlowOptions flow{.surface_tolerance = 1e-5, .active = {}};
 };
 
 class TorusReturn : public SmoothMap {
@@ -40,6 +41,8 @@ class TorusReturn : public SmoothMap {
   const Eigen::VectorXd& extent() const override { return scale_; }
   double distance(const Eigen::VectorXd& x) const override;
 
+  /// u(phi), angles between 0 and 2 pi.
+  Eigen::VectorXd on_curve(double phi) const;
   const InvariantCurve& curve() const { return curve_; }
   const CurveProjection& projection() const { return projection_; }
   const ParameterVector& parameters() const { return par_; }
