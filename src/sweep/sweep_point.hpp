@@ -1,0 +1,55 @@
+/// One value of a sweep: what goes into its computation and what comes out. A sweep knows nothing of how it is done: by
+/// simulation, or by iterating a composite map.
+///
+/// A function of a sweep is called by several threads at once, each with one made for it by its `SampleMaker`: it may
+/// keep memory, but what it returns must depend on its argument alone, to the last bit.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "attractor/attractor_kind.hpp"
+#include "hybrid/index_vector.hpp"
+
+namespace tchat {
+
+/// Where a motion can be taken up again.
+struct MotionState {
+  Eigen::VectorXd x;
+  std::vector<IndexVector> watched;  ///< what is watched from there; empty: what the problem says of a start
+};
+
+struct SweepPoint {
+  std::size_t index = 0;          ///< of the value, from 0; the first swept quantity runs fastest
+  Eigen::VectorXd values;         ///< of the swept quantities, in their order
+  int start = 1;                  ///< number of the start, from 1
+  std::optional<MotionState> at;  ///< the neighbour's final state, which is gone on from; nothing: the given start
+};
+
+/// What a value has settled on. What was not asked for is left as it is here.
+struct AttractorSample {
+  AttractorKind kind = AttractorKind::none;
+  Signature signature;                ///< of one period, cut where it is least; empty: not periodic
+  double period = 0.0;                ///< time of one period; NaN: not periodic
+  int impacts = 0;                    ///< per period: events whose jump is not the identity; -1: not periodic
+  double penetration = 0.0;           ///< minus the least value of a monitored event function over the attractor
+  Eigen::VectorXd exponents, errors;  ///< Lyapunov exponents, descending, with their error bars
+  Eigen::MatrixXd sections;           ///< recorded states, n x (number of them), in the order of time
+  /// Section states by which equal attractors are known; periodic: one period, of every event in the order of
+  /// `signature`. n x (number of them)
+  Eigen::MatrixXd identity;
+  Eigen::VectorXd range;  ///< of each state over the attractor, the scale of differences; n
+  MotionState last;       ///< to go on from at a neighbouring value
+  std::string message;    ///< why it has not settled; empty when there is nothing to say
+};
+
+/// Throws ComputationError when it has been interrupted; nothing of that value is kept then.
+using SampleFunction = std::function<AttractorSample(const SweepPoint&)>;
+/// Called once for each worker, with its number from 0, in the main thread.
+using SampleMaker = std::function<SampleFunction(int worker)>;
+
+}  // namespace tchat
