@@ -91,7 +91,7 @@ struct CvodesFlow::Implementation {
         dense(N_VNew_Serial(n, context.get()), &N_VDestroy),
         matrix(SUNDenseMatrix(n, n, context.get()), &SUNMatDestroy),
         linear_solver(SUNLinSol_Dense(x.get(), matrix.get(), context.get()), &SUNLinSolFree),
-        integrator(CVodeCreate(o.method == IntegrationMethod::adams ? CV_ADAMS : CV_BDF, context.get())) {
+        integrator(CVodeCreate(o.method == IntegrationMethod::bdf ? CV_BDF : CV_ADAMS, context.get())) {
     Eigen::Map<VectorXd>(N_VGetArrayPointer(x.get()), n) = x0;
     start();
     if (columns > 0) start_sensitivities();
