@@ -36,15 +36,18 @@ struct AttractorSample {
   Signature signature;                ///< of one period, cut where it is least; empty: not periodic
   double period = 0.0;                ///< time of one period; NaN: not periodic
   int impacts = 0;                    ///< per period: events whose jump is not the identity; -1: not periodic
-  double penetration = 0.0;           ///< minus the least value of a monitored event function over the attractor
+  double penetration = 0.0;           ///< minus the least value of a monitored event function over the attractor; NaN
   Eigen::VectorXd exponents, errors;  ///< Lyapunov exponents, descending, with their error bars
   Eigen::MatrixXd sections;           ///< recorded states, n x (number of them), in the order of time
+  std::vector<int> section_events;    ///< the event function of each, where several are recorded; else empty
+  Eigen::VectorXd section_penetrations;  ///< of each, where they lie on P (h_J,x f = 0); else empty
   /// Section states by which equal attractors are known; periodic: one period, of every event in the order of
   /// `signature`. n x (number of them)
   Eigen::MatrixXd identity;
   Eigen::VectorXd range;  ///< of each state over the attractor, the scale of differences; n
-  MotionState last;       ///< to go on from at a neighbouring value
-  std::string message;    ///< why it has not settled; empty when there is nothing to say
+  MotionState last;       ///< to go on from at a neighbouring value; x is empty where there is nothing to go on from
+  int known = 0;          ///< number, from 1, of the known attractor that has captured it, which is then all there is
+  std::string message;    ///< why it has not settled, one line; empty when there is nothing to say
 };
 
 /// Throws ComputationError when it has been interrupted; nothing of that value is kept then.
