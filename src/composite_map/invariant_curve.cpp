@@ -7,6 +7,7 @@
 #include <numeric>
 #include <utility>
 
+#include "composite_map/circle.hpp"
 #include "text/user_error.hpp"
 
 namespace tchat {
@@ -18,12 +19,8 @@ using Eigen::MatrixXd;
 using Eigen::RowVectorXd;
 using Eigen::VectorXd;
 
-constexpr double two_pi = 6.283185307179586476925;
 constexpr Index fewest_points = 200;
 
-double fraction(double x) { return x - std::floor(x); }
-/// In [-1/2, 1/2).
-double centred(double x) { return x - std::floor(x + 0.5); }
 
 /// The window exp(-1 / (t (1 - t))): means of a quasi-periodic sequence with it converge faster than any power.
 VectorXd bump(Index count) {
@@ -58,7 +55,7 @@ VectorXd turning_angles(const MatrixXd& points) {
   const double ma = scaled.row(best_a).mean(), mb = scaled.row(best_b).mean();
   VectorXd angles(points.cols());
   for (Index k = 0; k < points.cols(); ++k)
-    angles(k) = std::atan2(scaled(best_b, k) - mb, scaled(best_a, k) - ma) / two_pi;
+    angles(k) = std::atan2(scaled(best_b, k) - mb, scaled(best_a, k) - ma) / full_turn;
   return angles;
 }
 
@@ -66,7 +63,7 @@ VectorXd turning_angles(const MatrixXd& points) {
 /// than a turn, so that they leave a gap on the circle, where it is cut.
 VectorXd lifted_steps(const VectorXd& angles) {
   VectorXd steps(angles.size() - 1);
-  for (Index k = 0; k < steps.size(); ++k) steps(k) = fraction(angles(k + 1) - angles(k));
+  for (Index k = 0; k < steps.size(); ++k) steps(k) = phase_fraction(angles(k + 1) - angles(k));
   VectorXd sorted = steps;
   std::sort(sorted.begin(), sorted.end());
   double cut = sorted(0);
@@ -102,13 +99,13 @@ class PointSequence {
       for (const double turns : {1.0, -1.0, 0.0}) {
         double sine = 0.0, cosine = 0.0;
         for (Index k = 0; k < phases.size(); ++k) {
-          const double rest = points_(i, k) - two_pi * turns * phases(k);
+          const double rest = points_(i, k) - full_turn * turns * phases(k);
           sine += std::sin(rest), cosine += std::cos(rest);
         }
         const double spread = -std::hypot(sine, cosine);
         if (spread >= least) continue;
         least = spread;
-        winding_(i) = two_pi * turns;
+        winding_(i) = full_turn * turns;
         centre_ = std::atan2(sine, cosine);
       }
       centres_.push_back(centre_);
@@ -123,7 +120,7 @@ class PointSequence {
     for (std::size_t a = 0; a < angles_.size(); ++a)
       for (Index k = 0; k < phases.size(); ++k) {
         double& entry = out(angles_[a], k);
-        entry = centres_[a] + two_pi * centred((entry - winding_(angles_[a]) * phases(k) - centres_[a]) / two_pi);
+        entry = centres_[a] + full_turn * nearest_phase((entry - winding_(angles_[a]) * phases(k) - centres_[a]) / full_turn);
       }
     return out;
   }
@@ -138,7 +135,7 @@ class PointSequence {
 
 VectorXd phases_of(double rotation, Index count) {
   VectorXd phases(count);
-  for (Index k = 0; k < count; ++k) phases(k) = fraction(rotation * static_cast<double>(k));
+  for (Index k = 0; k < count; ++k) phases(k) = phase_fraction(rotation * static_cast<double>(k));
   return phases;
 }
 
@@ -157,7 +154,7 @@ int significant_harmonics(const MatrixXd& coefficients, const VectorXd& scale) {
 
 VectorXd extents(const MatrixXd& points, const std::vector<Index>& angles) {
   VectorXd extent = points.rowwise().maxCoeff() - points.rowwise().minCoeff();
-  for (const Index i : angles) extent(i) = two_pi;
+  for (const Index i : angles) extent(i) = full_turn;
   const double largest = extent.maxCoeff();
   return extent.cwiseMax(1e-3 * largest);
 }
@@ -174,7 +171,7 @@ InvariantCurve::InvariantCurve(double rotation, VectorXd winding, TrigonometricS
   }
   extent_ = high - low;
   for (Index i = 0; i < dimension(); ++i)
-    if (is_angle(i)) extent_(i) = two_pi;
+    if (is_angle(i)) extent_(i) = full_turn;
 }
 
 VectorXd InvariantCurve::derivative(double phi, int order) const {
@@ -187,7 +184,7 @@ VectorXd InvariantCurve::derivative(double phi, int order) const {
 VectorXd InvariantCurve::difference(const VectorXd& x, const VectorXd& y) const {
   VectorXd d = x - y;
   for (Index i = 0; i < d.size(); ++i)
-    if (is_angle(i)) d(i) = two_pi * centred(d(i) / two_pi);
+    if (is_angle(i)) d(i) = full_turn * nearest_phase(d(i) / full_turn);
   return d;
 }
 
@@ -198,10 +195,10 @@ FittedCurve fit_invariant_curve(const MatrixXd& points, const CurveSettings& set
                                 source, points.cols(), fewest_points));
   const VectorXd scale = extents(points, settings.angles);
   const VectorXd angles =
-      settings.angles.empty() ? turning_angles(points) : VectorXd(points.row(settings.angles.front()) / two_pi);
+      settings.angles.empty() ? turning_angles(points) : VectorXd(points.row(settings.angles.front()) / full_turn);
   const VectorXd steps = lifted_steps(angles);
   double rotation = bump(steps.size()).dot(steps);
-  rotation = fraction(rotation);
+  rotation = phase_fraction(rotation);
   const Index count = points.cols();
   const auto refuse = [&](const std::string& why) {
     return UserError(fmt::format("{}: {}", source, why));
@@ -238,7 +235,7 @@ FittedCurve fit_invariant_curve(const MatrixXd& points, const CurveSettings& set
       norm += lever * lever * tangent.squaredNorm();
     }
     rotation_error = std::sqrt(misfit.squaredNorm() / norm);
-    if (iteration < 3) rotation = fraction(rotation + along / norm);
+    if (iteration < 3) rotation = phase_fraction(rotation + along / norm);
   }
   const double error = misfit.cwiseAbs().maxCoeff();
   if (!(error <= settings.tolerance))
@@ -294,7 +291,7 @@ RowVectorXd CurveProjection::angle_gradient(const VectorXd& x) const {
 
 /// What is zero where phi is the projection of x.
 double CurveProjection::residual(const VectorXd& x, double phi) const {
-  if (kind_ == Kind::angle) return two_pi * centred((angle(curve_.at(phi)) - angle(x)) / two_pi);
+  if (kind_ == Kind::angle) return full_turn * nearest_phase((angle(curve_.at(phi)) - angle(x)) / full_turn);
   return -curve_.derivative(phi).dot(weights_.cwiseProduct(curve_.difference(x, curve_.at(phi))));
 }
 
@@ -311,7 +308,7 @@ double CurveProjection::phase(const VectorXd& x) const {
   double least = INFINITY;
   for (Index k = 0; k < count; ++k) {
     const double distance = kind_ == Kind::angle
-                                ? std::abs(centred((angle(samples_.col(k)) - angle(x)) / two_pi))
+                                ? std::abs(nearest_phase((angle(samples_.col(k)) - angle(x)) / full_turn))
                                 : weights_.dot(curve_.difference(x, samples_.col(k)).cwiseAbs2());
     if (distance < least) least = distance, best = k;
   }
@@ -323,7 +320,7 @@ double CurveProjection::phase(const VectorXd& x) const {
     phi += step;
     if (std::abs(step) < 1e-15) break;
   }
-  return fraction(phi);
+  return phase_fraction(phi);
 }
 
 RowVectorXd CurveProjection::gradient(const VectorXd& x, double phi) const {

@@ -3,18 +3,13 @@
 #include <cmath>
 #include <utility>
 
+#include "composite_map/circle.hpp"
 #include "text/user_error.hpp"
 
 namespace tchat {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-namespace {
-
-double centred(double phi) { return phi - std::floor(phi + 0.5); }
-
-}  // namespace
 
 Iterate ReducedMap::step(const VectorXd& x, const ParameterVector& par) const {
   const InvariantCurve& curve = smooth_->curve();
@@ -67,7 +62,7 @@ ContactEllipse EllipseMap::ellipse(const ParameterVector& par) const {
 Iterate EllipseMap::step(const VectorXd& x, const ParameterVector& par) const {
   const double phi = smooth_->projection().phase(x);
   const ContactEllipse contact = ellipse(par);
-  const double off = centred(phi - phase_);
+  const double off = nearest_phase(phi - phase_);
   const double penetration = contact.depth - 0.5 * curvature_ * off * off;
   const bool touches = penetration > 0.0;
   const double moved = touches ? phi + shift_ * std::sqrt(penetration) : phi;
@@ -78,7 +73,7 @@ Iterate EllipseMap::step(const VectorXd& x, const ParameterVector& par) const {
 MatrixXd EllipseMap::tangent(const VectorXd& x, const ParameterVector& par) const {
   const double phi = smooth_->projection().phase(x);
   const ContactEllipse contact = ellipse(par);
-  const double off = centred(phi - phase_);
+  const double off = nearest_phase(phi - phase_);
   const double penetration = contact.depth - 0.5 * curvature_ * off * off;
   if (!(penetration > 0.0)) return MatrixXd::Ones(1, 1);
   return MatrixXd::Constant(1, 1, 1.0 - shift_ * 0.5 * curvature_ * off / std::sqrt(penetration));

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "composite_map/circle.hpp"
 #include "composite_map/return_path.hpp"
 #include "composite_map/smooth_return.hpp"
 #include "simulation/mode_rule.hpp"
@@ -20,14 +21,13 @@ using Eigen::MatrixXd;
 using Eigen::RowVectorXd;
 using Eigen::VectorXd;
 
-constexpr double two_pi = 6.283185307179586476925;
 constexpr double largest_defect = 1e-4;
 constexpr double largest_interpolation_error = 1e-3;
 
 /// Angles between 0 and 2 pi.
 VectorXd reduced(const InvariantCurve& curve, VectorXd x) {
   for (Index i = 0; i < x.size(); ++i)
-    if (curve.is_angle(i)) x(i) -= two_pi * std::floor(x(i) / two_pi);
+    if (curve.is_angle(i)) x(i) -= full_turn * std::floor(x(i) / full_turn);
   return x;
 }
 

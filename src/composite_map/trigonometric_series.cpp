@@ -3,6 +3,7 @@
 #include <cmath>
 #include <complex>
 
+#include "composite_map/circle.hpp"
 #include "linear_algebra/dense_matrix.hpp"
 
 namespace tchat {
@@ -13,19 +14,18 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double two_pi = 6.283185307179586476925;
 
 /// (i 2 pi l)^order e^(2 pi i l phi) as real and imaginary parts: of a_l the real part, of b_l the imaginary one.
 VectorXd basis_at(double phi, int harmonics, int order) {
   VectorXd basis(2 * harmonics + 1);
   basis(0) = order == 0 ? 1.0 : 0.0;
-  const double angle = two_pi * (phi - std::floor(phi));
+  const double angle = full_turn * (phi - std::floor(phi));
   const std::complex<double> turn(std::cos(angle), std::sin(angle));
   std::complex<double> value = 1.0;
   for (int l = 1; l <= harmonics; ++l) {
     value *= turn;
     std::complex<double> derived = value;
-    for (int k = 0; k < order; ++k) derived *= std::complex<double>(0.0, two_pi * l);
+    for (int k = 0; k < order; ++k) derived *= std::complex<double>(0.0, full_turn * l);
     basis(2 * l - 1) = derived.real();
     basis(2 * l) = derived.imag();
   }
