@@ -38,6 +38,7 @@ struct Attractor {
 
 struct RecognitionSettings {
   /// Transient and length. With neither time nor events: until the motion repeats itself, at most most_events events.
+  /// Where exponents are to decide and a number of events is given, at most as many more are simulated for them.
   SimulationPlan plan;
   LyapunovSettings lyapunov;
   /// Exponents are computed: never, where the motion does not repeat itself (to tell quasi-periodic from chaotic), or
@@ -46,8 +47,17 @@ struct RecognitionSettings {
   double escape = 1e6;  ///< |x_i| above this is beyond all bounds, except for states that nothing depends on
 };
 
+/// How many exponents of a flow are positive, zero, negative, as far as their bars tell.
+struct ExponentSigns {
+  int positive = 0;  ///< by more than three bars
+  int zero = 0;      ///< within three bars, which are small against the other exponents or the frequency of events
+  int negative = 0;
+  int unclear = 0;
+};
+ExponentSigns signs_of(const LyapunovSpectrum& spectrum);
+
 /// By the exponents of the flow (not of a section): chaotic, quasi_periodic (two zero, none positive), periodic (one
-/// zero), rest (all negative); none where bars are too large to tell.
+/// zero, the next negative), rest (all negative); none where bars are too large to tell.
 AttractorKind kind_by_exponents(const LyapunovSpectrum& spectrum);
 
 /// Simulates from x0 and says what the motion has settled on. `kept`, if given, is handed every segment after the

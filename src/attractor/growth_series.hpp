@@ -7,23 +7,26 @@
 ///
 /// On a periodic or quasi-periodic motion a plain mean converges as 1 / (number of pieces) only. There the mean with
 /// the weight exp(-1 / (s (1 - s))), s in (0, 1) along the motion, converges faster than any power (Das, Saiki, Sander
-/// and Yorke 2017), if what is one piece is the same everywhere on the motion (one event, or one length of time); it
-/// also forgets how the frame began. Its bar comes from weighted means of blocks likewise. Of both the one with the
-/// smaller bar is told: on chaotic motion that is the plain mean.
+/// and Yorke, Nonlinearity 30, 2017), if a piece is the same everywhere on the motion (one event, or one length of
+/// time); it also forgets how the frame began. Its bar comes from weighted means of 8 blocks. It is taken where its bar
+/// is less than a fifth of the other one, which does not happen by chance on chaotic motion.
 #pragma once
 
 #include <Eigen/Core>
-#include <vector>
+#include <string>
 
 namespace tchat {
 
 struct LyapunovSpectrum {
   Eigen::VectorXd exponents;  ///< descending; minus infinity for directions that are lost altogether
   Eigen::VectorXd errors;     ///< standard errors; infinite while there are too few pieces; 0 of minus infinity
-  double time = 0.0;          ///< of the motion averaged over: exponents are per unit of this
+  double time = 0.0;          ///< of the motion averaged over
   long events = 0;            ///< in that time
-  long pieces = 0;            ///< that the means are made of
-  long tangential = 0;        ///< events met with no velocity at all, where the tangent map does not exist: left out
+  long tangential = 0;        ///< events met so slowly, |h_x f-| < 1e-7 |h_x| |f-|, that S loses its digits
+  std::string fault;          ///< why nothing can be said, exponents are nan; "" when all went well
+
+  /// Largest of the errors.
+  double accuracy() const { return errors.size() == 0 ? 0.0 : errors.maxCoeff(); }
 };
 
 class GrowthSeries {
@@ -32,23 +35,22 @@ class GrowthSeries {
 
   /// What one piece of the motion did: logarithms of the growth of each direction, and how long it took.
   void add(const Eigen::VectorXd& logarithms, double duration);
+  /// From now on pieces are twice as long; those so far are joined in pairs. Only when pieces() is even.
+  void double_pieces();
   long pieces() const { return pieces_; }
-  double duration() const { return duration_; }
-  /// exponents, errors, time and pieces.
+
+  /// exponents and errors, time.
   LyapunovSpectrum spectrum() const;
 
  private:
-  friend class GrowthStatistics;
-  void halve();
+  void join_pairs();
 
   long pieces_ = 0;
-  double duration_ = 0.0;
-  /// Sums over `width_` pieces each, the last one perhaps over fewer: a row of logarithms and duration. Pairs are
-  /// joined when there are too many.
-  std::vector<Eigen::VectorXd> bins_;
+  /// Each column: sums of logarithms and, last, of durations, over `width_` pieces; the last column perhaps over fewer.
+  Eigen::MatrixXd bins_;
+  Eigen::Index used_ = 0;  // columns
   long width_ = 1;
-  long in_last_ = 0;
-  Eigen::VectorXd row_;
+  long in_last_ = 0;  // pieces
 };
 
 }  // namespace tchat

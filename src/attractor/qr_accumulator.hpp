@@ -3,34 +3,30 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/QR>
 
 #include "attractor/growth_series.hpp"
 
 namespace tchat {
 
-/// n x K, orthonormal columns, carried along. Growth that is not told yet is kept in `logarithms`.
+/// n x K, carried along; orthonormal after each orthonormalise(). Allocates nothing after construction.
 class OrthonormalFrame {
  public:
   /// 1 <= columns <= n. The first frame is a fixed one in general position.
   OrthonormalFrame(Eigen::Index n, Eigen::Index columns);
 
-  Eigen::Index columns() const { return v_.cols(); }
-  /// The frame times what has been multiplied to it since orthonormalise().
-  const Eigen::MatrixXd& vectors() const { return v_; }
-  /// v <- matrix v; without making it orthonormal.
-  void multiply(const Eigen::MatrixXd& matrix);
-  /// V = Q R; V <- Q, and ln |R_jj| is added to the growth. A direction that vanishes, |R_jj| <= 1e-13 |V|, has lost
-  /// all: minus infinity.
-  void orthonormalise();
-  /// Growth since the last call.
-  Eigen::VectorXd take_growth();
-  /// Is every entry finite?
-  bool is_finite() const { return v_.allFinite(); }
-  void restore(const Eigen::MatrixXd& vectors) { v_ = vectors; }
+  /// Columns to be multiplied by what transports them.
+  Eigen::MatrixXd& vectors() { return v_; }
+  /// V = Q R; V <- Q, and ln |R_jj| is added to the growth. A direction that vanishes to rounding against the others
+  /// has lost all: minus infinity; unless `may_vanish` is false, where that is rounding of large numbers.
+  void orthonormalise(bool may_vanish = true);
+  /// ln |R_jj| added since the last call.
+  const Eigen::VectorXd& take_growth();
 
  private:
-  Eigen::MatrixXd v_, moved_;
-  Eigen::VectorXd growth_;
+  Eigen::MatrixXd v_;
+  Eigen::HouseholderQR<Eigen::MatrixXd> qr_;
+  Eigen::VectorXd growth_, taken_, workspace_;
 };
 
 /// For maps: one matrix after the other, each one piece of the motion.
@@ -39,9 +35,10 @@ class QrAccumulator {
   /// 1 <= columns <= n: how many exponents.
   QrAccumulator(Eigen::Index n, Eigen::Index columns) : frame_(n, columns), series_(columns) {}
 
-  /// n x n, and how long it took (1 for exponents per iterate). A matrix that is not finite is left out and counted.
+  /// n x n, and how long it took (1 for exponents per iterate). A matrix that is not finite is left out, and
+  /// counted in `tangential`.
   void pass(const Eigen::MatrixXd& matrix, double duration = 1.0);
-  /// Events: matrices passed.
+  /// `events` are matrices.
   LyapunovSpectrum spectrum() const;
 
  private:
