@@ -19,16 +19,10 @@
 #include <string>
 #include <vector>
 
+#include "grazing/cross_section.hpp"
 #include "grazing/grazing_point.hpp"
 
 namespace tchat {
-
-/// P': the level of an event function, or of one state, through x*. Its h falls or rises along f, but is not
-/// stationary.
-struct CrossSection {
-  int event = 0;  ///< from 1; 0: the hyperplane of a constant state
-  int state = 0;  ///< from 1, where event = 0
-};
 
 /// How much of the expansion of X: terms up to y; y^2, x - x* and p - p*; y^3, y (x - x*) and y (p - p*); or all of X.
 enum class MapOrder { half, one, three_halves, exact };

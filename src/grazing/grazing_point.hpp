@@ -39,4 +39,9 @@ struct GrazingPoint {
 GrazingPoint grazing_point(const HybridSystem& system, int field, int event, int jump, const Eigen::VectorXd& x,
                            const ParameterVector& par, const std::string& source);
 
+/// The state with h_D = h_P = 0 at these parameters that is nearest to x, by Newton's method. Throws UserError,
+/// beginning with `source`, when there is none near.
+Eigen::VectorXd corrected_contact(const HybridSystem& system, int field, int event, const Eigen::VectorXd& x,
+                                  const ParameterVector& par, const std::string& source);
+
 }  // namespace tchat
