@@ -139,17 +139,59 @@ VectorXd phases_of(double rotation, Index count) {
   return phases;
 }
 
-/// As many harmonics as stand out of what is left of the highest ones.
-int significant_harmonics(const MatrixXd& coefficients, const VectorXd& scale) {
-  const int count = static_cast<int>(coefficients.cols() / 2);
-  VectorXd size(count);
-  for (int l = 1; l <= count; ++l)
-    size(l - 1) = (scale.cwiseInverse().asDiagonal() * coefficients.middleCols(2 * l - 1, 2)).cwiseAbs().maxCoeff();
-  const int tail = std::max(1, count / 4);
-  const double floor = std::max(3.0 * size.tail(tail).maxCoeff(), 1e-15);
-  int needed = count;
-  while (needed > 1 && size(needed - 1) <= floor) --needed;
-  return needed;
+/// A curve with so many harmonics through points, its rotation number refined with the coefficients.
+class CurveFit {
+ public:
+  CurveFit(const MatrixXd& points, const PointSequence& sequence, const VectorXd& scale, double rotation, int harmonics)
+      : rotation(rotation) {
+    for (int step = 0; step < refinements; ++step) improve(points, sequence, scale, harmonics, step + 1 < refinements);
+  }
+
+  InvariantCurve curve(const PointSequence& sequence) const { return {rotation, sequence.winding(), series}; }
+
+  double rotation;
+  TrigonometricSeries series;
+  double largest = 0.0, total = 0.0;  // of the misfit, relative to the extents
+  double rotation_error = 0.0;
+
+ private:
+  static constexpr int refinements = 3;
+
+  /// A change of rho moves the phase of point k by k: one Gauss-Newton step, the mean phase left to the coefficients.
+  void improve(const MatrixXd& points, const PointSequence& sequence, const VectorXd& scale, int harmonics,
+               bool moves) {
+    const Index count = points.cols();
+    const VectorXd phases = phases_of(rotation, count);
+    series = TrigonometricSeries::fitted(sequence.periodic(phases), phases, harmonics);
+    const InvariantCurve now = curve(sequence);
+    double along = 0.0, norm = 0.0;
+    largest = total = 0.0;
+    for (Index k = 0; k < count; ++k) {
+      const VectorXd misfit = now.difference(points.col(k), now.at(phases(k))).cwiseQuotient(scale);
+      const VectorXd tangent = now.derivative(phases(k)).cwiseQuotient(scale);
+      const double lever = static_cast<double>(k) - 0.5 * static_cast<double>(count - 1);
+      along += lever * tangent.dot(misfit);
+      norm += lever * lever * tangent.squaredNorm();
+      largest = std::max(largest, misfit.cwiseAbs().maxCoeff());
+      total += misfit.squaredNorm();
+    }
+    rotation_error = std::sqrt(total / norm);
+    if (moves) rotation = phase_fraction(rotation + along / norm);
+  }
+};
+
+/// Twice as many harmonics as long as that halves the misfit: then what is left is the error of the points.
+CurveFit best_fit(const MatrixXd& points, const PointSequence& sequence, const VectorXd& scale, double rotation,
+                  int most) {
+  CurveFit best(points, sequence, scale, rotation, std::min(4, most));
+  for (int harmonics = 8; harmonics <= most; harmonics *= 2) {
+    const CurveFit more(points, sequence, scale, best.rotation, harmonics);
+    if (!(more.total < best.total)) break;
+    const bool is_worth_it = more.total < 0.25 * best.total || more.largest > 1e-4;
+    best = more;
+    if (!is_worth_it) break;
+  }
+  return best;
 }
 
 VectorXd extents(const MatrixXd& points, const std::vector<Index>& angles) {
@@ -197,8 +239,7 @@ FittedCurve fit_invariant_curve(const MatrixXd& points, const CurveSettings& set
   const VectorXd angles =
       settings.angles.empty() ? turning_angles(points) : VectorXd(points.row(settings.angles.front()) / full_turn);
   const VectorXd steps = lifted_steps(angles);
-  double rotation = bump(steps.size()).dot(steps);
-  rotation = phase_fraction(rotation);
+  const double rotation = phase_fraction(bump(steps.size()).dot(steps));
   const Index count = points.cols();
   const auto refuse = [&](const std::string& why) {
     return UserError(fmt::format("{}: {}", source, why));
@@ -211,40 +252,14 @@ FittedCurve fit_invariant_curve(const MatrixXd& points, const CurveSettings& set
   const int most = std::clamp(static_cast<int>(count / 8), 1, settings.max_harmonics);
   PointSequence sequence(points, settings.angles);
   sequence.wind(phases_of(rotation, count));
-  TrigonometricSeries series;
-  MatrixXd misfit;
-  int used = most;
-  double rotation_error = 0.0;
-  for (int iteration = 0; iteration < 4; ++iteration) {
-    const VectorXd phases = phases_of(rotation, count);
-    const MatrixXd periodic = sequence.periodic(phases);
-    series = TrigonometricSeries::fitted(periodic, phases, used);
-    if (iteration == 0) {
-      used = significant_harmonics(series.coefficients(), scale);
-      series = TrigonometricSeries::fitted(periodic, phases, used);
-    }
-    // A change of rho moves the phase of point k by k: one Gauss-Newton step, the mean phase left to the coefficients.
-    const InvariantCurve curve(rotation, sequence.winding(), series);
-    misfit.resize(points.rows(), count);
-    double along = 0.0, norm = 0.0;
-    for (Index k = 0; k < count; ++k) {
-      misfit.col(k) = curve.difference(points.col(k), curve.at(phases(k))).cwiseQuotient(scale);
-      const VectorXd tangent = curve.derivative(phases(k)).cwiseQuotient(scale);
-      const double lever = static_cast<double>(k) - 0.5 * static_cast<double>(count - 1);
-      along += lever * tangent.dot(misfit.col(k));
-      norm += lever * lever * tangent.squaredNorm();
-    }
-    rotation_error = std::sqrt(misfit.squaredNorm() / norm);
-    if (iteration < 3) rotation = phase_fraction(rotation + along / norm);
-  }
-  const double error = misfit.cwiseAbs().maxCoeff();
-  if (!(error <= settings.tolerance))
+  const CurveFit fit = best_fit(points, sequence, scale, rotation, most);
+  if (!(fit.largest <= settings.tolerance))
     throw refuse(fmt::format("the {} points lie on no smooth closed curve: they are up to {:.2e} of its extent off the "
                              "nearest one with {} harmonics (rotation number {:.8g}); drop a longer transient, simulate "
-                             "with a smaller tolerance, or take another section: on a torus every trajectory must cross "
-                             "it at an angle",
-                             count, error, used, rotation));
-  return {InvariantCurve(rotation, sequence.winding(), series), error, rotation_error};
+                             "more points or with a smaller tolerance, or take another section: on a torus every "
+                             "trajectory must cross it at an angle",
+                             count, fit.largest, fit.series.harmonics(), fit.rotation));
+  return {fit.curve(sequence), fit.largest, fit.rotation_error};
 }
 
 CurveProjection::CurveProjection(const InvariantCurve& curve) : curve_(curve), kind_(Kind::nearest) {

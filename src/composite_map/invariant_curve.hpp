@@ -42,7 +42,7 @@ class InvariantCurve {
 
 struct CurveSettings {
   std::vector<Eigen::Index> angles;  ///< states, from 0, that count modulo 2 pi
-  int max_harmonics = 200;
+  int max_harmonics = 256;
   double tolerance = 1e-6;  ///< of the fit, relative to the extent of the curve
 };
 

@@ -43,51 +43,63 @@ double tail_of(const TrigonometricSeries& series) {
 
 }  // namespace
 
+/// Derivatives at equal phases.
+struct TorusReturn::Nodes {
+  MatrixXd first, second, times;
+  double defect = 0.0, by_parameters = 0.0;
+};
+
+TorusReturn::Nodes TorusReturn::nodes_at(int count, const ParameterVector& par, int section,
+                                         const TorusSettings& settings) const {
+  const HybridSystem& system = suspended_->system();
+  const Index n = curve_.dimension();
+  const Index all = system.dimension();
+  Nodes nodes{MatrixXd(n * all, count), MatrixXd(settings.order > 1 ? n * triangle(all) : 0, count), MatrixXd(1, count)};
+  for (int node = 0; node < count; ++node) {
+    const double phi = static_cast<double>(node) / count;
+    const VectorXd start = suspended_->suspended(on_curve(phi), par);
+    const Signature path = return_path(system, start, par, section, suspended_->field(), settings.flow);
+    const QuadraticMap map = smooth_return(system, path, start, par, settings.order, settings.flow);
+    const VectorXd miss = curve_.difference(map.value.head(n), curve_.at(phi + curve_.rotation()));
+    nodes.defect = std::max(nodes.defect, miss.cwiseQuotient(scale_).cwiseAbs().maxCoeff());
+    if (!(nodes.defect <= largest_defect))
+      throw UserError(fmt::format("the return map does not take the invariant curve to itself: it misses by {:.1e} of "
+                                  "the curve's extent; give the parameters of the simulation that the points come from, "
+                                  "as 'PAR(k)=v', and its section",
+                                  nodes.defect));
+    const MatrixXd of_state = map.first.topRows(n);
+    nodes.first.col(node) = Eigen::Map<const VectorXd>(of_state.data(), of_state.size());
+    nodes.times(0, node) = map.time;
+    if (all > n) nodes.by_parameters = std::max(nodes.by_parameters, of_state.rightCols(all - n).cwiseAbs().maxCoeff());
+    Index row = 0;
+    for (Index i = 0; i < n && settings.order > 1; ++i)
+      for (Index a = 0; a < all; ++a)
+        for (Index b = a; b < all; ++b) nodes.second(row++, node) = map.second[static_cast<std::size_t>(i)](a, b);
+  }
+  return nodes;
+}
+
 TorusReturn::TorusReturn(std::shared_ptr<const SuspendedSystem> suspended, InvariantCurve curve,
                          CurveProjection projection, const ParameterVector& par, int section,
                          const TorusSettings& settings)
     : suspended_(std::move(suspended)), curve_(std::move(curve)), projection_(std::move(projection)), par_(par),
       scale_(curve_.extent().cwiseMax(1e-3 * curve_.extent().maxCoeff())) {
-  const HybridSystem& system = suspended_->system();
-  const Index n = curve_.dimension();
-  const Index all = system.dimension();
-  parameters_along_ = suspended_->suspended(curve_.at(0.0), par).tail(all - n);
-  MatrixXd first(n * all, settings.nodes);
-  MatrixXd second(settings.order > 1 ? n * triangle(all) : 0, settings.nodes);
-  MatrixXd times(1, settings.nodes);
-  double by_parameters = 0.0;
-  for (int node = 0; node < settings.nodes; ++node) {
-    const double phi = static_cast<double>(node) / settings.nodes;
-    const VectorXd start = suspended_->suspended(reduced(curve_, curve_.at(phi)), par);
-    const Signature path = return_path(system, start, par, section, suspended_->field(), settings.flow);
-    const QuadraticMap map = smooth_return(system, path, start, par, settings.order, settings.flow);
-    const VectorXd miss = curve_.difference(map.value.head(n), curve_.at(phi + curve_.rotation()));
-    defect_ = std::max(defect_, miss.cwiseQuotient(scale_).cwiseAbs().maxCoeff());
-    const MatrixXd of_state = map.first.topRows(n);
-    first.col(node) = Eigen::Map<const VectorXd>(of_state.data(), of_state.size());
-    times(0, node) = map.time;
-    if (all > n) by_parameters = std::max(by_parameters, of_state.rightCols(all - n).cwiseAbs().maxCoeff());
-    Index row = 0;
-    for (Index i = 0; i < n && settings.order > 1; ++i)
-      for (Index a = 0; a < all; ++a)
-        for (Index b = a; b < all; ++b) second(row++, node) = map.second[static_cast<std::size_t>(i)](a, b);
+  parameters_along_ = suspended_->suspended(curve_.at(0.0), par).tail(suspended_->system().dimension() - dimension());
+  for (int count = 65; count <= settings.most_nodes; count = 2 * count - 1) {
+    const Nodes nodes = nodes_at(count, par, section, settings);
+    first_ = TrigonometricSeries::through(nodes.first);
+    second_ = TrigonometricSeries::through(nodes.second);
+    times_ = TrigonometricSeries::through(nodes.times);
+    defect_ = nodes.defect;
+    depends_ = nodes.by_parameters > 1e-10;
+    mean_time_ = nodes.times.mean();
+    interpolation_error_ = std::max(tail_of(first_), settings.order > 1 ? tail_of(second_) : 0.0);
+    if (interpolation_error_ <= settings.accuracy) return;
   }
-  if (!(defect_ <= largest_defect))
-    throw UserError(fmt::format("the return map does not take the invariant curve to itself: it misses by {:.1e} of the "
-                                "curve's extent; give the parameters of the simulation that the points come from, as "
-                                "'PAR(k)=v', and its section",
-                                defect_));
-  depends_ = by_parameters > 1e-10;
-  first_ = TrigonometricSeries::through(first);
-  second_ = TrigonometricSeries::through(second);
-  times_ = TrigonometricSeries::through(times);
-  mean_time_ = times.mean();
-  interpolation_error_ = std::max(tail_of(first_), settings.order > 1 ? tail_of(second_) : 0.0);
   if (!(interpolation_error_ <= largest_interpolation_error))
-    throw UserError(fmt::format("the derivative of the return map varies too much along the invariant curve for {} nodes "
-                                "(error {:.1e}); take more with --nodes, or a section that the torus crosses at larger "
-                                "angles",
-                                settings.nodes, interpolation_error_));
+    throw UserError(fmt::format("the derivative of the return map varies too much along the invariant curve: error "
+                                "{:.1e} with {} harmonics; take a section that the torus crosses at larger angles",
+                                interpolation_error_, first_.harmonics()));
 }
 
 VectorXd TorusReturn::on_curve(double phi) const { return reduced(curve_, curve_.at(phi)); }

@@ -18,8 +18,9 @@
 namespace tchat {
 
 struct TorusSettings {
-  int nodes = 101;  ///< phases at which derivatives are computed, odd
-  int order = 1;    ///< or 2
+  int order = 1;        ///< or 2
+  int most_nodes = 1025;  ///< phases at which derivatives are computed: doubled up to this,
+  double accuracy = 1e-7;  ///< until the highest harmonics are so small beside the largest
   /// Points of the curve lie on the section to the accuracy of the simulation alone.
   FlowOptions flow{.surface_tolerance = 1e-5, .active = {}};
 };
@@ -46,6 +47,7 @@ class TorusReturn : public SmoothMap {
   const InvariantCurve& curve() const { return curve_; }
   const CurveProjection& projection() const { return projection_; }
   const ParameterVector& parameters() const { return par_; }
+  int nodes() const { return static_cast<int>(2 * first_.harmonics() + 1); }
   /// Largest |P(u(phi)) - u(phi + rho)| at the nodes, relative to the extents.
   double defect() const { return defect_; }
   /// Of the interpolated derivatives between the nodes, relative to the largest: the size of the highest harmonics.
@@ -55,10 +57,13 @@ class TorusReturn : public SmoothMap {
   double mean_time() const { return mean_time_; }
 
  private:
+  Eigen::Index dimension() const { return curve_.dimension(); }
   struct Deviation {
     double phi;
     Eigen::VectorXd u;  // (x, q) less (u(phi), q_0)
   };
+  struct Nodes;
+  Nodes nodes_at(int count, const ParameterVector& par, int section, const TorusSettings& settings) const;
   Deviation deviation(const Eigen::VectorXd& x, const ParameterVector& par) const;
   Eigen::MatrixXd matrix(double phi, int derivative) const;
   Eigen::VectorXd quadratic(double phi, const Eigen::VectorXd& u, int derivative) const;

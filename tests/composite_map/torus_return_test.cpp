@@ -36,7 +36,7 @@ MatrixXd torus_points(const VectorXd& par, int event, int count) {
 TEST_CASE("fvdp's smooth torus: mu*, x3* and the curve's second derivative, and the map that it makes") {
   const HybridSystem& system = system_of<ForcedVanDerPol>();
   const VectorXd par = full_par({5.0, 0.1, 0.75, 1.505, 0.8, 2.9236851});
-  const MatrixXd points = torus_points(par, 2, 3000);
+  const MatrixXd points = torus_points(par, 2, 6000);
   CurveSettings settings;
   settings.angles = {2};
   const FittedCurve fit = fit_invariant_curve(points, settings, "points");
