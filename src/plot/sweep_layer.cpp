@@ -135,9 +135,9 @@ class SweepLayerBuilder {
     const std::vector<double>* start = table_.column("start");
     std::vector<Group> groups;
     for (std::size_t k = 0; k < table_.starts.size() && start != nullptr; ++k) {
-      const std::string& words = table_.starts[k];
-      if (!words.starts_with("up") && !words.starts_with("down")) return {everything()};
-      Group group{plain_text(words.substr(0, words.find(','))), "", {}};
+      const std::string name = start_name(table_, static_cast<int>(k) + 1);
+      if (name != "up" && name != "down") return {everything()};
+      Group group{plain_text(name), "", {}};
       for (const std::size_t row : rows_) group.member.push_back((*start)[row] == static_cast<double>(k + 1));
       const bool has_rows = std::find(group.member.begin(), group.member.end(), true) != group.member.end();
       if (has_rows) groups.push_back(std::move(group));
