@@ -201,8 +201,7 @@ void ProblemLibrary::Close::operator()(void* handle) const {
   dlclose(handle);
 }
 
-ProblemLibrary::ProblemLibrary(const std::string& path, const Sizes& sizes)
-    : ProblemLibrary(path, path, sizes) {}
+ProblemLibrary::ProblemLibrary(const std::string& path, const Sizes& sizes) : ProblemLibrary(path, path, sizes) {}
 
 std::unique_ptr<ProblemLibrary> ProblemLibrary::copy_of(const std::string& path, const Sizes& sizes) {
   const MemoryCopy copy(path);

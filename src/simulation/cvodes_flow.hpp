@@ -32,6 +32,7 @@ class CvodesFlow final : public WatchedFlow {
   std::vector<EventWatch::Contact> take_contacts() override;
   bool is_armed(int event) const override;
   Eigen::VectorXd state_at(double t) const override;
+  const DenseOutput& dense_output() const override;
   double time() const override;
   Eigen::VectorXd state() const override;
   /// Phi, n x n: d x(t) / d x0. Empty without `variational`.

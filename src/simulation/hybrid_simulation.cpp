@@ -174,6 +174,7 @@ bool HybridSimulation::pass_piece(SimulatedSegment& segment, const WatchedFlow& 
     if (settings_.samples > 0) segment.samples.push_back({segment.start_time + t, std::move(state)});
   }
   if (settings_.samples > 0 && segment.samples.size() > 50 * settings_.samples) halve(segment.samples);
+  if (settings_.on_piece && from < to) settings_.on_piece(segment.mode.field(), flow.dense_output(), from, to);
   return !(settings_.interrupted && settings_.interrupted());
 }
 

@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "simulation/event_watch.hpp"
 #include "simulation/flow_options.hpp"
 #include "simulation/mode_rule.hpp"
 
@@ -28,6 +29,9 @@ struct SimulationSettings {
   std::vector<int> sections;  ///< event functions whose falls are marked wherever they do not end the segment
   std::size_t samples = 200;  ///< at most so many states are kept of each segment; 0 none
   std::function<bool()> interrupted;
+  /// Told of every piece of the flow that has been passed: its field, x(t) inside it, and from when to when, counted
+  /// from the start of the segment.
+  std::function<void(int field, const DenseOutput& state, double from, double to)> on_piece;
 };
 
 enum class SegmentEnd {

@@ -47,6 +47,7 @@ struct RungeKuttaFlow::Implementation {
   long steps = 0;
   int fallen = 0;
   DopriState dense, single_state;
+  const DenseOutput output = [this](double t) { return dense_output(t); };
   std::optional<VectorXd> at_fall;  // the state at `time`, by a step of the method
 
   Implementation(const HybridSystem& s, int i, const VectorXd& x0, const VectorXd& p, const FlowOptions& o)
@@ -132,7 +133,6 @@ struct RungeKuttaFlow::Implementation {
       time = looked = until;
       return false;
     }
-    const DenseOutput output = [this](double t) { return dense_output(t); };
     const double from = looked;
     for (int k = 1; k <= looks_a_step; ++k) {
       looked = k == looks_a_step ? until : from + (until - from) * k / looks_a_step;
@@ -216,6 +216,8 @@ VectorXd RungeKuttaFlow::state_at(double t) const {
   if (p_->at_fall && t == p_->time) return *p_->at_fall;
   return p_->copy(p_->dense_output(t));
 }
+
+const DenseOutput& RungeKuttaFlow::dense_output() const { return p_->output; }
 
 double RungeKuttaFlow::time() const { return p_->time; }
 

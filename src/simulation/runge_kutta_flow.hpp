@@ -28,6 +28,7 @@ class RungeKuttaFlow final : public WatchedFlow {
   std::vector<EventWatch::Contact> take_contacts() override;
   bool is_armed(int event) const override;
   Eigen::VectorXd state_at(double t) const override;
+  const DenseOutput& dense_output() const override;
   double time() const override;
   Eigen::VectorXd state() const override;
   const std::string& message() const override;

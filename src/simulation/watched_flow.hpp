@@ -39,6 +39,8 @@ class WatchedFlow {
   virtual bool is_armed(int event) const = 0;
   /// x(t) on the piece passed last.
   virtual Eigen::VectorXd state_at(double t) const = 0;
+  /// The same without a copy, as long as this object lives.
+  virtual const DenseOutput& dense_output() const = 0;
 
   virtual double time() const = 0;
   virtual Eigen::VectorXd state() const = 0;

@@ -31,9 +31,10 @@ class SweepReader {
     std::string_view line;
     if (!next(line)) fault("it is empty");
     if (line.starts_with(part_line))
-      throw UserError(fmt::format("{}: this is a part of a sweep, or one that has not ended; the same command with "
-                                  "--gather instead of --part joins parts to O.sweep",
-                                  path_));
+      throw UserError(
+          fmt::format("{}: this is a part of a sweep, or one that has not ended; the same command with "
+                      "--gather instead of --part joins parts to O.sweep",
+                      path_));
     if (!line.starts_with(first_line)) fault("it does not begin with '# tchat sweep of'");
     table_.problem = line.substr(std::string_view(first_line).size());
     while (next(line) && line.starts_with("#")) read_heading(line.substr(1));
@@ -133,14 +134,14 @@ class SweepReader {
         table_.names.emplace_back(word);
       ++words_;
     }
-    if (!kind_ || table_.names.empty() || table_.names.front() != "index") fault("these are not the columns of a sweep");
+    if (!kind_ || table_.names.empty() || table_.names.front() != "index")
+      fault("these are not the columns of a sweep");
     table_.columns.resize(table_.names.size());
   }
 
   void read_row(std::string_view line) {
     const std::vector<std::string_view> words = split_words(line);
-    if (words.size() != words_)
-      fault(fmt::format("there are {} words, the columns are {}", words.size(), words_));
+    if (words.size() != words_) fault(fmt::format("there are {} words, the columns are {}", words.size(), words_));
     std::size_t column = 0;
     for (std::size_t i = 0; i < words_; ++i) {
       if (i != *kind_) {

@@ -5,9 +5,9 @@
 ///     # over x1 from -1 to 1, 100 values, initial state
 ///     # PAR m = 0.28                                     every parameter that is not swept
 ///     # start 1: x = (...)                               or `start 1: up from x = (...)`
-///     # attractor 1: periodic, signature {(1,2,2), (1,1,1)}, impacts 1, period 6.72, index 0, mode 1,1,1;1,2,2, state 0.1,0.2
-///     index mu x1(0) start attractor kind period time impacts penetration lambda1 error1 x1 x2
-///     0 -0.82 -1 1 1 periodic 2 6.72 1 0.01 ...
+///     # attractor 1: periodic, signature {(1,2,2), (1,1,1)}, impacts 1, period 6.72, index 0, mode 1,1,1;1,2,2, state
+///     0.1,0.2 index mu x1(0) start attractor kind period time impacts penetration lambda1 error1 x1 x2 0 -0.82 -1 1 1
+///     periodic 2 6.72 1 0.01 ...
 ///
 /// One row for each recorded state, or one row of a value without any; scalars stand in every row. Columns that were
 /// not asked for are missing. `period` is in events, `time` in time; what does not exist is `nan`. Attractor 0: none.

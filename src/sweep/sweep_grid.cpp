@@ -69,7 +69,8 @@ SweepTarget parse_over(const HybridSystem& system, const std::string& text) {
   quantity.to = read_end(range.substr(first + 1, second - first - 1), "TO", text);
   const std::optional<int> count = parse_integer(range.substr(second + 1));
   if (!count || *count < 1 || *count > most_values)
-    refuse_over(text, fmt::format("COUNT '{}' is no whole number from 1 to {:g}", range.substr(second + 1), most_values));
+    refuse_over(text,
+                fmt::format("COUNT '{}' is no whole number from 1 to {:g}", range.substr(second + 1), most_values));
   quantity.count = *count;
   if (quantity.count == 1 && quantity.from != quantity.to)
     refuse_over(text, "one value has two ends; give COUNT at least 2, or FROM the same as TO");
@@ -91,11 +92,11 @@ std::vector<SweepTarget> parse_overs(const HybridSystem& system, const std::vect
   }
   if (targets.size() == 2 && targets[0].position == targets[1].position &&
       targets[0].quantity.is_state == targets[1].quantity.is_state)
-    throw UserError(fmt::format("--over {} and --over {}: the same quantity twice; give two different ones", texts[0],
-                                texts[1]));
+    throw UserError(
+        fmt::format("--over {} and --over {}: the same quantity twice; give two different ones", texts[0], texts[1]));
   if (values > most_values)
-    throw UserError(fmt::format("a sweep of {:g} values; at most {:g} go into one, cut it into several", values,
-                                most_values));
+    throw UserError(
+        fmt::format("a sweep of {:g} values; at most {:g} go into one, cut it into several", values, most_values));
   return targets;
 }
 

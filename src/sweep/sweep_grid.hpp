@@ -16,8 +16,8 @@ struct SweepTarget {
   int position = 1;  ///< index of the parameter or state, from 1
 };
 
-/// "mu=-0.82:-0.79:301", "PAR(1)=...", "x1=-2:2:400", a parameter's name before a state's. Throws UserError, one sentence with
-/// the cure.
+/// "mu=-0.82:-0.79:301", "PAR(1)=...", "x1=-2:2:400", a parameter's name before a state's. Throws UserError, one
+/// sentence with the cure.
 SweepTarget parse_over(const HybridSystem& system, const std::string& text);
 
 /// Both, which must differ; at most ten million values. Throws UserError.

@@ -45,9 +45,10 @@ JournalContents read_journal(const std::string& path) {
   std::size_t at = 0;
   std::string line;
   if (!text->empty() && !text->starts_with(std::string(journal_line).substr(0, text->size())))
-    throw UserError(fmt::format("{}: this is no journal or part of a sweep of this version of tchat; give another name "
-                                "with -o, or remove it",
-                                path));
+    throw UserError(
+        fmt::format("{}: this is no journal or part of a sweep of this version of tchat; give another name "
+                    "with -o, or remove it",
+                    path));
   if (!take_line(*text, at, line)) return contents;
   while (take_line(*text, at, line) && line != heading_end) {
     const std::size_t blank = line.find(' ', 2);

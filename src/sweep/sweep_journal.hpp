@@ -22,7 +22,7 @@ using SweepIdentity = std::vector<std::pair<std::string, std::string>>;
 std::string journal_heading(const SweepIdentity& identity);
 
 struct JournalContents {
-  bool is_there = false;      ///< with a whole heading
+  bool is_there = false;  ///< with a whole heading
   SweepIdentity identity;
   std::vector<SampleRecord> records;
   std::size_t whole = 0;  ///< bytes up to the end of the last good line
