@@ -27,6 +27,7 @@
 #include "app/simulate_command.hpp"
 #include "app/standard_descriptors.hpp"
 #include "app/standard_output.hpp"
+#include "app/sweep_command.hpp"
 #include "app/table_command.hpp"
 #include "app/usage_error.hpp"
 #include "app/verify_command.hpp"
@@ -77,6 +78,7 @@ int parse_and_run(int argc, char** argv) {
   add_run_command(app, chosen);
   add_resegment_command(app, chosen);
   add_simulate_command(app, chosen);
+  add_sweep_command(app, chosen);
   add_labels_command(app, chosen);
   add_orbit_command(app, chosen);
   add_table_command(app, chosen);

@@ -7,6 +7,8 @@
 #include <deque>
 #include <limits>
 
+#include "attractor/attractor_recognition.hpp"
+#include "attractor/lyapunov_exponents.hpp"
 #include "hybrid/event_at.hpp"
 #include "hybrid/identity_jump.hpp"
 #include "simulate/loaded_problem.hpp"
@@ -30,6 +32,9 @@ constexpr double far_away = 1e6;               // a state of this size has escap
 constexpr double every_minimum = 1e300;        // as a share of the largest value: all contacts are noted
 constexpr std::size_t samples_following = 12;  // of a segment, among which the hand-over is chosen
 constexpr std::size_t points_for_ignorable = 6;
+constexpr long first_decision = 64;  // events after which exponents may tell the kind of a motion
+constexpr long last_decision = 4096;
+constexpr long events_of_exponents = 128;     // of an attractor whose kind is known
 constexpr std::size_t identity_points = 400;  // of a motion that does not repeat itself
 
 /// A recorded state.
@@ -69,10 +74,20 @@ class SampleRun {
   AttractorSample run() {
     SimulationRequest request = setup_.request;
     if (point_.at && !point_.at->watched.empty()) request.modes = mode_option(point_.at->watched);
+    SimulationSettings with_exponents = settings();
+    LyapunovAccumulator exponents(system_, par_, lyapunov_settings(with_exponents.flow));
+    exponents.attach(with_exponents);
     HybridSimulation simulation(simulation_rule(request, setup_.constants, system_, start_, par_), start_, par_,
-                                settings());
+                                with_exponents);
     settle(simulation);
-    if (sample_.known == 0) finish();
+    if (sample_.known > 0) return std::move(sample_);
+    if (is_open_) tell_kind(simulation, exponents);
+    if (sample_.kind == AttractorKind::periodic && setup_.recording.exponents > 0) {
+      const auto turns = 1 + events_of_exponents / static_cast<long>(kept_.size());
+      go_on(simulation, exponents, turns * static_cast<long>(kept_.size()));
+      keep_exponents(exponents.spectrum());
+    }
+    finish();
     return std::move(sample_);
   }
 
@@ -96,6 +111,61 @@ class SampleRun {
     return settings;
   }
 
+  LyapunovSettings lyapunov_settings(const FlowOptions& flow) const {
+    LyapunovSettings settings;
+    settings.exponents = std::min(system_.dimension(), std::max(2, setup_.recording.exponents));
+    settings.flow = flow;
+    return settings;
+  }
+
+  /// Carries the frame of the exponents on over so many events. False when the motion ends.
+  bool go_on(HybridSimulation& simulation, LyapunovAccumulator& exponents, long events) {
+    exponents.begin();
+    for (long done = 0; done < events; ++done) {
+      const SimulatedSegment segment = simulation.next(never);
+      if (segment.ended_by == SegmentEnd::interrupted) throw SampleInterrupted();
+      exponents.pass(segment);
+      if (segment.ended_by != SegmentEnd::event) return false;
+    }
+    return true;
+  }
+
+  /// Of a motion that does not repeat itself: goes on until the exponents tell.
+  void tell_kind(HybridSimulation& simulation, LyapunovAccumulator& exponents) {
+    exponents.begin();
+    long done = 0;
+    for (long decision = first_decision; decision <= last_decision; decision *= 2) {
+      for (; done < decision; ++done) {
+        const SimulatedSegment segment = simulation.next(never);
+        if (segment.ended_by == SegmentEnd::interrupted) throw SampleInterrupted();
+        exponents.pass(segment);
+        if (segment.ended_by != SegmentEnd::event) {
+          sample_.message = "it has ended while its exponents were computed: " + segment.message;
+          return;
+        }
+      }
+      const LyapunovSpectrum spectrum = exponents.spectrum();
+      const AttractorKind kind = kind_by_exponents(spectrum);
+      if (kind != AttractorKind::chaotic && kind != AttractorKind::quasi_periodic && decision < last_decision) continue;
+      keep_exponents(spectrum);
+      const bool tells = kind == AttractorKind::chaotic || kind == AttractorKind::quasi_periodic;
+      sample_.kind = tells ? kind : AttractorKind::none;
+      if (!tells)
+        sample_.message = fmt::format(
+            "no repetition after 1 to {} events, and the exponents do not tell; a longer --transient-events or a "
+            "larger "
+            "--max-period may",
+            setup_.request.plan.max_period);
+      return;
+    }
+  }
+
+  void keep_exponents(const LyapunovSpectrum& spectrum) {
+    const Eigen::Index count = std::min<Eigen::Index>(setup_.recording.exponents, spectrum.exponents.size());
+    sample_.exponents = spectrum.exponents.head(count);
+    sample_.errors = spectrum.errors.head(count);
+  }
+
   /// Up to the attractor, and so many events of it as are wanted where it does not repeat itself.
   void settle(HybridSimulation& simulation) {
     const SimulationPlan& plan = setup_.request.plan;
@@ -108,8 +178,10 @@ class SampleRun {
         kept_.clear();
       }
       if (recording_since && (static_cast<long>(kept_.size()) >= wanted ||
-                              (plan.time && simulation.time() >= *recording_since + *plan.time)))
+                              (plan.time && simulation.time() >= *recording_since + *plan.time))) {
+        is_open_ = true;
         return;
+      }
       SimulatedSegment segment = simulation.next(never);
       if (segment.ended_by != SegmentEnd::event) return end_without_event(segment);
       ++events_;
@@ -161,7 +233,7 @@ class SampleRun {
   }
 
   void end_without_event(const SimulatedSegment& segment) {
-    if (segment.ended_by == SegmentEnd::interrupted) throw ComputationError("interrupted");
+    if (segment.ended_by == SegmentEnd::interrupted) throw SampleInterrupted();
     sample_.message = segment.message;
     kept_.clear();
     kept_.push_back(segment);
@@ -343,6 +415,12 @@ class SampleRun {
       }
   }
 
+  /// What is watched after a segment, where the problem says it.
+  std::vector<IndexVector> following(const SimulatedSegment& last) const {
+    if (setup_.request.signature || setup_.request.follow_signature) return {};
+    return system_.successors(last.index, last.end.data(), par_.data()).value_or(std::vector<IndexVector>{});
+  }
+
   double distance_to_walls(const Mode& mode, const VectorXd& x) const {
     double least = never;
     for (const IndexVector& v : mode.index_vectors)
@@ -360,6 +438,7 @@ class SampleRun {
   DecayDetector decay_;
   Capture capture_;
   long events_ = 0;
+  bool is_open_ = false;  // it has been simulated as long as wanted, and has not repeated itself
   std::deque<SimulatedSegment> kept_;
   std::vector<VectorXd> points_;
   AttractorSample sample_;

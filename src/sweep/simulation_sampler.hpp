@@ -46,7 +46,7 @@ class SimulationSampler {
  public:
   SimulationSampler(const SamplerSetup& setup, const HybridSystem& system) : setup_(setup), system_(system) {}
 
-  /// Throws ComputationError when `interrupted` says so.
+  /// Throws SampleInterrupted when `interrupted` says so.
   AttractorSample operator()(const SweepPoint& point, const std::function<bool()>& interrupted) const;
 
  private:

@@ -97,6 +97,7 @@ class Computation {
       } else if (record.sample.kind == AttractorKind::none) {
         knows_ = true;
       } else {
+        if (record.index == 1) known_.clear();  // of a search that did not end
         known_.push_back(std::move(record.sample));
       }
     }
@@ -194,9 +195,8 @@ class Computation {
       SampleRecord record{index, start, {}};
       try {
         record.sample = function({index, grid_.values(index), start, last});
-      } catch (const ComputationError&) {
-        if (stop) return;
-        throw;
+      } catch (const SampleInterrupted&) {
+        return;
       }
       if (stop) return;  // it may have been cut short
       go_on_from(unit, record.sample, last);
@@ -300,7 +300,7 @@ class TableWriter {
     const bool repeats = sample.kind == AttractorKind::periodic;
     add_number(text, repeats ? static_cast<double>(sample.signature.size()) : NAN);
     add_number(text, repeats ? sample.period : NAN);
-    add_number(text, repeats ? sample.impacts : NAN);
+    add_number(text, repeats ? static_cast<double>(sample.impacts) : NAN);
     if (job_.columns.penetration)
       add_number(text, is_dot && dot < sample.section_penetrations.size() ? sample.section_penetrations(dot)
                                                                           : sample.penetration);

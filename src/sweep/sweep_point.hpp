@@ -14,6 +14,7 @@
 
 #include "attractor/attractor_kind.hpp"
 #include "hybrid/index_vector.hpp"
+#include "text/user_error.hpp"
 
 namespace tchat {
 
@@ -50,7 +51,13 @@ struct AttractorSample {
   std::string message;    ///< why it has not settled, one line; empty when there is nothing to say
 };
 
-/// Throws ComputationError when it has been interrupted; nothing of that value is kept then.
+/// Thrown where a value has been given up because of a signal.
+class SampleInterrupted : public ComputationError {
+ public:
+  SampleInterrupted() : ComputationError("interrupted") {}
+};
+
+/// Throws SampleInterrupted, and then nothing of that value is kept.
 using SampleFunction = std::function<AttractorSample(const SweepPoint&)>;
 /// Called once for each worker, with its number from 0, in the main thread.
 using SampleMaker = std::function<SampleFunction(int worker)>;
