@@ -66,9 +66,8 @@ class Categories {
     if (column_ == "attractor") return attractor_name(table_, number);
     if (column_ == "period") return fmt::format("period {}", number);
     if (column_ == "impacts") return fmt::format("{} impact{}", number, number == 1 ? "" : "s");
-    const auto k = static_cast<std::size_t>(std::max(number, 1) - 1);
-    return k < table_.starts.size() ? table_.starts[k].substr(0, table_.starts[k].find(','))
-                                    : fmt::format("start {}", number);
+    if (column_ == "event") return fmt::format("event {}", number);
+    return start_name(table_, number);
   }
 
   std::string name_of_nothing() const {
@@ -132,13 +131,13 @@ RowColours category_colours(const SweepTable& table, const std::string& column, 
   return result;
 }
 
-struct Range {
+struct NumberRange {
   double low = std::numeric_limits<double>::infinity();
   double high = -std::numeric_limits<double>::infinity();
 };
 
 /// Zero is the middle of the colours where numbers of both signs are there in earnest.
-std::vector<std::string> scale_colours(const Range& range) {
+std::vector<std::string> scale_colours(const NumberRange& range) {
   const double size = std::max(std::abs(range.low), std::abs(range.high));
   if (!(range.low < 0.0 && range.high > 0.0 && std::min(-range.low, range.high) > 0.02 * size))
     return rising_colours(colours_of_scale);
@@ -155,7 +154,7 @@ std::vector<std::string> scale_colours(const Range& range) {
 
 RowColours scale_of_colours(const std::string& path, const ColourWish& wish, const SweepQuantity& quantity,
                             const std::vector<std::size_t>& rows) {
-  Range range;
+  NumberRange range;
   for (const std::size_t row : rows)
     if (const double value = quantity.values[row]; std::isfinite(value))
       range.low = std::min(range.low, value), range.high = std::max(range.high, value);
@@ -181,8 +180,15 @@ RowColours scale_of_colours(const std::string& path, const ColourWish& wish, con
 
 }  // namespace
 
+std::string start_name(const SweepTable& table, int number) {
+  const auto k = static_cast<std::size_t>(std::max(number, 1) - 1);
+  for (const char* direction : {"up", "down"})
+    if (k < table.starts.size() && table.starts[k].starts_with(direction)) return direction;
+  return fmt::format("start {}", number);
+}
+
 bool is_category(const SweepTable& table, const std::string& column) {
-  constexpr std::array<std::string_view, 4> categories = {"attractor", "period", "impacts", "start"};
+  constexpr std::array<std::string_view, 5> categories = {"attractor", "period", "impacts", "start", "event"};
   const std::string name = sweep_column(table, column);
   return column == "kind" || std::find(categories.begin(), categories.end(), name) != categories.end();
 }

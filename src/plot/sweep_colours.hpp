@@ -32,6 +32,9 @@ struct ColourWish {
 RowColours row_colours(const SweepTable& table, const std::string& path, const ColourWish& wish,
                        const std::vector<std::size_t>& rows);
 
+/// "up", "down", "start 3".
+std::string start_name(const SweepTable& table, int number);
+
 /// Does the column tell things apart?
 bool is_category(const SweepTable& table, const std::string& column);
 

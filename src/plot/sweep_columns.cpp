@@ -174,8 +174,8 @@ std::string sweep_column(const SweepTable& table, const std::string& wanted) {
 }
 
 std::vector<std::string> sweep_states(const SweepTable& table) {
-  constexpr std::array<std::string_view, 7> scalars = {"index", "start",   "attractor",  "period",
-                                                       "time",  "impacts", "penetration"};
+  constexpr std::array<std::string_view, 8> scalars = {"index",  "start", "attractor", "event",
+                                                       "period", "time",  "impacts",   "penetration"};
   std::vector<std::string> states;
   for (const std::string& name : table.names) {
     const bool scalar =

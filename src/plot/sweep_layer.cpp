@@ -32,7 +32,10 @@ std::vector<std::string> split_list(const std::string& text) {
   return parts;
 }
 
-double dot_size(std::size_t dots) { return dots > 30000 ? 0.3 : dots > 4000 ? 0.4 : 0.5; }
+double dot_size(std::size_t dots) { return dots > 40000 ? 0.2 : dots > 10000 ? 0.3 : dots > 4000 ? 0.4 : 0.5; }
+
+/// Of groups whose dots may lie on each other: the earlier ones are seen around the later ones.
+constexpr double larger_beneath = 1.7;
 
 const SweptQuantity* swept(const SweepTable& table, const std::string& column) {
   for (const SweptQuantity& quantity : table.over)
@@ -45,6 +48,7 @@ struct Group {
   LabelText name;
   std::string colour;
   std::vector<bool> member;  // by place among the chosen rows
+  double size = 1.0;         // of its dots, beside the usual one
 };
 
 class SweepLayerBuilder {
@@ -106,7 +110,8 @@ class SweepLayerBuilder {
     for (const SweepQuantity& y : quantities) {
       for (const Group& group : groups) {
         const bool own_name = quantities.size() > 1;
-        const std::string colour = own_name || group.colour.empty() ? next_colour() : group.colour;
+        const std::string colour =
+            own_name || group.colour.empty() ? next_colour(quantities.size() * groups.size() == 1) : group.colour;
         const LabelText name = !own_name           ? group.name
                                : groups.size() > 1 ? joined(joined(y.label, plain_text(", ")), group.name)
                                                    : y.label;
@@ -125,8 +130,9 @@ class SweepLayerBuilder {
     return quantities.size() > 1 && exponents ? plain_text("Lyapunov exponents") : quantities.front().label;
   }
 
-  std::string next_colour() {
-    const std::size_t k = look_.clouds_before + result_.clouds.size();
+  /// Black is left to a lone cloud: it would hide what is beneath.
+  std::string next_colour(bool alone) {
+    const std::size_t k = look_.clouds_before + result_.clouds.size() + (alone || look_.beneath_branches ? 0 : 1);
     return look_.beneath_branches ? cloud_colour(k) : series_colour(k);
   }
 
@@ -135,13 +141,14 @@ class SweepLayerBuilder {
     const std::vector<double>* start = table_.column("start");
     std::vector<Group> groups;
     for (std::size_t k = 0; k < table_.starts.size() && start != nullptr; ++k) {
-      const std::string& words = table_.starts[k];
-      if (!words.starts_with("up") && !words.starts_with("down")) return {everything()};
-      Group group{plain_text(words.substr(0, words.find(','))), "", {}};
+      const std::string name = start_name(table_, static_cast<int>(k) + 1);
+      if (name != "up" && name != "down") return {everything()};
+      Group group{plain_text(name), "", {}};
       for (const std::size_t row : rows_) group.member.push_back((*start)[row] == static_cast<double>(k + 1));
       const bool has_rows = std::find(group.member.begin(), group.member.end(), true) != group.member.end();
       if (has_rows) groups.push_back(std::move(group));
     }
+    for (std::size_t k = 0; k + 1 < groups.size(); ++k) groups[k].size = larger_beneath;
     return groups.size() > 1 ? groups : std::vector<Group>{everything()};
   }
 
@@ -176,7 +183,7 @@ class SweepLayerBuilder {
     }
     const std::size_t count = cloud.points.size();
     if (count == 0) return 0;
-    cloud.size = dot_size(count);
+    cloud.size = group.size * dot_size(count);
     if (!bars.points.empty()) result_.curves.push_back(std::move(bars));
     if (!name.empty()) result_.key.push_back({name, std::nullopt, key_dot(colour)});
     result_.clouds.push_back(std::move(cloud));
