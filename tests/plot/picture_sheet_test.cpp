@@ -113,7 +113,7 @@ TEST_CASE("one figure is what it was without a sheet") {
   CHECK_THROWS_WITH(lay_out(sheet), Contains("in space"));
 }
 
-TEST_CASE("a map fills its frame; its cells and colours are in the script, and the bar has tics and a text") {
+TEST_CASE("a map fills its frame, its cells and colours are in the script, and the bar has tics and a text") {
   const Figure figure = coloured();
   const FigureLayout layout = lay_out(figure);
   CHECK(layout.panels[0].x.low == -0.5);
