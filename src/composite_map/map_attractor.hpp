@@ -15,7 +15,8 @@ namespace tchat {
 
 struct MapIteration {
   long transient = 1000;  ///< returns that are dropped
-  long returns = 1000;    ///< returns after them, at most
+  long returns = 1000;    ///< returns that are kept of a motion that does not repeat itself
+  long most_returns = 64000;  ///< that exponents are computed over to tell its kind
   int max_period = 16;    ///< in returns
   double recognition = 1e-6;  ///< states that are equal, relative to the range of the iterates
   double escape = 1.0;        ///< distance from the orbit or torus, in its extents, beyond which the map has no meaning
