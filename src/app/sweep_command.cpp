@@ -84,9 +84,10 @@ void add_recording_options(CLI::App& command, SweepRequest& request) {
 void add_map_options(CLI::App& command, MapRequest& map) {
   const char* const group = "Composite map, instead of simulations";
   command
-      .add_option("--map", map.source,
-                  "iterate the smooth return map after the discontinuity map: of the grazing orbit LABEL in q.NAME, or of "
-                  "the torus whose section points are in FILE (O.events of a simulation without contact, or O.sweep)")
+      .add_option(
+          "--map", map.source,
+          "iterate the smooth return map after the discontinuity map: of the grazing orbit LABEL in q.NAME, or of "
+          "the torus whose section points are in FILE (O.events of a simulation without contact, or O.sweep)")
       ->type_name("q.NAME:LABEL|FILE")
       ->group(group);
   command.add_option("--order", map.order, "of the discontinuity map: 1/2, 1, 3/2 or exact")
@@ -98,20 +99,23 @@ void add_map_options(CLI::App& command, MapRequest& map) {
       ->capture_default_str()
       ->group(group);
   command
-      .add_option("--reduced", map.reduced,
-                  "tori: the phase alone, as if all came back to the curve at once (map); with what contact does to it to "
-                  "lowest order (ellipse) [map]")
+      .add_option(
+          "--reduced", map.reduced,
+          "tori: the phase alone, as if all came back to the curve at once (map); with what contact does to it to "
+          "lowest order (ellipse) [map]")
       ->expected(0, 1)
       ->type_name("[KIND]")
       ->default_str("map")
       ->group(group);
   command
-      .add_option("--phase", map.phase,
-                  "tori: a state that is an angle, or two that go round as y1,y2, by which points have theirs on the curve "
-                  "[an angle, if there is one, else the nearest point]")
+      .add_option(
+          "--phase", map.phase,
+          "tori: a state that is an angle, or two that go round as y1,y2, by which points have theirs on the curve "
+          "[an angle, if there is one, else the nearest point]")
       ->type_name("STATE")
       ->group(group);
-  command.add_option("--wall", map.wall, "tori: event function in contact, number or name [the only one with an impact]")
+  command
+      .add_option("--wall", map.wall, "tori: event function in contact, number or name [the only one with an impact]")
       ->type_name("J")
       ->group(group);
   command

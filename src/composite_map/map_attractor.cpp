@@ -20,22 +20,24 @@ using Eigen::VectorXd;
 /// Exponents that are told from zero by so many error bars, and by this much per return.
 constexpr double bars = 3.0;
 constexpr double least_growth = 1e-4;
-constexpr long looked_at = 64;          // returns between two looks for a period
-constexpr long first_decision = 2000;   // returns of which exponents are made
+constexpr long looked_at = 64;         // returns between two looks for a period
+constexpr long first_decision = 2000;  // returns of which exponents are made
 
 /// Why iterates cannot go on; "" when they can.
 std::string trouble(const IteratedMap& map, const Iterate& iterate, const VectorXd& x, const MapIteration& settings) {
   if (iterate.missed)
-    return fmt::format("contact at x = {}, outside the neighbourhood of the grazing point that the discontinuity map is "
-                       "applied in",
-                       state_text(x));
+    return fmt::format(
+        "contact at x = {}, outside the neighbourhood of the grazing point that the discontinuity map is "
+        "applied in",
+        state_text(x));
   if (!iterate.image.allFinite())
     return fmt::format("the map has no value at x = {}: it is too far from grazing", state_text(x));
   const double distance = map.smooth().distance(iterate.image);
   if (!(distance <= settings.escape))
-    return fmt::format("the iterates leave the neighbourhood of the grazing motion, for x = {}: there the map says "
-                       "nothing of the flow",
-                       state_text(iterate.image));
+    return fmt::format(
+        "the iterates leave the neighbourhood of the grazing motion, for x = {}: there the map says "
+        "nothing of the flow",
+        state_text(iterate.image));
   return "";
 }
 
@@ -61,8 +63,7 @@ class Iteration {
 
  private:
   bool step() {
-    if (settings_.interrupted && ++steps_ % 1024 == 0 && settings_.interrupted())
-      throw ComputationError("interrupted");
+    if (settings_.interrupted && ++steps_ % 1024 == 0 && settings_.interrupted()) throw ComputationError("interrupted");
     const Iterate iterate = map_.step(x_, par_);
     found_.message = trouble(map_, iterate, x_, settings_);
     if (!found_.message.empty()) {
@@ -132,14 +133,15 @@ class Iteration {
     return found_.period > 0 ? static_cast<std::size_t>(found_.period) : static_cast<std::size_t>(settings_.returns);
   }
 
-  /// Periodic: over the period again and again, until the frame has turned to its directions. Else going on from the end
-  /// until the largest one is told from zero or its bar is small.
+  /// Periodic: over the period again and again, until the frame has turned to its directions. Else going on from the
+  /// end until the largest one is told from zero or its bar is small.
   void add_exponents(std::size_t kept) {
     const Index count = std::min<Index>(std::max(1, settings_.exponents), map_.exponents());
     QrAccumulator accumulator(map_.coordinates(), count);
     long done = 0;
     VectorXd x = points_[points_.size() - kept];
-    const long most = found_.period > 0 ? std::max<long>(settings_.returns, 100L * found_.period) : settings_.most_returns;
+    const long most =
+        found_.period > 0 ? std::max<long>(settings_.returns, 100L * found_.period) : settings_.most_returns;
     for (long decision = std::min<long>(most, first_decision);; decision = std::min(2 * decision, most)) {
       for (; done < decision; ++done) {
         if (found_.period > 0) x = points_[points_.size() - kept + static_cast<std::size_t>(done) % kept];
@@ -174,7 +176,8 @@ class Iteration {
       found_.kind = AttractorKind::quasi_periodic;
     else
       found_.message = fmt::format(
-          "the iterates approach a periodic orbit that is longer than {} returns, or slowly: a larger --max-period, or a "
+          "the iterates approach a periodic orbit that is longer than {} returns, or slowly: a larger --max-period, or "
+          "a "
           "longer transient, may tell",
           settings_.max_period);
   }

@@ -93,17 +93,19 @@ TorusGrazing torus_grazing(const HybridSystem& system, const TorusReturn& torus,
   }
   const std::string wall_name = system.function_name(FunctionKind::event, wall);
   if (guess < 0.0)
-    throw UserError(fmt::format("{}: nowhere near this section is event {} ({}) least along a trajectory; take the "
-                                "section where it is least, or one through that point",
-                                source, wall, wall_name));
+    throw UserError(
+        fmt::format("{}: nowhere near this section is event {} ({}) least along a trajectory; take the "
+                    "section where it is least, or one through that point",
+                    source, wall, wall_name));
   // The zero of the slope between the neighbours of the least sample.
   double low = guess - 1.0 / samples, high = guess + 1.0 / samples;
   Least at_low = distance.at(low), at_high = distance.at(high);
   if (!(at_low.slope < 0.0 && at_high.slope > 0.0))
-    throw UserError(fmt::format("{}: the section does not pass through the point of the torus nearest to event {} ({}): the "
-                                "least value seen near the section, {:.6g}, is at x = {}, at the end of where it can be "
-                                "seen; put the section there",
-                                source, wall, wall_name, least_h, state_text(distance.at(guess).x)));
+    throw UserError(
+        fmt::format("{}: the section does not pass through the point of the torus nearest to event {} ({}): the "
+                    "least value seen near the section, {:.6g}, is at x = {}, at the end of where it can be "
+                    "seen; put the section there",
+                    source, wall, wall_name, least_h, state_text(distance.at(guess).x)));
   Least best = distance.at(guess);
   for (int iteration = 0; iteration < 60 && std::abs(high - low) > 1e-14; ++iteration) {
     // Regula falsi, with a bisection every third time.
@@ -114,10 +116,10 @@ TorusGrazing torus_grazing(const HybridSystem& system, const TorusReturn& torus,
     (best.slope < 0.0 ? at_low : at_high) = best;
   }
   if (std::abs(best.time) > on_section_share * torus.mean_time())
-    throw UserError(fmt::format("{}: the section does not pass through the grazing point x* = {}, which is met {:.2g} {} "
-                                "it; put the section there (a parameter of it, perhaps) and simulate again",
-                                source, state_text(best.x), std::abs(best.time),
-                                best.time > 0.0 ? "after" : "before"));
+    throw UserError(
+        fmt::format("{}: the section does not pass through the grazing point x* = {}, which is met {:.2g} {} "
+                    "it; put the section there (a parameter of it, perhaps) and simulate again",
+                    source, state_text(best.x), std::abs(best.time), best.time > 0.0 ? "after" : "before"));
 
   TorusGrazing grazing{phase_fraction(best.phi), best.time, best.x, torus.parameters()};
   const std::vector<int> active{parameter};
@@ -126,9 +128,10 @@ TorusGrazing torus_grazing(const HybridSystem& system, const TorusReturn& torus,
     VectorXd hx(grazing.x.size());
     system.first(FunctionKind::event, wall, grazing.x.data(), grazing.par.data(), active, &h, hx.data(), &hp);
     if (!(std::abs(hp) > 1e-12))
-      throw UserError(fmt::format("{}: event {} ({}) does not depend on {}, so that it cannot bring the wall to the torus; "
-                                  "sweep a parameter of the wall, or give the torus in contact",
-                                  source, wall, wall_name, system.parameter_name(parameter)));
+      throw UserError(
+          fmt::format("{}: event {} ({}) does not depend on {}, so that it cannot bring the wall to the torus; "
+                      "sweep a parameter of the wall, or give the torus in contact",
+                      source, wall, wall_name, system.parameter_name(parameter)));
     const double step = -h / hp;
     grazing.par(parameter - 1) += step;
     if (std::abs(step) <= 1e-15 * (1.0 + std::abs(grazing.par(parameter - 1)))) break;

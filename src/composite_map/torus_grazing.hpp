@@ -24,8 +24,8 @@ struct TorusGrazing {
   ParameterVector par;  ///< with the value at which it touches
 };
 
-/// Field `field`, event function `wall`, PAR(`parameter`) moves. Throws UserError, beginning with `source`, when the section
-/// does not pass through a point of least h_D, and when h_D does not depend on the parameter.
+/// Field `field`, event function `wall`, PAR(`parameter`) moves. Throws UserError, beginning with `source`, when the
+/// section does not pass through a point of least h_D, and when h_D does not depend on the parameter.
 TorusGrazing torus_grazing(const HybridSystem& system, const TorusReturn& torus, int field, int wall, int parameter,
                            const std::string& source);
 

@@ -111,9 +111,10 @@ LabelledRun labelled_run(const MapRequest& request, const MapContext& context, c
   check_settings_against(system, run.settings, {constants});
   if (!is_same_problem_type(run.solution.problem_type, run.settings.problem_type) ||
       !has_ring(run.settings.problem_type))
-    throw UserError(fmt::format("{} is no periodic orbit of {} (IPS = {} there, {} here); choose a GR label of periodic "
-                                "orbits, or give the constants of its run with -c",
-                                run.source, constants, run.solution.problem_type, run.settings.problem_type));
+    throw UserError(
+        fmt::format("{} is no periodic orbit of {} (IPS = {} there, {} here); choose a GR label of periodic "
+                    "orbits, or give the constants of its run with -c",
+                    run.source, constants, run.solution.problem_type, run.settings.problem_type));
   return run;
 }
 
@@ -121,26 +122,28 @@ MapModel periodic_model(const MapRequest& request, const MapContext& context, co
   if (request.reduced)
     throw UserError("--reduced: a reduced map is the map of a torus's phase; a periodic orbit has none, leave it out");
   const LabelledRun run = labelled_run(request, context, system);
-  const ContactTurn turn = contact_turn(run.solution, run.settings, system, std::nullopt, context.swept.front(), run.source);
+  const ContactTurn turn =
+      contact_turn(run.solution, run.settings, system, std::nullopt, context.swept.front(), run.source);
   const GrazingOrbit orbit = find_grazing_orbit(system, turn, run.source);
   MapModel model;
   model.point = orbit.point;
   if (context.section) model.section = cross_section(system, *context.section);
   // The map of P itself where the section named is P.
   if (model.section && model.section->event > 0) {
-    const EventAt at = event_at(system, model.section->event, model.point.field, model.point.x.data(),
-                                model.point.par.data());
+    const EventAt at =
+        event_at(system, model.section->event, model.point.field, model.point.x.data(), model.point.par.data());
     if (std::abs(at.rate()) > on_p * at.sizes() && std::abs(at.h) > on_p * at.scale(model.point.x.data()))
-      throw UserError(fmt::format("--section {}: event function {} is {:.6g} at the grazing point x* = {}: the section must "
-                                  "pass through it; name a state instead, whose value at x* makes the section",
-                                  *context.section, model.section->event, at.h, numbers(model.point.x)));
+      throw UserError(
+          fmt::format("--section {}: event function {} is {:.6g} at the grazing point x* = {}: the section must "
+                      "pass through it; name a state instead, whose value at x* makes the section",
+                      *context.section, model.section->event, at.h, numbers(model.point.x)));
     if (std::abs(at.gradient.dot(model.point.section_gradient)) >=
         (1.0 - 1e-9) * at.gradient.norm() * model.point.section_gradient.norm())
       model.section.reset();
   }
-  const auto suspended = std::make_shared<SuspendedSystem>(
-      system, parameters_along(context, model.point.par), model.point.field, model.point.event,
-      plane_of(model.section, model.point.x, model.point.f));
+  const auto suspended =
+      std::make_shared<SuspendedSystem>(system, parameters_along(context, model.point.par), model.point.field,
+                                        model.point.event, plane_of(model.section, model.point.x, model.point.f));
   const int section = !model.section             ? suspended->least_distance()
                       : model.section->event > 0 ? model.section->event
                                                  : suspended->plane();
@@ -191,8 +194,8 @@ std::vector<Index> phase_states(const HybridSystem& system, const std::string& t
     begin = comma + 1;
   }
   if (states.size() > 2 || (states.size() == 2 && states[0] == states[1]))
-    throw UserError(fmt::format("--phase {}: a phase is one state that is an angle, as x3, or two that go round, as y1,y2",
-                                text));
+    throw UserError(
+        fmt::format("--phase {}: a phase is one state that is an angle, as x3, or two that go round, as y1,y2", text));
   return states;
 }
 
@@ -204,7 +207,8 @@ int wall_of(const MapRequest& request, const HybridSystem& system, const VectorX
     VectorXd g(x.size());
     system.value(FunctionKind::jump, index.jump, x.data(), par.data(), g.data());
     const bool turns = std::abs((g - x).cwiseAbs().maxCoeff() - full_turn) < 1e-9;
-    if (!is_identity_jump(system, index.jump) && !turns && std::find(walls.begin(), walls.end(), index.event) == walls.end())
+    if (!is_identity_jump(system, index.jump) && !turns &&
+        std::find(walls.begin(), walls.end(), index.event) == walls.end())
       walls.push_back(index.event);
   }
   if (walls.size() == 1) return walls.front();
@@ -233,9 +237,10 @@ bool lie_on_p(const HybridSystem& system, const SectionPoints& points, int wall,
 MapModel torus_model(const MapRequest& request, const MapContext& context, const HybridSystem& system) {
   const int named = context.section ? cross_section(system, *context.section).event : 0;
   if (context.section && named == 0)
-    throw UserError(fmt::format("--section {}: points of a torus are those of an event function; name the one that was "
-                                "recorded",
-                                *context.section));
+    throw UserError(
+        fmt::format("--section {}: points of a torus are those of an event function; name the one that was "
+                    "recorded",
+                    *context.section));
   const SectionPoints points = read_section_points(system, request.source, named);
   const ParameterVector& par = context.par;
   const VectorXd first = points.states.col(0);
@@ -271,15 +276,17 @@ MapModel torus_model(const MapRequest& request, const MapContext& context, const
       "Invariant curve of {} points on {}: rotation number {:.12g} +- {:.1e}, {} harmonics, {:.1e} off at most",
       points.states.cols(), system.function_name(FunctionKind::event, points.event), fit.curve.rotation(),
       fit.rotation_error, fit.curve.harmonics(), fit.error));
-  model.text.push_back(fmt::format("Smooth map: derivatives at {} phases, interpolated to {:.1e}; return in {:.6g} of time",
-                                   torus->nodes(), torus->interpolation_error(), torus->mean_time()));
+  model.text.push_back(
+      fmt::format("Smooth map: derivatives at {} phases, interpolated to {:.1e}; return in {:.6g} of time",
+                  torus->nodes(), torus->interpolation_error(), torus->mean_time()));
   model.text.push_back(fmt::format("The torus touches {} at {} = {:.10g}, x* = {}",
                                    system.function_name(FunctionKind::event, wall), system.parameter_name(swept),
                                    grazing.par(swept - 1), numbers(x)));
   if (torus->depends_on_parameters())
-    model.text.push_back(fmt::format("The smooth torus depends on {}: its change is taken to first order from {:.10g}, the "
-                                     "value of the points",
-                                     system.parameter_name(swept), par(swept - 1)));
+    model.text.push_back(
+        fmt::format("The smooth torus depends on {}: its change is taken to first order from {:.10g}, the "
+                    "value of the points",
+                    system.parameter_name(swept), par(swept - 1)));
   model.identity = fmt::format("{} rho = {:.17g} x* = {}", request.source, fit.curve.rotation(), numbers(x));
   return model;
 }
@@ -301,20 +308,22 @@ MapOrder map_order(const std::string& text) {
 }
 
 MapModel map_model(const MapRequest& request, const MapContext& context, const HybridSystem& system) {
-  MapModel model = names_label(request.source) ? periodic_model(request, context, system)
-                                               : torus_model(request, context, system);
+  MapModel model =
+      names_label(request.source) ? periodic_model(request, context, system) : torus_model(request, context, system);
   model.free = free_return(system, model.point, model.section);
   model.contact = {model.point.field, model.point.event, model.point.jump};
   return model;
 }
 
-std::unique_ptr<IteratedMap> iterated_map(const MapRequest& request, const MapModel& model, const HybridSystem& system) {
+std::unique_ptr<IteratedMap> iterated_map(const MapRequest& request, const MapModel& model,
+                                          const HybridSystem& system) {
   const auto contact = std::make_shared<const DiscontinuityMap>(system, model.point, model.section);
   const LocalContact local(model.smooth, contact, map_order(request.order), model.neighbourhood);
   if (!request.reduced) return std::make_unique<CompositeMap>(local);
   if (*request.reduced == "map") return std::make_unique<ReducedMap>(model.torus, local);
   if (*request.reduced == "ellipse") return std::make_unique<EllipseMap>(model.torus, contact, model.phase);
-  throw UserError(fmt::format("--reduced {}: it is neither map nor ellipse; an example is --reduced map", *request.reduced));
+  throw UserError(
+      fmt::format("--reduced {}: it is neither map nor ellipse; an example is --reduced map", *request.reduced));
 }
 
 }  // namespace tchat

@@ -20,26 +20,26 @@ namespace tchat {
 
 /// What of the command line a model needs beside the map's options.
 struct MapContext {
-  ParameterVector par;              ///< of the plugin and the command line
-  std::vector<int> swept;           ///< PAR indices
-  std::vector<int> given;           ///< PAR indices whose values the command line has, in `par`
+  ParameterVector par;                   ///< of the plugin and the command line
+  std::vector<int> swept;                ///< PAR indices
+  std::vector<int> given;                ///< PAR indices whose values the command line has, in `par`
   std::optional<std::string> constants;  ///< -c
-  RunSettings settings;             ///< of the constants file, where there is one
+  RunSettings settings;                  ///< of the constants file, where there is one
   std::optional<std::string> section;    ///< --section
 };
 
 struct MapModel {
   GrazingPoint point;
-  std::optional<CrossSection> section;          ///< P', or P
+  std::optional<CrossSection> section;  ///< P', or P
   std::shared_ptr<const SmoothMap> smooth;
-  std::shared_ptr<const TorusReturn> torus;     ///< the same, of a torus
-  double phase = 0.0;                           ///< of x* on it
-  ParameterVector par;                          ///< those of the motion, with the command line's
-  IndexVector free;                             ///< a return without contact
-  IndexVector contact;                          ///< a return with one
+  std::shared_ptr<const TorusReturn> torus;  ///< the same, of a torus
+  double phase = 0.0;                        ///< of x* on it
+  ParameterVector par;                       ///< those of the motion, with the command line's
+  IndexVector free;                          ///< a return without contact
+  IndexVector contact;                       ///< a return with one
   double neighbourhood = 0.0;
-  std::vector<std::string> text;                ///< lines for people: what it is
-  std::string identity;                         ///< what it has been made of
+  std::vector<std::string> text;  ///< lines for people: what it is
+  std::string identity;           ///< what it has been made of
 };
 
 /// Is `source` a label of a q-file, FILE:LABEL?

@@ -27,11 +27,12 @@ void refuse_options_of_simulations(const SweepRequest& request) {
   const SimulationRequest& s = request.simulation;
   const auto refuse = [](bool given, const char* option, const char* instead) {
     if (given)
-      throw UserError(fmt::format("--map and {} are both given: a map is iterated, nothing is simulated; {}", option,
-                                  instead));
+      throw UserError(
+          fmt::format("--map and {} are both given: a map is iterated, nothing is simulated; {}", option, instead));
   };
   refuse(s.data.has_value(), "-d", "give a section state with --state, or leave it out and start at the grazing point");
-  refuse(s.start.has_value(), "-s", "give a section state with --state, or leave it out and start at the grazing point");
+  refuse(s.start.has_value(), "-s",
+         "give a section state with --state, or leave it out and start at the grazing point");
   refuse(s.plan.time.has_value(), "--time", "give the number of returns with --events");
   refuse(s.plan.transient_time > 0.0, "--transient-time", "give the number of returns with --transient-events");
   refuse(s.signature.has_value() || s.follow_signature, "--signature", "leave it out");
@@ -43,8 +44,9 @@ std::vector<int> swept_parameters(const std::vector<SweepTarget>& over) {
   for (const SweepTarget& target : over)
     if (!target.quantity.is_state) swept.push_back(target.position);
   if (swept.empty())
-    throw UserError("--map: no parameter is swept; a composite map is followed away from grazing in one: give it as an "
-                    "--over, as --over mu=-0.8:-0.79:101, also beside an initial state");
+    throw UserError(
+        "--map: no parameter is swept; a composite map is followed away from grazing in one: give it as an "
+        "--over, as --over mu=-0.8:-0.79:101, also beside an initial state");
   return swept;
 }
 
@@ -139,9 +141,10 @@ int map_sweep_problem(const SweepRequest& request, const MapRequest& map, std::o
   MapSamplerSetup setup;
   setup.over = parse_overs(system, request.over);
   if (!request.follow.empty() && setup.over.front().quantity.is_state)
-    throw UserError(fmt::format("--follow {}: attractors are followed along a parameter, and {} is an initial state; give "
-                                "a parameter as the first --over, or leave --follow out",
-                                request.follow, setup.over.front().quantity.name));
+    throw UserError(
+        fmt::format("--follow {}: attractors are followed along a parameter, and {} is an initial state; give "
+                    "a parameter as the first --over, or leave --follow out",
+                    request.follow, setup.over.front().quantity.name));
   setup.iteration = iteration_of(request, system, map.reduced.has_value());
   const MapModel model = map_model(map, context_of(request, loaded, swept_parameters(setup.over)), system);
   SweepJob job;

@@ -9,8 +9,8 @@
 
 namespace tchat {
 
-/// As sweep_problem(): the same files, parts, workers and summary. Throws UserError, also for options of simulations that
-/// a map has no use for, and ComputationError.
+/// As sweep_problem(): the same files, parts, workers and summary. Throws UserError, also for options of simulations
+/// that a map has no use for, and ComputationError.
 int map_sweep_problem(const SweepRequest& request, const MapRequest& map, std::ostream& screen, std::ostream& warnings,
                       const std::function<bool()>& interrupted, std::ostream* progress);
 

@@ -73,9 +73,10 @@ SectionPoints of_sweep(const HybridSystem& system, const std::string& path, int 
   const SweepTable table = read_sweep_file(path);
   const auto* index = table.column("index");
   if (index != nullptr && std::any_of(index->begin(), index->end(), [&](double i) { return i != index->front(); }))
-    throw UserError(fmt::format("{}: it has section points of several values; a torus is one value's: sweep one, as "
-                                "--over mu=5:5:1",
-                                path));
+    throw UserError(
+        fmt::format("{}: it has section points of several values; a torus is one value's: sweep one, as "
+                    "--over mu=5:5:1",
+                    path));
   std::vector<Row> rows(table.rows());
   for (Row& row : rows) row.state.resize(system.dimension());
   for (int k = 1; k <= system.dimension(); ++k) {
@@ -87,8 +88,8 @@ SectionPoints of_sweep(const HybridSystem& system, const std::string& path, int 
   if (const auto* events = table.column("event"))
     for (std::size_t i = 0; i < rows.size(); ++i) rows[i].event = static_cast<int>((*events)[i]);
   else if (event == 0)
-    throw UserError(fmt::format("{}: it does not tell at which event its states were recorded; say so with --section",
-                                path));
+    throw UserError(
+        fmt::format("{}: it does not tell at which event its states were recorded; say so with --section", path));
   else
     for (Row& row : rows) row.event = event;
   return {event, 1, columns(rows, event, system.dimension())};
@@ -114,11 +115,13 @@ SectionPoints read_section_points(const HybridSystem& system, const std::string&
     std::string list;
     for (const auto& [j, count] : counts)
       if (count > 0) list += fmt::format("{}{} ({} points)", list.empty() ? "" : ", ", j, count);
-    throw UserError(fmt::format("{}: there is no point of event function {} ({}) in it; it has {}: name one of them with "
-                                "--section, or simulate with that one recorded",
-                                path, event, system.function_name(FunctionKind::event, event), list));
+    throw UserError(
+        fmt::format("{}: there is no point of event function {} ({}) in it; it has {}: name one of them with "
+                    "--section, or simulate with that one recorded",
+                    path, event, system.function_name(FunctionKind::event, event), list));
   }
-  points.field = std::find_if(rows.begin(), rows.end(), [&](const Row& row) { return row.event == points.event; })->field;
+  points.field =
+      std::find_if(rows.begin(), rows.end(), [&](const Row& row) { return row.event == points.event; })->field;
   points.states = columns(rows, points.event, n);
   return points;
 }
