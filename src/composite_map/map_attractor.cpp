@@ -32,6 +32,11 @@ std::string trouble(const IteratedMap& map, const Iterate& iterate, const Vector
         state_text(x));
   if (!iterate.image.allFinite())
     return fmt::format("the map has no value at x = {}: it is too far from grazing", state_text(x));
+  if (iterate.depth > settings.escape)
+    return fmt::format(
+        "a penetration of {:.6g} at x = {}, which is more than the motion extends over: the parameters are "
+        "too far from grazing",
+        iterate.penetration, state_text(x));
   const double distance = map.smooth().distance(iterate.image);
   if (!(distance <= settings.escape))
     return fmt::format(
