@@ -229,16 +229,19 @@ TCHAT_PROBLEM(Oscillator)
   workspace.write("minimal.cpp", cpp);
   workspace.write("old.f", fortran);
   workspace.write("gc.old", "NDIM = 4\nIPS = 180\nGCFIND = [1]\nGCHIND = [2]\nGCGIND = [2]\nICP = [1, 61]\n");
-  workspace.write("fresh.tch", R"(problem fresh
+  workspace.write("written.tch", R"(par alpha=1, omega=2
 x1' = x2
 x2' = alpha*y2 - 0.6*x2 - x1
 y1' = (1 - y1^2 - y2^2)*y1 + omega*y2
 y2' = (1 - y1^2 - y2^2)*y2 - omega*y1
+event wall = 1 - x1
+event top = x2
+jump impact: x2 -> -0.8*x2
 )");
   const std::string over = " --signature 1,2,2 --state 0.1,0,0,1 --over PAR(1)=1:2:60 PAR(2)=2 --section 2";
   // Without impacts: the amplitude of the response is alpha / sqrt((1 - omega^2)^2 + (2 zeta omega)^2), zeta = 0.3.
   const double response = 1.0 / std::sqrt(9.0 + 1.44);
-  for (const char* name : {"minimal", "old"}) {
+  for (const char* name : {"minimal", "old", "written"}) {
     INFO(name);
     const tchat::SweepTable table = sweep(workspace, name + over + " -j 2", std::string(name) + "2");
     sweep(workspace, name + over, std::string(name) + "1");
