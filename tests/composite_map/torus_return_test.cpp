@@ -19,7 +19,7 @@ using Eigen::VectorXd;
 TEST_CASE("fvdp's smooth torus: mu*, x3* and the curve's second derivative, and the map that it makes", "[slow]") {
   const HybridSystem& system = system_of<ForcedVanDerPol>();
   const VectorXd par = full_par({5.0, 0.1, 0.75, 1.505, 0.8, 2.9236851});
-  const MatrixXd points = torus_points(par, 2, 6000);
+  const MatrixXd points = torus_points(par, 2, 4000);
   CurveSettings settings;
   settings.angles = {2};
   const FittedCurve fit = fit_invariant_curve(points, settings, "points");
@@ -40,6 +40,7 @@ TEST_CASE("fvdp's smooth torus: mu*, x3* and the curve's second derivative, and 
   const auto suspended = std::make_shared<SuspendedSystem>(system, std::vector<int>{1}, 1, 1);
   TorusSettings torus;
   torus.order = 2;
+  torus.accuracy = 1e-5;
   const TorusReturn map(suspended, fit.curve, projection, par, suspended->least_distance(), torus);
   INFO("defect " << map.defect() << " interpolation " << map.interpolation_error());
   CHECK(map.defect() < 1e-8);
