@@ -299,16 +299,13 @@ void Underlay::add(Underlay other) {
 }
 
 std::string default_sweep_y(const SweepTable& table, const std::string& x) {
+  if (table.column("penetration") != nullptr) return "penetration";  // it has been asked for
   for (const std::string& state : sweep_states(table))
     if (state != x) return state;
-  for (const char* name : {"penetration", "lambda1", "period"})
-    if (table.column(name) != nullptr) {
-      if (std::string(name) != "lambda1") return name;
-      std::string all = name;
-      for (int k = 2; table.column(fmt::format("lambda{}", k)) != nullptr; ++k) all += fmt::format(",lambda{}", k);
-      return all;
-    }
-  return "attractor";
+  if (table.column("lambda1") == nullptr) return table.column("period") != nullptr ? "period" : "attractor";
+  std::string all = "lambda1";
+  for (int k = 2; table.column(fmt::format("lambda{}", k)) != nullptr; ++k) all += fmt::format(",lambda{}", k);
+  return all;
 }
 
 Underlay sweep_layer(const SweepFile& file, const SweepLook& look, std::vector<std::string>& warnings) {
