@@ -16,6 +16,7 @@
 #include "app/complete_command.hpp"
 #include "app/constants_command.hpp"
 #include "app/dat_command.hpp"
+#include "app/grazing_command.hpp"
 #include "app/help_format.hpp"
 #include "app/labels_command.hpp"
 #include "app/manual_page.hpp"
@@ -83,6 +84,7 @@ int parse_and_run(int argc, char** argv) {
   add_orbit_command(app, chosen);
   add_table_command(app, chosen);
   add_verify_command(app, chosen);
+  add_grazing_command(app, chosen);
   add_plot_command(app, chosen);
   add_check_command(app, chosen);
   add_dat_command(app, chosen);

@@ -73,7 +73,17 @@ struct DiscontinuityMap::Implementation {
   /// From P through the jump back to P or P'.
   bool pass(LocalFlow& local, VectorXd& d, double y, MatrixXd* derivative) const {
     if (!local.to_height(d, y, derivative)) return false;
+    return bring_back(local, d, derivative);
+  }
+
+  /// From the state before the jump.
+  bool bring_back(LocalFlow& local, VectorXd& d, MatrixXd* derivative) const {
     d = local.jumped(d, derivative);
+    for (const IndexVector& v : point.aftermath) {
+      LocalFlow other(system, v, point.x, point.par, local.parameters());
+      if (!d.allFinite() || !other.to_section(d, {v.event, 0}, derivative)) return false;
+      d = other.jumped(d, derivative);
+    }
     if (!d.allFinite() || !local.to_least_height(d, derivative)) return false;
     return !section || local.to_section(d, *section, derivative);
   }
@@ -89,9 +99,7 @@ struct DiscontinuityMap::Implementation {
     result.setConstant(std::numeric_limits<double>::quiet_NaN());
     if (!arrive(local, d, nullptr)) return result;
     MatrixXd change = -std::sqrt(2.0 / local.acceleration(d)) * local.field(d);
-    d = local.jumped(d, &change);
-    if (!d.allFinite() || !local.to_least_height(d, &change)) return result;
-    if (section && !local.to_section(d, *section, &change)) return result;
+    if (!bring_back(local, d, &change)) return result;
     result << d, change;
     return result;
   }
@@ -102,10 +110,8 @@ struct DiscontinuityMap::Implementation {
     LocalFlow local = flow(point.par);
     const MatrixXd onto = section ? MatrixXd(projection(point.f, gradient)) : MatrixXd::Identity(n(), n());
     const MatrixXd onto_p = projection(point.f, point.section_gradient);
-    MatrixXd gx = MatrixXd::Identity(n(), n());
-    local.jumped(VectorXd::Zero(n()), &gx);
     expansion.y = onto * point.B;
-    expansion.dx = onto * onto_p * gx * onto_p;
+    expansion.dx = onto * onto_p * point.jump_derivative * onto_p;
 
     MatrixXd fx(n(), n());
     VectorXd f(n());
@@ -228,6 +234,13 @@ MatrixXd DiscontinuityMap::derivative(const VectorXd& x, const ParameterVector& 
 VectorXd DiscontinuityMap::smooth_deviation(const VectorXd& d, double y) const {
   LocalFlow local = p_->flow(p_->point.par);
   return p_->smooth(local, d, y);
+}
+
+VectorXd DiscontinuityMap::onto_section(const VectorXd& d) const {
+  LocalFlow local = p_->flow(p_->point.par);
+  VectorXd at = d;
+  const bool arrives = p_->section ? local.to_section(at, *p_->section) : local.to_least_height(at);
+  return arrives ? at : no_value(d.size());
 }
 
 double DiscontinuityMap::penetration_of_deviation(const VectorXd& d) const {

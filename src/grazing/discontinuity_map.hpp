@@ -68,6 +68,8 @@ class DiscontinuityMap {
 
   /// The same in deviations from x*, at the parameters of the grazing point: X(x* + d, y) - x* for any y, d on the
   /// section; and the penetration of x* + d. They keep their digits however small d and y are.
+  /// `onto_section`: where the smooth flow through x* + d meets the section.
+  Eigen::VectorXd onto_section(const Eigen::VectorXd& d) const;
   Eigen::VectorXd smooth_deviation(const Eigen::VectorXd& d, double y) const;
   double penetration_of_deviation(const Eigen::VectorXd& d) const;
   Eigen::VectorXd expanded_deviation(const Eigen::VectorXd& d, double y, MapOrder order) const;

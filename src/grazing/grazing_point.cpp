@@ -51,6 +51,25 @@ void require_identity_at_contact(const HybridSystem& system, const GrazingPoint&
       moved > same_state * (1.0 + at.x.lpNorm<Eigen::Infinity>()) ? moved : beside));
 }
 
+/// g_x (Id - f h_x / (h_x f)) of a segment of no duration at x*.
+MatrixXd short_segment(const HybridSystem& system, const IndexVector& v, const GrazingPoint& at,
+                       const std::string& source) {
+  const Eigen::Index n = at.x.size();
+  const EventAt event = event_at(system, v.event, v.field, at.x.data(), at.par.data());
+  VectorXd after(n);
+  MatrixXd gx(n, n);
+  system.first(FunctionKind::jump, v.jump, at.x.data(), at.par.data(), {}, after.data(), gx.data(), nullptr);
+  const bool is_empty = std::abs(event.h) <= on_surfaces * event.scale(at.x.data()) &&
+                        (after - at.x).lpNorm<Eigen::Infinity>() <= same_state * (1.0 + at.x.norm());
+  if (!is_empty || !(std::abs(event.rate()) > no_minimum * event.sizes()))
+    throw UserError(fmt::format(
+        "{}: after an impact of velocity zero segment {} ({}) follows, which {}: the discontinuity map belongs to "
+        "impacts after which the flow goes on as before, at once or after a short slip",
+        source, to_string({v}), system.function_name(FunctionKind::field, v.field),
+        is_empty ? "leaves its surface tangentially" : "lasts"));
+  return gx - (gx * event.f) * (event.gradient.transpose() / event.rate());
+}
+
 void require_minimum(const HybridSystem& system, const GrazingPoint& at, const std::string& source) {
   const double scale = at.section_gradient.norm() * at.f.norm();
   if (at.a > no_minimum * scale) return;
@@ -85,9 +104,9 @@ bool GrazingPoint::has_square_root() const {
 }
 
 GrazingPoint grazing_point(const HybridSystem& system, int field, int event, int jump, const VectorXd& x,
-                           const ParameterVector& par, const std::string& source) {
+                           const ParameterVector& par, const std::string& source, const Signature& aftermath) {
   const int n = system.dimension();
-  GrazingPoint at{field, event, jump, x, par, 0.0, VectorXd(n), {}, {}, {}, {}};
+  GrazingPoint at{field, event, jump, aftermath, x, par, 0.0, VectorXd(n), {}, {}, {}, {}, {}};
   SurfaceRate surface(n, 0);
   surface.evaluate(system, {field, event, jump}, x.data(), par.data(), {});
   system.value(FunctionKind::field, field, x.data(), par.data(), at.f.data());
@@ -107,7 +126,9 @@ GrazingPoint grazing_point(const HybridSystem& system, int field, int event, int
         "GRJUMP in the constants",
         source, named(system, FunctionKind::jump, jump)));
   require_identity_at_contact(system, at, after, gx, source);
-  at.beta = impact_direction(at.f, at.section_gradient, gx);
+  at.jump_derivative = gx;
+  for (const IndexVector& v : aftermath) at.jump_derivative = short_segment(system, v, at, source) * at.jump_derivative;
+  at.beta = impact_direction(at.f, at.section_gradient, at.jump_derivative);
   at.B = -std::sqrt(2.0 / at.a) * at.beta;
   return at;
 }

@@ -27,6 +27,8 @@ class LocalFlow {
   LocalFlow(const HybridSystem& system, const IndexVector& contact, const Eigen::VectorXd& x_star,
             const ParameterVector& base, const ParameterVector& par);
 
+  const ParameterVector& parameters() const { return par_; }
+
   double height(const Eigen::VectorXd& d);                    ///< h_D(x* + d)
   Eigen::VectorXd height_gradient(const Eigen::VectorXd& d);  ///< h_{D,x} there
   double rate(const Eigen::VectorXd& d);                      ///< h_P(x* + d)
