@@ -106,6 +106,7 @@ void add_sweep_command(CLI::App& app, std::function<int()>& chosen) {
   SimulationRequest& simulation = request->simulation;
   simulation.plan.transient_events = 1000;
   simulation.plan.events = 100;
+  simulation.tolerance = 1e-8;  // of a method whose steps are better than their estimate
   add_problem_options(*command, simulation);
   command->add_option("-o,--output", simulation.output, "write O.sweep [NAME]")->type_name("O");
   command->add_flag("-q,--quiet", simulation.quiet, "no summary on the screen");

@@ -61,9 +61,9 @@ Watch& watch() {
 
 // The lowest address that this thread's stack may grow to.
 thread_local std::uintptr_t stack_end = 0;
-thread_local bool made_guards = false;
+thread_local bool is_ours = false;  // not started by a plugin
 
-bool on_plugins_thread() { return !made_guards && !PluginCall::in_calling_thread(); }
+bool on_plugins_thread() { return !is_ours && !PluginCall::in_calling_thread(); }
 
 SignalText& add_place(SignalText& text) {
   const PluginCall* const call = PluginCall::running();
@@ -178,7 +178,7 @@ ExitGuard::ExitGuard(const std::string& plugin) {
   name_ = state.plugins.insert(state.plugins.end(), plugin.empty() ? "(unnamed)" : plugin);
   state.plugin = name_->c_str();
   state.process = ::getpid();
-  made_guards = true;
+  is_ours = true;
 }
 
 ExitGuard::~ExitGuard() {
@@ -192,6 +192,7 @@ ExitGuard::~ExitGuard() {
 }
 
 SignalStack::SignalStack() : memory_(handler_stack_size) {
+  is_ours = true;
   stack_t stack{};
   stack.ss_sp = memory_.data();
   stack.ss_size = memory_.size();

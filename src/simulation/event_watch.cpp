@@ -1,7 +1,9 @@
 #include "simulation/event_watch.hpp"
 
 #include <algorithm>
+#include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
+#include <cstdint>
 #include <utility>
 
 namespace tchat {
@@ -11,11 +13,18 @@ namespace {
 using Eigen::RowVectorXd;
 using Eigen::VectorXd;
 
-/// Between a and b, where `is_before` holds at first and not any more at the end: the end of the part where it holds.
-double last_change(double a, double b, const std::function<bool(double)>& is_before) {
+/// Between a, where f > 0, and b, where it is not: the first time after which it is not.
+double last_change(double a, double b, const std::function<double(double)>& f) {
+  const double f_a = f(a);
+  const double f_b = f(b);
+  if (f_a > 0.0 && f_b < 0.0 && std::isfinite(f_a) && std::isfinite(f_b)) {
+    std::uintmax_t evaluations = 60;
+    const boost::math::tools::eps_tolerance<double> tolerance(52);
+    return boost::math::tools::toms748_solve(f, a, b, f_a, f_b, tolerance, evaluations).second;
+  }
   for (int halving = 0; halving < 60 && a < b; ++halving) {
     const double middle = 0.5 * (a + b);
-    (is_before(middle) ? a : b) = middle;
+    (f(middle) > 0.0 ? a : b) = middle;
   }
   return b;
 }
@@ -75,22 +84,22 @@ std::vector<EventWatch::Contact> EventWatch::take_contacts() { return std::excha
 std::optional<double> EventWatch::fall(Watched& watched, double end, double h, double rate, bool is_minimum,
                                        const DenseOutput& state) {
   const int event = watched.event;
-  const auto is_positive = [&](double t) { return value(event, state(t)) > 0.0; };
+  const auto h_at = [&](double t) { return value(event, state(t)); };
   if (watched.readiness == Readiness::armed) {
-    if (h <= 0.0) return last_change(time_, end, is_positive);
+    if (h <= 0.0) return last_change(time_, end, h_at);
     if (!is_minimum && !(watched.rate < 0.0 && rate > 0.0)) return std::nullopt;
-    const auto falls = [&](double t) { return this->rate(event, state(t)) < 0.0; };
+    const auto falls = [&](double t) { return -this->rate(event, state(t)); };
     const double least = is_minimum ? end : last_change(time_, end, falls);
     const double h_least = value(event, state(least));
-    if (h_least < 0.0) return last_change(time_, least, is_positive);
+    if (h_least < 0.0) return last_change(time_, least, h_at);
     contacts_.push_back({event, least, h_least, Eigen::Map<const VectorXd>(state(least), system_.dimension())});
     return std::nullopt;
   }
   // Below zero or just leaving it: a maximum between the two times may have been above.
   if (watched.rate > 0.0 && rate < 0.0 && h <= 0.0) {
-    const double top = last_change(time_, end, [&](double t) { return this->rate(event, state(t)) > 0.0; });
-    const bool is_above = is_positive(top);
-    if (is_above) return last_change(top, end, is_positive);
+    const double top = last_change(time_, end, [&](double t) { return this->rate(event, state(t)); });
+    const bool is_above = h_at(top) > 0.0;
+    if (is_above) return last_change(top, end, h_at);
     if (watched.readiness == Readiness::leaving_upwards) return top;  // a flight as short as rounding
   }
   const double scale = at(event, state(end)).scale;

@@ -25,7 +25,7 @@ using DenseDormandPrince = odeint::result_of::make_dense_output<DormandPrince>::
 
 constexpr double no_value = 1e200;       // of a field that has none: the step is refused, and a smaller one tried
 constexpr double smallest_step = 1e-13;  // relative to the time
-constexpr int looks_a_step = 2;          // for falls of event functions
+constexpr double short_steps = 1e-7;     // a tolerance from which on one look a step for falls of events is enough
 
 }  // namespace
 
@@ -134,6 +134,7 @@ struct RungeKuttaFlow::Implementation {
       return false;
     }
     const double from = looked;
+    const int looks_a_step = options.relative_tolerance <= short_steps ? 1 : 3;
     for (int k = 1; k <= looks_a_step; ++k) {
       looked = k == looks_a_step ? until : from + (until - from) * k / looks_a_step;
       const std::optional<EventWatch::Fall> fall = watch->look(looked, output, nullptr);

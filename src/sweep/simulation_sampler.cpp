@@ -6,6 +6,7 @@
 #include <cmath>
 #include <deque>
 #include <limits>
+#include <utility>
 
 #include "attractor/attractor_recognition.hpp"
 #include "attractor/lyapunov_exponents.hpp"
@@ -29,6 +30,8 @@ using Eigen::VectorXd;
 constexpr double never = 1e300;
 constexpr double not_there = std::numeric_limits<double>::quiet_NaN();
 constexpr double far_away = 1e6;               // a state of this size has escaped
+constexpr double nearly_same = 1e-2;           // parts of a period that may become the same, relative to the range
+constexpr long doubt_window = 32;               // events in which it is seen whether they do
 constexpr double every_minimum = 1e300;        // as a share of the largest value: all contacts are noted
 constexpr std::size_t samples_following = 12;  // of a segment, among which the hand-over is chosen
 constexpr std::size_t points_for_ignorable = 6;
@@ -99,8 +102,14 @@ class SampleRun {
     return text;
   }
 
-  SimulationSettings settings() const {
+  SimulationSettings plain_settings() const {
     SimulationSettings settings = simulation_settings(setup_.request, interrupted_);
+    if (!setup_.request.stiff) settings.flow.method = IntegrationMethod::runge_kutta;
+    return settings;
+  }
+
+  SimulationSettings settings() const {
+    SimulationSettings settings = plain_settings();
     settings.samples = setup_.follows ? samples_following : 0;
     const Recording& recording = setup_.recording;
     if (recording.states == Recording::States::section) settings.sections.push_back(recording.section);
@@ -201,7 +210,7 @@ class SampleRun {
     decay_.add(segment.index, segment.event_velocity);
     keep(segment);
     if (!setup_.known.empty()) sample_.known = capture_.look(segment.index, segment.after);
-    if (const std::optional<int> period = recurrence_.period()) {
+    if (const std::optional<int> period = recurrence_.period(); period && is_least_period(*period)) {
       kept_.erase(kept_.begin(), kept_.end() - *period);
       return AttractorKind::periodic;
     }
@@ -215,6 +224,42 @@ class SampleRun {
       return AttractorKind::escape;
     }
     return std::nullopt;
+  }
+
+  /// Near an orbit with a multiplier close to -1 the motion comes back best after two turns: while what is left between
+  /// one turn and the next still shrinks, the period is not known.
+  bool is_least_period(int period) {
+    const double left = least_part_left(period);
+    if (left > nearly_same) return true;
+    left_in_window_ = std::max(left_in_window_, left);
+    if (++asked_ % doubt_window != 0) return false;
+    const bool shrinks = !left_before_ || left_in_window_ < 0.9 * *left_before_;
+    left_before_ = std::exchange(left_in_window_, 0.0);
+    return !shrinks;
+  }
+
+  /// The least difference, relative to the range, of the period's states from those a proper part of it before.
+  double least_part_left(int period) const {
+    const auto p = static_cast<std::size_t>(period);
+    double least = never;
+    for (std::size_t q = 1; q < p; ++q) {
+      if (p % q != 0 || kept_.size() < p) continue;
+      double largest = 0.0;
+      VectorXd low = kept_.back().low, high = kept_.back().high;
+      for (std::size_t i = 0; i < p; ++i) {
+        low = low.cwiseMin(kept_[kept_.size() - 1 - i].low);
+        high = high.cwiseMax(kept_[kept_.size() - 1 - i].high);
+      }
+      const VectorXd range = (high - low).array() + 1e-3 * (high - low).maxCoeff();
+      for (std::size_t i = 0; i < p; ++i) {
+        const SimulatedSegment& a = kept_[kept_.size() - 1 - i];
+        const SimulatedSegment& b = kept_[kept_.size() - 1 - (i + q) % p];
+        const double d = ((a.after - b.after).array() / range.array()).abs().maxCoeff();
+        largest = std::max(largest, a.index == b.index ? d : never);
+      }
+      least = std::min(least, largest);
+    }
+    return least;
   }
 
   /// Segments of which dots are made: of the transient only what may turn out to be a period.
@@ -365,7 +410,7 @@ class SampleRun {
       contacts.push_back({time, event, from});
       return;
     }
-    const SimulationSettings settings = simulation_settings(setup_.request, interrupted_);
+    const SimulationSettings settings = plain_settings();
     const std::unique_ptr<WatchedFlow> flow = make_flow(system_, field, from, par_, settings.flow);
     VectorXd least;
     flow->on_piece([&](double a, double b) {
@@ -438,6 +483,9 @@ class SampleRun {
   DecayDetector decay_;
   Capture capture_;
   long events_ = 0;
+  double left_in_window_ = 0.0;        // between one part of a period and the next: largest in the last questions
+  std::optional<double> left_before_;  // in the questions before those
+  long asked_ = 0;
   bool is_open_ = false;  // it has been simulated as long as wanted, and has not repeated itself
   std::deque<SimulatedSegment> kept_;
   std::vector<VectorXd> points_;

@@ -82,6 +82,7 @@ std::string difference(const SweepIdentity& there, const SweepIdentity& here) {
 
 SweepJournal::SweepJournal(std::string path, const SweepIdentity& identity) : path_(std::move(path)) {
   JournalContents contents = read_journal(path_);
+  if (contents.is_there && contents.records.empty()) contents = {};
   if (contents.is_there)
     if (const std::string what = difference(contents.identity, identity); !what.empty())
       throw UserError(fmt::format(

@@ -31,6 +31,7 @@ void run_workers(int workers, const SweepWork& work) {
   const tbb::global_control threads(tbb::global_control::max_allowed_parallelism, allowed);
   const tbb::global_control stack(tbb::global_control::thread_stack_size, worker_stack);
   std::atomic<bool> stop = false;
+  std::atomic<std::size_t> next = 0;
   std::mutex mutex;
   std::condition_variable ended;
   bool is_done = false;
@@ -39,13 +40,14 @@ void run_workers(int workers, const SweepWork& work) {
   tbb::task_arena arena(workers, 0);
   arena.enqueue([&] {
     try {
-      const tbb::blocked_range<std::size_t> tasks(0, work.tasks, 1);
+      // A worker is a task that takes one after the other, for as long as there are any: its number is its own, however
+      // many threads there are.
       tbb::parallel_for(
-          tasks,
-          [&](const tbb::blocked_range<std::size_t>& range) {
+          tbb::blocked_range<int>(0, workers, 1),
+          [&](const tbb::blocked_range<int>& numbers) {
             give_signal_stack();
-            for (std::size_t task = range.begin(); task < range.end() && !stop; ++task)
-              work.work(task, tbb::this_task_arena::current_thread_index(), stop);
+            for (int worker = numbers.begin(); worker < numbers.end(); ++worker)
+              for (std::size_t task = next++; task < work.tasks && !stop; task = next++) work.work(task, worker, stop);
           },
           tbb::simple_partitioner());
     } catch (...) {
