@@ -14,7 +14,7 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double none = 1e-12;  // of the sizes of what is summed
+constexpr double none = 1e-9;  // of the sizes of what is summed: zero to rounding
 
 /// What both kinds of map need: A, b, h_x, h_p of one parameter.
 struct Return {

@@ -35,11 +35,14 @@ Turn failed(const std::string& message) {
 
 class TurnMap {
  public:
-  TurnMap(const HybridSystem& system, const Signature& segments, const std::vector<double>& durations)
-      : system_(system), leading_(segments.begin(), segments.end() - 1), field_(segments.back().field) {
+  TurnMap(const HybridSystem& system, const ContactTurn& turn)
+      : system_(system),
+        first_jump_(turn.section_jump),
+        leading_(turn.segments.begin(), turn.segments.end() - 1),
+        field_(turn.segments.back().field) {
     options_.active.resize(static_cast<std::size_t>(system.parameters()));
     std::iota(options_.active.begin(), options_.active.end(), 1);
-    options_.max_duration = 10.0 * std::accumulate(durations.begin(), durations.end(), 0.0);
+    options_.max_duration = 10.0 * std::accumulate(turn.durations.begin(), turn.durations.end(), 0.0);
   }
 
   /// By Adams' formulas, else with less accuracy, else for stiff problems: what works is kept.
@@ -66,22 +69,25 @@ class TurnMap {
 
   Turn once(const VectorXd& x, double last, const VectorXd& par) const {
     Turn turn;
-    turn.end = x;
-    turn.by_state = MatrixXd::Identity(x.size(), x.size());
-    turn.by_parameters = MatrixXd::Zero(x.size(), system_.parameters());
+    turn.end.resize(x.size());
+    turn.by_state.resize(x.size(), x.size());
+    turn.by_parameters.resize(x.size(), system_.parameters());
+    system_.first(FunctionKind::jump, first_jump_, x.data(), par.data(), options_.active, turn.end.data(),
+                  turn.by_state.data(), turn.by_parameters.data());
+    if (!turn.end.allFinite()) return failed("the jump at the contact cannot be evaluated");
     if (!leading_.empty()) {
-      const ReturnMap map = return_map(system_, leading_, x, par, options_);
+      const ReturnMap map = return_map(system_, leading_, turn.end, par, options_);
       if (!map.ok) return failed(map.message);
       turn.end = map.end;
-      turn.by_state = map.derivative;
-      turn.by_parameters = map.parameter_derivative;
+      turn.by_parameters = (map.derivative * turn.by_parameters + map.parameter_derivative).eval();
+      turn.by_state = (map.derivative * turn.by_state).eval();
       for (const MapSegment& segment : map.segments) turn.durations.push_back(segment.duration);
     }
     const SegmentFlow flow = integrate_for(system_, field_, turn.end, par, last, options_);
     if (flow.status == FlowStatus::failed) return failed(flow.message);
     turn.end = flow.end_state;
-    turn.by_state = flow.jacobian * turn.by_state;
-    turn.by_parameters = flow.jacobian * turn.by_parameters + flow.parameter_derivative;
+    turn.by_state = (flow.jacobian * turn.by_state).eval();
+    turn.by_parameters = (flow.jacobian * turn.by_parameters + flow.parameter_derivative).eval();
     turn.durations.push_back(last);
     turn.f.resize(x.size());
     system_.value(FunctionKind::field, field_, turn.end.data(), par.data(), turn.f.data());
@@ -89,6 +95,7 @@ class TurnMap {
   }
 
   const HybridSystem& system_;
+  int first_jump_;
   Signature leading_;
   int field_;
   FlowOptions options_;
@@ -119,7 +126,7 @@ GrazingOrbit find_grazing_orbit(const HybridSystem& system, const ContactTurn& s
   constexpr double good_enough = 1e-9;  // where errors of the integration end Newton's method
   const Eigen::Index n = start.x.size();
   const int k = start.parameter - 1;
-  TurnMap map(system, start.segments, start.durations);
+  TurnMap map(system, start);
   SurfaceRate surface(system.dimension(), system.parameters());
   const std::vector<int> parameters = all_parameters(system);
   VectorXd x = start.x;

@@ -23,6 +23,8 @@ struct ContactTurn {
   Signature aftermath = {};  ///< see GrazingPoint
   Eigen::VectorXd x;         ///< near x*, n
   ParameterVector par;
+  /// Of the section that the contact lies on, which does not move x*: it belongs to the smooth orbit.
+  int section_jump = no_function;
   /// From x* to x*, contact and aftermath left out. The last segment ends at x*: (f, h_D, no_function).
   Signature segments;
   std::vector<double> durations;  ///< of each

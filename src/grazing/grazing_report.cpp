@@ -36,9 +36,9 @@ std::string row(const std::string& name, const VectorXd& values) {
   return text + '\n';
 }
 
-std::string complex_text(std::complex<double> value, double scale) {
-  constexpr double rounding = 1e-11;  // the structural zero, as integration leaves it
-  if (std::abs(value) <= rounding * std::max(1.0, scale)) return "0";
+/// Below `zero` it is one.
+std::string complex_text(std::complex<double> value, double zero) {
+  if (std::abs(value) <= zero) return "0";
   if (value.imag() == 0.0) return fmt::format("{:.11g}", value.real());
   return fmt::format("{:.11g} {} {:.11g} i", value.real(), value.imag() < 0.0 ? '-' : '+', std::abs(value.imag()));
 }
@@ -167,12 +167,17 @@ std::string orbit_report(const HybridSystem& system, const GrazingOrbit& orbit, 
                   to_string(orbit.segments), orbit.period(), parameter, orbit.point.par(orbit.parameter - 1));
   text += fmt::format(" ({:.1e} from the label).\n\n", orbit.moved);
   text += "A, the derivative of the smooth return map on P:\n" + names_row(system);
-  for (Eigen::Index i = 0; i < orbit.A.rows(); ++i)
-    text += row(system.state_name(static_cast<int>(i) + 1), orbit.A.row(i).transpose());
+  const double rounding = 1e-12 * orbit.A.cwiseAbs().maxCoeff();
+  for (Eigen::Index i = 0; i < orbit.A.rows(); ++i) {
+    VectorXd shown = orbit.A.row(i).transpose();
+    for (double& value : shown)
+      if (std::abs(value) <= rounding) value = 0.0;
+    text += row(system.state_name(static_cast<int>(i) + 1), shown);
+  }
   text += "Eigenvalues: ";
-  const double largest = std::abs(orbit.multipliers(0));
+  const double zero = 1e-11 * std::max(1.0, std::abs(orbit.multipliers(0)));  // the structural zero, as computed
   for (Eigen::Index i = 0; i < orbit.multipliers.size(); ++i)
-    text += (i > 0 ? ", " : "") + complex_text(orbit.multipliers(i), largest);
+    text += (i > 0 ? ", " : "") + complex_text(orbit.multipliers(i), zero);
   text += '\n';
   if (!orbit.point.has_square_root()) return text;
   for (std::size_t n = 0; n < xi.size(); ++n)

@@ -103,6 +103,8 @@ ContactTurn contact_turn(const LabelledSolution& solution, const RunSettings& se
   turn.par.segment(first_duration - 1, max_segments).setZero();
   turn.x = state_at(x, CollocationRule(x.shape.collocation), contact.segment,
                     contact.where == ContactPoint::inside ? contact.tau : 1.0);
+  if (contact.where == ContactPoint::section || contact.where == ContactPoint::grazing_curve)
+    turn.section_jump = own.jump;
   turn.parameter = named_parameter(settings, system, parameter, source);
   require_jump(system, turn, source);
   turn.aftermath = segments_after_impact(system, turn.contact, turn.x, turn.par, own.field);
