@@ -13,6 +13,7 @@
 #include "app/interruption.hpp"
 #include "app/problem_argument.hpp"
 #include "app/simulation_options.hpp"
+#include "map_sweep/map_sweep_problem.hpp"
 #include "sweep/sweep_problem.hpp"
 
 namespace tchat {
@@ -50,9 +51,10 @@ std::string command_without_part() {
   return command;
 }
 
-int do_sweep(const SweepRequest& request) {
+int do_sweep(const SweepRequest& request, const MapRequest& map) {
   std::ostream* const progress = ::isatty(STDERR_FILENO) != 0 && !request.simulation.quiet ? &std::cerr : nullptr;
   return run_interruptibly([&](const std::function<bool()>& interrupted) {
+    if (!map.source.empty()) return map_sweep_problem(request, map, std::cout, std::cerr, interrupted, progress);
     return sweep_problem(request, std::cout, std::cerr, interrupted, progress);
   });
 }
@@ -76,6 +78,52 @@ void add_recording_options(CLI::App& command, SweepRequest& request) {
       ->type_name("[K]")
       ->default_str("0")
       ->check(whole_number(0, 1000))
+      ->group(group);
+}
+
+void add_map_options(CLI::App& command, MapRequest& map) {
+  const char* const group = "Composite map, instead of simulations";
+  command
+      .add_option(
+          "--map", map.source,
+          "iterate the smooth return map after the discontinuity map: of the grazing orbit LABEL in q.NAME, or of "
+          "the torus whose section points are in FILE (O.events of a simulation without contact, or O.sweep)")
+      ->type_name("q.NAME:LABEL|FILE")
+      ->group(group);
+  command.add_option("--order", map.order, "of the discontinuity map: 1/2, 1, 3/2 or exact")
+      ->capture_default_str()
+      ->group(group);
+  command.add_option("--smooth-order", map.smooth_order, "of the smooth return map, in state and parameter: 1 or 2")
+      ->type_name("N")
+      ->check(whole_number(1, 2))
+      ->capture_default_str()
+      ->group(group);
+  command
+      .add_option(
+          "--reduced", map.reduced,
+          "tori: the phase alone, as if all came back to the curve at once (map); with what contact does to it to "
+          "lowest order (ellipse) [map]")
+      ->expected(0, 1)
+      ->type_name("[KIND]")
+      ->default_str("map")
+      ->group(group);
+  command
+      .add_option(
+          "--phase", map.phase,
+          "tori: a state that is an angle, or two that go round as y1,y2, by which points have theirs on the curve "
+          "[an angle, if there is one, else the nearest point]")
+      ->type_name("STATE")
+      ->group(group);
+  command
+      .add_option("--wall", map.wall, "tori: event function in contact, number or name [the only one with an impact]")
+      ->type_name("J")
+      ->group(group);
+  command
+      .add_option("--neighbourhood", map.neighbourhood,
+                  "contact is accounted for within so many extents of the motion from the grazing point [orbits: "
+                  "everywhere, tori: 0.25]")
+      ->type_name("R")
+      ->check(CLI::PositiveNumber)
       ->group(group);
 }
 
@@ -103,6 +151,7 @@ void add_sweep_command(CLI::App& app, std::function<int()>& chosen) {
   CLI::App* command =
       app.add_subcommand("sweep", "attractors over one or two parameters or initial states: diagrams, maps, basins");
   const auto request = std::make_shared<SweepRequest>();
+  const auto map = std::make_shared<MapRequest>();
   SimulationRequest& simulation = request->simulation;
   simulation.plan.transient_events = 1000;
   simulation.plan.events = 100;
@@ -131,6 +180,7 @@ void add_sweep_command(CLI::App& app, std::function<int()>& chosen) {
   add_start_options(*command, simulation);
   add_length_options(*command, simulation, sweep_length_group);
   add_recording_options(*command, *request);
+  add_map_options(*command, *map);
   add_work_options(*command, *request);
   add_detail_options(*command, simulation);
   command->add_option("KEY=VALUE", simulation.overrides,
@@ -149,13 +199,14 @@ void add_sweep_command(CLI::App& app, std::function<int()>& chosen) {
       "  for i in 1 2 3; do tchat sweep linosc --over alpha=2.9:3.1:201 --part $i/3; done     # or on three machines\n"
       "  tchat sweep linosc --over alpha=2.9:3.1:201 --gather\n"
       "Exit status: 0 done, 1 files cannot be written, 2 bad usage or bad input, 130 or 143 interrupted.");
-  command->callback([&chosen, request, command] {
+  command->callback([&chosen, request, map, command] {
     if (command->count("--lyapunov") > 0 && !request->exponents) request->exponents = 0;
     if (command->count("--time") > 0 && command->count("--events") == 0) request->simulation.plan.events.reset();
-    chosen = [request] {
+    if (command->count("--reduced") > 0 && map->reduced.value_or("").empty()) map->reduced = "map";
+    chosen = [request, map] {
       take_source_as_problem(request->simulation.name, request->simulation.problem);
       request->command = command_without_part();
-      return do_sweep(*request);
+      return do_sweep(*request, *map);
     };
   });
 }

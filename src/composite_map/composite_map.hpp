@@ -1,5 +1,5 @@
-/// The composite map P = P_smooth o g_P (2.80), (2.81): one return of a trajectory near a grazing orbit or torus, contact
-/// included.
+/// The composite map P = P_smooth o g_P (2.80), (2.81): one return of a trajectory near a grazing orbit or torus,
+/// contact included.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,8 +14,8 @@ namespace tchat {
 /// g_P near x*, the identity elsewhere.
 class LocalContact {
  public:
-  /// `neighbourhood`: the largest distance from x*, states by `smooth`'s extents, at which contact is accounted for; of a
-  /// torus other parts of the attractor may come by where h_D < 0 is no matter of x*.
+  /// `neighbourhood`: the largest distance from x*, states by `smooth`'s extents, at which contact is accounted for; of
+  /// a torus other parts of the attractor may come by where h_D < 0 is no matter of x*.
   LocalContact(std::shared_ptr<const SmoothMap> smooth, std::shared_ptr<const DiscontinuityMap> map, MapOrder order,
                double neighbourhood = std::numeric_limits<double>::infinity());
 

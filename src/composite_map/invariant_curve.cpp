@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <functional>
 #include <utility>
 
 #include "composite_map/circle.hpp"
@@ -20,7 +20,6 @@ using Eigen::RowVectorXd;
 using Eigen::VectorXd;
 
 constexpr Index fewest_points = 200;
-
 
 /// The window exp(-1 / (t (1 - t))): means of a quasi-periodic sequence with it converge faster than any power.
 VectorXd bump(Index count) {
@@ -120,7 +119,8 @@ class PointSequence {
     for (std::size_t a = 0; a < angles_.size(); ++a)
       for (Index k = 0; k < phases.size(); ++k) {
         double& entry = out(angles_[a], k);
-        entry = centres_[a] + full_turn * nearest_phase((entry - winding_(angles_[a]) * phases(k) - centres_[a]) / full_turn);
+        entry = centres_[a] +
+                full_turn * nearest_phase((entry - winding_(angles_[a]) * phases(k) - centres_[a]) / full_turn);
       }
     return out;
   }
@@ -232,33 +232,34 @@ VectorXd InvariantCurve::difference(const VectorXd& x, const VectorXd& y) const 
 
 FittedCurve fit_invariant_curve(const MatrixXd& points, const CurveSettings& settings, const std::string& source) {
   if (points.cols() < fewest_points)
-    throw UserError(fmt::format("{}: {} points of a section are too few for an invariant curve; simulate until there are "
-                                "{} at least (1000 and more are better)",
-                                source, points.cols(), fewest_points));
+    throw UserError(
+        fmt::format("{}: {} points of a section are too few for an invariant curve; simulate until there are "
+                    "{} at least (1000 and more are better)",
+                    source, points.cols(), fewest_points));
   const VectorXd scale = extents(points, settings.angles);
   const VectorXd angles =
       settings.angles.empty() ? turning_angles(points) : VectorXd(points.row(settings.angles.front()) / full_turn);
   const VectorXd steps = lifted_steps(angles);
   const double rotation = phase_fraction(bump(steps.size()).dot(steps));
   const Index count = points.cols();
-  const auto refuse = [&](const std::string& why) {
-    return UserError(fmt::format("{}: {}", source, why));
-  };
+  const auto refuse = [&](const std::string& why) { return UserError(fmt::format("{}: {}", source, why)); };
   if (widest_gap(phases_of(rotation, count)) > 0.05)
-    throw refuse(fmt::format("the {} points repeat themselves (rotation number {:.6g}) and do not fill a closed curve: "
-                             "the motion is periodic, choose its parameters off the resonance",
-                             count, rotation));
+    throw refuse(
+        fmt::format("the {} points repeat themselves (rotation number {:.6g}) and do not fill a closed curve: "
+                    "the motion is periodic, choose its parameters off the resonance",
+                    count, rotation));
 
   const int most = std::clamp(static_cast<int>(count / 8), 1, settings.max_harmonics);
   PointSequence sequence(points, settings.angles);
   sequence.wind(phases_of(rotation, count));
   const CurveFit fit = best_fit(points, sequence, scale, rotation, most);
   if (!(fit.largest <= settings.tolerance))
-    throw refuse(fmt::format("the {} points lie on no smooth closed curve: they are up to {:.2e} of its extent off the "
-                             "nearest one with {} harmonics (rotation number {:.8g}); drop a longer transient, simulate "
-                             "more points or with a smaller tolerance, or take another section: on a torus every "
-                             "trajectory must cross it at an angle",
-                             count, fit.largest, fit.series.harmonics(), fit.rotation));
+    throw refuse(
+        fmt::format("the {} points lie on no smooth closed curve: they are up to {:.2e} of its extent off the "
+                    "nearest one with {} harmonics (rotation number {:.8g}); drop a longer transient, simulate "
+                    "more points or with a smaller tolerance, or take another section: on a torus every "
+                    "trajectory must cross it at an angle",
+                    count, fit.largest, fit.series.harmonics(), fit.rotation));
   return {fit.curve(sequence), fit.largest, fit.rotation_error};
 }
 
@@ -281,10 +282,14 @@ CurveProjection::CurveProjection(const InvariantCurve& curve, Index first, Index
     const double phi = static_cast<double>(k) / static_cast<double>(count);
     const double rate = slope(samples_.col(k), phi);
     least = std::min(least, rate), most = std::max(most, rate);
+    const double turns = angle(samples_.col(k)) / full_turn;
+    angles_.push_back(k == 0 ? turns : angles_.back() + nearest_phase(turns - angles_.back()));
   }
+  angles_.push_back(angles_.front() + (angles_.back() > angles_.front() ? 1.0 : -1.0));
   if (least * most <= 0.0)
-    throw UserError("the invariant curve is no graph over that phase, it goes back and forth in it; leave --phase out: "
-                    "the nearest point of the curve is taken then");
+    throw UserError(
+        "the invariant curve is no graph over that phase, it goes back and forth in it; leave --phase out: "
+        "the nearest point of the curve is taken then");
 }
 
 /// The angle in radians.
@@ -317,23 +322,42 @@ double CurveProjection::slope(const VectorXd& x, double phi) const {
          curve_.derivative(phi, 2).dot(weights_.cwiseProduct(curve_.difference(x, curve_.at(phi))));
 }
 
-double CurveProjection::phase(const VectorXd& x) const {
-  const Index count = samples_.cols();
+double CurveProjection::nearest_sample(const VectorXd& x) const {
   Index best = 0;
   double least = INFINITY;
-  for (Index k = 0; k < count; ++k) {
-    const double distance = kind_ == Kind::angle
-                                ? std::abs(nearest_phase((angle(samples_.col(k)) - angle(x)) / full_turn))
-                                : weights_.dot(curve_.difference(x, samples_.col(k)).cwiseAbs2());
+  for (Index k = 0; k < samples_.cols(); ++k) {
+    double distance = 0.0;
+    for (Index i = 0; i < x.size(); ++i) {
+      double d = x(i) - samples_(i, k);
+      if (curve_.is_angle(i)) d = full_turn * nearest_phase(d / full_turn);
+      distance += weights_(i) * d * d;
+    }
     if (distance < least) least = distance, best = k;
   }
-  double phi = static_cast<double>(best) / static_cast<double>(count);
-  const double reach = 2.0 / static_cast<double>(count);
+  return static_cast<double>(best) / static_cast<double>(samples_.cols());
+}
+
+/// Between the two samples that have the angle between them.
+double CurveProjection::sample_of_angle(double angle) const {
+  const bool rises = angles_.back() > angles_.front();
+  double turns = angle / full_turn;
+  turns -= rises ? std::floor(turns - angles_.front()) : std::ceil(turns - angles_.front());
+  const auto after = rises ? std::upper_bound(angles_.begin(), angles_.end(), turns)
+                           : std::upper_bound(angles_.begin(), angles_.end(), turns, std::greater<>());
+  const auto k =
+      std::clamp<std::ptrdiff_t>(after - angles_.begin(), 1, static_cast<std::ptrdiff_t>(angles_.size()) - 1);
+  const double left = angles_[static_cast<std::size_t>(k - 1)], right = angles_[static_cast<std::size_t>(k)];
+  return (static_cast<double>(k - 1) + (turns - left) / (right - left)) / static_cast<double>(samples_.cols());
+}
+
+double CurveProjection::phase(const VectorXd& x) const {
+  double phi = kind_ == Kind::angle ? sample_of_angle(angle(x)) : nearest_sample(x);
+  const double reach = 2.0 / static_cast<double>(samples_.cols());
   for (int iteration = 0; iteration < 30; ++iteration) {
     const double step = std::clamp(-residual(x, phi) / slope(x, phi), -reach, reach);
     if (!std::isfinite(step)) break;
     phi += step;
-    if (std::abs(step) < 1e-15) break;
+    if (std::abs(step) < 1e-13) break;
   }
   return phase_fraction(phi);
 }

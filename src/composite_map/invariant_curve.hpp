@@ -2,8 +2,8 @@
 ///
 ///     x = u(phi),   P(u(phi)) = u(phi + rho),   u(phi) = w phi + a_0 + sum_l a_l cos 2 pi l phi + b_l sin 2 pi l phi
 ///
-/// w is zero but for states that are angles: those grow by 2 pi (or - 2 pi) a turn of phi. A curve may come from anywhere;
-/// here it is fitted to points of a simulation.
+/// w is zero but for states that are angles: those grow by 2 pi (or - 2 pi) a turn of phi. A curve may come from
+/// anywhere; here it is fitted to points of a simulation.
 #pragma once
 
 #include <Eigen/Core>
@@ -52,11 +52,12 @@ struct FittedCurve {
   double rotation_error = 0.0;  ///< what the points leave open
 };
 
-/// Points in the order in which a motion on the torus met the section, n x K. The rotation number is a weighted mean of the
-/// lifted angle about the curve's centre, in the plane of its largest extents (or of the first of `angles`), then refined
-/// with the coefficients by least squares. Throws UserError, `source` in front, when the points are too few, lie on no
-/// closed curve to the tolerance, or repeat themselves (a periodic orbit).
-FittedCurve fit_invariant_curve(const Eigen::MatrixXd& points, const CurveSettings& settings, const std::string& source);
+/// Points in the order in which a motion on the torus met the section, n x K. The rotation number is a weighted mean of
+/// the lifted angle about the curve's centre, in the plane of its largest extents (or of the first of `angles`), then
+/// refined with the coefficients by least squares. Throws UserError, `source` in front, when the points are too few,
+/// lie on no closed curve to the tolerance, or repeat themselves (a periodic orbit).
+FittedCurve fit_invariant_curve(const Eigen::MatrixXd& points, const CurveSettings& settings,
+                                const std::string& source);
 
 /// Which point of a curve stands for a point near it (the projection pi_Gamma of (3.19), (3.35), (4.12)).
 class CurveProjection {
@@ -68,8 +69,8 @@ class CurveProjection {
   };
   /// The nearest point.
   explicit CurveProjection(const InvariantCurve& curve);
-  /// The point with the same angle: of state `first` (counted modulo 2 pi), or of the direction (first, second), `first`
-  /// being the sine. Throws UserError when the curve is no graph over that angle.
+  /// The point with the same angle: of state `first` (counted modulo 2 pi), or of the direction (first, second),
+  /// `first` being the sine. Throws UserError when the curve is no graph over that angle.
   CurveProjection(const InvariantCurve& curve, Eigen::Index first, Eigen::Index second = -1);
 
   /// phi in [0, 1).
@@ -81,6 +82,8 @@ class CurveProjection {
   double residual(const Eigen::VectorXd& x, double phi) const;
   double slope(const Eigen::VectorXd& x, double phi) const;
   double angle(const Eigen::VectorXd& x) const;
+  double nearest_sample(const Eigen::VectorXd& x) const;
+  double sample_of_angle(double angle) const;
   Eigen::RowVectorXd angle_gradient(const Eigen::VectorXd& x) const;
 
   InvariantCurve curve_;
@@ -88,6 +91,7 @@ class CurveProjection {
   Eigen::Index first_ = -1, second_ = -1;
   Eigen::VectorXd weights_;     // 1 / extent^2
   Eigen::MatrixXd samples_;     // u at equal phases
+  std::vector<double> angles_;  // of the samples in turns, going on from one to the next, and once round
 };
 
 }  // namespace tchat

@@ -14,9 +14,10 @@
 namespace tchat {
 
 struct MapIteration {
-  long transient = 1000;  ///< returns that are dropped
-  long returns = 1000;    ///< returns after them, at most
-  int max_period = 16;    ///< in returns
+  long transient = 1000;      ///< returns that are dropped
+  long returns = 1000;        ///< returns that are kept of a motion that does not repeat itself
+  long most_returns = 64000;  ///< that exponents are computed over to tell its kind
+  int max_period = 16;        ///< in returns
   double recognition = 1e-6;  ///< states that are equal, relative to the range of the iterates
   double escape = 1.0;        ///< distance from the orbit or torus, in its extents, beyond which the map has no meaning
   int exponents = 0;          ///< how many are wanted always; without any they are computed to tell a kind
@@ -28,8 +29,8 @@ struct MapAttractor {
   std::string message;  ///< why it has escaped or not settled
   int period = 0;       ///< in returns; 0: not periodic
   double time = 0.0;    ///< of one period; NaN
-  /// Section states, n x K: one period, or all after the transient; with the penetration of each and whether it has been
-  /// in contact.
+  /// Section states, n x K: one period, or all after the transient; with the penetration of each and whether it has
+  /// been in contact.
   Eigen::MatrixXd points;
   Eigen::VectorXd penetrations;
   std::vector<bool> contacts;

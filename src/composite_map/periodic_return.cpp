@@ -22,7 +22,9 @@ constexpr double closure = 1e-5;  // of the turn, relative to the orbit's extent
 
 VectorXd floored(const VectorXd& extent) { return extent.cwiseMax(1e-3 * extent.maxCoeff()); }
 
-double scaled_distance(const VectorXd& d, const VectorXd& scale) { return d.cwiseQuotient(scale).cwiseAbs().maxCoeff(); }
+double scaled_distance(const VectorXd& d, const VectorXd& scale) {
+  return d.cwiseQuotient(scale).cwiseAbs().maxCoeff();
+}
 
 /// How often the section is met on the last segment up to x*, where it ends: the orbit has further least distances.
 int crossings_before(const SuspendedSystem& suspended, const IndexVector& index, int section, const VectorXd& start,

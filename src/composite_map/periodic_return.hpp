@@ -14,8 +14,8 @@ namespace tchat {
 
 /// The orbit as it is cut: from x*, index vectors, durations.
 struct GrazingTurn {
-  Eigen::VectorXd x;     ///< x*, on P, n
-  ParameterVector par;   ///< p*
+  Eigen::VectorXd x;    ///< x*, on P, n
+  ParameterVector par;  ///< p*
   /// From x* to x*; the last one ends at x*, whatever its event. Jumps may be `no_function`.
   Signature segments;
   std::vector<double> durations;  ///< of each
@@ -24,8 +24,8 @@ struct GrazingTurn {
 
 class PeriodicReturn : public SmoothMap {
  public:
-  /// `section` is the event function of `suspended` that is the section: `suspended.least_distance()`, its plane, or one
-  /// of the problem's. `order` 1 or 2. Throws ComputationError when the turn does not come back to x*.
+  /// `section` is the event function of `suspended` that is the section: `suspended.least_distance()`, its plane, or
+  /// one of the problem's. `order` 1 or 2. Throws ComputationError when the turn does not come back to x*.
   PeriodicReturn(std::shared_ptr<const SuspendedSystem> suspended, const GrazingTurn& turn, int section, int order,
                  const FlowOptions& options = {});
 

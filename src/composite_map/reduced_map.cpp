@@ -45,8 +45,9 @@ EllipseMap::EllipseMap(std::shared_ptr<const TorusReturn> smooth, std::shared_pt
   const double second = depth(2.0 * t) + depth(-2.0 * t) - 2.0 * depth(0.0);
   curvature_ = -(16.0 * first - second) / (12.0 * t * t);
   if (!(curvature_ > 0.0))
-    throw UserError("the torus touches the wall along more than a point, or from behind: h_D has no minimum along the "
-                    "invariant curve at the grazing point");
+    throw UserError(
+        "the torus touches the wall along more than a point, or from behind: h_D has no minimum along the "
+        "invariant curve at the grazing point");
   const CurveProjection& projection = smooth_->projection();
   shift_ = projection.gradient(at, projection.phase(at)).dot(map_->expansion().y);
 }

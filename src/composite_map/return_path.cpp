@@ -49,8 +49,8 @@ Signature return_path(const HybridSystem& system, const Eigen::VectorXd& z, cons
     system.value(FunctionKind::jump, index.jump, before.data(), par.data(), x.data());
     mode = following(system, index, before, par);
   }
-  throw ComputationError(fmt::format("the flow from {} does not come back to the section within {} events",
-                                     state_text(z), most));
+  throw ComputationError(
+      fmt::format("the flow from {} does not come back to the section within {} events", state_text(z), most));
 }
 
 }  // namespace tchat

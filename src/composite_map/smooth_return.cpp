@@ -23,7 +23,12 @@ using Second = std::vector<MatrixXd>;
 class Expanded {
  public:
   Expanded(const HybridSystem& system, FunctionKind kind, int index, const VectorXd& z, const VectorXd& par)
-      : system_(system), kind_(kind), index_(index), z_(z), par_(par), value(system.rows(kind)),
+      : system_(system),
+        kind_(kind),
+        index_(index),
+        z_(z),
+        par_(par),
+        value(system.rows(kind)),
         first(system.rows(kind), z.size()) {
     system_.first(kind, index, z.data(), par.data(), {}, value.data(), first.data(), nullptr);
   }
@@ -99,8 +104,7 @@ Second second_of_flow(const HybridSystem& system, int field, const VectorXd& z, 
   namespace odeint = boost::numeric::odeint;
   const SecondVariation equations(system, field, par);
   SecondVariation::State y = equations.start(z);
-  const auto stepper =
-      odeint::make_controlled(1e-13, 1e-13, odeint::runge_kutta_fehlberg78<SecondVariation::State>());
+  const auto stepper = odeint::make_controlled(1e-13, 1e-13, odeint::runge_kutta_fehlberg78<SecondVariation::State>());
   odeint::integrate_adaptive(stepper, equations, y, 0.0, duration, 0.01 * duration);
   return equations.second(y);
 }
@@ -152,8 +156,8 @@ void pass_event(Passed& passed, const HybridSystem& system, const IndexVector& i
     const VectorXd bent = f.first * f.value;
     for (std::size_t i = 0; i < passed.second.size(); ++i) {
       const auto row = static_cast<Eigen::Index>(i);
-      passed.second[i] += turned.row(row).transpose() * tau + tau.transpose() * turned.row(row) +
-                          bent(row) * tau.transpose() * tau;
+      passed.second[i] +=
+          turned.row(row).transpose() * tau + tau.transpose() * turned.row(row) + bent(row) * tau.transpose() * tau;
     }
     const Second of_h = composed(h, onto, passed.second);
     for (std::size_t i = 0; i < passed.second.size(); ++i)
@@ -187,9 +191,10 @@ QuadraticMap smooth_return(const HybridSystem& system, const Signature& path, co
       throw ComputationError(fmt::format("segment {} of the return to the section: {}", s + 1, flow.message));
     const double sizes = flow.end_state.size() == 0 ? 0.0 : std::abs(flow.event_velocity);
     if (!(sizes > 1e-12))
-      throw ComputationError(fmt::format("segment {} of the return to the section meets {} tangentially, the map has "
-                                         "no derivative there",
-                                         s + 1, system.function_name(FunctionKind::event, path[s].event)));
+      throw ComputationError(
+          fmt::format("segment {} of the return to the section meets {} tangentially, the map has "
+                      "no derivative there",
+                      s + 1, system.function_name(FunctionKind::event, path[s].event)));
     if (order > 1)
       pass_flow(passed, flow.jacobian, second_of_flow(system, path[s].field, start, par, flow.duration),
                 flow.end_state);

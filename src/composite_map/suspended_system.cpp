@@ -136,8 +136,7 @@ void SuspendedSystem::first(const void* self_given, int kind, int index, const d
     if (dp != nullptr) std::fill_n(dp, active_count, 0.0);
     return;
   }
-  if (function == FunctionKind::event && index == self.least_distance())
-    return self.first_of_rate(at, out, dz, dp);
+  if (function == FunctionKind::event && index == self.least_distance()) return self.first_of_rate(at, out, dz, dp);
   const int rows = self.base_.rows(function);
   MatrixXd by_state(rows, n), by_parameter(rows, static_cast<Eigen::Index>(at.active.size()));
   self.base_.first(function, index, z, at.par.data(), at.active, out, by_state.data(), by_parameter.data());

@@ -25,8 +25,8 @@ struct SectionPlane {
 
 class SuspendedSystem {
  public:
-  /// A view of `base`, which outlives this object. `along` lists PAR indices from 1, each once; `field` and `wall` are i
-  /// and D of h_P. Index vectors with the event `wall` do not follow any other: the flow does not see it.
+  /// A view of `base`, which outlives this object. `along` lists PAR indices from 1, each once; `field` and `wall` are
+  /// i and D of h_P. Index vectors with the event `wall` do not follow any other: the flow does not see it.
   SuspendedSystem(const HybridSystem& base, std::vector<int> along, int field, int wall,
                   std::optional<SectionPlane> plane = {});
   SuspendedSystem(const SuspendedSystem&) = delete;

@@ -54,7 +54,8 @@ TorusReturn::Nodes TorusReturn::nodes_at(int count, const ParameterVector& par, 
   const HybridSystem& system = suspended_->system();
   const Index n = curve_.dimension();
   const Index all = system.dimension();
-  Nodes nodes{MatrixXd(n * all, count), MatrixXd(settings.order > 1 ? n * triangle(all) : 0, count), MatrixXd(1, count)};
+  Nodes nodes{MatrixXd(n * all, count), MatrixXd(settings.order > 1 ? n * triangle(all) : 0, count),
+              MatrixXd(1, count)};
   for (int node = 0; node < count; ++node) {
     const double phi = static_cast<double>(node) / count;
     const VectorXd start = suspended_->suspended(on_curve(phi), par);
@@ -63,10 +64,11 @@ TorusReturn::Nodes TorusReturn::nodes_at(int count, const ParameterVector& par, 
     const VectorXd miss = curve_.difference(map.value.head(n), curve_.at(phi + curve_.rotation()));
     nodes.defect = std::max(nodes.defect, miss.cwiseQuotient(scale_).cwiseAbs().maxCoeff());
     if (!(nodes.defect <= largest_defect))
-      throw UserError(fmt::format("the return map does not take the invariant curve to itself: it misses by {:.1e} of "
-                                  "the curve's extent; give the parameters of the simulation that the points come from, "
-                                  "as 'PAR(k)=v', and its section",
-                                  nodes.defect));
+      throw UserError(
+          fmt::format("the return map does not take the invariant curve to itself: it misses by {:.1e} of "
+                      "the curve's extent; give the parameters of the simulation that the points come from, "
+                      "as 'PAR(k)=v', and its section",
+                      nodes.defect));
     const MatrixXd of_state = map.first.topRows(n);
     nodes.first.col(node) = Eigen::Map<const VectorXd>(of_state.data(), of_state.size());
     nodes.times(0, node) = map.time;
@@ -82,10 +84,15 @@ TorusReturn::Nodes TorusReturn::nodes_at(int count, const ParameterVector& par, 
 TorusReturn::TorusReturn(std::shared_ptr<const SuspendedSystem> suspended, InvariantCurve curve,
                          CurveProjection projection, const ParameterVector& par, int section,
                          const TorusSettings& settings)
-    : suspended_(std::move(suspended)), curve_(std::move(curve)), projection_(std::move(projection)), par_(par),
+    : suspended_(std::move(suspended)),
+      curve_(std::move(curve)),
+      projection_(std::move(projection)),
+      par_(par),
       scale_(curve_.extent().cwiseMax(1e-3 * curve_.extent().maxCoeff())) {
   parameters_along_ = suspended_->suspended(curve_.at(0.0), par).tail(suspended_->system().dimension() - dimension());
-  for (int count = 65; count <= settings.most_nodes; count = 2 * count - 1) {
+  // As many as the curve has harmonics is a good guess.
+  const int first_count = std::clamp(2 * (curve_.harmonics() / 2) + 1, 65, settings.most_nodes);
+  for (int count = first_count; count <= settings.most_nodes; count = 2 * count - 1) {
     const Nodes nodes = nodes_at(count, par, section, settings);
     first_ = TrigonometricSeries::through(nodes.first);
     second_ = TrigonometricSeries::through(nodes.second);
@@ -97,9 +104,10 @@ TorusReturn::TorusReturn(std::shared_ptr<const SuspendedSystem> suspended, Invar
     if (interpolation_error_ <= settings.accuracy) return;
   }
   if (!(interpolation_error_ <= largest_interpolation_error))
-    throw UserError(fmt::format("the derivative of the return map varies too much along the invariant curve: error "
-                                "{:.1e} with {} harmonics; take a section that the torus crosses at larger angles",
-                                interpolation_error_, first_.harmonics()));
+    throw UserError(
+        fmt::format("the derivative of the return map varies too much along the invariant curve: error "
+                    "{:.1e} with {} harmonics; take a section that the torus crosses at larger angles",
+                    interpolation_error_, first_.harmonics()));
 }
 
 VectorXd TorusReturn::on_curve(double phi) const { return reduced(curve_, curve_.at(phi)); }
@@ -133,8 +141,8 @@ VectorXd TorusReturn::quadratic(double phi, const VectorXd& u, int derivative) c
 
 VectorXd TorusReturn::image(const VectorXd& x, const ParameterVector& par) const {
   const Deviation at = deviation(x, par);
-  return reduced(curve_, curve_.at(at.phi + curve_.rotation()) + matrix(at.phi, 0) * at.u +
-                             0.5 * quadratic(at.phi, at.u, 0));
+  return reduced(curve_,
+                 curve_.at(at.phi + curve_.rotation()) + matrix(at.phi, 0) * at.u + 0.5 * quadratic(at.phi, at.u, 0));
 }
 
 /// With phi_x the gradient of the projection: (u'(phi + rho) + A' d) phi_x + A (Id - u' phi_x), and the second order.
@@ -144,7 +152,8 @@ MatrixXd TorusReturn::derivative(const VectorXd& x, const ParameterVector& par) 
   const RowVectorXd phi_x = projection_.gradient(x, at.phi);
   const MatrixXd first = matrix(at.phi, 0);
   const VectorXd tangent = curve_.derivative(at.phi);
-  VectorXd by_phi = curve_.derivative(at.phi + curve_.rotation()) + matrix(at.phi, 1) * at.u - first.leftCols(n) * tangent;
+  VectorXd by_phi =
+      curve_.derivative(at.phi + curve_.rotation()) + matrix(at.phi, 1) * at.u - first.leftCols(n) * tangent;
   MatrixXd jacobian = first.leftCols(n);
   if (second_.rows() > 0) {
     by_phi += 0.5 * quadratic(at.phi, at.u, 1);

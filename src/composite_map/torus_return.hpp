@@ -18,18 +18,18 @@
 namespace tchat {
 
 struct TorusSettings {
-  int order = 1;        ///< or 2
-  int most_nodes = 1025;  ///< phases at which derivatives are computed: doubled up to this,
+  int order = 1;           ///< or 2
+  int most_nodes = 1025;   ///< phases at which derivatives are computed: doubled up to this,
   double accuracy = 1e-7;  ///< until the highest harmonics are so small beside the largest
   /// Points of the curve lie on the section to the accuracy of the simulation alone.
-  FlowOptions flow{.surface_tolerance = 1e-5, .active = {}};
+  FlowOptions flow{.relative_tolerance = 1e-13, .absolute_tolerance = 1e-14, .surface_tolerance = 1e-5, .active = {}};
 };
 
 class TorusReturn : public SmoothMap {
  public:
   /// `par`: of the simulation that the curve comes from. `section`: an event function of `suspended`. Throws UserError
-  /// when the flow does not take the curve to itself: points and parameters do not belong together; ComputationError when
-  /// it cannot be integrated, or the derivatives vary too much for so many nodes.
+  /// when the flow does not take the curve to itself: points and parameters do not belong together; ComputationError
+  /// when it cannot be integrated, or the derivatives vary too much for so many nodes.
   TorusReturn(std::shared_ptr<const SuspendedSystem> suspended, InvariantCurve curve, CurveProjection projection,
               const ParameterVector& par, int section, const TorusSettings& settings);
 

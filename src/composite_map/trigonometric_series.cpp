@@ -14,7 +14,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-
 /// (i 2 pi l)^order e^(2 pi i l phi) as real and imaginary parts: of a_l the real part, of b_l the imaginary one.
 VectorXd basis_at(double phi, int harmonics, int order) {
   VectorXd basis(2 * harmonics + 1);
@@ -50,8 +49,8 @@ TrigonometricSeries TrigonometricSeries::through(const MatrixXd& values) {
   const auto harmonics = static_cast<int>((count - 1) / 2);
   MatrixXd coefficients = MatrixXd::Zero(values.rows(), 2 * harmonics + 1);
   for (Index k = 0; k < count; ++k)
-    coefficients += values.col(k) *
-                    basis_at(static_cast<double>(k) / static_cast<double>(count), harmonics, 0).transpose();
+    coefficients +=
+        values.col(k) * basis_at(static_cast<double>(k) / static_cast<double>(count), harmonics, 0).transpose();
   coefficients *= 2.0 / static_cast<double>(count);
   coefficients.col(0) *= 0.5;
   return TrigonometricSeries(coefficients);

@@ -15,6 +15,7 @@
 #include "sweep/attractor_numbering.hpp"
 #include "sweep/simulation_sampler.hpp"
 #include "sweep/sweep_job.hpp"
+#include "sweep/sweep_setup.hpp"
 #include "text/number.hpp"
 #include "text/text_file.hpp"
 #include "text/user_error.hpp"
@@ -28,17 +29,6 @@ using Eigen::VectorXd;
 constexpr std::size_t fewest_for_capture = 400;  // values; below that looking for attractors first costs more
 constexpr std::size_t share_of_first = 50;       // one value in so many
 constexpr std::size_t most_first = 200;
-
-/// "I/N".
-void read_part(const std::string& text, SweepTask& task) {
-  const std::size_t slash = text.find('/');
-  const auto part = slash == std::string::npos ? std::nullopt : parse_integer(text.substr(0, slash));
-  const auto parts = slash == std::string::npos ? std::nullopt : parse_integer(text.substr(slash + 1));
-  if (!part || !parts || *part < 1 || *part > *parts)
-    throw UserError(fmt::format("--part {}: it is no part I of N, 1 <= I <= N; an example is --part 3/7", text));
-  task.part = *part;
-  task.parts = *parts;
-}
 
 /// An event function by its number or its name.
 int event_index(const HybridSystem& system, const std::string& text, const char* option) {
@@ -76,14 +66,6 @@ Recording read_recording(const SweepRequest& request, const HybridSystem& system
   return recording;
 }
 
-std::vector<Following> directions(const std::string& follow) {
-  if (follow.empty()) return {Following::none};
-  if (follow == "up") return {Following::up};
-  if (follow == "down") return {Following::down};
-  if (follow == "both") return {Following::up, Following::down};
-  throw UserError(fmt::format("--follow {}: it is none of up, down, both; an example is --follow both", follow));
-}
-
 /// States, each with the directions from it.
 void add_starts(const SweepRequest& request, const LoadedProblem& loaded, SamplerSetup& setup, SweepJob& job) {
   const HybridSystem& system = loaded.library->system();
@@ -94,7 +76,7 @@ void add_starts(const SweepRequest& request, const LoadedProblem& loaded, Sample
     own.state = state;
     const SimulationStart start = simulation_start(own, setup.constants, system);
     setup.par = start.par;
-    for (const Following direction : directions(request.follow)) {
+    for (const Following direction : follow_directions(request.follow)) {
       setup.starts.push_back(start.state);
       job.following.push_back(direction);
       std::string text = fmt::format("x = ({})", fmt::join(start.state.begin(), start.state.end(), ", "));
@@ -105,30 +87,12 @@ void add_starts(const SweepRequest& request, const LoadedProblem& loaded, Sample
   }
 }
 
-void fill_heading(const HybridSystem& system, const SamplerSetup& setup, SweepJob& job) {
-  job.heading.problem = system.name();
-  for (const SweepTarget& target : setup.over) job.heading.over.push_back(target.quantity);
-  for (int k = 1; k <= system.parameters(); ++k) {
-    const bool is_swept = std::any_of(setup.over.begin(), setup.over.end(), [k](const SweepTarget& target) {
-      return !target.quantity.is_state && target.position == k;
-    });
-    if (!is_swept) job.heading.parameters.emplace_back(system.parameter_name(k), setup.par(k - 1));
-  }
-}
-
 void choose_columns(const HybridSystem& system, const Recording& recording, SweepColumns& columns) {
   columns.event = recording.states == Recording::States::all_events;
   columns.penetration = recording.penetration > 0;
   columns.exponents = recording.exponents;
   if (recording.states == Recording::States::none) return;
   for (int k = 1; k <= system.dimension(); ++k) columns.states.push_back(system.state_name(k));
-}
-
-/// What the plugin was made of, wherever it stands; of a library that tchat has not compiled its bytes.
-std::string plugin_identity(const std::string& path) {
-  if (const std::optional<BuildStamp> stamp = read_stamp(path); stamp && !stamp->contents.empty())
-    return stamp->contents;
-  return hash_text(read_text_file(path, "plugin", "give the plugin with -p"));
 }
 
 std::string recorded_text(const Recording& recording) {
@@ -174,25 +138,6 @@ SweepIdentity identity_of(const LoadedProblem& loaded, const SamplerSetup& setup
   return identity;
 }
 
-/// Libraries of the workers, each its own copy where there are several.
-class Workers {
- public:
-  Workers(const LoadedProblem& loaded, const SamplerSetup& setup, int count) {
-    systems_.push_back(&loaded.library->system());
-    for (int worker = 1; worker < count; ++worker) {
-      copies_.push_back(
-          ProblemLibrary::copy_of(loaded.plugin, [&] { return sizes_of(setup.request, setup.constants); }));
-      systems_.push_back(&copies_.back()->system());
-    }
-  }
-
-  const HybridSystem& system(int worker) const { return *systems_[static_cast<std::size_t>(worker)]; }
-
- private:
-  std::vector<std::unique_ptr<ProblemLibrary>> copies_;
-  std::vector<const HybridSystem*> systems_;
-};
-
 /// Regions of the attractors that the first values have found. Who comes to which is decided by the sampler itself.
 std::vector<CaptureRegion> capture_regions(const SamplerSetup& setup, const HybridSystem& system,
                                            const std::vector<AttractorSample>& known,
@@ -210,63 +155,15 @@ std::vector<CaptureRegion> capture_regions(const SamplerSetup& setup, const Hybr
   return regions;
 }
 
-std::string outcome_text(const SweepJob& job, const SweepOutcome& outcome) {
-  std::string text;
-  if (!outcome.is_complete)
-    return fmt::format("Interrupted: {} of {} values are kept in {}; the same command goes on.\n",
-                       outcome.kept + outcome.computed, outcome.values, outcome.written);
-  text = fmt::format("{} values, {} computed now\n", outcome.values, outcome.computed);
-  constexpr std::size_t most_told = 20;
-  for (std::size_t a = 0; a < outcome.attractors.size() && a < most_told; ++a) {
-    const SweepAttractor& attractor = outcome.attractors[a];
-    text += fmt::format("Attractor {}: {}", attractor.number, to_string(attractor.kind));
-    if (!attractor.signature.empty()) text += ", " + attractor.signature;
-    const VectorXd values = SweepGrid(job.heading.over).values(attractor.index);
-    std::string at;
-    for (std::size_t q = 0; q < job.heading.over.size(); ++q)
-      at += fmt::format("{}{} = {:.6g}", q > 0 ? ", " : "", job.heading.over[q].column(),
-                        values(static_cast<Eigen::Index>(q)));
-    text += fmt::format(", {} times, first at {}\n", outcome.found[a], at);
-  }
-  if (outcome.attractors.size() > most_told)
-    text += fmt::format("... and {} further attractors\n", outcome.attractors.size() - most_told);
-  if (outcome.without > 0)
-    text += fmt::format("No attractor: {} times{}{}\n", outcome.without,
-                        outcome.first_message.empty() ? "" : "; first: ", outcome.first_message);
-  return text + fmt::format("Written: {}\n", outcome.written);
-}
-
-SweepTask task_of(const SweepRequest& request) {
-  SweepTask task;
-  task.output = request.simulation.output.value_or(request.simulation.name);
-  const std::string file = std::filesystem::path(task.output).filename().string();
-  if (file.empty() || file == "." || file == "..")
-    throw UserError(fmt::format("-o '{}' is no name for output files; an example is -o found", task.output));
-  task.workers = request.workers;
-  task.gather = request.gather;
-  task.fresh = request.fresh;
-  task.command = request.command;
-  if (request.part && request.gather)
-    throw UserError("--part and --gather are both given; parts are made first, and then gathered");
-  if (request.part) read_part(*request.part, task);
-  return task;
-}
-
 }  // namespace
 
 int sweep_problem(const SweepRequest& request, std::ostream& screen, std::ostream& warnings,
                   const std::function<bool()>& interrupted, std::ostream* progress) {
-  SweepTask task = task_of(request);
-  directions(request.follow);
+  SweepTask task = sweep_task(request);
+  follow_directions(request.follow);
   const LoadedProblem loaded = load_for_simulation(request.simulation, progress);
   const HybridSystem& system = loaded.library->system();
-  if (task.workers > 1 && !task.gather && shares_data_of_copies(loaded.plugin)) {
-    warnings << fmt::format(
-        "tchat: warning: plugin {} was compiled without -fno-gnu-unique, so that copies of it would share their data: "
-        "one worker computes instead of {}; give its source, or compile it with that option\n",
-        loaded.plugin, task.workers);
-    task.workers = 1;
-  }
+  limit_workers(loaded, task, warnings);
 
   SamplerSetup setup;
   setup.request = request.simulation;
@@ -281,7 +178,7 @@ int sweep_problem(const SweepRequest& request, std::ostream& screen, std::ostrea
   setup.recording = read_recording(request, system, setup.over);
   SweepJob job;
   add_starts(request, loaded, setup, job);
-  fill_heading(system, setup, job);
+  fill_heading(system, setup.over, setup.par, job);
   choose_columns(system, setup.recording, job.columns);
 
   const std::size_t values = SweepGrid(job.heading.over).size();
@@ -291,7 +188,7 @@ int sweep_problem(const SweepRequest& request, std::ostream& screen, std::ostrea
   if (captures) job.first_values = std::min(most_first, values / share_of_first);
   job.identity = identity_of(loaded, setup, job, captures);
 
-  const Workers workers(loaded, setup, task.gather ? 1 : task.workers);
+  const WorkerSystems workers(loaded, setup.request, task.gather ? 1 : task.workers);
   std::vector<SimulationSampler> samplers;
   for (int worker = 0; worker < task.workers && !task.gather; ++worker)
     samplers.emplace_back(setup, workers.system(worker));

@@ -105,8 +105,7 @@ TEST_CASE("projections to a curve: by an angle, by the angle of a pair, to the n
       for (Eigen::Index i = 0; i < 3; ++i) {
         VectorXd forward = x, backward = x;
         forward(i) += 1e-5, backward(i) -= 1e-5;
-        CHECK(gradient(i) ==
-              Approx((projection->phase(forward) - projection->phase(backward)) / 2e-5).margin(1e-7));
+        CHECK(gradient(i) == Approx((projection->phase(forward) - projection->phase(backward)) / 2e-5).margin(1e-7));
       }
     }
   }

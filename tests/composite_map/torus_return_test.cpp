@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 
-#include "grazing_problems.hpp"
 #include "composite_map/torus_return.hpp"
+#include "grazing_problems.hpp"
 #include "simulation/segment_flow.hpp"
 #include "text/user_error.hpp"
 
