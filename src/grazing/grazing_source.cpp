@@ -92,7 +92,7 @@ ContactTurn contact_turn(const LabelledSolution& solution, const RunSettings& se
                          std::optional<int> jump, int parameter, const std::string& source) {
   const Orbit x = orbit_at(solution, settings, source);
   const ContactPoint contact = contact_point(solution, x, system, settings, source);
-  if (contact.where != ContactPoint::grazing_curve) require_one_contact(contact, x, system, settings, source);
+  require_one_contact(contact, x, system, settings, source);
   ContactTurn turn;
   const IndexVector& own = index_of(settings, contact.segment);
   const int brought = jump                                    ? *jump

@@ -156,6 +156,28 @@ TEST_CASE("The forced three-dimensional oscillator: (4.11), (4.15), (4.17)") {
   CHECK(constant_phase.expansion().y(1) == Approx(-3.1684285428).margin(1e-8));
 }
 
+TEST_CASE("The forced three-dimensional oscillator: the printed digits of (4.15) and (4.17)") {
+  // States are printed with four digits cut off, and the coefficients with them: in the middle of what the digits leave
+  // (x2 follows from h_P = 0) they are right to one of the last digit.
+  const HybridSystem& system = system_of<ForcedThreeDimensional>();
+  constexpr double cut = 0.5e-4, digit = 1e-4;
+  const auto at = [&](double mu, double forcing, double omega_, double x3, double phase) {
+    const double x1 = mu - cut, middle = x3 + cut;
+    return contact(system, Eigen::Vector4d(x1, (0.28 - middle) * x1, middle, phase + cut),
+                   parameters({x1, 0.28, 0.8, forcing, omega_}));
+  };
+  const GrazingPoint second = at(-0.4940, 1.25, 1.9, 0.4716, 3.2188);
+  CHECK(second.x(1) == Approx(0.0946 + cut).margin(digit));
+  CHECK(second.B(1) == Approx(0.3519 + cut).margin(digit));
+  CHECK(second.B(2) == Approx(0.7123 + cut).margin(digit));
+  CHECK(second.B(3) == Approx(-3.8947 - cut).margin(digit));
+  const GrazingPoint third = at(-0.8548, 1.5, 4.0, 0.6189, 2.9317);
+  CHECK(third.x(1) == Approx(0.2897 + cut).margin(digit));
+  const DiscontinuityMap constant_phase(system, third, CrossSection{0, 4});
+  CHECK(constant_phase.expansion().y(1) == Approx(-3.7499 - cut).margin(digit));
+  CHECK(std::abs(constant_phase.expansion().y(0)) + std::abs(constant_phase.expansion().y(2)) < 1e-12);
+}
+
 TEST_CASE("The exact map agrees with forward integration") {
   const HybridSystem& system = system_of<ForcedVanDerPol>();
   const ParameterVector par = parameters({2.4053817, 0.1, 0.75, 1.505, 0.8});

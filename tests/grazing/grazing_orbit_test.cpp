@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "bvp/surface_rate.hpp"
 #include "grazing/born_orbits.hpp"
 #include "grazing/grazing_problems.hpp"
 #include "grazing/grazing_verdict.hpp"
@@ -71,27 +72,55 @@ ContactTurn at_028() { return turn_of(Vector3d(-0.7975, 0.2752, 0.6237), paramet
 ContactTurn at_039() { return turn_of(Vector3d(-0.8271, -0.0722, 0.3026), parameters({-0.8272, 0.39, 0.8}), 8.0635); }
 ContactTurn planar() { return turn_of(Eigen::Vector2d(2.0086, 1e-4), parameters({1.001, 2.008619860875, 0.8}), 6.663); }
 
-/// The impacting orbit of one impact in k returns by shooting, at a parameter delta from grazing.
+/// The impacting orbit of one impact in k returns by shooting, at an impact velocity V. Unknowns: the state x after the
+/// impact (n), the time T from one impact to the next, the parameter; with z the state after T, x = g(z), h_D(z) = 0
+/// and h_x f(z) = -V: n + 2 each. No event is searched for, so that Newton's method may begin anywhere near grazing.
 struct Shot {
-  double velocity = 0.0;
+  double delta = 0.0;
   std::complex<double> multiplier;
 };
-Shot shot(const HybridSystem& system, const Analysis& analysis, const BornOrbit& born, double delta) {
+Shot shot(const HybridSystem& system, const Analysis& analysis, const BornOrbit& born, double velocity) {
+  const GrazingPoint& at = analysis.orbit.point;
+  const Eigen::Index n = at.x.size(), k = analysis.orbit.parameter - 1;
+  ParameterVector par = at.par;
+  VectorXd x = at.x;
+  double time = born.returns * analysis.orbit.period();
+  FlowOptions options;
+  options.active = {analysis.orbit.parameter};
+  SurfaceRate wall(static_cast<int>(n), 1);
+  double size = 1.0;
+  for (int iteration = 0; iteration < 30 && size > 1e-14; ++iteration) {
+    const SegmentFlow flow = integrate_for(system, 1, x, par, time, options);
+    const VectorXd& z = flow.end_state;
+    VectorXd f(n), g(n);
+    Eigen::MatrixXd gx(n, n), gp(n, 1);
+    system.value(FunctionKind::field, 1, z.data(), par.data(), f.data());
+    system.first(FunctionKind::jump, 1, z.data(), par.data(), options.active, g.data(), gx.data(), gp.data());
+    wall.evaluate(system, {1, 1, 1}, z.data(), par.data(), options.active);
+    Eigen::MatrixXd end(n, n + 2);  // of z, by x, T and the parameter
+    end << flow.jacobian, f, flow.parameter_derivative;
+    Eigen::MatrixXd matrix(n + 2, n + 2);
+    matrix << -gx * end, wall.hx.transpose() * end, wall.rate_x.transpose() * end;
+    matrix.topLeftCorner(n, n) += Eigen::MatrixXd::Identity(n, n);
+    matrix.topRightCorner(n, 1) -= gp;
+    matrix(n, n + 1) += wall.hp(0);
+    matrix(n + 1, n + 1) += wall.rate_p(0);
+    VectorXd right(n + 2);
+    right << g - x, -wall.h, -velocity - wall.rate;
+    const VectorXd step = matrix.fullPivLu().solve(right);
+    x += step.head(n);
+    time += step(n);
+    par(k) += step(n + 1);
+    size = step.norm();
+  }
+  REQUIRE(size < 1e-10);
   Signature signature{{1, 1, 1}};
-  for (int i = 1; i < born.returns; ++i) signature.push_back({1, 2, 2});
-  ParameterVector par = analysis.orbit.point.par;
-  par(analysis.orbit.parameter - 1) += delta;
-  // From after the impact: x* with the velocity that the leading order promises.
-  const double promised = analysis.orbit.point.has_square_root()
-                              ? std::sqrt(2.0 * analysis.orbit.point.a) * born.rate * std::abs(delta)
-                              : std::sqrt(2.0 * analysis.orbit.point.a * born.rate * std::abs(delta));
-  VectorXd start = analysis.orbit.point.x;
-  const double away = 0.8 * promised;  // r times the velocity, along h_{D,x} f
-  const VectorXd& direction = analysis.orbit.point.section_gradient;
-  start += away * direction / direction.squaredNorm();
-  const PeriodicOrbit orbit = shoot(system, signature, start, par);
-  REQUIRE(orbit.converged);
-  return {orbit.map.segments.front().event_velocity, orbit.map.multipliers(0)};
+  for (int i = 1; i < born.returns; ++i) signature.insert(signature.begin(), {1, 2, 2});
+  const ReturnMap map = return_map(system, signature, x, par);
+  INFO(map.message);
+  REQUIRE(map.ok);
+  CHECK(map.period == Approx(time).epsilon(1e-9));  // no other event on the way
+  return {par(k) - at.par(k), map.multipliers(0)};
 }
 
 }  // namespace
@@ -142,16 +171,16 @@ TEST_CASE("Impacting orbits born at grazing: side, velocity and multiplier by sh
       REQUIRE(one.exists());
       CHECK(one.side == (first ? -1 : 1));
       CHECK(one.beyond_contact == !first);
-      // The error of the leading order is proportional to the velocity: extrapolated from delta and delta / 2.
-      const double velocity = std::sqrt(2.0 * at.orbit.point.a) * one.rate;
-      const double delta = one.side * 2e-4 / velocity;
-      const Shot far = shot(system, at, one, delta);
-      const Shot near = shot(system, at, one, 0.5 * delta);
-      const auto extrapolated = [&](double a, double b) { return 2.0 * b - a; };
-      CHECK(extrapolated(far.velocity / std::abs(delta), 2.0 * near.velocity / std::abs(delta)) ==
-            Approx(-velocity).epsilon(1e-5));
-      CHECK(extrapolated(far.multiplier.real() * std::abs(delta), near.multiplier.real() * 0.5 * std::abs(delta)) ==
-            Approx(one.multiplier.real()).epsilon(1e-3));
+      // Errors of the leading order are proportional to the velocity: extrapolated from one and its half.
+      const double velocity = 2e-4;
+      const Shot far = shot(system, at, one, velocity);
+      const Shot near = shot(system, at, one, 0.5 * velocity);
+      CHECK(far.delta * one.side > 0.0);
+      const double slope = 2.0 * near.delta / (0.5 * velocity) - far.delta / velocity;
+      CHECK(slope == Approx(one.side / (std::sqrt(2.0 * at.orbit.point.a) * one.rate)).epsilon(1e-5));
+      const double multiplier =
+          2.0 * near.multiplier.real() * std::abs(near.delta) - far.multiplier.real() * std::abs(far.delta);
+      CHECK(multiplier == Approx(one.multiplier.real()).epsilon(1e-4));
     }
   }
 }
@@ -174,11 +203,12 @@ TEST_CASE("The planar oscillator: (3.13), continuous without a square root") {
   CHECK(one.side == 1);
   CHECK(one.beyond_contact);
   CHECK_FALSE(born.orbits[1].exists());
-  // v^2 / delta is linear in the velocity: extrapolated from two of them, to the square.
-  const Shot far = shot(system, at, one, 4e-6);
-  const Shot near = shot(system, at, one, 1e-6);
-  const double slope = 2.0 * near.velocity * near.velocity / 1e-6 - far.velocity * far.velocity / 4e-6;
-  CHECK(slope == Approx(2.0 * at.orbit.point.a * one.rate).epsilon(1e-4));
+  // delta / v^2 is linear in the velocity to leading order: extrapolated from one and its half.
+  const double velocity = 4e-3;
+  const Shot far = shot(system, at, one, velocity);
+  const Shot near = shot(system, at, one, 0.5 * velocity);
+  const double slope = 2.0 * near.delta / (0.25 * velocity * velocity) - far.delta / (velocity * velocity);
+  CHECK(slope == Approx(1.0 / (2.0 * at.orbit.point.a * one.rate)).epsilon(1e-4));
   CHECK(2.0 * near.multiplier.real() - far.multiplier.real() == Approx(one.multiplier.real()).epsilon(1e-4));
 }
 
@@ -206,7 +236,7 @@ TEST_CASE("Verdicts of orbits that bifurcate or are unstable without contact") {
 TEST_CASE("A turn that is none says so") {
   const HybridSystem& system = system_of<ThreeDimensional>();
   ContactTurn turn = at_028();
-  turn.x(0) += 0.5;
-  turn.durations.back() = 3.0;
-  CHECK_THROWS_WITH(find_grazing_orbit(system, turn, "label 2 of q.x"), Contains("label 2 of q.x: "));
+  turn.x = Vector3d(5.0, 5.0, 5.0);  // from where no orbit is near
+  CHECK_THROWS_WITH(find_grazing_orbit(system, turn, "label 2 of q.x"),
+                    Contains("label 2 of q.x: Newton's method does not find the orbit in contact"));
 }
