@@ -26,6 +26,35 @@ constexpr const char* length_group =
     "Length [until a periodic orbit is recognised, at most 10000 events; "
     "of a longer motion O.trajectory then holds the last 10 MB]";
 
+void add_exponent_options(CLI::App& command, SimulationRequest& request, int& exponents) {
+  const char* const group = "Lyapunov exponents";
+  command
+      .add_option("--lyapunov", exponents,
+                  "the K largest Lyapunov exponents with their error bars, per unit of time, natural logarithm [all]")
+      ->expected(0, 1)
+      ->type_name("[K]")
+      ->check(whole_number(1, 1000))
+      ->group(group);
+  command
+      .add_option("--section", request.section,
+                  "those of the return map instead, per fall of event function J through zero, which need not end "
+                  "segments")
+      ->type_name("J")
+      ->check(whole_number(1, 1000))
+      ->needs("--lyapunov")
+      ->group(group);
+  command
+      .add_option(
+          "--accuracy", request.accuracy,
+          "without --time and --events: go on from where the motion repeats itself, or does not, until the bars "
+          "are below this, at most 100000 events")
+      ->type_name("E")
+      ->check(number_within(1e-12, 1e300, "a number from 1e-12"))
+      ->capture_default_str()
+      ->needs("--lyapunov")
+      ->group(group);
+}
+
 void add_noted_options(CLI::App& command, SimulationRequest& request) {
   const char* const group = "Details";
   command
@@ -54,6 +83,8 @@ void add_simulate_command(CLI::App& app, std::function<int()>& chosen) {
       ->group("Start");
   add_start_options(*command, *request);
   add_length_options(*command, *request, length_group);
+  const auto exponents = std::make_shared<int>(0);
+  add_exponent_options(*command, *request, *exponents);
   add_detail_options(*command, *request);
   add_noted_options(*command, *request);
   command
@@ -81,11 +112,13 @@ void add_simulate_command(CLI::App& app, std::function<int()>& chosen) {
       "  tchat simulate linosc                                         # from the problem's own start\n"
       "  tchat simulate linosc 'PAR(alpha)=3' --dat found && tchat run linosc -c found -d found\n"
       "  tchat simulate linosc --state x1=0.5 --time 100 --transient-time 50 -o trial\n"
+      "  tchat simulate linosc 'PAR(alpha)=3' --lyapunov               # Lyapunov exponents of where it settles\n"
       "  tchat simulate mine --signature '1,1,1;2,2,2' --state 0,0.3   # a problem without successors\n"
       "  tchat simulate linosc -c impacting -s impacting IRS=PD1 'PAR(alpha)=3.0361' --dat doubled\n"
       "Exit status: 0 simulated (also when events accumulate), 1 a function cannot be evaluated, or --dat without a\n"
       "periodic orbit, 2 bad usage or bad input, 130 or 143 interrupted (files are complete).");
-  command->callback([&chosen, request, command] {
+  command->callback([&chosen, request, exponents, command] {
+    if (command->count("--lyapunov") > 0) request->lyapunov = *exponents;
     request->hand_over = command->count("--dat") > 0;
     if (request->orbit_name.find('=') != std::string::npos) {  // `--dat PAR(1)=2`: no name, an override
       request->overrides.push_back(request->orbit_name);

@@ -15,6 +15,7 @@ using Eigen::VectorXd;
 
 constexpr Index most_bins = 8192;
 constexpr Index least_blocks = 16;
+constexpr Index most_blocks = 4 * least_blocks;
 constexpr Index weighted_blocks = 8;
 constexpr Index least_weighted = 16;  // bins in each of those
 // 97.7 % of Student's distribution with 7 degrees of freedom, as a share of the two deviations of a normal one.
@@ -51,7 +52,9 @@ Mean plain_mean(const Rates& rates) {
   mean.value = rates.logarithms.sum() / rates.durations.sum();
   if (rates.size() < least_blocks) return mean;
   mean.error = 0.0;
-  for (Index length = 1; rates.size() / length >= least_blocks; length *= 2)
+  Index length = 1;
+  while (rates.size() / length >= most_blocks) length *= 2;
+  for (; rates.size() / length >= least_blocks; length *= 2)
     mean.error = std::max(mean.error, block_error(rates, mean.value, length));
   return mean;
 }

@@ -2,8 +2,9 @@
 /// after the other.
 ///
 /// The rate is sum(logarithm) / sum(duration) over all pieces. Its error bar comes from averages over blocks of pieces,
-/// whose length is doubled until the bar no longer grows, with at least 16 blocks: neighbouring blocks of weakly
-/// chaotic motion are correlated, and a plain standard error is too small by a factor of several.
+/// whose length is doubled until there are 16: the largest bar of the last two lengths. Neighbouring short blocks of
+/// weakly chaotic motion are correlated, and a plain standard error is too small by a factor of several; growth that
+/// the next piece takes back makes it too large.
 ///
 /// On a periodic or quasi-periodic motion a plain mean converges as 1 / (number of pieces) only. There the mean with
 /// the weight exp(-1 / (s (1 - s))), s in (0, 1) along the motion, converges faster than any power (Das, Saiki, Sander

@@ -41,11 +41,13 @@ Index most_exponents(const HybridSystem& system, const LyapunovSettings& setting
 Index checked_columns(const HybridSystem& system, const LyapunovSettings& settings) {
   const int events = system.count(FunctionKind::event);
   if (settings.section < 0 || settings.section > events)
-    throw UserError(fmt::format("section {}: {} has event functions 1 to {}", settings.section, system.name(), events));
+    throw UserError(
+        fmt::format("section {}: {} has the event functions 1 to {}", settings.section, system.name(), events));
   const Index most = most_exponents(system, settings);
   if (settings.exponents < 0 || settings.exponents > most)
-    throw UserError(fmt::format("{} exponents: {} has {}{}", settings.exponents, system.name(), most,
-                                settings.section == 0 ? "" : " on a section, one less than states"));
+    throw UserError(
+        fmt::format("{} Lyapunov exponents: {} has {}{}", settings.exponents, system.name(), most,
+                    settings.section == 0 ? ", one for each state" : " on a section, one less than states"));
   if (most == 0) throw UserError(fmt::format("{} has one state, and a section of it no exponent", system.name()));
   return settings.exponents == 0 ? most : settings.exponents;
 }
@@ -70,6 +72,7 @@ struct LyapunovAccumulator::Implementation {
   bool has_crossed = false;         // the section, once
   long steps = 0;                   // of the integrator
   double tick = 0.0, left_of_tick = 0.0;
+  double least_tick = 0.0;
   double time = 0.0;
   double time_of_returns = 0.0, time_since_return = 0.0;
   long events = 0, tangential = 0;
@@ -157,18 +160,16 @@ struct LyapunovAccumulator::Implementation {
     collect();
     by_time.add(growth_of_tick, tick);
     growth_of_tick.setZero();
-    if (is_too_short && by_time.pieces() % 2 == 0) {
+    if (tick < least_tick && by_time.pieces() % 2 == 0) {
       by_time.double_pieces();
       tick *= 2.0;
-      is_too_short = false;
     }
     left_of_tick = tick;
   }
-  bool is_too_short = false;  // a tick, against the integrator's steps
 
   void carry_with_ticks(int field, const DenseOutput& state, double from, double to) {
     if (tick == 0.0) tick = left_of_tick = steps_of_tick * (to - from);
-    if (steps_of_tick * (to - from) > tick) is_too_short = true;
+    least_tick = std::max(least_tick, steps_of_tick * (to - from));
     while (to - from >= left_of_tick) {
       const double until = std::min(to, from + left_of_tick);
       carry(field, state, from, until);

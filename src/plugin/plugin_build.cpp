@@ -206,7 +206,11 @@ struct Build {
     const std::string dependencies = scratch.file("dependencies");
     compiler.compile({translated, library, include_folder, dependencies, ""});
     std::vector<std::string> files = read_dependencies(dependencies);
-    std::replace(files.begin(), files.end(), fs::absolute(translated).string(), fs::absolute(source).string());
+    // The compiler leaves out a ./ at the begin of a path.
+    const auto is_translated = [&](const std::string& file) {
+      return fs::path(file).lexically_normal() == fs::absolute(translated).lexically_normal();
+    };
+    std::replace_if(files.begin(), files.end(), is_translated, fs::absolute(source).string());
     return files;
   }
 

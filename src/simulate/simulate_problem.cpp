@@ -12,6 +12,7 @@
 #include "setup/problem_setup.hpp"
 #include "setup/progress_line.hpp"
 #include "setup/run_request.hpp"
+#include "simulate/exponent_measurement.hpp"
 #include "simulate/loaded_problem.hpp"
 #include "simulate/orbit_hand_over.hpp"
 #include "simulate/simulation_start.hpp"
@@ -156,16 +157,21 @@ int simulate_problem(const SimulationRequest& request, std::ostream& screen, std
     continuation_parameter(request, constants, system);
   }
 
-  HybridSimulation simulation(start.rule, start.state, start.par, simulation_settings(request, interrupted));
+  SimulationSettings settings = simulation_settings(request, interrupted);
+  const std::unique_ptr<LyapunovAccumulator> exponents = exponents_to_measure(request, system, start.par);
+  if (exponents) exponents->attach(settings);
+  HybridSimulation simulation(start.rule, start.state, start.par, settings);
   say(start_text(system, start, simulation.mode()));
   warnings << start_warnings(start, simulation);
   SimulationFiles files(system, output, problem_text(system, start.par), start.par,
                         has_length(request.plan) ? SimulationFiles::everything : kept_size);
   SimulationResult result;
+  const bool measures_on_the_way = exponents && has_wanted_length(request.plan);
   {
     ProgressLine line(progress);
     result = run_simulation(simulation, request.plan, [&](const SimulatedSegment& segment) {
       files.write(segment);
+      if (measures_on_the_way) exponents->pass(segment);
       if (line.is_due()) line.show(fmt::format("{} events, t = {:.6g} ", segment.number, segment.end_time()));
     });
   }
@@ -185,6 +191,7 @@ int simulate_problem(const SimulationRequest& request, std::ostream& screen, std
   } else {
     say(no_orbit_text(result, request.plan));
   }
+  if (exponents) say(exponents_of(request, result, simulation, *exponents, progress));
   say(written_text(output, files));
   if (result.last.ended_by == SegmentEnd::failed) {
     warnings << "tchat: " << result.last.message << '\n';

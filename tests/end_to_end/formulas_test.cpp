@@ -2,6 +2,7 @@
 // mistakes.
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 
@@ -98,6 +99,22 @@ TEST_CASE("formulas become a folder with C++, which simulates to the same orbit"
   check_refused(workspace.tchat("new translated --from mine.tch"), {"exists"});
   check_refused(workspace.tchat("new other --from none.tch"), {"none.tch"});
   CHECK_FALSE(workspace.has("other"));
+}
+
+TEST_CASE("formulas are compiled at the first command and not again until they change, however they are named") {
+  const Workspace workspace;
+  workspace.write("mine.tch", oscillator);
+  const auto made_by = [&](const std::string& name) {
+    REQUIRE(workspace.tchat("check " + name).status == 0);
+    return std::filesystem::last_write_time(workspace.file("mine.tch.so"));
+  };
+  const auto made = made_by("mine");
+  CHECK(made_by("mine") == made);
+  CHECK(made_by("mine.tch") == made);
+  CHECK(made_by("./mine") == made);
+  CHECK(made_by(workspace.file("mine")) == made);
+  workspace.edit("mine.tch", "zeta=0.05", "zeta=0.06");
+  CHECK(made_by("mine") != made);
 }
 
 TEST_CASE("mistakes in formulas are told by every command, and an edit is taken at once") {

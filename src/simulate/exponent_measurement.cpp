@@ -1,0 +1,160 @@
+#include "simulate/exponent_measurement.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "attractor/attractor_recognition.hpp"
+#include "setup/progress_line.hpp"
+
+namespace tchat {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+constexpr long most_measured = 100000;  // events
+constexpr long least_measured = 1024;   // so that weighted means of periodic motion have converged
+
+/// With the digits that the bar leaves.
+std::string value_text(double value, double error) {
+  if (!std::isfinite(value)) return std::isnan(value) ? "nan" : "-infinity";
+  const double last = error > 0.0 && std::isfinite(error) ? std::floor(std::log10(error)) : -6.0;
+  const int digits = static_cast<int>(std::clamp(1.0 - last, 0.0, 12.0));
+  return fmt::format("{:.{}f}", value, digits);
+}
+
+std::string bar_text(double error) {
+  if (error == 0.0) return "";
+  return std::isfinite(error) ? fmt::format(" +- {:.2g}", error) : " +- unknown";
+}
+
+/// The one nearest to zero of those that are zero; -1 when there is none.
+Index trivial_exponent(const LyapunovSpectrum& spectrum) {
+  Index best = -1;
+  for (Index j = 0; j < spectrum.exponents.size(); ++j) {
+    const double size = std::abs(spectrum.exponents(j));
+    if (!(size <= 3.0 * spectrum.errors(j)) || !std::isfinite(spectrum.errors(j))) continue;
+    if (best < 0 || size < std::abs(spectrum.exponents(best))) best = j;
+  }
+  return best;
+}
+
+std::string counted(int n, const char* what) { return fmt::format("{} {} exponent{}", n, what, n == 1 ? "" : "s"); }
+
+/// `neutral` is how many zeros a periodic orbit has: one of a flow, none of a return map.
+std::string meaning(const ExponentSigns& signs, int neutral, bool orbit_is_known) {
+  if (signs.positive > 0) return fmt::format("{}: the motion is chaotic.", counted(signs.positive, "positive"));
+  if (signs.unclear > 0)
+    return "The bars are too large to tell what the motion is: a longer one has smaller bars (--time, --events, "
+           "--accuracy).";
+  if (signs.zero > neutral)
+    return fmt::format(
+        "{}, none positive: quasi-periodic motion on a torus of dimension {}, if it does not repeat itself.",
+        counted(signs.zero, "zero"), signs.zero + 1 - neutral);
+  if (signs.zero == neutral && signs.negative > 0) {
+    const char* const others = neutral > 0 ? "One zero exponent, the others negative" : "All exponents are negative";
+    return fmt::format("{}: a stable periodic orbit{}.", others,
+                       orbit_is_known ? "" : ", of a longer period than looked for or not reached yet");
+  }
+  if (signs.zero == neutral && neutral > 0)
+    return "The largest exponent is zero: not chaotic; with one more (--lyapunov 2) periodic and quasi-periodic motion "
+           "are told apart.";
+  return "All exponents are negative: the motion comes to rest.";
+}
+
+std::string losses(const LyapunovSpectrum& spectrum) {
+  std::string text;
+  const auto lost = (spectrum.exponents.array() == -std::numeric_limits<double>::infinity()).count();
+  if (lost > 0)
+    text +=
+        fmt::format("  -infinity: {} direction{} lost altogether, where sliding begins or a jump forgets a state.\n",
+                    lost, lost == 1 ? " is" : "s are");
+  if (spectrum.tangential > 0)
+    text += fmt::format(
+        "  {} event(s) were met almost without velocity: what they do to neighbours is known to fewer digits.\n",
+        spectrum.tangential);
+  return text;
+}
+
+std::string ended_text(const SimulationResult& result) {
+  if (result.accumulation) return "No Lyapunov exponents: the motion ends where events accumulate.\n";
+  if (result.dies_out)
+    return "No Lyapunov exponents of a motion that dies out; those of a part of it are told with --events or --time.\n";
+  if (result.last.ended_by == SegmentEnd::interrupted) return "No Lyapunov exponents yet.\n";
+  return "No Lyapunov exponents: the motion has ended; those of a part of it are told with --events or --time.\n";
+}
+
+/// Goes on until the bars are small enough; false when it was ended otherwise than by an event.
+bool go_on(HybridSimulation& simulation, LyapunovAccumulator& exponents, double accuracy, ProgressLine& line) {
+  exponents.begin();
+  long next_look = least_measured;
+  for (long done = 1; done <= most_measured; ++done) {
+    const SimulatedSegment segment = simulation.next(std::numeric_limits<double>::max());
+    exponents.pass(segment);
+    if (segment.ended_by != SegmentEnd::event) return false;
+    if (line.is_due()) {
+      const LyapunovSpectrum now = exponents.spectrum();
+      line.show(fmt::format("{} events for exponents, the largest {}{}, bars up to {:.2g} ", done,
+                            value_text(now.exponents(0), now.errors(0)), bar_text(now.errors(0)), now.accuracy()));
+    }
+    if (done < next_look) continue;
+    if (exponents.spectrum().accuracy() <= accuracy) return true;
+    next_look += next_look / 4;
+  }
+  return true;
+}
+
+}  // namespace
+
+bool has_wanted_length(const SimulationPlan& plan) { return plan.time || plan.events; }
+
+std::unique_ptr<LyapunovAccumulator> exponents_to_measure(const SimulationRequest& request, const HybridSystem& system,
+                                                          const VectorXd& par) {
+  if (!request.lyapunov) return nullptr;
+  LyapunovSettings settings;
+  settings.exponents = *request.lyapunov;
+  settings.section = request.section;
+  return std::make_unique<LyapunovAccumulator>(system, par, settings);
+}
+
+std::string spectrum_text(const HybridSystem& system, const LyapunovSpectrum& spectrum, int section,
+                          bool orbit_is_known) {
+  if (!spectrum.fault.empty()) return fmt::format("No Lyapunov exponents: {}.\n", spectrum.fault);
+  std::string text =
+      section == 0 ? fmt::format("Lyapunov exponents per unit of time, of {} events in a time of {:.6g}\n",
+                                 spectrum.events, spectrum.time)
+                   : fmt::format("Lyapunov exponents per return to {}, of {} returns in a time of {:.6g}\n",
+                                 system.function_name(FunctionKind::event, section), spectrum.events, spectrum.time);
+  const Index trivial = section == 0 ? trivial_exponent(spectrum) : -1;
+  for (Index j = 0; j < spectrum.exponents.size(); ++j)
+    text += fmt::format("  {:2}  {}{}{}\n", j + 1, value_text(spectrum.exponents(j), spectrum.errors(j)),
+                        bar_text(spectrum.errors(j)), j == trivial ? "   along the flow, where it is zero" : "");
+  text += losses(spectrum);
+  return text + "  " + meaning(signs_of(spectrum), section == 0 ? 1 : 0, orbit_is_known) + "\n";
+}
+
+std::string exponents_of(const SimulationRequest& request, const SimulationResult& result, HybridSimulation& simulation,
+                         LyapunovAccumulator& exponents, std::ostream* progress) {
+  const HybridSystem& system = simulation.system();
+  const bool goes_on = !has_wanted_length(request.plan);
+  if (goes_on && (result.last.ended_by != SegmentEnd::event || result.accumulation || result.dies_out))
+    return ended_text(result);
+  std::string remark;
+  if (goes_on) {
+    ProgressLine line(progress);
+    if (!go_on(simulation, exponents, request.accuracy, line))
+      remark = "  The simulation has ended before the bars were small enough.\n";
+  }
+  const LyapunovSpectrum spectrum = exponents.spectrum();
+  if (goes_on && remark.empty() && spectrum.accuracy() > request.accuracy)
+    remark =
+        fmt::format("  After {} events a bar is still above {:g} (--accuracy); --events or --time simulate longer.\n",
+                    spectrum.events, request.accuracy);
+  return spectrum_text(system, spectrum, request.section, result.is_periodic()) + remark;
+}
+
+}  // namespace tchat

@@ -1,0 +1,29 @@
+/// Lyapunov exponents of a `tchat simulate`: how long they are averaged, and how they are told.
+#pragma once
+
+#include <memory>
+#include <ostream>
+#include <string>
+
+#include "attractor/lyapunov_exponents.hpp"
+#include "simulate/simulation_request.hpp"
+
+namespace tchat {
+
+/// Is a length given after the transient? Then exponents are those of that part of the motion.
+bool has_wanted_length(const SimulationPlan& plan);
+
+/// Null when none are wanted. Throws UserError when there are not so many, or the section does not exist.
+std::unique_ptr<LyapunovAccumulator> exponents_to_measure(const SimulationRequest& request, const HybridSystem& system,
+                                                          const Eigen::VectorXd& par);
+
+/// Without a wanted length the simulation goes on from where `result` left it, until the bars are small enough, at most
+/// 100000 events. The exponents for people, with a line that says what they mean. `progress` may be null.
+std::string exponents_of(const SimulationRequest& request, const SimulationResult& result, HybridSimulation& simulation,
+                         LyapunovAccumulator& exponents, std::ostream* progress);
+
+/// The table of them and what they mean; `orbit_is_known` when the motion has been seen to repeat itself.
+std::string spectrum_text(const HybridSystem& system, const LyapunovSpectrum& spectrum, int section,
+                          bool orbit_is_known);
+
+}  // namespace tchat
