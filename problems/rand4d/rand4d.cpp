@@ -3,19 +3,20 @@
 //     x1' = m x1 - x2 - x1 x3,   x2' = m x2 + x1 + A y2,   x3' = -x3 + x2^2 + x1^2 x3,   x1 >= mu,
 //     x1' -> -r x1' at x1 = mu,
 //
-// made autonomous by y = (sin omega t, cos omega t), the attracting limit cycle of a planar oscillator.
+// made autonomous by y = (sin omega t, cos omega t), the attracting limit cycle of a planar oscillator. Attractors are
+// seen on the section P, where x1 is at a minimum, and on P', where omega t is PAR(6).
 #include <tchat/problem.hpp>
 
 struct ForcedOscillator {
-  static constexpr int dimension = 5, parameters = 5;
-  static constexpr int fields = 1, events = 2, jumps = 2;
+  static constexpr int dimension = 5, parameters = 6;
+  static constexpr int fields = 1, events = 3, jumps = 2;
 
   static constexpr const char* state_names[] = {"x1", "x2", "x3", "y1", "y2"};
-  static constexpr const char* parameter_names[] = {"mu", "A", "omega", "m", "r"};
+  static constexpr const char* parameter_names[] = {"mu", "A", "omega", "m", "r", "phase"};
   static constexpr const char* field_names[] = {"free flight"};
-  static constexpr const char* event_names[] = {"wall", "minimum of x1"};
+  static constexpr const char* event_names[] = {"wall", "minimum of x1", "phase"};
   static constexpr const char* jump_names[] = {"impact", "identity"};
-  static constexpr double initial_parameters[] = {-0.4938, 1.25, 1.9, 0.28, 0.8};
+  static constexpr double initial_parameters[] = {-0.4938, 1.25, 1.9, 0.28, 0.8, 3.0088915663};
   static constexpr double initial_state[] = {-0.3, 0.5, 0.2, 0.0, 1.0};
 
   static constexpr int user_values = 1;
@@ -41,7 +42,8 @@ struct ForcedOscillator {
   template <class T>
   T event(int j, const T* x, const T* par) const {
     if (j == 1) return x[0] - par[0];
-    return -velocity(x, par);
+    if (j == 2) return -velocity(x, par);
+    return sin(par[5]) * x[4] - cos(par[5]) * x[3];  // sin(PAR(6) - omega t)
   }
 
   template <class T>

@@ -35,7 +35,7 @@ struct PlotArguments {
 };
 
 /// What stands between the panels in the list of words.
-inline constexpr const char* panel_separator = "%%";
+inline constexpr const char* panel_separator = "";
 
 /// The whole command. What is a list here holds one text for all panels, or one for each.
 struct PlotCommand {

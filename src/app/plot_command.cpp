@@ -75,10 +75,13 @@ int make_picture(const PlotCommand& command) {
 }
 
 constexpr const char* footer =
-    "Four kinds of picture, by the files given:\n"
+    "Five kinds of picture, by the files given:\n"
     "  tchat plot p.A [p.B ...]           branches: by default the first free parameter and the solution measure;\n"
     "                                     the two free parameters when all files are two-parameter curves\n"
     "  tchat plot p.A [p.B ...] TABLE     with the first two columns of a table of your own as dots beneath\n"
+    "  tchat plot A.sweep [B.sweep ...]   sweeps: dots over one quantity (beneath branches, if there are p-files), a "
+    "map in\n"
+    "                                     colours over two, attractors or what -z says\n"
     "  tchat plot q.A LABEL [LABEL ...]   orbits: phase portrait of the first two states, or with --time time series;\n"
     "                                     labels are numbers or types with a count (5, PD1, GR1), or all\n"
     "  tchat plot A.trajectory            a simulation: time series, or with -x a phase portrait\n"
@@ -94,6 +97,10 @@ constexpr const char* footer =
     "(x2@1: of segment 1), x2@after:wall that behind the jump: an arm for each in a period, of the orbits in q.A "
     "(NPR=1:\n"
     "of every point). Expressions of all of these are gnuplot's: 1/omega, 'sqrt(x2@wall**2)', 'MAX x1 - alpha'.\n"
+    "Of a sweep x1@+2 is x1 two rows later (a return map). Panels: -x, -y, -z, --dots, ranges and texts once for all, "
+    "or "
+    "once\n"
+    "for each.\n"
     "Without -o the picture is shown in a window; without a display it goes to A.png.\n"
     "Examples:\n"
     "  tchat plot p.impacting                                  to impacting.png, or a window\n"
@@ -104,6 +111,9 @@ constexpr const char* footer =
     "  tchat plot q.impacting PD1 -x x1 -y x2 -z y1 -o space.png\n"
     "  tchat plot --time q.impacting PD1 -y x1,x2,y1 -o series.svg\n"
     "  tchat plot linosc.trajectory -y x1,x2 --xrange 0:50     what tchat simulate linosc has written\n"
+    "  tchat plot p.impacting brute.sweep -y x2@wall --dots x2  branches through the dots of a sweep\n"
+    "  tchat plot basin.sweep -o basin.png                     a map in colours\n"
+    "  tchat plot simulated.sweep --panel mapped.sweep --same-ranges -o both.png\n"
     "  tchat plot --multipliers q.impacting -o multipliers.png";
 
 }  // namespace

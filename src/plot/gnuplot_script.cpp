@@ -88,6 +88,7 @@ class FigureWriter {
         bottom_(placed.bottom),
         page_(page),
         panels_before_(panels_before),
+        format_(format),
         units_(terminal_units(format, placed.figure.width, placed.layout.font)),
         text_(text) {}
 
@@ -331,15 +332,20 @@ class FigureWriter {
                        axis("$2", field.first.y, field.last.y, field.rows));
   }
 
+  /// The smallest dots of an SVG are gnuplot's own: half a pixel in radius, and a shorter text.
+  std::string dots(const Cloud& cloud) const {
+    constexpr double smallest = 0.2;
+    if (format_ == PictureFormat::svg && cloud.size <= smallest) return fmt::format("dots lc rgb '{}'", cloud.colour);
+    Marker dot = cloud_marker("");
+    dot.size = cloud.size;
+    return "points " + points(dot, true, cloud.colour);
+  }
+
   void plot(const Panel& panel, std::size_t number) {
     std::vector<std::string> elements;
     if (panel.field) elements.push_back(image(*panel.field, number));
-    for (std::size_t c = 0; c < panel.clouds.size(); ++c) {
-      Marker dot = cloud_marker("");
-      dot.size = panel.clouds[c].size;
-      elements.push_back(fmt::format("$cloud{}_{} with points {} notitle", number_of(number), c + 1,
-                                     points(dot, true, panel.clouds[c].colour)));
-    }
+    for (std::size_t c = 0; c < panel.clouds.size(); ++c)
+      elements.push_back(fmt::format("$cloud{}_{} with {} notitle", number_of(number), c + 1, dots(panel.clouds[c])));
     for (std::size_t c = 0; c < panel.curves.size(); ++c)
       elements.push_back(fmt::format("$curve{}_{} with lines {} notitle", number_of(number), c + 1,
                                      stroke(panel.curves[c].stroke, layout_.panels[number].dash_scales[c])));
@@ -380,6 +386,7 @@ class FigureWriter {
   double left_, bottom_;
   Page page_;
   std::size_t panels_before_;
+  PictureFormat format_;
   TerminalUnits units_;
   std::string& text_;
 };

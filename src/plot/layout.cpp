@@ -38,17 +38,19 @@ bool is_inside(double value, const AxisSettings& range) {
   return can_be_shown(value) && !(range.low && value < *range.low) && !(range.high && value > *range.high);
 }
 
-/// One coordinate of what lies within the other axis's range, so that a chosen --xrange gives a fitting y-range.
+/// One coordinate of what lies within the ranges chosen for this axis and the other one, so that a chosen --xrange
+/// gives a fitting y-range, and --yrange 0: an upper end for what is above zero.
 std::vector<double> visible(const Values& values, double PicturePoint::*coordinate, double PicturePoint::*across,
-                            const AxisSettings& other) {
-  const bool limited = other.low || other.high;
+                            const AxisSettings& own, const AxisSettings& other) {
+  const bool limited = other.low || other.high || own.low || own.high;
   std::vector<double> result;
   for (const auto* list : {&values.points, &values.minor}) {
     for (const PicturePoint& p : *list)
-      if (!limited || is_inside(p.*across, other)) result.push_back(p.*coordinate);
+      if (!limited || (is_inside(p.*across, other) && is_inside(p.*coordinate, own))) result.push_back(p.*coordinate);
     if (!result.empty()) return result;
   }
-  return limited ? visible(values, coordinate, across, {}) : result;
+  if (own.low || own.high) return visible(values, coordinate, across, {}, other);
+  return limited ? visible(values, coordinate, across, {}, {}) : result;
 }
 
 /// A map fills its frame.
@@ -156,9 +158,9 @@ FigureLayout lay_out_in_space(const Figure& figure) {
   Values values;
   add_values(panel, values);
   PanelLayout place;
-  place.x = choose_scale(panel.x, visible(values, &PicturePoint::x, &PicturePoint::y, {}), tics);
-  place.y = choose_scale(panel.y, visible(values, &PicturePoint::y, &PicturePoint::x, {}), tics);
-  place.z = choose_scale(*panel.z, visible(values, &PicturePoint::z, &PicturePoint::x, {}), tics);
+  place.x = choose_scale(panel.x, visible(values, &PicturePoint::x, &PicturePoint::y, panel.x, {}), tics);
+  place.y = choose_scale(panel.y, visible(values, &PicturePoint::y, &PicturePoint::x, panel.y, {}), tics);
+  place.z = choose_scale(*panel.z, visible(values, &PicturePoint::z, &PicturePoint::x, *panel.z, {}), tics);
   place.frame = {0.0, static_cast<double>(figure.width), 0.0, figure.height - height_of_texts(figure, layout.font)};
   const KeyGrid rows(figure.key, layout.font, figure.width - layout.font, 0.35 * place.frame.height());
   if (!rows.empty()) {
@@ -200,11 +202,11 @@ FigureLayout lay_out(const Figure& figure) {
     Values own;
     add_values(panel, own);
     PanelLayout place;
-    place.x =
-        choose_scale(fitting(panel.x, panel.field, &PicturePoint::x),
-                     visible(shared, &PicturePoint::x, &PicturePoint::y, panels == 1 ? panel.y : AxisSettings{}), 4);
+    place.x = choose_scale(
+        fitting(panel.x, panel.field, &PicturePoint::x),
+        visible(shared, &PicturePoint::x, &PicturePoint::y, panel.x, panels == 1 ? panel.y : AxisSettings{}), 4);
     place.y = choose_scale(fitting(panel.y, panel.field, &PicturePoint::y),
-                           visible(own, &PicturePoint::y, &PicturePoint::x, panel.x), panels > 1 ? 3 : 4);
+                           visible(own, &PicturePoint::y, &PicturePoint::x, panel.y, panel.x), panels > 1 ? 3 : 4);
     widest = std::max(widest, place.y.widest_number);
     widest_below = std::max(widest_below, place.x.widest_number);
     layout.panels.push_back(place);

@@ -37,6 +37,9 @@ double dot_size(std::size_t dots) { return dots > 40000 ? 0.2 : dots > 10000 ? 0
 /// Of groups whose dots may lie on each other: the earlier ones are seen around the later ones.
 constexpr double larger_beneath = 1.7;
 
+/// Few dots that lie beneath a line are seen at both sides of it.
+constexpr double seen_beneath_lines = 1.8;
+
 const SweptQuantity* swept(const SweepTable& table, const std::string& column) {
   for (const SweptQuantity& quantity : table.over)
     if (quantity.column() == column) return &quantity;
@@ -184,6 +187,7 @@ class SweepLayerBuilder {
     const std::size_t count = cloud.points.size();
     if (count == 0) return 0;
     cloud.size = group.size * dot_size(count);
+    if (look_.beneath_branches && count <= 1000) cloud.size *= seen_beneath_lines;
     if (!bars.points.empty()) result_.curves.push_back(std::move(bars));
     if (!name.empty()) result_.key.push_back({name, std::nullopt, key_dot(colour)});
     result_.clouds.push_back(std::move(cloud));
@@ -299,16 +303,13 @@ void Underlay::add(Underlay other) {
 }
 
 std::string default_sweep_y(const SweepTable& table, const std::string& x) {
+  if (table.column("penetration") != nullptr) return "penetration";  // it has been asked for
   for (const std::string& state : sweep_states(table))
     if (state != x) return state;
-  for (const char* name : {"penetration", "lambda1", "period"})
-    if (table.column(name) != nullptr) {
-      if (std::string(name) != "lambda1") return name;
-      std::string all = name;
-      for (int k = 2; table.column(fmt::format("lambda{}", k)) != nullptr; ++k) all += fmt::format(",lambda{}", k);
-      return all;
-    }
-  return "attractor";
+  if (table.column("lambda1") == nullptr) return table.column("period") != nullptr ? "period" : "attractor";
+  std::string all = "lambda1";
+  for (int k = 2; table.column(fmt::format("lambda{}", k)) != nullptr; ++k) all += fmt::format(",lambda{}", k);
+  return all;
 }
 
 Underlay sweep_layer(const SweepFile& file, const SweepLook& look, std::vector<std::string>& warnings) {

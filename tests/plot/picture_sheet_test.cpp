@@ -122,7 +122,7 @@ TEST_CASE("a map fills its frame, its cells and colours are in the script, and t
   CHECK(layout.panels[0].y.high == 25.0);
   REQUIRE(layout.colour_bar);
   CHECK(layout.colour_bar->box.left > layout.panels[0].frame.right);
-  CHECK(layout.colour_bar->box.bottom == layout.panels[0].frame.bottom);
+  CHECK(layout.colour_bar->box.bottom == Approx(layout.panels[0].frame.bottom));
   const std::string script = gnuplot_script(figure, layout, {PictureFormat::png, "a.png", ""});
   CHECK(contains(script, "$field1 << END\n0 1 2\n1 1 0\nEND\n"));  // 2: paper
   CHECK(contains(script, "maxcolors 3 defined (0 '#112233', 1 '#445566', 2 '#ffffff')"));
