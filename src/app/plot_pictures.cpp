@@ -114,7 +114,13 @@ NamedFigure branches(const std::vector<PlotItem>& items, const PlotArguments& ar
   }
   check_legend(arguments, lines, lines == items.size() ? "file" : "line");
   options.underlay = sweeps.take();
+  const bool has_dots = !options.underlay.clouds.empty();
   result.figure = branch_figure(files, options, &result.warnings);
+  if (has_dots && !files.empty() && arguments.dots.empty() &&
+      result.figure.panels.front().y.label.text.starts_with("max "))
+    result.warnings.push_back(
+        "branches show the largest value of a state, the dots of a sweep its value at their section, which is "
+        "something else; with -y STATE@EVENT --dots STATE branches show that too (of a run with NPR=1)");
   if (!files.empty()) result.name = files.front().name;
   return result;
 }
