@@ -31,6 +31,7 @@ struct BranchPoint {
   double step = 0.0;                    ///< ds of that step, 0 at the start
   std::vector<NamedTestValue> tests;
   std::vector<std::string> details;  ///< of a labelled point: what else its test functions know
+  std::string remark = {};           ///< what its problem type has to say of it, one line or none
   bool labelled() const { return special.type != PointType::ordinary; }
 };
 
@@ -56,6 +57,8 @@ class BranchSink {
 };
 
 enum class EndReason {
+  outgrown,    ///< it goes on with another discretisation
+  unresolved,  ///< no discretisation within the limits resolves what follows
   max_points,
   parameter_bound,
   measure_bound,

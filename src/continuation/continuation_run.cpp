@@ -93,10 +93,14 @@ ContinuationRun::ContinuationRun(PathFollower& follower, const DefiningSystem& s
 BranchSummary ContinuationRun::run(PathPoint start) {
   here_ = std::move(start);
   next_ = {here_, 0.0, search_.begin(here_)};
+  number_ = settings_.first_number;
   SpecialPoint special;
   if (settings_.label_start) special.type = PointType::end;
   closed_.begin(here_, settings_.step.initial);
-  accept(end_conditions(special));
+  if (number_ > 1)
+    resume();
+  else
+    accept(end_conditions(special));
 
   while (!ended_) {
     prepare_next_step();
@@ -113,9 +117,18 @@ BranchSummary ContinuationRun::run(PathPoint start) {
     ++number_;
     accept(end_conditions(curve_end(special)));
     if (!limited_) step_.converged(newton_.iterations, number_);
+    if (!ended_ && settings_.outgrown && settings_.outgrown(here_.orbit)) end(EndReason::outgrown, "");
   }
   if (settings_.periodic) summary_.remark = trend_.growing_period(settings_.principal_name);
   return summary_;
+}
+
+/// From a point that was recorded on another discretisation.
+void ContinuationRun::resume() {
+  accepted_ = here_;
+  accepted_data_ = next_.data;
+  trend_.add(here_.orbit, here_.orbit.par(settings_.principal - 1));
+  summary_.points = number_;
 }
 
 /// Where the step to next_ passes the first point of the branch: next_ is moved to just beyond it, so that special
@@ -283,6 +296,8 @@ SpecialPoint ContinuationRun::end_conditions(SpecialPoint special) {
     end(EndReason::max_points, fmt::format("NMX = {}", settings_.max_points));
   else if (settings_.interrupted && settings_.interrupted())
     end(EndReason::interrupted, "");
+  else if (const std::string why = settings_.unresolved ? settings_.unresolved(here_.orbit) : ""; !why.empty())
+    end(EndReason::unresolved, why);
   if (is_special) return special;
   if (ended_)
     special.type = PointType::end;
@@ -323,6 +338,7 @@ void ContinuationRun::record(const SpecialPoint& special, const PointData& data)
   for (std::size_t i = 0; i < search_.tests().size(); ++i)
     point.tests.push_back({search_.tests()[i]->name(), data.tests[i].value});
   point.details = data.details;
+  if (settings_.remark) point.remark = settings_.remark(here_.orbit);
   summary_.points = number_;
   summary_.inadmissible_points += !violations.empty();
   summary_.multipliers_computed = settings_.multipliers;

@@ -14,6 +14,7 @@
 #include "special_points/bifurcation_tests.hpp"
 #include "special_points/sliding_bifurcation.hpp"
 #include "stability/equilibrium_eigenvalues.hpp"
+#include "stability/torus_multipliers.hpp"
 
 namespace tchat {
 
@@ -115,8 +116,9 @@ double SpecialPointSearch::signed_distance(const PathPoint& at) const {
 PointData SpecialPointSearch::evaluate(PathPoint& at) {
   PointData data;
   if (settings_.multipliers) {
-    data.multipliers = system_.is_point() ? equilibrium_eigenvalues(system_, at.orbit)
-                                          : floquet_.compute(follower_.condensed(), at.orbit);
+    data.multipliers = system_.is_point()     ? equilibrium_eigenvalues(system_, at.orbit)
+                       : system_.orbits() > 1 ? torus_multipliers(follower_.condensed(), at.orbit)
+                                              : floquet_.compute(follower_.condensed(), at.orbit);
     const OrbitCondition* condition = follower_.condition();
     const std::optional<int> kept = condition != nullptr ? condition->kept_multiplier() : std::nullopt;
     if (kept) put_critical(data.multipliers, *kept);
