@@ -52,6 +52,8 @@ class BranchSink {
   virtual void next_step(int point_number, double ds) = 0;
   /// Something worth a line in the d-file, about the point being computed.
   virtual void note(int point_number, const std::string& text) = 0;
+  /// A point that the step to a point has passed, which is not located.
+  virtual void passed(const LostPoint& point) { note(point.number, point.text); }
   /// Something that the user must hear of: a special point may be missing.
   virtual void lost(const LostPoint& point) { note(point.number, point.text); }
 };

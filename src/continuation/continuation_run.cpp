@@ -309,11 +309,25 @@ SpecialPoint ContinuationRun::end_conditions(SpecialPoint special) {
 
 /// here_ with what the search knows of it; kept, for the steps from it move it to another mesh.
 void ContinuationRun::accept(const SpecialPoint& special) {
+  tell_passed();
   accepted_ = here_;
   accepted_data_ = next_.data;
   if (special.type != PointType::ordinary) accepted_data_.details = search_.details(here_, accepted_data_);
   trend_.add(here_.orbit, here_.orbit.par(settings_.principal - 1));
   record(special, accepted_data_);
+}
+
+/// Between the last accepted point and here_.
+void ContinuationRun::tell_passed() {
+  for (std::size_t i = 0; i < search_.tests().size() && !accepted_data_.tests.empty(); ++i) {
+    const TestFunction& test = *search_.tests()[i];
+    const int before = accepted_data_.tests[i].sign;
+    const int now = next_.data.tests[i].sign;
+    if (!test.is_told_only() || before * now >= 0) continue;
+    const auto parameter = [this](const PathPoint& point) { return point.orbit.par(settings_.principal - 1); };
+    const TestedPoint at = search_.tested(here_, next_.data);
+    sink_.passed({number_, test.classify(at, now > 0).description, parameter(accepted_), parameter(here_)});
+  }
 }
 
 void ContinuationRun::record(const SpecialPoint& special, const PointData& data) {

@@ -68,6 +68,7 @@ class ContinuationRun {
   SpecialPoint shrunk_orbit(SpecialPoint special, bool through_point);
   SpecialPoint curve_end(SpecialPoint special);
   SpecialPoint end_conditions(SpecialPoint special);
+  void tell_passed();
   void record(const SpecialPoint& special, const PointData& data);
   void accept(const SpecialPoint& special);
   void end(EndReason reason, std::string detail);

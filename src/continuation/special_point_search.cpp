@@ -180,7 +180,8 @@ bool SpecialPointSearch::same_branch(const PathPoint& here, const PathPoint& nex
 std::vector<std::size_t> SpecialPointSearch::changed(const PointData& end) const {
   std::vector<std::size_t> result;
   for (std::size_t i = 0; i < tests_.size(); ++i)
-    if (end.tests[i].value && signs_[i] != 0 && end.tests[i].sign == -signs_[i]) result.push_back(i);
+    if (!tests_[i]->is_told_only() && end.tests[i].value && signs_[i] != 0 && end.tests[i].sign == -signs_[i])
+      result.push_back(i);
   return result;
 }
 

@@ -281,6 +281,14 @@ void BranchWriter::note(int point_number, const std::string& text) {
   files_.write_diagnostics(format_note(setup_.branch, point_number, text));
 }
 
+void BranchWriter::passed(const LostPoint& point) {
+  note(point.number, point.text);
+  if (screen_ == nullptr) return;
+  progress_.clear();
+  *screen_ << fmt::format("       {} = {:.8g} to {:.8g}: {}\n", columns_.front().name, point.from, point.to, point.text)
+           << std::flush;
+}
+
 void BranchWriter::lost(const LostPoint& point) {
   note(point.number, point.text);
   if (screen_ == nullptr) return;

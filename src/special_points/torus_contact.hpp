@@ -56,11 +56,13 @@ class TorusContactTest final : public TestFunction {
 };
 
 /// The rotation number passes p / q, q = 1..4: a strong resonance, where the motion on the torus may lock and the torus
-/// break.
+/// break. Where it is not broken, another parametrisation of the curve that goes with the rotation by p / q solves the
+/// equations too, so that they are singular: the passage is told, not located.
 class StrongResonanceTest final : public TestFunction {
  public:
   StrongResonanceTest(int p, int q) : p_(p), q_(q) {}
   std::string name() const override;
+  bool is_told_only() const override { return true; }
   TestValue evaluate(const TestedPoint& point) const override;
   SpecialPoint classify(const TestedPoint& point, bool rising) const override;
 
