@@ -13,6 +13,7 @@
 #include "plot/data_file.hpp"
 #include "plot/label_text.hpp"
 #include "plot/picture_styles.hpp"
+#include "plot/sweep_layer.hpp"
 #include "plot/trajectory_file.hpp"
 #include "text/number.hpp"
 #include "text/user_error.hpp"
@@ -44,11 +45,14 @@ std::string file_of(const std::string& word, bool label_follows) {
   const std::array<char, 3> letters = label_follows ? std::array{'q', 'p', 'd'} : std::array{'p', 'q', 'd'};
   for (const char letter : letters)
     if (is_file(beside(word, letter))) return beside(word, letter);
-  return is_file(word + ".trajectory") ? word + ".trajectory" : "";
+  for (const char* ending : {".trajectory", ".sweep"})
+    if (is_file(word + ending)) return word + ending;
+  return "";
 }
 
 PlotItem::Kind kind_of(const std::string& path) {
   if (looks_like_trajectory(path)) return PlotItem::Kind::trajectory;
+  if (looks_like_sweep(path)) return PlotItem::Kind::sweep;
   const RunFileKind kind = run_file_kind(path);
   if (kind == RunFileKind::solutions) return PlotItem::Kind::solutions;
   const std::string name = fs::path(path).filename().string();
@@ -64,7 +68,57 @@ std::string what_else(const std::string& word) {
   return fmt::format(" and no label, and there is no {} and no {}", beside(word, 'p'), beside(word, 'q'));
 }
 
+PlotArguments without_words(PlotArguments arguments) {
+  arguments.words.clear();
+  return arguments;
+}
+
+/// To each panel as many texts as it has words, to the last one all that are left.
+void share_legend(std::vector<PlotArguments>& panels) {
+  if (panels.size() == 1) return;
+  std::vector<std::string> texts = panels.front().legend;
+  for (PlotArguments& panel : panels) {
+    const std::size_t count = &panel == &panels.back() ? texts.size() : std::min(panel.words.size(), texts.size());
+    panel.legend.assign(texts.begin(), texts.begin() + static_cast<std::ptrdiff_t>(count));
+    texts.erase(texts.begin(), texts.begin() + static_cast<std::ptrdiff_t>(count));
+  }
+}
+
 }  // namespace
+
+std::vector<PlotArguments> panel_arguments(const PlotCommand& command) {
+  std::vector<PlotArguments> panels(1, command.common);
+  for (const std::string& word : command.panels) {
+    if (word != panel_separator) {
+      if (panels.size() == 1) panels.push_back(without_words(command.common));
+      panels.back().words.push_back(word);
+    } else if (!panels.back().words.empty()) {
+      panels.push_back(without_words(command.common));
+    }
+  }
+  if (panels.back().words.empty()) panels.pop_back();
+  const auto share = [&panels](const std::vector<std::string>& texts, std::string PlotArguments::*where,
+                               const char* option) {
+    if (texts.size() > 1 && texts.size() != panels.size())
+      throw UserError(fmt::format("{} is given {} times for {} panel{}; give it once, or once for each panel", option,
+                                  texts.size(), panels.size(), panels.size() == 1 ? "" : "s"));
+    for (std::size_t k = 0; k < panels.size() && !texts.empty(); ++k)
+      panels[k].*where = texts[texts.size() == 1 ? 0 : k];
+  };
+  share(command.x, &PlotArguments::x, "-x");
+  share(command.y, &PlotArguments::y, "-y");
+  share(command.z, &PlotArguments::z, "-z");
+  share(command.x_range, &PlotArguments::x_range, "--xrange");
+  share(command.y_range, &PlotArguments::y_range, "--yrange");
+  share(command.z_range, &PlotArguments::z_range, "--zrange");
+  share(command.x_label, &PlotArguments::x_label, "--xlabel");
+  share(command.y_label, &PlotArguments::y_label, "--ylabel");
+  share(command.z_label, &PlotArguments::z_label, "--zlabel");
+  share(command.dots, &PlotArguments::dots, "--dots");
+  if (command.title.size() > 1 || panels.size() == 1) share(command.title, &PlotArguments::title, "--title");
+  share_legend(panels);
+  return panels;
+}
 
 std::vector<PlotItem> read_plot_items(const std::vector<std::string>& words) {
   std::vector<PlotItem> items;

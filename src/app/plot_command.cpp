@@ -22,15 +22,13 @@ namespace {
 
 void apply_taste(const PlotArguments& arguments, Figure& figure) {
   if (!arguments.title.empty()) figure.title = plain_text(arguments.title);
-  if (const PlotSize size = read_plot_size(arguments.size); size.width > 0) {
-    figure.width = size.width;
-    figure.height = size.height;
-  }
   const PlotRange x = read_plot_range(arguments.x_range, "--xrange");
   const PlotRange y = read_plot_range(arguments.y_range, "--yrange");
   const PlotRange z = read_plot_range(arguments.z_range, "--zrange");
   if (const auto view = read_plot_view(arguments.view)) figure.view_tilt = view->tilt, figure.view_turn = view->turn;
   for (Panel& panel : figure.panels) {
+    if (panel.field && (arguments.log_x || arguments.log_y))
+      throw UserError("a map in colours has linear axes: leave --logx and --logy out");
     panel.x.low = x.low, panel.x.high = x.high, panel.x.logarithmic = arguments.log_x;
     panel.y.low = y.low, panel.y.high = y.high, panel.y.logarithmic = arguments.log_y;
     if (panel.z) panel.z->low = z.low, panel.z->high = z.high;
@@ -40,14 +38,38 @@ void apply_taste(const PlotArguments& arguments, Figure& figure) {
   }
 }
 
-int make_picture(const PlotArguments& arguments) {
-  const std::vector<PlotItem> items = read_plot_items(arguments.words);
-  refuse_control_characters(arguments.output, "-o");  // early, like a picture of no known form
-  if (!arguments.output.empty()) picture_format(arguments.output);
-  NamedFigure picture = make_figure(items, arguments);
-  print_warnings(std::cerr, picture.warnings);
-  apply_taste(arguments, picture.figure);
-  const std::string made = output_picture(picture.figure, {arguments.output, arguments.script, picture.name});
+/// A lone figure has the usual size; panels beside each other are as wide as two thirds of it.
+Sheet sheet_of(std::vector<Figure> figures, const PlotCommand& command) {
+  constexpr int panel_width = 800, panel_height = 650;
+  Sheet sheet;
+  sheet.columns = columns_for(figures.size());
+  const std::size_t rows = (figures.size() + sheet.columns - 1) / sheet.columns;
+  sheet.width = panel_width * static_cast<int>(sheet.columns);
+  sheet.height = panel_height * static_cast<int>(rows);
+  sheet.same_ranges = command.same_ranges;
+  if (const PlotSize size = read_plot_size(command.size); size.width > 0) {
+    sheet.width = figures.front().width = size.width;
+    sheet.height = figures.front().height = size.height;
+  }
+  if (command.title.size() == 1) sheet.title = plain_text(command.title.front());
+  sheet.figures = std::move(figures);
+  return sheet;
+}
+
+int make_picture(const PlotCommand& command) {
+  refuse_control_characters(command.output, "-o");  // early, like a picture of no known form
+  if (!command.output.empty()) picture_format(command.output);
+  std::vector<Figure> figures;
+  std::string name;
+  for (const PlotArguments& arguments : panel_arguments(command)) {
+    NamedFigure picture = make_figure(read_plot_items(arguments.words), arguments);
+    print_warnings(std::cerr, picture.warnings);
+    apply_taste(arguments, picture.figure);
+    figures.push_back(std::move(picture.figure));
+    if (name.empty()) name = picture.name;
+  }
+  const std::string made =
+      output_picture(sheet_of(std::move(figures), command), {command.output, command.script, name});
   if (!made.empty()) fmt::print("{}\n", made);
   return 0;
 }
@@ -90,7 +112,9 @@ void add_plot_command(CLI::App& app, std::function<int()>& chosen) {
   CLI::App* command =
       app.add_subcommand("plot", "bifurcation diagrams, orbits and multipliers to PNG, SVG, PDF or a window");
   command->footer(footer);
-  const auto a = std::make_shared<PlotArguments>();
+  const auto command_line = std::make_shared<PlotCommand>();
+  PlotArguments* const a = &command_line->common;
+  PlotCommand* const c = command_line.get();
   command
       ->add_option("FILES", a->words,
                    "p-files; a q-file with labels; trajectories; tables; A is taken for p.A, before labels for q.A")
@@ -98,22 +122,35 @@ void add_plot_command(CLI::App& app, std::function<int()>& chosen) {
   command->add_flag("--multipliers", a->multipliers, "Floquet multipliers with the unit circle");
   command->add_flag("--time", a->time, "orbits as time series");
   command->add_flag("--one-panel", a->one_panel, "time series of several states in one panel");
-  command->add_option("-o,--output", a->output, "picture FILE.png, FILE.svg or FILE.pdf")->type_name("FILE");
-  command->add_option("-x", a->x, "along x: a column, STATE@EVENT, an expression such as omega/2; a state of an orbit")
-      ->type_name("COLUMN");
-  command->add_option("-y", a->y, "along y; time series take several states, as x1,x2")->type_name("COLUMN");
-  command->add_option("-z", a->z, "a third state: the phase portrait is drawn in space")->type_name("STATE");
-  command->add_option("--xrange", a->x_range, "range of x, as 0.5:2 or 0.5:")->type_name("A:B");
-  command->add_option("--yrange", a->y_range, "range of y")->type_name("A:B");
-  command->add_option("--zrange", a->z_range, "range of z")->type_name("A:B");
+  command->add_option("-o,--output", c->output, "picture FILE.png, FILE.svg or FILE.pdf")->type_name("FILE");
+  // Once for all panels, or once for each.
+  const auto each = [command](const char* name, std::vector<std::string>& texts, const char* help, const char* type) {
+    command->add_option(name, texts, help)->type_name(type)->allow_extra_args(false);
+  };
+  each("-x", c->x, "along x: a column, STATE@EVENT, an expression such as omega/2; a state of an orbit", "COLUMN");
+  each("-y", c->y, "along y; time series and sweeps take several, as x1,x2", "COLUMN");
+  each("-z", c->z, "orbits: a third state, drawn in space; sweeps: what colours mean (kind, period, lambda1)",
+       "COLUMN");
+  each("--dots", c->dots, "along y for sweeps beneath branches, where it is not -y", "COLUMN");
+  command->add_option("--at", a->at, "only this value of a sweep, as mu=-0.8; start=2; several")
+      ->type_name("NAME=VALUE")
+      ->allow_extra_args(false);
+  command->add_option("--panel", c->panels, "files of a further panel at the right side; again for one more")
+      ->type_name("FILES")
+      ->expected(1, -1)
+      ->inject_separator();
+  command->add_flag("--same-ranges", c->same_ranges, "panels have the same ranges of x, and of y");
+  each("--xrange", c->x_range, "range of x, as 0.5:2 or 0.5:", "A:B");
+  each("--yrange", c->y_range, "range of y", "A:B");
+  each("--zrange", c->z_range, "range of z, and of a scale of colours", "A:B");
   command->add_option("--view", a->view, "of -z: tilt from the z-axis and turn around it in degrees (default: 65,35)")
       ->type_name("TILT,TURN");
   command->add_flag("--logx", a->log_x, "logarithmic x-axis");
   command->add_flag("--logy", a->log_y, "logarithmic y-axis");
-  command->add_option("--title", a->title, "text above the picture");
-  command->add_option("--xlabel", a->x_label, "text of the x-axis");
-  command->add_option("--ylabel", a->y_label, "text of the y-axis");
-  command->add_option("--zlabel", a->z_label, "text of the z-axis");
+  each("--title", c->title, "text above the picture; once for each panel: above the panels", "TEXT");
+  each("--xlabel", c->x_label, "text of the x-axis", "TEXT");
+  each("--ylabel", c->y_label, "text of the y-axis", "TEXT");
+  each("--zlabel", c->z_label, "text of the z-axis, and of a scale of colours", "TEXT");
   command
       ->add_option("--legend", a->legend,
                    "text in the key for a file, an orbit or a line of --one-panel; once for each, in order")
@@ -130,10 +167,12 @@ void add_plot_command(CLI::App& app, std::function<int()>& chosen) {
   command
       ->add_option("--dimension", a->dimension, "number of states of one segment, for older files that do not say it")
       ->check(CLI::PositiveNumber);
-  command->add_option("--size", a->size, "size in pixels (default: 1200x900); 150 pixels are an inch of a PDF")
+  command
+      ->add_option("--size", c->size,
+                   "size in pixels (default: 1200x900, 800x650 a panel); 150 pixels are an inch of a PDF")
       ->type_name("WxH");
-  command->add_option("--script", a->script, "keep the gnuplot script, data inline, in FILE")->type_name("FILE");
-  command->callback([&chosen, a] { chosen = [a] { return make_picture(*a); }; });
+  command->add_option("--script", c->script, "keep the gnuplot script, data inline, in FILE")->type_name("FILE");
+  command->callback([&chosen, command_line] { chosen = [command_line] { return make_picture(*command_line); }; });
 }
 
 }  // namespace tchat

@@ -18,6 +18,7 @@
 #include "plot/orbit_figure.hpp"
 #include "plot/orbit_stability.hpp"
 #include "plot/problem_finder.hpp"
+#include "plot/sweep_layer.hpp"
 #include "plot/trajectory_file.hpp"
 #include "text/number.hpp"
 #include "text/user_error.hpp"
@@ -39,14 +40,66 @@ void check_legend(const PlotArguments& arguments, std::size_t count, const char*
                                 count == 1 ? "" : "s"));
 }
 
+void refuse_labels(const PlotItem& item) {
+  if (item.labels.empty()) return;
+  if (item.kind == PlotItem::Kind::sweep)
+    throw UserError(fmt::format("{} is a sweep, it has no labels such as {}", item.path, item.labels.front()));
+  throw UserError(fmt::format("{} holds branches, labels such as {} belong to orbits: tchat plot {} {}", item.path,
+                              item.labels.front(), sibling_path(item.path, 'q'), item.labels.front()));
+}
+
+bool is_points(const PlotItem& item) { return item.kind == PlotItem::Kind::points; }
+
+/// What is shown of sweeps, with texts of the user from number `legend` on in the key.
+class SweepLayers {
+ public:
+  SweepLayers(const std::vector<PlotItem>& items, const PlotArguments& arguments) : arguments_(arguments) {
+    look_.x = arguments.x;
+    look_.y = arguments.dots.empty() ? arguments.y : arguments.dots;
+    look_.z = arguments.z;
+    for (const std::string& text : arguments.at) look_.choices.push_back(read_sweep_choice(text));
+    const PlotRange range = read_plot_range(arguments.z_range, "--zrange");
+    look_.z_low = range.low, look_.z_high = range.high;
+    if (!arguments.z_label.empty()) look_.z_label = plain_text(arguments.z_label);
+    look_.beneath_branches = std::any_of(items.begin(), items.end(), is_points);
+  }
+
+  /// How many lines it has in the key.
+  std::size_t add(const SweepFile& file, std::size_t legend, std::vector<std::string>& warnings) {
+    look_.clouds_before = underlay_.clouds.size();
+    Underlay layer = sweep_layer(file, look_, warnings);
+    for (std::size_t k = 0; k < layer.key.size() && legend + k < arguments_.legend.size(); ++k)
+      layer.key[k].text = plain_text(arguments_.legend[legend + k]);
+    const std::size_t lines = layer.key.size();
+    underlay_.add(std::move(layer));
+    return lines;
+  }
+
+  Underlay take() { return std::move(underlay_); }
+
+ private:
+  const PlotArguments& arguments_;
+  SweepLook look_;
+  Underlay underlay_;
+};
+
 NamedFigure branches(const std::vector<PlotItem>& items, const PlotArguments& arguments) {
   NamedFigure result;
   std::vector<BranchFile> files;
-  BranchFigureOptions options{arguments.x, arguments.y, read_label_selection(arguments), {}, {}};
-  check_legend(arguments, items.size(), "file");
-  for (std::size_t k = 0; k < items.size(); ++k) {
-    const PlotItem& item = items[k];
+  BranchFigureOptions options{arguments.x, arguments.y, read_label_selection(arguments), {}, {}, {}};
+  SweepLayers sweeps(items, arguments);
+  std::size_t lines = 0;  // of the key: one a file, more for a sweep in several colours
+  for (const PlotItem& item : items) {
+    const std::size_t k = lines;
     const bool has_legend = k < arguments.legend.size();
+    if (item.kind == PlotItem::Kind::sweep) {
+      const SweepFile file = read_sweep(item.path);
+      refuse_labels(item);
+      lines += sweeps.add(file, k, result.warnings);
+      if (result.name.empty()) result.name = file.name;
+      continue;
+    }
+    ++lines;
     if (item.kind == PlotItem::Kind::data) {
       DataFile data = read_data_file(item.path);
       options.clouds.push_back(
@@ -55,12 +108,12 @@ NamedFigure branches(const std::vector<PlotItem>& items, const PlotArguments& ar
       continue;
     }
     if (has_legend) options.legend.push_back(arguments.legend[k]);
-    if (!item.labels.empty())
-      throw UserError(fmt::format("{} holds branches, labels such as {} belong to orbits: tchat plot {} {}", item.path,
-                                  item.labels.front(), sibling_path(item.path, 'q'), item.labels.front()));
+    refuse_labels(item);
     files.push_back(read_branch_file(item.path));
     for (const std::string& warning : files.back().warnings) result.warnings.push_back(warning);
   }
+  check_legend(arguments, lines, lines == items.size() ? "file" : "line");
+  options.underlay = sweeps.take();
   result.figure = branch_figure(files, options, &result.warnings);
   if (!files.empty()) result.name = files.front().name;
   return result;
@@ -227,7 +280,13 @@ NamedFigure make_figure(const std::vector<PlotItem>& items, const PlotArguments&
   for (const PlotItem& item : items)
     if (item.kind == PlotItem::Kind::diagnostics)
       throw UserError(fmt::format("{} holds multipliers: tchat plot --multipliers {}", item.path, item.path));
-  if (!orbits && !arguments.z.empty())
+  const bool sweeps =
+      std::any_of(items.begin(), items.end(), [](const PlotItem& item) { return item.kind == PlotItem::Kind::sweep; });
+  for (const auto& [given, option] : {std::pair(!arguments.at.empty(), "--at"), {!arguments.dots.empty(), "--dots"}})
+    if (given && !sweeps)
+      throw UserError(
+          fmt::format("{} is for sweeps: give a file that tchat sweep has written, as in tchat plot A.sweep", option));
+  if (!orbits && !sweeps && !arguments.z.empty())
     throw UserError("-z is for orbits: give a q-file and labels, as in tchat plot q.mems PD1 -x x1 -y x2 -z x3");
   return orbits ? orbit_picture(items, arguments) : branches(items, arguments);
 }

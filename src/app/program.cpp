@@ -16,6 +16,7 @@
 #include "app/complete_command.hpp"
 #include "app/constants_command.hpp"
 #include "app/dat_command.hpp"
+#include "app/grazing_command.hpp"
 #include "app/help_format.hpp"
 #include "app/labels_command.hpp"
 #include "app/manual_page.hpp"
@@ -27,6 +28,7 @@
 #include "app/simulate_command.hpp"
 #include "app/standard_descriptors.hpp"
 #include "app/standard_output.hpp"
+#include "app/sweep_command.hpp"
 #include "app/table_command.hpp"
 #include "app/usage_error.hpp"
 #include "app/verify_command.hpp"
@@ -77,10 +79,12 @@ int parse_and_run(int argc, char** argv) {
   add_run_command(app, chosen);
   add_resegment_command(app, chosen);
   add_simulate_command(app, chosen);
+  add_sweep_command(app, chosen);
   add_labels_command(app, chosen);
   add_orbit_command(app, chosen);
   add_table_command(app, chosen);
   add_verify_command(app, chosen);
+  add_grazing_command(app, chosen);
   add_plot_command(app, chosen);
   add_check_command(app, chosen);
   add_dat_command(app, chosen);

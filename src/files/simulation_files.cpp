@@ -46,6 +46,8 @@ const char* word(SegmentMark::Kind kind) {
   switch (kind) {
     case SegmentMark::Kind::contact:
       return "contact";
+    case SegmentMark::Kind::section:
+      return "section";
     case SegmentMark::Kind::violation:
       return "violation";
     default:

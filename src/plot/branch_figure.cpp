@@ -77,6 +77,7 @@ class BranchFigureBuilder {
     for (std::size_t f = 0; f < files_.size(); ++f) read_file(f, pieces);
     const PicturePoint scale = size_of(pieces);
     for (const Piece& piece : pieces) add_piece(piece, scale);
+    add_underlay();
     add_clouds();
     add_key();
     panel_.x.label = x_label_;
@@ -84,6 +85,7 @@ class BranchFigureBuilder {
     Figure figure;
     figure.panels.push_back(std::move(panel_));
     figure.key = std::move(key_);
+    figure.colour_bar = options_.underlay.colour_bar;
     return figure;
   }
 
@@ -250,10 +252,22 @@ class BranchFigureBuilder {
     }
   }
 
+  /// A lone cloud without branches needs no key.
+  void add_underlay() {
+    const Underlay& underlay = options_.underlay;
+    panel_.field = underlay.field;
+    panel_.clouds = underlay.clouds;
+    panel_.curves.insert(panel_.curves.begin(), underlay.curves.begin(), underlay.curves.end());
+    const bool alone = files_.empty() && options_.clouds.empty() && options_.legend.empty() && !underlay.field;
+    if (underlay.key.size() > 1 || !alone) key_.insert(key_.end(), underlay.key.begin(), underlay.key.end());
+    if (x_label_.empty()) x_label_ = underlay.x;
+    if (y_label_.empty()) y_label_ = underlay.y;
+  }
+
   void add_clouds() {
     for (const NamedCloud& cloud : options_.clouds) {
       const std::string colour = cloud_colour(panel_.clouds.size());
-      panel_.clouds.push_back({cloud.points, colour});
+      panel_.clouds.push_back({cloud.points, colour, 0.5});
       key_.push_back({plain_text(cloud.name), std::nullopt, cloud_marker(colour)});
       if (x_label_.empty()) x_label_ = mathematical_name(cloud.x_name);
       if (y_label_.empty()) y_label_ = mathematical_name(cloud.y_name);

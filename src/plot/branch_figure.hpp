@@ -13,6 +13,7 @@
 #include "files/branch_file.hpp"
 #include "plot/figure.hpp"
 #include "plot/picture_styles.hpp"
+#include "plot/underlay.hpp"
 
 namespace tchat {
 
@@ -37,10 +38,11 @@ struct BranchFigureOptions {
   LabelSelection labels;
   std::vector<std::string> legend = {};  ///< a text for each file; empty: chosen here
   std::vector<NamedCloud> clouds = {};
+  Underlay underlay = {};
 };
 
-/// `files` may be empty when there are clouds. Throws UserError for columns and expressions that a file does not have.
-/// A quantity that is not known at every point gives a warning.
+/// `files` may be empty when there are clouds or an underlay. Throws UserError for columns and expressions that a file
+/// does not have. A quantity that is not known at every point gives a warning.
 Figure branch_figure(const std::vector<BranchFile>& files, const BranchFigureOptions& options,
                      std::vector<std::string>* warnings = nullptr);
 

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -57,6 +58,21 @@ struct Curve {
 struct Cloud {
   std::vector<PicturePoint> points;
   std::string colour = "#000000";
+  double size = 0.5;  ///< as a marker's
+};
+
+/// A map of equal rectangles, each in one colour, beneath the dots.
+struct ColourField {
+  std::size_t columns = 0, rows = 0;
+  PicturePoint first, last;          ///< centres of the cells at the beginning and at the end of `cells`
+  std::vector<int> cells;            ///< numbers of colours, row by row; -1: nothing is drawn
+  std::vector<std::string> colours;  ///< #rrggbb
+
+  /// Half of a cell's width, and height.
+  PicturePoint half_cell() const;
+  /// Corners: the least and the largest coordinates that it covers.
+  PicturePoint low() const;
+  PicturePoint high() const;
 };
 
 /// An arrowhead on a curve.
@@ -77,6 +93,7 @@ struct Panel {
   AxisSettings x;
   AxisSettings y;
   std::optional<AxisSettings> z;  ///< present: a picture in space, the only panel of its figure, without labels
+  std::optional<ColourField> field = {};
   std::vector<Cloud> clouds;
   std::vector<Curve> curves;
   std::vector<Marker> markers;
@@ -91,15 +108,24 @@ struct KeyEntry {
   std::optional<Marker> marker;
 };
 
+/// What colours mean that stand for a number: a strip at the right edge, from the low end to the high one.
+struct ColourBar {
+  std::vector<std::string> colours;  ///< of equal parts of the range
+  AxisSettings axis;                 ///< both ends given
+};
+
 struct Figure {
   std::vector<Panel> panels;  ///< stacked, one below the other, with one x-axis
   std::vector<KeyEntry> key;
+  std::optional<ColourBar> colour_bar = {};
   LabelText title;
   LabelText note;  ///< a line below the title: what the picture leaves out
   int width = 1200;
   int height = 900;
-  double view_tilt = 65.0;  ///< of pictures in space: degrees from looking down along z
-  double view_turn = 35.0;  ///< and around z
+  double least_left = 0.0;  ///< of the frames from the picture's left and upper edge, in pixels; wider where texts need
+  double least_above = 0.0;  ///< it: so that frames of several figures in one picture stand side by side
+  double view_tilt = 65.0;   ///< of pictures in space: degrees from looking down along z
+  double view_turn = 35.0;   ///< and around z
 };
 
 }  // namespace tchat

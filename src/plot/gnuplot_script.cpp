@@ -1,6 +1,7 @@
 #include "plot/gnuplot_script.hpp"
 
 #include <fmt/format.h>
+#include <fmt/printf.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
@@ -10,6 +11,7 @@
 #include <tuple>
 
 #include "plot/picture_styles.hpp"
+#include "plot/thinned_points.hpp"
 
 namespace tchat {
 
@@ -69,24 +71,35 @@ double shape_factor(Symbol symbol) {
   }
 }
 
-class ScriptWriter {
- public:
-  ScriptWriter(const Figure& figure, const FigureLayout& layout, const PictureTarget& target)
-      : figure_(figure),
-        layout_(layout),
-        target_(target),
-        units_(terminal_units(target.format, figure.width, layout.font)) {}
+/// The whole picture in pixels.
+struct Page {
+  int width, height;
+};
 
-  std::string write() {
-    head();
+/// One figure in its part of the page.
+class FigureWriter {
+ public:
+  /// `panels_before`: of other figures on the page.
+  FigureWriter(const PlacedFigure& placed, const Page& page, std::size_t panels_before, PictureFormat format,
+               std::string& text)
+      : figure_(placed.figure),
+        layout_(placed.layout),
+        left_(placed.left),
+        bottom_(placed.bottom),
+        page_(page),
+        panels_before_(panels_before),
+        units_(terminal_units(format, placed.figure.width, placed.layout.font)),
+        text_(text) {}
+
+  void write_data() {
     for (std::size_t k = 0; k < figure_.panels.size(); ++k) data(figure_.panels[k], k);
+  }
+
+  void write_panels() {
     texts_of_figure();
     key();
-    if (figure_.panels.size() > 1) line("set multiplot");
+    colour_bar();
     for (std::size_t k = 0; k < figure_.panels.size(); ++k) figure_.panels[k].z ? panel_in_space() : panel(k);
-    if (figure_.panels.size() > 1) line("unset multiplot");
-    if (target_.format != PictureFormat::window) line("unset output");
-    return std::move(text_);
   }
 
  private:
@@ -113,44 +126,55 @@ class ScriptWriter {
   }
 
   /// Places on the paper as gnuplot's screen coordinates.
-  std::string screen(double x, double y) const {
-    return fmt::format("screen {:.5f}, screen {:.5f}", x / figure_.width, y / figure_.height);
-  }
+  std::string screen(double x, double y) const { return fmt::format("screen {:.5f}, screen {:.5f}", across(x), up(y)); }
+  double across(double x) const { return (left_ + x) / page_.width; }
+  double up(double y) const { return (bottom_ + y) / page_.height; }
+
+  /// Names of data: panels count through the whole page.
+  std::size_t number_of(std::size_t panel) const { return panels_before_ + panel + 1; }
 
   double font_size(double ratio) const { return layout_.font * ratio * units_.font; }
-
-  void head() {
-    line("# Written by tchat plot: `gnuplot -d THIS_FILE` draws the picture again.");
-    line("set encoding utf8");
-    line("set minussign");
-    line(terminal_line(target_.format, target_.window, figure_.width, figure_.height, layout_.font));
-    if (target_.format != PictureFormat::window) line("set output " + gnuplot_quoted(file_name(target_.path)));
-    line("");
-  }
 
   // Data ---------------------------------------------------------------------------------------------------------
 
   void data(const Panel& panel, std::size_t number) {
+    if (panel.field) field(*panel.field, number);
     int count = 0;
     for (const Cloud& cloud : panel.clouds) {
-      line(fmt::format("$cloud{}_{} << END", number + 1, ++count));
-      for (const PicturePoint& p : cloud.points)
-        if (std::isfinite(p.x) && std::isfinite(p.y)) line(fmt::format("{:.10g} {:.10g}", p.x, p.y));
+      line(fmt::format("$cloud{}_{} << END", number_of(number), ++count));
+      const double side = 0.6 * cloud.size * marker_radius * layout_.font;  // two dots in it look like one
+      for (const PicturePoint& p : thinned_points(cloud.points, layout_.panels[number], side))
+        line(fmt::format("{:.10g} {:.10g}", p.x, p.y));
       line("END");
     }
     count = 0;
     for (const Curve& curve : panel.curves) {
-      line(fmt::format("$curve{}_{} << END", number + 1, ++count));
+      line(fmt::format("$curve{}_{} << END", number_of(number), ++count));
       for (const PicturePoint& p : curve.points) line(is_finite(p) ? numbers(panel, p, " ") : "");
       line("END");
     }
     count = 0;
     for (const auto& [style, group] : marker_groups(panel, number)) {
-      line(fmt::format("$points{}_{} << END", number + 1, ++count));
+      line(fmt::format("$points{}_{} << END", number_of(number), ++count));
       for (const Marker& marker : group) line(numbers(panel, marker.at, " "));
       line("END");
     }
     line("");
+  }
+
+  /// Numbers of colours row by row; the one behind the last colour is that of the paper.
+  void field(const ColourField& field, std::size_t number) {
+    line(fmt::format("$field{} << END", number_of(number)));
+    for (std::size_t row = 0; row < field.rows; ++row) {
+      std::string numbers;
+      for (std::size_t column = 0; column < field.columns; ++column) {
+        const int colour = field.cells[row * field.columns + column];
+        numbers +=
+            fmt::format("{}{}", column > 0 ? " " : "", colour < 0 ? static_cast<int>(field.colours.size()) : colour);
+      }
+      line(numbers);
+    }
+    line("END");
   }
 
   using MarkerStyle = std::tuple<Symbol, bool, double, std::string>;
@@ -208,16 +232,41 @@ class ScriptWriter {
     }
   }
 
+  /// Drawn by hand too, so that it is a picture's part like the others: rectangles, tics, numbers and a text.
+  void colour_bar() {
+    if (!layout_.colour_bar) return;
+    const ColourBar& bar = *figure_.colour_bar;
+    const auto& [box, scale] = *layout_.colour_bar;
+    const double step = box.height() / static_cast<double>(bar.colours.size());
+    for (std::size_t k = 0; k < bar.colours.size(); ++k)
+      line(fmt::format("set object rectangle from {} to {} front fillstyle solid noborder fillcolor rgb '{}'",
+                       screen(box.left, box.bottom + static_cast<double>(k) * step),
+                       screen(box.right, box.bottom + static_cast<double>(k + 1) * step), bar.colours[k]));
+    line(fmt::format("set object rectangle from {} to {} front fillstyle empty border rgb '#000000' lw {:.3g}",
+                     screen(box.left, box.bottom), screen(box.right, box.top), 1.5 * units_.line_width));
+    for (double value = scale.first_tic; value <= scale.high + 1e-9 * scale.tic_step; value += scale.tic_step) {
+      const double y = box.bottom + scale.fraction(value) * box.height();
+      line(fmt::format("set arrow from {} to {} nohead front lw {:.3g}", screen(box.right, y),
+                       screen(box.right + 0.3 * layout_.font, y), 1.5 * units_.line_width));
+      std::string number = fmt::sprintf(scale.format, value);
+      if (number.starts_with('-')) number.replace(0, 1, "−");
+      line(fmt::format("set label '{}' at {} left front", number, screen(box.right + 0.6 * layout_.font, y)));
+    }
+    if (!bar.axis.label.empty())
+      line(fmt::format("set label {} at {} center rotate by 90 front", quoted(bar.axis.label),
+                       screen(box.right + (1.6 + scale.widest_number) * layout_.font, box.centre().y)));
+  }
+
   // Panels -------------------------------------------------------------------------------------------------------
 
   void panel(std::size_t k) {
     const Panel& panel = figure_.panels[k];
     const PanelLayout& place = layout_.panels[k];
     const bool lowest = k + 1 == figure_.panels.size();
-    line(fmt::format("set lmargin at screen {:.5f}", place.frame.left / figure_.width));
-    line(fmt::format("set rmargin at screen {:.5f}", place.frame.right / figure_.width));
-    line(fmt::format("set bmargin at screen {:.5f}", place.frame.bottom / figure_.height));
-    line(fmt::format("set tmargin at screen {:.5f}", place.frame.top / figure_.height));
+    line(fmt::format("set lmargin at screen {:.5f}", across(place.frame.left)));
+    line(fmt::format("set rmargin at screen {:.5f}", across(place.frame.right)));
+    line(fmt::format("set bmargin at screen {:.5f}", up(place.frame.bottom)));
+    line(fmt::format("set tmargin at screen {:.5f}", up(place.frame.top)));
     line("set clip two");
     line("set tics front");  // neither lines nor points over them
     line(fmt::format("set border 15 lw {:.3g}", 1.5 * units_.line_width));
@@ -245,8 +294,8 @@ class ScriptWriter {
   void arrows(const Panel& panel, const PanelLayout& place) {
     for (const Arrow& arrow : panel.arrows)
       line(fmt::format("set arrow from {} to {} head filled size screen {:.4f},18 fixed lw {:.3g} lc rgb '{}'",
-                       numbers(panel, arrow.from, ","), numbers(panel, arrow.to, ","),
-                       0.9 * layout_.font / figure_.width, 1.5 * units_.line_width, arrow.colour));
+                       numbers(panel, arrow.from, ","), numbers(panel, arrow.to, ","), 0.9 * layout_.font / page_.width,
+                       1.5 * units_.line_width, arrow.colour));
     for (std::size_t k = 0; k < panel.markers.size(); ++k) {
       if (k >= place.labels.size() || !place.labels[k] || !place.labels[k]->far) continue;
       const Box& box = place.labels[k]->box;
@@ -266,18 +315,38 @@ class ScriptWriter {
     }
   }
 
+  /// The palette, and the map as an image of it.
+  std::string image(const ColourField& field, std::size_t number) {
+    std::string palette;
+    for (std::size_t k = 0; k < field.colours.size(); ++k) palette += fmt::format("{} '{}', ", k, field.colours[k]);
+    const std::size_t paper = field.colours.size();
+    line(fmt::format("set palette maxcolors {} defined ({}{} '#ffffff')", paper + 1, palette, paper));
+    line(fmt::format("set cbrange [-0.5:{}.5]\nunset colorbox", paper));
+    const auto axis = [](const char* index, double first, double last, std::size_t count) {
+      const double step = count > 1 ? (last - first) / static_cast<double>(count - 1) : 1.0;
+      return fmt::format("({:.12g}+({:.12g})*{})", first, step, index);
+    };
+    return fmt::format("$field{} matrix using {}:{}:3 with image notitle", number_of(number),
+                       axis("$1", field.first.x, field.last.x, field.columns),
+                       axis("$2", field.first.y, field.last.y, field.rows));
+  }
+
   void plot(const Panel& panel, std::size_t number) {
     std::vector<std::string> elements;
-    for (std::size_t c = 0; c < panel.clouds.size(); ++c)
-      elements.push_back(fmt::format("$cloud{}_{} with points {} notitle", number + 1, c + 1,
-                                     points(cloud_marker(""), true, panel.clouds[c].colour)));
+    if (panel.field) elements.push_back(image(*panel.field, number));
+    for (std::size_t c = 0; c < panel.clouds.size(); ++c) {
+      Marker dot = cloud_marker("");
+      dot.size = panel.clouds[c].size;
+      elements.push_back(fmt::format("$cloud{}_{} with points {} notitle", number_of(number), c + 1,
+                                     points(dot, true, panel.clouds[c].colour)));
+    }
     for (std::size_t c = 0; c < panel.curves.size(); ++c)
-      elements.push_back(fmt::format("$curve{}_{} with lines {} notitle", number + 1, c + 1,
+      elements.push_back(fmt::format("$curve{}_{} with lines {} notitle", number_of(number), c + 1,
                                      stroke(panel.curves[c].stroke, layout_.panels[number].dash_scales[c])));
     int count = 0;
     for (const auto& [style, group] : marker_groups(panel, number)) {
       const Marker& marker = group.front();
-      const std::string block = fmt::format("$points{}_{}", number + 1, ++count);
+      const std::string block = fmt::format("$points{}_{}", number_of(number), ++count);
       elements.push_back(fmt::format("{} with points {} notitle", block, background(marker)));
       elements.push_back(fmt::format("{} with points {} notitle", block, points(marker, marker.filled, marker.colour)));
     }
@@ -291,7 +360,7 @@ class ScriptWriter {
     const Panel& panel = figure_.panels.front();
     const PanelLayout& place = layout_.panels.front();
     // gnuplot's own margins leave the middle of the picture to the box; a tall key takes more of it.
-    const double height = place.frame.top / figure_.height;
+    const double height = up(place.frame.top);
     line(fmt::format("set view {:.4g},{:.4g},{:.3g},1.05", figure_.view_tilt, figure_.view_turn,
                      std::min(1.0, height + 0.08)));
     line("set xyplane relative 0");
@@ -308,10 +377,20 @@ class ScriptWriter {
 
   const Figure& figure_;
   const FigureLayout& layout_;
-  const PictureTarget& target_;
+  double left_, bottom_;
+  Page page_;
+  std::size_t panels_before_;
   TerminalUnits units_;
-  std::string text_;
+  std::string& text_;
 };
+
+std::string head(const SheetLayout& sheet, const PictureTarget& target) {
+  std::string text = "# Written by tchat plot: `gnuplot -d THIS_FILE` draws the picture again.\n";
+  text += "set encoding utf8\nset minussign\n";
+  text += terminal_line(target.format, target.window, sheet.width, sheet.height, sheet.font) + '\n';
+  if (target.format != PictureFormat::window) text += "set output " + gnuplot_quoted(file_name(target.path)) + '\n';
+  return text + '\n';
+}
 
 }  // namespace
 
@@ -331,8 +410,39 @@ std::string values_script(const std::string& formula, std::size_t columns,
                     values);
 }
 
+std::string gnuplot_script(const SheetLayout& sheet, const PictureTarget& target) {
+  std::string text = head(sheet, target);
+  std::vector<FigureWriter> figures;
+  std::size_t panels = 0;
+  for (const PlacedFigure& placed : sheet.figures) {
+    figures.emplace_back(placed, Page{sheet.width, sheet.height}, panels, target.format, text);
+    panels += placed.figure.panels.size();
+  }
+  for (FigureWriter& figure : figures) figure.write_data();
+  if (panels > 1) text += "set multiplot\n";
+  if (!sheet.title.empty()) {
+    const TerminalUnits units = terminal_units(target.format, sheet.width, sheet.font);
+    text += fmt::format("set label {} at screen 0.5, screen {:.5f} center font ',{:.1f}'\n", quoted(sheet.title),
+                        1.0 - 1.3 * sheet.font / sheet.height, 1.2 * sheet.font * units.font);
+  }
+  for (std::size_t k = 0; k < figures.size(); ++k) {
+    // What the figure before has left behind.
+    if (k > 0)
+      text += "unset label\nunset arrow\nunset object\nunset logscale\nset mxtics default\nset mytics default\n\n";
+    figures[k].write_panels();
+  }
+  if (panels > 1) text += "unset multiplot\n";
+  if (target.format != PictureFormat::window) text += "unset output\n";
+  return text;
+}
+
 std::string gnuplot_script(const Figure& figure, const FigureLayout& layout, const PictureTarget& target) {
-  return ScriptWriter(figure, layout, target).write();
+  SheetLayout sheet;
+  sheet.figures.push_back({figure, layout, 0.0, 0.0});
+  sheet.width = figure.width;
+  sheet.height = figure.height;
+  sheet.font = layout.font;
+  return gnuplot_script(sheet, target);
 }
 
 }  // namespace tchat

@@ -10,6 +10,7 @@
 #include "plot/figure.hpp"
 #include "plot/layout.hpp"
 #include "plot/picture_format.hpp"
+#include "plot/picture_sheet.hpp"
 
 namespace tchat {
 
@@ -23,6 +24,9 @@ struct PictureTarget {
 std::string values_script(const std::string& formula, std::size_t columns,
                           const std::vector<std::vector<double>>& rows);
 
+std::string gnuplot_script(const SheetLayout& sheet, const PictureTarget& target);
+
+/// Of one figure that has the picture for itself.
 std::string gnuplot_script(const Figure& figure, const FigureLayout& layout, const PictureTarget& target);
 
 }  // namespace tchat

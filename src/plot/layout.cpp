@@ -21,6 +21,7 @@ struct Values {
 };
 
 void add_values(const Panel& panel, Values& values) {
+  if (panel.field) values.points.insert(values.points.end(), {panel.field->low(), panel.field->high()});
   for (const Curve& curve : panel.curves) {
     if (curve.background) continue;
     auto& list = curve.minor ? values.minor : values.points;
@@ -48,6 +49,30 @@ std::vector<double> visible(const Values& values, double PicturePoint::*coordina
     if (!result.empty()) return result;
   }
   return limited ? visible(values, coordinate, across, {}) : result;
+}
+
+/// A map fills its frame.
+AxisSettings fitting(AxisSettings axis, const std::optional<ColourField>& field, double PicturePoint::*coordinate) {
+  if (field && !axis.logarithmic) {
+    if (!axis.low) axis.low = field->low().*coordinate;
+    if (!axis.high) axis.high = field->high().*coordinate;
+  }
+  return axis;
+}
+
+/// In units of the font's size: the strip, and what is left of it.
+constexpr double bar_width = 1.0, bar_gap = 0.9;
+
+/// The strip of colours, as high as the frames.
+ColourBarPlace bar_place(const ColourBar& bar) {
+  ColourBarPlace place;
+  place.scale = choose_scale(bar.axis, {}, 4);
+  return place;
+}
+
+/// With its numbers and its text.
+double bar_margin(const ColourBarPlace& place, const ColourBar& bar, double font) {
+  return (bar_gap + bar_width + 0.8 + place.scale.widest_number + (bar.axis.label.empty() ? 0.0 : 1.6)) * font;
 }
 
 /// Widens one axis so that a unit is as long on both.
@@ -175,21 +200,28 @@ FigureLayout lay_out(const Figure& figure) {
     Values own;
     add_values(panel, own);
     PanelLayout place;
-    place.x = choose_scale(
-        panel.x, visible(shared, &PicturePoint::x, &PicturePoint::y, panels == 1 ? panel.y : AxisSettings{}), 4);
-    place.y = choose_scale(panel.y, visible(own, &PicturePoint::y, &PicturePoint::x, panel.x), panels > 1 ? 3 : 4);
+    place.x =
+        choose_scale(fitting(panel.x, panel.field, &PicturePoint::x),
+                     visible(shared, &PicturePoint::x, &PicturePoint::y, panels == 1 ? panel.y : AxisSettings{}), 4);
+    place.y = choose_scale(fitting(panel.y, panel.field, &PicturePoint::y),
+                           visible(own, &PicturePoint::y, &PicturePoint::x, panel.x), panels > 1 ? 3 : 4);
     widest = std::max(widest, place.y.widest_number);
     widest_below = std::max(widest_below, place.x.widest_number);
     layout.panels.push_back(place);
   }
 
-  const double right_margin = std::max(1.5, 0.5 * widest_below + 0.3) * font;  // the last number may stand at the edge
-  Box inner{(widest + 3.0) * font, figure.width - right_margin, 3.7 * font,
-            figure.height - height_of_texts(figure, font)};
+  double right_margin = std::max(1.5, 0.5 * widest_below + 0.3) * font;  // the last number may stand at the edge
+  if (figure.colour_bar) {
+    layout.colour_bar = bar_place(*figure.colour_bar);
+    right_margin += bar_margin(*layout.colour_bar, *figure.colour_bar, font);
+  }
+  Box inner{std::max((widest + 3.0) * font, figure.least_left), figure.width - right_margin, 3.7 * font,
+            figure.height - std::max(height_of_texts(figure, font), figure.least_above)};
   const KeyGrid list(figure.key, font);
   const KeyGrid rows(figure.key, font, figure.width - font, 0.35 * inner.height());
-  const bool may_be_inside = panels == 1;
-  if (!may_be_inside && !rows.empty()) inner.top -= rows.height();
+  const bool may_be_inside = panels == 1 && !figure.panels[0].field;
+  const double top_of_key = figure.height - height_of_texts(figure, font);
+  if (!may_be_inside && !rows.empty()) inner.top = std::min(inner.top, top_of_key - rows.height());
 
   const double gap = 0.7 * font;
   const double height = (inner.height() - gap * (panels - 1)) / panels;
@@ -204,11 +236,15 @@ FigureLayout lay_out(const Figure& figure) {
     layout.key = list.place_inside(obstacles);
     if (!layout.key) {
       PanelLayout& place = layout.panels[0];
-      place.frame.top -= rows.height();
+      place.frame.top = std::min(place.frame.top, top_of_key - rows.height());
       if (figure.panels[0].equal_scales) equalise(place);
     }
   }
   if (!rows.empty() && !layout.key) layout.key = rows.place_above(layout.panels[0].frame, figure.width);
+  if (layout.colour_bar) {
+    const double left = inner.right + bar_gap * font;
+    layout.colour_bar->box = {left, left + bar_width * font, inner.bottom, layout.panels[0].frame.top};
+  }
   for (std::size_t k = 0; k < layout.panels.size(); ++k) {
     PanelLayout& place = layout.panels[k];
     ShortPieces pieces = find_short_pieces(figure.panels[k], place, font);

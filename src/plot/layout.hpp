@@ -33,10 +33,17 @@ struct KeyPlace {
   std::vector<PicturePoint> entries;  ///< the left end of each entry's sample, at half its height
 };
 
+/// A strip of colours beside the frames, with an axis at its right.
+struct ColourBarPlace {
+  Box box;
+  AxisScale scale;
+};
+
 struct FigureLayout {
   double font = 27.0;  ///< size of the axes' font; that of labels at points is label_font_ratio times this
   std::vector<PanelLayout> panels;
   std::optional<KeyPlace> key;
+  std::optional<ColourBarPlace> colour_bar = {};
 };
 
 inline constexpr double label_font_ratio = 0.85;

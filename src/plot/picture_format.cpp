@@ -54,8 +54,8 @@ std::string terminal_line(PictureFormat format, const std::string& window, int w
       return fmt::format("set terminal pngcairo enhanced background '#ffffff' size {},{} font 'sans,{:.1f}'", width,
                          height, size);
     case PictureFormat::svg:
-      return fmt::format("set terminal svg enhanced background '#ffffff' size {},{} font 'sans,{:.1f}'", width, height,
-                         size);
+      return fmt::format("set terminal svg standalone enhanced background '#ffffff' size {},{} font 'sans,{:.1f}'",
+                         width, height, size);
     case PictureFormat::pdf:
       return fmt::format("set terminal pdfcairo enhanced fontscale 1 size {:.3f}in,{:.3f}in font 'sans,{:.1f}'",
                          width / pixels_per_inch, height / pixels_per_inch, size);

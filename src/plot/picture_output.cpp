@@ -49,11 +49,11 @@ void remove_dates(const std::string& path) {
   std::ofstream(path, std::ios::binary) << text;
 }
 
-void draw_to_file(const Figure& figure, const FigureLayout& layout, const std::string& path) {
+void draw_to_file(const SheetLayout& layout, const std::string& path) {
   const PictureFormat format = picture_format(path);
   const auto file = begin_file(path);
   file->close();
-  run_gnuplot(gnuplot_script(figure, layout, {format, file->name(), ""}));
+  run_gnuplot(gnuplot_script(layout, {format, file->name(), ""}));
   std::error_code error;
   if (fs::file_size(file->name(), error) == 0 || error)
     throw ComputationError(fmt::format("{}: gnuplot drew nothing; is the disk full?", path));
@@ -63,26 +63,26 @@ void draw_to_file(const Figure& figure, const FigureLayout& layout, const std::s
 
 }  // namespace
 
-std::string output_picture(const Figure& figure, const PictureWish& wish) {
-  const FigureLayout layout = lay_out(figure);
+std::string output_picture(const Sheet& sheet, const PictureWish& wish) {
+  const SheetLayout layout = lay_out(sheet);
   const auto keep_script = [&](const PictureTarget& target) {
-    if (!wish.script.empty()) write_text(wish.script, gnuplot_script(figure, layout, target));
+    if (!wish.script.empty()) write_text(wish.script, gnuplot_script(layout, target));
   };
   if (!wish.output.empty()) {
     keep_script({picture_format(wish.output), wish.output, ""});
-    draw_to_file(figure, layout, wish.output);
+    draw_to_file(layout, wish.output);
     return "";
   }
   const std::string window = has_display() ? window_terminal(gnuplot_terminals()) : "";
   if (!window.empty()) {
     const PictureTarget target{PictureFormat::window, "", window};
     keep_script(target);
-    run_gnuplot(gnuplot_script(figure, layout, target), true);
+    run_gnuplot(gnuplot_script(layout, target), true);
     return "";
   }
   const std::string path = wish.name + ".png";
   keep_script({PictureFormat::png, path, ""});
-  draw_to_file(figure, layout, path);
+  draw_to_file(layout, path);
   return fmt::format("{} (no window: {}; -o FILE chooses another name or form)", path,
                      has_display() ? "this gnuplot has none, those of Debian's packages gnuplot-qt and gnuplot-x11 have"
                                    : "there is no display");

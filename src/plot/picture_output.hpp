@@ -1,9 +1,9 @@
-/// A figure to where it is wanted: a file, a window, a script.
+/// A sheet of figures to where it is wanted: a file, a window, a script.
 #pragma once
 
 #include <string>
 
-#include "plot/figure.hpp"
+#include "plot/picture_sheet.hpp"
 
 namespace tchat {
 
@@ -13,9 +13,9 @@ struct PictureWish {
   std::string name;    ///< NAME
 };
 
-/// Draws the figure; returns what the user is told ("" when it is in the file asked for). A file appears complete or
-/// not at all, and without dates: equal figures give equal files. With a script and without an output, and no display,
+/// Draws the sheet; returns what the user is told ("" when it is in the file asked for). A file appears complete or
+/// not at all, and without dates: equal sheets give equal files. With a script and without an output, and no display,
 /// only the script is written. Throws UserError (no gnuplot, a folder that cannot be written), ComputationError.
-std::string output_picture(const Figure& figure, const PictureWish& wish);
+std::string output_picture(const Sheet& sheet, const PictureWish& wish);
 
 }  // namespace tchat

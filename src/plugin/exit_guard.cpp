@@ -1,5 +1,6 @@
 #include "plugin/exit_guard.hpp"
 
+#include <pthread.h>
 #include <sys/resource.h>
 #include <sys/syscall.h>
 #include <unistd.h>
@@ -49,8 +50,6 @@ struct Watch {
   std::list<std::string> plugins;                // the paths of the guards that live
   std::atomic<const char*> plugin = nullptr;     // of the youngest
   pid_t process = 0;                             // children that a plugin forks are none of ours
-  pid_t thread = 0;                              // the one that calls plugins
-  std::uintptr_t stack_end = 0;                  // the lowest address that the stack may grow to
   std::array<struct sigaction, 65> before = {};  // handlers that ours replaced, by signal
   std::array<char, handler_stack_size> stack;    // for handlers: a plugin's endless recursion leaves none
 };
@@ -60,7 +59,11 @@ Watch& watch() {
   return state;
 }
 
-bool on_plugins_thread() { return static_cast<pid_t>(::syscall(SYS_gettid)) != watch().thread; }
+// The lowest address that this thread's stack may grow to.
+thread_local std::uintptr_t stack_end = 0;
+thread_local bool is_ours = false;  // not started by a plugin
+
+bool on_plugins_thread() { return !is_ours && !PluginCall::in_calling_thread(); }
 
 SignalText& add_place(SignalText& text) {
   const PluginCall* const call = PluginCall::running();
@@ -96,7 +99,7 @@ bool fills_stack(const siginfo_t& info) {
   constexpr std::uintptr_t above = 1 << 18;  // a frame's arrays may lie below what the stack has grown to
   constexpr std::uintptr_t below = 1 << 24;
   const auto address = reinterpret_cast<std::uintptr_t>(info.si_addr);
-  return address < watch().stack_end + above && address > watch().stack_end - below;
+  return address < stack_end + above && address > stack_end - below;
 }
 
 const char* cause_of(const siginfo_t& info) {
@@ -139,7 +142,7 @@ void install_signal_handlers() {
   struct rlimit limit {};
   const auto here = reinterpret_cast<std::uintptr_t>(&limit);
   const bool limited = ::getrlimit(RLIMIT_STACK, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY;
-  state.stack_end = limited && limit.rlim_cur < here ? here - limit.rlim_cur : 0;
+  stack_end = limited && limit.rlim_cur < here ? here - limit.rlim_cur : 0;
   stack_t stack{};
   stack.ss_sp = state.stack.data();
   stack.ss_size = state.stack.size();
@@ -175,7 +178,7 @@ ExitGuard::ExitGuard(const std::string& plugin) {
   name_ = state.plugins.insert(state.plugins.end(), plugin.empty() ? "(unnamed)" : plugin);
   state.plugin = name_->c_str();
   state.process = ::getpid();
-  state.thread = static_cast<pid_t>(::syscall(SYS_gettid));  // guards are made by the thread that calls plugins
+  is_ours = true;
 }
 
 ExitGuard::~ExitGuard() {
@@ -186,6 +189,26 @@ ExitGuard::~ExitGuard() {
     restore_signal_handlers();
   else
     state.plugin = state.plugins.back().c_str();
+}
+
+SignalStack::SignalStack() : memory_(handler_stack_size) {
+  is_ours = true;
+  stack_t stack{};
+  stack.ss_sp = memory_.data();
+  stack.ss_size = memory_.size();
+  ::sigaltstack(&stack, nullptr);
+  pthread_attr_t attributes;
+  if (::pthread_getattr_np(::pthread_self(), &attributes) != 0) return;
+  void* lowest = nullptr;
+  std::size_t size = 0;
+  if (::pthread_attr_getstack(&attributes, &lowest, &size) == 0) stack_end = reinterpret_cast<std::uintptr_t>(lowest);
+  ::pthread_attr_destroy(&attributes);
+}
+
+SignalStack::~SignalStack() {
+  stack_t none{};
+  none.ss_flags = SS_DISABLE;
+  ::sigaltstack(&none, nullptr);
 }
 
 void leave_process(int status) noexcept {

@@ -12,7 +12,8 @@
 /// sent by others are left alone.
 ///
 /// ProblemLibrary holds a guard as long as the plugin is loaded. Guards may be destroyed in any order; the youngest one
-/// names the plugin.
+/// names the plugin. They are made and destroyed by one thread; others that call plugins give their handlers a stack
+/// (SignalStack), without which a full stack ends the process untold.
 ///
 /// The process has one list of exit handlers and one table of signal handlers, so what they read has to be global: it
 /// is all in exit_guard.cpp and plugin_call.hpp.
@@ -20,6 +21,7 @@
 
 #include <list>
 #include <string>
+#include <vector>
 
 namespace tchat {
 
@@ -33,6 +35,18 @@ class ExitGuard {
 
  private:
   std::list<std::string>::iterator name_;
+};
+
+/// The stack of signal handlers of the thread that makes it, while it lives.
+class SignalStack {
+ public:
+  SignalStack();
+  ~SignalStack();
+  SignalStack(const SignalStack&) = delete;
+  SignalStack& operator=(const SignalStack&) = delete;
+
+ private:
+  std::vector<char> memory_;
 };
 
 /// Ends the process at once, without exit handlers, flushing and messages. Safe in a signal handler.

@@ -3,7 +3,9 @@
 #include <dlfcn.h>
 #include <elf.h>
 #include <fmt/format.h>
+#include <sys/mman.h>
 #include <sys/statvfs.h>
+#include <unistd.h>
 
 #include <cstring>
 #include <exception>
@@ -81,13 +83,14 @@ bool lacks_memory(std::string_view said, const std::string& path) {
   return (has("annot allocate") && !has("static TLS")) || has("out of memory");
 }
 
-void* open_library(const std::string& path) {
+/// `file`, another name of the library at `path`.
+void* open_library(const std::string& path, const std::string& file) {
   require_file(path);
   if (is_truncated(path))
     refuse(path, "the file is incomplete", "Delete it, so that it is compiled again, or copy it again.");
   const PluginCall call(path.c_str(), "while it was loaded");
   // An absolute path keeps dlopen from searching the system's library folders for a name without a slash.
-  void* const handle = dlopen(fs::absolute(path).c_str(), RTLD_NOW | RTLD_LOCAL);
+  void* const handle = dlopen(fs::absolute(file).c_str(), RTLD_NOW | RTLD_LOCAL);
   if (handle != nullptr) return handle;
   const char* const said = dlerror();
   const std::string text = said != nullptr ? said : "no reason was given";
@@ -103,6 +106,33 @@ void* open_library(const std::string& path) {
                     path, text));
   refuse(path, fmt::format("it cannot be loaded; the loader says: {}", text), load_cure(text));
 }
+
+/// The bytes of the library as a file in memory, which the loader takes for another library.
+class MemoryCopy {
+ public:
+  explicit MemoryCopy(const std::string& path) : descriptor_(::memfd_create("tchat", MFD_CLOEXEC)) {
+    require_file(path);
+    std::ifstream in(path, std::ios::binary);
+    const std::string bytes((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+    std::size_t written = 0;
+    while (descriptor_ >= 0 && written < bytes.size()) {
+      const ssize_t count = ::write(descriptor_, bytes.data() + written, bytes.size() - written);
+      if (count <= 0) break;
+      written += static_cast<std::size_t>(count);
+    }
+    if (bytes.empty() || written < bytes.size())
+      throw ComputationError(
+          fmt::format("plugin {}: there is no memory for a copy of it, one for each worker; use fewer (-j)", path));
+  }
+  ~MemoryCopy() { ::close(descriptor_); }
+  MemoryCopy(const MemoryCopy&) = delete;
+  MemoryCopy& operator=(const MemoryCopy&) = delete;
+
+  std::string name() const { return fmt::format("/proc/self/fd/{}", descriptor_); }
+
+ private:
+  int descriptor_;
+};
 
 /// Calls the entry point, which runs the problem class's constructor.
 const tchat_problem* call_entry(const std::string& path, tchat_problem_entry entry) {
@@ -171,10 +201,17 @@ void ProblemLibrary::Close::operator()(void* handle) const {
   dlclose(handle);
 }
 
-ProblemLibrary::ProblemLibrary(const std::string& path, const Sizes& sizes)
+ProblemLibrary::ProblemLibrary(const std::string& path, const Sizes& sizes) : ProblemLibrary(path, path, sizes) {}
+
+std::unique_ptr<ProblemLibrary> ProblemLibrary::copy_of(const std::string& path, const Sizes& sizes) {
+  const MemoryCopy copy(path);
+  return std::unique_ptr<ProblemLibrary>(new ProblemLibrary(path, copy.name(), sizes));
+}
+
+ProblemLibrary::ProblemLibrary(const std::string& path, const std::string& file, const Sizes& sizes)
     : path_(path),
       guard_(path),
-      handle_(open_library(path), Close{path}),
+      handle_(open_library(path, file), Close{path}),
       fortran_(wrap_fortran(path, handle_.get(), sizes)),
       problem_(guarded(path, handle_.get(), fortran_.get())),
       system_(problem_->table()) {}
@@ -196,6 +233,33 @@ std::vector<std::string> ProblemLibrary::derivative_notes() const {
   if (order >= 1 && fortran_ != nullptr)
     notes.emplace_back("Parameter derivatives of jumps that JUMPMAP leaves at zero are central differences.");
   return notes;
+}
+
+bool shares_data_of_copies(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  const std::string bytes((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+  const auto read = [&](std::size_t at, auto& out) {
+    if (at > bytes.size() || bytes.size() - at < sizeof out) return false;
+    std::memcpy(&out, bytes.data() + at, sizeof out);
+    return true;
+  };
+  Elf64_Ehdr header{};
+  if (!read(0, header) || std::memcmp(header.e_ident, ELFMAG, SELFMAG) != 0 || header.e_ident[EI_CLASS] != ELFCLASS64)
+    return false;
+  const auto section = [&](std::size_t k, Elf64_Shdr& out) {
+    return k < header.e_shnum && read(header.e_shoff + k * sizeof out, out);
+  };
+  for (std::size_t k = 0; k < header.e_shnum; ++k) {
+    Elf64_Shdr table{}, place{};
+    if (!section(k, table) || table.sh_type != SHT_DYNSYM) continue;
+    Elf64_Sym symbol{};
+    for (std::size_t at = 0; at + sizeof symbol <= table.sh_size && read(table.sh_offset + at, symbol);
+         at += sizeof symbol)
+      if (ELF64_ST_BIND(symbol.st_info) == STB_GNU_UNIQUE && section(symbol.st_shndx, place) &&
+          (place.sh_flags & SHF_WRITE) != 0)
+        return true;
+  }
+  return false;
 }
 
 }  // namespace tchat

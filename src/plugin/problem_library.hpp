@@ -27,6 +27,10 @@ class ProblemLibrary {
   /// Loads the shared library at `path` (a file name, never searched for in library folders). Throws UserError.
   ///     const ProblemLibrary library(resolve_plugin(name), [&] { return problem_sizes(settings); });
   explicit ProblemLibrary(const std::string& path, const Sizes& sizes = {});
+  /// A copy of its own, for another thread: its static data are not those of any other one, so that functions with
+  /// memory (SAVE and COMMON in Fortran, static variables) are as safe as in a process of their own. Throws UserError,
+  /// ComputationError.
+  static std::unique_ptr<ProblemLibrary> copy_of(const std::string& path, const Sizes& sizes = {});
 
   /// The problem; a view that must not outlive this object.
   const HybridSystem& system() const { return system_; }
@@ -37,6 +41,8 @@ class ProblemLibrary {
   std::string complaint() const;
 
  private:
+  ProblemLibrary(const std::string& path, const std::string& file, const Sizes& sizes);
+
   struct Close {
     std::string path;
     void operator()(void* handle) const;
@@ -49,5 +55,9 @@ class ProblemLibrary {
   std::unique_ptr<GuardedProblem> problem_;
   HybridSystem system_;
 };
+
+/// Does a shared library have data that the loader makes one for all copies of it (symbols of the kind "unique", g++
+/// without -fno-gnu-unique)? False when the file cannot be read.
+bool shares_data_of_copies(const std::string& path);
 
 }  // namespace tchat

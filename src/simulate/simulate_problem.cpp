@@ -8,13 +8,11 @@
 #include "files/simulation_files.hpp"
 #include "files/whole_file.hpp"
 #include "files/writable_file.hpp"
-#include "plugin/plugin_build.hpp"
-#include "plugin/problem_library.hpp"
-#include "setup/named_parameters.hpp"
 #include "setup/parameter_values.hpp"
 #include "setup/problem_setup.hpp"
 #include "setup/progress_line.hpp"
 #include "setup/run_request.hpp"
+#include "simulate/loaded_problem.hpp"
 #include "simulate/orbit_hand_over.hpp"
 #include "simulate/simulation_start.hpp"
 #include "simulate/simulation_summary.hpp"
@@ -53,19 +51,6 @@ std::string written_text(const std::string& output, const SimulationFiles& files
         "  The trajectory holds the last {} of {} segments; with --events, --time or a transient it holds all.\n",
         files.segments() - files.dropped_segments(), files.segments());
   return text;
-}
-
-SimulationSettings simulation_settings(const SimulationRequest& request, const std::function<bool()>& interrupted) {
-  SimulationSettings settings;
-  settings.flow.method = request.stiff ? IntegrationMethod::bdf : IntegrationMethod::adams;
-  settings.flow.relative_tolerance = request.tolerance;
-  settings.flow.absolute_tolerance = 0.01 * request.tolerance;
-  settings.flow.max_duration = request.wait;
-  settings.flow.max_steps = 10000000;
-  settings.contact = request.contact;
-  settings.samples = static_cast<std::size_t>(request.rows);
-  settings.interrupted = interrupted;
-  return settings;
 }
 
 struct OrbitPaths {
@@ -157,13 +142,9 @@ int simulate_problem(const SimulationRequest& request, std::ostream& screen, std
     if (!request.quiet) screen << text << std::flush;
   };
 
-  const std::string plugin = resolve_plugin(request.problem.value_or(request.name), {.progress = progress});
-  bool named_parameters = false;
-  SimulationConstants constants = read_simulation_constants(request, names_to_come(named_parameters));
-  const ProblemLibrary library(plugin, [&] { return sizes_of(request, constants); });
-  const HybridSystem& system = library.system();
-  if (named_parameters) constants = read_simulation_constants(request, names_of(system));
-  fit_to_problem(constants, system, request.overrides);
+  const LoadedProblem loaded = load_for_simulation(request, progress);
+  const SimulationConstants& constants = loaded.constants;
+  const HybridSystem& system = loaded.library->system();
   const SimulationStart start = simulation_start(request, constants, system);
   const std::string output = request.output.value_or(request.name);
   const std::string orbit_name = request.orbit_name.empty() ? output : request.orbit_name;

@@ -42,15 +42,6 @@ double read_state_value(const std::string& text, const std::string& all) {
                               all, text));
 }
 
-int state_index(const HybridSystem& system, const std::string& name, const std::string& all) {
-  std::string list;
-  for (int k = 1; k <= system.dimension(); ++k) {
-    if (name == system.state_name(k) || name == fmt::format("U({})", k)) return k;
-    list += fmt::format("{}{}", k > 1 ? ", " : "", system.state_name(k));
-  }
-  throw UserError(fmt::format("--state {}: {} has no state '{}'; it has {}", all, system.name(), name, list));
-}
-
 /// "0,0.1" replaces the state, "x1=0.1,x2=3" changes it.
 void apply_state_option(const HybridSystem& system, const std::string& text, VectorXd& state) {
   const std::vector<std::string> parts = split(text, ',');
@@ -64,7 +55,7 @@ void apply_state_option(const HybridSystem& system, const std::string& text, Vec
             "with a point",
             text, part, system.dimension()));
       const std::string name = split(part.substr(0, equals), ',').front();
-      const int k = state_index(system, name, text);
+      const int k = state_index(system, name, "--state " + text);
       if (!given.insert(k).second) throw UserError(fmt::format("--state {}: '{}' is given twice", text, name));
       state(k - 1) = read_state_value(split(part.substr(equals + 1), ',').front(), text);
     }
@@ -125,6 +116,15 @@ void apply_label(const SimulationRequest& request, const SimulationConstants& co
 }
 
 }  // namespace
+
+int state_index(const HybridSystem& system, const std::string& name, const std::string& where) {
+  std::string list;
+  for (int k = 1; k <= system.dimension(); ++k) {
+    if (name == system.state_name(k) || name == fmt::format("U({})", k)) return k;
+    list += fmt::format("{}{}", k > 1 ? ", " : "", system.state_name(k));
+  }
+  throw UserError(fmt::format("{}: {} has no state '{}'; it has {}", where, system.name(), name, list));
+}
 
 SimulationStart simulation_start(const SimulationRequest& request, const SimulationConstants& constants,
                                  const HybridSystem& system) {

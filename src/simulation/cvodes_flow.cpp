@@ -63,6 +63,7 @@ struct CvodesFlow::Implementation {
   std::vector<int> is_root;  // what it located at `reached`
   int fallen = 0;
   std::function<bool(double, double)> observer;
+  const DenseOutput output = [this](double t) { return dense_output(t); };
 
   // Values of the field and its derivatives at the point last asked for.
   VectorXd f;
@@ -91,7 +92,7 @@ struct CvodesFlow::Implementation {
         dense(N_VNew_Serial(n, context.get()), &N_VDestroy),
         matrix(SUNDenseMatrix(n, n, context.get()), &SUNMatDestroy),
         linear_solver(SUNLinSol_Dense(x.get(), matrix.get(), context.get()), &SUNLinSolFree),
-        integrator(CVodeCreate(o.method == IntegrationMethod::adams ? CV_ADAMS : CV_BDF, context.get())) {
+        integrator(CVodeCreate(o.method == IntegrationMethod::bdf ? CV_BDF : CV_ADAMS, context.get())) {
     Eigen::Map<VectorXd>(N_VGetArrayPointer(x.get()), n) = x0;
     start();
     if (columns > 0) start_sensitivities();
@@ -219,7 +220,6 @@ struct CvodesFlow::Implementation {
       time = reached;
       return false;
     }
-    const DenseOutput output = [this](double t) { return dense_output(t); };
     const std::optional<EventWatch::Fall> fall = watch->look(reached, output, finds_roots ? is_root.data() : nullptr);
     time = fall ? fall->time : reached;
     fallen = fall ? fall->event : 0;
@@ -313,6 +313,8 @@ std::vector<EventWatch::Contact> CvodesFlow::take_contacts() {
 }
 
 bool CvodesFlow::is_armed(int event) const { return p_->watch && p_->watch->is_armed(event); }
+
+const DenseOutput& CvodesFlow::dense_output() const { return p_->output; }
 
 VectorXd CvodesFlow::state_at(double t) const { return Eigen::Map<const VectorXd>(p_->dense_output(t), p_->n); }
 

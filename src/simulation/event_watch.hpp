@@ -57,6 +57,14 @@ class EventWatch {
   double rate(int event, const double* x) const;
 
  private:
+  /// h_j, its rate h_x f (0 where it cannot be evaluated), and what rounding of the state makes of h.
+  struct Value {
+    double h = 0.0, rate = 0.0, scale = 1.0;
+  };
+  void set_field(const double* x) const;
+  Value on_field(int event, const double* x) const;  // the field has been set
+  Value at(int event, const double* x) const;
+
   enum class Readiness { below, leaving_upwards, armed };
   struct Watched {
     int event;
@@ -75,6 +83,11 @@ class EventWatch {
   double tolerance_;
   double time_ = 0.0;
   std::vector<Watched> events_;
+  // What is looked at at every step is kept here.
+  std::vector<Watched> before_;
+  std::vector<double> now_;
+  mutable Eigen::VectorXd f_;
+  mutable Eigen::RowVectorXd h_x_;
   std::vector<Contact> contacts_;
 };
 

@@ -6,8 +6,9 @@
 namespace tchat {
 
 enum class IntegrationMethod {
-  adams,  ///< order up to 12; for problems that are not stiff, and for the highest accuracy
-  bdf,    ///< order up to 5; for stiff problems
+  adams,        ///< order up to 12; for problems that are not stiff, and for the highest accuracy
+  bdf,          ///< order up to 5; for stiff problems
+  runge_kutta,  ///< order 5; for many short flows of problems that are not stiff; no variational equations
 };
 
 struct FlowOptions {

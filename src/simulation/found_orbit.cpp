@@ -19,25 +19,6 @@ constexpr double stability_margin = 1e-5;
 constexpr double same_orbit = 0.1;   // largest correction, as a share of the orbit's range
 constexpr double same_state = 1e-7;  // of points of the refined orbit, likewise
 
-/// Rotated so that the signature reads the same whenever the simulation stopped.
-std::vector<SimulatedSegment> in_standard_order(std::vector<SimulatedSegment> turn, const IndexVector& first) {
-  const auto sequence_from = [&](std::size_t begin) {
-    Signature s;
-    for (std::size_t i = 0; i < turn.size(); ++i) s.push_back(turn[(begin + i) % turn.size()].index);
-    return s;
-  };
-  const auto is_better = [&](std::size_t a, std::size_t b) {
-    const bool a_first = turn[a].index == first;
-    const bool b_first = turn[b].index == first;
-    return a_first != b_first ? a_first : sequence_from(a) < sequence_from(b);
-  };
-  std::size_t best = 0;
-  for (std::size_t k = 1; k < turn.size(); ++k)
-    if (is_better(k, best)) best = k;
-  std::rotate(turn.begin(), turn.begin() + static_cast<std::ptrdiff_t>(best), turn.end());
-  return turn;
-}
-
 bool ends_in_section(const HybridSystem& system, const std::vector<SimulatedSegment>& turn, std::size_t s) {
   return is_identity_jump(system, turn[s].index.jump) &&
          turn[(s + 1) % turn.size()].mode.field() == turn[s].mode.field();
@@ -130,6 +111,24 @@ std::size_t true_period(const FoundOrbit& found, const PeriodicOrbit& orbit, con
 bool FoundOrbit::is_stable() const {
   return std::all_of(multipliers.begin(), multipliers.end(),
                      [](const auto& mu) { return std::abs(mu) <= 1.0 + stability_margin; });
+}
+
+std::vector<SimulatedSegment> in_standard_order(std::vector<SimulatedSegment> turn, const IndexVector& first) {
+  const auto sequence_from = [&](std::size_t begin) {
+    Signature s;
+    for (std::size_t i = 0; i < turn.size(); ++i) s.push_back(turn[(begin + i) % turn.size()].index);
+    return s;
+  };
+  const auto is_better = [&](std::size_t a, std::size_t b) {
+    const bool a_first = turn[a].index == first;
+    const bool b_first = turn[b].index == first;
+    return a_first != b_first ? a_first : sequence_from(a) < sequence_from(b);
+  };
+  std::size_t best = 0;
+  for (std::size_t k = 1; k < turn.size(); ++k)
+    if (is_better(k, best)) best = k;
+  std::rotate(turn.begin(), turn.begin() + static_cast<std::ptrdiff_t>(best), turn.end());
+  return turn;
 }
 
 std::vector<SimulatedSegment> without_sections(const HybridSystem& system, std::vector<SimulatedSegment> turn) {

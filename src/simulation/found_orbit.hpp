@@ -31,6 +31,10 @@ struct FoundOrbit {
 /// segment after it. As it was when nothing else ends a segment. Samples and marks are not kept.
 std::vector<SimulatedSegment> without_sections(const HybridSystem& system, std::vector<SimulatedSegment> turn);
 
+/// A turn rotated so that its index vectors read the same wherever the simulation stopped: with `first`, if the orbit
+/// has it, in front, and the smallest sequence of those.
+std::vector<SimulatedSegment> in_standard_order(std::vector<SimulatedSegment> turn, const IndexVector& first);
+
 /// Refines the recognised turn of `result`, whose segments are rotated so that the smallest index vector, or `first` if
 /// the orbit has it, comes first. What fails is a value: no convergence, or convergence to another orbit than the one
 /// simulated.

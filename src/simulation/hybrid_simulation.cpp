@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "hybrid/event_at.hpp"
-#include "simulation/cvodes_flow.hpp"
+#include "simulation/watched_flow.hpp"
 #include "text/user_error.hpp"
 
 namespace tchat {
@@ -160,9 +160,9 @@ std::vector<int> HybridSimulation::due_at_start(const SimulatedSegment& segment)
   return due;
 }
 
-bool HybridSimulation::pass_piece(SimulatedSegment& segment, const CvodesFlow& flow, double from, double to) {
+bool HybridSimulation::pass_piece(SimulatedSegment& segment, const WatchedFlow& flow, double from, double to) {
   const VectorXd x = flow.state_at(to);
-  for (const int event : segment.mode.all_events()) {
+  for (const int event : watched_) {
     double& largest = largest_[event];
     largest = std::max(largest, system_.event(event, x.data(), par_.data()));
   }
@@ -174,10 +174,11 @@ bool HybridSimulation::pass_piece(SimulatedSegment& segment, const CvodesFlow& f
     if (settings_.samples > 0) segment.samples.push_back({segment.start_time + t, std::move(state)});
   }
   if (settings_.samples > 0 && segment.samples.size() > 50 * settings_.samples) halve(segment.samples);
+  if (settings_.on_piece && from < to) settings_.on_piece(segment.mode.field(), flow.dense_output(), from, to);
   return !(settings_.interrupted && settings_.interrupted());
 }
 
-void HybridSimulation::note_contacts(SimulatedSegment& segment, CvodesFlow& flow) const {
+void HybridSimulation::note_contacts(SimulatedSegment& segment, WatchedFlow& flow) const {
   for (const EventWatch::Contact& contact : flow.take_contacts()) {
     const auto largest = largest_.find(contact.event);
     if (largest == largest_.end() || contact.h > settings_.contact * largest->second) continue;
@@ -186,9 +187,18 @@ void HybridSimulation::note_contacts(SimulatedSegment& segment, CvodesFlow& flow
   }
 }
 
+std::vector<int> HybridSimulation::watched_events() const {
+  std::vector<int> events = mode_.all_events();
+  for (const int section : settings_.sections)
+    if (!contains(events, section)) events.push_back(section);
+  return events;
+}
+
 void HybridSimulation::integrate(SimulatedSegment& segment, double end_time) {
-  CvodesFlow flow(system_, mode_.field(), x_, par_, settings_.flow);
-  flow.watch(mode_.all_events());
+  const std::unique_ptr<WatchedFlow> integrated = make_flow(system_, mode_.field(), x_, par_, settings_.flow);
+  WatchedFlow& flow = *integrated;
+  watched_ = watched_events();
+  flow.watch(watched_);
   flow.on_piece([&](double from, double to) { return pass_piece(segment, flow, from, to); });
   const std::vector<int> terminal = mode_.terminal_events();
   const double left = end_time - time_;
@@ -197,7 +207,9 @@ void HybridSimulation::integrate(SimulatedSegment& segment, double end_time) {
   while (progress == Progress::root && !contains(terminal, flow.fallen())) {
     const VectorXd x = flow.state();
     const Surface at = surface(mode_.field(), flow.fallen(), x);
-    segment.marks.push_back({SegmentMark::Kind::violation, flow.fallen(), time_ + flow.time(), at.h, at.rate, x});
+    const bool is_violation = contains(mode_.monitored, flow.fallen());
+    segment.marks.push_back({is_violation ? SegmentMark::Kind::violation : SegmentMark::Kind::section, flow.fallen(),
+                             time_ + flow.time(), at.h, at.rate, x});
     progress = flow.advance(until);
   }
   segment.duration = flow.time();

@@ -15,18 +15,23 @@
 #include <string>
 #include <vector>
 
+#include "simulation/event_watch.hpp"
 #include "simulation/flow_options.hpp"
 #include "simulation/mode_rule.hpp"
 
 namespace tchat {
 
-class CvodesFlow;
+class WatchedFlow;
 
 struct SimulationSettings {
   FlowOptions flow;           ///< max_duration: give up waiting for an event after this time
   double contact = 1e-3;      ///< a least value of h below this share of its largest value is a near-grazing contact
+  std::vector<int> sections;  ///< event functions whose falls are marked wherever they do not end the segment
   std::size_t samples = 200;  ///< at most so many states are kept of each segment; 0 none
   std::function<bool()> interrupted;
+  /// Told of every piece of the flow that has been passed: its field, x(t) inside it, and from when to when, counted
+  /// from the start of the segment.
+  std::function<void(int field, const DenseOutput& state, double from, double to)> on_piece;
 };
 
 enum class SegmentEnd {
@@ -47,6 +52,7 @@ struct Sample {
 struct SegmentMark {
   enum class Kind {
     contact,    ///< h nearly zero at a minimum
+    section,    ///< one of `sections` fell through zero
     violation,  ///< a monitored h fell below zero: no orbit of the model any more
     beyond,     ///< h < 0 at the start of the segment, of an event with an impact
   };
@@ -112,9 +118,10 @@ class HybridSimulation {
   std::vector<int> due_at_start(const SimulatedSegment& segment) const;
   bool sticks_at_start(SimulatedSegment& segment) const;
   void mark_walls_behind(SimulatedSegment& segment) const;
+  std::vector<int> watched_events() const;
   void integrate(SimulatedSegment& segment, double end_time);
-  bool pass_piece(SimulatedSegment& segment, const CvodesFlow& flow, double from, double to);
-  void note_contacts(SimulatedSegment& segment, CvodesFlow& flow) const;
+  bool pass_piece(SimulatedSegment& segment, const WatchedFlow& flow, double from, double to);
+  void note_contacts(SimulatedSegment& segment, WatchedFlow& flow) const;
   void end_by(SimulatedSegment& segment, const std::vector<int>& together);
   void stop(SimulatedSegment& segment, SegmentEnd why, std::string message) const;
 
@@ -132,6 +139,7 @@ class HybridSimulation {
   Eigen::VectorXd before_jump_;    // the state there
   std::vector<int> pending_;       // events that came together with it
   std::set<int> walls_;            // events whose jumps have been seen to reverse h_x f
+  std::vector<int> watched_;       // events of the current segment
   std::map<int, double> largest_;  // value of each event function so far
 };
 

@@ -1,11 +1,9 @@
 #include "simulation/simulation_run.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <deque>
 #include <limits>
-#include <map>
 
+#include "simulation/decay.hpp"
 #include "simulation/recurrence.hpp"
 
 namespace tchat {
@@ -14,22 +12,6 @@ namespace {
 
 constexpr double never = 1e300;
 constexpr std::size_t points_for_ignorable = 6;
-constexpr double next_to_nothing = 1e-12;
-
-/// A motion that comes to rest keeps its events, but goes through them ever more slowly.
-class Decay {
- public:
-  void add(const IndexVector& index, double event_velocity) {
-    double& largest = largest_[index];
-    largest = std::max(largest, std::abs(event_velocity));
-    slow_ = std::abs(event_velocity) < next_to_nothing * largest ? slow_ + 1 : 0;
-  }
-  bool dies_out() const { return slow_ >= 4; }
-
- private:
-  std::map<IndexVector, double> largest_;
-  int slow_ = 0;  // last events
-};
 
 /// Gathers what a simulation shows after its transient.
 class Observation {
@@ -89,7 +71,7 @@ SimulationResult run_simulation(HybridSimulation& simulation, const SimulationPl
   SimulationResult result;
   Observation observation(simulation, plan, result);
   ChatteringDetector chattering;
-  Decay decay;
+  DecayDetector decay;
   const bool until_it_repeats = !plan.time && !plan.events;
   const long most = plan.events.value_or(until_it_repeats ? plan.most_events : std::numeric_limits<long>::max());
   std::optional<double> end_time;

@@ -2,13 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "bvp/transversality.hpp"
 #include "hybrid/event_at.hpp"
 #include "linear_algebra/dense_matrix.hpp"
 #include "special_points/bifurcation_tests.hpp"
+#include "stability/grazing_response.hpp"
 
 namespace tchat {
 
@@ -54,67 +54,31 @@ Matrix once_around(const GrazingOrbitSystem& system, const CondensedSystem& cond
   return v;
 }
 
-/// A matrix or vector as digits * 2^exponent, so that powers neither vanish nor overflow.
-struct Scaled {
-  Matrix digits;
-  double exponent = 0.0;
-
-  void normalise() {
-    const double size = digits.lpNorm<Eigen::Infinity>();
-    if (size == 0.0 || !std::isfinite(size)) return;
-    const int shift = std::ilogb(size);
-    digits *= std::ldexp(1.0, -shift);
-    exponent += shift;
-  }
-};
-
-Scaled product(const Scaled& a, const Scaled& b) {
-  Scaled result{a.digits * b.digits, a.exponent + b.exponent};
-  result.normalise();
-  return result;
-}
-
-/// A^n v by squaring A.
-Scaled power_times(Scaled a, int n, Scaled v) {
-  for (; n > 0; n /= 2) {
-    if (n % 2 == 1) v = product(a, v);
-    a = product(a, a);
-  }
-  return v;
-}
-
-/// A^(n-1) beta and A^n beta, with one exponent for both. Few powers are taken one by one, as cheap and most accurate.
-struct Powers {
-  Vector before, last;
-};
-Powers powers(const GrazingOrbitSystem& system, const CondensedSystem& condensed, const Orbit& x, const Vector& beta,
-              int n) {
+/// xi_n of beta. Few powers of A are taken one by one, as cheap and most accurate.
+ImpactReturn return_of_impact(const GrazingOrbitSystem& system, const CondensedSystem& condensed, const Orbit& x,
+                              const Vector& event_gradient, const Vector& beta, int n) {
   constexpr int one_by_one = 40;
-  constexpr double smallest = -900.0;  // a sign that underflow would swallow is kept, at this size
-  constexpr double largest = 900.0;
-  Powers result{beta, beta};
-  if (n <= one_by_one) {
-    for (int k = 1; k <= n; ++k) {
-      result.before = result.last;
-      result.last = once_around(system, condensed, x, result.before);
-    }
-    return result;
+  if (n > one_by_one)
+    return impact_return(event_gradient, once_around(system, condensed, x, Matrix::Identity(beta.size(), beta.size())),
+                         beta, n);
+  Vector before = beta;
+  Vector last = beta;
+  for (int k = 1; k <= n; ++k) {
+    before = last;
+    last = once_around(system, condensed, x, before);
   }
-  const Scaled a{once_around(system, condensed, x, Matrix::Identity(beta.size(), beta.size()))};
-  const Scaled before = power_times(a, n - 1, {beta});
-  const double size = std::ldexp(1.0, static_cast<int>(std::clamp(before.exponent, smallest, largest)));
-  result.before = size * before.digits;
-  result.last = size * (a.digits * before.digits);
-  return result;
+  return impact_return(event_gradient, before, last);
 }
 
-/// beta = (Id - f h_{P,x} / a*) g_x f at the contact.
-Vector impact_direction(const GrazingOrbitSystem& system, const Orbit& x, int jump) {
+/// beta at the contact.
+Vector direction_of_impact(const GrazingOrbitSystem& system, const Orbit& x, int jump) {
   const int s = system.grazing_segment();
   Vector f(system.dimension());
   system.system().value(FunctionKind::field, system.signature()[static_cast<std::size_t>(s)].field, x.end(s),
                         x.par.data(), f.data());
-  return project(system, x, s, jump_derivative(system.system(), jump, x.end(s), x.par.data()) * f);
+  Vector section(system.dimension());
+  system.section_gradient(s, x.end(s), x.par.data(), section.data());
+  return impact_direction(f, section, jump_derivative(system.system(), jump, x.end(s), x.par.data()));
 }
 
 std::string row_text(const Eigen::RowVectorXd& row) {
@@ -128,7 +92,7 @@ std::string row_text(const Eigen::RowVectorXd& row) {
 GrazingMatrices grazing_matrices(const GrazingOrbitSystem& system, const CondensedSystem& condensed, const Orbit& x,
                                  int jump) {
   const int n = system.dimension();
-  return {impact_direction(system, x, jump), once_around(system, condensed, x, Matrix::Identity(n, n))};
+  return {direction_of_impact(system, x, jump), once_around(system, condensed, x, Matrix::Identity(n, n))};
 }
 
 GrazingUnfolding grazing_unfolding(const GrazingOrbitSystem& system, const CondensedSystem& condensed, const Orbit& x,
@@ -144,10 +108,10 @@ GrazingUnfolding grazing_unfolding(const GrazingOrbitSystem& system, const Conde
   GrazingUnfolding result;
   result.acceleration = section.dot(event.f);
   if (number == 0) return result;
-  const Vector beta = impact_direction(system, x, jump);
-  const Powers turns = powers(system, condensed, x, beta, number);
-  result.xi = -event.gradient.dot(turns.last);
-  result.scale = event.gradient.norm() * std::max(turns.before.norm(), turns.last.norm());
+  const Vector beta = direction_of_impact(system, x, jump);
+  const ImpactReturn turned = return_of_impact(system, condensed, x, event.gradient, beta, number);
+  result.xi = turned.xi;
+  result.scale = turned.scale;
   return result;
 }
 

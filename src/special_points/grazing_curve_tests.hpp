@@ -18,8 +18,7 @@ namespace tchat {
 struct GrazingUnfolding {
   double acceleration = 0.0;  ///< a*
   double xi = 0.0;
-  /// What xi_n is small or large against: |h_x| times the larger of |A^n beta| and |A^(n-1) beta|. The powers
-  /// decay where A contracts, and xi_n with them: that is no zero.
+  /// What xi_n is small or large against (stability/grazing_response.hpp).
   double scale = 0.0;
 };
 /// beta (n) and A (n x n) at that point.

@@ -119,6 +119,13 @@ TEST_CASE("resegment: orbits with one impact in n periods, from a grazing point 
   check_refused(workspace.tchat("resegment q.curve UZ1 --to impacting --repeat 65 -o none -p linosc"), {"--repeat"});
 }
 
+TEST_CASE("grazing: an orbit that touches two walls at once is refused") {
+  const Workspace workspace;
+  enter_between_walls(workspace);
+  check_refused(workspace.tchat("grazing q.grazing GR1 -p walls"),
+                {"in contact at 2 places at once", "event 1 (right wall)", "event 2 (left wall)"});
+}
+
 TEST_CASE("resegment: an orbit that touches two walls at once hits both") {
   const Workspace workspace;
   enter_between_walls(workspace);

@@ -1,0 +1,25 @@
+/// Options that the commands which simulate have in common.
+#pragma once
+
+#include <CLI/App.hpp>
+#include <CLI/Validators.hpp>
+#include <string>
+
+#include "simulate/simulation_request.hpp"
+
+namespace tchat {
+
+/// Refuses what is no finite number with these bounds, and says what is `allowed`.
+CLI::Validator number_within(double least, double most, const std::string& allowed);
+CLI::Validator whole_number(long least, long most);
+CLI::Validator positive_time();
+
+/// NAME, -c, -p
+void add_problem_options(CLI::App& command, SimulationRequest& request);
+/// Where a simulation starts, but for --state
+void add_start_options(CLI::App& command, SimulationRequest& request);
+void add_length_options(CLI::App& command, SimulationRequest& request, const char* group);
+/// The integrator and the recognition of periodic orbits
+void add_detail_options(CLI::App& command, SimulationRequest& request);
+
+}  // namespace tchat

@@ -1,0 +1,302 @@
+#include "attractor/lyapunov_exponents.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "attractor/tangent_flow.hpp"
+#include "hybrid/event_at.hpp"
+#include "simulation/cvodes_flow.hpp"
+#include "simulation/event_watch.hpp"
+#include "text/user_error.hpp"
+
+namespace tchat {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double hardly_transversal = 1e-7;  // |h_x f-| / (|h_x| |f-|)
+constexpr double steps_of_tick = 4.0;        // at least, of the integrator
+
+/// An event whose saltation waits for the field after it.
+struct Saltation {
+  MatrixXd gx;
+  VectorXd f_before, after;
+  VectorXd hx;
+  double rate = 0.0;  // h_x f-
+  bool is_tangential = false;
+};
+
+Index most_exponents(const HybridSystem& system, const LyapunovSettings& settings) {
+  return settings.section == 0 ? system.dimension() : system.dimension() - 1;
+}
+
+Index checked_columns(const HybridSystem& system, const LyapunovSettings& settings) {
+  const int events = system.count(FunctionKind::event);
+  if (settings.section < 0 || settings.section > events)
+    throw UserError(fmt::format("section {}: {} has event functions 1 to {}", settings.section, system.name(), events));
+  const Index most = most_exponents(system, settings);
+  if (settings.exponents < 0 || settings.exponents > most)
+    throw UserError(fmt::format("{} exponents: {} has {}{}", settings.exponents, system.name(), most,
+                                settings.section == 0 ? "" : " on a section, one less than states"));
+  if (most == 0) throw UserError(fmt::format("{} has one state, and a section of it no exponent", system.name()));
+  return settings.exponents == 0 ? most : settings.exponents;
+}
+
+}  // namespace
+
+struct LyapunovAccumulator::Implementation {
+  const HybridSystem& system;
+  VectorXd par;
+  LyapunovSettings settings;
+  OrthonormalFrame frame;
+  TangentFlow tangent;
+  GrowthSeries by_event, by_time;
+  VectorXd growth_of_event, growth_of_tick;  // since the last event (with a section: return), since the last tick
+  double duration_of_event = 0.0;
+
+  bool has_begun = false;
+  bool is_in_segment = false;
+  double carried = 0.0;  // of the segment
+  std::optional<Saltation> waiting;
+  std::optional<EventWatch> watch;  // for the section, where it ends no segments
+  bool has_crossed = false;         // the section, once
+  long steps = 0;                   // of the integrator
+  double tick = 0.0, left_of_tick = 0.0;
+  double time = 0.0;
+  double time_of_returns = 0.0, time_since_return = 0.0;
+  long events = 0, tangential = 0;
+  std::string fault;
+
+  Implementation(const HybridSystem& s, const VectorXd& p, const LyapunovSettings& given)
+      : system(s),
+        par(p),
+        settings(given),
+        frame(s.dimension(), checked_columns(s, given)),
+        tangent(system, par),
+        by_event(frame.vectors().cols()),
+        by_time(frame.vectors().cols()),
+        growth_of_event(VectorXd::Zero(frame.vectors().cols())),
+        growth_of_tick(growth_of_event) {
+    settings.flow.variational = false;
+  }
+
+  bool has_section() const { return settings.section != 0; }
+
+  void orthonormalise(bool may_vanish = true) {
+    frame.orthonormalise(may_vanish);
+    tangent.restart();
+  }
+
+  /// What has grown is told to both series.
+  void collect() {
+    const VectorXd& growth = frame.take_growth();
+    growth_of_event += growth;
+    growth_of_tick += growth;
+  }
+
+  void end_piece_by_event(double duration) {
+    by_event.add(growth_of_event, duration);
+    growth_of_event.setZero();
+  }
+
+  void begin_segment(int field, const double* start) {
+    is_in_segment = true;
+    carried = 0.0;
+    if (waiting) apply_saltation(field);
+    watch.reset();
+    if (has_section())
+      watch.emplace(system, field, std::vector<int>{settings.section}, par, start, settings.flow.surface_tolerance);
+  }
+
+  /// S V with S = g_x + (f+ - g_x f-) h_x / (h_x f-); of an event without velocity g_x alone.
+  void apply_saltation(int field) {
+    const Saltation event = *std::exchange(waiting, std::nullopt);
+    VectorXd difference(system.dimension());
+    system.value(FunctionKind::field, field, event.after.data(), par.data(), difference.data());
+    difference -= event.gx * event.f_before;
+    MatrixXd& v = frame.vectors();
+    MatrixXd moved = event.gx * v;
+    if (event.rate != 0.0) moved += difference * ((event.hx.transpose() * v) / event.rate);
+    if (!moved.allFinite()) {
+      fault = "a jump has no finite derivatives at an event";
+      return;
+    }
+    v = moved;
+    tangential += event.is_tangential ? 1 : 0;
+    orthonormalise(!event.is_tangential);
+    collect();
+  }
+
+  void wait_for_field(const SimulatedSegment& segment) {
+    const EventAt at = event_at(system, segment.index.event, segment.mode.field(), segment.end.data(), par.data());
+    Saltation event{MatrixXd(system.dimension(), system.dimension()),     at.f, segment.after, at.gradient, at.rate(),
+                    std::abs(at.rate()) < hardly_transversal * at.sizes()};
+    VectorXd g(system.dimension());
+    double no_parameters = 0.0;
+    system.first(FunctionKind::jump, segment.index.jump, segment.end.data(), par.data(), {}, g.data(), event.gx.data(),
+                 &no_parameters);
+    waiting = std::move(event);
+  }
+
+  void carry(int field, const DenseOutput& state, double from, double to) {
+    if (!fault.empty() || !(from < to)) return;
+    if (!tangent.carry(frame, field, state, from, to))
+      fault = fmt::format("{} has no finite derivatives on the way", system.function_name(FunctionKind::field, field));
+  }
+
+  void end_tick() {
+    orthonormalise();
+    collect();
+    by_time.add(growth_of_tick, tick);
+    growth_of_tick.setZero();
+    if (is_too_short && by_time.pieces() % 2 == 0) {
+      by_time.double_pieces();
+      tick *= 2.0;
+      is_too_short = false;
+    }
+    left_of_tick = tick;
+  }
+  bool is_too_short = false;  // a tick, against the integrator's steps
+
+  void carry_with_ticks(int field, const DenseOutput& state, double from, double to) {
+    if (tick == 0.0) tick = left_of_tick = steps_of_tick * (to - from);
+    if (steps_of_tick * (to - from) > tick) is_too_short = true;
+    while (to - from >= left_of_tick) {
+      const double until = std::min(to, from + left_of_tick);
+      carry(field, state, from, until);
+      end_tick();
+      from = until;
+    }
+    carry(field, state, from, to);
+    left_of_tick -= to - from;
+  }
+
+  void carry_to_section(int field, const DenseOutput& state, double from, double to) {
+    double t = from;
+    while (const auto fall = watch->look(to, state, nullptr)) {
+      carry(field, state, t, fall->time);
+      time_since_return += fall->time - t;
+      t = fall->time;
+      cross_section(field, state(t));
+    }
+    carry(field, state, t, to);
+    time_since_return += to - t;
+  }
+
+  /// V -> (Id - f h_x / (h_x f)) V
+  void cross_section(int field, const double* x) {
+    const EventAt at = event_at(system, settings.section, field, x, par.data());
+    const bool is_tangential = std::abs(at.rate()) < hardly_transversal * at.sizes();
+    MatrixXd& v = frame.vectors();
+    const MatrixXd moved = v - at.f * ((at.gradient.transpose() * v) / at.rate());
+    if (moved.allFinite()) v = moved;
+    tangential += is_tangential ? 1 : 0;
+    orthonormalise(!is_tangential);
+    collect();
+    if (has_crossed) {
+      end_piece_by_event(1.0);
+      time_of_returns += time_since_return;
+    }
+    growth_of_event.setZero();
+    time_since_return = 0.0;
+    has_crossed = true;
+  }
+
+  void pass_piece(int field, const DenseOutput& state, double from, double to) {
+    if (!has_begun) return;
+    if (!is_in_segment) begin_segment(field, state(from));
+    ++steps;
+    if (has_section())
+      carry_to_section(field, state, from, to);
+    else
+      carry_with_ticks(field, state, from, to);
+    carried = to;
+  }
+
+  /// What the simulation has not carried.
+  void integrate(const SimulatedSegment& segment) {
+    CvodesFlow flow(system, segment.mode.field(), segment.start, par, settings.flow);
+    flow.on_piece([&](double from, double to) {
+      if (from < to) pass_piece(segment.mode.field(), flow.dense_output(), from, to);
+      return true;
+    });
+    if (flow.advance(segment.duration) == Progress::failed) fault = flow.message();
+  }
+
+  void pass(const SimulatedSegment& segment) {
+    has_begun = true;
+    if (!is_in_segment) begin_segment(segment.mode.field(), segment.start.data());
+    if (carried == 0.0 && segment.duration > 0.0) integrate(segment);
+    is_in_segment = false;
+    time += segment.duration;
+    duration_of_event += segment.duration;
+    if (segment.ended_by == SegmentEnd::event) end_by_event(segment);
+  }
+
+  /// The watch may see the fall that ends a segment, or not.
+  bool has_just_crossed() const { return has_crossed && time_since_return <= 1e-9 * carried; }
+
+  void end_by_event(const SimulatedSegment& segment) {
+    ++events;
+    const bool is_section = has_section() && segment.index.event == settings.section;
+    if (is_section && !has_just_crossed()) cross_section(segment.mode.field(), segment.end.data());
+    orthonormalise();
+    collect();
+    if (!has_section()) end_piece_by_event(std::exchange(duration_of_event, 0.0));
+    wait_for_field(segment);
+  }
+
+  LyapunovSpectrum spectrum() const {
+    LyapunovSpectrum best = by_event.spectrum();
+    if (!has_section()) {
+      const LyapunovSpectrum timed = by_time.spectrum();
+      if (timed.errors.sum() < best.errors.sum()) best = timed;
+    }
+    best.time = has_section() ? time_of_returns : time;
+    best.events = has_section() ? by_event.pieces() : events;
+    best.tangential = tangential;
+    best.fault = fault;
+    if (!fault.empty()) best.exponents.setConstant(std::nan(""));
+    add_integration_error(best);
+    return best;
+  }
+
+  /// Each step of the integrator may add its tolerance, and a segment's error is about ten times that.
+  void add_integration_error(LyapunovSpectrum& spectrum) const {
+    const double unit = has_section() ? static_cast<double>(spectrum.events) : spectrum.time;
+    if (!(unit > 0.0)) return;
+    const double error = 10.0 * settings.flow.relative_tolerance * static_cast<double>(steps) / unit;
+    for (Index j = 0; j < spectrum.errors.size(); ++j)
+      if (std::isfinite(spectrum.exponents(j))) spectrum.errors(j) = std::hypot(spectrum.errors(j), error);
+  }
+};
+
+LyapunovAccumulator::LyapunovAccumulator(const HybridSystem& system, const VectorXd& par,
+                                         const LyapunovSettings& settings)
+    : p_(std::make_unique<Implementation>(system, par, settings)) {}
+
+LyapunovAccumulator::~LyapunovAccumulator() = default;
+
+void LyapunovAccumulator::attach(SimulationSettings& settings) {
+  p_->settings.flow = settings.flow;
+  p_->settings.flow.variational = false;
+  settings.on_piece = [implementation = p_.get()](int field, const DenseOutput& state, double from, double to) {
+    implementation->pass_piece(field, state, from, to);
+  };
+}
+
+void LyapunovAccumulator::begin() { p_->has_begun = true; }
+
+void LyapunovAccumulator::pass(const SimulatedSegment& segment) { p_->pass(segment); }
+
+LyapunovSpectrum LyapunovAccumulator::spectrum() const { return p_->spectrum(); }
+
+}  // namespace tchat

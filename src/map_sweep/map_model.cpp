@@ -1,0 +1,329 @@
+#include "map_sweep/map_model.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "composite_map/circle.hpp"
+#include "composite_map/invariant_curve.hpp"
+#include "composite_map/periodic_return.hpp"
+#include "composite_map/torus_grazing.hpp"
+#include "constants/constants_file.hpp"
+#include "constants/settings_type.hpp"
+#include "files/solution_file_reader.hpp"
+#include "grazing/grazing_orbit.hpp"
+#include "grazing/grazing_source.hpp"
+#include "hybrid/event_at.hpp"
+#include "hybrid/identity_jump.hpp"
+#include "map_sweep/section_points.hpp"
+#include "resegment/empty_segments.hpp"
+#include "setup/named_parameters.hpp"
+#include "setup/problem_setup.hpp"
+#include "setup/run_request.hpp"
+#include "simulate/simulation_start.hpp"
+#include "simulation/mode_rule.hpp"
+#include "text/user_error.hpp"
+
+namespace tchat {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+/// Points of an event function lie on P where h_P is this small beside its sizes.
+constexpr double on_p = 1e-6;
+/// An angle that varies less than this on a section is constant there.
+constexpr double constant_angle = 1e-3;
+constexpr double torus_neighbourhood = 0.25;
+
+std::string numbers(const VectorXd& x) {
+  return fmt::format("({:.10g})", fmt::join(x.data(), x.data() + x.size(), ", "));
+}
+
+/// What is taken along as a state: what is swept, and what differs from the motion's own values.
+std::vector<int> parameters_along(const MapContext& context, const ParameterVector& own) {
+  std::vector<int> along = context.swept;
+  for (const int k : context.given)
+    if (context.par(k - 1) != own(k - 1) && std::find(along.begin(), along.end(), k) == along.end()) along.push_back(k);
+  return along;
+}
+
+ParameterVector with_given(const MapContext& context, ParameterVector par) {
+  for (const int k : context.given) par(k - 1) = context.par(k - 1);
+  return par;
+}
+
+/// An event function of the problem that is P beside x*: index vectors of returns have its number then.
+IndexVector free_return(const HybridSystem& system, const GrazingPoint& point,
+                        const std::optional<CrossSection>& section) {
+  const auto follow = system.successors({0, 0, 0}, point.x.data(), point.par.data());
+  for (const IndexVector& index : follow.value_or(std::vector<IndexVector>{})) {
+    if (index.field != point.field || index.event == point.event || !is_identity_jump(system, index.jump)) continue;
+    if (section) {
+      if (index.event == section->event) return index;
+      continue;
+    }
+    const EventAt at = event_at(system, index.event, point.x.data(), point.par.data());
+    const double sizes = at.gradient.norm() * point.section_gradient.norm();
+    if (std::abs(at.h) <= on_p * at.scale(point.x.data()) &&
+        std::abs(at.gradient.dot(point.section_gradient)) >= (1.0 - 1e-9) * sizes)
+      return index;
+  }
+  return {point.field, section ? section->event : no_function, no_function};
+}
+
+std::optional<SectionPlane> plane_of(const std::optional<CrossSection>& section, const VectorXd& x, const VectorXd& f) {
+  if (!section || section->event > 0) return std::nullopt;
+  VectorXd normal = VectorXd::Unit(x.size(), section->state - 1);
+  if (f(section->state - 1) > 0.0) normal = -normal;
+  return SectionPlane{normal, x};
+}
+
+VectorXd extent_of(const LabelledSolution& solution, int n) {
+  VectorXd low = solution.states.col(0).head(n), high = low;
+  for (Index row = 0; row < solution.states.rows(); ++row) {
+    const Index i = row % n;
+    low(i) = std::min(low(i), solution.states.row(row).minCoeff());
+    high(i) = std::max(high(i), solution.states.row(row).maxCoeff());
+  }
+  return high - low;
+}
+
+struct LabelledRun {
+  LabelledSolution solution;
+  RunSettings settings;
+  std::string source;
+};
+
+LabelledRun labelled_run(const MapRequest& request, const MapContext& context, const HybridSystem& system) {
+  const std::size_t colon = request.source.rfind(':');
+  const std::string path = resolve_solution_path(request.source.substr(0, colon));
+  const SolutionFile file = read_solution_file(path);
+  LabelledRun run;
+  run.solution = find_solution(file.solutions, read_label(request.source.substr(colon + 1)), path);
+  run.source = fmt::format("label {} of {}", run.solution.label, path);
+  const std::string constants = constants_of_run(context.constants, path);
+  run.settings = read_constants_file(constants, nullptr, names_of(system));
+  check_settings_against(system, run.settings, {constants});
+  if (!is_same_problem_type(run.solution.problem_type, run.settings.problem_type) ||
+      !has_ring(run.settings.problem_type))
+    throw UserError(
+        fmt::format("{} is no periodic orbit of {} (IPS = {} there, {} here); choose a GR label of periodic "
+                    "orbits, or give the constants of its run with -c",
+                    run.source, constants, run.solution.problem_type, run.settings.problem_type));
+  return run;
+}
+
+MapModel periodic_model(const MapRequest& request, const MapContext& context, const HybridSystem& system) {
+  if (request.reduced)
+    throw UserError("--reduced: a reduced map is the map of a torus's phase; a periodic orbit has none, leave it out");
+  const LabelledRun run = labelled_run(request, context, system);
+  const ContactTurn turn =
+      contact_turn(run.solution, run.settings, system, std::nullopt, context.swept.front(), run.source);
+  const GrazingOrbit orbit = find_grazing_orbit(system, turn, run.source);
+  MapModel model;
+  model.point = orbit.point;
+  if (context.section) model.section = cross_section(system, *context.section);
+  // The map of P itself where the section named is P.
+  if (model.section && model.section->event > 0) {
+    const EventAt at =
+        event_at(system, model.section->event, model.point.field, model.point.x.data(), model.point.par.data());
+    if (std::abs(at.rate()) > on_p * at.sizes() && std::abs(at.h) > on_p * at.scale(model.point.x.data()))
+      throw UserError(
+          fmt::format("--section {}: event function {} is {:.6g} at the grazing point x* = {}: the section must "
+                      "pass through it; name a state instead, whose value at x* makes the section",
+                      *context.section, model.section->event, at.h, numbers(model.point.x)));
+    if (std::abs(at.gradient.dot(model.point.section_gradient)) >=
+        (1.0 - 1e-9) * at.gradient.norm() * model.point.section_gradient.norm())
+      model.section.reset();
+  }
+  const auto suspended =
+      std::make_shared<SuspendedSystem>(system, parameters_along(context, model.point.par), model.point.field,
+                                        model.point.event, plane_of(model.section, model.point.x, model.point.f));
+  const int section = !model.section             ? suspended->least_distance()
+                      : model.section->event > 0 ? model.section->event
+                                                 : suspended->plane();
+  const GrazingTurn cut{model.point.x, model.point.par, orbit.segments, orbit.durations,
+                        extent_of(run.solution, system.dimension())};
+  const auto smooth = std::make_shared<PeriodicReturn>(suspended, cut, section, request.smooth_order);
+  model.smooth = smooth;
+  model.par = with_given(context, model.point.par);
+  model.neighbourhood = request.neighbourhood.value_or(INFINITY);
+  model.text.push_back(fmt::format("Composite map of {}: x* = {}, {} = {:.12g}, period {:.10g}", run.source,
+                                   numbers(model.point.x), system.parameter_name(turn.parameter),
+                                   model.point.par(turn.parameter - 1), smooth->map().time));
+  model.identity = fmt::format("{} x* = {}", request.source, numbers(model.point.x));
+  return model;
+}
+
+/// States that some jump takes a whole turn off, or adds it to: angles.
+std::vector<Index> angle_states(const HybridSystem& system, const VectorXd& x, const ParameterVector& par) {
+  std::vector<Index> angles;
+  VectorXd g(x.size());
+  for (int k = 1; k <= system.count(FunctionKind::jump); ++k) {
+    system.value(FunctionKind::jump, k, x.data(), par.data(), g.data());
+    const VectorXd moved = g - x;
+    Index state = 0;
+    if (std::abs(moved.cwiseAbs().maxCoeff(&state) - full_turn) > 1e-9) continue;
+    VectorXd rest = moved;
+    rest(state) = 0.0;
+    if (rest.cwiseAbs().maxCoeff() < 1e-9 && std::find(angles.begin(), angles.end(), state) == angles.end())
+      angles.push_back(state);
+  }
+  return angles;
+}
+
+bool varies(const Eigen::MatrixXd& points, Index state) {
+  const double first = points(state, 0);
+  for (Index k = 1; k < points.cols(); ++k)
+    if (std::abs(nearest_phase((points(state, k) - first) / full_turn)) > constant_angle) return true;
+  return false;
+}
+
+/// "x3" or "y1,y2".
+std::vector<Index> phase_states(const HybridSystem& system, const std::string& text) {
+  std::vector<Index> states;
+  std::size_t begin = 0;
+  while (begin <= text.size()) {
+    const std::size_t comma = std::min(text.find(',', begin), text.size());
+    states.push_back(state_index(system, text.substr(begin, comma - begin), "--phase " + text) - 1);
+    begin = comma + 1;
+  }
+  if (states.size() > 2 || (states.size() == 2 && states[0] == states[1]))
+    throw UserError(
+        fmt::format("--phase {}: a phase is one state that is an angle, as x3, or two that go round, as y1,y2", text));
+  return states;
+}
+
+int wall_of(const MapRequest& request, const HybridSystem& system, const VectorXd& x, const ParameterVector& par) {
+  if (request.wall) return cross_section(system, *request.wall).event;
+  std::vector<int> walls;
+  for (const IndexVector& index :
+       system.successors({0, 0, 0}, x.data(), par.data()).value_or(std::vector<IndexVector>{})) {
+    VectorXd g(x.size());
+    system.value(FunctionKind::jump, index.jump, x.data(), par.data(), g.data());
+    const bool turns = std::abs((g - x).cwiseAbs().maxCoeff() - full_turn) < 1e-9;
+    if (!is_identity_jump(system, index.jump) && !turns &&
+        std::find(walls.begin(), walls.end(), index.event) == walls.end())
+      walls.push_back(index.event);
+  }
+  if (walls.size() == 1) return walls.front();
+  throw UserError(fmt::format("--map {}: which event function is the wall that the torus touches? Name it with --wall",
+                              request.source));
+}
+
+int jump_of(const MapContext& context, const HybridSystem& system, int field, int wall, const VectorXd& x,
+            const ParameterVector& par) {
+  for (const IndexVector& index :
+       system.successors({0, 0, 0}, x.data(), par.data()).value_or(std::vector<IndexVector>{}))
+    if (index.field == field && index.event == wall) return index.jump;
+  return context.settings.grazing_jump;
+}
+
+/// Do all points lie where h_D is stationary?
+bool lie_on_p(const HybridSystem& system, const SectionPoints& points, int wall, const ParameterVector& par) {
+  for (Index k = 0; k < points.states.cols(); k += std::max<Index>(1, points.states.cols() / 50)) {
+    const VectorXd x = points.states.col(k);
+    const EventAt at = event_at(system, wall, points.field, x.data(), par.data());
+    if (std::abs(at.rate()) > on_p * at.sizes()) return false;
+  }
+  return true;
+}
+
+MapModel torus_model(const MapRequest& request, const MapContext& context, const HybridSystem& system) {
+  const int named = context.section ? cross_section(system, *context.section).event : 0;
+  if (context.section && named == 0)
+    throw UserError(
+        fmt::format("--section {}: points of a torus are those of an event function; name the one that was "
+                    "recorded",
+                    *context.section));
+  const SectionPoints points = read_section_points(system, request.source, named);
+  const ParameterVector& par = context.par;
+  const VectorXd first = points.states.col(0);
+  const int wall = wall_of(request, system, first, par);
+  const bool is_p = lie_on_p(system, points, wall, par);
+
+  CurveSettings curve_settings;
+  for (const Index state : angle_states(system, first, par))
+    if (varies(points.states, state)) curve_settings.angles.push_back(state);
+  const FittedCurve fit = fit_invariant_curve(points.states, curve_settings, request.source);
+  const std::vector<Index> phase = request.phase ? phase_states(system, *request.phase) : curve_settings.angles;
+  const CurveProjection projection = phase.empty()       ? CurveProjection(fit.curve)
+                                     : phase.size() == 1 ? CurveProjection(fit.curve, phase[0])
+                                                         : CurveProjection(fit.curve, phase[0], phase[1]);
+  const auto suspended = std::make_shared<SuspendedSystem>(system, context.swept, points.field, wall);
+  TorusSettings torus_settings;
+  torus_settings.order = request.smooth_order;
+  const auto torus = std::make_shared<TorusReturn>(suspended, fit.curve, projection, par,
+                                                   is_p ? suspended->least_distance() : points.event, torus_settings);
+  const int swept = context.swept.front();
+  const TorusGrazing grazing = torus_grazing(system, *torus, points.field, wall, swept, request.source);
+  const VectorXd x = corrected_contact(system, points.field, wall, grazing.x, grazing.par, request.source);
+  const int jump = jump_of(context, system, points.field, wall, x, grazing.par);
+  MapModel model;
+  model.point = grazing_point(system, points.field, wall, jump, x, grazing.par, request.source,
+                              segments_after_impact(system, {points.field, wall, jump}, x, grazing.par, points.field));
+  if (!is_p) model.section = CrossSection{points.event, 0};
+  model.smooth = model.torus = torus;
+  model.phase = projection.phase(model.section ? torus->on_curve(grazing.phase) : x);
+  model.par = par;
+  model.neighbourhood = request.neighbourhood.value_or(torus_neighbourhood);
+  model.text.push_back(fmt::format(
+      "Invariant curve of {} points on {}: rotation number {:.12g} +- {:.1e}, {} harmonics, {:.1e} off at most",
+      points.states.cols(), system.function_name(FunctionKind::event, points.event), fit.curve.rotation(),
+      fit.rotation_error, fit.curve.harmonics(), fit.error));
+  model.text.push_back(
+      fmt::format("Smooth map: derivatives at {} phases, interpolated to {:.1e}; return in {:.6g} of time",
+                  torus->nodes(), torus->interpolation_error(), torus->mean_time()));
+  model.text.push_back(fmt::format("The torus touches {} at {} = {:.10g}, x* = {}",
+                                   system.function_name(FunctionKind::event, wall), system.parameter_name(swept),
+                                   grazing.par(swept - 1), numbers(x)));
+  if (torus->depends_on_parameters())
+    model.text.push_back(
+        fmt::format("The smooth torus depends on {}: its change is taken to first order from {:.10g}, the "
+                    "value of the points",
+                    system.parameter_name(swept), par(swept - 1)));
+  model.identity = fmt::format("{} rho = {:.17g} x* = {}", request.source, fit.curve.rotation(), numbers(x));
+  return model;
+}
+
+}  // namespace
+
+bool names_label(const std::string& source) {
+  const std::size_t colon = source.rfind(':');
+  return colon != std::string::npos && colon > 0 && colon + 1 < source.size() &&
+         source.find('/', colon) == std::string::npos;
+}
+
+MapOrder map_order(const std::string& text) {
+  if (text == "1/2") return MapOrder::half;
+  if (text == "1") return MapOrder::one;
+  if (text == "3/2") return MapOrder::three_halves;
+  if (text == "exact") return MapOrder::exact;
+  throw UserError(fmt::format("--order {}: it is none of 1/2, 1, 3/2, exact; an example is --order 3/2", text));
+}
+
+MapModel map_model(const MapRequest& request, const MapContext& context, const HybridSystem& system) {
+  MapModel model =
+      names_label(request.source) ? periodic_model(request, context, system) : torus_model(request, context, system);
+  model.free = free_return(system, model.point, model.section);
+  model.contact = {model.point.field, model.point.event, model.point.jump};
+  return model;
+}
+
+std::unique_ptr<IteratedMap> iterated_map(const MapRequest& request, const MapModel& model,
+                                          const HybridSystem& system) {
+  const auto contact = std::make_shared<const DiscontinuityMap>(system, model.point, model.section);
+  const LocalContact local(model.smooth, contact, map_order(request.order), model.neighbourhood);
+  if (!request.reduced) return std::make_unique<CompositeMap>(local);
+  if (*request.reduced == "map") return std::make_unique<ReducedMap>(model.torus, local);
+  if (*request.reduced == "ellipse") return std::make_unique<EllipseMap>(model.torus, contact, model.phase);
+  throw UserError(
+      fmt::format("--reduced {}: it is neither map nor ellipse; an example is --reduced map", *request.reduced));
+}
+
+}  // namespace tchat

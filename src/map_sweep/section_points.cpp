@@ -1,0 +1,129 @@
+#include "map_sweep/section_points.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <string_view>
+#include <vector>
+
+#include "sweep/sweep_file.hpp"
+#include "text/number.hpp"
+#include "text/text_file.hpp"
+#include "text/user_error.hpp"
+#include "text/words.hpp"
+
+namespace tchat {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr const char* cure =
+    "give O.events of `tchat simulate` without contact, or O.sweep, or a label as q.NAME:LABEL";
+
+struct Row {
+  int field = 1, event = 0;
+  VectorXd state;
+};
+
+MatrixXd columns(const std::vector<Row>& rows, int event, Index n) {
+  std::vector<const Row*> chosen;
+  for (const Row& row : rows)
+    if (row.event == event) chosen.push_back(&row);
+  MatrixXd states(n, static_cast<Index>(chosen.size()));
+  for (std::size_t k = 0; k < chosen.size(); ++k) states.col(static_cast<Index>(k)) = chosen[k]->state;
+  return states;
+}
+
+/// segment i j k t h h_x_f, the states before, the states after, what.
+std::vector<Row> event_rows(const std::string& text, const std::string& path, int n) {
+  std::vector<Row> rows;
+  std::size_t begin = 0;
+  for (int number = 1; begin < text.size(); ++number) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    const std::string_view line = std::string_view(text).substr(begin, end - begin);
+    begin = end + 1;
+    if (line.empty() || line.front() == '#') continue;
+    const std::vector<std::string_view> words = split_words(line);
+    const auto fault = [&](const std::string& what) {
+      return UserError(fmt::format("{}:{}: {}; {}", path, number, what, cure));
+    };
+    if (words.size() != static_cast<std::size_t>(8 + 2 * n))
+      throw fault(fmt::format("{} columns where O.events of {} states has {}", words.size(), n, 8 + 2 * n));
+    const std::string_view what = words.back();
+    if (!what.starts_with("event") && what != "section") continue;
+    Row row{1, 0, VectorXd(n)};
+    const auto field = parse_integer(words[1]), event = parse_integer(words[2]);
+    if (!field || !event) throw fault("columns 2 and 3 are no numbers of a field and an event function");
+    row.field = *field, row.event = *event;
+    for (int k = 0; k < n; ++k) {
+      const auto value = parse_real(words[static_cast<std::size_t>(7 + k)]);
+      if (!value) throw fault(fmt::format("'{}' is no finite number", words[static_cast<std::size_t>(7 + k)]));
+      row.state(k) = *value;
+    }
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+SectionPoints of_sweep(const HybridSystem& system, const std::string& path, int event) {
+  const SweepTable table = read_sweep_file(path);
+  const auto* index = table.column("index");
+  if (index != nullptr && std::any_of(index->begin(), index->end(), [&](double i) { return i != index->front(); }))
+    throw UserError(
+        fmt::format("{}: it has section points of several values; a torus is one value's: sweep one, as "
+                    "--over mu=5:5:1",
+                    path));
+  std::vector<Row> rows(table.rows());
+  for (Row& row : rows) row.state.resize(system.dimension());
+  for (int k = 1; k <= system.dimension(); ++k) {
+    const auto* column = table.column(system.state_name(k));
+    if (column == nullptr)
+      throw UserError(fmt::format("{}: it has no column {}; record states with --section", path, system.state_name(k)));
+    for (std::size_t i = 0; i < rows.size(); ++i) rows[i].state(k - 1) = (*column)[i];
+  }
+  if (const auto* events = table.column("event"))
+    for (std::size_t i = 0; i < rows.size(); ++i) rows[i].event = static_cast<int>((*events)[i]);
+  else if (event == 0)
+    throw UserError(
+        fmt::format("{}: it does not tell at which event its states were recorded; say so with --section", path));
+  else
+    for (Row& row : rows) row.event = event;
+  return {event, 1, columns(rows, event, system.dimension())};
+}
+
+}  // namespace
+
+SectionPoints read_section_points(const HybridSystem& system, const std::string& path, int event) {
+  const std::string text = read_text_file(path, "points of a section", cure);
+  if (text.starts_with("# tchat sweep")) return of_sweep(system, path, event);
+  const int n = system.dimension();
+  const std::vector<Row> rows = event_rows(text, path, n);
+  std::map<int, int> counts;
+  for (const Row& row : rows) ++counts[row.event];
+  if (counts.empty()) throw UserError(fmt::format("{}: there is no event in it; {}", path, cure));
+  SectionPoints points;
+  points.event = event;
+  if (event == 0)
+    points.event = std::max_element(counts.begin(), counts.end(), [](const auto& a, const auto& b) {
+                     return a.second < b.second;
+                   })->first;
+  if (counts[points.event] == 0) {
+    std::string list;
+    for (const auto& [j, count] : counts)
+      if (count > 0) list += fmt::format("{}{} ({} points)", list.empty() ? "" : ", ", j, count);
+    throw UserError(
+        fmt::format("{}: there is no point of event function {} ({}) in it; it has {}: name one of them with "
+                    "--section, or simulate with that one recorded",
+                    path, event, system.function_name(FunctionKind::event, event), list));
+  }
+  points.field =
+      std::find_if(rows.begin(), rows.end(), [&](const Row& row) { return row.event == points.event; })->field;
+  points.states = columns(rows, points.event, n);
+  return points;
+}
+
+}  // namespace tchat

@@ -1,0 +1,220 @@
+#include "plot/sweep_columns.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string_view>
+
+#include "constants/constant_value.hpp"
+#include "plot/column_expression.hpp"
+#include "text/number.hpp"
+#include "text/user_error.hpp"
+#include "text/words.hpp"
+
+namespace tchat {
+
+namespace {
+
+constexpr std::string_view later = "@+";
+
+bool equal_but_for_case(std::string_view a, std::string_view b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](unsigned char c, unsigned char d) { return std::tolower(c) == std::tolower(d); });
+}
+
+bool belongs_to_name(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }
+
+/// Length of "@+K" at the beginning of the text; 0: there is none.
+std::size_t length_of_shift(std::string_view text) {
+  if (!text.starts_with(later)) return 0;
+  const std::size_t end = std::min(text.find_first_not_of("0123456789", later.size()), text.size());
+  return end > later.size() ? end : 0;
+}
+
+class SweepNames {
+ public:
+  SweepNames(const SweepTable& table, const std::string& path, const std::string& wanted, const char* option)
+      : table_(table), where_(fmt::format("{}: {} {}", path, option, in_quotes(wanted))) {
+    names_ = table.names;
+    names_.emplace_back("kind");
+    for (const auto& [name, value] : table.parameters) names_.push_back(name);
+  }
+
+  const std::string& where() const { return where_; }
+
+  KnownNames known() const {
+    return {[this](std::string_view text) { return length(text); }, fmt::format("{}", fmt::join(names_, ", "))};
+  }
+
+  /// A name, or a name and a shift.
+  SweepQuantity named(const std::string& text) const {
+    const std::size_t at = text.find(later);
+    const std::string name = text.substr(0, at);
+    SweepQuantity quantity = column(name);
+    if (at == std::string::npos) return quantity;
+    const int rows = parse_integer(text.substr(at + later.size())).value_or(0);
+    shift(quantity.values, static_cast<std::size_t>(std::max(rows, 0)));
+    quantity.errors.clear();
+    quantity.label =
+        joined(quantity.label, rows == 1 ? plain_text(", next") : plain_text(fmt::format(", {} later", rows)));
+    return quantity;
+  }
+
+ private:
+  /// Of the longest name that the text begins with, a shift behind it included.
+  std::size_t length(std::string_view text) const {
+    std::size_t longest = 0;
+    for (const std::string& name : names_) {
+      if (name.empty() || !equal_but_for_case(text.substr(0, name.size()), name)) continue;
+      const bool ends =
+          name.size() == text.size() || !belongs_to_name(name.back()) || !belongs_to_name(text[name.size()]);
+      if (ends) longest = std::max(longest, name.size());
+    }
+    return longest > 0 ? longest + length_of_shift(text.substr(longest)) : 0;
+  }
+
+  SweepQuantity column(const std::string& wanted) const {
+    SweepQuantity quantity;
+    const std::string name = sweep_column(table_, wanted);
+    if (const std::vector<double>* values = table_.column(name)) {
+      quantity.values = *values;
+      if (name.starts_with("lambda"))
+        if (const auto* errors = table_.column("error" + name.substr(6))) quantity.errors = *errors;
+      quantity.label = mathematical_name(name);
+      for (const SweptQuantity& swept : table_.over)
+        if (swept.is_state && swept.column() == name)
+          quantity.label = joined(mathematical_name(swept.name), plain_text("(0)"));
+      return quantity;
+    }
+    if (equal_but_for_case(wanted, "kind")) {
+      for (const AttractorKind kind : table_.kinds) quantity.values.push_back(static_cast<double>(kind));
+      quantity.label = plain_text("kind");
+      return quantity;
+    }
+    for (const auto& [parameter, value] : table_.parameters)
+      if (equal_but_for_case(parameter, wanted)) {
+        quantity.values.assign(table_.rows(), value);
+        quantity.label = mathematical_name(parameter);
+        return quantity;
+      }
+    throw UserError(fmt::format("{}: there is no column of that name; there are {}", where_, fmt::join(names_, ", ")));
+  }
+
+  /// Rows of one value and one start follow one another in the order of time.
+  void shift(std::vector<double>& values, std::size_t rows) const {
+    const std::vector<double>* index = table_.column("index");
+    const std::vector<double>* start = table_.column("start");
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      const std::size_t other = k + rows;
+      const bool same = other < values.size() && (index == nullptr || (*index)[other] == (*index)[k]) &&
+                        (start == nullptr || (*start)[other] == (*start)[k]);
+      values[k] = same ? values[other] : std::numeric_limits<double>::quiet_NaN();
+    }
+  }
+
+  const SweepTable& table_;
+  std::string where_;
+  std::vector<std::string> names_;
+};
+
+const SweptQuantity* swept_quantity(const SweepTable& table, const std::string& column) {
+  for (const SweptQuantity& swept : table.over)
+    if (swept.column() == column) return &swept;
+  return nullptr;
+}
+
+/// The swept value nearest to the one asked for.
+double nearest(const SweptQuantity& swept, const SweepChoice& choice, const std::string& path,
+               std::vector<std::string>& warnings) {
+  const auto [low, high] = std::minmax(swept.from, swept.to);
+  const double step = swept.count > 1 ? (high - low) / static_cast<double>(swept.count - 1) : 0.0;
+  if (!(choice.value >= low - 0.5 * step && choice.value <= high + 0.5 * step))
+    throw UserError(fmt::format("--at {}={:g}: {} goes from {:g} to {:g} in {}", choice.column, choice.value,
+                                choice.column, swept.from, swept.to, path));
+  double best = swept.value(0);
+  for (long i = 1; i < swept.count; ++i)
+    if (std::abs(swept.value(i) - choice.value) < std::abs(best - choice.value)) best = swept.value(i);
+  if (std::abs(best - choice.value) > 1e-9 * std::max({std::abs(low), std::abs(high), step}))
+    warnings.push_back(
+        fmt::format("{}: the value of {} nearest to {:.12g} is {:.12g}", path, choice.column, choice.value, best));
+  return best;
+}
+
+}  // namespace
+
+SweepQuantity read_sweep_quantity(const SweepTable& table, const std::string& path, const std::string& wanted,
+                                  const char* option) {
+  const SweepNames names(table, path, wanted, option);
+  const KnownNames known = names.known();
+  if (known.length(wanted) == wanted.size() || !looks_like_expression(wanted)) return names.named(wanted);
+  const ColumnExpression expression = parse_expression(wanted, known, names.where());
+  std::vector<SweepQuantity> parts;
+  for (const std::string& name : expression.names) parts.push_back(names.named(name));
+  std::vector<std::vector<double>> rows(table.rows());
+  for (std::size_t k = 0; k < rows.size(); ++k)
+    for (const SweepQuantity& part : parts) rows[k].push_back(part.values[k]);
+  SweepQuantity result;
+  result.values = evaluate(expression, rows, names.where());
+  result.label = expression_label(wanted, known, [&names](const std::string& name) { return names.named(name).label; });
+  return result;
+}
+
+std::string sweep_column(const SweepTable& table, const std::string& wanted) {
+  for (const std::string& name : table.names)
+    if (name == wanted) return name;
+  for (const std::string& name : table.names)
+    if (equal_but_for_case(name, wanted)) return name;
+  return "";
+}
+
+std::vector<std::string> sweep_states(const SweepTable& table) {
+  constexpr std::array<std::string_view, 8> scalars = {"index",  "start", "attractor", "event",
+                                                       "period", "time",  "impacts",   "penetration"};
+  std::vector<std::string> states;
+  for (const std::string& name : table.names) {
+    const bool scalar =
+        std::find(scalars.begin(), scalars.end(), name) != scalars.end() || swept_quantity(table, name) != nullptr;
+    const bool exponent = name.starts_with("lambda") || name.starts_with("error");
+    if (!scalar && !exponent) states.push_back(name);
+  }
+  return states;
+}
+
+SweepChoice read_sweep_choice(const std::string& text) {
+  const std::size_t sign = text.find('=');
+  const auto value = sign == std::string::npos ? std::nullopt : parse_real(text.substr(sign + 1));
+  if (sign == 0 || !value || !std::isfinite(*value))
+    throw UserError(fmt::format("--at {}: a choice is a column and its value, as in --at mu=-0.8 or --at start=2",
+                                in_quotes(text)));
+  return {text.substr(0, sign), *value};
+}
+
+std::vector<std::size_t> chosen_rows(const SweepTable& table, const std::string& path,
+                                     const std::vector<SweepChoice>& choices, std::vector<std::string>& warnings) {
+  std::vector<std::size_t> rows(table.rows());
+  for (std::size_t k = 0; k < rows.size(); ++k) rows[k] = k;
+  for (const SweepChoice& choice : choices) {
+    const std::string name = sweep_column(table, choice.column);
+    const std::vector<double>* column = table.column(name);
+    if (column == nullptr)
+      throw UserError(fmt::format("--at {}={:g}: {} has no column of that name; there are {}", choice.column,
+                                  choice.value, path, fmt::join(table.names, ", ")));
+    const SweptQuantity* swept = swept_quantity(table, name);
+    const double value = swept != nullptr ? nearest(*swept, choice, path, warnings) : choice.value;
+    // Columns are numbers of a text: equal to what the sweep says of its values but for their last digits.
+    const double slack = swept != nullptr ? 1e-9 * std::max(std::abs(swept->from), std::abs(swept->to)) : 0.0;
+    std::erase_if(rows, [&](std::size_t k) { return !(std::abs((*column)[k] - value) <= slack); });
+    if (rows.empty())
+      throw UserError(
+          fmt::format("--at {}={:g}: no row of {} has this {}", choice.column, choice.value, path, choice.column));
+  }
+  return rows;
+}
+
+}  // namespace tchat

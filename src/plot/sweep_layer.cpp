@@ -1,0 +1,318 @@
+#include "plot/sweep_layer.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <utility>
+
+#include "plot/picture_styles.hpp"
+#include "plot/sweep_colours.hpp"
+#include "text/text_file.hpp"
+#include "text/user_error.hpp"
+
+namespace tchat {
+
+namespace {
+
+/// Commas inside parentheses belong to functions.
+std::vector<std::string> split_list(const std::string& text) {
+  std::vector<std::string> parts(1);
+  int depth = 0;
+  for (const char c : text) {
+    depth += (c == '(') - (c == ')');
+    if (c == ',' && depth == 0)
+      parts.emplace_back();
+    else
+      parts.back() += c;
+  }
+  return parts;
+}
+
+double dot_size(std::size_t dots) { return dots > 40000 ? 0.2 : dots > 10000 ? 0.3 : dots > 4000 ? 0.4 : 0.5; }
+
+/// Of groups whose dots may lie on each other: the earlier ones are seen around the later ones.
+constexpr double larger_beneath = 1.7;
+
+const SweptQuantity* swept(const SweepTable& table, const std::string& column) {
+  for (const SweptQuantity& quantity : table.over)
+    if (quantity.column() == column) return &quantity;
+  return nullptr;
+}
+
+/// Dots that share a colour.
+struct Group {
+  LabelText name;
+  std::string colour;
+  std::vector<bool> member;  // by place among the chosen rows
+  double size = 1.0;         // of its dots, beside the usual one
+};
+
+class SweepLayerBuilder {
+ public:
+  SweepLayerBuilder(const SweepFile& file, const SweepLook& look, std::vector<std::string>& warnings)
+      : file_(file), table_(file.table), look_(look), warnings_(warnings) {
+    if (table_.over.empty() || table_.rows() == 0)
+      throw UserError(fmt::format("{}: there is nothing in it to draw", file_.path));
+    rows_ = chosen_rows(table_, file_.path, look_.choices, warnings_);
+    x_ = look_.x.empty() ? default_x() : look_.x;
+    y_ = look_.y.empty() ? default_y() : look_.y;
+  }
+
+  Underlay build() {
+    const SweptQuantity* across = swept(table_, sweep_column(table_, x_));
+    const SweptQuantity* up = swept(table_, sweep_column(table_, y_));
+    if (across != nullptr && up != nullptr && across != up)
+      map(*across, *up);
+    else
+      dots();
+    return std::move(result_);
+  }
+
+ private:
+  bool is_chosen(const SweptQuantity& quantity) const {
+    return std::any_of(look_.choices.begin(), look_.choices.end(), [&](const SweepChoice& choice) {
+      return sweep_column(table_, choice.column) == quantity.column();
+    });
+  }
+
+  /// The first one that --at has left free.
+  std::string default_x() const {
+    for (const SweptQuantity& quantity : table_.over)
+      if (!is_chosen(quantity)) return quantity.column();
+    const std::vector<std::string> states = sweep_states(table_);
+    return states.size() > 1 ? states.front() : table_.over.front().column();
+  }
+
+  std::string default_y() const {
+    const std::string x = sweep_column(table_, x_);
+    for (const SweptQuantity& quantity : table_.over)
+      if (swept(table_, x) != nullptr && quantity.column() != x && !is_chosen(quantity)) return quantity.column();
+    return default_sweep_y(table_, x);
+  }
+
+  // Dots -----------------------------------------------------------------------------------------------------------
+
+  void dots() {
+    const SweepQuantity x = read_sweep_quantity(table_, file_.path, x_, "-x");
+    const std::vector<std::string> list = split_list(y_);
+    std::vector<SweepQuantity> quantities;
+    for (const std::string& name : list) quantities.push_back(read_sweep_quantity(table_, file_.path, name, "-y"));
+    result_.x = x.label;
+    result_.y = common_label(quantities);
+    const std::vector<Group> groups = make_groups();
+    std::size_t shown = 0;
+    if (std::any_of(quantities.begin(), quantities.end(), [](const SweepQuantity& y) { return !y.errors.empty(); }))
+      add_zero_line(x);
+    for (const SweepQuantity& y : quantities) {
+      for (const Group& group : groups) {
+        const bool own_name = quantities.size() > 1;
+        const std::string colour =
+            own_name || group.colour.empty() ? next_colour(quantities.size() * groups.size() == 1) : group.colour;
+        const LabelText name = !own_name           ? group.name
+                               : groups.size() > 1 ? joined(joined(y.label, plain_text(", ")), group.name)
+                                                   : y.label;
+        shown += add_dots(x, y, group, colour, name);
+      }
+    }
+    if (shown == 0)
+      throw UserError(fmt::format("{}: {} over {} is nowhere a number: the sweep has found nothing there to draw",
+                                  file_.path, y_, x_));
+  }
+
+  /// Of the first; of several exponents what they all are.
+  static LabelText common_label(const std::vector<SweepQuantity>& quantities) {
+    const bool exponents =
+        std::all_of(quantities.begin(), quantities.end(), [](const auto& y) { return !y.errors.empty(); });
+    return quantities.size() > 1 && exponents ? plain_text("Lyapunov exponents") : quantities.front().label;
+  }
+
+  /// Black is left to a lone cloud: it would hide what is beneath.
+  std::string next_colour(bool alone) {
+    const std::size_t k = look_.clouds_before + result_.clouds.size() + (alone || look_.beneath_branches ? 0 : 1);
+    return look_.beneath_branches ? cloud_colour(k) : series_colour(k);
+  }
+
+  std::vector<Group> make_groups() {
+    if (!look_.z.empty()) return coloured_groups(look_.z);
+    const std::vector<double>* start = table_.column("start");
+    std::vector<Group> groups;
+    for (std::size_t k = 0; k < table_.starts.size() && start != nullptr; ++k) {
+      const std::string name = start_name(table_, static_cast<int>(k) + 1);
+      if (name != "up" && name != "down") return {everything()};
+      Group group{plain_text(name), "", {}};
+      for (const std::size_t row : rows_) group.member.push_back((*start)[row] == static_cast<double>(k + 1));
+      const bool has_rows = std::find(group.member.begin(), group.member.end(), true) != group.member.end();
+      if (has_rows) groups.push_back(std::move(group));
+    }
+    for (std::size_t k = 0; k + 1 < groups.size(); ++k) groups[k].size = larger_beneath;
+    return groups.size() > 1 ? groups : std::vector<Group>{everything()};
+  }
+
+  Group everything() const { return {plain_text(file_.name), "", std::vector<bool>(rows_.size(), true)}; }
+
+  std::vector<Group> coloured_groups(const std::string& column) {
+    const RowColours colours =
+        row_colours(table_, file_.path, {column, look_.z_low, look_.z_high, look_.z_label}, rows_);
+    result_.colour_bar = colours.bar;
+    std::vector<Group> groups;
+    for (std::size_t c = 0; c < colours.colours.size(); ++c) {
+      Group group{colours.names.empty() ? LabelText{} : colours.names[c], colours.colours[c], {}};
+      for (const int number : colours.numbers) group.member.push_back(number == static_cast<int>(c));
+      groups.push_back(std::move(group));
+    }
+    return groups;
+  }
+
+  /// How many.
+  std::size_t add_dots(const SweepQuantity& x, const SweepQuantity& y, const Group& group, const std::string& colour,
+                       const LabelText& name) {
+    Cloud cloud;
+    cloud.colour = colour;
+    Curve bars{{}, {Dash::solid, 1.2, colour}};
+    for (std::size_t k = 0; k < rows_.size(); ++k) {
+      const PicturePoint at{x.values[rows_[k]], y.values[rows_[k]]};
+      if (!group.member[k] || !is_finite(at)) continue;
+      // Quantities of a value stand in each of its rows.
+      if (!cloud.points.empty() && cloud.points.back().x == at.x && cloud.points.back().y == at.y) continue;
+      cloud.points.push_back(at);
+      if (!y.errors.empty()) add_bar(bars, at, y.errors[rows_[k]]);
+    }
+    const std::size_t count = cloud.points.size();
+    if (count == 0) return 0;
+    cloud.size = group.size * dot_size(count);
+    if (!bars.points.empty()) result_.curves.push_back(std::move(bars));
+    if (!name.empty()) result_.key.push_back({name, std::nullopt, key_dot(colour)});
+    result_.clouds.push_back(std::move(cloud));
+    return count;
+  }
+
+  static Marker key_dot(const std::string& colour) {
+    Marker marker = cloud_marker(colour);
+    marker.size = 0.9;
+    return marker;
+  }
+
+  static void add_bar(Curve& bars, const PicturePoint& at, double error) {
+    if (!std::isfinite(error) || error <= 0.0) return;
+    constexpr double gap = std::numeric_limits<double>::quiet_NaN();
+    bars.points.insert(bars.points.end(), {{at.x, at.y - error}, {at.x, at.y + error}, {gap, gap}});
+  }
+
+  void add_zero_line(const SweepQuantity& x) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const std::size_t row : rows_)
+      if (std::isfinite(x.values[row])) low = std::min(low, x.values[row]), high = std::max(high, x.values[row]);
+    if (low < high)
+      result_.curves.push_back({{{low, 0.0}, {high, 0.0}}, {Dash::solid, 1.0, "#a0a0a0"}, /*background=*/true});
+  }
+
+  // Maps -----------------------------------------------------------------------------------------------------------
+
+  void map(const SweptQuantity& across, const SweptQuantity& up) {
+    keep_one_start();
+    const std::string column = look_.z.empty() ? default_z() : look_.z;
+    const RowColours colours =
+        row_colours(table_, file_.path, {column, look_.z_low, look_.z_high, look_.z_label}, rows_);
+    const std::vector<double>* index = table_.column("index");
+    if (index == nullptr)
+      throw UserError(fmt::format("{}: there is no column index, by which a map knows its cells", file_.path));
+    ColourField field;
+    field.columns = static_cast<std::size_t>(across.count);
+    field.rows = static_cast<std::size_t>(up.count);
+    field.first = {across.value(0), up.value(0)};
+    field.last = {across.value(across.count - 1), up.value(up.count - 1)};
+    field.cells.assign(field.columns * field.rows, -1);
+    field.colours = colours.colours;
+    const auto count = static_cast<std::size_t>(table_.over.front().count);
+    const bool turned = &across != &table_.over.front();
+    for (std::size_t k = 0; k < rows_.size(); ++k) {
+      const auto number = static_cast<std::size_t>((*index)[rows_[k]]);
+      const std::size_t first = number % count, second = number / count;
+      const std::size_t cell = turned ? first * field.columns + second : second * field.columns + first;
+      if (cell < field.cells.size()) field.cells[cell] = colours.numbers[k];
+    }
+    for (std::size_t c = 0; c < colours.names.size(); ++c) {
+      Marker square;
+      square.symbol = Symbol::square;
+      square.size = 1.4;
+      square.colour = colours.colours[c];
+      result_.key.push_back({colours.names[c], std::nullopt, square});
+    }
+    result_.field = std::move(field);
+    result_.colour_bar = colours.bar;
+    result_.x = read_sweep_quantity(table_, file_.path, x_, "-x").label;
+    result_.y = read_sweep_quantity(table_, file_.path, y_, "-y").label;
+  }
+
+  std::string default_z() const {
+    return table_.column("attractor") != nullptr && !table_.attractors.empty() ? "attractor" : "kind";
+  }
+
+  /// A cell has one colour.
+  void keep_one_start() {
+    const std::vector<double>* start = table_.column("start");
+    if (start == nullptr) return;
+    const double first = (*start)[rows_.front()];
+    const std::size_t before = rows_.size();
+    std::erase_if(rows_, [&](std::size_t row) { return (*start)[row] != first; });
+    if (rows_.size() < before)
+      warnings_.push_back(
+          fmt::format("{}: the map shows start {:.0f}; --at start=N shows another one", file_.path, first));
+  }
+
+  const SweepFile& file_;
+  const SweepTable& table_;
+  const SweepLook& look_;
+  std::vector<std::string>& warnings_;
+  std::vector<std::size_t> rows_;
+  std::string x_, y_;
+  Underlay result_;
+};
+
+}  // namespace
+
+bool looks_like_sweep(const std::string& path) {
+  TextLines file(path, "something to draw");
+  std::string line;
+  return file.next(line) && line.starts_with("# tchat sweep");
+}
+
+SweepFile read_sweep(const std::string& path) {
+  return {path, std::filesystem::path(path).stem().string(), read_sweep_file(path)};
+}
+
+void Underlay::add(Underlay other) {
+  if (field && other.field) throw UserError("one panel shows one map: give the other sweep after --panel");
+  if (colour_bar && other.colour_bar)
+    throw UserError("one panel has one scale of colours: give the other sweep after --panel");
+  if (other.field) field = std::move(other.field);
+  if (other.colour_bar) colour_bar = std::move(other.colour_bar);
+  clouds.insert(clouds.end(), other.clouds.begin(), other.clouds.end());
+  curves.insert(curves.end(), other.curves.begin(), other.curves.end());
+  key.insert(key.end(), other.key.begin(), other.key.end());
+  if (x.empty()) x = other.x;
+  if (y.empty()) y = other.y;
+}
+
+std::string default_sweep_y(const SweepTable& table, const std::string& x) {
+  for (const std::string& state : sweep_states(table))
+    if (state != x) return state;
+  for (const char* name : {"penetration", "lambda1", "period"})
+    if (table.column(name) != nullptr) {
+      if (std::string(name) != "lambda1") return name;
+      std::string all = name;
+      for (int k = 2; table.column(fmt::format("lambda{}", k)) != nullptr; ++k) all += fmt::format(",lambda{}", k);
+      return all;
+    }
+  return "attractor";
+}
+
+Underlay sweep_layer(const SweepFile& file, const SweepLook& look, std::vector<std::string>& warnings) {
+  return SweepLayerBuilder(file, look, warnings).build();
+}
+
+}  // namespace tchat

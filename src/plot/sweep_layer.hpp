@@ -1,0 +1,46 @@
+/// A sweep as dots over one quantity, or as a map in colours over two.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "plot/sweep_columns.hpp"
+#include "plot/underlay.hpp"
+
+namespace tchat {
+
+struct SweepFile {
+  std::string path;
+  std::string name;  ///< of the file without folder and ending
+  SweepTable table;
+};
+
+/// By the first line.
+bool looks_like_sweep(const std::string& path);
+
+/// Throws UserError.
+SweepFile read_sweep(const std::string& path);
+
+/// What is shown of it, and how.
+struct SweepLook {
+  std::string x, y, z;                  ///< what read_sweep_quantity takes, y also a list a,b; empty: chosen here
+  std::vector<SweepChoice> choices;     ///< --at
+  std::optional<double> z_low, z_high;  ///< of a scale of colours
+  LabelText z_label;
+  bool beneath_branches = false;  ///< pale
+  std::size_t clouds_before = 0;  ///< in the same picture, which have other colours
+};
+
+/// The file's `over`: A map is drawn where x and y are its two swept quantities, each value a cell: -z says what its
+/// colour means, the attractor's number when nothing is said. Everything else is dots: x is the first swept quantity
+/// and y the first recorded state (or what else the file has), a dot a row; -z colours dots too. Without it sweeps up
+/// and down have a colour each. Exponents have error bars, and a line at zero.
+///
+/// Throws UserError for columns that are not there, and when there is nothing to show.
+Underlay sweep_layer(const SweepFile& file, const SweepLook& look, std::vector<std::string>& warnings);
+
+/// What is along y when nothing is said, as the name of a column.
+std::string default_sweep_y(const SweepTable& table, const std::string& x);
+
+}  // namespace tchat

@@ -1,0 +1,34 @@
+#include "simulate/loaded_problem.hpp"
+
+#include "plugin/plugin_build.hpp"
+#include "setup/named_parameters.hpp"
+
+namespace tchat {
+
+LoadedProblem load_for_simulation(const SimulationRequest& request, std::ostream* progress) {
+  LoadedProblem loaded;
+  loaded.plugin = resolve_plugin(request.problem.value_or(request.name), {.progress = progress});
+  bool named_parameters = false;
+  SimulationConstants& constants = loaded.constants;
+  constants = read_simulation_constants(request, names_to_come(named_parameters));
+  loaded.library = std::make_unique<ProblemLibrary>(loaded.plugin, [&] { return sizes_of(request, constants); });
+  const HybridSystem& system = loaded.library->system();
+  if (named_parameters) constants = read_simulation_constants(request, names_of(system));
+  fit_to_problem(constants, system, request.overrides);
+  return loaded;
+}
+
+SimulationSettings simulation_settings(const SimulationRequest& request, const std::function<bool()>& interrupted) {
+  SimulationSettings settings;
+  settings.flow.method = request.stiff ? IntegrationMethod::bdf : IntegrationMethod::adams;
+  settings.flow.relative_tolerance = request.tolerance;
+  settings.flow.absolute_tolerance = 0.01 * request.tolerance;
+  settings.flow.max_duration = request.wait;
+  settings.flow.max_steps = 10000000;
+  settings.contact = request.contact;
+  settings.samples = static_cast<std::size_t>(request.rows);
+  settings.interrupted = interrupted;
+  return settings;
+}
+
+}  // namespace tchat

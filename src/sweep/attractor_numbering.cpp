@@ -1,0 +1,233 @@
+#include "sweep/attractor_numbering.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <tuple>
+
+namespace tchat {
+
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double infinite_distance = std::numeric_limits<double>::infinity();
+constexpr double same_orbit = 1e-3;   // relative to the range; recognition leaves 1e-6 / (1 - multiplier)
+constexpr double same_cloud = 0.25;   // means of some hundred points of motions that do not repeat themselves
+constexpr double to_neighbour = 0.1;  // from one value of a parameter to the next
+constexpr std::size_t most_compared = 1000;
+
+bool repeats(const AttractorSample& sample) { return sample.kind == AttractorKind::periodic; }
+
+/// A state that hardly moves is compared on the scale of the others.
+VectorXd scale_of(const AttractorSample& a, const AttractorSample& b) {
+  const VectorXd range = a.range.cwiseMax(b.range);
+  const double floor = std::max(1e-3 * range.maxCoeff(), 1e-12);
+  return range.array() + floor;
+}
+
+double orbit_distance(const AttractorSample& a, const AttractorSample& b) {
+  if (a.signature != b.signature || a.identity.cols() != b.identity.cols()) return infinite_distance;
+  const VectorXd scale = scale_of(a, b);
+  const auto m = static_cast<Eigen::Index>(a.signature.size());
+  if (m != a.identity.cols()) return infinite_distance;
+  double least = infinite_distance;
+  for (Eigen::Index turn = 0; turn < m; ++turn) {  // a signature may repeat itself within a period
+    double largest = 0.0;
+    for (Eigen::Index s = 0; s < m && largest < least; ++s) {
+      const Eigen::Index t = (s + turn) % m;
+      if (a.signature[static_cast<std::size_t>(s)] != b.signature[static_cast<std::size_t>(t)]) {
+        largest = infinite_distance;
+        break;
+      }
+      const double d = ((a.identity.col(s) - b.identity.col(t)).array() / scale.array()).abs().maxCoeff();
+      largest = std::max(largest, d);
+    }
+    least = std::min(least, largest);
+  }
+  return least;
+}
+
+double cloud_distance(const AttractorSample& a, const AttractorSample& b) {
+  if (a.identity.cols() == 0 || b.identity.cols() == 0) return infinite_distance;
+  const VectorXd difference = a.identity.rowwise().mean() - b.identity.rowwise().mean();
+  return (difference.array() / scale_of(a, b).array()).abs().maxCoeff();
+}
+
+double rest_distance(const AttractorSample& a, const AttractorSample& b) {
+  if (a.last.x.size() == 0 || b.last.x.size() == 0) return infinite_distance;
+  return (a.last.x - b.last.x).norm() / (1.0 + std::max(a.last.x.norm(), b.last.x.norm()));
+}
+
+std::string mode_text(const std::vector<IndexVector>& watched) {
+  std::string text;
+  for (const IndexVector& v : watched)
+    text += fmt::format("{}{},{},{}", text.empty() ? "" : ";", v.field, v.event, v.jump);
+  return text;
+}
+
+/// Gives numbers; keeps the table of the heading.
+class Numberer {
+ public:
+  Numberer(const std::vector<SampleRecord>& records, const std::vector<AttractorSample>& known)
+      : records_(records), known_(known) {
+    numbers_.of_record.assign(records.size(), 0);
+  }
+
+  const AttractorSample& sample(std::size_t r) const {
+    const AttractorSample& own = records_[r].sample;
+    return own.known > 0 ? known_[static_cast<std::size_t>(own.known) - 1] : own;
+  }
+
+  int new_number(std::size_t r) {
+    const AttractorSample& from = sample(r);
+    SweepAttractor attractor;
+    attractor.number = static_cast<int>(numbers_.attractors.size()) + 1;
+    attractor.kind = from.kind;
+    if (repeats(from)) attractor.signature = to_string(from.signature);
+    attractor.impacts = from.impacts;
+    attractor.period = from.period;
+    attractor.index = records_[r].index;
+    attractor.mode = mode_text(from.last.watched);
+    attractor.state = from.last.x;
+    numbers_.attractors.push_back(std::move(attractor));
+    return numbers_.attractors.back().number;
+  }
+
+  /// Records of one parameter value: the attractors there that differ, each with its records.
+  struct Group {
+    std::size_t first = 0;
+    std::vector<std::size_t> records;
+    int number = 0;
+  };
+  std::vector<Group> groups(const std::vector<std::size_t>& records) const {
+    std::vector<Group> groups;
+    std::map<int, std::size_t> of_known;
+    for (const std::size_t r : records) {
+      if (!is_attractor(sample(r).kind)) continue;
+      const int known = records_[r].sample.known;
+      std::size_t g = groups.size();
+      if (const auto at = of_known.find(known); known > 0 && at != of_known.end()) {
+        g = at->second;
+      } else {
+        for (std::size_t k = groups.size() - std::min(groups.size(), most_compared); k < groups.size(); ++k)
+          if (is_same_attractor(sample(groups[k].first), sample(r))) {
+            g = k;
+            break;
+          }
+        if (known > 0) of_known[known] = g;
+      }
+      if (g == groups.size()) groups.push_back({r, {}, 0});
+      groups[g].records.push_back(r);
+    }
+    return groups;
+  }
+
+  /// Numbers of the neighbours' attractors, nearest pairs first; new ones for the rest.
+  void go_on(const std::vector<Group>& before, std::vector<Group>& groups) {
+    std::vector<std::tuple<double, std::size_t, std::size_t>> pairs;
+    for (std::size_t g = 0; g < groups.size(); ++g)
+      for (std::size_t b = 0; b < before.size(); ++b) {
+        const AttractorSample& there = sample(before[b].first);
+        const double d = attractor_distance(there, sample(groups[g].first));
+        if (d <= (repeats(there) ? to_neighbour : same_cloud)) pairs.emplace_back(d, g, b);
+      }
+    std::sort(pairs.begin(), pairs.end());
+    std::vector<bool> taken(before.size(), false);
+    for (const auto& [d, g, b] : pairs) {
+      if (groups[g].number > 0 || taken[b]) continue;
+      groups[g].number = before[b].number;
+      taken[b] = true;
+    }
+    for (Group& group : groups) {
+      if (group.number == 0) group.number = new_number(group.first);
+      for (const std::size_t r : group.records) numbers_.of_record[r] = group.number;
+    }
+  }
+
+  void by_signature() {
+    std::map<std::pair<AttractorKind, Signature>, int> numbers;
+    for (std::size_t r = 0; r < records_.size(); ++r) {
+      const AttractorSample& at = sample(r);
+      if (!is_attractor(at.kind)) continue;
+      int& number = numbers[{at.kind, at.signature}];
+      if (number == 0) number = new_number(r);
+      numbers_.of_record[r] = number;
+    }
+  }
+
+  AttractorNumbers take() { return std::move(numbers_); }
+
+ private:
+  const std::vector<SampleRecord>& records_;
+  const std::vector<AttractorSample>& known_;
+  AttractorNumbers numbers_;
+};
+
+/// The record's position along the one swept parameter; 0 when only initial states are swept.
+std::size_t parameter_position(const SweepGrid& grid, std::size_t index) {
+  std::size_t rest = index;
+  for (const SweptQuantity& quantity : grid.over()) {
+    const auto count = static_cast<std::size_t>(quantity.count);
+    if (!quantity.is_state) return rest % count;
+    rest /= count;
+  }
+  return 0;
+}
+
+}  // namespace
+
+bool is_attractor(AttractorKind kind) {
+  return kind == AttractorKind::periodic || kind == AttractorKind::quasi_periodic || kind == AttractorKind::chaotic ||
+         kind == AttractorKind::rest;
+}
+
+double attractor_distance(const AttractorSample& a, const AttractorSample& b) {
+  if (a.kind != b.kind) return infinite_distance;
+  if (repeats(a)) return orbit_distance(a, b);
+  if (a.kind == AttractorKind::rest) return rest_distance(a, b);
+  return cloud_distance(a, b);
+}
+
+bool is_same_attractor(const AttractorSample& a, const AttractorSample& b) {
+  const bool is_point = repeats(a) || a.kind == AttractorKind::rest;
+  return attractor_distance(a, b) <= (is_point ? same_orbit : same_cloud);
+}
+
+std::vector<AttractorSample> distinct_attractors(const std::vector<SampleRecord>& records) {
+  std::vector<AttractorSample> distinct;
+  for (const SampleRecord& record : records) {
+    const bool is_new = std::none_of(distinct.begin(), distinct.end(), [&](const AttractorSample& other) {
+      return is_same_attractor(other, record.sample);
+    });
+    if (is_attractor(record.sample.kind) && is_new) distinct.push_back(record.sample);
+  }
+  return distinct;
+}
+
+AttractorNumbers number_attractors(const std::vector<SampleRecord>& records, const std::vector<AttractorSample>& known,
+                                   const SweepGrid& grid) {
+  Numberer numberer(records, known);
+  const auto parameters = std::count_if(grid.over().begin(), grid.over().end(),
+                                        [](const SweptQuantity& quantity) { return !quantity.is_state; });
+  if (parameters == 2) {
+    numberer.by_signature();
+    return numberer.take();
+  }
+  std::map<std::size_t, std::vector<std::size_t>> values;
+  for (std::size_t r = 0; r < records.size(); ++r) values[parameter_position(grid, records[r].index)].push_back(r);
+  std::vector<Numberer::Group> before;
+  for (const auto& [position, at] : values) {
+    std::vector<Numberer::Group> groups = numberer.groups(at);
+    numberer.go_on(before, groups);
+    before = std::move(groups);
+  }
+  return numberer.take();
+}
+
+}  // namespace tchat

@@ -1,0 +1,501 @@
+#include "sweep/simulation_sampler.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <limits>
+#include <utility>
+
+#include "attractor/attractor_recognition.hpp"
+#include "attractor/lyapunov_exponents.hpp"
+#include "hybrid/event_at.hpp"
+#include "hybrid/identity_jump.hpp"
+#include "simulate/loaded_problem.hpp"
+#include "simulate/simulation_rule.hpp"
+#include "simulation/chattering.hpp"
+#include "simulation/decay.hpp"
+#include "simulation/recurrence.hpp"
+#include "simulation/watched_flow.hpp"
+#include "text/user_error.hpp"
+
+namespace tchat {
+
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double never = 1e300;
+constexpr double not_there = std::numeric_limits<double>::quiet_NaN();
+constexpr double far_away = 1e6;               // a state of this size has escaped
+constexpr double nearly_same = 1e-2;           // parts of a period that may become the same, relative to the range
+constexpr long doubt_window = 32;               // events in which it is seen whether they do
+constexpr double every_minimum = 1e300;        // as a share of the largest value: all contacts are noted
+constexpr std::size_t samples_following = 12;  // of a segment, among which the hand-over is chosen
+constexpr std::size_t points_for_ignorable = 6;
+constexpr long first_decision = 64;  // events after which exponents may tell the kind of a motion
+constexpr long last_decision = 4096;
+constexpr long events_of_exponents = 128;     // of an attractor whose kind is known
+constexpr std::size_t identity_points = 400;  // of a motion that does not repeat itself
+
+/// A recorded state.
+struct Dot {
+  double time = 0.0;
+  int event = 0;
+  VectorXd state;
+};
+
+/// Collects columns of states.
+MatrixXd columns_of(const std::vector<Dot>& dots, Eigen::Index n) {
+  MatrixXd states(n, static_cast<Eigen::Index>(dots.size()));
+  for (std::size_t k = 0; k < dots.size(); ++k) states.col(static_cast<Eigen::Index>(k)) = dots[k].state;
+  return states;
+}
+
+/// One value: simulates and gathers.
+class SampleRun {
+ public:
+  SampleRun(const SamplerSetup& setup, const HybridSystem& system, const SweepPoint& point,
+            const std::function<bool()>& interrupted)
+      : setup_(setup),
+        system_(system),
+        point_(point),
+        interrupted_(interrupted),
+        recurrence_(setup.request.plan.max_period, setup.request.plan.recognition),
+        capture_(setup.known) {
+    par_ = setup.par;
+    VectorXd start = setup.starts[static_cast<std::size_t>(point.start) - 1];
+    for (std::size_t q = 0; q < setup.over.size(); ++q) {
+      VectorXd& changed = setup.over[q].quantity.is_state ? start : par_;
+      changed(setup.over[q].position - 1) = point.values(static_cast<Eigen::Index>(q));
+    }
+    start_ = point.at ? point.at->x : start;
+  }
+
+  AttractorSample run() {
+    SimulationRequest request = setup_.request;
+    if (point_.at && !point_.at->watched.empty()) request.modes = mode_option(point_.at->watched);
+    SimulationSettings with_exponents = settings();
+    LyapunovAccumulator exponents(system_, par_, lyapunov_settings(with_exponents.flow));
+    exponents.attach(with_exponents);
+    HybridSimulation simulation(simulation_rule(request, setup_.constants, system_, start_, par_), start_, par_,
+                                with_exponents);
+    settle(simulation);
+    if (sample_.known > 0) return std::move(sample_);
+    if (is_open_) tell_kind(simulation, exponents);
+    if (sample_.kind == AttractorKind::periodic && setup_.recording.exponents > 0) {
+      const auto turns = 1 + events_of_exponents / static_cast<long>(kept_.size());
+      go_on(simulation, exponents, turns * static_cast<long>(kept_.size()));
+      keep_exponents(exponents.spectrum());
+    }
+    finish();
+    return std::move(sample_);
+  }
+
+ private:
+  static std::string mode_option(const std::vector<IndexVector>& watched) {
+    std::string text;
+    for (const IndexVector& v : watched)
+      text += fmt::format("{}{},{},{}", text.empty() ? "" : ";", v.field, v.event, v.jump);
+    return text;
+  }
+
+  SimulationSettings plain_settings() const {
+    SimulationSettings settings = simulation_settings(setup_.request, interrupted_);
+    if (!setup_.request.stiff) settings.flow.method = IntegrationMethod::runge_kutta;
+    return settings;
+  }
+
+  SimulationSettings settings() const {
+    SimulationSettings settings = plain_settings();
+    settings.samples = setup_.follows ? samples_following : 0;
+    const Recording& recording = setup_.recording;
+    if (recording.states == Recording::States::section) settings.sections.push_back(recording.section);
+    if (recording.penetration > 0) {
+      settings.sections.push_back(recording.penetration);
+      settings.contact = every_minimum;
+    }
+    return settings;
+  }
+
+  LyapunovSettings lyapunov_settings(const FlowOptions& flow) const {
+    LyapunovSettings settings;
+    settings.exponents = std::min(system_.dimension(), std::max(2, setup_.recording.exponents));
+    settings.flow = flow;
+    return settings;
+  }
+
+  /// Carries the frame of the exponents on over so many events. False when the motion ends.
+  bool go_on(HybridSimulation& simulation, LyapunovAccumulator& exponents, long events) {
+    exponents.begin();
+    for (long done = 0; done < events; ++done) {
+      const SimulatedSegment segment = simulation.next(never);
+      if (segment.ended_by == SegmentEnd::interrupted) throw SampleInterrupted();
+      exponents.pass(segment);
+      if (segment.ended_by != SegmentEnd::event) return false;
+    }
+    return true;
+  }
+
+  /// Of a motion that does not repeat itself: goes on until the exponents tell.
+  void tell_kind(HybridSimulation& simulation, LyapunovAccumulator& exponents) {
+    exponents.begin();
+    long done = 0;
+    for (long decision = first_decision; decision <= last_decision; decision *= 2) {
+      for (; done < decision; ++done) {
+        const SimulatedSegment segment = simulation.next(never);
+        if (segment.ended_by == SegmentEnd::interrupted) throw SampleInterrupted();
+        exponents.pass(segment);
+        if (segment.ended_by != SegmentEnd::event) {
+          sample_.message = "it has ended while its exponents were computed: " + segment.message;
+          return;
+        }
+      }
+      const LyapunovSpectrum spectrum = exponents.spectrum();
+      const AttractorKind kind = kind_by_exponents(spectrum);
+      if (kind != AttractorKind::chaotic && kind != AttractorKind::quasi_periodic && decision < last_decision) continue;
+      keep_exponents(spectrum);
+      const bool tells = kind == AttractorKind::chaotic || kind == AttractorKind::quasi_periodic;
+      sample_.kind = tells ? kind : AttractorKind::none;
+      if (!tells)
+        sample_.message = fmt::format(
+            "no repetition after 1 to {} events, and the exponents do not tell; a longer --transient-events or a "
+            "larger "
+            "--max-period may",
+            setup_.request.plan.max_period);
+      return;
+    }
+  }
+
+  void keep_exponents(const LyapunovSpectrum& spectrum) {
+    const Eigen::Index count = std::min<Eigen::Index>(setup_.recording.exponents, spectrum.exponents.size());
+    sample_.exponents = spectrum.exponents.head(count);
+    sample_.errors = spectrum.errors.head(count);
+  }
+
+  /// Up to the attractor, and so many events of it as are wanted where it does not repeat itself.
+  void settle(HybridSimulation& simulation) {
+    const SimulationPlan& plan = setup_.request.plan;
+    const long wanted = plan.time ? std::numeric_limits<long>::max() : plan.events.value_or(100);
+    std::optional<double> recording_since;
+    while (true) {
+      const bool is_transient = events_ < plan.transient_events || simulation.time() < plan.transient_time;
+      if (!is_transient && !recording_since) {
+        recording_since = simulation.time();
+        kept_.clear();
+      }
+      if (recording_since && (static_cast<long>(kept_.size()) >= wanted ||
+                              (plan.time && simulation.time() >= *recording_since + *plan.time))) {
+        is_open_ = true;
+        return;
+      }
+      SimulatedSegment segment = simulation.next(never);
+      if (segment.ended_by != SegmentEnd::event) return end_without_event(segment);
+      ++events_;
+      if (const std::optional<AttractorKind> kind = look(segment)) {
+        sample_.kind = *kind;
+        return;
+      }
+      if (sample_.known > 0) return;
+    }
+  }
+
+  /// What the motion has settled on with this segment, if it has.
+  std::optional<AttractorKind> look(const SimulatedSegment& segment) {
+    if (points_.size() < points_for_ignorable) find_ignorable(segment);
+    recurrence_.add(segment);
+    chattering_.add(segment.index, segment.duration);
+    decay_.add(segment.index, segment.event_velocity);
+    keep(segment);
+    if (!setup_.known.empty()) sample_.known = capture_.look(segment.index, segment.after);
+    if (const std::optional<int> period = recurrence_.period(); period && is_least_period(*period)) {
+      kept_.erase(kept_.begin(), kept_.end() - *period);
+      return AttractorKind::periodic;
+    }
+    if (chattering_.accumulation()) {
+      sample_.message = fmt::format("events accumulate at t = {:.6g}", segment.end_time());
+      return AttractorKind::chattering;
+    }
+    if (decay_.dies_out()) return AttractorKind::rest;
+    if (!(segment.after.cwiseAbs().maxCoeff() < far_away)) {
+      sample_.message = fmt::format("a state is larger than {:g} at t = {:.6g}", far_away, segment.end_time());
+      return AttractorKind::escape;
+    }
+    return std::nullopt;
+  }
+
+  /// Near an orbit with a multiplier close to -1 the motion comes back best after two turns: while what is left between
+  /// one turn and the next still shrinks, the period is not known.
+  bool is_least_period(int period) {
+    const double left = least_part_left(period);
+    if (left > nearly_same) return true;
+    left_in_window_ = std::max(left_in_window_, left);
+    if (++asked_ % doubt_window != 0) return false;
+    const bool shrinks = !left_before_ || left_in_window_ < 0.9 * *left_before_;
+    left_before_ = std::exchange(left_in_window_, 0.0);
+    return !shrinks;
+  }
+
+  /// The least difference, relative to the range, of the period's states from those a proper part of it before.
+  double least_part_left(int period) const {
+    const auto p = static_cast<std::size_t>(period);
+    double least = never;
+    for (std::size_t q = 1; q < p; ++q) {
+      if (p % q != 0 || kept_.size() < p) continue;
+      double largest = 0.0;
+      VectorXd low = kept_.back().low, high = kept_.back().high;
+      for (std::size_t i = 0; i < p; ++i) {
+        low = low.cwiseMin(kept_[kept_.size() - 1 - i].low);
+        high = high.cwiseMax(kept_[kept_.size() - 1 - i].high);
+      }
+      const VectorXd range = (high - low).array() + 1e-3 * (high - low).maxCoeff();
+      for (std::size_t i = 0; i < p; ++i) {
+        const SimulatedSegment& a = kept_[kept_.size() - 1 - i];
+        const SimulatedSegment& b = kept_[kept_.size() - 1 - (i + q) % p];
+        const double d = ((a.after - b.after).array() / range.array()).abs().maxCoeff();
+        largest = std::max(largest, a.index == b.index ? d : never);
+      }
+      least = std::min(least, largest);
+    }
+    return least;
+  }
+
+  /// Segments of which dots are made: of the transient only what may turn out to be a period.
+  void keep(const SimulatedSegment& segment) {
+    kept_.push_back(segment);
+    const bool is_transient =
+        events_ <= setup_.request.plan.transient_events || segment.start_time < setup_.request.plan.transient_time;
+    const auto most = static_cast<std::size_t>(setup_.request.plan.max_period);
+    while (is_transient && kept_.size() > most) kept_.pop_front();
+  }
+
+  void find_ignorable(const SimulatedSegment& segment) {
+    points_.push_back(segment.start);
+    points_.push_back(segment.end);
+    recurrence_.ignore(ignorable_states(system_, points_, par_));
+  }
+
+  void end_without_event(const SimulatedSegment& segment) {
+    if (segment.ended_by == SegmentEnd::interrupted) throw SampleInterrupted();
+    sample_.message = segment.message;
+    kept_.clear();
+    kept_.push_back(segment);
+    const VectorXd& x = segment.end;
+    const bool is_far = !(x.cwiseAbs().maxCoeff() < far_away);
+    if (segment.ended_by == SegmentEnd::sticks) {
+      sample_.kind = AttractorKind::chattering;
+    } else if (is_far) {
+      sample_.kind = AttractorKind::escape;
+    } else if (segment.ended_by == SegmentEnd::no_event) {
+      sample_.kind = rests(segment) ? AttractorKind::rest : AttractorKind::escape;
+    }
+  }
+
+  /// Has the flow come to an equilibrium?
+  bool rests(const SimulatedSegment& segment) const {
+    VectorXd f(segment.end.size());
+    system_.value(FunctionKind::field, segment.mode.field(), segment.end.data(), par_.data(), f.data());
+    return f.norm() * segment.duration <= 1e-3 * (1.0 + segment.end.norm());
+  }
+
+  void finish() {
+    sample_.period = not_there;
+    sample_.penetration = not_there;
+    sample_.impacts = -1;
+    if (kept_.empty()) return;
+    rotate_to_smallest();
+    measure_range();
+    if (sample_.kind == AttractorKind::periodic) describe_period();
+    describe_states();
+    choose_hand_over();
+  }
+
+  /// The turn begins where its sequence of index vectors is least; among equal ones where the state is.
+  void rotate_to_smallest() {
+    if (sample_.kind != AttractorKind::periodic) return;
+    const auto m = kept_.size();
+    const auto is_less = [&](std::size_t a, std::size_t b) {
+      for (std::size_t s = 0; s < m; ++s) {
+        const IndexVector& u = kept_[(a + s) % m].index;
+        const IndexVector& v = kept_[(b + s) % m].index;
+        if (u != v) return u < v;
+      }
+      const VectorXd& x = kept_[a].after;
+      const VectorXd& y = kept_[b].after;
+      return std::lexicographical_compare(x.begin(), x.end(), y.begin(), y.end());
+    };
+    std::size_t least = 0;
+    for (std::size_t s = 1; s < m; ++s)
+      if (is_less(s, least)) least = s;
+    std::rotate(kept_.begin(), kept_.begin() + static_cast<std::ptrdiff_t>(least), kept_.end());
+  }
+
+  void measure_range() {
+    VectorXd low = kept_.front().low;
+    VectorXd high = kept_.front().high;
+    for (const SimulatedSegment& segment : kept_) {
+      low = low.cwiseMin(segment.low);
+      high = high.cwiseMax(segment.high);
+    }
+    sample_.range = high - low;
+  }
+
+  void describe_period() {
+    sample_.period = 0.0;
+    sample_.impacts = 0;
+    for (const SimulatedSegment& segment : kept_) {
+      sample_.signature.push_back(segment.index);
+      sample_.period += segment.duration;
+      if (!is_identity_jump(system_, segment.index.jump)) ++sample_.impacts;
+    }
+  }
+
+  void describe_states() {
+    const Eigen::Index n = system_.dimension();
+    std::vector<Dot> ends;
+    for (const SimulatedSegment& segment : kept_)
+      if (segment.ended_by == SegmentEnd::event && ends.size() < identity_points)
+        ends.push_back({segment.end_time(), segment.index.event, segment.after});
+    sample_.identity = columns_of(ends, n);
+    std::vector<Dot> dots, contacts;
+    for (const SimulatedSegment& segment : kept_) {
+      add_dots(segment, dots);
+      if (setup_.recording.penetration > 0) add_contacts(segment, contacts);
+    }
+    if (setup_.recording.penetration > 0) describe_contacts(contacts);
+    if (setup_.recording.states == Recording::States::contact) dots = std::move(contacts);
+    if (setup_.recording.states == Recording::States::none) return;
+    sample_.sections = columns_of(dots, n);
+    if (setup_.recording.states == Recording::States::all_events)
+      for (const Dot& dot : dots) sample_.section_events.push_back(dot.event);
+  }
+
+  void add_dots(const SimulatedSegment& segment, std::vector<Dot>& dots) const {
+    const Recording& recording = setup_.recording;
+    if (recording.states == Recording::States::section)
+      for (const SegmentMark& mark : segment.marks)
+        if (mark.event == recording.section &&
+            (mark.kind == SegmentMark::Kind::section || mark.kind == SegmentMark::Kind::violation))
+          dots.push_back({mark.time, mark.event, mark.state});
+    if (segment.ended_by != SegmentEnd::event) return;
+    const bool ends_in_it = segment.index.event == recording.section ||
+                            std::any_of(segment.simultaneous.begin(), segment.simultaneous.end(),
+                                        [&](const IndexVector& other) { return other.event == recording.section; });
+    if (recording.states == Recording::States::all_events ||
+        (recording.states == Recording::States::section && ends_in_it))
+      dots.push_back({segment.end_time(), segment.index.event, segment.end});
+  }
+
+  /// Least values of h on the smooth flow: those above zero have been seen on the way; where it fell through zero the
+  /// flow is followed on to the least one.
+  void add_contacts(const SimulatedSegment& segment, std::vector<Dot>& contacts) const {
+    const int event = setup_.recording.penetration;
+    for (const SegmentMark& mark : segment.marks) {
+      if (mark.event != event) continue;
+      if (mark.kind == SegmentMark::Kind::contact)
+        contacts.push_back({mark.time, event, mark.state});
+      else if (mark.kind != SegmentMark::Kind::beyond)
+        add_least(segment.mode.field(), mark.state, mark.time, contacts);
+    }
+    if (segment.ended_by == SegmentEnd::event && segment.index.event == event)
+      add_least(segment.mode.field(), segment.end, segment.end_time(), contacts);
+  }
+
+  void add_least(int field, const VectorXd& from, double time, std::vector<Dot>& contacts) const {
+    const int event = setup_.recording.penetration;
+    const auto rate = [&](const VectorXd& x) { return event_at(system_, event, field, x.data(), par_.data()).rate(); };
+    if (rate(from) >= 0.0) {
+      contacts.push_back({time, event, from});
+      return;
+    }
+    const SimulationSettings settings = plain_settings();
+    const std::unique_ptr<WatchedFlow> flow = make_flow(system_, field, from, par_, settings.flow);
+    VectorXd least;
+    flow->on_piece([&](double a, double b) {
+      if (rate(flow->state_at(b)) < 0.0) return true;
+      for (int halving = 0; halving < 60 && a < b; ++halving) {
+        const double middle = 0.5 * (a + b);
+        (rate(flow->state_at(middle)) < 0.0 ? a : b) = middle;
+      }
+      least = flow->state_at(b);
+      return false;
+    });
+    flow->advance(settings.flow.max_duration);
+    if (least.size() > 0) contacts.push_back({time, event, least});
+  }
+
+  void describe_contacts(const std::vector<Dot>& contacts) {
+    VectorXd penetrations(static_cast<Eigen::Index>(contacts.size()));
+    for (std::size_t k = 0; k < contacts.size(); ++k)
+      penetrations(static_cast<Eigen::Index>(k)) =
+          -system_.event(setup_.recording.penetration, contacts[k].state.data(), par_.data());
+    if (penetrations.size() > 0) sample_.penetration = penetrations.maxCoeff();
+    if (setup_.recording.states == Recording::States::contact) sample_.section_penetrations = penetrations;
+  }
+
+  /// Where a neighbouring value goes on: far from all walls, which may be elsewhere there. Otherwise after the last
+  /// event.
+  void choose_hand_over() {
+    const SimulatedSegment& last = kept_.back();
+    if (last.ended_by != SegmentEnd::event) {
+      sample_.last = {last.end, last.mode.index_vectors};
+      return;
+    }
+    if (sample_.kind == AttractorKind::periodic || !setup_.follows) {
+      const SimulatedSegment& first = kept_.front();
+      sample_.last = {last.after,
+                      sample_.kind == AttractorKind::periodic ? first.mode.index_vectors : std::vector<IndexVector>{}};
+    }
+    if (!setup_.follows) return;
+    double widest = -never;
+    const auto most = static_cast<std::size_t>(setup_.request.plan.max_period);
+    for (std::size_t s = kept_.size() - std::min(kept_.size(), most); s < kept_.size(); ++s)
+      for (const Sample& at : kept_[s].samples) {
+        const double room = distance_to_walls(kept_[s].mode, at.state);
+        if (room <= widest) continue;
+        widest = room;
+        sample_.last = {at.state, kept_[s].mode.index_vectors};
+      }
+  }
+
+  /// What is watched after a segment, where the problem says it.
+  std::vector<IndexVector> following(const SimulatedSegment& last) const {
+    if (setup_.request.signature || setup_.request.follow_signature) return {};
+    return system_.successors(last.index, last.end.data(), par_.data()).value_or(std::vector<IndexVector>{});
+  }
+
+  double distance_to_walls(const Mode& mode, const VectorXd& x) const {
+    double least = never;
+    for (const IndexVector& v : mode.index_vectors)
+      if (!is_identity_jump(system_, v.jump)) least = std::min(least, system_.event(v.event, x.data(), par_.data()));
+    return least;
+  }
+
+  const SamplerSetup& setup_;
+  const HybridSystem& system_;
+  const SweepPoint& point_;
+  const std::function<bool()>& interrupted_;
+  VectorXd par_, start_;
+  Recurrence recurrence_;
+  ChatteringDetector chattering_;
+  DecayDetector decay_;
+  Capture capture_;
+  long events_ = 0;
+  double left_in_window_ = 0.0;        // between one part of a period and the next: largest in the last questions
+  std::optional<double> left_before_;  // in the questions before those
+  long asked_ = 0;
+  bool is_open_ = false;  // it has been simulated as long as wanted, and has not repeated itself
+  std::deque<SimulatedSegment> kept_;
+  std::vector<VectorXd> points_;
+  AttractorSample sample_;
+};
+
+}  // namespace
+
+AttractorSample SimulationSampler::operator()(const SweepPoint& point, const std::function<bool()>& interrupted) const {
+  return SampleRun(setup_, system_, point, interrupted).run();
+}
+
+}  // namespace tchat

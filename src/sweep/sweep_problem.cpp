@@ -1,0 +1,218 @@
+#include "sweep/sweep_problem.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <atomic>
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "plugin/build_stamp.hpp"
+#include "simulate/loaded_problem.hpp"
+#include "simulate/simulation_start.hpp"
+#include "sweep/attractor_numbering.hpp"
+#include "sweep/simulation_sampler.hpp"
+#include "sweep/sweep_job.hpp"
+#include "sweep/sweep_setup.hpp"
+#include "text/number.hpp"
+#include "text/text_file.hpp"
+#include "text/user_error.hpp"
+
+namespace tchat {
+
+namespace {
+
+using Eigen::VectorXd;
+
+constexpr std::size_t fewest_for_capture = 400;  // values; below that looking for attractors first costs more
+constexpr std::size_t share_of_first = 50;       // one value in so many
+constexpr std::size_t most_first = 200;
+
+/// An event function by its number or its name.
+int event_index(const HybridSystem& system, const std::string& text, const char* option) {
+  const int count = system.count(FunctionKind::event);
+  std::string list;
+  for (int j = 1; j <= count; ++j) {
+    const std::string name = system.function_name(FunctionKind::event, j);
+    if (text == name || parse_integer(text) == j) return j;
+    list += fmt::format("{}{} ({})", j > 1 ? ", " : "", j, name);
+  }
+  throw UserError(fmt::format("{} {}: {} has no such event function; it has {}", option, text, system.name(), list));
+}
+
+Recording read_recording(const SweepRequest& request, const HybridSystem& system,
+                         const std::vector<SweepTarget>& over) {
+  Recording recording;
+  if (request.penetration) recording.penetration = event_index(system, *request.penetration, "--penetration");
+  const bool is_diagram = over.size() == 1 && !over.front().quantity.is_state;
+  if (!request.section) {
+    if (is_diagram)
+      recording.states = recording.penetration > 0 ? Recording::States::contact : Recording::States::all_events;
+  } else if (*request.section == "all") {
+    recording.states = Recording::States::all_events;
+  } else if (*request.section != "none") {
+    recording.states = Recording::States::section;
+    recording.section = event_index(system, *request.section, "--section");
+  }
+  if (request.exponents) {
+    const int n = system.dimension();
+    if (*request.exponents > n)
+      throw UserError(fmt::format("--lyapunov {}: {} has {} states, and so many exponents; give 1 to {}",
+                                  *request.exponents, system.name(), n, n));
+    recording.exponents = *request.exponents > 0 ? *request.exponents : n;
+  }
+  return recording;
+}
+
+/// States, each with the directions from it.
+void add_starts(const SweepRequest& request, const LoadedProblem& loaded, SamplerSetup& setup, SweepJob& job) {
+  const HybridSystem& system = loaded.library->system();
+  std::vector<std::optional<std::string>> states(request.states.begin(), request.states.end());
+  if (states.empty()) states.emplace_back();
+  for (const std::optional<std::string>& state : states) {
+    SimulationRequest own = setup.request;
+    own.state = state;
+    const SimulationStart start = simulation_start(own, setup.constants, system);
+    setup.par = start.par;
+    for (const Following direction : follow_directions(request.follow)) {
+      setup.starts.push_back(start.state);
+      job.following.push_back(direction);
+      std::string text = fmt::format("x = ({})", fmt::join(start.state.begin(), start.state.end(), ", "));
+      if (direction != Following::none)
+        text = fmt::format("{} from {}", direction == Following::up ? "up" : "down", text);
+      job.heading.starts.push_back(std::move(text));
+    }
+  }
+}
+
+void choose_columns(const HybridSystem& system, const Recording& recording, SweepColumns& columns) {
+  columns.event = recording.states == Recording::States::all_events;
+  columns.penetration = recording.penetration > 0;
+  columns.exponents = recording.exponents;
+  if (recording.states == Recording::States::none) return;
+  for (int k = 1; k <= system.dimension(); ++k) columns.states.push_back(system.state_name(k));
+}
+
+std::string recorded_text(const Recording& recording) {
+  switch (recording.states) {
+    case Recording::States::all_events:
+      return "at all events";
+    case Recording::States::section:
+      return fmt::format("at event function {}", recording.section);
+    case Recording::States::contact:
+      return fmt::format("where event function {} is least", recording.penetration);
+    default:
+      return "none";
+  }
+}
+
+SweepIdentity identity_of(const LoadedProblem& loaded, const SamplerSetup& setup, const SweepJob& job, bool captures) {
+  const SimulationRequest& r = setup.request;
+  const SimulationPlan& plan = r.plan;
+  SweepIdentity identity;
+  const auto add = [&](const char* key, std::string value) { identity.emplace_back(key, std::move(value)); };
+  add("problem", loaded.library->system().name());
+  add("plugin", plugin_identity(loaded.plugin));
+  for (const SweepTarget& target : setup.over) {
+    const SweptQuantity& q = target.quantity;
+    add("over", fmt::format("{}={}:{}:{}", q.column(), q.from, q.to, q.count));
+  }
+  for (const auto& [name, value] : job.heading.parameters) add("parameter", fmt::format("{} = {}", name, value));
+  for (const std::string& start : job.heading.starts) add("start", start);
+  std::string rule = r.modes.value_or("");
+  const bool by_signature = r.signature || r.follow_signature || !loaded.library->system().has_successors();
+  if (by_signature && setup.constants.has_signature) rule += " " + to_string(setup.constants.settings.signature());
+  add("modes", rule.empty() ? "of the problem" : rule);
+  add("tolerance", fmt::format("{}", r.tolerance));
+  add("method", r.stiff ? "stiff" : "explicit");
+  add("wait", fmt::format("{}", r.wait));
+  add("transient", fmt::format("{} events, time {}", plan.transient_events, plan.transient_time));
+  add("length", plan.time ? fmt::format("time {}", *plan.time) : fmt::format("{} events", plan.events.value_or(0)));
+  add("period", fmt::format("at most {} events, recognised to {}", plan.max_period, plan.recognition));
+  add("states", recorded_text(setup.recording));
+  add("penetration", fmt::format("{}", setup.recording.penetration));
+  add("exponents", fmt::format("{}", setup.recording.exponents));
+  add("capture", captures ? "yes" : "no");
+  return identity;
+}
+
+/// Regions of the attractors that the first values have found. Who comes to which is decided by the sampler itself.
+std::vector<CaptureRegion> capture_regions(const SamplerSetup& setup, const HybridSystem& system,
+                                           const std::vector<AttractorSample>& known,
+                                           const std::function<bool()>& interrupted) {
+  SamplerSetup plain = setup;
+  plain.known.clear();
+  plain.over.clear();
+  plain.recording = {};
+  const SimulationSampler sampler(plain, system);
+  std::vector<CaptureRegion> regions;
+  for (const AttractorSample& sample : known)
+    regions.push_back(capture_region(system, sample, setup.par, [&](const MotionState& at) {
+      return is_same_attractor(sample, sampler({0, {}, 1, at}, interrupted));
+    }));
+  return regions;
+}
+
+}  // namespace
+
+int sweep_problem(const SweepRequest& request, std::ostream& screen, std::ostream& warnings,
+                  const std::function<bool()>& interrupted, std::ostream* progress) {
+  SweepTask task = sweep_task(request);
+  follow_directions(request.follow);
+  const LoadedProblem loaded = load_for_simulation(request.simulation, progress);
+  const HybridSystem& system = loaded.library->system();
+  limit_workers(loaded, task, warnings);
+
+  SamplerSetup setup;
+  setup.request = request.simulation;
+  setup.constants = loaded.constants;
+  setup.over = parse_overs(system, request.over);
+  setup.follows = !request.follow.empty();
+  if (setup.follows && setup.over.front().quantity.is_state)
+    throw UserError(
+        fmt::format("--follow {}: attractors are followed along a parameter, and {} is an initial state; "
+                    "give a parameter as the first --over, or leave --follow out",
+                    request.follow, setup.over.front().quantity.name));
+  setup.recording = read_recording(request, system, setup.over);
+  SweepJob job;
+  add_starts(request, loaded, setup, job);
+  fill_heading(system, setup.over, setup.par, job);
+  choose_columns(system, setup.recording, job.columns);
+
+  const std::size_t values = SweepGrid(job.heading.over).size();
+  const bool is_basin = std::all_of(setup.over.begin(), setup.over.end(),
+                                    [](const SweepTarget& target) { return target.quantity.is_state; });
+  const bool captures = is_basin && values >= fewest_for_capture && !request.to_the_end;
+  if (captures) job.first_values = std::min(most_first, values / share_of_first);
+  job.identity = identity_of(loaded, setup, job, captures);
+
+  const WorkerSystems workers(loaded, setup.request, task.gather ? 1 : task.workers);
+  std::vector<SimulationSampler> samplers;
+  for (int worker = 0; worker < task.workers && !task.gather; ++worker)
+    samplers.emplace_back(setup, workers.system(worker));
+  // The signal is asked for by the calling thread alone; workers look at what it has seen.
+  const auto is_stopped = std::make_shared<std::atomic<bool>>(false);
+  const auto ask = [&interrupted, is_stopped] {
+    if (interrupted()) *is_stopped = true;
+    return is_stopped->load();
+  };
+  const std::function<bool()> look = [is_stopped] { return is_stopped->load(std::memory_order_relaxed); };
+  job.maker = [&](int worker) -> SampleFunction {
+    return [&samplers, &look, worker](const SweepPoint& point) {
+      return samplers[static_cast<std::size_t>(worker)](point, look);
+    };
+  };
+  job.learn = [&](const std::vector<AttractorSample>& known) {
+    setup.known = capture_regions(setup, system, known, ask);
+  };
+  std::ostream nowhere(nullptr);
+  const SweepOutcome outcome = run_sweep(job, task, ask, progress, request.simulation.quiet ? nowhere : screen);
+  if (!request.simulation.quiet || !outcome.is_complete) screen << outcome_text(job, outcome) << std::flush;
+  if (const std::string complaint = loaded.library->complaint(); !complaint.empty())
+    warnings << "tchat: warning: " << complaint << '\n';
+  return 0;
+}
+
+}  // namespace tchat
