@@ -174,10 +174,20 @@ OrbitVector resampled_torus(const OrbitVector& v, const OrbitShape& shape, int o
   return result;
 }
 
-Orbit return_at(const TorusSystem& system, const Orbit& x, double phi) {
+NodeWeights node_weights(const Orbit& x, const CollocationRule& rule, double tau) {
+  const auto beyond = std::upper_bound(x.mesh.begin(), x.mesh.end() - 1, tau);
+  const auto j = std::max<std::ptrdiff_t>(beyond - x.mesh.begin() - 1, 0);
+  const double left = x.mesh[static_cast<std::size_t>(j)];
+  NodeWeights result{static_cast<int>(j), Eigen::VectorXd(rule.points() + 1)};
+  Eigen::VectorXd slopes(rule.points() + 1);
+  rule.basis((tau - left) / (x.mesh[static_cast<std::size_t>(j + 1)] - left), result.weights.data(), slopes.data());
+  return result;
+}
+
+Orbit return_at(const TorusSystem& system, const Orbit& x, double phi, int derivative) {
   const int m = system.segments_per_return();
   const Eigen::VectorXd column = columns_of(x.states, durations_of(x), system.orbits()) *
-                                 interpolation_weights(system.orbits(), phi).transpose();
+                                 interpolation_weights(system.orbits(), phi, derivative).transpose();
   Orbit result{x.shape, x.mesh, {}, x.par};
   result.shape.segments = m;
   result.states = Eigen::Map<const Eigen::MatrixXd>(column.data(), x.shape.dimension, result.shape.columns());

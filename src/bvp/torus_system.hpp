@@ -84,7 +84,15 @@ double last_harmonics(const TorusSystem& system, const Orbit& x);
 Orbit resampled_torus(const Orbit& x, int orbits, int new_orbits);
 OrbitVector resampled_torus(const OrbitVector& v, const OrbitShape& shape, int orbits, int new_orbits);
 
-/// The orbit of one return that starts at the phase phi, interpolated node by node.
-Orbit return_at(const TorusSystem& system, const Orbit& x, double phi);
+/// The orbit of one return that starts at the phase phi, interpolated node by node, or the derivative of its states and
+/// durations by phi.
+Orbit return_at(const TorusSystem& system, const Orbit& x, double phi, int derivative = 0);
+
+/// Where tau lies on the mesh, and the weights of the nodes of that interval in the state there.
+struct NodeWeights {
+  int interval;
+  Eigen::VectorXd weights;  ///< NCOL + 1
+};
+NodeWeights node_weights(const Orbit& x, const CollocationRule& rule, double tau);
 
 }  // namespace tchat

@@ -181,30 +181,33 @@ class Direction {
     continuation_.stop_at = make_stop_rule(setup_.settings);
     writer.begin_section({branch_, continuation_.step.initial, std::move(correction)});
     for (const std::string& note : notes) writer.note(1, note);
-    BranchSummary summary = follow_on(setup_, writer);
+    BranchSummary summary = follow_on(setup_, setup_.start.point, writer);
     summary.without_contact = setup_.type->facts().stability == StabilityMeaning::without_contact;
     writer.clear_progress();
     return summary;
   }
 
  private:
-  /// As far as it goes, and on where it needs another discretisation, which a torus does.
-  BranchSummary follow_on(const BranchSetup& setup, BranchWriter& writer) {
+  /// As far as it goes, and on where it needs another discretisation, which a torus does. Where there is none on which the
+  /// torus is found, as at a resonance, it goes on for some points before it is asked again.
+  BranchSummary follow_on(const BranchSetup& setup, const PathPoint& start, BranchWriter& writer, int patience = 0) {
+    constexpr int points_before_next = 5;
     const ProblemType& type = *setup.type;
     continuation_.monitored = continuation_settings(setup.settings).monitored;
     continuation_.remark = [&](const Orbit& x) { return type.remark(setup, x); };
-    continuation_.outgrown = [&](const Orbit& x) { return type.outgrown(setup, x); };
+    continuation_.outgrown = [&, patience](const Orbit& x) mutable { return --patience < 0 && type.outgrown(setup, x); };
     continuation_.unresolved = [&](const Orbit& x) { return type.unresolved(setup, x); };
     ContinuationRun run(*setup.follower, *setup.defining, continuation_, type.tests(*setup.defining, setup.settings),
                         writer);
-    const BranchSummary summary = run.run(setup.start.point);
+    const BranchSummary summary = run.run(start);
     if (summary.reason != EndReason::outgrown) return summary;
     const BranchSetup next = type.refined(setup, run.last());
     writer.note(summary.points, next.start.note);
     continuation_.step.initial = run.next_length();
     continuation_.first_number = summary.points;
     continuation_.label_start = false;
-    return joined(summary, follow_on(next, writer));
+    return joined(summary, next.follower ? follow_on(next, next.start.point, writer)
+                                         : follow_on(setup, run.last(), writer, points_before_next));
   }
 
   static BranchSummary joined(const BranchSummary& before, BranchSummary after) {

@@ -287,9 +287,12 @@ BranchSetup with_harmonics(const BranchSetup& setup, const PathPoint& last, int 
   PathPoint point = next.follower->make_point(start.start.orbit);
   const OrbitVector direction = resampled_torus(last.tangent, last.orbit.shape, system.orbits(), orbits);
   const NewtonResult result = next.follower->start_along(point, direction);
-  if (!result.converged())
-    throw ComputationError(fmt::format("no convergence of the torus on {} orbits instead of {}: {}", orbits,
-                                       system.orbits(), describe(result.status)));
+  if (!result.converged()) {
+    next.follower.reset();
+    next.start.note = fmt::format("no convergence of the torus on {} orbits instead of {} ({}): it goes on with these",
+                                  orbits, system.orbits(), describe(result.status));
+    return next;
+  }
   if (next.follower->alignment(point, direction) < 0.0) next.follower->reverse(point);
   next.start = {std::move(point), next.follower->newton().history(),
                 fmt::format("{} harmonics from here on", harmonics), setup.start.stored_direction};

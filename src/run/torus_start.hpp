@@ -41,7 +41,7 @@ std::optional<int> fitting_harmonics(const RunSettings& one_return, const TorusS
 /// "".
 std::string rough_torus(const RunSettings& one_return, const TorusSystem& system, const Orbit& x);
 
-/// The branch from `last` on with another number of orbits. Throws ComputationError when that does not converge.
+/// The branch from `last` on with another number of orbits; without a follower when that does not converge.
 BranchSetup with_harmonics(const BranchSetup& setup, const PathPoint& last, int harmonics);
 
 }  // namespace tchat

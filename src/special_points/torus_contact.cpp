@@ -4,9 +4,11 @@
 
 #include <array>
 #include <boost/math/tools/minima.hpp>
+#include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
 
 #include "bvp/admissibility.hpp"
+#include "hybrid/event_at.hpp"
 #include "special_points/bifurcation_tests.hpp"
 #include "special_points/contact_test.hpp"
 
@@ -42,7 +44,31 @@ std::optional<TorusContact> TorusContactSearch::least_near(const Orbit& x, const
   std::uintmax_t iterations = 60;
   const auto [least_phi, least] =
       boost::math::tools::brent_find_minima(value, phi - reach, phi + reach, bits, iterations);
-  return at(x, rule, least_phi);
+  return at(x, rule, stationary(x, rule, least_phi));
+}
+
+/// A minimum is known to half the digits of its value: where h_x x_phi changes sign close to it, that says it better.
+double TorusContactSearch::stationary(const Orbit& x, const CollocationRule& rule, double phi) const {
+  const double reach = 1e-3 / system_.orbits();
+  const double low = slope(x, rule, phi - reach);
+  const double high = slope(x, rule, phi + reach);
+  if (!(low < 0.0 && high > 0.0)) return phi;
+  std::uintmax_t iterations = 30;
+  const auto bracket = boost::math::tools::toms748_solve([&](double t) { return slope(x, rule, t); }, phi - reach,
+                                                         phi + reach, low, high,
+                                                         boost::math::tools::eps_tolerance<double>(45), iterations);
+  return 0.5 * (bracket.first + bracket.second);
+}
+
+/// h_x x_phi at the least value of h on the orbit of phase phi; 0 without one.
+double TorusContactSearch::slope(const Orbit& x, const CollocationRule& rule, double phi) const {
+  const auto contact = at(x, rule, phi);
+  if (!contact) return 0.0;
+  const Orbit derivative = return_at(system_, x, phi, 1);
+  const auto [interval, weights] = node_weights(x, rule, contact->tau);
+  const int first = segment_ * x.shape.nodes() + interval * x.shape.collocation;
+  const Eigen::VectorXd by_phase = derivative.states.middleCols(first, weights.size()) * weights;
+  return event_at(system_.system(), event_, contact->state.data(), x.par.data()).gradient.dot(by_phase);
 }
 
 std::optional<TorusContact> TorusContactSearch::least(const Orbit& x, const CollocationRule& rule) const {

@@ -33,6 +33,8 @@ class TorusContactSearch {
   std::optional<TorusContact> least_near(const Orbit& x, const CollocationRule& rule, double phi) const;
 
  private:
+  double stationary(const Orbit& x, const CollocationRule& rule, double phi) const;
+  double slope(const Orbit& x, const CollocationRule& rule, double phi) const;
   std::optional<TorusContact> at(const Orbit& x, const CollocationRule& rule, double phi) const;
 
   const TorusSystem& system_;

@@ -1,6 +1,5 @@
 #include "special_points/torus_contact_condition.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include "bvp/rotation.hpp"
@@ -22,18 +21,12 @@ bool TorusContactCondition::evaluate(CondensedSystem& condensed, const Orbit& x)
   gradient_.set_zero();
   system_.system().first(FunctionKind::event, search_.event(), contact_.state.data(), x.par.data(),
                          system_.free_parameters(), &h, hx.data(), gradient_.globals.data());
-  const int c = x.shape.collocation;
-  const auto beyond = std::upper_bound(x.mesh.begin(), x.mesh.end() - 1, contact_.tau);
-  const auto j = std::max<std::ptrdiff_t>(beyond - x.mesh.begin() - 1, 0);
-  const double left = x.mesh[static_cast<std::size_t>(j)];
-  Eigen::VectorXd basis(c + 1);
-  Eigen::VectorXd slopes(c + 1);
-  rule.basis((contact_.tau - left) / (x.mesh[static_cast<std::size_t>(j + 1)] - left), basis.data(), slopes.data());
+  const auto [j, basis] = node_weights(x, rule, contact_.tau);
   const Eigen::RowVectorXd weights = interpolation_weights(system_.orbits(), contact_.phi);
   for (int l = 0; l < system_.orbits(); ++l) {
     const int segment = l * system_.segments_per_return() + search_.segment();
-    for (int k = 0; k <= c; ++k)
-      gradient_.states.col(segment * x.shape.nodes() + j * c + k) = weights(l) * basis(k) * hx;
+    for (int k = 0; k < basis.size(); ++k)
+      gradient_.states.col(segment * x.shape.nodes() + j * x.shape.collocation + k) = weights(l) * basis(k) * hx;
   }
   return hx.allFinite() && gradient_.globals.allFinite();
 }
