@@ -55,13 +55,14 @@ std::string TorusProblem::unresolved(const BranchSetup& setup, const Orbit& x) c
 }
 
 std::vector<MonitoredEvent> chosen_events(const RunSettings& settings, int segments_per_return) {
-  const std::vector<int>& chosen = settings.test_functions;
-  std::vector<MonitoredEvent> events;
-  int k = 0;
+  std::vector<MonitoredEvent> all;
   for (int s = 0; s < segments_per_return; ++s)
-    for (const int event : settings.segments[static_cast<std::size_t>(s)].monitor)
-      if (++k; chosen.empty() || std::find(chosen.begin(), chosen.end(), k) != chosen.end()) events.push_back({s, event});
-  return events;
+    for (const int event : settings.segments[static_cast<std::size_t>(s)].monitor) all.push_back({s, event});
+  if (settings.test_functions.empty()) return all;
+  std::vector<MonitoredEvent> chosen;
+  for (const int k : settings.test_functions)
+    if (k >= 1 && static_cast<std::size_t>(k) <= all.size()) chosen.push_back(all[static_cast<std::size_t>(k) - 1]);
+  return chosen;
 }
 
 TestList torus_tests(const TorusSystem& system, const RunSettings& settings,

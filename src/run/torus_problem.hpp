@@ -32,7 +32,7 @@ struct MonitoredEvent {
   int event;
 };
 
-/// Those that GCIPSI chooses, in the order of GCHGRZIND; all of them with an empty GCIPSI.
+/// Those that GCIPSI chooses, in its order; all of GCHGRZIND with an empty GCIPSI.
 std::vector<MonitoredEvent> chosen_events(const RunSettings& settings, int segments_per_return);
 
 /// Least values of the events, strong resonances where rho is free, the fold, user values.
