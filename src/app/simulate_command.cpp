@@ -79,9 +79,10 @@ void add_simulate_command(CLI::App& app, std::function<int()>& chosen) {
       ->group("Periodic orbit");
   const auto torus_name = std::make_shared<std::string>();
   command
-      ->add_option("--torus", *torus_name,
-                   "fit a closed curve to the points where returns of the signature begin, and write the torus as q.NAME2 "
-                   "and gc.NAME2 for tchat run [O]")
+      ->add_option(
+          "--torus", *torus_name,
+          "fit a closed curve to the points where returns of the signature begin, and write the torus as q.NAME2 "
+          "and gc.NAME2 for tchat run [O]")
       ->expected(0, 1)
       ->type_name("[NAME2]")
       ->group("Torus");

@@ -41,8 +41,8 @@ class RingSystem : public DefiningSystem {
   virtual std::string end_condition_name(int s, int r) const = 0;
 
  protected:
-  // What the jump at the end of segment s has to be equal to (n numbers, linear in the starts of segments): the start of
-  // the next segment, unless orbits are coupled otherwise.
+  // What the jump at the end of segment s has to be equal to (n numbers, linear in the starts of segments): the start
+  // of the next segment, unless orbits are coupled otherwise.
 
   virtual void target_pattern(int s, int row, CouplingPattern& pattern) const;
   virtual void target_value(int s, const Orbit& x, double* target) const;

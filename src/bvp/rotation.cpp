@@ -28,7 +28,8 @@ double kernel(int harmonics, double t, int derivative) {
 
 Eigen::RowVectorXd interpolation_weights(int count, double phi, int derivative) {
   Eigen::RowVectorXd weights(count);
-  for (int l = 0; l < count; ++l) weights(l) = kernel((count - 1) / 2, phi - static_cast<double>(l) / count, derivative);
+  for (int l = 0; l < count; ++l)
+    weights(l) = kernel((count - 1) / 2, phi - static_cast<double>(l) / count, derivative);
   return weights;
 }
 

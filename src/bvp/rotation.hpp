@@ -19,8 +19,8 @@ Eigen::MatrixXd shifted_curve(const Eigen::MatrixXd& values, double phi, int der
 /// The same curve by `count` values (odd): harmonics that are new are zero, those that are too many are left out.
 Eigen::MatrixXd resampled_curve(const Eigen::MatrixXd& values, int count);
 
-/// Sizes of the harmonics k = 0..Q, the largest over the rows: |a_k - i b_k| of a_k cos 2 pi k phi + b_k sin 2 pi k phi,
-/// each row divided by its entry of `scale`.
+/// Sizes of the harmonics k = 0..Q, the largest over the rows: |a_k - i b_k| of a_k cos 2 pi k phi + b_k sin 2 pi k
+/// phi, each row divided by its entry of `scale`.
 Eigen::VectorXd harmonic_sizes(const Eigen::MatrixXd& values, const Eigen::VectorXd& scale);
 
 }  // namespace tchat

@@ -9,15 +9,15 @@
 ///     sum_l R_il(rho) x_{l,1}(0) = g_{k_m}(x_{i,m}(1)),     R_il(rho) = K(rho + (i - l) / N),
 ///     sum_i (u_i - r_i) . r'_i = 0        (phase: r is the curve that the step goes from, r' its derivative by phi).
 ///
-/// Count. Unknowns: n m N functions, m N durations, two of the parameters, rho among them or not. Conditions: n m N + m N
-/// coupling rows, one phase condition, pseudo-arclength. So rho fixed and two parameters of the problem free, or rho and
-/// one. Any phi + const is the same torus: the phase condition takes that out, and nothing else is left free, for the
-/// events keep the time.
+/// Count. Unknowns: n m N functions, m N durations, two of the parameters, rho among them or not. Conditions: n m N + m
+/// N coupling rows, one phase condition, pseudo-arclength. So rho fixed and two parameters of the problem free, or rho
+/// and one. Any phi + const is the same torus: the phase condition takes that out, and nothing else is left free, for
+/// the events keep the time.
 ///
-/// Segments of the orbit are those of the N returns one after the other: segment i m + s. Each is condensed for itself, in
-/// time linear in N; R couples the starts of the N returns, a block of n N rows that is dense in the starts, component by
-/// component, of which elimination makes a dense matrix of n N columns: n^3 N^3 operations of blocks of LAPACK's kind
-/// within the sparse factorisation, 8 n^2 N^2 bytes.
+/// Segments of the orbit are those of the N returns one after the other: segment i m + s. Each is condensed for itself,
+/// in time linear in N; R couples the starts of the N returns, a block of n N rows that is dense in the starts,
+/// component by component, of which elimination makes a dense matrix of n N columns: n^3 N^3 operations of blocks of
+/// LAPACK's kind within the sparse factorisation, 8 n^2 N^2 bytes.
 ///
 /// rho is PAR(rotation_parameter). What the torus is in terms of frequencies: one return lasts T = mean over phi of the
 /// return time on the average, omega_1 = 2 pi / T, omega_2 = rho omega_1.
@@ -52,7 +52,9 @@ class TorusSystem final : public PeriodicOrbitSystem {
  private:
   bool ends_return(int s) const { return (s + 1) % segments_per_return() == 0; }
   /// K or K' of rho + (orbit - l) / N.
-  double weight(int orbit, int l, const Eigen::RowVectorXd& kernel) const { return kernel((l - orbit + orbits_) % orbits_); }
+  double weight(int orbit, int l, const Eigen::RowVectorXd& kernel) const {
+    return kernel((l - orbit + orbits_) % orbits_);
+  }
   void set_kernels(double rho) const;
   void find_phase_row(const Orbit& reference) const;
 
@@ -62,8 +64,8 @@ class TorusSystem final : public PeriodicOrbitSystem {
   mutable double rho_ = 0.0;
   mutable bool has_kernels_ = false;
   mutable Eigen::RowVectorXd kernel_, kernel_slope_;
-  Eigen::RowVectorXd slope_at_zero_;  // K' of -l / N
-  mutable Eigen::MatrixXd phase_row_;   // n x N, r' divided by its length
+  Eigen::RowVectorXd slope_at_zero_;   // K' of -l / N
+  mutable Eigen::MatrixXd phase_row_;  // n x N, r' divided by its length
 };
 
 /// Values of the closed curve of segment start s (from 0, of the first return) at the N phases, n x N.
@@ -72,9 +74,9 @@ Eigen::MatrixXd section_curve(const TorusSystem& system, const Orbit& x, int s =
 /// Mean duration of a return over the torus.
 double mean_return_time(const TorusSystem& system, const Orbit& x);
 
-/// Sizes of the harmonics k = 0..Q of all nodes of the orbits as functions of phi, each state in units of its range over
-/// the torus, the largest over nodes and states; those of the durations, in units of the mean return time, among them.
-/// The last ones are what the trigonometric polynomial leaves out.
+/// Sizes of the harmonics k = 0..Q of all nodes of the orbits as functions of phi, each state in units of its range
+/// over the torus, the largest over nodes and states; those of the durations, in units of the mean return time, among
+/// them. The last ones are what the trigonometric polynomial leaves out.
 Eigen::VectorXd torus_harmonics(const TorusSystem& system, const Orbit& x);
 
 /// The larger of the last two harmonics but the mean: the error figure of a torus.

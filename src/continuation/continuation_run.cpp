@@ -88,6 +88,7 @@ ContinuationRun::ContinuationRun(PathFollower& follower, const DefiningSystem& s
       sink_(sink),
       search_(follower, system, with_bounds(std::move(tests), settings_), location_settings(settings_)),
       step_(settings_.step),
+      trend_(system.orbits()),
       closed_(follower, system, has_fixed_phase(system, settings_)) {}
 
 BranchSummary ContinuationRun::run(PathPoint start) {
@@ -191,7 +192,8 @@ SpecialPoint ContinuationRun::advance() {
 /// Has the step gone through an equilibrium, to the same orbits run through from another point? Then next_ is moved
 /// back to short of it. Whatever changes sign there is hardly located, for Newton's matrix is singular.
 bool ContinuationRun::leads_through_point() {
-  if (!settings_.periodic || deviation_cosine(here_.orbit, next_.point.orbit) > opposite) return false;
+  if (!settings_.periodic || deviation_cosine(here_.orbit, next_.point.orbit, system_.orbits()) > opposite)
+    return false;
   constexpr int max_steps = 30;
   PathPoint near = here_;
   PathPoint trial = here_;
@@ -199,10 +201,10 @@ bool ContinuationRun::leads_through_point() {
   double share = 0.9;  // of the way to the point
   double length = 0.0;
   for (int k = 0; k < max_steps && !trend_.has_shrunk(near.orbit, shrunk_enough); ++k) {
-    const double ds = -share / deviation_growth(near.orbit, near.tangent.states);
+    const double ds = -share / deviation_growth(near.orbit, near.tangent.states, system_.orbits());
     if (!(ds * next_.ds > 0.0)) break;
     newton = follower_.step(near, ds, trial);
-    if (newton.converged() && deviation_cosine(near.orbit, trial.orbit) > -opposite) {
+    if (newton.converged() && deviation_cosine(near.orbit, trial.orbit, system_.orbits()) > -opposite) {
       std::swap(near, trial);
       length += ds;
     } else {
@@ -226,6 +228,13 @@ SpecialPoint ContinuationRun::shrunk_orbit(SpecialPoint special, bool through_po
   const bool turns =
       through_point || special.type == PointType::fold || special.kind.kind == UserPointKind::impact_velocity;
   if (!trend_.has_shrunk(next_.point.orbit, turns ? shrunk_where_located : shrunk)) return special;
+  if (system_.orbits() > 1) {
+    end(EndReason::equilibrium,
+        fmt::format(
+            "the torus has shrunk to a periodic orbit, {}: its torus bifurcation, where the branch of tori ends",
+            state_text(system_.system(), next_.point.orbit.start(0))));
+    return {PointType::torus, {}, false, summary_.detail};
+  }
   const std::optional<double> omega = hopf_frequency(system_, next_.point.orbit);
   end(EndReason::equilibrium,
       fmt::format("the orbit has shrunk to a point, {}: an equilibrium, where the branch of periodic orbits ends{}",

@@ -50,7 +50,8 @@ ProblemNames ProblemNames::of(const HybridSystem& system, const std::vector<std:
 }
 
 void ProblemNames::set_parameter(int k, const std::string& name) {
-  while (parameters.size() < static_cast<std::size_t>(k)) parameters.push_back(fmt::format("PAR({})", parameters.size() + 1));
+  while (parameters.size() < static_cast<std::size_t>(k))
+    parameters.push_back(fmt::format("PAR({})", parameters.size() + 1));
   parameters[static_cast<std::size_t>(k) - 1] = name;
 }
 

@@ -13,22 +13,24 @@ namespace {
 class GrazingTori final : public TorusProblem {
  public:
   GrazingTori()
-      : TorusProblem({.number = grazing_torus.number,
-                      .branch_mode = grazing_torus.branch_mode,
-                      .curve = 0,
-                      .family = "invariant tori in grazing contact",
-                      .title = "invariant tori in grazing contact, rho and two parameters free, or three with rho fixed",
-                      .free_parameters = 3,
-                      .is_torus = true,
-                      .stability = StabilityMeaning::without_contact}) {}
+      : TorusProblem(
+            {.number = grazing_torus.number,
+             .branch_mode = grazing_torus.branch_mode,
+             .curve = 0,
+             .family = "invariant tori in grazing contact",
+             .title = "invariant tori in grazing contact, rho and two parameters free, or three with rho fixed",
+             .free_parameters = 3,
+             .is_torus = true,
+             .stability = StabilityMeaning::without_contact}) {}
 
   /// The first chosen event is the one that the torus touches.
   std::unique_ptr<OrbitCondition> torus_condition(const TorusSystem& system, const OrbitShape& shape,
                                                   const RunSettings& one_return) const override {
     const auto events = chosen_events(one_return, segment_count(one_return));
     if (events.empty())
-      throw UserError("IPS = 152 follows tori that touch a monitored event function, and GCHGRZIND lists none: name it on "
-                      "the segment where it is touched, as in GCHGRZIND=[[1]]");
+      throw UserError(
+          "IPS = 152 follows tori that touch a monitored event function, and GCHGRZIND lists none: name it on "
+          "the segment where it is touched, as in GCHGRZIND=[[1]]");
     return std::make_unique<TorusContactCondition>(system, shape, events.front().segment, events.front().event);
   }
 

@@ -38,10 +38,11 @@ RunSettings grazing_torus_settings(const RunSettings& settings, const LabelledSo
   const std::optional<UserPointKind> contact = contact_of(solution);
   const int number = contact ? number_of(settings, *contact) : 0;
   if (number == 0)
-    throw UserError(fmt::format(
-        "{} is no contact of a torus with a monitored event function (GR): a curve of grazing tori begins there; run with "
-        "the event in GCHGRZIND, to a GR label",
-        name));
+    throw UserError(
+        fmt::format("{} is no contact of a torus with a monitored event function (GR): a curve of grazing tori begins "
+                    "there; run with "
+                    "the event in GCHGRZIND, to a GR label",
+                    name));
   RunSettings result = settings;
   result.problem_type = grazing_torus.number;
   result.branch_mode = grazing_torus.branch_mode;
@@ -57,9 +58,10 @@ RunSettings grazing_torus_settings(const RunSettings& settings, const LabelledSo
     free.push_back(k);
     return result;
   }
-  throw UserError(fmt::format("{}: every parameter of problem {} is free already, and a curve of grazing tori frees one "
-                              "more; take rho out of ICP on the run before",
-                              name, system.name()));
+  throw UserError(
+      fmt::format("{}: every parameter of problem {} is free already, and a curve of grazing tori frees one "
+                  "more; take rho out of ICP on the run before",
+                  name, system.name()));
 }
 
 LabelledSolution grazing_torus_start(LabelledSolution solution) {

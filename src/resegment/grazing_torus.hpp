@@ -1,5 +1,5 @@
-/// From a torus that touches a surface (GR on a run of type 182) to the curve of such tori in two parameters (type 152):
-/// the orbits stay what they are, the constants ask for the contact and free one parameter more.
+/// From a torus that touches a surface (GR on a run of type 182) to the curve of such tori in two parameters (type
+/// 152): the orbits stay what they are, the constants ask for the contact and free one parameter more.
 #pragma once
 
 #include "constants/run_settings.hpp"
@@ -8,9 +8,9 @@
 
 namespace tchat {
 
-/// The constants of the run of type 152. `icp_is_given`: the command line names its parameters; else the first parameter
-/// of the problem that is not free yet becomes free. Throws UserError, `name` in front, where the label is no contact of a
-/// torus, or all parameters are free already.
+/// The constants of the run of type 152. `icp_is_given`: the command line names its parameters; else the first
+/// parameter of the problem that is not free yet becomes free. Throws UserError, `name` in front, where the label is no
+/// contact of a torus, or all parameters are free already.
 RunSettings grazing_torus_settings(const RunSettings& settings, const LabelledSolution& solution,
                                    const std::string& name, const HybridSystem& system, bool icp_is_given);
 

@@ -272,17 +272,17 @@ std::vector<std::string> begin_grazing_tori(const ResegmentRequest& request, con
   const LabelledSolution& solution = find_solution(file.solutions, read_label(request.label), path);
   const std::string name = fmt::format("label {} of {}", solution.label, path);
   if (request.kind != ResegmentKind::grazing_curve)
-    throw UserError(fmt::format("{} is a torus, and its signature one return: from it a curve of grazing tori begins "
-                                "(--to grazing-curve), and nothing else",
-                                name));
+    throw UserError(
+        fmt::format("{} is a torus, and its signature one return: from it a curve of grazing tori begins "
+                    "(--to grazing-curve), and nothing else",
+                    name));
   if (request.data)
     throw UserError(fmt::format("{} is a torus, which a .dat file does not hold; leave --dat out", name));
   const ProblemLibrary library(resolve_plugin(request.problem.value_or(run_path(path))),
                                [&] { return problem_sizes(given); });
   const HybridSystem& system = library.system();
   if (named_parameters) given = read_constants_file(constants, nullptr, names_of(system));
-  RunSettings settings =
-      grazing_torus_settings(given, solution, name, system, is_overridden(request.overrides, "ICP"));
+  RunSettings settings = grazing_torus_settings(given, solution, name, system, is_overridden(request.overrides, "ICP"));
   apply_overrides(settings, request.overrides, &warnings, names_of(system));
   const auto further = check_settings_against(system, settings, {"the new constants", request.overrides});
   warnings.insert(warnings.end(), further.begin(), further.end());
@@ -291,11 +291,11 @@ std::vector<std::string> begin_grazing_tori(const ResegmentRequest& request, con
   refuse_same_file(outputs.constants, constants, "constants file");
   replace_solution_file(request.output, format_solution(grazing_torus_start(solution)));
   write_whole_file(outputs.constants, keyword_text(settings));
-  screen << fmt::format("{}: a torus in grazing contact, IPS = {} from it on.\n{} and {} written; next: tchat run {} -c {} "
-                        "-s {} -o {}_branch\n",
-                        name, settings.problem_type, outputs.solutions, outputs.constants,
-                        problem_arguments(request.problem.value_or(run_path(path))), request.output, request.output,
-                        request.output);
+  screen << fmt::format(
+      "{}: a torus in grazing contact, IPS = {} from it on.\n{} and {} written; next: tchat run {} -c {} "
+      "-s {} -o {}_branch\n",
+      name, settings.problem_type, outputs.solutions, outputs.constants,
+      problem_arguments(request.problem.value_or(run_path(path))), request.output, request.output, request.output);
   return warnings;
 }
 

@@ -188,14 +188,16 @@ class Direction {
   }
 
  private:
-  /// As far as it goes, and on where it needs another discretisation, which a torus does. Where there is none on which the
-  /// torus is found, as at a resonance, it goes on for some points before it is asked again.
+  /// As far as it goes, and on where it needs another discretisation, which a torus does. Where there is none on which
+  /// the torus is found, as at a resonance, it goes on for some points before it is asked again.
   BranchSummary follow_on(const BranchSetup& setup, const PathPoint& start, BranchWriter& writer, int patience = 0) {
     constexpr int points_before_next = 5;
     const ProblemType& type = *setup.type;
     continuation_.monitored = continuation_settings(setup.settings).monitored;
     continuation_.remark = [&](const Orbit& x) { return type.remark(setup, x); };
-    continuation_.outgrown = [&, patience](const Orbit& x) mutable { return --patience < 0 && type.outgrown(setup, x); };
+    continuation_.outgrown = [&, patience](const Orbit& x) mutable {
+      return --patience < 0 && type.outgrown(setup, x);
+    };
     continuation_.unresolved = [&](const Orbit& x) { return type.unresolved(setup, x); };
     ContinuationRun run(*setup.follower, *setup.defining, continuation_, type.tests(*setup.defining, setup.settings),
                         writer);
@@ -253,10 +255,9 @@ int run_problem(const RunRequest& request, std::ostream& screen, std::ostream& w
   if (reports.table != nullptr && setup.start.stored_direction)
     *reports.table << direction_text(setup.settings.step, selected);
   const int last_label = request.append ? std::max(files.last_label(), 0) : selected.last_label;
-  BranchWriter writer(
-      system, setup.follower->condensed().rule(),
-      {constants, active_parameters(constants), setup.type->facts().curve, selected.branch, last_label},
-      files, reports.table, reports.table != nullptr ? progress : nullptr);
+  BranchWriter writer(system, setup.follower->condensed().rule(),
+                      {constants, active_parameters(constants), setup.type->facts().curve, selected.branch, last_label},
+                      files, reports.table, reports.table != nullptr ? progress : nullptr);
 
   int status = 0;
   bool closed = false;

@@ -37,8 +37,8 @@ std::string TorusProblem::remark(const BranchSetup& setup, const Orbit& x) const
   const auto& system = static_cast<const TorusSystem&>(*setup.defining);
   const double frequency = 2.0 * std::numbers::pi / mean_return_time(system, x);
   const double rho = TorusSystem::rotation(x);
-  return fmt::format("torus: rho = {:.10g}, frequencies {:.10g} and {:.10g}, {} harmonics, the last {:.1e}", rho, frequency,
-                     rho * frequency, (system.orbits() - 1) / 2, last_harmonics(system, x));
+  return fmt::format("torus: rho = {:.10g}, frequencies {:.10g} and {:.10g}, {} harmonics, the last {:.1e}", rho,
+                     frequency, rho * frequency, (system.orbits() - 1) / 2, last_harmonics(system, x));
 }
 
 bool TorusProblem::outgrown(const BranchSetup& setup, const Orbit& x) const {

@@ -35,13 +35,15 @@ int most_harmonics(const RunSettings& one_return) {
 void check_signature(const RunSettings& settings, const std::string& source) {
   for (std::size_t s = 0; s < settings.segments.size(); ++s)
     if (settings.segments[s].index.event == no_function)
-      throw UserError(fmt::format("{}: segment {} has no event (GCHIND = 0); a torus is computed as a closed curve on a "
-                                  "section, so give the signature of one return to a section",
-                                  source, s + 1));
+      throw UserError(
+          fmt::format("{}: segment {} has no event (GCHIND = 0); a torus is computed as a closed curve on a "
+                      "section, so give the signature of one return to a section",
+                      source, s + 1));
   if (most_harmonics(settings) < fewest_harmonics)
-    throw UserError(fmt::format("{}: a return of {} segments leaves no room for {} orbits of it: at most {} segments in "
-                                "all; take a shorter return",
-                                source, segment_count(settings), 2 * fewest_harmonics + 1, max_orbit_segments));
+    throw UserError(
+        fmt::format("{}: a return of {} segments leaves no room for {} orbits of it: at most {} segments in "
+                    "all; take a shorter return",
+                    source, segment_count(settings), 2 * fewest_harmonics + 1, max_orbit_segments));
 }
 
 int harmonics_wanted(const RunSettings& settings, int otherwise) {
@@ -98,14 +100,16 @@ Complex critical_multiplier(const Eigen::MatrixXd& map, const SelectedStart& sel
   Complex nearest = 0.0;
   std::string list;
   for (const Complex& mu : eigenvalues(map)) {
-    list += fmt::format("{}{:.5g}{}", list.empty() ? "" : ", ", mu.real(),
-                        mu.imag() == 0.0 ? "" : fmt::format(" {} {:.5g} i", mu.imag() < 0.0 ? "-" : "+", std::abs(mu.imag())));
+    list += fmt::format(
+        "{}{:.5g}{}", list.empty() ? "" : ", ", mu.real(),
+        mu.imag() == 0.0 ? "" : fmt::format(" {} {:.5g} i", mu.imag() < 0.0 ? "-" : "+", std::abs(mu.imag())));
     if (mu.imag() > 0.0 && std::abs(std::abs(mu) - 1.0) < std::abs(std::abs(nearest) - 1.0)) nearest = mu;
   }
   if (nearest.imag() > 0.0 && std::abs(std::abs(nearest) - 1.0) < on_unit_circle) return nearest;
-  throw UserError(fmt::format("{}: label {} is a torus bifurcation that is none: no complex pair of multipliers is on the "
-                              "unit circle there ({}); a parameter or the problem is another one than that of the label",
-                              selected.source, selected.label, list));
+  throw UserError(
+      fmt::format("{}: label {} is a torus bifurcation that is none: no complex pair of multipliers is on the "
+                  "unit circle there ({}); a parameter or the problem is another one than that of the label",
+                  selected.source, selected.label, list));
 }
 
 /// The perturbation of the orbit that begins as v, carried to its ends and inside.
@@ -210,10 +214,10 @@ BranchSetup begin_torus(const HybridSystem& system, const RunSettings& settings,
   check_signature(settings, selected.source);
   constexpr int torus = static_cast<int>(PointType::torus);
   if (std::find(selected.types.begin(), selected.types.end(), torus) == selected.types.end())
-    throw UserError(
-        fmt::format("{}: ISW = -1 with IPS = {} begins the torus that is born at a torus bifurcation (TR) of a run with "
-                    "IPS = {}, but the run does not start from such a label; name one, for example IRS=TR1",
-                    selected.source, settings.problem_type, periodic_orbit.number));
+    throw UserError(fmt::format(
+        "{}: ISW = -1 with IPS = {} begins the torus that is born at a torus bifurcation (TR) of a run with "
+        "IPS = {}, but the run does not start from such a label; name one, for example IRS=TR1",
+        selected.source, settings.problem_type, periodic_orbit.number));
   const RunSettings before = on_periodic_orbit(settings);
   const std::unique_ptr<DefiningSystem> known =
       problem_type(before).make_system(system, before, {free_problem_parameters(before).front()});
@@ -236,11 +240,12 @@ BranchSetup begin_torus(const HybridSystem& system, const RunSettings& settings,
   std::optional<FirstPoint> first =
       first_torus(*setup.follower, birth, from.tangent, continuation_settings(of_run).step, trouble);
   if (!first)
-    throw ComputationError(fmt::format(
-        "no torus beside the torus bifurcation of label {} of {} (rho = {:.6g}) for an amplitude of {:.3g} or less: {}; "
-        "try another DS, compute the label with a smaller EPSS, or keep rho and free a second parameter",
-        selected.label, selected.source, birth.still.par(rotation_parameter - 1), std::abs(settings.step),
-        describe(trouble)));
+    throw ComputationError(
+        fmt::format("no torus beside the torus bifurcation of label {} of {} (rho = {:.6g}) for an amplitude of {:.3g} "
+                    "or less: {}; "
+                    "try another DS, compute the label with a smaller EPSS, or keep rho and free a second parameter",
+                    selected.label, selected.source, birth.still.par(rotation_parameter - 1), std::abs(settings.step),
+                    describe(trouble)));
   setup.start = std::move(*first);
   return setup;
 }
@@ -263,14 +268,16 @@ std::optional<int> fitting_harmonics(const RunSettings& one_return, const TorusS
 }
 
 std::string rough_torus(const RunSettings& one_return, const TorusSystem& system, const Orbit& x) {
-  constexpr double rough = 1e-3;
+  constexpr double rough = 1e-4;
   const int harmonics = (system.orbits() - 1) / 2;
   const bool may_grow = one_return.harmonic_tolerance > 0.0 && harmonics < most_harmonics(one_return);
   const double last = last_harmonics(system, x);
   if (may_grow || last < rough) return "";
   return fmt::format(
-      "the last of {} harmonics are {:.1e} of the torus: it is about to lose its smoothness, or locks to a periodic orbit "
-      "(rho = {:.8g}); {}look at the harmonics in the d-file, follow it with rho fixed at an irrational value and a second "
+      "the last of {} harmonics are {:.1e} of the torus: it is about to lose its smoothness, or locks to a periodic "
+      "orbit "
+      "(rho = {:.8g}); {}look at the harmonics in the d-file, follow it with rho fixed at an irrational value and a "
+      "second "
       "parameter free, or look for the periodic orbit by simulation",
       harmonics, last, TorusSystem::rotation(x),
       harmonics < most_harmonics(one_return) ? "their number is fixed (HARMTOL = 0): give NHARM more; " : "");

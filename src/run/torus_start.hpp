@@ -37,7 +37,8 @@ BranchSetup begin_torus(const HybridSystem& system, const RunSettings& settings,
 /// far; nothing where they fit.
 std::optional<int> fitting_harmonics(const RunSettings& one_return, const TorusSystem& system, const Orbit& x);
 
-/// Why the branch ends, where as many harmonics as there may be leave out too much: the torus loses its smoothness. Else
+/// Why the branch ends, where as many harmonics as there may be leave out too much: the torus loses its smoothness.
+/// Else
 /// "".
 std::string rough_torus(const RunSettings& one_return, const TorusSystem& system, const Orbit& x);
 

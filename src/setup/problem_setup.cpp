@@ -51,7 +51,8 @@ bool has_further_parameters(const HybridSystem& system) {
 }
 
 bool is_parameter(const HybridSystem& system, int k) {
-  return k == rotation_parameter || (k >= 1 && (k <= system.parameters() || k >= first_duration || has_further_parameters(system)));
+  return k == rotation_parameter ||
+         (k >= 1 && (k <= system.parameters() || k >= first_duration || has_further_parameters(system)));
 }
 
 std::string parameter_list(const HybridSystem& system) {
@@ -106,9 +107,10 @@ void check_rotation(const HybridSystem& system, const RunSettings& settings, con
   const bool is_free = std::find(free.begin(), free.end(), rotation_parameter) != free.end();
   const bool has_own = system.parameters() >= rotation_parameter;
   if (is_torus(settings.problem_type) && has_own)
-    throw UserError(fmt::format("IPS = {}: PAR({}) is the rotation number of a torus, but problem {} has a parameter of its "
-                                "own there; a problem with tori may have {} parameters",
-                                settings.problem_type, rotation_parameter, system.name(), rotation_parameter - 1));
+    throw UserError(
+        fmt::format("IPS = {}: PAR({}) is the rotation number of a torus, but problem {} has a parameter of its "
+                    "own there; a problem with tori may have {} parameters",
+                    settings.problem_type, rotation_parameter, system.name(), rotation_parameter - 1));
   if (is_free && !has_own && !is_torus(settings.problem_type) && !has_further_parameters(system))
     throw UserError(fmt::format("{}: ICP: {} is the rotation number of a torus, a parameter with IPS = {} alone",
                                 source.of("ICP"), system.parameter_name(rotation_parameter), invariant_torus.number));

@@ -54,9 +54,9 @@ double TorusContactSearch::stationary(const Orbit& x, const CollocationRule& rul
   const double high = slope(x, rule, phi + reach);
   if (!(low < 0.0 && high > 0.0)) return phi;
   std::uintmax_t iterations = 30;
-  const auto bracket = boost::math::tools::toms748_solve([&](double t) { return slope(x, rule, t); }, phi - reach,
-                                                         phi + reach, low, high,
-                                                         boost::math::tools::eps_tolerance<double>(45), iterations);
+  const auto bracket =
+      boost::math::tools::toms748_solve([&](double t) { return slope(x, rule, t); }, phi - reach, phi + reach, low,
+                                        high, boost::math::tools::eps_tolerance<double>(45), iterations);
   return 0.5 * (bracket.first + bracket.second);
 }
 
@@ -121,12 +121,13 @@ TestValue StrongResonanceTest::evaluate(const TestedPoint& point) const {
 SpecialPoint StrongResonanceTest::classify(const TestedPoint&, bool) const {
   constexpr std::array types{PointType::resonance_1, PointType::resonance_2, PointType::resonance_3,
                              PointType::resonance_4};
-  return {types[static_cast<std::size_t>(q_ - 1)],
-          {},
-          false,
-          fmt::format("strong resonance: the rotation number passes {}/{}; near it the motion on the torus may lock to a "
-                      "periodic orbit of {} return{}, and the torus break",
-                      p_, q_, q_, q_ == 1 ? "" : "s")};
+  return {
+      types[static_cast<std::size_t>(q_ - 1)],
+      {},
+      false,
+      fmt::format("strong resonance: the rotation number passes {}/{}; near it the motion on the torus may lock to a "
+                  "periodic orbit of {} return{}, and the torus break",
+                  p_, q_, q_, q_ == 1 ? "" : "s")};
 }
 
 }  // namespace tchat

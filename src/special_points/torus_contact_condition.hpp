@@ -4,9 +4,9 @@
 ///     G = min over phi, tau of h(x(tau; phi), p) = 0.
 ///
 /// One condition more than a torus has, so that a parameter more is free. At the least value h_x x_tau = h_x f = 0 and
-/// h_x x_phi = 0: what would have to be said of the orbit that touches, h = h_x f = 0 and stationary over phi, is said by
-/// the minimum, on any section, and the orbit that touches need not be one of the N. For the same reason the gradient is
-/// that of h at a fixed place of the torus: with x = sum_l K(phi - l / N) sum_k B_k(tau) x_{l,k},
+/// h_x x_phi = 0: what would have to be said of the orbit that touches, h = h_x f = 0 and stationary over phi, is said
+/// by the minimum, on any section, and the orbit that touches need not be one of the N. For the same reason the
+/// gradient is that of h at a fixed place of the torus: with x = sum_l K(phi - l / N) sum_k B_k(tau) x_{l,k},
 ///
 ///     dG = h_x sum_{l,k} K_l B_k dx_{l,k} + h_p dp.
 #pragma once

@@ -14,9 +14,9 @@
 namespace tchat {
 
 struct SegmentMap {
-  Eigen::MatrixXd to_end;         ///< v to the change of x_s(1), n x n: Phi + f sigma
-  Eigen::RowVectorXd to_duration; ///< v to sigma = change of T_s, n
-  Eigen::MatrixXd to_next;        ///< v to the change of the next start: g_x to_end
+  Eigen::MatrixXd to_end;          ///< v to the change of x_s(1), n x n: Phi + f sigma
+  Eigen::RowVectorXd to_duration;  ///< v to sigma = change of T_s, n
+  Eigen::MatrixXd to_next;         ///< v to the change of the next start: g_x to_end
 };
 
 /// Of segment s, from the linearisation at x. Not finite where h_x f = 0.

@@ -7,10 +7,11 @@
 ///     |mu_k| = exp lambda_k,   lambda_k the Lyapunov exponents of the sequence A(phi_0 + j rho), j = 0, 1, ...
 ///
 /// found by orthogonalisation (QR) at each return, of a frame whose first vector is u'(phi): that direction goes to
-/// itself, and those across it are told from it also where they grow as little, near the birth of the torus. The mean of log R_kk is weighted by exp(-1 / (t (1 - t))) over the
-/// sequence, with which means of functions on a circle converge faster than any power of its length [Das, Saiki,
-/// Sander, Yorke, Nonlinearity 30 (2017) 4111]. A is interpolated between the N orbits. One of them is 1, along the curve;
-/// its distance from that is an error figure. Another is 0, along the flow.
+/// itself, and those across it are told from it also where they grow as little, near the birth of the torus. The mean
+/// of log R_kk is weighted by exp(-1 / (t (1 - t))) over the sequence, with which means of functions on a circle
+/// converge faster than any power of its length [Das, Saiki, Sander, Yorke, Nonlinearity 30 (2017) 4111]. A is
+/// interpolated between the N orbits. One of them is 1, along the curve; its distance from that is an error figure.
+/// Another is 0, along the flow.
 #pragma once
 
 #include "bvp/torus_system.hpp"

@@ -37,7 +37,8 @@ OrbitShape torus_shape(const RunSettings& settings, const LabelledSolution& solu
   const bool fits = segments % m == 0 && (segments / m) % 2 == 1 && segments / m >= 3;
   if (!fits || (tells_problem_type(solution.problem_type) && !is_torus(solution.problem_type)))
     throw UserError(fmt::format(
-        "{}: label {} is no torus, of which there are an odd number of orbits of {} segment{} each, but has {} segment{} "
+        "{}: label {} is no torus, of which there are an odd number of orbits of {} segment{} each, but has {} "
+        "segment{} "
         "(IPS = {}); start from a label of a run with IPS = {}, or at a torus bifurcation (TR) with ISW = -1",
         path, solution.label, m, m == 1 ? "" : "s", segments, segments == 1 ? "" : "s", solution.problem_type,
         settings.problem_type));

@@ -42,9 +42,10 @@ Signature signature_of(const SimulationConstants& constants, const SimulationReq
   Signature signature = constants.settings.signature();
   const auto room = static_cast<std::size_t>(max_orbit_segments / (2 * fewest_harmonics + 1));
   if (signature.size() > room)
-    throw UserError(fmt::format("{}: a return of {} segments is too long for a torus, at most {} are allowed; choose a "
-                                "section that the motion meets more often",
-                                request.name, signature.size(), room));
+    throw UserError(
+        fmt::format("{}: a return of {} segments is too long for a torus, at most {} are allowed; choose a "
+                    "section that the motion meets more often",
+                    request.name, signature.size(), room));
   return signature;
 }
 
@@ -92,9 +93,10 @@ int simulate_torus(const SimulationRequest& request, const std::string& torus_na
   require_writable(solutions);
   require_writable(constants_file);
   if (!constants.path.empty() && same_file(constants_file, constants.path))
-    throw UserError(fmt::format("--torus would replace {}, which the simulation reads; give the torus a name, as in "
-                                "--torus {}_torus",
-                                constants_file, request.name));
+    throw UserError(
+        fmt::format("--torus would replace {}, which the simulation reads; give the torus a name, as in "
+                    "--torus {}_torus",
+                    constants_file, request.name));
 
   HybridSimulation simulation(start.rule, start.state, start.par, simulation_settings(request, interrupted));
   say(start_text(system, start, simulation.mode()));
@@ -110,8 +112,8 @@ int simulate_torus(const SimulationRequest& request, const std::string& torus_na
   }
   if (result.last.ended_by == SegmentEnd::failed) throw ComputationError(result.last.message);
   if (motion.empty())
-    throw ComputationError(fmt::format("{}: no segment ended in an event after the transient: {}", request.name,
-                                       result.last.message));
+    throw ComputationError(
+        fmt::format("{}: no segment ended in an event after the transient: {}", request.name, result.last.message));
   const Eigen::MatrixXd points = points_of_returns(motion, one_return, request.name);
   const FittedCurve fitted =
       fit_invariant_curve(points, {.angles = {}, .max_harmonics = 200, .tolerance = fit_tolerance}, request.name);
@@ -129,10 +131,11 @@ int simulate_torus(const SimulationRequest& request, const std::string& torus_na
   write_whole_file(solutions, format_solution(solution));
   write_whole_file(constants_file, keyword_text(settings));
 
-  say(fmt::format("The motion is quasi-periodic: {} points of returns lie on a closed curve of {} harmonics, to {:.1e} of "
-                  "its extent.\nRotation number rho = {:.10g} (+- {:.0e}), mean return time {:.10g}.\n",
-                  points.cols(), fitted.curve.harmonics(), fitted.error, fitted.curve.rotation(),
-                  fitted.rotation_error, orbit.period() / (2 * harmonics + 1)));
+  say(fmt::format(
+      "The motion is quasi-periodic: {} points of returns lie on a closed curve of {} harmonics, to {:.1e} of "
+      "its extent.\nRotation number rho = {:.10g} (+- {:.0e}), mean return time {:.10g}.\n",
+      points.cols(), fitted.curve.harmonics(), fitted.error, fitted.curve.rotation(), fitted.rotation_error,
+      orbit.period() / (2 * harmonics + 1)));
   const std::string plugin = request.problem ? fmt::format(" -p {}", *request.problem) : "";
   say(fmt::format("Written: {} and {}, {} orbits of one return. Go on with\n  tchat run {}{} -c {} -s {} -o {}_run\n",
                   solutions, constants_file, 2 * harmonics + 1, request.name, plugin, name, name, name));

@@ -9,8 +9,9 @@
 
 namespace tchat {
 
-/// Exit status. The motion is simulated as the plan says, 1500 returns after 500 where it says nothing. Throws UserError
-/// where there is no signature, the motion does not go by it, or its points lie on no closed curve; ComputationError.
+/// Exit status. The motion is simulated as the plan says, 1500 returns after 500 where it says nothing. Throws
+/// UserError where there is no signature, the motion does not go by it, or its points lie on no closed curve;
+/// ComputationError.
 int simulate_torus(const SimulationRequest& request, const std::string& torus_name, std::ostream& screen,
                    std::ostream& warnings, const std::function<bool()>& interrupted, std::ostream* progress);
 

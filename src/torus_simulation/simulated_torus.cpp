@@ -21,8 +21,8 @@ std::size_t agreeing(const std::vector<PassedSegment>& motion, const Signature& 
 }
 
 [[noreturn]] void fail(int orbit, std::size_t segment, const std::string& why) {
-  throw ComputationError(fmt::format("return {} from the fitted curve cannot be integrated, segment {}: {}", orbit + 1,
-                                     segment + 1, why));
+  throw ComputationError(
+      fmt::format("return {} from the fitted curve cannot be integrated, segment {}: {}", orbit + 1, segment + 1, why));
 }
 
 }  // namespace
@@ -35,11 +35,13 @@ Eigen::MatrixXd points_of_returns(const std::vector<PassedSegment>& motion, cons
     if (agreeing(motion, one_return, first) > agreeing(motion, one_return, best)) best = first;
   const std::size_t count = agreeing(motion, one_return, best);
   if (best + count < motion.size())
-    throw UserError(fmt::format(
-        "{}: the motion does not go by the signature of one return: segment {} after the transient is {}, not {}; give the "
-        "signature that the motion on the torus has (O.events of a plain simulation lists it), drop a longer transient, or "
-        "follow the signature's own events alone (--follow-signature)",
-        source, best + count + 1, text_of(motion[best + count].index), text_of(one_return[count % m])));
+    throw UserError(
+        fmt::format("{}: the motion does not go by the signature of one return: segment {} after the transient is {}, "
+                    "not {}; give the "
+                    "signature that the motion on the torus has (O.events of a plain simulation lists it), drop a "
+                    "longer transient, or "
+                    "follow the signature's own events alone (--follow-signature)",
+                    source, best + count + 1, text_of(motion[best + count].index), text_of(one_return[count % m])));
   Eigen::MatrixXd points(motion.front().start.size(), static_cast<Eigen::Index>((count + m - 1) / m));
   for (Eigen::Index k = 0; k < points.cols(); ++k) points.col(k) = motion[best + static_cast<std::size_t>(k) * m].start;
   return points;

@@ -17,13 +17,13 @@ struct PassedSegment {
   Eigen::VectorXd start;
 };
 
-/// The states in which returns of the signature begin, n x K, in their order. Throws UserError, `source` in front, where
-/// the motion does not go by the signature again and again, with the segment where it leaves it.
+/// The states in which returns of the signature begin, n x K, in their order. Throws UserError, `source` in front,
+/// where the motion does not go by the signature again and again, with the segment where it leaves it.
 Eigen::MatrixXd points_of_returns(const std::vector<PassedSegment>& motion, const Signature& one_return,
                                   const std::string& source);
 
-/// `orbits` returns from equal phases of the curve, integrated, on a uniform mesh; PAR with rho and the durations. Throws
-/// ComputationError where one cannot be integrated.
+/// `orbits` returns from equal phases of the curve, integrated, on a uniform mesh; PAR with rho and the durations.
+/// Throws ComputationError where one cannot be integrated.
 Orbit orbits_from_curve(const HybridSystem& system, const Signature& one_return, const InvariantCurve& curve,
                         const ParameterVector& par, int orbits, int intervals, int collocation);
 

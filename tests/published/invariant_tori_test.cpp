@@ -1,5 +1,5 @@
-// Invariant tori from end to end: born at torus bifurcations of smooth and impacting orbits, from simulation, to grazing
-// and along curves of grazing contact, against closed forms and forward integration.
+// Invariant tori from end to end: born at torus bifurcations of smooth and impacting orbits, from simulation, to
+// grazing and along curves of grazing contact, against closed forms and forward integration.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <filesystem>
@@ -95,16 +95,18 @@ void enter_langford(const Workspace& workspace) {
 
 }  // namespace
 
-TEST_CASE("torus of Langford's system, born at TR: rho in closed form there, 1e5 section points of a simulation on it") {
+TEST_CASE(
+    "torus of Langford's system, born at TR: rho in closed form there, 1e5 section points of a simulation on it") {
   const Workspace workspace;
   enter_langford(workspace);
-  command(workspace, "run langford PAR(f)=0.1");
-  const std::string text = command(workspace,
-                                   "run langford -s langford -o tori IRS=TR1 IPS=182 ISW=-1 ICP=[a,rho] DS=0.02 DSMAX=0.1 "
-                                   "NMX=60 UZR={1:-0.85} HARMTOL=1e-10");
+  command(workspace, "run langford PAR(f)=0.03");
+  const std::string text =
+      command(workspace,
+              "run langford -s langford -o tori IRS=TR1 IPS=182 ISW=-1 ICP=[a,rho] DS=0.02 DSMAX=0.1 "
+              "NMX=60 UZR={-1:0.76} HARMTOL=1e-10");
   const SolutionEntry bifurcation = only(workspace, "langford", "TR");
   const SolutionEntry torus = only(workspace, "tori", "UZ");
-  CHECK(std::abs(torus.parameter(1) - 0.85) < 1e-8);
+  CHECK(std::abs(torus.parameter(1) - 0.76) < 1e-8);
   // The simulation adds 1e-13 a return and forgets it at the rate of the normal multiplier.
   CHECK(largest_distance(tchat::test::system_of<Langford>(), {{1, 1, 1}}, torus, 6, 100000) < 1e-8);
 
@@ -122,9 +124,10 @@ TEST_CASE("torus of Langford's system with the symmetry: the frequency of the ro
   const Workspace workspace;
   enter_langford(workspace);
   command(workspace, "run langford");
-  const std::string text = command(workspace,
-                                   "run langford -s langford -o tori IRS=TR1 IPS=182 ISW=-1 ICP=[a,rho] DS=0.05 DSMAX=0.1 "
-                                   "NMX=14 NPR=1");
+  const std::string text =
+      command(workspace,
+              "run langford -s langford -o tori IRS=TR1 IPS=182 ISW=-1 ICP=[a,rho] DS=0.05 DSMAX=0.1 "
+              "NMX=14 NPR=1");
   CHECK(text.find("the rotation number passes 1/3") != std::string::npos);
   for (const SolutionEntry& solution : workspace.solutions("tori")) {
     const auto orbits = static_cast<int>(solution.states.front().size()) / 3;
@@ -153,4 +156,55 @@ TEST_CASE("torus of an impacting orbit, born at TR, against forward integration 
     // The torus may repel: a few returns only, from a point that the solver knows to its tolerances.
     CHECK(largest_distance(tchat::test::system_of<TwoWalls>(), {{1, 2, 2}, {1, 3, 3}}, torus, 6, 20) < 1e-6);
   }
+}
+
+TEST_CASE("torus in closed form from simulation, to the wall, and along the curve of tori that touch it") {
+  const Workspace workspace;
+  std::filesystem::copy_file(TORUS_LIBRARY, workspace.file("torus.so"));
+  std::filesystem::copy_file(CONSTANTS "/torus/gc.torus", workspace.file("gc.torus"));
+  const auto largest_x = [](double omega) { return 1.0 / (1.0 - 1.0 / std::sqrt(1.0 + omega * omega)); };
+  const std::string text = command(workspace, "simulate torus -c torus --torus found");
+  CHECK(text.find("The motion is quasi-periodic") != std::string::npos);
+  // The curve may be gone round either way.
+  const double golden = 0.5 * (std::sqrt(5.0) - 1.0);
+  const double found = workspace.solutions("found").front().parameter(rho);
+  CHECK(std::min(std::abs(found - golden), std::abs(1.0 - found - golden)) < 1e-9);
+
+  // At the wall the tori are those of 10 NCOL, HARMTOL.
+  command(workspace, "run torus -c torus -s found -o wall ICP=[mu,rho] DS=-0.1 DSMAX=0.5 RL0=1 RL1=10 HARMTOL=1e-10");
+  const SolutionEntry touching = only(workspace, "wall", "GR");
+  CHECK(std::abs(touching.parameter(3) - largest_x(1.0)) < 1e-8);
+  CHECK(touching.internal.at(0) == 2);  // contact
+  CHECK(std::abs(touching.internal.at(3) - 0.5) < 1e-7);
+
+  command(workspace,
+          "resegment q.wall GR1 --to grazing-curve -o curve -p torus ICP=[omega,mu,rho] RL0=0.5 RL1=3 DS=0.1");
+  command(workspace, "run torus -c curve -s curve -o touching NMX=8 NPR=1");
+  int points = 0;
+  for (const SolutionEntry& torus : workspace.solutions("touching")) {
+    CHECK(std::abs(torus.parameter(3) - largest_x(torus.parameter(1))) < 1e-7);
+    ++points;
+  }
+  CHECK(points >= 7);
+}
+
+TEST_CASE("tori: what a user does wrong gets a sentence") {
+  const Workspace workspace;
+  enter_langford(workspace);
+  std::filesystem::copy_file(TORUS_LIBRARY, workspace.file("torus.so"));
+  std::filesystem::copy_file(CONSTANTS "/torus/gc.torus", workspace.file("gc.torus"));
+  command(workspace, "run langford");
+  const auto refused = [&](const std::string& arguments, const std::string& sentence) {
+    const Outcome outcome = workspace.tchat(arguments);
+    INFO(arguments << '\n' << outcome.text());
+    CHECK(outcome.status != 0);
+    CHECK(outcome.text().find(sentence) != std::string::npos);
+  };
+  refused("run langford -s langford -o x IRS=EP1 IPS=182 ISW=-1 ICP=[a,rho]",
+          "begins the torus that is born at a torus");
+  refused("run langford -s langford -o x IRS=TR1 IPS=182 ICP=[a,rho]", "label 2 is no torus");
+  refused("run langford -s langford -o x IRS=TR1 ICP=[rho]", "rho is the rotation number of a torus");
+  refused("run langford -s langford -o x IRS=TR1 IPS=182 ISW=-1 ICP=[a]", "ICP");
+  refused("simulate langford -c langford --torus x PAR(a)=0.5", "");  // settles on the periodic orbit
+  refused("simulate langford -c langford --torus x --dat y", "--dat writes a periodic orbit and --torus a torus");
 }
