@@ -10,6 +10,8 @@
 #include "app/problem_argument.hpp"
 #include "app/simulation_options.hpp"
 #include "simulate/simulate_problem.hpp"
+#include "text/user_error.hpp"
+#include "torus_simulation/simulate_torus.hpp"
 
 namespace tchat {
 
@@ -19,6 +21,13 @@ int do_simulate(const SimulationRequest& request) {
   std::ostream* const progress = ::isatty(STDERR_FILENO) != 0 && !request.quiet ? &std::cerr : nullptr;
   return run_interruptibly([&](const std::function<bool()>& interrupted) {
     return simulate_problem(request, std::cout, std::cerr, interrupted, progress);
+  });
+}
+
+int do_simulate_torus(const SimulationRequest& request, const std::string& torus_name) {
+  std::ostream* const progress = ::isatty(STDERR_FILENO) != 0 && !request.quiet ? &std::cerr : nullptr;
+  return run_interruptibly([&](const std::function<bool()>& interrupted) {
+    return simulate_torus(request, torus_name, std::cout, std::cerr, interrupted, progress);
   });
 }
 
@@ -95,6 +104,15 @@ void add_simulate_command(CLI::App& app, std::function<int()>& chosen) {
           "Poincare sections (identity jump, the same field after it) end no segments of the orbit, unless nothing "
           "else does")
       ->group("Periodic orbit");
+  const auto torus_name = std::make_shared<std::string>();
+  command
+      ->add_option(
+          "--torus", *torus_name,
+          "fit a closed curve to the points where returns of the signature begin, and write the torus as q.NAME2 "
+          "and gc.NAME2 for tchat run [O]")
+      ->expected(0, 1)
+      ->type_name("[NAME2]")
+      ->group("Torus");
   command->add_option("--free", request->parameter, "continuation parameter in gc.NAME2 [ICP(1) of gc.C, else PAR(1)]")
       ->group("Periodic orbit");
   command->add_option("KEY=VALUE", request->overrides,
@@ -113,16 +131,23 @@ void add_simulate_command(CLI::App& app, std::function<int()>& chosen) {
       "  tchat simulate linosc -c impacting -s impacting IRS=PD1 'PAR(alpha)=3.0361' --dat doubled\n"
       "Exit status: 0 simulated (also when events accumulate), 1 a function cannot be evaluated, or --dat without a\n"
       "periodic orbit, 2 bad usage or bad input, 130 or 143 interrupted (files are complete).");
-  command->callback([&chosen, request, exponents, command] {
+  command->callback([&chosen, request, exponents, torus_name, command] {
     request->lyapunov = exponent_count(*command, *exponents, request->overrides);
     request->hand_over = command->count("--dat") > 0;
     if (request->orbit_name.find('=') != std::string::npos) {  // `--dat PAR(1)=2`: no name, an override
       request->overrides.push_back(request->orbit_name);
       request->orbit_name.clear();
     }
-    chosen = [request] {
+    if (torus_name->find('=') != std::string::npos) {
+      request->overrides.push_back(*torus_name);
+      torus_name->clear();
+    }
+    const bool torus = command->count("--torus") > 0;
+    if (torus && request->hand_over)
+      throw UserError("--dat writes a periodic orbit and --torus a torus; a motion is one of them, so give one option");
+    chosen = [request, torus_name, torus] {
       take_source_as_problem(request->name, request->problem);
-      return do_simulate(*request);
+      return torus ? do_simulate_torus(*request, *torus_name) : do_simulate(*request);
     };
   });
 }

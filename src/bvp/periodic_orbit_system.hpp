@@ -16,7 +16,7 @@
 
 namespace tchat {
 
-class PeriodicOrbitSystem final : public RingSystem {
+class PeriodicOrbitSystem : public RingSystem {
  public:
   PeriodicOrbitSystem(const HybridSystem& system, Signature signature, std::vector<int> free_parameters);
 

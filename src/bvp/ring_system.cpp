@@ -35,9 +35,25 @@ void RingSystem::coupling_pattern(int s, CouplingPattern& pattern) const {
   pattern.end(0, conditions, s);
   if (is_contact(s)) pattern.duration(0, conditions, s);
   pattern.globals(0, conditions);
-  pattern.start_components(conditions, (s + 1) % segments());
+  target_pattern(s, conditions, pattern);
   pattern.end(conditions, dimension(), s);
   pattern.globals(conditions, dimension());
+}
+
+void RingSystem::target_pattern(int s, int row, CouplingPattern& pattern) const {
+  pattern.start_components(row, (s + 1) % segments());
+}
+
+void RingSystem::target_value(int s, const Orbit& x, double* target) const {
+  std::copy_n(x.start((s + 1) % segments()), dimension(), target);
+}
+
+double* RingSystem::target_derivatives(int, const Orbit&, double* entries) const {
+  return std::fill_n(entries, dimension(), 1.0);
+}
+
+std::string RingSystem::target_name(int s) const {
+  return fmt::format("at the start of segment {}", (s + 1) % segments() + 1);
 }
 
 void RingSystem::coupling_values(int s, const Orbit& x, double* values) const {
@@ -48,9 +64,10 @@ void RingSystem::coupling_values(int s, const Orbit& x, double* values) const {
   else
     end_values(s, x.end(s), par, values);
   double* connection = values + end_conditions(s);
-  system().value(FunctionKind::jump, v.jump, x.end(s), par, connection);
-  const double* next = x.start((s + 1) % segments());
-  for (int a = 0; a < dimension(); ++a) connection[a] = next[a] - connection[a];
+  value_.resize(static_cast<std::size_t>(std::max(end_conditions(s), dimension())));
+  system().value(FunctionKind::jump, v.jump, x.end(s), par, value_.data());
+  target_value(s, x, connection);
+  for (int a = 0; a < dimension(); ++a) connection[a] -= value_[static_cast<std::size_t>(a)];
 }
 
 /// Columns of derivatives, row by row.
@@ -84,9 +101,9 @@ double* RingSystem::coupling_derivatives(int s, const Orbit& x, double* values, 
 
   system().first(FunctionKind::jump, signature()[static_cast<std::size_t>(s)].jump, x.end(s), x.par.data(),
                  free_parameters(), value_.data(), by_state_.data(), by_parameter_.data());
-  const double* next = x.start((s + 1) % segments());
-  for (int a = 0; a < n; ++a) values[conditions + a] = next[a] - value_[static_cast<std::size_t>(a)];
-  entries = std::fill_n(entries, n, 1.0);
+  target_value(s, x, values + conditions);
+  for (int a = 0; a < n; ++a) values[conditions + a] -= value_[static_cast<std::size_t>(a)];
+  entries = target_derivatives(s, x, entries);
   put(by_state_, n, n, -1.0, entries);
   put(by_parameter_, n, q, -1.0, entries);
   return entries;
@@ -95,8 +112,8 @@ double* RingSystem::coupling_derivatives(int s, const Orbit& x, double* values, 
 std::string RingSystem::coupling_name(int s, int r) const {
   if (r < end_conditions(s)) return end_condition_name(s, r);
   const int jump = signature()[static_cast<std::size_t>(s)].jump;
-  return fmt::format("{} at the start of segment {} minus jump {} ({}) of the end of segment {}",
-                     system().state_name(r - end_conditions(s) + 1), (s + 1) % segments() + 1, jump,
+  return fmt::format("{} {} minus jump {} ({}) of the end of segment {}",
+                     system().state_name(r - end_conditions(s) + 1), target_name(s), jump,
                      system().function_name(FunctionKind::jump, jump), s + 1);
 }
 

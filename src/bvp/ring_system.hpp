@@ -40,6 +40,16 @@ class RingSystem : public DefiningSystem {
   /// What condition r at the end of segment s says, for messages.
   virtual std::string end_condition_name(int s, int r) const = 0;
 
+ protected:
+  // What the jump at the end of segment s has to be equal to (n numbers, linear in the starts of segments): the start
+  // of the next segment, unless orbits are coupled otherwise.
+
+  virtual void target_pattern(int s, int row, CouplingPattern& pattern) const;
+  virtual void target_value(int s, const Orbit& x, double* target) const;
+  /// Derivatives in the order of the pattern; returns the place behind the last one.
+  virtual double* target_derivatives(int s, const Orbit& x, double* entries) const;
+  virtual std::string target_name(int s) const;
+
  private:
   /// May it be divided?
   bool is_contact(int s) const { return contacts_[static_cast<std::size_t>(s)] && end_conditions(s) == 1; }

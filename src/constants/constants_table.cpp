@@ -143,6 +143,10 @@ std::vector<Constant> make_table() {
        one_of({0, 1}), "0 (refuse such a start) or 1 (take an orbit near it, with another value)", "1", ""},
       {"CLSTOP", "end the branch where it comes back to its first point", extension_record, &R::stop_when_closed,
        one_of({0, 1}), "0 (go on, round again) or 1 (end the branch)", "0", ""},
+      {"NHARM", "harmonics that a torus begins with, 0: as the start has, or 7", extension_record, &R::harmonics,
+       range(0, max_orbit_segments), "", "10", "of IPS = 182 and 152"},
+      {"HARMTOL", "size of the last harmonics of a torus, by which their number adapts; 0: it stays", extension_record,
+       &R::harmonic_tolerance, at_least(0), "", "1e-8", "of IPS = 182 and 152"},
       {"PAR", "values of parameters", command_line_record, &R::parameter_values, any(),
        "a finite number for PAR(index) or PAR(name)", "{2: 0.8}", ""},
   };

@@ -95,6 +95,8 @@ struct RunSettings {
   bool stop_at_grazing = true;       ///< GRSTOP
   int grazing_jump = 1;              ///< GRJUMP
   bool stop_when_closed = true;      ///< CLSTOP
+  int harmonics = 0;                 ///< NHARM, of a torus; 0: as the start has
+  double harmonic_tolerance = 1e-7;  ///< HARMTOL, of the last harmonics of a torus; 0: their number stays
   bool start_may_move = false;       ///< ICPMOVE
   std::vector<StopRule> stop_rules;  ///< STOP
   std::vector<HeldValue> held;       ///< HOLD

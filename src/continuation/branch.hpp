@@ -31,6 +31,7 @@ struct BranchPoint {
   double step = 0.0;                    ///< ds of that step, 0 at the start
   std::vector<NamedTestValue> tests;
   std::vector<std::string> details;  ///< of a labelled point: what else its test functions know
+  std::string remark = {};           ///< what its problem type has to say of it, one line or none
   bool labelled() const { return special.type != PointType::ordinary; }
 };
 
@@ -51,11 +52,15 @@ class BranchSink {
   virtual void next_step(int point_number, double ds) = 0;
   /// Something worth a line in the d-file, about the point being computed.
   virtual void note(int point_number, const std::string& text) = 0;
+  /// A point that the step to a point has passed, which is not located.
+  virtual void passed(const LostPoint& point) { note(point.number, point.text); }
   /// Something that the user must hear of: a special point may be missing.
   virtual void lost(const LostPoint& point) { note(point.number, point.text); }
 };
 
 enum class EndReason {
+  outgrown,    ///< it goes on with another discretisation
+  unresolved,  ///< no discretisation within the limits resolves what follows
   max_points,
   parameter_bound,
   measure_bound,

@@ -88,15 +88,20 @@ ContinuationRun::ContinuationRun(PathFollower& follower, const DefiningSystem& s
       sink_(sink),
       search_(follower, system, with_bounds(std::move(tests), settings_), location_settings(settings_)),
       step_(settings_.step),
+      trend_(system.orbits()),
       closed_(follower, system, has_fixed_phase(system, settings_)) {}
 
 BranchSummary ContinuationRun::run(PathPoint start) {
   here_ = std::move(start);
   next_ = {here_, 0.0, search_.begin(here_)};
+  number_ = settings_.first_number;
   SpecialPoint special;
   if (settings_.label_start) special.type = PointType::end;
   closed_.begin(here_, settings_.step.initial);
-  accept(end_conditions(special));
+  if (number_ > 1)
+    resume();
+  else
+    accept(end_conditions(special));
 
   while (!ended_) {
     prepare_next_step();
@@ -113,9 +118,18 @@ BranchSummary ContinuationRun::run(PathPoint start) {
     ++number_;
     accept(end_conditions(curve_end(special)));
     if (!limited_) step_.converged(newton_.iterations, number_);
+    if (!ended_ && settings_.outgrown && settings_.outgrown(here_.orbit)) end(EndReason::outgrown, "");
   }
   if (settings_.periodic) summary_.remark = trend_.growing_period(settings_.principal_name);
   return summary_;
+}
+
+/// From a point that was recorded on another discretisation.
+void ContinuationRun::resume() {
+  accepted_ = here_;
+  accepted_data_ = next_.data;
+  trend_.add(here_.orbit, here_.orbit.par(settings_.principal - 1));
+  summary_.points = number_;
 }
 
 /// Where the step to next_ passes the first point of the branch: next_ is moved to just beyond it, so that special
@@ -178,7 +192,8 @@ SpecialPoint ContinuationRun::advance() {
 /// Has the step gone through an equilibrium, to the same orbits run through from another point? Then next_ is moved
 /// back to short of it. Whatever changes sign there is hardly located, for Newton's matrix is singular.
 bool ContinuationRun::leads_through_point() {
-  if (!settings_.periodic || deviation_cosine(here_.orbit, next_.point.orbit) > opposite) return false;
+  if (!settings_.periodic || deviation_cosine(here_.orbit, next_.point.orbit, system_.orbits()) > opposite)
+    return false;
   constexpr int max_steps = 30;
   PathPoint near = here_;
   PathPoint trial = here_;
@@ -186,10 +201,10 @@ bool ContinuationRun::leads_through_point() {
   double share = 0.9;  // of the way to the point
   double length = 0.0;
   for (int k = 0; k < max_steps && !trend_.has_shrunk(near.orbit, shrunk_enough); ++k) {
-    const double ds = -share / deviation_growth(near.orbit, near.tangent.states);
+    const double ds = -share / deviation_growth(near.orbit, near.tangent.states, system_.orbits());
     if (!(ds * next_.ds > 0.0)) break;
     newton = follower_.step(near, ds, trial);
-    if (newton.converged() && deviation_cosine(near.orbit, trial.orbit) > -opposite) {
+    if (newton.converged() && deviation_cosine(near.orbit, trial.orbit, system_.orbits()) > -opposite) {
       std::swap(near, trial);
       length += ds;
     } else {
@@ -213,6 +228,13 @@ SpecialPoint ContinuationRun::shrunk_orbit(SpecialPoint special, bool through_po
   const bool turns =
       through_point || special.type == PointType::fold || special.kind.kind == UserPointKind::impact_velocity;
   if (!trend_.has_shrunk(next_.point.orbit, turns ? shrunk_where_located : shrunk)) return special;
+  if (system_.orbits() > 1) {
+    end(EndReason::equilibrium,
+        fmt::format(
+            "the torus has shrunk to a periodic orbit, {}: its torus bifurcation, where the branch of tori ends",
+            state_text(system_.system(), next_.point.orbit.start(0))));
+    return {PointType::torus, {}, false, summary_.detail};
+  }
   const std::optional<double> omega = hopf_frequency(system_, next_.point.orbit);
   end(EndReason::equilibrium,
       fmt::format("the orbit has shrunk to a point, {}: an equilibrium, where the branch of periodic orbits ends{}",
@@ -283,6 +305,8 @@ SpecialPoint ContinuationRun::end_conditions(SpecialPoint special) {
     end(EndReason::max_points, fmt::format("NMX = {}", settings_.max_points));
   else if (settings_.interrupted && settings_.interrupted())
     end(EndReason::interrupted, "");
+  else if (const std::string why = settings_.unresolved ? settings_.unresolved(here_.orbit) : ""; !why.empty())
+    end(EndReason::unresolved, why);
   if (is_special) return special;
   if (ended_)
     special.type = PointType::end;
@@ -294,11 +318,25 @@ SpecialPoint ContinuationRun::end_conditions(SpecialPoint special) {
 
 /// here_ with what the search knows of it; kept, for the steps from it move it to another mesh.
 void ContinuationRun::accept(const SpecialPoint& special) {
+  tell_passed();
   accepted_ = here_;
   accepted_data_ = next_.data;
   if (special.type != PointType::ordinary) accepted_data_.details = search_.details(here_, accepted_data_);
   trend_.add(here_.orbit, here_.orbit.par(settings_.principal - 1));
   record(special, accepted_data_);
+}
+
+/// Between the last accepted point and here_.
+void ContinuationRun::tell_passed() {
+  for (std::size_t i = 0; i < search_.tests().size() && !accepted_data_.tests.empty(); ++i) {
+    const TestFunction& test = *search_.tests()[i];
+    const int before = accepted_data_.tests[i].sign;
+    const int now = next_.data.tests[i].sign;
+    if (!test.is_told_only() || before * now >= 0) continue;
+    const auto parameter = [this](const PathPoint& point) { return point.orbit.par(settings_.principal - 1); };
+    const TestedPoint at = search_.tested(here_, next_.data);
+    sink_.passed({number_, test.classify(at, now > 0).description, parameter(accepted_), parameter(here_)});
+  }
 }
 
 void ContinuationRun::record(const SpecialPoint& special, const PointData& data) {
@@ -323,6 +361,7 @@ void ContinuationRun::record(const SpecialPoint& special, const PointData& data)
   for (std::size_t i = 0; i < search_.tests().size(); ++i)
     point.tests.push_back({search_.tests()[i]->name(), data.tests[i].value});
   point.details = data.details;
+  if (settings_.remark) point.remark = settings_.remark(here_.orbit);
   summary_.points = number_;
   summary_.inadmissible_points += !violations.empty();
   summary_.multipliers_computed = settings_.multipliers;

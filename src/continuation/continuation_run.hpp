@@ -34,6 +34,13 @@ struct ContinuationSettings {
   std::function<bool(const SpecialPoint&)> stop_at;
   std::vector<std::vector<int>> monitored;  ///< event functions monitored on each segment
   std::function<bool()> interrupted;        ///< asked after every point
+  /// A line about a point that its problem type has to say, or "".
+  std::function<std::string(const Orbit&)> remark = {};
+  /// Asked after every point: true ends the run there, for it is to go on with another discretisation.
+  std::function<bool(const Orbit&)> outgrown = {};
+  /// Asked after every point: why the branch ends there, or "".
+  std::function<std::string(const Orbit&)> unresolved = {};
+  int first_number = 1;  ///< of the start; one that goes on with another discretisation was recorded before
 };
 
 /// Outside of the bounds, and not just by the accuracy of a located point (a user value may be a bound).
@@ -46,8 +53,13 @@ class ContinuationRun {
 
   /// `start` is converged, with its tangent oriented for DS > 0.
   BranchSummary run(PathPoint start);
+  /// Where it has ended.
+  const PathPoint& last() const { return here_; }
+  /// The next step that it would have tried.
+  double next_length() const { return step_.value(); }
 
  private:
+  void resume();
   bool take_step();
   std::optional<double> come_back();
   SpecialPoint arrive(SpecialPoint special, double length);
@@ -56,6 +68,7 @@ class ContinuationRun {
   SpecialPoint shrunk_orbit(SpecialPoint special, bool through_point);
   SpecialPoint curve_end(SpecialPoint special);
   SpecialPoint end_conditions(SpecialPoint special);
+  void tell_passed();
   void record(const SpecialPoint& special, const PointData& data);
   void accept(const SpecialPoint& special);
   void end(EndReason reason, std::string detail);

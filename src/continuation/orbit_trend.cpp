@@ -14,27 +14,38 @@ constexpr double growth = 1.5;
 /// A state whose range is a smaller share of it does not move.
 constexpr double rounding = 1e-10;
 
-Eigen::MatrixXd deviation(const Eigen::MatrixXd& states) { return states.colwise() - states.rowwise().mean(); }
+Eigen::MatrixXd deviation(const Eigen::MatrixXd& states, int orbits) {
+  if (orbits == 1) return states.colwise() - states.rowwise().mean();
+  const Eigen::Map<const Eigen::MatrixXd> returns(states.data(), states.size() / orbits, orbits);
+  Eigen::MatrixXd result(states.rows(), states.cols());
+  Eigen::Map<Eigen::MatrixXd>(result.data(), returns.rows(), orbits) = returns.colwise() - returns.rowwise().mean();
+  return result;
+}
 
 }  // namespace
 
 Eigen::VectorXd state_ranges(const Orbit& x) { return x.states.rowwise().maxCoeff() - x.states.rowwise().minCoeff(); }
 
-double deviation_cosine(const Orbit& x, const Orbit& y) {
-  const Eigen::MatrixXd a = deviation(x.states);
-  const Eigen::MatrixXd b = deviation(y.states);
+Eigen::VectorXd deviation_ranges(const Orbit& x, int orbits) {
+  const Eigen::MatrixXd d = deviation(x.states, orbits);
+  return d.rowwise().maxCoeff() - d.rowwise().minCoeff();
+}
+
+double deviation_cosine(const Orbit& x, const Orbit& y, int orbits) {
+  const Eigen::MatrixXd a = deviation(x.states, orbits);
+  const Eigen::MatrixXd b = deviation(y.states, orbits);
   const double sizes = a.norm() * b.norm();
   return sizes > 0.0 ? a.cwiseProduct(b).sum() / sizes : 0.0;
 }
 
-double deviation_growth(const Orbit& x, const Eigen::MatrixXd& direction) {
-  const Eigen::MatrixXd a = deviation(x.states);
-  return a.cwiseProduct(deviation(direction)).sum() / a.squaredNorm();
+double deviation_growth(const Orbit& x, const Eigen::MatrixXd& direction, int orbits) {
+  const Eigen::MatrixXd a = deviation(x.states, orbits);
+  return a.cwiseProduct(deviation(direction, orbits)).sum() / a.squaredNorm();
 }
 
 void OrbitTrend::add(const Orbit& x, double parameter) {
   const bool first = largest_.size() == 0;
-  const Eigen::VectorXd ranges = state_ranges(x);
+  const Eigen::VectorXd ranges = deviation_ranges(x, orbits_);
   const Eigen::VectorXd sizes = x.states.cwiseAbs().rowwise().maxCoeff();
   largest_ = first ? ranges : Eigen::VectorXd(largest_.cwiseMax(ranges));
   sizes_ = first ? sizes : Eigen::VectorXd(sizes_.cwiseMax(sizes));
@@ -44,7 +55,7 @@ void OrbitTrend::add(const Orbit& x, double parameter) {
 }
 
 bool OrbitTrend::has_shrunk(const Orbit& x, double share) const {
-  const Eigen::VectorXd ranges = state_ranges(x);
+  const Eigen::VectorXd ranges = deviation_ranges(x, orbits_);
   bool moves = false;
   for (Eigen::Index i = 0; i < largest_.size(); ++i) {
     if (largest_(i) <= rounding * (1.0 + sizes_(i))) continue;

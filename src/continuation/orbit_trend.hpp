@@ -1,4 +1,8 @@
-/// What becomes of the orbit along a branch: does it shrink to a point, does its period grow without bound?
+/// What becomes of the orbit along a branch: does it shrink to a point, or a torus to a periodic orbit, does its period
+/// grow without bound?
+///
+/// Of the `orbits` returns of a torus (bvp/torus_system.hpp) the deviation of a node is that from its mean over the
+/// returns: it vanishes on a periodic orbit, run through so many times.
 #pragma once
 
 #include <string>
@@ -10,16 +14,21 @@ namespace tchat {
 /// Largest minus least value of each state over the orbit, n entries.
 Eigen::VectorXd state_ranges(const Orbit& x);
 
+/// The same of the states' deviations.
+Eigen::VectorXd deviation_ranges(const Orbit& x, int orbits);
+
 /// Cosine of the angle between the states' deviations from their means, nodes being equal; both orbits on one mesh.
 /// About -1 where a step has led through an equilibrium: beyond it the branch consists of the same orbits, begun half a
 /// turn later.
-double deviation_cosine(const Orbit& x, const Orbit& y);
+double deviation_cosine(const Orbit& x, const Orbit& y, int orbits = 1);
 /// What a step of unit length along `direction`, a vector of states, adds to x's deviation from its mean, as a share of
 /// the deviation, in its own direction.
-double deviation_growth(const Orbit& x, const Eigen::MatrixXd& direction);
+double deviation_growth(const Orbit& x, const Eigen::MatrixXd& direction, int orbits = 1);
 
 class OrbitTrend {
  public:
+  explicit OrbitTrend(int orbits = 1) : orbits_(orbits) {}
+
   /// An accepted point of the branch; `parameter` is the principal one.
   void add(const Orbit& x, double parameter);
 
@@ -34,6 +43,7 @@ class OrbitTrend {
     double parameter = 0.0;
     double period = 0.0;
   };
+  int orbits_;
   Eigen::VectorXd largest_;  // ranges
   Eigen::VectorXd sizes_;    // largest moduli of the states
   Place still_;              // since when the parameter has stood still

@@ -14,6 +14,7 @@
 #include "special_points/bifurcation_tests.hpp"
 #include "special_points/sliding_bifurcation.hpp"
 #include "stability/equilibrium_eigenvalues.hpp"
+#include "stability/torus_multipliers.hpp"
 
 namespace tchat {
 
@@ -115,8 +116,9 @@ double SpecialPointSearch::signed_distance(const PathPoint& at) const {
 PointData SpecialPointSearch::evaluate(PathPoint& at) {
   PointData data;
   if (settings_.multipliers) {
-    data.multipliers = system_.is_point() ? equilibrium_eigenvalues(system_, at.orbit)
-                                          : floquet_.compute(follower_.condensed(), at.orbit);
+    data.multipliers = system_.is_point()     ? equilibrium_eigenvalues(system_, at.orbit)
+                       : system_.orbits() > 1 ? torus_multipliers(follower_.condensed(), at.orbit)
+                                              : floquet_.compute(follower_.condensed(), at.orbit);
     const OrbitCondition* condition = follower_.condition();
     const std::optional<int> kept = condition != nullptr ? condition->kept_multiplier() : std::nullopt;
     if (kept) put_critical(data.multipliers, *kept);
@@ -178,7 +180,8 @@ bool SpecialPointSearch::same_branch(const PathPoint& here, const PathPoint& nex
 std::vector<std::size_t> SpecialPointSearch::changed(const PointData& end) const {
   std::vector<std::size_t> result;
   for (std::size_t i = 0; i < tests_.size(); ++i)
-    if (end.tests[i].value && signs_[i] != 0 && end.tests[i].sign == -signs_[i]) result.push_back(i);
+    if (!tests_[i]->is_told_only() && end.tests[i].value && signs_[i] != 0 && end.tests[i].sign == -signs_[i])
+      result.push_back(i);
   return result;
 }
 

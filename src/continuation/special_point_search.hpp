@@ -58,6 +58,8 @@ class SpecialPointSearch {
 
   /// What the test functions know of `at`, whose linearisation the follower holds.
   std::vector<std::string> details(const PathPoint& at, const PointData& data) const;
+  /// What test functions see of a point; `data` must outlive it.
+  TestedPoint tested(const PathPoint& at, const PointData& data) const;
 
  private:
   /// What came of the search for a zero.
@@ -76,7 +78,6 @@ class SpecialPointSearch {
 
   double signed_distance(const PathPoint& at) const;
   PointData evaluate_again(PathPoint& at);  // with a new linearisation
-  TestedPoint tested(const PathPoint& at, const PointData& data) const;
   std::vector<std::size_t> changed(const PointData& end) const;
   Candidate searched_step(const PathPoint& here, Candidate& next);
   std::optional<SpecialPoint> advance_to_first_zero(const PathPoint& here, Candidate& next, NewtonResult& newton,

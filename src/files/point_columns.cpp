@@ -49,6 +49,12 @@ ProblemNames ProblemNames::of(const HybridSystem& system, const std::vector<std:
   return names;
 }
 
+void ProblemNames::set_parameter(int k, const std::string& name) {
+  while (parameters.size() < static_cast<std::size_t>(k))
+    parameters.push_back(fmt::format("PAR({})", parameters.size() + 1));
+  parameters[static_cast<std::size_t>(k) - 1] = name;
+}
+
 std::string ProblemNames::state(int k) const { return name_at(states, k, "U"); }
 
 std::string ProblemNames::parameter(int k) const { return name_at(parameters, k, "PAR"); }

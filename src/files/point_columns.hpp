@@ -21,6 +21,8 @@ struct ProblemNames {
   static ProblemNames of(const HybridSystem& system);
   /// With the monitors of a run at PAR(first_monitor), ...
   static ProblemNames of(const HybridSystem& system, const std::vector<std::string>& monitors);
+  /// Of a parameter that is not the problem's own.
+  void set_parameter(int k, const std::string& name);
   /// The name, or U(k), PAR(k) beyond the problem's own.
   std::string state(int k) const;
   std::string parameter(int k) const;

@@ -110,6 +110,7 @@ int HybridSystem::count(FunctionKind kind) const {
 std::string HybridSystem::state_name(int k) const { return name_or(table_->state_names, dimension(), k, "U({})"); }
 
 std::string HybridSystem::parameter_name(int k) const {
+  if (k == rotation_parameter && parameters() < k) return rotation_name;
   return name_or(table_->parameter_names, parameters(), k, "PAR({})");
 }
 
@@ -132,7 +133,7 @@ int HybridSystem::parameter_index(const std::string& name) const {
   const char* const* const names = table_->parameter_names;
   for (int k = 1; names != nullptr && k <= parameters(); ++k)
     if (names[k - 1] != nullptr && name == names[k - 1]) return k;
-  return 0;
+  return name == rotation_name && parameters() < rotation_parameter ? rotation_parameter : 0;
 }
 
 std::optional<std::vector<IndexVector>> HybridSystem::successors(const IndexVector& from, const double* x,

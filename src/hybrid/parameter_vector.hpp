@@ -9,6 +9,11 @@ namespace tchat {
 inline constexpr int first_duration = 61;
 inline constexpr int parameter_length = 256;
 inline constexpr int max_segments = 64;
+/// An orbit that is computed may have as many: after a period doubling, or the orbits of a torus.
+inline constexpr int max_orbit_segments = 2 * max_segments;
+/// The rotation number of a torus (bvp/torus_system.hpp), for problems with fewer parameters of their own.
+inline constexpr int rotation_parameter = 60;
+inline constexpr const char* rotation_name = "rho";
 /// Values of monitors (bvp/monitor.hpp) stand behind the durations while a run lasts; no file has them as PAR.
 inline constexpr int first_monitor = 189;
 inline constexpr int max_monitors = 32;

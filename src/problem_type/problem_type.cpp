@@ -91,6 +91,11 @@ bool has_ring(int number) {
   return type == nullptr || type->facts().has_ring;
 }
 
+bool is_torus(int number) {
+  const ProblemType* type = nearest_problem_type(number, 1);
+  return type != nullptr && type->facts().is_torus;
+}
+
 bool is_point(int number) {
   const ProblemType* type = nearest_problem_type(number, 1);
   return type != nullptr && type->facts().is_point;

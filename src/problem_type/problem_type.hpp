@@ -17,6 +17,8 @@ class HybridSystem;
 class OrbitCondition;
 class TestFunction;
 struct BranchSetup;
+struct Orbit;
+struct PathPoint;
 struct RunSettings;
 struct SelectedStart;
 
@@ -36,6 +38,7 @@ struct ProblemFacts {
   const char* title;      ///< what IPS and ISW say together
   int free_parameters;    ///< problem parameters that are free, durations not counted; 0: the settings decide
   bool has_ring = true;   ///< events end the segments, jumps tie them in a ring, every duration is free
+  bool is_torus = false;  ///< an invariant torus: the signature is one return, of which there are several orbits
   bool is_point = false;  ///< an equilibrium: one state, no duration; eigenvalues take the place of multipliers
   StabilityMeaning stability = StabilityMeaning::orbit;
   bool keeps_contact = false;    ///< a segment ends in grazing contact (GCSEGTYP = 2); GCIPSI lists n of xi_n
@@ -65,6 +68,18 @@ class ProblemType {
   /// Everything that a branch needs before it is computed. Throws UserError when it cannot begin at the start,
   /// ComputationError when no first point is found.
   virtual BranchSetup set_up(const HybridSystem& system, const RunSettings& settings, const SelectedStart& start) const;
+  /// A line about each point, or "".
+  virtual std::string remark(const BranchSetup&, const Orbit&) const { return {}; }
+
+  // Where a branch needs another discretisation than it began with, asked at each of its points.
+
+  /// Is the branch to go on with another one?
+  virtual bool outgrown(const BranchSetup&, const Orbit&) const { return false; }
+  /// That one, at the point where the branch was left; without a follower where no solution is found on it.
+  virtual BranchSetup refined(const BranchSetup& setup, const PathPoint& last) const;
+  /// Why the branch ends here, for want of one within the limits; "".
+  virtual std::string unresolved(const BranchSetup&, const Orbit&) const { return {}; }
+
   /// The test functions of a branch.
   virtual std::vector<std::unique_ptr<TestFunction>> tests(const DefiningSystem& defining,
                                                            const RunSettings& settings) const = 0;
@@ -101,6 +116,8 @@ bool is_own_problem_type(int number);
 bool is_shared_problem_type(int number);
 /// Do events end the segments and jumps tie them?
 bool has_ring(int number);
+/// Is every solution an invariant torus: orbits of one return each, as many as the solution has segments for?
+bool is_torus(int number);
 /// Is every solution one state, an equilibrium?
 bool is_point(int number);
 /// Do conditions of the problem's own tie the segments?
@@ -128,6 +145,9 @@ struct ProblemId {
 inline constexpr ProblemId periodic_orbit{180, 1};
 inline constexpr ProblemId branch_switch{180, -1};
 inline constexpr ProblemId grazing_orbit{150, 1};
+inline constexpr ProblemId invariant_torus{182, 1};
+inline constexpr ProblemId torus_birth{182, -1};
+inline constexpr ProblemId grazing_torus{152, 1};
 inline constexpr ProblemId boundary_value{4, 1};
 inline constexpr ProblemId equilibrium{1, 1};
 

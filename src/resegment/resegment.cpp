@@ -23,6 +23,7 @@
 #include "resegment/branch_side.hpp"
 #include "resegment/data_text.hpp"
 #include "resegment/empty_segments.hpp"
+#include "resegment/grazing_torus.hpp"
 #include "resegment/lost_contacts.hpp"
 #include "resegment/new_orbit.hpp"
 #include "resegment/new_settings.hpp"
@@ -249,6 +250,55 @@ ProblemSizes sizes_for(const ResegmentRequest& request, const RunSettings& setti
   return sizes;
 }
 
+/// Where things are written.
+struct Outputs {
+  std::string solutions, constants;
+};
+
+Outputs outputs_of(const std::string& name) {
+  const std::string solutions = output_path('q', name);
+  return {solutions, std::filesystem::path(solutions)
+                         .replace_filename("gc." + std::filesystem::path(name).filename().string())
+                         .string()};
+}
+
+/// The start of a curve of grazing tori: nothing is cut.
+std::vector<std::string> begin_grazing_tori(const ResegmentRequest& request, const std::string& path,
+                                            const SolutionFile& file, const std::string& constants,
+                                            std::ostream& screen) {
+  std::vector<std::string> warnings = file.warnings;
+  bool named_parameters = false;
+  RunSettings given = read_constants_file(constants, &warnings, names_to_come(named_parameters));
+  const LabelledSolution& solution = find_solution(file.solutions, read_label(request.label), path);
+  const std::string name = fmt::format("label {} of {}", solution.label, path);
+  if (request.kind != ResegmentKind::grazing_curve)
+    throw UserError(
+        fmt::format("{} is a torus, and its signature one return: from it a curve of grazing tori begins "
+                    "(--to grazing-curve), and nothing else",
+                    name));
+  if (request.data)
+    throw UserError(fmt::format("{} is a torus, which a .dat file does not hold; leave --dat out", name));
+  const ProblemLibrary library(resolve_plugin(request.problem.value_or(run_path(path))),
+                               [&] { return problem_sizes(given); });
+  const HybridSystem& system = library.system();
+  if (named_parameters) given = read_constants_file(constants, nullptr, names_of(system));
+  RunSettings settings = grazing_torus_settings(given, solution, name, system, is_overridden(request.overrides, "ICP"));
+  apply_overrides(settings, request.overrides, &warnings, names_of(system));
+  const auto further = check_settings_against(system, settings, {"the new constants", request.overrides});
+  warnings.insert(warnings.end(), further.begin(), further.end());
+  const Outputs outputs = outputs_of(request.output);
+  refuse_same_file(outputs.solutions, path, "q-file");
+  refuse_same_file(outputs.constants, constants, "constants file");
+  replace_solution_file(request.output, format_solution(grazing_torus_start(solution)));
+  write_whole_file(outputs.constants, keyword_text(settings));
+  screen << fmt::format(
+      "{}: a torus in grazing contact, IPS = {} from it on.\n{} and {} written; next: tchat run {} -c {} "
+      "-s {} -o {}_branch\n",
+      name, settings.problem_type, outputs.solutions, outputs.constants,
+      problem_arguments(request.problem.value_or(run_path(path))), request.output, request.output, request.output);
+  return warnings;
+}
+
 }  // namespace
 
 std::vector<std::string> resegment(const ResegmentRequest& asked, std::ostream& screen) {
@@ -257,6 +307,8 @@ std::vector<std::string> resegment(const ResegmentRequest& asked, std::ostream& 
   const std::string path = resolve_solution_path(request.solutions);
   const SolutionFile file = read_solution_file(path);
   const std::string constants = constants_of_run(request.constants, path);
+  if (is_torus(find_solution(file.solutions, read_label(request.label), path).problem_type))
+    return begin_grazing_tori(request, path, file, constants, screen);
   bool named_parameters = false;
   LabelledOrbit labelled = read_source(request, path, constants, file, warnings, names_to_come(named_parameters));
 
@@ -291,11 +343,7 @@ std::vector<std::string> resegment(const ResegmentRequest& asked, std::ostream& 
     settings.step = std::abs(settings.step);  // on in the direction that is kept
   const std::string side = target.birth.is_any() ? choose_side(request, system, target, start, settings) : "";
 
-  const std::string solutions_out = output_path('q', request.output);
-  const std::string constants_out =
-      std::filesystem::path(solutions_out)
-          .replace_filename("gc." + std::filesystem::path(request.output).filename().string())
-          .string();
+  const auto [solutions_out, constants_out] = outputs_of(request.output);
   refuse_same_file(solutions_out, path, "q-file");
   refuse_same_file(constants_out, constants, "constants file");
   const std::string start_out = request.data ? request.output + ".dat" : solutions_out;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "bvp/bordered_problem.hpp"
 #include "constants/settings_type.hpp"
@@ -61,6 +62,10 @@ BranchSetup ProblemType::set_up(const HybridSystem& system, const RunSettings& s
       make_condition(*setup.defining, start), branch_monitors(*setup.defining, settings, start.start.orbit));
   setup.start = first_point(*setup.follower, *setup.defining, start, settings);
   return setup;
+}
+
+BranchSetup ProblemType::refined(const BranchSetup&, const PathPoint&) const {
+  throw std::logic_error("this problem type has one discretisation");
 }
 
 BranchSetup set_up_branch(const HybridSystem& system, const RunSettings& settings, const SelectedStart& selected) {

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "bvp/defining_system.hpp"
 #include "constants/run_settings.hpp"
@@ -20,6 +21,8 @@ struct BranchSetup {
   std::unique_ptr<DefiningSystem> defining = nullptr;
   std::unique_ptr<PathFollower> follower = nullptr;
   FirstPoint start = {};
+  /// What is written as the constants of the run where these are not its settings: of a torus those of one return.
+  std::optional<RunSettings> constants = {};
 };
 
 /// Throws UserError when the start is not of a kind that the branch mode can begin at, ComputationError when no first

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "constants/settings_type.hpp"
 #include "continuation/solution_measure.hpp"
 #include "files/diagnostics_file.hpp"
 #include "files/labelled_solution.hpp"
@@ -20,6 +21,12 @@
 namespace tchat {
 
 namespace {
+
+ProblemNames names_of_run(const HybridSystem& system, const RunSettings& settings) {
+  ProblemNames names = ProblemNames::of(system, settings.monitors);
+  if (is_torus(settings.problem_type)) names.set_parameter(rotation_parameter, rotation_name);
+  return names;
+}
 
 /// "" when all multipliers are known.
 std::string undetermined_text(const FloquetMultipliers& multipliers) {
@@ -46,7 +53,7 @@ BranchWriter::BranchWriter(const HybridSystem& system, const CollocationRule& ru
       files_(files),
       screen_(screen),
       progress_(terminal),
-      names_(ProblemNames::of(system, setup_.settings.monitors)),
+      names_(names_of_run(system, setup_.settings)),
       columns_(point_columns(setup_.settings, names_)),
       weights_(state_weights(setup_.settings)) {}
 
@@ -198,6 +205,7 @@ void BranchWriter::show(const BranchPoint& point, const PointLine& line) {
   }
   if (!line.admissible && (change || point.number == 1))
     for (const Violation& violation : point.violations) *screen_ << "       " << describe(violation, system_) << '\n';
+  if (point.labelled() && !point.remark.empty()) *screen_ << "       " << point.remark << '\n';
   if (point.labelled() && point.special.type != PointType::regular && !point.details.empty()) show_contact(point);
   last_admissible_ = line.admissible;
   *screen_ << std::flush;
@@ -206,15 +214,15 @@ void BranchWriter::show(const BranchPoint& point, const PointLine& line) {
 /// With the direction in which the run goes: a restart with DS > 0 goes on whatever the sign of DS is here.
 void BranchWriter::write_solution(const BranchPoint& point, const PointLine& line) {
   const Orbit& x = point.path.orbit;
-  const std::vector<int> free_parameters = [&] {
-    std::vector<int> list;
-    for (const int k : setup_.active_parameters)
-      if (!is_duration(k, x.shape.segments)) list.push_back(k);
-    return list;
-  }();
+  std::vector<int> active = setup_.active_parameters;
+  for (int s = segment_count(setup_.settings); s < x.shape.segments; ++s)  // the further orbits of a torus
+    active.push_back(first_duration + s);
+  std::vector<int> free_parameters;
+  for (const int k : active)
+    if (!is_duration(k, x.shape.segments)) free_parameters.push_back(k);
   OrbitVector direction = point.path.tangent;
   if (setup_.settings.step < 0.0) direction.scale(-1.0);  // the branch goes against its tangents
-  LabelledSolution solution = labelled_solution(x, direction, free_parameters, setup_.active_parameters);
+  LabelledSolution solution = labelled_solution(x, direction, free_parameters, active);
   solution.branch = line.branch;
   solution.point = line.point;
   solution.type = line.type;
@@ -240,6 +248,7 @@ void BranchWriter::write_diagnostics(const BranchPoint& point, const PointLine& 
   }
   text += format_diagnostics_point(line, columns_);
   if (!point.special.description.empty()) text += format_note(line.branch, line.point, point.special.description);
+  if (!point.remark.empty()) text += format_note(line.branch, line.point, point.remark);
   for (const std::string& details : point.details) text += format_note(line.branch, line.point, details);
   for (const Violation& violation : point.violations)
     text += format_note(line.branch, line.point, "Inadmissible: " + describe(violation, system_));
@@ -270,6 +279,14 @@ void BranchWriter::next_step(int point_number, double ds) {
 
 void BranchWriter::note(int point_number, const std::string& text) {
   files_.write_diagnostics(format_note(setup_.branch, point_number, text));
+}
+
+void BranchWriter::passed(const LostPoint& point) {
+  note(point.number, point.text);
+  if (screen_ == nullptr) return;
+  progress_.clear();
+  *screen_ << fmt::format("       {} = {:.8g} to {:.8g}: {}\n", columns_.front().name, point.from, point.to, point.text)
+           << std::flush;
 }
 
 void BranchWriter::lost(const LostPoint& point) {

@@ -181,15 +181,48 @@ class Direction {
     continuation_.stop_at = make_stop_rule(setup_.settings);
     writer.begin_section({branch_, continuation_.step.initial, std::move(correction)});
     for (const std::string& note : notes) writer.note(1, note);
-    ContinuationRun run(*setup_.follower, *setup_.defining, continuation_,
-                        setup_.type->tests(*setup_.defining, setup_.settings), writer);
-    BranchSummary summary = run.run(setup_.start.point);
+    BranchSummary summary = follow_on(setup_, setup_.start.point, writer);
     summary.without_contact = setup_.type->facts().stability == StabilityMeaning::without_contact;
     writer.clear_progress();
     return summary;
   }
 
  private:
+  /// As far as it goes, and on where it needs another discretisation, which a torus does. Where there is none on which
+  /// the torus is found, as at a resonance, it goes on for some points before it is asked again.
+  BranchSummary follow_on(const BranchSetup& setup, const PathPoint& start, BranchWriter& writer, int patience = 0) {
+    constexpr int points_before_next = 5;
+    const ProblemType& type = *setup.type;
+    continuation_.monitored = continuation_settings(setup.settings).monitored;
+    continuation_.remark = [&](const Orbit& x) { return type.remark(setup, x); };
+    continuation_.outgrown = [&, patience](const Orbit& x) mutable {
+      return --patience < 0 && type.outgrown(setup, x);
+    };
+    continuation_.unresolved = [&](const Orbit& x) { return type.unresolved(setup, x); };
+    ContinuationRun run(*setup.follower, *setup.defining, continuation_, type.tests(*setup.defining, setup.settings),
+                        writer);
+    const BranchSummary summary = run.run(start);
+    if (summary.reason != EndReason::outgrown) return summary;
+    const BranchSetup next = type.refined(setup, run.last());
+    writer.note(summary.points, next.start.note);
+    continuation_.step.initial = run.next_length();
+    continuation_.first_number = summary.points;
+    continuation_.label_start = false;
+    return joined(summary, next.follower ? follow_on(next, next.start.point, writer)
+                                         : follow_on(setup, run.last(), writer, points_before_next));
+  }
+
+  static BranchSummary joined(const BranchSummary& before, BranchSummary after) {
+    after.inadmissible_points += before.inadmissible_points;
+    after.unstable_points += before.unstable_points;
+    after.multipliers_computed = before.multipliers_computed;
+    after.has_trivial = before.has_trivial;
+    after.worst_structural = std::max(before.worst_structural, after.worst_structural);
+    after.worst_estimated_error = std::max(before.worst_estimated_error, after.worst_estimated_error);
+    after.lost.insert(after.lost.begin(), before.lost.begin(), before.lost.end());
+    return after;
+  }
+
   const BranchSetup& setup_;
   ContinuationSettings continuation_;
   int branch_;
@@ -217,14 +250,14 @@ int run_problem(const RunRequest& request, std::ostream& screen, std::ostream& w
   const BranchSetup setup = first_branch(problem, selected, reports);
   const ContinuationSettings continuation = continuation_of(request, setup, selected, system, interrupted);
 
-  files.open(positional_text(setup.settings));  // only now are files touched
+  const RunSettings constants = setup.constants.value_or(setup.settings);
+  files.open(positional_text(constants));  // only now are files touched
   if (reports.table != nullptr && setup.start.stored_direction)
     *reports.table << direction_text(setup.settings.step, selected);
   const int last_label = request.append ? std::max(files.last_label(), 0) : selected.last_label;
-  BranchWriter writer(
-      system, setup.follower->condensed().rule(),
-      {setup.settings, active_parameters(setup.settings), setup.type->facts().curve, selected.branch, last_label},
-      files, reports.table, reports.table != nullptr ? progress : nullptr);
+  BranchWriter writer(system, setup.follower->condensed().rule(),
+                      {constants, active_parameters(constants), setup.type->facts().curve, selected.branch, last_label},
+                      files, reports.table, reports.table != nullptr ? progress : nullptr);
 
   int status = 0;
   bool closed = false;

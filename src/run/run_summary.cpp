@@ -22,6 +22,7 @@ std::string reason_text(const BranchSummary& summary, const std::string& paramet
     case EndReason::equilibrium:
     case EndReason::curve_end:
     case EndReason::closed:
+    case EndReason::unresolved:
       return summary.detail;
     case EndReason::special_point:
       if (!summary.stopped_at_grazing) return "at the last special point above, where the run was to end";

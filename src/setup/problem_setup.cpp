@@ -51,7 +51,8 @@ bool has_further_parameters(const HybridSystem& system) {
 }
 
 bool is_parameter(const HybridSystem& system, int k) {
-  return k >= 1 && (k <= system.parameters() || k >= first_duration || has_further_parameters(system));
+  return k == rotation_parameter ||
+         (k >= 1 && (k <= system.parameters() || k >= first_duration || has_further_parameters(system)));
 }
 
 std::string parameter_list(const HybridSystem& system) {
@@ -100,6 +101,21 @@ void check_contact_jump(const HybridSystem& system, const RunSettings& settings,
         source.of("GRJUMP"), settings.grazing_jump, system.function_name(FunctionKind::jump, settings.grazing_jump)));
 }
 
+/// The rotation number is a parameter of tori alone, and theirs alone.
+void check_rotation(const HybridSystem& system, const RunSettings& settings, const SettingsSource& source,
+                    const std::vector<int>& free) {
+  const bool is_free = std::find(free.begin(), free.end(), rotation_parameter) != free.end();
+  const bool has_own = system.parameters() >= rotation_parameter;
+  if (is_torus(settings.problem_type) && has_own)
+    throw UserError(
+        fmt::format("IPS = {}: PAR({}) is the rotation number of a torus, but problem {} has a parameter of its "
+                    "own there; a problem with tori may have {} parameters",
+                    settings.problem_type, rotation_parameter, system.name(), rotation_parameter - 1));
+  if (is_free && !has_own && !is_torus(settings.problem_type) && !has_further_parameters(system))
+    throw UserError(fmt::format("{}: ICP: {} is the rotation number of a torus, a parameter with IPS = {} alone",
+                                source.of("ICP"), system.parameter_name(rotation_parameter), invariant_torus.number));
+}
+
 /// PAR(name) = v and UZR beyond the problem's parameters would do nothing, and so would the run's free parameter: they
 /// are refused. Further entries of ICP are mere columns of the output and weights are harmless: a warning.
 void check_parameters(const HybridSystem& system, const RunSettings& settings, const SettingsSource& source,
@@ -111,6 +127,7 @@ void check_parameters(const HybridSystem& system, const RunSettings& settings, c
                        system.name(), parameter_list(system));
   };
   const std::vector<int> free = free_problem_parameters(settings);
+  check_rotation(system, settings, source, free);
   for (const int k : settings.free_parameters) {
     if (k >= first_duration || is_parameter(system, k)) continue;
     if (std::find(free.begin(), free.end(), k) != free.end()) throw UserError(no_parameter("ICP", k));

@@ -69,6 +69,8 @@ class TestFunction {
   virtual bool is_genuine(const TestedPoint&) const { return true; }
   /// True when Newton's matrix is singular at the zeros, which are then located from both sides.
   virtual bool singular_at_zero() const { return false; }
+  /// True when a zero is told of, but neither located nor labelled: the equations are singular there.
+  virtual bool is_told_only() const { return false; }
   /// What else there is to know of a labelled point, in lines for the d-file; empty: nothing.
   virtual std::string details(const TestedPoint&) const { return ""; }
   /// The special point at a located zero; `rising` says which way the function went through it.

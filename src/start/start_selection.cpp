@@ -30,8 +30,25 @@ bool given_on_command_line(const HybridSystem& system, const RunSettings& settin
   return false;
 }
 
+/// Of a label with a torus: as many orbits of one return as it has segments for.
+OrbitShape torus_shape(const RunSettings& settings, const LabelledSolution& solution, const std::string& path) {
+  const int m = segment_count(settings);
+  const auto segments = static_cast<int>(solution.states.rows()) / settings.dimension;
+  const bool fits = segments % m == 0 && (segments / m) % 2 == 1 && segments / m >= 3;
+  if (!fits || (tells_problem_type(solution.problem_type) && !is_torus(solution.problem_type)))
+    throw UserError(fmt::format(
+        "{}: label {} is no torus, of which there are an odd number of orbits of {} segment{} each, but has {} "
+        "segment{} "
+        "(IPS = {}); start from a label of a run with IPS = {}, or at a torus bifurcation (TR) with ISW = -1",
+        path, solution.label, m, m == 1 ? "" : "s", segments, segments == 1 ? "" : "s", solution.problem_type,
+        settings.problem_type));
+  return {settings.dimension, segments, settings.mesh_intervals, settings.collocation_points};
+}
+
 /// Of a label: at a Hopf bifurcation a run of periodic orbits begins from an equilibrium.
-OrbitShape shape_of(const RunSettings& settings, const LabelledSolution& solution) {
+OrbitShape shape_of(const RunSettings& settings, const LabelledSolution& solution, const std::string& path) {
+  if (is_torus(settings.problem_type) && !problem_type(settings).facts().switches_branch)
+    return torus_shape(settings, solution, path);
   const bool begins_at_point = problem_type(settings).facts().switches_branch && solution.tau.size() == 1;
   return begins_at_point ? OrbitShape::point(settings.dimension) : shape_of(settings);
 }
@@ -119,7 +136,7 @@ SelectedStart start_from_solution(const std::string& path, const RunSettings& se
   selected.source = path;
   selected.from_solution = true;
   selected.label_start = false;
-  selected.start = orbit_from_solution(solution, shape_of(settings, solution), free_parameters, path);
+  selected.start = orbit_from_solution(solution, shape_of(settings, solution, path), free_parameters, path);
   selected.known_parameters = selected.start.orbit.par;
   selected.parameters_changed = apply_command_line(system, settings, selected.start.orbit.par);
   selected.branch = std::max(solution.branch, 1);

@@ -52,6 +52,9 @@ std::map<int, DiagnosticPoint> recorded_points(const std::string& path) {
 
 /// Why this entry of a q-file is not an orbit of these constants; "" when it is.
 std::string mismatch(const LabelledSolution& solution, const RunSettings& settings) {
+  if (is_torus(solution.problem_type))
+    return "is a torus, whose orbits of one return do not follow each other: simulate from it and look at the distance "
+           "from the curve on the section";
   const auto states = static_cast<Eigen::Index>(settings.segments.size()) * settings.dimension;
   if (!is_same_problem_type(solution.problem_type, settings.problem_type))
     return fmt::format("computed with IPS = {}, the constants have {}", solution.problem_type, settings.problem_type);

@@ -1,0 +1,309 @@
+#include "run/torus_start.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "bvp/torus_system.hpp"
+#include "constants/settings_type.hpp"
+#include "linear_algebra/dense_matrix.hpp"
+#include "run/torus_problem.hpp"
+#include "setup/problem_setup.hpp"
+#include "setup/run_monitors.hpp"
+#include "special_points/point_type.hpp"
+#include "stability/segment_map.hpp"
+#include "text/user_error.hpp"
+
+namespace tchat {
+
+namespace {
+
+using Complex = std::complex<double>;
+
+/// Of a torus that is born, unless NHARM says otherwise.
+constexpr int first_harmonics = 7;
+constexpr int fewest_harmonics = 3;
+/// A multiplier farther from the unit circle is none of a torus bifurcation by the accuracy of a label.
+constexpr double on_unit_circle = 1e-3;
+
+int most_harmonics(const RunSettings& one_return) {
+  return (max_orbit_segments / std::max(segment_count(one_return), 1) - 1) / 2;
+}
+
+void check_signature(const RunSettings& settings, const std::string& source) {
+  for (std::size_t s = 0; s < settings.segments.size(); ++s)
+    if (settings.segments[s].index.event == no_function)
+      throw UserError(
+          fmt::format("{}: segment {} has no event (GCHIND = 0); a torus is computed as a closed curve on a "
+                      "section, so give the signature of one return to a section",
+                      source, s + 1));
+  if (most_harmonics(settings) < fewest_harmonics)
+    throw UserError(
+        fmt::format("{}: a return of {} segments leaves no room for {} orbits of it: at most {} segments in "
+                    "all; take a shorter return",
+                    source, segment_count(settings), 2 * fewest_harmonics + 1, max_orbit_segments));
+}
+
+int harmonics_wanted(const RunSettings& settings, int otherwise) {
+  const int wanted = settings.harmonics > 0 ? settings.harmonics : otherwise;
+  return std::clamp(wanted, fewest_harmonics, most_harmonics(settings));
+}
+
+/// The inner product of pseudo-arclength, a mean over the orbits: steps mean the same for any number of them.
+WeightedNorm mean_norm(const RunSettings& settings, int orbits) {
+  Eigen::VectorXd states = state_weights(settings) / orbits;
+  Eigen::VectorXd parameters = Eigen::VectorXd::Ones(parameter_length);
+  for (const IndexedValue& w : settings.parameter_weights) parameters(w.index - 1) = w.value;
+  parameters.segment(first_duration - 1, max_orbit_segments) /= orbits;
+  return {std::move(states), std::move(parameters)};
+}
+
+std::unique_ptr<OrbitCondition> condition_of(const ProblemType& type, const DefiningSystem& defining,
+                                             const OrbitShape& shape, const RunSettings& one_return) {
+  return dynamic_cast<const TorusProblem&>(type).torus_condition(dynamic_cast<const TorusSystem&>(defining), shape,
+                                                                 one_return);
+}
+
+/// Defining system and follower for `orbits` returns.
+BranchSetup torus_setup(const ProblemType& type, const HybridSystem& system, const RunSettings& one_return, int orbits,
+                        const SelectedStart& selected) {
+  BranchSetup setup{&type, settings_of_orbits(one_return, orbits), nullptr, nullptr, {}, one_return};
+  OrbitShape shape = selected.start.orbit.shape;
+  shape.segments = orbits * segment_count(one_return);
+  const std::vector<int> free = free_problem_parameters(one_return);
+  check_memory(shape, static_cast<int>(free.size()));
+  setup.defining = std::make_unique<TorusSystem>(system, one_return.signature(), orbits, free);
+  setup.follower = std::make_unique<PathFollower>(
+      *setup.defining, shape, mean_norm(setup.settings, orbits), newton_settings(one_return),
+      one_return.free_parameters.front(), condition_of(type, *setup.defining, shape, one_return),
+      branch_monitors(*setup.defining, setup.settings, selected.start.orbit));
+  return setup;
+}
+
+RunSettings on_periodic_orbit(RunSettings settings) {
+  settings.problem_type = periodic_orbit.number;
+  settings.branch_mode = periodic_orbit.branch_mode;
+  std::erase_if(settings.free_parameters, [](int k) { return k == rotation_parameter; });
+  return settings;
+}
+
+RunSettings on_torus(RunSettings settings) {
+  settings.branch_mode = invariant_torus.branch_mode;
+  settings.step = std::abs(settings.step);
+  return settings;
+}
+
+/// The multiplier e^(i theta), 0 < theta < pi, at the label.
+Complex critical_multiplier(const Eigen::MatrixXd& map, const SelectedStart& selected) {
+  Complex nearest = 0.0;
+  std::string list;
+  for (const Complex& mu : eigenvalues(map)) {
+    list += fmt::format(
+        "{}{:.5g}{}", list.empty() ? "" : ", ", mu.real(),
+        mu.imag() == 0.0 ? "" : fmt::format(" {} {:.5g} i", mu.imag() < 0.0 ? "-" : "+", std::abs(mu.imag())));
+    if (mu.imag() > 0.0 && std::abs(std::abs(mu) - 1.0) < std::abs(std::abs(nearest) - 1.0)) nearest = mu;
+  }
+  if (nearest.imag() > 0.0 && std::abs(std::abs(nearest) - 1.0) < on_unit_circle) return nearest;
+  throw UserError(
+      fmt::format("{}: label {} is a torus bifurcation that is none: no complex pair of multipliers is on the "
+                  "unit circle there ({}); a parameter or the problem is another one than that of the label",
+                  selected.source, selected.label, list));
+}
+
+/// The perturbation of the orbit that begins as v, carried to its ends and inside.
+OrbitVector carried(CondensedSystem& condensed, const Orbit& x, Eigen::VectorXd v) {
+  const int n = x.shape.dimension;
+  std::vector<double> ends;
+  OrbitVector result = condensed.make_vector();
+  result.set_zero();
+  for (int s = 0; s < x.shape.segments; ++s) {
+    const SegmentMap map = segment_map(condensed, x, s);
+    const Eigen::VectorXd w = map.to_end * v;
+    ends.insert(ends.end(), v.data(), v.data() + n);
+    ends.insert(ends.end(), w.data(), w.data() + n);
+    ends.push_back(map.to_duration.dot(v));
+    v = map.to_next * v;
+  }
+  condensed.extend(ends.data(), result);
+  return result;
+}
+
+/// The orbit N times over, and the direction of the torus.
+struct Birth {
+  Orbit still;
+  OrbitVector direction;
+};
+
+Birth birth_at(PathFollower& along, const Orbit& x, int orbits, int globals, const SelectedStart& selected) {
+  CondensedSystem& condensed = along.condensed();
+  const Eigen::MatrixXd map = return_matrix(condensed, x, 0, x.shape.segments);
+  const Complex mu = critical_multiplier(map, selected);
+  const Eigen::VectorXcd v = eigenvector(map, mu);
+  const OrbitVector real = carried(condensed, x, v.real());
+  const OrbitVector imaginary = carried(condensed, x, v.imag());
+
+  const int m = x.shape.segments;
+  OrbitShape shape = x.shape;
+  shape.segments = orbits * m;
+  Birth birth{{shape, x.mesh, x.states.replicate(1, orbits), x.par}, OrbitVector(shape, globals)};
+  birth.still.par(rotation_parameter - 1) = std::arg(mu) / (2.0 * std::numbers::pi);
+  for (int i = 0; i < orbits; ++i) {
+    const Complex turned = std::polar(1.0, 2.0 * std::numbers::pi * i / orbits);
+    birth.still.par.segment(first_duration - 1 + i * m, m) = x.par.segment(first_duration - 1, m);
+    birth.direction.states.middleCols(i * x.shape.columns(), x.shape.columns()) =
+        turned.real() * real.states - turned.imag() * imaginary.states;
+    birth.direction.durations.segment(i * m, m) = turned.real() * real.durations - turned.imag() * imaginary.durations;
+  }
+  return birth;
+}
+
+/// The torus of the largest amplitude, up to |DS|, that converges.
+std::optional<FirstPoint> first_torus(PathFollower& follower, const Birth& birth, const OrbitVector& direction,
+                                      const StepSettings& steps, NewtonStatus& trouble) {
+  StepSize step(steps);
+  do {
+    Orbit orbit = birth.still;
+    orbit.states += step.value() * direction.states;
+    for (int s = 0; s < orbit.shape.segments; ++s) orbit.duration(s) += step.value() * direction.durations(s);
+    PathPoint point = follower.make_point(std::move(orbit));
+    const NewtonResult result = follower.start_along(point, direction);
+    trouble = result.status;
+    if (result.converged()) return FirstPoint{std::move(point), follower.newton().history(), {}, false};
+  } while (step.failed());
+  return std::nullopt;
+}
+
+}  // namespace
+
+RunSettings settings_of_orbits(const RunSettings& one_return, int orbits) {
+  RunSettings settings = one_return;
+  const int m = segment_count(one_return);
+  settings.segments.clear();
+  settings.parameter_weights.clear();
+  for (int i = 0; i < orbits; ++i)
+    settings.segments.insert(settings.segments.end(), one_return.segments.begin(), one_return.segments.end());
+  for (const IndexedValue& w : one_return.parameter_weights)
+    for (int i = 0; i < (is_duration(w.index, m) ? orbits : 1); ++i)
+      settings.parameter_weights.push_back({w.index + i * m, w.value});
+  return settings;
+}
+
+BranchSetup continue_torus(const ProblemType& type, const HybridSystem& system, const RunSettings& settings,
+                           const SelectedStart& selected) {
+  check_signature(settings, selected.source);
+  const int stored = selected.start.orbit.shape.segments / segment_count(settings);
+  const int orbits = 2 * harmonics_wanted(settings, (stored - 1) / 2) + 1;
+  SelectedStart start = selected;
+  if (orbits != stored) {
+    const OrbitShape shape = selected.start.orbit.shape;
+    start.start.orbit = resampled_torus(selected.start.orbit, stored, orbits);
+    if (selected.start.direction)
+      start.start.direction = resampled_torus(*selected.start.direction, shape, stored, orbits);
+    // Durations are found anew.
+    start.known_parameters.tail(parameter_length - first_duration + 1) =
+        start.start.orbit.par.tail(parameter_length - first_duration + 1);
+  }
+  BranchSetup setup = torus_setup(type, system, settings, orbits, start);
+  setup.start = first_point(*setup.follower, *setup.defining, start, setup.settings);
+  return setup;
+}
+
+BranchSetup begin_torus(const HybridSystem& system, const RunSettings& settings, const SelectedStart& selected) {
+  check_signature(settings, selected.source);
+  constexpr int torus = static_cast<int>(PointType::torus);
+  if (std::find(selected.types.begin(), selected.types.end(), torus) == selected.types.end())
+    throw UserError(fmt::format(
+        "{}: ISW = -1 with IPS = {} begins the torus that is born at a torus bifurcation (TR) of a run with "
+        "IPS = {}, but the run does not start from such a label; name one, for example IRS=TR1",
+        selected.source, settings.problem_type, periodic_orbit.number));
+  const RunSettings before = on_periodic_orbit(settings);
+  const std::unique_ptr<DefiningSystem> known =
+      problem_type(before).make_system(system, before, {free_problem_parameters(before).front()});
+  PathFollower along(*known, selected.start.orbit.shape, weighted_norm(before), newton_settings(before),
+                     free_problem_parameters(before).front());
+  const PathPoint at = first_point(along, *known, selected, before).point;
+  along.linearize_at(at);
+
+  const RunSettings of_run = on_torus(settings);
+  const int orbits = 2 * harmonics_wanted(settings, first_harmonics) + 1;
+  const auto globals = static_cast<int>(free_problem_parameters(of_run).size());
+  const Birth birth = birth_at(along, at.orbit, orbits, globals, selected);
+  SelectedStart start = selected;
+  start.start.orbit = birth.still;
+  BranchSetup setup = torus_setup(problem_type(of_run), system, of_run, orbits, start);
+  PathPoint from = setup.follower->make_point(birth.still);
+  from.tangent = birth.direction;
+  setup.follower->renormalise(from);
+  NewtonStatus trouble = NewtonStatus::converged;
+  std::optional<FirstPoint> first =
+      first_torus(*setup.follower, birth, from.tangent, continuation_settings(of_run).step, trouble);
+  if (!first)
+    throw ComputationError(
+        fmt::format("no torus beside the torus bifurcation of label {} of {} (rho = {:.6g}) for an amplitude of {:.3g} "
+                    "or less: {}; "
+                    "try another DS, compute the label with a smaller EPSS, or keep rho and free a second parameter",
+                    selected.label, selected.source, birth.still.par(rotation_parameter - 1), std::abs(settings.step),
+                    describe(trouble)));
+  setup.start = std::move(*first);
+  return setup;
+}
+
+std::optional<int> fitting_harmonics(const RunSettings& one_return, const TorusSystem& system, const Orbit& x) {
+  constexpr double too_many = 1e-3;  // of HARMTOL
+  constexpr double fewer = 0.6;
+  const double tolerance = one_return.harmonic_tolerance;
+  if (!(tolerance > 0.0)) return std::nullopt;
+  const int harmonics = (system.orbits() - 1) / 2;
+  const int most = most_harmonics(one_return);
+  if (last_harmonics(system, x) > tolerance) {
+    const int next = std::min(harmonics + harmonics / 3 + 1, most);
+    return next > harmonics ? std::optional(next) : std::nullopt;
+  }
+  const int next = std::max(static_cast<int>(fewer * harmonics), first_harmonics);
+  if (next >= harmonics) return std::nullopt;
+  const Eigen::VectorXd sizes = torus_harmonics(system, x);
+  return sizes.tail(harmonics - next + 2).maxCoeff() < too_many * tolerance ? std::optional(next) : std::nullopt;
+}
+
+std::string rough_torus(const RunSettings& one_return, const TorusSystem& system, const Orbit& x) {
+  constexpr double rough = 1e-4;
+  const int harmonics = (system.orbits() - 1) / 2;
+  const bool may_grow = one_return.harmonic_tolerance > 0.0 && harmonics < most_harmonics(one_return);
+  const double last = last_harmonics(system, x);
+  if (may_grow || last < rough) return "";
+  return fmt::format(
+      "the last of {} harmonics are {:.1e} of the torus: it is about to lose its smoothness, or locks to a periodic "
+      "orbit "
+      "(rho = {:.8g}); {}look at the harmonics in the d-file, follow it with rho fixed at an irrational value and a "
+      "second "
+      "parameter free, or look for the periodic orbit by simulation",
+      harmonics, last, TorusSystem::rotation(x),
+      harmonics < most_harmonics(one_return) ? "their number is fixed (HARMTOL = 0): give NHARM more; " : "");
+}
+
+BranchSetup with_harmonics(const BranchSetup& setup, const PathPoint& last, int harmonics) {
+  const RunSettings& one_return = *setup.constants;
+  const auto& system = static_cast<const TorusSystem&>(*setup.defining);
+  const int orbits = 2 * harmonics + 1;
+  SelectedStart start;
+  start.start.orbit = resampled_torus(last.orbit, system.orbits(), orbits);
+  start.problem_type = one_return.problem_type;
+  BranchSetup next = torus_setup(*setup.type, system.system(), one_return, orbits, start);
+  PathPoint point = next.follower->make_point(start.start.orbit);
+  const OrbitVector direction = resampled_torus(last.tangent, last.orbit.shape, system.orbits(), orbits);
+  const NewtonResult result = next.follower->start_along(point, direction);
+  if (!result.converged()) {
+    next.follower.reset();
+    next.start.note = fmt::format("no convergence of the torus on {} orbits instead of {} ({}): it goes on with these",
+                                  orbits, system.orbits(), describe(result.status));
+    return next;
+  }
+  if (next.follower->alignment(point, direction) < 0.0) next.follower->reverse(point);
+  next.start = {std::move(point), next.follower->newton().history(),
+                fmt::format("{} harmonics from here on", harmonics), setup.start.stored_direction};
+  return next;
+}
+
+}  // namespace tchat
