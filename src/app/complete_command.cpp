@@ -195,10 +195,10 @@ void add_argument(Candidates& to, const CommandLine& line) {
     add_overrides(to, line);
   } else if (is({"check"})) {
     add_parameters(to, line.arguments.front());
-  } else if (is({"labels", "orbit", "verify", "resegment"}) && place == 0) {
+  } else if (is({"labels", "orbit", "verify", "resegment", "grazing"}) && place == 0) {
     folder.add(to, "q.", "", false);
     folder.add_folders(to);
-  } else if (line.command == "verify" || (is({"orbit", "resegment"}) && place == 1)) {
+  } else if (line.command == "verify" || (is({"orbit", "resegment", "grazing"}) && place == 1)) {
     add_labels(to, solutions_path(line.arguments.front()));
   } else if (line.command == "resegment") {
     add_overrides(to, line);

@@ -110,19 +110,23 @@ SimulationRequest start_request(const GrazingRequest& request) {
   return start;
 }
 
-IndexVector checked_mode(const HybridSystem& system, const GrazingRequest& request) {
+/// field, event function, jump
+IndexVector mode_of(const GrazingRequest& request) {
   const std::vector<IndexVector> modes = parse_index_vectors(*request.mode, "--mode");
-  if (modes.size() != 1)
-    throw UserError(
-        fmt::format("--mode {}: one index vector is needed, field, event function in contact and its jump, "
-                    "as 1,1,1",
-                    *request.mode));
-  const std::string fault = fault_of(system, modes);
+  if (modes.size() == 1) return modes.front();
+  throw UserError(fmt::format(
+      "--mode {}: one index vector is needed, field, event function in contact and its jump, as 1,1,1", *request.mode));
+}
+
+IndexVector checked_mode(const HybridSystem& system, const GrazingRequest& request) {
+  const IndexVector mode = mode_of(request);
+  const std::string fault = fault_of(system, {mode});
   if (!fault.empty()) throw UserError(fmt::format("--mode {}: {}", *request.mode, fault));
-  return modes.front();
+  return mode;
 }
 
 void analyse_state(const GrazingRequest& request, std::ostream& screen) {
+  mode_of(request);  // before a plugin is compiled
   const SimulationRequest start_of = start_request(request);
   const std::string plugin = resolve_plugin(request.problem.value_or(request.name));
   bool named_parameters = false;
@@ -130,8 +134,8 @@ void analyse_state(const GrazingRequest& request, std::ostream& screen) {
   const ProblemLibrary library(plugin, [&] { return sizes_of(start_of, constants); });
   const HybridSystem& system = library.system();
   if (named_parameters) constants = read_simulation_constants(start_of, names_of(system));
-  fit_to_problem(constants, system, request.overrides);
   IndexVector contact = checked_mode(system, request);
+  fit_to_problem(constants, system, request.overrides);
   if (request.jump) contact.jump = checked_jump(system, *request.jump);
   const SimulationStart start = simulation_start(start_of, constants, system);
   const std::optional<CrossSection> section =

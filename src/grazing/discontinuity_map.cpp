@@ -188,6 +188,7 @@ DiscontinuityMap::DiscontinuityMap(const HybridSystem& system, GrazingPoint poin
     : p_(std::make_unique<const Implementation>(system, std::move(point), section)) {}
 DiscontinuityMap::~DiscontinuityMap() = default;
 DiscontinuityMap::DiscontinuityMap(DiscontinuityMap&&) noexcept = default;
+DiscontinuityMap& DiscontinuityMap::operator=(DiscontinuityMap&&) noexcept = default;
 
 const GrazingPoint& DiscontinuityMap::point() const { return p_->point; }
 const std::optional<CrossSection>& DiscontinuityMap::section() const { return p_->section; }

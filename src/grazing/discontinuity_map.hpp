@@ -46,6 +46,9 @@ class DiscontinuityMap {
   DiscontinuityMap(const HybridSystem& system, GrazingPoint point, std::optional<CrossSection> section = {});
   ~DiscontinuityMap();
   DiscontinuityMap(DiscontinuityMap&&) noexcept;
+  DiscontinuityMap& operator=(DiscontinuityMap&&) noexcept;
+  DiscontinuityMap(const DiscontinuityMap&) = delete;
+  DiscontinuityMap& operator=(const DiscontinuityMap&) = delete;
 
   const GrazingPoint& point() const;
   const std::optional<CrossSection>& section() const;

@@ -116,73 +116,110 @@ std::vector<int> all_parameters(const HybridSystem& system) {
   return all;
 }
 
+/// Newton's method on x*, the last duration and one parameter.
+class ContactSearch {
+ public:
+  ContactSearch(const HybridSystem& system, const ContactTurn& start, const std::string& source)
+      : system_(system),
+        start_(start),
+        source_(source),
+        map_(system, start),
+        parameters_(all_parameters(system)),
+        surface_(system.dimension(), system.parameters()),
+        x_(start.x),
+        par_(start.par),
+        last_(start.durations.back()) {}
+
+  GrazingOrbit run() {
+    converge();
+    x_ = corrected_contact(system_, start_.contact.field, start_.contact.event, x_, par_, source_);
+    GrazingOrbit orbit{grazing_point(system_, start_.contact.field, start_.contact.event, start_.contact.jump, x_, par_,
+                                     source_, start_.aftermath),
+                       start_.segments,
+                       turn_.durations,
+                       start_.parameter,
+                       {},
+                       {},
+                       {},
+                       par_(free()) - start_.par(free())};
+    const GrazingPoint& at = orbit.point;
+    const auto onto_p = [&](const MatrixXd& v) -> MatrixXd {
+      return v - at.f * (at.section_gradient.transpose() * v / at.a);
+    };
+    orbit.A = onto_p(turn_.by_state);
+    orbit.by_parameters = onto_p(turn_.by_parameters) - at.f * (surface_.rate_p.transpose() / at.a);
+    orbit.multipliers = largest_first(orbit.A);
+    return orbit;
+  }
+
+ private:
+  Eigen::Index free() const { return start_.parameter - 1; }
+
+  void converge() {
+    constexpr int most_iterations = 20;
+    constexpr double converged = 1e-13;
+    constexpr double good_enough = 1e-9;  // where errors of the integration end Newton's method
+    double before = INFINITY;
+    for (int iteration = 0;; ++iteration) {
+      evaluate();
+      if (before <= converged) return;
+      const VectorXd step = newton_step();
+      const double size = step.lpNorm<Eigen::Infinity>() / (1.0 + x_.lpNorm<Eigen::Infinity>());
+      const bool stalls = size >= 0.5 * before;
+      if (stalls && before <= good_enough) return;
+      if (!std::isfinite(size) || iteration == most_iterations || (stalls && iteration > 5))
+        throw ComputationError(fmt::format(
+            "{}: Newton's method does not find the orbit in contact by forward integration (last steps {:.1e}, "
+            "{:.1e}); compute the label with smaller EPSS, EPSU and more intervals (NTST)",
+            source_, before, size));
+      x_ += step.head(x_.size());
+      last_ += step(x_.size());
+      par_(free()) += step(x_.size() + 1);
+      before = size;
+    }
+  }
+
+  void evaluate() {
+    turn_ = map_.at(x_, last_, par_);
+    if (!turn_.message.empty())
+      throw ComputationError(
+          fmt::format("{}: the orbit cannot be followed by forward integration: {}", source_, turn_.message));
+    surface_.evaluate(system_, start_.contact, x_.data(), par_.data(), parameters_);
+  }
+
+  VectorXd newton_step() const {
+    const Eigen::Index n = x_.size(), k = free();
+    MatrixXd matrix = MatrixXd::Zero(n + 2, n + 2);
+    matrix.topLeftCorner(n, n) = turn_.by_state - MatrixXd::Identity(n, n);
+    matrix.block(0, n, n, 1) = turn_.f;
+    matrix.block(0, n + 1, n, 1) = turn_.by_parameters.col(k);
+    matrix.block(n, 0, 1, n) = surface_.hx.transpose();
+    matrix(n, n + 1) = surface_.hp(k);
+    matrix.block(n + 1, 0, 1, n) = surface_.rate_x.transpose();
+    matrix(n + 1, n + 1) = surface_.rate_p(k);
+    VectorXd right(n + 2);
+    right << x_ - turn_.end, -surface_.h, -surface_.rate;
+    return solve_with_complete_pivoting(matrix, right);
+  }
+
+  const HybridSystem& system_;
+  const ContactTurn& start_;
+  const std::string& source_;
+  TurnMap map_;
+  std::vector<int> parameters_;
+  SurfaceRate surface_;
+  VectorXd x_;
+  ParameterVector par_;
+  double last_;  // duration of the last segment
+  Turn turn_;
+};
+
 }  // namespace
 
 double GrazingOrbit::period() const { return std::accumulate(durations.begin(), durations.end(), 0.0); }
 
-GrazingOrbit find_grazing_orbit(const HybridSystem& system, const ContactTurn& start, const std::string& source) {
-  constexpr int most_iterations = 20;
-  constexpr double converged = 1e-13;
-  constexpr double good_enough = 1e-9;  // where errors of the integration end Newton's method
-  const Eigen::Index n = start.x.size();
-  const int k = start.parameter - 1;
-  TurnMap map(system, start);
-  SurfaceRate surface(system.dimension(), system.parameters());
-  const std::vector<int> parameters = all_parameters(system);
-  VectorXd x = start.x;
-  ParameterVector par = start.par;
-  double last = start.durations.back();
-  double last_step = INFINITY;
-  Turn turn;
-  for (int iteration = 0;; ++iteration) {
-    turn = map.at(x, last, par);
-    if (!turn.message.empty())
-      throw ComputationError(
-          fmt::format("{}: the orbit cannot be followed by forward integration: {}", source, turn.message));
-    surface.evaluate(system, start.contact, x.data(), par.data(), parameters);
-    if (last_step <= converged) break;
-    MatrixXd matrix = MatrixXd::Zero(n + 2, n + 2);
-    matrix.topLeftCorner(n, n) = turn.by_state - MatrixXd::Identity(n, n);
-    matrix.block(0, n, n, 1) = turn.f;
-    matrix.block(0, n + 1, n, 1) = turn.by_parameters.col(k);
-    matrix.block(n, 0, 1, n) = surface.hx.transpose();
-    matrix(n, n + 1) = surface.hp(k);
-    matrix.block(n + 1, 0, 1, n) = surface.rate_x.transpose();
-    matrix(n + 1, n + 1) = surface.rate_p(k);
-    VectorXd right(n + 2);
-    right << x - turn.end, -surface.h, -surface.rate;
-    const VectorXd step = solve_with_complete_pivoting(matrix, right);
-    const double size = step.lpNorm<Eigen::Infinity>() / (1.0 + x.lpNorm<Eigen::Infinity>());
-    const bool stalls = size >= 0.5 * last_step;
-    if (stalls && last_step <= good_enough) break;
-    if (!std::isfinite(size) || iteration == most_iterations || (stalls && iteration > 5))
-      throw ComputationError(fmt::format(
-          "{}: Newton's method does not find the orbit in contact by forward integration (last steps {:.1e}, {:.1e}); "
-          "compute the label with smaller EPSS, EPSU and more intervals (NTST)",
-          source, last_step, size));
-    x += step.head(n);
-    last += step(n);
-    par(k) += step(n + 1);
-    last_step = size;
-  }
-  x = corrected_contact(system, start.contact.field, start.contact.event, x, par, source);
-  GrazingOrbit orbit{grazing_point(system, start.contact.field, start.contact.event, start.contact.jump, x, par, source,
-                                   start.aftermath),
-                     start.segments,
-                     turn.durations,
-                     start.parameter,
-                     {},
-                     {},
-                     {},
-                     par(k) - start.par(k)};
-  const GrazingPoint& at = orbit.point;
-  const auto onto_p = [&](const MatrixXd& v) -> MatrixXd {
-    return v - at.f * (at.section_gradient.transpose() * v / at.a);
-  };
-  orbit.A = onto_p(turn.by_state);
-  orbit.by_parameters = onto_p(turn.by_parameters) - at.f * (surface.rate_p.transpose() / at.a);
-  orbit.multipliers = largest_first(orbit.A);
-  return orbit;
+GrazingOrbit find_grazing_orbit(const HybridSystem& system, const ContactTurn& turn, const std::string& source) {
+  return ContactSearch(system, turn, source).run();
 }
 
 }  // namespace tchat

@@ -81,6 +81,7 @@ std::vector<Share> shares(const GrazingOrbit& orbit) {
   const Eigen::VectorXcd& values = orbit.multipliers;
   std::vector<Share> result;
   for (const std::complex<double> value : values) {
+    if (std::abs(value) <= xi_rounding * std::abs(values(0))) continue;  // zeros, which may be defective: no share
     // By right and left eigenvectors: simple eigenvalues only.
     const Eigen::VectorXcd right = eigenvector(orbit.A, value);
     const Eigen::VectorXcd left = eigenvector(orbit.A.transpose(), value);

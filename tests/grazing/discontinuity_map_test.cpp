@@ -76,6 +76,28 @@ TEST_CASE("A mass pushed off a floor: the map on a section of constant clock") {
   CHECK(largest_difference(map.apply(start, pushed, MapOrder::three_halves), pushed_contact + expected) < 1e-10);
 }
 
+TEST_CASE("A short slip after the impact is part of the map") {
+  // With V = sqrt(2 a) y: slip for c V with force b, then back to v = 0 with force a.
+  const double c = 0.7, b = -0.4;
+  const HybridSystem& system = system_of<SlippingSupport>();
+  const ParameterVector par = parameters({a, r, omega, c, b});
+  const VectorXd at = Eigen::Vector4d(0.0, 0.0, 0.3, 0.0);
+  const DiscontinuityMap map(system, grazing_point(system, 1, 1, 1, at, par, "test", {{2, 2, 2}}));
+  const double after = r + b * c;  // velocity after the slip, by V
+  const double back = (-1.0 / a + c - after / a) * std::sqrt(2.0 * a);
+  const double height = 1.0 + 2.0 * a * (r * c + 0.5 * b * c * c - 0.5 * after * after / a);
+  CHECK(largest_difference(map.expansion().y, Eigen::Vector4d(0.0, 0.0, back * omega, 0.0)) < 1e-13);
+  CHECK(largest_difference(map.expansion().yy, Eigen::Vector4d(height, 0.0, 0.0, 0.0)) < 1e-10);
+  const double y2 = 0.01;
+  const VectorXd x1 = map.exact(at - y2 * Eigen::Vector4d::Unit(0), par);
+  const Eigen::Vector4d expected(y2 * (height - 1.0), 0.0, 0.3 + back * omega * std::sqrt(y2), 0.0);
+  CHECK(largest_difference(x1, expected) < 1e-14);
+  // A segment that lasts, or leaves its surface tangentially, is no slip.
+  CHECK_THROWS_WITH(grazing_point(system, 1, 1, 1, at, par, "test", {{1, 2, 2}}), Catch::Contains("tangentially"));
+  CHECK_THROWS_WITH(grazing_point(system, 1, 1, 1, at + 0.5 * Eigen::Vector4d::Unit(3), par, "test", {{2, 2, 2}}),
+                    Catch::Contains("lasts"));
+}
+
 TEST_CASE("The event function of a section does what its hyperplane does") {
   const DiscontinuityMap by_event(system_of<PushedMass>(), pushed_point(), CrossSection{2, 0});
   const DiscontinuityMap by_state(system_of<PushedMass>(), pushed_point(), CrossSection{0, 3});
@@ -157,24 +179,23 @@ TEST_CASE("The forced three-dimensional oscillator: (4.11), (4.15), (4.17)") {
 }
 
 TEST_CASE("The forced three-dimensional oscillator: the printed digits of (4.15) and (4.17)") {
-  // States are printed with four digits cut off, and the coefficients with them: in the middle of what the digits leave
-  // (x2 follows from h_P = 0) they are right to one of the last digit.
+  // States are printed with four digits, cut off, and so are the coefficients: among the states with these digits (x2
+  // follows from h_P = 0) there is one whose coefficients have the printed ones, all of them.
   const HybridSystem& system = system_of<ForcedThreeDimensional>();
-  constexpr double cut = 0.5e-4, digit = 1e-4;
   const auto at = [&](double mu, double forcing, double omega_, double x3, double phase) {
-    const double x1 = mu - cut, middle = x3 + cut;
-    return contact(system, Eigen::Vector4d(x1, (0.28 - middle) * x1, middle, phase + cut),
-                   parameters({x1, 0.28, 0.8, forcing, omega_}));
+    return contact(system, Eigen::Vector4d(mu, (0.28 - x3) * mu, x3, phase),
+                   parameters({mu, 0.28, 0.8, forcing, omega_}));
   };
-  const GrazingPoint second = at(-0.4940, 1.25, 1.9, 0.4716, 3.2188);
-  CHECK(second.x(1) == Approx(0.0946 + cut).margin(digit));
-  CHECK(second.B(1) == Approx(0.3519 + cut).margin(digit));
-  CHECK(second.B(2) == Approx(0.7123 + cut).margin(digit));
-  CHECK(second.B(3) == Approx(-3.8947 - cut).margin(digit));
-  const GrazingPoint third = at(-0.8548, 1.5, 4.0, 0.6189, 2.9317);
-  CHECK(third.x(1) == Approx(0.2897 + cut).margin(digit));
+  const auto cut = [](double value) { return std::trunc(1e4 * value); };
+  const GrazingPoint second = at(-0.49409, 1.25, 1.9, 0.47160, 3.21880);
+  CHECK(cut(second.x(1)) == 946);
+  CHECK(cut(second.B(1)) == 3519);
+  CHECK(cut(second.B(2)) == 7123);
+  CHECK(cut(second.B(3)) == -38947);
+  const GrazingPoint third = at(-0.85481, 1.5, 4.0, 0.61891, 2.93171);
+  CHECK(cut(third.x(1)) == 2897);
   const DiscontinuityMap constant_phase(system, third, CrossSection{0, 4});
-  CHECK(constant_phase.expansion().y(1) == Approx(-3.7499 - cut).margin(digit));
+  CHECK(cut(constant_phase.expansion().y(1)) == -37499);
   CHECK(std::abs(constant_phase.expansion().y(0)) + std::abs(constant_phase.expansion().y(2)) < 1e-12);
 }
 

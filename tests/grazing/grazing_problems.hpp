@@ -97,6 +97,25 @@ struct PushedMass {
   }
 };
 
+/// The pushed mass on a support that slips after an impact: x = (q, v, s, u), PAR = (a, r, omega, c, b). An impact
+/// gives the support the velocity u = -c v; field 2, the slip, has u' = -1 and q'' = b, until u = 0 (event 2).
+struct SlippingSupport {
+  static constexpr int dimension = 4, parameters = 5, fields = 2, events = 2, jumps = 2;
+  template <class T>
+  void field(int i, const T* x, const T* p, T* f) const {
+    f[0] = x[1], f[1] = i == 1 ? p[0] : p[4], f[2] = p[2], f[3] = T(i == 1 ? 0.0 : -1.0);
+  }
+  template <class T>
+  T event(int j, const T* x, const T*) const {
+    return j == 1 ? x[0] : x[3];
+  }
+  template <class T>
+  void jump(int k, const T* x, const T* p, T* g) const {
+    for (int i = 0; i < 4; ++i) g[i] = x[i];
+    if (k == 1) g[1] = -p[1] * x[1], g[3] = x[3] - p[3] * x[1];
+  }
+};
+
 inline ParameterVector parameters(std::initializer_list<double> values) {
   ParameterVector par = ParameterVector::Zero(parameter_length);
   int k = 0;

@@ -17,7 +17,7 @@ TEST_CASE("planar: grazing at mu = 1, the impacting orbit beyond, the verdict of
   check_near(impacting.parameter(61), 6.604910506061);
   check_near(impacting.states.back()[1], 0.06602396113935);
   const DiagnosticPoint point = chain.point("impacting", "UZ");
-  CHECK(point.stable_count == 2);
+  CHECK(point.point < 0);  // stable
   CHECK(distance_to(point.multipliers, 6.530430956e-4) < 1e-11);
 
   const std::string analysis = chain.read("analysis");
