@@ -26,15 +26,11 @@ constexpr const char* length_group =
     "Length [until a periodic orbit is recognised, at most 10000 events; "
     "of a longer motion O.trajectory then holds the last 10 MB]";
 
-void add_exponent_options(CLI::App& command, SimulationRequest& request, int& exponents) {
+void add_exponent_options(CLI::App& command, SimulationRequest& request, std::string& exponents) {
   const char* const group = "Lyapunov exponents";
-  command
-      .add_option("--lyapunov", exponents,
-                  "the K largest Lyapunov exponents with their error bars, per unit of time, natural logarithm [all]")
-      ->expected(0, 1)
-      ->type_name("[K]")
-      ->check(whole_number(1, 1000))
-      ->group(group);
+  add_exponent_count(
+      command, exponents,
+      "the K largest Lyapunov exponents with their error bars, per unit of time, natural logarithm [all]", group);
   command
       .add_option("--section", request.section,
                   "those of the return map instead, per fall of event function J through zero, which need not end "
@@ -83,7 +79,7 @@ void add_simulate_command(CLI::App& app, std::function<int()>& chosen) {
       ->group("Start");
   add_start_options(*command, *request);
   add_length_options(*command, *request, length_group);
-  const auto exponents = std::make_shared<int>(0);
+  const auto exponents = std::make_shared<std::string>();
   add_exponent_options(*command, *request, *exponents);
   add_detail_options(*command, *request);
   add_noted_options(*command, *request);
@@ -118,7 +114,7 @@ void add_simulate_command(CLI::App& app, std::function<int()>& chosen) {
       "Exit status: 0 simulated (also when events accumulate), 1 a function cannot be evaluated, or --dat without a\n"
       "periodic orbit, 2 bad usage or bad input, 130 or 143 interrupted (files are complete).");
   command->callback([&chosen, request, exponents, command] {
-    if (command->count("--lyapunov") > 0) request->lyapunov = *exponents;
+    request->lyapunov = exponent_count(*command, *exponents, request->overrides);
     request->hand_over = command->count("--dat") > 0;
     if (request->orbit_name.find('=') != std::string::npos) {  // `--dat PAR(1)=2`: no name, an override
       request->overrides.push_back(request->orbit_name);

@@ -21,13 +21,13 @@ CLI::Validator number_within(double least, double most, const std::string& allow
 
 CLI::Validator whole_number(long least, long most) {
   const std::string allowed = fmt::format("a whole number from {} to {}", least, most);
-  const CLI::Validator is_whole(
+  return CLI::Validator(
       [=](const std::string& text) -> std::string {
         long value = 0;
-        return CLI::detail::lexical_cast(text, value) ? "" : fmt::format("found '{}'; allowed: {}", text, allowed);
+        const bool is_allowed = CLI::detail::lexical_cast(text, value) && value >= least && value <= most;
+        return is_allowed ? "" : fmt::format("found '{}'; allowed: {}", text, allowed);
       },
       "");
-  return is_whole & number_within(static_cast<double>(least), static_cast<double>(most), allowed);
 }
 
 CLI::Validator positive_time() { return number_within(1e-300, 1e300, "a finite number > 0"); }
@@ -38,6 +38,24 @@ void add_problem_options(CLI::App& command, SimulationRequest& request) {
       ->type_name("C");
   command.add_option("-p,--problem", request.problem, "plugin P.so, or P.cpp, P.tch to compile if newer")
       ->type_name("P");
+}
+
+void add_exponent_count(CLI::App& command, std::string& text, const std::string& help, const char* group) {
+  command.add_option("--lyapunov", text, help)
+      ->expected(0, 1)
+      ->type_name("[K]")
+      ->check([count = whole_number(1, 1000)](const std::string& given) {
+        return given.find('=') != std::string::npos ? std::string() : count(given);
+      })
+      ->group(group);
+}
+
+std::optional<int> exponent_count(const CLI::App& command, const std::string& text,
+                                  std::vector<std::string>& overrides) {
+  if (command.count("--lyapunov") == 0) return std::nullopt;
+  if (text.find('=') == std::string::npos) return text.empty() ? 0 : std::stoi(text);
+  overrides.push_back(text);
+  return 0;
 }
 
 void add_start_options(CLI::App& command, SimulationRequest& request) {

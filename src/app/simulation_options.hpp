@@ -3,7 +3,9 @@
 
 #include <CLI/App.hpp>
 #include <CLI/Validators.hpp>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "simulate/simulation_request.hpp"
 
@@ -19,6 +21,12 @@ void add_problem_options(CLI::App& command, SimulationRequest& request);
 /// Where a simulation starts, but for --state
 void add_start_options(CLI::App& command, SimulationRequest& request);
 void add_length_options(CLI::App& command, SimulationRequest& request, const char* group);
+/// --lyapunov [K], kept as its text.
+void add_exponent_count(CLI::App& command, std::string& text, const std::string& help, const char* group);
+/// How many exponents are asked for, 0 all; nothing without the option. What has followed the option may be the next
+/// KEY=VALUE.
+std::optional<int> exponent_count(const CLI::App& command, const std::string& text,
+                                  std::vector<std::string>& overrides);
 /// The integrator and the recognition of periodic orbits
 void add_detail_options(CLI::App& command, SimulationRequest& request);
 

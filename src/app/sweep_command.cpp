@@ -59,7 +59,7 @@ int do_sweep(const SweepRequest& request, const MapRequest& map) {
   });
 }
 
-void add_recording_options(CLI::App& command, SweepRequest& request) {
+void add_recording_options(CLI::App& command, SweepRequest& request, std::string& exponents) {
   const char* const group = "What is recorded";
   command
       .add_option("--section", request.section,
@@ -73,12 +73,7 @@ void add_recording_options(CLI::App& command, SweepRequest& request) {
                   "afterwards; without --section the states there are recorded, each with its own")
       ->type_name("J")
       ->group(group);
-  command.add_option("--lyapunov", request.exponents, "the K largest Lyapunov exponents, with errors [all]")
-      ->expected(0, 1)
-      ->type_name("[K]")
-      ->default_str("0")
-      ->check(whole_number(0, 1000))
-      ->group(group);
+  add_exponent_count(command, exponents, "the K largest Lyapunov exponents, with errors [all]", group);
 }
 
 void add_map_options(CLI::App& command, MapRequest& map) {
@@ -179,7 +174,8 @@ void add_sweep_command(CLI::App& app, std::function<int()>& chosen) {
       ->group("Start");
   add_start_options(*command, simulation);
   add_length_options(*command, simulation, sweep_length_group);
-  add_recording_options(*command, *request);
+  const auto exponents = std::make_shared<std::string>();
+  add_recording_options(*command, *request, *exponents);
   add_map_options(*command, *map);
   add_work_options(*command, *request);
   add_detail_options(*command, simulation);
@@ -199,8 +195,8 @@ void add_sweep_command(CLI::App& app, std::function<int()>& chosen) {
       "  for i in 1 2 3; do tchat sweep linosc --over alpha=2.9:3.1:201 --part $i/3; done     # or on three machines\n"
       "  tchat sweep linosc --over alpha=2.9:3.1:201 --gather\n"
       "Exit status: 0 done, 1 files cannot be written, 2 bad usage or bad input, 130 or 143 interrupted.");
-  command->callback([&chosen, request, map, command] {
-    if (command->count("--lyapunov") > 0 && !request->exponents) request->exponents = 0;
+  command->callback([&chosen, request, exponents, map, command] {
+    request->exponents = exponent_count(*command, *exponents, request->simulation.overrides);
     if (command->count("--time") > 0 && command->count("--events") == 0) request->simulation.plan.events.reset();
     if (command->count("--reduced") > 0 && map->reduced.value_or("").empty()) map->reduced = "map";
     chosen = [request, map] {

@@ -16,6 +16,7 @@ using Eigen::VectorXd;
 constexpr Index most_bins = 8192;
 constexpr Index least_blocks = 16;
 constexpr Index most_blocks = 4 * least_blocks;
+constexpr Index least_for_alignment = 64;
 constexpr Index weighted_blocks = 8;
 constexpr Index least_weighted = 16;  // bins in each of those
 // 97.7 % of Student's distribution with 7 degrees of freedom, as a share of the two deviations of a normal one.
@@ -47,7 +48,14 @@ double block_error(const Rates& rates, double mean, Index length) {
   return std::sqrt(squares * count / (count - 1.0)) / rates.durations.head(blocks * length).sum();
 }
 
-Mean plain_mean(const Rates& rates) {
+/// Without the first ones, in which the frame has still to turn to where the growth is.
+Rates after_alignment(const Rates& rates) {
+  const Index kept = rates.size() >= least_for_alignment ? rates.size() - rates.size() / 16 : rates.size();
+  return {rates.logarithms.tail(kept), rates.durations.tail(kept)};
+}
+
+Mean plain_mean(const Rates& all) {
+  const Rates rates = after_alignment(all);
   Mean mean;
   mean.value = rates.logarithms.sum() / rates.durations.sum();
   if (rates.size() < least_blocks) return mean;
@@ -84,8 +92,8 @@ Mean weighted_mean(const Rates& rates) {
 }
 
 Mean mean_of(const Rates& rates) {
+  if (!rates.logarithms.allFinite()) return {rates.logarithms.sum(), 0.0};
   const Mean plain = plain_mean(rates);
-  if (!std::isfinite(plain.value)) return {plain.value, 0.0};
   const Mean weighted = weighted_mean(rates);
   return weighted.error < clearly_better * plain.error ? weighted : plain;
 }

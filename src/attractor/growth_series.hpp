@@ -1,10 +1,11 @@
 /// Mean rates of growth of the directions of a frame, with error bars, from the growth seen in one piece of a motion
 /// after the other.
 ///
-/// The rate is sum(logarithm) / sum(duration) over all pieces. Its error bar comes from averages over blocks of pieces,
-/// whose length is doubled until there are 16: the largest bar of the last two lengths. Neighbouring short blocks of
-/// weakly chaotic motion are correlated, and a plain standard error is too small by a factor of several; growth that
-/// the next piece takes back makes it too large.
+/// The rate is sum(logarithm) / sum(duration) over all pieces but the first sixteenth, where the frame has still to
+/// turn to where the growth is. Its error bar comes from averages over blocks of pieces, whose length is doubled until
+/// there are 16: the largest bar of the last two lengths. Neighbouring short blocks of weakly chaotic motion are
+/// correlated, and a plain standard error is too small by a factor of several; growth that the next piece takes back
+/// makes it too large.
 ///
 /// On a periodic or quasi-periodic motion a plain mean converges as 1 / (number of pieces) only. There the mean with
 /// the weight exp(-1 / (s (1 - s))), s in (0, 1) along the motion, converges faster than any power (Das, Saiki, Sander

@@ -23,6 +23,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double hardly_transversal = 1e-7;  // |h_x f-| / (|h_x| |f-|)
+constexpr long least_ticks = 256;            // before ticks become longer
 constexpr double steps_of_tick = 4.0;        // at least, of the integrator
 
 /// An event whose saltation waits for the field after it.
@@ -160,7 +161,7 @@ struct LyapunovAccumulator::Implementation {
     collect();
     by_time.add(growth_of_tick, tick);
     growth_of_tick.setZero();
-    if (tick < least_tick && by_time.pieces() % 2 == 0) {
+    if (tick < least_tick && by_time.pieces() >= least_ticks && by_time.pieces() % 2 == 0) {
       by_time.double_pieces();
       tick *= 2.0;
     }
@@ -259,7 +260,7 @@ struct LyapunovAccumulator::Implementation {
     LyapunovSpectrum best = by_event.spectrum();
     if (!has_section()) {
       const LyapunovSpectrum timed = by_time.spectrum();
-      if (timed.errors.sum() < best.errors.sum()) best = timed;
+      if (by_event.pieces() == 0 || timed.errors.sum() < best.errors.sum()) best = timed;
     }
     best.time = has_section() ? time_of_returns : time;
     best.events = has_section() ? by_event.pieces() : events;

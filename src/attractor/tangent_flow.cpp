@@ -10,6 +10,10 @@ using Eigen::MatrixXd;
 
 // The error of sixth order that goes with it is about this to the power 7/5.
 constexpr double most_difference = 1e-8;
+// The error of Gauss' quadrature of A is h^7 / 2016000 times its sixth derivative: next to h = 0.3 times the scale of
+// time on which A of size 1 changes, 1e-10.
+constexpr double most_slope = 0.3;  // of h^2 A'
+constexpr double most_bend = 0.01;  // of h^3 A'' / 2
 // exp(Omega) V then loses two digits at most, and the shortest direction of V seven between two orthonormalisations.
 constexpr double most_norm = 4.0;
 constexpr double most_stretched = 4.0;
@@ -50,6 +54,7 @@ bool TangentFlow::series(int field, const DenseOutput& state, double from, doubl
   commutator(b_, c2_, omega_);
   omega_ /= 240.0;
   difference_ = (omega_ + c1_ / 12.0).norm();
+  changes_ = std::max(a2_.norm() / most_slope, a3_.norm() / most_bend);
   omega_ += a1_ + a3_ / 12.0;
   norm_ = omega_.norm();
   return true;
@@ -73,7 +78,7 @@ bool TangentFlow::carry(OrthonormalFrame& frame, int field, const DenseOutput& s
     const bool is_last = t + step >= to - shortest;
     if (is_last) step = to - t;
     if (!series(field, state, t, step)) return false;
-    if ((difference_ > most_difference || norm_ > most_norm) && step > shortest) {
+    if ((difference_ > most_difference || changes_ > 1.0 || norm_ > most_norm) && step > shortest) {
       step *= 0.5;
       continue;
     }
@@ -84,7 +89,7 @@ bool TangentFlow::carry(OrthonormalFrame& frame, int field, const DenseOutput& s
       stretched_ = 0.0;
     }
     t = is_last ? to : t + step;
-    if (difference_ < 0.01 * most_difference && norm_ < 0.5 * most_norm) step *= 2.0;
+    if (difference_ < 0.01 * most_difference && changes_ < 0.1 && norm_ < 0.5 * most_norm) step *= 2.0;
   }
   return true;
 }

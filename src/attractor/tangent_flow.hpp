@@ -8,7 +8,8 @@
 ///     Omega = a1 + a3 / 12 + 1/240 [-20 a1 - a3 + C1, a2 + C2].
 ///
 /// Exact, whatever the step, where A is constant. To fourth order the last term is -1/12 [a1, a2]; where the difference
-/// of both is too large, or |h A| so large that columns would become parallel, the step is halved. Allocates nothing
+/// of both is too large, or A changes too much for its quadrature, or |h A| is so large that columns would become
+/// parallel, the step is halved. Allocates nothing
 /// after construction.
 #pragma once
 
@@ -41,6 +42,7 @@ class TangentFlow {
   const Eigen::VectorXd& par_;
   double stretched_ = 0.0;                      // sum of |Omega| since the frame was orthonormal
   double norm_ = 0.0, difference_ = 0.0;        // of Omega; from fourth order
+  double changes_ = 0.0;                        // of A over the step, as a share of what is allowed
   Eigen::MatrixXd first_, middle_, last_;       // A
   Eigen::MatrixXd a1_, a2_, a3_, c1_, c2_, b_;  // as above
   Eigen::MatrixXd omega_, term_, product_;

@@ -8,9 +8,17 @@ namespace tchat {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+double event_range(const GrazingPoint& point, const VectorXd& extent) {
+  return point.event_gradient.cwiseAbs().dot(extent);
+}
+
 LocalContact::LocalContact(std::shared_ptr<const SmoothMap> smooth, std::shared_ptr<const DiscontinuityMap> map,
                            MapOrder order, double neighbourhood)
-    : smooth_(std::move(smooth)), map_(std::move(map)), order_(order), neighbourhood_(neighbourhood) {}
+    : smooth_(std::move(smooth)),
+      map_(std::move(map)),
+      order_(order),
+      neighbourhood_(neighbourhood),
+      range_(event_range(map_->point(), smooth_->extent())) {}
 
 double LocalContact::distance(const VectorXd& x) const {
   return smooth_->difference(x, map_->point().x).cwiseQuotient(smooth_->extent()).cwiseAbs().maxCoeff();
@@ -26,7 +34,8 @@ LocalContact::Result LocalContact::apply(const VectorXd& x, const ParameterVecto
   const double penetration = near || !map_->section() ? map_->penetration(beside(x), par) : NAN;
   const bool contact = near && penetration > 0.0;
   const bool missed = !near && penetration > 0.0;
-  return {contact ? map_->apply(beside(x), par, order_) : x, penetration, contact, missed};
+  return {contact ? map_->apply(beside(x), par, order_) : x, penetration, contact, missed,
+          contact ? penetration / range_ : 0.0};
 }
 
 MatrixXd LocalContact::derivative(const VectorXd& x, const ParameterVector& par) const {
@@ -36,7 +45,7 @@ MatrixXd LocalContact::derivative(const VectorXd& x, const ParameterVector& par)
 
 Iterate CompositeMap::step(const VectorXd& x, const ParameterVector& par) const {
   const LocalContact::Result after = contact_.apply(x, par);
-  Iterate iterate{{}, after.penetration, after.contact, after.missed, smooth().time(after.x)};
+  Iterate iterate{{}, after.penetration, after.contact, after.missed, smooth().time(after.x), after.depth};
   iterate.image = smooth().image(after.x, par);
   return iterate;
 }

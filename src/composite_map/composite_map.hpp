@@ -24,6 +24,7 @@ class LocalContact {
     double penetration = 0.0;  ///< NaN where it has no value: far from x* on P'
     bool contact = false;
     bool missed = false;  ///< positive, but outside the neighbourhood
+    double depth = 0.0;   ///< see Iterate
   };
   Result apply(const Eigen::VectorXd& x, const ParameterVector& par) const;
   Eigen::MatrixXd derivative(const Eigen::VectorXd& x, const ParameterVector& par) const;
@@ -40,7 +41,11 @@ class LocalContact {
   std::shared_ptr<const DiscontinuityMap> map_;
   MapOrder order_;
   double neighbourhood_;
+  double range_;  // of h_D over the motion
 };
+
+/// What h_D ranges over when states range over `extent`.
+double event_range(const GrazingPoint& point, const Eigen::VectorXd& extent);
 
 class CompositeMap : public IteratedMap {
  public:

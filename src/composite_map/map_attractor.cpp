@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "attractor/qr_accumulator.hpp"
+#include "linear_algebra/dense_matrix.hpp"
 #include "simulation/mode_rule.hpp"
 #include "text/user_error.hpp"
 
@@ -32,6 +34,11 @@ std::string trouble(const IteratedMap& map, const Iterate& iterate, const Vector
         state_text(x));
   if (!iterate.image.allFinite())
     return fmt::format("the map has no value at x = {}: it is too far from grazing", state_text(x));
+  if (iterate.depth > settings.escape)
+    return fmt::format(
+        "a penetration of {:.6g} at x = {}, which is more than the motion extends over: the parameters are "
+        "too far from grazing",
+        iterate.penetration, state_text(x));
   const double distance = map.smooth().distance(iterate.image);
   if (!(distance <= settings.escape))
     return fmt::format(
@@ -56,7 +63,8 @@ class Iteration {
     const std::size_t kept = found_.period > 0 ? static_cast<std::size_t>(found_.period) : points_.size();
     keep(points_.size() - kept);
     if (found_.period > 0) found_.kind = AttractorKind::periodic;
-    if (settings_.exponents > 0 || found_.period == 0) add_exponents(kept);
+    if (settings_.exponents > 0 && found_.period > 0) add_multipliers();
+    if (found_.period == 0) add_exponents();
     if (found_.period == 0) tell_kind();
     return found_;
   }
@@ -133,18 +141,33 @@ class Iteration {
     return found_.period > 0 ? static_cast<std::size_t>(found_.period) : static_cast<std::size_t>(settings_.returns);
   }
 
-  /// Periodic: over the period again and again, until the frame has turned to its directions. Else going on from the
-  /// end until the largest one is told from zero or its bar is small.
-  void add_exponents(std::size_t kept) {
+  /// ln |mu| / T of the multipliers of the period.
+  void add_multipliers() {
+    MatrixXd product = MatrixXd::Identity(map_.coordinates(), map_.coordinates());
+    for (Index k = 0; k < found_.points.cols(); ++k) product = map_.tangent(found_.points.col(k), par_) * product;
+    const Index count = std::min<Index>(settings_.exponents, map_.exponents());
+    LyapunovSpectrum spectrum;
+    spectrum.exponents = VectorXd::Constant(count, NAN);
+    spectrum.errors = VectorXd::Zero(count);
+    spectrum.time = found_.time;
+    spectrum.events = found_.period;
+    if (product.allFinite()) {
+      VectorXd moduli = eigenvalues(product).cwiseAbs();
+      std::sort(moduli.begin(), moduli.end(), std::greater<>());
+      spectrum.exponents = moduli.head(count).array().log() / found_.time;
+    }
+    found_.spectrum = spectrum;
+  }
+
+  /// Going on from the end until the largest one is told from zero or its bar is small.
+  void add_exponents() {
     const Index count = std::min<Index>(std::max(1, settings_.exponents), map_.exponents());
     QrAccumulator accumulator(map_.coordinates(), count);
     long done = 0;
-    VectorXd x = points_[points_.size() - kept];
-    const long most =
-        found_.period > 0 ? std::max<long>(settings_.returns, 100L * found_.period) : settings_.most_returns;
-    for (long decision = std::min<long>(most, first_decision);; decision = std::min(2 * decision, most)) {
+    VectorXd x = x_;
+    for (long decision = std::min(settings_.most_returns, first_decision);;
+         decision = std::min(2 * decision, settings_.most_returns)) {
       for (; done < decision; ++done) {
-        if (found_.period > 0) x = points_[points_.size() - kept + static_cast<std::size_t>(done) % kept];
         if (settings_.interrupted && done % 1024 == 0 && settings_.interrupted()) throw ComputationError("interrupted");
         const Iterate iterate = map_.step(x, par_);
         if (!iterate.image.allFinite()) break;
@@ -152,7 +175,7 @@ class Iteration {
         x = iterate.image;
       }
       found_.spectrum = accumulator.spectrum();
-      if (decision >= most || done < decision || is_decided(done)) return;
+      if (decision >= settings_.most_returns || done < decision || is_decided(done)) return;
     }
   }
 
@@ -162,7 +185,6 @@ class Iteration {
   }
 
   bool is_decided(long returns) const {
-    if (found_.period > 0) return false;
     const double mean_time = found_.spectrum->time / static_cast<double>(returns);
     return found_.spectrum->exponents(0) > bar(returns) || bars * found_.spectrum->errors(0) < least_growth / mean_time;
   }

@@ -34,7 +34,7 @@ struct MapAttractor {
   Eigen::MatrixXd points;
   Eigen::VectorXd penetrations;
   std::vector<bool> contacts;
-  std::optional<LyapunovSpectrum> spectrum;  ///< per unit of time
+  std::optional<LyapunovSpectrum> spectrum;  ///< per unit of time; of a periodic orbit by its multipliers
   Eigen::VectorXd last;                      ///< to go on from
 };
 

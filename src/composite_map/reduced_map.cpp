@@ -16,8 +16,12 @@ Iterate ReducedMap::step(const VectorXd& x, const ParameterVector& par) const {
   const VectorXd on_curve = smooth_->on_curve(smooth_->projection().phase(x));
   const LocalContact::Result after = contact_.apply(on_curve, par);
   const double phi = smooth_->projection().phase(after.x);
-  return {smooth_->on_curve(phi + curve.rotation()), after.penetration, after.contact, after.missed,
-          smooth_->time(after.x)};
+  return {smooth_->on_curve(phi + curve.rotation()),
+          after.penetration,
+          after.contact,
+          after.missed,
+          smooth_->time(after.x),
+          after.depth};
 }
 
 MatrixXd ReducedMap::tangent(const VectorXd& x, const ParameterVector& par) const {
@@ -67,8 +71,12 @@ Iterate EllipseMap::step(const VectorXd& x, const ParameterVector& par) const {
   const double penetration = contact.depth - 0.5 * curvature_ * off * off;
   const bool touches = penetration > 0.0;
   const double moved = touches ? phi + shift_ * std::sqrt(penetration) : phi;
-  return {smooth_->on_curve(moved + smooth_->curve().rotation()), penetration, touches, false,
-          smooth_->time(smooth_->on_curve(moved))};
+  return {smooth_->on_curve(moved + smooth_->curve().rotation()),
+          penetration,
+          touches,
+          false,
+          smooth_->time(smooth_->on_curve(moved)),
+          touches ? penetration / event_range(map_->point(), smooth_->extent()) : 0.0};
 }
 
 MatrixXd EllipseMap::tangent(const VectorXd& x, const ParameterVector& par) const {

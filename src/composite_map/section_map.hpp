@@ -35,6 +35,7 @@ struct Iterate {
   bool contact = false;      ///< the discontinuity map has been applied
   bool missed = false;       ///< penetration is positive, but farther from x* than the discontinuity map is good for
   double time = 0.0;
+  double depth = 0.0;  ///< penetration relative to what h_D ranges over on the motion; 0 without contact
 };
 
 /// What is iterated: a composite map or a reduced one.

@@ -137,6 +137,11 @@ MapModel periodic_model(const MapRequest& request, const MapContext& context, co
           fmt::format("--section {}: event function {} is {:.6g} at the grazing point x* = {}: the section must "
                       "pass through it; name a state instead, whose value at x* makes the section",
                       *context.section, model.section->event, at.h, numbers(model.point.x)));
+    if (at.rate() > on_p * at.sizes())
+      throw UserError(
+          fmt::format("--section {}: event function {} rises at the grazing point x* = {}; sections are those "
+                      "where functions fall: name a state instead",
+                      *context.section, model.section->event, numbers(model.point.x)));
     if (std::abs(at.gradient.dot(model.point.section_gradient)) >=
         (1.0 - 1e-9) * at.gradient.norm() * model.point.section_gradient.norm())
       model.section.reset();
@@ -241,11 +246,20 @@ MapModel torus_model(const MapRequest& request, const MapContext& context, const
         fmt::format("--section {}: points of a torus are those of an event function; name the one that was "
                     "recorded",
                     *context.section));
-  const SectionPoints points = read_section_points(system, request.source, named);
+  const std::vector<SectionPoints> all = read_section_points(system, request.source, named);
   const ParameterVector& par = context.par;
+  const int wall = wall_of(request, system, all.front().states.col(0), par);
+  const auto on = std::find_if(all.begin(), all.end(), [&](const SectionPoints& points) {
+    return points.event != wall && lie_on_p(system, points, wall, par);
+  });
+  const bool is_p = on != all.end();
+  if (!is_p && named == 0)
+    throw UserError(
+        fmt::format("{}: no event function's points in it lie where event {} ({}) is least; say with --section "
+                    "which of them make the section",
+                    request.source, wall, system.function_name(FunctionKind::event, wall)));
+  const SectionPoints& points = is_p ? *on : all.front();
   const VectorXd first = points.states.col(0);
-  const int wall = wall_of(request, system, first, par);
-  const bool is_p = lie_on_p(system, points, wall, par);
 
   CurveSettings curve_settings;
   for (const Index state : angle_states(system, first, par))

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
 #include <string_view>
 #include <vector>
 
@@ -38,8 +37,28 @@ MatrixXd columns(const std::vector<Row>& rows, int event, Index n) {
   return states;
 }
 
+std::vector<SectionPoints> of_each_event(const HybridSystem& system, const std::vector<Row>& rows,
+                                         const std::string& path, int event) {
+  std::vector<SectionPoints> all;
+  std::string list;
+  for (int j = 1; j <= system.count(FunctionKind::event); ++j) {
+    const auto first = std::find_if(rows.begin(), rows.end(), [j](const Row& row) { return row.event == j; });
+    if (first == rows.end()) continue;
+    list += fmt::format("{}{} ({})", list.empty() ? "" : ", ", j, system.function_name(FunctionKind::event, j));
+    if (event == 0 || event == j) all.push_back({j, first->field, columns(rows, j, system.dimension())});
+  }
+  if (list.empty()) throw UserError(fmt::format("{}: there is no event in it; {}", path, cure));
+  if (all.empty())
+    throw UserError(
+        fmt::format("{}: there is no point of event function {} ({}) in it, but of {}; name one of them with "
+                    "--section, or simulate with that one recorded",
+                    path, event, system.function_name(FunctionKind::event, event), list));
+  return all;
+}
+
 /// segment i j k t h h_x_f, the states before, the states after, what.
-std::vector<Row> event_rows(const std::string& text, const std::string& path, int n) {
+std::vector<Row> event_rows(const HybridSystem& system, const std::string& text, const std::string& path) {
+  const int n = system.dimension();
   std::vector<Row> rows;
   std::size_t begin = 0;
   for (int number = 1; begin < text.size(); ++number) {
@@ -59,6 +78,12 @@ std::vector<Row> event_rows(const std::string& text, const std::string& path, in
     const auto field = parse_integer(words[1]), event = parse_integer(words[2]);
     if (!field || !event) throw fault("columns 2 and 3 are no numbers of a field and an event function");
     row.field = *field, row.event = *event;
+    if (row.event < 1 || row.event > system.count(FunctionKind::event) || row.field < 1 ||
+        row.field > system.count(FunctionKind::field))
+      throw fault(fmt::format(
+          "field {} and event function {}, but {} has {} and {} of them: the file is of another "
+          "problem",
+          row.field, row.event, system.name(), system.count(FunctionKind::field), system.count(FunctionKind::event)));
     for (int k = 0; k < n; ++k) {
       const auto value = parse_real(words[static_cast<std::size_t>(7 + k)]);
       if (!value) throw fault(fmt::format("'{}' is no finite number", words[static_cast<std::size_t>(7 + k)]));
@@ -69,7 +94,7 @@ std::vector<Row> event_rows(const std::string& text, const std::string& path, in
   return rows;
 }
 
-SectionPoints of_sweep(const HybridSystem& system, const std::string& path, int event) {
+std::vector<SectionPoints> of_sweep(const HybridSystem& system, const std::string& path, int event) {
   const SweepTable table = read_sweep_file(path);
   const auto* index = table.column("index");
   if (index != nullptr && std::any_of(index->begin(), index->end(), [&](double i) { return i != index->front(); }))
@@ -92,38 +117,15 @@ SectionPoints of_sweep(const HybridSystem& system, const std::string& path, int 
         fmt::format("{}: it does not tell at which event its states were recorded; say so with --section", path));
   else
     for (Row& row : rows) row.event = event;
-  return {event, 1, columns(rows, event, system.dimension())};
+  return of_each_event(system, rows, path, event);
 }
 
 }  // namespace
 
-SectionPoints read_section_points(const HybridSystem& system, const std::string& path, int event) {
+std::vector<SectionPoints> read_section_points(const HybridSystem& system, const std::string& path, int event) {
   const std::string text = read_text_file(path, "points of a section", cure);
   if (text.starts_with("# tchat sweep")) return of_sweep(system, path, event);
-  const int n = system.dimension();
-  const std::vector<Row> rows = event_rows(text, path, n);
-  std::map<int, int> counts;
-  for (const Row& row : rows) ++counts[row.event];
-  if (counts.empty()) throw UserError(fmt::format("{}: there is no event in it; {}", path, cure));
-  SectionPoints points;
-  points.event = event;
-  if (event == 0)
-    points.event = std::max_element(counts.begin(), counts.end(), [](const auto& a, const auto& b) {
-                     return a.second < b.second;
-                   })->first;
-  if (counts[points.event] == 0) {
-    std::string list;
-    for (const auto& [j, count] : counts)
-      if (count > 0) list += fmt::format("{}{} ({} points)", list.empty() ? "" : ", ", j, count);
-    throw UserError(
-        fmt::format("{}: there is no point of event function {} ({}) in it; it has {}: name one of them with "
-                    "--section, or simulate with that one recorded",
-                    path, event, system.function_name(FunctionKind::event, event), list));
-  }
-  points.field =
-      std::find_if(rows.begin(), rows.end(), [&](const Row& row) { return row.event == points.event; })->field;
-  points.states = columns(rows, points.event, n);
-  return points;
+  return of_each_event(system, event_rows(system, text, path), path, event);
 }
 
 }  // namespace tchat

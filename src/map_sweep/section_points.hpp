@@ -2,8 +2,8 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <optional>
 #include <string>
+#include <vector>
 
 #include "hybrid/hybrid_system.hpp"
 
@@ -15,8 +15,8 @@ struct SectionPoints {
   Eigen::MatrixXd states;  ///< before the jump, n x K, in the order of time
 };
 
-/// Those of event function `event`; 0: of the one that there are most of. Throws UserError with file, line and cure: no
-/// such file, not one of `system`, no point of that event.
-SectionPoints read_section_points(const HybridSystem& system, const std::string& path, int event);
+/// Those of each event function that there are points of, in the order of their numbers; of `event` alone where that is
+/// not 0. Throws UserError with file, line and cure: no such file, not one of `system`, no point of that event.
+std::vector<SectionPoints> read_section_points(const HybridSystem& system, const std::string& path, int event);
 
 }  // namespace tchat

@@ -24,7 +24,9 @@ std::string value_text(double value, double error) {
   if (!std::isfinite(value)) return std::isnan(value) ? "nan" : "-infinity";
   const double last = error > 0.0 && std::isfinite(error) ? std::floor(std::log10(error)) : -6.0;
   const int digits = static_cast<int>(std::clamp(1.0 - last, 0.0, 12.0));
-  return fmt::format("{:.{}f}", value, digits);
+  std::string text = fmt::format("{:.{}f}", value, digits);
+  if (text.find_first_not_of("-0.") == std::string::npos && text.front() == '-') text.erase(0, 1);
+  return text;
 }
 
 std::string bar_text(double error) {

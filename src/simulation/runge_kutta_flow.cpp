@@ -150,6 +150,7 @@ struct RungeKuttaFlow::Implementation {
 
   /// x(t) by one step of the method from the last one's start.
   const double* step_to(double t) {
+    single.reset();  // it takes the field at its last step's end for that at this one's start
     single.do_step(right_hand_side(), stepper.previous_state(), stepper.previous_time(), single_state,
                    t - stepper.previous_time());
     return single_state.data();

@@ -12,6 +12,7 @@
 #undef TCHAT_PROBLEM
 #define TCHAT_PROBLEM(Problem)
 #include "../../problems/fvdp/fvdp.cpp"
+#include "../../problems/planar/planar.cpp"
 #include "../../problems/rand3d/rand3d.cpp"
 
 namespace tchat::test {

@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "composite_map/torus_return.hpp"
-#include "grazing_problems.hpp"
+#include "fvdp_torus.hpp"
 #include "simulation/segment_flow.hpp"
 #include "text/user_error.hpp"
 
@@ -14,29 +14,12 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Section points of fvdp's smooth torus (3.3), x1 at its maxima (event function 2) or at a constant phase (3).
-MatrixXd torus_points(const VectorXd& par, int event, int count) {
-  const HybridSystem& system = system_of<ForcedVanDerPol>();
-  FlowOptions options;
-  options.relative_tolerance = 1e-13;
-  options.absolute_tolerance = 1e-13;
-  options.variational = false;
-  VectorXd x = integrate_for(system, 1, Eigen::Vector3d(1.0, 0.0, 0.0), par, 400.0, options).end_state;
-  MatrixXd points(3, count);
-  for (int k = 0; k < count; ++k) {
-    x = integrate_segment(system, {1, event, 2}, x, par, options).end_state;
-    x(2) = std::fmod(x(2), 6.283185307179586);
-    points.col(k) = x;
-  }
-  return points;
-}
-
 }  // namespace
 
-TEST_CASE("fvdp's smooth torus: mu*, x3* and the curve's second derivative, and the map that it makes") {
+TEST_CASE("fvdp's smooth torus: mu*, x3* and the curve's second derivative, and the map that it makes", "[slow]") {
   const HybridSystem& system = system_of<ForcedVanDerPol>();
   const VectorXd par = full_par({5.0, 0.1, 0.75, 1.505, 0.8, 2.9236851});
-  const MatrixXd points = torus_points(par, 2, 6000);
+  const MatrixXd points = torus_points(par, 2, 4000);
   CurveSettings settings;
   settings.angles = {2};
   const FittedCurve fit = fit_invariant_curve(points, settings, "points");
@@ -57,6 +40,7 @@ TEST_CASE("fvdp's smooth torus: mu*, x3* and the curve's second derivative, and 
   const auto suspended = std::make_shared<SuspendedSystem>(system, std::vector<int>{1}, 1, 1);
   TorusSettings torus;
   torus.order = 2;
+  torus.accuracy = 1e-5;
   const TorusReturn map(suspended, fit.curve, projection, par, suspended->least_distance(), torus);
   INFO("defect " << map.defect() << " interpolation " << map.interpolation_error());
   CHECK(map.defect() < 1e-8);

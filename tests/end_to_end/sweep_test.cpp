@@ -229,16 +229,19 @@ TCHAT_PROBLEM(Oscillator)
   workspace.write("minimal.cpp", cpp);
   workspace.write("old.f", fortran);
   workspace.write("gc.old", "NDIM = 4\nIPS = 180\nGCFIND = [1]\nGCHIND = [2]\nGCGIND = [2]\nICP = [1, 61]\n");
-  workspace.write("fresh.tch", R"(problem fresh
+  workspace.write("written.tch", R"(par alpha=1, omega=2
 x1' = x2
 x2' = alpha*y2 - 0.6*x2 - x1
 y1' = (1 - y1^2 - y2^2)*y1 + omega*y2
 y2' = (1 - y1^2 - y2^2)*y2 - omega*y1
+event wall = 1 - x1
+event top = x2
+jump impact: x2 -> -0.8*x2
 )");
   const std::string over = " --signature 1,2,2 --state 0.1,0,0,1 --over PAR(1)=1:2:60 PAR(2)=2 --section 2";
   // Without impacts: the amplitude of the response is alpha / sqrt((1 - omega^2)^2 + (2 zeta omega)^2), zeta = 0.3.
   const double response = 1.0 / std::sqrt(9.0 + 1.44);
-  for (const char* name : {"minimal", "old"}) {
+  for (const char* name : {"minimal", "old", "written"}) {
     INFO(name);
     const tchat::SweepTable table = sweep(workspace, name + over + " -j 2", std::string(name) + "2");
     sweep(workspace, name + over, std::string(name) + "1");
@@ -250,4 +253,26 @@ y2' = (1 - y1^2 - y2^2)*y2 - omega*y1
       CHECK((*table.column(table.names[table.names.size() - 4]))[i] == Approx(alpha * response).epsilon(1e-5));
     }
   }
+}
+
+TEST_CASE("sweep: a plugin that dies in a worker's thread is named, and what is computed is kept") {
+  const Workspace workspace(Workspace::Plugin::source);
+  std::string source = workspace.read("linosc.cpp");
+  const std::string line = "    f[0] = x[1];";
+  REQUIRE(source.find(line) != std::string::npos);
+  source.replace(source.find(line), line.size(), line + " if (par[0] > 2.97) { volatile int* p = nullptr; *p = 1; }");
+  workspace.write("dying.cpp", source);
+  const Outcome outcome = workspace.tchat("sweep dying --over alpha=2.9:3:40 -j 2");
+  CHECK(outcome.status == 2);
+  CHECK(contains(outcome.err, "dying.so died in field 1 by signal 11"));
+  CHECK_FALSE(workspace.has("dying.sweep"));
+  CHECK(contains(workspace.read("dying.sweep.journal"), " periodic "));
+}
+
+TEST_CASE("sweep: a library whose copies would share their data has one worker, with a word") {
+  const Workspace workspace;
+  const Outcome outcome = workspace.tchat("sweep linosc --over alpha=2.9:2.91:3 -j 2");
+  CHECK(outcome.status == 0);
+  CHECK(contains(outcome.err, "-fno-gnu-unique"));
+  CHECK(contains(outcome.err, "one worker computes instead of 2"));
 }

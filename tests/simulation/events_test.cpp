@@ -35,10 +35,11 @@ VectorXd linear_flow(const VectorXd& x, const VectorXd& par, double t) {
 }  // namespace
 
 TEST_CASE("bouncing ball: times and velocities of impacts in closed form") {
+  const IntegrationMethod method = GENERATE(IntegrationMethod::adams, IntegrationMethod::runge_kutta);
   const double g = 9.81, r = 0.7, height = 2.0;
   const double first = std::sqrt(2.0 * height / g);
-  const Simulated ball =
-      simulate(always<BouncingBall>({{1, 1, 1}}), Vector2d(height, 0.0), parameters({g, r}), so_many_events(8));
+  const Simulated ball = simulate(always<BouncingBall>({{1, 1, 1}}), Vector2d(height, 0.0), parameters({g, r}),
+                                  so_many_events(8), settings_for_tests(1e-12, method));
   REQUIRE(ball.segments.size() == 8);
   double time = first, velocity = g * first;
   for (const SimulatedSegment& segment : ball.segments) {
@@ -56,10 +57,12 @@ TEST_CASE("bouncing ball: times and velocities of impacts in closed form") {
 }
 
 TEST_CASE("linear oscillator: every segment up to an impact follows the closed form, and the first fall ends it") {
+  const IntegrationMethod method = GENERATE(IntegrationMethod::adams, IntegrationMethod::runge_kutta);
   const HybridSystem& system = system_of<LinearOscillator>();
   const ParameterVector par = parameters({3.2, 2.0072, 0.05, 0.8});
-  const Simulated run = simulate(ModeRule(system, std::vector<Mode>{Mode{{{1, 1, 1}}, {}}}),
-                                 Vector4d(0.2, 0.1, 0.0, 1.0), par, so_many_events(30));
+  const Simulated run =
+      simulate(ModeRule(system, std::vector<Mode>{Mode{{{1, 1, 1}}, {}}}), Vector4d(0.2, 0.1, 0.0, 1.0), par,
+               so_many_events(30), settings_for_tests(1e-12, method));
   REQUIRE(run.segments.size() == 30);
   for (const SimulatedSegment& segment : run.segments) {
     CAPTURE(segment.number);
@@ -78,6 +81,7 @@ TEST_CASE("linear oscillator: every segment up to an impact follows the closed f
 }
 
 TEST_CASE("a pair of crossings much shorter than a step is found, a miss by as little is a contact") {
+  const IntegrationMethod method = GENERATE(IntegrationMethod::adams, IntegrationMethod::runge_kutta);
   // x = A cos(w t), A just beyond the wall or just before it; the tolerance allows steps of a tenth of a period.
   const double w = 1.3;
   for (const double tolerance : {1e-4, 1e-8, 1e-12}) {
@@ -87,7 +91,7 @@ TEST_CASE("a pair of crossings much shorter than a step is found, a miss by as l
       // `depth` nothing can be said.
       if (depth < 20.0 * tolerance) continue;
       const Simulated hit = simulate(always<TwoWalls>({{1, 1, 1}}), Vector4d(-1.0 - depth, 0.0, 1.0, 0.0),
-                                     parameters({w, 1.0}), so_many_events(1), settings_for_tests(tolerance));
+                                     parameters({w, 1.0}), so_many_events(1), settings_for_tests(tolerance, method));
       REQUIRE(hit.segments.size() == 1);
       REQUIRE(hit.segments[0].ended_by == SegmentEnd::event);
       const double early = std::acos(1.0 / (1.0 + depth)) / w;
@@ -95,7 +99,7 @@ TEST_CASE("a pair of crossings much shorter than a step is found, a miss by as l
       CHECK(std::abs(hit.segments[0].duration - time) < 0.2 * early + 20.0 * tolerance);
 
       const Simulated miss = simulate(always<TwoWalls>({{1, 1, 1}}), Vector4d(-1.0 + depth, 0.0, 1.0, 0.0),
-                                      parameters({w, 1.0}), so_long(5.0), settings_for_tests(tolerance));
+                                      parameters({w, 1.0}), so_long(5.0), settings_for_tests(tolerance, method));
       REQUIRE(miss.segments.size() == 1);
       CHECK(miss.segments[0].ended_by == SegmentEnd::end_time);
       REQUIRE(miss.segments[0].marks.size() == 1);
@@ -116,6 +120,7 @@ TEST_CASE("a minimum of h that is not near zero is no contact") {
 }
 
 TEST_CASE("two events at once: the first in the order of the index vectors goes first, the other one at once after") {
+  const IntegrationMethod method = GENERATE(IntegrationMethod::adams, IntegrationMethod::runge_kutta);
   // x reaches 1 = 2 sin(w t) at w t = pi / 6; y falls to zero at the same time.
   const double w = 1.3, time = pi / 6.0 / w, r = 0.5;
   const Vector4d start(0.0, 2.0 * w, time, -1.0);
@@ -124,7 +129,8 @@ TEST_CASE("two events at once: the first in the order of the index vectors goes 
     const IndexVector wall{1, 1, 1}, floor{1, 2, 2};
     const std::vector<IndexVector> order =
         wall_first ? std::vector<IndexVector>{wall, floor} : std::vector<IndexVector>{floor, wall};
-    const Simulated run = simulate(always<TwoWalls>(order), start, parameters({w, r}), so_many_events(2));
+    const Simulated run = simulate(always<TwoWalls>(order), start, parameters({w, r}), so_many_events(2),
+                                   settings_for_tests(1e-12, method));
     REQUIRE(run.segments.size() == 2);
     CHECK(run.segments[0].index == order[0]);
     REQUIRE(run.segments[0].simultaneous.size() == 1);
@@ -140,11 +146,12 @@ TEST_CASE("two events at once: the first in the order of the index vectors goes 
 }
 
 TEST_CASE("events that nearly coincide come in their own order") {
+  const IntegrationMethod method = GENERATE(IntegrationMethod::adams, IntegrationMethod::runge_kutta);
   const double w = 1.3, time = pi / 6.0 / w;
   for (const double later : {1e-4, -1e-4, 1e-6, -1e-6}) {
     CAPTURE(later);
     const Simulated run = simulate(always<TwoWalls>({{1, 1, 1}, {1, 2, 2}}), Vector4d(0.0, 2.0 * w, time + later, -1.0),
-                                   parameters({w, 0.5}), so_many_events(2));
+                                   parameters({w, 0.5}), so_many_events(2), settings_for_tests(1e-12, method));
     REQUIRE(run.segments.size() == 2);
     CHECK(run.segments[0].index.event == (later > 0.0 ? 1 : 2));
     CHECK(run.segments[1].index.event == (later > 0.0 ? 2 : 1));

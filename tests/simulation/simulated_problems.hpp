@@ -71,11 +71,13 @@ struct LogisticClock {
   }
 };
 
-inline SimulationSettings settings_for_tests(double tolerance = 1e-12) {
+inline SimulationSettings settings_for_tests(double tolerance = 1e-12,
+                                             IntegrationMethod method = IntegrationMethod::adams) {
   SimulationSettings settings;
   settings.flow.relative_tolerance = tolerance;
   settings.flow.absolute_tolerance = 0.01 * tolerance;
   settings.flow.max_duration = 1000.0;
+  settings.flow.method = method;
   return settings;
 }
 

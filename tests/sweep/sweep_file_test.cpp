@@ -1,0 +1,153 @@
+// Records of journals are read back to the last bit; O.sweep as written by hand, and what is wrong with others.
+#include "sweep/sweep_file.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+
+#include "support/temporary_folder.hpp"
+#include "sweep/sample_record.hpp"
+#include "text/user_error.hpp"
+
+using namespace tchat;
+
+namespace {
+
+const char* const good =
+    "# tchat sweep of Oscillator\n"
+    "# over mu from -0.5 to 0.5, 3 values\n"
+    "# over x1 from 0 to 1, 2 values, initial state\n"
+    "# PAR r = 0.8\n"
+    "# start 1: x = (0, 1)\n"
+    "# attractor 1: periodic, signature {(1,2,2), (1,1,1)}, impacts 1, period 6.5, index 0, mode 1,1,1;1,2,2, state "
+    "0.25,-3\n"
+    "# attractor 2: chaotic, index 4, state 1,2\n"
+    "index mu x1(0) start attractor kind period time impacts x1 x2\n"
+    "0 -0.5 0 1 1 periodic 2 6.5 1 0.25 -3\n"
+    "4 0 1 1 2 chaotic nan nan nan 1 2\n";
+
+std::string replaced(const std::string& old, const std::string& text) {
+  std::string all = good;
+  all.replace(all.find(old), old.size(), text);
+  return all;
+}
+
+}  // namespace
+
+TEST_CASE("values of a swept quantity meet their ends") {
+  const SweptQuantity quantity{"mu", -0.82, -0.79, 301, false};
+  CHECK(quantity.value(0) == -0.82);
+  CHECK(quantity.value(300) == -0.79);
+  CHECK(quantity.value(150) == Approx(-0.805).epsilon(1e-15));
+  CHECK(quantity.column() == "mu");
+  CHECK(SweptQuantity{"x1", 0, 1, 2, true}.column() == "x1(0)");
+}
+
+TEST_CASE("a sweep written by hand is read") {
+  const test_support::TemporaryFolder folder;
+  folder.write("a.sweep", good);
+  const SweepTable table = read_sweep_file(folder.file("a.sweep"));
+  CHECK(table.problem == "Oscillator");
+  REQUIRE(table.over.size() == 2);
+  CHECK(table.over[0].name == "mu");
+  CHECK(table.over[0].count == 3);
+  CHECK_FALSE(table.over[0].is_state);
+  CHECK(table.over[1].is_state);
+  REQUIRE(table.parameters.size() == 1);
+  CHECK(table.parameters[0].second == 0.8);
+  REQUIRE(table.starts.size() == 1);
+  REQUIRE(table.attractors.size() == 2);
+  CHECK(table.attractors[0].signature == "{(1,2,2), (1,1,1)}");
+  CHECK(table.attractors[0].period == 6.5);
+  CHECK(table.attractors[0].mode == "1,1,1;1,2,2");
+  CHECK(table.attractors[0].state(1) == -3.0);
+  CHECK(table.attractors[1].kind == AttractorKind::chaotic);
+  CHECK(std::isnan(table.attractors[1].period));
+  CHECK(table.rows() == 2);
+  REQUIRE(table.column("x1") != nullptr);
+  CHECK((*table.column("x1"))[0] == 0.25);
+  CHECK(std::isnan((*table.column("time"))[1]));
+  CHECK(table.kinds[1] == AttractorKind::chaotic);
+  CHECK(table.column("penetration") == nullptr);
+  // what is written of the heading is what is read
+  std::string heading(good);
+  heading.resize(heading.find("index mu"));
+  CHECK(sweep_heading(table) == heading);
+}
+
+TEST_CASE("files that are no sweep, or damaged, are refused with their line") {
+  const test_support::TemporaryFolder folder;
+  const auto message = [&](const std::string& text) {
+    folder.write("a.sweep", text);
+    try {
+      read_sweep_file(folder.file("a.sweep"));
+    } catch (const UserError& error) {
+      return std::string(error.what());
+    }
+    return std::string("nothing wrong");
+  };
+  const auto says = [&](const std::string& text, const std::string& part) {
+    INFO(message(text));
+    CHECK(message(text).find(part) != std::string::npos);
+  };
+  says("", "it is empty");
+  says("1 2 3\n", "a.sweep:1: it does not begin with");
+  says("# tchat sweep journal 1\n# end of heading\n", "--gather");
+  says(replaced("0 -0.5 0 1 1 periodic 2", "0 -0.5 0 1 1 periodic"),
+       "a.sweep:9: there are 10 words, the columns are 11");
+  says(replaced("0.25 -3\n4", "0.25 three\n4"), "a.sweep:9: 'three' is no number");
+  says(replaced("1 1 periodic", "1 1 periodical"), "a.sweep:9: 'periodical' is no kind");
+  says(replaced("index mu x1(0)", "mu x1(0)"), "a.sweep:8: these are not the columns");
+  says(replaced(" from -0.5", ""), "a.sweep:2: the heading lacks");
+  says(std::string(good).substr(0, std::string(good).size() - 3), "ends within a line");
+  says(std::string(good).substr(0, std::string(good).find("index mu")), "column names is missing");
+  CHECK_THROWS_AS(read_sweep_file(folder.file("none.sweep")), UserError);
+}
+
+TEST_CASE("a record of a journal is read back to the last bit, and a damaged one is not") {
+  SampleRecord record{123456789, 2, {}};
+  AttractorSample& sample = record.sample;
+  sample.kind = AttractorKind::periodic;
+  sample.signature = {{1, 2, 2}, {2, 1, 1}};
+  sample.period = 0.1 + 0.2;
+  sample.impacts = 1;
+  sample.penetration = std::numeric_limits<double>::quiet_NaN();
+  sample.exponents = Eigen::Vector2d(1.0 / 3.0, -std::numeric_limits<double>::infinity());
+  sample.errors = Eigen::Vector2d(5e-324, 1.7976931348623157e308);
+  sample.sections = Eigen::MatrixXd::Random(3, 4);
+  sample.section_events = {1, 2, 1, 1};
+  sample.section_penetrations = Eigen::VectorXd::Random(4);
+  sample.identity = Eigen::MatrixXd::Random(3, 2);
+  sample.range = Eigen::VectorXd::Random(3);
+  sample.last = {Eigen::VectorXd::Random(3), {{1, 1, 1}, {1, 2, 2}}};
+  sample.known = 3;
+  sample.message = "two\nlines of it";
+  const std::string line = record_line(record);
+  REQUIRE(line.back() == '\n');
+  REQUIRE(line.find('\n') == line.size() - 1);
+  const std::string text = line.substr(0, line.size() - 1);
+  const std::optional<SampleRecord> read = read_record(text);
+  REQUIRE(read);
+  CHECK(read->index == record.index);
+  CHECK(read->start == 2);
+  CHECK(read->sample.signature == sample.signature);
+  CHECK(read->sample.period == sample.period);
+  CHECK(std::isnan(read->sample.penetration));
+  CHECK(read->sample.exponents == sample.exponents);
+  CHECK(read->sample.errors == sample.errors);
+  CHECK(read->sample.sections == sample.sections);
+  CHECK(read->sample.section_events == sample.section_events);
+  CHECK(read->sample.section_penetrations == sample.section_penetrations);
+  CHECK(read->sample.identity == sample.identity);
+  CHECK(read->sample.last.x == sample.last.x);
+  CHECK(read->sample.last.watched == sample.last.watched);
+  CHECK(read->sample.known == 3);
+  CHECK(read->sample.message == "two lines of it");
+  CHECK(record_line(*read) == line);
+  for (std::size_t cut = 0; cut < text.size(); cut += 7) CHECK_FALSE(read_record(text.substr(0, cut)));
+  for (std::size_t at = 0; at < text.size(); at += 11) {
+    std::string damaged = text;
+    damaged[at] = damaged[at] == '1' ? '2' : '1';
+    CHECK_FALSE(read_record(damaged));
+  }
+}
