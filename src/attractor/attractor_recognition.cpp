@@ -19,7 +19,7 @@ using Eigen::VectorXd;
 using Exponents = RecognitionSettings::Exponents;
 
 constexpr double bars_of_zero = 3.0;
-constexpr double small_bar = 0.05;     // against the largest exponent or the frequency of events
+constexpr double small_bar = 0.002;    // against the largest exponent or the frequency of events: chaos may be weak
 constexpr long first_decision = 64;    // events after which exponents may decide
 constexpr double resting_rate = 1e-6;  // |f| / (1 + |x|)
 constexpr long most_for_exponents = 10000;

@@ -33,8 +33,8 @@ class DefiningSystem {
   int dimension() const { return system_.dimension(); }
   /// Are the orbits equilibria (OrbitShape::point), with eigenvalues of f_x in the place of multipliers?
   virtual bool is_point() const { return false; }
-  /// How many orbits of one return each are coupled: several lie on a torus (torus_system.hpp), which has no multipliers
-  /// of a ring.
+  /// How many orbits of one return each are coupled: several lie on a torus (torus_system.hpp), which has no
+  /// multipliers of a ring.
   virtual int orbits() const { return 1; }
   int segments() const { return static_cast<int>(signature_.size()); }
   /// Does an event end segment s?
