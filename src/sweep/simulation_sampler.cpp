@@ -210,7 +210,9 @@ class SampleRun {
     decay_.add(segment.index, segment.event_velocity);
     keep(segment);
     if (!setup_.known.empty()) sample_.known = capture_.look(segment.index, segment.after);
-    if (const std::optional<int> period = recurrence_.period(); period && is_least_period(*period)) {
+    // A turn that began in the transient is not kept whole.
+    const std::optional<int> period = recurrence_.period();
+    if (period && static_cast<std::size_t>(*period) <= kept_.size() && is_least_period(*period)) {
       kept_.erase(kept_.begin(), kept_.end() - *period);
       return AttractorKind::periodic;
     }

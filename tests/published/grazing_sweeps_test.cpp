@@ -149,3 +149,19 @@ TEST_CASE("planar: one attractor through grazing, its multiplier jumps by r^2") 
         Approx(0.64).margin(0.1));
   CHECK(multiplier(mapped, "lambda1", behind) == Approx(multiplier(simulated, "lambda2", behind)).epsilon(0.02));
 }
+
+TEST_CASE("rand4d: an orbit that is recognised in the first events behind the transient is kept whole") {
+  const MakefileRun chain("rand4d", "starts");
+  const Outcome outcome = chain.tchat({"sweep", "rand4d", "-q", "-p", chain.plugin(), "PAR(mu)=-5", "--over",
+                                       "A=1.2588:1.2612:5", "--section", "none", "--lyapunov", "3", "-o", "periodic"});
+  INFO(outcome.text());
+  REQUIRE(outcome.status == 0);
+  const TemporaryFolder copy;
+  const SweepTable table = read_sweep_file(copy.write("periodic.sweep", chain.read("periodic.sweep")));
+  REQUIRE(table.rows() == 5);
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    CHECK(table.kinds[row] == AttractorKind::periodic);
+    // Of the forcing, as long as nothing doubles; the torus bifurcation is at A = 1.2528620.
+    CHECK((*table.column("time"))[row] == Approx(2.0 * M_PI / 1.9).epsilon(1e-6));
+  }
+}
