@@ -112,9 +112,10 @@ TEST_CASE("recognised: the signs of exponents") {
     return kind_by_exponents(s);
   };
   CHECK(kind({0.1, 0.0, -1.0}, {0.01, 0.01, 0.01}) == AttractorKind::chaotic);
-  CHECK(kind({0.02, 0.0, -1.0}, {0.01, 0.01, 0.01}) == AttractorKind::quasi_periodic);
+  CHECK(kind({0.002, 0.0, -1.0}, {0.001, 0.001, 0.01}) == AttractorKind::quasi_periodic);
+  CHECK(kind({0.02, 0.0, -1.0}, {0.01, 0.001, 0.01}) == AttractorKind::none);  // a torus, or weak chaos
   CHECK(kind({0.02, 0.0, -1.0}, {0.1, 0.01, 0.01}) == AttractorKind::none);
-  CHECK(kind({0.0, -0.5, -INFINITY}, {0.01, 0.01, 0.0}) == AttractorKind::periodic);
+  CHECK(kind({0.0, -0.5, -INFINITY}, {0.001, 0.01, 0.0}) == AttractorKind::periodic);
   CHECK(kind({-0.1, -0.5, -1.0}, {0.01, 0.01, 0.0}) == AttractorKind::rest);
   CHECK(kind({0.0}, {0.01}) == AttractorKind::none);  // one exponent does not tell
   CHECK(kind({0.0, NAN}, {0.01, INFINITY}) == AttractorKind::none);
