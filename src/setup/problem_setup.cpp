@@ -50,10 +50,11 @@ bool has_further_parameters(const HybridSystem& system) {
   return system.table().initial_durations != nullptr || system.table().output_parameters != nullptr;
 }
 
-bool is_parameter(const HybridSystem& system, int k) {
-  return k == rotation_parameter ||
-         (k >= 1 && (k <= system.parameters() || k >= first_duration || has_further_parameters(system)));
+bool is_own_parameter(const HybridSystem& system, int k) {
+  return k >= 1 && (k <= system.parameters() || k >= first_duration || has_further_parameters(system));
 }
+
+bool is_parameter(const HybridSystem& system, int k) { return k == rotation_parameter || is_own_parameter(system, k); }
 
 std::string parameter_list(const HybridSystem& system) {
   std::string names;
@@ -128,19 +129,22 @@ void check_parameters(const HybridSystem& system, const RunSettings& settings, c
   };
   const std::vector<int> free = free_problem_parameters(settings);
   check_rotation(system, settings, source, free);
+  const auto is_parameter_here = [&](int k) {
+    return is_own_parameter(system, k) || (k == rotation_parameter && is_torus(settings.problem_type));
+  };
   for (const int k : settings.free_parameters) {
-    if (k >= first_duration || is_parameter(system, k)) continue;
+    if (k >= first_duration || is_parameter_here(k)) continue;
     if (std::find(free.begin(), free.end(), k) != free.end()) throw UserError(no_parameter("ICP", k));
     warnings.push_back(no_parameter("ICP", k));
   }
   for (const UserValue& value : settings.user_values)
-    if (!is_monitor(settings, value.parameter) && !is_parameter(system, value.parameter))
+    if (!is_monitor(settings, value.parameter) && !is_parameter_here(value.parameter))
       throw UserError(no_parameter("UZR", value.parameter));
   for (const IndexedValue& weight : settings.parameter_weights)
     if (is_monitor(settings, weight.index))
       warnings.push_back(fmt::format("{}: THL: {} has no weight of its own; states, durations and parameters have",
                                      source.of("THL"), parameter_name(system, settings, weight.index)));
-    else if (!is_parameter(system, weight.index))
+    else if (!is_parameter_here(weight.index))
       warnings.push_back(no_parameter("THL", weight.index));
 }
 
