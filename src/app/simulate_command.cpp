@@ -143,9 +143,10 @@ void add_simulate_command(CLI::App& app, std::function<int()>& chosen) {
       torus_name->clear();
     }
     const bool torus = command->count("--torus") > 0;
-    if (torus && request->hand_over)
-      throw UserError("--dat writes a periodic orbit and --torus a torus; a motion is one of them, so give one option");
     chosen = [request, torus_name, torus] {
+      if (torus && request->hand_over)
+        throw UserError(
+            "--dat writes a periodic orbit and --torus a torus; a motion is one of them, so give one option");
       take_source_as_problem(request->name, request->problem);
       return torus ? do_simulate_torus(*request, *torus_name) : do_simulate(*request);
     };

@@ -33,7 +33,7 @@ void append_exponential(std::string& line, double value, int decimals, std::size
 double finite(double value) {
   if (std::isnan(value)) return capped_value;
   if (std::isinf(value)) return std::copysign(capped_value, value);
-  return value == 0.0 ? 0.0 : value;
+  return std::isnormal(value) ? value : 0.0;
 }
 
 void append_e19(std::string& line, double value) { append_exponential(line, value, 10, 19); }
