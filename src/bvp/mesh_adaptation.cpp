@@ -45,26 +45,8 @@ double interpolation_constant(int c) {
   return worst / std::tgamma(c + 2.0);
 }
 
-}  // namespace
-
-std::vector<double> equal_parts(const std::vector<double>& mesh, const Eigen::VectorXd& density, int parts) {
-  const int intervals = static_cast<int>(mesh.size()) - 1;
-  std::vector<double> cumulative(mesh.size(), 0.0);
-  for (int j = 0; j < intervals; ++j) cumulative[index(j + 1)] = cumulative[index(j)] + density(j) * length(mesh, j);
-  std::vector<double> result(index(parts + 1));
-  int j = 0;
-  for (int k = 1; k < parts; ++k) {
-    const double wanted = cumulative.back() * k / parts;
-    while (j < intervals - 1 && cumulative[index(j + 1)] < wanted) ++j;
-    const double share = (wanted - cumulative[index(j)]) / (cumulative[index(j + 1)] - cumulative[index(j)]);
-    result[index(k)] = mesh[index(j)] + share * length(mesh, j);
-  }
-  result.front() = 0.0;
-  result.back() = 1.0;
-  return result;
-}
-
-std::vector<double> equidistributed_mesh(const Orbit& x, const CollocationRule& rule, int intervals) {
+/// The monitor on each interval of x's mesh: N entries, positive.
+Eigen::VectorXd monitor_density(const Orbit& x, const CollocationRule& rule) {
   const double power = 1.0 / (x.shape.collocation + 1);
   // Derivatives below this count as zero, so that a constant solution keeps a uniform mesh.
   const double negligible = 1e-7;
@@ -86,7 +68,37 @@ std::vector<double> equidistributed_mesh(const Orbit& x, const CollocationRule& 
     }
     monitor = monitor.cwiseMax(1e-3 * peak);
   }
-  return equal_parts(x.mesh, monitor, intervals);
+  return monitor;
+}
+
+}  // namespace
+
+std::vector<double> equal_parts(const std::vector<double>& mesh, const Eigen::VectorXd& density, int parts) {
+  const int intervals = static_cast<int>(mesh.size()) - 1;
+  std::vector<double> cumulative(mesh.size(), 0.0);
+  for (int j = 0; j < intervals; ++j) cumulative[index(j + 1)] = cumulative[index(j)] + density(j) * length(mesh, j);
+  std::vector<double> result(index(parts + 1));
+  int j = 0;
+  for (int k = 1; k < parts; ++k) {
+    const double wanted = cumulative.back() * k / parts;
+    while (j < intervals - 1 && cumulative[index(j + 1)] < wanted) ++j;
+    const double share = (wanted - cumulative[index(j)]) / (cumulative[index(j + 1)] - cumulative[index(j)]);
+    result[index(k)] = mesh[index(j)] + share * length(mesh, j);
+  }
+  result.front() = 0.0;
+  result.back() = 1.0;
+  return result;
+}
+
+std::vector<double> equidistributed_mesh(const Orbit& x, const CollocationRule& rule, int intervals) {
+  return equal_parts(x.mesh, monitor_density(x, rule), intervals);
+}
+
+bool is_equidistributed(const Orbit& x, const CollocationRule& rule) {
+  constexpr double even = 1.1;  // the error between mesh points is then at most 1.6 times the mean for NCOL = 4
+  Eigen::VectorXd shares = monitor_density(x, rule);
+  for (int j = 0; j < x.shape.intervals; ++j) shares(j) *= length(x.mesh, j);
+  return shares.maxCoeff() <= even * shares.mean();
 }
 
 std::vector<double> resampled_mesh(const std::vector<double>& mesh, int intervals) {

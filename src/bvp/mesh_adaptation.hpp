@@ -13,6 +13,10 @@ namespace tchat {
 /// The mesh of `intervals` intervals that equidistributes the monitor of x. Uniform when all derivatives vanish.
 std::vector<double> equidistributed_mesh(const Orbit& x, const CollocationRule& rule, int intervals);
 
+/// Is no interval's share of the monitor of x much larger than the mean? Then another mesh makes x hardly more
+/// accurate.
+bool is_equidistributed(const Orbit& x, const CollocationRule& rule);
+
 /// The old mesh's density at another number of intervals.
 std::vector<double> resampled_mesh(const std::vector<double>& mesh, int intervals);
 

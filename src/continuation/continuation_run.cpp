@@ -66,6 +66,12 @@ std::vector<std::unique_ptr<TestFunction>> with_bounds(std::vector<std::unique_p
   return tests;
 }
 
+/// Is there a finite bound of the solution measure?
+bool bounds_measure(const ContinuationSettings& settings) {
+  constexpr double none = 1e300;
+  return settings.measure_min > -none || settings.measure_max < none;
+}
+
 /// Do events fix the phase, or conditions of the problem's own?
 bool has_fixed_phase(const DefiningSystem& system, const ContinuationSettings& settings) {
   const Signature& signature = system.signature();
@@ -93,6 +99,7 @@ ContinuationRun::ContinuationRun(PathFollower& follower, const DefiningSystem& s
 
 BranchSummary ContinuationRun::run(PathPoint start) {
   here_ = std::move(start);
+  here_.trail.clear();  // a branch switch begins with a step on another branch
   next_ = {here_, 0.0, search_.begin(here_)};
   number_ = settings_.first_number;
   SpecialPoint special;
@@ -117,7 +124,7 @@ BranchSummary ContinuationRun::run(PathPoint start) {
     std::swap(here_, next_.point);
     ++number_;
     accept(end_conditions(curve_end(special)));
-    if (!limited_) step_.converged(newton_.iterations, number_);
+    if (!limited_) step_.converged(iterations_, number_);
     if (!ended_ && settings_.outgrown && settings_.outgrown(here_.orbit)) end(EndReason::outgrown, "");
   }
   if (settings_.periodic) summary_.remark = trend_.growing_period(settings_.principal_name);
@@ -147,6 +154,7 @@ std::optional<double> ContinuationRun::come_back() {
     return std::nullopt;
   }
   newton_ = newton;
+  iterations_ = iterations_along_tangent(way->from, past);
   past.data = search_.evaluate(past.point);
   here_ = way->from;
   next_ = std::move(past);
@@ -180,7 +188,12 @@ SpecialPoint ContinuationRun::advance() {
   const double before = std::abs(follower_.principal_direction(here_));
   const double turn = std::min(before, std::abs(follower_.principal_direction(next_.point)));
   steepest_ = std::max(steepest_, before);
-  SpecialPoint special = search_.advance(here_, next_, newton_, reports).value_or(SpecialPoint{});
+  NewtonResult of_shorter_step;
+  SpecialPoint special = search_.advance(here_, next_, of_shorter_step, reports).value_or(SpecialPoint{});
+  if (of_shorter_step.converged()) {
+    newton_ = of_shorter_step;
+    iterations_ = iterations_along_tangent(here_, next_);
+  }
   const double level = insignificant_turn * steepest_;
   const double earlier = std::exchange(before_, before);
   if (!is_fold(special.type) || turn > level || std::max(before, earlier) > sudden * level)
@@ -253,6 +266,12 @@ SpecialPoint ContinuationRun::curve_end(SpecialPoint special) {
   return {PointType::end, {}, false, reason};
 }
 
+/// Of the step that has just been made: the count that the step length goes by.
+int ContinuationRun::iterations_along_tangent(const PathPoint& from, const Candidate& to) {
+  if (limited_ || !step_.adapts_at(number_ + 1)) return newton_.iterations;
+  return follower_.iterations_along_tangent(from, to.ds, to.point, newton_, !step_.is_longest());
+}
+
 /// Predicts and corrects, halving the step until it succeeds. False when it cannot be made any smaller.
 bool ContinuationRun::take_step() {
   for (;;) {
@@ -260,6 +279,7 @@ bool ContinuationRun::take_step() {
     limited_ = next_.ds != step_.value();
     newton_ = follower_.step(here_, next_.ds, next_.point);
     const bool converged = newton_.converged();
+    if (converged) iterations_ = iterations_along_tangent(here_, next_);
     std::string trouble;
     if (!converged)
       trouble = describe(newton_.status);
@@ -282,7 +302,8 @@ bool ContinuationRun::take_step() {
 /// What the point here_ is after all: special already, the end of the branch, a regular output point, or nothing.
 SpecialPoint ContinuationRun::end_conditions(SpecialPoint special) {
   const double principal = here_.orbit.par(settings_.principal - 1);
-  measure_ = solution_measure(here_.orbit, follower_.condensed().rule(), settings_.state_weights, settings_.measure);
+  if (bounds_measure(settings_))
+    measure_ = solution_measure(here_.orbit, follower_.condensed().rule(), settings_.state_weights, settings_.measure);
   if (is_beyond(settings_, principal, settings_.parameter_min, settings_.parameter_max) ||
       is_beyond(settings_, measure_, settings_.measure_min, settings_.measure_max))
     special = {};  // what lies beyond the bound was not asked for: the branch ends there with an ordinary end point
@@ -386,9 +407,10 @@ void ContinuationRun::report_lost(const std::string& text) {
   sink_.lost(summary_.lost.back());
 }
 
-/// A new mesh where it is due, and the step length for the d-file.
+/// A new mesh where it is due and the old one no longer fits, and the step length for the d-file.
 void ContinuationRun::prepare_next_step() {
-  if (settings_.adapt_mesh_every > 0 && number_ % settings_.adapt_mesh_every == 0)
+  const bool due = settings_.adapt_mesh_every > 0 && number_ % settings_.adapt_mesh_every == 0;
+  if (due && !is_equidistributed(here_.orbit, follower_.condensed().rule()))
     follower_.change_mesh(here_,
                           equidistributed_mesh(here_.orbit, follower_.condensed().rule(), here_.orbit.shape.intervals));
   sink_.next_step(number_, step_.value());

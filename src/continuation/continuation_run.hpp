@@ -61,6 +61,7 @@ class ContinuationRun {
  private:
   void resume();
   bool take_step();
+  int iterations_along_tangent(const PathPoint& from, const Candidate& to);
   std::optional<double> come_back();
   SpecialPoint arrive(SpecialPoint special, double length);
   SpecialPoint advance();
@@ -89,6 +90,7 @@ class ContinuationRun {
   PointData accepted_data_;
   Candidate next_;         // the point being computed; once accepted its step and data, the point is here_
   NewtonResult newton_;    // of the step to it
+  int iterations_ = 0;     // that it would take from the tangent
   bool limited_ = false;   // by zeros that are known to lie ahead: it says nothing of the next one
   double steepest_ = 0.0;  // largest part of the principal parameter in a tangent so far
   double before_ = 0.0;    // that part at the last point but one

@@ -15,8 +15,12 @@ bool StepSize::is_short() const {
   return settings_.adapt_every == 0 || std::abs(ds_) < 1e-2 * std::min(std::abs(settings_.initial), settings_.maximum);
 }
 
+bool StepSize::adapts_at(int point) const { return settings_.adapt_every != 0 && point % settings_.adapt_every == 0; }
+
+bool StepSize::is_longest() const { return std::abs(ds_) >= settings_.maximum; }
+
 void StepSize::converged(int iterations, int point) {
-  if (settings_.adapt_every == 0 || point % settings_.adapt_every != 0) return;
+  if (!adapts_at(point)) return;
   double factor = 1.0;
   if (iterations <= 1)
     factor = 2.0;
