@@ -9,6 +9,9 @@ namespace tchat {
 namespace {
 
 constexpr double divergence_factor = 20.0;
+/// A matrix of a point that is no farther away (relatively) is not made anew: the path follower takes the tangent from
+/// it as well.
+constexpr double as_good_as_new = 1e-10;
 /// Residuals below this times 1 + max |u| are rounding.
 constexpr double rounding_residual = 200 * std::numeric_limits<double>::epsilon();
 /// A stalled iteration is accepted at rounding-level residual when its corrections are about sqrt(rounding) or less.
@@ -72,7 +75,9 @@ NewtonResult NewtonChord::correct(Orbit& x, const OrbitVector& row, const Orbit&
       problem_.allows_chord() ? std::max(settings_.full_iterations, 1) : settings_.max_iterations;
   double first_change = 0.0;
   for (int iteration = 1; iteration <= settings_.max_iterations; ++iteration) {
-    if (iteration <= full_iterations) {
+    const bool still_new =
+        iteration > 1 && problem_.allows_chord() && result.change_since_factorization <= as_good_as_new;
+    if (iteration <= full_iterations && !still_new) {
       const Linearization outcome = problem_.linearize(x, row, residual_);
       if (outcome != Linearization::ready) {
         result.status = failure(outcome);

@@ -73,6 +73,16 @@ int useful_places(const PathPoint& from, double ds, const std::vector<int>& free
   return count;
 }
 
+/// Has the duration of segment s not changed? One that is kept has no equation for its value (its change is zero): what
+/// extrapolation makes of rounding would never be corrected, and grow.
+bool is_constant(const PathPoint& from, int s) {
+  constexpr double no_change = 1e-10;  // along the tangents, of unit length
+  bool constant = std::abs(from.tangent.durations(s)) <= no_change;
+  for (int k = 0; k < from.trail.count(); ++k)
+    constant = constant && std::abs(from.trail.mark(k).tangent.durations(s)) <= no_change;
+  return constant;
+}
+
 /// The divided differences f[z_0 .. z_i] of w on the nodes 0, 0, s_1, s_1, ...: those of the inputs w(s_1), w'(s_1),
 /// ...
 void divide_differences(const std::array<Place, PathTrail::most>& places, int count,
@@ -169,6 +179,8 @@ double add_trail(const PathPoint& from, double ds, const std::vector<int>& free_
     for (std::size_t i = 0; i < weights.size(); ++i)
       weights[i] = product * (differences[entry(2 * k + 2)][i] + to_node * differences[entry(2 * k + 3)][i]);
     combine(from, places, k + 1, weights, free_parameters, term);
+    for (int s = 0; s < from.orbit.shape.segments; ++s)
+      if (is_constant(from, s)) term.durations(s) = 0.0;
     const double size = change_by(term, from.orbit, free_parameters).larger();
     if (!(size <= falling * last)) break;
     advance(x, 1.0, term, free_parameters);
