@@ -74,7 +74,9 @@ BranchSetup torus_setup(const ProblemType& type, const HybridSystem& system, con
   shape.segments = orbits * segment_count(one_return);
   const std::vector<int> free = free_problem_parameters(one_return);
   check_memory(shape, static_cast<int>(free.size()));
-  setup.defining = std::make_unique<TorusSystem>(system, one_return.signature(), orbits, free);
+  setup.defining =
+      std::make_unique<TorusSystem>(system, one_return.signature(), orbits, free,
+                                    torus_winding(system, one_return.signature(), selected.start.orbit));
   setup.follower = std::make_unique<PathFollower>(
       *setup.defining, shape, mean_norm(setup.settings, orbits), newton_settings(one_return),
       one_return.free_parameters.front(), condition_of(type, *setup.defining, shape, one_return),
@@ -198,7 +200,8 @@ BranchSetup continue_torus(const ProblemType& type, const HybridSystem& system, 
   SelectedStart start = selected;
   if (orbits != stored) {
     const OrbitShape shape = selected.start.orbit.shape;
-    start.start.orbit = resampled_torus(selected.start.orbit, stored, orbits);
+    start.start.orbit = resampled_torus(selected.start.orbit, stored, orbits,
+                                        torus_winding(system, settings.signature(), selected.start.orbit).curve);
     if (selected.start.direction)
       start.start.direction = resampled_torus(*selected.start.direction, shape, stored, orbits);
     // Durations are found anew.
@@ -288,7 +291,7 @@ BranchSetup with_harmonics(const BranchSetup& setup, const PathPoint& last, int 
   const auto& system = static_cast<const TorusSystem&>(*setup.defining);
   const int orbits = 2 * harmonics + 1;
   SelectedStart start;
-  start.start.orbit = resampled_torus(last.orbit, system.orbits(), orbits);
+  start.start.orbit = resampled_torus(last.orbit, system.orbits(), orbits, system.winding().curve);
   start.problem_type = one_return.problem_type;
   BranchSetup next = torus_setup(*setup.type, system.system(), one_return, orbits, start);
   PathPoint point = next.follower->make_point(start.start.orbit);
