@@ -58,7 +58,11 @@ double last_harmonics_of(const VectorXd& values, double w) {
   return sizes.tail(std::min<Index>(2, sizes.size() - 1)).maxCoeff();
 }
 
-double winding_of(const VectorXd& values) {
+}  // namespace
+
+TorusWinding no_winding(int dimension) { return {VectorXd::Zero(dimension), VectorXd::Zero(dimension)}; }
+
+double likely_winding(const VectorXd& values) {
   double best = 0.0;
   double least = last_harmonics_of(values, 0.0);
   for (int turns = -most_turns; turns <= most_turns; ++turns) {
@@ -69,10 +73,6 @@ double winding_of(const VectorXd& values) {
   }
   return best;
 }
-
-}  // namespace
-
-TorusWinding no_winding(int dimension) { return {VectorXd::Zero(dimension), VectorXd::Zero(dimension)}; }
 
 std::vector<Index> angle_states(const HybridSystem& system, const Signature& one_return, const MatrixXd& samples,
                                 const VectorXd& par) {
@@ -95,7 +95,7 @@ TorusWinding torus_winding(const HybridSystem& system, const Signature& one_retu
   VectorXd end = function_value(system, FunctionKind::jump, one_return.back().jump,
                           Eigen::Map<const VectorXd>(x.end(static_cast<int>(m) - 1), n), par);
   for (const Index state : angle_states(system, one_return, curve, par)) {
-    const double w = winding_of(curve.row(state));
+    const double w = likely_winding(curve.row(state));
     double target = w * rho;
     for (Index l = 0; l < orbits; ++l)
       target += weights(l) * (curve(state, l) - w * static_cast<double>(l) / static_cast<double>(orbits));

@@ -29,7 +29,10 @@ TorusWinding no_winding(int dimension);
 std::vector<Eigen::Index> angle_states(const HybridSystem& system, const Signature& one_return,
                                        const Eigen::MatrixXd& samples, const Eigen::VectorXd& par);
 
-/// Of N orbits of one return each. w is that multiple of 2 pi with which the last harmonics of u - w phi are least.
+/// Of an angle at N equal phases: that multiple of 2 pi with which the last harmonics of u - w phi are least.
+double likely_winding(const Eigen::VectorXd& values);
+
+/// Of N orbits of one return each.
 TorusWinding torus_winding(const HybridSystem& system, const Signature& one_return, const Orbit& x);
 
 }  // namespace tchat

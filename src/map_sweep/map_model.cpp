@@ -334,6 +334,13 @@ TorusCurve curve_of_label(const MapRequest& request, const MapContext& context, 
         fmt::format("--section {}: no segment of the return of {} ends in event function {}; leave --section out for "
                     "P, where event {} ({}) is least",
                     *context.section, torus.source(), named, wall, system.function_name(FunctionKind::event, wall)));
+  if (!is_identity_jump(system, at->jump))
+    throw UserError(
+        fmt::format("--section {}: segments of {} that end in event function {} are followed by jump {} ({}); a section "
+                    "is where nothing happens: leave --section out for P, where event {} ({}) is least",
+                    *context.section, torus.source(), at->event, at->jump,
+                    system.function_name(FunctionKind::jump, at->jump), wall,
+                    system.function_name(FunctionKind::event, wall)));
   const std::string text = fmt::format("Invariant curve of {}, {} orbits, on {}: rotation number {:.12g}, {} harmonics",
                                        torus.source(), torus.orbits(),
                                        system.function_name(FunctionKind::event, at->event), at->curve.rotation(),

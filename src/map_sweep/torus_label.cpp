@@ -68,7 +68,7 @@ TorusLabel::TorusLabel(const HybridSystem& system, const LabelledSolution& solut
     for (Index a = 0; a < values.rows(); ++a)
       if (winding.curve(a) == 0.0 && winding.returns(a) != 0.0)
         values.row(a).array() -= full_turn * std::floor(values.row(a).mean() / full_turn);
-    sections_.push_back({index.event, index.field, curve_through(values, rotation(), winding.curve), values});
+    sections_.push_back({index.event, index.field, index.jump, curve_through(values, rotation(), winding.curve), values});
   }
 }
 

@@ -27,7 +27,7 @@ class TorusLabel {
 
   /// What one segment's end is a section for.
   struct Section {
-    int event, field;
+    int event, field, jump;
     InvariantCurve curve;
     Eigen::MatrixXd points;  ///< u at the N phases
   };

@@ -10,6 +10,7 @@
 #include <set>
 
 #include "constants/constant_value.hpp"
+#include "plot/colour_scale.hpp"
 #include "plot/event_surface.hpp"
 #include "plot/picture_styles.hpp"
 #include "text/user_error.hpp"
@@ -152,15 +153,75 @@ PicturePoint shown(const Eigen::VectorXd& x, const std::vector<int>& states) {
   return {x(states[0]), x(states[1]), states.size() > 2 ? x(states[2]) : 0.0};
 }
 
+constexpr double bundle_width = 1.2;
+constexpr std::size_t colours_of_phase = 64;
+
+/// Of one torus the colours are those of the angle, of several each has its own.
+bool shows_phase(const std::vector<OrbitTrace>& orbits) {
+  return orbits.size() == 1 && orbits.front().segments_per_return > 0;
+}
+
+/// The points where returns begin, as dots.
+void add_section_points(Panel& panel, const OrbitTrace& torus, const std::string& colour,
+                        const std::vector<int>& states) {
+  for (Eigen::Index i = 0; i < torus.section_points.cols(); ++i) {
+    Marker marker;
+    marker.at = shown(torus.section_points.col(i), states);
+    marker.symbol = Symbol::circle;
+    marker.filled = true;
+    marker.size = 0.45;
+    marker.colour = colour;
+    panel.markers.push_back(marker);
+  }
+}
+
+/// Returns of a torus as thin lines.
+void add_torus(Panel& panel, const std::vector<OrbitTrace>& orbits, std::size_t k, const std::vector<int>& states) {
+  const OrbitTrace& torus = orbits[k];
+  const std::vector<std::string> colours = cyclic_colours(colours_of_phase);
+  const std::size_t count = torus.segments.size();
+  for (std::size_t s = 0; s < count; ++s) {
+    Curve curve;
+    curve.stroke = orbit_stroke(orbits, k);
+    curve.stroke.width = bundle_width;
+    if (shows_phase(orbits)) curve.stroke.colour = colours[s * colours_of_phase / count];
+    const Eigen::MatrixXd& points = torus.segments[s].states;
+    for (Eigen::Index i = 0; i < points.cols(); ++i) curve.points.push_back(shown(points.col(i), states));
+    panel.curves.push_back(std::move(curve));
+    if (!torus.jumps_after(s)) continue;
+    Stroke jump = jump_stroke(series_colour(k));
+    jump.width *= 0.5;
+    panel.curves.push_back({{shown(torus.end_of(s), states), shown(torus.start_after(s), states)}, jump, false});
+  }
+  add_section_points(panel, torus, shows_phase(orbits) ? "#000000" : series_colour(k), states);
+}
+
+/// What the dots are, and the colours.
+void explain_tori(Figure& figure, const std::vector<OrbitTrace>& orbits) {
+  const auto torus = std::find_if(orbits.begin(), orbits.end(),
+                                  [](const OrbitTrace& orbit) { return orbit.section_points.cols() > 0; });
+  if (torus == orbits.end()) return;
+  Marker dot;
+  dot.symbol = Symbol::circle;
+  dot.size = 0.45;
+  const std::string points =
+      orbits.size() > 1 ? std::string("computed points on the section")
+                        : fmt::format("{} computed points on the section", torus->section_points.cols());
+  figure.key.push_back({plain_text(points), std::nullopt, dot});
+  if (!shows_phase(orbits)) return;
+  figure.colour_bar = ColourBar{cyclic_colours(colours_of_phase), {mathematical_name("phi"), 0.0, 1.0, false}};
+}
+
 void add_orbit(Panel& panel, const std::vector<OrbitTrace>& orbits, std::size_t k, const std::vector<int>& states,
                const StateWindow& window) {
   const OrbitTrace& orbit = orbits[k];
+  if (orbit.segments_per_return > 0) return add_torus(panel, orbits, k, states);
   for (std::size_t s = 0; s < orbit.segments.size(); ++s) {
     Curve curve;
     curve.stroke = orbit_stroke(orbits, k);
     const Eigen::MatrixXd& points = orbit.segments[s].states;
     for (Eigen::Index i = 0; i < points.cols(); ++i) curve.points.push_back(shown(points.col(i), states));
-    add_arrow(panel, curve, window);
+    if (!orbit.is_section) add_arrow(panel, curve, window);
     panel.curves.push_back(std::move(curve));
     if (!orbit.jumps_after(s)) continue;
     const PicturePoint before = shown(orbit.end_of(s), states), after = shown(orbit.start_after(s), states);
@@ -168,6 +229,7 @@ void add_orbit(Panel& panel, const std::vector<OrbitTrace>& orbits, std::size_t 
     panel.markers.push_back(jump_marker(k, after, false));
     panel.markers.push_back(jump_marker(k, before, true));
   }
+  if (orbit.is_section) add_section_points(panel, orbit, series_colour(k), states);
 }
 
 void add_lines_of_events(Figure& figure, Panel& panel, const EventSurfaces& surfaces, const std::vector<int>& states,
@@ -242,6 +304,7 @@ Figure phase_portrait(const std::vector<OrbitTrace>& orbits, const OrbitFigureOp
   if (states.size() > 2) panel.z = AxisSettings{name(2), {}, {}, false};
   for (std::size_t k = 0; k < orbits.size(); ++k)
     if (is_in_key(orbits, options)) figure.key.push_back(orbit_entry(orbits, k, options));
+  explain_tori(figure, orbits);
   if (options.system != nullptr && options.surfaces) {
     const EventSurfaces surfaces(*options.system, orbits, options.events);
     if (panel.z)

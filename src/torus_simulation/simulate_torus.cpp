@@ -114,9 +114,10 @@ int simulate_torus(const SimulationRequest& request, const std::string& torus_na
   if (motion.empty())
     throw ComputationError(
         fmt::format("{}: no segment ended in an event after the transient: {}", request.name, result.last.message));
-  const Eigen::MatrixXd points = points_of_returns(motion, one_return, request.name);
+  const auto [points, angles] =
+      with_angles(system, one_return, points_of_returns(motion, one_return, request.name), start.par);
   const FittedCurve fitted =
-      fit_invariant_curve(points, {.angles = {}, .max_harmonics = 200, .tolerance = fit_tolerance}, request.name);
+      fit_invariant_curve(points, {.angles = angles, .max_harmonics = 200, .tolerance = fit_tolerance}, request.name);
 
   const RunSettings settings = torus_settings(constants, free_parameter(request, constants, system));
   const int most = (max_orbit_segments / static_cast<int>(one_return.size()) - 1) / 2;
