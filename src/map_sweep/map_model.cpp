@@ -394,11 +394,17 @@ MapModel torus_model(const MapRequest& request, const MapContext& context, const
   model.text.push_back(fmt::format("The torus touches {} at {} = {:.10g}, x* = {}",
                                    system.function_name(FunctionKind::event, wall), system.parameter_name(swept),
                                    grazing.par(swept - 1), numbers(x)));
-  if (torus->depends_on_parameters())
+  if (torus->depends_on_parameters()) {
+    std::vector<std::string> names, values;
+    for (const int k : known.along) {
+      names.push_back(system.parameter_name(k));
+      values.push_back(fmt::format("{:.10g}", known.par(k - 1)));
+    }
     model.text.push_back(
-        fmt::format("The smooth torus depends on {}: its change is taken to first order from {:.10g}, the "
-                    "value of the {}",
-                    system.parameter_name(swept), known.par(swept - 1), run ? "label" : "points"));
+        fmt::format("The smooth torus depends on {}: its change is taken to first order from {}, the value{} of the {}",
+                    fmt::join(names, " or "), fmt::join(values, ", "), names.size() > 1 ? "s" : "",
+                    run ? "label" : "points"));
+  }
   model.identity = fmt::format("{} rho = {:.17g} x* = {}", request.source, known.curve.rotation(), numbers(x));
   return model;
 }

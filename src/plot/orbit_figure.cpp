@@ -10,6 +10,7 @@
 #include <set>
 
 #include "constants/constant_value.hpp"
+#include "hybrid/parameter_vector.hpp"
 #include "plot/colour_scale.hpp"
 #include "plot/event_surface.hpp"
 #include "plot/picture_styles.hpp"
@@ -91,8 +92,10 @@ LabelText orbit_name(const std::vector<OrbitTrace>& orbits, std::size_t k, const
   bool first = true;
   for (const auto& [index, value] : orbit.free_parameters) {
     const auto position = static_cast<std::size_t>(index - 1);
-    const std::string name =
-        position < options.parameters.size() ? options.parameters[position] : fmt::format("PAR({})", index);
+    const bool is_rotation = index == rotation_parameter && orbit.section_points.cols() > 0;
+    const std::string name = is_rotation                            ? "rho"
+                             : position < options.parameters.size() ? options.parameters[position]
+                                                                    : fmt::format("PAR({})", index);
     text = joined(joined(text, plain_text(first ? ": " : ", ")),
                   joined(mathematical_name(name), joined(plain_text(" = "), number_text(value))));
     first = false;
@@ -232,14 +235,61 @@ void add_orbit(Panel& panel, const std::vector<OrbitTrace>& orbits, std::size_t 
   if (orbit.is_section) add_section_points(panel, orbit, series_colour(k), states);
 }
 
+/// The rectangle that a picture of curves on a section shows: the curves, and of each line of an event function the
+/// point nearest to them, with a margin.
+class SectionView {
+ public:
+  explicit SectionView(const std::vector<OrbitTrace>& orbits, int a, int b) {
+    const StateWindow wide = window_of(orbits, a, b);
+    const double half_x = 0.25 * (wide.high_x - wide.low_x), half_y = 0.25 * (wide.high_y - wide.low_y);
+    low_ = {wide.low_x + half_x, wide.low_y + half_y};
+    high_ = {wide.high_x - half_x, wide.high_y - half_y};
+    size_ = {2.0 * half_x, 2.0 * half_y};
+  }
+
+  /// False where no point of the line is near.
+  bool takes_in(const std::vector<std::vector<PicturePoint>>& pieces) {
+    constexpr double near = 0.4;  // of the curves' size
+    PicturePoint best;
+    double least = near;
+    bool found = false;
+    for (const auto& piece : pieces)
+      for (const PicturePoint& point : piece) {
+        const double x = std::max({low_.x - point.x, point.x - high_.x, 0.0}) / size_.x;
+        const double y = std::max({low_.y - point.y, point.y - high_.y, 0.0}) / size_.y;
+        if (!(std::hypot(x, y) < least)) continue;
+        least = std::hypot(x, y);
+        best = point;
+        found = true;
+      }
+    if (!found) return false;
+    low_ = {std::min(low_.x, best.x), std::min(low_.y, best.y)};
+    high_ = {std::max(high_.x, best.x), std::max(high_.y, best.y)};
+    return true;
+  }
+
+  void set(Panel& panel) const {
+    constexpr double margin = 0.06;
+    panel.x.low = low_.x - margin * size_.x, panel.x.high = high_.x + margin * size_.x;
+    panel.y.low = low_.y - margin * size_.y, panel.y.high = high_.y + margin * size_.y;
+  }
+
+ private:
+  PicturePoint low_, high_, size_;
+};
+
 void add_lines_of_events(Figure& figure, Panel& panel, const EventSurfaces& surfaces, const std::vector<int>& states,
-                         const StateWindow& window) {
+                         const StateWindow& window, const std::vector<OrbitTrace>& orbits) {
+  const bool is_section = orbits.front().is_section;
+  SectionView view(orbits, states[0], states[1]);
   std::size_t number = 0;
   for (auto& line : surfaces.in_plane(states[0], states[1], window)) {
+    if (is_section && !view.takes_in(line.pieces)) continue;
     const KeyEntry entry = surface_entry(line.name, number++);
     for (auto& piece : line.pieces) panel.curves.push_back({std::move(piece), *entry.stroke, true});
     figure.key.push_back(entry);
   }
+  if (is_section && number > 0) view.set(panel);
 }
 
 struct StateRange {
@@ -304,13 +354,18 @@ Figure phase_portrait(const std::vector<OrbitTrace>& orbits, const OrbitFigureOp
   if (states.size() > 2) panel.z = AxisSettings{name(2), {}, {}, false};
   for (std::size_t k = 0; k < orbits.size(); ++k)
     if (is_in_key(orbits, options)) figure.key.push_back(orbit_entry(orbits, k, options));
+  if (shows_phase(orbits) && !figure.key.empty()) figure.key.front().stroke->colour = cyclic_colours(1).front();
   explain_tori(figure, orbits);
+  if (panel.z && shows_phase(orbits)) {
+    figure.colour_bar.reset();
+    figure.note = plain_text("coloured by the angle at which a return begins");
+  }
   if (options.system != nullptr && options.surfaces) {
     const EventSurfaces surfaces(*options.system, orbits, options.events);
     if (panel.z)
       add_planes_of_events(figure, panel, surfaces, states, orbits);
     else
-      add_lines_of_events(figure, panel, surfaces, states, window);
+      add_lines_of_events(figure, panel, surfaces, states, window, orbits);
   }
   if (!options.legend.empty()) explain_dashes(figure, orbits);
   for (std::size_t k = 0; k < orbits.size(); ++k) add_orbit(panel, orbits, k, states, window);

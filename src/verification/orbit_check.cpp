@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "constants/settings_type.hpp"
 #include "hybrid/event_at.hpp"
@@ -89,6 +90,18 @@ MatrixXd next_starts(const Orbit& x) {
   return starts;
 }
 
+/// Does a jump change nothing but angles, by whole turns?
+bool takes_turns_off(const HybridSystem& system, int jump, const VectorXd& x, const VectorXd& par,
+                     const std::vector<Eigen::Index>& angles) {
+  if (angles.empty()) return false;
+  constexpr double turn = 2.0 * std::numbers::pi, rounding = 1e-9;
+  VectorXd change(x.size());
+  system.value(FunctionKind::jump, jump, x.data(), par.data(), change.data());
+  change -= x;
+  for (const Eigen::Index a : angles) change(a) = std::remainder(change(a), turn);
+  return change.cwiseAbs().maxCoeff() <= rounding * (1.0 + x.cwiseAbs().maxCoeff());
+}
+
 /// NaN stays.
 void take_larger(double& value, double other) { value = std::isfinite(other) ? std::max(value, other) : other; }
 
@@ -133,11 +146,16 @@ VectorXd state_scales(const Orbit& x) {
 }
 
 std::vector<SegmentCheck> check_segments(const HybridSystem& system, const RunSettings& settings, const Orbit& x,
-                                         const VectorXd& scale, const MatrixXd& following, double tolerance) {
+                                         const VectorXd& scale, const MatrixXd& following, double tolerance,
+                                         const std::vector<Eigen::Index>& angles) {
   std::vector<SegmentCheck> checks;
   for (int s = 0; s < x.shape.segments; ++s) {
     const IndexVector& index = settings.segments[static_cast<std::size_t>(s)].index;
-    SegmentCheck segment = check_segment(system, stored_segment(system, settings, x, s), x.par, scale, tolerance);
+    StoredSegment stored = stored_segment(system, settings, x, s);
+    std::erase_if(stored.alternatives, [&](const IndexVector& other) {
+      return takes_turns_off(system, other.jump, stored.start, x.par, angles);
+    });
+    SegmentCheck segment = check_segment(system, stored, x.par, scale, tolerance);
     if (s < following.cols())
       take_larger(segment.state_defect, jump_defect(system, index, x, s, following.col(s), scale));
     checks.push_back(std::move(segment));

@@ -65,11 +65,12 @@ OrbitCheck check_torus(const HybridSystem& system, const RunSettings& one_return
                           torus_winding(system, one_return.signature(), x));
   const RunSettings settings = settings_of_orbits(one_return, orbits);
   const VectorXd scale = state_scales(x);
+  const std::vector<Index> angles = angle_states(system, one_return.signature(), section_curve(torus, x), x.par);
   OrbitCheck result;
   for (const double offset : {0.0, 0.5 / orbits}) {
     const Orbit returns = offset == 0.0 ? x : returns_from(torus, x, offset);
     const std::vector<SegmentCheck> checks = check_segments(
-        system, settings, returns, scale, following_states(torus, x, returns, offset), tolerance);
+        system, settings, returns, scale, following_states(torus, x, returns, offset), tolerance, angles);
     for (std::size_t s = 0; s < checks.size(); ++s) {
       const std::size_t place = s % static_cast<std::size_t>(m);
       if (result.segments.size() <= place)
