@@ -20,7 +20,8 @@
 /// LAPACK's kind within the sparse factorisation, 8 n^2 N^2 bytes.
 ///
 /// A state that is an angle counted modulo 2 pi may wind (torus_winding.hpp): u(phi + 1) = u(phi) + w, and a return may
-/// end whole turns further, P(u(phi)) = u(phi + rho) + c. What is interpolated then is u(phi) - w phi, and the target is
+/// end whole turns further, P(u(phi)) = u(phi + rho) + c. What is interpolated then is u(phi) - w phi, and the target
+/// is
 ///
 ///     sum_l R_il(rho) (x_{l,1}(0) - w l / N) + w (i / N + rho) + c.
 ///

@@ -19,7 +19,8 @@ constexpr double whole_angle = 2.0 * std::numbers::pi;
 constexpr double rounding_of_angles = 1e-9;
 constexpr int most_turns = 3;
 
-VectorXd function_value(const HybridSystem& system, FunctionKind kind, int index, const VectorXd& x, const VectorXd& par) {
+VectorXd function_value(const HybridSystem& system, FunctionKind kind, int index, const VectorXd& x,
+                        const VectorXd& par) {
   VectorXd out(system.rows(kind));
   system.value(kind, index, x.data(), par.data(), out.data());
   return out;
@@ -93,7 +94,7 @@ TorusWinding torus_winding(const HybridSystem& system, const Signature& one_retu
   const double rho = par(rotation_parameter - 1);
   const Eigen::RowVectorXd weights = interpolation_weights(static_cast<int>(orbits), rho);
   VectorXd end = function_value(system, FunctionKind::jump, one_return.back().jump,
-                          Eigen::Map<const VectorXd>(x.end(static_cast<int>(m) - 1), n), par);
+                                Eigen::Map<const VectorXd>(x.end(static_cast<int>(m) - 1), n), par);
   for (const Index state : angle_states(system, one_return, curve, par)) {
     const double w = likely_winding(curve.row(state));
     double target = w * rho;

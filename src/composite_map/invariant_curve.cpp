@@ -77,8 +77,8 @@ VectorXd lifted_steps(const VectorXd& angles) {
   return steps;
 }
 
-/// Points that come back after so many: largest distances at the beginning of the sequence and at its end, each state by
-/// its size.
+/// Points that come back after so many: largest distances at the beginning of the sequence and at its end, each state
+/// by its size.
 struct Return {
   Index after = 0;
   double first = 0.0, last = 0.0;
@@ -87,7 +87,8 @@ struct Return {
 /// The first number of points after which a motion has come back, or nearly, and settles; 0 for none.
 Return repetition(const MatrixXd& points, const std::vector<Index>& angles) {
   constexpr Index most = 64;
-  constexpr double rounding = 1e-9, near = 1e-4, settling = 1e-3;
+  // Simulations are known to so much; a torus comes back so close after so few points in a resonance alone.
+  constexpr double rounding = 1e-7, near = 1e-4, settling = 1e-3;
   const Index quarter = points.cols() / 4;
   VectorXd size = points.cwiseAbs().rowwise().maxCoeff();
   size = size.cwiseMax(1e-3 * size.maxCoeff()).cwiseMax(1e-300);
@@ -291,12 +292,12 @@ FittedCurve fit_invariant_curve(const MatrixXd& points, const CurveSettings& set
   sequence.wind(phases_of(rotation, count));
   const CurveFit fit = best_fit(points, sequence, scale, rotation, most);
   if (!(fit.largest <= settings.tolerance))
-    throw refuse(
-        fmt::format("the {} points lie on no smooth closed curve: they are up to {:.2e} of its extent off the "
-                    "nearest one with {} harmonics (rotation number {:.8g}); drop a longer transient, simulate "
-                    "more points or with a smaller tolerance, or take another section: on a torus every "
-                    "trajectory must cross it at an angle; or the motion is chaotic (`tchat simulate --lyapunov` tells)",
-                    count, fit.largest, fit.series.harmonics(), fit.rotation));
+    throw refuse(fmt::format(
+        "the {} points lie on no smooth closed curve: they are up to {:.2e} of its extent off the "
+        "nearest one with {} harmonics (rotation number {:.8g}); drop a longer transient, simulate "
+        "more points or with a smaller tolerance, or take another section: on a torus every "
+        "trajectory must cross it at an angle; or the motion is chaotic (`tchat simulate --lyapunov` tells)",
+        count, fit.largest, fit.series.harmonics(), fit.rotation));
   return {fit.curve(sequence), fit.largest, fit.rotation_error};
 }
 

@@ -325,9 +325,8 @@ TorusCurve curve_of_label(const MapRequest& request, const MapContext& context, 
   });
   const auto at = on != sections.end()
                       ? on
-                      : std::find_if(sections.begin(), sections.end(), [named](const TorusLabel::Section& section) {
-                          return section.event == named;
-                        });
+                      : std::find_if(sections.begin(), sections.end(),
+                                     [named](const TorusLabel::Section& section) { return section.event == named; });
   if (named == 0 && on == sections.end()) return curve_on_p(system, torus, sections.front().field, wall, along);
   if (at == sections.end())
     throw UserError(
@@ -335,16 +334,14 @@ TorusCurve curve_of_label(const MapRequest& request, const MapContext& context, 
                     "P, where event {} ({}) is least",
                     *context.section, torus.source(), named, wall, system.function_name(FunctionKind::event, wall)));
   if (!is_identity_jump(system, at->jump))
-    throw UserError(
-        fmt::format("--section {}: segments of {} that end in event function {} are followed by jump {} ({}); a section "
-                    "is where nothing happens: leave --section out for P, where event {} ({}) is least",
-                    *context.section, torus.source(), at->event, at->jump,
-                    system.function_name(FunctionKind::jump, at->jump), wall,
-                    system.function_name(FunctionKind::event, wall)));
-  const std::string text = fmt::format("Invariant curve of {}, {} orbits, on {}: rotation number {:.12g}, {} harmonics",
-                                       torus.source(), torus.orbits(),
-                                       system.function_name(FunctionKind::event, at->event), at->curve.rotation(),
-                                       at->curve.harmonics());
+    throw UserError(fmt::format(
+        "--section {}: segments of {} that end in event function {} are followed by jump {} ({}); a section "
+        "is where nothing happens: leave --section out for P, where event {} ({}) is least",
+        *context.section, torus.source(), at->event, at->jump, system.function_name(FunctionKind::jump, at->jump), wall,
+        system.function_name(FunctionKind::event, wall)));
+  const std::string text = fmt::format(
+      "Invariant curve of {}, {} orbits, on {}: rotation number {:.12g}, {} harmonics", torus.source(), torus.orbits(),
+      system.function_name(FunctionKind::event, at->event), at->curve.rotation(), at->curve.harmonics());
   std::vector<Index> angles;
   for (Index state = 0; state < at->curve.dimension(); ++state)
     if (at->curve.is_angle(state)) angles.push_back(state);
@@ -354,19 +351,18 @@ TorusCurve curve_of_label(const MapRequest& request, const MapContext& context, 
 CurveProjection projection_of(const MapRequest& request, const HybridSystem& system, const TorusCurve& torus) {
   const std::vector<Index> phase = request.phase ? phase_states(system, *request.phase) : torus.angles;
   if (phase.empty()) return CurveProjection(torus.curve);
-  return phase.size() == 1 ? CurveProjection(torus.curve, phase[0])
-                           : CurveProjection(torus.curve, phase[0], phase[1]);
+  return phase.size() == 1 ? CurveProjection(torus.curve, phase[0]) : CurveProjection(torus.curve, phase[0], phase[1]);
 }
 
 MapModel torus_model(const MapRequest& request, const MapContext& context, const HybridSystem& system,
                      const std::optional<LabelledRun>& run) {
   const int named = context.section ? cross_section(system, *context.section).event : 0;
   if (context.section && named == 0)
-    throw UserError(
-        fmt::format("--section {}: points of a torus are those of an event function; name {}", *context.section,
-                    run ? "one that ends segments of its return" : "the one that was recorded"));
-  const TorusCurve known = run ? curve_of_label(request, context, system, *run, named)
-                               : curve_of_points(request, context, system, named);
+    throw UserError(fmt::format("--section {}: points of a torus are those of an event function; name {}",
+                                *context.section,
+                                run ? "one that ends segments of its return" : "the one that was recorded"));
+  const TorusCurve known =
+      run ? curve_of_label(request, context, system, *run, named) : curve_of_points(request, context, system, named);
   const CurveProjection projection = projection_of(request, system, known);
   const auto suspended = std::make_shared<SuspendedSystem>(system, known.along, known.field, known.wall);
   TorusSettings torus_settings;
@@ -400,10 +396,9 @@ MapModel torus_model(const MapRequest& request, const MapContext& context, const
       names.push_back(system.parameter_name(k));
       values.push_back(fmt::format("{:.10g}", known.par(k - 1)));
     }
-    model.text.push_back(
-        fmt::format("The smooth torus depends on {}: its change is taken to first order from {}, the value{} of the {}",
-                    fmt::join(names, " or "), fmt::join(values, ", "), names.size() > 1 ? "s" : "",
-                    run ? "label" : "points"));
+    model.text.push_back(fmt::format(
+        "The smooth torus depends on {}: its change is taken to first order from {}, the value{} of the {}",
+        fmt::join(names, " or "), fmt::join(values, ", "), names.size() > 1 ? "s" : "", run ? "label" : "points"));
   }
   model.identity = fmt::format("{} rho = {:.17g} x* = {}", request.source, known.curve.rotation(), numbers(x));
   return model;
@@ -429,7 +424,7 @@ MapModel map_model(const MapRequest& request, const MapContext& context, const H
   std::optional<LabelledRun> run;
   if (names_label(request.source)) run = labelled_run(request, context, system);
   MapModel model = run && !is_torus(run->solution.problem_type) ? periodic_model(request, context, system, *run)
-                                                                 : torus_model(request, context, system, run);
+                                                                : torus_model(request, context, system, run);
   model.free = free_return(system, model.point, model.section);
   model.contact = {model.point.field, model.point.event, model.point.jump};
   return model;

@@ -32,10 +32,10 @@ Orbit orbit_of_label(const HybridSystem& system, const LabelledSolution& solutio
         fmt::format("{}: {} states at each time are no odd number of returns of {} segments of {} states; give the "
                     "constants of its run with -c",
                     source, rows, m, n));
-  return orbit_from_solution(solution,
-                             {system.dimension(), static_cast<int>(rows / n), solution.mesh_intervals,
-                              solution.collocation_points},
-                             {}, source)
+  return orbit_from_solution(
+             solution,
+             {system.dimension(), static_cast<int>(rows / n), solution.mesh_intervals, solution.collocation_points}, {},
+             source)
       .orbit;
 }
 
@@ -68,7 +68,8 @@ TorusLabel::TorusLabel(const HybridSystem& system, const LabelledSolution& solut
     for (Index a = 0; a < values.rows(); ++a)
       if (winding.curve(a) == 0.0 && winding.returns(a) != 0.0)
         values.row(a).array() -= full_turn * std::floor(values.row(a).mean() / full_turn);
-    sections_.push_back({index.event, index.field, index.jump, curve_through(values, rotation(), winding.curve), values});
+    sections_.push_back(
+        {index.event, index.field, index.jump, curve_through(values, rotation(), winding.curve), values});
   }
 }
 

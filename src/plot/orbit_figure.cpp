@@ -122,7 +122,8 @@ Marker jump_marker(std::size_t k, const PicturePoint& at, bool before) {
 
 KeyEntry orbit_entry(const std::vector<OrbitTrace>& orbits, std::size_t k, const OrbitFigureOptions& options) {
   KeyEntry entry{orbit_name(orbits, k, options), orbit_stroke(orbits, k), std::nullopt};
-  for (std::size_t s = 0; s < orbits[k].segments.size() && !entry.marker; ++s)
+  const bool is_torus = orbits[k].segments_per_return > 0;  // whose lines are many
+  for (std::size_t s = 0; s < orbits[k].segments.size() && !entry.marker && !is_torus; ++s)
     if (orbits[k].jumps_after(s)) entry.marker = jump_marker(k, {}, true);
   return entry;
 }
@@ -207,9 +208,9 @@ void explain_tori(Figure& figure, const std::vector<OrbitTrace>& orbits) {
   Marker dot;
   dot.symbol = Symbol::circle;
   dot.size = 0.45;
-  const std::string points =
-      orbits.size() > 1 ? std::string("computed points on the section")
-                        : fmt::format("{} computed points on the section", torus->section_points.cols());
+  const std::string points = orbits.size() > 1
+                                 ? std::string("computed points on the section")
+                                 : fmt::format("{} computed points on the section", torus->section_points.cols());
   figure.key.push_back({plain_text(points), std::nullopt, dot});
   if (!shows_phase(orbits)) return;
   figure.colour_bar = ColourBar{cyclic_colours(colours_of_phase), {mathematical_name("phi"), 0.0, 1.0, false}};
@@ -250,18 +251,21 @@ class SectionView {
   /// False where no point of the line is near.
   bool takes_in(const std::vector<std::vector<PicturePoint>>& pieces) {
     constexpr double near = 0.4;  // of the curves' size
+    constexpr int parts = 200;    // of a straight piece
     PicturePoint best;
     double least = near;
     bool found = false;
     for (const auto& piece : pieces)
-      for (const PicturePoint& point : piece) {
-        const double x = std::max({low_.x - point.x, point.x - high_.x, 0.0}) / size_.x;
-        const double y = std::max({low_.y - point.y, point.y - high_.y, 0.0}) / size_.y;
-        if (!(std::hypot(x, y) < least)) continue;
-        least = std::hypot(x, y);
-        best = point;
-        found = true;
-      }
+      for (std::size_t k = 0; k + 1 < piece.size(); ++k)
+        for (int part = 0; part <= parts; ++part) {
+          const double t = static_cast<double>(part) / parts;
+          const PicturePoint point{(1.0 - t) * piece[k].x + t * piece[k + 1].x,
+                                   (1.0 - t) * piece[k].y + t * piece[k + 1].y};
+          if (!(distance(point) < least)) continue;
+          least = distance(point);
+          best = point;
+          found = true;
+        }
     if (!found) return false;
     low_ = {std::min(low_.x, best.x), std::min(low_.y, best.y)};
     high_ = {std::max(high_.x, best.x), std::max(high_.y, best.y)};
@@ -275,6 +279,13 @@ class SectionView {
   }
 
  private:
+  /// From the rectangle, in its sizes; negative inside, the more so the nearer to the middle.
+  double distance(const PicturePoint& point) const {
+    const double x = std::max(low_.x - point.x, point.x - high_.x) / size_.x;
+    const double y = std::max(low_.y - point.y, point.y - high_.y) / size_.y;
+    return std::max(x, y);
+  }
+
   PicturePoint low_, high_, size_;
 };
 

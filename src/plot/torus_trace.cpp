@@ -48,8 +48,7 @@ MatrixXd finer(const MatrixXd& values, int count) {
   MatrixXd result(values.rows(), count);
   for (int k = 0; k < count; ++k) {
     const double phi = static_cast<double>(k) / count;
-    result.col(k) =
-        periodic * interpolation_weights(static_cast<int>(values.cols()), phi).transpose() + phi * w;
+    result.col(k) = periodic * interpolation_weights(static_cast<int>(values.cols()), phi).transpose() + phi * w;
   }
   return result;
 }

@@ -77,7 +77,8 @@ std::string residual_report(PathFollower& follower, const DefiningSystem& defini
       defect = std::max(defect, std::abs(residual.collocation[static_cast<std::size_t>(s) * per_segment + i]));
     if (!start.shape.is_point())
       add(defect, fmt::format("differential equations on segment {} (largest defect)", s + 1));
-    for (int r = 0; r < defining.coupling_rows(s); ++r) add(residual.coupling[coupling++], defining.coupling_name(s, r));
+    for (int r = 0; r < defining.coupling_rows(s); ++r)
+      add(residual.coupling[coupling++], defining.coupling_name(s, r));
   }
   for (int r = 0; r < defining.integral_conditions(); ++r)
     add(residual.integral[static_cast<std::size_t>(r)], defining.integral_name(r));

@@ -79,8 +79,8 @@ void check_events(const HybridSystem& system, const RunSettings& settings, const
       throw UserError(
           fmt::format("{}: the signature is another one than that of label {}: segment {} is to end in event {} ({}), "
                       "and none of the label's does, h = {:.3g} at least; give the signature of its run (-c r.NAME)",
-                      selected.source, selected.label, s + 1, event,
-                      system.function_name(FunctionKind::event, event), std::abs(h)));
+                      selected.source, selected.label, s + 1, event, system.function_name(FunctionKind::event, event),
+                      std::abs(h)));
   }
 }
 
@@ -112,9 +112,8 @@ BranchSetup torus_setup(const ProblemType& type, const HybridSystem& system, con
   shape.segments = orbits * segment_count(one_return);
   const std::vector<int> free = free_problem_parameters(one_return);
   check_memory(shape, static_cast<int>(free.size()));
-  setup.defining =
-      std::make_unique<TorusSystem>(system, one_return.signature(), orbits, free,
-                                    torus_winding(system, one_return.signature(), selected.start.orbit));
+  setup.defining = std::make_unique<TorusSystem>(system, one_return.signature(), orbits, free,
+                                                 torus_winding(system, one_return.signature(), selected.start.orbit));
   setup.follower = std::make_unique<PathFollower>(
       *setup.defining, shape, mean_norm(setup.settings, orbits), newton_settings(one_return),
       one_return.free_parameters.front(), condition_of(type, *setup.defining, shape, one_return),
@@ -318,7 +317,8 @@ std::string rough_torus(const RunSettings& one_return, const TorusSystem& system
   const std::string fraction = near_fraction(TorusSystem::rotation(x));
   return fmt::format(
       "the last of {} harmonics are {:.1e} of the torus: it is about to lose its smoothness, or locks to a periodic "
-      "orbit (rho = {:.8g}{}); {}look at the harmonics in the d-file, follow it with rho fixed at an irrational value and a "
+      "orbit (rho = {:.8g}{}); {}look at the harmonics in the d-file, follow it with rho fixed at an irrational value "
+      "and a "
       "second "
       "parameter free, or look for the periodic orbit by simulation",
       harmonics, last, TorusSystem::rotation(x), fraction.empty() ? "" : fmt::format(", near {}", fraction),

@@ -50,7 +50,8 @@ void TorusContactFollower::state_of(const Orbit& x, const Eigen::RowVectorXd& we
   u.setZero();
   double phase = 0.0;
   for (int l = 0; l < system_.orbits(); ++l) {
-    const int first = (l * system_.segments_per_return() + segment_) * x.shape.nodes() + interval_ * x.shape.collocation;
+    const int first =
+        (l * system_.segments_per_return() + segment_) * x.shape.nodes() + interval_ * x.shape.collocation;
     for (int k = 0; k < basis.size(); ++k) u += weights(l) * basis(k) * x.states.col(first + k);
     phase += weights(l) * l / system_.orbits();
   }

@@ -1,9 +1,9 @@
 /// The least value of an event function over a torus, followed from where it was last (torus_contact.hpp): in Newton's
 /// loop, so that nothing is allocated after the first time.
 ///
-/// Inner: on the orbit of phase phi, h_x f = 0 by Newton's method in tau on the collocation polynomial, then by the flow
-/// from the mesh point before it. Outer: h_x x_phi = 0 by the secant method. At an end of the segment tau stays there as
-/// long as h falls towards it: on a section h_P = 0 contact is always there.
+/// Inner: on the orbit of phase phi, h_x f = 0 by Newton's method in tau on the collocation polynomial, then by the
+/// flow from the mesh point before it. Outer: h_x x_phi = 0 by the secant method. At an end of the segment tau stays
+/// there as long as h falls towards it: on a section h_P = 0 contact is always there.
 #pragma once
 
 #include <Eigen/Core>

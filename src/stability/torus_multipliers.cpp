@@ -73,10 +73,10 @@ FloquetMultipliers torus_multipliers(const CondensedSystem& condensed, const Orb
   FloquetMultipliers result;
   const Eigen::MatrixXd matrices = return_matrices(system, condensed, x);
   if (!matrices.allFinite() || x.shape.dimension < 2) return result;
-  Eigen::VectorXd moduli = exponents(matrices, periodic_section_curve(system, x), system.winding().curve,
-                                     TorusSystem::rotation(x))
-                               .array()
-                               .exp();
+  Eigen::VectorXd moduli =
+      exponents(matrices, periodic_section_curve(system, x), system.winding().curve, TorusSystem::rotation(x))
+          .array()
+          .exp();
   std::sort(moduli.begin() + 1, moduli.end(), [](double a, double b) { return std::abs(a - 1.0) < std::abs(b - 1.0); });
   result.values.assign(moduli.begin(), moduli.end());
   result.values.emplace_back(0.0);

@@ -61,8 +61,7 @@ void take_worse(SegmentCheck& worst, const SegmentCheck& other) {
 OrbitCheck check_torus(const HybridSystem& system, const RunSettings& one_return, const Orbit& x, double tolerance) {
   const int m = segment_count(one_return);
   const int orbits = x.shape.segments / m;
-  const TorusSystem torus(system, one_return.signature(), orbits, {},
-                          torus_winding(system, one_return.signature(), x));
+  const TorusSystem torus(system, one_return.signature(), orbits, {}, torus_winding(system, one_return.signature(), x));
   const RunSettings settings = settings_of_orbits(one_return, orbits);
   const VectorXd scale = state_scales(x);
   const std::vector<Index> angles = angle_states(system, one_return.signature(), section_curve(torus, x), x.par);

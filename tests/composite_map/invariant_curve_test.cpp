@@ -73,8 +73,8 @@ TEST_CASE("points that are no torus are refused with the reason") {
   Eigen::MatrixXd settling(2, 1000);
   for (Eigen::Index k = 0; k < settling.cols(); ++k) {
     const double phase = 2.0 * M_PI * golden * static_cast<double>(k);
-    settling.col(k) = Eigen::Vector2d(1.0, 2.0) + std::exp(-0.03 * static_cast<double>(k)) *
-                                                      Eigen::Vector2d(std::cos(phase), std::sin(phase));
+    settling.col(k) = Eigen::Vector2d(1.0, 2.0) +
+                      std::exp(-0.03 * static_cast<double>(k)) * Eigen::Vector2d(std::cos(phase), std::sin(phase));
   }
   CHECK_THROWS_WITH(fit_invariant_curve(settling, {}, "O.events"),
                     Catch::Contains("settles on a periodic orbit: every point repeats"));

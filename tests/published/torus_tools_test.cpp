@@ -77,13 +77,14 @@ TEST_CASE("map of a torus's label: mu*, rho, and what follows behind grazing, be
   CHECK(std::abs(contact.parameter(1) - 2.405381704) < 1e-9);
 
   const std::string over = " --over mu=2.4052:2.4048:3";
-  const std::string text = done(workspace, "sweep fvdp --map q.contact:GR1 --order exact --smooth-order 2" + over + " -o label");
+  const std::string text =
+      done(workspace, "sweep fvdp --map q.contact:GR1 --order exact --smooth-order 2" + over + " -o label");
   CHECK(text.find("Invariant curve of label") != std::string::npos);
   CHECK(text.find("The torus touches wall at mu = 2.405381704") != std::string::npos);
   done(workspace, "simulate fvdp -q PAR(mu)=5 --transient-time 300 --events 5000 --tolerance 1e-12 --rows 0 -o points");
+  done(workspace, "sweep fvdp -q --map points.events PAR(mu)=5 --order exact --smooth-order 2" + over + " -o points");
   done(workspace,
-       "sweep fvdp -q --map points.events PAR(mu)=5 --order exact --smooth-order 2" + over + " -o points");
-  done(workspace, "sweep fvdp -q --penetration wall --transient-events 3000 --events 60 --section 2" + over + " -o flow");
+       "sweep fvdp -q --penetration wall --transient-events 3000 --events 60 --section 2" + over + " -o flow");
   const tchat::SweepTable label = tchat::read_sweep_file(workspace.file("label.sweep"));
   const tchat::SweepTable points = tchat::read_sweep_file(workspace.file("points.sweep"));
   const tchat::SweepTable flow = tchat::read_sweep_file(workspace.file("flow.sweep"));
@@ -197,14 +198,15 @@ TEST_CASE("tori that are not there, labels that are none: a sentence with the cu
     check_refused(workspace.tchat(arguments), parts);
   };
   // A periodic orbit, of one return; nearly reached, and reached.
-  refused("simulate langford -c langford --state 1,0,0.7 PAR(a)=0.5 --torus no", {"periodic orbit", "every point", "--dat"});
+  refused("simulate langford -c langford --state 1,0,0.7 PAR(a)=0.5 --torus no",
+          {"periodic orbit", "every point", "--dat"});
   done(workspace, "simulate torus -c torus --torus found");
   done(workspace, "run torus -q -c torus -s found -o torus NMX=2");
   refused("run torus -c torus -s torus -o no IRS=EP1 GCHIND=[2]",
           {"the signature is another one than that of label", "event 2 (wall)", "-c r.NAME"});
   refused("run torus -c torus -s torus -o no IRS=EP1 IPS=180 ICP=[omega]", {"is a torus (IPS = 182)", "IPS = 152"});
   refused("run torus -c torus -s torus -o no IRS=EP1 ICP=[omega]", {"at least 2", "rho, the rotation number"});
-  refused("grazing torus q.torus EP1", {"is a torus (IPS = 182)", "sweep --map"});
+  refused("grazing q.torus EP1 -p torus", {"is a torus (IPS = 182)", "sweep --map"});
   refused("run langford -c langford -d langford IPS=182 ICP=[a,rho] -o no", {"do not begin from data", "--torus"});
   refused("sweep torus --map q.torus:EP1 --over mu=1:2:3 -o no", {"is the identity"});
   done(workspace, "run langford -q");
