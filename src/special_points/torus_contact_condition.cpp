@@ -18,8 +18,8 @@ bool TorusContactCondition::find(const CollocationRule& rule, const Orbit& x) {
   if (!found || !std::isfinite(found->value)) return false;
   contact_ = *found;
   started_ = true;
-  // The weights of that place; a contact that cannot be followed, of no curvature, is no minimum to continue.
-  return follower_.follow(x, rule, contact_);
+  follower_.take_place(x, rule, contact_);
+  return true;
 }
 
 bool TorusContactCondition::evaluate(CondensedSystem& condensed, const Orbit& x) {

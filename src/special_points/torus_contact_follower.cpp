@@ -152,6 +152,11 @@ bool TorusContactFollower::at(const Orbit& x, const CollocationRule& rule, doubl
   return std::isfinite(slope) && std::isfinite(contact.value);
 }
 
+void TorusContactFollower::take_place(const Orbit& x, const CollocationRule& rule, const TorusContact& contact) {
+  set_interpolation_weights(contact.phi, 0, weights_);
+  find_place(x, rule, contact.tau);
+}
+
 bool TorusContactFollower::follow(const Orbit& x, const CollocationRule& rule, TorusContact& contact) {
   const double reach = 1.0 / system_.orbits();
   const double begin = contact.phi;

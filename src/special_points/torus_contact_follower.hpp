@@ -25,6 +25,9 @@ class TorusContactFollower {
   /// From contact.phi and contact.tau. False where it gets lost; `contact` is as good as nothing then.
   bool follow(const Orbit& x, const CollocationRule& rule, TorusContact& contact);
 
+  /// The weights of a contact that was found in another way.
+  void take_place(const Orbit& x, const CollocationRule& rule, const TorusContact& contact);
+
   /// Of the last contact: K(phi - l / N), the interval of tau, the weights of its nodes, and h_x.
   const Eigen::RowVectorXd& phase_weights() const { return weights_; }
   int interval() const { return interval_; }
