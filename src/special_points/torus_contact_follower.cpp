@@ -37,7 +37,8 @@ TorusContactFollower::TorusContactFollower(const TorusSystem& system, const Orbi
                                                                                                               1e-13)) {}
 
 void TorusContactFollower::find_place(const Orbit& x, const CollocationRule& rule, double tau) {
-  const auto beyond = std::upper_bound(x.mesh.begin(), x.mesh.end() - 1, tau);
+  // What is on a mesh point but for rounding belongs to the interval after it: the flow to it has no length then.
+  const auto beyond = std::upper_bound(x.mesh.begin(), x.mesh.end() - 1, tau + 1e-9);
   interval_ = static_cast<int>(std::max<std::ptrdiff_t>(beyond - x.mesh.begin() - 1, 0));
   const double left = x.mesh[static_cast<std::size_t>(interval_)];
   const double right = x.mesh[static_cast<std::size_t>(interval_ + 1)];

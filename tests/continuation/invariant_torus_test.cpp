@@ -222,7 +222,7 @@ TEST_CASE("torus: where the wall is touched, in closed form, for few orbits and 
     followed.tau -= 0.01;
     REQUIRE(follower.follow(point.orbit, torus.follower.condensed().rule(), followed));
     CHECK(std::abs(followed.phi - contact->phi) < 1e-8);
-    CHECK(std::abs(followed.value - contact->value) < 1e-12);
+    CHECK(std::abs(followed.value - contact->value) < 1e-10);  // from another mesh point
   }
   CHECK(std::abs(phases[0] - phases[1]) < 1e-8);
 }

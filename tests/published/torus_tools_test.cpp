@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
+#include <sstream>
 
 #include "end_to_end/bad_input.hpp"
 #include "published/chain.hpp"
@@ -19,8 +19,8 @@ constexpr const char* angles_of_forcing =
     "NDIM = 3, IPS = 182, IRS = 1\n"
     "ICP = [mu, rho]\n"
     "NTST = 20, NCOL = 5, IAD = 0, NMX = 40, RL0 = 2.3, RL1 = 6\n"
-    "EPSL = 1e-10, EPSU = 1e-10, EPSS = 1e-9, DS = -0.02, DSMAX = 0.2\n"
-    "GCFIND = [1], GCSEGTYP = [0], GCHGRZIND = [[1]], GCIPSI = [1]\n";
+    "EPSL = 1e-10, EPSU = 1e-10, EPSS = 1e-9, DS = -0.02, DSMAX = 0.2\n";
+constexpr const char* one_segment = "GCFIND = [1], GCSEGTYP = [0], GCHGRZIND = [[1]], GCIPSI = [1]\n";
 
 std::string done(const Workspace& workspace, const std::string& arguments) {
   const Outcome outcome = workspace.tchat(arguments);
@@ -33,8 +33,8 @@ std::string done(const Workspace& workspace, const std::string& arguments) {
 /// (event 2: the angle winds).
 void enter_fvdp(const Workspace& workspace) {
   std::filesystem::copy_file(FVDP_LIBRARY, workspace.file("fvdp.so"));
-  workspace.write("gc.revolution", std::string(angles_of_forcing) + "GCHIND = [4], GCGIND = [3]\n");
-  workspace.write("gc.maximum", std::string(angles_of_forcing) + "GCHIND = [2], GCGIND = [2]\n");
+  workspace.write("gc.revolution", std::string(angles_of_forcing) + one_segment + "GCHIND = [4], GCGIND = [3]\n");
+  workspace.write("gc.maximum", std::string(angles_of_forcing) + one_segment + "GCHIND = [2], GCGIND = [2]\n");
 }
 
 void enter_torus(const Workspace& workspace) {
@@ -99,7 +99,6 @@ TEST_CASE("map of a torus's label: mu*, rho, and what follows behind grazing, be
     // One impact in two returns. The maps differ by what the points and HARMTOL leave open; the flow from both by what
     // a map of second order leaves out at 3e-4 behind the wall, its time by that of the curve beside the orbit.
     REQUIRE(of_value(label, index, "impacts").front() == 1.0);
-    REQUIRE(of_value(flow, index, "impacts").front() == 1.0);
     CHECK(deepest(label) > 3e-4);
     CHECK(std::abs(deepest(label) - deepest(points)) < 1e-10);
     CHECK(std::abs(time(label) - time(points)) < 1e-8);
@@ -157,11 +156,13 @@ TEST_CASE("normal multipliers of an attracting torus are the Lyapunov exponents 
   const std::string text = done(workspace,
                                 "simulate langford --state 1,0,0.7 PAR(a)=0.76 PAR(f)=0.03 --lyapunov "
                                 "--transient-time 500 --time 20000 --rows 0 -o exponents");
-  const auto row = text.find("\n  3 ");
   INFO(text);
-  REQUIRE(row != std::string::npos);
   double exponent = 0.0, bar = 0.0;
-  REQUIRE(std::sscanf(text.c_str() + row, " 3 %lf +- %lf", &exponent, &bar) == 2);
+  int number = 0;
+  std::istringstream lines(text);
+  for (std::string line; number != 3 && std::getline(lines, line);)
+    if (std::sscanf(line.c_str(), " %d %lf +- %lf", &number, &exponent, &bar) != 3) number = 0;
+  REQUIRE(number == 3);
   CHECK(bar < 1e-3);
   CHECK(std::abs(exponent - std::log(least) / time) < std::max(3.0 * bar, 1e-5));
 }
