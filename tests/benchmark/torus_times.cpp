@@ -186,7 +186,7 @@ void print_torus_times(const std::vector<int>& orbits, int steps, int returns) {
              collocation);
   for (const Case* torus : {&three, &four}) {
     fmt::print("n = {}\n{:>8}{:>14}{:>20}{:>30}{:>20}\n", torus->system->dimension(), "N", "step [ms]",
-               "off the torus by", "steps in one simulation", "process [MB]");
+               "off the torus by", "steps in one simulation", "peak so far [MB]");
     // The largest tolerance with which the simulation is as near as the orbits.
     double step_at_41 = 0.0;
     Simulated beside;
