@@ -109,6 +109,11 @@ TEST_CASE("rand4d: tori in contact from their birth at TR down to A = 1, beside 
   }
   CHECK(points == 4);
   CHECK(std::abs(least_of_rand4d(1.1) - contact(chain, "tori_wall")) < agreement);
+  // Small steps past rho = 16/35, where harmonics 35, 70, ... grow.
+  chain.run("-c r.tori_grazing -s tori_grazing -o past IRS=UZ3 UZR={} DS=-0.0001 DSMAX=0.0002 NMX=9");
+  const PointSection past = chain.points("past").front();
+  CHECK(past.rows.front().values[past.column("rho")] > 16.0 / 35.0);
+  CHECK(past.rows.back().values[past.column("rho")] < 16.0 / 35.0);
   const PointSection up = chain.points("tori_grazing").front();
   CHECK(std::abs(up.rows.back().values[up.column("A")] - birth) < 1e-6);  // there it has shrunk to the periodic orbit
 }
