@@ -106,8 +106,7 @@ double largest_distance(const tchat::HybridSystem& system, const tchat::Signatur
 double largest_langford_distance(const SolutionEntry& solution, int count) {
   const Eigen::MatrixXd curve = curve_of(solution, 3, 1);
   const CurveDistance distance(curve);
-  const auto field = [system = Langford(), par = solution.par](const MotionState<3>& x, MotionState<3>& f,
-                                                                      double) {
+  const auto field = [system = Langford(), par = solution.par](const MotionState<3>& x, MotionState<3>& f, double) {
     system.field(1, x.data(), par.data(), f.data());
   };
   const auto section = [](const MotionState<3>& x, double) { return x[1]; };
