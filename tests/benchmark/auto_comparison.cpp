@@ -101,7 +101,7 @@ bool auto_is_installed() {
 }
 
 void print_auto_comparison(const std::vector<int>& segments, bool quick) {
-  fmt::print("(d) AUTO-07p (IPS = 4, 4k functions, JAC = 1) on the same k-segment problem, NTST = {}, NCOL = {}\n\n",
+  fmt::print("(e) AUTO-07p (IPS = 4, 4k functions, JAC = 1) on the same k-segment problem, NTST = {}, NCOL = {}\n\n",
              intervals, collocation_points);
   fmt::print("{:>4}{:>14}{:>14}{:>18}{:>10}{:>20}{:>24}{:>20}\n", "k", "AUTO [us]", "tchat [us]", "multipliers [us]",
              "ratio", "ratio with mult.", "Newton it. AUTO/tchat", "difference");

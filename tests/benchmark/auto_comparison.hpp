@@ -1,4 +1,4 @@
-/// Table (d): the same k-segment problem, step length, mesh and tolerances in AUTO-07p, IPS = 4.
+/// Table (e): the same k-segment problem, step length, mesh and tolerances in AUTO-07p, IPS = 4.
 ///
 /// Time per step is the difference of two run lengths of AUTO's program, in processor time, so that its start-up drops
 /// out; on our side it is the median of as many measurements, taken in turn with AUTO's. To show that both compute the

@@ -31,7 +31,7 @@ constexpr double a = 1.9, b = 0.6, r = 0.7;
 const double x[] = {0.4, -0.3};
 
 std::vector<double> parameters() {
-  std::vector<double> par(256, 0.0);
+  std::vector<double> par(TCHAT_PAR_LENGTH, 0.0);
   par[0] = a, par[1] = b, par[2] = r;
   return par;
 }

@@ -38,7 +38,7 @@ TCHAT_PROBLEM(Ball)
   const HybridSystem& system = library.system();
   CHECK(system.name() == "Ball");
   CHECK(system.dimension() == 2);
-  const double x[] = {0.5, -3.0}, par[256] = {9.81, 0.8};
+  const double x[] = {0.5, -3.0}, par[TCHAT_PAR_LENGTH] = {9.81, 0.8};
   double g[2], gx[4], gp[2];
   const int active[] = {2};
   system.first(FunctionKind::jump, 1, x, par, active, g, gx, gp);
@@ -50,7 +50,7 @@ TCHAT_PROBLEM(Ball)
 TEST_CASE("a small C plugin is loaded, its derivatives are differences") {
   const PluginFolder folder;
   const ProblemLibrary library(resolve_plugin(folder.write("small.cpp", small_plugin()), build_options));
-  const double x[] = {0.5, -3.0}, par[256] = {2.0};
+  const double x[] = {0.5, -3.0}, par[TCHAT_PAR_LENGTH] = {2.0};
   double f[2], fx[4];
   library.system().first(FunctionKind::field, 1, x, par, {}, f, fx, nullptr);
   CHECK(f[0] == 1.0);
@@ -161,6 +161,6 @@ TEST_CASE("a plugin that writes NaN is seen by its values") {
       "nan.cpp", small_plugin("table.value = [](const void*, int32_t, int32_t, const double*, const double*, "
                               "double* out) { out[0] = 0.0 / 0.0; };"));
   const ProblemLibrary library(resolve_plugin(source, build_options));
-  const double x[] = {0.5, -3.0}, par[256] = {};
+  const double x[] = {0.5, -3.0}, par[TCHAT_PAR_LENGTH] = {};
   CHECK(std::isnan(library.system().event(1, x, par)));
 }

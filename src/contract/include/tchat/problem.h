@@ -23,7 +23,7 @@
 #include <stdint.h>
 
 #define TCHAT_PROBLEM_ABI 2
-#define TCHAT_PAR_LENGTH 256
+#define TCHAT_PAR_LENGTH 512
 
 #ifdef __cplusplus
 extern "C" {
