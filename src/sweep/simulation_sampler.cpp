@@ -39,6 +39,7 @@ constexpr std::size_t points_for_ignorable = 6;
 constexpr long first_decision = 64;  // events after which exponents may tell the kind of a motion
 constexpr long last_decision = 4096;
 constexpr long events_of_exponents = 128;     // of an attractor whose kind is known
+constexpr double same_time = 1e-6;            // as a share of the longest segment
 constexpr std::size_t identity_points = 400;  // of a motion that does not repeat itself
 
 /// A recorded state.
@@ -372,7 +373,10 @@ class SampleRun {
       add_dots(segment, dots);
       if (setup_.recording.penetration > 0) add_contacts(segment, contacts);
     }
-    if (setup_.recording.penetration > 0) describe_contacts(contacts);
+    if (setup_.recording.penetration > 0) {
+      leave_out_doubles(contacts);
+      describe_contacts(contacts);
+    }
     if (setup_.recording.has_incoming_states()) take_incoming(contacts, dots);
     if (setup_.recording.states == Recording::States::contact) dots = std::move(contacts);
     if (setup_.recording.states == Recording::States::none) return;
@@ -459,10 +463,32 @@ class SampleRun {
     return dot;
   }
 
-  /// Of states on a section those of the flow that comes in, each with the penetration of the contact beside it.
-  void take_incoming(const std::vector<Dot>& contacts, std::vector<Dot>& dots) {
+  /// A least value at which an event ends the segment is seen by that segment and by the next one.
+  void leave_out_doubles(std::vector<Dot>& contacts) const {
+    const TimeSpan span = time_span();
+    const double apart = same_time * longest_segment();
+    const auto is_double = [&](const Dot& a, const Dot& b) {
+      return std::min(span.from_to(a.time, b.time), span.from_to(b.time, a.time)) <= apart;
+    };
+    contacts.erase(std::unique(contacts.begin(), contacts.end(), is_double), contacts.end());
+    if (span.period && contacts.size() > 1 && is_double(contacts.back(), contacts.front())) contacts.pop_back();
+  }
+
+  double longest_segment() const {
+    double longest = 0.0;
+    for (const SimulatedSegment& segment : kept_) longest = std::max(longest, segment.duration);
+    return longest;
+  }
+
+  TimeSpan time_span() const {
     TimeSpan span{kept_.front().start_time, {}};
     if (sample_.kind == AttractorKind::periodic) span.period = sample_.period;
+    return span;
+  }
+
+  /// Of states on a section those of the flow that comes in, each with the penetration of the contact beside it.
+  void take_incoming(const std::vector<Dot>& contacts, std::vector<Dot>& dots) {
+    const TimeSpan span = time_span();
     std::vector<const SimulatedSegment*> impacts;
     std::vector<double> times;
     for (const SimulatedSegment& segment : kept_) {
