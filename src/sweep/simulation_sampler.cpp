@@ -38,7 +38,7 @@ constexpr std::size_t samples_following = 12;  // of a segment, among which the 
 constexpr std::size_t points_for_ignorable = 6;
 constexpr long first_decision = 64;  // events after which exponents may tell the kind of a motion
 constexpr long last_decision = 4096;
-constexpr long events_of_exponents = 128;     // of an attractor whose kind is known
+constexpr long events_of_exponents = 512;     // of an attractor whose kind is known
 constexpr double same_time = 1e-6;            // as a share of the longest segment
 constexpr std::size_t identity_points = 400;  // of a motion that does not repeat itself
 
