@@ -5,6 +5,7 @@
 #include <exception>
 
 #include "benchmark/auto_comparison.hpp"
+#include "benchmark/elimination_times.hpp"
 #include "benchmark/matrix_times.hpp"
 #include "benchmark/step_times.hpp"
 #include "benchmark/two_parameter_times.hpp"
@@ -17,7 +18,8 @@ constexpr const char* purpose =
     "  (a) time per continuation step for 1 to 16 segments and for 50 to 800 mesh intervals;\n"
     "  (b) one Newton matrix and the multipliers, in units of the local eliminations of one Newton matrix;\n"
     "  (c) a step along a fold, period-doubling or torus curve, divided by a step of the one-parameter branch;\n"
-    "  (d) with --auto, time per step of AUTO-07p on the same k-segment problem, divided by ours.";
+    "  (d) with --auto, time per step of AUTO-07p on the same k-segment problem, divided by ours;\n"
+    "  (e) the elimination of mesh intervals for n = 4, 10, 20, 50, in lanes of vector registers and one by one.";
 
 constexpr const char* how_to_read =
     "How to read it. The machine's speed drops out of exponents, units and ratios; microseconds only tell where the\n"
@@ -28,7 +30,8 @@ constexpr const char* how_to_read =
     "about. (c) Both with multipliers, as in a run; a curve has no chord iterations, every Newton matrix is new.\n"
     "(d) Processor times of one thread; a ratio of 10 says that AUTO needs ten times as long for a step. AUTO\n"
     "computes no multipliers when IPS = 4, hence the two ratios. The difference is that of the states on the two\n"
-    "branches at the same alpha; AUTO's file has ten digits. Compare only numbers of an optimised build.";
+    "branches at the same alpha; AUTO's file has ten digits. (e) Rates count multiplications and additions; dgemm is\n"
+    "that of the BLAS that is installed. Compare only numbers of an optimised build.";
 
 int run(bool quick, bool with_auto) {
   using namespace tchat::benchmark;
@@ -40,8 +43,12 @@ int run(bool quick, bool with_auto) {
   print_step_times(sizes);
   print_matrix_times(quick ? 5 : 2000);
   print_two_parameter_times(quick ? 3 : 400, quick ? 20 : 100);
+  print_elimination_times(quick ? std::vector<int>{4, 10} : std::vector<int>{4, 10, 20, 50}, quick ? 5 : 2000);
   if (with_auto && !auto_is_installed()) return 1;
-  if (with_auto) print_auto_comparison(quick ? std::vector<int>{1, 2} : std::vector<int>{1, 2, 4, 8}, quick);
+  if (with_auto)
+    print_auto_comparison(quick ? std::vector<AutoSize>{{1, 50}, {2, 50}}
+                                : std::vector<AutoSize>{{1, 50}, {2, 50}, {4, 50}, {8, 50}, {1, 200}, {1, 800}},
+                          quick);
   fmt::print("{}\n", how_to_read);
   return 0;
 }
