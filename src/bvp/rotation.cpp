@@ -39,9 +39,14 @@ double kernel(int harmonics, double t, int derivative) {
 
 Eigen::RowVectorXd interpolation_weights(int count, double phi, int derivative) {
   Eigen::RowVectorXd weights(count);
+  set_interpolation_weights(phi, derivative, weights);
+  return weights;
+}
+
+void set_interpolation_weights(double phi, int derivative, Eigen::RowVectorXd& weights) {
+  const auto count = static_cast<int>(weights.size());
   for (int l = 0; l < count; ++l)
     weights(l) = kernel((count - 1) / 2, phi - static_cast<double>(l) / count, derivative);
-  return weights;
 }
 
 Eigen::MatrixXd shifted_curve(const Eigen::MatrixXd& values, double phi, int derivative) {

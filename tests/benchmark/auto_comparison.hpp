@@ -12,6 +12,11 @@ namespace tchat::benchmark {
 /// False, after a message that says what to install, when AUTO-07p or gfortran is not there.
 bool auto_is_installed();
 
-void print_auto_comparison(const std::vector<int>& segments, bool quick);
+struct AutoSize {
+  int segments;
+  int intervals;  ///< NTST
+};
+
+void print_auto_comparison(const std::vector<AutoSize>& sizes, bool quick);
 
 }  // namespace tchat::benchmark

@@ -5,6 +5,7 @@
 #include <exception>
 
 #include "benchmark/auto_comparison.hpp"
+#include "benchmark/elimination_times.hpp"
 #include "benchmark/matrix_times.hpp"
 #include "benchmark/step_times.hpp"
 #include "benchmark/torus_times.hpp"
@@ -20,7 +21,8 @@ constexpr const char* purpose =
     "  (c) a step along a fold, period-doubling or torus curve, divided by a step of the one-parameter branch;\n"
     "  (d) a step along invariant tori by the number of orbits, beside a simulation with a curve fitted to its "
     "points;\n"
-    "  (e) with --auto, time per step of AUTO-07p on the same k-segment problem, divided by ours.";
+    "  (e) the elimination of mesh intervals for n = 4, 10, 20, 50, in lanes of vector registers and one by one;\n"
+    "  (f) with --auto, time per step of AUTO-07p on the same k-segment problem, divided by ours.";
 
 constexpr const char* how_to_read =
     "How to read it. The machine's speed drops out of exponents, units and ratios; microseconds only tell where the\n"
@@ -31,9 +33,10 @@ constexpr const char* how_to_read =
     "about. (c) Both with multipliers, as in a run; a curve has no chord iterations, every Newton matrix is new.\n"
     "(d) Processor times; the simulation has the largest tolerance, of powers of ten, with which its curve is as "
     "near.\n"
-    "(e) Processor times of one thread; a ratio of 10 says that AUTO needs ten times as long for a step. AUTO\n"
+    "(f) Processor times of one thread; a ratio of 10 says that AUTO needs ten times as long for a step. AUTO\n"
     "computes no multipliers when IPS = 4, hence the two ratios. The difference is that of the states on the two\n"
-    "branches at the same alpha; AUTO's file has ten digits. Compare only numbers of an optimised build.";
+    "branches at the same alpha; AUTO's file has ten digits. (e) Rates count multiplications and additions; dgemm is\n"
+    "that of the BLAS that is installed. Compare only numbers of an optimised build.";
 
 int run(bool quick, bool with_auto, bool only_tori) {
   using namespace tchat::benchmark;
@@ -51,8 +54,12 @@ int run(bool quick, bool with_auto, bool only_tori) {
   print_two_parameter_times(quick ? 3 : 400, quick ? 20 : 100);
   print_torus_times(quick ? std::vector<int>{11, 21} : std::vector<int>{21, 41, 81, 127, 255}, quick ? 2 : 9,
                     quick ? 300 : 1500);
+  print_elimination_times(quick ? std::vector<int>{4, 10} : std::vector<int>{4, 10, 20, 50}, quick ? 5 : 2000);
   if (with_auto && !auto_is_installed()) return 1;
-  if (with_auto) print_auto_comparison(quick ? std::vector<int>{1, 2} : std::vector<int>{1, 2, 4, 8}, quick);
+  if (with_auto)
+    print_auto_comparison(quick ? std::vector<AutoSize>{{1, 50}, {2, 50}}
+                                : std::vector<AutoSize>{{1, 50}, {2, 50}, {4, 50}, {8, 50}, {1, 200}, {1, 800}},
+                          quick);
   fmt::print("{}\n", how_to_read);
   return 0;
 }
