@@ -99,7 +99,8 @@ std::string recorded_text(const Recording& recording) {
     case Recording::States::all_events:
       return "at all events";
     case Recording::States::section:
-      return fmt::format("at event function {}", recording.section);
+      return fmt::format("at event function {}{}", recording.section,
+                         recording.has_incoming_states() ? ", of the flow that comes in" : "");
     case Recording::States::contact:
       return fmt::format("where event function {} is least", recording.penetration);
     default:

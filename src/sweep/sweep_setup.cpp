@@ -30,6 +30,16 @@ void read_part(const std::string& text, SweepTask& task) {
   task.parts = *parts;
 }
 
+/// "mu = -0.5, x1(0) = 2"
+std::string place_text(const SweepJob& job, std::size_t index) {
+  const VectorXd values = SweepGrid(job.heading.over).values(index);
+  std::string at;
+  for (std::size_t q = 0; q < job.heading.over.size(); ++q)
+    at += fmt::format("{}{} = {:.6g}", q > 0 ? ", " : "", job.heading.over[q].column(),
+                      values(static_cast<Eigen::Index>(q)));
+  return at;
+}
+
 /// The summary on the screen.
 std::string outcome_text(const SweepJob& job, const SweepOutcome& outcome) {
   std::string text;
@@ -42,18 +52,14 @@ std::string outcome_text(const SweepJob& job, const SweepOutcome& outcome) {
     const SweepAttractor& attractor = outcome.attractors[a];
     text += fmt::format("Attractor {}: {}", attractor.number, to_string(attractor.kind));
     if (!attractor.signature.empty()) text += ", " + attractor.signature;
-    const VectorXd values = SweepGrid(job.heading.over).values(attractor.index);
-    std::string at;
-    for (std::size_t q = 0; q < job.heading.over.size(); ++q)
-      at += fmt::format("{}{} = {:.6g}", q > 0 ? ", " : "", job.heading.over[q].column(),
-                        values(static_cast<Eigen::Index>(q)));
-    text += fmt::format(", {} times, first at {}\n", outcome.found[a], at);
+    text += fmt::format(", {} times, first at {}\n", outcome.found[a], place_text(job, attractor.index));
   }
   if (outcome.attractors.size() > most_told)
     text += fmt::format("... and {} further attractors\n", outcome.attractors.size() - most_told);
   if (outcome.without > 0)
-    text += fmt::format("No attractor: {} times{}{}\n", outcome.without,
-                        outcome.first_message.empty() ? "" : "; first: ", outcome.first_message);
+    text += fmt::format("No attractor: {} times, first at {}{}{}\n", outcome.without,
+                        place_text(job, outcome.first_without), outcome.first_message.empty() ? "" : ": ",
+                        outcome.first_message);
   return text + fmt::format("Written: {}\n", outcome.written);
 }
 
