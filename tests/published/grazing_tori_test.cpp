@@ -92,7 +92,7 @@ TEST_CASE("fvdp behind the grazing of its torus, on P': states of the incoming f
   make_torus(workspace, "--signature 1,3,2;1,4,3 --events 2400");
   const SweepTable simulated = sweep(workspace, "--section 3 --penetration 1");
   const SweepTable mapped = sweep(workspace, "--map torus.events --section 3 --wall 1");
-  compare(simulated, mapped, 3, 5e-4, 2e-2);
+  compare(simulated, mapped, 3, 3e-4, 1e-2);
   const SweepTable outgoing = sweep(workspace, "--section 3");
   double changed = 0.0;
   for (std::size_t row = 0; row < outgoing.rows(); ++row)
