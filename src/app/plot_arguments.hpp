@@ -14,6 +14,7 @@ namespace tchat {
 struct PlotArguments {
   std::vector<std::string> words;  ///< files and labels
   bool multipliers = false;
+  bool section = false;
   bool time = false;
   bool one_panel = false;
   std::string x;

@@ -84,6 +84,9 @@ constexpr const char* footer =
     "                                     colours over two, attractors or what -z says\n"
     "  tchat plot q.A LABEL [LABEL ...]   orbits: phase portrait of the first two states, or with --time time series;\n"
     "                                     labels are numbers or types with a count (5, PD1, GR1), or all\n"
+    "  tchat plot --section q.A LABEL     tori: the closed curves on their section (without --section the returns, "
+    "coloured\n"
+    "                                     by their angle)\n"
     "  tchat plot A.trajectory            a simulation: time series, or with -x a phase portrait\n"
     "  tchat plot --multipliers q.A ...   Floquet multipliers (from d.A) along the branch, or at labels\n"
     "What is stable is solid, what is unstable dashed, what is inadmissible (by d.A) dotted; this sets no range of "
@@ -130,6 +133,7 @@ void add_plot_command(CLI::App& app, std::function<int()>& chosen) {
                    "p-files; a q-file with labels; trajectories; tables; A is taken for p.A, before labels for q.A")
       ->required();
   command->add_flag("--multipliers", a->multipliers, "Floquet multipliers with the unit circle");
+  command->add_flag("--section", a->section, "tori as closed curves on the section where their returns begin");
   command->add_flag("--time", a->time, "orbits as time series");
   command->add_flag("--one-panel", a->one_panel, "time series of several states in one panel");
   command->add_option("-o,--output", c->output, "picture FILE.png, FILE.svg or FILE.pdf")->type_name("FILE");

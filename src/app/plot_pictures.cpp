@@ -19,7 +19,9 @@
 #include "plot/orbit_stability.hpp"
 #include "plot/problem_finder.hpp"
 #include "plot/sweep_layer.hpp"
+#include "plot/torus_trace.hpp"
 #include "plot/trajectory_file.hpp"
+#include "problem_type/problem_type.hpp"
 #include "text/number.hpp"
 #include "text/user_error.hpp"
 #include "text/words.hpp"
@@ -139,14 +141,27 @@ void add_trajectory(const PlotItem& item, Orbits& orbits) {
   if (orbits.states.empty()) orbits.states = file.states;
 }
 
-void add_orbits(const PlotItem& item, bool several_files, int dimension, Orbits& orbits) {
+OrbitTrace trace_of(const LabelledSolution& solution, const std::string& name, const PlotArguments& arguments,
+                    const std::string& path) {
+  if (arguments.section && !is_torus(solution.problem_type))
+    throw UserError(
+        fmt::format("--section: label {} of {} is no torus (IPS = {}), and its orbit no curve on a section; leave "
+                    "--section out",
+                    solution.label, path, solution.problem_type));
+  if (arguments.section) return section_trace(solution, name, arguments.dimension, path);
+  return is_torus(solution.problem_type) ? torus_bundle(solution, name, arguments.dimension, path)
+                                         : orbit_trace(solution, name, arguments.dimension, path);
+}
+
+void add_orbits(const PlotItem& item, bool several_files, const PlotArguments& arguments, Orbits& orbits) {
   if (item.kind == PlotItem::Kind::trajectory) return add_trajectory(item, orbits);
   const SolutionFile file = read_solution_file(item.path);
   for (const std::string& warning : file.warnings) orbits.warnings.push_back(warning);
-  const std::map<int, LineKind> kinds = label_kinds(item.path);
+  const bool are_tori = !file.solutions.empty() && is_torus(file.solutions.front().problem_type);
+  const std::map<int, LineKind> kinds = are_tori ? torus_label_kinds(item.path) : label_kinds(item.path);
   const auto add = [&](const LabelledSolution& solution, const std::string& word) {
     const std::string name = several_files ? fmt::format("{} {}", run_name(item.path), word) : word;
-    orbits.traces.push_back(orbit_trace(solution, name, dimension, item.path));
+    orbits.traces.push_back(trace_of(solution, name, arguments, item.path));
     if (const auto kind = kinds.find(solution.label); kind != kinds.end()) orbits.traces.back().kind = kind->second;
   };
   if (item.labels.empty() && !file.solutions.empty()) {
@@ -176,7 +191,7 @@ NamedFigure orbit_picture(const std::vector<PlotItem>& items, const PlotArgument
           fmt::format("{} is no q-file; one picture shows either branches (p-files) or orbits (a q-file with "
                       "labels, or trajectories)",
                       item.path));
-    add_orbits(item, items.size() > 1, arguments.dimension, orbits);
+    add_orbits(item, items.size() > 1, arguments, orbits);
   }
   if (orbits.traces.empty()) throw UserError(fmt::format("{}: there are no solutions in it", items.front().path));
   const bool is_trajectory = items.front().kind == PlotItem::Kind::trajectory;
@@ -209,6 +224,8 @@ NamedFigure orbit_picture(const std::vector<PlotItem>& items, const PlotArgument
           fmt::format("--surfaces {}: the problem's plugin is needed; give it with -p", arguments.surfaces));
   }
   const bool in_time = arguments.time || (is_trajectory && arguments.x.empty() && arguments.z.empty());
+  if (in_time && arguments.section)
+    throw UserError("--section shows curves on a section, which have no time; leave --time out");
   if (in_time && !arguments.z.empty())
     throw UserError("-z is for phase portraits in space; leave --time out, or name the states as in --time -y x1,x2");
   const bool by_state = in_time && options.one_panel && options.y.size() != 1;
@@ -216,7 +233,7 @@ NamedFigure orbit_picture(const std::vector<PlotItem>& items, const PlotArgument
   check_legend(arguments, orbits.traces.size() * (by_state ? states : 1), by_state ? "line" : "orbit");
   NamedFigure result;
   result.figure = in_time ? time_series(orbits.traces, options) : phase_portrait(orbits.traces, options);
-  result.name = name + (in_time ? "_time" : "_orbits");
+  result.name = name + (in_time ? "_time" : arguments.section ? "_section" : "_orbits");
   result.warnings = orbits.warnings;
   if (!choice.warning.empty()) result.warnings.push_back(choice.warning);
   return result;
@@ -283,6 +300,8 @@ NamedFigure make_figure(const std::vector<PlotItem>& items, const PlotArguments&
   });
   if (!orbits && arguments.time)
     throw UserError("--time shows orbits: give a q-file and labels, as in tchat plot --time q.mems PD1");
+  if (!orbits && arguments.section)
+    throw UserError("--section shows tori: give a q-file and labels, as in tchat plot --section q.torus GR1");
   for (const PlotItem& item : items)
     if (item.kind == PlotItem::Kind::diagnostics)
       throw UserError(fmt::format("{} holds multipliers: tchat plot --multipliers {}", item.path, item.path));

@@ -81,8 +81,9 @@ void add_map_options(CLI::App& command, MapRequest& map) {
   command
       .add_option(
           "--map", map.source,
-          "iterate the smooth return map after the discontinuity map: of the grazing orbit LABEL in q.NAME, or of "
-          "the torus whose section points are in FILE (O.events of a simulation without contact, or O.sweep)")
+          "iterate the smooth return map after the discontinuity map: of the grazing orbit or of the "
+          "torus LABEL in q.NAME, or of the torus whose section points are in FILE (O.events of a simulation without "
+          "contact, or O.sweep)")
       ->type_name("q.NAME:LABEL|FILE")
       ->group(group);
   command.add_option("--order", map.order, "of the discontinuity map: 1/2, 1, 3/2 or exact")

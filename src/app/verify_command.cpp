@@ -46,6 +46,8 @@ void add_verify_command(CLI::App& app, std::function<int()>& chosen) {
       "1\n"
       "            with the stored angle of TR, +1 or -1 of GC; also along curves of folds, doublings and tori\n"
       "  EVENT     the one that ends the segment; others that are met before\n"
+      "Of a torus there is a row for each segment of the return, the worst over returns from all its phases and from\n"
+      "those half way between them; STATE counts how far from the curve, a rotation further, they come back.\n"
       "Exit status: 0 when all defects are below the tolerance, 1 when not. Where errors grow by more than a thousand\n"
       "times the tolerance is 1e-9 GROWTH. Points that the run itself has marked inadmissible pass as such.\n"
       "Example: tchat verify q.impacting PD1 LP1 -p mems");

@@ -1,19 +1,9 @@
 /// The linearised boundary value problem of an orbit, condensed and factored.
 ///
 /// At an orbit x the linearisation of the collocation equations (5.29) and of the coupling rows, bordered by b rows,
-/// reads J dx = -F. It is reduced in two sweeps that touch every mesh interval once:
-///   1. interval: the c - 1 interior nodes are eliminated from the c n collocation rows; n rows in (left, right)
-///   remain;
-///   2. joins: neighbouring pieces are joined by elimination of the mesh node between them with pivoting, halves of a
-///   segment from their halves, until n rows per segment remain,
-///          A_s x_s(0) + C_s x_s(1) + B_s (T_s, p) = r_s                                   (5.48-5.49 with C_s kept)
-///   The order matters. From left to right the same elimination becomes a product of transfer matrices wherever the
-///   flow grows little per interval: every pivot is then an entry of the longer piece, rounding grows like the flow
-///   over the whole segment, up to 2^(n N), and decaying modes are lost [S. J. Wright, SIAM J. Sci. Comput. 14 (1993)
-///   231]. Pieces of equal length show their growth to the pivot search; rounding grows by 2^n for each of the log2 N
-///   levels at most, by little in practice;
-/// and UMFPACK solves what is left, 2 n m + m + q unknowns that couple only neighbouring segments. Work and memory
-/// are linear in m and N. All arrays are allocated when the object is made.
+/// reads J dx = -F. Each segment is reduced to n rows in its ends, its duration and the free parameters
+/// (segment_elimination.hpp), and UMFPACK solves what is left, 2 n m + m + q unknowns that couple only neighbouring
+/// segments. Work and memory are linear in m and N. All arrays are allocated when the object is made.
 ///
 /// Border rows are general linear functionals of the unknowns, given as dual vectors.
 #pragma once
@@ -26,8 +16,8 @@
 #include "bvp/coupling.hpp"
 #include "bvp/defining_system.hpp"
 #include "bvp/orbit.hpp"
+#include "bvp/segment_elimination.hpp"
 #include "linear_algebra/block_array.hpp"
-#include "linear_algebra/block_kernel.hpp"
 #include "linear_algebra/sparse_lu.hpp"
 
 namespace tchat {
@@ -41,10 +31,6 @@ struct OrbitResidual {
   double largest() const;
   bool finite() const;
 };
-
-/// Outcome of a linearisation; factors exist only when it is `ready`. `condition_lost`: the condition of a
-/// two-parameter curve cannot be evaluated.
-enum class Linearization { ready, not_finite, singular, condition_lost };
 
 class CondensedSystem {
  public:
@@ -113,44 +99,21 @@ class CondensedSystem {
 
  private:
   static std::size_t index(std::ptrdiff_t i) { return static_cast<std::size_t>(i); }
-  /// Number of an interval's blocks.
-  std::ptrdiff_t block(int s, int j) const { return static_cast<std::ptrdiff_t>(s) * shape_.intervals + j; }
+  /// Where the collocation residual of segment s begins; beyond the last one, how long it is.
+  std::ptrdiff_t collocation_row(int s) const {
+    return static_cast<std::ptrdiff_t>(s) * shape_.intervals * shape_.collocation * n_;
+  }
   EndUnknowns unknowns() const { return {n_, shape_.segments}; }
   int start_unknown(int s) const { return unknowns().start(s); }
   int end_unknown(int s) const { return unknowns().end(s); }
   int duration_unknown(int s) const { return unknowns().duration(s); }
   int global_unknown(int g) const { return unknowns().global(g); }
 
-  /// The elimination of mesh node `middle` joins intervals first..middle-1 to intervals middle..last-1; its block is
-  /// the one of interval `middle`.
-  struct Join {
-    int first, middle, last;
-  };
-  /// The n condensed rows and the border rows of some neighbouring intervals: columns (first node | last node |
-  /// scalars) begin at `rows` and `border`.
-  struct Piece {
-    const double* rows;
-    const double* border;
-    int width;
-  };
-
-  static std::vector<Join> joins_of_halves(int intervals);
-  static int halfway(int first, int last) { return first + (last - first) / 2; }
   SparseLu make_sparse();
   template <class Dimension>
   void interpolate(Dimension n, const Orbit& x, int s, int j, int gauss_point);
-  template <class Dimension>
-  bool fill_interval_of(Dimension n, const Orbit& x, int s, int j, double* block, double* collocation);
-  Linearization condense_segment(const Orbit& x, int s, std::span<const OrbitVector> rows, double* collocation);
-  bool fill_interval(const Orbit& x, int s, int j, double* block, double* collocation);
-  void fill_border(int s, int j, std::span<const OrbitVector> rows, double* block) const;
-  Piece piece(int s, int first, int last) const;
-  bool join(int s, const Join& at);
   void keep_segment_blocks(int s);
   bool assemble(const Orbit& x, std::span<const OrbitVector> rows, OrbitResidual& residual);
-  double* piece_rhs(int s, int first, int last);
-  void condense_right_hand_side(const OrbitResidual& residual, int s);
-  void expand_segment(int s, const double* ends, const double* globals, bool homogeneous, OrbitVector& dx);
 
   const DefiningSystem& system_;
   OrbitShape shape_;
@@ -159,17 +122,8 @@ class CondensedSystem {
   int scalars_;  // duration and globals: 1 + q columns
   int border_;   // b
   CollocationRule rule_;
-  BlockKernel interval_;
-  BlockKernel join_;
-  std::vector<Join> joins_;  // each after those that make its two pieces
+  SegmentElimination elimination_;
 
-  // of intervals
-  BlockArray<double> interval_blocks_;  // (c n + b) x width
-  BlockArray<int> interval_swaps_;
-  BlockArray<double> join_blocks_;  // (2 n + b) x width
-  BlockArray<int> join_swaps_;
-  BlockArray<double> interval_rhs_;
-  BlockArray<double> join_rhs_;
   // of segments
   BlockArray<double> first_blocks_;   // n x n
   BlockArray<double> last_blocks_;    // n x n
@@ -184,10 +138,8 @@ class CondensedSystem {
   std::vector<double> rhs_;
   std::vector<double> solution_;
 
-  // scratch of one collocation point or one end of a segment
-  std::vector<double> x_, slope_, f_, fx_, scaled_, fp_, local_, join_local_;
+  std::vector<double> x_, slope_;  // scratch of one collocation point
   OrbitResidual zero_;
-  std::vector<double> zero_rhs_;  // of one block
 };
 
 }  // namespace tchat

@@ -10,27 +10,43 @@ namespace {
 
 constexpr double turn = 2.0 * std::numbers::pi;
 
-/// Derivative of K; K itself in closed form, but for t near whole numbers.
-double kernel(int harmonics, double t, int derivative) {
-  const int count = 2 * harmonics + 1;
-  const double denominator = std::sin(0.5 * turn * t);
-  if (derivative == 0 && std::abs(denominator) > 1e-3) return std::sin(0.5 * turn * count * t) / (count * denominator);
+/// Derivative of K of any order, the sum.
+double kernel_sum(int harmonics, double t, int derivative) {
   const double quarter = 0.25 * derivative;  // each derivative turns the cosine by a quarter
   double sum = derivative == 0 ? 1.0 : 0.0;
   for (int k = 1; k <= harmonics; ++k) {
     const double phase = k * t;
-    sum += 2.0 * std::pow(turn * k, derivative) * std::cos(turn * (phase - std::floor(phase) + quarter));
+    double factor = 2.0;
+    for (int d = 0; d < derivative; ++d) factor *= turn * k;
+    sum += factor * std::cos(turn * (phase - std::floor(phase) + quarter));
   }
-  return sum / count;
+  return sum / (2 * harmonics + 1);
+}
+
+/// K and K' in closed form, K = sin(pi N t) / (N sin(pi t)), but for t so near to a whole number that K' would lose
+/// digits: there are one or two of those among N equally spaced t.
+double kernel(int harmonics, double t, int derivative) {
+  const int count = 2 * harmonics + 1;
+  const double s = std::sin(0.5 * turn * t);
+  if (derivative > 1 || std::abs(s) < 1.0 / count) return kernel_sum(harmonics, t, derivative);
+  const double top = std::sin(0.5 * turn * count * t);
+  if (derivative == 0) return top / (count * s);
+  const double slope = count * std::cos(0.5 * turn * count * t) * s - top * std::cos(0.5 * turn * t);
+  return 0.5 * turn * slope / (count * s * s);
 }
 
 }  // namespace
 
 Eigen::RowVectorXd interpolation_weights(int count, double phi, int derivative) {
   Eigen::RowVectorXd weights(count);
+  set_interpolation_weights(phi, derivative, weights);
+  return weights;
+}
+
+void set_interpolation_weights(double phi, int derivative, Eigen::RowVectorXd& weights) {
+  const auto count = static_cast<int>(weights.size());
   for (int l = 0; l < count; ++l)
     weights(l) = kernel((count - 1) / 2, phi - static_cast<double>(l) / count, derivative);
-  return weights;
 }
 
 Eigen::MatrixXd shifted_curve(const Eigen::MatrixXd& values, double phi, int derivative) {

@@ -13,6 +13,9 @@ namespace tchat {
 /// Weights of u_0 .. u_{N-1} in u(phi), or in its derivative of an order from 0 by phi; N odd.
 Eigen::RowVectorXd interpolation_weights(int count, double phi, int derivative = 0);
 
+/// The same into a vector of N entries: allocates nothing.
+void set_interpolation_weights(double phi, int derivative, Eigen::RowVectorXd& weights);
+
 /// u or a derivative of it at the phases phi + i / N, i = 0..N-1, where column l of `values` is u_l.
 Eigen::MatrixXd shifted_curve(const Eigen::MatrixXd& values, double phi, int derivative = 0);
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "bvp/rotation.hpp"
 
@@ -29,12 +30,32 @@ Eigen::MatrixXd columns_of(const Eigen::MatrixXd& states, const Eigen::VectorXd&
 
 Eigen::VectorXd durations_of(const Orbit& x) { return x.par.segment(first_duration - 1, x.shape.segments); }
 
+/// Adds `turns` times w to the states of a column of them; `states` of its rows are states.
+void wind(Eigen::Ref<Eigen::VectorXd> column, Eigen::Index states, const Eigen::VectorXd& w, double turns) {
+  if (w.size() == 0 || w.isZero()) return;
+  for (Eigen::Index first = 0; first < states; first += w.size()) column.segment(first, w.size()) += turns * w;
+}
+
+/// The columns less w phi, periodic in phi.
+Eigen::MatrixXd periodic_columns(const Orbit& x, int orbits, const Eigen::VectorXd& w) {
+  Eigen::MatrixXd columns = columns_of(x.states, durations_of(x), orbits);
+  for (int l = 0; l < orbits; ++l) wind(columns.col(l), x.states.size() / orbits, w, -static_cast<double>(l) / orbits);
+  return columns;
+}
+
 }  // namespace
 
 TorusSystem::TorusSystem(const HybridSystem& system, const Signature& one_return, int orbits,
                          std::vector<int> free_parameters)
+    : TorusSystem(system, one_return, orbits, std::move(free_parameters), no_winding(system.dimension())) {}
+
+TorusSystem::TorusSystem(const HybridSystem& system, const Signature& one_return, int orbits,
+                         std::vector<int> free_parameters, TorusWinding winding)
     : PeriodicOrbitSystem(system, repeated(one_return, orbits), std::move(free_parameters)),
       orbits_(orbits),
+      winding_(std::move(winding)),
+      kernel_(orbits),
+      kernel_slope_(orbits),
       slope_at_zero_(interpolation_weights(orbits, 0.0, 1)),
       phase_row_(dimension(), orbits) {
   const auto& free = this->free_parameters();
@@ -44,8 +65,8 @@ TorusSystem::TorusSystem(const HybridSystem& system, const Signature& one_return
 
 void TorusSystem::set_kernels(double rho) const {
   if (has_kernels_ && rho == rho_) return;
-  kernel_ = interpolation_weights(orbits_, rho);
-  kernel_slope_ = interpolation_weights(orbits_, rho, 1);
+  set_interpolation_weights(rho, 0, kernel_);
+  set_interpolation_weights(rho, 1, kernel_slope_);
   rho_ = rho;
   has_kernels_ = true;
 }
@@ -60,10 +81,10 @@ void TorusSystem::target_value(int s, const Orbit& x, double* target) const {
   if (!ends_return(s)) return PeriodicOrbitSystem::target_value(s, x, target);
   set_kernels(rotation(x));
   const int orbit = s / segments_per_return();
-  std::fill_n(target, dimension(), 0.0);
-  for (int l = 0; l < orbits_; ++l) {
-    const double* start = x.start(l * segments_per_return());
-    for (int a = 0; a < dimension(); ++a) target[a] += weight(orbit, l, kernel_) * start[a];
+  const double phi = static_cast<double>(orbit) / orbits_ + rotation(x);
+  for (int a = 0; a < dimension(); ++a) {
+    target[a] = winding_.curve(a) * phi + winding_.returns(a);
+    for (int l = 0; l < orbits_; ++l) target[a] += weight(orbit, l, kernel_) * periodic(x, l, a);
   }
 }
 
@@ -73,10 +94,9 @@ double* TorusSystem::target_derivatives(int s, const Orbit& x, double* entries) 
   const int orbit = s / segments_per_return();
   for (int l = 0; l < orbits_; ++l) entries = std::fill_n(entries, dimension(), weight(orbit, l, kernel_));
   if (rotation_global_ < 0) return entries;
-  std::fill_n(entries, dimension(), 0.0);
-  for (int l = 0; l < orbits_; ++l) {
-    const double* start = x.start(l * segments_per_return());
-    for (int a = 0; a < dimension(); ++a) entries[a] += weight(orbit, l, kernel_slope_) * start[a];
+  for (int a = 0; a < dimension(); ++a) {
+    entries[a] = winding_.curve(a);
+    for (int l = 0; l < orbits_; ++l) entries[a] += weight(orbit, l, kernel_slope_) * periodic(x, l, a);
   }
   return entries + dimension();
 }
@@ -88,11 +108,10 @@ std::string TorusSystem::target_name(int s) const {
 
 /// r' at the phases i / N.
 void TorusSystem::find_phase_row(const Orbit& reference) const {
-  phase_row_.setZero();
   for (int i = 0; i < orbits_; ++i)
-    for (int l = 0; l < orbits_; ++l) {
-      const double* r = reference.start(l * segments_per_return());
-      for (int a = 0; a < dimension(); ++a) phase_row_(a, i) += weight(i, l, slope_at_zero_) * r[a];
+    for (int a = 0; a < dimension(); ++a) {
+      phase_row_(a, i) = winding_.curve(a);
+      for (int l = 0; l < orbits_; ++l) phase_row_(a, i) += weight(i, l, slope_at_zero_) * periodic(reference, l, a);
     }
   const double length = phase_row_.norm();
   if (length > 0.0) phase_row_ /= length;
@@ -128,12 +147,19 @@ Eigen::MatrixXd section_curve(const TorusSystem& system, const Orbit& x, int s) 
   return values;
 }
 
+Eigen::MatrixXd periodic_section_curve(const TorusSystem& system, const Orbit& x, int s) {
+  Eigen::MatrixXd values = section_curve(system, x, s);
+  for (int i = 0; i < system.orbits(); ++i)
+    values.col(i) -= static_cast<double>(i) / system.orbits() * system.winding().curve;
+  return values;
+}
+
 double mean_return_time(const TorusSystem& system, const Orbit& x) { return x.period() / system.orbits(); }
 
 Eigen::VectorXd torus_harmonics(const TorusSystem& system, const Orbit& x) {
   const Eigen::VectorXd ranges =
       (x.states.rowwise().maxCoeff() - x.states.rowwise().minCoeff()).cwiseMax(1e-12 * x.states.cwiseAbs().maxCoeff());
-  const Eigen::MatrixXd columns = columns_of(x.states, durations_of(x), system.orbits());
+  const Eigen::MatrixXd columns = periodic_columns(x, system.orbits(), system.winding().curve);
   const Eigen::Index m = system.segments_per_return();
   Eigen::VectorXd scale(columns.rows());
   for (Eigen::Index r = 0; r + m < columns.rows(); ++r) scale(r) = ranges(r % x.shape.dimension);
@@ -146,9 +172,11 @@ double last_harmonics(const TorusSystem& system, const Orbit& x) {
   return sizes.tail(std::min<Eigen::Index>(2, sizes.size() - 1)).maxCoeff();
 }
 
-Orbit resampled_torus(const Orbit& x, int orbits, int new_orbits) {
+Orbit resampled_torus(const Orbit& x, int orbits, int new_orbits, const Eigen::VectorXd& winding) {
   const int m = x.shape.segments / orbits;
-  const Eigen::MatrixXd columns = resampled_curve(columns_of(x.states, durations_of(x), orbits), new_orbits);
+  Eigen::MatrixXd columns = resampled_curve(periodic_columns(x, orbits, winding), new_orbits);
+  for (int l = 0; l < new_orbits; ++l)
+    wind(columns.col(l), columns.rows() - m, winding, static_cast<double>(l) / new_orbits);
   Orbit result{x.shape, x.mesh, {}, x.par};
   result.shape.segments = m * new_orbits;
   const Eigen::MatrixXd nodes = columns.topRows(columns.rows() - m);
@@ -184,15 +212,36 @@ NodeWeights node_weights(const Orbit& x, const CollocationRule& rule, double tau
   return result;
 }
 
-Orbit return_at(const TorusSystem& system, const Orbit& x, double phi, int derivative) {
-  const int m = system.segments_per_return();
-  const Eigen::VectorXd column = columns_of(x.states, durations_of(x), system.orbits()) *
-                                 interpolation_weights(system.orbits(), phi, derivative).transpose();
+Orbit empty_return(const TorusSystem& system, const Orbit& x) {
   Orbit result{x.shape, x.mesh, {}, x.par};
-  result.shape.segments = m;
-  result.states = Eigen::Map<const Eigen::MatrixXd>(column.data(), x.shape.dimension, result.shape.columns());
-  result.par.segment(first_duration - 1, m) = column.tail(m);
+  result.shape.segments = system.segments_per_return();
+  result.states.resize(x.shape.dimension, result.shape.columns());
   return result;
+}
+
+Orbit return_at(const TorusSystem& system, const Orbit& x, double phi, int derivative) {
+  Orbit result = empty_return(system, x);
+  set_return_at(system, x, phi, derivative, interpolation_weights(system.orbits(), phi, derivative), result);
+  return result;
+}
+
+void set_return_at(const TorusSystem& system, const Orbit& x, double phi, int derivative,
+                   const Eigen::RowVectorXd& weights, Orbit& result) {
+  const int m = system.segments_per_return();
+  const Eigen::VectorXd& w = system.winding().curve;
+  const double factor = derivative == 0 ? phi : derivative == 1 ? 1.0 : 0.0;
+  result.mesh = x.mesh;
+  result.par = x.par;
+  result.states.setZero();
+  result.par.segment(first_duration - 1, m).setZero();
+  double mean_phase = 0.0;  // what the weights make of l / N
+  const Eigen::Index columns = result.shape.columns();
+  for (int l = 0; l < system.orbits(); ++l) {
+    result.states += weights(l) * x.states.middleCols(l * columns, columns);
+    for (int s = 0; s < m; ++s) result.duration(s) += weights(l) * x.duration(l * m + s);
+    mean_phase += weights(l) * l / system.orbits();
+  }
+  for (Eigen::Index c = 0; c < columns; ++c) result.states.col(c) += (factor - mean_phase) * w;
 }
 
 }  // namespace tchat

@@ -19,11 +19,18 @@
 /// component by component, of which elimination makes a dense matrix of n N columns: n^3 N^3 operations of blocks of
 /// LAPACK's kind within the sparse factorisation, 8 n^2 N^2 bytes.
 ///
+/// A state that is an angle counted modulo 2 pi may wind (torus_winding.hpp): u(phi + 1) = u(phi) + w, and a return may
+/// end whole turns further, P(u(phi)) = u(phi + rho) + c. What is interpolated then is u(phi) - w phi, and the target
+/// is
+///
+///     sum_l R_il(rho) (x_{l,1}(0) - w l / N) + w (i / N + rho) + c.
+///
 /// rho is PAR(rotation_parameter). What the torus is in terms of frequencies: one return lasts T = mean over phi of the
 /// return time on the average, omega_1 = 2 pi / T, omega_2 = rho omega_1.
 #pragma once
 
 #include "bvp/periodic_orbit_system.hpp"
+#include "bvp/torus_winding.hpp"
 
 namespace tchat {
 
@@ -31,10 +38,13 @@ class TorusSystem final : public PeriodicOrbitSystem {
  public:
   /// `one_return`: the signature of one return, each segment with an event. `orbits` = N, odd, at least 3.
   TorusSystem(const HybridSystem& system, const Signature& one_return, int orbits, std::vector<int> free_parameters);
+  TorusSystem(const HybridSystem& system, const Signature& one_return, int orbits, std::vector<int> free_parameters,
+              TorusWinding winding);
 
   int orbits() const override { return orbits_; }
   int segments_per_return() const { return segments() / orbits_; }
   static double rotation(const Orbit& x) { return x.par(rotation_parameter - 1); }
+  const TorusWinding& winding() const { return winding_; }
 
   int integral_conditions() const override { return 1; }
   void integral_values(const Orbit& x, const Orbit& reference, const CollocationRule& rule,
@@ -57,8 +67,13 @@ class TorusSystem final : public PeriodicOrbitSystem {
   }
   void set_kernels(double rho) const;
   void find_phase_row(const Orbit& reference) const;
+  /// u - w phi of orbit l, state a.
+  double periodic(const Orbit& x, int l, int a) const {
+    return x.start(l * segments_per_return())[a] - winding_.curve(a) * l / orbits_;
+  }
 
   int orbits_;
+  TorusWinding winding_;
   int rotation_global_;  // place of rho among the free parameters, -1: fixed
   // of the last rotation number and the last reference, kept because Newton's loop is not to allocate
   mutable double rho_ = 0.0;
@@ -70,6 +85,8 @@ class TorusSystem final : public PeriodicOrbitSystem {
 
 /// Values of the closed curve of segment start s (from 0, of the first return) at the N phases, n x N.
 Eigen::MatrixXd section_curve(const TorusSystem& system, const Orbit& x, int s = 0);
+/// Those of u - w phi, which the trigonometric polynomial goes through.
+Eigen::MatrixXd periodic_section_curve(const TorusSystem& system, const Orbit& x, int s = 0);
 
 /// Mean duration of a return over the torus.
 double mean_return_time(const TorusSystem& system, const Orbit& x);
@@ -82,13 +99,19 @@ Eigen::VectorXd torus_harmonics(const TorusSystem& system, const Orbit& x);
 /// The larger of the last two harmonics but the mean: the error figure of a torus.
 double last_harmonics(const TorusSystem& system, const Orbit& x);
 
-/// The same torus on another number of orbits (odd), phase by phase.
-Orbit resampled_torus(const Orbit& x, int orbits, int new_orbits);
+/// The same torus on another number of orbits (odd), phase by phase; `winding`: w, none where it is empty.
+Orbit resampled_torus(const Orbit& x, int orbits, int new_orbits, const Eigen::VectorXd& winding = {});
 OrbitVector resampled_torus(const OrbitVector& v, const OrbitShape& shape, int orbits, int new_orbits);
 
 /// The orbit of one return that starts at the phase phi, interpolated node by node, or the derivative of its states and
 /// durations by phi.
 Orbit return_at(const TorusSystem& system, const Orbit& x, double phi, int derivative = 0);
+/// The same into an orbit that has the shape of one return already, with the weights of the N orbits: allocates
+/// nothing.
+void set_return_at(const TorusSystem& system, const Orbit& x, double phi, int derivative,
+                   const Eigen::RowVectorXd& weights, Orbit& result);
+/// One return, its states still to be set.
+Orbit empty_return(const TorusSystem& system, const Orbit& x);
 
 /// Where tau lies on the mesh, and the weights of the nodes of that interval in the state there.
 struct NodeWeights {

@@ -77,6 +77,37 @@ VectorXd lifted_steps(const VectorXd& angles) {
   return steps;
 }
 
+/// Points that come back after so many: largest distances at the beginning of the sequence and at its end, each state
+/// by its size.
+struct Return {
+  Index after = 0;
+  double first = 0.0, last = 0.0;
+};
+
+/// The first number of points after which a motion has come back, or nearly, and settles; 0 for none.
+Return repetition(const MatrixXd& points, const std::vector<Index>& angles) {
+  constexpr Index most = 64;
+  // Simulations are known to so much; a torus comes back so close after so few points in a resonance alone.
+  constexpr double rounding = 1e-7, near = 1e-4, settling = 1e-3;
+  const Index quarter = points.cols() / 4;
+  VectorXd size = points.cwiseAbs().rowwise().maxCoeff();
+  size = size.cwiseMax(1e-3 * size.maxCoeff()).cwiseMax(1e-300);
+  for (Index q = 1; q <= std::min(most, quarter); ++q) {
+    const auto largest = [&](Index begin, Index end) {
+      double distance = 0.0;
+      for (Index k = begin; k < end; ++k) {
+        VectorXd d = points.col(k + q) - points.col(k);
+        for (const Index i : angles) d(i) = full_turn * nearest_phase(d(i) / full_turn);
+        distance = std::max(distance, d.cwiseAbs().cwiseQuotient(size).maxCoeff());
+      }
+      return distance;
+    };
+    const Return found{q, largest(0, quarter), largest(points.cols() - q - quarter, points.cols() - q)};
+    if (found.last < rounding || (found.last < near && found.last < settling * found.first)) return found;
+  }
+  return {};
+}
+
 double widest_gap(VectorXd phases) {
   std::sort(phases.begin(), phases.end());
   double gap = phases(0) + 1.0 - phases(phases.size() - 1);
@@ -236,6 +267,13 @@ FittedCurve fit_invariant_curve(const MatrixXd& points, const CurveSettings& set
         fmt::format("{}: {} points of a section are too few for an invariant curve; simulate until there are "
                     "{} at least (1000 and more are better)",
                     source, points.cols(), fewest_points));
+  if (const Return back = repetition(points, settings.angles); back.after > 0)
+    throw UserError(
+        fmt::format("{}: the motion {} periodic orbit: every {} repeats, to {:.1e} at the end; there is no torus here: "
+                    "follow that orbit (`tchat simulate --dat`), or choose parameters or a start where the motion does "
+                    "not repeat itself",
+                    source, back.last < 1e-3 * back.first ? "settles on a" : "is a",
+                    back.after == 1 ? std::string("point") : fmt::format("{} points it", back.after), back.last));
   const VectorXd scale = extents(points, settings.angles);
   const VectorXd angles =
       settings.angles.empty() ? turning_angles(points) : VectorXd(points.row(settings.angles.front()) / full_turn);
@@ -254,12 +292,12 @@ FittedCurve fit_invariant_curve(const MatrixXd& points, const CurveSettings& set
   sequence.wind(phases_of(rotation, count));
   const CurveFit fit = best_fit(points, sequence, scale, rotation, most);
   if (!(fit.largest <= settings.tolerance))
-    throw refuse(
-        fmt::format("the {} points lie on no smooth closed curve: they are up to {:.2e} of its extent off the "
-                    "nearest one with {} harmonics (rotation number {:.8g}); drop a longer transient, simulate "
-                    "more points or with a smaller tolerance, or take another section: on a torus every "
-                    "trajectory must cross it at an angle",
-                    count, fit.largest, fit.series.harmonics(), fit.rotation));
+    throw refuse(fmt::format(
+        "the {} points lie on no smooth closed curve: they are up to {:.2e} of its extent off the "
+        "nearest one with {} harmonics (rotation number {:.8g}); drop a longer transient, simulate "
+        "more points or with a smaller tolerance, or take another section: on a torus every "
+        "trajectory must cross it at an angle; or the motion is chaotic (`tchat simulate --lyapunov` tells)",
+        count, fit.largest, fit.series.harmonics(), fit.rotation));
   return {fit.curve(sequence), fit.largest, fit.rotation_error};
 }
 

@@ -198,10 +198,9 @@ class Iteration {
       found_.kind = AttractorKind::quasi_periodic;
     else
       found_.message = fmt::format(
-          "the iterates approach a periodic orbit that is longer than {} returns, or slowly: a larger --max-period, or "
-          "a "
-          "longer transient, may tell",
-          settings_.max_period);
+          "the iterates approach a periodic orbit that is longer than {} returns, or slowly: try --max-period {}, or "
+          "more --transient-events",
+          settings_.max_period, 4 * settings_.max_period);
   }
 
   const IteratedMap& map_;

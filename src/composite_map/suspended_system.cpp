@@ -15,6 +15,20 @@ using Eigen::MatrixXd;
 using Eigen::RowVectorXd;
 using Eigen::VectorXd;
 
+/// The base's derivatives by x and by (parameters that are states, active ones) as the first rows of those of the
+/// suspended system, which are `own`; the others are zero. dp may be null.
+void spread(const MatrixXd& by_state, const MatrixXd& by_parameter, int states, int own, double* dz, double* dp) {
+  const Eigen::Index rows = by_state.rows(), n = by_state.cols(), active = by_parameter.cols() - states;
+  Eigen::Map<MatrixXd> dz_all(dz, own, n + states);
+  dz_all.setZero();
+  dz_all.topLeftCorner(rows, n) = by_state;
+  dz_all.topRightCorner(rows, states) = by_parameter.leftCols(states);
+  if (dp == nullptr) return;
+  Eigen::Map<MatrixXd> dp_all(dp, own, active);
+  dp_all.setZero();
+  dp_all.topRows(rows) = by_parameter.rightCols(active);
+}
+
 }  // namespace
 
 /// A point of the suspended system as the base sees it, and the parameters by which derivatives are wanted: those that
@@ -140,20 +154,11 @@ void SuspendedSystem::first(const void* self_given, int kind, int index, const d
   const int rows = self.base_.rows(function);
   MatrixXd by_state(rows, n), by_parameter(rows, static_cast<Eigen::Index>(at.active.size()));
   self.base_.first(function, index, z, at.par.data(), at.active, out, by_state.data(), by_parameter.data());
-  const int own = function == FunctionKind::event ? 1 : n + states;
-  Eigen::Map<MatrixXd> dz_all(dz, own, n + states);
-  dz_all.setZero();
-  dz_all.topLeftCorner(rows, n) = by_state;
-  dz_all.topRightCorner(rows, states) = by_parameter.leftCols(states);
-  if (dp != nullptr) {
-    Eigen::Map<MatrixXd> dp_all(dp, own, active_count);
-    dp_all.setZero();
-    dp_all.topRows(rows) = by_parameter.rightCols(active_count);
-  }
+  spread(by_state, by_parameter, states, function == FunctionKind::event ? 1 : n + states, dz, dp);
   if (function == FunctionKind::event) return;
   for (int k = 0; k < states; ++k) {
     out[n + k] = function == FunctionKind::field ? 0.0 : z[n + k];
-    if (function == FunctionKind::jump) dz_all(n + k, n + k) = 1.0;
+    if (function == FunctionKind::jump) dz[(n + k) * (n + states) + n + k] = 1.0;
   }
 }
 
@@ -174,16 +179,7 @@ void SuspendedSystem::second(const void* self_given, int kind, int index, const 
   MatrixXd by_state(rows, n), by_parameter(rows, static_cast<Eigen::Index>(at.active.size()));
   // (v, q's part of v, w) is already in the base's order: states, parameters that are states, active ones.
   self.base_.second(function, index, z, at.par.data(), at.active, direction, out, by_state.data(), by_parameter.data());
-  const int own = function == FunctionKind::event ? 1 : n + states;
-  Eigen::Map<MatrixXd> dz_all(dz, own, n + states);
-  dz_all.setZero();
-  dz_all.topLeftCorner(rows, n) = by_state;
-  dz_all.topRightCorner(rows, states) = by_parameter.leftCols(states);
-  if (dp != nullptr) {
-    Eigen::Map<MatrixXd> dp_all(dp, own, active_count);
-    dp_all.setZero();
-    dp_all.topRows(rows) = by_parameter.rightCols(active_count);
-  }
+  spread(by_state, by_parameter, states, function == FunctionKind::event ? 1 : n + states, dz, dp);
   for (int k = 0; k < states && function != FunctionKind::event; ++k)
     out[n + k] = function == FunctionKind::field ? 0.0 : direction[n + k];
 }

@@ -31,6 +31,7 @@ class SuspendedSystem {
                   std::optional<SectionPlane> plane = {});
   SuspendedSystem(const SuspendedSystem&) = delete;
   SuspendedSystem& operator=(const SuspendedSystem&) = delete;
+  ~SuspendedSystem() = default;
 
   const HybridSystem& system() const { return *system_; }
   const HybridSystem& base() const { return base_; }

@@ -41,8 +41,11 @@ class SettingsCheck {
       refuse_constant("ICP", "ICP", fmt::format("{} parameters that are not durations", of_problem),
                       fmt::format("at least {} with IPS = {}, ISW = {}{}; {}", needed, settings_.problem_type,
                                   settings_.branch_mode, held == 0 ? "" : fmt::format(", HOLD of {}", held),
-                                  is_point(settings_.problem_type) ? "an equilibrium has no duration"
-                                                                   : "durations are free in any case"));
+                                  is_point(settings_.problem_type)   ? "an equilibrium has no duration"
+                                  : is_torus(settings_.problem_type) ? "rho, the rotation number, may be one of them, "
+                                                                       "as in ICP=[a,rho]; durations are free in any "
+                                                                       "case"
+                                                                     : "durations are free in any case"));
   }
 
   /// The count of unknowns and conditions of a boundary value problem.

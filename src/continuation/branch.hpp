@@ -85,6 +85,7 @@ struct BranchSummary {
   int unstable_points = 0;
   bool multipliers_computed = false;
   bool equilibria = false;        ///< the multipliers are eigenvalues, and there is no mesh
+  bool tori = false;              ///< several orbits of one return each: the trivial multiplier tells of their number
   bool critical_curve = false;    ///< every point has a critical multiplier, so stability says nothing
   bool without_contact = false;   ///< stability is that of the orbit without the contact that the curve keeps
   double worst_structural = 0.0;  ///< largest structural multiplier, or distance of the trivial one from 1

@@ -387,6 +387,7 @@ void ContinuationRun::record(const SpecialPoint& special, const PointData& data)
   summary_.inadmissible_points += !violations.empty();
   summary_.multipliers_computed = settings_.multipliers;
   summary_.equilibria = system_.is_point();
+  summary_.tori = system_.orbits() > 1;
   summary_.critical_curve = follower_.condition() != nullptr;
   summary_.unstable_points += settings_.multipliers && !data.multipliers.stable();
   summary_.worst_structural = std::max(summary_.worst_structural, data.multipliers.structural);

@@ -168,6 +168,17 @@ void HybridSystem::first(FunctionKind kind, int index, const double* x, const do
     difference_first(*this, kind, index, x, par, active, out, dx, dp);
 }
 
+void HybridSystem::first_at_points(FunctionKind kind, int index, int points, const double* x, const double* par,
+                                   std::span<const int> active, double* out, double* dx, double* dp) const {
+  const int n = dimension();
+  const int r = rows(kind);
+  if (table_->derivative_order >= 1 && table_->first_at_points != nullptr && !is_identity(kind, index))
+    return table_->first_at_points(table_->self, static_cast<int>(kind), index, points, x, par, active.data(),
+                                   static_cast<int>(active.size()), out, dx, dp);
+  for (int k = 0; k < points; ++k, x += n, out += r, dx += r * n, dp += static_cast<std::size_t>(r) * active.size())
+    first(kind, index, x, par, active, out, dx, dp);
+}
+
 void HybridSystem::second(FunctionKind kind, int index, const double* x, const double* par, std::span<const int> active,
                           const double* direction, double* out, double* dx, double* dp) const {
   if (is_identity(kind, index))

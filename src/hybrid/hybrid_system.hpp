@@ -86,6 +86,10 @@ class HybridSystem {
   void first(FunctionKind kind, int index, const double* x, const double* par, std::span<const int> active, double* out,
              double* dx, double* dp) const;
 
+  /// The same at `points` points, their arrays one behind the other.
+  void first_at_points(FunctionKind kind, int index, int points, const double* x, const double* par,
+                       std::span<const int> active, double* out, double* dx, double* dp) const;
+
   /// D = F_x v + F_p w and its derivatives by x and the active parameters; direction = (v, w).
   void second(FunctionKind kind, int index, const double* x, const double* par, std::span<const int> active,
               const double* direction, double* out, double* dx, double* dp) const;

@@ -7,15 +7,16 @@ namespace tchat {
 
 /// PAR(1..60) belong to the user; the duration of segment s (s = 1..) is PAR(60 + s).
 inline constexpr int first_duration = 61;
-inline constexpr int parameter_length = 256;
+inline constexpr int parameter_length = 512;
 inline constexpr int max_segments = 64;
-/// An orbit that is computed may have as many: after a period doubling, or the orbits of a torus.
-inline constexpr int max_orbit_segments = 2 * max_segments;
+/// The orbits of a torus may have as many in all; other orbits have twice max_segments at most, after a period
+/// doubling.
+inline constexpr int max_orbit_segments = 4 * max_segments;
 /// The rotation number of a torus (bvp/torus_system.hpp), for problems with fewer parameters of their own.
 inline constexpr int rotation_parameter = 60;
 inline constexpr const char* rotation_name = "rho";
 /// Values of monitors (bvp/monitor.hpp) stand behind the durations while a run lasts; no file has them as PAR.
-inline constexpr int first_monitor = 189;
+inline constexpr int first_monitor = first_duration + max_orbit_segments;
 inline constexpr int max_monitors = 32;
 
 /// PAR(k) is par(k - 1); always parameter_length entries, unused ones zero.

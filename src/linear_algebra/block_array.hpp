@@ -1,5 +1,6 @@
 /// Equally large blocks one behind the other, by their number: the arrays of large problems exceed the range of int,
-/// and no place computes an offset by itself.
+/// and no place computes an offset by itself. The first block begins at an address that vector registers are loaded
+/// from.
 #pragma once
 
 #include <cassert>
@@ -7,6 +8,8 @@
 #include <limits>
 #include <stdexcept>
 #include <vector>
+
+#include "linear_algebra/aligned_allocator.hpp"
 
 namespace tchat {
 
@@ -35,7 +38,7 @@ class BlockArray {
   }
 
   std::ptrdiff_t size_ = 0;
-  std::vector<T> values_;
+  std::vector<T, AlignedAllocator<T>> values_;
 };
 
 }  // namespace tchat

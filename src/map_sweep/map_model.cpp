@@ -19,7 +19,9 @@
 #include "hybrid/event_at.hpp"
 #include "hybrid/identity_jump.hpp"
 #include "map_sweep/section_points.hpp"
+#include "map_sweep/torus_label.hpp"
 #include "resegment/empty_segments.hpp"
+#include "run/torus_problem.hpp"
 #include "setup/named_parameters.hpp"
 #include "setup/problem_setup.hpp"
 #include "setup/run_request.hpp"
@@ -110,18 +112,19 @@ LabelledRun labelled_run(const MapRequest& request, const MapContext& context, c
   run.settings = read_constants_file(constants, nullptr, names_of(system));
   check_settings_against(system, run.settings, {constants});
   if (!is_same_problem_type(run.solution.problem_type, run.settings.problem_type) ||
-      !has_ring(run.settings.problem_type))
+      !has_ring(run.settings.problem_type) ||
+      is_torus(run.solution.problem_type) != is_torus(run.settings.problem_type))
     throw UserError(
-        fmt::format("{} is no periodic orbit of {} (IPS = {} there, {} here); choose a GR label of periodic "
-                    "orbits, or give the constants of its run with -c",
+        fmt::format("{} is no periodic orbit or torus of {} (IPS = {} there, {} here); choose a GR label of periodic "
+                    "orbits or of tori, or give the constants of its run with -c",
                     run.source, constants, run.solution.problem_type, run.settings.problem_type));
   return run;
 }
 
-MapModel periodic_model(const MapRequest& request, const MapContext& context, const HybridSystem& system) {
+MapModel periodic_model(const MapRequest& request, const MapContext& context, const HybridSystem& system,
+                        const LabelledRun& run) {
   if (request.reduced)
     throw UserError("--reduced: a reduced map is the map of a torus's phase; a periodic orbit has none, leave it out");
-  const LabelledRun run = labelled_run(request, context, system);
   const ContactTurn turn =
       contact_turn(run.solution, run.settings, system, std::nullopt, context.swept.front(), run.source);
   const GrazingOrbit orbit = find_grazing_orbit(system, turn, run.source);
@@ -230,27 +233,42 @@ int jump_of(const MapContext& context, const HybridSystem& system, int field, in
 }
 
 /// Do all points lie where h_D is stationary?
-bool lie_on_p(const HybridSystem& system, const SectionPoints& points, int wall, const ParameterVector& par) {
-  for (Index k = 0; k < points.states.cols(); k += std::max<Index>(1, points.states.cols() / 50)) {
-    const VectorXd x = points.states.col(k);
-    const EventAt at = event_at(system, wall, points.field, x.data(), par.data());
+bool lie_on_p(const HybridSystem& system, const Eigen::MatrixXd& points, int field, int wall,
+              const ParameterVector& par) {
+  for (Index k = 0; k < points.cols(); k += std::max<Index>(1, points.cols() / 50)) {
+    const VectorXd x = points.col(k);
+    const EventAt at = event_at(system, wall, field, x.data(), par.data());
     if (std::abs(at.rate()) > on_p * at.sizes()) return false;
   }
   return true;
 }
 
-MapModel torus_model(const MapRequest& request, const MapContext& context, const HybridSystem& system) {
-  const int named = context.section ? cross_section(system, *context.section).event : 0;
-  if (context.section && named == 0)
-    throw UserError(
-        fmt::format("--section {}: points of a torus are those of an event function; name the one that was "
-                    "recorded",
-                    *context.section));
+/// The invariant curve of a torus on a section, from wherever it is known.
+struct TorusCurve {
+  InvariantCurve curve;
+  std::vector<Index> angles;
+  int event;  ///< of the section; 0: P, which no event function is
+  int field, wall;
+  bool is_p;
+  ParameterVector par;     ///< of the torus
+  std::vector<int> along;  ///< PAR indices in which the smooth map is expanded
+  std::string text;        ///< for people: where it comes from
+};
+
+std::vector<Index> angles_of(const HybridSystem& system, const Eigen::MatrixXd& points, const ParameterVector& par) {
+  std::vector<Index> angles;
+  for (const Index state : angle_states(system, points.col(0), par))
+    if (varies(points, state)) angles.push_back(state);
+  return angles;
+}
+
+TorusCurve curve_of_points(const MapRequest& request, const MapContext& context, const HybridSystem& system,
+                           int named) {
   const std::vector<SectionPoints> all = read_section_points(system, request.source, named);
   const ParameterVector& par = context.par;
   const int wall = wall_of(request, system, all.front().states.col(0), par);
   const auto on = std::find_if(all.begin(), all.end(), [&](const SectionPoints& points) {
-    return points.event != wall && lie_on_p(system, points, wall, par);
+    return points.event != wall && lie_on_p(system, points.states, points.field, wall, par);
   });
   const bool is_p = on != all.end();
   if (!is_p && named == 0)
@@ -259,49 +277,130 @@ MapModel torus_model(const MapRequest& request, const MapContext& context, const
                     "which of them make the section",
                     request.source, wall, system.function_name(FunctionKind::event, wall)));
   const SectionPoints& points = is_p ? *on : all.front();
-  const VectorXd first = points.states.col(0);
-
-  CurveSettings curve_settings;
-  for (const Index state : angle_states(system, first, par))
-    if (varies(points.states, state)) curve_settings.angles.push_back(state);
-  const FittedCurve fit = fit_invariant_curve(points.states, curve_settings, request.source);
-  const std::vector<Index> phase = request.phase ? phase_states(system, *request.phase) : curve_settings.angles;
-  const CurveProjection projection = phase.empty()       ? CurveProjection(fit.curve)
-                                     : phase.size() == 1 ? CurveProjection(fit.curve, phase[0])
-                                                         : CurveProjection(fit.curve, phase[0], phase[1]);
-  const auto suspended = std::make_shared<SuspendedSystem>(system, context.swept, points.field, wall);
-  TorusSettings torus_settings;
-  torus_settings.order = request.smooth_order;
-  const auto torus = std::make_shared<TorusReturn>(suspended, fit.curve, projection, par,
-                                                   is_p ? suspended->least_distance() : points.event, torus_settings);
-  const int swept = context.swept.front();
-  const TorusGrazing grazing = torus_grazing(system, *torus, points.field, wall, swept, request.source);
-  const VectorXd x = corrected_contact(system, points.field, wall, grazing.x, grazing.par, request.source);
-  const int jump = jump_of(context, system, points.field, wall, x, grazing.par);
-  MapModel model;
-  model.point = grazing_point(system, points.field, wall, jump, x, grazing.par, request.source,
-                              segments_after_impact(system, {points.field, wall, jump}, x, grazing.par, points.field));
-  if (!is_p) model.section = CrossSection{points.event, 0};
-  model.smooth = model.torus = torus;
-  model.phase = projection.phase(model.section ? torus->on_curve(grazing.phase) : x);
-  model.par = par;
-  model.neighbourhood = request.neighbourhood.value_or(torus_neighbourhood);
-  model.text.push_back(fmt::format(
+  CurveSettings settings;
+  settings.angles = angles_of(system, points.states, par);
+  const FittedCurve fit = fit_invariant_curve(points.states, settings, request.source);
+  const std::string text = fmt::format(
       "Invariant curve of {} points on {}: rotation number {:.12g} +- {:.1e}, {} harmonics, {:.1e} off at most",
       points.states.cols(), system.function_name(FunctionKind::event, points.event), fit.curve.rotation(),
-      fit.rotation_error, fit.curve.harmonics(), fit.error));
+      fit.rotation_error, fit.curve.harmonics(), fit.error);
+  return {fit.curve, settings.angles, points.event, points.field, wall, is_p, par, context.swept, text};
+}
+
+/// The event function that the run of the label watches, where it is one.
+std::optional<int> watched_wall(const LabelledRun& run) {
+  std::optional<int> wall;
+  for (const MonitoredEvent& watched : chosen_events(run.settings, segment_count(run.settings))) {
+    if (wall && *wall != watched.event) return std::nullopt;
+    wall = watched.event;
+  }
+  return wall;
+}
+
+/// On P where no segment of the return ends there: a curve through points of the computed torus.
+TorusCurve curve_on_p(const HybridSystem& system, const TorusLabel& torus, int field, int wall,
+                      const std::vector<int>& along) {
+  constexpr int points_on_curve = 4000;
+  const Eigen::MatrixXd points = torus.points_on_p(wall, field, points_on_curve);
+  CurveSettings settings;
+  settings.angles = angles_of(system, points, torus.par());
+  const FittedCurve fit = fit_invariant_curve(points, settings, torus.source());
+  const std::string text = fmt::format(
+      "Invariant curve of {}, {} points of its {} orbits on P: rotation number there {:.12g}, {} harmonics, {:.1e} off "
+      "at most",
+      torus.source(), points.cols(), torus.orbits(), fit.curve.rotation(), fit.curve.harmonics(), fit.error);
+  return {fit.curve, settings.angles, 0, field, wall, true, torus.par(), along, text};
+}
+
+TorusCurve curve_of_label(const MapRequest& request, const MapContext& context, const HybridSystem& system,
+                          const LabelledRun& run, int named) {
+  const TorusLabel torus(system, run.solution, run.settings, run.source);
+  const std::vector<TorusLabel::Section>& sections = torus.sections();
+  const std::optional<int> watched = request.wall ? std::nullopt : watched_wall(run);
+  const int wall = watched ? *watched : wall_of(request, system, sections.front().points.col(0), torus.par());
+  const std::vector<int> along = parameters_along(context, torus.par());
+  const auto on = std::find_if(sections.begin(), sections.end(), [&](const TorusLabel::Section& section) {
+    return section.event != wall && (named == 0 || section.event == named) &&
+           lie_on_p(system, section.points, section.field, wall, torus.par());
+  });
+  const auto at = on != sections.end()
+                      ? on
+                      : std::find_if(sections.begin(), sections.end(),
+                                     [named](const TorusLabel::Section& section) { return section.event == named; });
+  if (named == 0 && on == sections.end()) return curve_on_p(system, torus, sections.front().field, wall, along);
+  if (at == sections.end())
+    throw UserError(
+        fmt::format("--section {}: no segment of the return of {} ends in event function {}; leave --section out for "
+                    "P, where event {} ({}) is least",
+                    *context.section, torus.source(), named, wall, system.function_name(FunctionKind::event, wall)));
+  if (!is_identity_jump(system, at->jump))
+    throw UserError(fmt::format(
+        "--section {}: segments of {} that end in event function {} are followed by jump {} ({}); a section "
+        "is where nothing happens: leave --section out for P, where event {} ({}) is least",
+        *context.section, torus.source(), at->event, at->jump, system.function_name(FunctionKind::jump, at->jump), wall,
+        system.function_name(FunctionKind::event, wall)));
+  const std::string text = fmt::format(
+      "Invariant curve of {}, {} orbits, on {}: rotation number {:.12g}, {} harmonics", torus.source(), torus.orbits(),
+      system.function_name(FunctionKind::event, at->event), at->curve.rotation(), at->curve.harmonics());
+  std::vector<Index> angles;
+  for (Index state = 0; state < at->curve.dimension(); ++state)
+    if (at->curve.is_angle(state)) angles.push_back(state);
+  return {at->curve, angles, at->event, at->field, wall, on != sections.end(), torus.par(), along, text};
+}
+
+CurveProjection projection_of(const MapRequest& request, const HybridSystem& system, const TorusCurve& torus) {
+  const std::vector<Index> phase = request.phase ? phase_states(system, *request.phase) : torus.angles;
+  if (phase.empty()) return CurveProjection(torus.curve);
+  return phase.size() == 1 ? CurveProjection(torus.curve, phase[0]) : CurveProjection(torus.curve, phase[0], phase[1]);
+}
+
+MapModel torus_model(const MapRequest& request, const MapContext& context, const HybridSystem& system,
+                     const std::optional<LabelledRun>& run) {
+  const int named = context.section ? cross_section(system, *context.section).event : 0;
+  if (context.section && named == 0)
+    throw UserError(fmt::format("--section {}: points of a torus are those of an event function; name {}",
+                                *context.section,
+                                run ? "one that ends segments of its return" : "the one that was recorded"));
+  const TorusCurve known =
+      run ? curve_of_label(request, context, system, *run, named) : curve_of_points(request, context, system, named);
+  const CurveProjection projection = projection_of(request, system, known);
+  const auto suspended = std::make_shared<SuspendedSystem>(system, known.along, known.field, known.wall);
+  TorusSettings torus_settings;
+  torus_settings.order = request.smooth_order;
+  const auto torus =
+      std::make_shared<TorusReturn>(suspended, known.curve, projection, known.par,
+                                    known.is_p ? suspended->least_distance() : known.event, torus_settings);
+  const int swept = context.swept.front();
+  const int wall = known.wall;
+  const TorusGrazing grazing = torus_grazing(system, *torus, known.field, wall, swept, request.source);
+  const VectorXd x = corrected_contact(system, known.field, wall, grazing.x, grazing.par, request.source);
+  const int jump = jump_of(context, system, known.field, wall, x, grazing.par);
+  MapModel model;
+  model.point = grazing_point(system, known.field, wall, jump, x, grazing.par, request.source,
+                              segments_after_impact(system, {known.field, wall, jump}, x, grazing.par, known.field));
+  if (!known.is_p) model.section = CrossSection{known.event, 0};
+  model.smooth = model.torus = torus;
+  model.phase = projection.phase(model.section ? torus->on_curve(grazing.phase) : x);
+  model.par = with_given(context, known.par);
+  model.neighbourhood = request.neighbourhood.value_or(torus_neighbourhood);
+  model.text.push_back(known.text);
   model.text.push_back(
       fmt::format("Smooth map: derivatives at {} phases, interpolated to {:.1e}; return in {:.6g} of time",
                   torus->nodes(), torus->interpolation_error(), torus->mean_time()));
   model.text.push_back(fmt::format("The torus touches {} at {} = {:.10g}, x* = {}",
                                    system.function_name(FunctionKind::event, wall), system.parameter_name(swept),
                                    grazing.par(swept - 1), numbers(x)));
-  if (torus->depends_on_parameters())
-    model.text.push_back(
-        fmt::format("The smooth torus depends on {}: its change is taken to first order from {:.10g}, the "
-                    "value of the points",
-                    system.parameter_name(swept), par(swept - 1)));
-  model.identity = fmt::format("{} rho = {:.17g} x* = {}", request.source, fit.curve.rotation(), numbers(x));
+  if (torus->depends_on_parameters()) {
+    std::vector<std::string> names, values;
+    for (const int k : known.along) {
+      names.push_back(system.parameter_name(k));
+      values.push_back(fmt::format("{:.10g}", known.par(k - 1)));
+    }
+    model.text.push_back(fmt::format(
+        "The smooth torus depends on {}: its change is taken to first order from {}, the value{} of the {}",
+        fmt::join(names, " or "), fmt::join(values, ", "), names.size() > 1 ? "s" : "", run ? "label" : "points"));
+  }
+  model.identity = fmt::format("{} rho = {:.17g} x* = {}", request.source, known.curve.rotation(), numbers(x));
   return model;
 }
 
@@ -322,8 +421,10 @@ MapOrder map_order(const std::string& text) {
 }
 
 MapModel map_model(const MapRequest& request, const MapContext& context, const HybridSystem& system) {
-  MapModel model =
-      names_label(request.source) ? periodic_model(request, context, system) : torus_model(request, context, system);
+  std::optional<LabelledRun> run;
+  if (names_label(request.source)) run = labelled_run(request, context, system);
+  MapModel model = run && !is_torus(run->solution.problem_type) ? periodic_model(request, context, system, *run)
+                                                                : torus_model(request, context, system, run);
   model.free = free_return(system, model.point, model.section);
   model.contact = {model.point.field, model.point.event, model.point.jump};
   return model;

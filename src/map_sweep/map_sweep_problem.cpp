@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <atomic>
 #include <cmath>
 #include <memory>
 #include <vector>
@@ -162,23 +161,9 @@ int map_sweep_problem(const SweepRequest& request, const MapRequest& map, std::o
   std::vector<MapSampler> samplers;
   for (int worker = 0; worker < count; ++worker)
     samplers.emplace_back(setup, model, iterated_map(map, model, workers.system(worker)));
-  // The signal is asked for by the calling thread alone; workers look at what it has seen.
-  const auto is_stopped = std::make_shared<std::atomic<bool>>(false);
-  const auto ask = [&interrupted, is_stopped] {
-    if (interrupted()) *is_stopped = true;
-    return is_stopped->load();
-  };
-  const std::function<bool()> look = [is_stopped] { return is_stopped->load(std::memory_order_relaxed); };
-  job.maker = [&](int worker) -> SampleFunction {
-    return [&samplers, &look, worker](const SweepPoint& point) {
-      return samplers[static_cast<std::size_t>(worker)](point, look);
-    };
-  };
-  std::ostream nowhere(nullptr);
-  const SweepOutcome outcome = run_sweep(job, task, ask, progress, request.simulation.quiet ? nowhere : screen);
-  if (!request.simulation.quiet || !outcome.is_complete) screen << outcome_text(job, outcome) << std::flush;
-  if (const std::string complaint = loaded.library->complaint(); !complaint.empty())
-    warnings << "tchat: warning: " << complaint << '\n';
+  const StopFlag stop(interrupted);
+  job.maker = maker_of(samplers, stop);
+  run_and_tell(job, task, loaded, stop, progress, screen, warnings, request.simulation.quiet);
   return 0;
 }
 

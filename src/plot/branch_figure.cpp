@@ -31,7 +31,7 @@ int curve_type_of(const PointSection& section) {
 }
 
 CurveKind kind_of(const PointSection& section) {
-  return curve_kind(curve_type_of(section), keeps_contact(section.problem_type));
+  return curve_kind(curve_type_of(section), keeps_contact(section.problem_type) || is_torus(section.problem_type));
 }
 
 /// The curves of one kind in one file share a line.

@@ -13,4 +13,7 @@ std::vector<std::string> rising_colours(std::size_t count);
 /// From blue over a pale grey to red, for numbers of both signs: the middle is zero.
 std::vector<std::string> signed_colours(std::size_t count);
 
+/// Round a circle of hues, all of them equally light: for angles, the last colour goes over into the first.
+std::vector<std::string> cyclic_colours(std::size_t count);
+
 }  // namespace tchat

@@ -245,7 +245,9 @@ class FigureWriter {
                        screen(box.right, box.bottom + static_cast<double>(k + 1) * step), bar.colours[k]));
     line(fmt::format("set object rectangle from {} to {} front fillstyle empty border rgb '#000000' lw {:.3g}",
                      screen(box.left, box.bottom), screen(box.right, box.top), 1.5 * units_.line_width));
-    for (double value = scale.first_tic; value <= scale.high + 1e-9 * scale.tic_step; value += scale.tic_step) {
+    const auto tics = static_cast<int>(std::floor((scale.high - scale.first_tic) / scale.tic_step + 1e-9));
+    for (int k = 0; k <= tics; ++k) {
+      const double value = scale.first_tic + k * scale.tic_step;
       const double y = box.bottom + scale.fraction(value) * box.height();
       line(fmt::format("set arrow from {} to {} nohead front lw {:.3g}", screen(box.right, y),
                        screen(box.right + 0.3 * layout_.font, y), 1.5 * units_.line_width));

@@ -10,6 +10,8 @@
 #include <set>
 
 #include "constants/constant_value.hpp"
+#include "hybrid/parameter_vector.hpp"
+#include "plot/colour_scale.hpp"
 #include "plot/event_surface.hpp"
 #include "plot/picture_styles.hpp"
 #include "text/user_error.hpp"
@@ -90,8 +92,10 @@ LabelText orbit_name(const std::vector<OrbitTrace>& orbits, std::size_t k, const
   bool first = true;
   for (const auto& [index, value] : orbit.free_parameters) {
     const auto position = static_cast<std::size_t>(index - 1);
-    const std::string name =
-        position < options.parameters.size() ? options.parameters[position] : fmt::format("PAR({})", index);
+    const bool is_rotation = index == rotation_parameter && orbit.section_points.cols() > 0;
+    const std::string name = is_rotation                            ? "rho"
+                             : position < options.parameters.size() ? options.parameters[position]
+                                                                    : fmt::format("PAR({})", index);
     text = joined(joined(text, plain_text(first ? ": " : ", ")),
                   joined(mathematical_name(name), joined(plain_text(" = "), number_text(value))));
     first = false;
@@ -118,7 +122,8 @@ Marker jump_marker(std::size_t k, const PicturePoint& at, bool before) {
 
 KeyEntry orbit_entry(const std::vector<OrbitTrace>& orbits, std::size_t k, const OrbitFigureOptions& options) {
   KeyEntry entry{orbit_name(orbits, k, options), orbit_stroke(orbits, k), std::nullopt};
-  for (std::size_t s = 0; s < orbits[k].segments.size() && !entry.marker; ++s)
+  const bool is_torus = orbits[k].segments_per_return > 0;  // whose lines are many
+  for (std::size_t s = 0; s < orbits[k].segments.size() && !entry.marker && !is_torus; ++s)
     if (orbits[k].jumps_after(s)) entry.marker = jump_marker(k, {}, true);
   return entry;
 }
@@ -152,15 +157,75 @@ PicturePoint shown(const Eigen::VectorXd& x, const std::vector<int>& states) {
   return {x(states[0]), x(states[1]), states.size() > 2 ? x(states[2]) : 0.0};
 }
 
+constexpr double bundle_width = 1.2;
+constexpr std::size_t colours_of_phase = 64;
+
+/// Of one torus the colours are those of the angle, of several each has its own.
+bool shows_phase(const std::vector<OrbitTrace>& orbits) {
+  return orbits.size() == 1 && orbits.front().segments_per_return > 0;
+}
+
+/// The points where returns begin, as dots.
+void add_section_points(Panel& panel, const OrbitTrace& torus, const std::string& colour,
+                        const std::vector<int>& states) {
+  for (Eigen::Index i = 0; i < torus.section_points.cols(); ++i) {
+    Marker marker;
+    marker.at = shown(torus.section_points.col(i), states);
+    marker.symbol = Symbol::circle;
+    marker.filled = true;
+    marker.size = 0.45;
+    marker.colour = colour;
+    panel.markers.push_back(marker);
+  }
+}
+
+/// Returns of a torus as thin lines.
+void add_torus(Panel& panel, const std::vector<OrbitTrace>& orbits, std::size_t k, const std::vector<int>& states) {
+  const OrbitTrace& torus = orbits[k];
+  const std::vector<std::string> colours = cyclic_colours(colours_of_phase);
+  const std::size_t count = torus.segments.size();
+  for (std::size_t s = 0; s < count; ++s) {
+    Curve curve;
+    curve.stroke = orbit_stroke(orbits, k);
+    curve.stroke.width = bundle_width;
+    if (shows_phase(orbits)) curve.stroke.colour = colours[s * colours_of_phase / count];
+    const Eigen::MatrixXd& points = torus.segments[s].states;
+    for (Eigen::Index i = 0; i < points.cols(); ++i) curve.points.push_back(shown(points.col(i), states));
+    panel.curves.push_back(std::move(curve));
+    if (!torus.jumps_after(s)) continue;
+    Stroke jump = jump_stroke(series_colour(k));
+    jump.width *= 0.5;
+    panel.curves.push_back({{shown(torus.end_of(s), states), shown(torus.start_after(s), states)}, jump, false});
+  }
+  add_section_points(panel, torus, shows_phase(orbits) ? "#000000" : series_colour(k), states);
+}
+
+/// What the dots are, and the colours.
+void explain_tori(Figure& figure, const std::vector<OrbitTrace>& orbits) {
+  const auto torus = std::find_if(orbits.begin(), orbits.end(),
+                                  [](const OrbitTrace& orbit) { return orbit.section_points.cols() > 0; });
+  if (torus == orbits.end()) return;
+  Marker dot;
+  dot.symbol = Symbol::circle;
+  dot.size = 0.45;
+  const std::string points = orbits.size() > 1
+                                 ? std::string("computed points on the section")
+                                 : fmt::format("{} computed points on the section", torus->section_points.cols());
+  figure.key.push_back({plain_text(points), std::nullopt, dot});
+  if (!shows_phase(orbits)) return;
+  figure.colour_bar = ColourBar{cyclic_colours(colours_of_phase), {mathematical_name("phi"), 0.0, 1.0, false}};
+}
+
 void add_orbit(Panel& panel, const std::vector<OrbitTrace>& orbits, std::size_t k, const std::vector<int>& states,
                const StateWindow& window) {
   const OrbitTrace& orbit = orbits[k];
+  if (orbit.segments_per_return > 0) return add_torus(panel, orbits, k, states);
   for (std::size_t s = 0; s < orbit.segments.size(); ++s) {
     Curve curve;
     curve.stroke = orbit_stroke(orbits, k);
     const Eigen::MatrixXd& points = orbit.segments[s].states;
     for (Eigen::Index i = 0; i < points.cols(); ++i) curve.points.push_back(shown(points.col(i), states));
-    add_arrow(panel, curve, window);
+    if (!orbit.is_section) add_arrow(panel, curve, window);
     panel.curves.push_back(std::move(curve));
     if (!orbit.jumps_after(s)) continue;
     const PicturePoint before = shown(orbit.end_of(s), states), after = shown(orbit.start_after(s), states);
@@ -168,16 +233,74 @@ void add_orbit(Panel& panel, const std::vector<OrbitTrace>& orbits, std::size_t 
     panel.markers.push_back(jump_marker(k, after, false));
     panel.markers.push_back(jump_marker(k, before, true));
   }
+  if (orbit.is_section) add_section_points(panel, orbit, series_colour(k), states);
 }
 
+/// The rectangle that a picture of curves on a section shows: the curves, and of each line of an event function the
+/// point nearest to them, with a margin.
+class SectionView {
+ public:
+  explicit SectionView(const std::vector<OrbitTrace>& orbits, int a, int b) {
+    const StateWindow wide = window_of(orbits, a, b);
+    const double half_x = 0.25 * (wide.high_x - wide.low_x), half_y = 0.25 * (wide.high_y - wide.low_y);
+    low_ = {wide.low_x + half_x, wide.low_y + half_y};
+    high_ = {wide.high_x - half_x, wide.high_y - half_y};
+    size_ = {2.0 * half_x, 2.0 * half_y};
+  }
+
+  /// False where no point of the line is near.
+  bool takes_in(const std::vector<std::vector<PicturePoint>>& pieces) {
+    constexpr double near = 0.4;  // of the curves' size
+    constexpr int parts = 200;    // of a straight piece
+    PicturePoint best;
+    double least = near;
+    bool found = false;
+    for (const auto& piece : pieces)
+      for (std::size_t k = 0; k + 1 < piece.size(); ++k)
+        for (int part = 0; part <= parts; ++part) {
+          const double t = static_cast<double>(part) / parts;
+          const PicturePoint point{(1.0 - t) * piece[k].x + t * piece[k + 1].x,
+                                   (1.0 - t) * piece[k].y + t * piece[k + 1].y};
+          if (!(distance(point) < least)) continue;
+          least = distance(point);
+          best = point;
+          found = true;
+        }
+    if (!found) return false;
+    low_ = {std::min(low_.x, best.x), std::min(low_.y, best.y)};
+    high_ = {std::max(high_.x, best.x), std::max(high_.y, best.y)};
+    return true;
+  }
+
+  void set(Panel& panel) const {
+    constexpr double margin = 0.06;
+    panel.x.low = low_.x - margin * size_.x, panel.x.high = high_.x + margin * size_.x;
+    panel.y.low = low_.y - margin * size_.y, panel.y.high = high_.y + margin * size_.y;
+  }
+
+ private:
+  /// From the rectangle, in its sizes; negative inside, the more so the nearer to the middle.
+  double distance(const PicturePoint& point) const {
+    const double x = std::max(low_.x - point.x, point.x - high_.x) / size_.x;
+    const double y = std::max(low_.y - point.y, point.y - high_.y) / size_.y;
+    return std::max(x, y);
+  }
+
+  PicturePoint low_, high_, size_;
+};
+
 void add_lines_of_events(Figure& figure, Panel& panel, const EventSurfaces& surfaces, const std::vector<int>& states,
-                         const StateWindow& window) {
+                         const StateWindow& window, const std::vector<OrbitTrace>& orbits) {
+  const bool is_section = orbits.front().is_section;
+  SectionView view(orbits, states[0], states[1]);
   std::size_t number = 0;
   for (auto& line : surfaces.in_plane(states[0], states[1], window)) {
+    if (is_section && !view.takes_in(line.pieces)) continue;
     const KeyEntry entry = surface_entry(line.name, number++);
     for (auto& piece : line.pieces) panel.curves.push_back({std::move(piece), *entry.stroke, true});
     figure.key.push_back(entry);
   }
+  if (is_section && number > 0) view.set(panel);
 }
 
 struct StateRange {
@@ -242,12 +365,18 @@ Figure phase_portrait(const std::vector<OrbitTrace>& orbits, const OrbitFigureOp
   if (states.size() > 2) panel.z = AxisSettings{name(2), {}, {}, false};
   for (std::size_t k = 0; k < orbits.size(); ++k)
     if (is_in_key(orbits, options)) figure.key.push_back(orbit_entry(orbits, k, options));
+  if (shows_phase(orbits) && !figure.key.empty()) figure.key.front().stroke->colour = cyclic_colours(1).front();
+  explain_tori(figure, orbits);
+  if (panel.z && shows_phase(orbits)) {
+    figure.colour_bar.reset();
+    figure.note = plain_text("coloured by the angle at which a return begins");
+  }
   if (options.system != nullptr && options.surfaces) {
     const EventSurfaces surfaces(*options.system, orbits, options.events);
     if (panel.z)
       add_planes_of_events(figure, panel, surfaces, states, orbits);
     else
-      add_lines_of_events(figure, panel, surfaces, states, window);
+      add_lines_of_events(figure, panel, surfaces, states, window, orbits);
   }
   if (!options.legend.empty()) explain_dashes(figure, orbits);
   for (std::size_t k = 0; k < orbits.size(); ++k) add_orbit(panel, orbits, k, states, window);

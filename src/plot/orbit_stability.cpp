@@ -56,4 +56,22 @@ std::map<int, LineKind> label_kinds(const std::string& solution_path) {
   return {};
 }
 
+std::map<int, LineKind> torus_label_kinds(const std::string& solution_path) {
+  std::map<int, LineKind> kinds;
+  std::error_code error;
+  for (const char letter : {'p', 'd'}) {
+    const std::string path = sibling_path(solution_path, letter);
+    if (path.empty() || !std::filesystem::is_regular_file(path, error)) continue;
+    try {
+      if (letter == 'p') kinds = kinds_in_points(path);
+      if (letter == 'd')
+        for (const auto& [label, kind] : kinds_in_diagnostics(path))
+          if (kind == LineKind::inadmissible) kinds[label] = kind;
+    } catch (const UserError&) {
+      continue;
+    }
+  }
+  return kinds;
+}
+
 }  // namespace tchat

@@ -19,5 +19,8 @@ LineKind line_kind(const DiagnosticPoint& point);
 /// The labels of q.NAME that are unstable or inadmissible by d.NAME; without d-file unstable by the sign of PT in
 /// p.NAME. Empty when neither is there and can be read.
 std::map<int, LineKind> label_kinds(const std::string& solution_path);
+/// Of tori, whose trivial multiplier is known to the accuracy of the torus alone: stability by the sign of PT in the
+/// p-file, admissibility by the d-file.
+std::map<int, LineKind> torus_label_kinds(const std::string& solution_path);
 
 }  // namespace tchat

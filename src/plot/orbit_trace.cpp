@@ -52,7 +52,7 @@ bool OrbitTrace::jumps_after(std::size_t s) const {
 }
 
 bool OrbitTrace::jumps_after(std::size_t s, Eigen::Index i) const {
-  if (!is_closed && s + 1 == segments.size()) return false;
+  if ((!is_closed && s + 1 == segments.size()) || ends_return(s) || is_section) return false;
   double size = 0.0;
   for (const TraceSegment& segment : segments) size = std::max(size, segment.states.row(i).cwiseAbs().maxCoeff());
   return std::abs(start_after(s)(i) - end_of(s)(i)) > jump_tolerance * std::max(size, 1e-300);

@@ -23,7 +23,13 @@ struct OrbitTrace {
   std::vector<TraceSegment> segments;
   bool is_closed = true;  ///< periodic; a trajectory and the solution of a boundary value problem are not
   LineKind kind = LineKind::stable;
+  int segments_per_return = 0;     ///< of a torus, whose returns do not follow each other; 0: of an orbit
+  Eigen::MatrixXd section_points;  ///< of a torus: where its returns begin, n x N
+  bool is_section = false;         ///< a torus by its curve on the section: one closed segment
 
+  bool ends_return(std::size_t s) const {
+    return segments_per_return > 0 && (s + 1) % static_cast<std::size_t>(segments_per_return) == 0;
+  }
   int dimension() const { return static_cast<int>(segments.front().states.rows()); }
   double period() const { return segments.back().times.back(); }
   /// Does the state jump at the end of segment s (from 0)? Judged by the sizes of the states.

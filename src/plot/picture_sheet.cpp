@@ -78,7 +78,8 @@ SheetLayout lay_out(const Sheet& sheet) {
     one.figure.width = static_cast<int>(width);
     one.figure.height = static_cast<int>(height);
     one.left = static_cast<double>(k % sheet.columns) * width;
-    one.bottom = sheet.height - above - static_cast<double>(k / sheet.columns + 1) * height;
+    const std::size_t rows_down = k / sheet.columns + 1;
+    one.bottom = sheet.height - above - static_cast<double>(rows_down) * height;
     result.figures.push_back(std::move(one));
   }
   lay_out_each(result.figures);

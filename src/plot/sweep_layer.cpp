@@ -37,8 +37,8 @@ double dot_size(std::size_t dots) { return dots > 40000 ? 0.2 : dots > 10000 ? 0
 /// Of groups whose dots may lie on each other: the earlier ones are seen around the later ones.
 constexpr double larger_beneath = 1.7;
 
-/// Few dots that lie beneath a line are seen at both sides of it.
-constexpr double seen_beneath_lines = 1.8;
+/// Few dots that lie beneath a line are seen at both sides of it, a handful from afar.
+double larger_beneath_lines(std::size_t dots) { return dots > 1000 ? 1.0 : dots > 30 ? 1.8 : 3.0; }
 
 const SweptQuantity* swept(const SweepTable& table, const std::string& column) {
   for (const SweptQuantity& quantity : table.over)
@@ -187,7 +187,7 @@ class SweepLayerBuilder {
     const std::size_t count = cloud.points.size();
     if (count == 0) return 0;
     cloud.size = group.size * dot_size(count);
-    if (look_.beneath_branches && count <= 1000) cloud.size *= seen_beneath_lines;
+    if (look_.beneath_branches) cloud.size *= larger_beneath_lines(count);
     if (!bars.points.empty()) result_.curves.push_back(std::move(bars));
     if (!name.empty()) result_.key.push_back({name, std::nullopt, key_dot(colour)});
     result_.clouds.push_back(std::move(cloud));

@@ -1,7 +1,7 @@
 /// A problem in the Fortran interface of TC-HAT, wrapped as a problem table.
 ///
 /// The library exports subroutines (gfortran's names: lower case with an underscore; every argument by reference,
-/// arrays column-major). With N = GCNDIM and PAR of at least 256 entries:
+/// arrays column-major). With N = GCNDIM and PAR of at least 512 entries:
 ///
 ///     GCFUNC (GCNDIM, X, PAR, GCIDIFF, FI, DFIDX, DFIDP, DFIDXDX, DFIDXDP, SEGNO)     field SEGNO
 ///         FI(N), DFIDX(N,N), DFIDP(N,*), DFIDXDX(N,N,N), DFIDXDP(N,N,*)

@@ -56,6 +56,20 @@ struct GuardedProblem::Calls {
     }
   }
 
+  static void first_at_points(const void* self, std::int32_t kind, std::int32_t index, std::int32_t points,
+                              const double* x, const double* par, const std::int32_t* active, std::int32_t count,
+                              double* out, double* dx, double* dp) {
+    const tchat_problem& plugin = object(self).plugin_;
+    const PluginCall call(object(self).path_.c_str(), place_of(kind), index);
+    try {
+      plugin.first_at_points(plugin.self, kind, index, points, x, par, active, count, out, dx, dp);
+    } catch (...) {
+      const int r = rows(plugin, kind);
+      for (std::int32_t k = 0; k < points; ++k, out += r, dx += r * plugin.dimension, dp += r * count)
+        set_all(plugin, kind, count, out, dx, dp);
+    }
+  }
+
   static void second(const void* self, std::int32_t kind, std::int32_t index, const double* x, const double* par,
                      const std::int32_t* active, std::int32_t count, const double* direction, double* out, double* dx,
                      double* dp) {
@@ -151,6 +165,7 @@ GuardedProblem::GuardedProblem(const tchat_problem& plugin, const std::string& p
   table_.value = &Calls::value;
   if (plugin.first != nullptr) table_.first = &Calls::first;
   if (plugin.second != nullptr) table_.second = &Calls::second;
+  if (plugin.first_at_points != nullptr) table_.first_at_points = &Calls::first_at_points;
   if (plugin.boundary != nullptr) table_.boundary = &Calls::boundary;
   if (plugin.boundary_first != nullptr) table_.boundary_first = &Calls::boundary_first;
   if (plugin.successors != nullptr) table_.successors = &Calls::successors;

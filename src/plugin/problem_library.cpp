@@ -7,6 +7,8 @@
 #include <sys/statvfs.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <cstring>
 #include <exception>
 #include <filesystem>
@@ -171,9 +173,11 @@ const tchat_problem* find_table(const std::string& path, void* handle) {
   return table;
 }
 
-/// A table made before boundary value problems, or before sliding modes, has none of their members.
+/// A table made before boundary value problems, sliding modes or many points at once has none of their members.
 tchat_problem completed(const tchat_problem& table) {
-  if (table.struct_size != TCHAT_PROBLEM_FIRST_SIZE && table.struct_size != TCHAT_PROBLEM_SECOND_SIZE) return table;
+  const std::array<std::size_t, 3> earlier = {TCHAT_PROBLEM_FIRST_SIZE, TCHAT_PROBLEM_SECOND_SIZE,
+                                              TCHAT_PROBLEM_THIRD_SIZE};
+  if (std::find(earlier.begin(), earlier.end(), table.struct_size) == earlier.end()) return table;
   tchat_problem whole{};
   std::memcpy(&whole, &table, table.struct_size);
   whole.struct_size = sizeof(tchat_problem);

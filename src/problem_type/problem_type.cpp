@@ -117,7 +117,8 @@ bool keeps_contact(int number) {
 bool is_two_parameter_curve(int number, int branch_mode) {
   const ProblemType* type = nearest_problem_type(number, branch_mode);
   if (std::abs(branch_mode) == in_two_parameters) return true;
-  return type != nullptr && type->facts().has_ring && type->facts().free_parameters >= 2;
+  // Tori are a family in two parameters, rho among them.
+  return type != nullptr && type->facts().has_ring && type->facts().free_parameters >= (type->facts().is_torus ? 3 : 2);
 }
 
 bool has_two_parameter_curves(int number) { return !problem_types_of(number, in_two_parameters).empty(); }

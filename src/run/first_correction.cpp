@@ -4,6 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "bvp/evaluation_failure.hpp"
 #include "bvp/mesh_adaptation.hpp"
@@ -27,6 +31,33 @@ constexpr int most_meshes = 10;
 /// Meshes whose points have moved by less than this part of an interval are the same.
 constexpr double settled = 0.1;
 
+/// From here on a torus, or a chain whose report nobody reads to the end.
+constexpr int many_segments = 12;
+
+/// Lines of which there are too many to read: the largest, in their order.
+std::string largest_lines(std::vector<std::pair<double, std::string>> lines) {
+  constexpr std::size_t most = 24;
+  std::string text;
+  if (lines.size() > most) {
+    std::vector<double> sizes;
+    for (const auto& [value, line] : lines) sizes.push_back(std::isnan(value) ? HUGE_VAL : std::abs(value));
+    std::nth_element(sizes.begin(), sizes.begin() + static_cast<std::ptrdiff_t>(most), sizes.end(), std::greater<>());
+    const double least = sizes[most];
+    const std::size_t all = lines.size();
+    std::erase_if(lines, [least](const auto& line) { return std::abs(line.first) <= least; });
+    if (lines.size() > most) lines.resize(most);
+    text = fmt::format(" (the {} largest of {})", lines.size(), all);
+  }
+  for (const auto& [value, line] : lines) text += line;
+  return text;
+}
+
+std::string all_lines(const std::vector<std::pair<double, std::string>>& lines) {
+  std::string text;
+  for (const auto& [value, line] : lines) text += line;
+  return text;
+}
+
 /// The residual of each boundary condition of the uncorrected start, largest collocation defect included.
 std::string residual_report(PathFollower& follower, const DefiningSystem& defining, const Orbit& start) {
   CondensedSystem& condensed = follower.condensed();
@@ -34,7 +65,10 @@ std::string residual_report(PathFollower& follower, const DefiningSystem& defini
   condensed.evaluate(start, residual);
   defining.integral_values(start, start, condensed.rule(), residual.integral.data());
   const int m = defining.segments();
-  std::string text;
+  std::vector<std::pair<double, std::string>> lines;
+  const auto add = [&lines](double value, const std::string& what) {
+    lines.emplace_back(value, fmt::format("\n  {:11.4e}  {}", value, what));
+  };
   std::size_t coupling = 0;
   const std::size_t per_segment = residual.collocation.size() / static_cast<std::size_t>(m);
   for (int s = 0; s < m; ++s) {
@@ -42,16 +76,16 @@ std::string residual_report(PathFollower& follower, const DefiningSystem& defini
     for (std::size_t i = 0; i < per_segment; ++i)
       defect = std::max(defect, std::abs(residual.collocation[static_cast<std::size_t>(s) * per_segment + i]));
     if (!start.shape.is_point())
-      text += fmt::format("\n  {:11.4e}  differential equations on segment {} (largest defect)", defect, s + 1);
+      add(defect, fmt::format("differential equations on segment {} (largest defect)", s + 1));
     for (int r = 0; r < defining.coupling_rows(s); ++r)
-      text += fmt::format("\n  {:11.4e}  {}", residual.coupling[coupling++], defining.coupling_name(s, r));
+      add(residual.coupling[coupling++], defining.coupling_name(s, r));
   }
   for (int r = 0; r < defining.integral_conditions(); ++r)
-    text += fmt::format("\n  {:11.4e}  {}", residual.integral[static_cast<std::size_t>(r)], defining.integral_name(r));
+    add(residual.integral[static_cast<std::size_t>(r)], defining.integral_name(r));
   for (const HeldMonitor& held : follower.held())
-    text += fmt::format("\n  {:11.4e}  {} minus {:.10g}, at which it is held",
-                        held.monitor->value(start, condensed.rule()) - held.value, held.name, held.value);
-  return text;
+    add(held.monitor->value(start, condensed.rule()) - held.value,
+        fmt::format("{} minus {:.10g}, at which it is held", held.name, held.value));
+  return start.shape.segments > many_segments ? largest_lines(std::move(lines)) : all_lines(lines);
 }
 
 /// The parameters that the command line gave another value, without those that Newton's method is to find.

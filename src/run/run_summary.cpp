@@ -51,6 +51,12 @@ std::string advice(const BranchSummary& summary) {
     return "  tried: halving the step down to DSMIN, Newton with ITNW iterations, NWTN of them with a new Jacobian.\n"
            "  you might: lower DSMIN (0 goes to 1e-10 DSMAX) or DSMAX; raise ITNW, NWTN; loosen EPSL and EPSU if they\n"
            "  are near rounding.\n";
+  if (summary.tori)
+    return "  tried: halving the step down to DSMIN, Newton with ITNW iterations, NWTN of them with a new Jacobian.\n"
+           "  you might: raise NHARM where the last harmonics are large; keep rho at an irrational value and free a\n"
+           "  second parameter (ICP=[a,b]) where rho is near a fraction of small numbers and the motion locks; look "
+           "by\n"
+           "  simulation whether there is a torus beyond the last point; lower DSMIN or DSMAX, raise NTST or ITNW.\n";
   return "  tried: halving the step down to DSMIN, Newton with ITNW iterations, NWTN of them with a new Jacobian.\n"
          "  you might: lower DSMIN (0 goes to 1e-10 DSMAX); raise NTST, NCOL or ITNW, NWTN; adapt the mesh more often\n"
          "  (IAD = 1); lower DSMAX; loosen EPSL and EPSU if they are near rounding; look at the last orbit\n"
@@ -74,7 +80,11 @@ std::string trust(const BranchSummary& summary) {
                                             : "structural multiplier (0 for the exact orbit) at most",
                         summary.worst_structural);
   text += "\n";
-  if (summary.worst_structural > 1e-3 || summary.worst_estimated_error > 1e-3)
+  if (summary.tori && summary.worst_structural > 1e-3)
+    text +=
+        "  the harmonics are too few where the trivial multiplier is off: raise NHARM, lower HARMTOL, or stop before\n"
+        "  the torus loses its smoothness\n";
+  if ((summary.worst_structural > 1e-3 && !summary.tori) || summary.worst_estimated_error > 1e-3)
     text += "  the mesh is too coarse for this orbit: raise NTST or NCOL, or adapt it (IAD = 1)\n";
   return text;
 }

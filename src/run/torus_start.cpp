@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "bvp/torus_system.hpp"
 #include "constants/settings_type.hpp"
+#include "hybrid/event_at.hpp"
 #include "linear_algebra/dense_matrix.hpp"
 #include "run/torus_problem.hpp"
 #include "setup/problem_setup.hpp"
@@ -46,6 +48,42 @@ void check_signature(const RunSettings& settings, const std::string& source) {
                     source, segment_count(settings), 2 * fewest_harmonics + 1, max_orbit_segments));
 }
 
+/// The nearest fraction of small numbers, in words; "" where rho is near none.
+std::string near_fraction(double rho) {
+  constexpr int largest = 12;
+  constexpr double nearness = 0.02;  // of 1 / q
+  for (int q = 1; q <= largest; ++q) {
+    const auto p = static_cast<int>(std::lround(rho * q));
+    if (std::abs(rho * q - p) < nearness) return fmt::format("{}/{}", p, q);
+  }
+  return "";
+}
+
+/// A label of another signature: no stored orbit ends on the event that this one names.
+void check_events(const HybridSystem& system, const RunSettings& settings, const SelectedStart& selected) {
+  constexpr double far_off = 1e-3;
+  const Orbit& x = selected.start.orbit;
+  if (selected.parameters_changed) return;
+  const int m = segment_count(settings);
+  for (int s = 0; s < m; ++s) {
+    const int event = settings.segments[static_cast<std::size_t>(s)].index.event;
+    double nearest = std::numeric_limits<double>::infinity(), h = 0.0;
+    for (int i = s; i < x.shape.segments; i += m) {
+      const EventAt at = event_at(system, event, x.end(i), x.par.data());
+      const double distance = std::abs(at.h) / std::max(at.scale(x.end(i)), 1e-300);
+      if (!(distance < nearest)) continue;
+      nearest = distance;
+      h = at.h;
+    }
+    if (nearest > far_off && std::isfinite(nearest))
+      throw UserError(
+          fmt::format("{}: the signature is another one than that of label {}: segment {} is to end in event {} ({}), "
+                      "and none of the label's does, h = {:.3g} at least; give the signature of its run (-c r.NAME)",
+                      selected.source, selected.label, s + 1, event, system.function_name(FunctionKind::event, event),
+                      std::abs(h)));
+  }
+}
+
 int harmonics_wanted(const RunSettings& settings, int otherwise) {
   const int wanted = settings.harmonics > 0 ? settings.harmonics : otherwise;
   return std::clamp(wanted, fewest_harmonics, most_harmonics(settings));
@@ -74,7 +112,8 @@ BranchSetup torus_setup(const ProblemType& type, const HybridSystem& system, con
   shape.segments = orbits * segment_count(one_return);
   const std::vector<int> free = free_problem_parameters(one_return);
   check_memory(shape, static_cast<int>(free.size()));
-  setup.defining = std::make_unique<TorusSystem>(system, one_return.signature(), orbits, free);
+  setup.defining = std::make_unique<TorusSystem>(system, one_return.signature(), orbits, free,
+                                                 torus_winding(system, one_return.signature(), selected.start.orbit));
   setup.follower = std::make_unique<PathFollower>(
       *setup.defining, shape, mean_norm(setup.settings, orbits), newton_settings(one_return),
       one_return.free_parameters.front(), condition_of(type, *setup.defining, shape, one_return),
@@ -193,12 +232,14 @@ RunSettings settings_of_orbits(const RunSettings& one_return, int orbits) {
 BranchSetup continue_torus(const ProblemType& type, const HybridSystem& system, const RunSettings& settings,
                            const SelectedStart& selected) {
   check_signature(settings, selected.source);
+  check_events(system, settings, selected);
   const int stored = selected.start.orbit.shape.segments / segment_count(settings);
   const int orbits = 2 * harmonics_wanted(settings, (stored - 1) / 2) + 1;
   SelectedStart start = selected;
   if (orbits != stored) {
     const OrbitShape shape = selected.start.orbit.shape;
-    start.start.orbit = resampled_torus(selected.start.orbit, stored, orbits);
+    start.start.orbit = resampled_torus(selected.start.orbit, stored, orbits,
+                                        torus_winding(system, settings.signature(), selected.start.orbit).curve);
     if (selected.start.direction)
       start.start.direction = resampled_torus(*selected.start.direction, shape, stored, orbits);
     // Durations are found anew.
@@ -273,13 +314,14 @@ std::string rough_torus(const RunSettings& one_return, const TorusSystem& system
   const bool may_grow = one_return.harmonic_tolerance > 0.0 && harmonics < most_harmonics(one_return);
   const double last = last_harmonics(system, x);
   if (may_grow || last < rough) return "";
+  const std::string fraction = near_fraction(TorusSystem::rotation(x));
   return fmt::format(
       "the last of {} harmonics are {:.1e} of the torus: it is about to lose its smoothness, or locks to a periodic "
-      "orbit "
-      "(rho = {:.8g}); {}look at the harmonics in the d-file, follow it with rho fixed at an irrational value and a "
+      "orbit (rho = {:.8g}{}); {}look at the harmonics in the d-file, follow it with rho fixed at an irrational value "
+      "and a "
       "second "
       "parameter free, or look for the periodic orbit by simulation",
-      harmonics, last, TorusSystem::rotation(x),
+      harmonics, last, TorusSystem::rotation(x), fraction.empty() ? "" : fmt::format(", near {}", fraction),
       harmonics < most_harmonics(one_return) ? "their number is fixed (HARMTOL = 0): give NHARM more; " : "");
 }
 
@@ -288,7 +330,7 @@ BranchSetup with_harmonics(const BranchSetup& setup, const PathPoint& last, int 
   const auto& system = static_cast<const TorusSystem&>(*setup.defining);
   const int orbits = 2 * harmonics + 1;
   SelectedStart start;
-  start.start.orbit = resampled_torus(last.orbit, system.orbits(), orbits);
+  start.start.orbit = resampled_torus(last.orbit, system.orbits(), orbits, system.winding().curve);
   start.problem_type = one_return.problem_type;
   BranchSetup next = torus_setup(*setup.type, system.system(), one_return, orbits, start);
   PathPoint point = next.follower->make_point(start.start.orbit);

@@ -21,6 +21,8 @@ class CvodesFlow final : public WatchedFlow {
   /// `par` has parameter_length entries. A view of `system`, which outlives this object.
   CvodesFlow(const HybridSystem& system, int field, const Eigen::VectorXd& x0, const Eigen::VectorXd& par,
              const FlowOptions& options);
+  CvodesFlow(const CvodesFlow&) = delete;
+  CvodesFlow& operator=(const CvodesFlow&) = delete;
   ~CvodesFlow() override;
 
   /// CVODES finds the zeros of h and of h_P = h_x f; the watch looks at every step it takes, so that a pair of

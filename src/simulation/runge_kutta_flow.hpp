@@ -19,6 +19,8 @@ class RungeKuttaFlow final : public WatchedFlow {
   /// The tolerances and limits of `options`; no variational equations.
   RungeKuttaFlow(const HybridSystem& system, int field, const Eigen::VectorXd& x0, const Eigen::VectorXd& par,
                  const FlowOptions& options);
+  RungeKuttaFlow(const RungeKuttaFlow&) = delete;
+  RungeKuttaFlow& operator=(const RungeKuttaFlow&) = delete;
   ~RungeKuttaFlow() override;
 
   void watch(const std::vector<int>& events) override;

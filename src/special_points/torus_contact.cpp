@@ -2,10 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <boost/math/tools/minima.hpp>
 #include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
+#include <limits>
+#include <vector>
 
 #include "bvp/admissibility.hpp"
 #include "hybrid/event_at.hpp"
@@ -72,16 +75,28 @@ double TorusContactSearch::slope(const Orbit& x, const CollocationRule& rule, do
 }
 
 std::optional<TorusContact> TorusContactSearch::least(const Orbit& x, const CollocationRule& rule) const {
-  int lowest = -1;
-  double value = 0.0;
-  for (int i = 0; i < system_.orbits(); ++i) {
-    const auto contact = least_value(system_, rule, x, i * system_.segments_per_return() + segment_, event_);
-    if (!contact || (lowest >= 0 && !(contact->value < value))) continue;
-    lowest = i;
-    value = contact->value;
+  const int n = system_.orbits();
+  constexpr double none = std::numeric_limits<double>::max();
+  std::vector<double> values(static_cast<std::size_t>(n), none);
+  for (int i = 0; i < n; ++i)
+    if (const auto contact = least_value(system_, rule, x, i * system_.segments_per_return() + segment_, event_))
+      values[static_cast<std::size_t>(i)] = contact->value;
+  const double lowest = *std::min_element(values.begin(), values.end());
+
+  // Every orbit that is lower than its neighbours, and may have the least value between them. There are several where
+  // the torus is lowest near the section: at the end of some returns and, a little lower, at the start of the next.
+  std::optional<TorusContact> least;
+  for (int i = 0; i < n; ++i) {
+    const double value = values[static_cast<std::size_t>(i)];
+    const double neighbours[] = {values[static_cast<std::size_t>((i + n - 1) % n)],
+                                 values[static_cast<std::size_t>((i + 1) % n)]};
+    const double higher = std::max(neighbours[0], neighbours[1]);
+    if (value == none || value > std::min(neighbours[0], neighbours[1])) continue;
+    if (higher < none && value - (higher - value) > lowest) continue;
+    const auto contact = least_near(x, rule, static_cast<double>(i) / n);
+    if (contact && (!least || contact->value < least->value)) least = contact;
   }
-  if (lowest < 0) return std::nullopt;
-  return least_near(x, rule, static_cast<double>(lowest) / system_.orbits());
+  return least;
 }
 
 TorusContactTest::TorusContactTest(const TorusSystem& system, int segment, int event, bool stop)

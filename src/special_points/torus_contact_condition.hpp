@@ -13,6 +13,7 @@
 
 #include "bvp/bordered_problem.hpp"
 #include "special_points/torus_contact.hpp"
+#include "special_points/torus_contact_follower.hpp"
 
 namespace tchat {
 
@@ -25,16 +26,20 @@ class TorusContactCondition final : public OrbitCondition {
   double value(int = 0) const override { return contact_.value; }
   const OrbitVector& gradient(int = 0) const override { return gradient_; }
   const TorusContact& contact() const { return contact_; }
-  /// phi, from which the minimum is followed.
+  /// phi and tau, from which the minimum is followed.
   void remember(std::vector<double>& memory) const override;
   void recall(const std::vector<double>& memory) override;
 
  private:
+  bool find(const CollocationRule& rule, const Orbit& x);
+
   const TorusSystem& system_;
   TorusContactSearch search_;
+  TorusContactFollower follower_;
   TorusContact contact_;
   bool started_ = false;
   OrbitVector gradient_;
+  Eigen::VectorXd gradient_at_contact_;
 };
 
 }  // namespace tchat

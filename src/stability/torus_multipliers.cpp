@@ -39,8 +39,9 @@ Eigen::MatrixXd return_matrices(const TorusSystem& system, const CondensedSystem
   return columns;
 }
 
-/// That along the curve first.
-Eigen::VectorXd exponents(const Eigen::MatrixXd& matrices, const Eigen::MatrixXd& curve, double rho) {
+/// That along the curve u first; `curve`: u - w phi.
+Eigen::VectorXd exponents(const Eigen::MatrixXd& matrices, const Eigen::MatrixXd& curve, const Eigen::VectorXd& w,
+                          double rho) {
   const Eigen::Index n = curve.rows();
   const auto count = static_cast<int>(matrices.cols());
   const Eigen::Index kept = n - 1;  // the direction of the flow goes to zero at once
@@ -52,7 +53,7 @@ Eigen::VectorXd exponents(const Eigen::MatrixXd& matrices, const Eigen::MatrixXd
   for (int j = 0; j < transient + returns; ++j) {
     const double phi = j * rho - std::floor(j * rho);
     const Eigen::VectorXd a = matrices * interpolation_weights(count, phi).transpose();
-    frame.col(0) = curve * interpolation_weights(count, phi, 1).transpose();
+    frame.col(0) = curve * interpolation_weights(count, phi, 1).transpose() + w;
     orthonormalise(frame);
     frame = Eigen::Map<const Eigen::MatrixXd>(a.data(), n, n) * frame;
     const Eigen::VectorXd lengths = orthonormalise(frame);
@@ -72,7 +73,10 @@ FloquetMultipliers torus_multipliers(const CondensedSystem& condensed, const Orb
   FloquetMultipliers result;
   const Eigen::MatrixXd matrices = return_matrices(system, condensed, x);
   if (!matrices.allFinite() || x.shape.dimension < 2) return result;
-  Eigen::VectorXd moduli = exponents(matrices, section_curve(system, x), TorusSystem::rotation(x)).array().exp();
+  Eigen::VectorXd moduli =
+      exponents(matrices, periodic_section_curve(system, x), system.winding().curve, TorusSystem::rotation(x))
+          .array()
+          .exp();
   std::sort(moduli.begin() + 1, moduli.end(), [](double a, double b) { return std::abs(a - 1.0) < std::abs(b - 1.0); });
   result.values.assign(moduli.begin(), moduli.end());
   result.values.emplace_back(0.0);

@@ -49,6 +49,12 @@ OrbitShape torus_shape(const RunSettings& settings, const LabelledSolution& solu
 OrbitShape shape_of(const RunSettings& settings, const LabelledSolution& solution, const std::string& path) {
   if (is_torus(settings.problem_type) && !problem_type(settings).facts().switches_branch)
     return torus_shape(settings, solution, path);
+  if (is_torus(solution.problem_type) && !is_torus(settings.problem_type))
+    throw UserError(fmt::format(
+        "{}: label {} is a torus (IPS = {}), and no run with IPS = {} begins there; IPS = {} goes on with it, "
+        "IPS = {} with tori in grazing contact",
+        path, solution.label, solution.problem_type, settings.problem_type, invariant_torus.number,
+        grazing_torus.number));
   const bool begins_at_point = problem_type(settings).facts().switches_branch && solution.tau.size() == 1;
   return begins_at_point ? OrbitShape::point(settings.dimension) : shape_of(settings);
 }
@@ -75,6 +81,12 @@ SelectedStart point_from_data(const std::string& path, const RunSettings& settin
 
 SelectedStart start_from_data(const std::string& path, const RunSettings& settings, const HybridSystem& system) {
   if (is_point(settings.problem_type)) return point_from_data(path, settings, system);
+  if (is_torus(settings.problem_type))
+    throw UserError(fmt::format(
+        "{}: tori (IPS = {}) do not begin from data; `tchat simulate --torus` makes a label of a torus that "
+        "a motion goes round, ISW = -1 begins at a torus bifurcation (-s NAME IRS=TR1), or give a label of "
+        "a torus with -s",
+        path, settings.problem_type));
   const int m = segment_count(settings);
   const DatFile data = read_dat_file(path, settings.dimension, m);
   ParameterVector par = initial_parameters(system);

@@ -18,6 +18,7 @@
 #include "simulation/decay.hpp"
 #include "simulation/recurrence.hpp"
 #include "simulation/watched_flow.hpp"
+#include "sweep/incoming_states.hpp"
 #include "text/user_error.hpp"
 
 namespace tchat {
@@ -37,15 +38,12 @@ constexpr std::size_t samples_following = 12;  // of a segment, among which the 
 constexpr std::size_t points_for_ignorable = 6;
 constexpr long first_decision = 64;  // events after which exponents may tell the kind of a motion
 constexpr long last_decision = 4096;
-constexpr long events_of_exponents = 128;     // of an attractor whose kind is known
+constexpr long events_of_exponents = 512;     // of an attractor whose kind is known
+constexpr double same_time = 1e-6;            // as a share of the longest segment
 constexpr std::size_t identity_points = 400;  // of a motion that does not repeat itself
 
 /// A recorded state.
-struct Dot {
-  double time = 0.0;
-  int event = 0;
-  VectorXd state;
-};
+using Dot = TimedState;
 
 /// Collects columns of states.
 MatrixXd columns_of(const std::vector<Dot>& dots, Eigen::Index n) {
@@ -159,14 +157,23 @@ class SampleRun {
       keep_exponents(spectrum);
       const bool tells = kind == AttractorKind::chaotic || kind == AttractorKind::quasi_periodic;
       sample_.kind = tells ? kind : AttractorKind::none;
-      if (!tells)
-        sample_.message = fmt::format(
-            "no repetition after 1 to {} events, and the exponents do not tell; a longer --transient-events or a "
-            "larger "
-            "--max-period may",
-            setup_.request.plan.max_period);
+      if (!tells) sample_.message = unclear_text(kind);
       return;
     }
+  }
+
+  /// What may tell the kind of a motion whose exponents are as of this kind, and that has not repeated itself.
+  std::string unclear_text(AttractorKind kind) const {
+    const int most = setup_.request.plan.max_period;
+    if (kind == AttractorKind::periodic)
+      return fmt::format(
+          "the exponents are those of a periodic orbit, and none repeats itself after 1 to {} events: it is longer, or "
+          "approached slowly; try --max-period {}, or more --transient-events",
+          most, 4 * most);
+    return fmt::format(
+        "no repetition after 1 to {} events, and the exponents do not tell; try more --transient-events, or "
+        "--max-period {}",
+        most, 4 * most);
   }
 
   void keep_exponents(const LyapunovSpectrum& spectrum) {
@@ -366,7 +373,11 @@ class SampleRun {
       add_dots(segment, dots);
       if (setup_.recording.penetration > 0) add_contacts(segment, contacts);
     }
-    if (setup_.recording.penetration > 0) describe_contacts(contacts);
+    if (setup_.recording.penetration > 0) {
+      leave_out_doubles(contacts);
+      describe_contacts(contacts);
+    }
+    if (setup_.recording.has_incoming_states()) take_incoming(contacts, dots);
     if (setup_.recording.states == Recording::States::contact) dots = std::move(contacts);
     if (setup_.recording.states == Recording::States::none) return;
     sample_.sections = columns_of(dots, n);
@@ -407,25 +418,92 @@ class SampleRun {
 
   void add_least(int field, const VectorXd& from, double time, std::vector<Dot>& contacts) const {
     const int event = setup_.recording.penetration;
-    const auto rate = [&](const VectorXd& x) { return event_at(system_, event, field, x.data(), par_.data()).rate(); };
-    if (rate(from) >= 0.0) {
+    const auto rises = [&](const VectorXd& x) {
+      return event_at(system_, event, field, x.data(), par_.data()).rate() >= 0.0;
+    };
+    if (rises(from)) {
       contacts.push_back({time, event, from});
       return;
     }
-    const SimulationSettings settings = plain_settings();
-    const std::unique_ptr<WatchedFlow> flow = make_flow(system_, field, from, par_, settings.flow);
-    VectorXd least;
+    if (std::optional<Dot> least = follow_smooth_flow(field, from, plain_settings().flow.max_duration, rises))
+      contacts.push_back({time, event, std::move(least->state)});
+  }
+
+  /// The first state, with its time from now, of which this is so, as if there were no wall; nothing within so long.
+  std::optional<Dot> follow_smooth_flow(int field, const VectorXd& from, double within,
+                                        const std::function<bool(const VectorXd&)>& is_so) const {
+    const std::unique_ptr<WatchedFlow> flow = make_flow(system_, field, from, par_, plain_settings().flow);
+    std::optional<Dot> found;
     flow->on_piece([&](double a, double b) {
-      if (rate(flow->state_at(b)) < 0.0) return true;
+      if (!is_so(flow->state_at(b))) return true;
       for (int halving = 0; halving < 60 && a < b; ++halving) {
         const double middle = 0.5 * (a + b);
-        (rate(flow->state_at(middle)) < 0.0 ? a : b) = middle;
+        (is_so(flow->state_at(middle)) ? b : a) = middle;
       }
-      least = flow->state_at(b);
+      found = Dot{b, 0, flow->state_at(b)};
       return false;
     });
-    flow->advance(settings.flow.max_duration);
-    if (least.size() > 0) contacts.push_back({time, event, least});
+    flow->advance(within);
+    return found;
+  }
+
+  /// Where the event function of the section, of the flow that comes in at this impact, falls through zero.
+  std::optional<Dot> incoming_state(const SimulatedSegment& impact, double within) const {
+    const int section = setup_.recording.section;
+    bool has_been_above = system_.event(section, impact.end.data(), par_.data()) > 0.0;
+    std::optional<Dot> dot = follow_smooth_flow(impact.mode.field(), impact.end, within, [&](const VectorXd& x) {
+      const bool is_above = system_.event(section, x.data(), par_.data()) > 0.0;
+      const bool falls = has_been_above && !is_above;
+      has_been_above = has_been_above || is_above;
+      return falls;
+    });
+    if (!dot) return dot;
+    dot->time += impact.end_time();
+    dot->event = section;
+    return dot;
+  }
+
+  /// A least value at which an event ends the segment is seen by that segment and by the next one.
+  void leave_out_doubles(std::vector<Dot>& contacts) const {
+    const TimeSpan span = time_span();
+    const double apart = same_time * longest_segment();
+    const auto is_double = [&](const Dot& a, const Dot& b) {
+      return std::min(span.from_to(a.time, b.time), span.from_to(b.time, a.time)) <= apart;
+    };
+    contacts.erase(std::unique(contacts.begin(), contacts.end(), is_double), contacts.end());
+    if (span.period && contacts.size() > 1 && is_double(contacts.back(), contacts.front())) contacts.pop_back();
+  }
+
+  double longest_segment() const {
+    double longest = 0.0;
+    for (const SimulatedSegment& segment : kept_) longest = std::max(longest, segment.duration);
+    return longest;
+  }
+
+  TimeSpan time_span() const {
+    TimeSpan span{kept_.front().start_time, {}};
+    if (sample_.kind == AttractorKind::periodic) span.period = sample_.period;
+    return span;
+  }
+
+  /// Of states on a section those of the flow that comes in, each with the penetration of the contact beside it.
+  void take_incoming(const std::vector<Dot>& contacts, std::vector<Dot>& dots) {
+    const TimeSpan span = time_span();
+    std::vector<const SimulatedSegment*> impacts;
+    std::vector<double> times;
+    for (const SimulatedSegment& segment : kept_) {
+      if (segment.ended_by != SegmentEnd::event || segment.index.event != setup_.recording.penetration) continue;
+      impacts.push_back(&segment);
+      times.push_back(segment.end_time());
+    }
+    dots = incoming_states(dots, times, span,
+                           [&](std::size_t k, double within) { return incoming_state(*impacts[k], within); });
+    const std::vector<int> nearest = nearest_contacts(dots, contacts, span);
+    sample_.section_penetrations = VectorXd::Constant(static_cast<Eigen::Index>(dots.size()), not_there);
+    for (std::size_t k = 0; k < dots.size(); ++k)
+      if (nearest[k] >= 0)
+        sample_.section_penetrations(static_cast<Eigen::Index>(k)) = -system_.event(
+            setup_.recording.penetration, contacts[static_cast<std::size_t>(nearest[k])].state.data(), par_.data());
   }
 
   void describe_contacts(const std::vector<Dot>& contacts) {

@@ -19,7 +19,9 @@ struct Recording {
   enum class States {
     none,
     all_events,  ///< where events end segments, before their jumps
-    section,     ///< where the event function `section` falls through zero, before the jump if it ends the segment
+    /// Where the event function `section` falls through zero, before the jump if it ends the segment; with
+    /// `penetration`, of the flow that comes in (sweep/incoming_states.hpp)
+    section,
     /// On P, where `penetration` is least along the smooth flow that comes in (h_x f = 0): an impact there is taken
     /// account of only afterwards (2.64)
     contact,
@@ -27,6 +29,9 @@ struct Recording {
   int section = 0;      ///< event function
   int penetration = 0;  ///< event function whose least value is wanted; 0 none
   int exponents = 0;    ///< 0: none
+
+  /// On the wall itself there is nothing to follow.
+  bool has_incoming_states() const { return states == States::section && penetration > 0 && penetration != section; }
 };
 
 /// The same for all values and workers; changed by nobody while they work.

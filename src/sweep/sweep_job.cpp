@@ -322,6 +322,7 @@ void count_found(const std::vector<SampleRecord>& records, const AttractorNumber
     if (number > 0) {
       ++outcome.found[static_cast<std::size_t>(number) - 1];
     } else if (outcome.without++ == 0) {
+      outcome.first_without = records[r].index;
       outcome.first_message = records[r].sample.message;
     }
   }

@@ -66,7 +66,8 @@ struct SweepOutcome {
   std::vector<SweepAttractor> attractors;  ///< not of a part
   std::vector<std::size_t> found;          ///< in how many (value, start) each was
   std::size_t without = 0;                 ///< (value, start) without attractor
-  std::string first_message;               ///< why the first of them has none
+  std::size_t first_without = 0;           ///< index of the first of them
+  std::string first_message;               ///< why it has none
 };
 
 /// Throws UserError (another sweep's journal, missing parts) and ComputationError. `progress` may be null.

@@ -41,7 +41,7 @@ struct AttractorSample {
   Eigen::VectorXd exponents, errors;  ///< Lyapunov exponents, descending, with their error bars
   Eigen::MatrixXd sections;           ///< recorded states, n x (number of them), in the order of time
   std::vector<int> section_events;    ///< the event function of each, where several are recorded; else empty
-  Eigen::VectorXd section_penetrations;  ///< of each, where they lie on P (h_J,x f = 0); else empty
+  Eigen::VectorXd section_penetrations;  ///< of each, on P (h_J,x f = 0), or of the contact beside it; else empty
   /// Section states by which equal attractors are known; periodic: one period, of every event in the order of
   /// `signature`. n x (number of them)
   Eigen::MatrixXd identity;

@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <atomic>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -100,7 +99,8 @@ std::string recorded_text(const Recording& recording) {
     case Recording::States::all_events:
       return "at all events";
     case Recording::States::section:
-      return fmt::format("at event function {}", recording.section);
+      return fmt::format("at event function {}{}", recording.section,
+                         recording.has_incoming_states() ? ", of the flow that comes in" : "");
     case Recording::States::contact:
       return fmt::format("where event function {} is least", recording.penetration);
     default:
@@ -192,26 +192,12 @@ int sweep_problem(const SweepRequest& request, std::ostream& screen, std::ostrea
   std::vector<SimulationSampler> samplers;
   for (int worker = 0; worker < task.workers && !task.gather; ++worker)
     samplers.emplace_back(setup, workers.system(worker));
-  // The signal is asked for by the calling thread alone; workers look at what it has seen.
-  const auto is_stopped = std::make_shared<std::atomic<bool>>(false);
-  const auto ask = [&interrupted, is_stopped] {
-    if (interrupted()) *is_stopped = true;
-    return is_stopped->load();
-  };
-  const std::function<bool()> look = [is_stopped] { return is_stopped->load(std::memory_order_relaxed); };
-  job.maker = [&](int worker) -> SampleFunction {
-    return [&samplers, &look, worker](const SweepPoint& point) {
-      return samplers[static_cast<std::size_t>(worker)](point, look);
-    };
-  };
+  const StopFlag stop(interrupted);
+  job.maker = maker_of(samplers, stop);
   job.learn = [&](const std::vector<AttractorSample>& known) {
-    setup.known = capture_regions(setup, system, known, ask);
+    setup.known = capture_regions(setup, system, known, stop.ask());
   };
-  std::ostream nowhere(nullptr);
-  const SweepOutcome outcome = run_sweep(job, task, ask, progress, request.simulation.quiet ? nowhere : screen);
-  if (!request.simulation.quiet || !outcome.is_complete) screen << outcome_text(job, outcome) << std::flush;
-  if (const std::string complaint = loaded.library->complaint(); !complaint.empty())
-    warnings << "tchat: warning: " << complaint << '\n';
+  run_and_tell(job, task, loaded, stop, progress, screen, warnings, request.simulation.quiet);
   return 0;
 }
 

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <filesystem>
 #include <optional>
+#include <utility>
 
 #include "plugin/build_stamp.hpp"
 #include "text/number.hpp"
@@ -26,6 +28,39 @@ void read_part(const std::string& text, SweepTask& task) {
     throw UserError(fmt::format("--part {}: it is no part I of N, 1 <= I <= N; an example is --part 3/7", text));
   task.part = *part;
   task.parts = *parts;
+}
+
+/// "mu = -0.5, x1(0) = 2"
+std::string place_text(const SweepJob& job, std::size_t index) {
+  const VectorXd values = SweepGrid(job.heading.over).values(index);
+  std::string at;
+  for (std::size_t q = 0; q < job.heading.over.size(); ++q)
+    at += fmt::format("{}{} = {:.6g}", q > 0 ? ", " : "", job.heading.over[q].column(),
+                      values(static_cast<Eigen::Index>(q)));
+  return at;
+}
+
+/// The summary on the screen.
+std::string outcome_text(const SweepJob& job, const SweepOutcome& outcome) {
+  std::string text;
+  if (!outcome.is_complete)
+    return fmt::format("Interrupted: {} of {} values are kept in {}; the same command goes on.\n",
+                       outcome.kept + outcome.computed, outcome.values, outcome.written);
+  text = fmt::format("{} values, {} computed now\n", outcome.values, outcome.computed);
+  constexpr std::size_t most_told = 20;
+  for (std::size_t a = 0; a < outcome.attractors.size() && a < most_told; ++a) {
+    const SweepAttractor& attractor = outcome.attractors[a];
+    text += fmt::format("Attractor {}: {}", attractor.number, to_string(attractor.kind));
+    if (!attractor.signature.empty()) text += ", " + attractor.signature;
+    text += fmt::format(", {} times, first at {}\n", outcome.found[a], place_text(job, attractor.index));
+  }
+  if (outcome.attractors.size() > most_told)
+    text += fmt::format("... and {} further attractors\n", outcome.attractors.size() - most_told);
+  if (outcome.without > 0)
+    text += fmt::format("No attractor: {} times, first at {}{}{}\n", outcome.without,
+                        place_text(job, outcome.first_without), outcome.first_message.empty() ? "" : ": ",
+                        outcome.first_message);
+  return text + fmt::format("Written: {}\n", outcome.written);
 }
 
 }  // namespace
@@ -74,32 +109,6 @@ WorkerSystems::WorkerSystems(const LoadedProblem& loaded, const SimulationReques
   }
 }
 
-std::string outcome_text(const SweepJob& job, const SweepOutcome& outcome) {
-  std::string text;
-  if (!outcome.is_complete)
-    return fmt::format("Interrupted: {} of {} values are kept in {}; the same command goes on.\n",
-                       outcome.kept + outcome.computed, outcome.values, outcome.written);
-  text = fmt::format("{} values, {} computed now\n", outcome.values, outcome.computed);
-  constexpr std::size_t most_told = 20;
-  for (std::size_t a = 0; a < outcome.attractors.size() && a < most_told; ++a) {
-    const SweepAttractor& attractor = outcome.attractors[a];
-    text += fmt::format("Attractor {}: {}", attractor.number, to_string(attractor.kind));
-    if (!attractor.signature.empty()) text += ", " + attractor.signature;
-    const VectorXd values = SweepGrid(job.heading.over).values(attractor.index);
-    std::string at;
-    for (std::size_t q = 0; q < job.heading.over.size(); ++q)
-      at += fmt::format("{}{} = {:.6g}", q > 0 ? ", " : "", job.heading.over[q].column(),
-                        values(static_cast<Eigen::Index>(q)));
-    text += fmt::format(", {} times, first at {}\n", outcome.found[a], at);
-  }
-  if (outcome.attractors.size() > most_told)
-    text += fmt::format("... and {} further attractors\n", outcome.attractors.size() - most_told);
-  if (outcome.without > 0)
-    text += fmt::format("No attractor: {} times{}{}\n", outcome.without,
-                        outcome.first_message.empty() ? "" : "; first: ", outcome.first_message);
-  return text + fmt::format("Written: {}\n", outcome.written);
-}
-
 SweepTask sweep_task(const SweepRequest& request) {
   SweepTask task;
   task.output = request.simulation.output.value_or(request.simulation.name);
@@ -114,6 +123,24 @@ SweepTask sweep_task(const SweepRequest& request) {
     throw UserError("--part and --gather are both given; parts are made first, and then gathered");
   if (request.part) read_part(*request.part, task);
   return task;
+}
+
+StopFlag::StopFlag(std::function<bool()> interrupted) {
+  const auto is_stopped = std::make_shared<std::atomic<bool>>(false);
+  ask_ = [interrupted = std::move(interrupted), is_stopped] {
+    if (interrupted()) *is_stopped = true;
+    return is_stopped->load();
+  };
+  look_ = [is_stopped] { return is_stopped->load(std::memory_order_relaxed); };
+}
+
+void run_and_tell(const SweepJob& job, const SweepTask& task, const LoadedProblem& loaded, const StopFlag& stop,
+                  std::ostream* progress, std::ostream& screen, std::ostream& warnings, bool quiet) {
+  std::ostream nowhere(nullptr);
+  const SweepOutcome outcome = run_sweep(job, task, stop.ask(), progress, quiet ? nowhere : screen);
+  if (!quiet || !outcome.is_complete) screen << outcome_text(job, outcome) << std::flush;
+  if (const std::string complaint = loaded.library->complaint(); !complaint.empty())
+    warnings << "tchat: warning: " << complaint << '\n';
 }
 
 }  // namespace tchat

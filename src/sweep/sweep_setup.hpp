@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <memory>
 #include <ostream>
 #include <string>
@@ -41,7 +42,31 @@ class WorkerSystems {
   std::vector<const HybridSystem*> systems_;
 };
 
-/// The summary on the screen.
-std::string outcome_text(const SweepJob& job, const SweepOutcome& outcome);
+/// A signal to stop, asked for by the calling thread alone; workers look at what it has seen.
+class StopFlag {
+ public:
+  explicit StopFlag(std::function<bool()> interrupted);
+
+  const std::function<bool()>& ask() const { return ask_; }
+  const std::function<bool()>& look() const { return look_; }
+
+ private:
+  std::function<bool()> ask_, look_;
+};
+
+/// Workers that each have a sampler, called with a point and the flag's look(). A view of both.
+template <class Sampler>
+SampleMaker maker_of(const std::vector<Sampler>& samplers, const StopFlag& stop) {
+  return [&samplers, &stop](int worker) -> SampleFunction {
+    return [&sampler = samplers[static_cast<std::size_t>(worker)], &stop](const SweepPoint& point) {
+      return sampler(point, stop.look());
+    };
+  };
+}
+
+/// Runs the job and tells its outcome on the screen (when quiet only an interruption), and what the plugin complains
+/// of.
+void run_and_tell(const SweepJob& job, const SweepTask& task, const LoadedProblem& loaded, const StopFlag& stop,
+                  std::ostream* progress, std::ostream& screen, std::ostream& warnings, bool quiet);
 
 }  // namespace tchat

@@ -57,6 +57,23 @@ SimulationPlan plan_of(const SimulationPlan& asked, std::size_t segments) {
   return plan;
 }
 
+/// A state that goes on and on is an angle to the user, not to the problem.
+void refuse_growth(const HybridSystem& system, const Eigen::MatrixXd& points, const std::string& source) {
+  const Eigen::Index half = points.cols() / 2;
+  for (Eigen::Index i = 0; i < points.rows(); ++i) {
+    const Eigen::RowVectorXd first = points.row(i).head(half), second = points.row(i).tail(half);
+    const bool apart = first.maxCoeff() < second.minCoeff() || second.maxCoeff() < first.minCoeff();
+    const double moved = std::abs(second.mean() - first.mean());
+    if (!apart || moved < 1.0) continue;
+    throw UserError(
+        fmt::format("{}: {} goes on and on, from {:.4g} to {:.4g}: an angle may do so where 2 pi more changes neither "
+                    "fields nor events nor jumps of the signature, which is not so here; end returns in the event "
+                    "whose jump takes 2 pi off (--signature), or write the problem with sine and cosine of that angle "
+                    "as two states, or drop a longer transient where the motion only drifts",
+                    source, system.state_name(static_cast<int>(i) + 1), points(i, 0), points(i, points.cols() - 1)));
+  }
+}
+
 int free_parameter(const SimulationRequest& request, const SimulationConstants& constants, const HybridSystem& system) {
   if (request.parameter) return parameter_index(system, *request.parameter, "--free");
   for (const int k : constants.settings.free_parameters)
@@ -114,9 +131,11 @@ int simulate_torus(const SimulationRequest& request, const std::string& torus_na
   if (motion.empty())
     throw ComputationError(
         fmt::format("{}: no segment ended in an event after the transient: {}", request.name, result.last.message));
-  const Eigen::MatrixXd points = points_of_returns(motion, one_return, request.name);
+  const auto [points, angles] =
+      with_angles(system, one_return, points_of_returns(motion, one_return, request.name), start.par);
+  refuse_growth(system, points, request.name);
   const FittedCurve fitted =
-      fit_invariant_curve(points, {.angles = {}, .max_harmonics = 200, .tolerance = fit_tolerance}, request.name);
+      fit_invariant_curve(points, {.angles = angles, .max_harmonics = 200, .tolerance = fit_tolerance}, request.name);
 
   const RunSettings settings = torus_settings(constants, free_parameter(request, constants, system));
   const int most = (max_orbit_segments / static_cast<int>(one_return.size()) - 1) / 2;

@@ -2,6 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "bvp/torus_winding.hpp"
 #include "simulation/segment_flow.hpp"
 #include "text/user_error.hpp"
 
@@ -18,6 +24,21 @@ std::size_t agreeing(const std::vector<PassedSegment>& motion, const Signature& 
   std::size_t k = first;
   while (k < motion.size() && motion[k].index == one_return[(k - first) % one_return.size()]) ++k;
   return k - first;
+}
+
+/// In turns. The middle of the widest gap that points leave on the circle, and its width.
+std::pair<double, double> widest_gap_of(const Eigen::RowVectorXd& turns) {
+  std::vector<double> sorted;
+  for (const double t : turns) sorted.push_back(t - std::floor(t));
+  std::sort(sorted.begin(), sorted.end());
+  double middle = 0.0, width = -1.0;
+  for (std::size_t k = 0; k < sorted.size(); ++k) {
+    const double next = k + 1 < sorted.size() ? sorted[k + 1] : sorted.front() + 1.0;
+    if (next - sorted[k] <= width) continue;
+    width = next - sorted[k];
+    middle = 0.5 * (next + sorted[k]);
+  }
+  return {middle, width};
 }
 
 [[noreturn]] void fail(int orbit, std::size_t segment, const std::string& why) {
@@ -45,6 +66,23 @@ Eigen::MatrixXd points_of_returns(const std::vector<PassedSegment>& motion, cons
   Eigen::MatrixXd points(motion.front().start.size(), static_cast<Eigen::Index>((count + m - 1) / m));
   for (Eigen::Index k = 0; k < points.cols(); ++k) points.col(k) = motion[best + static_cast<std::size_t>(k) * m].start;
   return points;
+}
+
+PointsWithAngles with_angles(const HybridSystem& system, const Signature& one_return, Eigen::MatrixXd points,
+                             const ParameterVector& par) {
+  constexpr Eigen::Index samples = 20;
+  constexpr double empty = 0.05;  // turns: so many points of a curve that goes round leave less
+  constexpr double turn = 2.0 * std::numbers::pi;
+  PointsWithAngles result;
+  for (const Eigen::Index state :
+       angle_states(system, one_return, points.leftCols(std::min(samples, points.cols())), par)) {
+    const auto [middle, width] = widest_gap_of(points.row(state) / turn);
+    if (width < empty) result.winding.push_back(state);
+    // From the middle of the gap on: a curve that does not go round is in one piece then.
+    for (double& x : points.row(state)) x -= turn * std::floor(x / turn - middle + 1.0);
+  }
+  result.points = std::move(points);
+  return result;
 }
 
 Orbit orbits_from_curve(const HybridSystem& system, const Signature& one_return, const InvariantCurve& curve,

@@ -22,6 +22,14 @@ struct PassedSegment {
 Eigen::MatrixXd points_of_returns(const std::vector<PassedSegment>& motion, const Signature& one_return,
                                   const std::string& source);
 
+/// Points whose angles (bvp/torus_winding.hpp) are counted modulo 2 pi, and which of these go round: n x K.
+struct PointsWithAngles {
+  Eigen::MatrixXd points;
+  std::vector<Eigen::Index> winding;  ///< states, from 0; the other angles go to and fro
+};
+PointsWithAngles with_angles(const HybridSystem& system, const Signature& one_return, Eigen::MatrixXd points,
+                             const ParameterVector& par);
+
 /// `orbits` returns from equal phases of the curve, integrated, on a uniform mesh; PAR with rho and the durations.
 /// Throws ComputationError where one cannot be integrated.
 Orbit orbits_from_curve(const HybridSystem& system, const Signature& one_return, const InvariantCurve& curve,

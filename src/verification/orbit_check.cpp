@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "constants/settings_type.hpp"
 #include "hybrid/event_at.hpp"
@@ -73,14 +74,36 @@ SegmentLink link_at(const HybridSystem& system, const StoredSegment& segment, co
   return link;
 }
 
-/// The state after the stored end's jump against the next stored start.
-double jump_defect(const HybridSystem& system, const IndexVector& index, const Orbit& x, int s, const VectorXd& scale) {
-  const int n = x.shape.dimension;
-  VectorXd after(n);
+/// The state after the stored end's jump against the one that follows.
+double jump_defect(const HybridSystem& system, const IndexVector& index, const Orbit& x, int s,
+                   const VectorXd& following, const VectorXd& scale) {
+  VectorXd after(x.shape.dimension);
   system.value(FunctionKind::jump, index.jump, x.end(s), x.par.data(), after.data());
-  const Eigen::Map<const VectorXd> next(x.start((s + 1) % x.shape.segments), n);
-  return (after - next).cwiseAbs().cwiseQuotient(scale).maxCoeff();
+  return (after - following).cwiseAbs().cwiseQuotient(scale).maxCoeff();
 }
+
+/// The starts of the segments after each, in a ring.
+MatrixXd next_starts(const Orbit& x) {
+  MatrixXd starts(x.shape.dimension, x.shape.segments);
+  for (int s = 0; s < x.shape.segments; ++s)
+    starts.col(s) = Eigen::Map<const VectorXd>(x.start((s + 1) % x.shape.segments), x.shape.dimension);
+  return starts;
+}
+
+/// Does a jump change nothing but angles, by whole turns?
+bool takes_turns_off(const HybridSystem& system, int jump, const VectorXd& x, const VectorXd& par,
+                     const std::vector<Eigen::Index>& angles) {
+  if (angles.empty()) return false;
+  constexpr double turn = 2.0 * std::numbers::pi, rounding = 1e-9;
+  VectorXd change(x.size());
+  system.value(FunctionKind::jump, jump, x.data(), par.data(), change.data());
+  change -= x;
+  for (const Eigen::Index a : angles) change(a) = std::remainder(change(a), turn);
+  return change.cwiseAbs().maxCoeff() <= rounding * (1.0 + x.cwiseAbs().maxCoeff());
+}
+
+/// NaN stays.
+void take_larger(double& value, double other) { value = std::isfinite(other) ? std::max(value, other) : other; }
 
 /// The largest of the boundary conditions at the stored ends.
 double boundary_defect(const HybridSystem& system, const Orbit& x) {
@@ -122,24 +145,38 @@ VectorXd state_scales(const Orbit& x) {
   return scale.cwiseMax(largest > 0.0 ? least_scale * largest : 1.0);
 }
 
+std::vector<SegmentCheck> check_segments(const HybridSystem& system, const RunSettings& settings, const Orbit& x,
+                                         const VectorXd& scale, const MatrixXd& following, double tolerance,
+                                         const std::vector<Eigen::Index>& angles) {
+  std::vector<SegmentCheck> checks;
+  for (int s = 0; s < x.shape.segments; ++s) {
+    const IndexVector& index = settings.segments[static_cast<std::size_t>(s)].index;
+    StoredSegment stored = stored_segment(system, settings, x, s);
+    std::erase_if(stored.alternatives, [&](const IndexVector& other) {
+      return takes_turns_off(system, other.jump, stored.start, x.par, angles);
+    });
+    SegmentCheck segment = check_segment(system, stored, x.par, scale, tolerance);
+    if (s < following.cols())
+      take_larger(segment.state_defect, jump_defect(system, index, x, s, following.col(s), scale));
+    checks.push_back(std::move(segment));
+  }
+  return checks;
+}
+
 OrbitCheck check_orbit(const HybridSystem& system, const RunSettings& settings, const Orbit& x,
                        const std::vector<std::complex<double>>& stored, double tolerance,
                        const CriticalMultipliers& critical) {
   OrbitCheck check;
   const VectorXd scale = state_scales(x);
   const VectorXd par = x.par;
-  std::vector<SegmentLink> links;
   const bool ring = has_ring(settings.problem_type);
+  check.segments = check_segments(system, settings, x, scale, ring ? next_starts(x) : MatrixXd(), tolerance);
+  if (!ring) take_larger(check.segments.back().state_defect, boundary_defect(system, x));
+  std::vector<SegmentLink> links;
   for (int s = 0; s < x.shape.segments; ++s) {
-    const IndexVector& index = settings.segments[static_cast<std::size_t>(s)].index;
-    const StoredSegment stored_one = stored_segment(system, settings, x, s);
-    SegmentCheck segment = check_segment(system, stored_one, par, scale, tolerance);
-    if (ring && segment.message.empty()) links.push_back(link_at(system, stored_one, segment, par, scale));
-    const double tie = ring                        ? jump_defect(system, index, x, s, scale)
-                       : s == x.shape.segments - 1 ? boundary_defect(system, x)
-                                                   : 0.0;
-    segment.state_defect = std::isfinite(tie) ? std::max(segment.state_defect, tie) : tie;
-    check.segments.push_back(std::move(segment));
+    const SegmentCheck& segment = check.segments[static_cast<std::size_t>(s)];
+    if (ring && segment.message.empty())
+      links.push_back(link_at(system, stored_segment(system, settings, x, s), segment, par, scale));
     check.durations.push_back(x.duration(s));
     check.period += std::abs(x.duration(s));
   }

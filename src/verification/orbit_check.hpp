@@ -33,6 +33,13 @@ struct OrbitCheck {
 /// largest.
 Eigen::VectorXd state_scales(const Orbit& x);
 
+/// Every segment from its stored start; column s of `following` (n x segments) is the state that its jump must lead to,
+/// which state_defect counts; no column: not looked at. `settings` has all segments of the orbit. An event that could
+/// have ended a segment but whose jump takes whole turns off `angles` (states, from 0) alone is none.
+std::vector<SegmentCheck> check_segments(const HybridSystem& system, const RunSettings& settings, const Orbit& x,
+                                         const Eigen::VectorXd& scale, const Eigen::MatrixXd& following,
+                                         double tolerance, const std::vector<Eigen::Index>& angles = {});
+
 /// `stored`: the multipliers of the d-file; empty when there are none. `critical`: those that the label must have, by
 /// the computed ones.
 using CriticalMultipliers =

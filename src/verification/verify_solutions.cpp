@@ -28,6 +28,7 @@
 #include "text/user_error.hpp"
 #include "verification/critical_label.hpp"
 #include "verification/orbit_check.hpp"
+#include "verification/torus_check.hpp"
 
 namespace tchat {
 
@@ -52,12 +53,15 @@ std::map<int, DiagnosticPoint> recorded_points(const std::string& path) {
 
 /// Why this entry of a q-file is not an orbit of these constants; "" when it is.
 std::string mismatch(const LabelledSolution& solution, const RunSettings& settings) {
-  if (is_torus(solution.problem_type))
-    return "is a torus, whose orbits of one return do not follow each other: simulate from it and look at the distance "
-           "from the curve on the section";
   const auto states = static_cast<Eigen::Index>(settings.segments.size()) * settings.dimension;
   if (!is_same_problem_type(solution.problem_type, settings.problem_type))
     return fmt::format("computed with IPS = {}, the constants have {}", solution.problem_type, settings.problem_type);
+  if (is_torus(settings.problem_type)) {
+    const Eigen::Index orbits = solution.states.rows() / states;
+    if (solution.states.rows() % states == 0 && orbits >= 3 && orbits % 2 == 1) return "";
+    return fmt::format("has {} states, no odd number of returns of {} segments of {}", solution.states.rows(),
+                       settings.segments.size(), settings.dimension);
+  }
   if (solution.states.rows() != states)
     return fmt::format("has {} states, the constants {} segments of {}", solution.states.rows(),
                        settings.segments.size(), settings.dimension);
@@ -111,6 +115,7 @@ class Table {
       return {false, false};
     }
     const Orbit x = orbit_of(solution);
+    if (is_torus(settings_.problem_type)) return torus_rows(solution, x, recorded);
     const auto stored = recorded != nullptr ? recorded->multipliers : std::vector<std::complex<double>>{};
     const OrbitCheck check =
         check_orbit(system_, settings_, x, stored, tolerance_, [&](const std::vector<std::complex<double>>& computed) {
@@ -123,6 +128,11 @@ class Table {
   }
 
   std::string worst() const {
+    if (is_torus(settings_.problem_type))
+      return fmt::format(
+          "Largest defects over returns from the stored phases and half way between them: states {:.1e} ({}), times "
+          "{:.1e} ({}); multipliers are not verified.\n",
+          state_.value, state_.where, time_.value, time_.where);
     const std::string critical =
         critical_.where == "none" ? "" : fmt::format(", critical ones {:.1e} ({})", critical_.value, critical_.where);
     return fmt::format("Largest defects: states {:.1e} ({}), times {:.1e} ({}), multipliers {:.1e} ({}){}.\n",
@@ -132,7 +142,7 @@ class Table {
 
  private:
   Orbit orbit_of(const LabelledSolution& solution) const {
-    const auto segments = static_cast<int>(settings_.segments.size());
+    const auto segments = static_cast<int>(solution.states.rows() / settings_.dimension);
     return orbit_from_solution(solution,
                                {settings_.dimension, segments, solution.mesh_intervals, solution.collocation_points},
                                {}, "the q-file")
@@ -162,6 +172,11 @@ class Table {
                           segment.passed.front().time,
                           segment.passed.size() > 1 ? fmt::format(" and {} more", segment.passed.size() - 1) : "");
     return segment.message.empty() ? text : segment.message;
+  }
+
+  /// A row for each segment of the return, the worst over all phases.
+  Verdict torus_rows(const LabelledSolution& solution, const Orbit& x, const DiagnosticPoint* recorded) {
+    return rows(solution, check_torus(system_, settings_, x, tolerance_), recorded != nullptr && !recorded->admissible);
   }
 
   /// Of an orbit for which none are stored, or which has none.
@@ -201,7 +216,8 @@ class Table {
                              check.durations[s], segment.state_defect, time, segment.growth,
                              once(check.multiplier_difference), once(check.critical_difference), events(check, s), end);
     }
-    if (!check.multiplier_difference && has_ring(settings_.problem_type)) screen_ << multipliers_of(check);
+    if (!check.multiplier_difference && has_ring(settings_.problem_type) && !is_torus(settings_.problem_type))
+      screen_ << multipliers_of(check);
     if (check.multiplier_difference)
       multipliers_.take(*check.multiplier_difference, fmt::format("label {}", solution.label));
     if (check.critical_difference) critical_.take(*check.critical_difference, fmt::format("label {}", solution.label));
@@ -260,7 +276,7 @@ bool verify_solutions(const VerifyRequest& request, std::ostream& screen, std::o
 
   const std::string diagnostics = sibling_path(path, 'd');
   const std::map<int, DiagnosticPoint> recorded = recorded_points(diagnostics);
-  if (recorded.empty())
+  if (recorded.empty() && !is_torus(settings.problem_type))
     warnings << fmt::format("tchat: warning: there is no {}: multipliers are compared with nothing\n",
                             diagnostics.empty() ? "d-file" : diagnostics);
   Table table(system, settings, request.tolerance, screen);

@@ -15,11 +15,12 @@ namespace tchat::benchmark {
 
 namespace {
 
-constexpr int intervals = 50;
 constexpr int short_run = 5;
 
-/// Measured steps of AUTO: as many as the growth of its work with k allows.
-int measured_steps(int k, bool quick) { return quick ? 10 : std::max(400 / (k * k), 16); }
+/// Measured steps of AUTO: as many as the growth of its work with k and NTST allows.
+int measured_steps(const AutoSize& size, bool quick) {
+  return quick ? 10 : std::max(400 * 50 / (size.segments * size.segments * size.intervals), 16);
+}
 
 struct Comparison {
   double auto_step = 0.0;        // seconds
@@ -51,11 +52,11 @@ double difference_from(const AutoSolution& theirs, const OrbitShape& shape, int 
   return largest;
 }
 
-Comparison compare(int k, bool quick) {
-  const AutoProgram program(k, intervals);
-  const OrbitShape shape = walk_shape(k, intervals);
+Comparison compare(const AutoSize& size, bool quick) {
+  const AutoProgram program(size.segments, size.intervals);
+  const OrbitShape shape = walk_shape(size.segments, size.intervals);
   BranchWalk walk(shape);
-  const int steps = measured_steps(k, quick);
+  const int steps = measured_steps(size, quick);
   const AutoRun checked = program.run(short_run + steps, true);
 
   Comparison result;
@@ -100,16 +101,16 @@ bool auto_is_installed() {
   return true;
 }
 
-void print_auto_comparison(const std::vector<int>& segments, bool quick) {
-  fmt::print("(d) AUTO-07p (IPS = 4, 4k functions, JAC = 1) on the same k-segment problem, NTST = {}, NCOL = {}\n\n",
-             intervals, collocation_points);
-  fmt::print("{:>4}{:>14}{:>14}{:>18}{:>10}{:>20}{:>24}{:>20}\n", "k", "AUTO [us]", "tchat [us]", "multipliers [us]",
-             "ratio", "ratio with mult.", "Newton it. AUTO/tchat", "difference");
-  for (const int k : segments) {
-    const Comparison c = compare(k, quick);
-    fmt::print("{:>4}{:>14.0f}{:>14.0f}{:>18.0f}{:>10.1f}{:>20.1f}{:>17.2f} /{:>5.2f}{:>20.1e}\n", k, 1e6 * c.auto_step,
-               1e6 * c.step, 1e6 * c.multipliers, c.ratio, c.ratio * c.step / (c.step + c.multipliers),
-               c.auto_iterations, c.iterations, c.difference);
+void print_auto_comparison(const std::vector<AutoSize>& sizes, bool quick) {
+  fmt::print("(f) AUTO-07p (IPS = 4, 4k functions, JAC = 1) on the same k-segment problem, NCOL = {}\n\n",
+             collocation_points);
+  fmt::print("{:>4}{:>6}{:>14}{:>14}{:>18}{:>10}{:>20}{:>24}{:>20}\n", "k", "NTST", "AUTO [us]", "tchat [us]",
+             "multipliers [us]", "ratio", "ratio with mult.", "Newton it. AUTO/tchat", "difference");
+  for (const AutoSize& size : sizes) {
+    const Comparison c = compare(size, quick);
+    fmt::print("{:>4}{:>6}{:>14.0f}{:>14.0f}{:>18.0f}{:>10.1f}{:>20.1f}{:>17.2f} /{:>5.2f}{:>20.1e}\n", size.segments,
+               size.intervals, 1e6 * c.auto_step, 1e6 * c.step, 1e6 * c.multipliers, c.ratio,
+               c.ratio * c.step / (c.step + c.multipliers), c.auto_iterations, c.iterations, c.difference);
   }
   fmt::print("\n");
 }

@@ -1,4 +1,4 @@
-/// Table (d): the same k-segment problem, step length, mesh and tolerances in AUTO-07p, IPS = 4.
+/// Table (e): the same k-segment problem, step length, mesh and tolerances in AUTO-07p, IPS = 4.
 ///
 /// Time per step is the difference of two run lengths of AUTO's program, in processor time, so that its start-up drops
 /// out; on our side it is the median of as many measurements, taken in turn with AUTO's. To show that both compute the
@@ -12,6 +12,11 @@ namespace tchat::benchmark {
 /// False, after a message that says what to install, when AUTO-07p or gfortran is not there.
 bool auto_is_installed();
 
-void print_auto_comparison(const std::vector<int>& segments, bool quick);
+struct AutoSize {
+  int segments;
+  int intervals;  ///< NTST
+};
+
+void print_auto_comparison(const std::vector<AutoSize>& sizes, bool quick);
 
 }  // namespace tchat::benchmark

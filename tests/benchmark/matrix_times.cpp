@@ -9,7 +9,7 @@
 
 #include "benchmark/branch_walk.hpp"
 #include "benchmark/timing.hpp"
-#include "linear_algebra/block_kernel.hpp"
+#include "linear_algebra/lane_kernel.hpp"
 #include "linear_algebra/partial_lu.hpp"
 
 namespace tchat::benchmark {
@@ -29,15 +29,17 @@ std::vector<double> random_numbers(std::size_t count) {
   return values;
 }
 
-/// Random blocks that an elimination kernel is let loose on, one after the other.
+/// Random blocks that an elimination kernel is let loose on, one after the other: `together` of them at a time.
 class RandomBlocks {
  public:
-  RandomBlocks(int blocks, int rows, int pivots, int width)
-      : blocks_(blocks),
-        size_((rows + border) * width),
-        pristine_(random_numbers(static_cast<std::size_t>(blocks * size_))),
-        work_(pristine_),
-        swaps_(static_cast<std::size_t>(pivots)) {}
+  RandomBlocks(int blocks, int rows, int pivots, int width, int together)
+      : blocks_((blocks + together - 1) / together),
+        size_((rows + border) * width * together),
+        work_(static_cast<std::size_t>(blocks_ * size_)),
+        swaps_(static_cast<std::size_t>(pivots * together)) {
+    const std::vector<double> numbers = random_numbers(work_.size());
+    pristine_.assign(numbers.begin(), numbers.end());
+  }
 
   void copy() {
     run([](double*, int*) {});
@@ -55,8 +57,8 @@ class RandomBlocks {
  private:
   int blocks_;
   int size_;
-  std::vector<double> pristine_;
-  std::vector<double> work_;
+  LaneArray pristine_;
+  LaneArray work_;
   std::vector<int> swaps_;
 };
 
@@ -124,12 +126,15 @@ void print_matrix_times(int rounds) {
   std::vector<double> fx(n * n);
   std::vector<double> fp(n);
 
-  RandomBlocks interval_blocks(intervals, 16, 12, 24);
-  const BlockKernel join = join_kernel(n, scalars);
-  RandomBlocks join_blocks(intervals - 1, join.rows(), join.pivots(), join.width());
+  const LaneKernel interval(16, 12, 22);
+  RandomBlocks interval_blocks(intervals, interval.rows(), interval.pivots(), interval.width(), lanes);
+  RandomBlocks single_blocks(intervals, 16, 12, 24, 1);
+  const LaneKernel join(2 * n, n, 3 * n + scalars);
+  RandomBlocks join_blocks(intervals - 1, join.rows(), join.pivots(), join.width(), lanes);
   Remainder remainder;
 
-  const auto eliminate_interval = [](double* a, int* swaps) {
+  const auto eliminate_interval = [&](double* a, int* swaps) { keep(interval.eliminate(a, border, swaps)); };
+  const auto eliminate_single = [](double* a, int* swaps) {
     keep(eliminate(FixedSizes<16, 12, 24>{}, a, border, swaps));
   };
   const auto eliminate_join = [&](double* a, int* swaps) { keep(join.eliminate(a, border, swaps)); };
@@ -142,6 +147,8 @@ void print_matrix_times(int rounds) {
   enum {
     unit,
     unit_copy,
+    single,
+    single_copy,
     linearization,
     solution,
     derivative,
@@ -156,6 +163,8 @@ void print_matrix_times(int rounds) {
   std::vector<Part> parts(part_count);
   parts[unit].work = [&] { interval_blocks.run(eliminate_interval); };
   parts[unit_copy].work = [&] { interval_blocks.copy(); };
+  parts[single].work = [&] { single_blocks.run(eliminate_single); };
+  parts[single_copy].work = [&] { single_blocks.copy(); };
   parts[linearization].work = [&] { keep(condensed.linearize(x, rows, residual)); };
   parts[solution].work = [&] { condensed.solve(residual, targets, dx); };
   parts[derivative].work = derivatives;
@@ -189,12 +198,13 @@ void print_matrix_times(int rounds) {
 
   fmt::print("(b) One Newton matrix: m = 1, n = 4, NTST = {}, NCOL = 4\n\n", intervals);
   fmt::print("  {:<66}{:>8}{:>12}\n", "", "units", "time [us]");
-  print_line("unit: local eliminations on random blocks, copying taken off", 1.0, second);
-  print_line("one Newton matrix, evaluation to correction (at most 3)", in_units({linearization, solution}), second);
+  print_line("unit: local eliminations of random blocks in lanes, without copying", 1.0, second);
+  print_line("  the same one block after the other", in_units({single}, single_copy), second);
+  print_line("one Newton matrix, evaluation to correction (wanted: 1.5)", in_units({linearization, solution}), second);
   print_line("  linearize", linearize_units, second);
   print_line("    derivatives of the field at the collocation points", derivative_units, second);
   print_line("    local eliminations (1 by definition)", 1.0, second);
-  print_line("    joins of intervals: their eliminations, on random blocks", join_units, second);
+  print_line("    joins of intervals: their eliminations, in lanes", join_units, second);
   print_line("    UMFPACK: factors of a matrix of the same pattern", factor_units, second);
   print_line("    the rest: interpolation, filling, gathering",
              linearize_units - derivative_units - 1.0 - join_units - factor_units, second);

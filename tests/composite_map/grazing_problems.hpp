@@ -19,7 +19,7 @@ namespace tchat::test {
 
 /// PAR(1), PAR(2), ... and zeros.
 inline Eigen::VectorXd full_par(std::initializer_list<double> values) {
-  Eigen::VectorXd par = Eigen::VectorXd::Zero(256);
+  Eigen::VectorXd par = Eigen::VectorXd::Zero(TCHAT_PAR_LENGTH);
   int k = 0;
   for (const double value : values) par(k++) = value;
   return par;

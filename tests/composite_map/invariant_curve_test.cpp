@@ -69,7 +69,15 @@ TEST_CASE("points that are no torus are refused with the reason") {
   CHECK_THROWS_WITH(fit_invariant_curve(points_of(golden, 50), {}, "O.events"),
                     Catch::Contains("O.events: 50 points") && Catch::Contains("too few"));
   CHECK_THROWS_WITH(fit_invariant_curve(points_of(0.4, 1000).topRows(2), {}, "O.events"),
-                    Catch::Contains("repeat themselves") && Catch::Contains("periodic"));
+                    Catch::Contains("is a periodic orbit") && Catch::Contains("every 5 points it repeats"));
+  Eigen::MatrixXd settling(2, 1000);
+  for (Eigen::Index k = 0; k < settling.cols(); ++k) {
+    const double phase = 2.0 * M_PI * golden * static_cast<double>(k);
+    settling.col(k) = Eigen::Vector2d(1.0, 2.0) +
+                      std::exp(-0.03 * static_cast<double>(k)) * Eigen::Vector2d(std::cos(phase), std::sin(phase));
+  }
+  CHECK_THROWS_WITH(fit_invariant_curve(settling, {}, "O.events"),
+                    Catch::Contains("settles on a periodic orbit: every point repeats"));
   MatrixXd cloud(2, 1000);
   double x = 0.3, y = 0.2;
   for (int k = 0; k < 1000; ++k) {

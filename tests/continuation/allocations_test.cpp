@@ -10,8 +10,10 @@
 #include "bvp/critical_multiplier.hpp"
 #include "bvp/critical_pair.hpp"
 #include "bvp/grazing_orbit_system.hpp"
+#include "continuation/planar_torus.hpp"
 #include "special_points/impacting_orbits.hpp"
 #include "special_points/langford.hpp"
+#include "special_points/torus_contact_condition.hpp"
 #include "support/branch_fixture.hpp"
 #include "support/linear_oscillator.hpp"
 #include "support/three_modes.hpp"
@@ -198,6 +200,34 @@ TEST_CASE("no allocation of our own along a grazing curve") {
   PathPoint here = follower.make_point(start);
   REQUIRE(follower.start_at_fixed_parameter(here).converged());
   const Counts counts = steps_after_the_first(follower, here, 0.05);
+  CHECK(counts.newton_iterations >= 5);
+  CHECK(counts.ours == 0);
+}
+
+TEST_CASE("no allocation of our own along branches of tori, rho free or fixed") {
+  give_solver_its_own_allocator();
+  const std::vector<int> free = GENERATE(std::vector<int>{omega, rotation_parameter}, std::vector<int>{omega, 2});
+  Torus torus(15, {4, 1, 10, 4}, free);
+  PathPoint here = torus.follower.make_point(torus.start(2.0, 1e-5));
+  REQUIRE(torus.follower.start_at_fixed_parameter(here).converged());
+  const Counts counts = steps_after_the_first(torus.follower, here, 0.02);
+  CHECK(counts.newton_iterations >= 5);
+  CHECK(counts.ours == 0);
+}
+
+TEST_CASE("no allocation of our own along tori in grazing contact, rho free or fixed") {
+  give_solver_its_own_allocator();
+  const std::vector<int> free =
+      GENERATE(std::vector<int>{omega, wall, rotation_parameter}, std::vector<int>{omega, 2, wall});
+  const Torus torus(15, {4, 1, 10, 4});
+  const TorusSystem system(system_of<PlanarTorus>(), {{1, 1, 1}}, 15, free);
+  PathFollower follower(system, torus.shape, WeightedNorm::unit(4), {12, 12, 1e-10, 1e-10}, omega,
+                        std::make_unique<TorusContactCondition>(system, torus.shape, 0, 2));
+  Orbit start = torus.start(2.0, 1e-6);
+  start.par(wall - 1) = 1.0 / (1.0 - 1.0 / std::sqrt(5.0));
+  PathPoint here = follower.make_point(start);
+  REQUIRE(follower.start_at_fixed_parameter(here).converged());
+  const Counts counts = steps_after_the_first(follower, here, 0.02);
   CHECK(counts.newton_iterations >= 5);
   CHECK(counts.ours == 0);
 }

@@ -3,72 +3,56 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "../../problems/torus/torus.cpp"
-#include "bvp/rotation.hpp"
-#include "bvp/torus_system.hpp"
-#include "continuation/path_follower.hpp"
+#include "continuation/planar_torus.hpp"
 #include "special_points/torus_contact_condition.hpp"
 #include "stability/torus_multipliers.hpp"
-#include "support/test_system.hpp"
 
 using namespace tchat;
 using namespace tchat::test;
 
 namespace {
 
-const double golden = 0.5 * (1.0 + std::sqrt(5.0));
-constexpr int omega = 1, wall = 3;  // PAR
+/// The same torus with the phase of the forcing as an angle that goes on: it winds along the curve y = 0.
+struct AngleTorus {
+  static constexpr int dimension = 3, parameters = 3;
+  static constexpr int fields = 1, events = 2, jumps = 1;
+  static constexpr double initial_parameters[] = {1.0, 1.618033988749895, 5.0};
 
-double radius(double psi, double w) { return (1.0 + w * w) / (1.0 + w * w - std::cos(psi) - w * std::sin(psi)); }
-
-/// The state at the time t after the crossing of the section at the phase psi of the forcing.
-Eigen::Vector4d state_at(double psi, double t, double w) {
-  const double now = psi + w * t;
-  const double angle = pi + golden * t;
-  return {radius(now, w) * std::cos(angle), radius(now, w) * std::sin(angle), std::sin(now), std::cos(now)};
-}
-
-struct Torus {
-  Torus(int orbits, const OrbitShape& one_return, std::vector<int> free = {omega, rotation_parameter})
-      : system(system_of<PlanarTorus>(), {{1, 1, 1}}, orbits, std::move(free)),
-        shape{4, orbits, one_return.intervals, one_return.collocation},
-        follower(system, shape, WeightedNorm::unit(4), {12, 12, 1e-12, 1e-12}, omega) {}
-
-  /// The closed form, moved off by waves of this size.
-  Orbit start(double w, double off) const {
-    Orbit x{shape, uniform_mesh(shape.intervals), Eigen::MatrixXd(4, shape.columns()),
-            ParameterVector::Zero(parameter_length)};
-    x.par(0) = w, x.par(1) = golden, x.par(2) = 5.0;
-    x.par(rotation_parameter - 1) = w / golden - std::floor(w / golden);
-    for (int i = 0; i < shape.segments; ++i) {
-      x.duration(i) = 2.0 * pi / golden;
-      for (int k = 0; k < shape.nodes(); ++k) {
-        x.states.col(i * shape.nodes() + k) = state_at(2.0 * pi * i / shape.segments, x.tau(k) * x.duration(i), w);
-        x.states.col(i * shape.nodes() + k) *= 1.0 + off * std::sin(1.0 + i + 0.3 * k);
-      }
-    }
-    return x;
+  template <class T>
+  void field(int, const T* u, const T* par, T* f) const {
+    const T growth = 1.0 + sqrt(u[0] * u[0] + u[1] * u[1]) * (cos(u[2]) - 1.0);
+    f[0] = -par[1] * u[1] + u[0] * growth;
+    f[1] = par[1] * u[0] + u[1] * growth;
+    f[2] = par[0];
   }
-  PathPoint solved(double w, double off = 1e-3) {
-    PathPoint point = follower.make_point(start(w, off));
-    result = follower.start_at_fixed_parameter(point);
-    return point;
+  template <class T>
+  T event(int j, const T* u, const T* par) const {
+    if (j == 1) return u[1];
+    return par[2] - u[0];
   }
-  /// Largest distance of the curve on the section from the closed form, at phases that are none of the N too.
-  double error(const Orbit& x, double w) const {
-    double largest = 0.0;
-    for (int k = 0; k < 200; ++k) {
-      const Eigen::Vector4d u = section_curve(system, x) * interpolation_weights(shape.segments, k / 200.0).transpose();
-      largest = std::max(largest, (u - state_at(std::atan2(u(2), u(3)), 0.0, w)).cwiseAbs().maxCoeff());
-    }
-    return largest;
+  template <class T>
+  void jump(int, const T* u, const T*, T* g) const {
+    for (int i = 0; i < dimension; ++i) g[i] = u[i];
   }
-
-  TorusSystem system;
-  OrbitShape shape;
-  PathFollower follower;
-  NewtonResult result;
 };
+
+/// Its N orbits in closed form, moved off by waves of this size.
+Orbit angle_torus(int orbits, int intervals, int collocation, double w, double off) {
+  const OrbitShape shape{3, orbits, intervals, collocation};
+  Orbit x{shape, uniform_mesh(intervals), Eigen::MatrixXd(3, shape.columns()), ParameterVector::Zero(parameter_length)};
+  x.par(0) = w, x.par(1) = golden, x.par(2) = 5.0;
+  x.par(rotation_parameter - 1) = w / golden - std::floor(w / golden);
+  for (int i = 0; i < orbits; ++i) {
+    x.duration(i) = 2.0 * pi / golden;
+    for (int k = 0; k < shape.nodes(); ++k) {
+      const double psi = 2.0 * pi * i / orbits, t = x.tau(k) * x.duration(i);
+      const Eigen::Vector4d planar = state_at(psi, t, w);
+      x.states.col(i * shape.nodes() + k) << planar(0), planar(1), psi + w * t;
+      x.states.col(i * shape.nodes() + k) *= 1.0 + off * std::sin(1.0 + i + 0.3 * k);
+    }
+  }
+  return x;
+}
 
 }  // namespace
 
@@ -172,4 +156,73 @@ TEST_CASE("torus: the least value of an event function between the orbits, and i
   x.states.row(0).array() += 1e-6;
   REQUIRE(condition.evaluate(condensed, x));
   CHECK(condition.value() - (5.0 - largest) == Approx(-1e-6).epsilon(1e-2));
+}
+
+TEST_CASE("torus: a state that is an angle winds along the curve, and a return ends a turn further") {
+  const double w = 2.0;  // more than golden: a return takes the angle once round and rho further
+  const HybridSystem& hybrid = system_of<AngleTorus>();
+  const Orbit start = angle_torus(31, 20, 4, w, 1e-4);
+  const TorusWinding winding = torus_winding(hybrid, {{1, 1, 1}}, start);
+  CHECK(winding.curve.isApprox(Eigen::Vector3d(0.0, 0.0, 2.0 * pi)));
+  CHECK(winding.returns.isApprox(Eigen::Vector3d(0.0, 0.0, 2.0 * pi)));
+  // x and y are no angles, whatever they do.
+  CHECK(angle_states(hybrid, {{1, 1, 1}}, start.states.leftCols(5), start.par) == std::vector<Eigen::Index>{2});
+
+  const TorusSystem system(hybrid, {{1, 1, 1}}, 31, {omega, rotation_parameter}, winding);
+  PathFollower follower(system, start.shape, WeightedNorm::unit(3), {12, 12, 1e-12, 1e-12}, omega);
+  PathPoint point = follower.make_point(start);
+  REQUIRE(follower.start_at_fixed_parameter(point).converged());
+  // 0.236^15 of the harmonics, mesh of order 8.
+  CHECK(std::abs(TorusSystem::rotation(point.orbit) - (w / golden - 1.0)) < 1e-9);
+  for (const double phi : {0.0, 0.123, 0.6, 0.987}) {
+    const Orbit one = return_at(system, point.orbit, phi);
+    const Eigen::Vector3d u = one.states.col(0);
+    const Eigen::Vector4d exact = state_at(u(2), 0.0, w);
+    CHECK((u.head<2>() - exact.head<2>()).norm() < 1e-8);
+    CHECK((return_at(system, point.orbit, phi, 1).states.col(0) -
+           (return_at(system, point.orbit, phi + 1e-5).states.col(0) -
+            return_at(system, point.orbit, phi - 1e-5).states.col(0)) /
+               2e-5)
+              .norm() < 1e-6);
+  }
+  CHECK(last_harmonics(system, point.orbit) < 1e-8);
+  const Orbit more = resampled_torus(point.orbit, 31, 45, winding.curve);
+  const Orbit back = resampled_torus(more, 45, 31, winding.curve);
+  CHECK((back.states - point.orbit.states).cwiseAbs().maxCoeff() < 1e-11);
+
+  REQUIRE(follower.linearize_at(point));
+  const FloquetMultipliers multipliers = torus_multipliers(follower.condensed(), point.orbit);
+  REQUIRE(multipliers.values.size() == 3);
+  CHECK(multipliers.structural < 1e-8);
+  CHECK(multipliers.values[1].real() == Approx(std::exp(-2.0 * pi / golden)).epsilon(1e-6));
+}
+
+TEST_CASE("torus: where the wall is touched, in closed form, for few orbits and for many") {
+  // Largest x: at the angle 0, half a return after the section, where cos psi + w sin psi is largest.
+  const double w = 2.0;
+  const double psi = std::atan(w) - w * pi / golden;
+  std::vector<double> phases;
+  for (const int orbits : {31, 61}) {
+    Torus torus(orbits, {4, 1, 20, 5});
+    const PathPoint point = torus.solved(w, 1e-5);
+    REQUIRE(torus.result.converged());
+    const TorusContactSearch search(torus.system, 0, 2);
+    const auto contact = search.least(point.orbit, torus.follower.condensed().rule());
+    REQUIRE(contact);
+    const double first = std::atan2(point.orbit.start(0)[2], point.orbit.start(0)[3]);  // of the phase 0
+    const double turns = (psi - first) / (2.0 * pi);
+    CHECK(std::abs(std::remainder(contact->phi - turns, 1.0)) < 1e-8);
+    CHECK(contact->tau == Approx(0.5).epsilon(1e-9));
+    phases.push_back(std::remainder(contact->phi + first / (2.0 * pi), 1.0));
+
+    // Followed from a place nearby it is the same.
+    TorusContactFollower follower(torus.system, torus.shape, 0, 2);
+    TorusContact followed = *contact;
+    followed.phi += 0.2 / orbits;
+    followed.tau -= 0.01;
+    REQUIRE(follower.follow(point.orbit, torus.follower.condensed().rule(), followed));
+    CHECK(std::abs(followed.phi - contact->phi) < 1e-8);
+    CHECK(std::abs(followed.value - contact->value) < 1e-10);  // from another mesh point
+  }
+  CHECK(std::abs(phases[0] - phases[1]) < 1e-8);
 }

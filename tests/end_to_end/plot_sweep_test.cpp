@@ -72,6 +72,19 @@ TEST_CASE("a sweep lies beneath the branches of a run") {
   CHECK(contains(script, "#a8a8a8"));  // pale
 }
 
+TEST_CASE("branches that show another quantity than the dots of a sweep are told, with what shows the same") {
+  const Workspace& workspace = prepared();
+  const std::string sentence = "branches show the largest value of a state";
+  const Outcome different = workspace.tchat("plot p.branch brute -o different.svg");
+  INFO(different.text());
+  CHECK(different.status == 0);
+  CHECK(contains(different.err, sentence));
+  CHECK(contains(different.err, "-y STATE@EVENT --dots STATE"));
+  CHECK(workspace.has("different.svg"));
+  for (const std::string arguments : {"p.branch", "brute", "p.branch brute -y x2@wall --dots x2"})
+    CHECK_FALSE(contains(workspace.tchat("plot " + arguments + " -o same.svg").text(), sentence));
+}
+
 TEST_CASE("exponents have bars of their errors") {
   const std::string script = script_of(prepared(), "brute -y lambda1");
   CHECK(contains(script, "$cloud1_1 << END\n2.9 -0.25\n3.1 -0.125\n3.3 0.5\nEND\n"));

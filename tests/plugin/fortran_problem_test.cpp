@@ -31,7 +31,7 @@ constexpr double a = 1.9, b = 0.6, r = 0.7;
 const double x[] = {0.4, -0.3};
 
 std::vector<double> parameters() {
-  std::vector<double> par(256, 0.0);
+  std::vector<double> par(TCHAT_PAR_LENGTH, 0.0);
   par[0] = a, par[1] = b, par[2] = r;
   return par;
 }
@@ -54,7 +54,13 @@ TEST_CASE("a Fortran plugin: values, first and second derivatives for every GCID
   const double first_error = order == 0 ? 1e-12 : 1e-15;
   const double second_error = order == 0 ? 1e-9 : order == 1 ? 1e-12 : 1e-14;
 
+  const double twice[] = {-1.5, 2.0, x[0], x[1]};  // the second of two points
+  double outs[4], dxs[8], dps[12];
+  system.first_at_points(FunctionKind::field, 1, 2, twice, par.data(), active, outs, dxs, dps);
   system.first(FunctionKind::field, 1, x, par.data(), active, out, dx, dp);
+  CHECK(std::equal(out, out + 2, outs + 2));
+  CHECK(std::equal(dx, dx + 4, dxs + 4));
+  CHECK(std::equal(dp, dp + 6, dps + 6));
   CHECK(out[1] == Approx(-a * std::sin(0.4) - b * 0.09).epsilon(1e-15));
   CHECK(std::abs(dx[0]) < first_error);
   CHECK(std::abs(dx[2] - 1.0) < first_error);

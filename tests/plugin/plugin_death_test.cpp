@@ -148,7 +148,7 @@ void choose(const char* place, const char* how) {
 
 void use(const std::string& path) {
   const ProblemLibrary library(path);
-  const double x[] = {0.5}, par[256] = {};
+  const double x[] = {0.5}, par[TCHAT_PAR_LENGTH] = {};
   double out[1];
   library.system().event(2, x, par);
   library.system().table().user_value(library.system().table().self, x, par, out);
@@ -225,7 +225,7 @@ TEST_CASE("exceptions of a plugin's functions are NaN, those of user functions a
   const std::string path =
       resolve_plugin(folder.write("dying.cpp", dying_source), {"c++ -pthread", TCHAT_TEST_INCLUDE});
   const ProblemLibrary library(path);
-  const double x[] = {0.5}, par[256] = {};
+  const double x[] = {0.5}, par[TCHAT_PAR_LENGTH] = {};
   double out[1] = {0.0};
   choose("event", "throw");
   CHECK(std::isnan(library.system().event(1, x, par)));

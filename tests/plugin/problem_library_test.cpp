@@ -38,7 +38,7 @@ TCHAT_PROBLEM(Ball)
   const HybridSystem& system = library.system();
   CHECK(system.name() == "Ball");
   CHECK(system.dimension() == 2);
-  const double x[] = {0.5, -3.0}, par[256] = {9.81, 0.8};
+  const double x[] = {0.5, -3.0}, par[TCHAT_PAR_LENGTH] = {9.81, 0.8};
   double g[2], gx[4], gp[2];
   const int active[] = {2};
   system.first(FunctionKind::jump, 1, x, par, active, g, gx, gp);
@@ -50,7 +50,7 @@ TCHAT_PROBLEM(Ball)
 TEST_CASE("a small C plugin is loaded, its derivatives are differences") {
   const PluginFolder folder;
   const ProblemLibrary library(resolve_plugin(folder.write("small.cpp", small_plugin()), build_options));
-  const double x[] = {0.5, -3.0}, par[256] = {2.0};
+  const double x[] = {0.5, -3.0}, par[TCHAT_PAR_LENGTH] = {2.0};
   double f[2], fx[4];
   library.system().first(FunctionKind::field, 1, x, par, {}, f, fx, nullptr);
   CHECK(f[0] == 1.0);
@@ -127,6 +127,96 @@ TEST_CASE("a table made before it told of sliding modes still loads, without any
   CHECK(library.system().sliding_modes().empty());
 }
 
+namespace {
+
+/// `first` of a field at each of four points against all of them at once: to the last bit, NaN where one is NaN.
+void check_points_at_once(const HybridSystem& system, const std::vector<double>& par, const std::vector<int>& active) {
+  constexpr int points = 4;
+  const auto n = static_cast<std::size_t>(system.dimension()), q = active.size();
+  std::vector<double> x(points * n), f(points * n, 7.0), fx(points * n * n, 7.0), fp(points * n * q, 7.0);
+  for (std::size_t i = 0; i < x.size(); ++i) x[i] = 0.3 * static_cast<double>(i) - 0.8;
+  system.first_at_points(FunctionKind::field, 1, points, x.data(), par.data(), active, f.data(), fx.data(), fp.data());
+  for (std::size_t k = 0; k < points; ++k) {
+    std::vector<double> out(n), dx(n * n), dp(n * q);
+    system.first(FunctionKind::field, 1, &x[k * n], par.data(), active, out.data(), dx.data(), dp.data());
+    const auto same = [](double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); };
+    CHECK(std::equal(out.begin(), out.end(), &f[k * n], same));
+    CHECK(std::equal(dx.begin(), dx.end(), &fx[k * n * n], same));
+    CHECK(std::equal(dp.begin(), dp.end(), &fp[k * n * q], same));
+  }
+}
+
+const std::vector<double> some_par(parameter_length, 0.7);
+
+}  // namespace
+
+TEST_CASE("many points at once: what each gives alone, where one cannot be evaluated too") {
+  const PluginFolder folder;
+  const ProblemLibrary library(resolve_plugin(folder.write("root.cpp", R"(#include <stdexcept>
+#include <tchat/problem.hpp>
+struct Root {
+  static constexpr int dimension = 3, parameters = 2, fields = 1;
+  template <class T> void field(int, const T* x, const T* par, T* f) const {
+    if (x[1] > 0.0 && x[1] < 0.5) throw std::domain_error("not there");
+    f[0] = par[0] * sin(x[1]), f[1] = x[2] * x[0] / par[1], f[2] = sqrt(x[2] + 0.5);
+  }
+};
+TCHAT_PROBLEM(Root)
+)"),
+                                              build_options));
+  REQUIRE(library.system().table().first_at_points != nullptr);
+  check_points_at_once(library.system(), some_par, {2});
+  check_points_at_once(library.system(), some_par, {});
+}
+
+TEST_CASE("a table made before it could be asked for many points at once still loads, and is asked for each") {
+  const PluginFolder folder;
+  // What stands behind its end is not part of it.
+  const std::string spoil = R"(
+  table.struct_size = TCHAT_PROBLEM_THIRD_SIZE;
+  table.derivative_order = 1;
+  table.first = [](const void*, int32_t, int32_t, const double* x, const double* par, const int32_t*, int32_t count,
+                   double* out, double* dx, double* dp) {
+    out[0] = par[0] * x[0] * x[1], out[1] = x[1];
+    dx[0] = par[0] * x[1], dx[1] = 0.0, dx[2] = par[0] * x[0], dx[3] = 1.0;
+    for (int32_t k = 0; k < count; ++k) dp[2 * k] = x[0] * x[1], dp[2 * k + 1] = 0.0;
+  };
+  table.first_at_points = reinterpret_cast<decltype(table.first_at_points)>(table.first);
+)";
+  const ProblemLibrary library(resolve_plugin(folder.write("third.cpp", small_plugin(spoil)), build_options));
+  CHECK(library.system().table().first_at_points == nullptr);
+  check_points_at_once(library.system(), some_par, {1});
+  const double x[] = {0.5, 0.25, 3.0, -2.0};
+  double f[4], fx[8], fp[4];
+  library.system().first_at_points(FunctionKind::field, 1, 2, x, some_par.data(), std::vector<int>{1}, f, fx, fp);
+  CHECK(f[2] == 0.7 * 3.0 * -2.0);
+  CHECK(fx[6] == 0.7 * 3.0);
+  CHECK(fp[2] == -6.0);
+}
+
+TEST_CASE("many points at once of a minimal table, which has no derivatives: differences at each") {
+  const PluginFolder folder;
+  const ProblemLibrary library(resolve_plugin(folder.write("plain.cpp", small_plugin()), build_options));
+  check_points_at_once(library.system(), some_par, {1});
+}
+
+TEST_CASE("an exception on the way through many points makes all of them NaN") {
+  const PluginFolder folder;
+  const std::string spoil = R"(
+  table.derivative_order = 1;
+  table.first = [](const void*, int32_t, int32_t, const double*, const double*, const int32_t*, int32_t, double*,
+                   double*, double*) {};
+  table.first_at_points = [](const void*, int32_t, int32_t, int32_t, const double*, const double*, const int32_t*,
+                             int32_t, double* out, double*, double*) { out[0] = 1.0; throw 1; };
+)";
+  const ProblemLibrary library(resolve_plugin(folder.write("throws.cpp", small_plugin(spoil)), build_options));
+  const double x[] = {0.5, 0.25, 3.0, -2.0};
+  double values[16] = {};
+  library.system().first_at_points(FunctionKind::field, 1, 2, x, some_par.data(), std::vector<int>{1}, values,
+                                   values + 4, values + 12);
+  for (const double value : values) CHECK(std::isnan(value));
+}
+
 TEST_CASE("tables that cannot be used") {
   const std::vector<BadPlugin> cases = {
       {"table.sliding_modes = 1;", {"1 sliding modes", "does not list them"}},
@@ -161,6 +251,6 @@ TEST_CASE("a plugin that writes NaN is seen by its values") {
       "nan.cpp", small_plugin("table.value = [](const void*, int32_t, int32_t, const double*, const double*, "
                               "double* out) { out[0] = 0.0 / 0.0; };"));
   const ProblemLibrary library(resolve_plugin(source, build_options));
-  const double x[] = {0.5, -3.0}, par[256] = {};
+  const double x[] = {0.5, -3.0}, par[TCHAT_PAR_LENGTH] = {};
   CHECK(std::isnan(library.system().event(1, x, par)));
 }

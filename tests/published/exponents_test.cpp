@@ -167,6 +167,27 @@ TEST_CASE("exponents of formulas, and in Fortran without derivatives") {
   CHECK(std::abs(of_mems[2].value - std::log(0.352713557) / period) < 1e-5);
 }
 
+TEST_CASE("exponents: what follows --lyapunov is its number or an assignment") {
+  const Workspace workspace;
+  const std::string rest = " PAR(omega)=1.6 --rows 0";
+  const Outcome before = workspace.tchat("simulate linosc PAR(alpha)=1.2 --lyapunov" + rest);
+  const Outcome behind = workspace.tchat("simulate linosc --lyapunov PAR(alpha)=1.2" + rest);
+  const Outcome other = workspace.tchat("simulate linosc --lyapunov PAR(zeta)=0.2" + rest);
+  INFO(before.text() << behind.text() << other.text());
+  REQUIRE(before.status == 0);
+  REQUIRE(behind.status == 0);
+  REQUIRE(other.status == 0);
+  const std::vector<Exponent> a = exponents_in(before.out), b = exponents_in(behind.out), c = exponents_in(other.out);
+  REQUIRE(a.size() == 4);
+  REQUIRE(b.size() == 4);
+  REQUIRE(c.size() == 4);
+  for (std::size_t j = 0; j < 4; ++j) CHECK(a[j].value == b[j].value);
+  CHECK(std::abs(c[3].value - b[3].value) > 1e-6);  // it is taken, not dropped
+  CHECK(exponents_in(workspace.tchat("simulate linosc --lyapunov 2 PAR(alpha)=1.2" + rest).out).size() == 2);
+  check_refused(workspace.tchat("simulate linosc --lyapunov PAR(nosuch)=1.2"), {"nosuch"});
+  check_refused(workspace.tchat("simulate linosc --lyapunov two"), {"--lyapunov", "'two'"});
+}
+
 TEST_CASE("exponents: mistakes and motions that end are told in one sentence") {
   const Workspace workspace;
   check_refused(workspace.tchat("simulate linosc --lyapunov 5"), {"5 Lyapunov exponents", "has 4, one for each state"});

@@ -10,7 +10,7 @@ namespace tchat::test {
 // The Newton steps to an event repeat the method's step from one start with other lengths: each with the field there.
 TEST_CASE("Runge-Kutta flows come to their events as accurately as they are integrated") {
   const HybridSystem& system = system_of<VanDerPol>();
-  Eigen::VectorXd par = Eigen::VectorXd::Zero(256);
+  Eigen::VectorXd par = Eigen::VectorXd::Zero(512);
   par(0) = 1.5;
   FlowOptions options;
   options.variational = false;

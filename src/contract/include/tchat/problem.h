@@ -23,7 +23,7 @@
 #include <stdint.h>
 
 #define TCHAT_PROBLEM_ABI 2
-#define TCHAT_PAR_LENGTH 256
+#define TCHAT_PAR_LENGTH 512
 
 #ifdef __cplusplus
 extern "C" {
@@ -123,12 +123,20 @@ typedef struct tchat_problem {
    * told. */
   int32_t sliding_modes;
   const tchat_sliding* sliding;
+
+  /* `first` at `points` points for one par, the arrays x, out, dx and dp of the points one behind the other: all Gauss
+   * points of some mesh intervals at once. NULL: tchat calls `first` for each. */
+  void (*first_at_points)(const void* self, int32_t kind, int32_t index, int32_t points, const double* x,
+                          const double* par, const int32_t* active, int32_t active_count, double* out, double* dx,
+                          double* dp);
 } tchat_problem;
 
 /* Size of the table before the conditions of boundary value problems were added: such a table has none. */
 #define TCHAT_PROBLEM_FIRST_SIZE offsetof(tchat_problem, boundary_conditions)
 /* And before it told of sliding modes. */
 #define TCHAT_PROBLEM_SECOND_SIZE offsetof(tchat_problem, sliding_modes)
+/* And before it could be asked for many points at once. */
+#define TCHAT_PROBLEM_THIRD_SIZE offsetof(tchat_problem, first_at_points)
 
 typedef const tchat_problem* (*tchat_problem_entry)(void);
 #define TCHAT_PROBLEM_ENTRY "tchat_problem_table"

@@ -310,6 +310,14 @@ class ProblemTable {
     }
   }
 
+  static void first_at_points(const void* self, std::int32_t kind, std::int32_t index, std::int32_t points,
+                              const double* x, const double* par, const std::int32_t* active, std::int32_t active_count,
+                              double* out, double* dx, double* dp) {
+    const int r = rows(kind);
+    for (std::int32_t k = 0; k < points; ++k, x += n, out += r, dx += r * n, dp += r * active_count)
+      first(self, kind, index, x, par, active, active_count, out, dx, dp);
+  }
+
   static void second(const void* self, std::int32_t kind, std::int32_t index, const double* x, const double* par,
                      const std::int32_t* active, std::int32_t active_count, const double* direction, double* out,
                      double* dx, double* dp) {
@@ -504,6 +512,7 @@ class ProblemTable {
     table.value = &value;
     table.first = &first;
     table.second = &second;
+    table.first_at_points = &first_at_points;
     table.user_value = &user_value;
     if constexpr (boundary_count() > 0) {
       table.boundary_conditions = boundary_count();

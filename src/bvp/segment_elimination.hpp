@@ -1,0 +1,160 @@
+/// Elimination of all unknowns of a segment but those at its ends, the duration and the free parameters (5.30-5.49),
+/// four mesh intervals at a time in the lanes of vector registers.
+///
+/// Each of the four lanes has a quarter of the segment's intervals, one behind the other: what is done to intervals,
+/// and to the joins of neighbouring ones, is the same in all lanes and touches one another's values nowhere. Then:
+///   1. interval: the c - 1 interior nodes are eliminated from the c n collocation rows; n rows in (left, right)
+///   remain;
+///   2. joins: neighbouring pieces are joined by elimination of the mesh node between them with pivoting, halves of a
+///   quarter from their halves, and at last the quarters, until n rows remain,
+///          A x(0) + C x(1) + B (T, p) = r                                             (5.48-5.49 with C kept)
+///   The order matters. From left to right the same elimination becomes a product of transfer matrices wherever the
+///   flow grows little per interval: every pivot is then an entry of the longer piece, rounding grows like the flow
+///   over the whole segment, up to 2^(n N), and decaying modes are lost [S. J. Wright, SIAM J. Sci. Comput. 14 (1993)
+///   231]. Pieces of equal length show their growth to the pivot search; rounding grows by 2^n for each of the log2 N
+///   levels at most, by little in practice.
+///
+/// Border rows are eliminated on the way. Work and memory are linear in the number of intervals. All arrays are
+/// allocated when the object is made.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "bvp/collocation_rule.hpp"
+#include "bvp/orbit.hpp"
+#include "hybrid/hybrid_system.hpp"
+#include "linear_algebra/block_array.hpp"
+#include "linear_algebra/block_kernel.hpp"
+#include "linear_algebra/lane_kernel.hpp"
+
+namespace tchat {
+
+/// Outcome of a linearisation; factors exist only when it is `ready`. `condition_lost`: the condition of a
+/// two-parameter curve cannot be evaluated.
+enum class Linearization { ready, not_finite, singular, condition_lost };
+
+/// Which interval of a segment is where. Lanes have equally many intervals or one less: those have none in the last
+/// group, the last lane always has one.
+class LaneSchedule {
+ public:
+  explicit LaneSchedule(int intervals) : intervals_(intervals) {}
+  /// Sets of one interval in each lane.
+  int groups() const { return (intervals_ + lanes - 1) / lanes; }
+  /// The first interval of a lane; that of lane `lanes` is the number of intervals.
+  int start(int lane) const { return static_cast<int>(static_cast<long>(lane) * intervals_ / lanes); }
+  int size(int lane) const { return start(lane + 1) - start(lane); }
+  bool holds(int group, int lane) const { return group < size(lane); }
+  /// The lane whose interval a lane computes with in a group: its own, or where it has none the last one's.
+  int source(int group, int lane) const { return holds(group, lane) ? lane : lanes - 1; }
+  int interval(int group, int lane) const { return start(source(group, lane)) + group; }
+  /// The mesh node of a lane before its interval `group`, or where it has none at its end.
+  int node(int group, int lane) const { return group < size(lane) ? start(lane) + group : start(lane + 1); }
+
+ private:
+  int intervals_;
+};
+
+/// A product that may be larger or smaller than any double: mantissa * 2^exponent.
+struct LargeProduct {
+  double mantissa = 1.0;
+  long exponent = 0;
+  void multiply(double factor);
+};
+
+class SegmentElimination {
+ public:
+  /// Of all segments of an orbit with `scalars` columns (duration and free parameters) and `border` rows.
+  SegmentElimination(const OrbitShape& shape, int scalars, int border, const CollocationRule& rule);
+
+  /// The collocation rows of segment s, whose field has this number, at x and `rows`' parts of the segment, eliminated.
+  /// `collocation` becomes their residual: interval, Gauss point, component.
+  Linearization condense(int s, const HybridSystem& system, int field, std::span<const int> active, const Orbit& x,
+                         std::span<const OrbitVector> rows, double* collocation);
+
+  /// What is left of segment s: n rows of length() entries, columns (first node | last node | scalars), and b border
+  /// rows.
+  const double* rows(int s) const { return whole_[s]; }
+  const double* border(int s) const { return whole_[s] + n_ * length(); }
+  int length() const { return 2 * n_ + scalars_; }
+
+  /// The right-hand side -collocation of segment s, condensed to n + b entries.
+  void condense_right_hand_side(int s, const double* collocation, double* condensed);
+  /// From the ends of a segment (first node, last node, duration) and the free parameters to all nodes, for the
+  /// right-hand side that was condensed last or, homogeneous, for zero.
+  void expand(int s, const double* ends, const double* globals, bool homogeneous, OrbitVector& dx);
+  /// The adjoint: weights (n) of the condensed rows to weights of the collocation rows of segment s. Right-hand sides
+  /// are lost.
+  void expand_adjoint(int s, const double* weights, double* collocation);
+
+  /// Divided by the determinant of what was eliminated of all segments.
+  void divide_by_determinant(LargeProduct& product) const;
+
+ private:
+  /// The elimination of what is between pieces first..middle-1 and middle..last-1; its block is number `middle`.
+  struct Join {
+    int first, middle, last;
+  };
+  static std::vector<Join> joins_of_halves(int pieces);
+  static int halfway(int first, int last) { return first + (last - first) / 2; }
+  static std::size_t index(std::ptrdiff_t i) { return static_cast<std::size_t>(i); }
+  /// Numbers of blocks of a group or join within lanes, and of a join between lanes.
+  std::ptrdiff_t block(int s, int group) const { return static_cast<std::ptrdiff_t>(s) * groups_ + group; }
+  std::ptrdiff_t top_block(int s, int middle) const { return static_cast<std::ptrdiff_t>(s) * lanes + middle; }
+  /// Does a lane have nothing on the right side of a join?
+  bool passes(const Join& at, int lane) const { return at.middle >= schedule_.size(lane); }
+  int top_node(int piece) const;
+
+  bool fill_group(int s, int group, const HybridSystem& system, int field, std::span<const int> active, const Orbit& x,
+                  double* collocation);
+  void evaluate_field(int s, int group, const HybridSystem& system, int field, std::span<const int> active,
+                      const Orbit& x);
+  void fill_border(int s, int group, std::span<const OrbitVector> rows);
+  LanePiece piece(int s, int first, int last) const;
+  bool join(int s, const Join& at);
+  void pass_on(const LanePiece& left, int lane, double* target) const;
+  bool join_lanes(int s);
+  const double* top_piece(int s, int first, int last, int& width) const;
+  double* piece_rhs(int s, int first, int last);
+  double* top_rhs(int s, int first, int last);
+  void condense_groups(int s, const double* collocation);
+  void expand_lane_joins(int s, const double* globals, bool homogeneous, OrbitVector& dx);
+  void expand_groups(int s, const double* globals, bool homogeneous, OrbitVector& dx);
+
+  OrbitShape shape_;
+  int n_;
+  int scalars_;
+  int border_;
+  CollocationRule rule_;
+  LaneSchedule schedule_;
+  int groups_;
+  LaneAssembly assembly_;
+  LaneKernel interval_;
+  LaneKernel join_;
+  BlockKernel top_join_;
+  std::vector<Join> joins_;      // of groups, each after those that make its two pieces
+  std::vector<int> top_lanes_;   // that have intervals
+  std::vector<Join> top_joins_;  // of top_lanes_
+
+  // of groups
+  BlockArray<double> interval_blocks_;  // (c n + b) x width
+  BlockArray<int> interval_swaps_;
+  BlockArray<double> join_blocks_;  // (2 n + b) x width
+  BlockArray<int> join_swaps_;
+  BlockArray<double> interval_rhs_;
+  BlockArray<double> join_rhs_;
+  // of segments: four each
+  BlockArray<double> lane_pieces_;  // (n + b) x length
+  BlockArray<double> top_blocks_;   // (2 n + b) x width
+  BlockArray<int> top_swaps_;
+  BlockArray<double> lane_rhs_;  // n + b
+  BlockArray<double> top_rhs_;   // 2 n + b
+  // one each
+  BlockArray<double> whole_;  // (n + b) x length
+
+  // scratch of one group
+  LaneArray nodes_, points_, derivatives_, jacobian_, residual_, local_, join_local_, zero_rhs_;
+  std::vector<double> x_, f_, fx_, fp_, top_local_;
+};
+
+}  // namespace tchat

@@ -1,0 +1,107 @@
+#include "linear_algebra/lane_kernel.hpp"
+
+#include <algorithm>
+
+namespace tchat {
+
+namespace {
+
+struct LaneSizes {
+  int rows, pivots, width;
+};
+
+}  // namespace
+
+struct LaneFunctions {
+  unsigned (*eliminate)(const LaneSizes&, double*, int, int*);
+  void (*forward)(const LaneSizes&, const double*, int, const int*, double*);
+  void (*forward_transposed)(const LaneSizes&, const double*, const int*, double*);
+  void (*backward)(const LaneSizes&, const double*, const double*, double*);
+  void (*interpolate)(const LaneCollocation&, const double*, double*, double*);
+  bool (*fill)(const LaneCollocation&, double*, double*, double*);
+  void (*join)(int, int, int, const LanePiece&, const LanePiece&, double*);
+};
+
+namespace {
+namespace baseline_lanes {
+constexpr int part_lanes = 2;
+#include "linear_algebra/lane_functions.inc"
+}  // namespace baseline_lanes
+}  // namespace
+
+#ifdef __x86_64__
+#ifdef __clang__
+#pragma clang attribute push(__attribute__((target("avx2"))), apply_to = function)
+#else
+#pragma GCC push_options
+#pragma GCC target("avx2")
+#endif
+namespace {
+namespace avx2_lanes {
+constexpr int part_lanes = 4;
+#include "linear_algebra/lane_functions.inc"
+}  // namespace avx2_lanes
+}  // namespace
+#ifdef __clang__
+#pragma clang attribute pop
+#else
+#pragma GCC pop_options
+#endif
+#endif
+
+namespace {
+
+const LaneFunctions* lane_functions(VectorSet set) {
+#ifdef __x86_64__
+  if (set == VectorSet::avx2) return &avx2_lanes::functions;
+#endif
+  static_cast<void>(set);
+  return &baseline_lanes::functions;
+}
+
+}  // namespace
+
+std::vector<VectorSet> available_vector_sets() {
+  std::vector<VectorSet> sets = {VectorSet::baseline};
+#ifdef __x86_64__
+  if (__builtin_cpu_supports("avx2") != 0) sets.push_back(VectorSet::avx2);
+#endif
+  return sets;
+}
+
+LaneKernel::LaneKernel(int rows, int pivots, int width, VectorSet set)
+    : rows_(rows), pivots_(pivots), width_(width), functions_(lane_functions(set)) {}
+
+unsigned LaneKernel::eliminate(double* a, int border, int* swaps) const {
+  return functions_->eliminate({rows_, pivots_, width_}, a, border, swaps);
+}
+
+void LaneKernel::forward(const double* a, int border, const int* swaps, double* rhs) const {
+  functions_->forward({rows_, pivots_, width_}, a, border, swaps, rhs);
+}
+
+void LaneKernel::forward_transposed(const double* a, const int* swaps, double* weights) const {
+  functions_->forward_transposed({rows_, pivots_, width_}, a, swaps, weights);
+}
+
+void LaneKernel::backward(const double* a, const double* rhs, double* x) const {
+  functions_->backward({rows_, pivots_, width_}, a, rhs, x);
+}
+
+LaneAssembly::LaneAssembly(VectorSet set) : functions_(lane_functions(set)) {}
+
+void LaneAssembly::interpolate(const LaneCollocation& at, const double* nodes, double* points,
+                               double* derivatives) const {
+  functions_->interpolate(at, nodes, points, derivatives);
+}
+
+bool LaneAssembly::fill(const LaneCollocation& at, double* blocks, double* jacobian, double* residual) const {
+  return functions_->fill(at, blocks, jacobian, residual);
+}
+
+void LaneAssembly::join(int n, int scalars, int border, const LanePiece& left, const LanePiece& right,
+                        double* target) const {
+  functions_->join(n, scalars, border, left, right, target);
+}
+
+}  // namespace tchat

@@ -1,0 +1,310 @@
+// Elimination of four blocks side by side: against the elimination of one block, to the last bit; against Eigen's dense
+// LU; on each set of vector instructions that this processor has.
+#include <catch2/catch.hpp>
+#include <random>
+
+#include "linear_algebra/block_kernel.hpp"
+#include "linear_algebra/lane_kernel.hpp"
+
+using namespace tchat;
+using Block = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+struct Sizes {
+  int rows, pivots, width, border;
+};
+
+std::size_t place(int i) { return static_cast<std::size_t>(i); }
+
+Block random_block(std::mt19937& generator, int rows, int columns) {
+  std::normal_distribution<double> normal;
+  Block a(rows, columns);
+  for (int i = 0; i < rows; ++i)
+    for (int j = 0; j < columns; ++j) a(i, j) = normal(generator);
+  return a;
+}
+
+/// Blocks whose pivots are found in other rows in every lane: rows, from 1e-6 to 1e6, in another order in each.
+std::vector<Block> badly_pivoted(std::mt19937& generator, const Sizes& k) {
+  std::vector<Block> blocks;
+  for (int l = 0; l < lanes; ++l) {
+    blocks.push_back(random_block(generator, k.rows + k.border, k.width));
+    for (int i = 0; i < k.rows; ++i) {
+      const int order = (i * (2 * l + 1) + l) % k.rows;
+      blocks.back().row(i) *= std::pow(10.0, 12.0 * order / k.rows - 6.0);
+    }
+  }
+  return blocks;
+}
+
+std::vector<Block> random_blocks(std::mt19937& generator, const Sizes& k) {
+  std::vector<Block> blocks;
+  for (int l = 0; l < lanes; ++l) blocks.push_back(random_block(generator, k.rows + k.border, k.width));
+  return blocks;
+}
+
+LaneArray side_by_side(const std::vector<Block>& blocks) {
+  LaneArray all(place(static_cast<int>(blocks[0].size()) * lanes));
+  for (int l = 0; l < lanes; ++l)
+    for (int i = 0; i < blocks[0].size(); ++i) all[place(i * lanes + l)] = blocks[place(l)].data()[i];
+  return all;
+}
+
+VectorXd lane_of(const LaneArray& all, int lane) {
+  VectorXd result(static_cast<Eigen::Index>(all.size()) / lanes);
+  for (int i = 0; i < result.size(); ++i) result(i) = all[place(i * lanes + lane)];
+  return result;
+}
+
+Block block_of(const LaneArray& all, int lane, const Block& like) {
+  const VectorXd values = lane_of(all, lane);
+  return Eigen::Map<const Block>(values.data(), like.rows(), like.cols());
+}
+
+struct Eliminated {
+  LaneArray blocks;
+  std::vector<int> swaps;
+  unsigned failed = 0;
+};
+
+Eliminated eliminated(const Sizes& k, const std::vector<Block>& blocks, VectorSet set) {
+  Eliminated result{side_by_side(blocks), std::vector<int>(place(k.pivots * lanes + 1))};
+  const LaneKernel kernel(k.rows, k.pivots, k.width, set);
+  result.failed = kernel.eliminate(result.blocks.data(), k.border, result.swaps.data());
+  return result;
+}
+
+/// Sizes of intervals (n, c) and joins, with two scalar columns.
+std::vector<Sizes> all_sizes() {
+  std::vector<Sizes> sizes;
+  for (const int n : {1, 2, 3, 4, 5, 7, 10})
+    for (const int border : {0, 1, 2}) {
+      for (const int c : {1, 2, 4, 5}) sizes.push_back({c * n, (c - 1) * n, (c + 1) * n + 2, border});
+      sizes.push_back({2 * n, n, 3 * n + 2, border});
+    }
+  sizes.push_back({80, 60, 102, 1});
+  return sizes;
+}
+
+void check_against_one_block(const Sizes& k, const std::vector<Block>& blocks, VectorSet set) {
+  const Eliminated e = eliminated(k, blocks, set);
+  CHECK(e.failed == 0);
+  const BlockKernel single(k.rows, k.pivots, k.width);
+  for (int l = 0; l < lanes; ++l) {
+    Block alone = blocks[place(l)];
+    std::vector<int> swaps(place(k.pivots) + 1);
+    REQUIRE(single.eliminate(alone.data(), k.border, swaps.data()));
+    CHECK(block_of(e.blocks, l, alone) == alone);
+    for (int p = 0; p < k.pivots; ++p) CHECK(e.swaps[place(p * lanes + l)] == swaps[place(p)]);
+  }
+}
+
+/// The rows A y = b with the columns of their pivots eliminated, and conditions on the rest that make the matrix
+/// square: solved by Eigen whole, and in steps.
+void check_against_eigen(const Sizes& k, const std::vector<Block>& blocks, VectorSet set) {
+  std::mt19937 generator(12);
+  const int rest = k.width - k.pivots;
+  const int conditions = k.width - k.rows;
+  const Eliminated e = eliminated(k, blocks, set);
+  const LaneKernel kernel(k.rows, k.pivots, k.width, set);
+  std::vector<VectorXd> wanted;
+  std::vector<Block> right;
+  std::vector<MatrixXd> closing;
+  for (int l = 0; l < lanes; ++l) {
+    wanted.push_back(random_block(generator, k.width, 1));
+    closing.push_back(random_block(generator, conditions, rest));
+    right.push_back(blocks[place(l)] * wanted.back());
+  }
+  LaneArray rhs = side_by_side(right);
+  kernel.forward(e.blocks.data(), k.border, e.swaps.data(), rhs.data());
+  LaneArray x(place(k.width * lanes), 0.0);
+  for (int l = 0; l < lanes; ++l) {
+    const Block lu = block_of(e.blocks, l, blocks[place(l)]);
+    MatrixXd reduced(rest, rest);
+    reduced << lu.block(k.pivots, k.pivots, k.rows - k.pivots, rest), closing[place(l)];
+    VectorXd known(rest);
+    known << lane_of(rhs, l).segment(k.pivots, k.rows - k.pivots), closing[place(l)] * wanted[place(l)].tail(rest);
+    const VectorXd ends = reduced.fullPivLu().solve(known);
+    for (int i = 0; i < rest; ++i) x[place((k.pivots + i) * lanes + l)] = ends(i);
+  }
+  kernel.backward(e.blocks.data(), rhs.data(), x.data());
+  for (int l = 0; l < lanes; ++l) {
+    MatrixXd whole = MatrixXd::Zero(k.width, k.width);
+    whole.topRows(k.rows) = blocks[place(l)].topRows(k.rows);
+    whole.bottomRightCorner(conditions, rest) = closing[place(l)];
+    VectorXd b(k.width);
+    b << right[place(l)].col(0).head(k.rows), closing[place(l)] * wanted[place(l)].tail(rest);
+    // Both are solved backward stably: rows are scaled to size 1 before they are asked for the error.
+    const VectorXd by_eigen = whole.fullPivLu().solve(b);
+    const VectorXd found = lane_of(x, l);
+    const VectorXd size = whole.cwiseAbs() * found.cwiseAbs();
+    CHECK(((whole * found - b).cwiseAbs().array() <= 1e-10 * size.array()).all());
+    if (k.rows < 60) CHECK((found - by_eigen).norm() <= 1e-5 * by_eigen.norm());
+    // Border rows: what they say of the solution is what is left of them.
+    const Block lu = block_of(e.blocks, l, blocks[place(l)]);
+    for (int r = 0; r < k.border; ++r) {
+      const auto row = lu.row(k.rows + r).tail(rest);
+      CHECK(std::abs(row.dot(found.tail(rest)) - rhs[place((k.rows + r) * lanes + l)]) <=
+            1e-7 * (1.0 + row.norm() * found.norm()));
+    }
+  }
+}
+
+}  // namespace
+
+TEST_CASE("each lane is eliminated as one block alone would be, to the last bit, with every set of instructions") {
+  for (const VectorSet set : available_vector_sets()) {
+    std::mt19937 generator(3);
+    for (const Sizes& k : all_sizes()) {
+      CAPTURE(static_cast<int>(set), k.rows, k.pivots, k.width, k.border);
+      check_against_one_block(k, random_blocks(generator, k), set);
+      check_against_one_block(k, badly_pivoted(generator, k), set);
+    }
+  }
+}
+
+TEST_CASE("systems solved in lanes agree with Eigen's dense LU, badly pivoted ones too") {
+  for (const VectorSet set : available_vector_sets()) {
+    std::mt19937 generator(5);
+    for (const Sizes& k : all_sizes()) {
+      CAPTURE(static_cast<int>(set), k.rows, k.pivots, k.width, k.border);
+      check_against_eigen(k, random_blocks(generator, k), set);
+      check_against_eigen(k, badly_pivoted(generator, k), set);
+    }
+  }
+}
+
+TEST_CASE("badly pivoted blocks have other pivots in every lane") {
+  std::mt19937 generator(5);
+  const Sizes k{16, 12, 22, 1};
+  const Eliminated e = eliminated(k, badly_pivoted(generator, k), VectorSet::baseline);
+  int different = 0;
+  for (int p = 0; p < k.pivots; ++p)
+    for (int l = 1; l < lanes; ++l) different += e.swaps[place(p * lanes)] != e.swaps[place(p * lanes + l)] ? 1 : 0;
+  CHECK(different > 2 * k.pivots);
+}
+
+TEST_CASE("a lane without a pivot, or with NaN or infinity, is told and leaves its neighbours as they are") {
+  const Sizes k{16, 12, 22, 1};
+  for (const VectorSet set : available_vector_sets())
+    for (int l = 0; l < lanes; ++l)
+      for (const int fault : {0, 1, 2, 3}) {
+        CAPTURE(static_cast<int>(set), l, fault);
+        std::mt19937 generator(6);
+        const std::vector<Block> good = badly_pivoted(generator, k);
+        std::vector<Block> bad = good;
+        Block& block = bad[place(l)];
+        if (fault == 0) block.col(7).setZero();
+        if (fault == 1)
+          block.row(3).setZero(), block.row(9).setZero(), block.row(2).setZero(), block.row(4).setZero(),
+              block.row(5).setZero();
+        if (fault == 2) block.col(3).setConstant(NAN);
+        if (fault == 3) block(3, 1) = INFINITY;
+        const Eliminated alone = eliminated(k, good, set);
+        const Eliminated e = eliminated(k, bad, set);
+        CHECK(alone.failed == 0);
+        CHECK(e.failed == 1u << l);
+        for (int other = 0; other < lanes; ++other) {
+          if (other == l) continue;
+          CHECK(lane_of(e.blocks, other) == lane_of(alone.blocks, other));
+          for (int p = 0; p < k.pivots; ++p)
+            CHECK(e.swaps[place(p * lanes + other)] == alone.swaps[place(p * lanes + other)]);
+        }
+      }
+}
+
+TEST_CASE("border rows are no pivots in any lane, however large") {
+  std::mt19937 generator(6);
+  const Sizes k{8, 4, 14, 2};
+  std::vector<Block> blocks = random_blocks(generator, k);
+  for (Block& block : blocks) block.bottomRows(2) *= 1e9;
+  for (const VectorSet set : available_vector_sets())
+    for (const int row : eliminated(k, blocks, set).swaps) CHECK(row < k.rows);
+}
+
+TEST_CASE("forward elimination in lanes and its transpose agree") {
+  for (const VectorSet set : available_vector_sets()) {
+    std::mt19937 generator(9);
+    for (const Sizes& with_border : all_sizes()) {
+      const Sizes k{with_border.rows, with_border.pivots, with_border.width, 0};
+      CAPTURE(static_cast<int>(set), k.rows, k.pivots);
+      const Eliminated e = eliminated(k, random_blocks(generator, k), set);
+      const LaneKernel kernel(k.rows, k.pivots, k.width, set);
+      std::vector<Block> weights, right;
+      for (int l = 0; l < lanes; ++l) {
+        weights.push_back(random_block(generator, k.rows, 1));
+        weights.back().topRows(k.pivots).setZero();
+        right.push_back(random_block(generator, k.rows, 1));
+      }
+      LaneArray w = side_by_side(weights);
+      LaneArray b = side_by_side(right);
+      kernel.forward_transposed(e.blocks.data(), e.swaps.data(), w.data());
+      kernel.forward(e.blocks.data(), 0, e.swaps.data(), b.data());
+      for (int l = 0; l < lanes; ++l) {
+        const double condensed = weights[place(l)].col(0).dot(lane_of(b, l));
+        const VectorXd original = lane_of(w, l);
+        CHECK(std::abs(condensed - original.dot(right[place(l)].col(0))) <=
+              1e-9 * (1.0 + original.norm() * right[place(l)].norm()));
+      }
+    }
+  }
+}
+
+TEST_CASE("collocation rows are filled as the formula says, alike with every set of instructions") {
+  constexpr int n = 3, c = 2, scalars = 3, width = (c + 1) * n + scalars;
+  std::mt19937 generator(10);
+  const MatrixXd value = random_block(generator, c, c + 1);
+  const MatrixXd slope = random_block(generator, c, c + 1);
+  std::vector<MatrixXd> f, fx, fp, nodes;
+  for (int l = 0; l < lanes; ++l) {
+    f.emplace_back(random_block(generator, n, c));
+    fx.emplace_back(random_block(generator, n, n * c));
+    fp.emplace_back(random_block(generator, n, (scalars - 1) * c));
+    nodes.emplace_back(random_block(generator, n, c + 1));
+  }
+  LaneCollocation at{n, c, scalars, value.data(), slope.data(), {}, {}, {}, {}, {}, nullptr};
+  LaneArray states(place((c + 1) * n * lanes));
+  for (int l = 0; l < lanes; ++l) {
+    at.f[l] = f[place(l)].data(), at.fx[l] = fx[place(l)].data(), at.fp[l] = fp[place(l)].data();
+    at.h[l] = 0.1 * (l + 1), at.scale[l] = at.h[l] * 0.7;
+    for (int i = 0; i < (c + 1) * n; ++i) states[place(i * lanes + l)] = nodes[place(l)].data()[i];
+  }
+  std::vector<LaneArray> filled;
+  for (const VectorSet set : available_vector_sets()) {
+    const LaneAssembly assembly(set);
+    LaneArray points(place(c * n * lanes)), derivatives = points, residual = points;
+    LaneArray blocks(place(c * n * width * lanes)), jacobian(place(n * n * lanes));
+    assembly.interpolate(at, states.data(), points.data(), derivatives.data());
+    at.derivatives = derivatives.data();
+    REQUIRE(assembly.fill(at, blocks.data(), jacobian.data(), residual.data()));
+    filled.push_back(blocks);
+    for (int l = 0; l < lanes; ++l) {
+      const auto k = place(l);
+      const MatrixXd wanted_points = nodes[k] * value.transpose();
+      const MatrixXd wanted_rest = nodes[k] * slope.transpose() - at.scale[l] * f[k];
+      const VectorXd found_points = lane_of(points, l), found_rest = lane_of(residual, l);
+      CHECK((found_points - wanted_points.reshaped()).norm() < 1e-14 * 10);
+      CHECK((found_rest - wanted_rest.reshaped()).norm() < 1e-14 * 10);
+      const Block found = block_of(blocks, l, Block(c * n, width));
+      for (int g = 0; g < c; ++g) {
+        Block wanted(n, width);
+        const MatrixXd jacobian_of_f = -at.scale[l] * fx[k].middleCols(g * n, n);
+        const auto node = [&](int i) -> MatrixXd {
+          return value(g, i) * jacobian_of_f + slope(g, i) * MatrixXd::Identity(n, n);
+        };
+        wanted << node(1), node(0), node(2), -at.h[l] * f[k].col(g),
+            -at.scale[l] * fp[k].middleCols(g * (scalars - 1), scalars - 1);
+        CHECK((found.middleRows(g * n, n) - wanted).norm() < 1e-14 * 10);
+      }
+    }
+    MatrixXd broken = fx[2];
+    broken(1, 4) = NAN;
+    LaneCollocation with_nan = at;
+    with_nan.fx[2] = broken.data();
+    CHECK_FALSE(assembly.fill(with_nan, blocks.data(), jacobian.data(), residual.data()));
+  }
+  for (const LaneArray& blocks : filled) CHECK(blocks == filled.front());
+}
