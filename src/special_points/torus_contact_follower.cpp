@@ -37,8 +37,9 @@ TorusContactFollower::TorusContactFollower(const TorusSystem& system, const Orbi
                                                                                                               1e-13)) {}
 
 void TorusContactFollower::find_place(const Orbit& x, const CollocationRule& rule, double tau) {
-  // What is on a mesh point but for rounding belongs to the interval after it: the flow to it has no length then.
-  const auto beyond = std::upper_bound(x.mesh.begin(), x.mesh.end() - 1, tau + 1e-9);
+  // Just before a mesh point it is that one which tells most: Newton's step on the time does the rest.
+  constexpr double just_before = 1e-6;
+  const auto beyond = std::upper_bound(x.mesh.begin(), x.mesh.end() - 1, tau + just_before);
   interval_ = static_cast<int>(std::max<std::ptrdiff_t>(beyond - x.mesh.begin() - 1, 0));
   const double left = x.mesh[static_cast<std::size_t>(interval_)];
   const double right = x.mesh[static_cast<std::size_t>(interval_ + 1)];
@@ -162,14 +163,14 @@ bool TorusContactFollower::follow(const Orbit& x, const CollocationRule& rule, T
   const double reach = 1.0 / system_.orbits();
   const double begin = contact.phi;
   double before = begin - 1e-4 * reach, phi = begin;
-  double slope_before = 0.0, slope = 0.0;
+  double slope_before = 0.0, slope = 0.0, change = reach;
   if (!at(x, rule, before, contact, slope_before) || !at(x, rule, phi, contact, slope)) return false;
   for (int step = 0; step < most_steps; ++step) {
     const double second = (slope - slope_before) / (phi - before);
-    if (!(second > 0.0)) return false;
-    const double change = std::clamp(-slope / second, -0.25 * reach, 0.25 * reach);
-    // Nearer together differences are rounding; the value does not see it.
-    if (std::abs(change) < 1e-9 * reach) break;
+    // Of phases close together the slopes differ by rounding.
+    if (!(second > 0.0)) return std::abs(change) < 1e-6 * reach;
+    change = std::clamp(-slope / second, -0.25 * reach, 0.25 * reach);
+    if (std::abs(change) < 1e-8 * reach) break;  // the value does not see it
     before = phi;
     slope_before = slope;
     phi += change;
