@@ -3,23 +3,33 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
-#include <iterator>
 
 namespace tchat {
 
 namespace {
 
 constexpr int largest_point = 9999;
-constexpr double largest_es = 1.7976e308;  ///< rounded up in its last decimal a larger one is read as infinity
+constexpr std::size_t longest_number = 40;  ///< with at most 16 decimals and three digits of exponent
+constexpr double largest_es = 1.7976e308;   ///< rounded up in its last decimal a larger one is read as infinity
 
 bool continues_character(char c) { return (static_cast<unsigned char>(c) & 0xC0) == 0x80; }  // of UTF-8
 
+/// As C prints it with %.*E: `-1.2345E-07`. Neither the locale nor the heap is asked.
+std::string_view scientific(double value, int decimals, std::array<char, longest_number>& digits) {
+  const auto [end, error] =
+      std::to_chars(digits.data(), digits.data() + digits.size(), value, std::chars_format::scientific, decimals);
+  const std::string_view text(digits.data(), static_cast<std::size_t>(end - digits.data()));
+  if (error == std::errc()) digits[text.find('e')] = 'E';
+  return text;
+}
+
 /// Right-justified in `width` columns, three exponent digits at least.
 void append_exponential(std::string& line, double value, int decimals, std::size_t width) {
-  fmt::memory_buffer digits;
-  fmt::format_to(std::back_inserter(digits), "{:.{}E}", finite(value), decimals);
-  const std::string_view text(digits.data(), digits.size());
+  std::array<char, longest_number> digits;
+  const std::string_view text = scientific(finite(value), decimals, digits);
   const auto exponent = text.find('E') + 2;  // after the sign
   const bool short_exponent = text.size() - exponent == 2;
   line.append(width - text.size() - (short_exponent ? 1 : 0), ' ');
@@ -48,7 +58,8 @@ std::string e19(double value) {
 
 std::string es(double value, int width, int decimals) {
   const double bounded = std::clamp(finite(value), -largest_es, largest_es);
-  std::string text = fmt::format("{:.{}E}", bounded, decimals);
+  std::array<char, longest_number> digits;
+  std::string text(scientific(bounded, decimals, digits));
   const auto letter = text.find('E');
   if (text.size() - letter > 4) text.erase(letter, 1);  // a three-digit exponent takes the letter's place
   return fmt::format("{:>{}}", text, width);

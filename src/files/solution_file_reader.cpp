@@ -28,6 +28,19 @@ struct Line {
   bool ended = true;
 };
 
+/// The first of the words that split_words finds, cut off from `rest`; empty when there is none. A file has many.
+std::string_view take_word(std::string_view& rest) {
+  constexpr std::string_view blanks = " \t\v\f\r";
+  const auto is_blank = [&](char c) { return c <= ' ' && blanks.find(c) != std::string_view::npos; };
+  std::size_t begin = 0;
+  while (begin < rest.size() && is_blank(rest[begin])) ++begin;
+  std::size_t end = begin;
+  while (end < rest.size() && !is_blank(rest[end])) ++end;
+  const std::string_view word = rest.substr(begin, end - begin);
+  rest.remove_prefix(end);
+  return word;
+}
+
 /// The blank-separated numbers of the lines of one entry, converted one by one.
 class NumberStream {
  public:
@@ -60,20 +73,20 @@ class NumberStream {
  private:
   /// Callers never ask for more words than there are: the entry was counted before.
   std::string_view next() {
-    while (word_ == words_.size() && used_ < lines_.size()) {
-      words_ = split_words(lines_[used_].text);
-      word_ = 0;
+    std::string_view word = take_word(rest_);
+    while (word.empty() && used_ < lines_.size()) {
+      rest_ = lines_[used_].text;
       next_line_ += used_ > 0 ? 1 : 0;
       ++used_;
+      word = take_word(rest_);
     }
-    return words_[word_++];
+    return word;
   }
 
   const std::vector<Line>& lines_;
   std::size_t used_ = 0;
   int next_line_;
-  std::vector<std::string_view> words_;
-  std::size_t word_ = 0;
+  std::string_view rest_;  // of the line
   const std::string& path_;
 };
 
@@ -208,7 +221,10 @@ class SolutionReader {
 
   static std::int64_t count_words(const std::vector<Line>& lines) {
     std::size_t count = 0;
-    for (const Line& line : lines) count += split_words(line.text).size();
+    for (const Line& line : lines) {
+      std::string_view rest = line.text;
+      while (!take_word(rest).empty()) ++count;
+    }
     return static_cast<std::int64_t>(count);
   }
 

@@ -42,15 +42,24 @@ bool take_exponent(std::string_view rest, bool fortran, std::string_view& expone
   return (letter || (sign && fortran)) && !take_digits(rest).empty() && rest.empty();
 }
 
+/// A finite number as std::from_chars takes it; nothing where there is more to look at.
+std::optional<double> parse_usual(std::string_view text) {
+  double value = 0.0;
+  const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool whole = error == std::errc() && stop == text.data() + text.size();
+  return whole && std::isfinite(value) ? std::optional(value) : std::nullopt;
+}
+
 std::optional<double> parse(std::string_view text, bool fortran) {
   constexpr std::size_t longest = 400;
   if (text.size() > longest) return std::nullopt;
+  if (const auto value = parse_usual(text)) return value;
   std::string_view rest = text;
   if (!rest.empty() && is_sign(rest[0])) rest.remove_prefix(1);
   if (!text.empty() && text[0] == '+') text = rest;  // std::from_chars takes no plus
   if (!take_mantissa(rest)) return std::nullopt;
 
-  std::array<char, longest + 2> normal{};  // the number with exponent letter e, as std::from_chars reads it
+  std::array<char, longest + 2> normal;  // the number with exponent letter e, as std::from_chars reads it
   const std::size_t mantissa = text.size() - rest.size();
   char* end = text.substr(0, mantissa).copy(normal.data(), mantissa) + normal.data();
   if (!rest.empty()) {
