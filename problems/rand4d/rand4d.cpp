@@ -15,7 +15,8 @@ struct ForcedOscillator {
   static constexpr const char* parameter_names[] = {"mu", "A", "omega", "m", "r", "phase"};
   static constexpr const char* field_names[] = {"free flight"};
   static constexpr const char* event_names[] = {"wall", "minimum of x1", "phase"};
-  static constexpr const char* jump_names[] = {"impact", "identity", "impact, cut at minima", "identity, cut at minima"};
+  static constexpr const char* jump_names[] = {"impact", "identity", "impact, cut at minima",
+                                               "identity, cut at minima"};
   static constexpr double initial_parameters[] = {-0.4938, 1.25, 1.9, 0.28, 0.8, 3.0088915663};
   static constexpr double initial_state[] = {-0.3, 0.5, 0.2, 0.0, 1.0};
 

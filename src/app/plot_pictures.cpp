@@ -118,11 +118,13 @@ NamedFigure branches(const std::vector<PlotItem>& items, const PlotArguments& ar
   options.underlay = sweeps.take();
   const bool has_dots = !options.underlay.clouds.empty();
   result.figure = branch_figure(files, options, &result.warnings);
-  if (has_dots && !files.empty() && arguments.dots.empty() &&
-      result.figure.panels.front().y.label.text.starts_with("max "))
+  const std::string& shown = result.figure.panels.front().y.label.text;
+  const bool is_norm = shown.starts_with("L_2");
+  if (has_dots && !files.empty() && arguments.dots.empty() && (is_norm || shown.starts_with("max ")))
     result.warnings.push_back(
-        "branches show the largest value of a state, the dots of a sweep its value at their section, which is "
-        "something else; with -y STATE@EVENT --dots STATE branches show that too (of a run with NPR=1)");
+        fmt::format("branches show {}, the dots of a sweep a state at their section, which is something else; with "
+                    "-y STATE@EVENT --dots STATE branches show that too (of a run with NPR=1)",
+                    is_norm ? "the L2 norm" : "the largest value of a state"));
   if (!files.empty()) result.name = files.front().name;
   return result;
 }

@@ -60,7 +60,7 @@ class AssignmentParser {
   }
 
   [[noreturn]] void fail(const std::string& found, const std::string& expected) const {
-    throw UserError(fmt::format("{}: found {}; allowed: {}; for example: ICP = [1, 61, 62] or UZR = {{1: [2.5, 3.0]}}",
+    throw UserError(fmt::format("{}: found {}; allowed: {}; for example: NTST = 50 or UZR = {{1: [2.5, 3.0]}}",
                                 place_.text(), found, expected));
   }
 

@@ -39,7 +39,7 @@ constexpr int part_lanes = 2;
 namespace {
 namespace avx2_lanes {
 constexpr int part_lanes = 4;
-#include "linear_algebra/lane_functions.inc"
+#include "linear_algebra/lane_functions.inc"  // NOLINT(readability-duplicate-include): for another instruction set
 }  // namespace avx2_lanes
 }  // namespace
 #ifdef __clang__

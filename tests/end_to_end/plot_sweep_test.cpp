@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <utility>
 
 #include "end_to_end/bad_input.hpp"
 
@@ -74,13 +75,16 @@ TEST_CASE("a sweep lies beneath the branches of a run") {
 
 TEST_CASE("branches that show another quantity than the dots of a sweep are told, with what shows the same") {
   const Workspace& workspace = prepared();
-  const std::string sentence = "branches show the largest value of a state";
-  const Outcome different = workspace.tchat("plot p.branch brute -o different.svg");
-  INFO(different.text());
-  CHECK(different.status == 0);
-  CHECK(contains(different.err, sentence));
-  CHECK(contains(different.err, "-y STATE@EVENT --dots STATE"));
-  CHECK(workspace.has("different.svg"));
+  const std::string sentence = "which is something else";
+  for (const auto& [arguments, shown] : {std::pair{"", "the L2 norm"}, {" -y x2", "the largest value of a state"}}) {
+    const Outcome different = workspace.tchat(fmt::format("plot p.branch brute{} -o different.svg", arguments));
+    INFO(different.text());
+    CHECK(different.status == 0);
+    CHECK(contains(different.err, fmt::format("branches show {}, the dots", shown)));
+    CHECK(contains(different.err, sentence));
+    CHECK(contains(different.err, "-y STATE@EVENT --dots STATE"));
+    CHECK(workspace.has("different.svg"));
+  }
   for (const std::string arguments : {"p.branch", "brute", "p.branch brute -y x2@wall --dots x2"})
     CHECK_FALSE(contains(workspace.tchat("plot " + arguments + " -o same.svg").text(), sentence));
 }

@@ -80,8 +80,8 @@ static void in_thread(Action action) {
   pthread_join(thread, nullptr);
 }
 static void free_middle() {
-  char local[64];
-  char* volatile middle = local + 8;
+  alignas(16) char local[64] = {};  // where the allocator looks for a chunk's size it finds 0, which it refuses
+  char* volatile middle = local + 16;
   free(middle);
 }
 

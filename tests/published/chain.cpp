@@ -98,10 +98,13 @@ double difference(const SolutionEntry& a, const SolutionEntry& b) {
   REQUIRE(a.par.size() == b.par.size());
   const auto relative = [](double x, double y) { return std::abs(x - y) / (1.0 + std::abs(x)); };
   double largest = 0.0;
+  std::vector<double> sizes(a.states.front().size(), 0.0);
+  for (const std::vector<double>& x : a.states)
+    for (std::size_t i = 0; i < x.size(); ++i) sizes.at(i) = std::max(sizes.at(i), std::abs(x[i]));
   for (std::size_t k = 0; k < a.t.size(); ++k) {
     largest = std::max(largest, std::abs(a.t[k] - b.t[k]));
-    for (std::size_t i = 0; i < a.states[k].size(); ++i)
-      largest = std::max(largest, relative(a.states[k][i], b.states[k].at(i)));
+    for (std::size_t i = 0; i < sizes.size(); ++i)
+      largest = std::max(largest, std::abs(a.states[k].at(i) - b.states[k].at(i)) / (1.0 + sizes[i]));
   }
   for (std::size_t k = 0; k < a.par.size(); ++k) largest = std::max(largest, relative(a.par[k], b.par[k]));
   return largest;

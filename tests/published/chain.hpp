@@ -37,7 +37,8 @@ SolutionEntry only(const Workspace& workspace, const std::string& name, const st
 double distance_to(const std::vector<std::complex<double>>& multipliers, std::complex<double> value);
 /// Newton iterations of the first point of a d-file.
 int first_iterations(const std::string& diagnostics);
-/// Largest difference of time points, states and parameters of two solutions on equal meshes.
+/// Largest difference of time points, states and parameters of two solutions on equal meshes; of a state relative to
+/// its size on the orbit, as Newton's method measures its steps.
 double difference(const SolutionEntry& a, const SolutionEntry& b);
 
 }  // namespace test_support

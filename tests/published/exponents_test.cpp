@@ -182,7 +182,10 @@ TEST_CASE("exponents: what follows --lyapunov is its number or an assignment") {
   REQUIRE(b.size() == 4);
   REQUIRE(c.size() == 4);
   for (std::size_t j = 0; j < 4; ++j) CHECK(a[j].value == b[j].value);
-  CHECK(std::abs(c[3].value - b[3].value) > 1e-6);  // it is taken, not dropped
+  // It is taken, not dropped: the divergence is -2 zeta, and impacts of restitution 0.8 at most one a period add
+  // ln(0.64) to it.
+  CHECK(b[1].value + b[2].value > -0.1 - 0.446 / 3.92 - 0.01);
+  CHECK(c[1].value + c[2].value < -0.4 + 0.001);
   CHECK(exponents_in(workspace.tchat("simulate linosc --lyapunov 2 PAR(alpha)=1.2" + rest).out).size() == 2);
   check_refused(workspace.tchat("simulate linosc --lyapunov PAR(nosuch)=1.2"), {"nosuch"});
   check_refused(workspace.tchat("simulate linosc --lyapunov two"), {"--lyapunov", "'two'"});

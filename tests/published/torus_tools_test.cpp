@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <filesystem>
+#include <regex>
 #include <sstream>
 
 #include "end_to_end/bad_input.hpp"
@@ -216,9 +217,12 @@ TEST_CASE("a torus on its way into a tongue: as many harmonics as there may be, 
   const Workspace workspace;
   enter_langford(workspace);
   done(workspace, "run langford -q");
-  const std::string text =
+  // Where the lines of the sentence end depends on its numbers.
+  const std::string text = std::regex_replace(
       done(workspace,
-           "run langford -s langford -o tori IRS=TR1 IPS=182 ISW=-1 ICP=[a,rho] DS=0.05 DSMAX=0.1 NMX=40 PAR(f)=0.03");
+           "run langford -s langford -o tori IRS=TR1 IPS=182 ISW=-1 ICP=[a,rho] DS=0.05 DSMAX=0.1 NMX=40 PAR(f)=0.03"),
+      std::regex("\\s+"), " ");
+  INFO(text);
   CHECK(text.find("it is about to lose its smoothness, or locks to a periodic") != std::string::npos);
   CHECK(text.find("near 1/3") != std::string::npos);
   CHECK(text.find("mesh is too coarse") == std::string::npos);
