@@ -45,8 +45,26 @@ double interpolation_constant(int c) {
   return worst / std::tgamma(c + 2.0);
 }
 
-/// The monitor on each interval of x's mesh: N entries, positive.
-Eigen::VectorXd monitor_density(const Orbit& x, const CollocationRule& rule) {
+}  // namespace
+
+std::vector<double> equal_parts(const std::vector<double>& mesh, const Eigen::VectorXd& density, int parts) {
+  const int intervals = static_cast<int>(mesh.size()) - 1;
+  std::vector<double> cumulative(mesh.size(), 0.0);
+  for (int j = 0; j < intervals; ++j) cumulative[index(j + 1)] = cumulative[index(j)] + density(j) * length(mesh, j);
+  std::vector<double> result(index(parts + 1));
+  int j = 0;
+  for (int k = 1; k < parts; ++k) {
+    const double wanted = cumulative.back() * k / parts;
+    while (j < intervals - 1 && cumulative[index(j + 1)] < wanted) ++j;
+    const double share = (wanted - cumulative[index(j)]) / (cumulative[index(j + 1)] - cumulative[index(j)]);
+    result[index(k)] = mesh[index(j)] + share * length(mesh, j);
+  }
+  result.front() = 0.0;
+  result.back() = 1.0;
+  return result;
+}
+
+std::vector<double> equidistributed_mesh(const Orbit& x, const CollocationRule& rule, int intervals) {
   const double power = 1.0 / (x.shape.collocation + 1);
   // Derivatives below this count as zero, so that a constant solution keeps a uniform mesh.
   const double negligible = 1e-7;
@@ -68,37 +86,7 @@ Eigen::VectorXd monitor_density(const Orbit& x, const CollocationRule& rule) {
     }
     monitor = monitor.cwiseMax(1e-3 * peak);
   }
-  return monitor;
-}
-
-}  // namespace
-
-std::vector<double> equal_parts(const std::vector<double>& mesh, const Eigen::VectorXd& density, int parts) {
-  const int intervals = static_cast<int>(mesh.size()) - 1;
-  std::vector<double> cumulative(mesh.size(), 0.0);
-  for (int j = 0; j < intervals; ++j) cumulative[index(j + 1)] = cumulative[index(j)] + density(j) * length(mesh, j);
-  std::vector<double> result(index(parts + 1));
-  int j = 0;
-  for (int k = 1; k < parts; ++k) {
-    const double wanted = cumulative.back() * k / parts;
-    while (j < intervals - 1 && cumulative[index(j + 1)] < wanted) ++j;
-    const double share = (wanted - cumulative[index(j)]) / (cumulative[index(j + 1)] - cumulative[index(j)]);
-    result[index(k)] = mesh[index(j)] + share * length(mesh, j);
-  }
-  result.front() = 0.0;
-  result.back() = 1.0;
-  return result;
-}
-
-std::vector<double> equidistributed_mesh(const Orbit& x, const CollocationRule& rule, int intervals) {
-  return equal_parts(x.mesh, monitor_density(x, rule), intervals);
-}
-
-bool is_equidistributed(const Orbit& x, const CollocationRule& rule) {
-  constexpr double even = 1.1;  // the error between mesh points is then at most 1.6 times the mean for NCOL = 4
-  Eigen::VectorXd shares = monitor_density(x, rule);
-  for (int j = 0; j < x.shape.intervals; ++j) shares(j) *= length(x.mesh, j);
-  return shares.maxCoeff() <= even * shares.mean();
+  return equal_parts(x.mesh, monitor, intervals);
 }
 
 std::vector<double> resampled_mesh(const std::vector<double>& mesh, int intervals) {
@@ -109,24 +97,39 @@ std::vector<double> resampled_mesh(const std::vector<double>& mesh, int interval
   return equal_parts(mesh, density, intervals);
 }
 
-Eigen::MatrixXd interpolate_states(const Eigen::MatrixXd& states, const OrbitShape& from,
-                                   const std::vector<double>& from_mesh, const OrbitShape& to,
-                                   const std::vector<double>& to_mesh) {
+MeshTransfer::MeshTransfer(const OrbitShape& from, const std::vector<double>& from_mesh, const OrbitShape& to,
+                           const std::vector<double>& to_mesh)
+    : from_(from), to_(to), first_(index(to.nodes())), weights_(from.collocation + 1, to.nodes()) {
   const CollocationRule rule(from.collocation);
-  Eigen::VectorXd basis(from.collocation + 1);
-  Eigen::MatrixXd result(to.dimension, to.columns());
   int j = 0;
   for (int k = 0; k < to.nodes(); ++k) {
     const int interval = std::min(k / to.collocation, to.intervals - 1);
     const double share = static_cast<double>(k - interval * to.collocation) / to.collocation;
     const double tau = to_mesh[index(interval)] + share * length(to_mesh, interval);
     while (j + 1 < from.intervals && from_mesh[index(j + 1)] <= tau) ++j;
-    rule.basis((tau - from_mesh[index(j)]) / length(from_mesh, j), basis.data(), nullptr);
-    for (int s = 0; s < to.segments; ++s)
-      result.col(s * to.nodes() + k) =
-          states.middleCols(s * from.nodes() + j * from.collocation, from.collocation + 1) * basis;
+    first_[index(k)] = j * from.collocation;
+    rule.basis((tau - from_mesh[index(j)]) / length(from_mesh, j), weights_.col(k).data(), nullptr);
   }
+}
+
+Eigen::MatrixXd MeshTransfer::operator()(const Eigen::MatrixXd& states) const {
+  Eigen::MatrixXd result(to_.dimension, to_.columns());
+  const Eigen::Index n = to_.dimension;
+  double* value = result.data();
+  for (int s = 0; s < to_.segments; ++s)
+    for (int k = 0; k < to_.nodes(); ++k, value += n) {
+      const double* node = states.col(s * from_.nodes() + first_[index(k)]).data();
+      std::fill_n(value, n, 0.0);
+      for (int i = 0; i <= from_.collocation; ++i)
+        for (Eigen::Index a = 0; a < n; ++a) value[a] += weights_(i, k) * *node++;
+    }
   return result;
+}
+
+Eigen::MatrixXd interpolate_states(const Eigen::MatrixXd& states, const OrbitShape& from,
+                                   const std::vector<double>& from_mesh, const OrbitShape& to,
+                                   const std::vector<double>& to_mesh) {
+  return MeshTransfer(from, from_mesh, to, to_mesh)(states);
 }
 
 double estimated_error(const Orbit& x, const CollocationRule& rule) {

@@ -13,17 +13,28 @@ namespace tchat {
 /// The mesh of `intervals` intervals that equidistributes the monitor of x. Uniform when all derivatives vanish.
 std::vector<double> equidistributed_mesh(const Orbit& x, const CollocationRule& rule, int intervals);
 
-/// Is no interval's share of the monitor of x much larger than the mean? Then another mesh makes x hardly more
-/// accurate.
-bool is_equidistributed(const Orbit& x, const CollocationRule& rule);
-
 /// The old mesh's density at another number of intervals.
 std::vector<double> resampled_mesh(const std::vector<double>& mesh, int intervals);
 
 /// Splits [0, 1] into `parts` intervals of equal share of a density that is constant on each interval of `mesh`, > 0.
 std::vector<double> equal_parts(const std::vector<double>& mesh, const Eigen::VectorXd& density, int parts);
 
-/// States evaluated on another mesh, possibly of other N and c (`shape` has the same n and m).
+/// Evaluates states on another mesh, possibly of other N and c (`to` has the same n and m): the weights once, for as
+/// many matrices of states as there are.
+class MeshTransfer {
+ public:
+  MeshTransfer(const OrbitShape& from, const std::vector<double>& from_mesh, const OrbitShape& to,
+               const std::vector<double>& to_mesh);
+  Eigen::MatrixXd operator()(const Eigen::MatrixXd& states) const;
+
+ private:
+  OrbitShape from_;
+  OrbitShape to_;
+  std::vector<int> first_;   // of the nodes that node k of a segment is made of
+  Eigen::MatrixXd weights_;  // of these, a column for each k
+};
+
+/// The same, of one matrix.
 Eigen::MatrixXd interpolate_states(const Eigen::MatrixXd& states, const OrbitShape& from,
                                    const std::vector<double>& from_mesh, const OrbitShape& to,
                                    const std::vector<double>& to_mesh);

@@ -154,7 +154,7 @@ std::optional<double> ContinuationRun::come_back() {
     return std::nullopt;
   }
   newton_ = newton;
-  iterations_ = iterations_along_tangent(way->from, past);
+  count_iterations(way->from, past);
   past.data = search_.evaluate(past.point);
   here_ = way->from;
   next_ = std::move(past);
@@ -192,7 +192,7 @@ SpecialPoint ContinuationRun::advance() {
   SpecialPoint special = search_.advance(here_, next_, of_shorter_step, reports).value_or(SpecialPoint{});
   if (of_shorter_step.converged()) {
     newton_ = of_shorter_step;
-    iterations_ = iterations_along_tangent(here_, next_);
+    count_iterations(here_, next_);
   }
   const double level = insignificant_turn * steepest_;
   const double earlier = std::exchange(before_, before);
@@ -266,10 +266,25 @@ SpecialPoint ContinuationRun::curve_end(SpecialPoint special) {
   return {PointType::end, {}, false, reason};
 }
 
-/// Of the step that has just been made: the count that the step length goes by.
-int ContinuationRun::iterations_along_tangent(const PathPoint& from, const Candidate& to) {
-  if (limited_ || !step_.adapts_at(number_ + 1)) return newton_.iterations;
-  return follower_.iterations_along_tangent(from, to.ds, to.point, newton_, !step_.is_longest());
+/// Sets iterations_ for the step that newton_ made.
+void ContinuationRun::count_iterations(const PathPoint& from, Candidate& to) {
+  iterations_ = newton_.iterations;
+  if (limited_ || !step_.adapts_at(number_ + 1) || (newton_.from_tangent && !is_doubtful_)) return;
+  const IterationRange range = follower_.iterations_along_tangent(from, to.ds, to.point, !step_.is_longest());
+  is_doubtful_ = step_.after(range.least) != step_.after(range.most);
+  if (newton_.from_tangent) return;
+  iterations_ = is_doubtful_ ? tried_along_tangent(from, to) : range.most;
+}
+
+/// The step again, from the tangent, for its number of iterations.
+int ContinuationRun::tried_along_tangent(const PathPoint& from, Candidate& to) {
+  PathPoint trial = to.point;
+  const NewtonResult newton = follower_.step_along_tangent(from, to.ds, trial);
+  if (newton.converged())
+    to.point.newton_constant = trial.newton_constant;
+  else
+    follower_.linearize_at(to.point);
+  return newton.converged() ? newton.iterations : settings_.step.max_newton;
 }
 
 /// Predicts and corrects, halving the step until it succeeds. False when it cannot be made any smaller.
@@ -277,9 +292,10 @@ bool ContinuationRun::take_step() {
   for (;;) {
     next_.ds = search_.limited(step_.value());
     limited_ = next_.ds != step_.value();
-    newton_ = follower_.step(here_, next_.ds, next_.point);
+    newton_ = is_doubtful_ ? follower_.step_along_tangent(here_, next_.ds, next_.point)
+                           : follower_.step(here_, next_.ds, next_.point);
     const bool converged = newton_.converged();
-    if (converged) iterations_ = iterations_along_tangent(here_, next_);
+    if (converged) count_iterations(here_, next_);
     std::string trouble;
     if (!converged)
       trouble = describe(newton_.status);
@@ -408,10 +424,9 @@ void ContinuationRun::report_lost(const std::string& text) {
   sink_.lost(summary_.lost.back());
 }
 
-/// A new mesh where it is due and the old one no longer fits, and the step length for the d-file.
+/// A new mesh where it is due, and the step length for the d-file.
 void ContinuationRun::prepare_next_step() {
-  const bool due = settings_.adapt_mesh_every > 0 && number_ % settings_.adapt_mesh_every == 0;
-  if (due && !is_equidistributed(here_.orbit, follower_.condensed().rule()))
+  if (settings_.adapt_mesh_every > 0 && number_ % settings_.adapt_mesh_every == 0)
     follower_.change_mesh(here_,
                           equidistributed_mesh(here_.orbit, follower_.condensed().rule(), here_.orbit.shape.intervals));
   sink_.next_step(number_, step_.value());

@@ -31,6 +31,7 @@ PathFollower::PathFollower(const DefiningSystem& system, const OrbitShape& shape
       settings_(settings),
       row_(condensed().make_vector()),
       dx_(condensed().make_vector()),
+      on_tangent_{shape, uniform_mesh(shape.intervals), dx_.states, ParameterVector::Zero(parameter_length)},
       factored_tangent_(condensed().make_vector()) {
   problem_.remember(unused_);
 }
@@ -159,8 +160,12 @@ NewtonResult PathFollower::step(const PathPoint& from, double ds, PathPoint& to)
     polish(from, ds, expected, to.orbit);
     const NewtonResult result = step_near(from, ds, to);
     if (result.converged()) return result;
-    put_on_tangent(from, ds, to.orbit);
   }
+  return step_along_tangent(from, ds, to);
+}
+
+NewtonResult PathFollower::step_along_tangent(const PathPoint& from, double ds, PathPoint& to) {
+  put_on_tangent(from, ds, to.orbit);
   NewtonResult result = step_near(from, ds, to);
   result.from_tangent = true;
   const std::vector<NewtonIteration>& history = newton_.history();
@@ -205,37 +210,45 @@ void PathFollower::polish(const PathPoint& from, double ds, double expected, Orb
   }
 }
 
-int PathFollower::iterations_along_tangent(const PathPoint& from, double ds, const PathPoint& to,
-                                           const NewtonResult& newton, bool exactly) {
-  constexpr double rounding = 1e-14;
-  if (newton.from_tangent) return newton.iterations;
+IterationRange PathFollower::iterations_along_tangent(const PathPoint& from, double ds, PathPoint& to, bool exactly) {
+  constexpr double fast = 1e-2;         // a contraction of Newton's method that is far from none
+  constexpr double of_measured = 1.5;   // error of the second correction, as a factor
+  constexpr double of_estimated = 5.0;  // the same, and of what is made of the constant
   put_on_tangent(from, ds, on_tangent_);
-  OrbitChange first;
-  OrbitChange second;
-  if (problem_.allows_chord() && factors_known_ && (exactly || from.newton_constant == 0.0)) {
+  OrbitChange first = difference(to.orbit, on_tangent_);
+  const double estimated = from.newton_constant * first.larger();
+  const bool measured =
+      problem_.allows_chord() && factors_known_ && (exactly || !(estimated > 0.0 && estimated < fast));
+  OrbitChange second{0.0, estimated * first.larger()};
+  if (measured) {
     begin_step(from);
     first = chord(from.orbit, ds, on_tangent_);
     advance(on_tangent_, 1.0, dx_, system_.free_parameters());
     second = difference(to.orbit, on_tangent_);
-  } else {
-    first = difference(to.orbit, on_tangent_);
-    second.states = from.newton_constant * first.larger() * first.larger();
+    to.newton_constant = second.larger() / (first.larger() * first.larger());
   }
+  const double constant = second.larger() / (first.larger() * first.larger());
+  if (!std::isfinite(constant) || !(constant > 0.0)) return {1, settings_.max_iterations};
+  const double error = measured ? of_measured : of_estimated;
+  return {iterations_of(first, {second.parameters / error, second.states / error}, constant / of_estimated),
+          iterations_of(first, {second.parameters * error, second.states * error}, constant * of_estimated)};
+}
+
+/// Each iteration with a new matrix leaves C e^2 of an error e, a chord iteration 2 C e times what the errors were when
+/// the matrix was new.
+int PathFollower::iterations_of(const OrbitChange& first, const OrbitChange& second, double constant) const {
+  constexpr double rounding = 1e-14;
   const auto small = [&](const OrbitChange& change) {
     return change.parameters <= settings_.tolerance_parameters && change.states < settings_.tolerance_states;
   };
-  if (!std::isfinite(first.larger()) || !std::isfinite(second.larger())) return newton.iterations;
   if (small(first)) return 1;
   if (second.larger() >= first.larger()) return settings_.max_iterations;
-  // Each iteration with a new matrix leaves C e^2 of an error e, a chord iteration 2 C e times what the errors were
-  // when the matrix was new.
-  const double constant = second.larger() / (first.larger() * first.larger());
   const int full = problem_.allows_chord() ? std::max(settings_.full_iterations, 1) : settings_.max_iterations;
   double error = second.larger();
   double at_matrix = full == 1 ? first.larger() : error;
   int iterations = 2;
   for (OrbitChange change = second; iterations < settings_.max_iterations && !small(change); ++iterations) {
-    const double factor = iterations < full ? constant * error : std::min(2.0 * constant * at_matrix, 1.0);
+    const double factor = std::min(iterations < full ? constant * error : 2.0 * constant * at_matrix, 1.0);
     error = std::max(error * factor, rounding);
     if (iterations < full) at_matrix = error;
     change = {error, error};
@@ -320,12 +333,10 @@ NewtonResult PathFollower::start_by_minimum_norm(PathPoint& point) {
 
 void PathFollower::change_mesh(PathPoint& point, const std::vector<double>& mesh) const {
   const OrbitShape& shape = point.orbit.shape;
-  point.orbit.states = interpolate_states(point.orbit.states, shape, point.orbit.mesh, shape, mesh);
-  point.tangent.states = interpolate_states(point.tangent.states, shape, point.orbit.mesh, shape, mesh);
-  if (point.trail.mesh() == point.orbit.mesh)
-    point.trail.change_mesh(mesh, [&](const Eigen::MatrixXd& states) {
-      return interpolate_states(states, shape, point.orbit.mesh, shape, mesh);
-    });
+  const MeshTransfer transfer(shape, point.orbit.mesh, shape, mesh);
+  point.orbit.states = transfer(point.orbit.states);
+  point.tangent.states = transfer(point.tangent.states);
+  if (point.trail.mesh() == point.orbit.mesh) point.trail.change_mesh(mesh, transfer);
   point.orbit.mesh = mesh;
   normalise(point.orbit, point.tangent, point.dual);
 }

@@ -23,8 +23,14 @@ struct PathPoint {
   OrbitVector dual;        ///< <tangent, .> on the orbit's mesh
   ConditionMemory memory;  ///< of a two-parameter curve's condition
   PathTrail trail = {};    ///< points before it
-  /// Newton's second correction over the square of the first, in the last step that was predicted along the tangent.
+  /// Newton's second correction over the square of the first, from the tangent: the last that is known, 0 for none.
   double newton_constant = 0.0;
+};
+
+/// What is known of a number of iterations: it is one of these.
+struct IterationRange {
+  int least = 1;
+  int most = 1;
 };
 
 /// What is watched along a branch, and what is held on it besides the defining system.
@@ -53,11 +59,13 @@ class PathFollower {
   /// One step of signed length ds; `to` must come from make_point or be a former path point.
   NewtonResult step(const PathPoint& from, double ds, PathPoint& to);
 
-  /// How many iterations Newton's method takes for this step when it starts on the tangent: what the step length goes
-  /// by, whatever predictor the step had, which took `newton`. condensed() must be the linearisation at `to`; a chord
-  /// iteration from the tangent with its factors tells `exactly`, otherwise it is estimated by the last constant.
-  int iterations_along_tangent(const PathPoint& from, double ds, const PathPoint& to, const NewtonResult& newton,
-                               bool exactly);
+  /// The same, always from the tangent.
+  NewtonResult step_along_tangent(const PathPoint& from, double ds, PathPoint& to);
+
+  /// How many iterations Newton's method takes for this step when it starts on the tangent, whatever predictor the step
+  /// had. condensed() must be the linearisation at `to`; a chord iteration from the tangent with its factors tells it
+  /// `exactly` and to.newton_constant, else it is estimated by that of `from`.
+  IterationRange iterations_along_tangent(const PathPoint& from, double ds, PathPoint& to, bool exactly);
 
   /// The same point, but Newton starts at what to.orbit holds.
   NewtonResult step_near(const PathPoint& from, double ds, PathPoint& to);
@@ -99,6 +107,7 @@ class PathFollower {
   void begin_step(const PathPoint& from);
   void polish(const PathPoint& from, double ds, double expected, Orbit& x);
   OrbitChange difference(const Orbit& to, const Orbit& x);
+  int iterations_of(const OrbitChange& first, const OrbitChange& second, double constant) const;
   void know_factors(const OrbitVector& tangent);
   OrbitChange chord(const Orbit& base, double target, const Orbit& x);
   bool linearize(const Orbit& x, const OrbitVector& row);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bvp/mesh_adaptation.hpp"
 #include "continuation/path_follower.hpp"
 
 namespace tchat {
@@ -73,8 +74,11 @@ int useful_places(const PathPoint& from, double ds, const std::vector<int>& free
   return count;
 }
 
-/// Has the duration of segment s not changed? One that is kept has no equation for its value (its change is zero): what
-/// extrapolation makes of rounding would never be corrected, and grow.
+/// Has the duration of segment s not changed? One that is kept (durations of boundary values) has no equation for its
+/// value, its change is zero: what extrapolation makes of rounding would never be corrected, and grow. It is the only
+/// unknown of that kind. The duration of an equilibrium has a value, 0; phases, of smooth segments and of tori, are
+/// compared with the point that the step goes from, whatever is predicted; the parameter of an unfolding follows
+/// from equations that have values; monitors keep values; parameters that are not free are copied.
 bool is_constant(const PathPoint& from, int s) {
   constexpr double no_change = 1e-10;  // along the tangents, of unit length
   bool constant = std::abs(from.tangent.durations(s)) <= no_change;
@@ -161,6 +165,15 @@ void PathTrail::add(const PathPoint& point, const std::vector<int>& free_paramet
   count_ = std::min(count_ + 1, most);
   std::rotate(marks_.begin(), marks_.begin() + count_ - 1, marks_.begin() + count_);
   copy(point, free_parameters, marks_.front());
+}
+
+void PathTrail::change_mesh(const std::vector<double>& mesh, const MeshTransfer& transfer) {
+  for (int k = 0; k < count_; ++k) {
+    Mark& mark = marks_[index(k)];
+    mark.place.states = transfer(mark.place.states);
+    mark.tangent.states = transfer(mark.tangent.states);
+  }
+  mesh_ = mesh;
 }
 
 double add_trail(const PathPoint& from, double ds, const std::vector<int>& free_parameters, Orbit& x,

@@ -19,6 +19,7 @@
 namespace tchat {
 
 struct PathPoint;
+class MeshTransfer;
 
 class PathTrail {
  public:
@@ -36,15 +37,8 @@ class PathTrail {
   /// The same points, and this one, which lies beside or ahead of the point that the trail belongs to.
   void add(const PathPoint& point, const std::vector<int>& free_parameters);
 
-  /// The states of all points, by a linear map from this mesh to that one.
-  template <class Interpolate>
-  void change_mesh(const std::vector<double>& mesh, const Interpolate& interpolate) {
-    for (int k = 0; k < count_; ++k) {
-      marks_[index(k)].place.states = interpolate(marks_[index(k)].place.states);
-      marks_[index(k)].tangent.states = interpolate(marks_[index(k)].tangent.states);
-    }
-    mesh_ = mesh;
-  }
+  /// Moves all points.
+  void change_mesh(const std::vector<double>& mesh, const MeshTransfer& transfer);
 
   /// A point as a vector, and its unit tangent.
   struct Mark {
@@ -57,7 +51,6 @@ class PathTrail {
 
  private:
   static std::size_t index(int i) { return static_cast<std::size_t>(i); }
-  void make_first(const PathPoint& point, const std::vector<int>& free_parameters);
 
   std::array<Mark, most> marks_;
   int count_ = 0;

@@ -19,8 +19,7 @@ bool StepSize::adapts_at(int point) const { return settings_.adapt_every != 0 &&
 
 bool StepSize::is_longest() const { return std::abs(ds_) >= settings_.maximum; }
 
-void StepSize::converged(int iterations, int point) {
-  if (!adapts_at(point)) return;
+double StepSize::after(int iterations) const {
   double factor = 1.0;
   if (iterations <= 1)
     factor = 2.0;
@@ -30,8 +29,11 @@ void StepSize::converged(int iterations, int point) {
     factor = 0.5;
   else if (iterations <= settings_.max_newton / 2)
     factor = 1.1;
-  const double size = std::min(std::abs(ds_) * factor, settings_.maximum);
-  ds_ = std::copysign(size, ds_);
+  return std::copysign(std::min(std::abs(ds_) * factor, settings_.maximum), ds_);
+}
+
+void StepSize::converged(int iterations, int point) {
+  if (adapts_at(point)) ds_ = after(iterations);
 }
 
 bool StepSize::failed() {
