@@ -16,6 +16,10 @@ constexpr double near_enough = 0.3 * current_enough;
 constexpr int most_chords = 3;
 /// Each is to make the next one smaller by this factor: expected of the first one, asked of the others.
 constexpr double contraction = 0.1;
+/// Newton's method may take back this share of what a prediction differs from that along the tangent; smaller changes
+/// lead to no other branch anyway.
+constexpr double share_taken_back = 0.5;
+constexpr double small_change = 1e-6;
 
 }  // namespace
 
@@ -154,12 +158,13 @@ void PathFollower::begin_step(const PathPoint& from) {
 
 NewtonResult PathFollower::step(const PathPoint& from, double ds, PathPoint& to) {
   put_on_tangent(from, ds, to.orbit);
-  const double expected = add_trail(from, ds, system_.free_parameters(), to.orbit, dx_);
-  if (expected > 0.0) {
+  const TrailTerms terms = add_trail(from, ds, system_.free_parameters(), to.orbit, dx_);
+  if (terms.error > 0.0) {
     begin_step(from);
-    polish(from, ds, expected, to.orbit);
+    double taken_back = polish(from, ds, terms.error, to.orbit);
     const NewtonResult result = step_near(from, ds, to);
-    if (result.converged()) return result;
+    for (const NewtonIteration& iteration : newton_.history()) taken_back += iteration.larger();
+    if (result.converged() && taken_back <= std::max(share_taken_back * terms.change, small_change)) return result;
   }
   return step_along_tangent(from, ds, to);
 }
@@ -195,19 +200,22 @@ OrbitChange PathFollower::chord(const Orbit& base, double target, const Orbit& x
   return change_by(dx_, x, free_parameters);
 }
 
-/// Brings a prediction nearer to the branch while that takes few chord iterations.
-void PathFollower::polish(const PathPoint& from, double ds, double expected, Orbit& x) {
-  if (!factors_known_ || !problem_.allows_chord() || expected <= near_enough) return;
+/// Brings a prediction nearer to the branch while that takes few chord iterations. How far it is moved.
+double PathFollower::polish(const PathPoint& from, double ds, double expected, Orbit& x) {
+  if (!factors_known_ || !problem_.allows_chord() || expected <= near_enough) return 0.0;
   double last = 0.0;
+  double moved = 0.0;
   for (int k = 0; k < most_chords; ++k) {
     const double size = chord(from.orbit, ds, x).larger();
     const double factor = k == 0 ? contraction : size / last;
-    if (!(factor <= contraction)) return;
+    if (!(factor <= contraction)) break;
     advance(x, 1.0, dx_, system_.free_parameters());
+    moved += size;
     const double rest = size * factor;
-    if (rest <= near_enough || rest * std::pow(factor, most_chords - 1 - k) > near_enough) return;
+    if (rest <= near_enough || rest * std::pow(factor, most_chords - 1 - k) > near_enough) break;
     last = size;
   }
+  return moved;
 }
 
 IterationRange PathFollower::iterations_along_tangent(const PathPoint& from, double ds, PathPoint& to, bool exactly) {

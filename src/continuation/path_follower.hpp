@@ -4,8 +4,9 @@
 /// x + ds v, or with the points before it (path_trail.hpp), and corrects with <v, x_new - x> = ds; the tangent at the
 /// new point comes from the factors of its linearisation, which stay available for multipliers and test functions. A
 /// prediction of higher order is brought nearer by chord iterations with the factors at hand, so that one more matrix
-/// is enough; where Newton's method fails from it, that along the tangent is tried. Everything else that a step begins
-/// from is in the point that it goes from: trials before it, failed ones too, leave no trace beyond rounding.
+/// is enough; where Newton's method fails from it or takes much of it back, that along the tangent is taken. Everything
+/// else that a step begins from is in the point that it goes from: trials before it, failed ones too, leave no trace
+/// beyond rounding.
 #pragma once
 
 #include <memory>
@@ -105,7 +106,7 @@ class PathFollower {
   NewtonResult correct_and_orient(PathPoint& point, const Orbit& base, double target);
   void put_on_tangent(const PathPoint& from, double ds, Orbit& x) const;
   void begin_step(const PathPoint& from);
-  void polish(const PathPoint& from, double ds, double expected, Orbit& x);
+  double polish(const PathPoint& from, double ds, double expected, Orbit& x);
   OrbitChange difference(const Orbit& to, const Orbit& x);
   int iterations_of(const OrbitChange& first, const OrbitChange& second, double constant) const;
   void know_factors(const OrbitVector& tangent);

@@ -176,15 +176,15 @@ void PathTrail::change_mesh(const std::vector<double>& mesh, const MeshTransfer&
   mesh_ = mesh;
 }
 
-double add_trail(const PathPoint& from, double ds, const std::vector<int>& free_parameters, Orbit& x,
-                 OrbitVector& term) {
-  if (from.trail.empty() || from.trail.mesh() != from.orbit.mesh) return 0.0;
+TrailTerms add_trail(const PathPoint& from, double ds, const std::vector<int>& free_parameters, Orbit& x,
+                     OrbitVector& term) {
+  if (from.trail.empty() || from.trail.mesh() != from.orbit.mesh) return {};
   std::array<Place, PathTrail::most> places{};
   const int count = useful_places(from, ds, free_parameters, places);
   std::array<Combination, most_inputs + 2> differences;
   divide_differences(places, count, differences);
   double last = std::abs(ds) * change_by(from.tangent, from.orbit, free_parameters).larger();
-  double expected = 0.0;
+  TrailTerms terms;
   double product = ds * ds;  // of ds minus the nodes so far
   for (int k = 0; k < count; ++k) {
     const double to_node = ds - places[entry(k)].s;
@@ -197,12 +197,13 @@ double add_trail(const PathPoint& from, double ds, const std::vector<int>& free_
     const double size = change_by(term, from.orbit, free_parameters).larger();
     if (!(size <= falling * last)) break;
     advance(x, 1.0, term, free_parameters);
-    expected = std::max(size * (size / last), negligible_term);
+    terms.change += size;
+    terms.error = std::max(size * (size / last), negligible_term);
     if (size <= negligible_term) break;
     last = size;
     product *= to_node * to_node;
   }
-  return expected;
+  return terms;
 }
 
 }  // namespace tchat

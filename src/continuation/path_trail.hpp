@@ -57,9 +57,15 @@ class PathTrail {
   std::vector<double> mesh_;
 };
 
-/// Adds to `x`, which is from + ds from.tangent, the terms of from's trail; `term` is work space. Returns about how far
-/// x is from the branch (as OrbitChange), 0 when no term was added.
-double add_trail(const PathPoint& from, double ds, const std::vector<int>& free_parameters, Orbit& x,
-                 OrbitVector& term);
+/// What the points of a trail change of a prediction, and about how far it then is from the branch (as OrbitChange); 0
+/// when there is no term.
+struct TrailTerms {
+  double change = 0.0;
+  double error = 0.0;
+};
+
+/// Adds to `x`, which is from + ds from.tangent, the terms of from's trail; `term` is work space.
+TrailTerms add_trail(const PathPoint& from, double ds, const std::vector<int>& free_parameters, Orbit& x,
+                     OrbitVector& term);
 
 }  // namespace tchat
