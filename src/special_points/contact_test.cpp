@@ -23,15 +23,17 @@ using Vector = Eigen::VectorXd;
 class EventAlongSegment {
  public:
   EventAlongSegment(const DefiningSystem& system, const CollocationRule& rule, const Orbit& x, int s, int event)
-      : defining_(system), rule_(rule), x_(x), s_(s), event_(event) {}
+      : defining_(system), rule_(rule), x_(x), s_(s), event_(event), gradient_(x.shape.dimension) {
+    const int c = x.shape.collocation;
+    for (int i = 0; i <= c; ++i) at_nodes_.push_back(basis_at(static_cast<double>(i) / c));
+  }
 
   double length(int j) const { return x_.mesh[static_cast<std::size_t>(j + 1)] - x_.mesh[static_cast<std::size_t>(j)]; }
 
   /// d h / d tau at sigma in [0, 1] of interval j, from the polynomial.
-  double slope(int j, double sigma) const {
-    const Basis basis = basis_at(sigma);
-    return gradient(nodes(j) * basis.values).dot(nodes(j) * basis.slopes) / length(j);
-  }
+  double slope(int j, double sigma) { return slope(j, basis_at(sigma)); }
+  /// The same at node i = 0..c of the interval: all of them are looked at, at every point of a branch.
+  double slope_at_node(int j, int i) { return slope(j, at_nodes_[static_cast<std::size_t>(i)]); }
 
   Contact at_node(int k) const {
     const double* u = x_.node(s_, k);
@@ -101,6 +103,14 @@ class EventAlongSegment {
     Vector values;
     Vector slopes;
   };
+  double slope(int j, const Basis& basis) {
+    state_.noalias() = nodes(j) * basis.values;
+    direction_.noalias() = nodes(j) * basis.slopes;
+    double h = 0.0;
+    system().first(FunctionKind::event, event_, state_.data(), par(), {}, &h, gradient_.data(), nullptr);
+    return gradient_.dot(direction_) / length(j);
+  }
+
   Basis basis_at(double sigma) const {
     Basis basis{Vector(x_.shape.collocation + 1), Vector(x_.shape.collocation + 1)};
     rule_.basis(sigma, basis.values.data(), basis.slopes.data());
@@ -118,6 +128,8 @@ class EventAlongSegment {
   const Orbit& x_;
   int s_;
   int event_;
+  std::vector<Basis> at_nodes_;
+  Vector state_, direction_, gradient_;
 };
 
 /// A place where h turns from falling to rising: inside interval j at sigma.
@@ -134,14 +146,14 @@ struct Minima {
   bool last_hangs_on_end = false;
 };
 
-Minima find_minima(const EventAlongSegment& along, int intervals, int c) {
+Minima find_minima(EventAlongSegment& along, int intervals, int c) {
   Minima result;
   bool risen = false;
   double before = 0.0;
   for (int j = 0; j < intervals; ++j) {
     for (int i = 0; i <= c; ++i) {
       const double sigma = static_cast<double>(i) / c;
-      const double slope = along.slope(j, sigma);
+      const double slope = along.slope_at_node(j, i);
       const bool turns = before < 0.0 && slope >= 0.0;
       if (turns) {
         if (result.list.empty()) result.first_hangs_on_start = !risen;
@@ -168,7 +180,7 @@ Minima find_minima(const EventAlongSegment& along, int intervals, int c) {
 
 std::vector<Contact> least_candidates(const DefiningSystem& system, const CollocationRule& rule, const Orbit& x, int s,
                                       int event) {
-  const EventAlongSegment along(system, rule, x, s, event);
+  EventAlongSegment along(system, rule, x, s, event);
   const bool start_pinned = is_pinned_start(system.system(), system.signature(), x, s, event);
   const bool end_pinned = system.signature()[static_cast<std::size_t>(s)].event == event;
   std::vector<Contact> candidates;
