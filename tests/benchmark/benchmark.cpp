@@ -80,10 +80,10 @@ void print_tables(const Choice& choice) {
   if (choice.with_auto && choice.has('f')) print_auto_comparison(auto_sizes(choice), quick);
   if (choice.has('g')) {
     MemorySizes sizes{{1, 4, 16, 32, 64}, {50, 200, 800, 2000, 5000}, {4, 10, 20, 50}};
-    if (quick) sizes = {{1, 2}, {10, 20}, {4, 10}, 20};
+    if (quick) sizes = {{1, 2}, {10, 20}, {4}, 20};
     print_memory_sizes(sizes);
   }
-  if (choice.has('h')) print_start_times(quick ? 2 : 40);
+  if (choice.has('h')) print_start_times(quick ? 2 : 40, quick);
 }
 
 int run(const Choice& choice) {

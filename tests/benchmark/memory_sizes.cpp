@@ -61,7 +61,7 @@ void print_series(Peaks& peaks, const char* what, const std::vector<int>& values
   // The last three: where the sizes are small the pages of the program itself still count.
   const std::ptrdiff_t first = std::max<std::ptrdiff_t>(std::ssize(values) - 3, 0);
   const std::vector<double> last(beyond.begin() + first, beyond.end());
-  if (*std::min_element(last.begin(), last.end()) > 0.0)
+  if (last.size() > 1 && *std::min_element(last.begin(), last.end()) > 0.0)
     fmt::print("  grows like {}^{:.2f}\n", what, fitted_exponent({values.begin() + first, values.end()}, last));
   fmt::print("\n");
 }

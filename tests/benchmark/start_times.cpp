@@ -70,7 +70,7 @@ double million_instructions(const std::vector<std::string>& command, const fs::p
 }
 
 /// Kinds of starts in a folder of this parent: the system's for temporary files, or one that lies in memory.
-void measure(const fs::path& parent, const char* where, int rounds) {
+void measure(const fs::path& parent, const char* where, int rounds, bool count) {
   const ScratchFolder scratch(parent);
   const fs::path& folder = scratch.path();
   write_idle_problem(folder);
@@ -92,7 +92,7 @@ void measure(const fs::path& parent, const char* where, int rounds) {
       kind.least.processor = std::min(kind.least.processor, times.processor);
     }
   for (const Kind& kind : kinds) {
-    const double instructions = million_instructions(kind.command, folder);
+    const double instructions = count ? million_instructions(kind.command, folder) : 0.0;
     fmt::print("  {:<36}{:>12}{:>12.2f}{:>16.2f}{:>16}\n", kind.what, where, 1e3 * kind.least.wall,
                1e3 * kind.least.processor, instructions > 0.0 ? fmt::format("{:.1f}", instructions) : "-");
   }
@@ -100,13 +100,13 @@ void measure(const fs::path& parent, const char* where, int rounds) {
 
 }  // namespace
 
-void print_start_times(int rounds) {
+void print_start_times(int rounds, bool quick) {
   fmt::print("(h) Start-up: whole runs of the program with its plugin up to date, least of {} alternating runs\n\n",
              rounds);
   fmt::print("  {:<36}{:>12}{:>12}{:>16}{:>16}\n", "", "files in", "wall [ms]", "processor [ms]", "10^6 instr.");
-  measure({}, fs::temp_directory_path().c_str(), rounds);
+  measure({}, fs::temp_directory_path().c_str(), rounds, !quick);
   constexpr const char* memory = "/dev/shm";
-  if (fs::exists(memory)) measure(memory, memory, rounds);
+  if (!quick && fs::exists(memory)) measure(memory, memory, rounds, true);
   fmt::print(
       "  (wanted: at most 10 ms for the idle problem; what it takes longer on a disk is waiting for the disk)\n\n");
 }

@@ -3,7 +3,7 @@
 
 namespace tchat::benchmark {
 
-/// The least of `rounds` runs of each kind, in turn.
-void print_start_times(int rounds);
+/// The least of `rounds` runs of each kind, in turn; `quick`: instructions are not counted, which takes seconds.
+void print_start_times(int rounds, bool quick);
 
 }  // namespace tchat::benchmark
