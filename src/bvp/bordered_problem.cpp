@@ -6,8 +6,7 @@
 namespace tchat {
 
 BorderedProblem::BorderedProblem(const DefiningSystem& system, const OrbitShape& shape,
-                                 std::unique_ptr<OrbitCondition> condition, std::vector<HeldMonitor> held,
-                                 int threads)
+                                 std::unique_ptr<OrbitCondition> condition, std::vector<HeldMonitor> held, int threads)
     : condensed_(
           system, shape,
           1 + system.integral_conditions() + static_cast<int>(held.size()) + (condition ? condition->count() : 0),

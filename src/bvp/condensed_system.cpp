@@ -179,9 +179,9 @@ Linearization CondensedSystem::linearize(const Orbit& x, std::span<const OrbitVe
 Linearization CondensedSystem::condense_one_by_one(const Orbit& x, std::span<const OrbitVector> rows,
                                                    OrbitResidual& residual) {
   for (int s = 0; s < shape_.segments; ++s) {
-    const Linearization outcome = elimination_.condense(s, system_.system(), system_.signature()[index(s)].field,
-                                                        system_.free_parameters(), x, rows,
-                                                        &residual.collocation[index(collocation_row(s))]);
+    const Linearization outcome =
+        elimination_.condense(s, system_.system(), system_.signature()[index(s)].field, system_.free_parameters(), x,
+                              rows, &residual.collocation[index(collocation_row(s))]);
     if (outcome != Linearization::ready) return outcome;
     keep_segment_blocks(s);
   }
@@ -196,9 +196,9 @@ Linearization CondensedSystem::condense_together(const Orbit& x, std::span<const
   segment_work_.run(
       shape_.segments,
       [&](int s) {
-        const bool finite = elimination_.fill(s, system_.system(), system_.signature()[index(s)].field,
-                                              system_.free_parameters(), x, rows,
-                                              &residual.collocation[index(collocation_row(s))]);
+        const bool finite =
+            elimination_.fill(s, system_.system(), system_.signature()[index(s)].field, system_.free_parameters(), x,
+                              rows, &residual.collocation[index(collocation_row(s))]);
         if (!finite) outcomes_[index(s)] = Linearization::not_finite;
         return finite;
       },

@@ -46,6 +46,8 @@ class CondensedSystem {
   const OrbitShape& shape() const { return shape_; }
   const CollocationRule& rule() const { return rule_; }
   int border_rows() const { return border_; }
+  /// How the work is shared; by one thread alone where there is little.
+  const EliminationThreads& threads() const { return threads_; }
   OrbitResidual make_residual() const;
   OrbitVector make_vector() const { return OrbitVector(shape_, system_.free_count()); }
 

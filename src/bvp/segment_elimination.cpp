@@ -128,8 +128,7 @@ Linearization SegmentElimination::condense(int s, const HybridSystem& system, in
                                            const Orbit& x, std::span<const OrbitVector> rows, double* collocation) {
   bool finite = true;
   within_.run(
-      groups_,
-      [&](int group) { return finite = fill_piece(s, group, system, field, active, x, rows, collocation); },
+      groups_, [&](int group) { return finite = fill_piece(s, group, system, field, active, x, rows, collocation); },
       [&](int group, int) { done_[index(group)] = eliminate_group(s, group) ? 1 : 0; });
   if (!finite) return Linearization::not_finite;
   if (std::find(done_.begin(), done_.end(), 0) != done_.end()) return Linearization::singular;
@@ -415,9 +414,8 @@ void SegmentElimination::expand(int s, const double* ends, const double* globals
     top_join_.backward(top_blocks_[b], homogeneous ? zero_rhs_.data() : top_rhs_[b], local);
     std::copy_n(local, n_, node(top_node(at->middle) * c));
   }
-  for_joins_in_reverse([&](const Join& at, int within) {
-    expand_lane_join(s, at, globals, homogeneous, dx, std::max(thread, within));
-  });
+  for_joins_in_reverse(
+      [&](const Join& at, int within) { expand_lane_join(s, at, globals, homogeneous, dx, std::max(thread, within)); });
   within_.each(groups_, [&](int group, int within) {
     expand_group(s, group, globals, homogeneous, dx, std::max(thread, within));
   });

@@ -17,10 +17,10 @@
 /// Border rows are eliminated on the way. Work and memory are linear in the number of intervals. All arrays are
 /// allocated when the object is made.
 ///
-/// Several threads: segments have nothing to do with one another, and neither have the groups of a segment, nor joins of
-/// one level. Whoever has a piece writes to its own blocks alone, so that results do not depend on the threads to the
-/// last bit. The problem's functions need not be re-entrant: one thread calls them, and others eliminate meanwhile what
-/// it has filled.
+/// Several threads: segments have nothing to do with one another, and neither have the groups of a segment, nor joins
+/// of one level. Whoever has a piece writes to its own blocks alone, so that results do not depend on the threads to
+/// the last bit. The problem's functions need not be re-entrant: one thread calls them, and others eliminate meanwhile
+/// what it has filled.
 #pragma once
 
 #include <span>
@@ -166,10 +166,10 @@ class SegmentElimination {
   LaneKernel interval_;
   LaneKernel join_;
   BlockKernel top_join_;
-  std::vector<Join> joins_;      // of groups, each after those that make its two pieces
+  std::vector<Join> joins_;                // of groups, each after those that make its two pieces
   std::vector<std::vector<Join>> levels_;  // the same, those of one level independent of one another
-  std::vector<int> top_lanes_;   // that have intervals
-  std::vector<Join> top_joins_;  // of top_lanes_
+  std::vector<int> top_lanes_;             // that have intervals
+  std::vector<Join> top_joins_;            // of top_lanes_
 
   // of groups
   BlockArray<double> interval_blocks_;  // (c n + b) x width

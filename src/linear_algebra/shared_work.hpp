@@ -40,7 +40,8 @@ class SharedWork {
   /// work(i, thread) for i = 0 .. count - 1.
   template <class Work>
   void each(int count, Work&& work) const {
-    run(count, [](int) { return true; }, work);
+    run(
+        count, [](int) { return true; }, work);
   }
 
  private:

@@ -14,8 +14,8 @@ class SmallLu {
 
   /// The entries that factorize() reads, row by row.
   double* entries() { return entries_.data(); }
-  /// Of the matrix with rows of unit sum (of magnitudes), with row pivoting; the entries are then its factors. False when
-  /// it is singular or not finite.
+  /// Of the matrix with rows of unit sum (of magnitudes), with row pivoting; the entries are then its factors. False
+  /// when it is singular or not finite.
   bool factorize();
 
   /// x = A^-1 b, or A^-T b; x and b are different arrays.

@@ -376,10 +376,11 @@ class ProblemTable {
   }
 
   /// Does the problem have derivatives of its own, of some kind of function?
-  static constexpr bool gives_derivatives =
-      requires(const Problem& problem, const double* x, double* dx) { problem.field_derivatives(1, x, x, dx, dx); } ||
-      requires(const Problem& problem, const double* x, double* dx) { problem.event_derivatives(1, x, x, dx, dx); } ||
-      requires(const Problem& problem, const double* x, double* dx) { problem.jump_derivatives(1, x, x, dx, dx); };
+  static constexpr bool gives_derivatives = requires(const Problem& problem, const double* x, double* dx) {
+    problem.field_derivatives(1, x, x, dx, dx);
+  }
+  || requires(const Problem& problem, const double* x, double* dx) { problem.event_derivatives(1, x, x, dx, dx); }
+  || requires(const Problem& problem, const double* x, double* dx) { problem.jump_derivatives(1, x, x, dx, dx); };
 
   static bool hand_written(const void* self, std::int32_t kind, int index, const double* x, const double* par,
                            const std::int32_t* active, std::int32_t active_count, double* dx, double* dp) {
