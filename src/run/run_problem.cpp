@@ -138,20 +138,12 @@ SelectedStart start_of(const RunRequest& request, const Problem& problem, const 
   return selected;
 }
 
-/// Those that the constants speak of: of a torus the first return.
-Orbit first_segments(Orbit x, int segments) {
-  x.shape.segments = std::min(segments, x.shape.segments);
-  x.states.conservativeResize(Eigen::NoChange, x.shape.columns());
-  return x;
-}
-
 /// The first point, checked before any file is touched.
 BranchSetup first_branch(const Problem& problem, const SelectedStart& selected, const Reports& reports) {
   BranchSetup setup = set_up_branch(problem.system(), problem.settings, selected);
   reports.warn_of(setup.start.note);
   const RunSettings& written = setup.constants ? *setup.constants : setup.settings;
-  reports.warn_of(
-      unwatched_events(problem.system(), written, first_segments(setup.start.point.orbit, segment_count(written))));
+  reports.warn_of(unwatched_events(problem.system(), written, setup.start.point.orbit));
   return setup;
 }
 

@@ -23,39 +23,41 @@ std::set<int> watched(const RunSettings& settings) {
   return events;
 }
 
-/// GCHGRZIND with the event on its segments besides what is there.
-std::string monitor_lists(const RunSettings& settings, const std::map<int, std::set<int>>& segments_of_event) {
+using SegmentsByEvent = std::map<int, std::set<int>>;  // segments from 1
+
+/// GCHGRZIND with what is missing besides what is there.
+std::string monitor_lists(const RunSettings& settings, const SegmentsByEvent& missing) {
   std::string text;
   for (std::size_t s = 0; s < settings.segments.size(); ++s) {
     std::set<int> events(settings.segments[s].monitor.begin(), settings.segments[s].monitor.end());
-    for (const auto& [event, segments] : segments_of_event)
+    for (const auto& [event, segments] : missing)
       if (segments.contains(static_cast<int>(s) + 1)) events.insert(event);
     text += fmt::format("{}[{}]", s == 0 ? "" : ", ", fmt::join(events, ", "));
   }
   return fmt::format("GCHGRZIND=[{}]", text);
 }
 
-/// Is the event's function negative somewhere on segment s? Then monitoring it would make every orbit inadmissible.
-bool is_negative(const HybridSystem& system, int event, const Orbit& x, int s) {
+/// Is the event's function negative somewhere on segment s, in any return of a torus? Then monitoring it would make
+/// every orbit inadmissible.
+bool is_negative(const HybridSystem& system, int event, const Orbit& x, int s, int segments_per_return) {
   constexpr double rounding = 1e-6;
   double least = 0.0;
   double scale = 1.0;
-  for (int k = 0; k < x.shape.nodes(); ++k) {
-    const double h = system.event(event, x.node(s, k), x.par.data());
-    if (!(h >= least)) least = h;
-    scale = std::max(scale, std::abs(h));
-  }
+  for (; s < x.shape.segments; s += segments_per_return)
+    for (int k = 0; k < x.shape.nodes(); ++k) {
+      const double h = system.event(event, x.node(s, k), x.par.data());
+      if (!(h >= least)) least = h;
+      scale = std::max(scale, std::abs(h));
+    }
   return !(least >= -rounding * scale);
 }
 
-}  // namespace
-
-std::string unwatched_events(const HybridSystem& system, const RunSettings& settings, const Orbit& start) {
-  if (!system.has_successors() || !has_ring(settings.problem_type)) return "";
+SegmentsByEvent missing_events(const HybridSystem& system, const RunSettings& settings, const Orbit& start) {
+  SegmentsByEvent missing;
+  if (!system.has_successors() || !has_ring(settings.problem_type)) return missing;
   const std::set<int> seen = watched(settings);
   const Signature signature = settings.signature();
   const std::size_t m = signature.size();
-  std::map<int, std::set<int>> missing;  // segments by event
   for (std::size_t s = 0; s < m; ++s) {
     const double* x = start.start(static_cast<int>(s));
     const auto following = system.successors(signature[(s + m - 1) % m], x, start.par.data());
@@ -64,9 +66,16 @@ std::string unwatched_events(const HybridSystem& system, const RunSettings& sett
         std::none_of(following->begin(), following->end(), [field](const IndexVector& v) { return v.field == field; }))
       continue;
     for (const int event : relevant_events(system, *following, field, x, start.par.data()))
-      if (!seen.contains(event) && !is_negative(system, event, start, static_cast<int>(s)))
+      if (!seen.contains(event) && !is_negative(system, event, start, static_cast<int>(s), static_cast<int>(m)))
         missing[event].insert(static_cast<int>(s) + 1);
   }
+  return missing;
+}
+
+}  // namespace
+
+std::string unwatched_events(const HybridSystem& system, const RunSettings& settings, const Orbit& start) {
+  const SegmentsByEvent missing = missing_events(system, settings, start);
   if (missing.empty()) return "";
   std::string list;
   for (const auto& [event, segments] : missing)
@@ -76,6 +85,11 @@ std::string unwatched_events(const HybridSystem& system, const RunSettings& sett
       "{} may come next by the problem's successors, but is watched nowhere: an orbit that it would end goes on "
       "through it, and counts as admissible; {} watches it (GCIPSI numbers the events of these lists)",
       list, monitor_lists(settings, missing));
+}
+
+void watch_possible_events(const HybridSystem& system, RunSettings& settings, const Orbit& start) {
+  for (const auto& [event, segments] : missing_events(system, settings, start))
+    for (const int s : segments) settings.segments[static_cast<std::size_t>(s) - 1].monitor.push_back(event);
 }
 
 }  // namespace tchat

@@ -195,10 +195,9 @@ std::string no_orbit_text(const SimulationResult& result, const SimulationPlan& 
     default:
       return fmt::format(
           "No periodic orbit recognised: the last events do not repeat, within {:g} of the orbit's range, after 1 to "
-          "{} "
-          "events.\nIt may need longer (--transient-time, --events), have a longer period (--max-period), be "
-          "recognised "
-          "with a\nlooser --recognition or a smaller --tolerance; or the motion is quasi-periodic or chaotic.\n",
+          "{} events.\nIt may need longer (--transient-time, --events), have a longer period (--max-period), be "
+          "recognised with a\nlooser --recognition or a smaller --tolerance; or the motion is quasi-periodic (--torus) "
+          "or chaotic (--lyapunov tells).\n",
           plan.recognition, plan.max_period);
   }
 }

@@ -11,6 +11,8 @@
 #include "files/solution_file.hpp"
 #include "files/whole_file.hpp"
 #include "files/writable_file.hpp"
+#include "hybrid/identity_jump.hpp"
+#include "run/unwatched_events.hpp"
 #include "setup/parameter_values.hpp"
 #include "setup/problem_setup.hpp"
 #include "setup/progress_line.hpp"
@@ -91,6 +93,13 @@ RunSettings torus_settings(const SimulationConstants& constants, int parameter) 
   return settings;
 }
 
+/// What constants would have said of the segments: types by the jumps, events that may come next are watched.
+void complete_segments(RunSettings& settings, const HybridSystem& system, const Orbit& orbit) {
+  for (SegmentSettings& segment : settings.segments)
+    segment.type = is_identity_jump(system, segment.index.jump) ? 0 : 1;
+  watch_possible_events(system, settings, orbit);
+}
+
 }  // namespace
 
 int simulate_torus(const SimulationRequest& request, const std::string& torus_name, std::ostream& screen,
@@ -137,12 +146,13 @@ int simulate_torus(const SimulationRequest& request, const std::string& torus_na
   const FittedCurve fitted =
       fit_invariant_curve(points, {.angles = angles, .max_harmonics = 200, .tolerance = fit_tolerance}, request.name);
 
-  const RunSettings settings = torus_settings(constants, free_parameter(request, constants, system));
+  RunSettings settings = torus_settings(constants, free_parameter(request, constants, system));
   const int most = (max_orbit_segments / static_cast<int>(one_return.size()) - 1) / 2;
   const int harmonics = std::clamp(settings.harmonics > 0 ? settings.harmonics : fitted.curve.harmonics(),
                                    std::min(fewest_harmonics, most), most);
   const Orbit orbit = orbits_from_curve(system, one_return, fitted.curve, start.par, 2 * harmonics + 1,
                                         settings.mesh_intervals, settings.collocation_points);
+  if (!constants.is_given()) complete_segments(settings, system, orbit);
   LabelledSolution solution = labelled_solution(orbit, {}, {}, {});
   solution.type = static_cast<int>(PointType::end);
   solution.problem_type = settings.problem_type;

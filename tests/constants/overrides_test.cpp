@@ -133,4 +133,9 @@ TEST_CASE("Monitored events that GCIPSI does not number are told", "[constants]"
   CHECK(warnings_of({"GCHGRZIND=[[1],[2,1,3]]", "GCIPSI=[1]"}).empty());  // chosen in the same breath
   CHECK(warnings_of({"GCHGRZIND=[[1,2],[1]]"}).empty());                  // as many as before
   CHECK(warnings_of({"DS=0.1"}).empty());
+  RunSettings torus = appendix();
+  apply_overrides(torus, std::vector<std::string>{"IPS=182", "ICP=[1,60]", "GCIPSI=[]"});
+  Warnings warnings;
+  apply_overrides(torus, std::vector<std::string>{"GCHGRZIND=[[1,3],[2,1,3]]"}, &warnings);
+  CHECK(warnings.empty());  // without GCIPSI all are located on tori
 }

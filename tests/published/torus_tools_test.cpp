@@ -130,6 +130,21 @@ TEST_CASE("torus of a forced oscillator on a section where its angle winds: the 
   CHECK(done(workspace, "verify q.torus -p fvdp --tolerance 1e-5").find("agrees with forward") != std::string::npos);
 }
 
+TEST_CASE("simulate --torus with a signature in place of constants: its constants watch what may come next") {
+  const Workspace workspace;
+  enter_fvdp(workspace);
+  const std::string plain = done(workspace, "simulate fvdp --events 2000");
+  CHECK(plain.find("quasi-periodic (--torus)") != std::string::npos);
+  done(workspace, "simulate fvdp --torus found --signature 1,2,2");
+  CHECK(workspace.read("gc.found").find("GCHGRZIND = [[1]]") != std::string::npos);
+  const std::string text = done(workspace, "run fvdp -c found -s found -o torus ICP=[mu,rho] RL0=2.3 DS=-0.02");
+  CHECK(text.find("warning") == std::string::npos);
+  // mu* of simulation and of other sections (tori_at_walls_test.cpp).
+  const SolutionEntry contact = workspace.solutions("torus").back();
+  CHECK(text.find("GR label 2") != std::string::npos);
+  CHECK(std::abs(contact.parameter(1) - 2.405381704) < 1e-6);
+}
+
 TEST_CASE("verify: returns from a torus's label land on its curve, and not with too few harmonics") {
   const Workspace workspace;
   enter_torus(workspace);
