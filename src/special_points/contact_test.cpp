@@ -23,17 +23,34 @@ using Vector = Eigen::VectorXd;
 class EventAlongSegment {
  public:
   EventAlongSegment(const DefiningSystem& system, const CollocationRule& rule, const Orbit& x, int s, int event)
-      : defining_(system), rule_(rule), x_(x), s_(s), event_(event), gradient_(x.shape.dimension) {
-    const int c = x.shape.collocation;
-    for (int i = 0; i <= c; ++i) at_nodes_.push_back(basis_at(static_cast<double>(i) / c));
+      : defining_(system),
+        rule_(rule),
+        x_(x),
+        s_(s),
+        event_(event),
+        by_state_(x.shape.dimension),
+        rate_(x.shape.dimension),
+        slopes_at_nodes_(x.shape.collocation + 1, x.shape.collocation + 1) {
+    for (int i = 0; i <= x.shape.collocation; ++i)
+      slopes_at_nodes_.col(i) = basis_at(static_cast<double>(i) / x.shape.collocation).slopes;
   }
 
   double length(int j) const { return x_.mesh[static_cast<std::size_t>(j + 1)] - x_.mesh[static_cast<std::size_t>(j)]; }
 
   /// d h / d tau at sigma in [0, 1] of interval j, from the polynomial.
-  double slope(int j, double sigma) { return slope(j, basis_at(sigma)); }
-  /// The same at node i = 0..c of the interval: all of them are looked at, at every point of a branch.
-  double slope_at_node(int j, int i) { return slope(j, at_nodes_[static_cast<std::size_t>(i)]); }
+  double slope(int j, double sigma) const {
+    const Basis basis = basis_at(sigma);
+    return gradient(nodes(j) * basis.values).dot(nodes(j) * basis.slopes) / length(j);
+  }
+
+  /// The same at node i of the interval.
+  double slope_at_node(int j, int i) {
+    rate_.noalias() = nodes(j).lazyProduct(slopes_at_nodes_.col(i));
+    double h = 0.0;
+    system().first(FunctionKind::event, event_, x_.node(s_, j * x_.shape.collocation + i), par(), {}, &h,
+                   by_state_.data(), nullptr);
+    return by_state_.dot(rate_) / length(j);
+  }
 
   Contact at_node(int k) const {
     const double* u = x_.node(s_, k);
@@ -103,14 +120,6 @@ class EventAlongSegment {
     Vector values;
     Vector slopes;
   };
-  double slope(int j, const Basis& basis) {
-    state_.noalias() = nodes(j) * basis.values;
-    direction_.noalias() = nodes(j) * basis.slopes;
-    double h = 0.0;
-    system().first(FunctionKind::event, event_, state_.data(), par(), {}, &h, gradient_.data(), nullptr);
-    return gradient_.dot(direction_) / length(j);
-  }
-
   Basis basis_at(double sigma) const {
     Basis basis{Vector(x_.shape.collocation + 1), Vector(x_.shape.collocation + 1)};
     rule_.basis(sigma, basis.values.data(), basis.slopes.data());
@@ -128,8 +137,8 @@ class EventAlongSegment {
   const Orbit& x_;
   int s_;
   int event_;
-  std::vector<Basis> at_nodes_;
-  Vector state_, direction_, gradient_;
+  Vector by_state_, rate_;
+  Eigen::MatrixXd slopes_at_nodes_;  // of the basis, a column for each node
 };
 
 /// A place where h turns from falling to rising: inside interval j at sigma.
