@@ -24,6 +24,7 @@ struct NewtonSettings {
   int full_iterations = 3;
   double tolerance_parameters = 1e-7;
   double tolerance_states = 1e-7;
+  int threads = 1;  ///< that may share the linear algebra of a Newton matrix; results do not depend on it
 };
 
 enum class NewtonStatus { converged, too_many_iterations, diverging, not_finite, singular, condition_lost };

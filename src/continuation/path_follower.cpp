@@ -30,7 +30,7 @@ PathFollower::PathFollower(const DefiningSystem& system, const OrbitShape& shape
       norm_(std::move(norm)),
       principal_(principal),
       monitors_(std::move(monitors.watched)),
-      problem_(system, shape, std::move(condition), std::move(monitors.held)),
+      problem_(system, shape, std::move(condition), std::move(monitors.held), settings.threads),
       newton_(problem_, settings),
       settings_(settings),
       row_(condensed().make_vector()),

@@ -44,7 +44,7 @@ class EventAlongSegment {
   }
 
   /// The same at node i of the interval.
-  double slope_at_node(int j, int i) const {
+  double slope_at_node(int j, int i) {
     rate_.noalias() = nodes(j).lazyProduct(slopes_at_nodes_.col(i));
     double h = 0.0;
     system().first(FunctionKind::event, event_, x_.node(s_, j * x_.shape.collocation + i), par(), {}, &h,
@@ -137,7 +137,7 @@ class EventAlongSegment {
   const Orbit& x_;
   int s_;
   int event_;
-  mutable Vector by_state_, rate_;
+  Vector by_state_, rate_;
   Eigen::MatrixXd slopes_at_nodes_;  // of the basis, a column for each node
 };
 
@@ -155,7 +155,7 @@ struct Minima {
   bool last_hangs_on_end = false;
 };
 
-Minima find_minima(const EventAlongSegment& along, int intervals, int c) {
+Minima find_minima(EventAlongSegment& along, int intervals, int c) {
   Minima result;
   bool risen = false;
   double before = 0.0;
@@ -189,7 +189,7 @@ Minima find_minima(const EventAlongSegment& along, int intervals, int c) {
 
 std::vector<Contact> least_candidates(const DefiningSystem& system, const CollocationRule& rule, const Orbit& x, int s,
                                       int event) {
-  const EventAlongSegment along(system, rule, x, s, event);
+  EventAlongSegment along(system, rule, x, s, event);
   const bool start_pinned = is_pinned_start(system.system(), system.signature(), x, s, event);
   const bool end_pinned = system.signature()[static_cast<std::size_t>(s)].event == event;
   std::vector<Contact> candidates;
