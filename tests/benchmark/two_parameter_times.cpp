@@ -20,9 +20,9 @@ namespace tchat::benchmark {
 
 namespace {
 
-constexpr NewtonSettings newton{8, 3, 1e-7, 1e-7};
+constexpr NewtonSettings curve_newton{8, 3, 1e-7, 1e-7};
 /// PathFollower renews factors that are older than this before it takes the tangent from them.
-constexpr double current_enough = 1e-10;
+constexpr double curve_current_enough = 1e-10;
 
 /// A start on a curve, which lies on a one-parameter branch too.
 struct Bifurcation {
@@ -46,7 +46,7 @@ class Walk {
  public:
   Walk(const Bifurcation& at, bool two_parameters)
       : system_(*at.hybrid, at.signature, two_parameters ? std::vector<int>{1, 2} : std::vector<int>{1}),
-        follower_(system_, at.orbit.shape, WeightedNorm::unit(at.orbit.shape.dimension), newton, 1,
+        follower_(system_, at.orbit.shape, WeightedNorm::unit(at.orbit.shape.dimension), curve_newton, 1,
                   two_parameters ? condition_of(at, system_) : nullptr),
         floquet_(at.orbit.shape),
         point_(follower_.make_point(at.orbit)),
@@ -72,8 +72,8 @@ class Walk {
     std::swap(point_, next_);
     ++steps_;
     const bool chord = follower_.condition() == nullptr;
-    matrices_ += chord ? std::min(result.iterations, newton.full_iterations) : result.iterations;
-    if (result.change_since_factorization > current_enough) ++matrices_;  // for the tangent
+    matrices_ += chord ? std::min(result.iterations, curve_newton.full_iterations) : result.iterations;
+    if (result.change_since_factorization > curve_current_enough) ++matrices_;  // for the tangent
   }
   /// Newton matrices, that for the tangent included.
   double matrices_per_step() const { return static_cast<double>(matrices_) / steps_; }
