@@ -9,6 +9,7 @@
 
 #include "app/interruption.hpp"
 #include "app/problem_argument.hpp"
+#include "app/simulation_options.hpp"
 #include "run/run_problem.hpp"
 
 namespace tchat {
@@ -42,6 +43,12 @@ void add_run_command(CLI::App& app, std::function<int()>& chosen) {
   command->add_flag("--append", request->append, "add to p.O q.O d.O instead of replacing them");
   command->add_flag("--clip", request->clip, "end on RL0, RL1, A0, A1, not at the first point beyond them");
   command->add_flag("--strict", request->strict, "exit status 3 when a branch ends by MX");
+  command
+      ->add_option("-j,--jobs", request->threads,
+                   "so many threads share the linear algebra of large problems; the files are the same for any number")
+      ->type_name("N")
+      ->check(whole_number(1, 1024))
+      ->capture_default_str();
   command->add_option(
       "KEY=VALUE", request->overrides,
       "constants and parameters for this run, e.g. DS=-0.01 NMX=50 IRS=PD1 'PAR(2)=0.8' 'PAR(omega)=0.8' "

@@ -6,10 +6,11 @@
 namespace tchat {
 
 BorderedProblem::BorderedProblem(const DefiningSystem& system, const OrbitShape& shape,
-                                 std::unique_ptr<OrbitCondition> condition, std::vector<HeldMonitor> held)
+                                 std::unique_ptr<OrbitCondition> condition, std::vector<HeldMonitor> held, int threads)
     : condensed_(
           system, shape,
-          1 + system.integral_conditions() + static_cast<int>(held.size()) + (condition ? condition->count() : 0)),
+          1 + system.integral_conditions() + static_cast<int>(held.size()) + (condition ? condition->count() : 0),
+          threads),
       condition_(std::move(condition)),
       held_(std::move(held)),
       rows_(static_cast<std::size_t>(condensed_.border_rows()), condensed_.make_vector()),

@@ -65,9 +65,10 @@ struct HeldMonitor {
 class BorderedProblem {
  public:
   /// `condition` may be null. The defining system must outlive this object; with R coupling rows, I integral
-  /// conditions, H monitors held and a condition of C numbers n m + m + q = R + I + H + C + 1.
+  /// conditions, H monitors held and a condition of C numbers n m + m + q = R + I + H + C + 1. `threads`: see
+  /// CondensedSystem.
   BorderedProblem(const DefiningSystem& system, const OrbitShape& shape, std::unique_ptr<OrbitCondition> condition,
-                  std::vector<HeldMonitor> held = {});
+                  std::vector<HeldMonitor> held = {}, int threads = 1);
 
   CondensedSystem& condensed() { return condensed_; }
   const CondensedSystem& condensed() const { return condensed_; }

@@ -13,17 +13,20 @@ void CondensedSystem::solve(const OrbitResidual& residual, std::span<const doubl
   double* border_rhs = rhs_.data() + lu_.size() - border_;
   std::copy_n(border.data(), border_, border_rhs);
   const double* coupling = residual.coupling.data();
+  segment_work_.each(shape_.segments, [&](int s, int) {
+    elimination_.condense_right_hand_side(s, &residual.collocation[index(collocation_row(s))], segment_rhs_[s]);
+  });
   for (int s = 0; s < shape_.segments; ++s) {
-    double* condensed = segment_rhs_[s];
-    elimination_.condense_right_hand_side(s, &residual.collocation[index(collocation_row(s))], condensed);
+    const double* condensed = segment_rhs_[s];
     rhs = std::copy_n(condensed, n_, rhs);
     for (int r = 0; r < system_.coupling_rows(s); ++r) *rhs++ = -*coupling++;
     for (int r = 0; r < border_; ++r) border_rhs[r] += condensed[n_ + r];
   }
   lu_.solve(rhs_.data(), solution_.data());
   const double* globals = solution_.data() + global_unknown(0);
-  for (int s = 0; s < shape_.segments; ++s)
-    elimination_.expand(s, &solution_[index(start_unknown(s))], globals, false, dx);
+  segment_work_.each(shape_.segments, [&](int s, int thread) {
+    elimination_.expand(s, &solution_[index(start_unknown(s))], globals, false, dx, thread);
+  });
   for (int g = 0; g < globals_; ++g) dx.globals(g) = solution_[index(global_unknown(g))];
 }
 
@@ -36,13 +39,15 @@ void CondensedSystem::parameter_block(int s, int g, double* column) const {
 }
 
 void CondensedSystem::extend(const double* small, OrbitVector& dx) {
-  for (int s = 0; s < shape_.segments; ++s)
-    elimination_.expand(s, small + s * (2 * n_ + 1), dx.globals.data(), true, dx);
+  segment_work_.each(shape_.segments, [&](int s, int thread) {
+    elimination_.expand(s, small + s * (2 * n_ + 1), dx.globals.data(), true, dx, thread);
+  });
 }
 
 void CondensedSystem::extend_adjoint(const double* weights, std::vector<double>& collocation) {
-  for (int s = 0; s < shape_.segments; ++s)
+  segment_work_.each(shape_.segments, [&](int s, int) {
     elimination_.expand_adjoint(s, weights + s * n_, &collocation[index(collocation_row(s))]);
+  });
 }
 
 CondensedSystem::Determinant CondensedSystem::determinant() const {

@@ -48,6 +48,22 @@ auto with_dimension(int n, Work&& work) {
   }
 }
 
+/// Multiplications of the elimination of intervals, about: c n columns, of c n rows each, from rows of (c + 1) n.
+double elimination_work(const OrbitShape& shape) {
+  const double rows = static_cast<double>(shape.collocation) * shape.dimension;
+  return rows * rows * rows / 2 * shape.intervals;
+}
+
+/// Whose work is shared by threads: that of segments where there are enough of them to keep all threads busy to the
+/// end, else that of the pieces of each segment. None where threads would wait for one another longer than they work.
+EliminationThreads sharing(const OrbitShape& shape, int threads) {
+  constexpr double least_work = 1e6, least_within = 4e6;
+  constexpr int segments_for_each = 4;
+  const double of_segment = elimination_work(shape);
+  if (shape.segments >= segments_for_each * threads && shape.segments * of_segment >= least_work) return {threads, 1};
+  return of_segment >= least_within ? EliminationThreads{1, threads} : EliminationThreads{};
+}
+
 }  // namespace
 
 double OrbitResidual::largest() const {
@@ -59,7 +75,7 @@ bool OrbitResidual::finite() const {
   return good(collocation) && good(coupling) && good(integral);
 }
 
-CondensedSystem::CondensedSystem(const DefiningSystem& system, const OrbitShape& shape, int border_rows)
+CondensedSystem::CondensedSystem(const DefiningSystem& system, const OrbitShape& shape, int border_rows, int threads)
     : system_(system),
       shape_(shape),
       n_(shape.dimension),
@@ -67,7 +83,10 @@ CondensedSystem::CondensedSystem(const DefiningSystem& system, const OrbitShape&
       scalars_(1 + globals_),
       border_(border_rows),
       rule_(shape.collocation),
-      elimination_(shape, scalars_, border_rows, rule_),
+      threads_(sharing(shape, threads)),
+      segment_work_(threads_.segments),
+      elimination_(shape, scalars_, border_rows, rule_, threads_),
+      outcomes_(index(shape.segments)),
       lu_(make_sparse()) {
   assert((n_ + 1) * shape.segments + globals_ == total_coupling_rows(system) + border_rows);
   first_blocks_ = {shape.segments, n_ * n_};
@@ -150,15 +169,48 @@ void CondensedSystem::evaluate(const Orbit& x, OrbitResidual& residual) {
 // ---- linearisation --------------------------------------------------------------------------------------------------
 
 Linearization CondensedSystem::linearize(const Orbit& x, std::span<const OrbitVector> rows, OrbitResidual& residual) {
+  const Linearization condensed =
+      threads_.segments > 1 ? condense_together(x, rows, residual) : condense_one_by_one(x, rows, residual);
+  if (condensed != Linearization::ready) return condensed;
+  if (!assemble(x, rows, residual)) return Linearization::not_finite;
+  return lu_.factorize(triplet_values_) ? Linearization::ready : Linearization::singular;
+}
+
+Linearization CondensedSystem::condense_one_by_one(const Orbit& x, std::span<const OrbitVector> rows,
+                                                   OrbitResidual& residual) {
   for (int s = 0; s < shape_.segments; ++s) {
-    double* collocation = &residual.collocation[index(collocation_row(s))];
-    const Linearization outcome = elimination_.condense(s, system_.system(), system_.signature()[index(s)].field,
-                                                        system_.free_parameters(), x, rows, collocation);
+    const Linearization outcome =
+        elimination_.condense(s, system_.system(), system_.signature()[index(s)].field, system_.free_parameters(), x,
+                              rows, &residual.collocation[index(collocation_row(s))]);
     if (outcome != Linearization::ready) return outcome;
     keep_segment_blocks(s);
   }
-  if (!assemble(x, rows, residual)) return Linearization::not_finite;
-  return lu_.factorize(triplet_values_) ? Linearization::ready : Linearization::singular;
+  return Linearization::ready;
+}
+
+/// Segments are filled by this thread one after the other, and eliminated by any. What is told is what the first one
+/// says that is not ready.
+Linearization CondensedSystem::condense_together(const Orbit& x, std::span<const OrbitVector> rows,
+                                                 OrbitResidual& residual) {
+  std::fill(outcomes_.begin(), outcomes_.end(), Linearization::ready);
+  segment_work_.run(
+      shape_.segments,
+      [&](int s) {
+        const bool finite =
+            elimination_.fill(s, system_.system(), system_.signature()[index(s)].field, system_.free_parameters(), x,
+                              rows, &residual.collocation[index(collocation_row(s))]);
+        if (!finite) outcomes_[index(s)] = Linearization::not_finite;
+        return finite;
+      },
+      [&](int s, int) {
+        if (elimination_.eliminate(s))
+          keep_segment_blocks(s);
+        else
+          outcomes_[index(s)] = Linearization::singular;
+      });
+  const auto first = std::find_if(outcomes_.begin(), outcomes_.end(),
+                                  [](Linearization outcome) { return outcome != Linearization::ready; });
+  return first == outcomes_.end() ? Linearization::ready : *first;
 }
 
 void CondensedSystem::keep_segment_blocks(int s) {

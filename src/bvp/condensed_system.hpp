@@ -6,6 +6,9 @@
 /// segments. Work and memory are linear in m and N. All arrays are allocated when the object is made.
 ///
 /// Border rows are general linear functionals of the unknowns, given as dual vectors.
+///
+/// Where there is enough work for several threads, they share it by segments, or within each segment where there are
+/// few of these. What is left for UMFPACK one thread does. Results are the same to the last bit for any number.
 #pragma once
 
 #include <cstddef>
@@ -36,12 +39,15 @@ class CondensedSystem {
  public:
   /// `border_rows` = b, integral conditions among them. The defining system must outlive this object; its coupling rows
   /// and the border are as many as the ends, durations and free parameters leave open: n m + m + q.
-  CondensedSystem(const DefiningSystem& system, const OrbitShape& shape, int border_rows);
+  /// As many threads as `threads` may work on it, the calling one among them, which alone calls the problem.
+  CondensedSystem(const DefiningSystem& system, const OrbitShape& shape, int border_rows, int threads = 1);
 
   const DefiningSystem& system() const { return system_; }
   const OrbitShape& shape() const { return shape_; }
   const CollocationRule& rule() const { return rule_; }
   int border_rows() const { return border_; }
+  /// How the work is shared; by one thread alone where there is little.
+  const EliminationThreads& threads() const { return threads_; }
   OrbitResidual make_residual() const;
   OrbitVector make_vector() const { return OrbitVector(shape_, system_.free_count()); }
 
@@ -112,6 +118,8 @@ class CondensedSystem {
   SparseLu make_sparse();
   template <class Dimension>
   void interpolate(Dimension n, const Orbit& x, int s, int j, int gauss_point);
+  Linearization condense_one_by_one(const Orbit& x, std::span<const OrbitVector> rows, OrbitResidual& residual);
+  Linearization condense_together(const Orbit& x, std::span<const OrbitVector> rows, OrbitResidual& residual);
   void keep_segment_blocks(int s);
   bool assemble(const Orbit& x, std::span<const OrbitVector> rows, OrbitResidual& residual);
 
@@ -122,7 +130,10 @@ class CondensedSystem {
   int scalars_;  // duration and globals: 1 + q columns
   int border_;   // b
   CollocationRule rule_;
+  EliminationThreads threads_;
+  SharedWork segment_work_;
   SegmentElimination elimination_;
+  std::vector<Linearization> outcomes_;  // of segments
 
   // of segments
   BlockArray<double> first_blocks_;   // n x n

@@ -37,7 +37,8 @@ void LargeProduct::multiply(double factor) {
   exponent += shift;
 }
 
-SegmentElimination::SegmentElimination(const OrbitShape& shape, int scalars, int border, const CollocationRule& rule)
+SegmentElimination::SegmentElimination(const OrbitShape& shape, int scalars, int border, const CollocationRule& rule,
+                                       const EliminationThreads& threads)
     : shape_(shape),
       n_(shape.dimension),
       scalars_(scalars),
@@ -49,8 +50,11 @@ SegmentElimination::SegmentElimination(const OrbitShape& shape, int scalars, int
       join_(2 * n_, n_, 3 * n_ + scalars),
       top_join_(join_kernel(n_, scalars)),
       joins_(joins_of_halves(groups_)),
+      levels_(levels_of(joins_)),
       top_lanes_(lanes_in_use(schedule_)),
-      top_joins_(joins_of_halves(static_cast<int>(top_lanes_.size()))) {
+      top_joins_(joins_of_halves(static_cast<int>(top_lanes_.size()))),
+      within_(threads.within),
+      done_(index(groups_)) {
   const std::ptrdiff_t blocks = block(shape.segments, 0);
   const int interval_rows = interval_.rows() + border_;
   const int join_rows = join_.rows() + border_;
@@ -73,15 +77,16 @@ SegmentElimination::SegmentElimination(const OrbitShape& shape, int scalars, int
   nodes_ = lane_zeros((c + 1) * n_);
   points_ = derivatives_ = residual_ = lane_zeros(c * n_);
   jacobian_ = lane_zeros(n_ * n_);
-  local_ = lane_zeros(interval_.width());
-  join_local_ = lane_zeros(join_.width());
   zero_rhs_ = lane_zeros(std::max(interval_rows, join_rows));
   const auto evaluations = static_cast<std::size_t>(lanes * c);
   x_.resize(evaluations * index(n_));
   f_.resize(evaluations * index(n_));
   fx_.resize(evaluations * index(n_ * n_));
   fp_.resize(evaluations * index(n_ * (scalars_ - 1)));
-  top_local_.resize(index(top_join_.width()), 0.0);
+  const int workers = std::max(threads.segments, threads.within);
+  local_ = {workers, interval_.width() * lanes};
+  join_local_ = {workers, join_.width() * lanes};
+  top_local_ = {workers, top_join_.width()};
 }
 
 /// Pieces before those that they are part of, in an order that goes on with what was made last.
@@ -100,6 +105,18 @@ std::vector<SegmentElimination::Join> SegmentElimination::joins_of_halves(int pi
   return result;
 }
 
+/// A join is of the level after those of its two pieces.
+std::vector<std::vector<SegmentElimination::Join>> SegmentElimination::levels_of(const std::vector<Join>& joins) {
+  std::vector<std::vector<Join>> levels;
+  for (const Join& at : joins) {
+    std::size_t level = 0;
+    for (int pieces = 1; pieces < at.last - at.first; pieces *= 2) ++level;
+    levels.resize(std::max(levels.size(), level));
+    levels[level - 1].push_back(at);
+  }
+  return levels;
+}
+
 /// The mesh node where a piece of a lane begins; of one beyond the last, where the segment ends.
 int SegmentElimination::top_node(int piece) const {
   return piece < static_cast<int>(top_lanes_.size()) ? schedule_.start(top_lanes_[index(piece)]) : shape_.intervals;
@@ -109,15 +126,67 @@ int SegmentElimination::top_node(int piece) const {
 
 Linearization SegmentElimination::condense(int s, const HybridSystem& system, int field, std::span<const int> active,
                                            const Orbit& x, std::span<const OrbitVector> rows, double* collocation) {
-  for (int group = 0; group < groups_; ++group) {
-    if (!fill_group(s, group, system, field, active, x, collocation)) return Linearization::not_finite;
-    fill_border(s, group, rows);
-    const std::ptrdiff_t b = block(s, group);
-    if (interval_.eliminate(interval_blocks_[b], border_, interval_swaps_[b]) != 0) return Linearization::singular;
-  }
+  bool finite = true;
+  within_.run(
+      groups_, [&](int group) { return finite = fill_piece(s, group, system, field, active, x, rows, collocation); },
+      [&](int group, int) { done_[index(group)] = eliminate_group(s, group) ? 1 : 0; });
+  if (!finite) return Linearization::not_finite;
+  if (std::find(done_.begin(), done_.end(), 0) != done_.end()) return Linearization::singular;
+  return join_groups(s) && join_lanes(s) ? Linearization::ready : Linearization::singular;
+}
+
+bool SegmentElimination::fill(int s, const HybridSystem& system, int field, std::span<const int> active, const Orbit& x,
+                              std::span<const OrbitVector> rows, double* collocation) {
+  for (int group = 0; group < groups_; ++group)
+    if (!fill_piece(s, group, system, field, active, x, rows, collocation)) return false;
+  return true;
+}
+
+bool SegmentElimination::eliminate(int s) {
+  for (int group = 0; group < groups_; ++group)
+    if (!eliminate_group(s, group)) return false;
   for (const Join& at : joins_)
-    if (!join(s, at)) return Linearization::singular;
-  return join_lanes(s) ? Linearization::ready : Linearization::singular;
+    if (!join(s, at)) return false;
+  return join_lanes(s);
+}
+
+bool SegmentElimination::fill_piece(int s, int group, const HybridSystem& system, int field,
+                                    std::span<const int> active, const Orbit& x, std::span<const OrbitVector> rows,
+                                    double* collocation) {
+  if (!fill_group(s, group, system, field, active, x, collocation)) return false;
+  fill_border(s, group, rows);
+  return true;
+}
+
+bool SegmentElimination::eliminate_group(int s, int group) {
+  const std::ptrdiff_t b = block(s, group);
+  return interval_.eliminate(interval_blocks_[b], border_, interval_swaps_[b]) == 0;
+}
+
+/// work(join, thread), each after those that make its two pieces: one after the other in the order that goes on with
+/// what was made last, or all of a level at a time.
+template <class Work>
+void SegmentElimination::for_joins(const Work& work) {
+  if (within_.threads() == 1)
+    for (const Join& at : joins_) work(at, 0);
+  else
+    for (const std::vector<Join>& level : levels_)
+      within_.each(static_cast<int>(level.size()), [&](int i, int thread) { work(level[index(i)], thread); });
+}
+
+/// The same with the pieces after the join.
+template <class Work>
+void SegmentElimination::for_joins_in_reverse(const Work& work) {
+  if (within_.threads() == 1)
+    for (auto at = joins_.rbegin(); at != joins_.rend(); ++at) work(*at, 0);
+  else
+    for (auto level = levels_.rbegin(); level != levels_.rend(); ++level)
+      within_.each(static_cast<int>(level->size()), [&](int i, int thread) { work((*level)[index(i)], thread); });
+}
+
+bool SegmentElimination::join_groups(int s) {
+  for_joins([&](const Join& at, int) { done_[index(at.middle)] = join(s, at) ? 1 : 0; });
+  return std::find(done_.begin(), done_.end(), 0) == done_.end();
 }
 
 /// The field and its derivatives at the Gauss points of a group's intervals, from the lanes that hold one.
@@ -278,38 +347,38 @@ double* SegmentElimination::top_rhs(int s, int first, int last) {
   return last - first == 1 ? lane_rhs_[top_block(s, first)] : top_rhs_[top_block(s, halfway(first, last))] + n_;
 }
 
-void SegmentElimination::condense_groups(int s, const double* collocation) {
+void SegmentElimination::condense_group(int s, int group, const double* collocation) {
   const int rows = interval_.rows();
-  for (int group = 0; group < groups_; ++group) {
-    const std::ptrdiff_t b = block(s, group);
-    double* r = interval_rhs_[b];
-    for (int l = 0; l < lanes; ++l) {
-      const double* from = collocation + schedule_.interval(group, l) * rows;
-      for (int i = 0; i < rows; ++i) r[i * lanes + l] = -from[i];
-    }
-    std::fill_n(r + rows * lanes, border_ * lanes, 0.0);
-    interval_.forward(interval_blocks_[b], border_, interval_swaps_[b], r);
+  const std::ptrdiff_t b = block(s, group);
+  double* r = interval_rhs_[b];
+  for (int l = 0; l < lanes; ++l) {
+    const double* from = collocation + schedule_.interval(group, l) * rows;
+    for (int i = 0; i < rows; ++i) r[i * lanes + l] = -from[i];
   }
-  for (const Join& at : joins_) {
-    const std::ptrdiff_t b = block(s, at.middle);
-    const double* left = piece_rhs(s, at.first, at.middle);
-    const double* right = piece_rhs(s, at.middle, at.last);
-    double* r = join_rhs_[b];
-    const int count = n_ * lanes;
-    std::copy_n(left, count, r);
-    std::copy_n(right, count, r + count);
-    for (int k = 0; k < border_ * lanes; ++k) r[2 * count + k] = left[count + k] + right[count + k];
-    for (int l = 0; l < lanes; ++l) {
-      if (!passes(at, l)) continue;
-      for (int a = 0; a < n_; ++a) r[a * lanes + l] = 0.0, r[count + a * lanes + l] = left[a * lanes + l];
-      for (int k = 0; k < border_; ++k) r[2 * count + k * lanes + l] = left[count + k * lanes + l];
-    }
-    join_.forward(join_blocks_[b], border_, join_swaps_[b], r);
+  std::fill_n(r + rows * lanes, border_ * lanes, 0.0);
+  interval_.forward(interval_blocks_[b], border_, interval_swaps_[b], r);
+}
+
+void SegmentElimination::condense_join(int s, const Join& at) {
+  const std::ptrdiff_t b = block(s, at.middle);
+  const double* left = piece_rhs(s, at.first, at.middle);
+  const double* right = piece_rhs(s, at.middle, at.last);
+  double* r = join_rhs_[b];
+  const int count = n_ * lanes;
+  std::copy_n(left, count, r);
+  std::copy_n(right, count, r + count);
+  for (int k = 0; k < border_ * lanes; ++k) r[2 * count + k] = left[count + k] + right[count + k];
+  for (int l = 0; l < lanes; ++l) {
+    if (!passes(at, l)) continue;
+    for (int a = 0; a < n_; ++a) r[a * lanes + l] = 0.0, r[count + a * lanes + l] = left[a * lanes + l];
+    for (int k = 0; k < border_; ++k) r[2 * count + k * lanes + l] = left[count + k * lanes + l];
   }
+  join_.forward(join_blocks_[b], border_, join_swaps_[b], r);
 }
 
 void SegmentElimination::condense_right_hand_side(int s, const double* collocation, double* condensed) {
-  condense_groups(s, collocation);
+  within_.each(groups_, [&](int group, int) { condense_group(s, group, collocation); });
+  for_joins([&](const Join& at, int) { condense_join(s, at); });
   const double* all = piece_rhs(s, 0, groups_);
   const int pieces = static_cast<int>(top_lanes_.size());
   for (int k = 0; k < pieces; ++k) take_lane(all, top_lanes_[index(k)], n_ + border_, lane_rhs_[top_block(s, k)]);
@@ -327,14 +396,15 @@ void SegmentElimination::condense_right_hand_side(int s, const double* collocati
 }
 
 /// From the ends of a segment back to the ends of lanes, to mesh nodes, joins in reverse, and on to the interior nodes.
-void SegmentElimination::expand(int s, const double* ends, const double* globals, bool homogeneous, OrbitVector& dx) {
+void SegmentElimination::expand(int s, const double* ends, const double* globals, bool homogeneous, OrbitVector& dx,
+                                int thread) {
   const int c = shape_.collocation;
   const double duration = ends[2 * n_];
   const auto node = [&](int k) { return dx.states.col(s * shape_.nodes() + k).data(); };
   dx.durations(s) = duration;
   std::copy_n(ends, n_, node(0));
   std::copy_n(ends + n_, n_, node(shape_.nodes() - 1));
-  double* local = top_local_.data();
+  double* local = top_local_[thread];
   for (auto at = top_joins_.rbegin(); at != top_joins_.rend(); ++at) {
     const std::ptrdiff_t b = top_block(s, at->middle);
     std::copy_n(node(top_node(at->first) * c), n_, local + n_);
@@ -344,51 +414,50 @@ void SegmentElimination::expand(int s, const double* ends, const double* globals
     top_join_.backward(top_blocks_[b], homogeneous ? zero_rhs_.data() : top_rhs_[b], local);
     std::copy_n(local, n_, node(top_node(at->middle) * c));
   }
-  expand_lane_joins(s, globals, homogeneous, dx);
-  expand_groups(s, globals, homogeneous, dx);
+  for_joins_in_reverse(
+      [&](const Join& at, int within) { expand_lane_join(s, at, globals, homogeneous, dx, std::max(thread, within)); });
+  within_.each(groups_, [&](int group, int within) {
+    expand_group(s, group, globals, homogeneous, dx, std::max(thread, within));
+  });
 }
 
-void SegmentElimination::expand_lane_joins(int s, const double* globals, bool homogeneous, OrbitVector& dx) {
+void SegmentElimination::expand_lane_join(int s, const Join& at, const double* globals, bool homogeneous,
+                                          OrbitVector& dx, int thread) {
   const int column = s * shape_.nodes();
   const auto node = [&](int k) { return dx.states.col(column + k * shape_.collocation).data(); };
-  double* local = join_local_.data();
+  double* local = join_local_[thread];
   put_lanes(dx.durations(s), local + 3 * n_ * lanes);
   for (int k = 0; k + 1 < scalars_; ++k) put_lanes(globals[k], local + (3 * n_ + 1 + k) * lanes);
-  for (auto at = joins_.rbegin(); at != joins_.rend(); ++at) {
-    const std::ptrdiff_t b = block(s, at->middle);
-    for (int l = 0; l < lanes; ++l) {
-      put_lane(node(schedule_.node(at->first, l)), n_, l, local + n_ * lanes);
-      put_lane(node(schedule_.node(at->last, l)), n_, l, local + 2 * n_ * lanes);
-    }
-    join_.backward(join_blocks_[b], homogeneous ? zero_rhs_.data() : join_rhs_[b], local);
-    for (int l = 0; l < lanes; ++l)
-      if (!passes(*at, l)) take_lane(local, l, n_, node(schedule_.node(at->middle, l)));
+  const std::ptrdiff_t b = block(s, at.middle);
+  for (int l = 0; l < lanes; ++l) {
+    put_lane(node(schedule_.node(at.first, l)), n_, l, local + n_ * lanes);
+    put_lane(node(schedule_.node(at.last, l)), n_, l, local + 2 * n_ * lanes);
   }
+  join_.backward(join_blocks_[b], homogeneous ? zero_rhs_.data() : join_rhs_[b], local);
+  for (int l = 0; l < lanes; ++l)
+    if (!passes(at, l)) take_lane(local, l, n_, node(schedule_.node(at.middle, l)));
 }
 
-void SegmentElimination::expand_groups(int s, const double* globals, bool homogeneous, OrbitVector& dx) {
+void SegmentElimination::expand_group(int s, int group, const double* globals, bool homogeneous, OrbitVector& dx,
+                                      int thread) {
   const int c = shape_.collocation;
   const int p = interval_.pivots();
   const auto node = [&](int k) { return dx.states.col(s * shape_.nodes() + k).data(); };
-  double* local = local_.data();
+  double* local = local_[thread];
   put_lanes(dx.durations(s), local + (p + 2 * n_) * lanes);
   for (int k = 0; k + 1 < scalars_; ++k) put_lanes(globals[k], local + (p + 2 * n_ + 1 + k) * lanes);
-  for (int group = 0; group < groups_; ++group) {
-    const std::ptrdiff_t b = block(s, group);
-    for (int l = 0; l < lanes; ++l) {
-      const int j = schedule_.interval(group, l);
-      put_lane(node(j * c), n_, l, local + p * lanes);
-      put_lane(node((j + 1) * c), n_, l, local + (p + n_) * lanes);
-    }
-    interval_.backward(interval_blocks_[b], homogeneous ? zero_rhs_.data() : interval_rhs_[b], local);
-    for (int l = 0; l < lanes; ++l)
-      if (schedule_.holds(group, l)) take_lane(local, l, p, node(schedule_.interval(group, l) * c + 1));
+  const std::ptrdiff_t b = block(s, group);
+  for (int l = 0; l < lanes; ++l) {
+    const int j = schedule_.interval(group, l);
+    put_lane(node(j * c), n_, l, local + p * lanes);
+    put_lane(node((j + 1) * c), n_, l, local + (p + n_) * lanes);
   }
+  interval_.backward(interval_blocks_[b], homogeneous ? zero_rhs_.data() : interval_rhs_[b], local);
+  for (int l = 0; l < lanes; ++l)
+    if (schedule_.holds(group, l)) take_lane(local, l, p, node(schedule_.interval(group, l) * c + 1));
 }
 
 void SegmentElimination::expand_adjoint(int s, const double* weights, double* collocation) {
-  const int p = interval_.pivots();
-  const int rows = interval_.rows();
   const int pieces = static_cast<int>(top_lanes_.size());
   // Right-hand sides are no longer needed: their places serve as scratch.
   std::copy_n(weights, n_, top_rhs(s, 0, pieces));
@@ -400,30 +469,36 @@ void SegmentElimination::expand_adjoint(int s, const double* weights, double* co
     std::copy_n(w, n_, top_rhs(s, at->first, at->middle));
     std::copy_n(w + n_, n_, top_rhs(s, at->middle, at->last));
   }
-  const int count = n_ * lanes;
   double* all = piece_rhs(s, 0, groups_);
-  std::fill_n(all, count, 0.0);
+  std::fill_n(all, n_ * lanes, 0.0);
   for (int k = 0; k < pieces; ++k) put_lane(lane_rhs_[top_block(s, k)], n_, top_lanes_[index(k)], all);
-  for (auto at = joins_.rbegin(); at != joins_.rend(); ++at) {
-    const std::ptrdiff_t b = block(s, at->middle);
-    double* w = join_rhs_[b];
-    std::fill_n(w, count, 0.0);
-    join_.forward_transposed(join_blocks_[b], join_swaps_[b], w);
-    double* left = piece_rhs(s, at->first, at->middle);
-    std::copy_n(w, count, left);
-    std::copy_n(w + count, count, piece_rhs(s, at->middle, at->last));
-    for (int l = 0; l < lanes; ++l)
-      if (passes(*at, l))
-        for (int a = 0; a < n_; ++a) left[a * lanes + l] = w[count + a * lanes + l];
-  }
-  for (int group = 0; group < groups_; ++group) {
-    const std::ptrdiff_t b = block(s, group);
-    double* w = interval_rhs_[b];
-    std::fill_n(w, p * lanes, 0.0);
-    interval_.forward_transposed(interval_blocks_[b], interval_swaps_[b], w);
-    for (int l = 0; l < lanes; ++l)
-      if (schedule_.holds(group, l)) take_lane(w, l, rows, collocation + schedule_.interval(group, l) * rows);
-  }
+  for_joins_in_reverse([&](const Join& at, int) { expand_adjoint_join(s, at); });
+  within_.each(groups_, [&](int group, int) { expand_adjoint_group(s, group, collocation); });
+}
+
+void SegmentElimination::expand_adjoint_join(int s, const Join& at) {
+  const int count = n_ * lanes;
+  const std::ptrdiff_t b = block(s, at.middle);
+  double* w = join_rhs_[b];
+  std::fill_n(w, count, 0.0);
+  join_.forward_transposed(join_blocks_[b], join_swaps_[b], w);
+  double* left = piece_rhs(s, at.first, at.middle);
+  std::copy_n(w, count, left);
+  std::copy_n(w + count, count, piece_rhs(s, at.middle, at.last));
+  for (int l = 0; l < lanes; ++l)
+    if (passes(at, l))
+      for (int a = 0; a < n_; ++a) left[a * lanes + l] = w[count + a * lanes + l];
+}
+
+void SegmentElimination::expand_adjoint_group(int s, int group, double* collocation) {
+  const int p = interval_.pivots();
+  const int rows = interval_.rows();
+  const std::ptrdiff_t b = block(s, group);
+  double* w = interval_rhs_[b];
+  std::fill_n(w, p * lanes, 0.0);
+  interval_.forward_transposed(interval_blocks_[b], interval_swaps_[b], w);
+  for (int l = 0; l < lanes; ++l)
+    if (schedule_.holds(group, l)) take_lane(w, l, rows, collocation + schedule_.interval(group, l) * rows);
 }
 
 // ---- the determinant ------------------------------------------------------------------------------------------------

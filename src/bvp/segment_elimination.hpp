@@ -16,6 +16,11 @@
 ///
 /// Border rows are eliminated on the way. Work and memory are linear in the number of intervals. All arrays are
 /// allocated when the object is made.
+///
+/// Several threads: segments have nothing to do with one another, and neither have the groups of a segment, nor joins
+/// of one level. Whoever has a piece writes to its own blocks alone, so that results do not depend on the threads to
+/// the last bit. The problem's functions need not be re-entrant: one thread calls them, and others eliminate meanwhile
+/// what it has filled.
 #pragma once
 
 #include <span>
@@ -27,6 +32,7 @@
 #include "linear_algebra/block_array.hpp"
 #include "linear_algebra/block_kernel.hpp"
 #include "linear_algebra/lane_kernel.hpp"
+#include "linear_algebra/shared_work.hpp"
 
 namespace tchat {
 
@@ -62,15 +68,30 @@ struct LargeProduct {
   void multiply(double factor);
 };
 
+/// Threads that work on an orbit at a time: as many segments are done at once, or as many pieces of one segment. One of
+/// the two is 1.
+struct EliminationThreads {
+  int segments = 1;
+  int within = 1;
+};
+
 class SegmentElimination {
  public:
-  /// Of all segments of an orbit with `scalars` columns (duration and free parameters) and `border` rows.
-  SegmentElimination(const OrbitShape& shape, int scalars, int border, const CollocationRule& rule);
+  /// Of all segments of an orbit with `scalars` columns (duration and free parameters) and `border` rows. As many
+  /// different segments as `threads` says may be worked on by different threads at a time.
+  SegmentElimination(const OrbitShape& shape, int scalars, int border, const CollocationRule& rule,
+                     const EliminationThreads& threads = {});
 
   /// The collocation rows of segment s, whose field has this number, at x and `rows`' parts of the segment, eliminated.
-  /// `collocation` becomes their residual: interval, Gauss point, component.
+  /// `collocation` becomes their residual: interval, Gauss point, component. The same as fill() and eliminate(), each
+  /// piece eliminated as soon as it is filled.
   Linearization condense(int s, const HybridSystem& system, int field, std::span<const int> active, const Orbit& x,
                          std::span<const OrbitVector> rows, double* collocation);
+  /// Only the rows; false when one is not finite. For one segment at a time.
+  bool fill(int s, const HybridSystem& system, int field, std::span<const int> active, const Orbit& x,
+            std::span<const OrbitVector> rows, double* collocation);
+  /// The rows that fill() left; false when they are singular.
+  bool eliminate(int s);
 
   /// What is left of segment s: n rows of length() entries, columns (first node | last node | scalars), and b border
   /// rows.
@@ -81,8 +102,9 @@ class SegmentElimination {
   /// The right-hand side -collocation of segment s, condensed to n + b entries.
   void condense_right_hand_side(int s, const double* collocation, double* condensed);
   /// From the ends of a segment (first node, last node, duration) and the free parameters to all nodes, for the
-  /// right-hand side that was condensed last or, homogeneous, for zero.
-  void expand(int s, const double* ends, const double* globals, bool homogeneous, OrbitVector& dx);
+  /// right-hand side that was condensed last or, homogeneous, for zero. `thread` < `segments` of the threads, another
+  /// one for each at a time.
+  void expand(int s, const double* ends, const double* globals, bool homogeneous, OrbitVector& dx, int thread = 0);
   /// The adjoint: weights (n) of the condensed rows to weights of the collocation rows of segment s. Right-hand sides
   /// are lost.
   void expand_adjoint(int s, const double* weights, double* collocation);
@@ -96,6 +118,7 @@ class SegmentElimination {
     int first, middle, last;
   };
   static std::vector<Join> joins_of_halves(int pieces);
+  static std::vector<std::vector<Join>> levels_of(const std::vector<Join>& joins);
   static int halfway(int first, int last) { return first + (last - first) / 2; }
   static std::size_t index(std::ptrdiff_t i) { return static_cast<std::size_t>(i); }
   /// Numbers of blocks of a group or join within lanes, and of a join between lanes.
@@ -111,15 +134,26 @@ class SegmentElimination {
                       const Orbit& x);
   void fill_border(int s, int group, std::span<const OrbitVector> rows);
   LanePiece piece(int s, int first, int last) const;
+  bool fill_piece(int s, int group, const HybridSystem& system, int field, std::span<const int> active, const Orbit& x,
+                  std::span<const OrbitVector> rows, double* collocation);
+  bool eliminate_group(int s, int group);
+  bool join_groups(int s);
+  template <class Work>
+  void for_joins(const Work& work);
+  template <class Work>
+  void for_joins_in_reverse(const Work& work);
   bool join(int s, const Join& at);
   void pass_on(const LanePiece& left, int lane, double* target) const;
   bool join_lanes(int s);
+  void condense_group(int s, int group, const double* collocation);
+  void condense_join(int s, const Join& at);
   const double* top_piece(int s, int first, int last, int& width) const;
   double* piece_rhs(int s, int first, int last);
   double* top_rhs(int s, int first, int last);
-  void condense_groups(int s, const double* collocation);
-  void expand_lane_joins(int s, const double* globals, bool homogeneous, OrbitVector& dx);
-  void expand_groups(int s, const double* globals, bool homogeneous, OrbitVector& dx);
+  void expand_lane_join(int s, const Join& at, const double* globals, bool homogeneous, OrbitVector& dx, int thread);
+  void expand_group(int s, int group, const double* globals, bool homogeneous, OrbitVector& dx, int thread);
+  void expand_adjoint_join(int s, const Join& at);
+  void expand_adjoint_group(int s, int group, double* collocation);
 
   OrbitShape shape_;
   int n_;
@@ -132,9 +166,10 @@ class SegmentElimination {
   LaneKernel interval_;
   LaneKernel join_;
   BlockKernel top_join_;
-  std::vector<Join> joins_;      // of groups, each after those that make its two pieces
-  std::vector<int> top_lanes_;   // that have intervals
-  std::vector<Join> top_joins_;  // of top_lanes_
+  std::vector<Join> joins_;                // of groups, each after those that make its two pieces
+  std::vector<std::vector<Join>> levels_;  // the same, those of one level independent of one another
+  std::vector<int> top_lanes_;             // that have intervals
+  std::vector<Join> top_joins_;            // of top_lanes_
 
   // of groups
   BlockArray<double> interval_blocks_;  // (c n + b) x width
@@ -152,9 +187,14 @@ class SegmentElimination {
   // one each
   BlockArray<double> whole_;  // (n + b) x length
 
-  // scratch of one group
-  LaneArray nodes_, points_, derivatives_, jacobian_, residual_, local_, join_local_, zero_rhs_;
-  std::vector<double> x_, f_, fx_, fp_, top_local_;
+  SharedWork within_;
+  std::vector<char> done_;  // of each group or join: was it not singular?
+
+  // scratch of one group, for the thread that calls the problem
+  LaneArray nodes_, points_, derivatives_, jacobian_, residual_, zero_rhs_;
+  std::vector<double> x_, f_, fx_, fp_;
+  // of threads
+  BlockArray<double> local_, join_local_, top_local_;
 };
 
 }  // namespace tchat

@@ -110,6 +110,8 @@ struct RunSettings {
   };
   std::vector<ParameterValue> parameter_values;
 
+  int threads = 1;  ///< -j of the command line: no constant, results do not depend on it
+
   Signature signature() const {
     Signature s;
     for (const SegmentSettings& segment : segments) s.push_back(segment.index);

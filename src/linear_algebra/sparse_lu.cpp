@@ -6,8 +6,11 @@
 #include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 #include <utility>
+
+#include "linear_algebra/small_lu.hpp"
 
 namespace tchat {
 
@@ -66,6 +69,15 @@ void check(int status, const char* what) {
   if (status != UMFPACK_OK) throw std::invalid_argument(std::string("UMFPACK: ") + what);
 }
 
+SparseLu::Determinant determinant_of(const SmallLu& lu, int size) {
+  SparseLu::Determinant result{lu.parity(), 0.0};
+  for (int k = 0; k < size; ++k) {
+    if (lu.pivot(k) < 0.0) result.sign = -result.sign;
+    result.log2_size += std::log2(std::abs(lu.pivot(k))) + std::log2(lu.row_sum(k));
+  }
+  return std::isfinite(result.log2_size) ? result : SparseLu::Determinant{};
+}
+
 /// Sign of a permutation of 0, 1, ..., by its cycles.
 int parity(std::vector<int> order) {
   int sign = 1;
@@ -82,6 +94,8 @@ int parity(std::vector<int> order) {
 struct SparseLu::State {
   SparseMatrix matrix;
   std::vector<int> position;  // where entry k of the triplets goes in matrix.valuePtr()
+  std::optional<SmallLu> small;
+  bool small_is_factored = false;
   void* symbolic = nullptr;
   void* numeric = nullptr;
   double control[UMFPACK_CONTROL];
@@ -96,11 +110,23 @@ struct SparseLu::State {
     umfpack_di_free_symbolic(&symbolic);
     umfpack_di_free_numeric(&numeric);
   }
+  bool is_factored() const { return small ? small_is_factored : numeric != nullptr; }
+  bool factorize_small();
   void solve(int system, const double* b, double* x) {
+    if (small) return system == UMFPACK_A ? small->solve(b, x) : small->solve_transposed(b, x);
     umfpack_di_wsolve(system, matrix.outerIndexPtr(), matrix.innerIndexPtr(), matrix.valuePtr(), x, b, numeric, control,
                       info, integer_work.data(), real_work.data());
   }
 };
+
+bool SparseLu::State::factorize_small() {
+  const auto rows = static_cast<int>(matrix.rows());
+  std::fill_n(small->entries(), rows * rows, 0.0);
+  for (int column = 0; column < rows; ++column)
+    for (SparseMatrix::InnerIterator it(matrix, column); it; ++it)
+      small->entries()[it.row() * rows + column] = it.value();
+  return small_is_factored = small->factorize();
+}
 
 SparseLu::SparseLu(int size, const std::vector<int>& rows, const std::vector<int>& columns)
     : state_(std::make_unique<State>()) {
@@ -116,6 +142,10 @@ SparseLu::SparseLu(int size, const std::vector<int>& rows, const std::vector<int
                                   indices.data(), values.data(), st.position.data()),
         "the pattern is out of range");
   st.matrix = Eigen::Map<const SparseMatrix>(size, size, starts.back(), starts.data(), indices.data(), values.data());
+  if (size <= most_dense_rows) {
+    st.small.emplace(size);
+    return;
+  }
   check(umfpack_di_symbolic(size, size, st.matrix.outerIndexPtr(), st.matrix.innerIndexPtr(), nullptr, &st.symbolic,
                             st.control, st.info),
         "the pattern is structurally singular");
@@ -139,7 +169,9 @@ bool SparseLu::factorize(const std::vector<double>& values) {
     finite += values[k] - values[k];
   }
   umfpack_di_free_numeric(&st.numeric);
+  st.small_is_factored = false;
   if (finite != 0.0) return false;
+  if (st.small) return st.factorize_small();
   const int status = umfpack_di_numeric(st.matrix.outerIndexPtr(), st.matrix.innerIndexPtr(), entries, st.symbolic,
                                         &st.numeric, st.control, st.info);
   // Finite values may overflow on the way.
@@ -153,7 +185,8 @@ void SparseLu::solve(const double* b, double* x) { state_->solve(UMFPACK_A, b, x
 void SparseLu::solve_transposed(const double* b, double* x) { state_->solve(UMFPACK_At, b, x); }
 
 SparseLu::Determinant SparseLu::determinant() const {
-  if (state_->numeric == nullptr) return {};
+  if (!state_->is_factored()) return {};
+  if (state_->small) return determinant_of(*state_->small, size());
   // P R A Q = L U with L's diagonal 1. UMFPACK's own product of U's diagonal never ends where an entry is not finite.
   const auto n = static_cast<std::size_t>(size());
   std::vector<int> row_order(n);
@@ -176,7 +209,7 @@ SparseLu::Determinant SparseLu::determinant() const {
 }
 
 double SparseLu::singular_distance() const {
-  if (state_->numeric == nullptr) return 0.0;
+  if (!state_->is_factored()) return 0.0;
   constexpr int iterations = 4;
   const Equilibrated scaled = equilibrate(state_->matrix);
   const int n = size();

@@ -1,5 +1,5 @@
 /// UMFPACK for a sequence of square sparse matrices of one pattern: the symbolic analysis is made once, the numeric
-/// factorisation once per matrix.
+/// factorisation once per matrix. Matrices of few rows are factored as dense ones (small_lu.hpp), without allocation.
 #pragma once
 
 #include <memory>
@@ -9,6 +9,9 @@ namespace tchat {
 
 class SparseLu {
  public:
+  /// The most rows of a matrix that is factored as a dense one.
+  static constexpr int most_dense_rows = 40;
+
   /// The pattern: entry k of the values given to `factorize` stands at (row[k], column[k]); repeated positions add up.
   /// Throws std::invalid_argument when a position is out of range. A structurally singular pattern shows in
   /// factorize().

@@ -126,6 +126,7 @@ Problem load_problem(const RunRequest& request, const Reports& reports) {
   if (named_parameters) read = read_settings(request, constants, names_of(system), nullptr);
   reports.warn(check_settings_against(system, read.used, {constants, request.overrides}));
   reports.warn_of(inherited_bounds(system, read.in_file, read.used, request.overrides, constants));
+  read.used.threads = request.threads;
   return {std::move(library), read.used};
 }
 

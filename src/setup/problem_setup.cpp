@@ -211,7 +211,8 @@ WeightedNorm weighted_norm(const RunSettings& settings) {
 }
 
 NewtonSettings newton_settings(const RunSettings& settings) {
-  return {settings.max_newton, settings.full_newton, settings.tolerance_parameters, settings.tolerance_states};
+  return {settings.max_newton, settings.full_newton, settings.tolerance_parameters, settings.tolerance_states,
+          settings.threads};
 }
 
 ContinuationSettings continuation_settings(const RunSettings& settings) {

@@ -19,6 +19,7 @@ struct RunRequest {
   bool append = false;
   bool clip = false;                   ///< end on the bounds RL0, RL1, A0, A1
   bool strict = false;                 ///< a branch that ends by MX is a failure
+  int threads = 1;                     ///< -j
   std::vector<std::string> overrides;  ///< KEY=VALUE
 };
 

@@ -17,9 +17,9 @@ namespace tchat::benchmark {
 namespace {
 
 constexpr int n = 4;
-constexpr int matrix_intervals = 50;
-constexpr int matrix_scalars = 2;  // duration and alpha
-constexpr int matrix_border = 1;
+constexpr int intervals = 50;
+constexpr int scalars = 2;  // duration and alpha
+constexpr int border = 1;
 
 std::vector<double> random_numbers(std::size_t count) {
   std::mt19937 generator(1);
@@ -34,7 +34,7 @@ class RandomBlocks {
  public:
   RandomBlocks(int blocks, int rows, int pivots, int width, int together)
       : blocks_((blocks + together - 1) / together),
-        size_((rows + matrix_border) * width * together),
+        size_((rows + border) * width * together),
         work_(static_cast<std::size_t>(blocks_ * size_)),
         swaps_(static_cast<std::size_t>(pivots * together)) {
     const std::vector<double> numbers = random_numbers(work_.size());
@@ -74,7 +74,7 @@ class Remainder {
   }
 
  private:
-  static constexpr int size = 2 * n + matrix_scalars;
+  static constexpr int size = 2 * n + scalars;
   SparseLu make() {
     std::vector<int> rows;
     std::vector<int> columns;
@@ -112,7 +112,7 @@ void print_line(const std::string& what, double units, double unit_seconds) {
 }  // namespace
 
 void print_matrix_times(int rounds) {
-  BranchWalk walk(walk_shape(1, matrix_intervals));
+  BranchWalk walk(walk_shape(1, intervals));
   walk.step();
   CondensedSystem& condensed = walk.follower().condensed();
   const Orbit& x = walk.point().orbit;
@@ -127,17 +127,17 @@ void print_matrix_times(int rounds) {
   std::vector<double> fp(n);
 
   const LaneKernel interval(16, 12, 22);
-  RandomBlocks interval_blocks(matrix_intervals, interval.rows(), interval.pivots(), interval.width(), lanes);
-  RandomBlocks single_blocks(matrix_intervals, 16, 12, 24, 1);
-  const LaneKernel join(2 * n, n, 3 * n + matrix_scalars);
-  RandomBlocks join_blocks(matrix_intervals - 1, join.rows(), join.pivots(), join.width(), lanes);
+  RandomBlocks interval_blocks(intervals, interval.rows(), interval.pivots(), interval.width(), lanes);
+  RandomBlocks single_blocks(intervals, 16, 12, 24, 1);
+  const LaneKernel join(2 * n, n, 3 * n + scalars);
+  RandomBlocks join_blocks(intervals - 1, join.rows(), join.pivots(), join.width(), lanes);
   Remainder remainder;
 
-  const auto eliminate_interval = [&](double* a, int* swaps) { keep(interval.eliminate(a, matrix_border, swaps)); };
+  const auto eliminate_interval = [&](double* a, int* swaps) { keep(interval.eliminate(a, border, swaps)); };
   const auto eliminate_single = [](double* a, int* swaps) {
-    keep(eliminate(FixedSizes<16, 12, 24>{}, a, matrix_border, swaps));
+    keep(eliminate(FixedSizes<16, 12, 24>{}, a, border, swaps));
   };
-  const auto eliminate_join = [&](double* a, int* swaps) { keep(join.eliminate(a, matrix_border, swaps)); };
+  const auto eliminate_join = [&](double* a, int* swaps) { keep(join.eliminate(a, border, swaps)); };
   const auto derivatives = [&] {
     for (int k = 0; k + 1 < x.shape.nodes(); ++k)
       system.first(FunctionKind::field, 1, x.node(0, k), x.par.data(), walk.system().free_parameters(), f.data(),
@@ -196,7 +196,7 @@ void print_matrix_times(int rounds) {
   const double factor_units = in_units({factors});
   const double sparse_units = in_units({sparse_solve});
 
-  fmt::print("(b) One Newton matrix: m = 1, n = 4, NTST = {}, NCOL = 4\n\n", matrix_intervals);
+  fmt::print("(b) One Newton matrix: m = 1, n = 4, NTST = {}, NCOL = 4\n\n", intervals);
   fmt::print("  {:<66}{:>8}{:>12}\n", "", "units", "time [us]");
   print_line("unit: local eliminations of random blocks in lanes, without copying", 1.0, second);
   print_line("  the same one block after the other", in_units({single}, single_copy), second);

@@ -27,8 +27,8 @@ using test::pi;
 using test::system_of;
 
 constexpr double golden = std::numbers::phi;
-constexpr int torus_intervals = 20, collocation = 4;
-constexpr NewtonSettings torus_newton{8, 3, 1e-7, 1e-7};
+constexpr int intervals = 20, collocation = 4;
+constexpr NewtonSettings newton{8, 3, 1e-7, 1e-7};
 constexpr int omega_parameter = 1;
 
 /// The torus of problems/torus with the phase of the forcing as a third state, from revolution to revolution: n = 3.
@@ -88,9 +88,9 @@ class TorusWalk {
  public:
   TorusWalk(const Case& torus, int orbits)
       : torus_(torus),
-        shape_{torus.system->dimension(), orbits, torus_intervals, collocation},
+        shape_{torus.system->dimension(), orbits, intervals, collocation},
         system_(*torus.system, {{1, 1, 1}}, orbits, {omega_parameter, rotation_parameter}),
-        follower_(system_, shape_, WeightedNorm::unit(shape_.dimension), torus_newton, omega_parameter),
+        follower_(system_, shape_, WeightedNorm::unit(shape_.dimension), newton, omega_parameter),
         point_(follower_.make_point(start())),
         next_(point_) {
     if (!follower_.start_at_fixed_parameter(point_).converged()) throw std::runtime_error("no torus to start from");
@@ -117,7 +117,7 @@ class TorusWalk {
 
  private:
   Orbit start() const {
-    Orbit x{shape_, uniform_mesh(torus_intervals), Eigen::MatrixXd(shape_.dimension, shape_.columns()),
+    Orbit x{shape_, uniform_mesh(intervals), Eigen::MatrixXd(shape_.dimension, shape_.columns()),
             ParameterVector::Zero(parameter_length)};
     x.par(0) = first_omega, x.par(1) = golden, x.par(2) = 5.0;
     x.par(rotation_parameter - 1) = torus_.rotation;
@@ -182,7 +182,7 @@ double peak_megabytes() {
 }  // namespace
 
 void print_torus_times(const std::vector<int>& orbits, int steps, int returns) {
-  fmt::print("(d) Tori, NTST = {}, NCOL = {}: a step of omega and rho with multipliers, medians\n\n", torus_intervals,
+  fmt::print("(d) Tori, NTST = {}, NCOL = {}: a step of omega and rho with multipliers, medians\n\n", intervals,
              collocation);
   for (const Case* torus : {&three, &four}) {
     fmt::print("n = {}\n{:>8}{:>14}{:>20}{:>30}{:>20}\n", torus->system->dimension(), "N", "step [ms]",

@@ -50,6 +50,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <iterator>
 #include <stdexcept>
@@ -284,38 +285,43 @@ class ProblemTable {
 
   static void first(const void* self, std::int32_t kind, std::int32_t index, const double* x, const double* par,
                     const std::int32_t* active, std::int32_t active_count, double* out, double* dx, double* dp) {
-    if (hand_written(self, kind, index, x, par, active, active_count, dx, dp)) {
-      value(self, kind, index, x, par, out);
+    first_at_points(self, kind, index, 1, x, par, active, active_count, out, dx, dp);
+  }
+
+  /// Arrays of dual numbers are made and set to zero once for all points: for a field of a few terms that takes longer
+  /// than the field.
+  static void first_at_points(const void* self, std::int32_t kind, std::int32_t index, std::int32_t points,
+                              const double* x, const double* par, const std::int32_t* active, std::int32_t active_count,
+                              double* out, double* dx, double* dp) {
+    if (points <= 0 || hand_written_at_points(self, kind, index, points, x, par, active, active_count, out, dx, dp))
       return;
-    }
     using T = Dual<width>;
+    const int r = rows(kind);
     const int columns = n + active_count;
     for (int begin = 0; begin < columns; begin += width) {
+      const int count = columns - begin < width ? columns - begin : width;
       States<T> xs;
       Parameters<T> ps;
       Durations<T> ts;
       Values<T> ys;
       load(x, par, xs, ps, ts);
-      for (int k = 0; k < width && begin + k < columns; ++k)
+      for (int k = 0; k < count; ++k)
         if (T* seed = variable(begin + k, active, xs, ps, ts)) seed->derivative[static_cast<std::size_t>(k)] = 1.0;
-      preset(ys);
-      evaluate<T>(self, kind, index, xs.data(), ps.data(), ts.data(), ys.data());
-      const int r = rows(kind);
-      for (int k = 0; k < width && begin + k < columns; ++k) {
-        const int c = begin + k;
-        double* column = c < n ? dx + c * r : dp + (c - n) * r;
-        for (int i = 0; i < r; ++i) column[i] = ys[static_cast<std::size_t>(i)].derivative[static_cast<std::size_t>(k)];
+      for (std::int32_t point = 0; point < points; ++point) {
+        for (int i = 0; i < n; ++i) xs[static_cast<std::size_t>(i)].value = x[point * n + i];
+        for (T& y : ys) y.value = NAN;
+        evaluate<T>(self, kind, index, xs.data(), ps.data(), ts.data(), ys.data());
+        double* const by_state = dx + static_cast<std::ptrdiff_t>(point) * r * n;
+        double* const by_parameter = dp + static_cast<std::ptrdiff_t>(point) * r * active_count;
+        for (int k = 0; k < count; ++k) {
+          const int c = begin + k;
+          double* const column = c < n ? by_state + c * r : by_parameter + (c - n) * r;
+          for (int i = 0; i < r; ++i)
+            column[i] = ys[static_cast<std::size_t>(i)].derivative[static_cast<std::size_t>(k)];
+        }
+        for (int i = 0; i < r; ++i) out[point * r + i] = ys[static_cast<std::size_t>(i)].value;
       }
-      for (int i = 0; i < r; ++i) out[i] = ys[static_cast<std::size_t>(i)].value;
     }
-  }
-
-  static void first_at_points(const void* self, std::int32_t kind, std::int32_t index, std::int32_t points,
-                              const double* x, const double* par, const std::int32_t* active, std::int32_t active_count,
-                              double* out, double* dx, double* dp) {
-    const int r = rows(kind);
-    for (std::int32_t k = 0; k < points; ++k, x += n, out += r, dx += r * n, dp += r * active_count)
-      first(self, kind, index, x, par, active, active_count, out, dx, dp);
   }
 
   static void second(const void* self, std::int32_t kind, std::int32_t index, const double* x, const double* par,
@@ -369,6 +375,13 @@ class ProblemTable {
     return is_duration ? &ts[static_cast<std::size_t>(s)] : nullptr;
   }
 
+  /// Does the problem have derivatives of its own, of some kind of function?
+  static constexpr bool gives_derivatives = requires(const Problem& problem, const double* x, double* dx) {
+    problem.field_derivatives(1, x, x, dx, dx);
+  }
+  || requires(const Problem& problem, const double* x, double* dx) { problem.event_derivatives(1, x, x, dx, dx); }
+  || requires(const Problem& problem, const double* x, double* dx) { problem.jump_derivatives(1, x, x, dx, dx); };
+
   static bool hand_written(const void* self, std::int32_t kind, int index, const double* x, const double* par,
                            const std::int32_t* active, std::int32_t active_count, double* dx, double* dp) {
     std::array<double, static_cast<std::size_t>(n * (q > 0 ? q : 1))> all{};
@@ -388,6 +401,21 @@ class ProblemTable {
       for (int i = 0; i < r; ++i)
         dp[a * r + i] = is_problem_parameter(active[a]) ? all[static_cast<std::size_t>((active[a] - 1) * r + i)] : 0.0;
     return true;
+  }
+
+  /// False when there are none of this function, at any point.
+  static bool hand_written_at_points(const void* self, std::int32_t kind, int index, std::int32_t points,
+                                     const double* x, const double* par, const std::int32_t* active,
+                                     std::int32_t active_count, double* out, double* dx, double* dp) {
+    if constexpr (gives_derivatives) {
+      const int r = rows(kind);
+      for (std::int32_t k = 0; k < points; ++k, x += n, out += r, dx += r * n, dp += r * active_count) {
+        if (!hand_written(self, kind, index, x, par, active, active_count, dx, dp)) return false;
+        value(self, kind, index, x, par, out);
+      }
+      return true;
+    }
+    return false;
   }
 
   /// The boundary conditions, preset to NaN.

@@ -1,0 +1,60 @@
+/// Pieces of work that have nothing to do with one another, shared by the calling thread with others of this process.
+///
+/// What a piece computes is written where no other one reads or writes, so that results are the same to the last bit
+/// for any number of threads, and in whatever order pieces are done.
+#pragma once
+
+#include <memory>
+#include <utility>
+
+namespace tchat {
+
+class SharedWork {
+ public:
+  /// threads >= 1, the calling one among them; no more than this machine has processors take part. One: everything is
+  /// done by the caller, in order.
+  explicit SharedWork(int threads);
+  ~SharedWork();
+  SharedWork(const SharedWork&) = delete;
+  SharedWork& operator=(const SharedWork&) = delete;
+  SharedWork(SharedWork&&) noexcept;
+  SharedWork& operator=(SharedWork&&) noexcept;
+
+  int threads() const { return threads_; }
+
+  /// bool prepare(i) for i = 0 .. count - 1 in this order, by the calling thread, until it is false; after each that is
+  /// true work(i, thread), by any thread, while the caller goes on preparing. `thread` is less than threads(), and no
+  /// two at a time have the same. Returns when all that began has ended; throws what a piece or a preparation throws.
+  template <class Prepare, class Work>
+  void run(int count, Prepare&& prepare, Work&& work) const {
+    if (threads_ > 1 && count > 1) {
+      const auto both = std::pair<Prepare&, Work&>(prepare, work);
+      using Both = decltype(both);
+      share(count, {&both, [](const void* p, int i) { return static_cast<Both*>(p)->first(i); },
+                    [](const void* p, int i, int thread) { static_cast<Both*>(p)->second(i, thread); }});
+      return;
+    }
+    for (int i = 0; i < count && prepare(i); ++i) work(i, 0);
+  }
+
+  /// work(i, thread) for i = 0 .. count - 1.
+  template <class Work>
+  void each(int count, Work&& work) const {
+    run(
+        count, [](int) { return true; }, work);
+  }
+
+ private:
+  struct Calls {
+    const void* object;
+    bool (*prepare)(const void*, int);
+    void (*work)(const void*, int, int);
+  };
+  struct Arena;
+  void share(int count, const Calls& calls) const;
+
+  int threads_;
+  std::unique_ptr<Arena> arena_;  // none for one thread
+};
+
+}  // namespace tchat

@@ -1,0 +1,55 @@
+#include "linear_algebra/small_lu.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "linear_algebra/partial_lu.hpp"
+
+namespace tchat {
+
+SmallLu::SmallLu(int size)
+    : size_(size), entries_(at(size * size)), row_sums_(at(size)), right_(at(size)), swaps_(at(size)) {}
+
+bool SmallLu::factorize() {
+  double* entry = entries_.data();
+  for (int i = 0; i < size_; ++i, entry += size_) {
+    double sum = 0.0;
+    for (int j = 0; j < size_; ++j) sum += std::abs(entry[j]);
+    if (!(sum > 0.0) || !std::isfinite(sum)) return false;
+    row_sums_[at(i)] = sum;
+    for (int j = 0; j < size_; ++j) entry[j] /= sum;
+  }
+  if (!eliminate(DynamicSizes{size_, size_, size_}, entries_.data(), 0, swaps_.data())) return false;
+  return std::all_of(entries_.begin(), entries_.end(), [](double value) { return std::isfinite(value); });
+}
+
+void SmallLu::solve(const double* b, double* x) {
+  const DynamicSizes sizes{size_, size_, size_};
+  for (int i = 0; i < size_; ++i) right_[at(i)] = b[i] / row_sums_[at(i)];
+  forward(sizes, entries_.data(), 0, swaps_.data(), right_.data());
+  backward(sizes, entries_.data(), right_.data(), x);
+}
+
+/// P S = L U with A = R S: A^T x = U^T L^T P R x.
+void SmallLu::solve_transposed(const double* b, double* x) {
+  std::copy_n(b, size_, x);
+  for (int k = 0; k < size_; ++k) {
+    const double known = x[k] *= row(k)[k];
+    for (int i = k + 1; i < size_; ++i) x[i] -= row(k)[i] * known;
+  }
+  for (int k = size_ - 1; k > 0; --k)
+    for (int i = 0; i < k; ++i) x[i] -= row(k)[i] * x[k];
+  for (int k = size_ - 1; k >= 0; --k) std::swap(x[k], x[swaps_[at(k)]]);
+  for (int i = 0; i < size_; ++i) x[i] /= row_sums_[at(i)];
+}
+
+double SmallLu::pivot(int k) const { return 1.0 / row(k)[k]; }
+
+int SmallLu::parity() const {
+  int sign = 1;
+  for (int k = 0; k < size_; ++k) sign = swaps_[at(k)] == k ? sign : -sign;
+  return sign;
+}
+
+}  // namespace tchat
