@@ -30,7 +30,7 @@ struct OrbitArguments {
 int print_orbit(const OrbitArguments& arguments) {
   const StartLabel label = read_label(arguments.label);
   const std::string path = resolve_solution_path(arguments.path);
-  const SolutionFile file = read_solution_file(path);
+  const SolutionFile file = read_solution_file(path, label);
   const RecordedNames recorded = recorded_names(path);
   print_warnings(std::cerr, file.warnings);
   if (!recorded.warning.empty()) print_warnings(std::cerr, {recorded.warning});

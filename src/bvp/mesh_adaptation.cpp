@@ -97,24 +97,42 @@ std::vector<double> resampled_mesh(const std::vector<double>& mesh, int interval
   return equal_parts(mesh, density, intervals);
 }
 
-Eigen::MatrixXd interpolate_states(const Eigen::MatrixXd& states, const OrbitShape& from,
-                                   const std::vector<double>& from_mesh, const OrbitShape& to,
-                                   const std::vector<double>& to_mesh) {
+MeshTransfer::MeshTransfer(const OrbitShape& from, const std::vector<double>& from_mesh, const OrbitShape& to,
+                           const std::vector<double>& to_mesh)
+    : from_(from), to_(to), first_(index(to.nodes())), weights_(from.collocation + 1, to.nodes()) {
   const CollocationRule rule(from.collocation);
-  Eigen::VectorXd basis(from.collocation + 1);
-  Eigen::MatrixXd result(to.dimension, to.columns());
   int j = 0;
   for (int k = 0; k < to.nodes(); ++k) {
     const int interval = std::min(k / to.collocation, to.intervals - 1);
     const double share = static_cast<double>(k - interval * to.collocation) / to.collocation;
     const double tau = to_mesh[index(interval)] + share * length(to_mesh, interval);
     while (j + 1 < from.intervals && from_mesh[index(j + 1)] <= tau) ++j;
-    rule.basis((tau - from_mesh[index(j)]) / length(from_mesh, j), basis.data(), nullptr);
-    for (int s = 0; s < to.segments; ++s)
-      result.col(s * to.nodes() + k) =
-          states.middleCols(s * from.nodes() + j * from.collocation, from.collocation + 1) * basis;
+    first_[index(k)] = j * from.collocation;
+    rule.basis((tau - from_mesh[index(j)]) / length(from_mesh, j), weights_.col(k).data(), nullptr);
   }
+}
+
+Eigen::MatrixXd MeshTransfer::operator()(const Eigen::MatrixXd& states) const {
+  Eigen::MatrixXd result(to_.dimension, to_.columns());
+  const int n = to_.dimension;
+  double* value = result.data();
+  for (int s = 0; s < to_.segments; ++s)
+    for (int k = 0; k < to_.nodes(); ++k) {
+      const double* nodes = states.col(s * from_.nodes() + first_[index(k)]).data();
+      const double* weights = weights_.col(k).data();
+      for (int a = 0; a < n; ++a) {
+        double sum = 0.0;
+        for (int i = 0; i <= from_.collocation; ++i) sum += weights[i] * nodes[i * n + a];
+        *value++ = sum;
+      }
+    }
   return result;
+}
+
+Eigen::MatrixXd interpolate_states(const Eigen::MatrixXd& states, const OrbitShape& from,
+                                   const std::vector<double>& from_mesh, const OrbitShape& to,
+                                   const std::vector<double>& to_mesh) {
+  return MeshTransfer(from, from_mesh, to, to_mesh)(states);
 }
 
 double estimated_error(const Orbit& x, const CollocationRule& rule) {

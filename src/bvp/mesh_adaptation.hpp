@@ -19,7 +19,22 @@ std::vector<double> resampled_mesh(const std::vector<double>& mesh, int interval
 /// Splits [0, 1] into `parts` intervals of equal share of a density that is constant on each interval of `mesh`, > 0.
 std::vector<double> equal_parts(const std::vector<double>& mesh, const Eigen::VectorXd& density, int parts);
 
-/// States evaluated on another mesh, possibly of other N and c (`shape` has the same n and m).
+/// Evaluates states on another mesh, possibly of other N and c (`to` has the same n and m): the weights once, for as
+/// many matrices of states as there are.
+class MeshTransfer {
+ public:
+  MeshTransfer(const OrbitShape& from, const std::vector<double>& from_mesh, const OrbitShape& to,
+               const std::vector<double>& to_mesh);
+  Eigen::MatrixXd operator()(const Eigen::MatrixXd& states) const;
+
+ private:
+  OrbitShape from_;
+  OrbitShape to_;
+  std::vector<int> first_;   // of the nodes that node k of a segment is made of
+  Eigen::MatrixXd weights_;  // of these, a column for each k
+};
+
+/// The same, of one matrix.
 Eigen::MatrixXd interpolate_states(const Eigen::MatrixXd& states, const OrbitShape& from,
                                    const std::vector<double>& from_mesh, const OrbitShape& to,
                                    const std::vector<double>& to_mesh);

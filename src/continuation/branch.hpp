@@ -24,7 +24,7 @@ struct BranchPoint {
   const PathPoint& path;
   const FloquetMultipliers& multipliers;
   const std::vector<Violation>& violations;  ///< empty: admissible
-  double measure = 0.0;                      ///< by IPLT
+  double measure = 0.0;                      ///< by IPLT, where it is bounded
   double estimated_error = 0.0;              ///< of the states between mesh points, relative
   int newton_iterations = 0;
   std::vector<NewtonIteration> newton;  ///< of the step that reached it

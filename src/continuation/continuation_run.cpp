@@ -66,6 +66,12 @@ std::vector<std::unique_ptr<TestFunction>> with_bounds(std::vector<std::unique_p
   return tests;
 }
 
+/// Is there a finite bound of the solution measure?
+bool bounds_measure(const ContinuationSettings& settings) {
+  constexpr double none = 1e300;
+  return settings.measure_min > -none || settings.measure_max < none;
+}
+
 /// Do events fix the phase, or conditions of the problem's own?
 bool has_fixed_phase(const DefiningSystem& system, const ContinuationSettings& settings) {
   const Signature& signature = system.signature();
@@ -93,6 +99,7 @@ ContinuationRun::ContinuationRun(PathFollower& follower, const DefiningSystem& s
 
 BranchSummary ContinuationRun::run(PathPoint start) {
   here_ = std::move(start);
+  here_.trail.clear();  // a branch switch begins with a step on another branch
   next_ = {here_, 0.0, search_.begin(here_)};
   number_ = settings_.first_number;
   SpecialPoint special;
@@ -117,7 +124,7 @@ BranchSummary ContinuationRun::run(PathPoint start) {
     std::swap(here_, next_.point);
     ++number_;
     accept(end_conditions(curve_end(special)));
-    if (!limited_) step_.converged(newton_.iterations, number_);
+    if (!limited_) step_.converged(iterations_, number_);
     if (!ended_ && settings_.outgrown && settings_.outgrown(here_.orbit)) end(EndReason::outgrown, "");
   }
   if (settings_.periodic) summary_.remark = trend_.growing_period(settings_.principal_name);
@@ -147,6 +154,7 @@ std::optional<double> ContinuationRun::come_back() {
     return std::nullopt;
   }
   newton_ = newton;
+  count_iterations(way->from, past);
   past.data = search_.evaluate(past.point);
   here_ = way->from;
   next_ = std::move(past);
@@ -180,7 +188,12 @@ SpecialPoint ContinuationRun::advance() {
   const double before = std::abs(follower_.principal_direction(here_));
   const double turn = std::min(before, std::abs(follower_.principal_direction(next_.point)));
   steepest_ = std::max(steepest_, before);
-  SpecialPoint special = search_.advance(here_, next_, newton_, reports).value_or(SpecialPoint{});
+  NewtonResult of_shorter_step;
+  SpecialPoint special = search_.advance(here_, next_, of_shorter_step, reports).value_or(SpecialPoint{});
+  if (of_shorter_step.converged()) {
+    newton_ = of_shorter_step;
+    count_iterations(here_, next_);
+  }
   const double level = insignificant_turn * steepest_;
   const double earlier = std::exchange(before_, before);
   if (!is_fold(special.type) || turn > level || std::max(before, earlier) > sudden * level)
@@ -253,13 +266,36 @@ SpecialPoint ContinuationRun::curve_end(SpecialPoint special) {
   return {PointType::end, {}, false, reason};
 }
 
+/// Sets iterations_ for the step that newton_ made.
+void ContinuationRun::count_iterations(const PathPoint& from, Candidate& to) {
+  iterations_ = newton_.iterations;
+  if (limited_ || !step_.adapts_at(number_ + 1) || (newton_.from_tangent && !is_doubtful_)) return;
+  const IterationRange range = follower_.iterations_along_tangent(from, to.ds, to.point, !step_.is_longest());
+  is_doubtful_ = step_.after(range.least) != step_.after(range.most);
+  if (newton_.from_tangent) return;
+  iterations_ = is_doubtful_ ? tried_along_tangent(from, to) : range.most;
+}
+
+/// The step again, from the tangent, for its number of iterations.
+int ContinuationRun::tried_along_tangent(const PathPoint& from, Candidate& to) {
+  PathPoint trial = to.point;
+  const NewtonResult newton = follower_.step_along_tangent(from, to.ds, trial);
+  if (newton.converged())
+    to.point.newton_constant = trial.newton_constant;
+  else
+    follower_.linearize_at(to.point);
+  return newton.converged() ? newton.iterations : settings_.step.max_newton;
+}
+
 /// Predicts and corrects, halving the step until it succeeds. False when it cannot be made any smaller.
 bool ContinuationRun::take_step() {
   for (;;) {
     next_.ds = search_.limited(step_.value());
     limited_ = next_.ds != step_.value();
-    newton_ = follower_.step(here_, next_.ds, next_.point);
+    newton_ = is_doubtful_ ? follower_.step_along_tangent(here_, next_.ds, next_.point)
+                           : follower_.step(here_, next_.ds, next_.point);
     const bool converged = newton_.converged();
+    if (converged) count_iterations(here_, next_);
     std::string trouble;
     if (!converged)
       trouble = describe(newton_.status);
@@ -282,7 +318,8 @@ bool ContinuationRun::take_step() {
 /// What the point here_ is after all: special already, the end of the branch, a regular output point, or nothing.
 SpecialPoint ContinuationRun::end_conditions(SpecialPoint special) {
   const double principal = here_.orbit.par(settings_.principal - 1);
-  measure_ = solution_measure(here_.orbit, follower_.condensed().rule(), settings_.state_weights, settings_.measure);
+  if (bounds_measure(settings_))
+    measure_ = solution_measure(here_.orbit, follower_.condensed().rule(), settings_.state_weights, settings_.measure);
   if (is_beyond(settings_, principal, settings_.parameter_min, settings_.parameter_max) ||
       is_beyond(settings_, measure_, settings_.measure_min, settings_.measure_max))
     special = {};  // what lies beyond the bound was not asked for: the branch ends there with an ordinary end point

@@ -61,6 +61,8 @@ class ContinuationRun {
  private:
   void resume();
   bool take_step();
+  void count_iterations(const PathPoint& from, Candidate& to);
+  int tried_along_tangent(const PathPoint& from, Candidate& to);
   std::optional<double> come_back();
   SpecialPoint arrive(SpecialPoint special, double length);
   SpecialPoint advance();
@@ -87,13 +89,15 @@ class ContinuationRun {
   PathPoint here_;      // the last accepted point, moved to a new mesh where one was due
   PathPoint accepted_;  // the same as it was accepted
   PointData accepted_data_;
-  Candidate next_;         // the point being computed; once accepted its step and data, the point is here_
-  NewtonResult newton_;    // of the step to it
-  bool limited_ = false;   // by zeros that are known to lie ahead: it says nothing of the next one
-  double steepest_ = 0.0;  // largest part of the principal parameter in a tangent so far
-  double before_ = 0.0;    // that part at the last point but one
-  double measure_ = 0.0;   // at here_
-  int number_ = 1;         // of here_
+  Candidate next_;            // the point being computed; once accepted its step and data, the point is here_
+  NewtonResult newton_;       // of the step to it
+  int iterations_ = 0;        // that it would take from the tangent: what the step length goes by
+  bool is_doubtful_ = false;  // that number, until it is told again: steps are predicted along the tangent
+  bool limited_ = false;      // by zeros that are known to lie ahead: it says nothing of the next one
+  double steepest_ = 0.0;     // largest part of the principal parameter in a tangent so far
+  double before_ = 0.0;       // that part at the last point but one
+  double measure_ = 0.0;      // at here_
+  int number_ = 1;            // of here_
   bool ended_ = false;
   BranchSummary summary_;
 };

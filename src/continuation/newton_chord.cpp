@@ -9,6 +9,9 @@ namespace tchat {
 namespace {
 
 constexpr double divergence_factor = 20.0;
+/// A matrix of a point that is no farther away (relatively) is not made anew: the path follower takes the tangent from
+/// it as well.
+constexpr double as_good_as_new = 1e-10;
 /// Residuals below this times 1 + max |u| are rounding.
 constexpr double rounding_residual = 200 * std::numeric_limits<double>::epsilon();
 /// A stalled iteration is accepted at rounding-level residual when its corrections are about sqrt(rounding) or less.
@@ -45,6 +48,17 @@ bool is_rounding(double residual, const Orbit& x) {
   return residual < rounding_residual * (1.0 + x.states.cwiseAbs().maxCoeff());
 }
 
+OrbitChange change_by(const OrbitVector& dx, const Orbit& x, const std::vector<int>& free_parameters) {
+  OrbitChange change{0.0, dx.states.cwiseAbs().maxCoeff() / (1.0 + x.states.cwiseAbs().maxCoeff())};
+  for (int s = 0; s < x.shape.segments; ++s)
+    change.parameters = std::max(change.parameters, std::abs(dx.durations(s)) / (1.0 + std::abs(x.duration(s))));
+  for (std::size_t g = 0; g < free_parameters.size(); ++g)
+    change.parameters = std::max(change.parameters, std::abs(dx.globals(static_cast<Eigen::Index>(g))) /
+                                                        (1.0 + std::abs(x.par(free_parameters[g] - 1))));
+  if (!dx.states.allFinite()) change.states = std::numeric_limits<double>::quiet_NaN();
+  return change;
+}
+
 NewtonChord::NewtonChord(BorderedProblem& problem, const NewtonSettings& settings)
     : problem_(problem),
       settings_(settings),
@@ -61,7 +75,9 @@ NewtonResult NewtonChord::correct(Orbit& x, const OrbitVector& row, const Orbit&
       problem_.allows_chord() ? std::max(settings_.full_iterations, 1) : settings_.max_iterations;
   double first_change = 0.0;
   for (int iteration = 1; iteration <= settings_.max_iterations; ++iteration) {
-    if (iteration <= full_iterations) {
+    const bool still_new =
+        iteration > 1 && problem_.allows_chord() && result.change_since_factorization <= as_good_as_new;
+    if (iteration <= full_iterations && !still_new) {
       const Linearization outcome = problem_.linearize(x, row, residual_);
       if (outcome != Linearization::ready) {
         result.status = failure(outcome);
@@ -73,8 +89,8 @@ NewtonResult NewtonChord::correct(Orbit& x, const OrbitVector& row, const Orbit&
     }
     result.residual = problem_.residual_size(residual_);
     problem_.solve(residual_, target - dot_difference(row, x, base, free_parameters), dx_);
-    const Change change = apply(x);
-    const double larger = std::max(change.parameters, change.states);
+    const OrbitChange change = apply(x);
+    const double larger = change.larger();
     result.iterations = iteration;
     const double parameter = free_parameters.empty() ? 0.0 : x.par(free_parameters.front() - 1);
     history_.push_back({iteration, parameter, change.parameters, change.states, result.residual});
@@ -109,17 +125,9 @@ NewtonResult NewtonChord::correct(Orbit& x, const OrbitVector& row, const Orbit&
 }
 
 /// x += dx; the relative sizes of the correction as AUTO measures them.
-NewtonChord::Change NewtonChord::apply(Orbit& x) const {
-  const std::vector<int>& free_parameters = problem_.system().free_parameters();
-  advance(x, 1.0, dx_, free_parameters);
-  Change change{0.0, dx_.states.cwiseAbs().maxCoeff() / (1.0 + x.states.cwiseAbs().maxCoeff())};
-  for (int s = 0; s < x.shape.segments; ++s)
-    change.parameters = std::max(change.parameters, std::abs(dx_.durations(s)) / (1.0 + std::abs(x.duration(s))));
-  for (std::size_t g = 0; g < free_parameters.size(); ++g)
-    change.parameters = std::max(change.parameters, std::abs(dx_.globals(static_cast<Eigen::Index>(g))) /
-                                                        (1.0 + std::abs(x.par(free_parameters[g] - 1))));
-  if (!dx_.states.allFinite()) change.states = std::numeric_limits<double>::quiet_NaN();
-  return change;
+OrbitChange NewtonChord::apply(Orbit& x) const {
+  advance(x, 1.0, dx_, problem_.system().free_parameters());
+  return change_by(dx_, x, problem_.system().free_parameters());
 }
 
 }  // namespace tchat

@@ -11,6 +11,7 @@
 /// rounding level is accepted, and such a correction not applied.
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,7 @@ struct NewtonIteration {
   double parameter_change = 0.0;  ///< largest |dp| / (1 + |p|)
   double state_change = 0.0;      ///< max |du| / (1 + max |u|)
   double residual = 0.0;          ///< largest residual before the correction
+  double larger() const { return std::max(parameter_change, state_change); }
 };
 
 struct NewtonResult {
@@ -43,8 +45,17 @@ struct NewtonResult {
   double residual = 0.0;  ///< largest, at the last evaluation
   /// How far x has moved, in the measures of the convergence test, since the factors were computed.
   double change_since_factorization = 0.0;
+  bool from_tangent = false;  ///< it began on the tangent of the last point
   bool converged() const { return status == NewtonStatus::converged; }
 };
+
+/// Largest relative change that dx makes of x, as Newton's method measures corrections.
+struct OrbitChange {
+  double parameters = 0.0;  ///< |dp| / (1 + |p|) of durations and free parameters
+  double states = 0.0;      ///< max |du| / (1 + max |u|); NaN when they are not finite
+  double larger() const { return parameters > states ? parameters : states; }
+};
+OrbitChange change_by(const OrbitVector& dx, const Orbit& x, const std::vector<int>& free_parameters);
 
 std::string describe(NewtonStatus status);
 
@@ -64,11 +75,7 @@ class NewtonChord {
   OrbitResidual& residual() { return residual_; }
 
  private:
-  struct Change {
-    double parameters;
-    double states;
-  };
-  Change apply(Orbit& x) const;
+  OrbitChange apply(Orbit& x) const;
 
   BorderedProblem& problem_;
   NewtonSettings settings_;

@@ -11,6 +11,15 @@ namespace {
 
 /// Factors older than this (relative change of the point since) are renewed before anything is read off them.
 constexpr double current_enough = 1e-10;
+/// A prediction is brought so near by chord iterations that the first correction with a new matrix is below that.
+constexpr double near_enough = 0.3 * current_enough;
+constexpr int most_chords = 3;
+/// Each is to make the next one smaller by this factor: expected of the first one, asked of the others.
+constexpr double contraction = 0.1;
+/// Newton's method may take back this share of what a prediction differs from that along the tangent; smaller changes
+/// lead to no other branch anyway.
+constexpr double share_taken_back = 0.5;
+constexpr double small_change = 1e-6;
 
 }  // namespace
 
@@ -24,12 +33,16 @@ PathFollower::PathFollower(const DefiningSystem& system, const OrbitShape& shape
       problem_(system, shape, std::move(condition), std::move(monitors.held), settings.threads),
       newton_(problem_, settings),
       settings_(settings),
-      row_(condensed().make_vector()) {
+      row_(condensed().make_vector()),
+      dx_(condensed().make_vector()),
+      on_tangent_{shape, uniform_mesh(shape.intervals), dx_.states, ParameterVector::Zero(parameter_length)},
+      factored_tangent_(condensed().make_vector()) {
   problem_.remember(unused_);
 }
 
 PathPoint PathFollower::make_point(Orbit orbit) const {
-  return {std::move(orbit), condensed().make_vector(), condensed().make_vector(), unused_};
+  const PathTrail trail(orbit.shape, system_.free_count());
+  return {std::move(orbit), condensed().make_vector(), condensed().make_vector(), unused_, trail};
 }
 
 OrbitVector PathFollower::principal_row(const Orbit& x) const {
@@ -77,10 +90,13 @@ double PathFollower::distance(const Orbit& a, const Orbit& b) const {
 bool PathFollower::linearize_at(const PathPoint& point) {
   problem_.recall(point.memory);
   problem_.set_reference(point.orbit);
-  return linearize(point.orbit, point.dual);
+  if (!linearize(point.orbit, point.dual)) return false;
+  know_factors(point.tangent);
+  return true;
 }
 
 bool PathFollower::linearize(const Orbit& x, const OrbitVector& row) {
+  factors_known_ = false;
   if (&row != &row_) row_ = row;
   return problem_.linearize(x, row_, newton_.residual()) == Linearization::ready;
 }
@@ -101,33 +117,161 @@ bool PathFollower::find_tangent(const Orbit& x, OrbitVector& tangent, OrbitVecto
   return true;
 }
 
-/// Newton on the border in rows_, then the tangent at the result.
+/// Newton on the border in row_, then the tangent at the result.
 NewtonResult PathFollower::correct_and_orient(PathPoint& point, const Orbit& base, double target) {
+  factors_known_ = false;
   NewtonResult result = newton_.correct(point.orbit, row_, base, target);
   if (!result.converged()) return result;
   const bool current = result.change_since_factorization <= current_enough;
   if ((!current && !linearize(point.orbit, row_)) || !find_tangent(point.orbit, point.tangent, point.dual))
     result.status = NewtonStatus::singular;
+  else
+    know_factors(point.tangent);
   problem_.remember(point.memory);
   monitors_.store(point.orbit, condensed().rule());
   return result;
 }
 
-NewtonResult PathFollower::step(const PathPoint& from, double ds, PathPoint& to) {
-  to.orbit.mesh = from.orbit.mesh;
-  to.orbit.states = from.orbit.states;
-  to.orbit.par = from.orbit.par;
-  advance(to.orbit, ds, from.tangent, system_.free_parameters());
-  return step_near(from, ds, to);
+void PathFollower::know_factors(const OrbitVector& tangent) {
+  factored_tangent_.states = tangent.states;
+  factored_tangent_.durations = tangent.durations;
+  factored_tangent_.globals = tangent.globals;
+  factors_known_ = true;
 }
 
-NewtonResult PathFollower::step_near(const PathPoint& from, double ds, PathPoint& to) {
+void PathFollower::put_on_tangent(const PathPoint& from, double ds, Orbit& x) const {
+  x.shape = from.orbit.shape;
+  x.mesh = from.orbit.mesh;
+  x.states = from.orbit.states;
+  x.par = from.orbit.par;
+  advance(x, ds, from.tangent, system_.free_parameters());
+}
+
+/// The row and what else the equations of a step take from the point that it goes from.
+void PathFollower::begin_step(const PathPoint& from) {
   row_.states = from.dual.states;
   row_.durations = from.dual.durations;
   row_.globals = from.dual.globals;
   problem_.recall(from.memory);
   problem_.set_reference(from.orbit);
+}
+
+NewtonResult PathFollower::step(const PathPoint& from, double ds, PathPoint& to) {
+  put_on_tangent(from, ds, to.orbit);
+  const TrailTerms terms = add_trail(from, ds, system_.free_parameters(), to.orbit, dx_);
+  if (terms.error > 0.0) {
+    begin_step(from);
+    double taken_back = polish(from, ds, terms.error, to.orbit);
+    const NewtonResult result = step_near(from, ds, to);
+    for (const NewtonIteration& iteration : newton_.history()) taken_back += iteration.larger();
+    if (result.converged() && taken_back <= std::max(share_taken_back * terms.change, small_change)) return result;
+  }
+  return step_along_tangent(from, ds, to);
+}
+
+NewtonResult PathFollower::step_along_tangent(const PathPoint& from, double ds, PathPoint& to) {
+  put_on_tangent(from, ds, to.orbit);
+  NewtonResult result = step_near(from, ds, to);
+  result.from_tangent = true;
+  const std::vector<NewtonIteration>& history = newton_.history();
+  if (result.converged() && history.size() > 1 && history[0].larger() > 0.0)
+    to.newton_constant = history[1].larger() / (history[0].larger() * history[0].larger());
+  return result;
+}
+
+NewtonResult PathFollower::step_near(const PathPoint& from, double ds, PathPoint& to) {
+  begin_step(from);
+  to.newton_constant = from.newton_constant;
+  to.trail.follow(from, system_.free_parameters());
   return correct_and_orient(to, from.orbit, ds);
+}
+
+/// dx_ is set to the correction of x by the factors at hand, whatever the border was that they have, with
+/// row_ (x + dx - base) = target.
+OrbitChange PathFollower::chord(const Orbit& base, double target, const Orbit& x) {
+  const std::vector<int>& free_parameters = system_.free_parameters();
+  problem_.evaluate(x, newton_.residual());
+  problem_.solve(newton_.residual(), 0.0, dx_);
+  const double rest = target - dot_difference(row_, x, base, free_parameters) - dot(row_, dx_);
+  const double along = rest / dot(row_, factored_tangent_);
+  dx_.states += along * factored_tangent_.states;
+  dx_.durations += along * factored_tangent_.durations;
+  dx_.globals += along * factored_tangent_.globals;
+  return change_by(dx_, x, free_parameters);
+}
+
+/// Brings a prediction nearer to the branch while that takes few chord iterations. How far it is moved.
+double PathFollower::polish(const PathPoint& from, double ds, double expected, Orbit& x) {
+  if (!factors_known_ || !problem_.allows_chord() || expected <= near_enough) return 0.0;
+  double last = 0.0;
+  double moved = 0.0;
+  for (int k = 0; k < most_chords; ++k) {
+    const double size = chord(from.orbit, ds, x).larger();
+    const double factor = k == 0 ? contraction : size / last;
+    if (!(factor <= contraction)) break;
+    advance(x, 1.0, dx_, system_.free_parameters());
+    moved += size;
+    const double rest = size * factor;
+    if (rest <= near_enough || rest * std::pow(factor, most_chords - 1 - k) > near_enough) break;
+    last = size;
+  }
+  return moved;
+}
+
+IterationRange PathFollower::iterations_along_tangent(const PathPoint& from, double ds, PathPoint& to, bool exactly) {
+  constexpr double fast = 1e-2;         // a contraction of Newton's method that is far from none
+  constexpr double of_measured = 1.5;   // error of the second correction, as a factor
+  constexpr double of_estimated = 5.0;  // the same, and of what is made of the constant
+  put_on_tangent(from, ds, on_tangent_);
+  OrbitChange first = difference(to.orbit, on_tangent_);
+  const double estimated = from.newton_constant * first.larger();
+  const bool measured =
+      problem_.allows_chord() && factors_known_ && (exactly || !(estimated > 0.0 && estimated < fast));
+  OrbitChange second{0.0, estimated * first.larger()};
+  if (measured) {
+    begin_step(from);
+    first = chord(from.orbit, ds, on_tangent_);
+    advance(on_tangent_, 1.0, dx_, system_.free_parameters());
+    second = difference(to.orbit, on_tangent_);
+    to.newton_constant = second.larger() / (first.larger() * first.larger());
+  }
+  const double constant = second.larger() / (first.larger() * first.larger());
+  if (!std::isfinite(constant) || !(constant > 0.0)) return {1, settings_.max_iterations};
+  const double error = measured ? of_measured : of_estimated;
+  return {iterations_of(first, {second.parameters / error, second.states / error}, constant / of_estimated),
+          iterations_of(first, {second.parameters * error, second.states * error}, constant * of_estimated)};
+}
+
+/// Each iteration with a new matrix leaves C e^2 of an error e, a chord iteration 2 C e times what the errors were when
+/// the matrix was new.
+int PathFollower::iterations_of(const OrbitChange& first, const OrbitChange& second, double constant) const {
+  constexpr double rounding = 1e-14;
+  const auto small = [&](const OrbitChange& change) {
+    return change.parameters <= settings_.tolerance_parameters && change.states < settings_.tolerance_states;
+  };
+  if (small(first)) return 1;
+  if (second.larger() >= first.larger()) return settings_.max_iterations;
+  const int full = problem_.allows_chord() ? std::max(settings_.full_iterations, 1) : settings_.max_iterations;
+  double error = second.larger();
+  double at_matrix = full == 1 ? first.larger() : error;
+  int iterations = 2;
+  for (OrbitChange change = second; iterations < settings_.max_iterations && !small(change); ++iterations) {
+    const double factor = std::min(iterations < full ? constant * error : 2.0 * constant * at_matrix, 1.0);
+    error = std::max(error * factor, rounding);
+    if (iterations < full) at_matrix = error;
+    change = {error, error};
+  }
+  return iterations;
+}
+
+/// The change that leads from `x` to `to`; dx_ is overwritten.
+OrbitChange PathFollower::difference(const Orbit& to, const Orbit& x) {
+  dx_.states = to.states - x.states;
+  for (int s = 0; s < x.shape.segments; ++s) dx_.durations(s) = to.duration(s) - x.duration(s);
+  const std::vector<int>& free = system_.free_parameters();
+  for (std::size_t g = 0; g < free.size(); ++g)
+    dx_.globals(static_cast<Eigen::Index>(g)) = to.par(free[g] - 1) - x.par(free[g] - 1);
+  return change_by(dx_, to, free);
 }
 
 bool PathFollower::solves(const Orbit& x) {
@@ -148,6 +292,7 @@ void PathFollower::orient(PathPoint& point) const {
 }
 
 NewtonResult PathFollower::start_at_fixed_parameter(PathPoint& point) {
+  point.trail.clear();
   row_ = principal_row(point.orbit);
   problem_.recall(point.memory);
   const Orbit base = point.orbit;
@@ -158,6 +303,7 @@ NewtonResult PathFollower::start_at_fixed_parameter(PathPoint& point) {
 }
 
 NewtonResult PathFollower::start_along(PathPoint& point, const OrbitVector& direction) {
+  point.trail.clear();
   point.tangent = direction;
   normalise(point.orbit, point.tangent, point.dual);
   row_ = point.dual;
@@ -168,6 +314,7 @@ NewtonResult PathFollower::start_along(PathPoint& point, const OrbitVector& dire
 }
 
 NewtonResult PathFollower::start_by_minimum_norm(PathPoint& point) {
+  point.trail.clear();
   // Any border that is not orthogonal to the null vector will do to find it the first time.
   row_.states.setZero();
   for (Eigen::Index i = 0; i < row_.states.size(); ++i)
@@ -194,8 +341,10 @@ NewtonResult PathFollower::start_by_minimum_norm(PathPoint& point) {
 
 void PathFollower::change_mesh(PathPoint& point, const std::vector<double>& mesh) const {
   const OrbitShape& shape = point.orbit.shape;
-  point.orbit.states = interpolate_states(point.orbit.states, shape, point.orbit.mesh, shape, mesh);
-  point.tangent.states = interpolate_states(point.tangent.states, shape, point.orbit.mesh, shape, mesh);
+  const MeshTransfer transfer(shape, point.orbit.mesh, shape, mesh);
+  point.orbit.states = transfer(point.orbit.states);
+  point.tangent.states = transfer(point.tangent.states);
+  if (point.trail.mesh() == point.orbit.mesh) point.trail.change_mesh(mesh, transfer);
   point.orbit.mesh = mesh;
   normalise(point.orbit, point.tangent, point.dual);
 }
@@ -206,6 +355,7 @@ void PathFollower::reverse(PathPoint& point) const {
 }
 
 CondensedSystem::Singularity PathFollower::singularity(const PathPoint& point) {
+  factors_known_ = false;
   row_ = point.dual;
   problem_.recall(point.memory);
   problem_.set_reference(point.orbit);

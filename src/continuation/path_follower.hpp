@@ -1,9 +1,12 @@
-/// Pseudo-arclength continuation of a defining system: starting, predicting along the tangent, correcting (5.50-5.55).
+/// Pseudo-arclength continuation of a defining system: starting, predicting, correcting (5.50-5.55).
 ///
 /// A path point carries its unit tangent in the weighted norm, oriented along the branch. A step of length ds predicts
-/// x + ds v and corrects with <v, x_new - x> = ds; the tangent at the new point comes from the factors of its
-/// linearisation, which stay available for multipliers and test functions. Everything that a step begins from is in
-/// the point that it goes from: trials before it, failed ones too, leave no trace.
+/// x + ds v, or with the points before it (path_trail.hpp), and corrects with <v, x_new - x> = ds; the tangent at the
+/// new point comes from the factors of its linearisation, which stay available for multipliers and test functions. A
+/// prediction of higher order is brought nearer by chord iterations with the factors at hand, so that one more matrix
+/// is enough; where Newton's method fails from it or takes much of it back, that along the tangent is taken. Everything
+/// else that a step begins from is in the point that it goes from: trials before it, failed ones too, leave no trace
+/// beyond rounding.
 #pragma once
 
 #include <memory>
@@ -11,6 +14,7 @@
 #include "bvp/weighted_norm.hpp"
 #include "continuation/monitor_set.hpp"
 #include "continuation/newton_chord.hpp"
+#include "continuation/path_trail.hpp"
 
 namespace tchat {
 
@@ -19,6 +23,15 @@ struct PathPoint {
   OrbitVector tangent;     ///< unit length
   OrbitVector dual;        ///< <tangent, .> on the orbit's mesh
   ConditionMemory memory;  ///< of a two-parameter curve's condition
+  PathTrail trail = {};    ///< points before it
+  /// Newton's second correction over the square of the first, from the tangent: the last that is known, 0 for none.
+  double newton_constant = 0.0;
+};
+
+/// What is known of a number of iterations: it is one of these.
+struct IterationRange {
+  int least = 1;
+  int most = 1;
 };
 
 /// What is watched along a branch, and what is held on it besides the defining system.
@@ -47,7 +60,15 @@ class PathFollower {
   /// One step of signed length ds; `to` must come from make_point or be a former path point.
   NewtonResult step(const PathPoint& from, double ds, PathPoint& to);
 
-  /// The same point, but Newton starts at what to.orbit holds instead of on the tangent.
+  /// The same, always from the tangent.
+  NewtonResult step_along_tangent(const PathPoint& from, double ds, PathPoint& to);
+
+  /// How many iterations Newton's method takes for this step when it starts on the tangent, whatever predictor the step
+  /// had. condensed() must be the linearisation at `to`; a chord iteration from the tangent with its factors tells it
+  /// `exactly` and to.newton_constant, else it is estimated by that of `from`.
+  IterationRange iterations_along_tangent(const PathPoint& from, double ds, PathPoint& to, bool exactly);
+
+  /// The same point, but Newton starts at what to.orbit holds.
   NewtonResult step_near(const PathPoint& from, double ds, PathPoint& to);
   /// Are the equations satisfied to rounding?
   bool solves(const Orbit& x);
@@ -83,6 +104,13 @@ class PathFollower {
 
  private:
   NewtonResult correct_and_orient(PathPoint& point, const Orbit& base, double target);
+  void put_on_tangent(const PathPoint& from, double ds, Orbit& x) const;
+  void begin_step(const PathPoint& from);
+  double polish(const PathPoint& from, double ds, double expected, Orbit& x);
+  OrbitChange difference(const Orbit& to, const Orbit& x);
+  int iterations_of(const OrbitChange& first, const OrbitChange& second, double constant) const;
+  void know_factors(const OrbitVector& tangent);
+  OrbitChange chord(const Orbit& base, double target, const Orbit& x);
   bool linearize(const Orbit& x, const OrbitVector& row);
   bool find_tangent(const Orbit& x, OrbitVector& tangent, OrbitVector& dual);
   void normalise(const Orbit& x, OrbitVector& tangent, OrbitVector& dual) const;
@@ -98,7 +126,11 @@ class PathFollower {
   NewtonChord newton_;
   NewtonSettings settings_;
   ConditionMemory unused_;  // the condition's before anything was evaluated
-  OrbitVector row_;         // the branch's row of the last linearisation
+  OrbitVector row_;         // the branch's row of the next linearisation
+  OrbitVector dx_;          // of chord iterations
+  Orbit on_tangent_;
+  bool factors_known_ = false;  // those of condensed(), with the tangent that they give
+  OrbitVector factored_tangent_;
 };
 
 }  // namespace tchat

@@ -28,6 +28,9 @@ constexpr double same_direction = 0.95;
 constexpr double small_distance = 0.3;
 constexpr std::size_t history_length = 12;
 
+/// A defined value without its rounding.
+double beyond_level(const TestValue& test) { return std::abs(*test.value) > test.zero_level ? *test.value : 0.0; }
+
 /// A multiplier +1 where the bordered determinant changes sign is a branch point, no grazing-fold; a branch that turns
 /// where an end of a segment is tangent to its surface has the label of that.
 bool is_the_same(const SpecialPoint& special, const SpecialPoint& other) {
@@ -160,8 +163,8 @@ bool SpecialPointSearch::resolved(const Candidate& next) const {
     if (!next.data.tests[i].value) continue;
     std::vector<TrendValue> past;
     for (const Past& point : history_)
-      if (point.tests[i].value) past.push_back({point.arclength, *point.tests[i].value});
-    const TrendValue last{at, *next.data.tests[i].value};
+      if (point.tests[i].value) past.push_back({point.arclength, beyond_level(point.tests[i])});
+    const TrendValue last{at, beyond_level(next.data.tests[i])};
     const bool is_resolved =
         tests_[i]->resolution() == Resolution::trend ? follows_trend(past, last) : !has_two_zeros(past, last);
     if (!is_resolved) return false;
@@ -225,8 +228,10 @@ Candidate SpecialPointSearch::searched_step(const PathPoint& here, Candidate& ne
 
 /// `next` becomes the first zero, or stays the end of the step when there is none; the follower holds its
 /// linearisation.
-std::optional<SpecialPoint> SpecialPointSearch::advance_to_first_zero(const PathPoint& here, Candidate& next,
+std::optional<SpecialPoint> SpecialPointSearch::advance_to_first_zero(const PathPoint& from, Candidate& next,
                                                                       NewtonResult& newton, const Candidate& whole) {
+  PathPoint here = from;  // with the end of the step, between which and its start trial points are predicted
+  here.trail.add(whole.point, system_.free_parameters());
   PathPoint trial = next.point;
   std::optional<Cut> cut;
   Candidate step = whole;

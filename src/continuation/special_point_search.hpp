@@ -80,7 +80,7 @@ class SpecialPointSearch {
   PointData evaluate_again(PathPoint& at);  // with a new linearisation
   std::vector<std::size_t> changed(const PointData& end) const;
   Candidate searched_step(const PathPoint& here, Candidate& next);
-  std::optional<SpecialPoint> advance_to_first_zero(const PathPoint& here, Candidate& next, NewtonResult& newton,
+  std::optional<SpecialPoint> advance_to_first_zero(const PathPoint& from, Candidate& next, NewtonResult& newton,
                                                     const Candidate& whole);
   std::optional<Cut> first_in(const PathPoint& here, PathPoint& trial, const Candidate& step);
   void keep_rest(const Candidate& whole, const PathPoint& cut);

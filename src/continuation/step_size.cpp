@@ -15,8 +15,11 @@ bool StepSize::is_short() const {
   return settings_.adapt_every == 0 || std::abs(ds_) < 1e-2 * std::min(std::abs(settings_.initial), settings_.maximum);
 }
 
-void StepSize::converged(int iterations, int point) {
-  if (settings_.adapt_every == 0 || point % settings_.adapt_every != 0) return;
+bool StepSize::adapts_at(int point) const { return settings_.adapt_every != 0 && point % settings_.adapt_every == 0; }
+
+bool StepSize::is_longest() const { return std::abs(ds_) >= settings_.maximum; }
+
+double StepSize::after(int iterations) const {
   double factor = 1.0;
   if (iterations <= 1)
     factor = 2.0;
@@ -26,8 +29,11 @@ void StepSize::converged(int iterations, int point) {
     factor = 0.5;
   else if (iterations <= settings_.max_newton / 2)
     factor = 1.1;
-  const double size = std::min(std::abs(ds_) * factor, settings_.maximum);
-  ds_ = std::copysign(size, ds_);
+  return std::copysign(std::min(std::abs(ds_) * factor, settings_.maximum), ds_);
+}
+
+void StepSize::converged(int iterations, int point) {
+  if (adapts_at(point)) ds_ = after(iterations);
 }
 
 bool StepSize::failed() {

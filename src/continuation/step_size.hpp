@@ -20,6 +20,12 @@ class StepSize {
   /// Much shorter than both the first and the largest step: no reason to halve for the sake of test functions.
   bool is_short() const;
 
+  /// Is the length due for adaptation after point number `point`?
+  bool adapts_at(int point) const;
+  bool is_longest() const;
+  /// What converged() makes of the length.
+  double after(int iterations) const;
+
   /// After point number `point` converged in `iterations`: grow or shrink by the work it took, not beyond DSMAX.
   ///     iterations <= 1: x 2;  2: x 1.5;  3..ITNW/2: x 1.1;  >= ITNW: x 0.5;  otherwise unchanged
   void converged(int iterations, int point);

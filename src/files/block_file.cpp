@@ -53,6 +53,10 @@ void BlockFile::write_unread(std::string_view block) {
   if (outcome.error != 0) fail("cannot be written", outcome.error);
 }
 
+void BlockFile::begin_sync() {
+  if (is_open()) tchat::begin_sync(descriptor_);
+}
+
 void BlockFile::sync() {
   if (is_open()) sync_file(descriptor_, path_);
 }

@@ -30,6 +30,9 @@ class BlockFile {
   /// The same for a file that nobody reads before it is finished: a kill may cut it. Much cheaper.
   void write_unread(std::string_view block);
 
+  /// What was written goes to the disk from now on; sync() waits for it.
+  void begin_sync();
+
   /// Waits until what was written is on the disk, for the case that the power fails. Throws ComputationError.
   void sync();
 

@@ -38,6 +38,8 @@ void sync_opened(const std::string& path, int flags) {
 
 }  // namespace
 
+void begin_sync(int descriptor) { ::sync_file_range(descriptor, 0, 0, SYNC_FILE_RANGE_WRITE); }
+
 void sync_file(int descriptor, const std::string& path) { tell(sync_error(descriptor), path); }
 
 void sync_file(const std::string& path) { sync_opened(path, 0); }

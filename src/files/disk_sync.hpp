@@ -5,6 +5,10 @@
 
 namespace tchat {
 
+/// Has the contents of an open file written to the disk without waiting, so that several files come there at once: one
+/// that is synced afterwards waits less. Says nothing about success.
+void begin_sync(int descriptor);
+
 /// Waits until the contents of an open file are on the disk (nothing to wait for when they are already). Devices and
 /// file systems that know no such thing are passed over. Throws ComputationError naming `path` when the disk fails.
 void sync_file(int descriptor, const std::string& path);

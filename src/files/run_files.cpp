@@ -135,6 +135,7 @@ void RunFiles::mend_existing() const {
 void RunFiles::finish() {
   if (!is_open()) return;
   // The closing line says that all is there: on the disk it is the last one to come.
+  for (BlockFile* file : {&solutions_, &points_, &diagnostics_}) file->begin_sync();
   points_.sync();
   solutions_.sync();
   sync_folder_of(name_);

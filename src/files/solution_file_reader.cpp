@@ -114,9 +114,47 @@ std::string solution_file_cure(const std::string& path) {
   return fmt::format("labelled solutions are in a run's q-file, q.NAME{}", made);
 }
 
+bool has_name(const std::vector<std::string>& names, const std::string& type) {
+  return std::find(names.begin(), names.end(), type) != names.end();
+}
+
+/// The last words of a text that has so many, in their order.
+std::vector<std::string_view> last_words(std::string_view text, std::int64_t count) {
+  constexpr std::string_view blanks = " \t\v\f\r\n";
+  std::vector<std::string_view> words;
+  while (static_cast<std::int64_t>(words.size()) < count) {
+    const auto end = text.find_last_not_of(blanks);
+    if (end == std::string_view::npos) return {};
+    const auto before = text.find_last_of(blanks, end);
+    const std::size_t begin = before == std::string_view::npos ? 0 : before + 1;
+    words.push_back(text.substr(begin, end + 1 - begin));
+    text = text.substr(0, begin);
+  }
+  std::reverse(words.begin(), words.end());
+  return words;
+}
+
+/// May a solution be what `label` names? Its numbers end with what kinds of point it is; where these are damaged, yes.
+bool may_be(const SolutionIdentifier& id, std::string_view numbers, const StartLabel& label) {
+  if (label.type.empty()) return id.label() == label.number;
+  if (!id.has_kind()) return has_name(type_names(id.type(), {}, {}), label.type);
+  std::vector<UserPointKind> kinds;
+  const std::vector<std::string_view> words = last_words(numbers, id.internal_parameters());
+  for (std::size_t k = 0; k + kind_values <= words.size(); k += kind_values) {
+    const auto kind = parse_fortran_real(words[k]), segment = parse_fortran_real(words[k + 1]),
+               index = parse_fortran_real(words[k + 2]);
+    if (!kind || !segment || !index || std::abs(*kind) > 1e6 || std::abs(*index) > 1e6) return true;
+    kinds.push_back({static_cast<int>(*kind), 0, static_cast<int>(*index), 0.0});
+  }
+  if (kinds.empty()) return true;
+  return has_name(type_names(id.type(), kinds.front(), {kinds.begin() + 1, kinds.end()}), label.type);
+}
+
 class SolutionReader {
  public:
-  SolutionReader(std::string_view text, const std::string& path) : text_(text), path_(path) {}
+  /// With a label: other solutions are passed over by their number of lines.
+  SolutionReader(std::string_view text, const std::string& path, const StartLabel* wanted = nullptr)
+      : text_(text), path_(path), wanted_(wanted) {}
 
   SolutionFile read() {
     while (position_ < text_.size()) {
@@ -161,6 +199,7 @@ class SolutionReader {
     if (identifier->is_empty_entry()) return count_in(*identifier);
     if (!first.ended) return truncated(entry_line);
     check_counts(*identifier, place(entry_line));
+    if (wanted_ != nullptr && pass_over(*identifier)) return count_in(*identifier);
     const auto lines = entry_lines(*identifier);
     if (!lines) {
       check_line_count(*identifier, place(entry_line));
@@ -217,6 +256,20 @@ class SolutionReader {
       lines.push_back(next_line());
     }
     return lines;
+  }
+
+  /// False, with nothing passed over, for a solution that may be wanted, or that ends with the file.
+  bool pass_over(const SolutionIdentifier& id) {
+    std::size_t end = position_;
+    for (std::int64_t k = 0; k < id.lines(); ++k) {
+      const auto newline = text_.find('\n', end);
+      if (newline == std::string_view::npos) return false;
+      end = newline + 1;
+    }
+    if (may_be(id, text_.substr(position_, end - position_), *wanted_)) return false;
+    position_ = end;
+    line_ += static_cast<int>(id.lines());
+    return true;
   }
 
   static std::int64_t count_words(const std::vector<Line>& lines) {
@@ -338,14 +391,26 @@ class SolutionReader {
 
   std::string_view text_;
   std::string path_;
+  const StartLabel* wanted_;
   std::size_t position_ = 0;
   int line_ = 0;
   SolutionFile file_;
 };
 
-bool is_called(const LabelledSolution& solution, const std::string& type) {
-  const std::vector<std::string> names = type_names(solution);
-  return std::find(names.begin(), names.end(), type) != names.end();
+/// Null when there is none.
+const LabelledSolution* search(const std::vector<LabelledSolution>& solutions, const StartLabel& label) {
+  int left = std::max(label.number, 1);
+  for (const LabelledSolution& solution : solutions) {
+    const bool matches =
+        label.type.empty() ? solution.label == label.number : has_name(type_names(solution), label.type);
+    if (matches && (label.type.empty() || --left == 0)) return &solution;
+  }
+  return nullptr;
+}
+
+std::string read_solution_text(const std::string& path) {
+  return read_text_file(path, "labelled solutions",
+                        "a run writes them to q.NAME, `tchat dat NAME` makes them from NAME.dat");
 }
 
 std::string label_list(const std::vector<LabelledSolution>& solutions) {
@@ -369,21 +434,22 @@ SolutionFile parse_solution_file(std::string_view text, const std::string& path)
   return SolutionReader(text, path).read();
 }
 
-SolutionFile read_solution_file(const std::string& path) {
-  return parse_solution_file(read_text_file(path, "labelled solutions",
-                                            "a run writes them to q.NAME, `tchat dat NAME` makes them from NAME.dat"),
-                             path);
+SolutionFile read_solution_file(const std::string& path) { return parse_solution_file(read_solution_text(path), path); }
+
+SolutionFile parse_solution_file(std::string_view text, const std::string& path, const StartLabel& label) {
+  SolutionFile file = SolutionReader(text, path, &label).read();
+  return search(file.solutions, label) != nullptr ? std::move(file) : parse_solution_file(text, path);
+}
+
+SolutionFile read_solution_file(const std::string& path, const StartLabel& label) {
+  return parse_solution_file(read_solution_text(path), path, label);
 }
 
 std::string resolve_solution_path(const std::string& path) { return resolve_run_file(path, 'q'); }
 
 const LabelledSolution& find_solution(const std::vector<LabelledSolution>& solutions, const StartLabel& label,
                                       const std::string& path) {
-  int left = std::max(label.number, 1);
-  for (const LabelledSolution& solution : solutions) {
-    const bool matches = label.type.empty() ? solution.label == label.number : is_called(solution, label.type);
-    if (matches && (label.type.empty() || --left == 0)) return solution;
-  }
+  if (const LabelledSolution* found = search(solutions, label)) return *found;
   const std::string wanted = label.type.empty() ? fmt::format("label {}", label.number)
                                                 : fmt::format("point {}{}", label.type, std::max(label.number, 1));
   throw UserError(solutions.empty() ? fmt::format("{}: no {}; the file holds no solution", path, wanted)

@@ -31,6 +31,12 @@ SolutionFile read_solution_file(const std::string& path);
 /// The same for text already read; `path` is for the messages.
 SolutionFile parse_solution_file(std::string_view text, const std::string& path);
 
+/// The same with those solutions alone that `label` may mean, which is much faster; where none is meant, with all of
+/// them. Numbers of solutions that are passed over are not looked at; their first lines are, and warnings, branch and
+/// label are those of the whole file.
+SolutionFile read_solution_file(const std::string& path, const StartLabel& label);
+SolutionFile parse_solution_file(std::string_view text, const std::string& path, const StartLabel& label);
+
 /// `path`, or q.NAME in the same folder when there is no file NAME but that one.
 std::string resolve_solution_path(const std::string& path);
 

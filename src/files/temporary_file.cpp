@@ -117,6 +117,11 @@ TemporaryFile::~TemporaryFile() {
   if (held_ >= 0) ::close(held_);
 }
 
+void TemporaryFile::close() {
+  file_.begin_sync();
+  file_.close();
+}
+
 BlockFile TemporaryFile::put_in_place() {
   if (!is_empty(held_)) sync_file(held_, path_);
   if (std::rename(name_.c_str(), path_.c_str()) != 0) refuse(path_, "cannot be written", std::strerror(errno));

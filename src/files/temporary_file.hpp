@@ -22,8 +22,8 @@ class TemporaryFile {
   /// The name that it has until then, for programs that write into it.
   const std::string& name() const { return name_; }
   void write(std::string_view text) { file_.write_unread(text); }
-  /// It stays locked.
-  void close() { file_.close(); }
+  /// It stays locked, and goes to the disk from now on.
+  void close();
 
   /// Gives it its final name, in one step with the end of a file that has the name; contents are on the disk before
   /// that. The file is handed over, open unless it was closed. Throws ComputationError.

@@ -97,7 +97,7 @@ void apply_data(const SimulationRequest& request, const SimulationConstants& con
 void apply_label(const SimulationRequest& request, const SimulationConstants& constants, const HybridSystem& system,
                  SimulationStart& start) {
   const std::string path = solution_path(*request.start);
-  const SolutionFile file = read_solution_file(path);
+  const SolutionFile file = read_solution_file(path, constants.settings.start);
   if (constants.settings.start.from_data())
     throw UserError(
         fmt::format("-s {}: say which label with IRS=, as in IRS=3 or IRS=PD1; `tchat labels {}` lists them",

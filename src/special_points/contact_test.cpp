@@ -23,7 +23,17 @@ using Vector = Eigen::VectorXd;
 class EventAlongSegment {
  public:
   EventAlongSegment(const DefiningSystem& system, const CollocationRule& rule, const Orbit& x, int s, int event)
-      : defining_(system), rule_(rule), x_(x), s_(s), event_(event) {}
+      : defining_(system),
+        rule_(rule),
+        x_(x),
+        s_(s),
+        event_(event),
+        by_state_(x.shape.dimension),
+        rate_(x.shape.dimension),
+        slopes_at_nodes_(x.shape.collocation + 1, x.shape.collocation + 1) {
+    for (int i = 0; i <= x.shape.collocation; ++i)
+      slopes_at_nodes_.col(i) = basis_at(static_cast<double>(i) / x.shape.collocation).slopes;
+  }
 
   double length(int j) const { return x_.mesh[static_cast<std::size_t>(j + 1)] - x_.mesh[static_cast<std::size_t>(j)]; }
 
@@ -31,6 +41,15 @@ class EventAlongSegment {
   double slope(int j, double sigma) const {
     const Basis basis = basis_at(sigma);
     return gradient(nodes(j) * basis.values).dot(nodes(j) * basis.slopes) / length(j);
+  }
+
+  /// The same at node i of the interval.
+  double slope_at_node(int j, int i) {
+    rate_.noalias() = nodes(j).lazyProduct(slopes_at_nodes_.col(i));
+    double h = 0.0;
+    system().first(FunctionKind::event, event_, x_.node(s_, j * x_.shape.collocation + i), par(), {}, &h,
+                   by_state_.data(), nullptr);
+    return by_state_.dot(rate_) / length(j);
   }
 
   Contact at_node(int k) const {
@@ -118,6 +137,8 @@ class EventAlongSegment {
   const Orbit& x_;
   int s_;
   int event_;
+  Vector by_state_, rate_;
+  Eigen::MatrixXd slopes_at_nodes_;  // of the basis, a column for each node
 };
 
 /// A place where h turns from falling to rising: inside interval j at sigma.
@@ -134,14 +155,14 @@ struct Minima {
   bool last_hangs_on_end = false;
 };
 
-Minima find_minima(const EventAlongSegment& along, int intervals, int c) {
+Minima find_minima(EventAlongSegment& along, int intervals, int c) {
   Minima result;
   bool risen = false;
   double before = 0.0;
   for (int j = 0; j < intervals; ++j) {
     for (int i = 0; i <= c; ++i) {
       const double sigma = static_cast<double>(i) / c;
-      const double slope = along.slope(j, sigma);
+      const double slope = along.slope_at_node(j, i);
       const bool turns = before < 0.0 && slope >= 0.0;
       if (turns) {
         if (result.list.empty()) result.first_hangs_on_start = !risen;
@@ -168,7 +189,7 @@ Minima find_minima(const EventAlongSegment& along, int intervals, int c) {
 
 std::vector<Contact> least_candidates(const DefiningSystem& system, const CollocationRule& rule, const Orbit& x, int s,
                                       int event) {
-  const EventAlongSegment along(system, rule, x, s, event);
+  EventAlongSegment along(system, rule, x, s, event);
   const bool start_pinned = is_pinned_start(system.system(), system.signature(), x, s, event);
   const bool end_pinned = system.signature()[static_cast<std::size_t>(s)].event == event;
   std::vector<Contact> candidates;

@@ -27,6 +27,9 @@ std::optional<std::string> read_text_if_there(const std::string& path, const std
   std::ifstream file(path, std::ios::binary);
   if (!file) return std::nullopt;
   std::string text;
+  std::error_code unknown;
+  if (const auto size = std::filesystem::file_size(path, unknown); !unknown)
+    text.reserve(std::min<std::size_t>(size, most));
   std::array<char, 65536> piece;  // read() tells a failing device by badbit, an iterator by an exception
   while (text.size() < most) {
     file.read(piece.data(), static_cast<std::streamsize>(std::min(piece.size(), most - text.size())));

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <stdexcept>
 
@@ -17,16 +18,29 @@ namespace {
 
 constexpr int short_run = 5;
 
-/// Measured steps of AUTO: as many as the growth of its work with k and NTST allows.
-int measured_steps(const AutoSize& size, bool quick) {
-  return quick ? 10 : std::max(400 * 50 / (size.segments * size.segments * size.intervals), 16);
+/// AUTO's work on a step, in units of that for n = 4, k = 1, NTST = 50: its matrices are dense in all functions.
+double work_of_auto(const AutoSize& size) {
+  const double functions = size.dimension / 4.0 * size.segments;
+  return std::max(functions, functions * functions * functions / 8.0) * size.intervals / 50.0;
+}
+
+/// How long AUTO is measured: steps, and rounds of them.
+struct Effort {
+  int steps = 10;
+  int rounds = 2;
+};
+
+Effort effort(const AutoSize& size, bool quick) {
+  if (quick) return {};
+  const double work = work_of_auto(size);
+  if (work > 1000.0) return {2, 1};
+  return {std::max(static_cast<int>(400.0 / work), 16), work > 100.0 ? 2 : 5};
 }
 
 struct Comparison {
   double auto_step = 0.0;        // seconds
   double step = 0.0;             // seconds
-  double multipliers = 0.0;      // seconds
-  double ratio = 0.0;            // AUTO / ours, without multipliers
+  double both = 0.0;             // seconds, with multipliers
   double auto_iterations = 0.0;  // Newton iterations per step
   double iterations = 0.0;
   double difference = 0.0;  // of the states at AUTO's last alpha
@@ -53,10 +67,10 @@ double difference_from(const AutoSolution& theirs, const OrbitShape& shape, int 
 }
 
 Comparison compare(const AutoSize& size, bool quick) {
-  const AutoProgram program(size.segments, size.intervals);
-  const OrbitShape shape = walk_shape(size.segments, size.intervals);
+  const OrbitShape shape = walk_shape(size.segments, size.intervals, size.dimension);
   BranchWalk walk(shape);
-  const int steps = measured_steps(size, quick);
+  const AutoProgram program(size.segments, walk.point().orbit);
+  const auto [steps, rounds] = effort(size, quick);
   const AutoRun checked = program.run(short_run + steps, true);
 
   Comparison result;
@@ -64,25 +78,20 @@ Comparison compare(const AutoSize& size, bool quick) {
   result.auto_iterations = static_cast<double>(checked.iterations) / (short_run + steps - 1);
   std::vector<double> theirs;
   std::vector<double> ours;
-  std::vector<double> multipliers;
-  std::vector<double> ratios;
-  for (int round = 0; round < (quick ? 2 : 7); ++round) {
+  std::vector<double> both;
+  for (int round = 0; round < rounds; ++round) {
     const double brief = program.run(short_run, false).processor_seconds;
     const double full = program.run(short_run + steps, false).processor_seconds;
     theirs.push_back((full - brief) / steps);
-    constexpr int block = 40;
-    std::vector<double> times;
-    for (int i = 0; i < block; ++i) {
-      times.push_back(processor_seconds([&] { walk.step(); }));
-      multipliers.push_back(processor_seconds([&] { keep(walk.multipliers()); }));
+    for (int again = 0; again < 3; ++again) {
+      const StepCost cost = cost_there_and_back(walk);
+      ours.push_back(cost.step);
+      both.push_back(cost.step + cost.multipliers);
     }
-    ours.push_back(median(times));
-    ratios.push_back(theirs.back() / ours.back());
   }
-  result.auto_step = median(theirs);
-  result.step = median(ours);
-  result.multipliers = median(multipliers);
-  result.ratio = median(ratios);
+  result.auto_step = least(theirs);
+  result.step = least(ours);
+  result.both = least(both);
   result.iterations = walk.iterations_per_step();
   return result;
 }
@@ -102,15 +111,19 @@ bool auto_is_installed() {
 }
 
 void print_auto_comparison(const std::vector<AutoSize>& sizes, bool quick) {
-  fmt::print("(f) AUTO-07p (IPS = 4, 4k functions, JAC = 1) on the same k-segment problem, NCOL = {}\n\n",
-             collocation_points);
-  fmt::print("{:>4}{:>6}{:>14}{:>14}{:>18}{:>10}{:>20}{:>24}{:>20}\n", "k", "NTST", "AUTO [us]", "tchat [us]",
-             "multipliers [us]", "ratio", "ratio with mult.", "Newton it. AUTO/tchat", "difference");
+  fmt::print(
+      "(f) AUTO-07p (IPS = 4, n k functions, JAC = 1, one thread) on the same problem, NCOL = {}; time per step,\n"
+      "    least of alternating runs\n\n",
+      collocation_points);
+  fmt::print("{:>4}{:>6}{:>6}{:>14}{:>14}{:>14}{:>10}{:>12}{:>10}{:>24}{:>14}\n", "n", "k", "NTST", "AUTO [us]",
+             "tchat [us]", "with mult.", "ratio", "with mult.", "wanted", "Newton it. AUTO/tchat", "difference");
   for (const AutoSize& size : sizes) {
     const Comparison c = compare(size, quick);
-    fmt::print("{:>4}{:>6}{:>14.0f}{:>14.0f}{:>18.0f}{:>10.1f}{:>20.1f}{:>17.2f} /{:>5.2f}{:>20.1e}\n", size.segments,
-               size.intervals, 1e6 * c.auto_step, 1e6 * c.step, 1e6 * c.multipliers, c.ratio,
-               c.ratio * c.step / (c.step + c.multipliers), c.auto_iterations, c.iterations, c.difference);
+    const std::string wanted = size.wanted > 0 ? fmt::format("{}", size.wanted) : "";
+    fmt::print("{:>4}{:>6}{:>6}{:>14.0f}{:>14.0f}{:>14.0f}{:>10.1f}{:>12.1f}{:>10}{:>17.2f} /{:>5.2f}{:>14.1e}\n",
+               size.dimension, size.segments, size.intervals, 1e6 * c.auto_step, 1e6 * c.step, 1e6 * c.both,
+               c.auto_step / c.step, c.auto_step / c.both, wanted, c.auto_iterations, c.iterations, c.difference);
+    std::fflush(stdout);
   }
   fmt::print("\n");
 }

@@ -1,10 +1,6 @@
 #include "benchmark/auto_program.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <array>
 #include <cstdio>
@@ -18,33 +14,6 @@ namespace tchat::benchmark {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Runs a program in a folder with its output in the file "output" there. Returns its processor time; throws when it
-/// does not end with status 0.
-double run_program(const std::vector<std::string>& command, const fs::path& folder) {
-  std::vector<char*> arguments;
-  for (const std::string& word : command) arguments.push_back(const_cast<char*>(word.c_str()));
-  arguments.push_back(nullptr);
-  const pid_t child = fork();
-  if (child < 0) throw std::runtime_error("no process could be started");
-  if (child == 0) {
-    const int output = chdir(folder.c_str()) == 0 ? open("output", O_WRONLY | O_CREAT | O_TRUNC, 0644) : -1;
-    if (output < 0) _exit(126);
-    dup2(output, STDOUT_FILENO);
-    dup2(output, STDERR_FILENO);
-    setenv("OMP_NUM_THREADS", "1", 1);
-    execvp(arguments.front(), arguments.data());
-    _exit(127);
-  }
-  int status = 0;
-  rusage usage{};
-  if (wait4(child, &status, 0, &usage) != child || !WIFEXITED(status) || WEXITSTATUS(status) != 0)
-    throw std::runtime_error(fmt::format("{} failed; what it wrote is in {}", command.front(), folder.string()));
-  const auto in_seconds = [](const timeval& t) {
-    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
-  };
-  return in_seconds(usage.ru_utime) + in_seconds(usage.ru_stime);
-}
 
 /// Reads AUTO's solution file (a header of 16 or more integers; rows of tau and states; parameters last) to its end.
 AutoSolution last_solution(const fs::path& file, int states) {
@@ -100,12 +69,6 @@ int count_iterations(const fs::path& file) {
   return iterations;
 }
 
-fs::path new_folder() {
-  std::string name = (fs::temp_directory_path() / "tchat_benchmark_XXXXXX").string();
-  if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder could be made: " + name);
-  return name;
-}
-
 }  // namespace
 
 fs::path auto_objects() {
@@ -124,33 +87,34 @@ fs::path auto_objects() {
   return found;
 }
 
-AutoProgram::AutoProgram(int segments, int intervals) : folder_(new_folder()) {
+AutoProgram::AutoProgram(int segments, const Orbit& start) {
+  settings_.dimension = start.shape.dimension;
   settings_.segments = segments;
-  settings_.intervals = intervals;
-  std::ofstream(folder_ / "problem.f90") << auto_source(segments);
+  settings_.intervals = start.shape.intervals;
+  const bool chain = settings_.dimension > 4;
+  const fs::path& folder = folder_.path();
+  std::ofstream(folder / "problem.f90") << (chain ? auto_chain_source(settings_.dimension, settings_.intervals)
+                                                  : auto_source(segments));
+  if (chain) std::ofstream(folder / "start") << auto_chain_start(start);
   std::vector<std::string> command{"gfortran", "-O2", "-fopenmp", "problem.f90", "-o", "program"};
   for (const auto& entry : fs::directory_iterator(auto_objects()))
     if (entry.path().extension() == ".o") command.push_back(entry.path().string());
-  run_program(command, folder_);
-}
-
-AutoProgram::~AutoProgram() {
-  std::error_code ignored;
-  fs::remove_all(folder_, ignored);
+  run_child(command, folder);
 }
 
 AutoRun AutoProgram::run(int points, bool details) const {
   AutoSettings settings = settings_;
   settings.points = points;
   settings.details = details;
-  std::ofstream(folder_ / "fort.2") << auto_constants(settings);
-  for (const char* file : {"fort.7", "fort.8", "fort.9"}) fs::remove(folder_ / file);
+  const fs::path& folder = folder_.path();
+  std::ofstream(folder / "fort.2") << auto_constants(settings);
+  for (const char* file : {"fort.7", "fort.8", "fort.9"}) fs::remove(folder / file);
   AutoRun result;
-  result.processor_seconds = run_program({(folder_ / "program").string()}, folder_);
-  const int reached = count_points(folder_ / "fort.7");
+  result.processor_seconds = run_child({(folder / "program").string()}, folder).processor;
+  const int reached = count_points(folder / "fort.7");
   if (reached != points) throw std::runtime_error(fmt::format("AUTO stopped at point {} of {}", reached, points));
-  result.last = last_solution(folder_ / "fort.8", 4 * settings.segments);
-  if (details) result.iterations = count_iterations(folder_ / "fort.9");
+  result.last = last_solution(folder / "fort.8", settings.dimension * settings.segments);
+  if (details) result.iterations = count_iterations(folder / "fort.9");
   return result;
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "benchmark/auto_problem.hpp"
+#include "benchmark/child_process.hpp"
 
 namespace tchat::benchmark {
 
@@ -15,7 +16,7 @@ std::filesystem::path auto_objects();
 /// The last solution that AUTO stored.
 struct AutoSolution {
   double alpha = 0.0;
-  std::vector<double> start;  ///< 4k states at tau = 0
+  std::vector<double> start;  ///< n k states at tau = 0
 };
 
 struct AutoRun {
@@ -27,16 +28,14 @@ struct AutoRun {
 class AutoProgram {
  public:
   /// Writes the problem to a new folder and compiles it with gfortran. Throws std::runtime_error when that fails.
-  AutoProgram(int segments, int intervals);
-  ~AutoProgram();
-  AutoProgram(const AutoProgram&) = delete;
-  AutoProgram& operator=(const AutoProgram&) = delete;
+  /// `start` is that of the chain, where there are more than 4 states.
+  AutoProgram(int segments, const Orbit& start);
 
   /// Continuation to point number `points`. Throws std::runtime_error when AUTO fails or stops before.
   AutoRun run(int points, bool details) const;
 
  private:
-  std::filesystem::path folder_;
+  ScratchFolder folder_;
   AutoSettings settings_;
 };
 

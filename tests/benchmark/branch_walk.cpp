@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "benchmark/impacting_orbit.hpp"
+#include "benchmark/timing.hpp"
 
 namespace tchat::benchmark {
 
@@ -23,10 +24,13 @@ void require_convergence(const NewtonResult& result) {
 
 double step_length(int segments) { return 0.02 * std::sqrt(static_cast<double>(segments)); }
 
-OrbitShape walk_shape(int segments, int intervals) { return {4, segments, intervals, collocation_points}; }
+OrbitShape walk_shape(int segments, int intervals, int dimension) {
+  return {dimension, segments, intervals, collocation_points};
+}
 
 BranchWalk::BranchWalk(const OrbitShape& shape, int steps_one_way)
-    : system_(oscillator(), impacting_signature(shape.segments), {alpha}),
+    : system_(shape.dimension == 4 ? oscillator() : chain(shape.dimension), impacting_signature(shape.segments),
+              {alpha}),
       follower_(system_, shape, WeightedNorm::unit(shape.dimension), newton_settings, alpha),
       floquet_(shape),
       point_(follower_.make_point(impacting_orbit(shape))),
@@ -46,6 +50,16 @@ void BranchWalk::step() {
   iterations_ += result.iterations;
   matrices_ += std::min(result.iterations, newton_settings.full_iterations);
   if (result.change_since_factorization > current_enough) ++matrices_;
+}
+
+StepCost cost_there_and_back(BranchWalk& walk) {
+  const int steps = 2 * walk.steps_one_way();
+  StepCost cost;
+  for (int k = 0; k < steps; ++k) {
+    cost.step += processor_seconds([&] { walk.step(); }) / steps;
+    cost.multipliers += processor_seconds([&] { keep(walk.multipliers()); }) / steps;
+  }
+  return cost;
 }
 
 }  // namespace tchat::benchmark

@@ -2,7 +2,9 @@
 
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
 
+#include "benchmark/oscillator_chain.hpp"
 #include "hybrid/linear_oscillator.hpp"
 
 namespace tchat::benchmark {
@@ -37,6 +39,21 @@ Eigen::Vector4d state(const ImpactData& p, double t) {
 
 HybridSystem oscillator() { return HybridSystem(*ProblemTable<LinearOscillator>::get("LinearOscillator")); }
 
+HybridSystem chain(int n) {
+  switch (n) {
+    case 4:
+      return HybridSystem(*ProblemTable<OscillatorChain<1>>::get("OscillatorChain"));
+    case 10:
+      return HybridSystem(*ProblemTable<OscillatorChain<4>>::get("OscillatorChain"));
+    case 20:
+      return HybridSystem(*ProblemTable<OscillatorChain<9>>::get("OscillatorChain"));
+    case 50:
+      return HybridSystem(*ProblemTable<OscillatorChain<24>>::get("OscillatorChain"));
+    default:
+      throw std::invalid_argument("there is no chain of so many states");
+  }
+}
+
 Signature impacting_signature(int segments) { return Signature(static_cast<std::size_t>(segments), {1, 1, 1}); }
 
 Orbit impacting_orbit(const OrbitShape& shape) {
@@ -46,11 +63,17 @@ Orbit impacting_orbit(const OrbitShape& shape) {
   x.mesh = uniform_mesh(shape.intervals);
   x.states.resize(shape.dimension, shape.columns());
   x.par = ParameterVector::Zero(parameter_length);
-  x.par.head(4) << data.alpha, data.omega, data.zeta, data.restitution;
+  x.par.head(5) << data.alpha, data.omega, data.zeta, data.restitution, chain_coupling;
   const double period = 2.0 * std::numbers::pi / data.omega;
   for (int s = 0; s < shape.segments; ++s) {
     x.duration(s) = period;
-    for (int k = 0; k < shape.nodes(); ++k) x.states.col(s * shape.nodes() + k) = state(data, period * x.tau(k));
+    for (int k = 0; k < shape.nodes(); ++k) {
+      const Eigen::Vector4d first = state(data, period * x.tau(k));
+      auto column = x.states.col(s * shape.nodes() + k);
+      column.setZero();
+      column.head(2) = first.head(2);
+      column.tail(2) = first.tail(2);
+    }
   }
   return x;
 }

@@ -26,7 +26,14 @@ HybridSystem oscillator();
 /// Its signature repeated m times.
 Signature impacting_signature(int segments);
 
-/// The orbit on a uniform mesh, passed through shape.segments times.
+/// The orbit on a uniform mesh, passed through shape.segments times. With more than 4 states: of the first mass of the
+/// chain without coupling, where the others rest.
 Orbit impacting_orbit(const OrbitShape& shape);
+
+/// Weak, so that the orbit of the chain is found from that without coupling.
+inline constexpr double chain_coupling = 0.02;
+
+/// The chain with n = 4, 10, 20 or 50 states (oscillator_chain.hpp). Throws std::invalid_argument for others.
+HybridSystem chain(int n);
 
 }  // namespace tchat::benchmark

@@ -1,4 +1,4 @@
-/// Table (a): how the time of a continuation step grows with the number of segments and of mesh intervals.
+/// Table (a): how the time of a continuation step grows with the number of segments, of mesh intervals and of states.
 #pragma once
 
 #include <vector>
@@ -8,8 +8,9 @@ namespace tchat::benchmark {
 struct StepSizes {
   std::vector<int> segments;
   std::vector<int> intervals;
+  std::vector<int> dimensions;
   int intervals_for_segments = 50;  ///< NTST while the segments vary
-  int rounds = 200;                 ///< measured steps of each size
+  int rounds = 10;                  ///< each twice ten steps
 };
 
 void print_step_times(const StepSizes& sizes);

@@ -13,6 +13,10 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
+double least(const std::vector<double>& values) {
+  return values.empty() ? 0.0 : *std::min_element(values.begin(), values.end());
+}
+
 double fitted_exponent(const std::vector<int>& sizes, const std::vector<double>& values) {
   const double count = static_cast<double>(sizes.size());
   double sum_x = 0.0;

@@ -1,4 +1,5 @@
-/// Measuring on a machine that also does other things: medians of many short measurements, and clocks.
+/// Measuring on a machine that also does other things: the least or the middle one of many short measurements, and
+/// clocks.
 #pragma once
 
 #include <chrono>
@@ -8,6 +9,9 @@ namespace tchat::benchmark {
 
 /// The middle one of a list of measurements; 0 when there are none.
 double median(std::vector<double> values);
+
+/// The least one; 0 when there are none.
+double least(const std::vector<double>& values);
 
 /// The slope of the straight line through (log size, log value) by least squares: value grows like size^slope.
 double fitted_exponent(const std::vector<int>& sizes, const std::vector<double>& values);

@@ -102,12 +102,14 @@ struct Counts {
 Counts steps_after_the_first(PathFollower& follower, PathPoint here, double ds) {
   PathPoint next = here;
   REQUIRE(follower.step(here, ds, next).converged());
+  follower.iterations_along_tangent(here, ds, next, true);
   std::swap(here, next);
   Counts counts{0, 0, 0};
   const CountedScope scope;
-  for (int k = 0; k < 5; ++k) {
+  for (int k = 0; k < 10; ++k) {  // one or two iterations each
     const NewtonResult result = follower.step(here, ds, next);
     if (!result.converged()) break;
+    follower.iterations_along_tangent(here, ds, next, k % 2 == 0);
     counts.newton_iterations += result.iterations;
     std::swap(here, next);
   }

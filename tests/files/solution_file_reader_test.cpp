@@ -210,6 +210,54 @@ TEST_CASE("Solutions are found by label and by type with count", "[start]") {
   CHECK(found("MX", 1) == 12);
 }
 
+TEST_CASE("Read for one label: the same solution, others passed over, damage of the file told", "[start]") {
+  std::string text;
+  for (int label = 1; label <= 6; ++label) {
+    SampleEntry entry;
+    entry.label = label;
+    entry.type = label % 3 == 0 ? -4 : label % 2 == 0 ? 7 : 9;
+    if (entry.type == -4) entry.internal = {label == 3 ? 2.0 : 1.0, 1, 1, 0.625};  // a contact, a user value
+    text += entry.text();
+  }
+  const SolutionFile all = parse_solution_file(text, "q.x");
+  REQUIRE(all.solutions.size() == 6);
+  struct Asked {
+    StartLabel label;
+    std::size_t kept;
+  };
+  for (const auto& [label, kept] : {Asked{{"", 4}, 1}, Asked{{"PD", 2}, 2}, Asked{{"GR", 1}, 1}, Asked{{"EP", 1}, 2}}) {
+    const SolutionFile file = parse_solution_file(text, "q.x", label);
+    CHECK(file.solutions.size() == kept);
+    const LabelledSolution& wanted = find_solution(all.solutions, label, "q.x");
+    const LabelledSolution& s = find_solution(file.solutions, label, "q.x");
+    CHECK(s.label == wanted.label);
+    CHECK(s.states == wanted.states);
+    CHECK(s.parameters == wanted.parameters);
+    CHECK(s.kind.tau == wanted.kind.tau);
+    CHECK(file.last_label == 6);
+    CHECK(file.complete_bytes == text.size());
+  }
+  // None is meant: all are there, for the list of labels.
+  CHECK(parse_solution_file(text, "q.x", {"", 9}).solutions.size() == 6);
+  CHECK(parse_solution_file(text, "q.x", {"PD", 3}).solutions.size() == 6);
+
+  const StartLabel first{"", 1};
+  std::string cut = text.substr(0, text.size() - 30);
+  CHECK(parse_solution_file(cut, "q.x", first).warnings == parse_solution_file(cut, "q.x").warnings);
+  CHECK(parse_solution_file(cut, "q.x", first).warnings.size() == 1);
+  CHECK(parse_solution_file(cut, "q.x", first).complete_bytes == parse_solution_file(cut, "q.x").complete_bytes);
+  // A line too much in the second solution: the third does not begin where it should.
+  const std::size_t second = text.find('\n', text.size() / 6 + 200) + 1;
+  std::string longer = text;
+  longer.insert(second, " 1.0\n");
+  CHECK_THAT(message_of<UserError>([&] { parse_solution_file(longer, "q.x", first); }),
+             Contains("begins with a line of 16 integers"));
+  // Damage in the solution that is wanted.
+  std::string bad = text;
+  bad.replace(bad.find("E+000", 400), 5, "X+000");
+  CHECK_THAT(message_of<UserError>([&] { parse_solution_file(bad, "q.x", first); }), Contains("not a finite number"));
+}
+
 TEST_CASE("A label that does not exist is answered with those that do", "[start]") {
   const std::string by_number = message_of<UserError>([] { found("", 99); });
   CHECK_THAT(by_number, Contains("q.x: no label 99"));
