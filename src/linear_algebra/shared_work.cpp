@@ -1,15 +1,18 @@
 #include "linear_algebra/shared_work.hpp"
 
+#include <tbb/info.h>
 #include <tbb/task_arena.h>
 #include <tbb/task_group.h>
 
+#include <algorithm>
 #include <atomic>
 #include <thread>
 
 namespace tchat {
 
 struct SharedWork::Arena {
-  explicit Arena(int threads) : arena(threads) {}
+  /// oneTBB complains on the screen of more threads than there are processors.
+  explicit Arena(int threads) : arena(std::min(threads, tbb::info::default_concurrency())) {}
   tbb::task_arena arena;
 };
 
@@ -61,14 +64,15 @@ void SharedWork::share(int count, const Calls& calls) const {
     };
     tbb::task_group others;
     try {
-      for (int thread = 1; thread < threads_; ++thread)
+      const int present = arena_->arena.max_concurrency();
+      for (int thread = 1; thread < present; ++thread)
         others.run([&, thread] {
           while (!pieces.ended())
             if (!do_one(thread)) std::this_thread::yield();
         });
       for (int i = 0; i < count && calls.prepare(calls.object, i); ++i) {
         pieces.add();
-        while (pieces.waiting() >= threads_) do_one(0);
+        while (pieces.waiting() >= present) do_one(0);
       }
       pieces.close();
       while (do_one(0)) {

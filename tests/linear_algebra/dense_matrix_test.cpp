@@ -91,6 +91,7 @@ TEST_CASE("Householder's reduction: orthogonal, its determinant, the upper trian
 TEST_CASE("the distance to a null space does not depend on the sizes of rows", "[dense_matrix]") {
   MatrixXd rows(2, 4);
   rows << 3.0, 0.0, 0.0, 0.0, 0.0, 1e-20, 0.0, 0.0;
-  const VectorXd x = (VectorXd(4) << 0.3, 0.4, 5.0, 6.0).finished();
+  VectorXd x(4);
+  x << 0.3, 0.4, 5.0, 6.0;
   CHECK(distance_to_null_space(rows, x) == Approx(0.5).epsilon(1e-14));
 }
