@@ -12,7 +12,7 @@ bool contains(const std::string& text, const std::string& part) { return text.fi
 /// Short branches: few points, a coarse mesh.
 const std::string quick = " NTST=20 NMX=12 NPR=4 ";
 
-void check_refused(const Outcome& outcome, const std::vector<std::string>& parts) {
+void check_refusal(const Outcome& outcome, const std::vector<std::string>& parts) {
   INFO(outcome.text());
   CHECK(outcome.signal == 0);
   CHECK(outcome.status == 2);
@@ -41,7 +41,7 @@ TEST_CASE("IRS chooses a label by number or by type and count") {
   for (const char* missing : {"77", "PD1", "UZ2", "EP3"}) {
     INFO(missing);
     const Outcome refused = workspace.tchat("run linosc -c impacting -s branch -o none IRS=" + std::string(missing));
-    check_refused(refused, {"q.branch", missing, "1 (EP)", "2 (RG)", "4 (UZ)"});
+    check_refusal(refused, {"q.branch", missing, "1 (EP)", "2 (RG)", "4 (UZ)"});
     CHECK_FALSE(workspace.has("p.none"));
   }
 }
@@ -49,11 +49,11 @@ TEST_CASE("IRS chooses a label by number or by type and count") {
 TEST_CASE("options -d, -s and IRS that contradict each other") {
   const Workspace workspace;
   workspace.run("-c impacting -d impacting -o branch" + quick);
-  check_refused(workspace.tchat("run linosc -c impacting -d impacting -o none IRS=2"), {"IRS = 2", "label 1"});
-  check_refused(workspace.tchat("run linosc -c impacting -d impacting -o none IRS=UZ1"), {"UZ1", "label 1"});
-  check_refused(workspace.tchat("run linosc -c impacting -s branch -o none"), {"q.branch", "IRS", "1 (EP)", "2 (RG)"});
-  check_refused(workspace.tchat("run linosc -c impacting -s branch -d impacting -o none IRS=1"), {"-d", "-s"});
-  check_refused(workspace.tchat("run linosc -c impacting -o none IRS=3"), {"IRS = 3", "q.linosc"});
+  check_refusal(workspace.tchat("run linosc -c impacting -d impacting -o none IRS=2"), {"IRS = 2", "label 1"});
+  check_refusal(workspace.tchat("run linosc -c impacting -d impacting -o none IRS=UZ1"), {"UZ1", "label 1"});
+  check_refusal(workspace.tchat("run linosc -c impacting -s branch -o none"), {"q.branch", "IRS", "1 (EP)", "2 (RG)"});
+  check_refusal(workspace.tchat("run linosc -c impacting -s branch -d impacting -o none IRS=1"), {"-d", "-s"});
+  check_refusal(workspace.tchat("run linosc -c impacting -o none IRS=3"), {"IRS = 3", "q.linosc"});
   CHECK_FALSE(workspace.has("p.none"));
   // As label 1 the data are a restart: the first point has no label, counting goes on from 1.
   workspace.run("-c impacting -d impacting -o data IRS=1" + quick);
@@ -81,8 +81,8 @@ TEST_CASE("the start file is replaced only where -o says so, and its predecessor
   workspace.write("gc.linosc", workspace.read("gc.impacting"));
   workspace.run(quick);
   const std::string before = workspace.read("q.linosc");
-  check_refused(workspace.tchat("run linosc IRS=2" + quick), {"q.linosc", "-o linosc"});
-  check_refused(workspace.tchat("run linosc -s linosc IRS=2" + quick), {"q.linosc", "-o linosc"});
+  check_refusal(workspace.tchat("run linosc IRS=2" + quick), {"q.linosc", "-o linosc"});
+  check_refusal(workspace.tchat("run linosc -s linosc IRS=2" + quick), {"q.linosc", "-o linosc"});
   CHECK(workspace.read("q.linosc") == before);
   CHECK_FALSE(workspace.has("q.linosc~"));
   workspace.run("-s linosc -o linosc IRS=2" + quick);
@@ -174,7 +174,7 @@ TEST_CASE("the jump that contact brings must be there, and no identity where xi_
   const Workspace workspace;
   workspace.run("-c to_grazing -d nonimpacting -o grazing");
   const std::string run = "run linosc -c grazing_curve -s grazing -o curve IRS=GR1 NMX=3 NTST=20 ";
-  check_refused(workspace.tchat(run + "GRJUMP=9"), {"GRJUMP is 9", "allowed: 1..2"});
+  check_refusal(workspace.tchat(run + "GRJUMP=9"), {"GRJUMP is 9", "allowed: 1..2"});
   const Outcome identity = workspace.tchat(run + "GRJUMP=2");
   INFO(identity.text());
   CHECK(contains(identity.err, "GRJUMP = 2 (identity) is the identity"));
