@@ -18,7 +18,8 @@ class SmallLu {
   /// when it is singular or not finite.
   bool factorize();
 
-  /// x = A^-1 b, or A^-T b; x and b are different arrays.
+  /// x = A^-1 b, or A^-T b, refined once: near a branch point, where A is almost singular, the residual stays that of
+  /// rounding. x and b are different arrays.
   void solve(const double* b, double* x);
   void solve_transposed(const double* b, double* x);
 
@@ -31,12 +32,15 @@ class SmallLu {
  private:
   static std::size_t at(int k) { return static_cast<std::size_t>(k); }
   const double* row(int i) const { return entries_.data() + i * size_; }
+  void apply_inverse(double* right, double* x) const;               // of the scaled matrix
+  void apply_inverse_transposed(const double* b, double* x) const;  // of the scaled matrix
 
   int size_;
   std::vector<double> entries_;  // after factorize() L below the diagonal, reciprocal pivots on it, U above
+  std::vector<double> scaled_;   // the matrix with rows of unit sum
   std::vector<double> row_sums_;
-  std::vector<double> right_;  // scratch
-  std::vector<int> swaps_;     // the row exchanged with row k
+  std::vector<double> right_, change_;  // scratch
+  std::vector<int> swaps_;              // the row exchanged with row k
 };
 
 }  // namespace tchat

@@ -36,7 +36,7 @@ TEST_CASE("a branch that ends by MX after some steps is a result, with advice") 
   const Workspace workspace;
   // Newton needs a third iteration once the step has grown, and may not make the step smaller.
   const Outcome outcome =
-      workspace.run("-c impacting -d impacting -o branch ITNW=2 DS=0.02 DSMIN=0.019 DSMAX=5 RL1=99");
+      workspace.run("-c impacting -d impacting -o branch ITNW=2 ICP=[omega,61] RL0=0.1 DS=-0.02 DSMIN=0.019 DSMAX=5");
   const auto sections = workspace.points("branch");
   REQUIRE(sections.front().rows.size() > 2);
   CHECK(sections.front().rows.back().type == -9);
@@ -50,7 +50,9 @@ TEST_CASE("a branch that ends by MX after some steps is a result, with advice") 
 
 TEST_CASE("MX after a new mesh: the last point once more, a restart needs one Newton step at most") {
   const Workspace workspace;
-  workspace.run("-c impacting -d impacting -o branch ITNW=2 DS=0.02 DSMIN=0.019 DSMAX=5 RL1=99 NPR=1 IAD=1 NTST=10");
+  workspace.run(
+      "-c impacting -d impacting -o branch ITNW=2 ICP=[omega,61] RL0=0.1 DS=-0.02 DSMIN=0.019 DSMAX=5 NPR=1 IAD=1 "
+      "NTST=10");
   const std::vector<SolutionEntry> solutions = workspace.solutions("branch");
   REQUIRE(solutions.size() > 3);
   REQUIRE(solutions.back().type == -9);
@@ -67,7 +69,8 @@ TEST_CASE("MX after a new mesh: the last point once more, a restart needs one Ne
 
 TEST_CASE("with --strict a branch that ends by MX has exit status 3") {
   const Workspace workspace;
-  const std::string fails = "run linosc -c impacting -d impacting -o branch ITNW=2 DS=0.02 DSMIN=0.019 DSMAX=5 RL1=99";
+  const std::string fails =
+      "run linosc -c impacting -d impacting -o branch ITNW=2 ICP=[omega,61] RL0=0.1 DS=-0.02 DSMIN=0.019 DSMAX=5";
   CHECK(workspace.tchat(fails).status == 0);
   const Outcome strict = workspace.tchat(fails + " --strict");
   CHECK(strict.status == 3);

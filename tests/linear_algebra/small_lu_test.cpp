@@ -69,6 +69,31 @@ TEST_CASE("solutions and determinants of small matrices, transposed too") {
   }
 }
 
+TEST_CASE("solutions of small matrices with entries of all sizes: each equation holds to rounding of its own terms") {
+  constexpr int n = 10;
+  const auto largest_rest = [](const MatrixXd& a, const VectorXd& x, const VectorXd& b) {
+    const LongVector rest = a.cast<long double>() * x.cast<long double>() - b.cast<long double>();
+    const VectorXd terms = a.cwiseAbs() * x.cwiseAbs() + b.cwiseAbs();
+    return (rest.cast<double>().cwiseAbs().array() / terms.array()).maxCoeff();
+  };
+  std::mt19937 generator(11);
+  std::uniform_real_distribution<double> decades(-7.0, 0.0);
+  SmallLu lu(n);
+  for (int turn = 0; turn < 200; ++turn) {
+    CAPTURE(turn);
+    MatrixXd a = test::random_matrix(generator, n, n);
+    for (double& entry : a.reshaped()) entry *= std::pow(10.0, decades(generator));
+    const VectorXd b = test::random_matrix(generator, n, 1);
+    fill(lu, a);
+    REQUIRE(lu.factorize());
+    VectorXd x(n), y(n);
+    lu.solve(b.data(), x.data());
+    lu.solve_transposed(b.data(), y.data());
+    CHECK(largest_rest(a, x, b) < 1e-14);
+    CHECK(largest_rest(a.transpose(), y, b) < 1e-14);
+  }
+}
+
 TEST_CASE("small matrices that are singular or not finite are refused, and the next one is not") {
   SmallLu lu(4);
   std::mt19937 generator(5);
