@@ -98,7 +98,7 @@ bool BranchPointBracket::find_sign(const Evaluate& evaluate, PathPoint& trial) {
 bool BranchPointBracket::try_at(double at, const Evaluate& evaluate, PathPoint& trial) {
   if (!(at > low_.at && at < high_.at)) return false;
   put(at, trial);
-  if (!follower_.step_near(start_, direction_ * at, trial).converged()) return false;
+  if (!follower_.step_beside_branch_point(start_, direction_ * at, trial).converged()) return false;
   const PointData data = evaluate(trial);
   if (!data.tests[test_].value) return false;
   Side side = make_side(at, trial, data);

@@ -117,12 +117,16 @@ bool PathFollower::find_tangent(const Orbit& x, OrbitVector& tangent, OrbitVecto
   return true;
 }
 
-/// Newton on the border in row_, then the tangent at the result.
 NewtonResult PathFollower::correct_and_orient(PathPoint& point, const Orbit& base, double target) {
+  return correct_and_orient(point, base, target, current_enough);
+}
+
+/// Newton on the border in row_, then the tangent at the result, with factors that are not older than this.
+NewtonResult PathFollower::correct_and_orient(PathPoint& point, const Orbit& base, double target, double oldest) {
   factors_known_ = false;
   NewtonResult result = newton_.correct(point.orbit, row_, base, target);
   if (!result.converged()) return result;
-  const bool current = result.change_since_factorization <= current_enough;
+  const bool current = result.change_since_factorization <= oldest;
   if ((!current && !linearize(point.orbit, row_)) || !find_tangent(point.orbit, point.tangent, point.dual))
     result.status = NewtonStatus::singular;
   else
@@ -184,6 +188,13 @@ NewtonResult PathFollower::step_near(const PathPoint& from, double ds, PathPoint
   to.newton_constant = from.newton_constant;
   to.trail.follow(from, system_.free_parameters());
   return correct_and_orient(to, from.orbit, ds);
+}
+
+NewtonResult PathFollower::step_beside_branch_point(const PathPoint& from, double ds, PathPoint& to) {
+  begin_step(from);
+  to.newton_constant = from.newton_constant;
+  to.trail.follow(from, system_.free_parameters());
+  return correct_and_orient(to, from.orbit, ds, 0.0);
 }
 
 /// dx_ is set to the correction of x by the factors at hand, whatever the border was that they have, with

@@ -70,6 +70,10 @@ class PathFollower {
 
   /// The same point, but Newton starts at what to.orbit holds.
   NewtonResult step_near(const PathPoint& from, double ds, PathPoint& to);
+
+  /// The same beside a branch point: the matrix is always made anew for the tangent, of which the other branch would
+  /// take a share that is the distance to an older matrix, over that to the branch point.
+  NewtonResult step_beside_branch_point(const PathPoint& from, double ds, PathPoint& to);
   /// Are the equations satisfied to rounding?
   bool solves(const Orbit& x);
 
@@ -104,6 +108,7 @@ class PathFollower {
 
  private:
   NewtonResult correct_and_orient(PathPoint& point, const Orbit& base, double target);
+  NewtonResult correct_and_orient(PathPoint& point, const Orbit& base, double target, double oldest);
   void put_on_tangent(const PathPoint& from, double ds, Orbit& x) const;
   void begin_step(const PathPoint& from);
   double polish(const PathPoint& from, double ds, double expected, Orbit& x);

@@ -12,6 +12,7 @@ namespace tchat {
 namespace {
 
 constexpr int largest_point = 9999;
+constexpr double smallest = 2.2251e-308;    ///< rounded in its last decimal a smaller one may be subnormal
 constexpr std::size_t longest_number = 40;  ///< with at most 16 decimals and three digits of exponent
 constexpr double largest_es = 1.7976e308;   ///< rounded up in its last decimal a larger one is read as infinity
 
@@ -43,7 +44,7 @@ void append_exponential(std::string& line, double value, int decimals, std::size
 double finite(double value) {
   if (std::isnan(value)) return capped_value;
   if (std::isinf(value)) return std::copysign(capped_value, value);
-  return std::isnormal(value) ? value : 0.0;
+  return std::abs(value) > smallest ? value : 0.0;
 }
 
 void append_e19(std::string& line, double value) { append_exponential(line, value, 10, 19); }

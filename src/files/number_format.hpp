@@ -9,7 +9,7 @@ namespace tchat {
 /// Stands for values that are not finite: files never hold NaN or inf, which AUTO's programs cannot read.
 inline constexpr double capped_value = 1e99;
 
-/// `value`, +-capped_value for +-inf, capped_value for NaN, 0 for -0 and for numbers below 2.2e-308, at which many
+/// `value`, +-capped_value for +-inf, capped_value for NaN, 0 for -0 and for numbers below 2.2251e-308, at which many
 /// readers stop.
 double finite(double value);
 

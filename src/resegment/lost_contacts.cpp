@@ -163,26 +163,34 @@ class LostContacts {
                                 number));
   }
 
+  template <class Value>
+  static double zero_between(const Value& value, double from, double to, double high, double low) {
+    std::uintmax_t iterations = 60;
+    const auto bracket = boost::math::tools::toms748_solve(value, from, to, high, low,
+                                                           boost::math::tools::eps_tolerance<double>(48), iterations);
+    return 0.5 * (bracket.first + bracket.second);
+  }
+
   /// The end, where the section is met there; else the first place where it is met from above.
   double place_of_section(const Orbit& x, const IndexVector& section) const {
     constexpr double on_it = 1e-6;
     const CollocationRule rule(x.shape.collocation);
+    // A contact touches its surface; which way it goes through there is rounding.
+    const auto falls = [](const EventAt& event) { return event.rate() < -on_it * event.sizes(); };
     const auto value = [&](double tau) {
       return system_.event(section.event, state_at(x, rule, 0, tau).data(), x.par.data());
     };
     const EventAt end = event_at(system_, section.event, section.field, x.end(0), x.par.data());
-    if (std::abs(end.h) <= on_it * end.scale(x.end(0)) && end.rate() < 0.0) return 1.0;
+    if (std::abs(end.h) <= on_it * end.scale(x.end(0)) && falls(end)) return 1.0;
     for (int k = 1; k < x.shape.nodes(); ++k) {
       const double from = x.tau(k - 1);
       const double to = x.tau(k);
       const double high = value(from);
       const double low = value(to);
       if (!(high > 0.0 && low <= 0.0)) continue;
-      if (low == 0.0) return to;
-      std::uintmax_t iterations = 60;
-      const auto bracket = boost::math::tools::toms748_solve(value, from, to, high, low,
-                                                             boost::math::tools::eps_tolerance<double>(48), iterations);
-      return 0.5 * (bracket.first + bracket.second);
+      const double at = low == 0.0 ? to : zero_between(value, from, to, high, low);
+      const Eigen::VectorXd there = state_at(x, rule, 0, at);
+      if (falls(event_at(system_, section.event, section.field, there.data(), x.par.data()))) return at;
     }
     throw UserError(
         fmt::format("--signature: event {} ({}) does not fall through zero along the orbit of {}, so it cannot cut it",

@@ -24,6 +24,9 @@ TEST_CASE("Nineteen columns, ten decimals, three exponent digits", "[output]") {
   CHECK(e19(1e-100) == "  1.0000000000E-100");
   CHECK(e19(-1.7976931348623157e308) == " -1.7976931349E+308");
   CHECK(e19(5e-324) == "  0.0000000000E+000");
+  // Ten decimals of the smallest normal number would be those of a subnormal one.
+  CHECK(e19(-std::numeric_limits<double>::min()) == "  0.0000000000E+000");
+  CHECK(std::stod(e19(2.2252e-308)) > 0.0);
   CHECK(e26(1.0 / 3.0) == "   3.3333333333333331E-001");
   CHECK(e26(-1e-100) == "  -1.0000000000000000E-100");
   CHECK(std::stod(e26(0.1 + 0.2)) == 0.1 + 0.2);
