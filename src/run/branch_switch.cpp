@@ -28,6 +28,8 @@ struct Bifurcation {
 
 /// A first point that is nearer to the known branch than this share of its step lies on it.
 constexpr double left_behind = 0.1;
+/// A first point that is farther from the bifurcation than so many of its steps is not of the branch that leaves there.
+constexpr double too_far = 5.0;
 /// A difference of so many tolerances of Newton's method is one.
 constexpr double visible = 3.0;
 /// Of the step asked for: what is tried, one after the other, to leave the known branch.
@@ -240,6 +242,15 @@ bool has_left(PathFollower& follower, const PathPoint& from, const OrbitVector& 
   return largest_difference(reached, *expected, free) > left_behind * displacement;
 }
 
+/// Did a step of length ds end near its length from the bifurcation? From a direction that is none Newton's method
+/// finds whatever solutions there are anywhere.
+bool is_near(const PathFollower& follower, const PathPoint& from, double ds, const Orbit& reached) {
+  const std::vector<int>& free = follower.condensed().system().free_parameters();
+  Orbit displaced = from.orbit;
+  advance(displaced, ds, from.tangent, free);
+  return largest_difference(reached, from.orbit, free) <= too_far * largest_difference(displaced, from.orbit, free);
+}
+
 /// The longest step that converges, of at most so much; nothing when none does.
 std::optional<double> first_step(PathFollower& follower, const PathPoint& from, StepSettings settings, double share,
                                  PathPoint& first, NewtonResult& result) {
@@ -309,6 +320,7 @@ BranchSetup switch_branch(const HybridSystem& system, const RunSettings& setting
     if (!ds) continue;
     any = true;
     const std::vector<NewtonIteration> history = setup.follower->newton().history();
+    if (!is_near(*setup.follower, from, *ds, first.orbit)) continue;
     if (!has_left(*setup.follower, from, bifurcation.known, *ds, first.orbit,
                   newton_settings(settings).tolerance_states))
       continue;
@@ -319,8 +331,9 @@ BranchSetup switch_branch(const HybridSystem& system, const RunSettings& setting
     throw ComputationError(fmt::format("no step onto the branch that bifurcates at label {} of {}: {}; try another DS",
                                        selected.label, selected.source, describe(result.status)));
   throw ComputationError(fmt::format(
-      "no step from label {} of {} leads away from the branch that the label lies on, for DS between {:.3g} "
-      "and {:.3g}; compute that branch and its label again with a larger NTST or a smaller EPSS, or try "
+      "no step from label {} of {} leads away from the branch that the label lies on and to another one near it, for "
+      "DS between {:.3g} and {:.3g}; compute that branch and its label again with a larger NTST or a smaller EPSS, or "
+      "try "
       "another DS",
       selected.label, selected.source, 0.1 * step.initial, 10.0 * step.initial));
 }
