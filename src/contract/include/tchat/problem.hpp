@@ -352,6 +352,83 @@ class ProblemTable {
     }
   }
 
+  /// In the columns that are carried at once, and directions two by two.
+  static void second_at_points(const void* self, std::int32_t kind, std::int32_t index, std::int32_t points,
+                               std::int32_t directions, const double* x, const double* par, const std::int32_t* active,
+                               std::int32_t active_count, const double* v, const double* q, const double* weights,
+                               double* out, double* gradient) {
+    std::fill_n(gradient, static_cast<std::ptrdiff_t>(points) * (n + active_count), 0.0);
+    const WeightedPoints at{self,   kind,         index, points, directions, x,   par,
+                            active, active_count, v,     q,      weights,    out, gradient};
+    int k = 0;
+    for (; k + 2 <= directions; k += 2) add_directions<2>(at, k);
+    if (k < directions) add_directions<1>(at, k);
+  }
+
+  /// The arguments of second_at_points.
+  struct WeightedPoints {
+    const void* self;
+    std::int32_t kind, index, points, directions;
+    const double* x;
+    const double* par;
+    const std::int32_t* active;
+    std::int32_t active_count;
+    const double* v;
+    const double* q;
+    const double* weights;
+    double* out;
+    double* gradient;
+  };
+
+  /// Of directions first..first + Count - 1; u . F belongs to direction 0.
+  template <int Count>
+  static void add_directions(const WeightedPoints& at, int first) {
+    using T = Dual<width, Dual<Count>>;
+    const int r = rows(at.kind);
+    const int columns = n + at.active_count;
+    for (int begin = 0; begin < columns; begin += width) {
+      const int count = columns - begin < width ? columns - begin : width;
+      States<T> xs;
+      Parameters<T> ps;
+      Durations<T> ts;
+      Values<T> ys;
+      load(at.x, at.par, xs, ps, ts);
+      for (int c = n; c < columns; ++c)
+        if (T* moved = variable(c, at.active, xs, ps, ts))
+          for (int k = 0; k < Count; ++k)
+            moved->value.derivative[static_cast<std::size_t>(k)] += at.q[(first + k) * at.active_count + c - n];
+      for (int k = 0; k < count; ++k)
+        if (T* seed = variable(begin + k, at.active, xs, ps, ts)) seed->derivative[static_cast<std::size_t>(k)] = 1.0;
+      for (std::ptrdiff_t point = 0; point < at.points; ++point) {
+        const double* const x = at.x + point * n;
+        const double* const v = at.v + (point * at.directions + first) * n;
+        for (int i = 0; i < n; ++i) {
+          auto& value = xs[static_cast<std::size_t>(i)].value;
+          value.value = x[i];
+          for (int k = 0; k < Count; ++k) value.derivative[static_cast<std::size_t>(k)] = v[k * n + i];
+        }
+        for (T& y : ys) y.value = NAN;
+        evaluate<T>(at.self, at.kind, at.index, xs.data(), ps.data(), ts.data(), ys.data());
+        const double* const weights = at.weights + point * (at.directions + 1) * r;
+        double* const out = at.out + (point * at.directions + first) * r;
+        double* const gradient = at.gradient + point * columns + begin;
+        for (int i = 0; i < r; ++i) {
+          const T& y = ys[static_cast<std::size_t>(i)];
+          const double unknown = y.value.value - y.value.value;  // NaN where it cannot be evaluated
+          for (int k = 0; k < Count; ++k) out[k * r + i] = y.value.derivative[static_cast<std::size_t>(k)] + unknown;
+          const double u = first == 0 ? weights[at.directions * r + i] + unknown : unknown;
+          for (int c = 0; c < count; ++c) {
+            const auto& by = y.derivative[static_cast<std::size_t>(c)];
+            double sum = u * by.value;
+            for (int k = 0; k < Count; ++k)
+              sum += weights[(first + k) * r + i] * by.derivative[static_cast<std::size_t>(k)];
+            gradient[c] += sum;
+          }
+        }
+      }
+    }
+  }
+
   template <class T>
   static void load(const double* x, const double* par, States<T>& xs, Parameters<T>& ps, Durations<T>& ts) {
     for (std::size_t i = 0; i < static_cast<std::size_t>(n); ++i) xs[i] = T(x[i]);
@@ -541,6 +618,7 @@ class ProblemTable {
     table.first = &first;
     table.second = &second;
     table.first_at_points = &first_at_points;
+    table.second_at_points = &second_at_points;
     table.user_value = &user_value;
     if constexpr (boundary_count() > 0) {
       table.boundary_conditions = boundary_count();
