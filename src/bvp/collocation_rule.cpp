@@ -1,5 +1,6 @@
 #include "bvp/collocation_rule.hpp"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <boost/math/special_functions/legendre.hpp>
 #include <cmath>
@@ -60,6 +61,12 @@ CollocationRule::CollocationRule(int points)
     value.row(j) = values.transpose();
     slope.row(j) = slopes.transpose();
   }
+  const Eigen::PermutationMatrix<Eigen::Dynamic> order =
+      Eigen::PartialPivLU<Eigen::MatrixXd>(slope.rightCols(points)).permutationP();
+  gauss = order * gauss;
+  weights = order * weights;
+  value = order * value;
+  slope = order * slope;
 
   const GaussRule exact = gauss_rule(nodes);  // exact to degree 2c + 1, the products have 2c
   for (int j = 0; j < nodes; ++j) {

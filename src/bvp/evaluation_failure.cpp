@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <numeric>
 #include <vector>
 
 namespace tchat {
@@ -51,13 +53,16 @@ std::string function_failure(const DefiningSystem& defining, FunctionKind kind, 
 std::string evaluation_failure(const DefiningSystem& defining, const CollocationRule& rule, const Orbit& x) {
   const double* par = x.par.data();
   const int c = x.shape.collocation;
+  std::vector<int> rising(static_cast<std::size_t>(c));  // the Gauss points in the order of time
+  std::iota(rising.begin(), rising.end(), 0);
+  std::sort(rising.begin(), rising.end(), [&](int a, int b) { return rule.gauss(a) < rule.gauss(b); });
   for (int s = 0; s < x.shape.segments; ++s) {
     const IndexVector& v = defining.signature()[static_cast<std::size_t>(s)];
     for (int j = 0; j < x.shape.intervals; ++j) {
       const auto nodes = x.states.middleCols(s * x.shape.nodes() + j * c, c + 1);
       const double left = x.mesh[static_cast<std::size_t>(j)];
       const double h = x.mesh[static_cast<std::size_t>(j + 1)] - left;
-      for (int g = 0; g < c; ++g) {
+      for (const int g : rising) {
         const Eigen::VectorXd point = nodes * rule.value.row(g).transpose();
         const double tau = left + h * rule.gauss(g);
         const std::string field = function_failure(defining, FunctionKind::field, v.field, s, tau, point.data(), par);

@@ -1,5 +1,7 @@
 #include "bvp/orbit.hpp"
 
+#include "linear_algebra/array_kernel.hpp"
+
 namespace tchat {
 
 double Orbit::tau(int k) const {
@@ -42,11 +44,12 @@ void OrbitVector::scale(double factor) {
 }
 
 double dot(const OrbitVector& row, const OrbitVector& v) {
-  return row.states.cwiseProduct(v.states).sum() + row.durations.dot(v.durations) + row.globals.dot(v.globals);
+  return array_functions().dot(row.states.data(), v.states.data(), row.states.size()) + row.durations.dot(v.durations) +
+         row.globals.dot(v.globals);
 }
 
 void advance(Orbit& x, double step, const OrbitVector& v, const std::vector<int>& free_parameters) {
-  x.states += step * v.states;
+  array_functions().add(step, v.states.data(), x.states.data(), x.states.size());
   for (int s = 0; s < x.shape.segments; ++s) x.duration(s) += step * v.durations(s);
   for (std::size_t g = 0; g < free_parameters.size(); ++g)
     x.par(free_parameters[g] - 1) += step * v.globals(static_cast<Eigen::Index>(g));
@@ -54,7 +57,8 @@ void advance(Orbit& x, double step, const OrbitVector& v, const std::vector<int>
 
 double dot_difference(const OrbitVector& row, const Orbit& x, const Orbit& base,
                       const std::vector<int>& free_parameters) {
-  double sum = row.states.cwiseProduct(x.states - base.states).sum();
+  double sum =
+      array_functions().dot_difference(row.states.data(), x.states.data(), base.states.data(), row.states.size());
   for (int s = 0; s < x.shape.segments; ++s) sum += row.durations(s) * (x.duration(s) - base.duration(s));
   for (std::size_t g = 0; g < free_parameters.size(); ++g) {
     const int k = free_parameters[g] - 1;

@@ -1,5 +1,7 @@
 #include "bvp/weighted_norm.hpp"
 
+#include "linear_algebra/array_kernel.hpp"
+
 namespace tchat {
 
 WeightedNorm::WeightedNorm(Eigen::VectorXd state_weights, Eigen::VectorXd parameter_weights)
@@ -13,16 +15,14 @@ void WeightedNorm::dual(const Orbit& x, const CollocationRule& rule, const std::
                         const OrbitVector& v, OrbitVector& row) const {
   const int c = x.shape.collocation;
   const int n = x.shape.dimension;
+  const ArrayFunctions& arrays = array_functions();
   row.states.setZero();
   for (int s = 0; s < x.shape.segments; ++s) {
     for (int j = 0; j < x.shape.intervals; ++j) {
       const double h = x.mesh[static_cast<std::size_t>(j + 1)] - x.mesh[static_cast<std::size_t>(j)];
-      const int column = s * x.shape.nodes() + j * c;
-      for (int i = 0; i <= c; ++i)
-        for (int k = 0; k <= c; ++k) {
-          const double weight = h * rule.mass(i, k);
-          for (int a = 0; a < n; ++a) row.states(a, column + i) += weight * state_weights_(a) * v.states(a, column + k);
-        }
+      const Eigen::Index first = static_cast<Eigen::Index>(s * x.shape.nodes() + j * c) * n;
+      arrays.add_mass(h, rule.mass.data(), c + 1, state_weights_.data(), n, v.states.data() + first,
+                      row.states.data() + first);
     }
     row.durations(s) = parameter_weights_(first_duration - 1 + s) * v.durations(s);
   }

@@ -47,16 +47,28 @@ double tail_of(const TrigonometricSeries& series) {
 struct TorusReturn::Nodes {
   MatrixXd first, second, times;
   double defect = 0.0, by_parameters = 0.0;
+
+  Index count() const { return times.cols(); }
+  void take(Index node, const Nodes& from, Index there) {
+    first.col(node) = from.first.col(there);
+    second.col(node) = from.second.col(there);
+    times.col(node) = from.times.col(there);
+  }
 };
 
-TorusReturn::Nodes TorusReturn::nodes_at(int count, const ParameterVector& par, int section,
+/// Every second of `count` nodes is one of `known`, where these are half as many.
+TorusReturn::Nodes TorusReturn::nodes_at(int count, const Nodes& known, const ParameterVector& par, int section,
                                          const TorusSettings& settings) const {
   const HybridSystem& system = suspended_->system();
   const Index n = curve_.dimension();
   const Index all = system.dimension();
-  Nodes nodes{MatrixXd(n * all, count), MatrixXd(settings.order > 1 ? n * triangle(all) : 0, count),
-              MatrixXd(1, count)};
+  Nodes nodes{MatrixXd(n * all, count), MatrixXd(settings.order > 1 ? n * triangle(all) : 0, count), MatrixXd(1, count),
+              known.defect, known.by_parameters};
   for (int node = 0; node < count; ++node) {
+    if (node % 2 == 0 && count == 2 * known.count()) {
+      nodes.take(node, known, node / 2);
+      continue;
+    }
     const double phi = static_cast<double>(node) / count;
     const VectorXd start = suspended_->suspended(on_curve(phi), par);
     const Signature path = return_path(system, start, par, section, suspended_->field(), settings.flow);
@@ -91,9 +103,11 @@ TorusReturn::TorusReturn(std::shared_ptr<const SuspendedSystem> suspended, Invar
       scale_(curve_.extent().cwiseMax(1e-3 * curve_.extent().maxCoeff())) {
   parameters_along_ = suspended_->suspended(curve_.at(0.0), par).tail(suspended_->system().dimension() - dimension());
   // As many as the curve has harmonics is a good guess.
-  const int first_count = std::clamp(2 * (curve_.harmonics() / 2) + 1, 65, settings.most_nodes);
-  for (int count = first_count; count <= settings.most_nodes; count = 2 * count - 1) {
-    const Nodes nodes = nodes_at(count, par, section, settings);
+  const int first_count = std::clamp(2 * (curve_.harmonics() / 2), 64, settings.most_nodes);
+  Nodes nodes;
+  for (int count = first_count; count <= settings.most_nodes; count *= 2) {
+    nodes = nodes_at(count, nodes, par, section, settings);
+    nodes_ = count;
     first_ = TrigonometricSeries::through(nodes.first);
     second_ = TrigonometricSeries::through(nodes.second);
     times_ = TrigonometricSeries::through(nodes.times);

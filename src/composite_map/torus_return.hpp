@@ -19,7 +19,7 @@ namespace tchat {
 
 struct TorusSettings {
   int order = 1;           ///< or 2
-  int most_nodes = 1025;   ///< phases at which derivatives are computed: doubled up to this,
+  int most_nodes = 1024;   ///< phases at which derivatives are computed: doubled up to this,
   double accuracy = 1e-7;  ///< until the highest harmonics are so small beside the largest
   /// Points of the curve lie on the section to the accuracy of the simulation alone.
   FlowOptions flow{.relative_tolerance = 1e-13, .absolute_tolerance = 1e-14, .surface_tolerance = 1e-5, .active = {}};
@@ -47,7 +47,7 @@ class TorusReturn : public SmoothMap {
   const InvariantCurve& curve() const { return curve_; }
   const CurveProjection& projection() const { return projection_; }
   const ParameterVector& parameters() const { return par_; }
-  int nodes() const { return static_cast<int>(2 * first_.harmonics() + 1); }
+  int nodes() const { return nodes_; }
   /// Largest |P(u(phi)) - u(phi + rho)| at the nodes, relative to the extents.
   double defect() const { return defect_; }
   /// Of the interpolated derivatives between the nodes, relative to the largest: the size of the highest harmonics.
@@ -63,7 +63,8 @@ class TorusReturn : public SmoothMap {
     Eigen::VectorXd u;  // (x, q) less (u(phi), q_0)
   };
   struct Nodes;
-  Nodes nodes_at(int count, const ParameterVector& par, int section, const TorusSettings& settings) const;
+  Nodes nodes_at(int count, const Nodes& known, const ParameterVector& par, int section,
+                 const TorusSettings& settings) const;
   Deviation deviation(const Eigen::VectorXd& x, const ParameterVector& par) const;
   Eigen::MatrixXd matrix(double phi, int derivative) const;
   Eigen::VectorXd quadratic(double phi, const Eigen::VectorXd& u, int derivative) const;
@@ -77,6 +78,7 @@ class TorusReturn : public SmoothMap {
   TrigonometricSeries first_;   // n x N derivatives, column by column
   TrigonometricSeries second_;  // of each component the upper triangle; no rows for first order
   TrigonometricSeries times_;
+  int nodes_ = 0;
   double defect_ = 0.0, interpolation_error_ = 0.0, mean_time_ = 0.0;
   bool depends_ = false;
 };

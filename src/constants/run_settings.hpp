@@ -56,11 +56,11 @@ struct RunSettings {
   int dimension = 1;                                     ///< NDIM, of one segment
   int problem_type = periodic_orbit.number;              ///< IPS
   StartLabel start;                                      ///< IRS
-  int detect_folds = 1;                                  ///< ILP
   std::vector<int> free_parameters;                      ///< ICP, as given
   int mesh_intervals = 50;                               ///< NTST
   int collocation_points = 4;                            ///< NCOL
   int adapt_mesh_every = 3;                              ///< IAD
+  int detect_folds = 1;                                  ///< ILP
   int detect_bifurcations = 2;                           ///< ISP
   int branch_mode = periodic_orbit.branch_mode;          ///< ISW
   int measure = 0;                                       ///< IPLT
@@ -76,13 +76,13 @@ struct RunSettings {
   int max_newton = 8;                                    ///< ITNW
   int full_newton = 3;                                   ///< NWTN
   int jacobian = 0;                                      ///< JAC, kept
+  int adapt_step_every = 1;                              ///< IADS
   double tolerance_parameters = 1e-7;                    ///< EPSL
   double tolerance_states = 1e-7;                        ///< EPSU
   double tolerance_special = 1e-7;                       ///< EPSS
   double step = 0.01;                                    ///< DS
   double step_min = 0.0;                                 ///< DSMIN
   double step_max = 0.1;                                 ///< DSMAX
-  int adapt_step_every = 1;                              ///< IADS
   std::vector<IndexedValue> parameter_weights;           ///< THL
   std::vector<IndexedValue> state_weights;               ///< THU
   std::vector<UserValue> user_values;                    ///< UZR
@@ -92,12 +92,13 @@ struct RunSettings {
   std::vector<int> fixed;                                ///< GCIFIXED, kept
   std::vector<SegmentSettings> segments;
 
-  bool stop_at_grazing = true;       ///< GRSTOP
-  int grazing_jump = 1;              ///< GRJUMP
-  bool stop_when_closed = true;      ///< CLSTOP
-  int harmonics = 0;                 ///< NHARM, of a torus; 0: as the start has
   double harmonic_tolerance = 1e-7;  ///< HARMTOL, of the last harmonics of a torus; 0: their number stays
+  int harmonics = 0;                 ///< NHARM, of a torus; 0: as the start has
+  int grazing_jump = 1;              ///< GRJUMP
+  bool stop_at_grazing = true;       ///< GRSTOP
+  bool stop_when_closed = true;      ///< CLSTOP
   bool start_may_move = false;       ///< ICPMOVE
+  int threads = 1;                   ///< -j of the command line: no constant, results do not depend on it
   std::vector<StopRule> stop_rules;  ///< STOP
   std::vector<HeldValue> held;       ///< HOLD
   /// Names of monitors in ICP, UZR, THL and HOLD: PAR(first_monitor), ... stand for them in this order.
@@ -109,8 +110,6 @@ struct RunSettings {
     double value = 0.0;
   };
   std::vector<ParameterValue> parameter_values;
-
-  int threads = 1;  ///< -j of the command line: no constant, results do not depend on it
 
   Signature signature() const {
     Signature s;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "linear_algebra/array_kernel.hpp"
+
 namespace tchat {
 
 namespace {
@@ -44,18 +46,22 @@ std::string describe(NewtonStatus status) {
   }
 }
 
-bool is_rounding(double residual, const Orbit& x) {
-  return residual < rounding_residual * (1.0 + x.states.cwiseAbs().maxCoeff());
-}
+bool is_rounding(double residual, const Orbit& x) { return residual < rounding_residual * (1.0 + largest_state(x)); }
 
 OrbitChange change_by(const OrbitVector& dx, const Orbit& x, const std::vector<int>& free_parameters) {
-  OrbitChange change{0.0, dx.states.cwiseAbs().maxCoeff() / (1.0 + x.states.cwiseAbs().maxCoeff())};
+  return change_by(dx, x, free_parameters, largest_state(x));
+}
+
+double largest_state(const Orbit& x) { return array_functions().range(x.states.data(), x.states.size()).largest; }
+
+OrbitChange change_by(const OrbitVector& dx, const Orbit& x, const std::vector<int>& free_parameters, double largest) {
+  const ArrayRange range = array_functions().range(dx.states.data(), dx.states.size());
+  OrbitChange change{0.0, range.finite ? range.largest / (1.0 + largest) : std::numeric_limits<double>::quiet_NaN()};
   for (int s = 0; s < x.shape.segments; ++s)
     change.parameters = std::max(change.parameters, std::abs(dx.durations(s)) / (1.0 + std::abs(x.duration(s))));
   for (std::size_t g = 0; g < free_parameters.size(); ++g)
     change.parameters = std::max(change.parameters, std::abs(dx.globals(static_cast<Eigen::Index>(g))) /
                                                         (1.0 + std::abs(x.par(free_parameters[g] - 1))));
-  if (!dx.states.allFinite()) change.states = std::numeric_limits<double>::quiet_NaN();
   return change;
 }
 

@@ -56,6 +56,9 @@ struct OrbitChange {
   double larger() const { return parameters > states ? parameters : states; }
 };
 OrbitChange change_by(const OrbitVector& dx, const Orbit& x, const std::vector<int>& free_parameters);
+/// The same where max |u| is known.
+OrbitChange change_by(const OrbitVector& dx, const Orbit& x, const std::vector<int>& free_parameters, double largest);
+double largest_state(const Orbit& x);
 
 std::string describe(NewtonStatus status);
 

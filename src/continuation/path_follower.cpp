@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "bvp/mesh_adaptation.hpp"
+#include "linear_algebra/array_kernel.hpp"
 
 namespace tchat {
 
@@ -112,7 +113,7 @@ void PathFollower::normalise(const Orbit& x, OrbitVector& tangent, OrbitVector& 
 /// From the current factors: the vector that every condition but the border annihilates.
 bool PathFollower::find_tangent(const Orbit& x, OrbitVector& tangent, OrbitVector& dual) {
   problem_.solve(1.0, tangent);
-  if (!tangent.states.allFinite() || !tangent.durations.allFinite() || !tangent.globals.allFinite()) return false;
+  if (!array_functions().range(tangent.states.data(), tangent.states.size()).finite || !tangent.durations.allFinite() || !tangent.globals.allFinite()) return false;
   normalise(x, tangent, dual);
   return true;
 }

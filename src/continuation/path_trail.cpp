@@ -5,6 +5,7 @@
 
 #include "bvp/mesh_adaptation.hpp"
 #include "continuation/path_follower.hpp"
+#include "linear_algebra/array_kernel.hpp"
 
 namespace tchat {
 
@@ -45,7 +46,8 @@ void copy(const PathPoint& point, const std::vector<int>& free, PathTrail::Mark&
 
 /// <dual, place - x>.
 double distance_along(const OrbitVector& dual, const OrbitVector& place, const Orbit& x, const std::vector<int>& free) {
-  double sum = dual.states.cwiseProduct(place.states - x.states).sum();
+  double sum =
+      array_functions().dot_difference(dual.states.data(), place.states.data(), x.states.data(), dual.states.size());
   for (int s = 0; s < x.shape.segments; ++s) sum += dual.durations(s) * (place.durations(s) - x.duration(s));
   for (std::size_t g = 0; g < free.size(); ++g) {
     const auto i = static_cast<Eigen::Index>(g);
@@ -120,7 +122,8 @@ void combine(const PathPoint& from, const std::array<Place, PathTrail::most>& pl
     here -= weights[entry(2 * k)];
     along -= weights[entry(2 * k)] * places[entry(k)].s + weights[entry(2 * k + 1)];
   }
-  sum.states = here * from.orbit.states + along * from.tangent.states;
+  std::array<const double*, most_inputs + 2> arrays{from.orbit.states.data(), from.tangent.states.data()};
+  std::array<double, most_inputs + 2> factors{here, along};
   sum.durations = along * from.tangent.durations;
   sum.globals = along * from.tangent.globals;
   for (int s = 0; s < from.orbit.shape.segments; ++s) sum.durations(s) += here * from.orbit.duration(s);
@@ -130,10 +133,12 @@ void combine(const PathPoint& from, const std::array<Place, PathTrail::most>& pl
     const PathTrail::Mark& mark = from.trail.mark(places[entry(k)].mark);
     const double of_place = weights[entry(2 * k)];
     const double of_tangent = weights[entry(2 * k + 1)] / places[entry(k)].cosine;
-    sum.states += of_place * mark.place.states + of_tangent * mark.tangent.states;
+    arrays[entry(2 * k + 2)] = mark.place.states.data(), factors[entry(2 * k + 2)] = of_place;
+    arrays[entry(2 * k + 3)] = mark.tangent.states.data(), factors[entry(2 * k + 3)] = of_tangent;
     sum.durations += of_place * mark.place.durations + of_tangent * mark.tangent.durations;
     sum.globals += of_place * mark.place.globals + of_tangent * mark.tangent.globals;
   }
+  array_functions().combine(arrays.data(), factors.data(), 2 * count + 2, sum.states.data(), sum.states.size());
 }
 
 }  // namespace
@@ -183,7 +188,8 @@ TrailTerms add_trail(const PathPoint& from, double ds, const std::vector<int>& f
   const int count = useful_places(from, ds, free_parameters, places);
   std::array<Combination, most_inputs + 2> differences;
   divide_differences(places, count, differences);
-  double last = std::abs(ds) * change_by(from.tangent, from.orbit, free_parameters).larger();
+  const double largest = largest_state(from.orbit);
+  double last = std::abs(ds) * change_by(from.tangent, from.orbit, free_parameters, largest).larger();
   TrailTerms terms;
   double product = ds * ds;  // of ds minus the nodes so far
   for (int k = 0; k < count; ++k) {
@@ -194,7 +200,7 @@ TrailTerms add_trail(const PathPoint& from, double ds, const std::vector<int>& f
     combine(from, places, k + 1, weights, free_parameters, term);
     for (int s = 0; s < from.orbit.shape.segments; ++s)
       if (is_constant(from, s)) term.durations(s) = 0.0;
-    const double size = change_by(term, from.orbit, free_parameters).larger();
+    const double size = change_by(term, from.orbit, free_parameters, largest).larger();
     if (!(size <= falling * last)) break;
     advance(x, 1.0, term, free_parameters);
     terms.change += size;

@@ -17,14 +17,14 @@ using Eigen::VectorXd;
 constexpr double none = 1e-9;  // of the sizes of what is summed: zero to rounding
 
 /// What both kinds of map need: A, b, h_x, h_p of one parameter.
-struct Return {
+struct LinearReturn {
   MatrixXd A;
   VectorXd b;
   VectorXd hx;
   double hp;
 };
 
-Return return_of(const HybridSystem& system, const GrazingOrbit& orbit) {
+LinearReturn return_of(const HybridSystem& system, const GrazingOrbit& orbit) {
   const GrazingPoint& at = orbit.point;
   SurfaceRate surface(system.dimension(), 1);
   surface.evaluate(system, {at.field, at.event, at.jump}, at.x.data(), at.par.data(), {orbit.parameter});
@@ -33,7 +33,7 @@ Return return_of(const HybridSystem& system, const GrazingOrbit& orbit) {
 
 int sign(double value) { return value > 0.0 ? 1 : value < 0.0 ? -1 : 0; }
 
-BornOrbit with_square_root(const GrazingPoint& at, const Return& smooth, double clearance, int k) {
+BornOrbit with_square_root(const GrazingPoint& at, const LinearReturn& smooth, double clearance, int k) {
   const Eigen::Index n = at.x.size();
   MatrixXd power = MatrixXd::Identity(n, n);
   std::vector<VectorXd> turned{at.beta};  // A^j beta
@@ -59,7 +59,7 @@ BornOrbit with_square_root(const GrazingPoint& at, const Return& smooth, double 
 }
 
 /// With contact d1 = L d0 + G delta.
-BornOrbit without_square_root(const GrazingOrbit& orbit, const DiscontinuityMap& map, const Return& smooth,
+BornOrbit without_square_root(const GrazingOrbit& orbit, const DiscontinuityMap& map, const LinearReturn& smooth,
                               double clearance, int k) {
   const Eigen::Index n = orbit.A.rows();
   const MatrixXd L = linear_contact(map);
@@ -95,7 +95,7 @@ BornOrbit without_square_root(const GrazingOrbit& orbit, const DiscontinuityMap&
 }  // namespace
 
 BornOrbits born_orbits(const HybridSystem& system, const GrazingOrbit& orbit, const DiscontinuityMap& map, int most) {
-  const Return smooth = return_of(system, orbit);
+  const LinearReturn smooth = return_of(system, orbit);
   const Eigen::Index n = orbit.A.rows();
   BornOrbits result;
   result.has_square_root = orbit.point.has_square_root();

@@ -22,41 +22,20 @@ struct LaneFunctions {
   void (*join)(int, int, int, const LanePiece&, const LanePiece&, double*);
 };
 
-namespace {
-namespace baseline_lanes {
-constexpr int part_lanes = 2;
-#include "linear_algebra/lane_functions.inc"
-}  // namespace baseline_lanes
-}  // namespace
-
-#ifdef __x86_64__
-#ifdef __clang__
-#pragma clang attribute push(__attribute__((target("avx2"))), apply_to = function)
-#else
-#pragma GCC push_options
-#pragma GCC target("avx2")
-#endif
-namespace {
-namespace avx2_lanes {
-constexpr int part_lanes = 4;
-#include "linear_algebra/lane_functions.inc"  // NOLINT(readability-duplicate-include): for another instruction set
-}  // namespace avx2_lanes
-}  // namespace
-#ifdef __clang__
-#pragma clang attribute pop
-#else
-#pragma GCC pop_options
-#endif
-#endif
+#define TCHAT_VECTOR_NAMESPACE lane_sets
+#define TCHAT_VECTOR_FUNCTIONS "linear_algebra/lane_functions.inc"
+#include "linear_algebra/each_vector_set.inc"
+#undef TCHAT_VECTOR_FUNCTIONS
+#undef TCHAT_VECTOR_NAMESPACE
 
 namespace {
 
 const LaneFunctions* lane_functions(VectorSet set) {
 #ifdef __x86_64__
-  if (set == VectorSet::avx2) return &avx2_lanes::functions;
+  if (set == VectorSet::avx2) return &lane_sets::avx2::functions;
 #endif
   static_cast<void>(set);
-  return &baseline_lanes::functions;
+  return &lane_sets::baseline::functions;
 }
 
 }  // namespace

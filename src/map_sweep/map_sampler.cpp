@@ -13,7 +13,7 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-constexpr Index identity_points = 32;  // of a motion that does not repeat itself, by which it is known
+constexpr Index compared_sections = 32;  // of a motion that does not repeat itself, by which it is known
 
 /// The period begins where its sequence of index vectors is least; among equal ones where the state is.
 Index least_rotation(const Signature& signature, const Eigen::MatrixXd& points) {
@@ -90,8 +90,9 @@ AttractorSample MapSampler::operator()(const SweepPoint& point, const std::funct
   if (attractor.period > 0) describe_period(model_, attractor, sample);
   for (const double penetration : attractor.penetrations)
     if (std::isfinite(penetration)) sample.penetration = std::fmax(sample.penetration, penetration);
-  sample.identity = attractor.period > 0 ? sample.sections
-                                         : sample.sections.leftCols(std::min(identity_points, sample.sections.cols()));
+  sample.identity = attractor.period > 0
+                        ? sample.sections
+                        : sample.sections.leftCols(std::min(compared_sections, sample.sections.cols()));
   if (attractor.spectrum && setup_.iteration.exponents > 0) {
     const Index count = std::min<Index>(setup_.iteration.exponents, attractor.spectrum->exponents.size());
     sample.exponents = attractor.spectrum->exponents.head(count);

@@ -18,10 +18,10 @@ namespace {
 namespace fs = std::filesystem;
 
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
-bool is_word_character(char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == '_'; }
+bool is_name_character(char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == '_'; }
 
 void require_name(const std::string& name) {
-  if (!name.empty() && is_letter(name[0]) && std::all_of(name.begin(), name.end(), is_word_character)) return;
+  if (!name.empty() && is_letter(name[0]) && std::all_of(name.begin(), name.end(), is_name_character)) return;
   throw UserError(
       fmt::format("'{}' cannot be the name of a problem; needed is a letter followed by letters, digits and "
                   "underscores, for example: tchat new two_walls",

@@ -16,18 +16,18 @@ namespace {
 
 constexpr std::size_t most_errors = 5;
 
-struct Place {
+struct PlaceInText {
   std::string file;
   int line = 0;
-  bool operator==(const Place&) const = default;
+  bool operator==(const PlaceInText&) const = default;
 };
 
 struct CompileError {
-  Place place;
-  std::string text;                  // the compiler's, names shortened
-  std::string called = {};           // the function whose argument does not fit, as declared
-  bool called_is_foreign = false;    // it is declared in a header of the system
-  std::optional<Place> opened = {};  // the bracket that is not closed
+  PlaceInText place;
+  std::string text;                        // the compiler's, names shortened
+  std::string called = {};                 // the function whose argument does not fit, as declared
+  bool called_is_foreign = false;          // it is declared in a header of the system
+  std::optional<PlaceInText> opened = {};  // the bracket that is not closed
 };
 
 bool contains(std::string_view text, std::string_view part) { return text.find(part) != std::string_view::npos; }
@@ -67,7 +67,7 @@ std::string tidied(std::string text) {
 
 /// "FILE:LINE:COLUMN: rest" or "FILE:LINE: rest" at the begin of a line.
 struct Positioned {
-  Place place;
+  PlaceInText place;
   std::string rest;
 };
 
@@ -95,7 +95,7 @@ std::vector<std::string> lines_of_file(const std::string& file) {
   return lines;
 }
 
-std::string line_of(const Place& place) {
+std::string line_of(const PlaceInText& place) {
   const std::vector<std::string> lines = lines_of_file(place.file);
   if (place.line < 1 || static_cast<std::size_t>(place.line) > lines.size()) return "";
   const std::string& line = lines[static_cast<std::size_t>(place.line) - 1];
@@ -123,7 +123,7 @@ class OutputReader {
   std::vector<CompileError> errors() const { return errors_; }
 
  private:
-  bool is_authors(const Place& place) const {
+  bool is_authors(const PlaceInText& place) const {
     return !place.file.starts_with(include_folder_ + "/") && !place.file.starts_with("/usr/") &&
            !place.file.starts_with("<");
   }
@@ -163,8 +163,8 @@ class OutputReader {
 
   std::string include_folder_;
   std::vector<CompileError> errors_;
-  std::optional<Place> context_;  // from where the author's code has come to where the next error is
-  bool placed_ = false;           // the last error is at a place of the author's
+  std::optional<PlaceInText> context_;  // from where the author's code has come to where the next error is
+  bool placed_ = false;                 // the last error is at a place of the author's
 };
 
 /// The first word in single quotes that is a name, without std::, arguments and template arguments.
@@ -308,7 +308,7 @@ constexpr Cure cures[] = {wrong_call,     undeclared,        narrowed,     cast,
 constexpr std::string_view own_words = "tchat: ";  // the static assertions of problem.hpp
 
 /// The assertions are in problem.hpp; the first word in backticks is the author's, if he has it.
-Place place_of_word(const Place& place, const std::string& text) {
+PlaceInText place_of_word(const PlaceInText& place, const std::string& text) {
   const std::size_t begin = text.find('`');
   const std::size_t end = begin == std::string::npos ? begin : text.find('`', begin + 1);
   if (end == std::string::npos) return place;
@@ -326,7 +326,7 @@ std::string explained(const CompileError& error, const KnownFunctions& known) {
   if (own != std::string::npos) {
     std::string text = error.text.substr(own + own_words.size());
     std::erase(text, '"');
-    const Place place = place_of_word(error.place, text);
+    const PlaceInText place = place_of_word(error.place, text);
     return fmt::format("{}:{}: {}\n      {}\n", place.file, place.line, text, line_of(place));
   }
   const std::string line = line_of(error.place);
@@ -355,7 +355,7 @@ std::string short_errors(const std::string& output, const std::string& include_f
   for (std::string line; std::getline(in, line);) reader.read(line);
   const KnownFunctions known(include_folder);
   std::vector<std::string> texts;
-  std::vector<Place> seen;
+  std::vector<PlaceInText> seen;
   for (const CompileError& error : decisive(reader.errors())) {
     const bool own = contains(error.text, own_words);
     if (!own && std::find(seen.begin(), seen.end(), error.place) != seen.end()) continue;

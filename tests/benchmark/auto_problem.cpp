@@ -11,6 +11,18 @@ namespace tchat::benchmark {
 
 namespace {
 
+// Routines that AUTO-07p calls, too, in every problem.
+constexpr const char* unused_functions = R"(
+subroutine ICND
+end subroutine ICND
+
+subroutine FOPT
+end subroutine FOPT
+
+subroutine PVLS
+end subroutine PVLS
+)";
+
 constexpr const char* functions = R"(
 subroutine FUNC(NDIM, U, ICP, PAR, IJAC, F, DFDU, DFDP)
   use orbit
@@ -115,15 +127,6 @@ subroutine STPNT(NDIM, U, PAR, TAU)
     PAR(duration - 1 + s) = period
   end do
 end subroutine STPNT
-
-subroutine ICND
-end subroutine ICND
-
-subroutine FOPT
-end subroutine FOPT
-
-subroutine PVLS
-end subroutine PVLS
 )";
 
 // What the chain's module has besides its numbers, and its functions.
@@ -234,15 +237,6 @@ subroutine STPNT(NDIM, U, PAR, TAU)
   PAR(duration) = start_period
   U = states(:, 1 + nint(TAU * (nodes - 1)))
 end subroutine STPNT
-
-subroutine ICND
-end subroutine ICND
-
-subroutine FOPT
-end subroutine FOPT
-
-subroutine PVLS
-end subroutine PVLS
 )";
 
 std::string constant(const char* name, double value) {
@@ -257,7 +251,7 @@ std::string auto_chain_source(int n, int intervals) {
              "module orbit\n  implicit none\n  integer, parameter :: masses = {}, n = {}, nodes = {}, duration = {}\n",
              (n - 2) / 2, n, intervals * collocation_points + 1, auto_first_duration) +
          constant("omega", data.omega) + constant("zeta", data.zeta) + constant("restitution", data.restitution) +
-         constant("kappa", chain_coupling) + chain_functions;
+         constant("kappa", chain_coupling) + chain_functions + unused_functions;
 }
 
 std::string auto_chain_start(const Orbit& x) {
@@ -275,7 +269,7 @@ std::string auto_source(int segments) {
                      auto_first_duration) +
          constant("alpha", data.alpha) + constant("omega", data.omega) + constant("zeta", data.zeta) +
          constant("restitution", data.restitution) + constant("velocity", data.velocity) + constant("phase1", data.y1) +
-         constant("phase2", data.y2) + "end module orbit\n" + functions;
+         constant("phase2", data.y2) + "end module orbit\n" + functions + unused_functions;
 }
 
 std::string auto_constants(const AutoSettings& settings) {

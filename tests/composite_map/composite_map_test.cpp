@@ -10,7 +10,8 @@
 #include "simulation/hybrid_simulation.hpp"
 #include "simulation/orbit_flow.hpp"
 
-namespace tchat::test {
+using namespace tchat;
+using namespace tchat::test;
 
 namespace {
 
@@ -310,5 +311,3 @@ TEST_CASE("iterates that leave the neighbourhood of the grazing orbit are told a
   CHECK(attractor.kind == AttractorKind::escape);
   CHECK(attractor.message.find("too far from grazing") != std::string::npos);
 }
-
-}  // namespace tchat::test

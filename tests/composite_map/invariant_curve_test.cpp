@@ -5,7 +5,8 @@
 #include "composite_map/invariant_curve.hpp"
 #include "text/user_error.hpp"
 
-namespace tchat::test {
+using namespace tchat;
+using namespace tchat::test;
 
 namespace {
 
@@ -119,5 +120,3 @@ TEST_CASE("projections to a curve: by an angle, by the angle of a pair, to the n
   }
   CHECK_THROWS_WITH(CurveProjection(curve, 0, 2), Catch::Contains("no graph"));
 }
-
-}  // namespace tchat::test

@@ -8,7 +8,8 @@
 #include "grazing_problems.hpp"
 #include "simulation/segment_flow.hpp"
 
-namespace tchat::test {
+using namespace tchat;
+using namespace tchat::test;
 
 namespace {
 
@@ -144,5 +145,3 @@ TEST_CASE("second order of rand3d's smooth return against differences of its fir
       CHECK(largest(map.second[static_cast<std::size_t>(i)].row(k) - difference.row(i)) < 1e-7);
   }
 }
-
-}  // namespace tchat::test

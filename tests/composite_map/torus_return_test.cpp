@@ -7,7 +7,8 @@
 #include "simulation/segment_flow.hpp"
 #include "text/user_error.hpp"
 
-namespace tchat::test {
+using namespace tchat;
+using namespace tchat::test;
 
 namespace {
 
@@ -19,10 +20,10 @@ using Eigen::VectorXd;
 TEST_CASE("fvdp's smooth torus: mu*, x3* and the curve's second derivative, and the map that it makes", "[slow]") {
   const HybridSystem& system = system_of<ForcedVanDerPol>();
   const VectorXd par = full_par({5.0, 0.1, 0.75, 1.505, 0.8, 2.9236851});
-  const MatrixXd points = torus_points(par, 2, 4000);
+  const MatrixXd all = torus_points(par, 2, 10000);
   CurveSettings settings;
   settings.angles = {2};
-  const FittedCurve fit = fit_invariant_curve(points, settings, "points");
+  const FittedCurve fit = fit_invariant_curve(all.leftCols(4000), settings, "points");
   INFO("error " << fit.error << " rho " << fit.curve.rotation() << " harmonics " << fit.curve.harmonics());
   CHECK(fit.error < 1e-9);
   const CurveProjection projection(fit.curve, 2);
@@ -46,7 +47,6 @@ TEST_CASE("fvdp's smooth torus: mu*, x3* and the curve's second derivative, and 
   CHECK(map.defect() < 1e-8);
   CHECK_FALSE(map.depends_on_parameters());
   // 10^4 iterates beside the simulated torus: it is told to 1e-7 where each lies.
-  const MatrixXd all = torus_points(par, 2, 10000);
   VectorXd x = all.col(0);
   double worst = 0.0;
   for (Eigen::Index k = 0; k < all.cols(); ++k) {
@@ -88,5 +88,3 @@ TEST_CASE("fvdp's smooth torus: mu*, x3* and the curve's second derivative, and 
   CHECK_THROWS_WITH(TorusReturn(suspended, fit.curve, projection, elsewhere, suspended->least_distance(), {}),
                     Catch::Contains("does not take the invariant curve to itself") && Catch::Contains("PAR(k)=v"));
 }
-
-}  // namespace tchat::test

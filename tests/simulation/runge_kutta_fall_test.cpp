@@ -5,7 +5,8 @@
 #include "simulation/runge_kutta_flow.hpp"
 #include "support/van_der_pol.hpp"
 
-namespace tchat::test {
+using namespace tchat;
+using namespace tchat::test;
 
 // The Newton steps to an event repeat the method's step from one start with other lengths: each with the field there.
 TEST_CASE("Runge-Kutta flows come to their events as accurately as they are integrated") {
@@ -34,5 +35,3 @@ TEST_CASE("Runge-Kutta flows come to their events as accurately as they are inte
     }
   }
 }
-
-}  // namespace tchat::test

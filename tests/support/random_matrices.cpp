@@ -2,13 +2,18 @@
 
 #include <Eigen/LU>
 #include <Eigen/QR>
-#include <Eigen/SVD>
+#include <algorithm>
 #include <stdexcept>
 
 // LAPACK: generalised eigenvalues (alpha_r + i alpha_i) / beta of the pair (a, b), which are overwritten.
 extern "C" void dggev_(const char* left, const char* right, const int* n, double* a, const int* lda, double* b,
                        const int* ldb, double* alpha_r, double* alpha_i, double* beta, double* vl, const int* ldvl,
                        double* vr, const int* ldvr, double* work, const int* length, int* info);
+
+// LAPACK: singular values of `a`, which is overwritten.
+extern "C" void dgesvd_(const char* job_u, const char* job_vt, const int* rows, const int* columns, double* a,
+                        const int* lda, double* values, double* u, const int* ldu, double* vt, const int* ldvt,
+                        double* work, const int* length, int* info);
 
 namespace tchat::test {
 
@@ -24,7 +29,15 @@ Eigen::MatrixXd random_orthogonal(std::mt19937& generator, int n) {
 double determinant(const Eigen::MatrixXd& matrix) { return matrix.determinant(); }
 
 double condition_number(const Eigen::MatrixXd& matrix) {
-  const Eigen::VectorXd values = matrix.jacobiSvd().singularValues();
+  const int rows = static_cast<int>(matrix.rows()), columns = static_cast<int>(matrix.cols()), one = 1;
+  const int length = 8 * (rows + columns);
+  Eigen::MatrixXd a = matrix;
+  Eigen::VectorXd values(std::min(rows, columns)), work(length);
+  int info = 0;
+  double none = 0.0;
+  dgesvd_("N", "N", &rows, &columns, a.data(), &rows, values.data(), &none, &one, &none, &one, work.data(), &length,
+          &info);
+  if (info != 0) throw std::runtime_error("dgesvd found no singular values");
   return values(0) / values(values.size() - 1);
 }
 

@@ -1,0 +1,36 @@
+/// Sums over long arrays, as following a branch has them: vectors of all unknowns of an orbit.
+///
+/// Like those of lane_kernel.hpp the functions are compiled for several kinds of processors, one of which is chosen
+/// when the program runs, and all of them do the same operations in the same order: entry i belongs to lane i % 4 of
+/// sum i / 4 % 4 while 16 are left, the rest to the first sum.
+#pragma once
+
+#include "linear_algebra/lane_kernel.hpp"
+
+namespace tchat {
+
+/// The largest magnitude among the entries of an array, and whether all of them are finite.
+struct ArrayRange {
+  double largest;
+  bool finite;
+};
+
+struct ArrayFunctions {
+  /// sum a_i b_i
+  double (*dot)(const double* a, const double* b, long count);
+  /// sum a_i (b_i - c_i)
+  double (*dot_difference)(const double* a, const double* b, const double* c, long count);
+  ArrayRange (*range)(const double* a, long count);
+  /// y += factor a
+  void (*add)(double factor, const double* a, double* y, long count);
+  /// y = sum of weights[k] arrays[k], one after the other; y is none of them.
+  void (*combine)(const double* const* arrays, const double* weights, int arrays_count, double* y, long count);
+  /// y_i += h sum_k mass[i nodes + k] v_k for nodes of n entries, one after the other, times weights[a] for entry a.
+  void (*add_mass)(double h, const double* mass, int nodes, const double* weights, int n, const double* v, double* y);
+};
+
+/// Those for what this processor has.
+const ArrayFunctions& array_functions();
+const ArrayFunctions& array_functions(VectorSet set);
+
+}  // namespace tchat
