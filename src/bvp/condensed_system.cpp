@@ -79,7 +79,6 @@ CondensedSystem::CondensedSystem(const DefiningSystem& system, const OrbitShape&
   rhs_ = zeros(lu_.size());
   solution_ = rhs_;
   x_ = slope_ = zeros(n_);
-  zero_ = make_residual();
 }
 
 SparseLu CondensedSystem::make_sparse() {

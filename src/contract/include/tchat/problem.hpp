@@ -352,7 +352,7 @@ class ProblemTable {
     }
   }
 
-  /// In the columns that are carried at once, and directions two by two.
+  /// Directions one by one: two in one dual number are slower, and every kind of dual number has to be compiled.
   static void second_at_points(const void* self, std::int32_t kind, std::int32_t index, std::int32_t points,
                                std::int32_t directions, const double* x, const double* par, const std::int32_t* active,
                                std::int32_t active_count, const double* v, const double* q, const double* weights,
@@ -360,9 +360,7 @@ class ProblemTable {
     std::fill_n(gradient, static_cast<std::ptrdiff_t>(points) * (n + active_count), 0.0);
     const WeightedPoints at{self,   kind,         index, points, directions, x,   par,
                             active, active_count, v,     q,      weights,    out, gradient};
-    int k = 0;
-    for (; k + 2 <= directions; k += 2) add_directions<2>(at, k);
-    if (k < directions) add_directions<1>(at, k);
+    for (int k = 0; k < directions; ++k) add_direction(at, k);
   }
 
   /// The arguments of second_at_points.
@@ -380,10 +378,9 @@ class ProblemTable {
     double* gradient;
   };
 
-  /// Of directions first..first + Count - 1; u . F belongs to direction 0.
-  template <int Count>
-  static void add_directions(const WeightedPoints& at, int first) {
-    using T = Dual<width, Dual<Count>>;
+  /// The share of direction k in the gradients; u . F belongs to direction 0.
+  static void add_direction(const WeightedPoints& at, int k) {
+    using T = Dual<width, Dual<1>>;
     const int r = rows(at.kind);
     const int columns = n + at.active_count;
     for (int begin = 0; begin < columns; begin += width) {
@@ -395,34 +392,30 @@ class ProblemTable {
       load(at.x, at.par, xs, ps, ts);
       for (int c = n; c < columns; ++c)
         if (T* moved = variable(c, at.active, xs, ps, ts))
-          for (int k = 0; k < Count; ++k)
-            moved->value.derivative[static_cast<std::size_t>(k)] += at.q[(first + k) * at.active_count + c - n];
-      for (int k = 0; k < count; ++k)
-        if (T* seed = variable(begin + k, at.active, xs, ps, ts)) seed->derivative[static_cast<std::size_t>(k)] = 1.0;
+          moved->value.derivative[0] += at.q[k * at.active_count + c - n];
+      for (int c = 0; c < count; ++c)
+        if (T* seed = variable(begin + c, at.active, xs, ps, ts)) seed->derivative[static_cast<std::size_t>(c)] = 1.0;
       for (std::ptrdiff_t point = 0; point < at.points; ++point) {
-        const double* const x = at.x + point * n;
-        const double* const v = at.v + (point * at.directions + first) * n;
+        const double* const v = at.v + (point * at.directions + k) * n;
         for (int i = 0; i < n; ++i) {
-          auto& value = xs[static_cast<std::size_t>(i)].value;
-          value.value = x[i];
-          for (int k = 0; k < Count; ++k) value.derivative[static_cast<std::size_t>(k)] = v[k * n + i];
+          Dual<1>& value = xs[static_cast<std::size_t>(i)].value;
+          value.value = at.x[point * n + i];
+          value.derivative[0] = v[i];
         }
         for (T& y : ys) y.value = NAN;
         evaluate<T>(at.self, at.kind, at.index, xs.data(), ps.data(), ts.data(), ys.data());
         const double* const weights = at.weights + point * (at.directions + 1) * r;
-        double* const out = at.out + (point * at.directions + first) * r;
+        double* const out = at.out + (point * at.directions + k) * r;
         double* const gradient = at.gradient + point * columns + begin;
         for (int i = 0; i < r; ++i) {
           const T& y = ys[static_cast<std::size_t>(i)];
           const double unknown = y.value.value - y.value.value;  // NaN where it cannot be evaluated
-          for (int k = 0; k < Count; ++k) out[k * r + i] = y.value.derivative[static_cast<std::size_t>(k)] + unknown;
-          const double u = first == 0 ? weights[at.directions * r + i] + unknown : unknown;
+          const double w = weights[k * r + i];
+          const double u = (k == 0 ? weights[at.directions * r + i] : 0.0) + unknown;
+          out[i] = y.value.derivative[0] + unknown;
           for (int c = 0; c < count; ++c) {
-            const auto& by = y.derivative[static_cast<std::size_t>(c)];
-            double sum = u * by.value;
-            for (int k = 0; k < Count; ++k)
-              sum += weights[(first + k) * r + i] * by.derivative[static_cast<std::size_t>(k)];
-            gradient[c] += sum;
+            const Dual<1>& by = y.derivative[static_cast<std::size_t>(c)];
+            gradient[c] += u * by.value + w * by.derivative[0];
           }
         }
       }
