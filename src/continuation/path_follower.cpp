@@ -113,7 +113,9 @@ void PathFollower::normalise(const Orbit& x, OrbitVector& tangent, OrbitVector& 
 /// From the current factors: the vector that every condition but the border annihilates.
 bool PathFollower::find_tangent(const Orbit& x, OrbitVector& tangent, OrbitVector& dual) {
   problem_.solve(1.0, tangent);
-  if (!array_functions().range(tangent.states.data(), tangent.states.size()).finite || !tangent.durations.allFinite() || !tangent.globals.allFinite()) return false;
+  if (!array_functions().range(tangent.states.data(), tangent.states.size()).finite || !tangent.durations.allFinite() ||
+      !tangent.globals.allFinite())
+    return false;
   normalise(x, tangent, dual);
   return true;
 }

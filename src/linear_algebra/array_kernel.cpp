@@ -1,12 +1,12 @@
 #include "linear_algebra/array_kernel.hpp"
 
+namespace tchat {
+
 #define TCHAT_VECTOR_NAMESPACE array_sets
 #define TCHAT_VECTOR_FUNCTIONS "linear_algebra/array_functions.inc"
 #include "linear_algebra/each_vector_set.inc"
 #undef TCHAT_VECTOR_FUNCTIONS
 #undef TCHAT_VECTOR_NAMESPACE
-
-namespace tchat {
 
 const ArrayFunctions& array_functions(VectorSet set) {
 #ifdef __x86_64__
