@@ -2,17 +2,28 @@
 
 #include <algorithm>
 
+#include "bvp/with_dimension.hpp"
+
 namespace tchat {
 
-CondensedReturnMap::CondensedReturnMap(const DefiningSystem& system, const OrbitShape& shape)
+namespace {
+
+/// The field is asked for the Gauss points of so many intervals at once.
+constexpr int intervals_at_once = 8;
+
+}  // namespace
+
+CondensedReturnMap::CondensedReturnMap(const DefiningSystem& system, const OrbitShape& shape, int vectors)
     : system_(system),
       shape_(shape),
       n_(shape.dimension),
       size_(shape.segments * (2 * shape.dimension + 1)),
       condensed_weights_(static_cast<std::size_t>(shape.segments * shape.dimension)),
-      collocation_weights_(
-          static_cast<std::size_t>(shape.segments * shape.intervals * shape.collocation * shape.dimension)),
-      point_(n_),
+      collocation_weights_(static_cast<std::size_t>(vectors),
+                           std::vector<double>(static_cast<std::size_t>(shape.segments * shape.intervals *
+                                                                        shape.collocation * shape.dimension))),
+      curvature_(system.system(), FunctionKind::field, system.free_parameters(),
+                 std::min(intervals_at_once, shape.intervals) * shape.collocation, vectors),
       f_(n_),
       d_(n_),
       hx_(n_),
@@ -77,66 +88,105 @@ void CondensedReturnMap::parameter_column(const CondensedSystem& condensed, cons
   }
 }
 
-void CondensedReturnMap::subtract_derivative(CondensedSystem& condensed, const Orbit& x, const double* v,
-                                             const double* w, OrbitVector& extended, OrbitVector& gradient) {
+void CondensedReturnMap::subtract_derivative(CondensedSystem& condensed, const Orbit& x, const double* w,
+                                             std::span<const OrbitVector> extended, OrbitVector& gradient) {
   const int block = 2 * n_ + 1;
-  condensed.extend(v, extended);
-  direction_.tail(system_.free_count()) = extended.globals;
-  for (int s = 0; s < shape_.segments; ++s)
-    std::copy_n(w + s * block, n_, condensed_weights_.begin() + static_cast<std::ptrdiff_t>(s) * n_);
-  condensed.extend_adjoint(condensed_weights_.data(), collocation_weights_);
-  const double* weights = collocation_weights_.data();
-  for (int s = 0; s < shape_.segments; ++s) {
-    for (int j = 0; j < shape_.intervals; ++j, weights += shape_.collocation * n_)
-      add_interval(condensed, x, s, j, weights, extended, gradient);
-    add_ends(x, s, w + s * block, extended, gradient);
+  for (int k = 0; k < curvature_.directions(); ++k) {
+    const double* const weights = w + static_cast<std::ptrdiff_t>(k) * size_;
+    for (int s = 0; s < shape_.segments; ++s)
+      std::copy_n(weights + s * block, n_, condensed_weights_.begin() + static_cast<std::ptrdiff_t>(s) * n_);
+    condensed.extend_adjoint(condensed_weights_.data(), collocation_weights_[static_cast<std::size_t>(k)]);
+    const OrbitVector& v = extended[static_cast<std::size_t>(k)];
+    std::copy_n(v.globals.data(), v.globals.size(), curvature_.parameter_direction(k));
+    direction_.tail(system_.free_count()) = v.globals;
+    for (int s = 0; s < shape_.segments; ++s) add_ends(x, s, weights + s * block, v, gradient);
   }
+  for (int s = 0; s < shape_.segments; ++s)
+    for (int first = 0; first < shape_.intervals; first += intervals_at_once) {
+      const int last = std::min(first + intervals_at_once, shape_.intervals);
+      put_points(condensed, x, s, first, last, extended);
+      put_weights(x, s, first, last, extended);
+      curvature_.compute(system_.signature()[static_cast<std::size_t>(s)].field, (last - first) * shape_.collocation,
+                         x.par.data());
+      add_intervals(condensed, x, s, first, last, gradient);
+    }
 }
 
-/// Collocation rows: slope v - h T f_x v - h sigma f. The innermost loops of a curve: plain ones, no temporaries.
-void CondensedReturnMap::add_interval(const CondensedSystem& condensed, const Orbit& x, int s, int j,
-                                      const double* weights, const OrbitVector& v, OrbitVector& gradient) {
-  const HybridSystem& hybrid = system_.system();
+/// States and null vectors at the Gauss points of intervals first..last - 1.
+void CondensedReturnMap::put_points(const CondensedSystem& condensed, const Orbit& x, int s, int first, int last,
+                                    std::span<const OrbitVector> extended) {
   const Eigen::MatrixXd& value = condensed.rule().value;
-  const std::vector<int>& free = system_.free_parameters();
-  const int n = n_;
   const int c = shape_.collocation;
-  const int q = system_.free_count();
-  const int field = system_.signature()[static_cast<std::size_t>(s)].field;
-  const double h = x.mesh[static_cast<std::size_t>(j + 1)] - x.mesh[static_cast<std::size_t>(j)];
-  const double duration = x.duration(s);
-  const double sigma = v.durations(s);
-  const int column = s * shape_.nodes() + j * c;
-  const double* const states = x.states.col(column).data();
-  const double* const deviations = v.states.col(column).data();
-  double* const by_states = gradient.states.col(column).data();
-  // h (T w^T f_xx v + sigma w^T f_x) for one variable
-  const auto weighted = [&](const double* second, const double* first, const double* w) {
-    double sum = 0.0;
-    for (int b = 0; b < n; ++b) sum += (duration * second[b] + sigma * first[b]) * w[b];
-    return h * sum;
+  const auto interpolate = [&](auto n, const double* nodes, int g, double* to) {
+    for (int a = 0; a < n; ++a) to[a] = value(g, 0) * nodes[a];
+    for (int i = 1; i <= c; ++i)
+      for (int a = 0; a < n; ++a) to[a] += value(g, i) * nodes[i * n + a];
   };
-  for (int g = 0; g < c; ++g, weights += n) {
-    for (int a = 0; a < n; ++a) {
-      double at = 0.0;
-      double along = 0.0;
-      for (int i = 0; i <= c; ++i) {
-        at += value(g, i) * states[i * n + a];
-        along += value(g, i) * deviations[i * n + a];
+  with_dimension(n_, [&](auto n) {
+    int point = 0;
+    for (int j = first; j < last; ++j)
+      for (int g = 0; g < c; ++g, ++point) {
+        interpolate(n, x.node(s, j * c), g, curvature_.point(point));
+        for (int k = 0; k < curvature_.directions(); ++k)
+          interpolate(n, extended[static_cast<std::size_t>(k)].states.col(s * shape_.nodes() + j * c).data(), g,
+                      curvature_.direction(point, k));
       }
-      point_(a) = at;
-      direction_(a) = along;
+  });
+}
+
+/// Collocation rows: slope v - h T (f_x v + f_p q) - h sigma f, with the weights w; minus their derivative is that of
+/// u . f + (h T w) . (f_x v + f_p q), u = h sigma w.
+void CondensedReturnMap::put_weights(const Orbit& x, int s, int first, int last,
+                                     std::span<const OrbitVector> extended) {
+  const int c = shape_.collocation;
+  const double duration = x.duration(s);
+  with_dimension(n_, [&](auto n) {
+    int point = 0;
+    for (int j = first; j < last; ++j) {
+      const double h = x.mesh[static_cast<std::size_t>(j + 1)] - x.mesh[static_cast<std::size_t>(j)];
+      for (int g = 0; g < c; ++g, ++point) {
+        const auto from = static_cast<std::size_t>(((s * shape_.intervals + j) * c + g) * n_);
+        double* const u = curvature_.value_weights(point);
+        for (int a = 0; a < n; ++a) u[a] = 0.0;
+        for (int k = 0; k < curvature_.directions(); ++k) {
+          const double* const w = &collocation_weights_[static_cast<std::size_t>(k)][from];
+          const double along = h * duration;
+          const double sigma = h * extended[static_cast<std::size_t>(k)].durations(s);
+          double* const scaled = curvature_.weights(point, k);
+          for (int a = 0; a < n; ++a) scaled[a] = along * w[a];
+          for (int a = 0; a < n; ++a) u[a] += sigma * w[a];
+        }
+      }
     }
-    hybrid.first(FunctionKind::field, field, point_.data(), x.par.data(), free, f_.data(), fx_.data(), fp_.data());
-    hybrid.second(FunctionKind::field, field, point_.data(), x.par.data(), free, direction_.data(), d_.data(),
-                  dx_.data(), dp_.data());
-    for (int a = 0; a < n; ++a) {
-      const double by_state = weighted(&dx_(0, a), &fx_(0, a), weights);
-      for (int i = 0; i <= c; ++i) by_states[i * n + a] += value(g, i) * by_state;
-      gradient.durations(s) += h * weights[a] * d_(a);
+  });
+}
+
+/// What the field says at the Gauss points of intervals first..last - 1.
+void CondensedReturnMap::add_intervals(const CondensedSystem& condensed, const Orbit& x, int s, int first, int last,
+                                       OrbitVector& gradient) {
+  const Eigen::MatrixXd& value = condensed.rule().value;
+  const int c = shape_.collocation;
+  with_dimension(n_, [&](auto n) {
+    int point = 0;
+    double by_duration = 0.0;
+    for (int j = first; j < last; ++j) {
+      const double h = x.mesh[static_cast<std::size_t>(j + 1)] - x.mesh[static_cast<std::size_t>(j)];
+      double* const by_states = gradient.states.col(s * shape_.nodes() + j * c).data();
+      for (int g = 0; g < c; ++g, ++point) {
+        const double* const by_point = curvature_.gradient(point);
+        for (int i = 0; i <= c; ++i)
+          for (int a = 0; a < n; ++a) by_states[i * n + a] += value(g, i) * by_point[a];
+        for (int k = 0; k < gradient.globals.size(); ++k) gradient.globals(k) += by_point[n_ + k];
+        const auto from = static_cast<std::size_t>(((s * shape_.intervals + j) * c + g) * n_);
+        for (int k = 0; k < curvature_.directions(); ++k) {
+          const double* const w = &collocation_weights_[static_cast<std::size_t>(k)][from];
+          const double* const directional = curvature_.directional(point, k);
+          for (int a = 0; a < n; ++a) by_duration += h * w[a] * directional[a];
+        }
+      }
     }
-    for (int k = 0; k < q; ++k) gradient.globals(k) += weighted(&dp_(0, k), &fp_(0, k), weights);
-  }
+    gradient.durations(s) += by_duration;
+  });
 }
 
 /// Derivatives of h_x v by the state and the free parameters at the end of segment s, into hx_ and hp_. The plane

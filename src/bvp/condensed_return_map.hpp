@@ -10,15 +10,18 @@
 /// belongs to problem types with these sections (180).
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "bvp/condensed_system.hpp"
+#include "hybrid/weighted_second.hpp"
 
 namespace tchat {
 
 class CondensedReturnMap {
  public:
-  CondensedReturnMap(const DefiningSystem& system, const OrbitShape& shape);
+  /// `vectors`: of how many null vectors derivatives are asked for at a time.
+  CondensedReturnMap(const DefiningSystem& system, const OrbitShape& shape, int vectors = 1);
 
   /// m (2n + 1): rows by segment (n condensed, 1 event, n connectivity), unknowns by segment (v_s(0), w_s, sigma_s).
   int size() const { return size_; }
@@ -35,15 +38,19 @@ class CondensedReturnMap {
   /// The columns of free parameter g beside S = S(1): its effect on the same rows, size() entries.
   void parameter_column(const CondensedSystem& condensed, const Orbit& x, int g, double* column);
 
-  /// gradient -= w^T (dS) v for changes of the orbit, the durations and the free parameters; `v` and `w` have size()
-  /// entries. Second derivatives of f, h and g along v extended to all nodes, which `extended` keeps. Its globals are
-  /// read: where they are not zero, S stands for S(1) with its parameters' columns, v for v with these globals.
-  void subtract_derivative(CondensedSystem& condensed, const Orbit& x, const double* v, const double* w,
-                           OrbitVector& extended, OrbitVector& gradient);
+  /// gradient -= the sum of w_k^T (dS) v_k for changes of the orbit, the durations and the free parameters, over all
+  /// `vectors`; w_k has size() entries, one behind the other. v_k is `extended` to all nodes from the ends of segments
+  /// (CondensedSystem::extend): second derivatives of f, h and g along it. Its globals are read: where they are not
+  /// zero, S stands for S(1) with its parameters' columns, v_k for v_k with these globals.
+  void subtract_derivative(CondensedSystem& condensed, const Orbit& x, const double* w,
+                           std::span<const OrbitVector> extended, OrbitVector& gradient);
 
  private:
-  void add_interval(const CondensedSystem& condensed, const Orbit& x, int s, int j, const double* weights,
-                    const OrbitVector& v, OrbitVector& gradient);
+  void put_points(const CondensedSystem& condensed, const Orbit& x, int s, int first, int last,
+                  std::span<const OrbitVector> extended);
+  void put_weights(const Orbit& x, int s, int first, int last, std::span<const OrbitVector> extended);
+  void add_intervals(const CondensedSystem& condensed, const Orbit& x, int s, int first, int last,
+                     OrbitVector& gradient);
   void section_change(const Orbit& x, int s, const Eigen::Ref<const Eigen::VectorXd>& v);
   void add_ends(const Orbit& x, int s, const double* weights, const OrbitVector& v, OrbitVector& gradient);
 
@@ -55,9 +62,10 @@ class CondensedReturnMap {
   std::vector<int> columns_;
   std::vector<std::size_t> factor_positions_;
   std::vector<double> condensed_weights_;
-  std::vector<double> collocation_weights_;
-  // scratch of one collocation point or end of a segment
-  Eigen::VectorXd point_, f_, d_, hx_, hp_, direction_;
+  std::vector<std::vector<double>> collocation_weights_;  // of each vector
+  WeightedSecond curvature_;                              // of the field at the Gauss points of some intervals
+  // scratch of one end of a segment
+  Eigen::VectorXd f_, d_, hx_, hp_, direction_;
   Eigen::MatrixXd fx_, dx_, fp_, dp_;
 };
 

@@ -6,7 +6,12 @@
 
 namespace tchat {
 
-void CondensedSystem::solve(std::span<const double> border, OrbitVector& dx) { solve(zero_, border, dx); }
+/// What is zero in the segments stays zero when it is condensed.
+void CondensedSystem::solve(std::span<const double> border, OrbitVector& dx) {
+  std::fill(rhs_.begin(), rhs_.end() - border_, 0.0);
+  std::copy_n(border.data(), border_, rhs_.end() - border_);
+  solve_and_expand(true, dx);
+}
 
 void CondensedSystem::solve(const OrbitResidual& residual, std::span<const double> border, OrbitVector& dx) {
   double* rhs = rhs_.data();
@@ -22,10 +27,15 @@ void CondensedSystem::solve(const OrbitResidual& residual, std::span<const doubl
     for (int r = 0; r < system_.coupling_rows(s); ++r) *rhs++ = -*coupling++;
     for (int r = 0; r < border_; ++r) border_rhs[r] += condensed[n_ + r];
   }
+  solve_and_expand(false, dx);
+}
+
+/// Of the right-hand side rhs_ and, where it is not homogeneous, those that the segments were condensed with last.
+void CondensedSystem::solve_and_expand(bool homogeneous, OrbitVector& dx) {
   lu_.solve(rhs_.data(), solution_.data());
   const double* globals = solution_.data() + global_unknown(0);
   segment_work_.each(shape_.segments, [&](int s, int thread) {
-    elimination_.expand(s, &solution_[index(start_unknown(s))], globals, false, dx, thread);
+    elimination_.expand(s, &solution_[index(start_unknown(s))], globals, homogeneous, dx, thread);
   });
   for (int g = 0; g < globals_; ++g) dx.globals(g) = solution_[index(global_unknown(g))];
 }

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <type_traits>
+
+#include "bvp/with_dimension.hpp"
 
 namespace tchat {
 
@@ -26,26 +27,6 @@ std::vector<double> zeros(std::ptrdiff_t count) { return std::vector<double>(sta
 void put_dense(int row, int count, int column, int columns, std::vector<int>& row_list, std::vector<int>& column_list) {
   for (int a = 0; a < count; ++a)
     for (int b = 0; b < columns; ++b) row_list.push_back(row + a), column_list.push_back(column + b);
-}
-
-/// Calls work with the dimension as a compile-time number where that is a common one: the loops over states are the
-/// innermost ones and short.
-template <class Work>
-auto with_dimension(int n, Work&& work) {
-  switch (n) {
-    case 2:
-      return work(std::integral_constant<int, 2>{});
-    case 3:
-      return work(std::integral_constant<int, 3>{});
-    case 4:
-      return work(std::integral_constant<int, 4>{});
-    case 5:
-      return work(std::integral_constant<int, 5>{});
-    case 6:
-      return work(std::integral_constant<int, 6>{});
-    default:
-      return work(n);
-  }
 }
 
 /// Multiplications of the elimination of intervals, about: c n columns, of c n rows each, from rows of (c + 1) n.
@@ -98,7 +79,6 @@ CondensedSystem::CondensedSystem(const DefiningSystem& system, const OrbitShape&
   rhs_ = zeros(lu_.size());
   solution_ = rhs_;
   x_ = slope_ = zeros(n_);
-  zero_ = make_residual();
 }
 
 SparseLu CondensedSystem::make_sparse() {

@@ -122,6 +122,7 @@ class CondensedSystem {
   Linearization condense_together(const Orbit& x, std::span<const OrbitVector> rows, OrbitResidual& residual);
   void keep_segment_blocks(int s);
   bool assemble(const Orbit& x, std::span<const OrbitVector> rows, OrbitResidual& residual);
+  void solve_and_expand(bool homogeneous, OrbitVector& dx);
 
   const DefiningSystem& system_;
   OrbitShape shape_;
@@ -150,7 +151,6 @@ class CondensedSystem {
   std::vector<double> solution_;
 
   std::vector<double> x_, slope_;  // scratch of one collocation point
-  OrbitResidual zero_;
 };
 
 }  // namespace tchat

@@ -73,7 +73,8 @@ bool CriticalBranchPoint::evaluate(CondensedSystem& condensed, const Orbit& x) {
   extended_.globals.setZero();
   extended_.globals.head(directions()) = -direction_;
   gradient_.set_zero();
-  map_.subtract_derivative(condensed, x, z.data(), left_null().data(), extended_, gradient_);
+  condensed.extend(z.data(), extended_);
+  map_.subtract_derivative(condensed, x, left_null().data(), std::span(&extended_, 1), gradient_);
   if (unfolded_ != nullptr) choose_next(condensed);
   return true;
 }

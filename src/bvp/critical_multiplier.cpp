@@ -91,7 +91,8 @@ bool CriticalMultiplier::evaluate(CondensedSystem& condensed, const Orbit& x) {
   }
   started_ = true;
   gradient_.set_zero();
-  map_.subtract_derivative(condensed, x, small_v_.data(), small_w_.data(), v_, gradient_);
+  condensed.extend(small_v_.data(), v_);
+  map_.subtract_derivative(condensed, x, small_w_.data(), std::span(&v_, 1), gradient_);
   const double* last = small_w_.data() + map_.last_connectivity_row();
   multiplicity_ = std::inner_product(last, last + condensed.shape().dimension, small_v_.begin(), 0.0);
   return true;

@@ -38,7 +38,7 @@ SparseLu make_newton(const CondensedReturnMap& map) {
 
 CriticalPair::CriticalPair(const DefiningSystem& system, const OrbitShape& shape, std::complex<double> multiplier,
                            std::optional<double> cosine)
-    : map_(system, shape),
+    : map_(system, shape, 2),
       first_multiplier_(multiplier),
       kept_cosine_(cosine),
       lu_(make_newton(map_)),
@@ -47,8 +47,8 @@ CriticalPair::CriticalPair(const DefiningSystem& system, const OrbitShape& shape
       pair_(Eigen::Matrix2d::Identity()),
       plane_(map_.size(), 2),
       border_(map_.size(), 2),
-      extended_(shape, system.free_count()),
-      gradients_(static_cast<std::size_t>(CriticalPair::count()), extended_) {}
+      extended_(2, OrbitVector(shape, system.free_count())),
+      gradients_(static_cast<std::size_t>(CriticalPair::count()), extended_.front()) {}
 
 void CriticalPair::remember(std::vector<double>& memory) const {
   memory.clear();
@@ -197,6 +197,7 @@ bool CriticalPair::evaluate(CondensedSystem& condensed, const Orbit& x) {
   if (!started_ && !begin()) return false;
   if (!find_plane()) return false;
   started_ = true;
+  for (int k = 0; k < 2; ++k) condensed.extend(plane_.col(k).data(), extended_[static_cast<std::size_t>(k)]);
   const Eigen::Vector4d by_determinant(pair_(1, 1), -pair_(1, 0), -pair_(0, 1), pair_(0, 0));
   const Eigen::Vector4d by_cosine(0.5, 0.0, 0.0, 0.5);
   if (!find_gradient(condensed, x, by_determinant, gradients_.front())) return false;
@@ -207,14 +208,12 @@ bool CriticalPair::evaluate(CondensedSystem& condensed, const Orbit& x) {
 /// Of a function of L whose derivatives, row by row, are `by_pair`.
 bool CriticalPair::find_gradient(CondensedSystem& condensed, const Orbit& x, const Eigen::Vector4d& by_pair,
                                  OrbitVector& gradient) {
-  const Eigen::Index size = map_.size();
   rhs_.setZero();
   rhs_.tail<4>() = by_pair;
   lu_.solve_transposed(rhs_.data(), change_.data());
   if (!change_.allFinite()) return false;
   gradient.set_zero();
-  for (int k = 0; k < 2; ++k)
-    map_.subtract_derivative(condensed, x, plane_.col(k).data(), change_.data() + k * size, extended_, gradient);
+  map_.subtract_derivative(condensed, x, change_.data(), extended_, gradient);
   return true;
 }
 

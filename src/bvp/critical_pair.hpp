@@ -11,9 +11,10 @@
 ///
 ///     dG = -sum of w_k^T (dS) v_k:
 ///
-/// two sweeps of second derivatives where one critical multiplier needs one. Regular as long as the pair differs from
-/// the other multipliers, also where its two halves meet: there, at the 1:1 and 1:2 resonance, a torus curve ends, and
-/// pairs of real multipliers of product one (neutral saddles) follow, of which only the nearest are admitted.
+/// two directions in the sweep of second derivatives where one critical multiplier needs one. Regular as long as the
+/// pair differs from the other multipliers, also where its two halves meet: there, at the 1:1 and 1:2 resonance, a
+/// torus curve ends, and pairs of real multipliers of product one (neutral saddles) follow, of which only the nearest
+/// are admitted.
 #pragma once
 
 #include <Eigen/Core>
@@ -72,7 +73,7 @@ class CriticalPair final : public OrbitCondition {
   Plane plane_;           // V
   Plane border_;          // V_last
   bool started_ = false;
-  OrbitVector extended_;
+  std::vector<OrbitVector> extended_;  // the columns of V
   std::vector<OrbitVector> gradients_;
 };
 

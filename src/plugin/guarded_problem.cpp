@@ -82,6 +82,21 @@ struct GuardedProblem::Calls {
     }
   }
 
+  static void second_at_points(const void* self, std::int32_t kind, std::int32_t index, std::int32_t points,
+                               std::int32_t directions, const double* x, const double* par, const std::int32_t* active,
+                               std::int32_t count, const double* v, const double* q, const double* weights, double* out,
+                               double* gradient) {
+    const tchat_problem& plugin = object(self).plugin_;
+    const PluginCall call(object(self).path_.c_str(), place_of(kind), index);
+    try {
+      plugin.second_at_points(plugin.self, kind, index, points, directions, x, par, active, count, v, q, weights, out,
+                              gradient);
+    } catch (...) {
+      set_nan(out, points * directions * rows(plugin, kind));
+      set_nan(gradient, points * (plugin.dimension + count));
+    }
+  }
+
   static std::int32_t successors(const void* self, const std::int32_t from[3], const double* x, const double* par,
                                  std::int32_t* to, std::int32_t capacity) {
     const tchat_problem& plugin = object(self).plugin_;
@@ -166,6 +181,7 @@ GuardedProblem::GuardedProblem(const tchat_problem& plugin, const std::string& p
   if (plugin.first != nullptr) table_.first = &Calls::first;
   if (plugin.second != nullptr) table_.second = &Calls::second;
   if (plugin.first_at_points != nullptr) table_.first_at_points = &Calls::first_at_points;
+  if (plugin.second_at_points != nullptr) table_.second_at_points = &Calls::second_at_points;
   if (plugin.boundary != nullptr) table_.boundary = &Calls::boundary;
   if (plugin.boundary_first != nullptr) table_.boundary_first = &Calls::boundary_first;
   if (plugin.successors != nullptr) table_.successors = &Calls::successors;

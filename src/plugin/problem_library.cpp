@@ -173,10 +173,11 @@ const tchat_problem* find_table(const std::string& path, void* handle) {
   return table;
 }
 
-/// A table made before boundary value problems, sliding modes or many points at once has none of their members.
+/// A table made before boundary value problems, sliding modes or many points at once, for first derivatives or for
+/// second ones, has none of their members.
 tchat_problem completed(const tchat_problem& table) {
-  const std::array<std::size_t, 3> earlier = {TCHAT_PROBLEM_FIRST_SIZE, TCHAT_PROBLEM_SECOND_SIZE,
-                                              TCHAT_PROBLEM_THIRD_SIZE};
+  const std::array<std::size_t, 4> earlier = {TCHAT_PROBLEM_FIRST_SIZE, TCHAT_PROBLEM_SECOND_SIZE,
+                                              TCHAT_PROBLEM_THIRD_SIZE, TCHAT_PROBLEM_FOURTH_SIZE};
   if (std::find(earlier.begin(), earlier.end(), table.struct_size) == earlier.end()) return table;
   tchat_problem whole{};
   std::memcpy(&whole, &table, table.struct_size);

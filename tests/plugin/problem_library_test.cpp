@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "hybrid/parameter_vector.hpp"
+#include "hybrid/weighted_second.hpp"
 #include "plugin_folder.hpp"
 #include "text/user_error.hpp"
 
@@ -215,6 +216,40 @@ TEST_CASE("an exception on the way through many points makes all of them NaN") {
   library.system().first_at_points(FunctionKind::field, 1, 2, x, some_par.data(), std::vector<int>{1}, values,
                                    values + 4, values + 12);
   for (const double value : values) CHECK(std::isnan(value));
+}
+
+TEST_CASE("a table made before second derivatives could be asked for at many points still loads") {
+  const PluginFolder folder;
+  // What stands behind its end is not part of it.
+  const std::string spoil = R"(
+  table.struct_size = TCHAT_PROBLEM_FOURTH_SIZE;
+  table.second_at_points = reinterpret_cast<decltype(table.second_at_points)>(table.value);
+)";
+  const ProblemLibrary library(resolve_plugin(folder.write("fourth.cpp", small_plugin(spoil)), build_options));
+  CHECK(library.system().table().second_at_points == nullptr);
+}
+
+TEST_CASE("an exception on the way through second derivatives at many points makes all of them NaN") {
+  const PluginFolder folder;
+  const std::string spoil = R"(
+  table.derivative_order = 2;
+  table.first = [](const void*, int32_t, int32_t, const double*, const double*, const int32_t*, int32_t, double*,
+                   double*, double*) {};
+  table.second = [](const void*, int32_t, int32_t, const double*, const double*, const int32_t*, int32_t,
+                    const double*, double*, double*, double*) {};
+  table.second_at_points = [](const void*, int32_t, int32_t, int32_t, int32_t, const double*, const double*,
+                              const int32_t*, int32_t, const double*, const double*, const double*, double* out,
+                              double*) { out[0] = 1.0; throw 1; };
+)";
+  const ProblemLibrary library(resolve_plugin(folder.write("throws2.cpp", small_plugin(spoil)), build_options));
+  constexpr int points = 2, directions = 2, n = 2;
+  WeightedSecond sums(library.system(), FunctionKind::field, {1}, points, directions);
+  sums.compute(1, points, some_par.data());
+  for (int i = 0; i < points; ++i) {
+    for (int c = 0; c <= n; ++c) CHECK(std::isnan(sums.gradient(i)[c]));
+    for (int k = 0; k < directions; ++k)
+      for (int a = 0; a < n; ++a) CHECK(std::isnan(sums.directional(i, k)[a]));
+  }
 }
 
 TEST_CASE("tables that cannot be used") {

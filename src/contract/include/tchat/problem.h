@@ -129,6 +129,16 @@ typedef struct tchat_problem {
   void (*first_at_points)(const void* self, int32_t kind, int32_t index, int32_t points, const double* x,
                           const double* par, const int32_t* active, int32_t active_count, double* out, double* dx,
                           double* dp);
+
+  /* Second derivatives at `points` points for one par, where weighted sums of them are all that matters. At each point
+   * there are `directions` directions: v_k (dimension) by the state, and the same q_k (active_count) at all points by
+   * the parameters; for each direction there are weights w_k (rows), and after them more weights u (rows). out = D_k =
+   * F_x v_k + F_p q_k, and gradient (dimension + active_count) that of u . F + the sum over k of w_k . D_k by x and by
+   * PAR(active[.]). All but q and par are of the points, one behind the other. NULL: tchat calls `first` and `second`
+   * for each. */
+  void (*second_at_points)(const void* self, int32_t kind, int32_t index, int32_t points, int32_t directions,
+                           const double* x, const double* par, const int32_t* active, int32_t active_count,
+                           const double* v, const double* q, const double* weights, double* out, double* gradient);
 } tchat_problem;
 
 /* Size of the table before the conditions of boundary value problems were added: such a table has none. */
@@ -137,6 +147,8 @@ typedef struct tchat_problem {
 #define TCHAT_PROBLEM_SECOND_SIZE offsetof(tchat_problem, sliding_modes)
 /* And before it could be asked for many points at once. */
 #define TCHAT_PROBLEM_THIRD_SIZE offsetof(tchat_problem, first_at_points)
+/* And before second derivatives could be asked for at many points. */
+#define TCHAT_PROBLEM_FOURTH_SIZE offsetof(tchat_problem, second_at_points)
 
 typedef const tchat_problem* (*tchat_problem_entry)(void);
 #define TCHAT_PROBLEM_ENTRY "tchat_problem_table"

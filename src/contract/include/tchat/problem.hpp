@@ -352,6 +352,76 @@ class ProblemTable {
     }
   }
 
+  /// Directions one by one: two in one dual number are slower, and every kind of dual number has to be compiled.
+  static void second_at_points(const void* self, std::int32_t kind, std::int32_t index, std::int32_t points,
+                               std::int32_t directions, const double* x, const double* par, const std::int32_t* active,
+                               std::int32_t active_count, const double* v, const double* q, const double* weights,
+                               double* out, double* gradient) {
+    std::fill_n(gradient, static_cast<std::ptrdiff_t>(points) * (n + active_count), 0.0);
+    const WeightedPoints at{self,   kind,         index, points, directions, x,   par,
+                            active, active_count, v,     q,      weights,    out, gradient};
+    for (int k = 0; k < directions; ++k) add_direction(at, k);
+  }
+
+  /// The arguments of second_at_points.
+  struct WeightedPoints {
+    const void* self;
+    std::int32_t kind, index, points, directions;
+    const double* x;
+    const double* par;
+    const std::int32_t* active;
+    std::int32_t active_count;
+    const double* v;
+    const double* q;
+    const double* weights;
+    double* out;
+    double* gradient;
+  };
+
+  /// The share of direction k in the gradients; u . F belongs to direction 0.
+  static void add_direction(const WeightedPoints& at, int k) {
+    using T = Dual<width, Dual<1>>;
+    const int r = rows(at.kind);
+    const int columns = n + at.active_count;
+    for (int begin = 0; begin < columns; begin += width) {
+      const int count = columns - begin < width ? columns - begin : width;
+      States<T> xs;
+      Parameters<T> ps;
+      Durations<T> ts;
+      Values<T> ys;
+      load(at.x, at.par, xs, ps, ts);
+      for (int c = n; c < columns; ++c)
+        if (T* moved = variable(c, at.active, xs, ps, ts))
+          moved->value.derivative[0] += at.q[k * at.active_count + c - n];
+      for (int c = 0; c < count; ++c)
+        if (T* seed = variable(begin + c, at.active, xs, ps, ts)) seed->derivative[static_cast<std::size_t>(c)] = 1.0;
+      for (std::ptrdiff_t point = 0; point < at.points; ++point) {
+        const double* const v = at.v + (point * at.directions + k) * n;
+        for (int i = 0; i < n; ++i) {
+          Dual<1>& value = xs[static_cast<std::size_t>(i)].value;
+          value.value = at.x[point * n + i];
+          value.derivative[0] = v[i];
+        }
+        for (T& y : ys) y.value = NAN;
+        evaluate<T>(at.self, at.kind, at.index, xs.data(), ps.data(), ts.data(), ys.data());
+        const double* const weights = at.weights + point * (at.directions + 1) * r;
+        double* const out = at.out + (point * at.directions + k) * r;
+        double* const gradient = at.gradient + point * columns + begin;
+        for (int i = 0; i < r; ++i) {
+          const T& y = ys[static_cast<std::size_t>(i)];
+          const double unknown = y.value.value - y.value.value;  // NaN where it cannot be evaluated
+          const double w = weights[k * r + i];
+          const double u = (k == 0 ? weights[at.directions * r + i] : 0.0) + unknown;
+          out[i] = y.value.derivative[0] + unknown;
+          for (int c = 0; c < count; ++c) {
+            const Dual<1>& by = y.derivative[static_cast<std::size_t>(c)];
+            gradient[c] += u * by.value + w * by.derivative[0];
+          }
+        }
+      }
+    }
+  }
+
   template <class T>
   static void load(const double* x, const double* par, States<T>& xs, Parameters<T>& ps, Durations<T>& ts) {
     for (std::size_t i = 0; i < static_cast<std::size_t>(n); ++i) xs[i] = T(x[i]);
@@ -541,6 +611,7 @@ class ProblemTable {
     table.first = &first;
     table.second = &second;
     table.first_at_points = &first_at_points;
+    table.second_at_points = &second_at_points;
     table.user_value = &user_value;
     if constexpr (boundary_count() > 0) {
       table.boundary_conditions = boundary_count();
