@@ -197,4 +197,25 @@ class SegmentElimination {
   BlockArray<double> local_, join_local_, top_local_;
 };
 
+/// work(join, thread), each after those that make its two pieces: one after the other in the order that goes on with
+/// what was made last, or all of a level at a time.
+template <class Work>
+void SegmentElimination::for_joins(const Work& work) {
+  if (within_.threads() == 1)
+    for (const Join& at : joins_) work(at, 0);
+  else
+    for (const std::vector<Join>& level : levels_)
+      within_.each(static_cast<int>(level.size()), [&](int i, int thread) { work(level[index(i)], thread); });
+}
+
+/// The same with the pieces after the join.
+template <class Work>
+void SegmentElimination::for_joins_in_reverse(const Work& work) {
+  if (within_.threads() == 1)
+    for (auto at = joins_.rbegin(); at != joins_.rend(); ++at) work(*at, 0);
+  else
+    for (auto level = levels_.rbegin(); level != levels_.rend(); ++level)
+      within_.each(static_cast<int>(level->size()), [&](int i, int thread) { work((*level)[index(i)], thread); });
+}
+
 }  // namespace tchat

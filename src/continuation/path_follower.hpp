@@ -74,6 +74,7 @@ class PathFollower {
   /// The same beside a branch point: the matrix is always made anew for the tangent, of which the other branch would
   /// take a share that is the distance to an older matrix, over that to the branch point.
   NewtonResult step_beside_branch_point(const PathPoint& from, double ds, PathPoint& to);
+
   /// Are the equations satisfied to rounding?
   bool solves(const Orbit& x);
 

@@ -11,6 +11,7 @@
 #include "benchmark/timing.hpp"
 #include "linear_algebra/lane_kernel.hpp"
 #include "linear_algebra/partial_lu.hpp"
+#include "linear_algebra/small_lu.hpp"
 
 namespace tchat::benchmark {
 
@@ -62,12 +63,15 @@ class RandomBlocks {
   std::vector<int> swaps_;
 };
 
-/// A matrix with the pattern that is left for UMFPACK at m = 1: rows (segment | event | connection | border), columns
+/// A matrix of the size that is left at m = 1: rows (segment | event | connection | border), columns
 /// (start | end | duration | alpha).
 class Remainder {
  public:
-  Remainder() : lu_(make()), b_(random_numbers(size)), x_(size) { factorize(); }
-  void factorize() { lu_.factorize(values_); }
+  Remainder() : entries_(random_numbers(size * size)), b_(random_numbers(size)), lu_(size), x_(size) { factorize(); }
+  void factorize() {
+    std::copy(entries_.begin(), entries_.end(), lu_.entries());
+    keep(lu_.factorize());
+  }
   void solve() {
     lu_.solve(b_.data(), x_.data());
     keep(x_);
@@ -75,27 +79,9 @@ class Remainder {
 
  private:
   static constexpr int size = 2 * n + scalars;
-  SparseLu make() {
-    std::vector<int> rows;
-    std::vector<int> columns;
-    const auto dense = [&](int row, int from, int to) {
-      for (int column = from; column < to; ++column) rows.push_back(row), columns.push_back(column);
-    };
-    for (int a = 0; a < n; ++a) dense(a, 0, size);
-    dense(n, n, 2 * n);
-    dense(n, 2 * n + 1, size);
-    for (int a = 0; a < n; ++a) {
-      dense(n + 1 + a, a, a + 1);
-      dense(n + 1 + a, n, 2 * n);
-      dense(n + 1 + a, 2 * n + 1, size);
-    }
-    dense(2 * n + 1, 0, size);
-    values_ = random_numbers(rows.size());
-    return {size, rows, columns};
-  }
-  std::vector<double> values_;
-  SparseLu lu_;
+  std::vector<double> entries_;
   std::vector<double> b_;
+  SmallLu lu_;
   std::vector<double> x_;
 };
 
@@ -155,7 +141,7 @@ void print_matrix_times(int rounds) {
     join_work,
     join_copy,
     factors,
-    sparse_solve,
+    dense_solve,
     residuals,
     multipliers,
     part_count
@@ -171,7 +157,7 @@ void print_matrix_times(int rounds) {
   parts[join_work].work = [&] { join_blocks.run(eliminate_join); };
   parts[join_copy].work = [&] { join_blocks.copy(); };
   parts[factors].work = [&] { remainder.factorize(); };
-  parts[sparse_solve].work = [&] { remainder.solve(); };
+  parts[dense_solve].work = [&] { remainder.solve(); };
   parts[residuals].work = [&] { condensed.evaluate(x, residual); };
   parts[multipliers].work = [&] { keep(floquet.compute(condensed, x)); };
   for (int round = 0; round < rounds; ++round)
@@ -194,7 +180,7 @@ void print_matrix_times(int rounds) {
   const double derivative_units = in_units({derivative});
   const double join_units = in_units({join_work}, join_copy);
   const double factor_units = in_units({factors});
-  const double sparse_units = in_units({sparse_solve});
+  const double dense_units = in_units({dense_solve});
 
   fmt::print("(b) One Newton matrix: m = 1, n = 4, NTST = {}, NCOL = 4\n\n", intervals);
   fmt::print("  {:<66}{:>8}{:>12}\n", "", "units", "time [us]");
@@ -205,12 +191,12 @@ void print_matrix_times(int rounds) {
   print_line("    derivatives of the field at the collocation points", derivative_units, second);
   print_line("    local eliminations (1 by definition)", 1.0, second);
   print_line("    joins of intervals: their eliminations, in lanes", join_units, second);
-  print_line("    UMFPACK: factors of a matrix of the same pattern", factor_units, second);
+  print_line("    what couples the ends of segments (up to 40 rows): dense factors", factor_units, second);
   print_line("    the rest: interpolation, filling, gathering",
              linearize_units - derivative_units - 1.0 - join_units - factor_units, second);
   print_line("  solve", solve_units, second);
-  print_line("    UMFPACK: forward and back-substitution", sparse_units, second);
-  print_line("    the rest: forward sweep, back-substitution to all nodes", solve_units - sparse_units, second);
+  print_line("    the same: forward and back-substitution", dense_units, second);
+  print_line("    the rest: forward sweep, back-substitution to all nodes", solve_units - dense_units, second);
   print_line("multipliers (at most 1)", in_units({multipliers}), second);
   print_line("for comparison: residual without derivatives (a chord iteration)", in_units({residuals}), second);
   fmt::print("\n");

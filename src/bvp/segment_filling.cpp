@@ -1,0 +1,88 @@
+// The rows of a segment's Newton matrix: SegmentElimination::fill.
+#include "bvp/lane_entries.hpp"
+#include "bvp/segment_elimination.hpp"
+
+namespace tchat {
+
+bool SegmentElimination::fill(int s, const HybridSystem& system, int field, std::span<const int> active, const Orbit& x,
+                              std::span<const OrbitVector> rows, double* collocation) {
+  for (int group = 0; group < groups_; ++group)
+    if (!fill_piece(s, group, system, field, active, x, rows, collocation)) return false;
+  return true;
+}
+
+bool SegmentElimination::fill_piece(int s, int group, const HybridSystem& system, int field,
+                                    std::span<const int> active, const Orbit& x, std::span<const OrbitVector> rows,
+                                    double* collocation) {
+  if (!fill_group(s, group, system, field, active, x, collocation)) return false;
+  fill_border(s, group, rows);
+  return true;
+}
+
+/// The field and its derivatives at the Gauss points of a group's intervals, from the lanes that hold one.
+void SegmentElimination::evaluate_field(int s, int group, const HybridSystem& system, int field,
+                                        std::span<const int> active, const Orbit& x) {
+  const int count = shape_.collocation * n_;  // numbers of one lane
+  int held = 0;
+  for (int l = 0; l < lanes; ++l) {
+    put_lane(x.node(s, schedule_.interval(group, l) * shape_.collocation), count + n_, l, nodes_.data());
+    held += schedule_.holds(group, l) ? 1 : 0;
+  }
+  LaneCollocation at{};
+  at.n = n_;
+  at.c = shape_.collocation;
+  at.value = rule_.value.data();
+  at.slope = rule_.slope.data();
+  assembly_.interpolate(at, nodes_.data(), points_.data(), derivatives_.data());
+  double* to = x_.data();
+  for (int l = 0; l < lanes; ++l)
+    if (schedule_.holds(group, l)) take_lane(points_.data(), l, count, to), to += count;
+  system.first_at_points(FunctionKind::field, field, held * shape_.collocation, x_.data(), x.par.data(), active,
+                         f_.data(), fx_.data(), fp_.data());
+}
+
+/// Collocation rows slope - h T f at the Gauss points, columns (interior | left | right | T, p).
+bool SegmentElimination::fill_group(int s, int group, const HybridSystem& system, int field,
+                                    std::span<const int> active, const Orbit& x, double* collocation) {
+  evaluate_field(s, group, system, field, active, x);
+  const int c = shape_.collocation;
+  LaneCollocation at{n_, c, scalars_, rule_.value.data(), rule_.slope.data(), {}, {}, {}, {}, {}, derivatives_.data()};
+  std::ptrdiff_t place[lanes];  // of the first Gauss point among those evaluated
+  std::ptrdiff_t next = 0;
+  for (int l = 0; l < lanes; ++l)
+    if (schedule_.holds(group, l)) place[l] = next, next += c;
+  for (int l = 0; l < lanes; ++l) {
+    const int j = schedule_.interval(group, l);
+    const std::ptrdiff_t from = place[schedule_.source(group, l)];
+    at.f[l] = f_.data() + from * n_;
+    at.fx[l] = fx_.data() + from * n_ * n_;
+    at.fp[l] = fp_.data() + from * n_ * (scalars_ - 1);
+    at.h[l] = x.mesh[index(j + 1)] - x.mesh[index(j)];
+    at.scale[l] = at.h[l] * x.duration(s);
+  }
+  const bool finite = assembly_.fill(at, interval_blocks_[block(s, group)], jacobian_.data(), residual_.data());
+  for (int l = 0; l < lanes; ++l)
+    if (schedule_.holds(group, l))
+      take_lane(residual_.data(), l, c * n_, collocation + schedule_.interval(group, l) * c * n_);
+  return finite;
+}
+
+/// Border rows of intervals: the interior nodes and the left mesh node; the right one belongs to the next interval,
+/// except at the end of the segment. The scalars' own weights are added when the segments are assembled.
+void SegmentElimination::fill_border(int s, int group, std::span<const OrbitVector> rows) {
+  const int width = interval_.width();
+  const int left = interval_.pivots();
+  double* row = interval_blocks_[block(s, group)] + interval_.rows() * width * lanes;
+  for (int r = 0; r < border_; ++r, row += width * lanes) {
+    std::fill_n(row + (left + n_) * lanes, (width - left - n_) * lanes, 0.0);
+    for (int l = 0; l < lanes; ++l) {
+      const int j = schedule_.interval(group, l);
+      const double* weights = rows[index(r)].states.col(s * shape_.nodes() + j * shape_.collocation).data();
+      put_lane(weights + n_, left, l, row);
+      put_lane(weights, n_, l, row + left * lanes);
+      if (j == shape_.intervals - 1) put_lane(weights + left + n_, n_, l, row + (left + n_) * lanes);
+    }
+  }
+}
+
+}  // namespace tchat
