@@ -5,16 +5,13 @@
 ///     J dx = -F,    grad I . dx = -I,    grad G . dx = -G,    row . dx = target       (n m N c + ... + m + q
 ///     equations)
 ///
-/// The gradients of integrals I and of monitors are few, and rows of the matrix like others. That of G is known only
-/// after J has been condensed, and the row of the branch, too, would only cost work in every interval. So J is factored
-/// without them (CondensedSystem closes it with rows of its own): 1 + C null vectors v remain, and they are added to
-/// any solution so that
-///
-///     row . dx = target,    grad G . dx = -G                                            (1 + C equations)
+/// The gradient of an integral I, or of a monitor, is known before J is factored. That of G is known only after J has
+/// been condensed. So J is condensed with a stand-in for it, the gradient of the last linearisation, and the true
+/// gradient enters by a correction of rank one for each number: one more solution of the same factors.
 ///
 /// A condition is found by iteration from where it was last: which multiplier it means, and the border of its own
 /// problem. A trial of Newton's method that fails leaves these anywhere. They belong to the point of the branch that
-/// the trial began from, and are brought back (`recall`) before the next one.
+/// the trial began from, together with the stand-ins, and are brought back (`recall`) before the next one.
 #pragma once
 
 #include <Eigen/LU>
@@ -32,7 +29,7 @@ namespace tchat {
 /// A function G of the orbit, durations and free parameters, of one number or two, with its gradients.
 class OrbitCondition {
  public:
-  static constexpr int most = 2;  // numbers
+  static constexpr int most = 2;
 
   virtual ~OrbitCondition() = default;
   /// How many numbers; constant.
@@ -52,8 +49,11 @@ class OrbitCondition {
   virtual void recall(const std::vector<double>& memory) = 0;
 };
 
-/// What evaluations of a condition near a point of the branch begin from; empty without one.
-using ConditionMemory = std::vector<double>;
+/// What linearisations near a point of the branch begin from; empty without a condition.
+struct ConditionMemory {
+  std::vector<double> condition;
+  std::vector<OrbitVector> stand_ins;
+};
 
 /// A monitor that keeps this value.
 struct HeldMonitor {
@@ -90,40 +90,42 @@ class BorderedProblem {
   void set_reference(const Orbit& x);
   Linearization linearize(const Orbit& x, const OrbitVector& row, OrbitResidual& residual);
   void evaluate(const Orbit& x, OrbitResidual& residual);
-  /// Newton's correction at the point of the last linearisation: all conditions to zero, row . dx = target.
-  void correction(double target, OrbitVector& dx) const;
-  /// The same with another residual and perhaps another row: a chord iteration. Not with a condition.
-  void chord(const OrbitResidual& residual, const OrbitVector& row, double target, OrbitVector& dx);
+  /// Newton's correction: all conditions to zero, row . dx = target.
+  void solve(const OrbitResidual& residual, double target, OrbitVector& dx);
+  /// The same where the residual is that of the last linearisation; the tangent is found on the way.
+  void correct(const OrbitResidual& linearized, double target, OrbitVector& dx);
   /// All conditions unchanged, row . dx = 1.
-  void tangent(OrbitVector& dx) const;
-  /// The determinant's sign, of J with all rows, times the distance to a singular matrix (CondensedSystem), where there
-  /// is a condition also to one whose rows do not tell null vectors apart. Allocates.
-  double signed_distance() const;
+  void find_tangent(OrbitVector& dx);
   /// Largest residual, the condition's included.
   double residual_size(const OrbitResidual& residual) const;
 
  private:
-  static constexpr int most_rows = 1 + OrbitCondition::most;
-  using Numbers = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, most_rows, 1>;
-  using Slopes = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, most_rows, most_rows>;
+  using Numbers = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, OrbitCondition::most, 1>;
+  using Slopes = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, OrbitCondition::most, OrbitCondition::most>;
 
-  /// The branch's row, or the gradients of G.
-  const OrbitVector& late_row(int k) const { return k == 0 ? row_ : condition_->gradient(k - 1); }
-  bool find_slopes();
-  std::span<const double> border(const std::vector<double>& integrals);
-  void combine(double particular, const Numbers& wanted, OrbitVector& dx) const;
+  bool find_responses();
+  void follow_gradients();
+  Numbers minus_condition() const;
+  void add_responses(Numbers wanted, OrbitVector& dx) const;
+  int conditions() const { return condition_ ? condition_->count() : 0; }
+  OrbitVector& stand_in(int k) { return rows_[rows_.size() - responses_.size() + static_cast<std::size_t>(k)]; }
+  /// The border's right-hand side with these in the branch's row and the integrals', zero in those of the stand-ins but
+  /// for a one in that of number `unit` (-1: none).
+  std::span<const double> border(double branch, const std::vector<double>& integrals, int unit = -1);
 
   CondensedSystem condensed_;
   std::unique_ptr<OrbitCondition> condition_;
   std::vector<HeldMonitor> held_;
-  std::vector<OrbitVector> rows_;          // gradients of integrals and held monitors
-  std::vector<double> border_;             // right-hand side of these
-  Orbit reference_;                        // only where there are integrals
-  OrbitVector row_;                        // of the branch
-  OrbitVector particular_;                 // a solution for the residual of the last linearisation
-  std::vector<OrbitVector> null_vectors_;  // 1 + C
-  Slopes slopes_;                          // late rows . null vectors
-  Eigen::PartialPivLU<Slopes> slopes_lu_;
+  std::vector<OrbitVector> rows_;  // the branch's row, gradients of integrals and held monitors, stand-ins for those of
+                                   // G
+  std::vector<double> border_;     // right-hand side of these
+  std::vector<double> along_;      // the same of the tangent: a one in the branch's row
+  std::vector<double> unchanged_;  // integrals and monitors that keep their values
+  Orbit reference_;                // only where there are integrals
+  std::vector<OrbitVector> responses_;  // solutions for a unit in the row of each stand-in
+  Eigen::PartialPivLU<Slopes> slopes_;  // of grad G . responses
+  OrbitVector tangent_;
+  bool tangent_known_ = false;  // that of the last linearisation, and not yet taken
 };
 
 }  // namespace tchat

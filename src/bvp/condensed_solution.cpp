@@ -7,10 +7,8 @@
 namespace tchat {
 
 void CondensedSystem::solve(std::span<const double> border, OrbitVector& dx) {
-  std::fill(rhs_.begin(), rhs_.end(), 0.0);
-  std::copy_n(border.data(), border_, border_rhs());
-  lu_.solve(rhs_.data(), solution_.data());
-  expand(solution_, RightHandSide::zero, dx);
+  solve_ends(border, solution_);
+  expand(RightHandSide::zero, dx);
 }
 
 void CondensedSystem::solve(const OrbitResidual& residual, std::span<const double> border, OrbitVector& dx) {
@@ -18,42 +16,47 @@ void CondensedSystem::solve(const OrbitResidual& residual, std::span<const doubl
     elimination_.condense_right_hand_side(s, &residual.collocation[index(collocation_row(s))], segment_rhs_[s]);
   });
   solve_ends(segment_rhs_, residual, border);
-  expand(solution_, RightHandSide::condensed, dx);
+  expand(RightHandSide::condensed, dx);
 }
 
-void CondensedSystem::solve_all(const OrbitResidual& linearized, std::span<const double> border, OrbitVector& dx,
-                                std::span<OrbitVector> null_vectors) {
+void CondensedSystem::solve_both(const OrbitResidual& linearized, std::span<const double> border, OrbitVector& dx,
+                                 std::span<const double> border_of_v, OrbitVector& v) {
   solve_ends(own_rhs_, linearized, border);
-  if (null_vectors.empty()) return expand(solution_, RightHandSide::own, dx);
+  solve_ends(border_of_v, other_solution_);
   segment_work_.each(shape_.segments, [&](int s, int thread) {
     elimination_.expand_both(s, in_segment(s, solution_, RightHandSide::own, dx),
-                             in_segment(s, null_ends_[0], RightHandSide::zero, null_vectors[0]), thread);
+                             in_segment(s, other_solution_, RightHandSide::zero, v), thread);
   });
   put_globals(solution_, dx);
-  put_globals(null_ends_[0], null_vectors[0]);
-  for (std::size_t k = 1; k < null_vectors.size(); ++k) expand(null_ends_[k], RightHandSide::zero, null_vectors[k]);
+  put_globals(other_solution_, v);
 }
 
 /// solution_ from the right-hand sides of the condensed rows of segments, -residual of the coupling rows, and `border`.
 void CondensedSystem::solve_ends(const BlockArray<double>& condensed, const OrbitResidual& residual,
                                  std::span<const double> border) {
-  std::fill(rhs_.begin(), rhs_.end(), 0.0);
-  double* const of_border = std::copy_n(border.data(), border_, border_rhs()) - border_;
   double* rhs = rhs_.data();
   const double* coupling = residual.coupling.data();
+  std::copy_n(border.data(), border_, border_rhs());
   for (int s = 0; s < shape_.segments; ++s) {
     rhs = std::copy_n(condensed[s], n_, rhs);
     for (int r = 0; r < system_.coupling_rows(s); ++r) *rhs++ = -*coupling++;
-    for (int r = 0; r < border_; ++r) of_border[r] += condensed[s][n_ + r];
+    for (int r = 0; r < border_; ++r) border_rhs()[r] += condensed[s][n_ + r];
   }
   lu_.solve(rhs_.data(), solution_.data());
 }
 
-/// From what UMFPACK sees to all nodes.
-void CondensedSystem::expand(const std::vector<double>& ends, RightHandSide right, OrbitVector& dx) {
+/// The same for F = 0: what is zero in the segments stays zero when it is condensed.
+void CondensedSystem::solve_ends(std::span<const double> border, std::vector<double>& ends) {
+  std::fill(rhs_.begin(), rhs_.end() - border_, 0.0);
+  std::copy_n(border.data(), border_, border_rhs());
+  lu_.solve(rhs_.data(), ends.data());
+}
+
+/// From solution_ to all nodes.
+void CondensedSystem::expand(RightHandSide right, OrbitVector& dx) {
   segment_work_.each(shape_.segments,
-                     [&](int s, int thread) { elimination_.expand(s, in_segment(s, ends, right, dx), thread); });
-  put_globals(ends, dx);
+                     [&](int s, int thread) { elimination_.expand(s, in_segment(s, solution_, right, dx), thread); });
+  put_globals(solution_, dx);
 }
 
 SegmentSolution CondensedSystem::in_segment(int s, const std::vector<double>& ends, RightHandSide right,

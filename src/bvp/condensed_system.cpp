@@ -67,9 +67,8 @@ CondensedSystem::CondensedSystem(const DefiningSystem& system, const OrbitShape&
       segment_work_(threads_.segments),
       elimination_(shape, scalars_, border_rows, rule_, threads_),
       outcomes_(index(shape.segments)),
-      lu_(make_sparse()),
-      closing_(lu_.size() - (n_ * shape.segments + total_coupling_rows(system) + border_rows), lu_.size()),
-      null_ends_(index(closing_.count()), zeros(lu_.size())) {
+      lu_(make_sparse()) {
+  assert((n_ + 1) * shape.segments + globals_ == total_coupling_rows(system) + border_rows);
   first_blocks_ = {shape.segments, n_ * n_};
   last_blocks_ = first_blocks_;
   scalar_blocks_ = {shape.segments, n_ * scalars_};
@@ -78,7 +77,7 @@ CondensedSystem::CondensedSystem(const DefiningSystem& system, const OrbitShape&
   segment_rhs_ = own_rhs_;
   triplet_values_.resize(triplet_rows_.size());
   rhs_ = zeros(lu_.size());
-  solution_ = rhs_;
+  solution_ = other_solution_ = rhs_;
   x_ = slope_ = zeros(n_);
 }
 
@@ -95,10 +94,9 @@ SparseLu CondensedSystem::make_sparse() {
     system_.coupling_pattern(s, pattern);
     row += system_.coupling_rows(s);
   }
-  const int size = global_unknown(globals_);
-  assert(row + border_ <= size);
-  dense(row, size - row, 0, size);  // border and closing rows
-  return {size, triplet_rows_, triplet_columns_};
+  dense(row, border_, 0, global_unknown(globals_));
+  row += border_;
+  return {row, triplet_rows_, triplet_columns_};
 }
 
 OrbitResidual CondensedSystem::make_residual() const {
@@ -155,43 +153,7 @@ Linearization CondensedSystem::linearize(const Orbit& x, std::span<const OrbitVe
       threads_.segments > 1 ? condense_together(x, rows, residual) : condense_one_by_one(x, rows, residual);
   if (condensed != Linearization::ready) return condensed;
   if (!assemble(x, rows, residual)) return Linearization::not_finite;
-  return factorize() ? Linearization::ready : Linearization::singular;
-}
-
-/// Closing rows that tell null vectors badly apart are replaced by those that follow these.
-bool CondensedSystem::factorize() {
-  constexpr double well_apart = 0.1;
-  put_closing_rows();
-  if (closing_.count() == 0) return lu_.factorize(triplet_values_);
-  if (!lu_.factorize(triplet_values_) || !find_null_ends()) {
-    closing_.forget();
-    put_closing_rows();
-    if (!lu_.factorize(triplet_values_) || !find_null_ends()) return false;
-  }
-  if (closing_.follow(null_ends_) >= well_apart) return true;
-  put_closing_rows();
-  return lu_.factorize(triplet_values_) && find_null_ends();
-}
-
-void CondensedSystem::put_closing_rows() {
-  double* value = triplet_values_.data() + triplet_values_.size();
-  for (int k = closing_.count() - 1; k >= 0; --k) {
-    value -= lu_.size();
-    std::copy(closing_.row(k).begin(), closing_.row(k).end(), value);
-  }
-}
-
-/// For a one in the right-hand side of each closing row; false when one is not finite.
-bool CondensedSystem::find_null_ends() {
-  std::fill(rhs_.begin(), rhs_.end(), 0.0);
-  double* unit = rhs_.data() + rhs_.size() - null_ends_.size();
-  for (std::vector<double>& ends : null_ends_) {
-    *unit = 1.0;
-    lu_.solve(rhs_.data(), ends.data());
-    *unit++ = 0.0;
-    if (!all_finite(ends.data(), lu_.size())) return false;
-  }
-  return true;
+  return lu_.factorize(triplet_values_) ? Linearization::ready : Linearization::singular;
 }
 
 Linearization CondensedSystem::condense_one_by_one(const Orbit& x, std::span<const OrbitVector> rows,

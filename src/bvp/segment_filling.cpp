@@ -76,14 +76,19 @@ void SegmentElimination::fill_border(int s, int group, std::span<const OrbitVect
   const int left = interval_.pivots();
   double* row = interval_blocks_[block(s, group)] + interval_.rows() * width * lanes;
   for (int r = 0; r < border_; ++r, row += width * lanes) {
-    std::fill_n(row + (left + n_) * lanes, (width - left - n_) * lanes, 0.0);
+    const double* left_node[lanes];
+    const double* interior[lanes];
     for (int l = 0; l < lanes; ++l) {
       const int j = schedule_.interval(group, l);
-      const double* weights = rows[index(r)].states.col(s * shape_.nodes() + j * shape_.collocation).data();
-      put_lane(weights + n_, left, l, row);
-      put_lane(weights, n_, l, row + left * lanes);
-      if (j == shape_.intervals - 1) put_lane(weights + left + n_, n_, l, row + (left + n_) * lanes);
+      left_node[l] = rows[index(r)].states.col(s * shape_.nodes() + j * shape_.collocation).data();
+      interior[l] = left_node[l] + n_;
     }
+    assembly_.gather(interior, left, row);
+    assembly_.gather(left_node, n_, row + left * lanes);
+    std::fill_n(row + (left + n_) * lanes, (width - left - n_) * lanes, 0.0);
+    for (int l = 0; l < lanes; ++l)
+      if (schedule_.interval(group, l) == shape_.intervals - 1)
+        put_lane(interior[l] + left, n_, l, row + (left + n_) * lanes);
   }
 }
 

@@ -103,9 +103,11 @@ void print_matrix_times(int rounds) {
   CondensedSystem& condensed = walk.follower().condensed();
   const Orbit& x = walk.point().orbit;
   const HybridSystem& system = walk.system().system();
+  const std::vector<OrbitVector> rows{walk.point().dual};
+  const std::vector<double> none{0.0}, along{1.0};
   OrbitResidual residual = condensed.make_residual();
   OrbitVector dx = condensed.make_vector();
-  std::vector<OrbitVector> tangent{dx};
+  OrbitVector tangent = dx;
   FloquetSolver floquet(x.shape);
   std::vector<double> f(n);
   std::vector<double> fx(n * n);
@@ -150,8 +152,8 @@ void print_matrix_times(int rounds) {
   parts[unit_copy].work = [&] { interval_blocks.copy(); };
   parts[single].work = [&] { single_blocks.run(eliminate_single); };
   parts[single_copy].work = [&] { single_blocks.copy(); };
-  parts[linearization].work = [&] { keep(condensed.linearize(x, {}, residual)); };
-  parts[solution].work = [&] { condensed.solve_all(residual, {}, dx, tangent); };
+  parts[linearization].work = [&] { keep(condensed.linearize(x, rows, residual)); };
+  parts[solution].work = [&] { condensed.solve_both(residual, none, dx, along, tangent); };
   parts[derivative].work = derivatives;
   parts[join_work].work = [&] { join_blocks.run(eliminate_join); };
   parts[join_copy].work = [&] { join_blocks.copy(); };
