@@ -1,0 +1,32 @@
+/// Householder's reflections 1 - w w^T, |w|^2 = 2, applied in place. For matrices of a few rows, where LAPACK's
+/// workspaces and blocks of columns take longer than the arithmetic.
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+
+namespace tchat {
+
+/// x becomes w of the reflection that takes x to a multiple of the first unit vector. Returns the multiple: |x|, with
+/// the sign that x(0) has not. x = 0 stays what it is: no reflection.
+template <class Vector>
+double make_reflection(Vector&& x) {
+  const double size = x.cwiseAbs().maxCoeff();
+  if (size == 0.0) return 0.0;
+  x /= size;  // no square overflows or vanishes
+  const double image = std::copysign(x.norm(), -x(0));
+  x(0) -= image;
+  x /= std::sqrt(-image * x(0));
+  return image * size;
+}
+
+/// (1 - w w^T) matrix. The transposed matrix is reflected from the right.
+template <class Vector, class Matrix>
+void reflect(const Vector& w, Matrix&& matrix) {
+  for (Eigen::Index j = 0; j < matrix.cols(); ++j) {
+    auto column = matrix.col(j);
+    column -= w.dot(column) * w;
+  }
+}
+
+}  // namespace tchat
