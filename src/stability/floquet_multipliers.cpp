@@ -37,6 +37,16 @@ double chord(const std::complex<double>& a, const std::complex<double>& b) {
 /// v to `image` times the first unit vector. That vector stands for v / |v| when v = 0.
 double orientation(double image) { return image > 0.0 ? -1.0 : 1.0; }
 
+/// det E_s / a_s. [F, u]^T C [Z, f] with u = C f / |C f| is block triangular, with E_s and |C f| on its diagonal, and
+/// det [Z, f] = det [Z, h_x / |h_x|] a_s |f|. `last` = C is overwritten, `speed` is |f|; the reflections that F and Z
+/// are taken from make `flow_image` of C f and `section_image` of h_x.
+ScaledReal determinant_share(Matrix& last, double speed, double section_image, double flow_image) {
+  ScaledReal result = determinant_in_place(last);
+  result *= orientation(section_image) * orientation(flow_image);
+  if (flow_image != 0.0) result *= speed / std::abs(flow_image);
+  return result;
+}
+
 /// Least change, relative to each, of f0 and f1 with which they satisfy first f0 + last f1 = 0. Where errors grow along
 /// the segment it is f0 that they are measured at, where they decay f1: neither is divided by what the other lost.
 double flow_defect(const RowMajorBlock& first, const Vector& f0, const RowMajorBlock& last, const Vector& f1,
@@ -129,9 +139,6 @@ FloquetSolver::FloquetSolver(const OrbitShape& shape)
   }
 }
 
-/// With F_s and Z_s completed to orthogonal matrices by u = C f / |C f| and h_x / |h_x|, det E_s / a_s comes from C_s
-/// alone: [F, u]^T C [Z, f] is block triangular, with E_s and |C f| on its diagonal, and det [Z, f] =
-/// det [Z, h_x / |h_x|] a_s |f|.
 void FloquetSolver::measure_end(const CondensedSystem& condensed, const Orbit& x, int s) {
   const int n = shape_.dimension;
   const DefiningSystem& defining = condensed.system();
@@ -142,27 +149,25 @@ void FloquetSolver::measure_end(const CondensedSystem& condensed, const Orbit& x
   SegmentEnd& end = ends_[static_cast<std::size_t>(s)];
   system.value(FunctionKind::field, v.field, x.start(s), x.par.data(), f0_.data());
   system.value(FunctionKind::field, v.field, x.end(s), x.par.data(), f1_.data());
-  section_at_end(defining, x, s, end.section);
   image_.noalias() = last * f1_;
+  end.flow_defect = flow_defect(first, f0_, last, f1_, flow_rows_);
+  if (!defining.has_event(s)) end.trivial_multiplier = trivial_multiplier(first, f0_, image_);
 
+  section_at_end(defining, x, s, end.section);
   const double speed = f1_.norm();
   const double sizes = end.section.norm() * speed;
   end.transversality = sizes > 0.0 ? end.section.dot(f1_) / sizes : 0.0;
-  end.flow_defect = flow_defect(first, f0_, last, f1_, flow_rows_);
-  end.trivial_multiplier = trivial_multiplier(first, f0_, image_);
-
-  const double gradient_image = make_reflection(end.section);
+  const double section_image = make_reflection(end.section);
   end.projection = image_;
   const double flow_image = make_reflection(end.projection);
   square_ = last;
-  end.determinant_share = determinant_in_place(square_);
-  end.determinant_share *= orientation(gradient_image) * orientation(flow_image);
-  if (flow_image != 0.0) end.determinant_share *= speed / std::abs(flow_image);
+  end.determinant_share = determinant_share(square_, speed, section_image, flow_image);
 
   system.first(FunctionKind::jump, v.jump, x.end(s), x.par.data(), {}, image_.data(), end.jump.data(), nullptr);
   reflect(end.section, end.jump.transpose());
 }
 
+/// The blocks of segment s, from its end and that of the segment before.
 void FloquetSolver::project_blocks(const CondensedSystem& condensed, int s) {
   const int n = shape_.dimension;
   const auto at = static_cast<std::size_t>(s);

@@ -93,13 +93,13 @@ class FloquetSolver {
   /// What the end of one segment contributes. Z_s and F_s are all columns but the first of reflections, which take h_x
   /// and C_s f to multiples of the first unit vector.
   struct SegmentEnd {
-    Eigen::VectorXd section;       // of the reflection with Z_s
-    Eigen::VectorXd projection;    // of the reflection with F_s
-    Eigen::MatrixXd jump;          // g_x times the former: its columns but the first are g_x Z_s
-    double transversality = 0.0;   // a_s = h_x f / (|h_x| |f|)
-    ScaledReal determinant_share;  // det E_s / a_s
-    double flow_defect = 0.0;      // part of the structural zero
-    double trivial_multiplier = 0.0;
+    Eigen::VectorXd section;          // of the reflection with Z_s
+    Eigen::VectorXd projection;       // of the reflection with F_s
+    Eigen::MatrixXd jump;             // g_x times the former: its columns but the first are g_x Z_s
+    double transversality = 0.0;      // a_s = h_x f / (|h_x| |f|)
+    ScaledReal determinant_share;     // det E_s / a_s
+    double flow_defect = 0.0;         // part of the structural zero
+    double trivial_multiplier = 0.0;  // of an end without a section
   };
   struct Blocks {
     std::vector<Eigen::MatrixXd> e, a;
