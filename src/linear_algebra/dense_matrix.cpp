@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "linear_algebra/lapack.hpp"
+#include "linear_algebra/reflection.hpp"
 
 namespace tchat {
 
@@ -141,40 +142,25 @@ Eigen::MatrixXd least_squares(const Eigen::MatrixXd& matrix, const Eigen::Matrix
   return x.topRows(columns);
 }
 
-HouseholderQr::HouseholderQr(const Eigen::MatrixXd& matrix)
-    : factors_(matrix), scalars_(Eigen::VectorXd::Zero(std::min(matrix.rows(), matrix.cols()))) {
-  const int rows = size_of(factors_.rows());
-  const int columns = size_of(factors_.cols());
-  std::vector<double> work = workspace(columns);
-  const int work_size = static_cast<int>(work.size());
-  int info = 0;
-  if (factors_.size() > 0)
-    dgeqrf_(&rows, &columns, factors_.data(), &rows, scalars_.data(), work.data(), &work_size, &info);
+int triangularise(Eigen::MatrixXd& matrix, Eigen::Index columns) {
+  int determinant = 1;
+  for (Eigen::Index k = 0; k < columns; ++k) {
+    const Eigen::Index rows = matrix.rows() - k;
+    auto column = matrix.col(k).tail(rows);
+    const double diagonal = make_reflection(column);
+    if (diagonal == 0.0) continue;
+    reflect(column, matrix.bottomRightCorner(rows, matrix.cols() - k - 1));
+    column.setZero();
+    column(0) = diagonal;
+    determinant = -determinant;
+  }
+  return determinant;
 }
 
-int HouseholderQr::parity() const {
-  int sign = 1;
-  for (const double scalar : scalars_) sign = scalar == 0.0 ? sign : -sign;
-  return sign;
-}
-
-Eigen::MatrixXd HouseholderQr::turned(const Eigen::MatrixXd& right) const {
-  const int rows = size_of(right.rows());
-  const int columns = size_of(right.cols());
-  const int reflections = size_of(scalars_.size());
-  Eigen::MatrixXd result = right;
-  std::vector<double> work = workspace(columns);
-  work.resize(work.size() + 64 * 65);  // for the block reflectors
-  const int work_size = static_cast<int>(work.size());
-  int info = 0;
-  if (result.size() > 0 && reflections > 0)
-    dormqr_("L", "T", &rows, &columns, &reflections, factors_.data(), &rows, scalars_.data(), result.data(), &rows,
-            work.data(), &work_size, &info, 1, 1);
-  return result;
-}
-
-double distance_to_null_space(const Eigen::MatrixXd& rows, const Eigen::VectorXd& x) {
-  return HouseholderQr(rows.transpose()).turned(x).topRows(rows.rows()).norm();
+double distance_to_null_space(Eigen::MatrixXd& columns) {
+  const Eigen::Index rows = columns.cols() - 1;
+  triangularise(columns, rows);
+  return columns.col(rows).head(rows).norm();
 }
 
 double least_singular_value(const Eigen::MatrixXcd& matrix) {

@@ -1,5 +1,5 @@
-/// What is asked of small dense matrices outside the Newton loop, by LAPACK: Eigen's decompositions take half a minute
-/// to compile.
+/// What is asked of small dense matrices outside the Newton loop, mostly by LAPACK: Eigen's decompositions take half a
+/// minute to compile.
 #pragma once
 
 #include <Eigen/Core>
@@ -44,23 +44,14 @@ Eigen::MatrixXd solve_with_complete_pivoting(const Eigen::MatrixXd& matrix, cons
 /// is singular to rounding are left out. Finite, where the matrix is singular too.
 Eigen::MatrixXd least_squares(const Eigen::MatrixXd& matrix, const Eigen::MatrixXd& right);
 
-/// matrix = Q [R; 0] with orthogonal Q; at least as many rows as columns.
-class HouseholderQr {
- public:
-  explicit HouseholderQr(const Eigen::MatrixXd& matrix);
-
-  Eigen::VectorXd diagonal() const { return factors_.diagonal(); }  ///< of R
-  int parity() const;                                               ///< determinant of Q
-  Eigen::MatrixXd turned(const Eigen::MatrixXd& right) const;       ///< Q^T right
-
- private:
-  Eigen::MatrixXd factors_;
-  Eigen::VectorXd scalars_;  // of the reflections
-};
+/// Takes the first columns, not more than there are rows, to an upper triangle by reflections from the left, in place;
+/// the other columns are reflected too. Returns the determinant of the reflections, 1 or -1.
+int triangularise(Eigen::MatrixXd& matrix, Eigen::Index columns);
 
 /// Length of the shortest d with rows (x + d) = 0: of the part of x in the space of the rows, which are independent and
-/// fewer than the columns. It does not depend on how large each row is.
-double distance_to_null_space(const Eigen::MatrixXd& rows, const Eigen::VectorXd& x);
+/// fewer than the columns. It does not depend on how large each row is. `columns` holds the rows as columns and x
+/// behind them, and is overwritten.
+double distance_to_null_space(Eigen::MatrixXd& columns);
 
 double least_singular_value(const Eigen::MatrixXcd& matrix);
 

@@ -16,11 +16,6 @@ void dgetc2_(const int* n, double* a, const int* a_rows, int* row_pivots, int* c
 void dgelsy_(const int* rows, const int* columns, const int* right_sides, double* a, const int* a_rows, double* b,
              const int* b_rows, int* order, const double* condition, int* rank, double* work, const int* work_size,
              int* info);
-void dgeqrf_(const int* rows, const int* columns, double* a, const int* a_rows, double* scalars, double* work,
-             const int* work_size, int* info);
-void dormqr_(const char* side, const char* transposed, const int* rows, const int* columns, const int* reflections,
-             const double* a, const int* a_rows, const double* scalars, double* c, const int* c_rows, double* work,
-             const int* work_size, int* info, std::size_t, std::size_t);
 void zgesvd_(const char* left, const char* right, const int* rows, const int* columns, std::complex<double>* a,
              const int* a_rows, double* singular, std::complex<double>* u, const int* u_rows, std::complex<double>* v,
              const int* v_rows, std::complex<double>* work, const int* work_size, double* real_work, int* info,

@@ -8,9 +8,16 @@
 namespace tchat {
 
 ScaledReal& ScaledReal::operator*=(double factor) {
+  constexpr double largest = 0x1p100;
+  const double product = mantissa_ * factor;
+  if (std::abs(product) < largest && std::abs(product) * largest > 1.0) {  // nothing was lost
+    mantissa_ = product;
+    return *this;
+  }
   int shift = 0;
-  mantissa_ = std::frexp(mantissa_ * factor, &shift);
-  exponent_ += shift;
+  int factor_shift = 0;
+  mantissa_ = std::frexp(mantissa_, &shift) * std::frexp(factor, &factor_shift);
+  exponent_ += shift + factor_shift;
   return *this;
 }
 
@@ -30,12 +37,20 @@ double ScaledReal::value(double cap) const {
   return std::copysign(std::min(size, cap), mantissa_);
 }
 
-ScaledReal determinant(const Eigen::MatrixXd& matrix) {
+namespace {
+
+/// What the upper triangle of the first columns and the reflections that it took contribute.
+void multiply_by_diagonal(ScaledReal& product, int reflections, const Eigen::MatrixXd& triangle, Eigen::Index columns) {
+  product *= static_cast<double>(reflections);
+  for (const double entry : triangle.diagonal().head(columns)) product *= entry;
+}
+
+}  // namespace
+
+ScaledReal determinant_in_place(Eigen::MatrixXd& matrix) {
   ScaledReal result;
-  if (matrix.size() == 0) return result;
-  const PivotedLu lu(matrix);
-  result *= static_cast<double>(lu.parity());
-  for (const double pivot : lu.pivots()) result *= pivot;
+  const int reflections = triangularise(matrix, matrix.cols());
+  multiply_by_diagonal(result, reflections, matrix, matrix.cols());
   return result;
 }
 
@@ -45,24 +60,21 @@ CyclicDeterminant::CyclicDeterminant(const std::vector<Eigen::MatrixXd>& e, cons
     : e_(e.front()), a_(a.front()) {
   const Eigen::Index n = e_.rows();
   if (n == 0) return;
+  Eigen::MatrixXd both(2 * n, 3 * n);  // of c_{s-1}, c_0, c_s
   for (std::size_t s = 1; s < e.size(); ++s) {
-    Eigen::MatrixXd column(2 * n, n);
-    column << e_, -a[s];
-    const HouseholderQr qr(column);
-    for (const double entry : qr.diagonal()) eliminated_ *= entry;
-    eliminated_ *= static_cast<double>(qr.parity());
-    Eigen::MatrixXd rest = Eigen::MatrixXd::Zero(2 * n, 2 * n);
-    rest.topLeftCorner(n, n) = a_;
-    rest.bottomRightCorner(n, n) = e[s];
-    rest = qr.turned(rest);
-    a_ = rest.bottomLeftCorner(n, n);
-    e_ = rest.bottomRightCorner(n, n);
+    both.topRows(n) << e_, a_, Eigen::MatrixXd::Zero(n, n);
+    both.bottomRows(n) << -a[s], Eigen::MatrixXd::Zero(n, n), e[s];
+    const int reflections = triangularise(both, n);
+    multiply_by_diagonal(eliminated_, reflections, both, n);
+    a_ = both.block(n, n, n, n);
+    e_ = both.bottomRightCorner(n, n);
   }
 }
 
 ScaledReal CyclicDeterminant::at(double t) const {
-  ScaledReal result = eliminated_;
-  result *= determinant(e_ - t * a_);
+  Eigen::MatrixXd matrix = e_ - t * a_;
+  ScaledReal result = determinant_in_place(matrix);
+  result *= eliminated_;
   return result;
 }
 

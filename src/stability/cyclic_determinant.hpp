@@ -27,7 +27,8 @@ class ScaledReal {
   long exponent_ = 0;
 };
 
-ScaledReal determinant(const Eigen::MatrixXd& matrix);
+/// Overwrites the square matrix.
+ScaledReal determinant_in_place(Eigen::MatrixXd& matrix);
 
 class CyclicDeterminant {
  public:

@@ -1,15 +1,14 @@
 #include "stability/floquet_multipliers.hpp"
 
-#include <Eigen/Householder>
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "bvp/no_duration.hpp"
 #include "bvp/transversality.hpp"
 #include "hybrid/contact_segment.hpp"
 #include "hybrid/event_at.hpp"
 #include "linear_algebra/dense_matrix.hpp"
+#include "linear_algebra/reflection.hpp"
 
 namespace tchat {
 
@@ -34,36 +33,38 @@ double chord(const std::complex<double>& a, const std::complex<double>& b) {
   return std::abs(a - b) / (std::hypot(1.0, std::abs(a)) * std::hypot(1.0, std::abs(b)));
 }
 
-/// Orthonormal basis of the complement of v, n x (n - 1); of the first unit vector's complement when v = 0.
-Matrix complement(const Vector& v) {
-  const Eigen::Index n = v.size();
-  if (v.norm() == 0.0) return Matrix::Identity(n, n).rightCols(n - 1);
-  Vector essential(n > 1 ? n - 1 : 0);
-  double tau = 0.0;
-  double beta = 0.0;
-  v.makeHouseholder(essential, tau, beta);
-  Matrix q = Matrix::Identity(n, n);
-  Vector work(n);
-  q.applyHouseholderOnTheLeft(essential, tau, work.data());
-  return q.rightCols(n - 1);
+/// Determinant of [Z, v / |v|], but for (-1)^(n-1): the columns of Z are those but the first of a reflection that takes
+/// v to `image` times the first unit vector. That vector stands for v / |v| when v = 0.
+double orientation(double image) { return image > 0.0 ? -1.0 : 1.0; }
+
+/// det E_s / a_s. [F, u]^T C [Z, f] with u = C f / |C f| is block triangular, with E_s and |C f| on its diagonal, and
+/// det [Z, f] = det [Z, h_x / |h_x|] a_s |f|. `last` = C is overwritten, `speed` is |f|; the reflections that F and Z
+/// are taken from make `flow_image` of C f and `section_image` of h_x.
+ScaledReal determinant_share(Matrix& last, double speed, double section_image, double flow_image) {
+  ScaledReal result = determinant_in_place(last);
+  result *= orientation(section_image) * orientation(flow_image);
+  if (flow_image != 0.0) result *= speed / std::abs(flow_image);
+  return result;
 }
 
 /// Least change, relative to each, of f0 and f1 with which they satisfy first f0 + last f1 = 0. Where errors grow along
 /// the segment it is f0 that they are measured at, where they decay f1: neither is divided by what the other lost.
-double flow_defect(const RowMajorBlock& first, const Vector& f0, const RowMajorBlock& last, const Vector& f1) {
+double flow_defect(const RowMajorBlock& first, const Vector& f0, const RowMajorBlock& last, const Vector& f1,
+                   Matrix& work) {
   const Eigen::Index n = f0.size();
-  const double size0 = f0.norm() > 0.0 ? f0.norm() : 1.0;
-  const double size1 = f1.norm() > 0.0 ? f1.norm() : 1.0;
-  Matrix rows(n, 2 * n);
-  rows << size0 * first, size1 * last;
-  Vector both(2 * n);
-  both << f0 / size0, f1 / size1;
-  return distance_to_null_space(rows, both);
+  const double norm0 = f0.norm();
+  const double norm1 = f1.norm();
+  const double size0 = norm0 > 0.0 ? norm0 : 1.0;
+  const double size1 = norm1 > 0.0 ? norm1 : 1.0;
+  work.topLeftCorner(n, n) = size0 * first.transpose();
+  work.bottomLeftCorner(n, n) = size1 * last.transpose();
+  work.col(n).head(n) = f0 / size0;
+  work.col(n).tail(n) = f1 / size1;
+  return distance_to_null_space(work);
 }
 
-/// The t of least |first f0 + t last f1|.
-double trivial_multiplier(const RowMajorBlock& first, const Vector& f0, const RowMajorBlock& last, const Vector& f1) {
-  const Vector image = last * f1;
+/// The t of least |first f0 + t image|, where image = last f1.
+double trivial_multiplier(const RowMajorBlock& first, const Vector& f0, const Vector& image) {
   const double size = image.squaredNorm();
   return size > 0.0 ? -image.dot(first * f0) / size : 0.0;
 }
@@ -95,16 +96,15 @@ bool is_passed(const DefiningSystem& defining, const Orbit& x, int s) {
 
 /// The gradient of the section at the end of segment s; before and after a contact that is passed the orbit touches the
 /// event's own, but not h_x f = 0.
-Vector section_at_end(const DefiningSystem& defining, const Orbit& x, int s) {
-  Vector gradient(x.shape.dimension);
+void section_at_end(const DefiningSystem& defining, const Orbit& x, int s, Vector& gradient) {
   if (is_passed(defining, x, s) || is_passed(defining, x, (s + 1) % x.shape.segments)) {
     const IndexVector& v = defining.signature()[static_cast<std::size_t>(s)];
     const EventAt at = event_at(defining.system(), v.event, v.field, x.end(s), x.par.data());
     gradient = rate_gradient(defining.system(), at, v.event, v.field, x.end(s), x.par.data());
-    return gradient.dot(at.f) > 0.0 ? Vector(-gradient) : gradient;  // falling, as all sections
+    if (gradient.dot(at.f) > 0.0) gradient = -gradient;  // falling, as all sections
+    return;
   }
   defining.section_gradient(s, x.end(s), x.par.data(), gradient.data());
-  return gradient;
 }
 
 }  // namespace
@@ -121,48 +121,77 @@ int FloquetMultipliers::stable_count() const {
   return static_cast<int>(stable) + (has_trivial ? 1 : 0);
 }
 
-/// What the end of one segment contributes.
-struct FloquetSolver::SegmentEnd {
-  Matrix tangent;                // Z_s: n x (n - 1)
-  Matrix jump_tangent;           // g_x Z_s: n x (n - 1)
-  Matrix projection;             // F_s: n x (n - 1)
-  double transversality;         // a_s = h_x f / (|h_x| |f|)
-  ScaledReal determinant_share;  // det E_s / a_s
-  double flow_defect;
-};
-
-/// det E_s / a_s. [F, u]^T C [Z, f] with u = C f / |C f| is block triangular, with E_s and |C f| on its diagonal, and
-/// det [Z, f] = det [Z, h_x / |h_x|] a_s |f|.
-ScaledReal FloquetSolver::determinant_share(const SegmentEnd& end, const Matrix& last, const Vector& hx,
-                                            const Vector& f) {
-  const auto unit = [](const Vector& v) {
-    return v.norm() > 0.0 ? Vector(v / v.norm()) : Vector(Vector::Unit(v.size(), 0));
-  };
-  Matrix rows(hx.size(), hx.size());
-  Matrix columns(hx.size(), hx.size());
-  rows << end.projection, unit(last * f);
-  columns << end.tangent, unit(hx);
-  ScaledReal result = determinant(last);
-  result *= determinant(rows);
-  result *= determinant(columns);
-  const double flow = (last * f).norm();
-  if (flow > 0.0) result *= f.norm() / flow;
-  return result;
-}
-
 FloquetSolver::FloquetSolver(const OrbitShape& shape)
     : shape_(shape),
-      a_(static_cast<std::size_t>(shape.segments)),
-      e_(a_.size()),
-      a_sizes_(a_.size()),
-      e_sizes_(a_.size()),
-      qz_(shape.dimension - 1, shape.segments) {}
+      ends_(static_cast<std::size_t>(shape.segments)),
+      blocks_{std::vector<Matrix>(ends_.size()), std::vector<Matrix>(ends_.size())},
+      a_sizes_(ends_.size()),
+      e_sizes_(ends_.size()),
+      qz_(shape.dimension - 1, shape.segments),
+      f0_(shape.dimension),
+      f1_(shape.dimension),
+      image_(shape.dimension),
+      square_(shape.dimension, shape.dimension),
+      flow_rows_(2 * shape.dimension, shape.dimension + 1) {
+  for (SegmentEnd& end : ends_) {
+    end.section.resize(shape.dimension);
+    end.jump.resize(shape.dimension, shape.dimension);
+  }
+}
+
+void FloquetSolver::measure_end(const CondensedSystem& condensed, const Orbit& x, int s) {
+  const int n = shape_.dimension;
+  const DefiningSystem& defining = condensed.system();
+  const HybridSystem& system = defining.system();
+  const IndexVector& v = defining.signature()[static_cast<std::size_t>(s)];
+  const RowMajorBlock first(condensed.first_block(s), n, n);
+  const RowMajorBlock last(condensed.last_block(s), n, n);
+  SegmentEnd& end = ends_[static_cast<std::size_t>(s)];
+  system.value(FunctionKind::field, v.field, x.start(s), x.par.data(), f0_.data());
+  system.value(FunctionKind::field, v.field, x.end(s), x.par.data(), f1_.data());
+  image_.noalias() = last * f1_;
+  end.flow_defect = flow_defect(first, f0_, last, f1_, flow_rows_);
+  if (!defining.has_event(s)) end.trivial_multiplier = trivial_multiplier(first, f0_, image_);
+
+  section_at_end(defining, x, s, end.section);
+  const double speed = f1_.norm();
+  const double sizes = end.section.norm() * speed;
+  end.transversality = sizes > 0.0 ? end.section.dot(f1_) / sizes : 0.0;
+  const double section_image = make_reflection(end.section);
+  end.projection = image_;
+  const double flow_image = make_reflection(end.projection);
+  square_ = last;
+  end.determinant_share = determinant_share(square_, speed, section_image, flow_image);
+
+  system.first(FunctionKind::jump, v.jump, x.end(s), x.par.data(), {}, image_.data(), end.jump.data(), nullptr);
+  reflect(end.section, end.jump.transpose());
+}
+
+/// The blocks of segment s, from its end and that of the segment before.
+void FloquetSolver::project_blocks(const CondensedSystem& condensed, int s) {
+  const int n = shape_.dimension;
+  const auto at = static_cast<std::size_t>(s);
+  const RowMajorBlock first(condensed.first_block(s), n, n);
+  const RowMajorBlock last(condensed.last_block(s), n, n);
+  const SegmentEnd& end = ends_[at];
+  const auto entering = ends_[at > 0 ? at - 1 : ends_.size() - 1].jump.rightCols(n - 1);
+  a_sizes_[at] = first.norm() * entering.norm();
+  e_sizes_[at] = last.norm();
+
+  square_ = last;
+  reflect(end.section, square_.transpose());
+  reflect(end.projection, square_);
+  blocks_.e[at] = square_.bottomRightCorner(n - 1, n - 1);
+  auto product = square_.rightCols(n - 1);
+  product.noalias() = first * entering;
+  reflect(end.projection, product);
+  blocks_.a[at] = -product.bottomRows(n - 1);
+}
 
 /// The blocks, with entries disturbed by this share of the blocks that they are projected from: what is left of these
 /// at h_x f = 0 may be rounding. `way` chooses one of many such disturbances.
 FloquetSolver::Blocks FloquetSolver::disturbed(double disturbance, int way) const {
-  Blocks blocks{e_, a_};
-  if (disturbance == 0.0) return blocks;
+  Blocks blocks = blocks_;
   double k = 0.0;
   const auto disturb = [&](Matrix& block, double size) {
     for (double& entry : block.reshaped()) {
@@ -170,27 +199,28 @@ FloquetSolver::Blocks FloquetSolver::disturbed(double disturbance, int way) cons
       entry += disturbance * size * std::cos((k + 0.1 * way) * k);  // any fixed numbers without pattern
     }
   };
-  for (std::size_t s = 0; s < a_.size(); ++s) {
+  for (std::size_t s = 0; s < ends_.size(); ++s) {
     disturb(blocks.a[s], a_sizes_[s]);
     disturb(blocks.e[s], e_sizes_[s]);
   }
   return blocks;
 }
 
-/// Of the product of E_s^-1 A'_s, disturbed; none when the iteration fails.
-std::vector<std::complex<double>> FloquetSolver::eigenvalues(double disturbance, int way) {
-  const Blocks blocks = disturbed(disturbance, way);
+/// Of the product of E_s^-1 A'_s; none when the iteration fails.
+std::vector<std::complex<double>> FloquetSolver::eigenvalues(const Blocks& blocks) {
   const int n = shape_.dimension - 1;
   for (int s = 0; s < shape_.segments; ++s) {
-    const auto at = static_cast<std::size_t>(s);
-    for (int i = 0; i < n; ++i)
-      for (int j = 0; j < n; ++j) {
-        qz_.a(s, i, j) = blocks.a[at](i, j);
-        qz_.e(s, i, j) = blocks.e[at](i, j);
+    const Matrix& a = blocks.a[static_cast<std::size_t>(s)];
+    const Matrix& e = blocks.e[static_cast<std::size_t>(s)];
+    for (int j = 0; j < n; ++j)
+      for (int i = 0; i < n; ++i) {
+        qz_.a(s, i, j) = a(i, j);
+        qz_.e(s, i, j) = e(i, j);
       }
   }
   std::vector<std::complex<double>> values;
   if (!qz_.compute()) return values;
+  values.reserve(static_cast<std::size_t>(shape_.dimension) + 1);
   for (const ScaledComplex& mu : qz_.eigenvalues()) values.push_back(mu.value(infinite_multiplier));
   conjugate_pairs(values);
   return values;
@@ -202,7 +232,7 @@ void FloquetSolver::leave_out_undetermined(FloquetMultipliers& result) {
   constexpr int ways = 5;
   const std::size_t all = result.values.size();
   for (int way = 1; way <= ways; ++way) {
-    std::vector<std::complex<double>> others = eigenvalues(no_transversality, way);
+    std::vector<std::complex<double>> others = eigenvalues(disturbed(no_transversality, way));
     std::vector<std::complex<double>> known;
     for (const auto& mu : result.values) {
       const auto nearer = [&mu](const auto& a, const auto& b) { return chord(a, mu) < chord(b, mu); };
@@ -216,10 +246,10 @@ void FloquetSolver::leave_out_undetermined(FloquetMultipliers& result) {
   result.undetermined = static_cast<int>(all - result.values.size());
 }
 
-void FloquetSolver::form_products(const std::vector<SegmentEnd>& ends, bool touches, FloquetMultipliers& result) const {
+void FloquetSolver::form_products(bool touches, FloquetMultipliers& result) const {
   ScaledReal regular;  // det E_1 ... det E_m / (a_1 ... a_m)
-  for (const SegmentEnd& end : ends) regular *= end.determinant_share;
-  const CyclicDeterminant exact(e_, a_);
+  for (const SegmentEnd& end : ends_) regular *= end.determinant_share;
+  const CyclicDeterminant exact(blocks_.e, blocks_.a);
   const auto value = [&regular](const CyclicDeterminant& determinant, double t) {
     ScaledReal product = determinant.at(t);
     product /= regular;
@@ -235,67 +265,36 @@ void FloquetSolver::form_products(const std::vector<SegmentEnd>& ends, bool touc
 }
 
 FloquetMultipliers FloquetSolver::compute(const CondensedSystem& condensed, const Orbit& x) {
-  const int n = shape_.dimension;
-  const int m = shape_.segments;
-  const HybridSystem& system = condensed.system().system();
-  const double* par = x.par.data();
-  std::vector<SegmentEnd> ends(static_cast<std::size_t>(m));
+  for (int s = 0; s < shape_.segments; ++s) measure_end(condensed, x, s);
+  for (int s = 0; s < shape_.segments; ++s) project_blocks(condensed, s);
   double structural = 0.0;
   double least_transversality = 1.0;
-  std::optional<double> trivial;
-  for (int s = 0; s < m; ++s) {
-    const IndexVector& v = condensed.system().signature()[static_cast<std::size_t>(s)];
-    SegmentEnd& end = ends[static_cast<std::size_t>(s)];
-    const Vector hx = section_at_end(condensed.system(), x, s);
-    Vector f0(n);
-    Vector f1(n);
-    Vector g(n);
-    Matrix gx(n, n);
-    system.value(FunctionKind::field, v.field, x.start(s), par, f0.data());
-    system.value(FunctionKind::field, v.field, x.end(s), par, f1.data());
-    system.first(FunctionKind::jump, v.jump, x.end(s), par, {}, g.data(), gx.data(), nullptr);
-    const RowMajorBlock first(condensed.first_block(s), n, n);
-    const RowMajorBlock last(condensed.last_block(s), n, n);
-    end.tangent = complement(hx);
-    end.jump_tangent = gx * end.tangent;
-    end.projection = complement(last * f1);
-    const double sizes = hx.norm() * f1.norm();
-    end.transversality = sizes > 0.0 ? hx.dot(f1) / sizes : 0.0;
-    end.flow_defect = flow_defect(first, f0, last, f1);
-    if (!condensed.system().has_event(s)) trivial = trivial_multiplier(first, f0, last, f1);
-    end.determinant_share = determinant_share(end, last, hx, f1);
+  for (const SegmentEnd& end : ends_) {
     structural = std::max(structural, end.flow_defect);
     least_transversality = std::min(least_transversality, std::abs(end.transversality));
-  }
-  for (int s = 0; s < m; ++s) {
-    const SegmentEnd& end = ends[static_cast<std::size_t>(s)];
-    const SegmentEnd& before = ends[static_cast<std::size_t>((s + m - 1) % m)];
-    const RowMajorBlock first(condensed.first_block(s), n, n);
-    const RowMajorBlock last(condensed.last_block(s), n, n);
-    a_[static_cast<std::size_t>(s)] = -end.projection.transpose() * (first * before.jump_tangent);
-    e_[static_cast<std::size_t>(s)] = end.projection.transpose() * (last * end.tangent);
-    a_sizes_[static_cast<std::size_t>(s)] = first.norm() * before.jump_tangent.norm();
-    e_sizes_[static_cast<std::size_t>(s)] = last.norm();
   }
 
   FloquetMultipliers result;
   result.structural = std::isfinite(structural) ? std::min(structural, infinite_multiplier) : infinite_multiplier;
-  result.values = eigenvalues(0.0, 0);
-  result.valid = n == 1 || !result.values.empty();
+  result.values = eigenvalues(blocks_);
+  result.valid = shape_.dimension == 1 || !result.values.empty();
   if (!result.valid) return result;
   const bool touches = least_transversality < near_grazing;
-  form_products(ends, touches, result);
+  form_products(touches, result);
   if (touches) leave_out_undetermined(result);
   if (least_transversality <= no_transversality && !result.values.empty()) {
     const auto by_size = [](const auto& a, const auto& b) { return std::abs(a) < std::abs(b); };
     const auto largest = std::max_element(result.values.begin(), result.values.end(), by_size);
     if (std::abs(*largest) > large) *largest = infinite_multiplier;
   }
-  if (trivial) {
+  const DefiningSystem& defining = condensed.system();
+  for (int s = shape_.segments - 1; s >= 0; --s) {
+    if (defining.has_event(s)) continue;
+    const double trivial = ends_[static_cast<std::size_t>(s)].trivial_multiplier;
     if (!result.values.empty()) sort_by_interest(result.values);
     result.has_trivial = true;
-    result.structural = std::abs(*trivial - 1.0);
-    result.values.insert(result.values.begin(), *trivial);
+    result.structural = std::abs(trivial - 1.0);
+    result.values.insert(result.values.begin(), trivial);
     return result;
   }
   result.values.emplace_back(result.structural);

@@ -90,23 +90,37 @@ class FloquetSolver {
   FloquetMultipliers compute(const CondensedSystem& condensed, const Orbit& x);
 
  private:
-  struct SegmentEnd;
+  /// What the end of one segment contributes. Z_s and F_s are all columns but the first of reflections, which take h_x
+  /// and C_s f to multiples of the first unit vector.
+  struct SegmentEnd {
+    Eigen::VectorXd section;          // of the reflection with Z_s
+    Eigen::VectorXd projection;       // of the reflection with F_s
+    Eigen::MatrixXd jump;             // g_x times the former: its columns but the first are g_x Z_s
+    double transversality = 0.0;      // a_s = h_x f / (|h_x| |f|)
+    ScaledReal determinant_share;     // det E_s / a_s
+    double flow_defect = 0.0;         // part of the structural zero
+    double trivial_multiplier = 0.0;  // of an end without a section
+  };
   struct Blocks {
     std::vector<Eigen::MatrixXd> e, a;
   };
+  void measure_end(const CondensedSystem& condensed, const Orbit& x, int s);
+  void project_blocks(const CondensedSystem& condensed, int s);
   Blocks disturbed(double disturbance, int way) const;
-  std::vector<std::complex<double>> eigenvalues(double disturbance, int way);
+  std::vector<std::complex<double>> eigenvalues(const Blocks& blocks);
   void leave_out_undetermined(FloquetMultipliers& result);
-  static ScaledReal determinant_share(const SegmentEnd& end, const Eigen::MatrixXd& last, const Eigen::VectorXd& hx,
-                                      const Eigen::VectorXd& f);
-  void form_products(const std::vector<SegmentEnd>& ends, bool touches, FloquetMultipliers& result) const;
+  void form_products(bool touches, FloquetMultipliers& result) const;
 
   OrbitShape shape_;
-  std::vector<Eigen::MatrixXd> a_;  // A'_s
-  std::vector<Eigen::MatrixXd> e_;  // E_s
-  std::vector<double> a_sizes_;     // of the blocks before their projection
+  std::vector<SegmentEnd> ends_;
+  Blocks blocks_;                // E_s, A'_s
+  std::vector<double> a_sizes_;  // of the blocks before their projection
   std::vector<double> e_sizes_;
   PeriodicQz qz_;
+  // scratch of one segment
+  Eigen::VectorXd f0_, f1_, image_;  // the field at both ends, C_s f
+  Eigen::MatrixXd square_;           // n x n
+  Eigen::MatrixXd flow_rows_;        // 2n x (n + 1), see flow_defect()
 };
 
 }  // namespace tchat

@@ -1,7 +1,6 @@
 #include "stability/periodic_qz.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -14,12 +13,37 @@ using Scalar = PeriodicQz::Scalar;
 
 double size1(const Scalar& z) { return std::abs(z.real()) + std::abs(z.imag()); }
 
-void rescale(ScaledComplex& z) {
-  const double size = size1(z.mantissa);
-  if (size == 0.0 || !std::isfinite(size)) return;
+// The operators of std::complex look after overflow and infinities, which there are none of in factors of size about 1
+// with regular diagonals.
+Scalar times(const Scalar& y, const Scalar& z) {
+  return {y.real() * z.real() - y.imag() * z.imag(), y.real() * z.imag() + y.imag() * z.real()};
+}
+
+Scalar inverse(const Scalar& z) {
+  const double inverse_square = 1.0 / std::norm(z);
+  return {z.real() * inverse_square, -z.imag() * inverse_square};
+}
+
+Scalar times_power(const Scalar& z, long exponent) {
+  constexpr long beyond = 4000;  // of any double
+  const int e = static_cast<int>(std::clamp(exponent, -beyond, beyond));
+  return {std::ldexp(z.real(), e), std::ldexp(z.imag(), e)};
+}
+
+/// The power of two to take out of numbers of this size; none where products of several can be formed as they are.
+int exponent_of(double size) {
+  constexpr double largest = 0x1p100;
+  if (size < largest && size * largest > 1.0) return 0;
+  if (size == 0.0 || !std::isfinite(size)) return 0;
   int exponent = 0;
   std::frexp(size, &exponent);
-  z.mantissa = {std::ldexp(z.mantissa.real(), -exponent), std::ldexp(z.mantissa.imag(), -exponent)};
+  return exponent;
+}
+
+void rescale(ScaledComplex& z) {
+  const int exponent = exponent_of(size1(z.mantissa));
+  if (exponent == 0) return;
+  z.mantissa = times_power(z.mantissa, -exponent);
   z.exponent += exponent;
 }
 
@@ -35,31 +59,60 @@ std::complex<double> ScaledComplex::value(double cap) const {
   return {std::ldexp(mantissa.real(), e), std::ldexp(mantissa.imag(), e)};
 }
 
-/// An upper triangular or full 2 x 2 block times a power of two.
-struct PeriodicQz::Block2 {
-  std::array<Scalar, 4> x;  // row-major
-
-  void rescale_entries() {
-    double size = 0.0;
-    for (const Scalar& z : x) size = std::max(size, size1(z));
-    if (size == 0.0 || !std::isfinite(size)) return;
-    for (Scalar& z : x) z /= size;
-  }
-};
-
 /// The unitary [c s; -conj(s) c] with c real.
 struct PeriodicQz::Rotation {
   double c = 1.0;
   Scalar s = 0.0;
 
+  void apply(Scalar& x, Scalar& y) const {
+    const Scalar old = x;
+    x = c * old + times(s, y);
+    y = c * y - times(std::conj(s), old);
+  }
+
   /// Maps (f, g) to (r, 0).
   static Rotation zero_second(const Scalar& f, const Scalar& g) {
+    constexpr double least = 1e-280;
+    if (g == 0.0) return {};
+    const double square = std::norm(f);
+    const double product = square * (square + std::norm(g));
+    if (product < least) return zero_second_of_small(f, g);
+    const double scale = 1.0 / std::sqrt(product);
+    return {square * scale, scale * times(f, std::conj(g))};
+  }
+
+  /// Without squares, which may vanish.
+  static Rotation zero_second_of_small(const Scalar& f, const Scalar& g) {
     const double af = std::abs(f);
     const double ag = std::abs(g);
-    if (ag == 0.0) return {};
     if (af == 0.0) return {0.0, std::conj(g) / ag};
     const double r = std::hypot(af, ag);
     return {af / r, (f / af) * std::conj(g) / r};
+  }
+
+  /// Maps the row (f, g) to (0, r) from the right, as rotate_columns() applies it.
+  static Rotation zero_first(const Scalar& f, const Scalar& g) {
+    const Rotation z = zero_second(std::conj(g), std::conj(f));
+    return {z.c, -std::conj(z.s)};
+  }
+};
+
+/// [first off; 0 last] * 2^exponent
+struct PeriodicQz::TriangularBlock {
+  Scalar first = 1.0;
+  Scalar off = 0.0;
+  Scalar last = 1.0;
+  long exponent = 0;
+
+  /// By [p q; 0 r] from the left.
+  void multiply(const Scalar& p, const Scalar& q, const Scalar& r) {
+    first = times(p, first);
+    off = times(p, off) + times(q, last);
+    last = times(r, last);
+    const int shift = exponent_of(size1(first) + size1(off) + size1(last));
+    if (shift == 0) return;
+    for (Scalar* entry : {&first, &off, &last}) *entry = times_power(*entry, -shift);
+    exponent += shift;
   }
 };
 
@@ -94,8 +147,9 @@ void PeriodicQz::normalise() {
     for (auto z = begin; z != begin + static_cast<std::ptrdiff_t>(block); ++z) size = std::max(size, size1(*z));
     int exponent = 0;
     if (size > 0.0) std::frexp(size, &exponent);
-    for (auto z = begin; z != begin + static_cast<std::ptrdiff_t>(block); ++z)
-      *z = {std::ldexp(z->real(), -exponent), std::ldexp(z->imag(), -exponent)};
+    exponent = std::max(exponent, -1000);  // the power is to be a number
+    const double power = std::ldexp(1.0, -exponent);
+    for (auto z = begin; z != begin + static_cast<std::ptrdiff_t>(block); ++z) *z *= power;
     return static_cast<long>(exponent);
   };
   for (int s = 0; s < m_; ++s) {
@@ -105,25 +159,16 @@ void PeriodicQz::normalise() {
 }
 
 /// Rows k-1, k of factor s from the left.
-void PeriodicQz::rotate_rows(std::vector<Scalar>& matrix, int s, int k, const Rotation& r) {
-  for (int c = 0; c < n_; ++c) {
-    Scalar& x = matrix[at(s, k - 1, c)];
-    Scalar& y = matrix[at(s, k, c)];
-    const Scalar old = x;
-    x = r.c * old + r.s * y;
-    y = r.c * y - std::conj(r.s) * old;
-  }
+void PeriodicQz::rotate_rows(std::vector<Scalar>& matrix, int s, int k, const Rotation& r, const Range& columns) {
+  Scalar* x = matrix.data() + at(s, k - 1, columns.first);
+  for (int c = columns.first; c <= columns.last; ++c, x += n_) r.apply(x[0], x[1]);
 }
 
 /// Columns k-1, k of factor s from the right, by the conjugate transpose of what rotate_rows applies.
-void PeriodicQz::rotate_columns(std::vector<Scalar>& matrix, int s, int k, const Rotation& r) {
-  for (int i = 0; i < n_; ++i) {
-    Scalar& x = matrix[at(s, i, k - 1)];
-    Scalar& y = matrix[at(s, i, k)];
-    const Scalar old = x;
-    x = r.c * old + std::conj(r.s) * y;
-    y = r.c * y - r.s * old;
-  }
+void PeriodicQz::rotate_columns(std::vector<Scalar>& matrix, int s, int k, const Rotation& r, const Range& rows) {
+  const Rotation conjugate{r.c, std::conj(r.s)};
+  Scalar* x = matrix.data() + at(s, rows.first, k - 1);
+  for (int i = rows.first; i <= rows.last; ++i, ++x) conjugate.apply(x[0], x[n_]);
 }
 
 /// E_m, A_m, E_(m-1), ..., E_1 one after the other to upper triangular form; A_1 stays full.
@@ -133,38 +178,37 @@ void PeriodicQz::triangularise() {
     for (int c = 0; c < n_ - 1; ++c)
       for (int k = n_ - 1; k > c; --k) {
         const Rotation r = Rotation::zero_second(e(s, k - 1, c), e(s, k, c));
-        rotate_rows(e_, s, k, r);
-        rotate_rows(a_, s, k, r);
+        rotate_rows(e_, s, k, r, {c, n_ - 1});
+        rotate_rows(a_, s, k, r, all());
         e(s, k, c) = 0.0;
       }
     if (s == 0) break;
     // Columns of A_s and of E_(s-1): A_s triangular, from the right.
     for (int row = n_ - 1; row > 0; --row)
       for (int k = 1; k <= row; ++k) {
-        // Zero (row, k-1) against (row, k): the pair taken in reverse order, conjugated.
-        const Rotation z = Rotation::zero_second(std::conj(a(s, row, k)), std::conj(a(s, row, k - 1)));
-        const Rotation r{z.c, -std::conj(z.s)};
-        rotate_columns(a_, s, k, r);
-        rotate_columns(e_, s - 1, k, r);
+        const Rotation r = Rotation::zero_first(a(s, row, k - 1), a(s, row, k));
+        rotate_columns(a_, s, k, r, {0, row});
+        rotate_columns(e_, s - 1, k, r, all());
         a(s, row, k - 1) = 0.0;
       }
   }
 }
 
 /// A rotation of rows k-1, k of the pair (A_1, E_1) has filled E_1(k, k-1): carry it round the cycle, restoring every
-/// triangular factor, until it acts on columns k-1, k of A_1.
-void PeriodicQz::chase(int k) {
+/// triangular factor within the window, until it acts on columns k-1, k of A_1, which are zero below `last_row`.
+void PeriodicQz::chase(int k, const Range& window, int last_row) {
+  const Range rows{window.first, k};
+  const Range columns{k - 1, window.last};
   for (int s = 0; s < m_; ++s) {
-    const Rotation z = Rotation::zero_second(std::conj(e(s, k, k)), std::conj(e(s, k, k - 1)));
-    const Rotation columns{z.c, -std::conj(z.s)};
-    rotate_columns(e_, s, k, columns);
+    const Rotation right = Rotation::zero_first(e(s, k, k - 1), e(s, k, k));
+    rotate_columns(e_, s, k, right, rows);
     e(s, k, k - 1) = 0.0;
     const int next = (s + 1) % m_;
-    rotate_columns(a_, next, k, columns);
+    rotate_columns(a_, next, k, right, next == 0 ? Range{window.first, last_row} : rows);
     if (next == 0) return;
-    const Rotation rows = Rotation::zero_second(a(next, k - 1, k - 1), a(next, k, k - 1));
-    rotate_rows(a_, next, k, rows);
-    rotate_rows(e_, next, k, rows);
+    const Rotation left = Rotation::zero_second(a(next, k - 1, k - 1), a(next, k, k - 1));
+    rotate_rows(a_, next, k, left, columns);
+    rotate_rows(e_, next, k, left, columns);
     a(next, k, k - 1) = 0.0;
   }
 }
@@ -173,10 +217,10 @@ void PeriodicQz::hessenberg() {
   for (int c = 0; c < n_ - 2; ++c)
     for (int k = n_ - 1; k > c + 1; --k) {
       const Rotation r = Rotation::zero_second(a(0, k - 1, c), a(0, k, c));
-      rotate_rows(a_, 0, k, r);
-      rotate_rows(e_, 0, k, r);
+      rotate_rows(a_, 0, k, r, {c, n_ - 1});
+      rotate_rows(e_, 0, k, r, {k - 1, n_ - 1});
       a(0, k, c) = 0.0;
-      chase(k);
+      chase(k, all(), n_ - 1);
     }
 }
 
@@ -184,122 +228,98 @@ void PeriodicQz::hessenberg() {
 void PeriodicQz::regularise() {
   static constexpr double floor = epsilon / 8;
   const auto lift = [](Scalar& z) {
+    if (std::norm(z) >= floor * floor) return;
     const double size = std::abs(z);
-    if (size < floor) z = size > 0.0 ? z / size * floor : Scalar(floor);
+    z = size > 0.0 ? z / size * floor : Scalar(floor);
   };
-  for (int k = 0; k < n_; ++k)
-    for (int s = 0; s < m_; ++s) {
+  for (int s = 0; s < m_; ++s)
+    for (int k = 0; k < n_; ++k) {
       lift(e(s, k, k));
       if (s > 0) lift(a(s, k, k));
     }
 }
 
-/// The 2 x 2 diagonal block of T = E_m^-1 A_m ... E_1^-1 at rows k-1, k, up to a scalar factor.
-PeriodicQz::Block2 PeriodicQz::triangular_block(int k) const {
-  Block2 t{{1.0, 0.0, 0.0, 1.0}};
-  const auto multiply_left = [&](const Scalar& p, const Scalar& q, const Scalar& r) {  // [p q; 0 r] t
-    t.x = {p * t.x[0] + q * t.x[2], p * t.x[1] + q * t.x[3], r * t.x[2], r * t.x[3]};
-    t.rescale_entries();
-  };
+/// The 2 x 2 diagonal block of T = E_m^-1 A_m ... E_1^-1 at rows k-1, k.
+PeriodicQz::TriangularBlock PeriodicQz::triangular_block(int k) const {
+  TriangularBlock t;
   for (int s = 0; s < m_; ++s) {
-    if (s > 0) multiply_left(a(s, k - 1, k - 1), a(s, k - 1, k), a(s, k, k));
-    multiply_left(e(s, k, k), -e(s, k - 1, k), e(s, k - 1, k - 1));  // adjugate: the inverse up to a factor
+    if (s > 0) t.multiply(a(s, k - 1, k - 1), a(s, k - 1, k), a(s, k, k));
+    const Scalar p = inverse(e(s, k - 1, k - 1));
+    const Scalar r = inverse(e(s, k, k));
+    t.multiply(p, -times(times(p, e(s, k - 1, k)), r), r);
   }
   return t;
 }
 
-/// The block times that of the Hessenberg factor A_1 at rows and columns k-1, k.
-PeriodicQz::Block2 PeriodicQz::times_hessenberg(const Block2& t, int k) const {
-  Block2 h;
-  for (std::size_t i = 0; i < 2; ++i)
-    for (std::size_t j = 0; j < 2; ++j)
-      h.x[2 * i + j] =
-          t.x[2 * i] * a(0, k - 1, k - 1 + static_cast<int>(j)) + t.x[2 * i + 1] * a(0, k, k - 1 + static_cast<int>(j));
-  return h;
-}
-
-/// The diagonal entry k of T, with its scale.
-ScaledComplex PeriodicQz::triangular_entry(int k) const {
-  ScaledComplex product{1.0, 0};
-  const auto multiply = [&product](const Scalar& factor) {
-    product.mantissa *= factor;
-    rescale(product);
-  };
-  for (int s = 0; s < m_; ++s) {
-    if (s > 0) multiply(a(s, k, k));
-    multiply(1.0 / e(s, k, k));
+/// The eigenvalue of the trailing block of T A_1 nearest to its last entry; now and then an exceptional one. `t` is the
+/// block of T there.
+ScaledComplex PeriodicQz::shift(const TriangularBlock& t, int high, int iteration) const {
+  const Scalar first = times(t.first, a(0, high - 1, high - 1)) + times(t.off, a(0, high, high - 1));
+  const Scalar upper = times(t.first, a(0, high - 1, high)) + times(t.off, a(0, high, high));
+  const Scalar lower = times(t.last, a(0, high, high - 1));
+  const Scalar last = times(t.last, a(0, high, high));
+  ScaledComplex result{size1(lower) + size1(last), t.exponent};  // exceptional
+  if (iteration % 10 != 9) {
+    const Scalar half_difference = 0.5 * (first - last);
+    const Scalar off = times(upper, lower);
+    const Scalar root = std::sqrt(times(half_difference, half_difference) + off);
+    const Scalar sum = half_difference + root;
+    const Scalar difference = half_difference - root;
+    const Scalar larger = size1(sum) > size1(difference) ? sum : difference;
+    result.mantissa = larger == 0.0 ? last : last - off / larger;
   }
-  return product;
-}
-
-/// The eigenvalue of the trailing block nearest to its last entry; now and then an exceptional one. The blocks are
-/// known up to factors only, so it is carried as a ratio to the block's last entry, whose scale is known.
-ScaledComplex PeriodicQz::shift(int high, int iteration) const {
-  const Block2 t = triangular_block(high);
-  const Block2 trailing = times_hessenberg(t, high);
-  const Scalar half_difference = 0.5 * (trailing.x[0] - trailing.x[3]);
-  const Scalar off = trailing.x[1] * trailing.x[2];
-  const Scalar root = std::sqrt(half_difference * half_difference + off);
-  const Scalar larger =
-      size1(half_difference + root) > size1(half_difference - root) ? half_difference + root : half_difference - root;
-  Scalar nearest = larger == 0.0 ? trailing.x[3] : trailing.x[3] - off / larger;
-  if (iteration % 10 == 9) nearest = size1(trailing.x[2]) + size1(trailing.x[3]);  // exceptional
-  const ScaledComplex scale = triangular_entry(high);
-  ScaledComplex result{t.x[3] == 0.0 ? Scalar(0.0) : nearest / t.x[3], 0};
-  result.mantissa *= scale.mantissa;
-  result.exponent += scale.exponent;
   rescale(result);
   return result;
 }
 
 /// Takes the first column of T A_1 - shift, of which two entries are not zero, to a multiple of the first unit vector.
-PeriodicQz::Rotation PeriodicQz::first_rotation(int low, const ScaledComplex& shift) const {
-  const ScaledComplex scale = triangular_entry(low);
-  const Block2 t = triangular_block(low + 1);
-  const Block2 leading = times_hessenberg(t, low + 1);
-  const Scalar unit = t.x[0] == 0.0 ? Scalar(1.0) : scale.mantissa / t.x[0];
-  ScaledComplex first{leading.x[0] * unit, scale.exponent};
-  ScaledComplex second{leading.x[2] * unit, scale.exponent};
-  rescale(first);
-  rescale(second);
-  const long reference = std::max({first.exponent, second.exponent, shift.exponent});
-  const auto aligned = [&](const ScaledComplex& z) {
-    const long difference = std::max(z.exponent - reference, -2000L);
-    return Scalar{std::ldexp(z.mantissa.real(), static_cast<int>(difference)),
-                  std::ldexp(z.mantissa.imag(), static_cast<int>(difference))};
-  };
-  return Rotation::zero_second(aligned(first) - aligned(shift), aligned(second));
+/// `t` is the leading block of T.
+PeriodicQz::Rotation PeriodicQz::first_rotation(const TriangularBlock& t, int low, const ScaledComplex& shift) const {
+  Scalar first = times(t.first, a(0, low, low)) + times(t.off, a(0, low + 1, low));
+  Scalar second = times(t.last, a(0, low + 1, low));
+  Scalar subtracted = shift.mantissa;
+  if (shift.exponent > t.exponent) {
+    first = times_power(first, t.exponent - shift.exponent);
+    second = times_power(second, t.exponent - shift.exponent);
+  } else if (shift.exponent < t.exponent) {
+    subtracted = times_power(subtracted, shift.exponent - t.exponent);
+  }
+  return Rotation::zero_second(first - subtracted, second);
 }
 
 /// A rotation of the space of x_1 acts on columns k-1, k of A_1 and of E_m; it is carried backwards through the cycle
 /// by restoring E_m from the left, then A_m from the right, ... until E_1 has been restored from the left.
-void PeriodicQz::chase_backwards(int k, const Rotation& r) {
-  rotate_columns(a_, 0, k, r);
-  rotate_columns(e_, m_ - 1, k, r);
+void PeriodicQz::chase_backwards(int k, const Range& window, const Rotation& r) {
+  const Range rows{window.first, k};
+  const Range columns{k - 1, window.last};
+  rotate_columns(a_, 0, k, r, {window.first, std::min(k + 1, window.last)});
+  rotate_columns(e_, m_ - 1, k, r, rows);
   for (int s = m_ - 1; s >= 0; --s) {
-    const Rotation rows = Rotation::zero_second(e(s, k - 1, k - 1), e(s, k, k - 1));
-    rotate_rows(e_, s, k, rows);
-    rotate_rows(a_, s, k, rows);
+    const Rotation left = Rotation::zero_second(e(s, k - 1, k - 1), e(s, k, k - 1));
+    rotate_rows(e_, s, k, left, columns);
+    rotate_rows(a_, s, k, left, columns);
     e(s, k, k - 1) = 0.0;
     if (s == 0) return;
-    const Rotation z = Rotation::zero_second(std::conj(a(s, k, k)), std::conj(a(s, k, k - 1)));
-    const Rotation columns{z.c, -std::conj(z.s)};
-    rotate_columns(a_, s, k, columns);
-    rotate_columns(e_, s - 1, k, columns);
+    const Rotation right = Rotation::zero_first(a(s, k, k - 1), a(s, k, k));
+    rotate_columns(a_, s, k, right, rows);
+    rotate_columns(e_, s - 1, k, right, rows);
     a(s, k, k - 1) = 0.0;
   }
 }
 
-/// One implicit single-shift step on rows and columns low..high of the Hessenberg factor: the first rotation makes a
+/// One implicit single-shift step on the window's rows and columns of the Hessenberg factor: the first rotation makes a
 /// bulge, which is chased down the diagonal.
-void PeriodicQz::single_step(int low, int high, int iteration) {
-  chase_backwards(low + 1, first_rotation(low, shift(high, iteration)));
+void PeriodicQz::single_step(const Range& window, int iteration) {
+  const auto [low, high] = window;
+  const TriangularBlock trailing = triangular_block(high);
+  const TriangularBlock leading = low + 1 < high ? triangular_block(low + 1) : trailing;
+  chase_backwards(low + 1, window, first_rotation(leading, low, shift(trailing, high, iteration)));
   for (int k = low + 2; k <= high; ++k) {
     const Rotation r = Rotation::zero_second(a(0, k - 1, k - 2), a(0, k, k - 2));
-    rotate_rows(a_, 0, k, r);
-    rotate_rows(e_, 0, k, r);
+    rotate_rows(a_, 0, k, r, {k - 2, high});
+    rotate_rows(e_, 0, k, r, {k - 1, high});
     a(0, k, k - 2) = 0.0;
-    chase(k);
+    chase(k, window, std::min(k + 1, high));
   }
 }
 
@@ -307,9 +327,9 @@ void PeriodicQz::single_step(int low, int high, int iteration) {
 void PeriodicQz::deflate(int k) {
   ScaledComplex value{1.0, 0};
   for (int s = 0; s < m_; ++s) {
-    value.mantissa *= a(s, k, k);
+    value.mantissa = times(value.mantissa, a(s, k, k));
     rescale(value);
-    value.mantissa /= e(s, k, k);
+    value.mantissa = times(value.mantissa, inverse(e(s, k, k)));
     rescale(value);
     value.exponent += scale_[2 * static_cast<std::size_t>(s)] - scale_[2 * static_cast<std::size_t>(s) + 1];
   }
@@ -337,7 +357,7 @@ bool PeriodicQz::iterate() {
       continue;
     }
     if (++iteration > 60) return false;
-    single_step(low, high, iteration);
+    single_step({low, high}, iteration);
     regularise();
   }
   return true;
@@ -358,8 +378,8 @@ void conjugate_pairs(std::vector<std::complex<double>>& values) {
     if (partner == i) {
       values[i] = mean.real();
     } else {
-      values[i] = mean;
-      values[partner] = std::conj(mean);
+      values[i] = {mean.real(), std::abs(mean.imag())};
+      values[partner] = std::conj(values[i]);
     }
   }
 }

@@ -8,8 +8,10 @@
 ///
 /// Method: Bojanczyk, Golub & Van Dooren's periodic Schur form in complex arithmetic. A_1 is reduced to Hessenberg form
 /// and all other factors to triangular form, then implicit single-shift steps chase a bulge round the cycle until A_1
-/// is triangular as well. Zeros on the diagonal of a triangular factor are replaced by rounding-level numbers, a
-/// perturbation that the method commits anyway, so no case needs deflation of its own.
+/// is triangular as well. They are applied to the diagonal blocks alone that they are about: no eigenvalue depends on
+/// what stands beside these, so that it is not kept up to date. Zeros on the diagonal of a triangular factor are
+/// replaced by rounding-level numbers, a perturbation that the method commits anyway, so no case needs deflation of its
+/// own.
 #pragma once
 
 #include <complex>
@@ -44,27 +46,29 @@ class PeriodicQz {
   const std::vector<ScaledComplex>& eigenvalues() const { return eigenvalues_; }
 
  private:
-  struct Block2;
   struct Rotation;
-  struct Active;
+  struct TriangularBlock;
+  /// Of rows or columns, both ends included.
+  struct Range {
+    int first, last;
+  };
   std::size_t at(int s, int row, int column) const { return static_cast<std::size_t>((s * n_ + column) * n_ + row); }
+  Range all() const { return {0, n_ - 1}; }
   bool finite() const;
   void normalise();
   void triangularise();
   void hessenberg();
-  void chase(int k);
+  void chase(int k, const Range& window, int last_row);
   void regularise();
   bool iterate();
-  Block2 triangular_block(int k) const;
-  Block2 times_hessenberg(const Block2& t, int k) const;
-  ScaledComplex triangular_entry(int k) const;
-  ScaledComplex shift(int high, int iteration) const;
-  Rotation first_rotation(int low, const ScaledComplex& shift) const;
-  void chase_backwards(int k, const Rotation& r);
-  void single_step(int low, int high, int iteration);
+  TriangularBlock triangular_block(int k) const;
+  ScaledComplex shift(const TriangularBlock& t, int high, int iteration) const;
+  Rotation first_rotation(const TriangularBlock& t, int low, const ScaledComplex& shift) const;
+  void chase_backwards(int k, const Range& window, const Rotation& r);
+  void single_step(const Range& window, int iteration);
   void deflate(int k);
-  void rotate_rows(std::vector<Scalar>& matrix, int s, int k, const Rotation& r);
-  void rotate_columns(std::vector<Scalar>& matrix, int s, int k, const Rotation& r);
+  void rotate_rows(std::vector<Scalar>& matrix, int s, int k, const Rotation& r, const Range& columns);
+  void rotate_columns(std::vector<Scalar>& matrix, int s, int k, const Rotation& r, const Range& rows);
 
   int n_;
   int m_;
@@ -75,7 +79,7 @@ class PeriodicQz {
 };
 
 /// The eigenvalues of a real problem cleaned of rounding: each is paired with the nearest conjugate, possibly itself
-/// (then it is real), and the two are averaged.
+/// (then it is real), and the two are averaged. The one with the positive imaginary part comes first.
 void conjugate_pairs(std::vector<std::complex<double>>& values);
 
 }  // namespace tchat

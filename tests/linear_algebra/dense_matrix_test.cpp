@@ -6,6 +6,8 @@
 #include <catch2/catch.hpp>
 #include <random>
 
+#include "linear_algebra/reflection.hpp"
+
 using namespace tchat;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
@@ -76,22 +78,47 @@ TEST_CASE("an unknown that nothing concerns stays exactly zero", "[dense_matrix]
   CHECK(solve_with_complete_pivoting(a, right)(2) == 0.0);
 }
 
-TEST_CASE("Householder's reduction: orthogonal, its determinant, the upper triangle", "[dense_matrix]") {
-  const MatrixXd a = random_matrix(6, 3, 20u);
-  const HouseholderQr qr(a);
-  const MatrixXd q_transposed = qr.turned(MatrixXd::Identity(6, 6));
-  CHECK((q_transposed * q_transposed.transpose() - MatrixXd::Identity(6, 6)).norm() < rounding);
-  CHECK(qr.parity() == Approx(q_transposed.determinant()));
-  const MatrixXd r = qr.turned(a);
-  CHECK(r.bottomRows(3).norm() < rounding);
-  CHECK((r.diagonal() - qr.diagonal()).norm() < rounding);
-  CHECK((qr.turned(a.col(0)) - r.col(0)).norm() < rounding);
+TEST_CASE("a reflection takes a vector to a multiple of the first unit vector, of any size", "[dense_matrix]") {
+  for (const double size : {1.0, 1e-200, 1e200})
+    for (const int n : {1, 2, 5}) {
+      CAPTURE(size, n);
+      const VectorXd x = random_matrix(n, 1, 60u + static_cast<unsigned>(n));
+      VectorXd w = size * x;
+      const double image = make_reflection(w);
+      CHECK(w.squaredNorm() == Approx(2.0));
+      CHECK(std::abs(image) == Approx(size * x.norm()));
+      CHECK(image * x(0) < 0.0);
+      MatrixXd reflected = x;
+      reflect(w, reflected);
+      CHECK((size * reflected / image - VectorXd::Unit(n, 0)).norm() < rounding);
+      const MatrixXd matrix = random_matrix(n, n, 70u);
+      MatrixXd from_the_right = matrix;
+      reflect(w, from_the_right.transpose());
+      CHECK((from_the_right - matrix * (MatrixXd::Identity(n, n) - w * w.transpose())).norm() < rounding);
+    }
+  VectorXd nothing = VectorXd::Zero(3);
+  CHECK(make_reflection(nothing) == 0.0);
+  CHECK(nothing.isZero(0.0));
+}
+
+TEST_CASE("triangular form by reflections: orthogonal, their determinant, the upper triangle", "[dense_matrix]") {
+  for (const int columns : {1, 3, 6}) {
+    CAPTURE(columns);
+    MatrixXd a = random_matrix(6, columns, 20u);
+    if (columns == 3) a.col(1).setZero();  // nothing to reflect in the second step
+    MatrixXd both(6, columns + 6);
+    both << a, MatrixXd::Identity(6, 6);
+    const int parity = triangularise(both, columns);
+    const MatrixXd q_transposed = both.rightCols(6);
+    CHECK((q_transposed * q_transposed.transpose() - MatrixXd::Identity(6, 6)).norm() < rounding);
+    CHECK(parity == Approx(q_transposed.determinant()));
+    CHECK((q_transposed * a - both.leftCols(columns)).norm() < rounding);
+    CHECK(both.leftCols(columns).triangularView<Eigen::StrictlyLower>().toDenseMatrix().isZero(0.0));
+  }
 }
 
 TEST_CASE("the distance to a null space does not depend on the sizes of rows", "[dense_matrix]") {
-  MatrixXd rows(2, 4);
-  rows << 3.0, 0.0, 0.0, 0.0, 0.0, 1e-20, 0.0, 0.0;
-  VectorXd x(4);
-  x << 0.3, 0.4, 5.0, 6.0;
-  CHECK(distance_to_null_space(rows, x) == Approx(0.5).epsilon(1e-14));
+  MatrixXd columns(4, 3);  // two rows, and x
+  columns.transpose() << 3.0, 0.0, 0.0, 0.0, 0.0, 3e-180, 0.0, 4e-180, 0.3, 0.4, 5.0, 6.0;
+  CHECK(distance_to_null_space(columns) == Approx(std::hypot(0.3, 0.6 * 0.4 + 0.8 * 6.0)).epsilon(1e-14));
 }

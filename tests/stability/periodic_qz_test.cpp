@@ -167,12 +167,13 @@ TEST_CASE("periodic QZ: values beyond the cap are cut back to it, input that is 
 }
 
 TEST_CASE("conjugate pairs are made exact, real values real") {
-  Multipliers values{{0.3, 1e-17}, {0.5, 0.7}, {-2.0, -3e-16}, {0.5 + 1e-15, -0.7}, {1e-12, 2e-3}, {1e-12, -2e-3}};
+  Multipliers values{{0.3, 1e-17}, {0.5, 0.7}, {-2.0, -3e-16}, {0.5 + 1e-15, -0.7}, {1e-12, -2e-3}, {1e-12, 2e-3}};
   conjugate_pairs(values);
   CHECK(values[0].imag() == 0.0);
   CHECK(values[2].imag() == 0.0);
   CHECK(values[1] == std::conj(values[3]));
   CHECK(values[4] == std::conj(values[5]));
+  CHECK(values[4].imag() > 0.0);
   CHECK(std::abs(values[1] - std::complex<double>(0.5, 0.7)) < 1e-15);
   Multipliers none;
   conjugate_pairs(none);
