@@ -40,9 +40,13 @@ Eigen::VectorXcd complex_solution(const Eigen::MatrixXcd& a, const Eigen::Vector
   return a.partialPivLu().solve(b);
 }
 
+Eigen::VectorXd closest_solution(const Eigen::MatrixXd& a, const Eigen::VectorXd& b) {
+  return a.colPivHouseholderQr().solve(b);
+}
+
 Eigen::MatrixXd exponential(const Eigen::MatrixXd& a) { return a.exp(); }
 
-Eigen::VectorXcd eigenvalues(Eigen::MatrixXd a) {
+Eigen::VectorXcd lapack_eigenvalues(Eigen::MatrixXd a) {
   const int n = static_cast<int>(a.rows()), length = 8 * n, one = 1;
   Eigen::VectorXd real(n), imaginary(n), work(length);
   int info = 0;
