@@ -1,49 +1,38 @@
 #include "bvp/bordered_problem.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cassert>
 #include <cmath>
+
+#include "linear_algebra/array_kernel.hpp"
 
 namespace tchat {
 
 BorderedProblem::BorderedProblem(const DefiningSystem& system, const OrbitShape& shape,
                                  std::unique_ptr<OrbitCondition> condition, std::vector<HeldMonitor> held, int threads)
-    : condensed_(
-          system, shape,
-          1 + system.integral_conditions() + static_cast<int>(held.size()) + (condition ? condition->count() : 0),
-          threads),
+    : condensed_(system, shape, system.integral_conditions() + static_cast<int>(held.size()), threads),
       condition_(std::move(condition)),
       held_(std::move(held)),
       rows_(static_cast<std::size_t>(condensed_.border_rows()), condensed_.make_vector()),
       border_(rows_.size()),
-      unchanged_(static_cast<std::size_t>(system.integral_conditions()) + held_.size(), 0.0),
-      responses_(static_cast<std::size_t>(conditions()), condensed_.make_vector()),
-      slopes_(conditions()) {
-  // Any rows serve the first time that are not orthogonal to what they stand for.
-  for (int k = 0; k < conditions(); ++k) {
-    OrbitVector& any = stand_in(k);
-    for (Eigen::Index i = 0; i < any.states.size(); ++i)
-      any.states.data()[i] = std::sin(0.5 + k + (0.61 + 0.27 * k) * static_cast<double>(i));
-    any.durations.setConstant(0.7);
-    for (Eigen::Index g = 0; g < any.globals.size(); ++g) any.globals(g) = (g + k) % 2 == 0 ? 1.0 : -1.3;
-  }
+      row_(condensed_.make_vector()),
+      particular_(row_),
+      null_vectors_(static_cast<std::size_t>(condensed_.null_vectors()), row_) {
+  assert(condensed_.null_vectors() == 1 + (condition_ ? condition_->count() : 0));
 }
 
 void BorderedProblem::remember(ConditionMemory& memory) const {
-  if (!condition_) return;
-  condition_->remember(memory.condition);
-  memory.stand_ins.resize(responses_.size());
-  std::copy(rows_.end() - conditions(), rows_.end(), memory.stand_ins.begin());
+  if (condition_) condition_->remember(memory);
 }
 
 void BorderedProblem::recall(const ConditionMemory& memory) {
-  if (!condition_) return;
-  condition_->recall(memory.condition);
-  std::copy(memory.stand_ins.begin(), memory.stand_ins.end(), rows_.end() - conditions());
+  if (condition_) condition_->recall(memory);
 }
 
 OrbitResidual BorderedProblem::make_residual() const {
   OrbitResidual residual = condensed_.make_residual();
-  residual.integral.resize(unchanged_.size(), 0.0);
+  residual.integral.resize(rows_.size(), 0.0);
   return residual;
 }
 
@@ -63,84 +52,84 @@ void BorderedProblem::evaluate(const Orbit& x, OrbitResidual& residual) {
 }
 
 Linearization BorderedProblem::linearize(const Orbit& x, const OrbitVector& row, OrbitResidual& residual) {
-  rows_[0].states = row.states;
-  rows_[0].durations = row.durations;
-  rows_[0].globals = row.globals;
+  row_.states = row.states;
+  row_.durations = row.durations;
+  row_.globals = row.globals;
   const auto integrals = static_cast<std::size_t>(system().integral_conditions());
   system().integral_gradients(x, reference_, condensed_.rule(), residual.integral.data(),
-                              std::span(rows_).subspan(1, integrals));
+                              std::span(rows_).first(integrals));
   for (std::size_t h = 0; h < held_.size(); ++h)
     residual.integral[integrals + h] =
-        held_[h].monitor->gradient(x, condensed_.rule(), rows_[1 + integrals + h]) - held_[h].value;
+        held_[h].monitor->gradient(x, condensed_.rule(), rows_[integrals + h]) - held_[h].value;
   const Linearization outcome = condensed_.linearize(x, rows_, residual);
-  if (outcome != Linearization::ready || !condition_) return outcome;
-  if (!condition_->evaluate(condensed_, x)) return Linearization::condition_lost;
-  if (!find_responses()) return Linearization::singular;
-  follow_gradients();
-  return Linearization::ready;
+  if (outcome != Linearization::ready) return outcome;
+  if (condition_ && !condition_->evaluate(condensed_, x)) return Linearization::condition_lost;
+  condensed_.solve_all(residual, border(residual.integral), particular_, null_vectors_);
+  return find_slopes() ? Linearization::ready : Linearization::singular;
 }
 
-/// False when they do not reach what the condition asks for.
-bool BorderedProblem::find_responses() {
-  Slopes slopes(conditions(), conditions());
-  for (int k = 0; k < conditions(); ++k) {
-    OrbitVector& response = responses_[static_cast<std::size_t>(k)];
-    condensed_.solve(border(0.0, unchanged_, k), response);
-    for (int i = 0; i < conditions(); ++i) slopes(i, k) = dot(condition_->gradient(i), response);
-  }
-  if (!slopes.allFinite()) return false;
-  slopes_.compute(slopes);
-  return slopes_.determinant() != 0.0;
+/// False when the rows do not tell null vectors apart.
+bool BorderedProblem::find_slopes() {
+  const int count = condensed_.null_vectors();
+  slopes_.resize(count, count);
+  for (int i = 0; i < count; ++i)
+    for (int k = 0; k < count; ++k) slopes_(i, k) = dot(late_row(i), null_vectors_[static_cast<std::size_t>(k)]);
+  if (!slopes_.allFinite()) return false;
+  slopes_lu_.compute(slopes_);
+  return slopes_lu_.determinant() != 0.0;
 }
 
-/// The stand-ins of the next linearisation.
-void BorderedProblem::follow_gradients() {
-  for (int k = 0; k < conditions(); ++k) {
-    const OrbitVector& gradient = condition_->gradient(k);
-    const double size = std::max({gradient.states.cwiseAbs().maxCoeff(), gradient.durations.cwiseAbs().maxCoeff(),
-                                  gradient.globals.cwiseAbs().maxCoeff()});
-    if (!std::isfinite(size) || !(size > 0.0)) continue;
-    stand_in(k) = gradient;
-    stand_in(k).scale(1.0 / size);
-  }
-}
-
-std::span<const double> BorderedProblem::border(double branch, const std::vector<double>& integrals, int unit) {
-  std::fill(border_.begin(), border_.end(), 0.0);
-  border_.front() = branch;
-  std::transform(integrals.begin(), integrals.end(), border_.begin() + 1, [](double value) { return -value; });
-  if (unit >= 0) border_[border_.size() - responses_.size() + static_cast<std::size_t>(unit)] = 1.0;
+std::span<const double> BorderedProblem::border(const std::vector<double>& integrals) {
+  std::transform(integrals.begin(), integrals.end(), border_.begin(), [](double value) { return -value; });
   return border_;
 }
 
-void BorderedProblem::solve(const OrbitResidual& residual, double target, OrbitVector& dx) {
-  condensed_.solve(residual, border(target, residual.integral), dx);
-  Numbers wanted(conditions());
-  for (int k = 0; k < conditions(); ++k) wanted(k) = -condition_->value(k);
-  correct(wanted, dx);
+void BorderedProblem::correction(double target, OrbitVector& dx) const {
+  Numbers wanted(condensed_.null_vectors());
+  wanted(0) = target;
+  for (int k = 1; k < wanted.size(); ++k) wanted(k) = -condition_->value(k - 1);
+  for (int k = 0; k < wanted.size(); ++k) wanted(k) -= dot(late_row(k), particular_);
+  combine(1.0, wanted, dx);
 }
 
-void BorderedProblem::solve(double target, OrbitVector& dx) {
-  condensed_.solve(border(target, unchanged_), dx);
-  correct(Numbers::Zero(conditions()), dx);
+void BorderedProblem::chord(const OrbitResidual& residual, const OrbitVector& row, double target, OrbitVector& dx) {
+  condensed_.solve(residual, border(residual.integral), dx);
+  const OrbitVector& v = null_vectors_.front();
+  const double along = (target - dot(row, dx)) / dot(row, v);
+  array_functions().add(along, v.states.data(), dx.states.data(), dx.states.size());
+  dx.durations += along * v.durations;
+  dx.globals += along * v.globals;
 }
 
-/// Adds what makes grad G . dx as wanted.
-void BorderedProblem::correct(Numbers wanted, OrbitVector& dx) const {
-  if (!condition_) return;
-  for (int k = 0; k < conditions(); ++k) wanted(k) -= dot(condition_->gradient(k), dx);
-  const Numbers shares = slopes_.solve(wanted);
-  for (int k = 0; k < conditions(); ++k) {
-    const OrbitVector& response = responses_[static_cast<std::size_t>(k)];
-    dx.states += shares(k) * response.states;
-    dx.durations += shares(k) * response.durations;
-    dx.globals += shares(k) * response.globals;
+void BorderedProblem::tangent(OrbitVector& dx) const { combine(0.0, Numbers::Unit(condensed_.null_vectors(), 0), dx); }
+
+/// So much of the particular solution, and null vectors on which the late rows have the values `wanted`.
+void BorderedProblem::combine(double particular, const Numbers& wanted, OrbitVector& dx) const {
+  std::array<const double*, 1 + most_rows> states{particular_.states.data()};
+  std::array<double, 1 + most_rows> factors{particular};
+  const Numbers shares = slopes_lu_.solve(wanted);
+  dx.durations = particular * particular_.durations;
+  dx.globals = particular * particular_.globals;
+  for (int k = 0; k < shares.size(); ++k) {
+    const auto at = static_cast<std::size_t>(k);
+    states[at + 1] = null_vectors_[at].states.data();
+    factors[at + 1] = shares(k);
+    dx.durations += shares(k) * null_vectors_[at].durations;
+    dx.globals += shares(k) * null_vectors_[at].globals;
   }
+  const int left_out = particular == 0.0 ? 1 : 0;
+  array_functions().combine(states.data() + left_out, factors.data() + left_out,
+                            1 - left_out + static_cast<int>(shares.size()), dx.states.data(), dx.states.size());
+}
+
+double BorderedProblem::signed_distance() const {
+  const double sign = slopes_lu_.determinant() < 0.0 ? -1.0 : 1.0;
+  return sign * condensed_.signed_distance() * std::abs(slopes_.rowwise().normalized().determinant());
 }
 
 double BorderedProblem::residual_size(const OrbitResidual& residual) const {
   double largest = residual.largest();
-  for (int k = 0; k < conditions(); ++k) largest = std::max(largest, std::abs(condition_->value(k)));
+  for (int k = 1; k < condensed_.null_vectors(); ++k) largest = std::max(largest, std::abs(condition_->value(k - 1)));
   return largest;
 }
 

@@ -5,13 +5,16 @@
 ///     J dx = -F,    grad I . dx = -I,    grad G . dx = -G,    row . dx = target       (n m N c + ... + m + q
 ///     equations)
 ///
-/// The gradient of an integral I, or of a monitor, is known before J is factored. That of G is known only after J has
-/// been condensed. So J is condensed with a stand-in for it, the gradient of the last linearisation, and the true
-/// gradient enters by a correction of rank one for each number: one more solution of the same factors.
+/// The gradients of integrals I and of monitors are few, and rows of the matrix like others. That of G is known only
+/// after J has been condensed, and the row of the branch, too, would only cost work in every interval. So J is factored
+/// without them (CondensedSystem closes it with rows of its own): 1 + C null vectors v remain, and they are added to
+/// any solution so that
+///
+///     row . dx = target,    grad G . dx = -G                                            (1 + C equations)
 ///
 /// A condition is found by iteration from where it was last: which multiplier it means, and the border of its own
 /// problem. A trial of Newton's method that fails leaves these anywhere. They belong to the point of the branch that
-/// the trial began from, together with the stand-ins, and are brought back (`recall`) before the next one.
+/// the trial began from, and are brought back (`recall`) before the next one.
 #pragma once
 
 #include <Eigen/LU>
@@ -29,7 +32,7 @@ namespace tchat {
 /// A function G of the orbit, durations and free parameters, of one number or two, with its gradients.
 class OrbitCondition {
  public:
-  static constexpr int most = 2;
+  static constexpr int most = 2;  // numbers
 
   virtual ~OrbitCondition() = default;
   /// How many numbers; constant.
@@ -49,11 +52,8 @@ class OrbitCondition {
   virtual void recall(const std::vector<double>& memory) = 0;
 };
 
-/// What linearisations near a point of the branch begin from; empty without a condition.
-struct ConditionMemory {
-  std::vector<double> condition;
-  std::vector<OrbitVector> stand_ins;
-};
+/// What evaluations of a condition near a point of the branch begin from; empty without one.
+using ConditionMemory = std::vector<double>;
 
 /// A monitor that keeps this value.
 struct HeldMonitor {
@@ -90,36 +90,40 @@ class BorderedProblem {
   void set_reference(const Orbit& x);
   Linearization linearize(const Orbit& x, const OrbitVector& row, OrbitResidual& residual);
   void evaluate(const Orbit& x, OrbitResidual& residual);
-  /// Newton's correction: all conditions to zero, row . dx = target.
-  void solve(const OrbitResidual& residual, double target, OrbitVector& dx);
-  /// All conditions unchanged, row . dx = target.
-  void solve(double target, OrbitVector& dx);
+  /// Newton's correction at the point of the last linearisation: all conditions to zero, row . dx = target.
+  void correction(double target, OrbitVector& dx) const;
+  /// The same with another residual and perhaps another row: a chord iteration. Not with a condition.
+  void chord(const OrbitResidual& residual, const OrbitVector& row, double target, OrbitVector& dx);
+  /// All conditions unchanged, row . dx = 1.
+  void tangent(OrbitVector& dx) const;
+  /// The determinant's sign, of J with all rows, times the distance to a singular matrix (CondensedSystem), where there
+  /// is a condition also to one whose rows do not tell null vectors apart. Allocates.
+  double signed_distance() const;
   /// Largest residual, the condition's included.
   double residual_size(const OrbitResidual& residual) const;
 
  private:
-  using Numbers = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, OrbitCondition::most, 1>;
-  using Slopes = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, OrbitCondition::most, OrbitCondition::most>;
+  static constexpr int most_rows = 1 + OrbitCondition::most;
+  using Numbers = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, most_rows, 1>;
+  using Slopes = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, most_rows, most_rows>;
 
-  bool find_responses();
-  void follow_gradients();
-  void correct(Numbers wanted, OrbitVector& dx) const;
-  int conditions() const { return condition_ ? condition_->count() : 0; }
-  OrbitVector& stand_in(int k) { return rows_[rows_.size() - responses_.size() + static_cast<std::size_t>(k)]; }
-  /// The border's right-hand side with these in the branch's row and the integrals', zero in those of the stand-ins but
-  /// for a one in that of number `unit` (-1: none).
-  std::span<const double> border(double branch, const std::vector<double>& integrals, int unit = -1);
+  /// The branch's row, or the gradients of G.
+  const OrbitVector& late_row(int k) const { return k == 0 ? row_ : condition_->gradient(k - 1); }
+  bool find_slopes();
+  std::span<const double> border(const std::vector<double>& integrals);
+  void combine(double particular, const Numbers& wanted, OrbitVector& dx) const;
 
   CondensedSystem condensed_;
   std::unique_ptr<OrbitCondition> condition_;
   std::vector<HeldMonitor> held_;
-  std::vector<OrbitVector> rows_;  // the branch's row, gradients of integrals and held monitors, stand-ins for those of
-                                   // G
-  std::vector<double> border_;     // right-hand side of these
-  std::vector<double> unchanged_;  // integrals and monitors that keep their values
-  Orbit reference_;                // only where there are integrals
-  std::vector<OrbitVector> responses_;  // solutions for a unit in the row of each stand-in
-  Eigen::PartialPivLU<Slopes> slopes_;  // of grad G . responses
+  std::vector<OrbitVector> rows_;          // gradients of integrals and held monitors
+  std::vector<double> border_;             // right-hand side of these
+  Orbit reference_;                        // only where there are integrals
+  OrbitVector row_;                        // of the branch
+  OrbitVector particular_;                 // a solution for the residual of the last linearisation
+  std::vector<OrbitVector> null_vectors_;  // 1 + C
+  Slopes slopes_;                          // late rows . null vectors
+  Eigen::PartialPivLU<Slopes> slopes_lu_;
 };
 
 }  // namespace tchat

@@ -6,38 +6,63 @@
 
 namespace tchat {
 
-/// What is zero in the segments stays zero when it is condensed.
 void CondensedSystem::solve(std::span<const double> border, OrbitVector& dx) {
-  std::fill(rhs_.begin(), rhs_.end() - border_, 0.0);
-  std::copy_n(border.data(), border_, rhs_.end() - border_);
-  solve_and_expand(true, dx);
+  std::fill(rhs_.begin(), rhs_.end(), 0.0);
+  std::copy_n(border.data(), border_, border_rhs());
+  lu_.solve(rhs_.data(), solution_.data());
+  expand(solution_, RightHandSide::zero, dx);
 }
 
 void CondensedSystem::solve(const OrbitResidual& residual, std::span<const double> border, OrbitVector& dx) {
-  double* rhs = rhs_.data();
-  double* border_rhs = rhs_.data() + lu_.size() - border_;
-  std::copy_n(border.data(), border_, border_rhs);
-  const double* coupling = residual.coupling.data();
   segment_work_.each(shape_.segments, [&](int s, int) {
     elimination_.condense_right_hand_side(s, &residual.collocation[index(collocation_row(s))], segment_rhs_[s]);
   });
-  for (int s = 0; s < shape_.segments; ++s) {
-    const double* condensed = segment_rhs_[s];
-    rhs = std::copy_n(condensed, n_, rhs);
-    for (int r = 0; r < system_.coupling_rows(s); ++r) *rhs++ = -*coupling++;
-    for (int r = 0; r < border_; ++r) border_rhs[r] += condensed[n_ + r];
-  }
-  solve_and_expand(false, dx);
+  solve_ends(segment_rhs_, residual, border);
+  expand(solution_, RightHandSide::condensed, dx);
 }
 
-/// Of the right-hand side rhs_ and, where it is not homogeneous, those that the segments were condensed with last.
-void CondensedSystem::solve_and_expand(bool homogeneous, OrbitVector& dx) {
-  lu_.solve(rhs_.data(), solution_.data());
-  const double* globals = solution_.data() + global_unknown(0);
+void CondensedSystem::solve_all(const OrbitResidual& linearized, std::span<const double> border, OrbitVector& dx,
+                                std::span<OrbitVector> null_vectors) {
+  solve_ends(own_rhs_, linearized, border);
+  if (null_vectors.empty()) return expand(solution_, RightHandSide::own, dx);
   segment_work_.each(shape_.segments, [&](int s, int thread) {
-    elimination_.expand(s, &solution_[index(start_unknown(s))], globals, homogeneous, dx, thread);
+    elimination_.expand_both(s, in_segment(s, solution_, RightHandSide::own, dx),
+                             in_segment(s, null_ends_[0], RightHandSide::zero, null_vectors[0]), thread);
   });
-  for (int g = 0; g < globals_; ++g) dx.globals(g) = solution_[index(global_unknown(g))];
+  put_globals(solution_, dx);
+  put_globals(null_ends_[0], null_vectors[0]);
+  for (std::size_t k = 1; k < null_vectors.size(); ++k) expand(null_ends_[k], RightHandSide::zero, null_vectors[k]);
+}
+
+/// solution_ from the right-hand sides of the condensed rows of segments, -residual of the coupling rows, and `border`.
+void CondensedSystem::solve_ends(const BlockArray<double>& condensed, const OrbitResidual& residual,
+                                 std::span<const double> border) {
+  std::fill(rhs_.begin(), rhs_.end(), 0.0);
+  double* const of_border = std::copy_n(border.data(), border_, border_rhs()) - border_;
+  double* rhs = rhs_.data();
+  const double* coupling = residual.coupling.data();
+  for (int s = 0; s < shape_.segments; ++s) {
+    rhs = std::copy_n(condensed[s], n_, rhs);
+    for (int r = 0; r < system_.coupling_rows(s); ++r) *rhs++ = -*coupling++;
+    for (int r = 0; r < border_; ++r) of_border[r] += condensed[s][n_ + r];
+  }
+  lu_.solve(rhs_.data(), solution_.data());
+}
+
+/// From what UMFPACK sees to all nodes.
+void CondensedSystem::expand(const std::vector<double>& ends, RightHandSide right, OrbitVector& dx) {
+  segment_work_.each(shape_.segments,
+                     [&](int s, int thread) { elimination_.expand(s, in_segment(s, ends, right, dx), thread); });
+  put_globals(ends, dx);
+}
+
+SegmentSolution CondensedSystem::in_segment(int s, const std::vector<double>& ends, RightHandSide right,
+                                            OrbitVector& dx) const {
+  return {right, &ends[index(start_unknown(s))], &ends[index(global_unknown(0))], &dx};
+}
+
+void CondensedSystem::put_globals(const std::vector<double>& ends, OrbitVector& dx) const {
+  for (int g = 0; g < globals_; ++g) dx.globals(g) = ends[index(global_unknown(g))];
 }
 
 void CondensedSystem::duration_block(int s, double* column) const {
@@ -50,7 +75,7 @@ void CondensedSystem::parameter_block(int s, int g, double* column) const {
 
 void CondensedSystem::extend(const double* small, OrbitVector& dx) {
   segment_work_.each(shape_.segments, [&](int s, int thread) {
-    elimination_.expand(s, small + s * (2 * n_ + 1), dx.globals.data(), true, dx, thread);
+    elimination_.expand(s, {RightHandSide::zero, small + s * (2 * n_ + 1), dx.globals.data(), &dx}, thread);
   });
 }
 

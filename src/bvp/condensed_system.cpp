@@ -5,14 +5,14 @@
 #include <cmath>
 
 #include "bvp/with_dimension.hpp"
+#include "linear_algebra/array_kernel.hpp"
 
 namespace tchat {
 
 namespace {
 
-double largest_of(const std::vector<double>& values, double so_far) {
-  for (const double v : values) so_far = std::max(so_far, std::abs(v));
-  return so_far;
+ArrayRange range_of(const std::vector<double>& values) {
+  return array_functions().range(values.data(), static_cast<long>(values.size()));
 }
 
 int total_coupling_rows(const DefiningSystem& system) {
@@ -48,12 +48,11 @@ EliminationThreads sharing(const OrbitShape& shape, int threads) {
 }  // namespace
 
 double OrbitResidual::largest() const {
-  return largest_of(integral, largest_of(coupling, largest_of(collocation, 0.0)));
+  return std::max({range_of(integral).largest, range_of(coupling).largest, range_of(collocation).largest});
 }
 
 bool OrbitResidual::finite() const {
-  const auto good = [](const std::vector<double>& v) { return all_finite(v.data(), static_cast<int>(v.size())); };
-  return good(collocation) && good(coupling) && good(integral);
+  return range_of(collocation).finite && range_of(coupling).finite && range_of(integral).finite;
 }
 
 CondensedSystem::CondensedSystem(const DefiningSystem& system, const OrbitShape& shape, int border_rows, int threads)
@@ -68,13 +67,15 @@ CondensedSystem::CondensedSystem(const DefiningSystem& system, const OrbitShape&
       segment_work_(threads_.segments),
       elimination_(shape, scalars_, border_rows, rule_, threads_),
       outcomes_(index(shape.segments)),
-      lu_(make_sparse()) {
-  assert((n_ + 1) * shape.segments + globals_ == total_coupling_rows(system) + border_rows);
+      lu_(make_sparse()),
+      closing_(lu_.size() - (n_ * shape.segments + total_coupling_rows(system) + border_rows), lu_.size()),
+      null_ends_(index(closing_.count()), zeros(lu_.size())) {
   first_blocks_ = {shape.segments, n_ * n_};
   last_blocks_ = first_blocks_;
   scalar_blocks_ = {shape.segments, n_ * scalars_};
   border_blocks_ = {shape.segments, border_ * (2 * n_ + scalars_)};
-  segment_rhs_ = {shape.segments, n_ + border_};
+  own_rhs_ = {shape.segments, n_ + border_};
+  segment_rhs_ = own_rhs_;
   triplet_values_.resize(triplet_rows_.size());
   rhs_ = zeros(lu_.size());
   solution_ = rhs_;
@@ -94,9 +95,10 @@ SparseLu CondensedSystem::make_sparse() {
     system_.coupling_pattern(s, pattern);
     row += system_.coupling_rows(s);
   }
-  dense(row, border_, 0, global_unknown(globals_));
-  row += border_;
-  return {row, triplet_rows_, triplet_columns_};
+  const int size = global_unknown(globals_);
+  assert(row + border_ <= size);
+  dense(row, size - row, 0, size);  // border and closing rows
+  return {size, triplet_rows_, triplet_columns_};
 }
 
 OrbitResidual CondensedSystem::make_residual() const {
@@ -153,7 +155,43 @@ Linearization CondensedSystem::linearize(const Orbit& x, std::span<const OrbitVe
       threads_.segments > 1 ? condense_together(x, rows, residual) : condense_one_by_one(x, rows, residual);
   if (condensed != Linearization::ready) return condensed;
   if (!assemble(x, rows, residual)) return Linearization::not_finite;
-  return lu_.factorize(triplet_values_) ? Linearization::ready : Linearization::singular;
+  return factorize() ? Linearization::ready : Linearization::singular;
+}
+
+/// Closing rows that tell null vectors badly apart are replaced by those that follow these.
+bool CondensedSystem::factorize() {
+  constexpr double well_apart = 0.1;
+  put_closing_rows();
+  if (closing_.count() == 0) return lu_.factorize(triplet_values_);
+  if (!lu_.factorize(triplet_values_) || !find_null_ends()) {
+    closing_.forget();
+    put_closing_rows();
+    if (!lu_.factorize(triplet_values_) || !find_null_ends()) return false;
+  }
+  if (closing_.follow(null_ends_) >= well_apart) return true;
+  put_closing_rows();
+  return lu_.factorize(triplet_values_) && find_null_ends();
+}
+
+void CondensedSystem::put_closing_rows() {
+  double* value = triplet_values_.data() + triplet_values_.size();
+  for (int k = closing_.count() - 1; k >= 0; --k) {
+    value -= lu_.size();
+    std::copy(closing_.row(k).begin(), closing_.row(k).end(), value);
+  }
+}
+
+/// For a one in the right-hand side of each closing row; false when one is not finite.
+bool CondensedSystem::find_null_ends() {
+  std::fill(rhs_.begin(), rhs_.end(), 0.0);
+  double* unit = rhs_.data() + rhs_.size() - null_ends_.size();
+  for (std::vector<double>& ends : null_ends_) {
+    *unit = 1.0;
+    lu_.solve(rhs_.data(), ends.data());
+    *unit++ = 0.0;
+    if (!all_finite(ends.data(), lu_.size())) return false;
+  }
+  return true;
 }
 
 Linearization CondensedSystem::condense_one_by_one(const Orbit& x, std::span<const OrbitVector> rows,
@@ -200,8 +238,13 @@ void CondensedSystem::keep_segment_blocks(int s) {
     std::copy_n(from, n_, first_blocks_[s] + a * n_);
     std::copy_n(from + n_, n_, last_blocks_[s] + a * n_);
     std::copy_n(from + 2 * n_, scalars_, scalar_blocks_[s] + a * scalars_);
+    own_rhs_[s][a] = -from[2 * n_ + scalars_];
   }
-  std::copy_n(elimination_.border(s), border_ * length, border_blocks_[s]);
+  from = elimination_.border(s);
+  for (int r = 0; r < border_; ++r, from += length) {
+    std::copy_n(from, length - 1, border_blocks_[s] + r * (length - 1));
+    own_rhs_[s][n_ + r] = -from[length - 1];
+  }
 }
 
 /// The matrix that UMFPACK sees, in the order of make_sparse().

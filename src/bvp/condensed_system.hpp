@@ -5,7 +5,11 @@
 /// (segment_elimination.hpp), and UMFPACK solves what is left, 2 n m + m + q unknowns that couple only neighbouring
 /// segments. Work and memory are linear in m and N. All arrays are allocated when the object is made.
 ///
-/// Border rows are general linear functionals of the unknowns, given as dual vectors.
+/// Border rows are general linear functionals of the unknowns, given as dual vectors. They cost work in every interval.
+/// Where there are fewer of them than unknowns are left open, J and they have null vectors, as many as rows are missing
+/// (for a branch: its tangent), and the matrix is closed with rows of its own, of what UMFPACK sees alone
+/// (closing_rows.hpp). Which ones these are, nobody outside has to know: solutions are what they are but for null
+/// vectors.
 ///
 /// Where there is enough work for several threads, they share it by segments, or within each segment where there are
 /// few of these. What is left for UMFPACK one thread does. Results are the same to the last bit for any number.
@@ -15,6 +19,7 @@
 #include <span>
 #include <vector>
 
+#include "bvp/closing_rows.hpp"
 #include "bvp/collocation_rule.hpp"
 #include "bvp/coupling.hpp"
 #include "bvp/defining_system.hpp"
@@ -38,7 +43,7 @@ struct OrbitResidual {
 class CondensedSystem {
  public:
   /// `border_rows` = b, integral conditions among them. The defining system must outlive this object; its coupling rows
-  /// and the border are as many as the ends, durations and free parameters leave open: n m + m + q.
+  /// and the border are at most as many as the ends, durations and free parameters leave open: n m + m + q.
   /// As many threads as `threads` may work on it, the calling one among them, which alone calls the problem.
   CondensedSystem(const DefiningSystem& system, const OrbitShape& shape, int border_rows, int threads = 1);
 
@@ -46,6 +51,8 @@ class CondensedSystem {
   const OrbitShape& shape() const { return shape_; }
   const CollocationRule& rule() const { return rule_; }
   int border_rows() const { return border_; }
+  /// By how many rows the system is short of a square one: n m + m + q less coupling rows and border.
+  int null_vectors() const { return closing_.count(); }
   /// How the work is shared; by one thread alone where there is little.
   const EliminationThreads& threads() const { return threads_; }
   OrbitResidual make_residual() const;
@@ -58,8 +65,11 @@ class CondensedSystem {
   /// gradients are among the rows.
   Linearization linearize(const Orbit& x, std::span<const OrbitVector> rows, OrbitResidual& residual);
 
-  /// The solution of J dx = -F, rows dx = border. `border` has b entries; the integral conditions of `residual` are not
-  /// read.
+  /// A solution of J dx = -F, rows dx = border, for the residual that linearize() found, and a basis of the null
+  /// vectors of J and the rows. `border` has b entries; the integral conditions of the residual are not read.
+  void solve_all(const OrbitResidual& linearized, std::span<const double> border, OrbitVector& dx,
+                 std::span<OrbitVector> null_vectors);
+  /// A solution for any residual.
   void solve(const OrbitResidual& residual, std::span<const double> border, OrbitVector& dx);
   /// The same with F = 0.
   void solve(std::span<const double> border, OrbitVector& dx);
@@ -83,7 +93,8 @@ class CondensedSystem {
   void extend_adjoint(const double* weights, std::vector<double>& collocation);
 
   /// The determinant of the bordered J as sign * 2^log2_size; sign 0 when it is singular. Its sign does not depend on
-  /// the mesh, its size does.
+  /// the mesh, its size does. Where there are null vectors they are this matrix's that unit vectors of the rows missing
+  /// lead to: det [J; any other rows] = det det(those rows times the null vectors).
   struct Determinant {
     int sign = 0;
     double log2_size = 0.0;
@@ -122,7 +133,14 @@ class CondensedSystem {
   Linearization condense_together(const Orbit& x, std::span<const OrbitVector> rows, OrbitResidual& residual);
   void keep_segment_blocks(int s);
   bool assemble(const Orbit& x, std::span<const OrbitVector> rows, OrbitResidual& residual);
-  void solve_and_expand(bool homogeneous, OrbitVector& dx);
+  void put_closing_rows();
+  bool factorize();
+  bool find_null_ends();
+  double* border_rhs() { return rhs_.data() + lu_.size() - null_vectors() - border_; }
+  void solve_ends(const BlockArray<double>& condensed, const OrbitResidual& residual, std::span<const double> border);
+  SegmentSolution in_segment(int s, const std::vector<double>& ends, RightHandSide right, OrbitVector& dx) const;
+  void expand(const std::vector<double>& ends, RightHandSide right, OrbitVector& dx);
+  void put_globals(const std::vector<double>& ends, OrbitVector& dx) const;
 
   const DefiningSystem& system_;
   OrbitShape shape_;
@@ -141,14 +159,17 @@ class CondensedSystem {
   BlockArray<double> last_blocks_;    // n x n
   BlockArray<double> scalar_blocks_;  // n x scalars
   BlockArray<double> border_blocks_;  // b x (2 n + scalars): first | last | scalars
+  BlockArray<double> own_rhs_;        // n + b: of the rows' own residual
   BlockArray<double> segment_rhs_;    // n + b
 
   std::vector<int> triplet_rows_;  // before lu_, whose constructor needs them
   std::vector<int> triplet_columns_;
   std::vector<double> triplet_values_;
   SparseLu lu_;
+  ClosingRows closing_;
   std::vector<double> rhs_;
   std::vector<double> solution_;
+  std::vector<std::vector<double>> null_ends_;  // what UMFPACK sees of null vectors
 
   std::vector<double> x_, slope_;  // scratch of one collocation point
 };

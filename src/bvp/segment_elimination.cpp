@@ -32,13 +32,14 @@ SegmentElimination::SegmentElimination(const OrbitShape& shape, int scalars, int
     : shape_(shape),
       n_(shape.dimension),
       scalars_(scalars),
+      columns_(scalars + 1),
       border_(border),
       rule_(rule),
       schedule_(shape.intervals),
       groups_(schedule_.groups()),
-      interval_(shape.collocation * n_, (shape.collocation - 1) * n_, (shape.collocation + 1) * n_ + scalars),
-      join_(2 * n_, n_, 3 * n_ + scalars),
-      top_join_(join_kernel(n_, scalars)),
+      interval_(shape.collocation * n_, (shape.collocation - 1) * n_, (shape.collocation + 1) * n_ + columns_),
+      join_(2 * n_, n_, 3 * n_ + columns_),
+      top_join_(join_kernel(n_, columns_)),
       joins_(joins_of_halves(groups_)),
       levels_(levels_of(joins_)),
       top_lanes_(lanes_in_use(schedule_)),
@@ -74,8 +75,8 @@ SegmentElimination::SegmentElimination(const OrbitShape& shape, int scalars, int
   fx_.resize(evaluations * index(n_ * n_));
   fp_.resize(evaluations * index(n_ * (scalars_ - 1)));
   const int workers = std::max(threads.segments, threads.within);
-  local_ = {workers, interval_.width() * lanes};
-  join_local_ = {workers, join_.width() * lanes};
+  local_ = {2 * workers, interval_.width() * lanes};
+  join_local_ = {2 * workers, join_.width() * lanes};
   top_local_ = {workers, top_join_.width()};
 }
 
@@ -153,7 +154,7 @@ LanePiece SegmentElimination::piece(int s, int first, int last) const {
 bool SegmentElimination::join(int s, const Join& at) {
   double* target = join_blocks_[block(s, at.middle)];
   const LanePiece left = piece(s, at.first, at.middle);
-  assembly_.join(n_, scalars_, border_, left, piece(s, at.middle, at.last), target);
+  assembly_.join(n_, columns_, border_, left, piece(s, at.middle, at.last), target);
   for (int l = 0; l < lanes; ++l)
     if (passes(at, l)) pass_on(left, l, target);
   return join_.eliminate(target, border_, join_swaps_[block(s, at.middle)]) == 0;
@@ -208,10 +209,10 @@ bool SegmentElimination::join_lanes(int s) {
     for (int i = 0; i < n_ + border_; ++i, left += left_width, right += right_width) {
       double* to = target + (i < n_ ? i : n_ + i) * width;
       for (int a = 0; a < n_; ++a) to[a] = left[n_ + a], to[n_ + a] = left[a];
-      for (int k = 0; k < scalars_; ++k) to[3 * n_ + k] = left[2 * n_ + k];
+      for (int k = 0; k < columns_; ++k) to[3 * n_ + k] = left[2 * n_ + k];
       to = target + (n_ + i) * width;
       for (int a = 0; a < n_; ++a) to[a] += right[a];
-      for (int k = 0; k < n_ + scalars_; ++k) to[2 * n_ + k] += right[n_ + k];
+      for (int k = 0; k < n_ + columns_; ++k) to[2 * n_ + k] += right[n_ + k];
     }
     if (!top_join_.eliminate(target, border_, top_swaps_[top_block(s, at.middle)])) return false;
   }

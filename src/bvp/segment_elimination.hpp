@@ -7,7 +7,8 @@
 ///   remain;
 ///   2. joins: neighbouring pieces are joined by elimination of the mesh node between them with pivoting, halves of a
 ///   quarter from their halves, and at last the quarters, until n rows remain,
-///          A x(0) + C x(1) + B (T, p) = r                                             (5.48-5.49 with C kept)
+///          A x(0) + C x(1) + B (T, p) + r = 0                                         (5.48-5.49 with C kept)
+///   The residual is one more column: its unknown is 1 for Newton's correction, 0 for null vectors.
 ///   The order matters. From left to right the same elimination becomes a product of transfer matrices wherever the
 ///   flow grows little per interval: every pivot is then an entry of the longer piece, rounding grows like the flow
 ///   over the whole segment, up to 2^(n N), and decaying modes are lost [S. J. Wright, SIAM J. Sci. Comput. 14 (1993)
@@ -68,6 +69,18 @@ struct LargeProduct {
   void multiply(double factor);
 };
 
+/// What a segment is to be solved for: the rows' own residual with its sign changed (Newton's correction), zero (null
+/// vectors), or what condense_right_hand_side() was given last.
+enum class RightHandSide { own, zero, condensed };
+
+/// A solution of which the ends of a segment are known: `ends` has first node, last node, duration.
+struct SegmentSolution {
+  RightHandSide right = RightHandSide::zero;
+  const double* ends = nullptr;
+  const double* globals = nullptr;  ///< changes of the free parameters
+  OrbitVector* dx = nullptr;        ///< that gets all nodes and the duration
+};
+
 /// Threads that work on an orbit at a time: as many segments are done at once, or as many pieces of one segment. One of
 /// the two is 1.
 struct EliminationThreads {
@@ -93,18 +106,20 @@ class SegmentElimination {
   /// The rows that fill() left; false when they are singular.
   bool eliminate(int s);
 
-  /// What is left of segment s: n rows of length() entries, columns (first node | last node | scalars), and b border
-  /// rows.
+  /// What is left of segment s: n rows of length() entries, columns (first node | last node | scalars | residual), and
+  /// b border rows.
   const double* rows(int s) const { return whole_[s]; }
   const double* border(int s) const { return whole_[s] + n_ * length(); }
-  int length() const { return 2 * n_ + scalars_; }
+  int length() const { return 2 * n_ + columns_; }
 
   /// The right-hand side -collocation of segment s, condensed to n + b entries.
   void condense_right_hand_side(int s, const double* collocation, double* condensed);
-  /// From the ends of a segment (first node, last node, duration) and the free parameters to all nodes, for the
-  /// right-hand side that was condensed last or, homogeneous, for zero. `thread` < `segments` of the threads, another
-  /// one for each at a time.
-  void expand(int s, const double* ends, const double* globals, bool homogeneous, OrbitVector& dx, int thread = 0);
+  /// From the ends of segment s to all nodes. `thread` < `segments` of the threads, another one for each at a time.
+  void expand(int s, const SegmentSolution& solution, int thread = 0) { expand(s, &solution, nullptr, thread); }
+  /// Two at once, neither of them of a condensed right-hand side.
+  void expand_both(int s, const SegmentSolution& one, const SegmentSolution& other, int thread = 0) {
+    expand(s, &one, &other, thread);
+  }
   /// The adjoint: weights (n) of the condensed rows to weights of the collocation rows of segment s. Right-hand sides
   /// are lost.
   void expand_adjoint(int s, const double* weights, double* collocation);
@@ -150,14 +165,23 @@ class SegmentElimination {
   const double* top_piece(int s, int first, int last, int& width) const;
   double* piece_rhs(int s, int first, int last);
   double* top_rhs(int s, int first, int last);
-  void expand_lane_join(int s, const Join& at, const double* globals, bool homogeneous, OrbitVector& dx, int thread);
-  void expand_group(int s, int group, const double* globals, bool homogeneous, OrbitVector& dx, int thread);
+  void expand(int s, const SegmentSolution* one, const SegmentSolution* other, int thread);
+  void put_ends(int s, const SegmentSolution& of);
+  void expand_top_join(int s, const Join& at, const SegmentSolution& of, int thread);
+  void put_scalars(const SegmentSolution& of, double* to) const;
+  void expand_lane_join(int s, const Join& at, const SegmentSolution* one, const SegmentSolution* other, int thread);
+  void gather_around_join(int s, const Join& at, const SegmentSolution& of, double* local) const;
+  void scatter_from_join(int s, const Join& at, const double* local, const SegmentSolution& of) const;
+  void expand_group(int s, int group, const SegmentSolution* one, const SegmentSolution* other, int thread);
+  void gather_around_group(int s, int group, const SegmentSolution& of, double* local) const;
+  void scatter_from_group(int s, int group, const double* local, const SegmentSolution& of) const;
   void expand_adjoint_join(int s, const Join& at);
   void expand_adjoint_group(int s, int group, double* collocation);
 
   OrbitShape shape_;
   int n_;
-  int scalars_;
+  int scalars_;  // duration and free parameters
+  int columns_;  // scalars and the residual
   int border_;
   CollocationRule rule_;
   LaneSchedule schedule_;

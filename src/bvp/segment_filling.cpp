@@ -23,25 +23,26 @@ bool SegmentElimination::fill_piece(int s, int group, const HybridSystem& system
 void SegmentElimination::evaluate_field(int s, int group, const HybridSystem& system, int field,
                                         std::span<const int> active, const Orbit& x) {
   const int count = shape_.collocation * n_;  // numbers of one lane
+  const double* from[lanes];
+  double* to[lanes];
   int held = 0;
   for (int l = 0; l < lanes; ++l) {
-    put_lane(x.node(s, schedule_.interval(group, l) * shape_.collocation), count + n_, l, nodes_.data());
-    held += schedule_.holds(group, l) ? 1 : 0;
+    from[l] = x.node(s, schedule_.interval(group, l) * shape_.collocation);
+    to[l] = schedule_.holds(group, l) ? x_.data() + held++ * count : nullptr;
   }
+  assembly_.gather(from, count + n_, nodes_.data());
   LaneCollocation at{};
   at.n = n_;
   at.c = shape_.collocation;
   at.value = rule_.value.data();
   at.slope = rule_.slope.data();
   assembly_.interpolate(at, nodes_.data(), points_.data(), derivatives_.data());
-  double* to = x_.data();
-  for (int l = 0; l < lanes; ++l)
-    if (schedule_.holds(group, l)) take_lane(points_.data(), l, count, to), to += count;
+  assembly_.scatter(points_.data(), count, to);
   system.first_at_points(FunctionKind::field, field, held * shape_.collocation, x_.data(), x.par.data(), active,
                          f_.data(), fx_.data(), fp_.data());
 }
 
-/// Collocation rows slope - h T f at the Gauss points, columns (interior | left | right | T, p).
+/// Collocation rows slope - h T f at the Gauss points, columns (interior | left | right | T, p | residual).
 bool SegmentElimination::fill_group(int s, int group, const HybridSystem& system, int field,
                                     std::span<const int> active, const Orbit& x, double* collocation) {
   evaluate_field(s, group, system, field, active, x);
@@ -61,9 +62,10 @@ bool SegmentElimination::fill_group(int s, int group, const HybridSystem& system
     at.scale[l] = at.h[l] * x.duration(s);
   }
   const bool finite = assembly_.fill(at, interval_blocks_[block(s, group)], jacobian_.data(), residual_.data());
+  double* to[lanes];
   for (int l = 0; l < lanes; ++l)
-    if (schedule_.holds(group, l))
-      take_lane(residual_.data(), l, c * n_, collocation + schedule_.interval(group, l) * c * n_);
+    to[l] = schedule_.holds(group, l) ? collocation + schedule_.interval(group, l) * c * n_ : nullptr;
+  assembly_.scatter(residual_.data(), c * n_, to);
   return finite;
 }
 

@@ -65,65 +65,126 @@ void SegmentElimination::condense_right_hand_side(int s, const double* collocati
 }
 
 /// From the ends of a segment back to the ends of lanes, to mesh nodes, joins in reverse, and on to the interior nodes.
-void SegmentElimination::expand(int s, const double* ends, const double* globals, bool homogeneous, OrbitVector& dx,
-                                int thread) {
-  const int c = shape_.collocation;
-  const double duration = ends[2 * n_];
-  const auto node = [&](int k) { return dx.states.col(s * shape_.nodes() + k).data(); };
-  dx.durations(s) = duration;
-  std::copy_n(ends, n_, node(0));
-  std::copy_n(ends + n_, n_, node(shape_.nodes() - 1));
-  double* local = top_local_[thread];
-  for (auto at = top_joins_.rbegin(); at != top_joins_.rend(); ++at) {
-    const std::ptrdiff_t b = top_block(s, at->middle);
-    std::copy_n(node(top_node(at->first) * c), n_, local + n_);
-    std::copy_n(node(top_node(at->last) * c), n_, local + 2 * n_);
-    local[3 * n_] = duration;
-    std::copy_n(globals, scalars_ - 1, local + 3 * n_ + 1);
-    top_join_.backward(top_blocks_[b], homogeneous ? zero_rhs_.data() : top_rhs_[b], local);
-    std::copy_n(local, n_, node(top_node(at->middle) * c));
+/// `other` may be null.
+void SegmentElimination::expand(int s, const SegmentSolution* one, const SegmentSolution* other, int thread) {
+  for (const SegmentSolution* of : {one, other}) {
+    if (of == nullptr) continue;
+    put_ends(s, *of);
+    for (auto at = top_joins_.rbegin(); at != top_joins_.rend(); ++at) expand_top_join(s, *at, *of, thread);
   }
   for_joins_in_reverse(
-      [&](const Join& at, int within) { expand_lane_join(s, at, globals, homogeneous, dx, std::max(thread, within)); });
-  within_.each(groups_, [&](int group, int within) {
-    expand_group(s, group, globals, homogeneous, dx, std::max(thread, within));
-  });
+      [&](const Join& at, int within) { expand_lane_join(s, at, one, other, std::max(thread, within)); });
+  within_.each(groups_, [&](int group, int within) { expand_group(s, group, one, other, std::max(thread, within)); });
 }
 
-void SegmentElimination::expand_lane_join(int s, const Join& at, const double* globals, bool homogeneous,
-                                          OrbitVector& dx, int thread) {
-  const int column = s * shape_.nodes();
-  const auto node = [&](int k) { return dx.states.col(column + k * shape_.collocation).data(); };
-  double* local = join_local_[thread];
-  put_lanes(dx.durations(s), local + 3 * n_ * lanes);
-  for (int k = 0; k + 1 < scalars_; ++k) put_lanes(globals[k], local + (3 * n_ + 1 + k) * lanes);
+void SegmentElimination::put_ends(int s, const SegmentSolution& of) {
+  const int first = s * shape_.nodes();
+  of.dx->durations(s) = of.ends[2 * n_];
+  std::copy_n(of.ends, n_, of.dx->states.col(first).data());
+  std::copy_n(of.ends + n_, n_, of.dx->states.col(first + shape_.nodes() - 1).data());
+}
+
+void SegmentElimination::expand_top_join(int s, const Join& at, const SegmentSolution& of, int thread) {
+  const auto node = [&](int piece) {
+    return of.dx->states.col(s * shape_.nodes() + top_node(piece) * shape_.collocation).data();
+  };
+  const std::ptrdiff_t b = top_block(s, at.middle);
+  double* local = top_local_[thread];
+  std::copy_n(node(at.first), n_, local + n_);
+  std::copy_n(node(at.last), n_, local + 2 * n_);
+  double* scalars = local + 3 * n_;
+  scalars[0] = of.ends[2 * n_];
+  std::copy_n(of.globals, scalars_ - 1, scalars + 1);
+  scalars[scalars_] = of.right == RightHandSide::own ? 1.0 : 0.0;
+  top_join_.backward(top_blocks_[b], of.right == RightHandSide::condensed ? top_rhs_[b] : zero_rhs_.data(), local);
+  std::copy_n(local, n_, node(at.middle));
+}
+
+/// The unknowns of the last columns, the same in all lanes.
+void SegmentElimination::put_scalars(const SegmentSolution& of, double* to) const {
+  put_lanes(of.ends[2 * n_], to);
+  for (int k = 0; k + 1 < scalars_; ++k) put_lanes(of.globals[k], to + (1 + k) * lanes);
+  put_lanes(of.right == RightHandSide::own ? 1.0 : 0.0, to + scalars_ * lanes);
+}
+
+void SegmentElimination::expand_lane_join(int s, const Join& at, const SegmentSolution* one,
+                                          const SegmentSolution* other, int thread) {
   const std::ptrdiff_t b = block(s, at.middle);
-  for (int l = 0; l < lanes; ++l) {
-    put_lane(node(schedule_.node(at.first, l)), n_, l, local + n_ * lanes);
-    put_lane(node(schedule_.node(at.last, l)), n_, l, local + 2 * n_ * lanes);
+  double* local = join_local_[2 * thread];
+  gather_around_join(s, at, *one, local);
+  if (other == nullptr) {
+    join_.backward(join_blocks_[b], one->right == RightHandSide::condensed ? join_rhs_[b] : zero_rhs_.data(), local);
+  } else {
+    double* other_local = join_local_[2 * thread + 1];
+    gather_around_join(s, at, *other, other_local);
+    join_.backward_of_two(join_blocks_[b], local, other_local);
+    scatter_from_join(s, at, other_local, *other);
   }
-  join_.backward(join_blocks_[b], homogeneous ? zero_rhs_.data() : join_rhs_[b], local);
-  for (int l = 0; l < lanes; ++l)
-    if (!passes(at, l)) take_lane(local, l, n_, node(schedule_.node(at.middle, l)));
+  scatter_from_join(s, at, local, *one);
 }
 
-void SegmentElimination::expand_group(int s, int group, const double* globals, bool homogeneous, OrbitVector& dx,
-                                      int thread) {
-  const int c = shape_.collocation;
-  const int p = interval_.pivots();
-  const auto node = [&](int k) { return dx.states.col(s * shape_.nodes() + k).data(); };
-  double* local = local_[thread];
-  put_lanes(dx.durations(s), local + (p + 2 * n_) * lanes);
-  for (int k = 0; k + 1 < scalars_; ++k) put_lanes(globals[k], local + (p + 2 * n_ + 1 + k) * lanes);
-  const std::ptrdiff_t b = block(s, group);
+void SegmentElimination::gather_around_join(int s, const Join& at, const SegmentSolution& of, double* local) const {
+  const double* states = of.dx->states.col(s * shape_.nodes()).data();
+  const int step = shape_.collocation * n_;
+  const double* first[lanes];
+  const double* last[lanes];
   for (int l = 0; l < lanes; ++l) {
-    const int j = schedule_.interval(group, l);
-    put_lane(node(j * c), n_, l, local + p * lanes);
-    put_lane(node((j + 1) * c), n_, l, local + (p + n_) * lanes);
+    first[l] = states + schedule_.node(at.first, l) * step;
+    last[l] = states + schedule_.node(at.last, l) * step;
   }
-  interval_.backward(interval_blocks_[b], homogeneous ? zero_rhs_.data() : interval_rhs_[b], local);
+  assembly_.gather(first, n_, local + n_ * lanes);
+  assembly_.gather(last, n_, local + 2 * n_ * lanes);
+  put_scalars(of, local + 3 * n_ * lanes);
+}
+
+void SegmentElimination::scatter_from_join(int s, const Join& at, const double* local,
+                                           const SegmentSolution& of) const {
+  double* states = of.dx->states.col(s * shape_.nodes()).data();
+  double* to[lanes];
   for (int l = 0; l < lanes; ++l)
-    if (schedule_.holds(group, l)) take_lane(local, l, p, node(schedule_.interval(group, l) * c + 1));
+    to[l] = passes(at, l) ? nullptr : states + schedule_.node(at.middle, l) * shape_.collocation * n_;
+  assembly_.scatter(local, n_, to);
+}
+
+void SegmentElimination::expand_group(int s, int group, const SegmentSolution* one, const SegmentSolution* other,
+                                      int thread) {
+  const std::ptrdiff_t b = block(s, group);
+  double* local = local_[2 * thread];
+  gather_around_group(s, group, *one, local);
+  if (other == nullptr) {
+    interval_.backward(interval_blocks_[b],
+                       one->right == RightHandSide::condensed ? interval_rhs_[b] : zero_rhs_.data(), local);
+  } else {
+    double* other_local = local_[2 * thread + 1];
+    gather_around_group(s, group, *other, other_local);
+    interval_.backward_of_two(interval_blocks_[b], local, other_local);
+    scatter_from_group(s, group, other_local, *other);
+  }
+  scatter_from_group(s, group, local, *one);
+}
+
+void SegmentElimination::gather_around_group(int s, int group, const SegmentSolution& of, double* local) const {
+  const double* states = of.dx->states.col(s * shape_.nodes()).data();
+  const int step = shape_.collocation * n_;
+  double* ends = local + interval_.pivots() * lanes;
+  const double* left[lanes];
+  const double* right[lanes];
+  for (int l = 0; l < lanes; ++l) {
+    left[l] = states + schedule_.interval(group, l) * step;
+    right[l] = left[l] + step;
+  }
+  assembly_.gather(left, n_, ends);
+  assembly_.gather(right, n_, ends + n_ * lanes);
+  put_scalars(of, ends + 2 * n_ * lanes);
+}
+
+void SegmentElimination::scatter_from_group(int s, int group, const double* local, const SegmentSolution& of) const {
+  double* states = of.dx->states.col(s * shape_.nodes()).data();
+  const int step = shape_.collocation * n_;
+  double* to[lanes];
+  for (int l = 0; l < lanes; ++l)
+    to[l] = schedule_.holds(group, l) ? states + schedule_.interval(group, l) * step + n_ : nullptr;
+  assembly_.scatter(local, interval_.pivots(), to);
 }
 
 void SegmentElimination::expand_adjoint(int s, const double* weights, double* collocation) {
@@ -166,8 +227,10 @@ void SegmentElimination::expand_adjoint_group(int s, int group, double* collocat
   double* w = interval_rhs_[b];
   std::fill_n(w, p * lanes, 0.0);
   interval_.forward_transposed(interval_blocks_[b], interval_swaps_[b], w);
+  double* to[lanes];
   for (int l = 0; l < lanes; ++l)
-    if (schedule_.holds(group, l)) take_lane(w, l, rows, collocation + schedule_.interval(group, l) * rows);
+    to[l] = schedule_.holds(group, l) ? collocation + schedule_.interval(group, l) * rows : nullptr;
+  assembly_.scatter(w, rows, to);
 }
 
 }  // namespace tchat

@@ -83,7 +83,8 @@ NewtonResult NewtonChord::correct(Orbit& x, const OrbitVector& row, const Orbit&
   for (int iteration = 1; iteration <= settings_.max_iterations; ++iteration) {
     const bool still_new =
         iteration > 1 && problem_.allows_chord() && result.change_since_factorization <= as_good_as_new;
-    if (iteration <= full_iterations && !still_new) {
+    const bool full = iteration <= full_iterations && !still_new;
+    if (full) {
       const Linearization outcome = problem_.linearize(x, row, residual_);
       if (outcome != Linearization::ready) {
         result.status = failure(outcome);
@@ -94,7 +95,11 @@ NewtonResult NewtonChord::correct(Orbit& x, const OrbitVector& row, const Orbit&
       problem_.evaluate(x, residual_);
     }
     result.residual = problem_.residual_size(residual_);
-    problem_.solve(residual_, target - dot_difference(row, x, base, free_parameters), dx_);
+    const double rest = target - dot_difference(row, x, base, free_parameters);
+    if (full)
+      problem_.correction(rest, dx_);
+    else
+      problem_.chord(residual_, row, rest, dx_);
     const OrbitChange change = apply(x);
     const double larger = change.larger();
     result.iterations = iteration;

@@ -36,8 +36,7 @@ PathFollower::PathFollower(const DefiningSystem& system, const OrbitShape& shape
       settings_(settings),
       row_(condensed().make_vector()),
       dx_(condensed().make_vector()),
-      on_tangent_{shape, uniform_mesh(shape.intervals), dx_.states, ParameterVector::Zero(parameter_length)},
-      factored_tangent_(condensed().make_vector()) {
+      on_tangent_{shape, uniform_mesh(shape.intervals), dx_.states, ParameterVector::Zero(parameter_length)} {
   problem_.remember(unused_);
 }
 
@@ -91,9 +90,7 @@ double PathFollower::distance(const Orbit& a, const Orbit& b) const {
 bool PathFollower::linearize_at(const PathPoint& point) {
   problem_.recall(point.memory);
   problem_.set_reference(point.orbit);
-  if (!linearize(point.orbit, point.dual)) return false;
-  know_factors(point.tangent);
-  return true;
+  return factors_known_ = linearize(point.orbit, point.dual);
 }
 
 bool PathFollower::linearize(const Orbit& x, const OrbitVector& row) {
@@ -112,7 +109,7 @@ void PathFollower::normalise(const Orbit& x, OrbitVector& tangent, OrbitVector& 
 
 /// From the current factors: the vector that every condition but the border annihilates.
 bool PathFollower::find_tangent(const Orbit& x, OrbitVector& tangent, OrbitVector& dual) {
-  problem_.solve(1.0, tangent);
+  problem_.tangent(tangent);
   if (!array_functions().range(tangent.states.data(), tangent.states.size()).finite || !tangent.durations.allFinite() ||
       !tangent.globals.allFinite())
     return false;
@@ -133,17 +130,10 @@ NewtonResult PathFollower::correct_and_orient(PathPoint& point, const Orbit& bas
   if ((!current && !linearize(point.orbit, row_)) || !find_tangent(point.orbit, point.tangent, point.dual))
     result.status = NewtonStatus::singular;
   else
-    know_factors(point.tangent);
+    factors_known_ = true;
   problem_.remember(point.memory);
   monitors_.store(point.orbit, condensed().rule());
   return result;
-}
-
-void PathFollower::know_factors(const OrbitVector& tangent) {
-  factored_tangent_.states = tangent.states;
-  factored_tangent_.durations = tangent.durations;
-  factored_tangent_.globals = tangent.globals;
-  factors_known_ = true;
 }
 
 void PathFollower::put_on_tangent(const PathPoint& from, double ds, Orbit& x) const {
@@ -200,17 +190,11 @@ NewtonResult PathFollower::step_beside_branch_point(const PathPoint& from, doubl
   return correct_and_orient(to, from.orbit, ds, 0.0);
 }
 
-/// dx_ is set to the correction of x by the factors at hand, whatever the border was that they have, with
-/// row_ (x + dx - base) = target.
+/// dx_ is set to the correction of x by the factors at hand with row_ (x + dx - base) = target.
 OrbitChange PathFollower::chord(const Orbit& base, double target, const Orbit& x) {
   const std::vector<int>& free_parameters = system_.free_parameters();
   problem_.evaluate(x, newton_.residual());
-  problem_.solve(newton_.residual(), 0.0, dx_);
-  const double rest = target - dot_difference(row_, x, base, free_parameters) - dot(row_, dx_);
-  const double along = rest / dot(row_, factored_tangent_);
-  dx_.states += along * factored_tangent_.states;
-  dx_.durations += along * factored_tangent_.durations;
-  dx_.globals += along * factored_tangent_.globals;
+  problem_.chord(newton_.residual(), row_, target - dot_difference(row_, x, base, free_parameters), dx_);
   return change_by(dx_, x, free_parameters);
 }
 
@@ -286,6 +270,12 @@ OrbitChange PathFollower::difference(const Orbit& to, const Orbit& x) {
   for (std::size_t g = 0; g < free.size(); ++g)
     dx_.globals(static_cast<Eigen::Index>(g)) = to.par(free[g] - 1) - x.par(free[g] - 1);
   return change_by(dx_, to, free);
+}
+
+OrbitVector PathFollower::response(const OrbitResidual& residual) {
+  OrbitVector dx = condensed().make_vector();
+  problem_.chord(residual, row_, 0.0, dx);
+  return dx;
 }
 
 bool PathFollower::solves(const Orbit& x) {

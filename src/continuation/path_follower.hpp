@@ -101,6 +101,14 @@ class PathFollower {
   /// Cosine of the angle between the point's tangent and a direction, in the weighted norm.
   double alignment(const PathPoint& point, const OrbitVector& direction) const;
 
+  /// The determinant of the linearisation at the last point, as BorderedProblem::signed_distance.
+  double signed_distance() const { return problem_.signed_distance(); }
+
+  /// The solution of the last linearisation for another residual that does not move along its row: near a branch point
+  /// any residual leads along the other branch.
+  OrbitVector response(const OrbitResidual& residual);
+  OrbitResidual make_residual() const { return problem_.make_residual(); }
+
   /// The length of the difference of two orbits on one mesh, in the weighted norm.
   double distance(const Orbit& a, const Orbit& b) const;
 
@@ -115,7 +123,6 @@ class PathFollower {
   double polish(const PathPoint& from, double ds, double expected, Orbit& x);
   OrbitChange difference(const Orbit& to, const Orbit& x);
   int iterations_of(const OrbitChange& first, const OrbitChange& second, double constant) const;
-  void know_factors(const OrbitVector& tangent);
   OrbitChange chord(const Orbit& base, double target, const Orbit& x);
   bool linearize(const Orbit& x, const OrbitVector& row);
   bool find_tangent(const Orbit& x, OrbitVector& tangent, OrbitVector& dual);
@@ -135,8 +142,7 @@ class PathFollower {
   OrbitVector row_;         // the branch's row of the next linearisation
   OrbitVector dx_;          // of chord iterations
   Orbit on_tangent_;
-  bool factors_known_ = false;  // those of condensed(), with the tangent that they give
-  OrbitVector factored_tangent_;
+  bool factors_known_ = false;  // those of condensed()
 };
 
 }  // namespace tchat

@@ -17,6 +17,9 @@ struct LaneFunctions {
   void (*forward)(const LaneSizes&, const double*, int, const int*, double*);
   void (*forward_transposed)(const LaneSizes&, const double*, const int*, double*);
   void (*backward)(const LaneSizes&, const double*, const double*, double*);
+  void (*backward_of_two)(const LaneSizes&, const double*, double*, double*);
+  void (*gather)(const double* const*, int, double*);
+  void (*scatter)(const double*, int, double* const*);
   void (*interpolate)(const LaneCollocation&, const double*, double*, double*);
   bool (*fill)(const LaneCollocation&, double*, double*, double*);
   void (*join)(int, int, int, const LanePiece&, const LanePiece&, double*);
@@ -67,7 +70,19 @@ void LaneKernel::backward(const double* a, const double* rhs, double* x) const {
   functions_->backward({rows_, pivots_, width_}, a, rhs, x);
 }
 
+void LaneKernel::backward_of_two(const double* a, double* x, double* y) const {
+  functions_->backward_of_two({rows_, pivots_, width_}, a, x, y);
+}
+
 LaneAssembly::LaneAssembly(VectorSet set) : functions_(lane_functions(set)) {}
+
+void LaneAssembly::gather(const double* const (&from)[lanes], int count, double* to) const {
+  functions_->gather(from, count, to);
+}
+
+void LaneAssembly::scatter(const double* from, int count, double* const (&to)[lanes]) const {
+  functions_->scatter(from, count, to);
+}
 
 void LaneAssembly::interpolate(const LaneCollocation& at, const double* nodes, double* points,
                                double* derivatives) const {

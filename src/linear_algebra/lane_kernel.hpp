@@ -46,6 +46,8 @@ class LaneKernel {
   void forward(const double* a, int border, const int* swaps, double* rhs) const;
   void forward_transposed(const double* a, const int* swaps, double* weights) const;
   void backward(const double* a, const double* rhs, double* x) const;
+  /// x and y for right-hand sides that are zero, as if each was found by backward().
+  void backward_of_two(const double* a, double* x, double* y) const;
 
  private:
   int rows_;
@@ -83,13 +85,18 @@ class LaneAssembly {
   LaneAssembly() : LaneAssembly(available_vector_sets().back()) {}
   explicit LaneAssembly(VectorSet set);
 
+  /// `count` numbers of one array for each lane to entries of `lanes` numbers.
+  void gather(const double* const (&from)[lanes], int count, double* to) const;
+  /// And back, but for lanes whose array is null.
+  void scatter(const double* from, int count, double* const (&to)[lanes]) const;
+
   /// The polynomials through c + 1 nodes of n entries of `lanes` numbers at c Gauss points, and their derivatives by
   /// the intervals' own variable: c n entries of `lanes` numbers each.
   void interpolate(const LaneCollocation& at, const double* nodes, double* points, double* derivatives) const;
 
-  /// The c n rows of the blocks, columns (interior nodes | left node | right node | T, p), and the residual, c n
-  /// entries of `lanes` numbers. `jacobian` is scratch of n n lanes numbers. False when a value is not finite in some
-  /// lane.
+  /// The c n rows of the blocks, columns (interior nodes | left node | right node | T, p | residual), and the residual
+  /// once more, c n entries of `lanes` numbers. `jacobian` is scratch of n n lanes numbers. False when a value is not
+  /// finite in some lane.
   bool fill(const LaneCollocation& at, double* blocks, double* jacobian, double* residual) const;
 
   /// The 2 n rows and the border rows of a join: columns (middle node | first node | last node | scalars).

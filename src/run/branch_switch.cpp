@@ -171,7 +171,7 @@ Bifurcation branch_at(PathFollower& follower, const PathPoint& point) {
     orient(point.orbit, crossing);
     return {point.orbit, crossing, point.tangent};
   }
-  OrbitResidual residual = condensed.make_residual();
+  OrbitResidual residual = follower.make_residual();
   for (std::size_t i = 0; i < residual.collocation.size(); ++i)
     residual.collocation[i] = std::sin(1.0 + 0.83 * static_cast<double>(i));
   std::size_t row = 0;
@@ -182,9 +182,7 @@ Bifurcation branch_at(PathFollower& follower, const PathPoint& point) {
     row += static_cast<std::size_t>(rows - filled);
     for (int a = 0; a < filled; ++a, phase += 1.7) residual.coupling[row++] = std::cos(phase);
   }
-  OrbitVector v = condensed.make_vector();
-  const std::vector<double> border(static_cast<std::size_t>(condensed.border_rows()), 0.0);
-  condensed.solve(residual, border, v);
+  OrbitVector v = follower.response(residual);
   orient(point.orbit, v);
   return {point.orbit, v, point.tangent};
 }

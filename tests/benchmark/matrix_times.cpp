@@ -103,10 +103,9 @@ void print_matrix_times(int rounds) {
   CondensedSystem& condensed = walk.follower().condensed();
   const Orbit& x = walk.point().orbit;
   const HybridSystem& system = walk.system().system();
-  const std::vector<OrbitVector> rows{walk.point().dual};
-  const std::vector<double> targets{0.0};
   OrbitResidual residual = condensed.make_residual();
   OrbitVector dx = condensed.make_vector();
+  std::vector<OrbitVector> tangent{dx};
   FloquetSolver floquet(x.shape);
   std::vector<double> f(n);
   std::vector<double> fx(n * n);
@@ -151,8 +150,8 @@ void print_matrix_times(int rounds) {
   parts[unit_copy].work = [&] { interval_blocks.copy(); };
   parts[single].work = [&] { single_blocks.run(eliminate_single); };
   parts[single_copy].work = [&] { single_blocks.copy(); };
-  parts[linearization].work = [&] { keep(condensed.linearize(x, rows, residual)); };
-  parts[solution].work = [&] { condensed.solve(residual, targets, dx); };
+  parts[linearization].work = [&] { keep(condensed.linearize(x, {}, residual)); };
+  parts[solution].work = [&] { condensed.solve_all(residual, {}, dx, tangent); };
   parts[derivative].work = derivatives;
   parts[join_work].work = [&] { join_blocks.run(eliminate_join); };
   parts[join_copy].work = [&] { join_blocks.copy(); };
@@ -194,9 +193,9 @@ void print_matrix_times(int rounds) {
   print_line("    what couples the ends of segments (up to 40 rows): dense factors", factor_units, second);
   print_line("    the rest: interpolation, filling, gathering",
              linearize_units - derivative_units - 1.0 - join_units - factor_units, second);
-  print_line("  solve", solve_units, second);
-  print_line("    the same: forward and back-substitution", dense_units, second);
-  print_line("    the rest: forward sweep, back-substitution to all nodes", solve_units - dense_units, second);
+  print_line("  solve, for the correction and the tangent", solve_units, second);
+  print_line("    the same: forward and back-substitution, once", dense_units, second);
+  print_line("    the rest: back-substitution to all nodes", solve_units - dense_units, second);
   print_line("multipliers (at most 1)", in_units({multipliers}), second);
   print_line("for comparison: residual without derivatives (a chord iteration)", in_units({residuals}), second);
   fmt::print("\n");

@@ -84,6 +84,63 @@ TEST_CASE("solving with zero residual: the border's answer is linear in the bord
   CHECK(directional_derivative(condensed, x, one).largest() < 1e-9);
 }
 
+TEST_CASE("without border rows: a correction and null vectors, the same at every linearisation but for their basis") {
+  // Two free parameters leave two null vectors; the fewer rows are missing, the more of them are given.
+  const int given = GENERATE(0, 1, 2);
+  CAPTURE(given);
+  const PeriodicOrbitSystem system(system_of<ThreeModes>(), ThreeModes::signature(), {1, 2});
+  const OrbitShape shape{3, 3, 6, 4};
+  const Orbit x = any_orbit(shape, ThreeModes::par());
+  CondensedSystem condensed(system, shape, given);
+  REQUIRE(condensed.null_vectors() == 2 - given);
+  std::vector<OrbitVector> rows;
+  std::vector<double> border;
+  for (int r = 0; r < given; ++r) rows.push_back(random_vector(condensed, 3U + static_cast<unsigned>(r)));
+  for (int r = 0; r < given; ++r) border.push_back(0.3 - r);
+  CondensedSystem square(system, shape, 2);
+  std::vector<OrbitVector> all = rows;
+  while (all.size() < 2) all.push_back(random_vector(condensed, 20U + static_cast<unsigned>(all.size())));
+  OrbitResidual residual = condensed.make_residual();
+  REQUIRE(square.linearize(x, all, residual) == Linearization::ready);
+  const auto missed = static_cast<std::size_t>(2 - given);
+  for (int again = 0; again < 3; ++again) {
+    REQUIRE(condensed.linearize(x, rows, residual) == Linearization::ready);
+    OrbitVector dx = condensed.make_vector(), by_square = dx;
+    std::vector<OrbitVector> null_vectors(missed, dx);
+    condensed.solve_all(residual, border, dx, null_vectors);
+    // To the solution of the square system with the values that the rows added there have on it.
+    std::vector<double> values = border;
+    for (std::size_t k = 0; k < missed; ++k) values.push_back(dot(all[static_cast<std::size_t>(given) + k], dx));
+    square.solve(residual, values, by_square);
+    CHECK(largest_difference(dx, by_square) < 1e-8 * by_square.states.cwiseAbs().maxCoeff());
+    Eigen::MatrixXd told_apart(2 - given, 2 - given);
+    for (std::size_t k = 0; k < missed; ++k) {
+      OrbitVector& v = null_vectors[k];
+      for (std::size_t l = 0; l < missed; ++l)
+        told_apart(static_cast<Eigen::Index>(l), static_cast<Eigen::Index>(k)) =
+            dot(all[static_cast<std::size_t>(given) + l], v);
+      v.scale(1.0 / v.states.cwiseAbs().maxCoeff());
+      for (const OrbitVector& row : rows) CHECK(std::abs(dot(row, v)) < 1e-9);
+      CHECK(directional_derivative(condensed, x, v).largest() < 1e-8);
+    }
+    // The determinant with any other rows is that of the rows of its own times that of these on the null vectors.
+    const int sign = told_apart.size() == 0 || told_apart.determinant() > 0.0 ? 1 : -1;
+    CHECK(condensed.determinant().sign * sign == square.determinant().sign);
+  }
+}
+
+TEST_CASE("closing rows follow null vectors that are orthogonal to them") {
+  ClosingRows closing(1, 4);
+  const std::vector<std::vector<double>> first{{2.0, 0.0, 0.0, 0.0}}, across{{0.0, 1e9, 1e9, 0.0}};
+  CHECK(closing.follow(first) == Approx(0.5));  // as long as the row before told
+  CHECK(closing.row(0) == std::vector<double>{1.0, 0.0, 0.0, 0.0});
+  CHECK(closing.follow(across) < 1e-9);
+  CHECK(closing.row(0)[1] == Approx(std::sqrt(0.5)));
+  const std::vector<std::vector<double>> broken{{0.0, NAN, 0.0, 0.0}};
+  CHECK(closing.follow(broken) == 0.0);
+  CHECK(closing.row(0)[1] == Approx(std::sqrt(0.5)));
+}
+
 TEST_CASE("the determinant's sign follows the border and is comparable between neighbouring orbits") {
   const PeriodicOrbitSystem system(system_of<ThreeModes>(), ThreeModes::signature(), {1});
   const OrbitShape shape{3, 3, 6, 4};

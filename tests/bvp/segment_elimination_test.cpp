@@ -112,11 +112,13 @@ TEST_CASE("a segment condensed in lanes against the dense matrix of its collocat
       CHECK((found_residual - residual).norm() < 1e-13 * (1.0 + residual.norm()));
 
       // What is left, closed by conditions on (first node | last node | T, p): solved by Eigen whole, and in steps.
-      const int length = elimination.length();
-      REQUIRE(length == 2 * n + scalars);
-      const Eigen::Map<const Eigen::Matrix<double, -1, -1, Eigen::RowMajor>> left(elimination.rows(s), n, length);
-      const Eigen::Map<const Eigen::Matrix<double, -1, -1, Eigen::RowMajor>> left_border(elimination.border(s), border,
-                                                                                         length);
+      const int length = 2 * n + scalars;
+      REQUIRE(elimination.length() == length + 1);
+      using Rows = Eigen::Map<const Eigen::Matrix<double, -1, -1, Eigen::RowMajor>>;
+      const MatrixXd left = Rows(elimination.rows(s), n, length + 1).leftCols(length);
+      const VectorXd left_residual = Rows(elimination.rows(s), n, length + 1).col(length);
+      const MatrixXd left_border = Rows(elimination.border(s), border, length + 1).leftCols(length);
+      const VectorXd left_border_residual = Rows(elimination.border(s), border, length + 1).col(length);
       const MatrixXd closing = random_matrix(generator, length - n, length);
       const VectorXd wanted = random_matrix(generator, length - n, 1);
       const Eigen::Index all = dense.cols();
@@ -130,6 +132,9 @@ TEST_CASE("a segment condensed in lanes against the dense matrix of its collocat
 
       VectorXd condensed(n + border);
       elimination.condense_right_hand_side(s, residual.data(), condensed.data());
+      // The residual that was eliminated along with the rows, and the one that was condensed afterwards.
+      CHECK((left_residual + condensed.head(n)).norm() < 1e-11 * condensed.norm());
+      CHECK((left_border_residual + condensed.tail(border)).norm() < 1e-11 * condensed.norm());
       MatrixXd reduced(length, length);
       reduced << left, closing;
       VectorXd reduced_right(length);
@@ -137,8 +142,11 @@ TEST_CASE("a segment condensed in lanes against the dense matrix of its collocat
       const VectorXd ends = reduced.partialPivLu().solve(reduced_right);
       OrbitVector dx(shape, scalars - 1);
       dx.globals = ends.tail(scalars - 1);
-      elimination.expand(s, ends.data(), dx.globals.data(), false, dx);
+      elimination.expand(s, {RightHandSide::condensed, ends.data(), dx.globals.data(), &dx});
       const VectorXd found = unknowns(dx, shape, s);
+      OrbitVector own = dx;
+      elimination.expand(s, {RightHandSide::own, ends.data(), dx.globals.data(), &own});
+      CHECK((unknowns(own, shape, s) - found).norm() < 1e-11 * found.norm());
       // Random orbits and conditions: both solutions lose up to five digits.
       CHECK((found - by_eigen).norm() < 1e-8 * by_eigen.norm());
       CHECK((dense * found + residual).norm() < 1e-11 * (dense.norm() * found.norm()));
@@ -153,8 +161,13 @@ TEST_CASE("a segment condensed in lanes against the dense matrix of its collocat
       }
 
       // Homogeneous, and the adjoint.
-      elimination.expand(s, ends.data(), dx.globals.data(), true, dx);
+      elimination.expand(s, {RightHandSide::zero, ends.data(), dx.globals.data(), &dx});
       const VectorXd homogeneous = unknowns(dx, shape, s);
+      OrbitVector own_again = dx, zero_again = dx;
+      elimination.expand_both(s, {RightHandSide::own, ends.data(), dx.globals.data(), &own_again},
+                              {RightHandSide::zero, ends.data(), dx.globals.data(), &zero_again});
+      CHECK(unknowns(own_again, shape, s) == unknowns(own, shape, s));
+      CHECK(unknowns(zero_again, shape, s) == homogeneous);
       const VectorXd of_ends = left * ends;
       const VectorXd weights = random_matrix(generator, n, 1);
       VectorXd adjoint(residual.size());

@@ -225,6 +225,28 @@ TEST_CASE("border rows are no pivots in any lane, however large") {
     for (const int row : eliminated(k, blocks, set).swaps) CHECK(row < k.rows);
 }
 
+TEST_CASE("two solutions at once are those found one by one, to the last bit") {
+  for (const VectorSet set : available_vector_sets()) {
+    std::mt19937 generator(8);
+    for (const Sizes& k : all_sizes()) {
+      CAPTURE(static_cast<int>(set), k.rows, k.pivots, k.width);
+      const Eliminated e = eliminated(k, random_blocks(generator, k), set);
+      const LaneKernel kernel(k.rows, k.pivots, k.width, set);
+      const LaneArray zero(place(k.rows * lanes));
+      std::vector<LaneArray> together;
+      for (int solution = 0; solution < 2; ++solution) {
+        std::vector<Block> known;
+        for (int l = 0; l < lanes; ++l) known.push_back(random_block(generator, k.width, 1));
+        together.push_back(side_by_side(known));
+      }
+      std::vector<LaneArray> alone = together;
+      kernel.backward_of_two(e.blocks.data(), together[0].data(), together[1].data());
+      for (LaneArray& x : alone) kernel.backward(e.blocks.data(), zero.data(), x.data());
+      CHECK(together == alone);
+    }
+  }
+}
+
 TEST_CASE("forward elimination in lanes and its transpose agree") {
   for (const VectorSet set : available_vector_sets()) {
     std::mt19937 generator(9);
@@ -253,8 +275,35 @@ TEST_CASE("forward elimination in lanes and its transpose agree") {
   }
 }
 
+TEST_CASE("arrays of lanes are gathered and scattered, but for lanes that have none") {
+  for (const VectorSet set : available_vector_sets())
+    for (int count = 1; count < 11; ++count) {
+      CAPTURE(static_cast<int>(set), count);
+      const LaneAssembly assembly(set);
+      std::vector<std::vector<double>> arrays;
+      const double* from[lanes];
+      for (int l = 0; l < lanes; ++l) {
+        arrays.emplace_back();
+        for (int k = 0; k < count; ++k) arrays.back().push_back(10.0 * k + l);
+      }
+      for (int l = 0; l < lanes; ++l) from[l] = arrays[place(l)].data();
+      LaneArray together(place(count * lanes));
+      assembly.gather(from, count, together.data());
+      for (int k = 0; k < count; ++k)
+        for (int l = 0; l < lanes; ++l) CHECK(together[place(k * lanes + l)] == 10.0 * k + l);
+      std::vector<std::vector<double>> back(lanes, std::vector<double>(place(count + 1), -1.0));
+      double* const to[lanes] = {back[0].data(), back[1].data(), nullptr, back[3].data()};
+      assembly.scatter(together.data(), count, to);
+      for (int l = 0; l < lanes; ++l) {
+        CHECK(back[place(l)].back() == -1.0);  // not beyond the end
+        back[place(l)].pop_back();
+        CHECK(back[place(l)] == (l == 2 ? std::vector<double>(place(count), -1.0) : arrays[place(l)]));
+      }
+    }
+}
+
 TEST_CASE("collocation rows are filled as the formula says, alike with every set of instructions") {
-  constexpr int n = 3, c = 2, scalars = 3, width = (c + 1) * n + scalars;
+  constexpr int n = 3, c = 2, scalars = 3, width = (c + 1) * n + scalars + 1;
   std::mt19937 generator(10);
   const MatrixXd value = random_block(generator, c, c + 1);
   const MatrixXd slope = random_block(generator, c, c + 1);
@@ -296,7 +345,7 @@ TEST_CASE("collocation rows are filled as the formula says, alike with every set
           return value(g, i) * jacobian_of_f + slope(g, i) * MatrixXd::Identity(n, n);
         };
         wanted << node(1), node(0), node(2), -at.h[l] * f[k].col(g),
-            -at.scale[l] * fp[k].middleCols(g * (scalars - 1), scalars - 1);
+            -at.scale[l] * fp[k].middleCols(g * (scalars - 1), scalars - 1), wanted_rest.col(g);
         CHECK((found.middleRows(g * n, n) - wanted).norm() < 1e-14 * 10);
       }
     }
