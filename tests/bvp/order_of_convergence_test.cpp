@@ -4,6 +4,7 @@
 
 #include "support/branch_fixture.hpp"
 #include "support/linear_oscillator.hpp"
+#include "support/random_matrices.hpp"
 
 using namespace tchat;
 using namespace tchat::test;
@@ -44,7 +45,7 @@ double order(const std::vector<int>& intervals, const std::vector<double>& found
     a.row(row) << 1.0, -std::log(static_cast<double>(intervals[i]));
     b(row) = std::log(found[i]);
   }
-  return a.colPivHouseholderQr().solve(b)(1);
+  return closest_solution(a, b)(1);
 }
 
 struct Series {

@@ -9,6 +9,7 @@
 #include "grazing/grazing_problems.hpp"
 #include "grazing/grazing_verdict.hpp"
 #include "simulation/orbit_flow.hpp"
+#include "support/random_matrices.hpp"
 #include "text/user_error.hpp"
 
 using namespace tchat;
@@ -107,7 +108,7 @@ Shot shot(const HybridSystem& system, const Analysis& analysis, const BornOrbit&
     matrix(n + 1, n + 1) += wall.rate_p(0);
     VectorXd right(n + 2);
     right << g - x, -wall.h, -velocity - wall.rate;
-    const VectorXd step = matrix.fullPivLu().solve(right);
+    const VectorXd step = solution(matrix, right);
     x += step.head(n);
     time += step(n);
     par(k) += step(n + 1);

@@ -2,7 +2,8 @@
 #pragma once
 
 #include <Eigen/Dense>
-#include <unsupported/Eigen/MatrixFunctions>
+
+#include "support/random_matrices.hpp"
 
 namespace test_support {
 
@@ -19,7 +20,7 @@ class AffineFlow {
     const Eigen::Index n = x.size();
     Eigen::VectorXd extended(n + 1);
     extended << x, 1.0;
-    const Eigen::MatrixXd flow = Eigen::MatrixXd(generator_ * time).exp();
+    const Eigen::MatrixXd flow = tchat::test::exponential(generator_ * time);
     return (flow * extended).head(n);
   }
 

@@ -1,8 +1,10 @@
 /// A root of a function of several variables, for closed forms that are equations.
 #pragma once
 
-#include <Eigen/LU>
+#include <Eigen/Core>
 #include <catch2/catch.hpp>
+
+#include "support/random_matrices.hpp"
 
 namespace test_support {
 
@@ -17,7 +19,7 @@ Eigen::VectorXd newton(Eigen::VectorXd z, double tolerance, const Defect& defect
       const Eigen::VectorXd h = Eigen::VectorXd::Unit(z.size(), k) * step;
       jacobian.col(k) = (defect(z + h) - defect(z - h)) / (2.0 * step);
     }
-    z -= jacobian.partialPivLu().solve(defect(z));
+    z -= tchat::test::solution(jacobian, defect(z));
   }
   REQUIRE(defect(z).norm() < tolerance);
   return z;

@@ -12,6 +12,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "support/random_matrices.hpp"
+
 namespace test_support {
 
 template <std::size_t n>
@@ -100,7 +102,7 @@ double least_at_falls(SmoothMotion<n, Field, Event> motion, std::size_t state, d
     for (int d = 0; d <= degree; ++d) powers(row, d) = std::pow(points[k].phase / width, d);
     values(row) = points[k].x[state];
   }
-  const Eigen::VectorXd c = powers.colPivHouseholderQr().solve(values);
+  const Eigen::VectorXd c = tchat::test::closest_solution(powers, values);
   double t = 0.0;
   for (int k = 0; k < 20; ++k)
     t -= (c(1) + t * (2.0 * c(2) + t * (3.0 * c(3) + 4.0 * t * c(4)))) /

@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <random>
 
+#include "support/random_matrices.hpp"
 #include "support/sampled_orbit.hpp"
 #include "support/test_system.hpp"
 
@@ -128,7 +129,7 @@ struct RandomForm {
       Eigen::MatrixXcd matrix = -a.cast<std::complex<double>>();
       matrix.diagonal().array() += i * omega;
       const Eigen::VectorXcd forcing = b.cast<std::complex<double>>() * Eigen::Vector2cd(1.0, -i);
-      response = matrix.partialPivLu().solve(forcing);
+      response = complex_solution(matrix, forcing);
     }
     const auto state = [=, this](double t) {
       const double theta = pi + omega * t;

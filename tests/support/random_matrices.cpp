@@ -4,11 +4,17 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <stdexcept>
+#include <unsupported/Eigen/MatrixFunctions>
 
 // LAPACK: generalised eigenvalues (alpha_r + i alpha_i) / beta of the pair (a, b), which are overwritten.
 extern "C" void dggev_(const char* left, const char* right, const int* n, double* a, const int* lda, double* b,
                        const int* ldb, double* alpha_r, double* alpha_i, double* beta, double* vl, const int* ldvl,
                        double* vr, const int* ldvr, double* work, const int* length, int* info);
+
+// LAPACK: eigenvalues real + i imaginary of `a`, which is overwritten.
+extern "C" void dgeev_(const char* left, const char* right, const int* n, double* a, const int* lda, double* real,
+                       double* imaginary, double* vl, const int* ldvl, double* vr, const int* ldvr, double* work,
+                       const int* length, int* info);
 
 // LAPACK: singular values of `a`, which is overwritten.
 extern "C" void dgesvd_(const char* job_u, const char* job_vt, const int* rows, const int* columns, double* a,
@@ -27,6 +33,32 @@ Eigen::MatrixXd random_orthogonal(std::mt19937& generator, int n) {
 }
 
 double determinant(const Eigen::MatrixXd& matrix) { return matrix.determinant(); }
+
+Eigen::VectorXd solution(const Eigen::MatrixXd& a, const Eigen::VectorXd& b) { return a.partialPivLu().solve(b); }
+
+Eigen::VectorXcd complex_solution(const Eigen::MatrixXcd& a, const Eigen::VectorXcd& b) {
+  return a.partialPivLu().solve(b);
+}
+
+Eigen::VectorXd closest_solution(const Eigen::MatrixXd& a, const Eigen::VectorXd& b) {
+  return a.colPivHouseholderQr().solve(b);
+}
+
+Eigen::MatrixXd exponential(const Eigen::MatrixXd& a) { return a.exp(); }
+
+Eigen::VectorXcd lapack_eigenvalues(Eigen::MatrixXd a) {
+  const int n = static_cast<int>(a.rows()), length = 8 * n, one = 1;
+  Eigen::VectorXd real(n), imaginary(n), work(length);
+  int info = 0;
+  double none = 0.0;
+  dgeev_("N", "N", &n, a.data(), &n, real.data(), imaginary.data(), &none, &one, &none, &one, work.data(), &length,
+         &info);
+  if (info != 0) throw std::runtime_error("dgeev found no eigenvalues");
+  Eigen::VectorXcd values(n);
+  values.real() = real;
+  values.imag() = imaginary;
+  return values;
+}
 
 double condition_number(const Eigen::MatrixXd& matrix) {
   const int rows = static_cast<int>(matrix.rows()), columns = static_cast<int>(matrix.cols()), one = 1;

@@ -16,6 +16,19 @@ Eigen::MatrixXd random_orthogonal(std::mt19937& generator, int n);
 
 double determinant(const Eigen::MatrixXd& matrix);
 
+/// x with A x = b, by Eigen's LU decomposition with partial pivoting.
+Eigen::VectorXd solution(const Eigen::MatrixXd& a, const Eigen::VectorXd& b);
+Eigen::VectorXcd complex_solution(const Eigen::MatrixXcd& a, const Eigen::VectorXcd& b);
+
+/// x with the least |A x - b|, by Eigen's QR decomposition with pivoting.
+Eigen::VectorXd closest_solution(const Eigen::MatrixXd& a, const Eigen::VectorXd& b);
+
+/// e^A, by Eigen.
+Eigen::MatrixXd exponential(const Eigen::MatrixXd& a);
+
+/// All eigenvalues, by LAPACK's dgeev: Eigen's solvers are compiled in seconds for each kind of matrix.
+Eigen::VectorXcd lapack_eigenvalues(Eigen::MatrixXd a);
+
 /// Quotient of the largest and the least singular value.
 double condition_number(const Eigen::MatrixXd& matrix);
 
