@@ -1,10 +1,32 @@
 // Right-hand sides of a segment, and its solutions from what is left at its ends.
 #include <algorithm>
+#include <array>
 
 #include "bvp/lane_entries.hpp"
 #include "bvp/segment_elimination.hpp"
 
 namespace tchat {
+
+namespace {
+
+/// The pivot unknowns of a block for one solution, with this right-hand side, or for two with none: `gather` puts what
+/// is known into the local unknowns, `scatter` takes what was found.
+template <class Gather, class Scatter>
+void solve_block(const LaneKernel& kernel, const double* block, const double* right,
+                 const std::array<double*, 2>& local, const std::array<const SegmentSolution*, 2>& solutions,
+                 const Gather& gather, const Scatter& scatter) {
+  gather(*solutions[0], local[0]);
+  if (solutions[1] == nullptr) {
+    kernel.backward(block, right, local[0]);
+  } else {
+    gather(*solutions[1], local[1]);
+    kernel.backward_of_two(block, local[0], local[1]);
+    scatter(*solutions[1], local[1]);
+  }
+  scatter(*solutions[0], local[0]);
+}
+
+}  // namespace
 
 /// The right-hand sides of a piece's n condensed rows and its border rows.
 double* SegmentElimination::piece_rhs(int s, int first, int last) {
@@ -110,17 +132,11 @@ void SegmentElimination::put_scalars(const SegmentSolution& of, double* to) cons
 void SegmentElimination::expand_lane_join(int s, const Join& at, const SegmentSolution* one,
                                           const SegmentSolution* other, int thread) {
   const std::ptrdiff_t b = block(s, at.middle);
-  double* local = join_local_[2 * thread];
-  gather_around_join(s, at, *one, local);
-  if (other == nullptr) {
-    join_.backward(join_blocks_[b], one->right == RightHandSide::condensed ? join_rhs_[b] : zero_rhs_.data(), local);
-  } else {
-    double* other_local = join_local_[2 * thread + 1];
-    gather_around_join(s, at, *other, other_local);
-    join_.backward_of_two(join_blocks_[b], local, other_local);
-    scatter_from_join(s, at, other_local, *other);
-  }
-  scatter_from_join(s, at, local, *one);
+  const double* right = one->right == RightHandSide::condensed ? join_rhs_[b] : zero_rhs_.data();
+  solve_block(
+      join_, join_blocks_[b], right, {join_local_[2 * thread], join_local_[2 * thread + 1]}, {one, other},
+      [&](const SegmentSolution& of, double* local) { gather_around_join(s, at, of, local); },
+      [&](const SegmentSolution& of, const double* local) { scatter_from_join(s, at, local, of); });
 }
 
 void SegmentElimination::gather_around_join(int s, const Join& at, const SegmentSolution& of, double* local) const {
@@ -149,18 +165,11 @@ void SegmentElimination::scatter_from_join(int s, const Join& at, const double* 
 void SegmentElimination::expand_group(int s, int group, const SegmentSolution* one, const SegmentSolution* other,
                                       int thread) {
   const std::ptrdiff_t b = block(s, group);
-  double* local = local_[2 * thread];
-  gather_around_group(s, group, *one, local);
-  if (other == nullptr) {
-    interval_.backward(interval_blocks_[b],
-                       one->right == RightHandSide::condensed ? interval_rhs_[b] : zero_rhs_.data(), local);
-  } else {
-    double* other_local = local_[2 * thread + 1];
-    gather_around_group(s, group, *other, other_local);
-    interval_.backward_of_two(interval_blocks_[b], local, other_local);
-    scatter_from_group(s, group, other_local, *other);
-  }
-  scatter_from_group(s, group, local, *one);
+  const double* right = one->right == RightHandSide::condensed ? interval_rhs_[b] : zero_rhs_.data();
+  solve_block(
+      interval_, interval_blocks_[b], right, {local_[2 * thread], local_[2 * thread + 1]}, {one, other},
+      [&](const SegmentSolution& of, double* local) { gather_around_group(s, group, of, local); },
+      [&](const SegmentSolution& of, const double* local) { scatter_from_group(s, group, local, of); });
 }
 
 void SegmentElimination::gather_around_group(int s, int group, const SegmentSolution& of, double* local) const {

@@ -187,17 +187,19 @@ NewtonResult PathFollower::step_along_tangent(const PathPoint& from, double ds, 
 }
 
 NewtonResult PathFollower::step_near(const PathPoint& from, double ds, PathPoint& to) {
-  begin_step(from);
-  to.newton_constant = from.newton_constant;
-  to.trail.follow(from, system_.free_parameters());
-  return correct_and_orient(to, from.orbit, ds);
+  return step_near(from, ds, to, current_enough);
 }
 
 NewtonResult PathFollower::step_beside_branch_point(const PathPoint& from, double ds, PathPoint& to) {
+  return step_near(from, ds, to, 0.0);
+}
+
+/// With factors for the tangent that are not older than this.
+NewtonResult PathFollower::step_near(const PathPoint& from, double ds, PathPoint& to, double oldest) {
   begin_step(from);
   to.newton_constant = from.newton_constant;
   to.trail.follow(from, system_.free_parameters());
-  return correct_and_orient(to, from.orbit, ds, 0.0);
+  return correct_and_orient(to, from.orbit, ds, oldest);
 }
 
 /// dx_ is set to the correction of x by the factors at hand, whatever the border was that they have, with

@@ -108,6 +108,7 @@ class PathFollower {
   CondensedSystem::Singularity singularity(const PathPoint& point);
 
  private:
+  NewtonResult step_near(const PathPoint& from, double ds, PathPoint& to, double oldest);
   NewtonResult correct_and_orient(PathPoint& point, const Orbit& base, double target);
   NewtonResult correct_and_orient(PathPoint& point, const Orbit& base, double target, double oldest);
   void put_on_tangent(const PathPoint& from, double ds, Orbit& x) const;
