@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "linear_algebra/array_kernel.hpp"
+
 namespace tchat {
 
 BorderedProblem::BorderedProblem(const DefiningSystem& system, const OrbitShape& shape,
@@ -102,9 +104,10 @@ bool BorderedProblem::find_responses() {
 void BorderedProblem::follow_gradients() {
   for (int k = 0; k < conditions(); ++k) {
     const OrbitVector& gradient = condition_->gradient(k);
-    const double size = std::max({gradient.states.cwiseAbs().maxCoeff(), gradient.durations.cwiseAbs().maxCoeff(),
-                                  gradient.globals.cwiseAbs().maxCoeff()});
-    if (!std::isfinite(size) || !(size > 0.0)) continue;
+    const ArrayRange states = array_functions().range(gradient.states.data(), gradient.states.size());
+    const double size =
+        std::max({states.largest, gradient.durations.cwiseAbs().maxCoeff(), gradient.globals.cwiseAbs().maxCoeff()});
+    if (!states.finite || !std::isfinite(size) || !(size > 0.0)) continue;
     stand_in(k) = gradient;
     stand_in(k).scale(1.0 / size);
   }
@@ -154,7 +157,7 @@ void BorderedProblem::add_responses(Numbers wanted, OrbitVector& dx) const {
   const Numbers shares = slopes_.solve(wanted);
   for (int k = 0; k < conditions(); ++k) {
     const OrbitVector& response = responses_[static_cast<std::size_t>(k)];
-    dx.states += shares(k) * response.states;
+    array_functions().add(shares(k), response.states.data(), dx.states.data(), dx.states.size());
     dx.durations += shares(k) * response.durations;
     dx.globals += shares(k) * response.globals;
   }
