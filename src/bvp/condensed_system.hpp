@@ -63,7 +63,8 @@ class CondensedSystem {
   void solve(const OrbitResidual& residual, std::span<const double> border, OrbitVector& dx);
   /// The same with F = 0.
   void solve(std::span<const double> border, OrbitVector& dx);
-  /// Both at once, which takes little more than one: dx for the residual that linearize() found, v for F = 0.
+  /// Both at once, which takes little more than one: dx for the residual that linearize() found and `border`, v for
+  /// F = 0 and `border_of_v`, b entries each.
   void solve_both(const OrbitResidual& linearized, std::span<const double> border, OrbitVector& dx,
                   std::span<const double> border_of_v, OrbitVector& v);
 

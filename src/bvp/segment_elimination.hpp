@@ -73,11 +73,11 @@ struct LargeProduct {
 /// vectors), or what condense_right_hand_side() was given last.
 enum class RightHandSide { own, zero, condensed };
 
-/// A solution of which the ends of a segment are known: `ends` has first node, last node, duration.
+/// A solution of which the ends of a segment are known.
 struct SegmentSolution {
   RightHandSide right = RightHandSide::zero;
-  const double* ends = nullptr;
-  const double* globals = nullptr;  ///< changes of the free parameters
+  const double* ends = nullptr;     ///< 2 n + 1: first node, last node, duration
+  const double* globals = nullptr;  ///< q: changes of the free parameters
   OrbitVector* dx = nullptr;        ///< that gets all nodes and the duration
 };
 
@@ -116,7 +116,7 @@ class SegmentElimination {
   void condense_right_hand_side(int s, const double* collocation, double* condensed);
   /// From the ends of segment s to all nodes. `thread` < `segments` of the threads, another one for each at a time.
   void expand(int s, const SegmentSolution& solution, int thread = 0) { expand(s, &solution, nullptr, thread); }
-  /// Two at once, neither of them of a condensed right-hand side.
+  /// Two at once, to the last bit what each is alone; neither of them for a condensed right-hand side.
   void expand_both(int s, const SegmentSolution& one, const SegmentSolution& other, int thread = 0) {
     expand(s, &one, &other, thread);
   }

@@ -1,6 +1,7 @@
 // Right-hand sides of a segment, and its solutions from what is left at its ends.
 #include <algorithm>
 #include <array>
+#include <cassert>
 
 #include "bvp/lane_entries.hpp"
 #include "bvp/segment_elimination.hpp"
@@ -89,6 +90,7 @@ void SegmentElimination::condense_right_hand_side(int s, const double* collocati
 /// From the ends of a segment back to the ends of lanes, to mesh nodes, joins in reverse, and on to the interior nodes.
 /// `other` may be null.
 void SegmentElimination::expand(int s, const SegmentSolution* one, const SegmentSolution* other, int thread) {
+  assert(other == nullptr || (one->right != RightHandSide::condensed && other->right != RightHandSide::condensed));
   for (const SegmentSolution* of : {one, other}) {
     if (of == nullptr) continue;
     put_ends(s, *of);

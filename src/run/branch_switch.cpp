@@ -332,9 +332,8 @@ BranchSetup switch_branch(const HybridSystem& system, const RunSettings& setting
                                        selected.label, selected.source, describe(result.status)));
   throw ComputationError(fmt::format(
       "no step from label {} of {} leads away from the branch that the label lies on and to another one near it, for "
-      "DS between {:.3g} and {:.3g}; compute that branch and its label again with a larger NTST or a smaller EPSS, or "
-      "try "
-      "another DS",
+      "DS between {:.3g} and {:.3g}; compute that branch and its label again with a larger NTST or a smaller EPSS, "
+      "or try another DS",
       selected.label, selected.source, 0.1 * step.initial, 10.0 * step.initial));
 }
 
