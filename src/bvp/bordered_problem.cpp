@@ -8,15 +8,29 @@
 
 namespace tchat {
 
+namespace {
+
+/// work(column) of the states at both ends of each segment.
+template <class Work>
+void for_ends(const OrbitShape& shape, const Work& work) {
+  for (int s = 0; s < shape.segments; ++s) {
+    work(s * shape.nodes());
+    work((s + 1) * shape.nodes() - 1);
+  }
+}
+
+}  // namespace
+
 BorderedProblem::BorderedProblem(const DefiningSystem& system, const OrbitShape& shape,
                                  std::unique_ptr<OrbitCondition> condition, std::vector<HeldMonitor> held, int threads)
     : condensed_(
           system, shape,
-          1 + system.integral_conditions() + static_cast<int>(held.size()) + (condition ? condition->count() : 0),
+          {system.integral_conditions() + static_cast<int>(held.size()) + (condition ? condition->count() : 0), 1},
           threads),
       condition_(std::move(condition)),
       held_(std::move(held)),
-      rows_(static_cast<std::size_t>(condensed_.border_rows()), condensed_.make_vector()),
+      row_(condensed_.make_vector()),
+      rows_(static_cast<std::size_t>(condensed_.border_rows()), row_),
       border_(rows_.size()),
       along_(rows_.size()),
       unchanged_(static_cast<std::size_t>(system.integral_conditions()) + held_.size(), 0.0),
@@ -69,9 +83,12 @@ void BorderedProblem::evaluate(const Orbit& x, OrbitResidual& residual) {
 }
 
 Linearization BorderedProblem::linearize(const Orbit& x, const OrbitVector& row, OrbitResidual& residual) {
-  rows_[0].states = row.states;
-  rows_[0].durations = row.durations;
-  rows_[0].globals = row.globals;
+  if (&row != &row_) {
+    row_.states = row.states;
+    row_.durations = row.durations;
+    row_.globals = row.globals;
+  }
+  close(row);
   const auto integrals = static_cast<std::size_t>(system().integral_conditions());
   system().integral_gradients(x, reference_, condensed_.rule(), residual.integral.data(),
                               std::span(rows_).subspan(1, integrals));
@@ -87,12 +104,47 @@ Linearization BorderedProblem::linearize(const Orbit& x, const OrbitVector& row,
   return Linearization::ready;
 }
 
+/// The first of the border rows: the branch's row at the ends of segments, each of which counts as many times as there
+/// are nodes, as these share the weight of a segment. A row that has next to nothing there (the gradient of a monitor)
+/// gives way to one that no tangent is orthogonal to but by chance.
+void BorderedProblem::close(const OrbitVector& row) {
+  constexpr double negligible = 1e-6;
+  OrbitVector& closing = rows_.front();
+  closing.durations = row.durations;
+  closing.globals = row.globals;
+  double largest = std::max(row.durations.lpNorm<Eigen::Infinity>(), row.globals.lpNorm<Eigen::Infinity>());
+  for_ends(condensed_.shape(), [&](int column) {
+    closing.states.col(column) = condensed_.shape().nodes() * row.states.col(column);
+    largest = std::max(largest, closing.states.col(column).lpNorm<Eigen::Infinity>());
+  });
+  if (largest > negligible * array_functions().range(row.states.data(), row.states.size()).largest) return;
+  for_ends(condensed_.shape(), [&](int column) {
+    for (int a = 0; a < condensed_.shape().dimension; ++a)
+      closing.states(a, column) = std::cos(1.0 + 0.37 * (column + a));
+  });
+  closing.durations.setOnes();
+  closing.globals.setOnes();
+}
+
+/// The determinant is proportional to what the row is of the tangent.
+double BorderedProblem::signed_distance(const OrbitVector& tangent) const {
+  const bool same_sign = (dot(row_, tangent) < 0.0) == (dot_at_ends(rows_.front(), 1.0, tangent) < 0.0);
+  return same_sign ? condensed_.signed_distance() : -condensed_.signed_distance();
+}
+
+/// With the row's states there times `of_states`.
+double BorderedProblem::dot_at_ends(const OrbitVector& row, double of_states, const OrbitVector& v) const {
+  double sum = 0.0;
+  for_ends(condensed_.shape(), [&](int column) { sum += row.states.col(column).dot(v.states.col(column)); });
+  return of_states * sum + row.durations.dot(v.durations) + row.globals.dot(v.globals);
+}
+
 /// False when they do not reach what the condition asks for.
 bool BorderedProblem::find_responses() {
   Slopes slopes(conditions(), conditions());
   for (int k = 0; k < conditions(); ++k) {
     OrbitVector& response = responses_[static_cast<std::size_t>(k)];
-    condensed_.solve(border(0.0, unchanged_, k), response);
+    condensed_.solve(border(unchanged_, k), response);
     for (int i = 0; i < conditions(); ++i) slopes(i, k) = dot(condition_->gradient(i), response);
   }
   if (!slopes.allFinite()) return false;
@@ -113,35 +165,61 @@ void BorderedProblem::follow_gradients() {
   }
 }
 
-std::span<const double> BorderedProblem::border(double branch, const std::vector<double>& integrals, int unit) {
+std::span<const double> BorderedProblem::border(const std::vector<double>& integrals, int unit) {
   std::fill(border_.begin(), border_.end(), 0.0);
-  border_.front() = branch;
   std::transform(integrals.begin(), integrals.end(), border_.begin() + 1, [](double value) { return -value; });
   if (unit >= 0) border_[border_.size() - responses_.size() + static_cast<std::size_t>(unit)] = 1.0;
   return border_;
 }
 
-void BorderedProblem::solve(const OrbitResidual& residual, double target, OrbitVector& dx) {
-  condensed_.solve(residual, border(target, residual.integral), dx);
+void BorderedProblem::solve_across(const OrbitResidual& residual, OrbitVector& dx) {
+  condensed_.solve(residual, border(residual.integral), dx);
   add_responses(minus_condition(), dx);
 }
 
-void BorderedProblem::correct(const OrbitResidual& linearized, double target, OrbitVector& dx) {
-  condensed_.solve_both(linearized, border(target, linearized.integral), dx, along_, tangent_);
+bool BorderedProblem::solve(const OrbitResidual& residual, double target, OrbitVector& dx) {
+  if (!tangent_known_) {
+    condensed_.solve(along_, tangent_);
+    know_tangent();
+  }
+  solve_across(residual, dx);
+  return put_along(target, dx);
+}
+
+bool BorderedProblem::correct(const OrbitResidual& linearized, double target, OrbitVector& dx) {
+  condensed_.solve_both(linearized, border(linearized.integral), dx, along_, tangent_);
+  know_tangent();
   add_responses(minus_condition(), dx);
+  return put_along(target, dx);
+}
+
+/// tangent_ is what the factors have of it.
+void BorderedProblem::know_tangent() {
   add_responses(Numbers::Zero(conditions()), tangent_);
+  row_along_ = dot(row_, tangent_);
   tangent_known_ = true;
 }
 
+/// Changes dx along the tangent until row . dx = target.
+bool BorderedProblem::put_along(double target, OrbitVector& dx) const {
+  const double along = (target - dot(row_, dx)) / row_along_;
+  if (row_along_ == 0.0) return false;
+  array_functions().add(along, tangent_.states.data(), dx.states.data(), dx.states.size());
+  dx.durations += along * tangent_.durations;
+  dx.globals += along * tangent_.globals;
+  return true;
+}
+
 void BorderedProblem::find_tangent(OrbitVector& dx) {
-  if (std::exchange(tangent_known_, false)) {
-    dx.states.swap(tangent_.states);
-    dx.durations.swap(tangent_.durations);
-    dx.globals.swap(tangent_.globals);
-  } else {
-    condensed_.solve(along_, dx);
-    add_responses(Numbers::Zero(conditions()), dx);
+  if (!tangent_known_) {
+    condensed_.solve(along_, tangent_);
+    know_tangent();
   }
+  dx.states.swap(tangent_.states);
+  dx.durations.swap(tangent_.durations);
+  dx.globals.swap(tangent_.globals);
+  tangent_known_ = false;
+  if (row_along_ < 0.0) dx.scale(-1.0);
 }
 
 BorderedProblem::Numbers BorderedProblem::minus_condition() const {

@@ -9,6 +9,13 @@
 /// been condensed. So J is condensed with a stand-in for it, the gradient of the last linearisation, and the true
 /// gradient enters by a correction of rank one for each number: one more solution of the same factors.
 ///
+/// The branch's row reaches into all intervals, and would be eliminated from each. What stands for it has entries at
+/// the ends of segments only, and costs nothing there; any row serves that is not orthogonal to the tangent t, since
+///
+///     dx = y + (target - row . y) / (row . t) t
+///
+/// has the right component along t, whatever y has. The tangent is wanted anyway.
+///
 /// A condition is found by iteration from where it was last: which multiplier it means, and the border of its own
 /// problem. A trial of Newton's method that fails leaves these anywhere. They belong to the point of the branch that
 /// the trial began from, together with the stand-ins, and are brought back (`recall`) before the next one.
@@ -88,14 +95,24 @@ class BorderedProblem {
 
   /// The orbit that integral conditions compare phases with, on the mesh of those that follow. Copied.
   void set_reference(const Orbit& x);
+  /// `row` is copied.
   Linearization linearize(const Orbit& x, const OrbitVector& row, OrbitResidual& residual);
   void evaluate(const Orbit& x, OrbitResidual& residual);
-  /// Newton's correction: all conditions to zero, row . dx = target.
-  void solve(const OrbitResidual& residual, double target, OrbitVector& dx);
+  /// Newton's correction, all conditions to zero, row . dx = target; false when the row is orthogonal to the tangent.
+  bool solve(const OrbitResidual& residual, double target, OrbitVector& dx);
   /// The same where the residual is that of the last linearisation; the tangent is found on the way.
-  void correct(const OrbitResidual& linearized, double target, OrbitVector& dx);
-  /// All conditions unchanged, row . dx = 1.
+  bool correct(const OrbitResidual& linearized, double target, OrbitVector& dx);
+  /// All conditions to zero; dx has any component along the tangent.
+  void solve_across(const OrbitResidual& residual, OrbitVector& dx);
+  /// All conditions unchanged, row . dx > 0 (if it is not zero).
   void find_tangent(OrbitVector& dx);
+  /// CondensedSystem::signed_distance(), with the sign that the determinant has with the branch's row itself. `tangent`
+  /// is one at the point of the last linearisation.
+  double signed_distance(const OrbitVector& tangent) const;
+  /// What stands for this row of a branch, on v.
+  double at_ends(const OrbitVector& row, const OrbitVector& v) const {
+    return dot_at_ends(row, condensed_.shape().nodes(), v);
+  }
   /// Largest residual, the condition's included.
   double residual_size(const OrbitResidual& residual) const;
 
@@ -103,28 +120,34 @@ class BorderedProblem {
   using Numbers = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, OrbitCondition::most, 1>;
   using Slopes = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, OrbitCondition::most, OrbitCondition::most>;
 
+  void close(const OrbitVector& row);
+  double dot_at_ends(const OrbitVector& row, double of_states, const OrbitVector& v) const;
   bool find_responses();
   void follow_gradients();
   Numbers minus_condition() const;
   void add_responses(Numbers wanted, OrbitVector& dx) const;
+  void know_tangent();
+  bool put_along(double target, OrbitVector& dx) const;
   int conditions() const { return condition_ ? condition_->count() : 0; }
   OrbitVector& stand_in(int k) { return rows_[rows_.size() - responses_.size() + static_cast<std::size_t>(k)]; }
-  /// The border's right-hand side with these in the branch's row and the integrals', zero in those of the stand-ins but
-  /// for a one in that of number `unit` (-1: none).
-  std::span<const double> border(double branch, const std::vector<double>& integrals, int unit = -1);
+  /// The border's right-hand side with minus these in the rows of the integrals, zero in the others but for a one in
+  /// the row of stand-in `unit` (-1: none).
+  std::span<const double> border(const std::vector<double>& integrals, int unit = -1);
 
   CondensedSystem condensed_;
   std::unique_ptr<OrbitCondition> condition_;
   std::vector<HeldMonitor> held_;
-  std::vector<OrbitVector> rows_;  // the branch's row, gradients of integrals and held monitors, stand-ins for those of
-                                   // G
+  OrbitVector row_;                // the branch's
+  std::vector<OrbitVector> rows_;  // what stands for it, gradients of integrals and held monitors, stand-ins for those
+                                   // of G
   std::vector<double> border_;     // right-hand side of these
-  std::vector<double> along_;      // the same of the tangent: a one in the branch's row
+  std::vector<double> along_;      // the same of the tangent: a one in the first row
   std::vector<double> unchanged_;  // integrals and monitors that keep their values
   Orbit reference_;                // only where there are integrals
   std::vector<OrbitVector> responses_;  // solutions for a unit in the row of each stand-in
   Eigen::PartialPivLU<Slopes> slopes_;  // of grad G . responses
   OrbitVector tangent_;
+  double row_along_ = 0.0;      // row_ . tangent_
   bool tangent_known_ = false;  // that of the last linearisation, and not yet taken
 };
 

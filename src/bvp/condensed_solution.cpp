@@ -40,7 +40,7 @@ void CondensedSystem::solve_ends(const BlockArray<double>& condensed, const Orbi
   for (int s = 0; s < shape_.segments; ++s) {
     rhs = std::copy_n(condensed[s], n_, rhs);
     for (int r = 0; r < system_.coupling_rows(s); ++r) *rhs++ = -*coupling++;
-    for (int r = 0; r < border_; ++r) border_rhs()[r] += condensed[s][n_ + r];
+    for (int r = 0; r < general_; ++r) border_rhs()[closing_ + r] += condensed[s][n_ + r];
   }
   lu_.solve(rhs_.data(), solution_.data());
 }

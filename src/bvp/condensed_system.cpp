@@ -55,25 +55,27 @@ bool OrbitResidual::finite() const {
   return range_of(collocation).finite && range_of(coupling).finite && range_of(integral).finite;
 }
 
-CondensedSystem::CondensedSystem(const DefiningSystem& system, const OrbitShape& shape, int border_rows, int threads)
+CondensedSystem::CondensedSystem(const DefiningSystem& system, const OrbitShape& shape, BorderRows border, int threads)
     : system_(system),
       shape_(shape),
       n_(shape.dimension),
       globals_(system.free_count()),
       scalars_(1 + globals_),
-      border_(border_rows),
+      border_(border.all()),
+      closing_(border.closing),
+      general_(border.general),
       rule_(shape.collocation),
       threads_(sharing(shape, threads)),
       segment_work_(threads_.segments),
-      elimination_(shape, scalars_, border_rows, rule_, threads_),
+      elimination_(shape, scalars_, general_, rule_, threads_),
       outcomes_(index(shape.segments)),
       lu_(make_sparse()) {
-  assert((n_ + 1) * shape.segments + globals_ == total_coupling_rows(system) + border_rows);
+  assert((n_ + 1) * shape.segments + globals_ == total_coupling_rows(system) + border_);
   first_blocks_ = {shape.segments, n_ * n_};
   last_blocks_ = first_blocks_;
   scalar_blocks_ = {shape.segments, n_ * scalars_};
-  border_blocks_ = {shape.segments, border_ * (2 * n_ + scalars_)};
-  own_rhs_ = {shape.segments, n_ + border_};
+  border_blocks_ = {shape.segments, general_ * (2 * n_ + scalars_)};
+  own_rhs_ = {shape.segments, n_ + general_};
   segment_rhs_ = own_rhs_;
   triplet_values_.resize(triplet_rows_.size());
   rhs_ = zeros(lu_.size());
@@ -149,8 +151,9 @@ void CondensedSystem::evaluate(const Orbit& x, OrbitResidual& residual) {
 // ---- linearisation --------------------------------------------------------------------------------------------------
 
 Linearization CondensedSystem::linearize(const Orbit& x, std::span<const OrbitVector> rows, OrbitResidual& residual) {
+  const std::span<const OrbitVector> general = rows.subspan(index(closing_));
   const Linearization condensed =
-      threads_.segments > 1 ? condense_together(x, rows, residual) : condense_one_by_one(x, rows, residual);
+      threads_.segments > 1 ? condense_together(x, general, residual) : condense_one_by_one(x, general, residual);
   if (condensed != Linearization::ready) return condensed;
   if (!assemble(x, rows, residual)) return Linearization::not_finite;
   return lu_.factorize(triplet_values_) ? Linearization::ready : Linearization::singular;
@@ -203,7 +206,7 @@ void CondensedSystem::keep_segment_blocks(int s) {
     own_rhs_[s][a] = -from[2 * n_ + scalars_];
   }
   from = elimination_.border(s);
-  for (int r = 0; r < border_; ++r, from += length) {
+  for (int r = 0; r < general_; ++r, from += length) {
     std::copy_n(from, length - 1, border_blocks_[s] + r * (length - 1));
     own_rhs_[s][n_ + r] = -from[length - 1];
   }
@@ -225,19 +228,32 @@ bool CondensedSystem::assemble(const Orbit& x, std::span<const OrbitVector> rows
     value = system_.coupling_derivatives(s, x, coupling, value);
     coupling += system_.coupling_rows(s);
   }
-  const int length = 2 * n_ + scalars_;
-  for (int r = 0; r < border_; ++r) {
-    double* globals = value + shape_.segments * (2 * n_ + 1);
-    std::copy_n(rows[index(r)].globals.data(), globals_, globals);
-    for (int s = 0; s < shape_.segments; ++s) {
-      const double* from = border_blocks_[s] + r * length;
-      value = std::copy_n(from, 2 * n_ + 1, value);
-      value[-1] += rows[index(r)].durations(s);
-      for (int g = 0; g < globals_; ++g) globals[g] += from[2 * n_ + 1 + g];
-    }
-    value += globals_;
-  }
+  for (int r = 0; r < closing_; ++r) value = put_closing_row(rows[index(r)], value);
+  for (int r = 0; r < general_; ++r) value = put_general_row(r, rows[index(closing_ + r)], value);
   return residual.finite();
+}
+
+double* CondensedSystem::put_closing_row(const OrbitVector& row, double* value) const {
+  for (int s = 0; s < shape_.segments; ++s) {
+    value = std::copy_n(row.states.col(s * shape_.nodes()).data(), n_, value);
+    value = std::copy_n(row.states.col((s + 1) * shape_.nodes() - 1).data(), n_, value);
+    *value++ = row.durations(s);
+  }
+  return std::copy_n(row.globals.data(), globals_, value);
+}
+
+/// Number r of the general rows, condensed; the weights of the scalars themselves were left out there.
+double* CondensedSystem::put_general_row(int r, const OrbitVector& row, double* value) const {
+  const int length = 2 * n_ + scalars_;
+  double* globals = value + shape_.segments * (2 * n_ + 1);
+  std::copy_n(row.globals.data(), globals_, globals);
+  for (int s = 0; s < shape_.segments; ++s) {
+    const double* from = border_blocks_[s] + r * length;
+    value = std::copy_n(from, 2 * n_ + 1, value);
+    value[-1] += row.durations(s);
+    for (int g = 0; g < globals_; ++g) globals[g] += from[2 * n_ + 1 + g];
+  }
+  return value + globals_;
 }
 
 }  // namespace tchat

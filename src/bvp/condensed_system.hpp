@@ -5,7 +5,10 @@
 /// (segment_elimination.hpp), and UMFPACK solves what is left, 2 n m + m + q unknowns that couple only neighbouring
 /// segments. Work and memory are linear in m and N. All arrays are allocated when the object is made.
 ///
-/// Border rows are general linear functionals of the unknowns, given as dual vectors.
+/// Border rows are general linear functionals of the unknowns, given as dual vectors. Each takes part in the elimination
+/// of every interval, but for closing rows, which have entries at the ends of segments alone, for durations and free
+/// parameters: these cost nothing there. A general row is as good as a closing row and one more solution
+/// (BorderedProblem).
 ///
 /// Where there is enough work for several threads, they share it by segments, or within each segment where there are
 /// few of these. What is left for UMFPACK one thread does. Results are the same to the last bit for any number.
@@ -35,12 +38,20 @@ struct OrbitResidual {
   bool finite() const;
 };
 
+/// Rows of the border: the first `closing` of them are read at the ends of segments only.
+struct BorderRows {
+  BorderRows(int general_rows, int closing_rows = 0) : general(general_rows), closing(closing_rows) {}
+  int all() const { return general + closing; }
+  int general;
+  int closing;
+};
+
 class CondensedSystem {
  public:
-  /// `border_rows` = b, integral conditions among them. The defining system must outlive this object; its coupling rows
+  /// `border` = b rows, integral conditions among them. The defining system must outlive this object; its coupling rows
   /// and the border are as many as the ends, durations and free parameters leave open: n m + m + q.
   /// As many threads as `threads` may work on it, the calling one among them, which alone calls the problem.
-  CondensedSystem(const DefiningSystem& system, const OrbitShape& shape, int border_rows, int threads = 1);
+  CondensedSystem(const DefiningSystem& system, const OrbitShape& shape, BorderRows border, int threads = 1);
 
   const DefiningSystem& system() const { return system_; }
   const OrbitShape& shape() const { return shape_; }
@@ -126,6 +137,8 @@ class CondensedSystem {
   Linearization condense_together(const Orbit& x, std::span<const OrbitVector> rows, OrbitResidual& residual);
   void keep_segment_blocks(int s);
   bool assemble(const Orbit& x, std::span<const OrbitVector> rows, OrbitResidual& residual);
+  double* put_closing_row(const OrbitVector& row, double* value) const;
+  double* put_general_row(int r, const OrbitVector& row, double* value) const;
   double* border_rhs() { return rhs_.data() + lu_.size() - border_; }
   void solve_ends(const BlockArray<double>& condensed, const OrbitResidual& residual, std::span<const double> border);
   void solve_ends(std::span<const double> border, std::vector<double>& ends);
@@ -139,6 +152,8 @@ class CondensedSystem {
   int globals_;  // q
   int scalars_;  // duration and globals: 1 + q columns
   int border_;   // b
+  int closing_;  // the first ones
+  int general_;  // the others
   CollocationRule rule_;
   EliminationThreads threads_;
   SharedWork segment_work_;
@@ -149,9 +164,9 @@ class CondensedSystem {
   BlockArray<double> first_blocks_;   // n x n
   BlockArray<double> last_blocks_;    // n x n
   BlockArray<double> scalar_blocks_;  // n x scalars
-  BlockArray<double> border_blocks_;  // b x (2 n + scalars): first | last | scalars
-  BlockArray<double> own_rhs_;        // n + b: of the residual that linearize() found
-  BlockArray<double> segment_rhs_;    // n + b: of any
+  BlockArray<double> border_blocks_;  // of general rows, g x (2 n + scalars): first | last | scalars
+  BlockArray<double> own_rhs_;        // n + g: of the residual that linearize() found
+  BlockArray<double> segment_rhs_;    // n + g: of any
 
   std::vector<int> triplet_rows_;  // before lu_, whose constructor needs them
   std::vector<int> triplet_columns_;

@@ -96,10 +96,10 @@ NewtonResult NewtonChord::correct(Orbit& x, const OrbitVector& row, const Orbit&
     }
     result.residual = problem_.residual_size(residual_);
     const double rest = target - dot_difference(row, x, base, free_parameters);
-    if (full)
-      problem_.correct(residual_, rest, dx_);
-    else
-      problem_.solve(residual_, rest, dx_);
+    if (!(full ? problem_.correct(residual_, rest, dx_) : problem_.solve(residual_, rest, dx_))) {
+      result.status = NewtonStatus::singular;
+      return result;
+    }
     const OrbitChange change = apply(x);
     const double larger = change.larger();
     result.iterations = iteration;

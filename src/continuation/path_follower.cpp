@@ -76,6 +76,11 @@ double PathFollower::alignment(const PathPoint& point, const OrbitVector& direct
   return dot(dual, point.tangent);
 }
 
+double PathFollower::cosine_at_ends(const PathPoint& from, const PathPoint& to) const {
+  return problem_.at_ends(from.dual, to.tangent) /
+         std::sqrt(std::abs(problem_.at_ends(from.dual, from.tangent) * problem_.at_ends(to.dual, to.tangent)));
+}
+
 double PathFollower::distance(const Orbit& a, const Orbit& b) const {
   OrbitVector difference = condensed().make_vector();
   OrbitVector dual = condensed().make_vector();
@@ -207,7 +212,7 @@ NewtonResult PathFollower::step_near(const PathPoint& from, double ds, PathPoint
 OrbitChange PathFollower::chord(const Orbit& base, double target, const Orbit& x) {
   const std::vector<int>& free_parameters = system_.free_parameters();
   problem_.evaluate(x, newton_.residual());
-  problem_.solve(newton_.residual(), 0.0, dx_);
+  problem_.solve_across(newton_.residual(), dx_);
   const double rest = target - dot_difference(row_, x, base, free_parameters) - dot(row_, dx_);
   const double along = rest / dot(row_, factored_tangent_);
   dx_.states += along * factored_tangent_.states;

@@ -113,7 +113,7 @@ std::vector<std::string> SpecialPointSearch::details(const PathPoint& at, const 
 double SpecialPointSearch::signed_distance(const PathPoint& at) const {
   const bool one_parameter = follower_.condition() == nullptr;
   return system_.is_point() && one_parameter ? equilibrium_signed_distance(system_, at.orbit, at.tangent)
-                                             : follower_.condensed().signed_distance();
+                                             : follower_.signed_distance(at);
 }
 
 PointData SpecialPointSearch::evaluate(PathPoint& at) {
@@ -176,7 +176,8 @@ bool SpecialPointSearch::same_branch(const PathPoint& here, const PathPoint& nex
   const double cosine = dot(here.dual, next.tangent);
   if (cosine > same_direction) return true;
   // A border that is not the tangent makes the determinant smaller by the cosine.
-  return std::abs(signed_distance(next)) > small_distance * std::abs(cosine * distance_here_);
+  const double of_border = follower_.cosine_at_ends(here, next);
+  return std::abs(signed_distance(next)) > small_distance * std::abs(of_border * distance_here_);
 }
 
 /// Test functions that had a sign at the start of the step and have the other one at its end.

@@ -185,6 +185,10 @@ Bifurcation branch_at(PathFollower& follower, const PathPoint& point) {
   OrbitVector v = condensed.make_vector();
   const std::vector<double> border(static_cast<std::size_t>(condensed.border_rows()), 0.0);
   condensed.solve(residual, border, v);
+  const double along = dot(point.dual, v);
+  v.states -= along * point.tangent.states;
+  v.durations -= along * point.tangent.durations;
+  v.globals -= along * point.tangent.globals;
   orient(point.orbit, v);
   return {point.orbit, v, point.tangent};
 }

@@ -2,6 +2,7 @@
 #include <Eigen/Dense>
 #include <catch2/catch.hpp>
 
+#include "bvp/bordered_problem.hpp"
 #include "bvp/condensed_system.hpp"
 #include "bvp/periodic_orbit_system.hpp"
 #include "directional_derivative.hpp"
@@ -118,6 +119,74 @@ TEST_CASE("the determinant's sign follows the border and is comparable between n
   rows[0].scale(-1.0);
   REQUIRE(condensed.linearize(x, rows, residual) == Linearization::ready);
   CHECK(condensed.determinant().sign == -sign);
+}
+
+TEST_CASE("a closing row, at the ends of segments alone, is the general row that is zero elsewhere") {
+  const PeriodicOrbitSystem system(system_of<ThreeModes>(), ThreeModes::signature(), {1, 2});
+  const OrbitShape shape{3, 3, GENERATE(1, 6), 4};
+  const Orbit x = any_orbit(shape, ThreeModes::par());
+  std::vector<OrbitVector> rows;
+  CondensedSystem general(system, shape, 2), closing(system, shape, {1, 1});
+  for (unsigned k = 0; k < 2; ++k) rows.push_back(random_vector(general, 3 + k));
+  OrbitResidual residual = general.make_residual();
+  REQUIRE(closing.linearize(x, rows, residual) == Linearization::ready);
+  for (Eigen::Index k = 0; k < rows[0].states.cols(); ++k)
+    if (k % shape.nodes() != 0 && k % shape.nodes() != shape.nodes() - 1) rows[0].states.col(k).setZero();
+  REQUIRE(general.linearize(x, rows, residual) == Linearization::ready);
+  const std::vector<double> border{0.3, -0.7};
+  OrbitVector by_general = general.make_vector(), by_closing = by_general;
+  general.solve(residual, border, by_general);
+  closing.solve(residual, border, by_closing);
+  const double size = by_general.states.cwiseAbs().maxCoeff();
+  CHECK(largest_difference(by_closing, by_general) < 1e-10 * size);
+  CHECK(general.determinant().sign == closing.determinant().sign);
+  CHECK(general.determinant().log2_size == Approx(closing.determinant().log2_size).margin(1e-9));
+}
+
+TEST_CASE("what stands for a branch's row gives the corrections, tangents and signs that the row itself gives") {
+  const PeriodicOrbitSystem system(system_of<ThreeModes>(), ThreeModes::signature(), {1});
+  const OrbitShape shape{3, 3, GENERATE(1, 6), 4};
+  const Orbit x = any_orbit(shape, ThreeModes::par());
+  BorderedProblem problem(system, shape, nullptr);
+  CondensedSystem with_row(system, shape, 1);
+  OrbitResidual residual = with_row.make_residual();
+  OrbitVector dx = with_row.make_vector(), expected = dx, tangent = dx;
+  int negative = 0, opposite = 0;
+  for (unsigned seed = 0; seed < 40; ++seed) {
+    std::vector<OrbitVector> rows{random_vector(with_row, 100 + seed)};
+    const bool inside = seed % 4 == 3;  // like the gradient of a monitor: nothing at the ends
+    if (inside) {
+      for (Eigen::Index k = 0; k < rows[0].states.cols(); ++k)
+        if (k % shape.nodes() == 0 || k % shape.nodes() == shape.nodes() - 1) rows[0].states.col(k).setZero();
+      rows[0].durations.setZero();
+      rows[0].globals.setZero();
+    }
+    CAPTURE(shape.intervals, seed);
+    REQUIRE(with_row.linearize(x, rows, residual) == Linearization::ready);
+    REQUIRE(problem.linearize(x, rows[0], residual) == Linearization::ready);
+    // Rounding times the condition of the matrices, below 1e5; a random row may be nearly orthogonal to the tangent.
+    const double rounding = 1e-9;
+
+    with_row.solve(residual, std::vector<double>{0.4}, expected);
+    REQUIRE(problem.correct(residual, 0.4, dx));
+    CHECK(largest_difference(dx, expected) < rounding * expected.states.cwiseAbs().maxCoeff());
+    REQUIRE(problem.solve(residual, 0.4, dx));
+    CHECK(largest_difference(dx, expected) < rounding * expected.states.cwiseAbs().maxCoeff());
+
+    with_row.solve(std::vector<double>{1.0}, expected);
+    problem.find_tangent(tangent);
+    CHECK(dot(rows[0], tangent) > 0.0);
+    tangent.scale(1.0 / dot(rows[0], tangent));
+    CHECK(largest_difference(tangent, expected) < rounding * expected.states.cwiseAbs().maxCoeff());
+
+    const double distance = problem.signed_distance(tangent);
+    CHECK((distance < 0.0) == (with_row.determinant().sign < 0));
+    negative += distance < 0.0 ? 1 : 0;
+    opposite += problem.condensed().determinant().sign != with_row.determinant().sign ? 1 : 0;
+  }
+  CHECK(negative > 5);
+  CHECK(negative < 35);
+  CHECK(opposite > 5);  // the sign has to be corrected for
 }
 
 TEST_CASE("segment blocks are the flow Jacobian: A + C Phi = 0") {
