@@ -6,6 +6,7 @@
 
 #include "bvp/with_dimension.hpp"
 #include "linear_algebra/array_kernel.hpp"
+#include "linear_algebra/frontal_lu.hpp"
 
 namespace tchat {
 
@@ -87,6 +88,7 @@ SparseLu CondensedSystem::make_sparse() {
   const auto dense = [this](int row, int count, int column, int columns) {
     put_dense(row, count, column, columns, triplet_rows_, triplet_columns_);
   };
+  std::vector<int> groups;
   int row = 0;
   for (int s = 0; s < shape_.segments; ++s) {
     dense(row, n_, start_unknown(s), 2 * n_ + 1);
@@ -95,10 +97,12 @@ SparseLu CondensedSystem::make_sparse() {
     CouplingPattern pattern(unknowns(), globals_, row, triplet_rows_, triplet_columns_);
     system_.coupling_pattern(s, pattern);
     row += system_.coupling_rows(s);
+    groups.resize(index(row), s);
   }
   dense(row, border_, 0, global_unknown(globals_));
   row += border_;
-  return {row, triplet_rows_, triplet_columns_};
+  groups.resize(index(row), FrontalLu::border_row);
+  return {row, triplet_rows_, triplet_columns_, groups};
 }
 
 OrbitResidual CondensedSystem::make_residual() const {

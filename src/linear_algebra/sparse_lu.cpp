@@ -10,6 +10,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "linear_algebra/frontal_lu.hpp"
+#include "linear_algebra/permutation.hpp"
 #include "linear_algebra/small_lu.hpp"
 
 namespace tchat {
@@ -78,15 +80,13 @@ SparseLu::Determinant determinant_of(const SmallLu& lu, int size) {
   return std::isfinite(result.log2_size) ? result : SparseLu::Determinant{};
 }
 
-/// Sign of a permutation of 0, 1, ..., by its cycles.
-int parity(std::vector<int> order) {
-  int sign = 1;
-  for (std::size_t k = 0; k < order.size(); ++k)
-    while (order[k] != static_cast<int>(k)) {
-      std::swap(order[k], order[static_cast<std::size_t>(order[k])]);
-      sign = -sign;
-    }
-  return sign;
+SparseLu::Determinant determinant_of(const FrontalLu& lu) {
+  SparseLu::Determinant result{lu.parity(), 0.0};
+  for (const double pivot : lu.pivots()) {
+    if (pivot < 0.0) result.sign = -result.sign;
+    result.log2_size += std::log2(std::abs(pivot));
+  }
+  return std::isfinite(result.log2_size) ? result : SparseLu::Determinant{};
 }
 
 }  // namespace
@@ -96,6 +96,9 @@ struct SparseLu::State {
   std::vector<int> position;  // where entry k of the triplets goes in matrix.valuePtr()
   std::optional<SmallLu> small;
   bool small_is_factored = false;
+  std::optional<FrontalLu> frontal;
+  bool frontal_is_factored = false;
+  std::vector<double> rest, change;  // of a solution by frontal matrices
   void* symbolic = nullptr;
   void* numeric = nullptr;
   double control[UMFPACK_CONTROL];
@@ -110,10 +113,12 @@ struct SparseLu::State {
     umfpack_di_free_symbolic(&symbolic);
     umfpack_di_free_numeric(&numeric);
   }
-  bool is_factored() const { return small ? small_is_factored : numeric != nullptr; }
+  bool is_factored() const { return small ? small_is_factored : frontal_is_factored || numeric != nullptr; }
   bool factorize_small();
+  void solve_by_fronts(int system, const double* b, double* x);
   void solve(int system, const double* b, double* x) {
     if (small) return system == UMFPACK_A ? small->solve(b, x) : small->solve_transposed(b, x);
+    if (frontal_is_factored) return solve_by_fronts(system, b, x);
     umfpack_di_wsolve(system, matrix.outerIndexPtr(), matrix.innerIndexPtr(), matrix.valuePtr(), x, b, numeric, control,
                       info, integer_work.data(), real_work.data());
   }
@@ -128,7 +133,32 @@ bool SparseLu::State::factorize_small() {
   return small_is_factored = small->factorize();
 }
 
-SparseLu::SparseLu(int size, const std::vector<int>& rows, const std::vector<int>& columns)
+/// Refined once, like solutions by SmallLu.
+void SparseLu::State::solve_by_fronts(int system, const double* b, double* x) {
+  const auto size = static_cast<int>(matrix.rows());
+  const bool transposed = system != UMFPACK_A;
+  const auto apply_inverse = [&](const double* right, double* solution) {
+    transposed ? frontal->solve_transposed(right, solution) : frontal->solve(right, solution);
+  };
+  apply_inverse(b, x);
+  std::copy_n(b, size, rest.begin());
+  const int* row = matrix.innerIndexPtr();
+  const double* value = matrix.valuePtr();
+  for (int column = 0; column < size; ++column) {
+    double sum = 0.0;
+    for (int k = matrix.outerIndexPtr()[column]; k < matrix.outerIndexPtr()[column + 1]; ++k)
+      if (transposed)
+        sum += value[k] * x[row[k]];
+      else
+        rest[static_cast<std::size_t>(row[k])] -= value[k] * x[column];
+    rest[static_cast<std::size_t>(column)] -= sum;
+  }
+  apply_inverse(rest.data(), change.data());
+  for (int i = 0; i < size; ++i) x[i] += change[static_cast<std::size_t>(i)];
+}
+
+SparseLu::SparseLu(int size, const std::vector<int>& rows, const std::vector<int>& columns,
+                   const std::vector<int>& groups)
     : state_(std::make_unique<State>()) {
   const int entries = static_cast<int>(rows.size());
   State& st = *state_;
@@ -146,6 +176,8 @@ SparseLu::SparseLu(int size, const std::vector<int>& rows, const std::vector<int
     st.small.emplace(size);
     return;
   }
+  if (!groups.empty()) st.frontal = FrontalLu::make(size, rows, columns, groups);
+  if (st.frontal) st.rest = st.change = std::vector<double>(static_cast<std::size_t>(size));
   check(umfpack_di_symbolic(size, size, st.matrix.outerIndexPtr(), st.matrix.innerIndexPtr(), nullptr, &st.symbolic,
                             st.control, st.info),
         "the pattern is structurally singular");
@@ -169,9 +201,17 @@ bool SparseLu::factorize(const std::vector<double>& values) {
     finite += values[k] - values[k];
   }
   umfpack_di_free_numeric(&st.numeric);
-  st.small_is_factored = false;
+  st.small_is_factored = st.frontal_is_factored = false;
   if (finite != 0.0) return false;
   if (st.small) return st.factorize_small();
+  if (st.frontal && (st.frontal_is_factored = st.frontal->factorize(values))) return true;
+  return factorize_sparse();
+}
+
+/// By UMFPACK.
+bool SparseLu::factorize_sparse() {
+  State& st = *state_;
+  const double* entries = st.matrix.valuePtr();
   const int status = umfpack_di_numeric(st.matrix.outerIndexPtr(), st.matrix.innerIndexPtr(), entries, st.symbolic,
                                         &st.numeric, st.control, st.info);
   // Finite values may overflow on the way.
@@ -187,6 +227,7 @@ void SparseLu::solve_transposed(const double* b, double* x) { state_->solve(UMFP
 SparseLu::Determinant SparseLu::determinant() const {
   if (!state_->is_factored()) return {};
   if (state_->small) return determinant_of(*state_->small, size());
+  if (state_->frontal_is_factored) return determinant_of(*state_->frontal);
   // P R A Q = L U with L's diagonal 1. UMFPACK's own product of U's diagonal never ends where an entry is not finite.
   const auto n = static_cast<std::size_t>(size());
   std::vector<int> row_order(n);
@@ -198,7 +239,7 @@ SparseLu::Determinant SparseLu::determinant() const {
                              column_order.data(), diagonal.data(), &reciprocal, row_scale.data(),
                              state_->numeric) != UMFPACK_OK)
     return {};
-  Determinant result{parity(row_order) * parity(column_order), 0.0};
+  Determinant result{permutation_parity(row_order) * permutation_parity(column_order), 0.0};
   for (std::size_t k = 0; k < n; ++k) {
     if (diagonal[k] == 0.0) return {};
     if (diagonal[k] < 0.0) result.sign = -result.sign;

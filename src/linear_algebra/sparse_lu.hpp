@@ -1,5 +1,7 @@
 /// UMFPACK for a sequence of square sparse matrices of one pattern: the symbolic analysis is made once, the numeric
-/// factorisation once per matrix. Matrices of few rows are factored as dense ones (small_lu.hpp), without allocation.
+/// factorisation once per matrix. Matrices of few rows are factored as dense ones (small_lu.hpp), those of a long chain
+/// or ring of groups of rows by frontal matrices (frontal_lu.hpp); both without allocation, and much faster where most
+/// of the work would be a sparse solver's bookkeeping.
 #pragma once
 
 #include <memory>
@@ -13,9 +15,10 @@ class SparseLu {
   static constexpr int most_dense_rows = 40;
 
   /// The pattern: entry k of the values given to `factorize` stands at (row[k], column[k]); repeated positions add up.
-  /// Throws std::invalid_argument when a position is out of range. A structurally singular pattern shows in
-  /// factorize().
-  SparseLu(int size, const std::vector<int>& rows, const std::vector<int>& columns);
+  /// `groups`: of the rows, if there are any (FrontalLu). Throws std::invalid_argument when a position is out of range.
+  /// A structurally singular pattern shows in factorize().
+  SparseLu(int size, const std::vector<int>& rows, const std::vector<int>& columns,
+           const std::vector<int>& groups = {});
   ~SparseLu();
   SparseLu(const SparseLu&) = delete;
   SparseLu& operator=(const SparseLu&) = delete;
@@ -53,6 +56,7 @@ class SparseLu {
 
  private:
   struct State;
+  bool factorize_sparse();
   std::unique_ptr<State> state_;
 };
 
