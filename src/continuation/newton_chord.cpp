@@ -49,13 +49,14 @@ std::string describe(NewtonStatus status) {
 bool is_rounding(double residual, const Orbit& x) { return residual < rounding_residual * (1.0 + largest_state(x)); }
 
 OrbitChange change_by(const OrbitVector& dx, const Orbit& x, const std::vector<int>& free_parameters) {
-  return change_by(dx, x, free_parameters, largest_state(x));
+  return change_by(dx, x, free_parameters, array_functions().range(dx.states.data(), dx.states.size()),
+                   largest_state(x));
 }
 
 double largest_state(const Orbit& x) { return array_functions().range(x.states.data(), x.states.size()).largest; }
 
-OrbitChange change_by(const OrbitVector& dx, const Orbit& x, const std::vector<int>& free_parameters, double largest) {
-  const ArrayRange range = array_functions().range(dx.states.data(), dx.states.size());
+OrbitChange change_by(const OrbitVector& dx, const Orbit& x, const std::vector<int>& free_parameters,
+                      const ArrayRange& range, double largest) {
   OrbitChange change{0.0, range.finite ? range.largest / (1.0 + largest) : std::numeric_limits<double>::quiet_NaN()};
   for (int s = 0; s < x.shape.segments; ++s)
     change.parameters = std::max(change.parameters, std::abs(dx.durations(s)) / (1.0 + std::abs(x.duration(s))));

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "bvp/bordered_problem.hpp"
+#include "linear_algebra/array_kernel.hpp"
 
 namespace tchat {
 
@@ -56,8 +57,9 @@ struct OrbitChange {
   double larger() const { return parameters > states ? parameters : states; }
 };
 OrbitChange change_by(const OrbitVector& dx, const Orbit& x, const std::vector<int>& free_parameters);
-/// The same where max |u| is known.
-OrbitChange change_by(const OrbitVector& dx, const Orbit& x, const std::vector<int>& free_parameters, double largest);
+/// The same where the range of dx.states and max |u| are known.
+OrbitChange change_by(const OrbitVector& dx, const Orbit& x, const std::vector<int>& free_parameters,
+                      const ArrayRange& range, double largest);
 double largest_state(const Orbit& x);
 
 std::string describe(NewtonStatus status);

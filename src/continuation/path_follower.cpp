@@ -42,8 +42,7 @@ PathFollower::PathFollower(const DefiningSystem& system, const OrbitShape& shape
 }
 
 PathPoint PathFollower::make_point(Orbit orbit) const {
-  const PathTrail trail(orbit.shape, system_.free_count());
-  return {std::move(orbit), condensed().make_vector(), condensed().make_vector(), unused_, trail};
+  return {std::move(orbit), condensed().make_vector(), condensed().make_vector(), unused_};
 }
 
 OrbitVector PathFollower::principal_row(const Orbit& x) const {
@@ -169,8 +168,7 @@ void PathFollower::begin_step(const PathPoint& from) {
 }
 
 NewtonResult PathFollower::step(const PathPoint& from, double ds, PathPoint& to) {
-  put_on_tangent(from, ds, to.orbit);
-  const TrailTerms terms = add_trail(from, ds, system_.free_parameters(), to.orbit, dx_);
+  const TrailTerms terms = predict(from, ds, system_.free_parameters(), to.orbit);
   if (terms.error > 0.0) {
     begin_step(from);
     double taken_back = polish(from, ds, terms.error, to.orbit);

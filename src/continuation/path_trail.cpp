@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "bvp/mesh_adaptation.hpp"
 #include "continuation/path_follower.hpp"
@@ -44,26 +45,42 @@ void copy(const PathPoint& point, const std::vector<int>& free, PathTrail::Mark&
   mark.tangent.globals = point.tangent.globals;
 }
 
-/// <dual, place - x>.
-double distance_along(const OrbitVector& dual, const OrbitVector& place, const Orbit& x, const std::vector<int>& free) {
-  double sum =
-      array_functions().dot_difference(dual.states.data(), place.states.data(), x.states.data(), dual.states.size());
-  for (int s = 0; s < x.shape.segments; ++s) sum += dual.durations(s) * (place.durations(s) - x.duration(s));
-  for (std::size_t g = 0; g < free.size(); ++g) {
-    const auto i = static_cast<Eigen::Index>(g);
-    sum += dual.globals(i) * (place.globals(i) - x.par(free[g] - 1));
+/// <from.dual, place - from> of all points, and the cosines of the tangents there with from's.
+void project(const PathPoint& from, const std::vector<int>& free, std::array<double, PathTrail::most>& distances,
+             std::array<double, PathTrail::most>& cosines) {
+  const PathTrail& trail = from.trail;
+  const Orbit& x = from.orbit;
+  std::array<const double*, PathTrail::most> places{};
+  std::array<const double*, PathTrail::most> tangents{};
+  for (int k = 0; k < trail.count(); ++k) {
+    places[entry(k)] = trail.mark(k).place.states.data();
+    tangents[entry(k)] = trail.mark(k).tangent.states.data();
   }
-  return sum;
+  array_functions().project(from.dual.states.data(), x.states.data(), places.data(), tangents.data(), trail.count(),
+                            distances.data(), cosines.data(), x.states.size());
+  for (int k = 0; k < trail.count(); ++k) {
+    const PathTrail::Mark& mark = trail.mark(k);
+    double& distance = distances[entry(k)];
+    for (int s = 0; s < x.shape.segments; ++s)
+      distance += from.dual.durations(s) * (mark.place.durations(s) - x.duration(s));
+    for (std::size_t g = 0; g < free.size(); ++g) {
+      const auto number = static_cast<Eigen::Index>(g);
+      distance += from.dual.globals(number) * (mark.place.globals(number) - x.par(free[g] - 1));
+    }
+    cosines[entry(k)] += from.dual.durations.dot(mark.tangent.durations) + from.dual.globals.dot(mark.tangent.globals);
+  }
 }
 
 /// The points that can be used, the nearest first; how many.
 int useful_places(const PathPoint& from, double ds, const std::vector<int>& free,
                   std::array<Place, PathTrail::most>& places) {
   int count = 0;
-  const PathTrail& trail = from.trail;
-  for (int k = 0; k < trail.count(); ++k) {
-    const double s = distance_along(from.dual, trail.mark(k).place, from.orbit, free);
-    const double cosine = dot(from.dual, trail.mark(k).tangent);
+  std::array<double, PathTrail::most> distances{};
+  std::array<double, PathTrail::most> cosines{};
+  project(from, free, distances, cosines);
+  for (int k = 0; k < from.trail.count(); ++k) {
+    const double s = distances[entry(k)];
+    const double cosine = cosines[entry(k)];
     bool useful = std::isfinite(s) && cosine > least_cosine && std::abs(s) > apart * std::abs(ds);
     for (int l = 0; l < count && useful; ++l) {
       const double other = places[entry(l)].s;
@@ -113,55 +130,105 @@ void divide_differences(const std::array<Place, PathTrail::most>& places, int co
     }
 }
 
-/// The sum of the inputs with these weights.
-void combine(const PathPoint& from, const std::array<Place, PathTrail::most>& places, int count,
-             const Combination& weights, const std::vector<int>& free, OrbitVector& sum) {
-  double here = 0.0;
-  double along = 0.0;
-  for (int k = 0; k < count; ++k) {
-    here -= weights[entry(2 * k)];
-    along -= weights[entry(2 * k)] * places[entry(k)].s + weights[entry(2 * k + 1)];
+/// What a term is a sum of, at the points of the trail that it uses: from's orbit, its tangent, then place and tangent
+/// of one point after the other.
+constexpr std::size_t most_sources = most_inputs + 2;
+static_assert(PathTrail::most == most_pairs);
+
+class Sources {
+ public:
+  Sources(const PathPoint& from, const std::array<Place, PathTrail::most>& places, int count,
+          const std::vector<int>& free)
+      : from_(from), places_(places), count_(count), free_(free) {
+    states_[0] = from.orbit.states.data();
+    states_[1] = from.tangent.states.data();
+    for (int k = 0; k < count; ++k) {
+      states_[entry(2 * k + 2)] = mark(k).place.states.data();
+      states_[entry(2 * k + 3)] = mark(k).tangent.states.data();
+    }
   }
-  std::array<const double*, most_inputs + 2> arrays{from.orbit.states.data(), from.tangent.states.data()};
-  std::array<double, most_inputs + 2> factors{here, along};
-  sum.durations = along * from.tangent.durations;
-  sum.globals = along * from.tangent.globals;
-  for (int s = 0; s < from.orbit.shape.segments; ++s) sum.durations(s) += here * from.orbit.duration(s);
-  for (std::size_t g = 0; g < free.size(); ++g)
-    sum.globals(static_cast<Eigen::Index>(g)) += here * from.orbit.par(free[g] - 1);
-  for (int k = 0; k < count; ++k) {
-    const PathTrail::Mark& mark = from.trail.mark(places[entry(k)].mark);
-    const double of_place = weights[entry(2 * k)];
-    const double of_tangent = weights[entry(2 * k + 1)] / places[entry(k)].cosine;
-    arrays[entry(2 * k + 2)] = mark.place.states.data(), factors[entry(2 * k + 2)] = of_place;
-    arrays[entry(2 * k + 3)] = mark.tangent.states.data(), factors[entry(2 * k + 3)] = of_tangent;
-    sum.durations += of_place * mark.place.durations + of_tangent * mark.tangent.durations;
-    sum.globals += of_place * mark.place.globals + of_tangent * mark.tangent.globals;
+
+  const double* const* states() const { return states_.data(); }
+
+  /// Those of the sources, given those of w and w'.
+  void weights(const Combination& combination, double* weights) const {
+    std::fill_n(weights, most_sources, 0.0);
+    for (int k = 0; k < count_; ++k) {
+      const double of_place = combination[entry(2 * k)];
+      const double of_slope = combination[entry(2 * k + 1)];
+      weights[0] -= of_place;
+      weights[1] -= of_place * places_[entry(k)].s + of_slope;
+      weights[2 * k + 2] = of_place;
+      weights[2 * k + 3] = of_slope / places_[entry(k)].cosine;
+    }
   }
-  array_functions().combine(arrays.data(), factors.data(), 2 * count + 2, sum.states.data(), sum.states.size());
-}
+
+  double duration(const double* weights, int s) const {
+    if (is_constant(from_, s)) return 0.0;
+    double sum = weights[0] * from_.orbit.duration(s) + weights[1] * from_.tangent.durations(s);
+    for (int k = 0; k < count_; ++k)
+      sum += weights[2 * k + 2] * mark(k).place.durations(s) + weights[2 * k + 3] * mark(k).tangent.durations(s);
+    return sum;
+  }
+  double global(const double* weights, std::size_t g) const {
+    const auto i = static_cast<Eigen::Index>(g);
+    double sum = weights[0] * from_.orbit.par(free_[g] - 1) + weights[1] * from_.tangent.globals(i);
+    for (int k = 0; k < count_; ++k)
+      sum += weights[2 * k + 2] * mark(k).place.globals(i) + weights[2 * k + 3] * mark(k).tangent.globals(i);
+    return sum;
+  }
+
+  /// As OrbitChange::larger() measures it.
+  double size(const double* weights, const ArrayRange& states, double largest_state) const {
+    if (!states.finite) return std::numeric_limits<double>::quiet_NaN();
+    double result = states.largest / (1.0 + largest_state);
+    for (int s = 0; s < from_.orbit.shape.segments; ++s)
+      result = std::max(result, std::abs(duration(weights, s)) / (1.0 + std::abs(from_.orbit.duration(s))));
+    for (std::size_t g = 0; g < free_.size(); ++g)
+      result = std::max(result, std::abs(global(weights, g)) / (1.0 + std::abs(from_.orbit.par(free_[g] - 1))));
+    return result;
+  }
+
+  /// from + ds from.tangent + the sum with these weights, which are overwritten.
+  void put(double ds, double* weights, Orbit& x) const {
+    x.shape = from_.orbit.shape;
+    x.mesh = from_.orbit.mesh;
+    x.par = from_.orbit.par;
+    for (int s = 0; s < x.shape.segments; ++s) x.duration(s) += ds * from_.tangent.durations(s) + duration(weights, s);
+    for (std::size_t g = 0; g < free_.size(); ++g)
+      x.par(free_[g] - 1) += ds * from_.tangent.globals(static_cast<Eigen::Index>(g)) + global(weights, g);
+    weights[0] += 1.0;
+    weights[1] += ds;
+    x.states.resize(from_.orbit.states.rows(), from_.orbit.states.cols());
+    array_functions().combine(states_.data(), weights, 2 * count_ + 2, x.states.data(), x.states.size());
+  }
+
+ private:
+  const PathTrail::Mark& mark(int k) const { return from_.trail.mark(places_[entry(k)].mark); }
+
+  const PathPoint& from_;
+  const std::array<Place, PathTrail::most>& places_;
+  int count_;
+  const std::vector<int>& free_;
+  std::array<const double*, most_sources> states_{};
+};
 
 }  // namespace
 
-PathTrail::PathTrail(const OrbitShape& shape, int global_count) : mesh_(index(shape.intervals + 1)) {
-  for (Mark& mark : marks_) mark = {OrbitVector(shape, global_count), OrbitVector(shape, global_count)};
+/// Space for a point that is in no other trail: that of an earlier point of this one, or new.
+std::shared_ptr<PathTrail::Mark> PathTrail::unused_mark() {
+  const auto unused = std::find_if(marks_.begin(), marks_.end(),
+                                   [](const std::shared_ptr<Mark>& mark) { return mark.use_count() == 1; });
+  return unused != marks_.end() ? *unused : std::make_shared<Mark>();
 }
 
 void PathTrail::follow(const PathPoint& from, const std::vector<int>& free_parameters) {
   mesh_ = from.orbit.mesh;
-  const bool same_mesh = from.trail.mesh_ == from.orbit.mesh;
-  count_ = 1;
-  for (int k = 0; same_mesh && k < std::min(from.trail.count_, most - 1); ++k) {
-    Mark& mark = marks_[index(count_++)];
-    const Mark& other = from.trail.marks_[index(k)];
-    mark.place.states = other.place.states;
-    mark.place.durations = other.place.durations;
-    mark.place.globals = other.place.globals;
-    mark.tangent.states = other.tangent.states;
-    mark.tangent.durations = other.tangent.durations;
-    mark.tangent.globals = other.tangent.globals;
-  }
-  copy(from, free_parameters, marks_.front());
+  const std::shared_ptr<Mark> newest = unused_mark();
+  count_ = from.trail.mesh_ == from.orbit.mesh ? std::min(from.trail.count_ + 1, most) : 1;
+  std::copy_n(from.trail.marks_.begin(), count_ - 1, marks_.begin() + 1);
+  marks_.front() = newest;
+  copy(from, free_parameters, *newest);
 }
 
 void PathTrail::add(const PathPoint& point, const std::vector<int>& free_parameters) {
@@ -169,46 +236,57 @@ void PathTrail::add(const PathPoint& point, const std::vector<int>& free_paramet
   mesh_ = point.orbit.mesh;
   count_ = std::min(count_ + 1, most);
   std::rotate(marks_.begin(), marks_.begin() + count_ - 1, marks_.begin() + count_);
-  copy(point, free_parameters, marks_.front());
+  marks_.front() = std::make_shared<Mark>();
+  copy(point, free_parameters, *marks_.front());
 }
 
 void PathTrail::change_mesh(const std::vector<double>& mesh, const MeshTransfer& transfer) {
   for (int k = 0; k < count_; ++k) {
-    Mark& mark = marks_[index(k)];
-    mark.place.states = transfer(mark.place.states);
-    mark.tangent.states = transfer(mark.tangent.states);
+    auto moved = std::make_shared<Mark>(mark(k));
+    moved->place.states = transfer(moved->place.states);
+    moved->tangent.states = transfer(moved->tangent.states);
+    marks_[index(k)] = std::move(moved);
   }
   mesh_ = mesh;
 }
 
-TrailTerms add_trail(const PathPoint& from, double ds, const std::vector<int>& free_parameters, Orbit& x,
-                     OrbitVector& term) {
+TrailTerms predict(const PathPoint& from, double ds, const std::vector<int>& free_parameters, Orbit& x) {
   if (from.trail.empty() || from.trail.mesh() != from.orbit.mesh) return {};
   std::array<Place, PathTrail::most> places{};
   const int count = useful_places(from, ds, free_parameters, places);
+  if (count == 0) return {};
   std::array<Combination, most_inputs + 2> differences;
   divide_differences(places, count, differences);
-  const double largest = largest_state(from.orbit);
-  double last = std::abs(ds) * change_by(from.tangent, from.orbit, free_parameters, largest).larger();
-  TrailTerms terms;
+
+  const Sources sources(from, places, count, free_parameters);
+  std::array<double, PathTrail::most * most_sources> weights{};  // term by term
+  const auto of_term = [&](int k) { return weights.data() + entry(k) * most_sources; };
   double product = ds * ds;  // of ds minus the nodes so far
   for (int k = 0; k < count; ++k) {
     const double to_node = ds - places[entry(k)].s;
-    Combination weights;
-    for (std::size_t i = 0; i < weights.size(); ++i)
-      weights[i] = product * (differences[entry(2 * k + 2)][i] + to_node * differences[entry(2 * k + 3)][i]);
-    combine(from, places, k + 1, weights, free_parameters, term);
-    for (int s = 0; s < from.orbit.shape.segments; ++s)
-      if (is_constant(from, s)) term.durations(s) = 0.0;
-    const double size = change_by(term, from.orbit, free_parameters, largest).larger();
+    Combination combination{};
+    for (std::size_t i = 0; i < entry(2 * k + 2); ++i)
+      combination[i] = product * (differences[entry(2 * k + 2)][i] + to_node * differences[entry(2 * k + 3)][i]);
+    sources.weights(combination, of_term(k));
+    product *= to_node * to_node;
+  }
+  std::array<ArrayRange, 2 + PathTrail::most> ranges;
+  array_functions().ranges_of_sums(sources.states(), weights.data(), count, ranges.data(), from.orbit.states.size());
+
+  const double largest = ranges[0].largest;
+  double last = std::abs(ds) * change_by(from.tangent, from.orbit, free_parameters, ranges[1], largest).larger();
+  TrailTerms terms;
+  std::array<double, most_sources> sum{};
+  for (int k = 0; k < count; ++k) {
+    const double size = sources.size(of_term(k), ranges[entry(2 + k)], largest);
     if (!(size <= falling * last)) break;
-    advance(x, 1.0, term, free_parameters);
+    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += of_term(k)[i];
     terms.change += size;
     terms.error = std::max(size * (size / last), negligible_term);
     if (size <= negligible_term) break;
     last = size;
-    product *= to_node * to_node;
   }
+  if (terms.error > 0.0) sources.put(ds, sum.data(), x);
   return terms;
 }
 

@@ -12,6 +12,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <vector>
 
 #include "bvp/orbit.hpp"
@@ -24,10 +25,6 @@ class MeshTransfer;
 class PathTrail {
  public:
   static constexpr int most = 3;
-
-  PathTrail() = default;
-  /// Space for all points; empty.
-  PathTrail(const OrbitShape& shape, int global_count);
 
   bool empty() const { return count_ == 0; }
   void clear() { count_ = 0; }
@@ -46,13 +43,15 @@ class PathTrail {
     OrbitVector tangent;
   };
   int count() const { return count_; }
-  const Mark& mark(int k) const { return marks_[index(k)]; }  ///< the newest is number 0
+  const Mark& mark(int k) const { return *marks_[index(k)]; }  ///< the newest is number 0
   const std::vector<double>& mesh() const { return mesh_; }
 
  private:
   static std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
-  std::array<Mark, most> marks_;
+  std::shared_ptr<Mark> unused_mark();
+
+  std::array<std::shared_ptr<Mark>, most> marks_;  // never changed once they are shared by the trails of later points
   int count_ = 0;
   std::vector<double> mesh_;
 };
@@ -64,8 +63,7 @@ struct TrailTerms {
   double error = 0.0;
 };
 
-/// Adds to `x`, which is from + ds from.tangent, the terms of from's trail; `term` is work space.
-TrailTerms add_trail(const PathPoint& from, double ds, const std::vector<int>& free_parameters, Orbit& x,
-                     OrbitVector& term);
+/// `x` becomes from + ds from.tangent with the terms of from's trail; without a term it is left as it was.
+TrailTerms predict(const PathPoint& from, double ds, const std::vector<int>& free_parameters, Orbit& x);
 
 }  // namespace tchat

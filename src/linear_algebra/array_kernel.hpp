@@ -15,6 +15,9 @@ struct ArrayRange {
   bool finite;
 };
 
+/// Functions of several pairs of arrays take this many at a time at most.
+inline constexpr int most_pairs = 3;
+
 struct ArrayFunctions {
   /// sum a_i b_i
   double (*dot)(const double* a, const double* b, long count);
@@ -23,6 +26,12 @@ struct ArrayFunctions {
   ArrayRange (*range)(const double* a, long count);
   /// y += factor a
   void (*add)(double factor, const double* a, double* y, long count);
+  /// For each of `pairs` (at least one) the sums of a_i (places[k]_i - c_i) and of a_i directions[k]_i.
+  void (*project)(const double* a, const double* c, const double* const* places, const double* const* directions,
+                  int pairs, double* distances, double* products, long count);
+  /// Of 2 + 2 `pairs` arrays: the ranges of the first two, then of sum k = 1 .. pairs, that of the first 2 + 2 k arrays
+  /// with the weights in row k, of 2 + 2 most_pairs entries.
+  void (*ranges_of_sums)(const double* const* arrays, const double* weights, int pairs, ArrayRange* ranges, long count);
   /// y = sum of weights[k] arrays[k], one after the other; y is none of them.
   void (*combine)(const double* const* arrays, const double* weights, int arrays_count, double* y, long count);
   /// y_i += h sum_k mass[i nodes + k] v_k for nodes of n entries, one after the other, times weights[a] for entry a.

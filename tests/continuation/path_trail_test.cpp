@@ -35,10 +35,8 @@ struct Branch {
   }
   /// Of the prediction by the points before `here`, from the point that Newton's method finds.
   double error(double ds) {
-    OrbitVector term = orbits.follower.condensed().make_vector();
     PathPoint predicted = here;
-    advance(predicted.orbit, ds, here.tangent, alpha);
-    add_trail(here, ds, alpha, predicted.orbit, term);
+    if (predict(here, ds, alpha, predicted.orbit).error == 0.0) advance(predicted.orbit, ds, here.tangent, alpha);
     PathPoint found = here;
     REQUIRE(orbits.follower.step(here, ds, found).converged());
     return (found.orbit.states - predicted.orbit.states).cwiseAbs().maxCoeff();

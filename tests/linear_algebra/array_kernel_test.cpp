@@ -73,6 +73,64 @@ TEST_CASE("array kernel: a number that is not finite is found wherever it stands
         }
 }
 
+TEST_CASE("array kernel: several pairs of arrays at a time") {
+  constexpr std::size_t row = 2 + 2 * most_pairs;
+  for (const VectorSet set : available_vector_sets())
+    for (const long count : {1L, 3L, 4L, 8L, 17L, 803L})
+      for (int pairs = 1; pairs <= most_pairs; ++pairs) {
+        CAPTURE(static_cast<int>(set), count, pairs);
+        const MatrixXd arrays = MatrixXd::Random(count, static_cast<Eigen::Index>(row));
+        const VectorXd a = VectorXd::Random(count), weights = VectorXd::Random(static_cast<Eigen::Index>(row) * pairs);
+        std::array<const double*, row> all{};
+        std::array<const double*, most_pairs> places{}, directions{};
+        for (std::size_t k = 0; k < row; ++k) all[k] = arrays.col(static_cast<Eigen::Index>(k)).data();
+        for (std::size_t k = 0; k < places.size(); ++k) places[k] = all[2 * k + 2], directions[k] = all[2 * k + 3];
+        const auto found = [&](const ArrayFunctions& f) {
+          std::vector<double> list(static_cast<std::size_t>(2 * pairs));
+          f.project(a.data(), all[0], places.data(), directions.data(), pairs, list.data(), list.data() + pairs, count);
+          std::array<ArrayRange, 2 + most_pairs> ranges{};
+          f.ranges_of_sums(all.data(), weights.data(), pairs, ranges.data(), count);
+          for (int k = 0; k < 2 + pairs; ++k) {
+            CHECK(ranges[static_cast<std::size_t>(k)].finite);
+            list.push_back(ranges[static_cast<std::size_t>(k)].largest);
+          }
+          return list;
+        };
+        const std::vector<double> list = found(array_functions(set));
+        std::vector<double> wanted;
+        for (int k = 0; k < pairs; ++k) wanted.push_back(a.dot(arrays.col(2 * k + 2) - arrays.col(0)));
+        for (int k = 0; k < pairs; ++k) wanted.push_back(a.dot(arrays.col(2 * k + 3)));
+        for (int k = 0; k < 2; ++k) wanted.push_back(arrays.col(k).cwiseAbs().maxCoeff());
+        for (int k = 0; k < pairs; ++k) {
+          const auto used = weights.segment(k * static_cast<Eigen::Index>(row), 4 + 2 * k);
+          wanted.push_back((arrays.leftCols(4 + 2 * k) * used).cwiseAbs().maxCoeff());
+        }
+        REQUIRE(list.size() == wanted.size());
+        for (std::size_t k = 0; k < list.size(); ++k) CHECK(std::abs(list[k] - wanted[k]) < rounding);
+        CHECK(list == found(array_functions(VectorSet::baseline)));
+      }
+}
+
+TEST_CASE("array kernel: a number that is not finite is found in the sums that it is part of") {
+  constexpr int row = 2 + 2 * most_pairs;
+  const std::vector<double> weights(static_cast<std::size_t>(row * most_pairs), 0.5);
+  for (const VectorSet set : available_vector_sets())
+    for (int bad = 0; bad < row; ++bad)
+      for (const long at : {0L, 9L}) {
+        MatrixXd arrays = MatrixXd::Constant(10, row, 1.0);
+        arrays(at, bad) = std::numeric_limits<double>::quiet_NaN();
+        std::array<const double*, row> all{};
+        for (int k = 0; k < row; ++k) all[static_cast<std::size_t>(k)] = arrays.col(k).data();
+        std::array<ArrayRange, 2 + most_pairs> ranges{};
+        array_functions(set).ranges_of_sums(all.data(), weights.data(), most_pairs, ranges.data(), 10);
+        CAPTURE(bad, at);
+        CHECK(ranges[0].finite == (bad != 0));
+        CHECK(ranges[1].finite == (bad != 1));
+        for (int k = 0; k < most_pairs; ++k)
+          CHECK(ranges[static_cast<std::size_t>(2 + k)].finite == (bad >= 4 + 2 * k));
+      }
+}
+
 TEST_CASE("array kernel: the mass matrix of nodes of any dimension") {
   for (const VectorSet set : available_vector_sets())
     for (const int n : {1, 2, 3, 4, 5, 8, 11}) {
