@@ -42,7 +42,8 @@ PathFollower::PathFollower(const DefiningSystem& system, const OrbitShape& shape
 }
 
 PathPoint PathFollower::make_point(Orbit orbit) const {
-  return {std::move(orbit), condensed().make_vector(), condensed().make_vector(), unused_};
+  const PathTrail trail(orbit.shape, system_.free_count());
+  return {std::move(orbit), condensed().make_vector(), condensed().make_vector(), unused_, trail};
 }
 
 OrbitVector PathFollower::principal_row(const Orbit& x) const {

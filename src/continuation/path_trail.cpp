@@ -215,29 +215,51 @@ class Sources {
 
 }  // namespace
 
-/// Space for a point that is in no other trail: that of an earlier point of this one, or new.
+PathTrail::PathTrail(const OrbitShape& shape, int global_count) : mesh_(index(shape.intervals + 1)) {
+  const OrbitVector zero(shape, global_count);
+  for (std::shared_ptr<Mark>& mark : own_) mark = std::make_shared<Mark>(Mark{zero, zero});
+}
+
+/// Space is not shared.
+PathTrail::PathTrail(const PathTrail& other) : marks_(other.marks_), count_(other.count_), mesh_(other.mesh_) {
+  for (std::size_t k = 0; k < own_.size(); ++k)
+    if (other.own_[k]) own_[k] = std::make_shared<Mark>(*other.own_[k]);
+}
+
+PathTrail& PathTrail::operator=(const PathTrail& other) {
+  if (this == &other) return *this;
+  marks_ = other.marks_;
+  count_ = other.count_;
+  mesh_ = other.mesh_;
+  return *this;
+}
+
 std::shared_ptr<PathTrail::Mark> PathTrail::unused_mark() {
-  const auto unused = std::find_if(marks_.begin(), marks_.end(),
-                                   [](const std::shared_ptr<Mark>& mark) { return mark.use_count() == 1; });
-  return unused != marks_.end() ? *unused : std::make_shared<Mark>();
+  const auto unused = [](const std::shared_ptr<Mark>& mark) { return mark == nullptr || mark.use_count() == 1; };
+  const auto found = std::find_if(own_.begin(), own_.end(), unused);
+  std::shared_ptr<Mark>& mark = found != own_.end() ? *found : own_.front();
+  if (found == own_.end() || mark == nullptr) mark = std::make_shared<Mark>();
+  return mark;
 }
 
 void PathTrail::follow(const PathPoint& from, const std::vector<int>& free_parameters) {
   mesh_ = from.orbit.mesh;
-  const std::shared_ptr<Mark> newest = unused_mark();
+  marks_.fill(nullptr);
   count_ = from.trail.mesh_ == from.orbit.mesh ? std::min(from.trail.count_ + 1, most) : 1;
   std::copy_n(from.trail.marks_.begin(), count_ - 1, marks_.begin() + 1);
-  marks_.front() = newest;
+  const std::shared_ptr<Mark> newest = unused_mark();
   copy(from, free_parameters, *newest);
+  marks_.front() = newest;
 }
 
 void PathTrail::add(const PathPoint& point, const std::vector<int>& free_parameters) {
   if (count_ > 0 && mesh_ != point.orbit.mesh) clear();
   mesh_ = point.orbit.mesh;
   count_ = std::min(count_ + 1, most);
-  std::rotate(marks_.begin(), marks_.begin() + count_ - 1, marks_.begin() + count_);
-  marks_.front() = std::make_shared<Mark>();
-  copy(point, free_parameters, *marks_.front());
+  std::copy_backward(marks_.begin(), marks_.begin() + count_ - 1, marks_.begin() + count_);
+  const std::shared_ptr<Mark> newest = unused_mark();
+  copy(point, free_parameters, *newest);
+  marks_.front() = newest;
 }
 
 void PathTrail::change_mesh(const std::vector<double>& mesh, const MeshTransfer& transfer) {

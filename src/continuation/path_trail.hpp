@@ -26,6 +26,15 @@ class PathTrail {
  public:
   static constexpr int most = 3;
 
+  PathTrail() = default;
+  /// With space for the points that it will add itself; empty.
+  PathTrail(const OrbitShape& shape, int global_count);
+  PathTrail(const PathTrail& other);
+  PathTrail& operator=(const PathTrail& other);
+  PathTrail(PathTrail&&) = default;
+  PathTrail& operator=(PathTrail&&) = default;
+  ~PathTrail() = default;
+
   bool empty() const { return count_ == 0; }
   void clear() { count_ = 0; }
 
@@ -51,7 +60,10 @@ class PathTrail {
 
   std::shared_ptr<Mark> unused_mark();
 
-  std::array<std::shared_ptr<Mark>, most> marks_;  // never changed once they are shared by the trails of later points
+  std::array<std::shared_ptr<const Mark>, most> marks_;  // shared with the trails of other points
+  // Space for the points that this trail adds: two take turns where two points follow each other by turns. The first
+  // to be in no trail is the next to be used.
+  std::array<std::shared_ptr<Mark>, 2> own_;
   int count_ = 0;
   std::vector<double> mesh_;
 };
