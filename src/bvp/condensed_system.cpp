@@ -216,7 +216,7 @@ void CondensedSystem::keep_segment_blocks(int s) {
   }
 }
 
-/// The matrix that UMFPACK sees, in the order of make_sparse().
+/// The matrix that SparseLu sees, in the order of make_sparse().
 bool CondensedSystem::assemble(const Orbit& x, std::span<const OrbitVector> rows, OrbitResidual& residual) {
   double* value = triplet_values_.data();
   double* coupling = residual.coupling.data();

@@ -2,16 +2,16 @@
 ///
 /// At an orbit x the linearisation of the collocation equations (5.29) and of the coupling rows, bordered by b rows,
 /// reads J dx = -F. Each segment is reduced to n rows in its ends, its duration and the free parameters
-/// (segment_elimination.hpp), and UMFPACK solves what is left, 2 n m + m + q unknowns that couple only neighbouring
+/// (segment_elimination.hpp), and SparseLu solves what is left, 2 n m + m + q unknowns that couple only neighbouring
 /// segments. Work and memory are linear in m and N. All arrays are allocated when the object is made.
 ///
-/// Border rows are general linear functionals of the unknowns, given as dual vectors. Each takes part in the elimination
-/// of every interval, but for closing rows, which have entries at the ends of segments alone, for durations and free
-/// parameters: these cost nothing there. A general row is as good as a closing row and one more solution
+/// Border rows are general linear functionals of the unknowns, given as dual vectors. Each takes part in the
+/// elimination of every interval, but for closing rows, which have entries at the ends of segments alone, for durations
+/// and free parameters: these cost nothing there. A general row is as good as a closing row and one more solution
 /// (BorderedProblem).
 ///
 /// Where there is enough work for several threads, they share it by segments, or within each segment where there are
-/// few of these. What is left for UMFPACK one thread does. Results are the same to the last bit for any number.
+/// few of these. What is left for SparseLu one thread does. Results are the same to the last bit for any number.
 #pragma once
 
 #include <cstddef>
@@ -40,10 +40,9 @@ struct OrbitResidual {
 
 /// Rows of the border: the first `closing` of them are read at the ends of segments only.
 struct BorderRows {
-  BorderRows(int general_rows, int closing_rows = 0) : general(general_rows), closing(closing_rows) {}
+  int general = 0;
+  int closing = 0;
   int all() const { return general + closing; }
-  int general;
-  int closing;
 };
 
 class CondensedSystem {
@@ -173,7 +172,7 @@ class CondensedSystem {
   std::vector<double> triplet_values_;
   SparseLu lu_;
   std::vector<double> rhs_;
-  std::vector<double> solution_;        // what UMFPACK sees of dx
+  std::vector<double> solution_;        // what SparseLu sees of dx
   std::vector<double> other_solution_;  // and of v
 
   std::vector<double> x_, slope_;  // scratch of one collocation point

@@ -115,7 +115,7 @@ std::string CriticalBranchPoint::beyond_end() const {
 BranchPointBreaking branch_point_breaking(const DefiningSystem& system, const Orbit& x) {
   const int parameters = system.free_count();
   const int integrals = system.integral_conditions();
-  CondensedSystem condensed(system, x.shape, parameters + integrals);
+  CondensedSystem condensed(system, x.shape, {parameters + integrals});
   OrbitResidual residual = condensed.make_residual();
   std::vector<OrbitVector> rows(static_cast<std::size_t>(parameters + integrals), condensed.make_vector());
   for (int k = 0; k < parameters; ++k) rows[static_cast<std::size_t>(k)].globals(k) = 1.0;

@@ -122,6 +122,7 @@ void print_matrix_times(int rounds) {
   Remainder remainder;
 
   const auto eliminate_interval = [&](double* a, int* swaps) { keep(interval.eliminate(a, border, swaps)); };
+  const auto eliminate_without_border = [&](double* a, int* swaps) { keep(interval.eliminate(a, 0, swaps)); };
   const auto eliminate_single = [](double* a, int* swaps) {
     keep(eliminate(FixedSizes<16, 12, 24>{}, a, border, swaps));
   };
@@ -135,6 +136,7 @@ void print_matrix_times(int rounds) {
   enum {
     unit,
     unit_copy,
+    unit_alone,
     single,
     single_copy,
     linearization,
@@ -151,6 +153,7 @@ void print_matrix_times(int rounds) {
   std::vector<Part> parts(part_count);
   parts[unit].work = [&] { interval_blocks.run(eliminate_interval); };
   parts[unit_copy].work = [&] { interval_blocks.copy(); };
+  parts[unit_alone].work = [&] { interval_blocks.run(eliminate_without_border); };
   parts[single].work = [&] { single_blocks.run(eliminate_single); };
   parts[single_copy].work = [&] { single_blocks.copy(); };
   parts[linearization].work = [&] { keep(condensed.linearize(x, rows, residual)); };
@@ -187,6 +190,7 @@ void print_matrix_times(int rounds) {
   fmt::print("(b) One Newton matrix: m = 1, n = 4, NTST = {}, NCOL = 4\n\n", intervals);
   fmt::print("  {:<66}{:>8}{:>12}\n", "", "units", "time [us]");
   print_line("unit: local eliminations of random blocks in lanes, without copying", 1.0, second);
+  print_line("  the same without a border row", in_units({unit_alone}, unit_copy), second);
   print_line("  the same one block after the other", in_units({single}, single_copy), second);
   print_line("one Newton matrix, evaluation to correction (wanted: 1.5)", in_units({linearization, solution}), second);
   print_line("  linearize", linearize_units, second);

@@ -45,7 +45,7 @@ TEST_CASE("solving with the differences of the residual along a direction gives 
   const PeriodicOrbitSystem system(system_of<ThreeModes>(), ThreeModes::signature(), c.free_parameters);
   const OrbitShape shape{3, 3, c.intervals, c.collocation};
   const Orbit x = any_orbit(shape, ThreeModes::par());
-  CondensedSystem condensed(system, shape, static_cast<int>(c.free_parameters.size()));
+  CondensedSystem condensed(system, shape, {static_cast<int>(c.free_parameters.size())});
   std::vector<OrbitVector> rows;
   std::vector<double> border;
   const OrbitVector v = random_vector(condensed, 1);
@@ -71,7 +71,7 @@ TEST_CASE("solving with zero residual: the border's answer is linear in the bord
   const PeriodicOrbitSystem system(system_of<ThreeModes>(), ThreeModes::signature(), {1});
   const OrbitShape shape{3, 3, 6, 4};
   const Orbit x = any_orbit(shape, ThreeModes::par());
-  CondensedSystem condensed(system, shape, 1);
+  CondensedSystem condensed(system, shape, {1});
   const std::vector<OrbitVector> rows{random_vector(condensed, 3)};
   OrbitResidual residual = condensed.make_residual();
   REQUIRE(condensed.linearize(x, rows, residual) == Linearization::ready);
@@ -89,7 +89,7 @@ TEST_CASE("a correction and a tangent found at once are those found one by one")
   const PeriodicOrbitSystem system(system_of<ThreeModes>(), ThreeModes::signature(), {1, 2});
   const OrbitShape shape{3, 3, GENERATE(1, 6, 9), 4};
   const Orbit x = any_orbit(shape, ThreeModes::par());
-  CondensedSystem condensed(system, shape, 2);
+  CondensedSystem condensed(system, shape, {2});
   const std::vector<OrbitVector> rows{random_vector(condensed, 3), random_vector(condensed, 5)};
   const std::vector<double> border{0.3, -0.7}, along{1.0, 0.0};
   OrbitResidual residual = condensed.make_residual();
@@ -107,7 +107,7 @@ TEST_CASE("the determinant's sign follows the border and is comparable between n
   const PeriodicOrbitSystem system(system_of<ThreeModes>(), ThreeModes::signature(), {1});
   const OrbitShape shape{3, 3, 6, 4};
   Orbit x = any_orbit(shape, ThreeModes::par());
-  CondensedSystem condensed(system, shape, 1);
+  CondensedSystem condensed(system, shape, {1});
   std::vector<OrbitVector> rows{random_vector(condensed, 3)};
   OrbitResidual residual = condensed.make_residual();
   REQUIRE(condensed.linearize(x, rows, residual) == Linearization::ready);
@@ -126,7 +126,7 @@ TEST_CASE("a closing row, at the ends of segments alone, is the general row that
   const OrbitShape shape{3, 3, GENERATE(1, 6), 4};
   const Orbit x = any_orbit(shape, ThreeModes::par());
   std::vector<OrbitVector> rows;
-  CondensedSystem general(system, shape, 2), closing(system, shape, {1, 1});
+  CondensedSystem general(system, shape, {2, 0}), closing(system, shape, {1, 1});
   for (unsigned k = 0; k < 2; ++k) rows.push_back(random_vector(general, 3 + k));
   OrbitResidual residual = general.make_residual();
   REQUIRE(closing.linearize(x, rows, residual) == Linearization::ready);
@@ -148,7 +148,7 @@ TEST_CASE("what stands for a branch's row gives the corrections, tangents and si
   const OrbitShape shape{3, 3, GENERATE(1, 6), 4};
   const Orbit x = any_orbit(shape, ThreeModes::par());
   BorderedProblem problem(system, shape, nullptr);
-  CondensedSystem with_row(system, shape, 1);
+  CondensedSystem with_row(system, shape, {1});
   OrbitResidual residual = with_row.make_residual();
   OrbitVector dx = with_row.make_vector(), expected = dx, tangent = dx;
   int negative = 0, opposite = 0;
@@ -196,7 +196,7 @@ TEST_CASE("segment blocks are the flow Jacobian: A + C Phi = 0") {
   const PeriodicOrbitSystem system(system_of<ThreeModes>(), ThreeModes::signature(), {1});
   const Orbit x =
       sampled_orbit(pieces_of(system_of<ThreeModes>(), ThreeModes::signature(), reference.map, par), 3, 30, 4, par);
-  CondensedSystem condensed(system, x.shape, 1);
+  CondensedSystem condensed(system, x.shape, {1});
   const std::vector<OrbitVector> rows{random_vector(condensed, 3)};
   OrbitResidual residual = condensed.make_residual();
   REQUIRE(condensed.linearize(x, rows, residual) == Linearization::ready);
@@ -213,7 +213,7 @@ TEST_CASE("a residual that is not finite is said to be so, and linearize refuses
   const PeriodicOrbitSystem system(linosc(), {{1, 1, 1}}, {1});
   const OrbitShape shape{4, 1, 5, 4};
   Orbit x = any_orbit(shape, parameters({3.0, 2.0, 0.05, 0.8}));
-  CondensedSystem condensed(system, shape, 1);
+  CondensedSystem condensed(system, shape, {1});
   const std::vector<OrbitVector> rows{random_vector(condensed, 3)};
   OrbitResidual residual = condensed.make_residual();
   x.states(2, 7) = NAN;

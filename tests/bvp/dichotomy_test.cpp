@@ -109,7 +109,7 @@ TEST_CASE("growth by e^100 beside decay by e^-100: the linear system is solved t
   CAPTURE(cut.segments, cut.intervals);
   const Orbit x = Dichotomy::orbit(cut.segments, cut.intervals);
   const PeriodicOrbitSystem system(system_of<Dichotomy>(), Dichotomy::signature(cut.segments), {1});
-  CondensedSystem condensed(system, x.shape, 1);
+  CondensedSystem condensed(system, x.shape, {1});
   const OrbitVector v = random_vector(condensed, 1);
   const std::vector<OrbitVector> rows{random_vector(condensed, 2)};
   OrbitResidual residual = condensed.make_residual();

@@ -56,7 +56,7 @@ struct Answers {
 
 Answers answers(const Shared& problem, int threads) {
   const Orbit x = any_orbit(problem.shape);
-  CondensedSystem condensed(problem.system, problem.shape, 1, threads);
+  CondensedSystem condensed(problem.system, problem.shape, {1}, threads);
   if (threads == 2) {
     CHECK(condensed.threads().segments == problem.two.segments);
     CHECK(condensed.threads().within == problem.two.within);
@@ -115,7 +115,7 @@ TEST_CASE("threads that share segments, or the pieces of one, change no bit") {
 
 TEST_CASE("little work is left to one thread") {
   const Shared small = shared<4>(2, 50, 4, {1, 1});
-  const CondensedSystem condensed(small.system, small.shape, 1, 8);
+  const CondensedSystem condensed(small.system, small.shape, {1}, 8);
   CHECK(condensed.threads().segments == 1);
   CHECK(condensed.threads().within == 1);
 }
@@ -124,7 +124,7 @@ TEST_CASE("50 dimensions: solving with the differences of the residual along a d
   const int threads = GENERATE(1, 2);
   const Shared problem = many_dimensions();
   const Orbit x = any_orbit(problem.shape);
-  CondensedSystem condensed(problem.system, problem.shape, 1, threads);
+  CondensedSystem condensed(problem.system, problem.shape, {1}, threads);
   const OrbitVector v = random_vector(condensed, 1);
   const std::vector<OrbitVector> rows{random_vector(condensed, 10)};
   OrbitResidual residual = condensed.make_residual();
@@ -142,7 +142,7 @@ TEST_CASE("50 dimensions: solving with the differences of the residual along a d
 TEST_CASE("what cannot be evaluated is told alike by any number of threads") {
   const Shared problem = GENERATE(many_segments(), many_dimensions());
   for (const int threads : {1, 2}) {
-    CondensedSystem condensed(problem.system, problem.shape, 1, threads);
+    CondensedSystem condensed(problem.system, problem.shape, {1}, threads);
     const std::vector<OrbitVector> rows{random_vector(condensed, 3)};
     OrbitResidual residual = condensed.make_residual();
     for (const Eigen::Index column : {Eigen::Index{1}, static_cast<Eigen::Index>(problem.shape.columns() - 2)}) {

@@ -145,7 +145,7 @@ TEST_CASE("torus: the least value of an event function between the orbits, and i
   const TorusSystem system(system_of<PlanarTorus>(), {{1, 1, 1}}, 31, {omega, rotation_parameter, wall});
   Orbit x = torus.start(2.0, 0.0);
   const double w = 2.0, largest = 1.0 / (1.0 - 1.0 / std::sqrt(1.0 + w * w));
-  CondensedSystem condensed(system, torus.shape, 3);
+  CondensedSystem condensed(system, torus.shape, {3});
   TorusContactCondition condition(system, torus.shape, 0, 2);
   REQUIRE(condition.evaluate(condensed, x));
   CHECK(condition.value() == Approx(5.0 - largest).epsilon(1e-9));

@@ -20,7 +20,7 @@ namespace {
 class ConditionAt {
  public:
   ConditionAt(const HybridSystem& hybrid, const Signature& signature, const Orbit& like)
-      : system(hybrid, signature, {1, 2}), condensed(system, like.shape, 2), residual_(condensed.make_residual()) {
+      : system(hybrid, signature, {1, 2}), condensed(system, like.shape, {2}), residual_(condensed.make_residual()) {
     for (int r = 0; r < 2; ++r) border_.push_back(random_vector(condensed.make_vector()));
   }
   double value(OrbitCondition& condition, const Orbit& x, int number = 0) {
