@@ -32,12 +32,10 @@ BorderedProblem::BorderedProblem(const DefiningSystem& system, const OrbitShape&
       row_(condensed_.make_vector()),
       rows_(static_cast<std::size_t>(condensed_.border_rows()), row_),
       border_(rows_.size()),
-      along_(rows_.size()),
       unchanged_(static_cast<std::size_t>(system.integral_conditions()) + held_.size(), 0.0),
       responses_(static_cast<std::size_t>(conditions()), condensed_.make_vector()),
       slopes_(conditions()),
       tangent_(condensed_.make_vector()) {
-  along_.front() = 1.0;
   // Any rows serve the first time that are not orthogonal to what they stand for.
   for (int k = 0; k < conditions(); ++k) {
     OrbitVector& any = stand_in(k);
@@ -105,38 +103,25 @@ Linearization BorderedProblem::linearize(const Orbit& x, const OrbitVector& row,
 }
 
 /// The first of the border rows: the branch's row at the ends of segments, each of which counts as many times as there
-/// are nodes, as these share the weight of a segment. A row that has next to nothing there (the gradient of a monitor)
-/// gives way to one that no tangent is orthogonal to but by chance.
+/// are nodes, as these share the weight of a segment.
 void BorderedProblem::close(const OrbitVector& row) {
-  constexpr double negligible = 1e-6;
   OrbitVector& closing = rows_.front();
   closing.durations = row.durations;
   closing.globals = row.globals;
-  double largest = std::max(row.durations.lpNorm<Eigen::Infinity>(), row.globals.lpNorm<Eigen::Infinity>());
-  for_ends(condensed_.shape(), [&](int column) {
-    closing.states.col(column) = condensed_.shape().nodes() * row.states.col(column);
-    largest = std::max(largest, closing.states.col(column).lpNorm<Eigen::Infinity>());
-  });
-  if (largest > negligible * array_functions().range(row.states.data(), row.states.size()).largest) return;
-  for_ends(condensed_.shape(), [&](int column) {
-    for (int a = 0; a < condensed_.shape().dimension; ++a)
-      closing.states(a, column) = std::cos(1.0 + 0.37 * (column + a));
-  });
-  closing.durations.setOnes();
-  closing.globals.setOnes();
+  for_ends(condensed_.shape(),
+           [&](int column) { closing.states.col(column) = condensed_.shape().nodes() * row.states.col(column); });
+}
+
+double BorderedProblem::at_ends(const OrbitVector& row, const OrbitVector& v) const {
+  double sum = 0.0;
+  for_ends(condensed_.shape(), [&](int column) { sum += row.states.col(column).dot(v.states.col(column)); });
+  return condensed_.shape().nodes() * sum + row.durations.dot(v.durations) + row.globals.dot(v.globals);
 }
 
 /// The determinant is proportional to what the row is of the tangent.
 double BorderedProblem::signed_distance(const OrbitVector& tangent) const {
-  const bool same_sign = (dot(row_, tangent) < 0.0) == (dot_at_ends(rows_.front(), 1.0, tangent) < 0.0);
+  const bool same_sign = (dot(row_, tangent) < 0.0) == (condensed_.closing_row_on(tangent) < 0.0);
   return same_sign ? condensed_.signed_distance() : -condensed_.signed_distance();
-}
-
-/// With the row's states there times `of_states`.
-double BorderedProblem::dot_at_ends(const OrbitVector& row, double of_states, const OrbitVector& v) const {
-  double sum = 0.0;
-  for_ends(condensed_.shape(), [&](int column) { sum += row.states.col(column).dot(v.states.col(column)); });
-  return of_states * sum + row.durations.dot(v.durations) + row.globals.dot(v.globals);
 }
 
 /// False when they do not reach what the condition asks for.
@@ -179,7 +164,7 @@ void BorderedProblem::solve_across(const OrbitResidual& residual, OrbitVector& d
 
 bool BorderedProblem::solve(const OrbitResidual& residual, double target, OrbitVector& dx) {
   if (!tangent_known_) {
-    condensed_.solve(along_, tangent_);
+    condensed_.null_vector(tangent_);
     know_tangent();
   }
   solve_across(residual, dx);
@@ -187,7 +172,7 @@ bool BorderedProblem::solve(const OrbitResidual& residual, double target, OrbitV
 }
 
 bool BorderedProblem::correct(const OrbitResidual& linearized, double target, OrbitVector& dx) {
-  condensed_.solve_both(linearized, border(linearized.integral), dx, along_, tangent_);
+  condensed_.solve_both(linearized, border(linearized.integral), dx, tangent_);
   know_tangent();
   add_responses(minus_condition(), dx);
   return put_along(target, dx);
@@ -212,7 +197,7 @@ bool BorderedProblem::put_along(double target, OrbitVector& dx) const {
 
 void BorderedProblem::find_tangent(OrbitVector& dx) {
   if (!tangent_known_) {
-    condensed_.solve(along_, tangent_);
+    condensed_.null_vector(tangent_);
     know_tangent();
   }
   dx.states.swap(tangent_.states);

@@ -110,9 +110,7 @@ class BorderedProblem {
   /// is one at the point of the last linearisation.
   double signed_distance(const OrbitVector& tangent) const;
   /// What stands for this row of a branch, on v.
-  double at_ends(const OrbitVector& row, const OrbitVector& v) const {
-    return dot_at_ends(row, condensed_.shape().nodes(), v);
-  }
+  double at_ends(const OrbitVector& row, const OrbitVector& v) const;
   /// Largest residual, the condition's included.
   double residual_size(const OrbitResidual& residual) const;
 
@@ -121,7 +119,6 @@ class BorderedProblem {
   using Slopes = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, OrbitCondition::most, OrbitCondition::most>;
 
   void close(const OrbitVector& row);
-  double dot_at_ends(const OrbitVector& row, double of_states, const OrbitVector& v) const;
   bool find_responses();
   void follow_gradients();
   Numbers minus_condition() const;
@@ -141,7 +138,6 @@ class BorderedProblem {
   std::vector<OrbitVector> rows_;  // what stands for it, gradients of integrals and held monitors, stand-ins for those
                                    // of G
   std::vector<double> border_;     // right-hand side of these
-  std::vector<double> along_;      // the same of the tangent: a one in the first row
   std::vector<double> unchanged_;  // integrals and monitors that keep their values
   Orbit reference_;                // only where there are integrals
   std::vector<OrbitVector> responses_;  // solutions for a unit in the row of each stand-in

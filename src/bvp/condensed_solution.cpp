@@ -8,7 +8,7 @@ namespace tchat {
 
 void CondensedSystem::solve(std::span<const double> border, OrbitVector& dx) {
   solve_ends(border, solution_);
-  expand(RightHandSide::zero, dx);
+  expand(solution_, RightHandSide::zero, dx);
 }
 
 void CondensedSystem::solve(const OrbitResidual& residual, std::span<const double> border, OrbitVector& dx) {
@@ -16,19 +16,24 @@ void CondensedSystem::solve(const OrbitResidual& residual, std::span<const doubl
     elimination_.condense_right_hand_side(s, &residual.collocation[index(collocation_row(s))], segment_rhs_[s]);
   });
   solve_ends(segment_rhs_, residual, border);
-  expand(RightHandSide::condensed, dx);
+  expand(solution_, RightHandSide::condensed, dx);
+}
+
+void CondensedSystem::null_vector(OrbitVector& v) {
+  if (closing_ == 0) find_null_vector();
+  expand(null_ends_, RightHandSide::zero, v);
 }
 
 void CondensedSystem::solve_both(const OrbitResidual& linearized, std::span<const double> border, OrbitVector& dx,
-                                 std::span<const double> border_of_v, OrbitVector& v) {
+                                 OrbitVector& v) {
   solve_ends(own_rhs_, linearized, border);
-  solve_ends(border_of_v, other_solution_);
+  if (closing_ == 0) find_null_vector();
   segment_work_.each(shape_.segments, [&](int s, int thread) {
     elimination_.expand_both(s, in_segment(s, solution_, RightHandSide::own, dx),
-                             in_segment(s, other_solution_, RightHandSide::zero, v), thread);
+                             in_segment(s, null_ends_, RightHandSide::zero, v), thread);
   });
   put_globals(solution_, dx);
-  put_globals(other_solution_, v);
+  put_globals(null_ends_, v);
 }
 
 /// solution_ from the right-hand sides of the condensed rows of segments, -residual of the coupling rows, and `border`.
@@ -52,11 +57,33 @@ void CondensedSystem::solve_ends(std::span<const double> border, std::vector<dou
   lu_.solve(rhs_.data(), ends.data());
 }
 
-/// From solution_ to all nodes.
-void CondensedSystem::expand(RightHandSide right, OrbitVector& dx) {
+/// null_ends_ from the factors.
+void CondensedSystem::find_null_vector() {
+  std::fill(rhs_.begin(), rhs_.end(), 0.0);
+  border_rhs()[0] = 1.0;
+  lu_.solve(rhs_.data(), null_ends_.data());
+}
+
+double CondensedSystem::closing_row_on(const OrbitVector& v) const {
+  const double* row = closing_row_.data();
+  double sum = 0.0;
+  const auto add = [&](const double* entries, Eigen::Index count) {
+    for (Eigen::Index k = 0; k < count; ++k) sum += *row++ * entries[k];
+  };
+  for (int s = 0; s < shape_.segments; ++s) {
+    add(v.states.col(s * shape_.nodes()).data(), n_);
+    add(v.states.col((s + 1) * shape_.nodes() - 1).data(), n_);
+    add(&v.durations(s), 1);
+  }
+  add(v.globals.data(), globals_);
+  return sum;
+}
+
+/// From the ends of segments to all nodes.
+void CondensedSystem::expand(const std::vector<double>& ends, RightHandSide right, OrbitVector& dx) {
   segment_work_.each(shape_.segments,
-                     [&](int s, int thread) { elimination_.expand(s, in_segment(s, solution_, right, dx), thread); });
-  put_globals(solution_, dx);
+                     [&](int s, int thread) { elimination_.expand(s, in_segment(s, ends, right, dx), thread); });
+  put_globals(ends, dx);
 }
 
 SegmentSolution CondensedSystem::in_segment(int s, const std::vector<double>& ends, RightHandSide right,

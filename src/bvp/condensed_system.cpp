@@ -22,6 +22,10 @@ int total_coupling_rows(const DefiningSystem& system) {
   return total;
 }
 
+double norm(const std::vector<double>& v) {
+  return std::sqrt(array_functions().dot(v.data(), v.data(), static_cast<long>(v.size())));
+}
+
 std::vector<double> zeros(std::ptrdiff_t count) { return std::vector<double>(static_cast<std::size_t>(count), 0.0); }
 
 /// `count` rows from `row` that are dense in some columns.
@@ -80,7 +84,8 @@ CondensedSystem::CondensedSystem(const DefiningSystem& system, const OrbitShape&
   segment_rhs_ = own_rhs_;
   triplet_values_.resize(triplet_rows_.size());
   rhs_ = zeros(lu_.size());
-  solution_ = other_solution_ = rhs_;
+  solution_ = null_ends_ = rhs_;
+  if (closing_ > 0) closing_row_ = rhs_;
   x_ = slope_ = zeros(n_);
 }
 
@@ -160,7 +165,39 @@ Linearization CondensedSystem::linearize(const Orbit& x, std::span<const OrbitVe
       threads_.segments > 1 ? condense_together(x, general, residual) : condense_one_by_one(x, general, residual);
   if (condensed != Linearization::ready) return condensed;
   if (!assemble(x, rows, residual)) return Linearization::not_finite;
-  return lu_.factorize(triplet_values_) ? Linearization::ready : Linearization::singular;
+  return factorize() ? Linearization::ready : Linearization::singular;
+}
+
+/// What the segments and the border leave. The closing row has a right-hand side of one in the null vector z, which is
+/// long where the two are nearly orthogonal: the cosine of their angle is 1 / (|row| |z|).
+bool CondensedSystem::factorize() {
+  constexpr double least_cosine = 1e-3;  // digits that solutions may lose
+  const bool factored = lu_.factorize(triplet_values_);
+  closing_row_gave_way_ = false;
+  if (closing_ == 0) return factored;
+  if (factored) {
+    find_null_vector();
+    if (norm(closing_row_) * norm(null_ends_) * least_cosine < 1.0) return true;
+  }
+  return close_along_null_vector(factored);
+}
+
+/// Of a matrix that is singular with the closing row it becomes known with one that is orthogonal to hardly anything.
+bool CondensedSystem::close_along_null_vector(bool known) {
+  closing_row_gave_way_ = true;
+  if (!known) {
+    for (std::size_t k = 0; k < closing_row_.size(); ++k)
+      closing_row_[k] = std::cos(1.0 + 0.37 * static_cast<double>(k));
+    std::copy(closing_row_.begin(), closing_row_.end(), triplet_values_.begin() + closing_place_);
+    if (!lu_.factorize(triplet_values_)) return false;
+    find_null_vector();
+  }
+  const double length = norm(null_ends_);
+  std::transform(null_ends_.begin(), null_ends_.end(), closing_row_.begin(),
+                 [length](double entry) { return entry / length; });
+  std::copy(closing_row_.begin(), closing_row_.end(), triplet_values_.begin() + closing_place_);
+  null_ends_ = closing_row_;  // of unit length
+  return lu_.factorize(triplet_values_);
 }
 
 Linearization CondensedSystem::condense_one_by_one(const Orbit& x, std::span<const OrbitVector> rows,
@@ -232,18 +269,23 @@ bool CondensedSystem::assemble(const Orbit& x, std::span<const OrbitVector> rows
     value = system_.coupling_derivatives(s, x, coupling, value);
     coupling += system_.coupling_rows(s);
   }
-  for (int r = 0; r < closing_; ++r) value = put_closing_row(rows[index(r)], value);
+  if (closing_ > 0) {
+    take_closing_row(rows.front());
+    closing_place_ = value - triplet_values_.data();
+    value = std::copy(closing_row_.begin(), closing_row_.end(), value);
+  }
   for (int r = 0; r < general_; ++r) value = put_general_row(r, rows[index(closing_ + r)], value);
   return residual.finite();
 }
 
-double* CondensedSystem::put_closing_row(const OrbitVector& row, double* value) const {
+void CondensedSystem::take_closing_row(const OrbitVector& row) {
+  double* value = closing_row_.data();
   for (int s = 0; s < shape_.segments; ++s) {
     value = std::copy_n(row.states.col(s * shape_.nodes()).data(), n_, value);
     value = std::copy_n(row.states.col((s + 1) * shape_.nodes() - 1).data(), n_, value);
     *value++ = row.durations(s);
   }
-  return std::copy_n(row.globals.data(), globals_, value);
+  std::copy_n(row.globals.data(), globals_, value);
 }
 
 /// Number r of the general rows, condensed; the weights of the scalars themselves were left out there.

@@ -6,9 +6,10 @@
 /// segments. Work and memory are linear in m and N. All arrays are allocated when the object is made.
 ///
 /// Border rows are general linear functionals of the unknowns, given as dual vectors. Each takes part in the
-/// elimination of every interval, but for closing rows, which have entries at the ends of segments alone, for durations
-/// and free parameters: these cost nothing there. A general row is as good as a closing row and one more solution
-/// (BorderedProblem).
+/// elimination of every interval, but for a closing row, which has entries at the ends of segments alone, for durations
+/// and free parameters, and costs nothing there. It serves to find the vector that all other rows annihilate; where it
+/// is nearly orthogonal to that (or zero), that vector itself takes its place. What a general row is to say is said
+/// with a closing row and one more solution (BorderedProblem).
 ///
 /// Where there is enough work for several threads, they share it by segments, or within each segment where there are
 /// few of these. What is left for SparseLu one thread does. Results are the same to the last bit for any number.
@@ -38,10 +39,10 @@ struct OrbitResidual {
   bool finite() const;
 };
 
-/// Rows of the border: the first `closing` of them are read at the ends of segments only.
+/// Rows of the border: general ones, before them a closing one (read at the ends of segments only) or none.
 struct BorderRows {
   int general = 0;
-  int closing = 0;
+  int closing = 0;  ///< 0 or 1
   int all() const { return general + closing; }
 };
 
@@ -65,7 +66,7 @@ class CondensedSystem {
   void evaluate(const Orbit& x, OrbitResidual& residual);
 
   /// J(x) bordered by `rows` (b dual vectors), factored; F(x) on the way, but for the integral conditions, whose
-  /// gradients are among the rows.
+  /// gradients are among the rows. Where the closing row gives way, its right-hand side is one of what takes its place.
   Linearization linearize(const Orbit& x, std::span<const OrbitVector> rows, OrbitResidual& residual);
 
   /// The solution of J dx = -F, rows dx = border. `border` has b entries; the integral conditions of `residual` are not
@@ -73,10 +74,15 @@ class CondensedSystem {
   void solve(const OrbitResidual& residual, std::span<const double> border, OrbitVector& dx);
   /// The same with F = 0.
   void solve(std::span<const double> border, OrbitVector& dx);
-  /// Both at once, which takes little more than one: dx for the residual that linearize() found and `border`, v for
-  /// F = 0 and `border_of_v`, b entries each.
-  void solve_both(const OrbitResidual& linearized, std::span<const double> border, OrbitVector& dx,
-                  std::span<const double> border_of_v, OrbitVector& v);
+  /// The solution for F = 0 and a one in the first border row.
+  void null_vector(OrbitVector& v);
+  /// Both at once, which takes little more than one: dx for the residual that linearize() found and `border`, and the
+  /// null vector.
+  void solve_both(const OrbitResidual& linearized, std::span<const double> border, OrbitVector& dx, OrbitVector& v);
+
+  /// The closing row of the last linearisation on v, and whether it is another one than that given.
+  double closing_row_on(const OrbitVector& v) const;
+  bool closing_row_gave_way() const { return closing_row_gave_way_; }
 
   /// Row-major n x n blocks A_s and C_s: on every segment a flow perturbation satisfies A_s v(0) + C_s v(1) = 0.
   const double* first_block(int s) const { return first_blocks_[s]; }
@@ -136,13 +142,16 @@ class CondensedSystem {
   Linearization condense_together(const Orbit& x, std::span<const OrbitVector> rows, OrbitResidual& residual);
   void keep_segment_blocks(int s);
   bool assemble(const Orbit& x, std::span<const OrbitVector> rows, OrbitResidual& residual);
-  double* put_closing_row(const OrbitVector& row, double* value) const;
+  void take_closing_row(const OrbitVector& row);
+  bool factorize();
+  void find_null_vector();
+  bool close_along_null_vector(bool known);
   double* put_general_row(int r, const OrbitVector& row, double* value) const;
   double* border_rhs() { return rhs_.data() + lu_.size() - border_; }
   void solve_ends(const BlockArray<double>& condensed, const OrbitResidual& residual, std::span<const double> border);
   void solve_ends(std::span<const double> border, std::vector<double>& ends);
   SegmentSolution in_segment(int s, const std::vector<double>& ends, RightHandSide right, OrbitVector& dx) const;
-  void expand(RightHandSide right, OrbitVector& dx);
+  void expand(const std::vector<double>& ends, RightHandSide right, OrbitVector& dx);
   void put_globals(const std::vector<double>& ends, OrbitVector& dx) const;
 
   const DefiningSystem& system_;
@@ -151,7 +160,7 @@ class CondensedSystem {
   int globals_;  // q
   int scalars_;  // duration and globals: 1 + q columns
   int border_;   // b
-  int closing_;  // the first ones
+  int closing_;  // 0 or 1
   int general_;  // the others
   CollocationRule rule_;
   EliminationThreads threads_;
@@ -171,9 +180,12 @@ class CondensedSystem {
   std::vector<int> triplet_columns_;
   std::vector<double> triplet_values_;
   SparseLu lu_;
+  std::vector<double> closing_row_;   // as SparseLu sees it
+  std::ptrdiff_t closing_place_ = 0;  // of it, in triplet_values_
+  bool closing_row_gave_way_ = false;
   std::vector<double> rhs_;
-  std::vector<double> solution_;        // what SparseLu sees of dx
-  std::vector<double> other_solution_;  // and of v
+  std::vector<double> solution_;   // what SparseLu sees of dx
+  std::vector<double> null_ends_;  // and of the null vector; known after linearize() where a row closes
 
   std::vector<double> x_, slope_;  // scratch of one collocation point
 };

@@ -67,7 +67,7 @@ SegmentElimination::SegmentElimination(const OrbitShape& shape, int scalars, int
   const int c = shape.collocation;
   nodes_ = lane_zeros((c + 1) * n_);
   points_ = derivatives_ = residual_ = lane_zeros(c * n_);
-  jacobian_ = lane_zeros(n_ * n_);
+  jacobian_ = lane_zeros(n_ * (n_ + scalars_ - 1));
   zero_rhs_ = lane_zeros(std::max(interval_rows, join_rows));
   const auto evaluations = static_cast<std::size_t>(lanes * c);
   x_.resize(evaluations * index(n_));

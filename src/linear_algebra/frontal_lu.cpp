@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <numeric>
 #include <utility>
 
 #include "linear_algebra/partial_lu.hpp"
@@ -184,8 +183,7 @@ bool FrontalLu::eliminate_pivots(const Front& front, double* block) {
       double& size = column_sizes_[at(j)] = 0.0;
       for (int i = 0; i < front.rows; ++i) size = std::max(size, std::abs(block[i * front.width + j]));
     }
-  if (!eliminate(DynamicSizes{front.rows, front.pivots, front.width}, block, front.border,
-                 swaps_.data() + front.swaps))
+  if (!eliminate(DynamicSizes{front.rows, front.pivots, front.width}, block, front.border, swaps_.data() + front.swaps))
     return false;
   if (!last)
     for (int j = 0; j < front.pivots; ++j)

@@ -95,8 +95,8 @@ class LaneAssembly {
   void interpolate(const LaneCollocation& at, const double* nodes, double* points, double* derivatives) const;
 
   /// The c n rows of the blocks, columns (interior nodes | left node | right node | T, p | residual), and the residual
-  /// once more, c n entries of `lanes` numbers. `jacobian` is scratch of n n lanes numbers. False when a value is not
-  /// finite in some lane.
+  /// once more, c n entries of `lanes` numbers. `jacobian` is scratch of n (n + scalars - 1) lanes numbers. False when
+  /// a value is not finite in some lane.
   bool fill(const LaneCollocation& at, double* blocks, double* jacobian, double* residual) const;
 
   /// The 2 n rows and the border rows of a join: columns (middle node | first node | last node | scalars).

@@ -95,7 +95,7 @@ TEST_CASE("a correction and a tangent found at once are those found one by one")
   OrbitResidual residual = condensed.make_residual();
   REQUIRE(condensed.linearize(x, rows, residual) == Linearization::ready);
   OrbitVector dx = condensed.make_vector(), v = dx, dx_alone = dx, v_alone = dx;
-  condensed.solve_both(residual, border, dx, along, v);
+  condensed.solve_both(residual, border, dx, v);
   condensed.solve(residual, border, dx_alone);
   condensed.solve(along, v_alone);
   CHECK(largest_difference(v, v_alone) == 0.0);
@@ -164,6 +164,7 @@ TEST_CASE("what stands for a branch's row gives the corrections, tangents and si
     CAPTURE(shape.intervals, seed);
     REQUIRE(with_row.linearize(x, rows, residual) == Linearization::ready);
     REQUIRE(problem.linearize(x, rows[0], residual) == Linearization::ready);
+    CHECK(problem.condensed().closing_row_gave_way() == inside);
     // Rounding times the condition of the matrices, below 1e5; a random row may be nearly orthogonal to the tangent.
     const double rounding = 1e-9;
 

@@ -325,7 +325,7 @@ TEST_CASE("collocation rows are filled as the formula says, alike with every set
   for (const VectorSet set : available_vector_sets()) {
     const LaneAssembly assembly(set);
     LaneArray points(place(c * n * lanes)), derivatives = points, residual = points;
-    LaneArray blocks(place(c * n * width * lanes)), jacobian(place(n * n * lanes));
+    LaneArray blocks(place(c * n * width * lanes)), jacobian(place(n * (n + scalars - 1) * lanes));
     assembly.interpolate(at, states.data(), points.data(), derivatives.data());
     at.derivatives = derivatives.data();
     REQUIRE(assembly.fill(at, blocks.data(), jacobian.data(), residual.data()));
