@@ -5,6 +5,8 @@
 
 #include <cstdlib>
 #include <fstream>
+#include <iterator>
+#include <string>
 #include <vector>
 
 #include "benchmark/branch_walk.hpp"
@@ -36,12 +38,20 @@ std::string constants_text(const OrbitShape& shape, int points) {
          fmt::format("GCFIND = {0}, GCHIND = {0}, GCGIND = {0}, GCSEGTYP = {0}\n", list);
 }
 
+/// "" where there is no such file.
+std::string contents(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
 }  // namespace
 
 void write_chain_files(const std::filesystem::path& folder, const Orbit& x, int points) {
-  std::ofstream(folder / "chain.cpp") << fmt::format(
-      "#include \"{}\"\nusing Chain = tchat::benchmark::OscillatorChain<{}>;\nTCHAT_PROBLEM(Chain)\n",
-      OSCILLATOR_CHAIN_HEADER, (x.shape.dimension - 2) / 2);
+  const std::string source =
+      fmt::format("#include \"{}\"\nusing Chain = tchat::benchmark::OscillatorChain<{}>;\nTCHAT_PROBLEM(Chain)\n",
+                  OSCILLATOR_CHAIN_HEADER, (x.shape.dimension - 2) / 2);
+  // A source that is written again is compiled again.
+  if (contents(folder / "chain.cpp") != source) std::ofstream(folder / "chain.cpp") << source;
   std::ofstream(folder / "gc.chain") << constants_text(x.shape, points);
   std::ofstream(folder / "chain.dat") << data_text(x);
 }

@@ -166,7 +166,8 @@ TEST_CASE("planar: the smooth map's derivative, both fixed points (3.7), (3.9) a
         Approx(p1 * 0.64 * (1.0 + std::sqrt(2.0 / d) * (d * d - 1.0) * 1.8 * 1e-2)).epsilon(1e-6));
 }
 
-TEST_CASE("planar: the impacting orbit of the composite map against the true one, with the right order of error") {
+TEST_CASE("planar: the impacting orbit of the composite map against the true one, with the right order of error",
+          "[slow]") {
   const GrazingCase grazing = planar();
   const double known_velocity = 0.06602396113935;
   const double mu = 1.001;

@@ -140,7 +140,7 @@ TEST_CASE("branch point: seen from the other branches too, where a pitchfork is 
   }
 }
 
-TEST_CASE("branch point: {J1, J1} where {J1} doubles its period, with steps of any length from both sides") {
+TEST_CASE("branch point: {J1, J1} where {J1} doubles its period, with steps of any length from both sides", "[slow]") {
   for (const double v : {0.06, 0.02}) {
     const OscillatorOrbit orbit = one_impact_orbit(2.0072, v);
     const CutOrbit cut = twice(orbit);

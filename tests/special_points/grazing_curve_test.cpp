@@ -79,6 +79,23 @@ struct ResetParabola {
   }
 };
 
+/// xi_1 vanishes at 2 omega_d, xi_2 there and at 4 omega_d / 3: found from below and from above.
+void check_zeros_of_two(int intervals, int collocation, double tolerance) {
+  const double damped = std::sqrt(1 - 0.05 * 0.05);
+  for (const double way : {1.0, -1.0}) {
+    CAPTURE(intervals, collocation, way);
+    const RecordedBranch branch =
+        grazing_oscillator(way > 0 ? 1.25 : 2.1, way * 0.05, 0.1, 40, 2, intervals, collocation);
+    std::vector<double> found;
+    for (const RecordedPoint* p : branch.special())
+      if (const double omega = p->orbit.par(1); omega > 1.25 && omega < 2.1) found.push_back(omega);
+    REQUIRE(found.size() == 2);
+    std::sort(found.begin(), found.end());
+    CHECK(std::abs(found[0] - 4 * damped / 3) < tolerance);
+    CHECK(std::abs(found[1] - 2 * damped) < tolerance);
+  }
+}
+
 }  // namespace
 
 TEST_CASE("xi_n that decay with n are not zero, and vanish together where the return map loses its last direction") {
@@ -186,7 +203,7 @@ TEST_CASE("xi_n and the smooth multipliers do not depend on cuts of the orbit, i
   }
 }
 
-TEST_CASE("xi_n vanish at omega = 2 n omega_d / k, every one of them, one label for those that coincide") {
+TEST_CASE("xi_n vanish at omega = 2 n omega_d / k, every one of them", "[slow]") {
   const double damped = std::sqrt(1 - 0.05 * 0.05);
   constexpr double low = 0.8, high = 2.3;
   constexpr int most = 5;
@@ -210,34 +227,26 @@ TEST_CASE("xi_n vanish at omega = 2 n omega_d / k, every one of them, one label 
           static_cast<std::size_t>(std::count_if(branch.notes.begin(), branch.notes.end(),
                                                  [](const std::string& note) { return note.find("Retrying") == 0; })));
   }
-  // All of xi_1 .. xi_5 at 2 omega_d.
+}
+
+TEST_CASE("xi_1 to xi_5 vanish together at 2 omega_d: one label names them all") {
+  constexpr int most = 5;
   const RecordedBranch branch = grazing_oscillator(1.98, 0.01, 0.05, 12, most);
   REQUIRE(!branch.special().empty());
   const std::string text = branch.special()[0]->special.description;
   for (int n = 1; n <= most; ++n) CHECK(text.find("xi_" + std::to_string(n)) != std::string::npos);
 }
 
-TEST_CASE("xi_1 and xi_2 vanish at the same places on every mesh, both ways") {
-  const double damped = std::sqrt(1 - 0.05 * 0.05);
-  struct Mesh {
-    int intervals, collocation;
-    double tolerance;
-  };
-  for (const Mesh& mesh : {Mesh{20, 3, 1e-5}, Mesh{50, 5, 1e-7}, Mesh{50, 6, 1e-7}, Mesh{100, 4, 1e-7},
-                           Mesh{200, 4, 1e-7}, Mesh{200, 6, 1e-7}})
-    for (const double way : {1.0, -1.0}) {
-      CAPTURE(mesh.intervals, mesh.collocation, way);
-      // xi_1 at 2 omega_d, xi_2 there and at 4 omega_d / 3.
-      const RecordedBranch branch =
-          grazing_oscillator(way > 0 ? 1.25 : 2.1, way * 0.05, 0.1, 40, 2, mesh.intervals, mesh.collocation);
-      std::vector<double> found;
-      for (const RecordedPoint* p : branch.special())
-        if (const double omega = p->orbit.par(1); omega > 1.25 && omega < 2.1) found.push_back(omega);
-      REQUIRE(found.size() == 2);
-      std::sort(found.begin(), found.end());
-      CHECK(std::abs(found[0] - 4 * damped / 3) < mesh.tolerance);
-      CHECK(std::abs(found[1] - 2 * damped) < mesh.tolerance);
-    }
+TEST_CASE("xi_1 and xi_2 vanish at the same places on coarse meshes of every order, both ways") {
+  check_zeros_of_two(20, 3, 1e-5);
+  check_zeros_of_two(50, 5, 1e-7);
+  check_zeros_of_two(50, 6, 1e-7);
+}
+
+TEST_CASE("xi_1 and xi_2 vanish at the same places on fine meshes, both ways", "[slow]") {
+  check_zeros_of_two(100, 4, 1e-7);
+  check_zeros_of_two(200, 4, 1e-7);
+  check_zeros_of_two(200, 6, 1e-7);
 }
 
 TEST_CASE("grazing-fold and grazing-flip of the normal forms") {

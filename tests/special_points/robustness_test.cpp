@@ -141,7 +141,7 @@ void check_all(const Variant& variant, double tolerance) {
 
 }  // namespace
 
-TEST_CASE("location does not depend on the mesh") {
+TEST_CASE("location does not depend on the mesh", "[slow]") {
   for (const int intervals : {50, 100, 200})
     for (const int collocation : {4, 5, 6}) check_all({.intervals = intervals, .collocation = collocation}, 1e-7);
 }
