@@ -50,7 +50,7 @@ std::vector<Value> values_of(const SweepTable& table, int start = 1) {
 }  // namespace
 
 TEST_CASE("rand3d, m = 0.28: up the attractor jumps at mu*, down it lasts to the fold") {
-  const MakefileRun chain("rand3d");
+  const MakefileRun chain("rand3d", "q.grazing_028");
   constexpr double contact = -0.798146332928, fold = -0.7999350433, step = 5e-5;
   const SweepTable table =
       sweep(chain, {"PAR(m)=0.28", "--over", "mu=-0.801:-0.797:81", "--penetration", "1", "--follow", "both"}, "both");
@@ -80,7 +80,7 @@ TEST_CASE("rand3d, m = 0.28: up the attractor jumps at mu*, down it lasts to the
 }
 
 TEST_CASE("rand3d, m = 0.39: no jump, one period more after the other towards mu*, as the composite map has them") {
-  const MakefileRun chain("rand3d");
+  const MakefileRun chain("rand3d", "q.grazing_039");
   constexpr double contact = -0.827105485379;
   const SweepTable far = sweep(chain, {"PAR(m)=0.39", "--over", "mu=-0.8271:-0.8235:73", "--penetration", "1"}, "far");
   std::vector<int> order;
@@ -112,7 +112,7 @@ TEST_CASE("rand3d, m = 0.39: no jump, one period more after the other towards mu
 }
 
 TEST_CASE("planar: one attractor through grazing, its multiplier jumps by r^2") {
-  const MakefileRun chain("planar");
+  const MakefileRun chain("planar", "q.grazing");
   const auto run = [&](std::vector<std::string> words, const std::string& name) {
     words.insert(words.begin(), {"sweep", "planar", "-q", "-p", chain.plugin(), "-o", name, "--over",
                                  "mu=0.998:1.002:20", "--lyapunov"});

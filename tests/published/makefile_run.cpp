@@ -49,7 +49,8 @@ Outcome MakefileRun::make(const std::vector<std::string>& words, const std::stri
   const bool names_target =
       std::any_of(words.begin(), words.end(), [](const std::string& word) { return word.front() != '-'; });
   if (!names_target)
-    for (const std::string& target : words_of(targets_)) all.push_back(target);
+    for (const std::string& target : words_of(targets_))
+      all.push_back(target.find('.') == std::string::npos ? target : folder_.file(out + "/" + target));
   return Process(all, folder_.file(""), logs_.file(std::to_string(++runs_))).wait(time_limit);
 }
 

@@ -11,7 +11,7 @@ namespace test_support {
 
 class MakefileRun {
  public:
-  /// Fails the test unless make succeeds.
+  /// `targets`: of the Makefile, or results by their names, as in q.NAME. Fails the test unless make succeeds.
   explicit MakefileRun(const std::string& problem, const std::string& targets = "all");
 
   /// Once more there is nothing to do; without -j2 every file is the same to the byte; `make clean` leaves nothing.
