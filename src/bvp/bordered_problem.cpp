@@ -81,11 +81,10 @@ void BorderedProblem::evaluate(const Orbit& x, OrbitResidual& residual) {
 }
 
 Linearization BorderedProblem::linearize(const Orbit& x, const OrbitVector& row, OrbitResidual& residual) {
-  if (&row != &row_) {
-    row_.states = row.states;
-    row_.durations = row.durations;
-    row_.globals = row.globals;
-  }
+  tangent_known_ = false;
+  row_.states = row.states;
+  row_.durations = row.durations;
+  row_.globals = row.globals;
   close(row);
   const auto integrals = static_cast<std::size_t>(system().integral_conditions());
   system().integral_gradients(x, reference_, condensed_.rule(), residual.integral.data(),
@@ -93,7 +92,6 @@ Linearization BorderedProblem::linearize(const Orbit& x, const OrbitVector& row,
   for (std::size_t h = 0; h < held_.size(); ++h)
     residual.integral[integrals + h] =
         held_[h].monitor->gradient(x, condensed_.rule(), rows_[1 + integrals + h]) - held_[h].value;
-  tangent_known_ = false;
   const Linearization outcome = condensed_.linearize(x, rows_, residual);
   if (outcome != Linearization::ready || !condition_) return outcome;
   if (!condition_->evaluate(condensed_, x)) return Linearization::condition_lost;
@@ -118,10 +116,12 @@ double BorderedProblem::at_ends(const OrbitVector& row, const OrbitVector& v) co
   return condensed_.shape().nodes() * sum + row.durations.dot(v.durations) + row.globals.dot(v.globals);
 }
 
-/// The determinant is proportional to what the row is of the tangent.
-double BorderedProblem::signed_distance(const OrbitVector& tangent) const {
-  const bool same_sign = (dot(row_, tangent) < 0.0) == (condensed_.closing_row_on(tangent) < 0.0);
-  return same_sign ? condensed_.signed_distance() : -condensed_.signed_distance();
+/// The determinant is proportional to the value of the first row on the vector that the others, stand-ins among them,
+/// annihilate; that of the closing row is one.
+double BorderedProblem::signed_distance() {
+  OrbitVector v = condensed_.make_vector();
+  condensed_.null_vector(v);
+  return dot(row_, v) < 0.0 ? -condensed_.signed_distance() : condensed_.signed_distance();
 }
 
 /// False when they do not reach what the condition asks for.
@@ -187,8 +187,8 @@ void BorderedProblem::know_tangent() {
 
 /// Changes dx along the tangent until row . dx = target.
 bool BorderedProblem::put_along(double target, OrbitVector& dx) const {
-  const double along = (target - dot(row_, dx)) / row_along_;
   if (row_along_ == 0.0) return false;
+  const double along = (target - dot(row_, dx)) / row_along_;
   array_functions().add(along, tangent_.states.data(), dx.states.data(), dx.states.size());
   dx.durations += along * tangent_.durations;
   dx.globals += along * tangent_.globals;

@@ -98,7 +98,8 @@ class BorderedProblem {
   /// `row` is copied.
   Linearization linearize(const Orbit& x, const OrbitVector& row, OrbitResidual& residual);
   void evaluate(const Orbit& x, OrbitResidual& residual);
-  /// Newton's correction, all conditions to zero, row . dx = target; false when the row is orthogonal to the tangent.
+  /// Newton's correction, all conditions to zero, row . dx = target; false when the row is exactly orthogonal to the
+  /// tangent.
   bool solve(const OrbitResidual& residual, double target, OrbitVector& dx);
   /// The same where the residual is that of the last linearisation; the tangent is found on the way.
   bool correct(const OrbitResidual& linearized, double target, OrbitVector& dx);
@@ -106,9 +107,8 @@ class BorderedProblem {
   void solve_across(const OrbitResidual& residual, OrbitVector& dx);
   /// All conditions unchanged, row . dx > 0 (if it is not zero).
   void find_tangent(OrbitVector& dx);
-  /// CondensedSystem::signed_distance(), with the sign that the determinant has with the branch's row itself. `tangent`
-  /// is one at the point of the last linearisation.
-  double signed_distance(const OrbitVector& tangent) const;
+  /// CondensedSystem::signed_distance(), with the sign that the determinant has with the branch's row itself.
+  double signed_distance();
   /// What stands for this row of a branch, on v.
   double at_ends(const OrbitVector& row, const OrbitVector& v) const;
   /// Largest residual, the condition's included.

@@ -64,21 +64,6 @@ void CondensedSystem::find_null_vector() {
   lu_.solve(rhs_.data(), null_ends_.data());
 }
 
-double CondensedSystem::closing_row_on(const OrbitVector& v) const {
-  const double* row = closing_row_.data();
-  double sum = 0.0;
-  const auto add = [&](const double* entries, Eigen::Index count) {
-    for (Eigen::Index k = 0; k < count; ++k) sum += *row++ * entries[k];
-  };
-  for (int s = 0; s < shape_.segments; ++s) {
-    add(v.states.col(s * shape_.nodes()).data(), n_);
-    add(v.states.col((s + 1) * shape_.nodes() - 1).data(), n_);
-    add(&v.durations(s), 1);
-  }
-  add(v.globals.data(), globals_);
-  return sum;
-}
-
 /// From the ends of segments to all nodes.
 void CondensedSystem::expand(const std::vector<double>& ends, RightHandSide right, OrbitVector& dx) {
   segment_work_.each(shape_.segments,

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <functional>
+#include <numeric>
 
 #include "bvp/with_dimension.hpp"
 #include "linear_algebra/array_kernel.hpp"
@@ -168,18 +170,21 @@ Linearization CondensedSystem::linearize(const Orbit& x, std::span<const OrbitVe
   return factorize() ? Linearization::ready : Linearization::singular;
 }
 
-/// What the segments and the border leave. The closing row has a right-hand side of one in the null vector z, which is
-/// long where the two are nearly orthogonal: the cosine of their angle is 1 / (|row| |z|).
+/// What the segments and the border leave. The closing row has a value of one on the null vector z: the terms of that
+/// sum tell how much of it they take from each other, whatever the units of the unknowns are.
 bool CondensedSystem::factorize() {
-  constexpr double least_cosine = 1e-3;  // digits that solutions may lose
-  const bool factored = lu_.factorize(triplet_values_);
+  constexpr double most_cancelled = 1e3;  // digits that solutions may lose
+  bool known = lu_.factorize(triplet_values_);
   closing_row_gave_way_ = false;
-  if (closing_ == 0) return factored;
-  if (factored) {
+  if (closing_ == 0) return known;
+  if (known) {
     find_null_vector();
-    if (norm(closing_row_) * norm(null_ends_) * least_cosine < 1.0) return true;
+    const double terms = std::transform_reduce(closing_row_.begin(), closing_row_.end(), null_ends_.begin(), 0.0,
+                                               std::plus<>(), [](double a, double z) { return std::abs(a * z); });
+    if (terms < most_cancelled) return true;
+    known = std::isfinite(norm(null_ends_));
   }
-  return close_along_null_vector(factored);
+  return close_along_null_vector(known);
 }
 
 /// Of a matrix that is singular with the closing row it becomes known with one that is orthogonal to hardly anything.

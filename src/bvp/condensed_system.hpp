@@ -7,9 +7,9 @@
 ///
 /// Border rows are general linear functionals of the unknowns, given as dual vectors. Each takes part in the
 /// elimination of every interval, but for a closing row, which has entries at the ends of segments alone, for durations
-/// and free parameters, and costs nothing there. It serves to find the vector that all other rows annihilate; where it
-/// is nearly orthogonal to that (or zero), that vector itself takes its place. What a general row is to say is said
-/// with a closing row and one more solution (BorderedProblem).
+/// and free parameters, and costs nothing there. It serves to find the vector that all other rows annihilate; where
+/// hardly a digit of its value on that is right (or it is zero), that vector itself takes its place. What a general row
+/// is to say is said with a closing row and one more solution (BorderedProblem).
 ///
 /// Where there is enough work for several threads, they share it by segments, or within each segment where there are
 /// few of these. What is left for SparseLu one thread does. Results are the same to the last bit for any number.
@@ -80,8 +80,7 @@ class CondensedSystem {
   /// null vector.
   void solve_both(const OrbitResidual& linearized, std::span<const double> border, OrbitVector& dx, OrbitVector& v);
 
-  /// The closing row of the last linearisation on v, and whether it is another one than that given.
-  double closing_row_on(const OrbitVector& v) const;
+  /// Is the closing row of the last linearisation another one than that given?
   bool closing_row_gave_way() const { return closing_row_gave_way_; }
 
   /// Row-major n x n blocks A_s and C_s: on every segment a flow perturbation satisfies A_s v(0) + C_s v(1) = 0.
@@ -103,7 +102,7 @@ class CondensedSystem {
   void extend_adjoint(const double* weights, std::vector<double>& collocation);
 
   /// The determinant of the bordered J as sign * 2^log2_size; sign 0 when it is singular. Its sign does not depend on
-  /// the mesh, its size does.
+  /// the mesh but for that of the closing row on the null vector, its size does.
   struct Determinant {
     int sign = 0;
     double log2_size = 0.0;

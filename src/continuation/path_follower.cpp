@@ -42,8 +42,8 @@ PathFollower::PathFollower(const DefiningSystem& system, const OrbitShape& shape
 }
 
 PathPoint PathFollower::make_point(Orbit orbit) const {
-  const PathTrail trail(orbit.shape, system_.free_count());
-  return {std::move(orbit), condensed().make_vector(), condensed().make_vector(), unused_, trail};
+  PathTrail trail(orbit.shape, system_.free_count());
+  return {std::move(orbit), condensed().make_vector(), condensed().make_vector(), unused_, std::move(trail)};
 }
 
 OrbitVector PathFollower::principal_row(const Orbit& x) const {
@@ -78,8 +78,10 @@ double PathFollower::alignment(const PathPoint& point, const OrbitVector& direct
 
 double PathFollower::cosine_at_ends(const PathPoint& from, const PathPoint& to) const {
   if (condensed().closing_row_gave_way()) return 1.0;
-  return problem_.at_ends(from.dual, to.tangent) /
-         std::sqrt(std::abs(problem_.at_ends(from.dual, from.tangent) * problem_.at_ends(to.dual, to.tangent)));
+  const double cosine =
+      problem_.at_ends(from.dual, to.tangent) /
+      std::sqrt(std::abs(problem_.at_ends(from.dual, from.tangent) * problem_.at_ends(to.dual, to.tangent)));
+  return std::isfinite(cosine) ? cosine : 1.0;
 }
 
 double PathFollower::distance(const Orbit& a, const Orbit& b) const {

@@ -100,12 +100,13 @@ class PathFollower {
   const std::vector<HeldMonitor>& held() const { return problem_.held(); }
   /// Cosine of the angle between the point's tangent and a direction, in the weighted norm.
   double alignment(const PathPoint& point, const OrbitVector& direction) const;
-  /// To a singular problem, at the point whose linearisation is held (BorderedProblem::signed_distance).
-  double signed_distance(const PathPoint& point) const { return problem_.signed_distance(point.tangent); }
   /// The same between the tangents of two points of one shape, of which only the ends of segments, durations and free
   /// parameters count: what the border of the second one's factors has of its tangent after a step from the first.
   /// 1 where that border is the tangent itself (CondensedSystem::closing_row_gave_way).
   double cosine_at_ends(const PathPoint& from, const PathPoint& to) const;
+
+  /// To a singular problem, at the point whose linearisation is held (BorderedProblem::signed_distance).
+  double signed_distance() { return problem_.signed_distance(); }
 
   /// The length of the difference of two orbits on one mesh, in the weighted norm.
   double distance(const Orbit& a, const Orbit& b) const;

@@ -1,6 +1,7 @@
 #include "continuation/path_trail.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -242,7 +243,13 @@ std::shared_ptr<PathTrail::Mark> PathTrail::unused_mark() {
   return mark;
 }
 
+void PathTrail::clear() {
+  marks_.fill(nullptr);
+  count_ = 0;
+}
+
 void PathTrail::follow(const PathPoint& from, const std::vector<int>& free_parameters) {
+  assert(this != &from.trail);
   mesh_ = from.orbit.mesh;
   marks_.fill(nullptr);
   count_ = from.trail.mesh_ == from.orbit.mesh ? std::min(from.trail.count_ + 1, most) : 1;

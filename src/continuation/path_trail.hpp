@@ -36,7 +36,7 @@ class PathTrail {
   ~PathTrail() = default;
 
   bool empty() const { return count_ == 0; }
-  void clear() { count_ = 0; }
+  void clear();
 
   /// The trail of a point that was reached from this one: its trail and itself.
   void follow(const PathPoint& from, const std::vector<int>& free_parameters);

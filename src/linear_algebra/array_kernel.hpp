@@ -2,7 +2,8 @@
 ///
 /// Like those of lane_kernel.hpp the functions are compiled for several kinds of processors, one of which is chosen
 /// when the program runs, and all of them do the same operations in the same order: entry i belongs to lane i % 4 of
-/// sum i / 4 % 4 while 16 are left, the rest to the first sum.
+/// sum i / 4 % 4 while 16 are left, the rest to the first sum (where several arrays are summed at once, of the one sum
+/// that each has).
 #pragma once
 
 #include "linear_algebra/lane_kernel.hpp"

@@ -16,7 +16,7 @@ namespace {
 std::size_t at(std::ptrdiff_t i) { return static_cast<std::size_t>(i); }
 
 /// Blocks that hold more than this times the entries of the matrix do not pay.
-constexpr std::ptrdiff_t most_blown_up = 8;
+constexpr std::ptrdiff_t most_blown_up = 5;
 
 }  // namespace
 
@@ -48,6 +48,8 @@ class FrontalLu::Plan {
   }
 
   int groups() const { return static_cast<int>(rows_of_groups_.size()); }
+  /// Then the fronts are of no use.
+  bool blown_up() const { return area_ > most_blown_up * std::ssize(rows_); }
 
   /// Fronts of these groups, the last one of all of them; its number.
   int add(int first, int last, std::vector<Front>& fronts) {
@@ -87,6 +89,8 @@ class FrontalLu::Plan {
     front.pivots = static_cast<int>(others - all.begin());
     front.columns = all;
     front.width = static_cast<int>(all.size());
+    area_ += std::ptrdiff_t{front.rows + front.border} * front.width;
+    if (blown_up()) return;
     for (Child& child : front.children) {
       const Front& from = fronts[at(child.front)];
       for (auto column = from.columns.begin() + from.pivots; column != from.columns.end(); ++column)
@@ -124,6 +128,7 @@ class FrontalLu::Plan {
   std::span<const int> rows_, columns_, groups_;
   std::vector<int> first_, last_;  // groups with entries in a column
   std::vector<bool> eliminated_;   // columns
+  std::ptrdiff_t area_ = 0;        // of the blocks so far
   std::vector<int> border_;        // rows
   std::vector<std::vector<int>> rows_of_groups_, entries_of_rows_;
 };
@@ -135,6 +140,7 @@ std::optional<FrontalLu> FrontalLu::make(int size, std::span<const int> rows, st
   Plan plan(size, rows, columns, groups);
   if (plan.groups() == 0) return std::nullopt;
   plan.add(0, plan.groups(), lu.fronts_);
+  if (plan.blown_up()) return std::nullopt;
   std::ptrdiff_t block = 0, right = 0, swaps = 0;
   int widest = 0;
   for (Front& front : lu.fronts_) {
@@ -145,7 +151,7 @@ std::optional<FrontalLu> FrontalLu::make(int size, std::span<const int> rows, st
     widest = std::max(widest, front.width);
   }
   const Front& last = lu.fronts_.back();
-  if (swaps != size || last.rows != last.pivots || block > most_blown_up * std::ssize(rows)) return std::nullopt;
+  if (swaps != size || last.rows != last.pivots) return std::nullopt;
   lu.entry_rows_.assign(rows.begin(), rows.end());
   lu.scales_.resize(at(size));
   lu.blocks_.resize(at(block));
@@ -181,7 +187,7 @@ bool FrontalLu::eliminate_pivots(const Front& front, double* block) {
   if (!last)
     for (int j = 0; j < front.pivots; ++j) {
       double& size = column_sizes_[at(j)] = 0.0;
-      for (int i = 0; i < front.rows; ++i) size = std::max(size, std::abs(block[i * front.width + j]));
+      for (int i = 0; i < front.rows + front.border; ++i) size = std::max(size, std::abs(block[i * front.width + j]));
     }
   if (!eliminate(DynamicSizes{front.rows, front.pivots, front.width}, block, front.border, swaps_.data() + front.swaps))
     return false;
@@ -269,13 +275,17 @@ void FrontalLu::give_back(const Front& front, const double* weights, double* x) 
   for (const int row : front.own_rows) x[row] = *own++ * scales_[at(row)];
 }
 
-std::vector<double> FrontalLu::pivots() const {
-  std::vector<double> result;
+std::pair<int, double> FrontalLu::determinant() const {
+  int sign = parity();
+  double log2_size = 0.0;
   for (const Front& front : fronts_)
-    for (int k = 0; k < front.pivots; ++k)
-      result.push_back(1.0 / blocks_[at(front.block + std::ptrdiff_t{k} * front.width + k)]);
-  for (std::size_t k = 0; k < result.size(); ++k) result[k] /= scales_[k];
-  return result;
+    for (int k = 0; k < front.pivots; ++k) {
+      const double reciprocal = blocks_[at(front.block + std::ptrdiff_t{k} * front.width + k)];
+      if (reciprocal < 0.0) sign = -sign;
+      log2_size -= std::log2(std::abs(reciprocal));
+    }
+  for (const double scale : scales_) log2_size -= std::log2(scale);
+  return {sign, log2_size};
 }
 
 /// That of the order in which columns are eliminated, times that of the rows that were chosen.

@@ -12,6 +12,7 @@
 
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace tchat {
@@ -33,9 +34,8 @@ class FrontalLu {
   void solve(const double* b, double* x);
   void solve_transposed(const double* b, double* x);
 
-  /// The factors' pivots, times the size of their rows: their product is the determinant but for parity().
-  std::vector<double> pivots() const;
-  int parity() const;
+  /// Its sign and the logarithm to base 2 of its magnitude, from the factors.
+  std::pair<int, double> determinant() const;
 
  private:
   /// Entry number `value` of those given to factorize() belongs at `place` of the block.
@@ -58,6 +58,7 @@ class FrontalLu {
   };
 
   FrontalLu() = default;
+  int parity() const;
   class Plan;
   void put_children(const Front& front, double* block) const;
   bool eliminate_pivots(const Front& front, double* block);

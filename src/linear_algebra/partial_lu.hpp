@@ -1,9 +1,9 @@
 /// Partial LU elimination of a small dense row-major block, the kernel of condensation (5.30-5.47).
 ///
 /// A block has `rows` + `border` rows and `width` columns. The first `pivots` columns are eliminated with partial
-/// pivoting among the first `rows` rows; border rows (integral conditions, the pseudo-arclength row) are eliminated
-/// too but never chosen as pivot rows. In place: afterwards the first `pivots` rows hold U and what it couples to, the
-/// multipliers stand below the diagonal, and the remaining rows hold the Schur complement.
+/// pivoting among the first `rows` rows; border rows (integral conditions, gradients that stand for those of a curve's
+/// condition) are eliminated too but never chosen as pivot rows. In place: afterwards the first `pivots` rows hold U
+/// and what it couples to, the multipliers stand below the diagonal, and the remaining rows hold the Schur complement.
 ///
 /// The sizes are a template parameter, so that small common sizes compile to unrolled code: FixedSizes, or
 /// DynamicSizes for all others. Columns are updated four pivots at a time, so that every entry right of the pivots is
@@ -115,8 +115,9 @@ void forward(const Sizes& sizes, const double* a, int border, const int* swaps, 
   for (int i = pivots; i < all_rows; ++i) rhs[i] -= detail::dot(a + i * width, rhs, pivots);
 }
 
-/// The transpose of `forward` without border rows: weights of the condensed rows (entries pivots..rows; the first
-/// `pivots` entries are zero) become the weights of the original rows, so that weighted sums agree.
+/// The transpose of `forward` without border rows (or with them counted among sizes.rows): weights of the rows that
+/// `forward` leaves (of the condensed ones alone, where the first `pivots` entries are zero) become the weights of the
+/// original rows, so that weighted sums agree.
 template <class Sizes>
 void forward_transposed(const Sizes& sizes, const double* a, const int* swaps, double* weights) {
   const int pivots = sizes.pivots, width = sizes.width;

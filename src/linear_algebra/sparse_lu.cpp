@@ -81,11 +81,8 @@ SparseLu::Determinant determinant_of(const SmallLu& lu, int size) {
 }
 
 SparseLu::Determinant determinant_of(const FrontalLu& lu) {
-  SparseLu::Determinant result{lu.parity(), 0.0};
-  for (const double pivot : lu.pivots()) {
-    if (pivot < 0.0) result.sign = -result.sign;
-    result.log2_size += std::log2(std::abs(pivot));
-  }
+  const auto [sign, log2_size] = lu.determinant();
+  const SparseLu::Determinant result{sign, log2_size};
   return std::isfinite(result.log2_size) ? result : SparseLu::Determinant{};
 }
 

@@ -12,7 +12,7 @@ namespace tchat {
 class SparseLu {
  public:
   /// The most rows of a matrix that is factored as a dense one.
-  static constexpr int most_dense_rows = 40;
+  static constexpr int most_dense_rows = 30;
 
   /// The pattern: entry k of the values given to `factorize` stands at (row[k], column[k]); repeated positions add up.
   /// `groups`: of the rows, if there are any (FrontalLu). Throws std::invalid_argument when a position is out of range.

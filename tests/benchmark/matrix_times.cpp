@@ -199,7 +199,7 @@ void print_matrix_times(int rounds) {
   print_line("    derivatives of the field at the collocation points", derivative_units, second);
   print_line("    local eliminations (1 by definition)", 1.0, second);
   print_line("    joins of intervals: their eliminations, in lanes", join_units, second);
-  print_line("    what couples the ends of segments (up to 40 rows): dense factors", factor_units, second);
+  print_line("    what couples the ends of segments (up to 30 rows): dense factors", factor_units, second);
   print_line("    the rest: interpolation, filling, gathering",
              linearize_units - derivative_units - 1.0 - join_units - factor_units, second);
   print_line("  solve, for the correction and the tangent", solve_units, second);

@@ -177,10 +177,12 @@ TEST_CASE("what stands for a branch's row gives the corrections, tangents and si
     with_row.solve(std::vector<double>{1.0}, expected);
     problem.find_tangent(tangent);
     CHECK(dot(rows[0], tangent) > 0.0);
+    REQUIRE(problem.solve(residual, 0.4, dx));  // after the tangent was taken
+    CHECK(dot(rows[0], dx) == Approx(0.4).margin(1e-9));
     tangent.scale(1.0 / dot(rows[0], tangent));
     CHECK(largest_difference(tangent, expected) < rounding * expected.states.cwiseAbs().maxCoeff());
 
-    const double distance = problem.signed_distance(tangent);
+    const double distance = problem.signed_distance();
     CHECK((distance < 0.0) == (with_row.determinant().sign < 0));
     negative += distance < 0.0 ? 1 : 0;
     opposite += problem.condensed().determinant().sign != with_row.determinant().sign ? 1 : 0;
