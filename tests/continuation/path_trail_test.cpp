@@ -143,3 +143,41 @@ TEST_CASE("a trail moves to another mesh with its point") {
     CHECK((branch.here.trail.mark(k).place.states.col(last) - before.mark(k).place.states.col(last)).norm() < 1e-12);
   CHECK(branch.error(0.1) < 1e-5);  // that of the interpolation between meshes; 1e-3 along the tangent
 }
+
+TEST_CASE("points share what their trails have in common, and never change each other's") {
+  Branch branch;
+  for (int k = 0; k < 3; ++k) branch.step(0.1);
+  PathPoint copy = branch.here, assigned = branch.next;
+  assigned = branch.here;
+  REQUIRE(copy.trail.count() == 3);
+  std::vector<Eigen::MatrixXd> places, tangents;
+  for (int k = 0; k < 3; ++k) {
+    places.push_back(copy.trail.mark(k).place.states);
+    tangents.push_back(copy.trail.mark(k).tangent.states);
+  }
+  PathPoint first = copy;
+  REQUIRE(branch.orbits.follower.step(copy, 0.1, first).converged());
+
+  for (int k = 0; k < 6; ++k) branch.step(0.1);  // twice as many as a trail remembers
+  std::vector<double> mesh = branch.here.orbit.mesh;
+  mesh[1] *= 0.9;
+  branch.orbits.follower.change_mesh(branch.here, mesh);
+  PathPoint cleared = copy;
+  cleared.trail.clear();
+  CHECK(cleared.trail.empty());
+  cleared.trail.add(branch.next, alpha);
+  CHECK(cleared.trail.count() == 1);
+  for (const PathPoint* point : {&copy, &assigned}) {
+    REQUIRE(point->trail.count() == 3);
+    for (int k = 0; k < 3; ++k) {
+      CHECK(point->trail.mark(k).place.states == places[static_cast<std::size_t>(k)]);
+      CHECK(point->trail.mark(k).tangent.states == tangents[static_cast<std::size_t>(k)]);
+    }
+    PathPoint again = *point;
+    REQUIRE(branch.orbits.follower.linearize_at(*point));  // the factors that the first step had
+    REQUIRE(branch.orbits.follower.step(*point, 0.1, again).converged());
+    CHECK((again.orbit.states - first.orbit.states).cwiseAbs().maxCoeff() < 1e-11);
+    CHECK(again.trail.mark(0).place.states == point->orbit.states);
+    CHECK(again.trail.mark(1).place.states == places[0]);
+  }
+}
