@@ -82,6 +82,7 @@ void BorderedProblem::evaluate(const Orbit& x, OrbitResidual& residual) {
 
 Linearization BorderedProblem::linearize(const Orbit& x, const OrbitVector& row, OrbitResidual& residual) {
   tangent_known_ = false;
+  row_on_null_vector_.reset();
   row_.states = row.states;
   row_.durations = row.durations;
   row_.globals = row.globals;
@@ -119,9 +120,12 @@ double BorderedProblem::at_ends(const OrbitVector& row, const OrbitVector& v) co
 /// The determinant is proportional to the value of the first row on the vector that the others, stand-ins among them,
 /// annihilate; that of the closing row is one.
 double BorderedProblem::signed_distance() {
-  OrbitVector v = condensed_.make_vector();
-  condensed_.null_vector(v);
-  return dot(row_, v) < 0.0 ? -condensed_.signed_distance() : condensed_.signed_distance();
+  if (!row_on_null_vector_) {
+    OrbitVector v = condensed_.make_vector();
+    condensed_.null_vector(v);
+    row_on_null_vector_ = dot(row_, v);
+  }
+  return *row_on_null_vector_ < 0.0 ? -condensed_.signed_distance() : condensed_.signed_distance();
 }
 
 /// False when they do not reach what the condition asks for.
@@ -178,10 +182,13 @@ bool BorderedProblem::correct(const OrbitResidual& linearized, double target, Or
   return put_along(target, dx);
 }
 
-/// tangent_ is what the factors have of it.
+/// tangent_ is the null vector of the factors.
 void BorderedProblem::know_tangent() {
-  add_responses(Numbers::Zero(conditions()), tangent_);
-  row_along_ = dot(row_, tangent_);
+  row_on_null_vector_ = row_along_ = dot(row_, tangent_);
+  if (condition_) {
+    add_responses(Numbers::Zero(conditions()), tangent_);
+    row_along_ = dot(row_, tangent_);
+  }
   tangent_known_ = true;
 }
 

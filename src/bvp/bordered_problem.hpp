@@ -143,8 +143,9 @@ class BorderedProblem {
   std::vector<OrbitVector> responses_;  // solutions for a unit in the row of each stand-in
   Eigen::PartialPivLU<Slopes> slopes_;  // of grad G . responses
   OrbitVector tangent_;
-  double row_along_ = 0.0;      // row_ . tangent_
-  bool tangent_known_ = false;  // that of the last linearisation, and not yet taken
+  double row_along_ = 0.0;                    // row_ . tangent_
+  std::optional<double> row_on_null_vector_;  // of the last factors: without a condition the tangent
+  bool tangent_known_ = false;                // that of the last linearisation, and not yet taken
 };
 
 }  // namespace tchat
