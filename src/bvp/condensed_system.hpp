@@ -7,9 +7,9 @@
 ///
 /// Border rows are general linear functionals of the unknowns, given as dual vectors. Each takes part in the
 /// elimination of every interval, but for a closing row, which has entries at the ends of segments alone, for durations
-/// and free parameters, and costs nothing there. It serves to find the vector that all other rows annihilate; where
-/// hardly a digit of its value on that is right (or it is zero), that vector itself takes its place. What a general row
-/// is to say is said with a closing row and one more solution (BorderedProblem).
+/// and free parameters, and costs nothing there. It serves to find the vector that all other rows annihilate; where its
+/// value on that is a small difference of large terms, or the row is zero, that vector itself takes its place. What a
+/// general row is to say is said with a closing row and one more solution (BorderedProblem).
 ///
 /// Where there is enough work for several threads, they share it by segments, or within each segment where there are
 /// few of these. What is left for SparseLu one thread does. Results are the same to the last bit for any number.

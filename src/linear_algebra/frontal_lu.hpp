@@ -1,4 +1,5 @@
-/// LU of a sparse matrix whose rows come in groups along a chain or a ring, by frontal matrices.
+/// LU of a sparse matrix whose rows come in groups along a chain or a ring, by frontal matrices [I. S. Duff, J. K.
+/// Reid, SIAM J. Sci. Stat. Comput. 5 (1984) 633].
 ///
 /// A frontal matrix is a dense block of the rows of neighbouring groups. As soon as all rows are together in which a
 /// column has entries, the column is eliminated with pivoting among the rows there (partial_lu.hpp), and what is left
