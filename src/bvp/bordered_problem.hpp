@@ -5,16 +5,15 @@
 ///     J dx = -F,    grad I . dx = -I,    grad G . dx = -G,    row . dx = target       (n m N c + ... + m + q
 ///     equations)
 ///
-/// The gradient of an integral I, or of a monitor, is known before J is factored. That of G is known only after J has
-/// been condensed. So J is condensed with a stand-in for it, the gradient of the last linearisation, and the true
-/// gradient enters by a correction of rank one for each number: one more solution of the same factors.
+/// The branch's row and the gradients of G reach into all intervals, and would be eliminated from each; and that of G
+/// is known only after J has been condensed. What stands for them has entries at the ends of segments only, and costs
+/// nothing there (CondensedSystem): those of the row, and those that the gradients had at the last linearisation. Any
+/// rows serve that tell the vectors apart that all other rows annihilate: the true gradients enter by a correction of
+/// rank one for each number, a solution of the same factors, and the row itself along the tangent t,
 ///
-/// The branch's row reaches into all intervals, and would be eliminated from each. What stands for it has entries at
-/// the ends of segments only, and costs nothing there; any row serves that is not orthogonal to the tangent t, since
+///     dx = y + (target - row . y) / (row . t) t,
 ///
-///     dx = y + (target - row . y) / (row . t) t
-///
-/// has the right component along t, whatever y has. The tangent is wanted anyway.
+/// which is wanted anyway.
 ///
 /// A condition is found by iteration from where it was last: which multiplier it means, and the border of its own
 /// problem. A trial of Newton's method that fails leaves these anywhere. They belong to the point of the branch that
@@ -59,7 +58,7 @@ class OrbitCondition {
 /// What linearisations near a point of the branch begin from; empty without a condition.
 struct ConditionMemory {
   std::vector<double> condition;
-  std::vector<OrbitVector> stand_ins;
+  std::vector<EndVector> stand_ins;
 };
 
 /// A monitor that keeps this value.
@@ -107,7 +106,8 @@ class BorderedProblem {
   void solve_across(const OrbitResidual& residual, OrbitVector& dx);
   /// All conditions unchanged, row . dx > 0 (if it is not zero).
   void find_tangent(OrbitVector& dx);
-  /// CondensedSystem::signed_distance(), with the sign that the determinant has with the branch's row itself.
+  /// CondensedSystem::signed_distance(), with the sign that the determinant has with the branch's row and the
+  /// condition's gradients themselves, and zero where these do not reach what J leaves open.
   double signed_distance();
   /// What stands for this row of a branch, on v.
   double at_ends(const OrbitVector& row, const OrbitVector& v) const;
@@ -118,34 +118,34 @@ class BorderedProblem {
   using Numbers = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, OrbitCondition::most, 1>;
   using Slopes = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, OrbitCondition::most, OrbitCondition::most>;
 
-  void close(const OrbitVector& row);
+  void close(const OrbitVector& row, EndVector& closing) const;
   bool find_responses();
   void follow_gradients();
   Numbers minus_condition() const;
   void add_responses(Numbers wanted, OrbitVector& dx) const;
   void know_tangent();
+  void complete_tangent();
   bool put_along(double target, OrbitVector& dx) const;
   int conditions() const { return condition_ ? condition_->count() : 0; }
-  OrbitVector& stand_in(int k) { return rows_[rows_.size() - responses_.size() + static_cast<std::size_t>(k)]; }
-  /// The border's right-hand side with minus these in the rows of the integrals, zero in the others but for a one in
-  /// the row of stand-in `unit` (-1: none).
-  std::span<const double> border(const std::vector<double>& integrals, int unit = -1);
+  EndVector& stand_in(int k) { return closing_[1 + static_cast<std::size_t>(k)]; }
+  double slope_cosine() const;
+  /// The border's right-hand side with minus these in the rows of the integrals, zero in the others.
+  std::span<const double> border(const std::vector<double>& integrals);
 
   CondensedSystem condensed_;
   std::unique_ptr<OrbitCondition> condition_;
   std::vector<HeldMonitor> held_;
-  OrbitVector row_;                // the branch's
-  std::vector<OrbitVector> rows_;  // what stands for it, gradients of integrals and held monitors, stand-ins for those
-                                   // of G
-  std::vector<double> border_;     // right-hand side of these
-  std::vector<double> unchanged_;  // integrals and monitors that keep their values
-  Orbit reference_;                // only where there are integrals
+  OrbitVector row_;                     // the branch's
+  std::vector<EndVector> closing_;      // what stands for it, and for the gradients of G
+  EndVector next_stand_in_;
+  std::vector<OrbitVector> gradients_;  // of integrals and held monitors
+  std::vector<double> border_;          // right-hand side of all these
+  Orbit reference_;                     // only where there are integrals
   std::vector<OrbitVector> responses_;  // solutions for a unit in the row of each stand-in
   Eigen::PartialPivLU<Slopes> slopes_;  // of grad G . responses
   OrbitVector tangent_;
-  double row_along_ = 0.0;                    // row_ . tangent_
-  std::optional<double> row_on_null_vector_;  // of the last factors: without a condition the tangent
-  bool tangent_known_ = false;                // that of the last linearisation, and not yet taken
+  bool tangent_known_ = false;       // that of the last linearisation, and not yet taken
+  std::optional<double> row_along_;  // row_ . tangent_ of the last linearisation, taken or not
 };
 
 }  // namespace tchat

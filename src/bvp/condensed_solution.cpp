@@ -19,21 +19,22 @@ void CondensedSystem::solve(const OrbitResidual& residual, std::span<const doubl
   expand(solution_, RightHandSide::condensed, dx);
 }
 
-void CondensedSystem::null_vector(OrbitVector& v) {
-  if (closing_ == 0) find_null_vector();
-  expand(null_ends_, RightHandSide::zero, v);
+void CondensedSystem::null_vector(OrbitVector& v, int closing_row) {
+  if (closing_ == 0) find_null_vectors();
+  expand(null_ends_[index(closing_row)], RightHandSide::zero, v);
 }
 
 void CondensedSystem::solve_both(const OrbitResidual& linearized, std::span<const double> border, OrbitVector& dx,
                                  OrbitVector& v) {
   solve_ends(own_rhs_, linearized, border);
-  if (closing_ == 0) find_null_vector();
+  if (closing_ == 0) find_null_vectors();
+  const EndVector& null_ends = null_ends_.front();
   segment_work_.each(shape_.segments, [&](int s, int thread) {
     elimination_.expand_both(s, in_segment(s, solution_, RightHandSide::own, dx),
-                             in_segment(s, null_ends_, RightHandSide::zero, v), thread);
+                             in_segment(s, null_ends, RightHandSide::zero, v), thread);
   });
   put_globals(solution_, dx);
-  put_globals(null_ends_, v);
+  put_globals(null_ends, v);
 }
 
 /// solution_ from the right-hand sides of the condensed rows of segments, -residual of the coupling rows, and `border`.
@@ -51,32 +52,35 @@ void CondensedSystem::solve_ends(const BlockArray<double>& condensed, const Orbi
 }
 
 /// The same for F = 0: what is zero in the segments stays zero when it is condensed.
-void CondensedSystem::solve_ends(std::span<const double> border, std::vector<double>& ends) {
+void CondensedSystem::solve_ends(std::span<const double> border, EndVector& ends) {
   std::fill(rhs_.begin(), rhs_.end() - border_, 0.0);
   std::copy_n(border.data(), border_, border_rhs());
   lu_.solve(rhs_.data(), ends.data());
 }
 
 /// null_ends_ from the factors.
-void CondensedSystem::find_null_vector() {
+void CondensedSystem::find_null_vectors() {
   std::fill(rhs_.begin(), rhs_.end(), 0.0);
-  border_rhs()[0] = 1.0;
-  lu_.solve(rhs_.data(), null_ends_.data());
+  for (std::size_t r = 0; r < null_ends_.size(); ++r) {
+    border_rhs()[r] = 1.0;
+    lu_.solve(rhs_.data(), null_ends_[r].data());
+    border_rhs()[r] = 0.0;
+  }
 }
 
 /// From the ends of segments to all nodes.
-void CondensedSystem::expand(const std::vector<double>& ends, RightHandSide right, OrbitVector& dx) {
+void CondensedSystem::expand(const EndVector& ends, RightHandSide right, OrbitVector& dx) {
   segment_work_.each(shape_.segments,
                      [&](int s, int thread) { elimination_.expand(s, in_segment(s, ends, right, dx), thread); });
   put_globals(ends, dx);
 }
 
-SegmentSolution CondensedSystem::in_segment(int s, const std::vector<double>& ends, RightHandSide right,
+SegmentSolution CondensedSystem::in_segment(int s, const EndVector& ends, RightHandSide right,
                                             OrbitVector& dx) const {
   return {right, &ends[index(start_unknown(s))], &ends[index(global_unknown(0))], &dx};
 }
 
-void CondensedSystem::put_globals(const std::vector<double>& ends, OrbitVector& dx) const {
+void CondensedSystem::put_globals(const EndVector& ends, OrbitVector& dx) const {
   for (int g = 0; g < globals_; ++g) dx.globals(g) = ends[index(global_unknown(g))];
 }
 

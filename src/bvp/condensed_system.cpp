@@ -24,8 +24,41 @@ int total_coupling_rows(const DefiningSystem& system) {
   return total;
 }
 
-double norm(const std::vector<double>& v) {
-  return std::sqrt(array_functions().dot(v.data(), v.data(), static_cast<long>(v.size())));
+double dot(const EndVector& a, const EndVector& b) {
+  return array_functions().dot(a.data(), b.data(), static_cast<long>(a.size()));
+}
+
+/// A closing row has a value of one on its null vector: the terms of that sum tell how much of it they take from each
+/// other, whatever the units of the unknowns are.
+bool are_pronounced(std::span<const EndVector> closing, const std::vector<EndVector>& null_vectors) {
+  constexpr double most_cancelled = 1e3;  // digits that solutions may lose
+  return std::equal(closing.begin(), closing.end(), null_vectors.begin(), [](const EndVector& row, const EndVector& z) {
+    return std::transform_reduce(row.begin(), row.end(), z.begin(), 0.0, std::plus<>(),
+                                 [](double a, double b) { return std::abs(a * b); }) < most_cancelled;
+  });
+}
+
+bool are_finite(const std::vector<EndVector>& rows) {
+  return std::all_of(rows.begin(), rows.end(), [](const EndVector& row) { return std::isfinite(dot(row, row)); });
+}
+
+void put_any_rows(std::vector<EndVector>& rows) {
+  for (std::size_t r = 0; r < rows.size(); ++r)
+    for (std::size_t k = 0; k < rows[r].size(); ++k)
+      rows[r][k] = std::cos(1.0 + (0.37 + 0.29 * static_cast<double>(r)) * static_cast<double>(k));
+}
+
+/// Gram and Schmidt, each row twice, as it may nearly depend on those before.
+void make_orthonormal(std::vector<EndVector>& rows) {
+  const auto add = [](double factor, const EndVector& from, EndVector& to) {
+    array_functions().add(factor, from.data(), to.data(), static_cast<long>(to.size()));
+  };
+  for (std::size_t r = 0; r < rows.size(); ++r)
+    for (int round = 0; round < 2; ++round) {
+      for (std::size_t before = 0; before < r; ++before) add(-dot(rows[before], rows[r]), rows[before], rows[r]);
+      const double length = std::sqrt(dot(rows[r], rows[r]));
+      for (double& entry : rows[r]) entry /= length;
+    }
 }
 
 std::vector<double> zeros(std::ptrdiff_t count) { return std::vector<double>(static_cast<std::size_t>(count), 0.0); }
@@ -86,8 +119,8 @@ CondensedSystem::CondensedSystem(const DefiningSystem& system, const OrbitShape&
   segment_rhs_ = own_rhs_;
   triplet_values_.resize(triplet_rows_.size());
   rhs_ = zeros(lu_.size());
-  solution_ = null_ends_ = rhs_;
-  if (closing_ > 0) closing_row_ = rhs_;
+  solution_ = rhs_;
+  null_ends_.assign(index(std::max(closing_, 1)), rhs_);
   x_ = slope_ = zeros(n_);
 }
 
@@ -161,56 +194,55 @@ void CondensedSystem::evaluate(const Orbit& x, OrbitResidual& residual) {
 
 // ---- linearisation --------------------------------------------------------------------------------------------------
 
-Linearization CondensedSystem::linearize(const Orbit& x, std::span<const OrbitVector> rows, OrbitResidual& residual) {
-  const std::span<const OrbitVector> general = rows.subspan(index(closing_));
+Linearization CondensedSystem::linearize(const Orbit& x, std::span<const EndVector> closing,
+                                         std::span<const OrbitVector> general, OrbitResidual& residual) {
   const Linearization condensed =
       threads_.segments > 1 ? condense_together(x, general, residual) : condense_one_by_one(x, general, residual);
   if (condensed != Linearization::ready) return condensed;
-  if (!assemble(x, rows, residual)) return Linearization::not_finite;
-  return factorize() ? Linearization::ready : Linearization::singular;
+  if (!assemble(x, general, residual)) return Linearization::not_finite;
+  return factorize(closing) ? Linearization::ready : Linearization::singular;
 }
 
-/// What the segments and the border leave. The closing row has a value of one on the null vector z: the terms of that
-/// sum tell how much of it they take from each other, whatever the units of the unknowns are.
-bool CondensedSystem::factorize() {
-  constexpr double most_cancelled = 1e3;  // digits that solutions may lose
-  bool known = lu_.factorize(triplet_values_);
-  closing_row_gave_way_ = false;
-  if (closing_ == 0) return known;
-  if (known) {
-    find_null_vector();
-    const double terms = std::transform_reduce(closing_row_.begin(), closing_row_.end(), null_ends_.begin(), 0.0,
-                                               std::plus<>(), [](double a, double z) { return std::abs(a * z); });
-    if (terms < most_cancelled) return true;
-    known = std::isfinite(norm(null_ends_));
+/// What the segments and the border leave. A matrix that is singular with its closing rows becomes known with others
+/// that are orthogonal to hardly anything. Null vectors that are known to few digits are known to more with closing
+/// rows along them.
+bool CondensedSystem::factorize(std::span<const EndVector> closing) {
+  constexpr int most_rounds = 3;
+  closing_rows_gave_way_ = false;
+  if (closing_ == 0) return lu_.factorize(triplet_values_);
+  bool known = factorize_with(closing);
+  if (known && are_pronounced(closing, null_ends_)) return true;
+  closing_rows_gave_way_ = true;
+  std::vector<EndVector> rows = null_ends_;
+  if (!known || !are_finite(rows)) {
+    put_any_rows(rows);
+    if (!factorize_with(rows)) return false;
+    rows = null_ends_;
   }
-  return close_along_null_vector(known);
-}
-
-/// Of a matrix that is singular with the closing row it becomes known with one that is orthogonal to hardly anything.
-bool CondensedSystem::close_along_null_vector(bool known) {
-  closing_row_gave_way_ = true;
-  if (!known) {
-    for (std::size_t k = 0; k < closing_row_.size(); ++k)
-      closing_row_[k] = std::cos(1.0 + 0.37 * static_cast<double>(k));
-    std::copy(closing_row_.begin(), closing_row_.end(), triplet_values_.begin() + closing_place_);
-    if (!lu_.factorize(triplet_values_)) return false;
-    find_null_vector();
+  for (int round = 0; round < most_rounds; ++round) {
+    make_orthonormal(rows);
+    known = factorize_with(rows);
+    if (!known || are_pronounced(rows, null_ends_)) break;
+    rows = null_ends_;
   }
-  const double length = norm(null_ends_);
-  std::transform(null_ends_.begin(), null_ends_.end(), closing_row_.begin(),
-                 [length](double entry) { return entry / length; });
-  std::copy(closing_row_.begin(), closing_row_.end(), triplet_values_.begin() + closing_place_);
-  null_ends_ = closing_row_;  // of unit length
-  return lu_.factorize(triplet_values_);
+  return known;
 }
 
-Linearization CondensedSystem::condense_one_by_one(const Orbit& x, std::span<const OrbitVector> rows,
+/// With these closing rows, and the null vectors that belong to them.
+bool CondensedSystem::factorize_with(std::span<const EndVector> closing) {
+  auto place = triplet_values_.begin() + closing_place_;
+  for (const EndVector& row : closing) place = std::copy(row.begin(), row.end(), place);
+  if (!lu_.factorize(triplet_values_)) return false;
+  find_null_vectors();
+  return true;
+}
+
+Linearization CondensedSystem::condense_one_by_one(const Orbit& x, std::span<const OrbitVector> general,
                                                    OrbitResidual& residual) {
   for (int s = 0; s < shape_.segments; ++s) {
     const Linearization outcome =
         elimination_.condense(s, system_.system(), system_.signature()[index(s)].field, system_.free_parameters(), x,
-                              rows, &residual.collocation[index(collocation_row(s))]);
+                              general, &residual.collocation[index(collocation_row(s))]);
     if (outcome != Linearization::ready) return outcome;
     keep_segment_blocks(s);
   }
@@ -219,7 +251,7 @@ Linearization CondensedSystem::condense_one_by_one(const Orbit& x, std::span<con
 
 /// Segments are filled by this thread one after the other, and eliminated by any. What is told is what the first one
 /// says that is not ready.
-Linearization CondensedSystem::condense_together(const Orbit& x, std::span<const OrbitVector> rows,
+Linearization CondensedSystem::condense_together(const Orbit& x, std::span<const OrbitVector> general,
                                                  OrbitResidual& residual) {
   std::fill(outcomes_.begin(), outcomes_.end(), Linearization::ready);
   segment_work_.run(
@@ -227,7 +259,7 @@ Linearization CondensedSystem::condense_together(const Orbit& x, std::span<const
       [&](int s) {
         const bool finite =
             elimination_.fill(s, system_.system(), system_.signature()[index(s)].field, system_.free_parameters(), x,
-                              rows, &residual.collocation[index(collocation_row(s))]);
+                              general, &residual.collocation[index(collocation_row(s))]);
         if (!finite) outcomes_[index(s)] = Linearization::not_finite;
         return finite;
       },
@@ -258,8 +290,8 @@ void CondensedSystem::keep_segment_blocks(int s) {
   }
 }
 
-/// The matrix that SparseLu sees, in the order of make_sparse().
-bool CondensedSystem::assemble(const Orbit& x, std::span<const OrbitVector> rows, OrbitResidual& residual) {
+/// The matrix that SparseLu sees, in the order of make_sparse(), but for closing rows.
+bool CondensedSystem::assemble(const Orbit& x, std::span<const OrbitVector> general, OrbitResidual& residual) {
   double* value = triplet_values_.data();
   double* coupling = residual.coupling.data();
   for (int s = 0; s < shape_.segments; ++s) {
@@ -274,23 +306,10 @@ bool CondensedSystem::assemble(const Orbit& x, std::span<const OrbitVector> rows
     value = system_.coupling_derivatives(s, x, coupling, value);
     coupling += system_.coupling_rows(s);
   }
-  if (closing_ > 0) {
-    take_closing_row(rows.front());
-    closing_place_ = value - triplet_values_.data();
-    value = std::copy(closing_row_.begin(), closing_row_.end(), value);
-  }
-  for (int r = 0; r < general_; ++r) value = put_general_row(r, rows[index(closing_ + r)], value);
+  closing_place_ = value - triplet_values_.data();  // what stands there is put by factorize_with()
+  value += closing_ * lu_.size();
+  for (int r = 0; r < general_; ++r) value = put_general_row(r, general[index(r)], value);
   return residual.finite();
-}
-
-void CondensedSystem::take_closing_row(const OrbitVector& row) {
-  double* value = closing_row_.data();
-  for (int s = 0; s < shape_.segments; ++s) {
-    value = std::copy_n(row.states.col(s * shape_.nodes()).data(), n_, value);
-    value = std::copy_n(row.states.col((s + 1) * shape_.nodes() - 1).data(), n_, value);
-    *value++ = row.durations(s);
-  }
-  std::copy_n(row.globals.data(), globals_, value);
 }
 
 /// Number r of the general rows, condensed; the weights of the scalars themselves were left out there.

@@ -6,10 +6,10 @@
 /// segments. Work and memory are linear in m and N. All arrays are allocated when the object is made.
 ///
 /// Border rows are general linear functionals of the unknowns, given as dual vectors. Each takes part in the
-/// elimination of every interval, but for a closing row, which has entries at the ends of segments alone, for durations
-/// and free parameters, and costs nothing there. It serves to find the vector that all other rows annihilate; where its
-/// value on that is a small difference of large terms, or the row is zero, that vector itself takes its place. What a
-/// general row is to say is said with a closing row and one more solution (BorderedProblem).
+/// elimination of every interval, but for closing rows, which have entries at the ends of segments alone, for durations
+/// and free parameters, and cost nothing there. They serve to find the vectors that all other rows annihilate; where
+/// the value of one on its own is a small difference of large terms, or zero, these vectors themselves take the places
+/// of all. What a general row is to say is said with a closing row and one more solution (BorderedProblem).
 ///
 /// Where there is enough work for several threads, they share it by segments, or within each segment where there are
 /// few of these. What is left for SparseLu one thread does. Results are the same to the last bit for any number.
@@ -39,12 +39,16 @@ struct OrbitResidual {
   bool finite() const;
 };
 
-/// Rows of the border: general ones, before them a closing one (read at the ends of segments only) or none.
+/// Rows of the border: closing ones, and after them general ones.
 struct BorderRows {
   int general = 0;
-  int closing = 0;  ///< 0 or 1
+  int closing = 0;
   int all() const { return general + closing; }
 };
+
+/// A vector or row of what is left between the segments: first node, last node and duration of each of them, then the
+/// free parameters.
+using EndVector = std::vector<double>;
 
 class CondensedSystem {
  public:
@@ -61,27 +65,34 @@ class CondensedSystem {
   const EliminationThreads& threads() const { return threads_; }
   OrbitResidual make_residual() const;
   OrbitVector make_vector() const { return OrbitVector(shape_, system_.free_count()); }
+  EndVector make_end_vector() const { return EndVector(index(lu_.size())); }
 
   /// F(x). The result may hold entries that are not finite.
   void evaluate(const Orbit& x, OrbitResidual& residual);
 
-  /// J(x) bordered by `rows` (b dual vectors), factored; F(x) on the way, but for the integral conditions, whose
-  /// gradients are among the rows. Where the closing row gives way, its right-hand side is one of what takes its place.
-  Linearization linearize(const Orbit& x, std::span<const OrbitVector> rows, OrbitResidual& residual);
+  /// J(x) bordered by these rows, the general ones given as dual vectors, and factored; F(x) on the way, but for the
+  /// integral conditions, whose gradients are among the general rows. Where closing rows give way, their right-hand
+  /// sides are those of what takes their places.
+  Linearization linearize(const Orbit& x, std::span<const EndVector> closing, std::span<const OrbitVector> general,
+                          OrbitResidual& residual);
+  /// The same without closing rows.
+  Linearization linearize(const Orbit& x, std::span<const OrbitVector> general, OrbitResidual& residual) {
+    return linearize(x, {}, general, residual);
+  }
 
   /// The solution of J dx = -F, rows dx = border. `border` has b entries; the integral conditions of `residual` are not
   /// read.
   void solve(const OrbitResidual& residual, std::span<const double> border, OrbitVector& dx);
   /// The same with F = 0.
   void solve(std::span<const double> border, OrbitVector& dx);
-  /// The solution for F = 0 and a one in the first border row.
-  void null_vector(OrbitVector& v);
+  /// The solution for F = 0 and a one in the first border row, or in another closing row.
+  void null_vector(OrbitVector& v, int closing_row = 0);
   /// Both at once, which takes little more than one: dx for the residual that linearize() found and `border`, and the
-  /// null vector.
+  /// first null vector.
   void solve_both(const OrbitResidual& linearized, std::span<const double> border, OrbitVector& dx, OrbitVector& v);
 
-  /// Is the closing row of the last linearisation another one than that given?
-  bool closing_row_gave_way() const { return closing_row_gave_way_; }
+  /// Are the closing rows of the last linearisation other ones than those given?
+  bool closing_rows_gave_way() const { return closing_rows_gave_way_; }
 
   /// Row-major n x n blocks A_s and C_s: on every segment a flow perturbation satisfies A_s v(0) + C_s v(1) = 0.
   const double* first_block(int s) const { return first_blocks_[s]; }
@@ -102,7 +113,7 @@ class CondensedSystem {
   void extend_adjoint(const double* weights, std::vector<double>& collocation);
 
   /// The determinant of the bordered J as sign * 2^log2_size; sign 0 when it is singular. Its sign does not depend on
-  /// the mesh but for that of the closing row on the null vector, its size does.
+  /// the mesh but for that of the closing rows on the null vectors, its size does.
   struct Determinant {
     int sign = 0;
     double log2_size = 0.0;
@@ -137,21 +148,20 @@ class CondensedSystem {
   SparseLu make_sparse();
   template <class Dimension>
   void interpolate(Dimension n, const Orbit& x, int s, int j, int gauss_point);
-  Linearization condense_one_by_one(const Orbit& x, std::span<const OrbitVector> rows, OrbitResidual& residual);
-  Linearization condense_together(const Orbit& x, std::span<const OrbitVector> rows, OrbitResidual& residual);
+  Linearization condense_one_by_one(const Orbit& x, std::span<const OrbitVector> general, OrbitResidual& residual);
+  Linearization condense_together(const Orbit& x, std::span<const OrbitVector> general, OrbitResidual& residual);
   void keep_segment_blocks(int s);
-  bool assemble(const Orbit& x, std::span<const OrbitVector> rows, OrbitResidual& residual);
-  void take_closing_row(const OrbitVector& row);
-  bool factorize();
-  void find_null_vector();
-  bool close_along_null_vector(bool known);
+  bool assemble(const Orbit& x, std::span<const OrbitVector> general, OrbitResidual& residual);
+  bool factorize(std::span<const EndVector> closing);
+  bool factorize_with(std::span<const EndVector> closing);
+  void find_null_vectors();
   double* put_general_row(int r, const OrbitVector& row, double* value) const;
   double* border_rhs() { return rhs_.data() + lu_.size() - border_; }
   void solve_ends(const BlockArray<double>& condensed, const OrbitResidual& residual, std::span<const double> border);
-  void solve_ends(std::span<const double> border, std::vector<double>& ends);
-  SegmentSolution in_segment(int s, const std::vector<double>& ends, RightHandSide right, OrbitVector& dx) const;
-  void expand(const std::vector<double>& ends, RightHandSide right, OrbitVector& dx);
-  void put_globals(const std::vector<double>& ends, OrbitVector& dx) const;
+  void solve_ends(std::span<const double> border, EndVector& ends);
+  SegmentSolution in_segment(int s, const EndVector& ends, RightHandSide right, OrbitVector& dx) const;
+  void expand(const EndVector& ends, RightHandSide right, OrbitVector& dx);
+  void put_globals(const EndVector& ends, OrbitVector& dx) const;
 
   const DefiningSystem& system_;
   OrbitShape shape_;
@@ -159,7 +169,7 @@ class CondensedSystem {
   int globals_;  // q
   int scalars_;  // duration and globals: 1 + q columns
   int border_;   // b
-  int closing_;  // 0 or 1
+  int closing_;  // of these
   int general_;  // the others
   CollocationRule rule_;
   EliminationThreads threads_;
@@ -179,12 +189,11 @@ class CondensedSystem {
   std::vector<int> triplet_columns_;
   std::vector<double> triplet_values_;
   SparseLu lu_;
-  std::vector<double> closing_row_;   // as SparseLu sees it
-  std::ptrdiff_t closing_place_ = 0;  // of it, in triplet_values_
-  bool closing_row_gave_way_ = false;
-  std::vector<double> rhs_;
-  std::vector<double> solution_;   // what SparseLu sees of dx
-  std::vector<double> null_ends_;  // and of the null vector; known after linearize() where a row closes
+  std::ptrdiff_t closing_place_ = 0;  // of closing rows, in triplet_values_
+  bool closing_rows_gave_way_ = false;
+  EndVector rhs_;
+  EndVector solution_;                // what SparseLu sees of dx
+  std::vector<EndVector> null_ends_;  // and of null vectors: one for each closing row, known after linearize()
 
   std::vector<double> x_, slope_;  // scratch of one collocation point
 };

@@ -77,7 +77,7 @@ double PathFollower::alignment(const PathPoint& point, const OrbitVector& direct
 }
 
 double PathFollower::cosine_at_ends(const PathPoint& from, const PathPoint& to) const {
-  if (condensed().closing_row_gave_way()) return 1.0;
+  if (condensed().closing_rows_gave_way()) return 1.0;
   const double cosine =
       problem_.at_ends(from.dual, to.tangent) /
       std::sqrt(std::abs(problem_.at_ends(from.dual, from.tangent) * problem_.at_ends(to.dual, to.tangent)));

@@ -31,6 +31,45 @@ Orbit any_orbit(const OrbitShape& shape, const ParameterVector& par) {
   return x;
 }
 
+/// Makes a row zero but at the ends of segments; what is left.
+EndVector keep_ends(OrbitVector& row, const OrbitShape& shape) {
+  EndVector ends;
+  for (int s = 0; s < shape.segments; ++s) {
+    const int first = s * shape.nodes(), last = first + shape.nodes() - 1;
+    row.states.middleCols(first + 1, last - first - 1).setZero();
+    for (const int column : {first, last})
+      for (int a = 0; a < shape.dimension; ++a) ends.push_back(row.states(a, column));
+    ends.push_back(row.durations(s));
+  }
+  ends.insert(ends.end(), row.globals.begin(), row.globals.end());
+  return ends;
+}
+
+/// And the other way round.
+void drop_ends(OrbitVector& row, const OrbitShape& shape) {
+  for (Eigen::Index k = 0; k < row.states.cols(); ++k)
+    if (k % shape.nodes() == 0 || k % shape.nodes() == shape.nodes() - 1) row.states.col(k).setZero();
+  row.durations.setZero();
+  row.globals.setZero();
+}
+
+/// Numbers with these values and gradients, whatever the orbit is.
+class GivenCondition final : public OrbitCondition {
+ public:
+  GivenCondition(std::vector<double> values, std::vector<OrbitVector> gradients)
+      : values_(std::move(values)), gradients_(std::move(gradients)) {}
+  int count() const override { return static_cast<int>(values_.size()); }
+  bool evaluate(CondensedSystem&, const Orbit&) override { return true; }
+  double value(int k) const override { return values_[static_cast<std::size_t>(k)]; }
+  const OrbitVector& gradient(int k) const override { return gradients_[static_cast<std::size_t>(k)]; }
+  void remember(std::vector<double>& memory) const override { memory.clear(); }
+  void recall(const std::vector<double>&) override {}
+
+ private:
+  std::vector<double> values_;
+  std::vector<OrbitVector> gradients_;
+};
+
 struct Case {
   int intervals, collocation;
   std::vector<int> free_parameters;
@@ -121,17 +160,19 @@ TEST_CASE("the determinant's sign follows the border and is comparable between n
   CHECK(condensed.determinant().sign == -sign);
 }
 
-TEST_CASE("a closing row, at the ends of segments alone, is the general row that is zero elsewhere") {
+TEST_CASE("closing rows, at the ends of segments alone, are the general rows that are zero elsewhere") {
   const PeriodicOrbitSystem system(system_of<ThreeModes>(), ThreeModes::signature(), {1, 2});
   const OrbitShape shape{3, 3, GENERATE(1, 6), 4};
+  const int closing_rows = GENERATE(1, 2);
   const Orbit x = any_orbit(shape, ThreeModes::par());
   std::vector<OrbitVector> rows;
-  CondensedSystem general(system, shape, {2, 0}), closing(system, shape, {1, 1});
+  CondensedSystem general(system, shape, {2, 0}), closing(system, shape, {2 - closing_rows, closing_rows});
   for (unsigned k = 0; k < 2; ++k) rows.push_back(random_vector(general, 3 + k));
+  std::vector<EndVector> ends;
+  for (int k = 0; k < closing_rows; ++k) ends.push_back(keep_ends(rows[static_cast<std::size_t>(k)], shape));
   OrbitResidual residual = general.make_residual();
-  REQUIRE(closing.linearize(x, rows, residual) == Linearization::ready);
-  for (Eigen::Index k = 0; k < rows[0].states.cols(); ++k)
-    if (k % shape.nodes() != 0 && k % shape.nodes() != shape.nodes() - 1) rows[0].states.col(k).setZero();
+  REQUIRE(closing.linearize(x, ends, std::span(rows).subspan(ends.size()), residual) == Linearization::ready);
+  CHECK_FALSE(closing.closing_rows_gave_way());
   REQUIRE(general.linearize(x, rows, residual) == Linearization::ready);
   const std::vector<double> border{0.3, -0.7};
   OrbitVector by_general = general.make_vector(), by_closing = by_general;
@@ -139,8 +180,52 @@ TEST_CASE("a closing row, at the ends of segments alone, is the general row that
   closing.solve(residual, border, by_closing);
   const double size = by_general.states.cwiseAbs().maxCoeff();
   CHECK(largest_difference(by_closing, by_general) < 1e-10 * size);
+  for (int k = 0; k < closing_rows; ++k) {
+    closing.null_vector(by_closing, k);
+    for (int r = 0; r < 2; ++r) CHECK(dot(rows[static_cast<std::size_t>(r)], by_closing) == Approx(r == k).margin(1e-9));
+  }
   CHECK(general.determinant().sign == closing.determinant().sign);
   CHECK(general.determinant().log2_size == Approx(closing.determinant().log2_size).margin(1e-9));
+}
+
+TEST_CASE("closing rows that do not tell the null vectors apart give way to rows that do") {
+  const PeriodicOrbitSystem system(system_of<ThreeModes>(), ThreeModes::signature(), {1, 2});
+  const OrbitShape shape{3, 3, 6, 4};
+  const Orbit x = any_orbit(shape, ThreeModes::par());
+  CondensedSystem condensed(system, shape, {0, 2});
+  OrbitVector row = random_vector(condensed, 3), other = random_vector(condensed, 4);
+  std::vector<EndVector> ends{keep_ends(row, shape), keep_ends(other, shape)};
+  // Equal, or different by this share of one of them; or one of them is zero.
+  const double share = GENERATE(0.0, 1e-15, 1e-9, 1e-4, -1.0);
+  for (std::size_t k = 0; k < ends[1].size(); ++k) ends[1][k] = share < 0.0 ? 0.0 : ends[0][k] + share * ends[1][k];
+  OrbitResidual residual = condensed.make_residual();
+  REQUIRE(condensed.linearize(x, ends, {}, residual) == Linearization::ready);
+  CHECK(condensed.closing_rows_gave_way());
+  OrbitVector v[2] = {condensed.make_vector(), condensed.make_vector()};
+  for (int k = 0; k < 2; ++k) condensed.null_vector(v[k], k);
+  // Closing rows of length one: null vectors that are not much longer, and are told apart, lose few digits.
+  std::vector<EndVector> of;
+  for (OrbitVector copy : v) of.push_back(keep_ends(copy, shape));
+  const auto product = [&](std::size_t k, std::size_t l) {
+    return std::inner_product(of[k].begin(), of[k].end(), of[l].begin(), 0.0);
+  };
+  CHECK(product(0, 0) < 100.0);
+  CHECK(product(1, 1) < 100.0);
+  CHECK(std::abs(product(0, 1)) < 0.9 * std::sqrt(product(0, 0) * product(1, 1)));
+  // They annihilate the linearisation: a short step along them changes the residual by its square.
+  OrbitResidual there = residual;
+  const double step = 1e-6;
+  for (const OrbitVector& direction : v) {
+    Orbit moved = x;
+    advance(moved, step, direction, system.free_parameters());
+    condensed.evaluate(moved, there);
+    double change = 0.0;
+    for (std::size_t k = 0; k < there.collocation.size(); ++k)
+      change = std::max(change, std::abs(there.collocation[k] - residual.collocation[k]));
+    for (std::size_t k = 0; k < there.coupling.size(); ++k)
+      change = std::max(change, std::abs(there.coupling[k] - residual.coupling[k]));
+    CHECK(change < 1e-3 * step);
+  }
 }
 
 TEST_CASE("what stands for a branch's row gives the corrections, tangents and signs that the row itself gives") {
@@ -155,16 +240,11 @@ TEST_CASE("what stands for a branch's row gives the corrections, tangents and si
   for (unsigned seed = 0; seed < 40; ++seed) {
     std::vector<OrbitVector> rows{random_vector(with_row, 100 + seed)};
     const bool inside = seed % 4 == 3;  // like the gradient of a monitor: nothing at the ends
-    if (inside) {
-      for (Eigen::Index k = 0; k < rows[0].states.cols(); ++k)
-        if (k % shape.nodes() == 0 || k % shape.nodes() == shape.nodes() - 1) rows[0].states.col(k).setZero();
-      rows[0].durations.setZero();
-      rows[0].globals.setZero();
-    }
+    if (inside) drop_ends(rows[0], shape);
     CAPTURE(shape.intervals, seed);
     REQUIRE(with_row.linearize(x, rows, residual) == Linearization::ready);
     REQUIRE(problem.linearize(x, rows[0], residual) == Linearization::ready);
-    CHECK(problem.condensed().closing_row_gave_way() == inside);
+    CHECK(problem.condensed().closing_rows_gave_way() == inside);
     // Rounding times the condition of the matrices, below 1e5; a random row may be nearly orthogonal to the tangent.
     const double rounding = 1e-9;
 
@@ -186,6 +266,65 @@ TEST_CASE("what stands for a branch's row gives the corrections, tangents and si
     CHECK((distance < 0.0) == (with_row.determinant().sign < 0));
     negative += distance < 0.0 ? 1 : 0;
     opposite += problem.condensed().determinant().sign != with_row.determinant().sign ? 1 : 0;
+  }
+  CHECK(negative > 5);
+  CHECK(negative < 35);
+  CHECK(opposite > 5);  // the sign has to be corrected for
+}
+
+TEST_CASE("what stands for a condition's gradients gives what they give themselves, beside a monitor that is held") {
+  const int numbers = GENERATE(1, 2);
+  const std::vector<int> free = numbers == 1 ? std::vector<int>{1, 3, 4} : std::vector<int>{1, 2, 3, 4};
+  const PeriodicOrbitSystem system(linosc(), {{1, 1, 1}, {1, 1, 1}}, free);
+  const OrbitShape shape{4, 2, GENERATE(1, 6), 4};
+  const Orbit x = any_orbit(shape, parameters({3.0, 2.0, 0.05, 0.8}));
+  const std::shared_ptr<const Monitor> monitor = make_monitor(parse_monitor(linosc(), "mean(x1)", "test"), system);
+  CondensedSystem with_rows(system, shape, {2 + numbers});
+  OrbitResidual of_rows = with_rows.make_residual();
+  OrbitVector expected = with_rows.make_vector(), dx = expected, tangent = expected;
+  std::vector<OrbitVector> rows(static_cast<std::size_t>(2 + numbers), expected);
+  const double held = 0.3;
+  const double off = monitor->gradient(x, with_rows.rule(), rows[1]) - held;
+  int negative = 0, opposite = 0;
+  for (unsigned seed = 0; seed < 40; ++seed) {
+    CAPTURE(numbers, shape.intervals, seed);
+    rows[0] = random_vector(with_rows, 1000 + seed);
+    std::vector<double> values, border{0.4, -off};
+    for (int k = 0; k < numbers; ++k) {
+      OrbitVector& gradient = rows[static_cast<std::size_t>(2 + k)];
+      gradient = random_vector(with_rows, 10 * seed + static_cast<unsigned>(k));
+      if (seed % 4 == 3) drop_ends(gradient, shape);
+      values.push_back(0.2 - 0.5 * k);
+      border.push_back(-values.back());
+    }
+    BorderedProblem problem(system, shape,
+                            std::make_unique<GivenCondition>(values, std::vector(rows.begin() + 2, rows.end())),
+                            {{monitor, held, "mean(x1)"}});
+    OrbitResidual residual = problem.make_residual();
+    const int rounds = seed % 2 == 0 ? 1 : 2;  // with any rows in place of the gradients, or with their ends
+    for (int round = 0; round < rounds; ++round)
+      REQUIRE(problem.linearize(x, rows[0], residual) == Linearization::ready);
+    REQUIRE(with_rows.linearize(x, rows, of_rows) == Linearization::ready);
+    // Rounding times the condition of the matrices, with rows that may nearly depend on one another where they meet.
+    const double rounding = 1e-8;
+
+    with_rows.solve(of_rows, border, expected);
+    REQUIRE(problem.correct(residual, 0.4, dx));
+    CHECK(largest_difference(dx, expected) < rounding * expected.states.cwiseAbs().maxCoeff());
+    REQUIRE(problem.solve(residual, 0.4, dx));
+    CHECK(largest_difference(dx, expected) < rounding * expected.states.cwiseAbs().maxCoeff());
+
+    with_rows.null_vector(expected);
+    problem.find_tangent(tangent);
+    CHECK(dot(rows[0], tangent) > 0.0);
+    tangent.scale(1.0 / dot(rows[0], tangent));
+    CHECK(largest_difference(tangent, expected) < rounding * expected.states.cwiseAbs().maxCoeff());
+
+    // Another order of the rows: the gradients were moved before the monitor's, which turns the sign for each of them.
+    const int sign = with_rows.determinant().sign * (numbers % 2 == 0 ? 1 : -1);
+    CHECK((problem.signed_distance() < 0.0) == (sign < 0));
+    negative += sign < 0 ? 1 : 0;
+    opposite += problem.condensed().determinant().sign != sign ? 1 : 0;
   }
   CHECK(negative > 5);
   CHECK(negative < 35);
