@@ -92,9 +92,19 @@ void CondensedSystem::parameter_block(int s, int g, double* column) const {
   for (int a = 0; a < n_; ++a) column[a] = scalar_blocks_[s][a * scalars_ + 1 + g];
 }
 
+SegmentSolution CondensedSystem::beyond_ends(int s, const double* small, OrbitVector& dx) const {
+  return {RightHandSide::zero, small + s * (2 * n_ + 1), dx.globals.data(), &dx};
+}
+
 void CondensedSystem::extend(const double* small, OrbitVector& dx) {
+  segment_work_.each(shape_.segments,
+                     [&](int s, int thread) { elimination_.expand(s, beyond_ends(s, small, dx), thread); });
+}
+
+void CondensedSystem::extend_both(const double* small, OrbitVector& dx, const double* other_small,
+                                  OrbitVector& other_dx) {
   segment_work_.each(shape_.segments, [&](int s, int thread) {
-    elimination_.expand(s, {RightHandSide::zero, small + s * (2 * n_ + 1), dx.globals.data(), &dx}, thread);
+    elimination_.expand_both(s, beyond_ends(s, small, dx), beyond_ends(s, other_small, other_dx), thread);
   });
 }
 

@@ -108,6 +108,8 @@ class CondensedSystem {
   /// From the ends of segments to all nodes: `small` has v_s(0), v_s(1), sigma_s of every segment (m (2n + 1) numbers);
   /// dx becomes the vector that has these ends and dx.globals, and satisfies the linearised collocation equations.
   void extend(const double* small, OrbitVector& dx);
+  /// Two at once, to the last bit what each is alone.
+  void extend_both(const double* small, OrbitVector& dx, const double* other_small, OrbitVector& other_dx);
   /// The adjoint: `weights` (m n) of the condensed rows to weights of all collocation rows (as OrbitResidual orders
   /// them), so that the weighted sum of the latter is that of the former for every vector that `extend` gives.
   void extend_adjoint(const double* weights, std::vector<double>& collocation);
@@ -161,6 +163,7 @@ class CondensedSystem {
   void solve_ends(std::span<const double> border, EndVector& ends);
   SegmentSolution in_segment(int s, const EndVector& ends, RightHandSide right, OrbitVector& dx) const;
   void expand(const EndVector& ends, RightHandSide right, OrbitVector& dx);
+  SegmentSolution beyond_ends(int s, const double* small, OrbitVector& dx) const;
   void put_globals(const EndVector& ends, OrbitVector& dx) const;
 
   const DefiningSystem& system_;

@@ -197,7 +197,7 @@ bool CriticalPair::evaluate(CondensedSystem& condensed, const Orbit& x) {
   if (!started_ && !begin()) return false;
   if (!find_plane()) return false;
   started_ = true;
-  for (int k = 0; k < 2; ++k) condensed.extend(plane_.col(k).data(), extended_[static_cast<std::size_t>(k)]);
+  condensed.extend_both(plane_.col(0).data(), extended_[0], plane_.col(1).data(), extended_[1]);
   const Eigen::Vector4d by_determinant(pair_(1, 1), -pair_(1, 0), -pair_(0, 1), pair_(0, 0));
   const Eigen::Vector4d by_cosine(0.5, 0.0, 0.0, 0.5);
   if (!find_gradient(condensed, x, by_determinant, gradients_.front())) return false;
