@@ -31,6 +31,17 @@ GaussRule gauss_rule(int order) {
   return rule;
 }
 
+/// Norm of prod (sigma - node_i) / (c+1)! over the interval; that of c + 1 equally spaced nodes is a good measure.
+double interpolation_constant(int c) {
+  double worst = 0.0;
+  for (int k = 0; k <= 200; ++k) {
+    double product = 1.0;
+    for (int i = 0; i <= c; ++i) product *= k / 200.0 - static_cast<double>(i) / c;
+    worst = std::max(worst, std::abs(product));
+  }
+  return worst / std::tgamma(c + 2.0);
+}
+
 }  // namespace
 
 CollocationRule::CollocationRule(int points)
@@ -39,10 +50,13 @@ CollocationRule::CollocationRule(int points)
       mass(Eigen::MatrixXd::Zero(points + 1, points + 1)),
       integral(Eigen::VectorXd::Zero(points + 1)),
       highest(points + 1),
+      interpolation(interpolation_constant(points)),
       points_(points),
+      nodes_(points + 1),
       barycentric_(points + 1) {
   const int nodes = points + 1;
   for (int i = 0; i < nodes; ++i) {
+    nodes_(i) = static_cast<double>(i) / points;
     double product = 1.0;
     for (int k = 0; k < nodes; ++k)
       if (k != i) product *= static_cast<double>(i - k) / points;
@@ -83,7 +97,7 @@ void CollocationRule::basis(double sigma, double* values, double* slopes) const 
     double sum = 0.0;  // derivative of the product of (sigma - node_k)
     for (int k = 0; k < nodes; ++k) {
       if (k == i) continue;
-      const double factor = sigma - static_cast<double>(k) / points_;
+      const double factor = sigma - nodes_(k);
       sum = sum * factor + product;
       product *= factor;
     }

@@ -9,7 +9,9 @@ namespace tchat {
 
 class CollocationRule {
  public:
-  /// c = number of collocation points, 2..7.
+  static constexpr int most_points = 7;
+
+  /// c = number of collocation points, 2..most_points.
   explicit CollocationRule(int points);
 
   int points() const { return points_; }
@@ -21,12 +23,14 @@ class CollocationRule {
   Eigen::MatrixXd mass;      ///< (c+1) x (c+1): integral of l_i l_k over the interval, exact
   Eigen::VectorXd integral;  ///< c+1: integral of l_i
   Eigen::VectorXd highest;   ///< c+1: the c-th derivative of sum u_i l_i is sum highest_i u_i
+  double interpolation;      ///< largest |prod (sigma - node_i)| / (c+1)!: of the error between mesh points
 
   /// l_i(sigma) and l_i'(sigma) for i = 0..c; either may be null.
   void basis(double sigma, double* values, double* slopes) const;
 
  private:
   int points_;
+  Eigen::VectorXd nodes_;
   Eigen::VectorXd barycentric_;  // weights 1 / prod_k (node_i - node_k)
 };
 

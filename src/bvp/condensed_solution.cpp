@@ -75,8 +75,7 @@ void CondensedSystem::expand(const EndVector& ends, RightHandSide right, OrbitVe
   put_globals(ends, dx);
 }
 
-SegmentSolution CondensedSystem::in_segment(int s, const EndVector& ends, RightHandSide right,
-                                            OrbitVector& dx) const {
+SegmentSolution CondensedSystem::in_segment(int s, const EndVector& ends, RightHandSide right, OrbitVector& dx) const {
   return {right, &ends[index(start_unknown(s))], &ends[index(global_unknown(0))], &dx};
 }
 

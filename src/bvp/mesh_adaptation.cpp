@@ -11,6 +11,12 @@ std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 double length(const std::vector<double>& mesh, int j) { return mesh[index(j + 1)] - mesh[index(j)]; }
 
+double power(double base, int exponent) {
+  double result = 1.0;
+  for (int k = 0; k < exponent; ++k) result *= base;
+  return result;
+}
+
 /// Estimates of |u^(c+1)| of every component of segment s on every interval: n x N. On a single interval no jump of the
 /// c-th derivative tells of the next one: it is taken for as large as one that falls to zero over the interval.
 Eigen::MatrixXd highest_derivatives(const Orbit& x, const CollocationRule& rule, int s) {
@@ -20,7 +26,7 @@ Eigen::MatrixXd highest_derivatives(const Orbit& x, const CollocationRule& rule,
   Eigen::MatrixXd level(shape.dimension, intervals);  // c-th derivatives, constant on each interval
   for (int j = 0; j < intervals; ++j) {
     const auto nodes = x.states.middleCols(s * shape.nodes() + j * c, c + 1);
-    level.col(j) = nodes * rule.highest / std::pow(length(x.mesh, j), c);
+    level.col(j).noalias() = nodes.lazyProduct(rule.highest) / power(length(x.mesh, j), c);
   }
   if (intervals == 1) return level.cwiseAbs() / length(x.mesh, 0);
   Eigen::MatrixXd result = Eigen::MatrixXd::Zero(shape.dimension, intervals);
@@ -31,18 +37,6 @@ Eigen::MatrixXd highest_derivatives(const Orbit& x, const CollocationRule& rule,
   result.col(intervals - 1) = jump.col(intervals - 2);
   for (int j = 1; j + 1 < intervals; ++j) result.col(j) = 0.5 * (jump.col(j - 1) + jump.col(j));
   return result;
-}
-
-/// Norm of prod (sigma - node_i) / (c+1)! over the interval, for the interpolation error of the collocation polynomial
-/// between mesh points; that of c + 1 equally spaced nodes is a good measure.
-double interpolation_constant(int c) {
-  double worst = 0.0;
-  for (int k = 0; k <= 200; ++k) {
-    double product = 1.0;
-    for (int i = 0; i <= c; ++i) product *= k / 200.0 - static_cast<double>(i) / c;
-    worst = std::max(worst, std::abs(product));
-  }
-  return worst / std::tgamma(c + 2.0);
 }
 
 }  // namespace
@@ -98,9 +92,8 @@ std::vector<double> resampled_mesh(const std::vector<double>& mesh, int interval
 }
 
 MeshTransfer::MeshTransfer(const OrbitShape& from, const std::vector<double>& from_mesh, const OrbitShape& to,
-                           const std::vector<double>& to_mesh)
+                           const std::vector<double>& to_mesh, const CollocationRule& rule)
     : from_(from), to_(to), first_(index(to.nodes())), weights_(from.collocation + 1, to.nodes()) {
-  const CollocationRule rule(from.collocation);
   int j = 0;
   for (int k = 0; k < to.nodes(); ++k) {
     const int interval = std::min(k / to.collocation, to.intervals - 1);
@@ -132,7 +125,7 @@ Eigen::MatrixXd MeshTransfer::operator()(const Eigen::MatrixXd& states) const {
 Eigen::MatrixXd interpolate_states(const Eigen::MatrixXd& states, const OrbitShape& from,
                                    const std::vector<double>& from_mesh, const OrbitShape& to,
                                    const std::vector<double>& to_mesh) {
-  return MeshTransfer(from, from_mesh, to, to_mesh)(states);
+  return MeshTransfer(from, from_mesh, to, to_mesh, CollocationRule(from.collocation))(states);
 }
 
 double estimated_error(const Orbit& x, const CollocationRule& rule) {
@@ -142,9 +135,9 @@ double estimated_error(const Orbit& x, const CollocationRule& rule) {
     if (x.duration(s) == 0.0) continue;
     const Eigen::MatrixXd derivatives = highest_derivatives(x, rule, s);
     for (int j = 0; j < x.shape.intervals; ++j)
-      worst = std::max(worst, derivatives.col(j).maxCoeff() * std::pow(length(x.mesh, j), c + 1));
+      worst = std::max(worst, derivatives.col(j).maxCoeff() * power(length(x.mesh, j), c + 1));
   }
-  return interpolation_constant(c) * worst / (1.0 + x.states.cwiseAbs().maxCoeff());
+  return rule.interpolation * worst / (1.0 + x.states.cwiseAbs().maxCoeff());
 }
 
 }  // namespace tchat

@@ -20,11 +20,11 @@ std::vector<double> resampled_mesh(const std::vector<double>& mesh, int interval
 std::vector<double> equal_parts(const std::vector<double>& mesh, const Eigen::VectorXd& density, int parts);
 
 /// Evaluates states on another mesh, possibly of other N and c (`to` has the same n and m): the weights once, for as
-/// many matrices of states as there are.
+/// many matrices of states as there are. `rule` is that of `from`.
 class MeshTransfer {
  public:
   MeshTransfer(const OrbitShape& from, const std::vector<double>& from_mesh, const OrbitShape& to,
-               const std::vector<double>& to_mesh);
+               const std::vector<double>& to_mesh, const CollocationRule& rule);
   Eigen::MatrixXd operator()(const Eigen::MatrixXd& states) const;
 
  private:

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bvp/mesh_adaptation.hpp"
 #include "continuation/solution_measure.hpp"
 
 namespace tchat {
@@ -32,7 +33,7 @@ bool is_on_step(double ratio) { return ratio >= -margin && ratio <= 1.0 + margin
 
 void ClosedBranch::begin(const PathPoint& first, double direction) {
   first_ = first;
-  moved_ = first;
+  moved_ = first.orbit;
   travelled_ = 0.0;
   if (phase_is_fixed_) return;
   measure_sizes_ = Eigen::VectorXd();
@@ -55,14 +56,16 @@ std::optional<ClosedBranch::Return> ClosedBranch::on_step(const PathPoint& here,
 
 /// Where the plane across the tangent through the first point cuts a step; nothing where it does not, or far away.
 std::optional<double> ClosedBranch::place(const PathPoint& here, double ds) {
-  if (here.orbit.mesh != moved_.orbit.mesh) {
-    moved_ = first_;
-    follower_.change_mesh(moved_, here.orbit.mesh);
+  if (here.orbit.mesh != moved_.mesh) {
+    const Orbit& first = first_.orbit;
+    const CollocationRule& rule = follower_.condensed().rule();
+    moved_.states = MeshTransfer(first.shape, first.mesh, first.shape, here.orbit.mesh, rule)(first.states);
+    moved_.mesh = here.orbit.mesh;
   }
-  const double distance = follower_.distance(here.orbit, moved_.orbit);
-  if (!(travelled_ > left_behind * distance)) return std::nullopt;
-  const double length = dot_difference(here.dual, moved_.orbit, here.orbit, system_.free_parameters());
-  if (!is_on_step(length / ds) || distance > beside * std::abs(ds)) return std::nullopt;
+  const double length = dot_difference(here.dual, moved_, here.orbit, system_.free_parameters());
+  if (!is_on_step(length / ds)) return std::nullopt;
+  const double distance = follower_.distance(here.orbit, moved_);
+  if (!(travelled_ > left_behind * distance) || distance > beside * std::abs(ds)) return std::nullopt;
   return length;
 }
 

@@ -48,7 +48,7 @@ class ClosedBranch {
   const DefiningSystem& system_;
   bool phase_is_fixed_;
   PathPoint first_;
-  PathPoint moved_;                // the first point on the mesh of the last one looked at
+  Orbit moved_;                    // that of the first point on the mesh of the last one looked at
   Eigen::VectorXd measure_sizes_;  // empty before they are known
   Eigen::VectorXd first_measures_;
   Eigen::VectorXd first_direction_;  // of the measures

@@ -364,7 +364,7 @@ NewtonResult PathFollower::start_by_minimum_norm(PathPoint& point) {
 
 void PathFollower::change_mesh(PathPoint& point, const std::vector<double>& mesh) const {
   const OrbitShape& shape = point.orbit.shape;
-  const MeshTransfer transfer(shape, point.orbit.mesh, shape, mesh);
+  const MeshTransfer transfer(shape, point.orbit.mesh, shape, mesh, condensed().rule());
   point.orbit.states = transfer(point.orbit.states);
   point.tangent.states = transfer(point.tangent.states);
   if (point.trail.mesh() == point.orbit.mesh) point.trail.change_mesh(mesh, transfer);

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "bvp/with_dimension.hpp"
+
 namespace tchat {
 
 namespace {
@@ -29,14 +31,25 @@ double time_mean(const Orbit& x, const Integrand& integrand) {
   return mean;
 }
 
+/// Of nodes of n entries, one after the other.
+template <class Dimension>
+double mean_square(Dimension n, const double* nodes, const Eigen::MatrixXd& mass, const double* weights) {
+  double sum = 0.0;
+  for (Eigen::Index i = 0; i < mass.cols(); ++i)
+    for (int a = 0; a < n; ++a) {
+      double product = 0.0;
+      for (Eigen::Index k = 0; k < mass.rows(); ++k) product += mass(k, i) * nodes[k * n + a];
+      sum += weights[a] * nodes[i * n + a] * product;
+    }
+  return sum;
+}
+
 }  // namespace
 
 double l2_norm(const Orbit& x, const CollocationRule& rule, const Eigen::VectorXd& state_weights) {
   return std::sqrt(time_mean(x, [&](const auto& nodes) {
-    double sum = 0.0;
-    for (Eigen::Index i = 0; i < nodes.rows(); ++i)
-      sum += state_weights(i) * nodes.row(i).dot(nodes.row(i) * rule.mass);
-    return sum;
+    return with_dimension(x.shape.dimension,
+                          [&](auto n) { return mean_square(n, nodes.data(), rule.mass, state_weights.data()); });
   }));
 }
 

@@ -28,11 +28,14 @@ class EventAlongSegment {
         x_(x),
         s_(s),
         event_(event),
-        by_state_(x.shape.dimension),
+        values_(x.shape.nodes()),
+        gradients_(x.shape.dimension, x.shape.nodes()),
         rate_(x.shape.dimension),
         slopes_at_nodes_(x.shape.collocation + 1, x.shape.collocation + 1) {
     for (int i = 0; i <= x.shape.collocation; ++i)
       slopes_at_nodes_.col(i) = basis_at(static_cast<double>(i) / x.shape.collocation).slopes;
+    system.system().first_at_points(FunctionKind::event, event, x.shape.nodes(), x.node(s, 0), par(), {},
+                                    values_.data(), gradients_.data(), nullptr);
   }
 
   double length(int j) const { return x_.mesh[static_cast<std::size_t>(j + 1)] - x_.mesh[static_cast<std::size_t>(j)]; }
@@ -46,15 +49,11 @@ class EventAlongSegment {
   /// The same at node i of the interval.
   double slope_at_node(int j, int i) {
     rate_.noalias() = nodes(j).lazyProduct(slopes_at_nodes_.col(i));
-    double h = 0.0;
-    system().first(FunctionKind::event, event_, x_.node(s_, j * x_.shape.collocation + i), par(), {}, &h,
-                   by_state_.data(), nullptr);
-    return by_state_.dot(rate_) / length(j);
+    return gradients_.col(j * x_.shape.collocation + i).dot(rate_) / length(j);
   }
 
   Contact at_node(int k) const {
-    const double* u = x_.node(s_, k);
-    return {x_.tau(k), system().event(event_, u, par()), Eigen::Map<const Vector>(u, x_.shape.dimension)};
+    return {x_.tau(k), values_(k), Eigen::Map<const Vector>(x_.node(s_, k), x_.shape.dimension)};
   }
 
   /// The minimum near sigma of interval j, by the flow from the interval's left mesh point (by the polynomial where
@@ -117,11 +116,12 @@ class EventAlongSegment {
   }
 
   struct Basis {
-    Vector values;
-    Vector slopes;
+    using Numbers = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, CollocationRule::most_points + 1, 1>;
+    Numbers values;
+    Numbers slopes;
   };
   Basis basis_at(double sigma) const {
-    Basis basis{Vector(x_.shape.collocation + 1), Vector(x_.shape.collocation + 1)};
+    Basis basis{Basis::Numbers(x_.shape.collocation + 1), Basis::Numbers(x_.shape.collocation + 1)};
     rule_.basis(sigma, basis.values.data(), basis.slopes.data());
     return basis;
   }
@@ -137,7 +137,9 @@ class EventAlongSegment {
   const Orbit& x_;
   int s_;
   int event_;
-  Vector by_state_, rate_;
+  Vector values_;              // of h at the nodes
+  Eigen::MatrixXd gradients_;  // a column for each node
+  Vector rate_;
   Eigen::MatrixXd slopes_at_nodes_;  // of the basis, a column for each node
 };
 

@@ -182,7 +182,8 @@ TEST_CASE("closing rows, at the ends of segments alone, are the general rows tha
   CHECK(largest_difference(by_closing, by_general) < 1e-10 * size);
   for (int k = 0; k < closing_rows; ++k) {
     closing.null_vector(by_closing, k);
-    for (int r = 0; r < 2; ++r) CHECK(dot(rows[static_cast<std::size_t>(r)], by_closing) == Approx(r == k).margin(1e-9));
+    for (int r = 0; r < 2; ++r)
+      CHECK(dot(rows[static_cast<std::size_t>(r)], by_closing) == Approx(r == k).margin(1e-9));
   }
   CHECK(general.determinant().sign == closing.determinant().sign);
   CHECK(general.determinant().log2_size == Approx(closing.determinant().log2_size).margin(1e-9));
