@@ -135,8 +135,8 @@ class BorderedProblem {
   CondensedSystem condensed_;
   std::unique_ptr<OrbitCondition> condition_;
   std::vector<HeldMonitor> held_;
-  OrbitVector row_;                     // the branch's
-  std::vector<EndVector> closing_;      // what stands for it, and for the gradients of G
+  OrbitVector row_;                 // the branch's
+  std::vector<EndVector> closing_;  // what stands for it, and for the gradients of G
   EndVector next_stand_in_;
   std::vector<OrbitVector> gradients_;  // of integrals and held monitors
   std::vector<double> border_;          // right-hand side of all these

@@ -125,7 +125,9 @@ class CondensedSystem {
   /// The determinant's sign times the relative distance of the condensed matrix, scaled to rows and columns of unit
   /// size, to a singular one: it has the zeros of the determinant, but its size depends neither on the mesh nor on how
   /// much the flow contracts. 0 when singular. Allocates.
-  double signed_distance() const { return determinant().sign * lu_.singular_distance(); }
+  double signed_distance() const {
+    return lu_.determinant().sign * elimination_.determinant_sign() * lu_.singular_distance();
+  }
 
   /// Scaled reciprocal condition of the factored matrix and its null direction, of which only the ends of segments,
   /// durations and globals are filled in. Allocates.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bvp/with_dimension.hpp"
+
 namespace tchat {
 
 namespace {
@@ -107,18 +109,19 @@ MeshTransfer::MeshTransfer(const OrbitShape& from, const std::vector<double>& fr
 
 Eigen::MatrixXd MeshTransfer::operator()(const Eigen::MatrixXd& states) const {
   Eigen::MatrixXd result(to_.dimension, to_.columns());
-  const int n = to_.dimension;
-  double* value = result.data();
-  for (int s = 0; s < to_.segments; ++s)
-    for (int k = 0; k < to_.nodes(); ++k) {
-      const double* nodes = states.col(s * from_.nodes() + first_[index(k)]).data();
-      const double* weights = weights_.col(k).data();
-      for (int a = 0; a < n; ++a) {
-        double sum = 0.0;
-        for (int i = 0; i <= from_.collocation; ++i) sum += weights[i] * nodes[i * n + a];
-        *value++ = sum;
+  with_dimension(to_.dimension, [&](auto n) {
+    double* value = result.data();
+    for (int s = 0; s < to_.segments; ++s)
+      for (int k = 0; k < to_.nodes(); ++k) {
+        const double* nodes = states.col(s * from_.nodes() + first_[index(k)]).data();
+        const double* weights = weights_.col(k).data();
+        for (int a = 0; a < n; ++a) {
+          double sum = 0.0;
+          for (int i = 0; i <= from_.collocation; ++i) sum += weights[i] * nodes[i * n + a];
+          *value++ = sum;
+        }
       }
-    }
+  });
   return result;
 }
 

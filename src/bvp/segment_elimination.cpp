@@ -222,28 +222,37 @@ bool SegmentElimination::join_lanes(int s) {
   return true;
 }
 
-void SegmentElimination::divide_by_determinant(LargeProduct& product) const {
-  const auto multiply = [&](int pivots, int width, int step, const double* block, const int* swaps) {
-    for (int k = 0; k < pivots; ++k) {  // the blocks hold reciprocal pivots
-      const double reciprocal = block[static_cast<std::ptrdiff_t>(k * width + k) * step];
-      product.multiply(swaps[k * step] == k ? reciprocal : -reciprocal);
-    }
+/// work(reciprocal pivot, is its row exchanged with another one?) for all pivots of all segments.
+template <class Work>
+void SegmentElimination::for_pivots(const Work& work) const {
+  const auto of_block = [&](int pivots, int width, int step, const double* block, const int* swaps) {
+    for (int k = 0; k < pivots; ++k)  // the blocks hold reciprocal pivots
+      work(block[static_cast<std::ptrdiff_t>(k * width + k) * step], swaps[k * step] != k);
   };
-  const auto multiply_lane = [&](const LaneKernel& kernel, const double* block, const int* swaps, int lane) {
-    multiply(kernel.pivots(), kernel.width(), lanes, block + lane, swaps + lane);
+  const auto of_lane = [&](const LaneKernel& kernel, const double* block, const int* swaps, int lane) {
+    of_block(kernel.pivots(), kernel.width(), lanes, block + lane, swaps + lane);
   };
   for (int s = 0; s < shape_.segments; ++s) {
     for (int group = 0; group < groups_; ++group)
       for (int l = 0; l < lanes; ++l)
         if (schedule_.holds(group, l))
-          multiply_lane(interval_, interval_blocks_[block(s, group)], interval_swaps_[block(s, group)], l);
+          of_lane(interval_, interval_blocks_[block(s, group)], interval_swaps_[block(s, group)], l);
     for (const Join& at : joins_)
       for (int l = 0; l < lanes; ++l)
-        if (!passes(at, l))
-          multiply_lane(join_, join_blocks_[block(s, at.middle)], join_swaps_[block(s, at.middle)], l);
+        if (!passes(at, l)) of_lane(join_, join_blocks_[block(s, at.middle)], join_swaps_[block(s, at.middle)], l);
     for (const Join& at : top_joins_)
-      multiply(n_, top_join_.width(), 1, top_blocks_[top_block(s, at.middle)], top_swaps_[top_block(s, at.middle)]);
+      of_block(n_, top_join_.width(), 1, top_blocks_[top_block(s, at.middle)], top_swaps_[top_block(s, at.middle)]);
   }
+}
+
+void SegmentElimination::divide_by_determinant(LargeProduct& product) const {
+  for_pivots([&](double reciprocal, bool exchanged) { product.multiply(exchanged ? -reciprocal : reciprocal); });
+}
+
+int SegmentElimination::determinant_sign() const {
+  bool negative = false;
+  for_pivots([&](double reciprocal, bool exchanged) { negative ^= std::signbit(reciprocal) != exchanged; });
+  return negative ? -1 : 1;
 }
 
 }  // namespace tchat

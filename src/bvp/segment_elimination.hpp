@@ -126,6 +126,8 @@ class SegmentElimination {
 
   /// Divided by the determinant of what was eliminated of all segments.
   void divide_by_determinant(LargeProduct& product) const;
+  /// Of that determinant: 1 or -1.
+  int determinant_sign() const;
 
  private:
   /// The elimination of what is between pieces first..middle-1 and middle..last-1; its block is number `middle`.
@@ -143,6 +145,8 @@ class SegmentElimination {
   bool passes(const Join& at, int lane) const { return at.middle >= schedule_.size(lane); }
   int top_node(int piece) const;
 
+  template <class Work>
+  void for_pivots(const Work& work) const;
   bool fill_group(int s, int group, const HybridSystem& system, int field, std::span<const int> active, const Orbit& x,
                   double* collocation);
   void evaluate_field(int s, int group, const HybridSystem& system, int field, std::span<const int> active,

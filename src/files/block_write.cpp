@@ -62,6 +62,29 @@ class BlockedSignals {
   sigset_t before_{};
 };
 
+/// Keeps this thread, and what it starts, where it runs: on another processor, which may sleep, a child begins so late
+/// that waiting for it takes several times as long as what it does.
+class OnThisProcessor {
+ public:
+  OnThisProcessor() {
+    const int here = ::sched_getcpu();
+    if (here < 0 || here >= CPU_SETSIZE || ::sched_getaffinity(0, sizeof before_, &before_) != 0) return;
+    cpu_set_t only;
+    CPU_ZERO(&only);
+    CPU_SET(here, &only);
+    kept_ = ::sched_setaffinity(0, sizeof only, &only) == 0;
+  }
+  ~OnThisProcessor() {
+    if (kept_) ::sched_setaffinity(0, sizeof before_, &before_);
+  }
+  OnThisProcessor(const OnThisProcessor&) = delete;
+  OnThisProcessor& operator=(const OnThisProcessor&) = delete;
+
+ private:
+  cpu_set_t before_{};
+  bool kept_ = false;
+};
+
 }  // namespace
 
 BlockOutcome append_block(int descriptor, std::string_view block) {
@@ -86,6 +109,7 @@ BlockOutcome append_block_through_kill(int descriptor, std::string_view block) {
   const auto stack = std::make_unique<std::byte[]>(stack_size);
   Block task{descriptor, block};
   const BlockedSignals blocked;
+  const OnThisProcessor kept_here;
   // Without a signal at its end no handler of SIGCHLD hears of it; this process goes on when it has ended.
   const pid_t writer = ::clone(&write_and_end, stack.get() + stack_size, CLONE_VM | CLONE_VFORK, &task);
   if (writer < 0) return append_block(descriptor, block);

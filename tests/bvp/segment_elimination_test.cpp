@@ -189,6 +189,7 @@ TEST_CASE("a segment condensed in lanes against the dense matrix of its collocat
     }
     LargeProduct reciprocal;
     elimination.divide_by_determinant(reciprocal);
+    CHECK(elimination.determinant_sign() == (reciprocal.mantissa > 0.0 ? 1 : -1));
     LargeProduct one = expected;
     one.multiply(reciprocal.mantissa);
     one.exponent += reciprocal.exponent;
