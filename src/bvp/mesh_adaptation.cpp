@@ -110,16 +110,15 @@ MeshTransfer::MeshTransfer(const OrbitShape& from, const std::vector<double>& fr
 Eigen::MatrixXd MeshTransfer::operator()(const Eigen::MatrixXd& states) const {
   Eigen::MatrixXd result(to_.dimension, to_.columns());
   with_dimension(to_.dimension, [&](auto n) {
+    const int last = from_.collocation;
     double* value = result.data();
     for (int s = 0; s < to_.segments; ++s)
-      for (int k = 0; k < to_.nodes(); ++k) {
+      for (int k = 0; k < to_.nodes(); ++k, value += n) {
         const double* nodes = states.col(s * from_.nodes() + first_[index(k)]).data();
         const double* weights = weights_.col(k).data();
-        for (int a = 0; a < n; ++a) {
-          double sum = 0.0;
-          for (int i = 0; i <= from_.collocation; ++i) sum += weights[i] * nodes[i * n + a];
-          *value++ = sum;
-        }
+        for (int a = 0; a < n; ++a) value[a] = weights[0] * nodes[a];
+        for (int i = 1; i <= last; ++i)
+          for (int a = 0; a < n; ++a) value[a] += weights[i] * nodes[i * n + a];
       }
   });
   return result;

@@ -2,11 +2,15 @@
 
 #include <cmath>
 
-#include "bvp/with_dimension.hpp"
+#include "linear_algebra/array_kernel.hpp"
 
 namespace tchat {
 
 namespace {
+
+double interval_length(const Orbit& x, int j) {
+  return x.mesh[static_cast<std::size_t>(j + 1)] - x.mesh[static_cast<std::size_t>(j)];
+}
 
 /// The share of segment s in the period.
 double time_share(const Orbit& x, int s) {
@@ -22,35 +26,29 @@ double time_mean(const Orbit& x, const Integrand& integrand) {
   double mean = 0.0;
   for (int s = 0; s < x.shape.segments; ++s) {
     double segment = 0.0;
-    for (int j = 0; j < x.shape.intervals; ++j) {
-      const double h = x.mesh[static_cast<std::size_t>(j + 1)] - x.mesh[static_cast<std::size_t>(j)];
-      segment += h * integrand(x.states.middleCols(s * x.shape.nodes() + j * c, c + 1));
-    }
+    for (int j = 0; j < x.shape.intervals; ++j)
+      segment += interval_length(x, j) * integrand(x.states.middleCols(s * x.shape.nodes() + j * c, c + 1));
     mean += time_share(x, s) * segment;
   }
   return mean;
 }
 
-/// Of nodes of n entries, one after the other.
-template <class Dimension>
-double mean_square(Dimension n, const double* nodes, const Eigen::MatrixXd& mass, const double* weights) {
-  double sum = 0.0;
-  for (Eigen::Index i = 0; i < mass.cols(); ++i)
-    for (int a = 0; a < n; ++a) {
-      double product = 0.0;
-      for (Eigen::Index k = 0; k < mass.rows(); ++k) product += mass(k, i) * nodes[k * n + a];
-      sum += weights[a] * nodes[i * n + a] * product;
-    }
-  return sum;
-}
-
 }  // namespace
 
 double l2_norm(const Orbit& x, const CollocationRule& rule, const Eigen::VectorXd& state_weights) {
-  return std::sqrt(time_mean(x, [&](const auto& nodes) {
-    return with_dimension(x.shape.dimension,
-                          [&](auto n) { return mean_square(n, nodes.data(), rule.mass, state_weights.data()); });
-  }));
+  const ArrayFunctions& arrays = array_functions();
+  const int c = x.shape.collocation;
+  const int n = x.shape.dimension;
+  Eigen::MatrixXd product(n, x.shape.nodes());  // mass times states, interval by interval
+  double mean = 0.0;
+  for (int s = 0; s < x.shape.segments; ++s) {
+    product.setZero();
+    for (int j = 0; j < x.shape.intervals; ++j)
+      arrays.add_mass(interval_length(x, j), rule.mass.data(), c + 1, state_weights.data(), n, x.node(s, j * c),
+                      product.col(j * c).data());
+    mean += time_share(x, s) * arrays.dot(product.data(), x.node(s, 0), product.size());
+  }
+  return std::sqrt(mean);
 }
 
 double maximum_of(const Orbit& x, int k) { return x.states.row(k - 1).maxCoeff(); }
