@@ -13,12 +13,6 @@ std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 double length(const std::vector<double>& mesh, int j) { return mesh[index(j + 1)] - mesh[index(j)]; }
 
-double power(double base, int exponent) {
-  double result = 1.0;
-  for (int k = 0; k < exponent; ++k) result *= base;
-  return result;
-}
-
 /// Estimates of |u^(c+1)| of every component of segment s on every interval: n x N. On a single interval no jump of the
 /// c-th derivative tells of the next one: it is taken for as large as one that falls to zero over the interval.
 Eigen::MatrixXd highest_derivatives(const Orbit& x, const CollocationRule& rule, int s) {
@@ -28,7 +22,7 @@ Eigen::MatrixXd highest_derivatives(const Orbit& x, const CollocationRule& rule,
   Eigen::MatrixXd level(shape.dimension, intervals);  // c-th derivatives, constant on each interval
   for (int j = 0; j < intervals; ++j) {
     const auto nodes = x.states.middleCols(s * shape.nodes() + j * c, c + 1);
-    level.col(j).noalias() = nodes.lazyProduct(rule.highest) / power(length(x.mesh, j), c);
+    level.col(j) = nodes * rule.highest / std::pow(length(x.mesh, j), c);
   }
   if (intervals == 1) return level.cwiseAbs() / length(x.mesh, 0);
   Eigen::MatrixXd result = Eigen::MatrixXd::Zero(shape.dimension, intervals);
@@ -137,7 +131,7 @@ double estimated_error(const Orbit& x, const CollocationRule& rule) {
     if (x.duration(s) == 0.0) continue;
     const Eigen::MatrixXd derivatives = highest_derivatives(x, rule, s);
     for (int j = 0; j < x.shape.intervals; ++j)
-      worst = std::max(worst, derivatives.col(j).maxCoeff() * power(length(x.mesh, j), c + 1));
+      worst = std::max(worst, derivatives.col(j).maxCoeff() * std::pow(length(x.mesh, j), c + 1));
   }
   return rule.interpolation * worst / (1.0 + x.states.cwiseAbs().maxCoeff());
 }
