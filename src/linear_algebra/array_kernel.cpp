@@ -11,6 +11,7 @@ namespace tchat {
 const ArrayFunctions& array_functions(VectorSet set) {
 #ifdef __x86_64__
   if (set == VectorSet::avx2) return array_sets::avx2::functions;
+  if (set == VectorSet::avx512) return array_sets::avx512::functions;
 #endif
   static_cast<void>(set);
   return array_sets::baseline::functions;

@@ -36,6 +36,7 @@ namespace {
 const LaneFunctions* lane_functions(VectorSet set) {
 #ifdef __x86_64__
   if (set == VectorSet::avx2) return &lane_sets::avx2::functions;
+  if (set == VectorSet::avx512) return &lane_sets::avx512::functions;
 #endif
   static_cast<void>(set);
   return &lane_sets::baseline::functions;
@@ -47,6 +48,7 @@ std::vector<VectorSet> available_vector_sets() {
   std::vector<VectorSet> sets = {VectorSet::baseline};
 #ifdef __x86_64__
   if (__builtin_cpu_supports("avx2") != 0) sets.push_back(VectorSet::avx2);
+  if (__builtin_cpu_supports("avx512vl") != 0) sets.push_back(VectorSet::avx512);
 #endif
   return sets;
 }
