@@ -42,6 +42,12 @@ const LaneFunctions* lane_functions(VectorSet set) {
   return &lane_sets::baseline::functions;
 }
 
+/// While registers of 512 bits are in use the processor's clock is slower: narrow blocks lose elsewhere what they gain.
+VectorSet set_for(int width, VectorSet set) {
+  constexpr int least_width = 40;
+  return set == VectorSet::avx512 && width < least_width ? VectorSet::avx2 : set;
+}
+
 }  // namespace
 
 std::vector<VectorSet> available_vector_sets() {
@@ -54,7 +60,7 @@ std::vector<VectorSet> available_vector_sets() {
 }
 
 LaneKernel::LaneKernel(int rows, int pivots, int width, VectorSet set)
-    : rows_(rows), pivots_(pivots), width_(width), functions_(lane_functions(set)) {}
+    : rows_(rows), pivots_(pivots), width_(width), functions_(lane_functions(set_for(width, set))) {}
 
 unsigned LaneKernel::eliminate(double* a, int border, int* swaps) const {
   return functions_->eliminate({rows_, pivots_, width_}, a, border, swaps);

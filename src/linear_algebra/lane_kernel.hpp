@@ -23,7 +23,7 @@ using LaneArray = std::vector<double, AlignedAllocator<double>>;
 enum class VectorSet {
   baseline,  ///< what every x86-64 processor has, or whatever else the compiler's target is
   avx2,
-  avx512,  ///< AVX-512F and VL: two entries of a row in one register where pivot rows are subtracted
+  avx512,  ///< AVX-512F and VL: two entries of a row in one register where pivot rows are subtracted in wide blocks
 };
 
 /// Those that this processor has, the best one last.
