@@ -1,7 +1,11 @@
 #include "bvp/bordered_problem.hpp"
 
+#include <Eigen/Geometry>
+#include <Eigen/SVD>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "linear_algebra/array_kernel.hpp"
@@ -10,13 +14,24 @@ namespace tchat {
 
 namespace {
 
-/// work(column) of the states at both ends of each segment.
-template <class Work>
-void for_ends(const OrbitShape& shape, const Work& work) {
-  for (int s = 0; s < shape.segments; ++s) {
-    work(s * shape.nodes());
-    work((s + 1) * shape.nodes() - 1);
-  }
+/// The columns of the states at both ends of segment s.
+std::array<int, 2> end_columns(const OrbitShape& shape, int s) {
+  return {s * shape.nodes(), (s + 1) * shape.nodes() - 1};
+}
+
+double length(const OrbitVector& v) { return std::sqrt(dot(v, v)); }
+
+/// Orthogonal to all rows: their vector product.
+template <class Rows>
+auto vector_product(const Rows& rows) {
+  Eigen::Matrix<double, Eigen::Dynamic, 1, 0, Rows::MaxColsAtCompileTime, 1> result(rows.cols());
+  if (rows.rows() == 0)
+    result << 1.0;
+  else if (rows.rows() == 1)
+    result << rows(0, 1), -rows(0, 0);
+  else
+    result = Eigen::Vector3d(rows.row(0).transpose()).cross(Eigen::Vector3d(rows.row(1).transpose()));
+  return result;
 }
 
 }  // namespace
@@ -31,29 +46,25 @@ BorderedProblem::BorderedProblem(const DefiningSystem& system, const OrbitShape&
       held_(std::move(held)),
       row_(condensed_.make_vector()),
       closing_(static_cast<std::size_t>(1 + conditions()), condensed_.make_end_vector()),
-      next_stand_in_(closing_.front()),
       gradients_(static_cast<std::size_t>(system.integral_conditions()) + held_.size(), row_),
       border_(closing_.size() + gradients_.size()),
-      responses_(static_cast<std::size_t>(conditions()), row_),
-      slopes_(conditions()),
-      tangent_(condensed_.make_vector()) {
-  // Any rows serve the first time that are not orthogonal to what they stand for.
-  for (int k = 0; k < conditions(); ++k)
-    for (std::size_t i = 0; i < stand_in(k).size(); ++i)
-      stand_in(k)[i] = std::sin(0.5 + k + (0.61 + 0.27 * k) * static_cast<double>(i));
+      null_vectors_(closing_.size(), row_),
+      slopes_(conditions(), conditions() + 1),
+      closed_slopes_(conditions() + 1),
+      along_(conditions() + 1),
+      row_slopes_(conditions() + 1) {
+  // Any rows serve for the condition: they give way.
+  for (std::size_t k = 1; k < closing_.size(); ++k)
+    for (std::size_t i = 0; i < closing_[k].size(); ++i)
+      closing_[k][i] = std::sin(0.5 + static_cast<double>(k) * (0.3 + 0.44 * static_cast<double>(i)));
 }
 
 void BorderedProblem::remember(ConditionMemory& memory) const {
-  if (!condition_) return;
-  condition_->remember(memory.condition);
-  memory.stand_ins.resize(responses_.size());
-  std::copy(closing_.begin() + 1, closing_.end(), memory.stand_ins.begin());
+  if (condition_) condition_->remember(memory);
 }
 
 void BorderedProblem::recall(const ConditionMemory& memory) {
-  if (!condition_) return;
-  condition_->recall(memory.condition);
-  std::copy(memory.stand_ins.begin(), memory.stand_ins.end(), closing_.begin() + 1);
+  if (condition_) condition_->recall(memory);
 }
 
 OrbitResidual BorderedProblem::make_residual() const {
@@ -78,7 +89,7 @@ void BorderedProblem::evaluate(const Orbit& x, OrbitResidual& residual) {
 }
 
 Linearization BorderedProblem::linearize(const Orbit& x, const OrbitVector& row, OrbitResidual& residual) {
-  tangent_known_ = false;
+  first_known_ = false;
   row_along_.reset();
   row_.states = row.states;
   row_.durations = row.durations;
@@ -90,12 +101,12 @@ Linearization BorderedProblem::linearize(const Orbit& x, const OrbitVector& row,
   for (std::size_t h = 0; h < held_.size(); ++h)
     residual.integral[integrals + h] =
         held_[h].monitor->gradient(x, condensed_.rule(), gradients_[integrals + h]) - held_[h].value;
-  const Linearization outcome = condensed_.linearize(x, closing_, gradients_, residual);
-  if (outcome != Linearization::ready || !condition_) return outcome;
-  if (!condition_->evaluate(condensed_, x)) return Linearization::condition_lost;
-  if (!find_responses()) return Linearization::singular;
-  follow_gradients();
-  return Linearization::ready;
+  outcome_ = condensed_.linearize(x, closing_, gradients_, residual);
+  if (outcome_ == Linearization::ready && condition_ && !condition_->evaluate(condensed_, x))
+    outcome_ = Linearization::condition_lost;
+  if (outcome_ != Linearization::ready) return outcome_;
+  for (int k = 1; k <= conditions(); ++k) condensed_.null_vector(null_vectors_[static_cast<std::size_t>(k)], k);
+  return outcome_;
 }
 
 /// A row at the ends of segments, each of which counts as many times as there are nodes, as these share the weight of a
@@ -104,7 +115,7 @@ void BorderedProblem::close(const OrbitVector& row, EndVector& closing) const {
   const OrbitShape& shape = condensed_.shape();
   double* value = closing.data();
   for (int s = 0; s < shape.segments; ++s) {
-    for (const int column : {s * shape.nodes(), (s + 1) * shape.nodes() - 1})
+    for (const int column : end_columns(shape, s))
       for (int a = 0; a < shape.dimension; ++a) *value++ = shape.nodes() * row.states(a, column);
     *value++ = row.durations(s);
   }
@@ -112,54 +123,39 @@ void BorderedProblem::close(const OrbitVector& row, EndVector& closing) const {
 }
 
 double BorderedProblem::at_ends(const OrbitVector& row, const OrbitVector& v) const {
+  const OrbitShape& shape = condensed_.shape();
   double sum = 0.0;
-  for_ends(condensed_.shape(), [&](int column) { sum += row.states.col(column).dot(v.states.col(column)); });
-  return condensed_.shape().nodes() * sum + row.durations.dot(v.durations) + row.globals.dot(v.globals);
+  for (int s = 0; s < shape.segments; ++s)
+    for (const int column : end_columns(shape, s)) sum += row.states.col(column).dot(v.states.col(column));
+  return shape.nodes() * sum + row.durations.dot(v.durations) + row.globals.dot(v.globals);
 }
 
-/// The determinant is proportional to the value of the branch's row on the vector that all others annihilate; that of
-/// the closing row is one. With the gradients in place of their stand-ins it is larger by the determinant of slopes_.
+/// The determinant with row and gradients is that with the closing rows, whose values on the null vectors are those of
+/// the unit matrix, times that of all rows on Z.
 double BorderedProblem::signed_distance() {
-  if (!row_along_) know_tangent();
-  const double distance = condensed_.signed_distance() * slope_cosine();
+  if (outcome_ == Linearization::singular) return 0.0;
+  if (outcome_ != Linearization::ready) return std::numeric_limits<double>::quiet_NaN();
+  if (!row_along_) know_null_vectors();
+  double distance = condensed_.signed_distance();
+  if (condition_) distance *= along_.norm();
+  for (int k = 0; k < conditions(); ++k) distance /= length(condition_->gradient(k));
   return *row_along_ < 0.0 ? -distance : distance;
 }
 
-/// The determinant of slopes_ for gradients and responses of length one; 1 without a condition.
-double BorderedProblem::slope_cosine() const {
-  if (!condition_) return 1.0;
-  double cosine = slopes_.determinant();
-  for (int k = 0; k < conditions(); ++k) {
-    const OrbitVector& response = responses_[static_cast<std::size_t>(k)];
-    const OrbitVector& gradient = condition_->gradient(k);
-    cosine /= std::sqrt(dot(response, response) * dot(gradient, gradient));
-  }
-  return cosine;
-}
-
-/// False when they do not reach what the condition asks for.
-bool BorderedProblem::find_responses() {
-  Slopes slopes(conditions(), conditions());
-  for (int k = 0; k < conditions(); ++k) {
-    OrbitVector& response = responses_[static_cast<std::size_t>(k)];
-    condensed_.null_vector(response, 1 + k);
-    for (int i = 0; i < conditions(); ++i) slopes(i, k) = dot(condition_->gradient(i), response);
-  }
-  if (!slopes.allFinite()) return false;
-  slopes_.compute(slopes);
-  return slopes_.determinant() != 0.0;
-}
-
-/// The stand-ins of the next linearisation.
-void BorderedProblem::follow_gradients() {
-  for (int k = 0; k < conditions(); ++k) {
-    EndVector& ends = next_stand_in_;
-    close(condition_->gradient(k), ends);
-    const ArrayRange range = array_functions().range(ends.data(), static_cast<long>(ends.size()));
-    if (!range.finite || !(range.largest > 0.0)) continue;
-    for (double& entry : ends) entry /= range.largest;
-    stand_in(k).swap(ends);
-  }
+CondensedSystem::Singularity BorderedProblem::singularity() {
+  CondensedSystem::Singularity result = condensed_.singularity();
+  if (outcome_ != Linearization::ready || !condition_) return result;
+  if (!first_known_) know_null_vectors();
+  Eigen::MatrixXd rows(conditions() + 1, conditions() + 1);
+  rows.row(0) = row_slopes_.transpose() / length(row_);
+  for (int k = 0; k < conditions(); ++k) rows.row(1 + k) = slopes_.row(k) / length(condition_->gradient(k));
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(rows, Eigen::ComputeFullV);
+  const double reciprocal = svd.singularValues().minCoeff() / svd.singularValues().maxCoeff();
+  if (!(reciprocal < result.reciprocal_condition)) return result;
+  OrbitVector direction = condensed_.make_vector();
+  direction.set_zero();
+  add_null_vectors(svd.matrixV().rightCols<1>(), direction);
+  return {reciprocal, direction};
 }
 
 std::span<const double> BorderedProblem::border(const std::vector<double>& integrals) {
@@ -170,70 +166,84 @@ std::span<const double> BorderedProblem::border(const std::vector<double>& integ
 
 void BorderedProblem::solve_across(const OrbitResidual& residual, OrbitVector& dx) {
   condensed_.solve(residual, border(residual.integral), dx);
-  add_responses(minus_condition(), dx);
+  if (!condition_) return;
+  if (!row_along_) know_null_vectors();
+  add_null_vectors(across(dx), dx);
 }
 
 bool BorderedProblem::solve(const OrbitResidual& residual, double target, OrbitVector& dx) {
-  if (!tangent_known_) know_tangent();
-  solve_across(residual, dx);
-  return put_along(target, dx);
+  if (!first_known_) know_null_vectors();
+  condensed_.solve(residual, border(residual.integral), dx);
+  return put_on_branch(target, dx);
 }
 
 bool BorderedProblem::correct(const OrbitResidual& linearized, double target, OrbitVector& dx) {
-  condensed_.solve_both(linearized, border(linearized.integral), dx, tangent_);
-  complete_tangent();
-  add_responses(minus_condition(), dx);
-  return put_along(target, dx);
+  condensed_.solve_both(linearized, border(linearized.integral), dx, null_vectors_.front());
+  measure_null_vectors();
+  return put_on_branch(target, dx);
 }
 
-void BorderedProblem::know_tangent() {
-  condensed_.null_vector(tangent_);
-  complete_tangent();
+void BorderedProblem::know_null_vectors() {
+  condensed_.null_vector(null_vectors_.front());
+  measure_null_vectors();
 }
 
-/// tangent_ is the null vector of the factors.
-void BorderedProblem::complete_tangent() {
-  add_responses(Numbers::Zero(conditions()), tangent_);
-  row_along_ = dot(row_, tangent_);
-  tangent_known_ = true;
+/// What row and gradients say of them.
+void BorderedProblem::measure_null_vectors() {
+  const int count = conditions();
+  for (int j = 0; j <= count; ++j) {
+    const OrbitVector& z = null_vectors_[static_cast<std::size_t>(j)];
+    row_slopes_(j) = dot(row_, z);
+    for (int k = 0; k < count; ++k) slopes_(k, j) = dot(condition_->gradient(k), z);
+  }
+  along_ = vector_product(slopes_);
+  Small<most_null_vectors, most_null_vectors> closed(count + 1, count + 1);
+  closed << slopes_, along_.transpose();
+  closed_slopes_.compute(closed);
+  row_along_ = row_slopes_.dot(along_);
+  first_known_ = true;
 }
 
-/// Changes dx along the tangent until row . dx = target.
-bool BorderedProblem::put_along(double target, OrbitVector& dx) const {
-  if (*row_along_ == 0.0) return false;
-  const double along = (target - dot(row_, dx)) / *row_along_;
-  array_functions().add(along, tangent_.states.data(), dx.states.data(), dx.states.size());
-  dx.durations += along * tangent_.durations;
-  dx.globals += along * tangent_.globals;
+/// The shares of null vectors that make grad G . (dx + Z b) = -G, with none along the tangent.
+BorderedProblem::Numbers BorderedProblem::across(const OrbitVector& dx) const {
+  Numbers wanted = Numbers::Zero(conditions() + 1);
+  for (int k = 0; k < conditions(); ++k) wanted(k) = -condition_->value(k) - dot(condition_->gradient(k), dx);
+  return condition_ ? Numbers(closed_slopes_.solve(wanted)) : wanted;
+}
+
+/// Adds what meets the condition, and makes row . dx = target; false when the row is exactly orthogonal to the tangent,
+/// or there is none.
+bool BorderedProblem::put_on_branch(double target, OrbitVector& dx) const {
+  if (*row_along_ == 0.0 || !std::isfinite(*row_along_)) return false;
+  Numbers shares = across(dx);
+  shares += (target - dot(row_, dx) - row_slopes_.dot(shares)) / *row_along_ * along_;
+  add_null_vectors(shares, dx);
   return true;
 }
 
-void BorderedProblem::find_tangent(OrbitVector& dx) {
-  if (!tangent_known_) know_tangent();
-  dx.states.swap(tangent_.states);
-  dx.durations.swap(tangent_.durations);
-  dx.globals.swap(tangent_.globals);
-  tangent_known_ = false;
-  if (*row_along_ < 0.0) dx.scale(-1.0);
-}
-
-BorderedProblem::Numbers BorderedProblem::minus_condition() const {
-  Numbers wanted(conditions());
-  for (int k = 0; k < conditions(); ++k) wanted(k) = -condition_->value(k);
-  return wanted;
-}
-
-/// Adds what makes grad G . dx as wanted.
-void BorderedProblem::add_responses(Numbers wanted, OrbitVector& dx) const {
-  if (!condition_) return;
-  for (int k = 0; k < conditions(); ++k) wanted(k) -= dot(condition_->gradient(k), dx);
-  const Numbers shares = slopes_.solve(wanted);
-  for (int k = 0; k < conditions(); ++k) {
-    const OrbitVector& response = responses_[static_cast<std::size_t>(k)];
-    array_functions().add(shares(k), response.states.data(), dx.states.data(), dx.states.size());
-    dx.durations += shares(k) * response.durations;
-    dx.globals += shares(k) * response.globals;
+void BorderedProblem::add_null_vectors(const Numbers& shares, OrbitVector& dx) const {
+  for (std::size_t j = 0; j < null_vectors_.size(); ++j) {
+    const double share = shares(static_cast<Eigen::Index>(j));
+    const OrbitVector& z = null_vectors_[j];
+    array_functions().add(share, z.states.data(), dx.states.data(), dx.states.size());
+    dx.durations += share * z.durations;
+    dx.globals += share * z.globals;
   }
+}
+
+/// Without a condition the first null vector is the tangent, and is handed over.
+void BorderedProblem::find_tangent(OrbitVector& dx) {
+  if (!first_known_) know_null_vectors();
+  if (condition_) {
+    dx.set_zero();
+    add_null_vectors(along_, dx);
+  } else {
+    dx.states.swap(null_vectors_.front().states);
+    dx.durations.swap(null_vectors_.front().durations);
+    dx.globals.swap(null_vectors_.front().globals);
+    first_known_ = false;
+  }
+  if (*row_along_ < 0.0) dx.scale(-1.0);
 }
 
 double BorderedProblem::residual_size(const OrbitResidual& residual) const {

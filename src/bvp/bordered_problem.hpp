@@ -5,19 +5,19 @@
 ///     J dx = -F,    grad I . dx = -I,    grad G . dx = -G,    row . dx = target       (n m N c + ... + m + q
 ///     equations)
 ///
-/// The branch's row and the gradients of G reach into all intervals, and would be eliminated from each; and that of G
-/// is known only after J has been condensed. What stands for them has entries at the ends of segments only, and costs
-/// nothing there (CondensedSystem): those of the row, and those that the gradients had at the last linearisation. Any
-/// rows serve that tell the vectors apart that all other rows annihilate: the true gradients enter by a correction of
-/// rank one for each number, a solution of the same factors, and the row itself along the tangent t,
+/// The branch's row and the gradients of G reach into all intervals, and would be eliminated from each; and those of G
+/// are known only after J has been condensed. So J is closed by rows at the ends of segments, which cost nothing there
+/// (CondensedSystem): one for the branch's row, one for each number of G. With the null vectors Z that these rows
+/// leave, and a solution y,
 ///
-///     dx = y + (target - row . y) / (row . t) t,
+///     dx = y + Z b,    (grad G . Z) b = -G - grad G . y    and    row . Z b = target - row . y
 ///
-/// which is wanted anyway.
+/// What G leaves of Z is the tangent t = Z a, a the vector product of the rows of grad G . Z; row . t is then the
+/// determinant of all rows on Z.
 ///
 /// A condition is found by iteration from where it was last: which multiplier it means, and the border of its own
 /// problem. A trial of Newton's method that fails leaves these anywhere. They belong to the point of the branch that
-/// the trial began from, together with the stand-ins, and are brought back (`recall`) before the next one.
+/// the trial began from, and are brought back (`recall`) before the next one.
 #pragma once
 
 #include <Eigen/LU>
@@ -56,10 +56,7 @@ class OrbitCondition {
 };
 
 /// What linearisations near a point of the branch begin from; empty without a condition.
-struct ConditionMemory {
-  std::vector<double> condition;
-  std::vector<EndVector> stand_ins;
-};
+using ConditionMemory = std::vector<double>;
 
 /// A monitor that keeps this value.
 struct HeldMonitor {
@@ -107,45 +104,51 @@ class BorderedProblem {
   /// All conditions unchanged, row . dx > 0 (if it is not zero).
   void find_tangent(OrbitVector& dx);
   /// CondensedSystem::signed_distance(), with the sign that the determinant has with the branch's row and the
-  /// condition's gradients themselves, and zero where these do not reach what J leaves open.
+  /// condition's gradients themselves; with a condition times the size of a for gradients of length one, which is zero
+  /// where they leave more than the tangent. 0 where the last linearisation was singular, NaN where it failed
+  /// otherwise. Allocates.
   double signed_distance();
+  /// CondensedSystem::singularity() with row and gradients in place of the closing rows of a condition.
+  CondensedSystem::Singularity singularity();
   /// What stands for this row of a branch, on v.
   double at_ends(const OrbitVector& row, const OrbitVector& v) const;
   /// Largest residual, the condition's included.
   double residual_size(const OrbitResidual& residual) const;
 
  private:
-  using Numbers = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, OrbitCondition::most, 1>;
-  using Slopes = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, OrbitCondition::most, OrbitCondition::most>;
+  template <int Rows, int Columns>
+  using Small = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, Rows, Columns>;
+  static constexpr int most_null_vectors = OrbitCondition::most + 1;
+  using Numbers = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, most_null_vectors, 1>;
 
   void close(const OrbitVector& row, EndVector& closing) const;
-  bool find_responses();
-  void follow_gradients();
-  Numbers minus_condition() const;
-  void add_responses(Numbers wanted, OrbitVector& dx) const;
-  void know_tangent();
-  void complete_tangent();
-  bool put_along(double target, OrbitVector& dx) const;
+  void know_null_vectors();
+  void measure_null_vectors();
+  bool put_on_branch(double target, OrbitVector& dx) const;
+  Numbers across(const OrbitVector& dx) const;
+  void add_null_vectors(const Numbers& shares, OrbitVector& dx) const;
   int conditions() const { return condition_ ? condition_->count() : 0; }
-  EndVector& stand_in(int k) { return closing_[1 + static_cast<std::size_t>(k)]; }
-  double slope_cosine() const;
   /// The border's right-hand side with minus these in the rows of the integrals, zero in the others.
   std::span<const double> border(const std::vector<double>& integrals);
 
   CondensedSystem condensed_;
   std::unique_ptr<OrbitCondition> condition_;
   std::vector<HeldMonitor> held_;
-  OrbitVector row_;                 // the branch's
-  std::vector<EndVector> closing_;  // what stands for it, and for the gradients of G
-  EndVector next_stand_in_;
+  OrbitVector row_;                     // the branch's
+  std::vector<EndVector> closing_;      // from it, and any for the condition
   std::vector<OrbitVector> gradients_;  // of integrals and held monitors
   std::vector<double> border_;          // right-hand side of all these
   Orbit reference_;                     // only where there are integrals
-  std::vector<OrbitVector> responses_;  // solutions for a unit in the row of each stand-in
-  Eigen::PartialPivLU<Slopes> slopes_;  // of grad G . responses
-  OrbitVector tangent_;
-  bool tangent_known_ = false;       // that of the last linearisation, and not yet taken
-  std::optional<double> row_along_;  // row_ . tangent_ of the last linearisation, taken or not
+
+  // of the last linearisation
+  Linearization outcome_ = Linearization::not_finite;
+  std::vector<OrbitVector> null_vectors_;                  // Z; the first one is found when it is asked for
+  bool first_known_ = false;                               // and not taken as the tangent
+  Small<OrbitCondition::most, most_null_vectors> slopes_;  // grad G . Z
+  Eigen::PartialPivLU<Small<most_null_vectors, most_null_vectors>> closed_slopes_;  // with a below them
+  Numbers along_;                                                                   // a
+  Numbers row_slopes_;                                                              // row . Z
+  std::optional<double> row_along_;                                                 // row . t
 };
 
 }  // namespace tchat

@@ -30,33 +30,44 @@ double dot(const EndVector& a, const EndVector& b) {
 
 /// A closing row has a value of one on its null vector: the terms of that sum tell how much of it they take from each
 /// other, whatever the units of the unknowns are.
-bool are_pronounced(std::span<const EndVector> closing, const std::vector<EndVector>& null_vectors) {
+bool is_pronounced(const EndVector& row, const EndVector& null_vector) {
   constexpr double most_cancelled = 1e3;  // digits that solutions may lose
-  return std::equal(closing.begin(), closing.end(), null_vectors.begin(), [](const EndVector& row, const EndVector& z) {
-    return std::transform_reduce(row.begin(), row.end(), z.begin(), 0.0, std::plus<>(),
-                                 [](double a, double b) { return std::abs(a * b); }) < most_cancelled;
-  });
+  return std::transform_reduce(row.begin(), row.end(), null_vector.begin(), 0.0, std::plus<>(),
+                               [](double a, double z) { return std::abs(a * z); }) < most_cancelled;
+}
+
+bool has_unit_length(const EndVector& v) {
+  constexpr double rounding = 1e-12;
+  return std::abs(dot(v, v) - 1.0) < rounding;
 }
 
 bool are_finite(const std::vector<EndVector>& rows) {
   return std::all_of(rows.begin(), rows.end(), [](const EndVector& row) { return std::isfinite(dot(row, row)); });
 }
 
-void put_any_rows(std::vector<EndVector>& rows) {
-  for (std::size_t r = 0; r < rows.size(); ++r)
-    for (std::size_t k = 0; k < rows[r].size(); ++k)
-      rows[r][k] = std::cos(1.0 + (0.37 + 0.29 * static_cast<double>(r)) * static_cast<double>(k));
+/// Orthogonal to hardly anything, another one for each number.
+void put_any_row(std::size_t number, EndVector& row) {
+  for (std::size_t k = 0; k < row.size(); ++k)
+    row[k] = std::cos(1.0 + (0.37 + 0.29 * static_cast<double>(number)) * static_cast<double>(k));
 }
 
-/// Gram and Schmidt, each row twice, as it may nearly depend on those before.
+/// Gram and Schmidt, each row twice, as it may nearly depend on those before it; where it does to the last digit it
+/// becomes any other row.
 void make_orthonormal(std::vector<EndVector>& rows) {
   const auto add = [](double factor, const EndVector& from, EndVector& to) {
     array_functions().add(factor, from.data(), to.data(), static_cast<long>(to.size()));
   };
+  const auto project = [&](std::size_t r) {
+    for (std::size_t before = 0; before < r; ++before) add(-dot(rows[before], rows[r]), rows[before], rows[r]);
+    return std::sqrt(dot(rows[r], rows[r]));
+  };
   for (std::size_t r = 0; r < rows.size(); ++r)
     for (int round = 0; round < 2; ++round) {
-      for (std::size_t before = 0; before < r; ++before) add(-dot(rows[before], rows[r]), rows[before], rows[r]);
-      const double length = std::sqrt(dot(rows[r], rows[r]));
+      double length = project(r);
+      if (!(length > 0.0)) {
+        put_any_row(r, rows[r]);
+        length = project(r);
+      }
       for (double& entry : rows[r]) entry /= length;
     }
 }
@@ -121,6 +132,7 @@ CondensedSystem::CondensedSystem(const DefiningSystem& system, const OrbitShape&
   rhs_ = zeros(lu_.size());
   solution_ = rhs_;
   null_ends_.assign(index(std::max(closing_, 1)), rhs_);
+  closing_rows_.assign(index(closing_), rhs_);
   x_ = slope_ = zeros(n_);
 }
 
@@ -203,29 +215,31 @@ Linearization CondensedSystem::linearize(const Orbit& x, std::span<const EndVect
   return factorize(closing) ? Linearization::ready : Linearization::singular;
 }
 
-/// What the segments and the border leave. A matrix that is singular with its closing rows becomes known with others
-/// that are orthogonal to hardly anything. Null vectors that are known to few digits are known to more with closing
-/// rows along them.
+/// What the segments and the border leave.
 bool CondensedSystem::factorize(std::span<const EndVector> closing) {
-  constexpr int most_rounds = 3;
   closing_rows_gave_way_ = false;
   if (closing_ == 0) return lu_.factorize(triplet_values_);
-  bool known = factorize_with(closing);
-  if (known && are_pronounced(closing, null_ends_)) return true;
+  const bool known = factorize_with(closing);
+  if (known && closing_ == 1 && is_pronounced(closing.front(), null_ends_.front())) return true;
   closing_rows_gave_way_ = true;
-  std::vector<EndVector> rows = null_ends_;
-  if (!known || !are_finite(rows)) {
-    put_any_rows(rows);
-    if (!factorize_with(rows)) return false;
-    rows = null_ends_;
+  return close_along_null_vectors(known);
+}
+
+/// A matrix that is singular with its closing rows becomes known with others. Null vectors that are known to few digits
+/// are known to more with closing rows along them.
+bool CondensedSystem::close_along_null_vectors(bool known) {
+  constexpr int most_rounds = 3;
+  if (!known || !are_finite(null_ends_)) {
+    for (std::size_t r = 0; r < closing_rows_.size(); ++r) put_any_row(r, closing_rows_[r]);
+    if (!factorize_with(closing_rows_)) return false;
   }
   for (int round = 0; round < most_rounds; ++round) {
-    make_orthonormal(rows);
-    known = factorize_with(rows);
-    if (!known || are_pronounced(rows, null_ends_)) break;
-    rows = null_ends_;
+    std::copy(null_ends_.begin(), null_ends_.end(), closing_rows_.begin());
+    make_orthonormal(closing_rows_);
+    if (!factorize_with(closing_rows_)) return false;
+    if (std::all_of(null_ends_.begin(), null_ends_.end(), has_unit_length)) break;  // they are these rows
   }
-  return known;
+  return true;
 }
 
 /// With these closing rows, and the null vectors that belong to them.

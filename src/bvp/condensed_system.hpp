@@ -7,9 +7,11 @@
 ///
 /// Border rows are general linear functionals of the unknowns, given as dual vectors. Each takes part in the
 /// elimination of every interval, but for closing rows, which have entries at the ends of segments alone, for durations
-/// and free parameters, and cost nothing there. They serve to find the vectors that all other rows annihilate; where
-/// the value of one on its own is a small difference of large terms, or zero, these vectors themselves take the places
-/// of all. What a general row is to say is said with a closing row and one more solution (BorderedProblem).
+/// and free parameters, and cost nothing there. They serve to find the vectors that all other rows annihilate, the null
+/// vectors. One closing row stands as it is given, unless its value on the null vector is a small difference of large
+/// terms, or zero; then, and where there are several, they give way to an orthonormal basis of the null vectors' ends,
+/// so that nothing depends on them but that basis. What a general row is to say is said with a closing row and one more
+/// solution (BorderedProblem).
 ///
 /// Where there is enough work for several threads, they share it by segments, or within each segment where there are
 /// few of these. What is left for SparseLu one thread does. Results are the same to the last bit for any number.
@@ -72,7 +74,7 @@ class CondensedSystem {
 
   /// J(x) bordered by these rows, the general ones given as dual vectors, and factored; F(x) on the way, but for the
   /// integral conditions, whose gradients are among the general rows. Where closing rows give way, their right-hand
-  /// sides are those of what takes their places.
+  /// sides are those of what takes their places, and the null vectors' ends are these rows.
   Linearization linearize(const Orbit& x, std::span<const EndVector> closing, std::span<const OrbitVector> general,
                           OrbitResidual& residual);
   /// The same without closing rows.
@@ -91,7 +93,7 @@ class CondensedSystem {
   /// first null vector.
   void solve_both(const OrbitResidual& linearized, std::span<const double> border, OrbitVector& dx, OrbitVector& v);
 
-  /// Are the closing rows of the last linearisation other ones than those given?
+  /// Are the closing rows of the last linearisation other ones than those given? Always where there are several.
   bool closing_rows_gave_way() const { return closing_rows_gave_way_; }
 
   /// Row-major n x n blocks A_s and C_s: on every segment a flow perturbation satisfies A_s v(0) + C_s v(1) = 0.
@@ -157,6 +159,7 @@ class CondensedSystem {
   void keep_segment_blocks(int s);
   bool assemble(const Orbit& x, std::span<const OrbitVector> general, OrbitResidual& residual);
   bool factorize(std::span<const EndVector> closing);
+  bool close_along_null_vectors(bool known);
   bool factorize_with(std::span<const EndVector> closing);
   void find_null_vectors();
   double* put_general_row(int r, const OrbitVector& row, double* value) const;
@@ -196,6 +199,7 @@ class CondensedSystem {
   SparseLu lu_;
   std::ptrdiff_t closing_place_ = 0;  // of closing rows, in triplet_values_
   bool closing_rows_gave_way_ = false;
+  std::vector<EndVector> closing_rows_;  // where others than those given stand
   EndVector rhs_;
   EndVector solution_;                // what SparseLu sees of dx
   std::vector<EndVector> null_ends_;  // and of null vectors: one for each closing row, known after linearize()

@@ -383,7 +383,7 @@ CondensedSystem::Singularity PathFollower::singularity(const PathPoint& point) {
   problem_.recall(point.memory);
   problem_.set_reference(point.orbit);
   if (problem_.linearize(point.orbit, row_, newton_.residual()) == Linearization::not_finite) return {1.0, {}};
-  return condensed().singularity();
+  return problem_.singularity();
 }
 
 }  // namespace tchat

@@ -102,7 +102,7 @@ class PathFollower {
   double alignment(const PathPoint& point, const OrbitVector& direction) const;
   /// The same between the tangents of two points of one shape, of which only the ends of segments, durations and free
   /// parameters count: what the border of the second one's factors has of its tangent after a step from the first.
-  /// 1 where that border is the tangent itself (CondensedSystem::closing_rows_gave_way).
+  /// 1 where the distance to a singular problem does not depend on the border (CondensedSystem::closing_rows_gave_way).
   double cosine_at_ends(const PathPoint& from, const PathPoint& to) const;
 
   /// To a singular problem, at the point whose linearisation is held (BorderedProblem::signed_distance).

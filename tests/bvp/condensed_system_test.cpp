@@ -53,6 +53,12 @@ void drop_ends(OrbitVector& row, const OrbitShape& shape) {
   row.globals.setZero();
 }
 
+void add(double factor, const OrbitVector& from, OrbitVector& to) {
+  to.states += factor * from.states;
+  to.durations += factor * from.durations;
+  to.globals += factor * from.globals;
+}
+
 /// Numbers with these values and gradients, whatever the orbit is.
 class GivenCondition final : public OrbitCondition {
  public:
@@ -160,18 +166,16 @@ TEST_CASE("the determinant's sign follows the border and is comparable between n
   CHECK(condensed.determinant().sign == -sign);
 }
 
-TEST_CASE("closing rows, at the ends of segments alone, are the general rows that are zero elsewhere") {
+TEST_CASE("a closing row, at the ends of segments alone, is the general row that is zero elsewhere") {
   const PeriodicOrbitSystem system(system_of<ThreeModes>(), ThreeModes::signature(), {1, 2});
   const OrbitShape shape{3, 3, GENERATE(1, 6), 4};
-  const int closing_rows = GENERATE(1, 2);
   const Orbit x = any_orbit(shape, ThreeModes::par());
   std::vector<OrbitVector> rows;
-  CondensedSystem general(system, shape, {2, 0}), closing(system, shape, {2 - closing_rows, closing_rows});
+  CondensedSystem general(system, shape, {2, 0}), closing(system, shape, {1, 1});
   for (unsigned k = 0; k < 2; ++k) rows.push_back(random_vector(general, 3 + k));
-  std::vector<EndVector> ends;
-  for (int k = 0; k < closing_rows; ++k) ends.push_back(keep_ends(rows[static_cast<std::size_t>(k)], shape));
+  const std::vector<EndVector> ends{keep_ends(rows[0], shape)};
   OrbitResidual residual = general.make_residual();
-  REQUIRE(closing.linearize(x, ends, std::span(rows).subspan(ends.size()), residual) == Linearization::ready);
+  REQUIRE(closing.linearize(x, ends, std::span(rows).last(1), residual) == Linearization::ready);
   CHECK_FALSE(closing.closing_rows_gave_way());
   REQUIRE(general.linearize(x, rows, residual) == Linearization::ready);
   const std::vector<double> border{0.3, -0.7};
@@ -180,53 +184,56 @@ TEST_CASE("closing rows, at the ends of segments alone, are the general rows tha
   closing.solve(residual, border, by_closing);
   const double size = by_general.states.cwiseAbs().maxCoeff();
   CHECK(largest_difference(by_closing, by_general) < 1e-10 * size);
-  for (int k = 0; k < closing_rows; ++k) {
-    closing.null_vector(by_closing, k);
-    for (int r = 0; r < 2; ++r)
-      CHECK(dot(rows[static_cast<std::size_t>(r)], by_closing) == Approx(r == k).margin(1e-9));
-  }
   CHECK(general.determinant().sign == closing.determinant().sign);
   CHECK(general.determinant().log2_size == Approx(closing.determinant().log2_size).margin(1e-9));
 }
 
-TEST_CASE("closing rows that do not tell the null vectors apart give way to rows that do") {
+TEST_CASE("several closing rows, whatever they are, give way to the ends of null vectors, which are orthonormal") {
   const PeriodicOrbitSystem system(system_of<ThreeModes>(), ThreeModes::signature(), {1, 2});
   const OrbitShape shape{3, 3, 6, 4};
   const Orbit x = any_orbit(shape, ThreeModes::par());
-  CondensedSystem condensed(system, shape, {0, 2});
-  OrbitVector row = random_vector(condensed, 3), other = random_vector(condensed, 4);
-  std::vector<EndVector> ends{keep_ends(row, shape), keep_ends(other, shape)};
-  // Equal, or different by this share of one of them; or one of them is zero.
-  const double share = GENERATE(0.0, 1e-15, 1e-9, 1e-4, -1.0);
-  for (std::size_t k = 0; k < ends[1].size(); ++k) ends[1][k] = share < 0.0 ? 0.0 : ends[0][k] + share * ends[1][k];
-  OrbitResidual residual = condensed.make_residual();
+  CondensedSystem condensed(system, shape, {0, 2}), general(system, shape, {2, 0});
+  std::vector<OrbitVector> rows{random_vector(condensed, 3), random_vector(condensed, 4)};
+  std::vector<EndVector> ends{keep_ends(rows[0], shape), keep_ends(rows[1], shape)};
+  // Independent of one another, or equal but for this share of one of them, or one of them or both are zero.
+  const double share = GENERATE(1.0, 1e-4, 1e-9, 1e-15, 0.0, -1.0, -2.0);
+  for (std::size_t k = 0; k < ends[1].size(); ++k) {
+    ends[1][k] = share < 0.0 ? 0.0 : (share < 1.0 ? ends[0][k] : 0.0) + share * ends[1][k];
+    if (share == -2.0) ends[0][k] = 0.0;
+  }
+  CAPTURE(share);
+  OrbitResidual residual = condensed.make_residual(), of_general = residual;
   REQUIRE(condensed.linearize(x, ends, {}, residual) == Linearization::ready);
   CHECK(condensed.closing_rows_gave_way());
-  OrbitVector v[2] = {condensed.make_vector(), condensed.make_vector()};
-  for (int k = 0; k < 2; ++k) condensed.null_vector(v[k], k);
-  // Closing rows of length one: null vectors that are not much longer, and are told apart, lose few digits.
+  REQUIRE(general.linearize(x, rows, of_general) == Linearization::ready);
+
+  OrbitVector z[2] = {condensed.make_vector(), condensed.make_vector()};
   std::vector<EndVector> of;
-  for (OrbitVector copy : v) of.push_back(keep_ends(copy, shape));
-  const auto product = [&](std::size_t k, std::size_t l) {
-    return std::inner_product(of[k].begin(), of[k].end(), of[l].begin(), 0.0);
-  };
-  CHECK(product(0, 0) < 100.0);
-  CHECK(product(1, 1) < 100.0);
-  CHECK(std::abs(product(0, 1)) < 0.9 * std::sqrt(product(0, 0) * product(1, 1)));
-  // They annihilate the linearisation: a short step along them changes the residual by its square.
-  OrbitResidual there = residual;
-  const double step = 1e-6;
-  for (const OrbitVector& direction : v) {
-    Orbit moved = x;
-    advance(moved, step, direction, system.free_parameters());
-    condensed.evaluate(moved, there);
-    double change = 0.0;
-    for (std::size_t k = 0; k < there.collocation.size(); ++k)
-      change = std::max(change, std::abs(there.collocation[k] - residual.collocation[k]));
-    for (std::size_t k = 0; k < there.coupling.size(); ++k)
-      change = std::max(change, std::abs(there.coupling[k] - residual.coupling[k]));
-    CHECK(change < 1e-3 * step);
+  for (int k = 0; k < 2; ++k) {
+    condensed.null_vector(z[k], k);
+    OrbitVector copy = z[k];
+    of.push_back(keep_ends(copy, shape));
   }
+  for (std::size_t k = 0; k < 2; ++k)
+    for (std::size_t l = 0; l < 2; ++l)
+      CHECK(std::inner_product(of[k].begin(), of[k].end(), of[l].begin(), 0.0) == Approx(k == l).margin(1e-9));
+  // A solution and the null vectors, by what the general rows say of them.
+  OrbitVector y = condensed.make_vector(), expected = y;
+  condensed.solve(residual, std::vector<double>{0.0, 0.0}, y);
+  const std::vector<double> border{0.3, -0.7};
+  general.solve(of_general, border, expected);
+  Eigen::Matrix2d by_rows;
+  Eigen::Vector2d rest;
+  for (int r = 0; r < 2; ++r) {
+    const OrbitVector& row = rows[static_cast<std::size_t>(r)];
+    rest(r) = border[static_cast<std::size_t>(r)] - dot(row, y);
+    for (int k = 0; k < 2; ++k) by_rows(r, k) = dot(row, z[k]);
+  }
+  const Eigen::Vector2d shares = by_rows.inverse() * rest;
+  for (int k = 0; k < 2; ++k) add(shares(k), z[k], y);
+  CHECK(largest_difference(y, expected) < 1e-9 * expected.states.cwiseAbs().maxCoeff());
+  // Also the sign: that of the closing rows times that of the general rows on the null vectors.
+  CHECK(general.determinant().sign == condensed.determinant().sign * (by_rows.determinant() > 0.0 ? 1 : -1));
 }
 
 TEST_CASE("what stands for a branch's row gives the corrections, tangents and signs that the row itself gives") {
@@ -264,7 +271,7 @@ TEST_CASE("what stands for a branch's row gives the corrections, tangents and si
     CHECK(largest_difference(tangent, expected) < rounding * expected.states.cwiseAbs().maxCoeff());
 
     const double distance = problem.signed_distance();
-    CHECK((distance < 0.0) == (with_row.determinant().sign < 0));
+    CHECK((distance < 0.0 ? -1 : distance > 0.0) == with_row.determinant().sign);
     negative += distance < 0.0 ? 1 : 0;
     opposite += problem.condensed().determinant().sign != with_row.determinant().sign ? 1 : 0;
   }
@@ -302,9 +309,7 @@ TEST_CASE("what stands for a condition's gradients gives what they give themselv
                             std::make_unique<GivenCondition>(values, std::vector(rows.begin() + 2, rows.end())),
                             {{monitor, held, "mean(x1)"}});
     OrbitResidual residual = problem.make_residual();
-    const int rounds = seed % 2 == 0 ? 1 : 2;  // with any rows in place of the gradients, or with their ends
-    for (int round = 0; round < rounds; ++round)
-      REQUIRE(problem.linearize(x, rows[0], residual) == Linearization::ready);
+    REQUIRE(problem.linearize(x, rows[0], residual) == Linearization::ready);
     REQUIRE(with_rows.linearize(x, rows, of_rows) == Linearization::ready);
     // Rounding times the condition of the matrices, with rows that may nearly depend on one another where they meet.
     const double rounding = 1e-8;
@@ -323,13 +328,65 @@ TEST_CASE("what stands for a condition's gradients gives what they give themselv
 
     // Another order of the rows: the gradients were moved before the monitor's, which turns the sign for each of them.
     const int sign = with_rows.determinant().sign * (numbers % 2 == 0 ? 1 : -1);
-    CHECK((problem.signed_distance() < 0.0) == (sign < 0));
+    const double distance = problem.signed_distance();
+    CHECK((distance < 0.0 ? -1 : distance > 0.0) == sign);
+    CHECK(problem.singularity().reciprocal_condition > 1e-8);
     negative += sign < 0 ? 1 : 0;
     opposite += problem.condensed().determinant().sign != sign ? 1 : 0;
   }
   CHECK(negative > 5);
   CHECK(negative < 35);
   CHECK(opposite > 5);  // the sign has to be corrected for
+}
+
+TEST_CASE("the distance to a singular problem with a condition depends on no closing row, and passes zero linearly") {
+  // grad G = what all vectors that the linearisation annihilates are blind to, and `share` of another row.
+  const PeriodicOrbitSystem system(linosc(), {{1, 1, 1}, {1, 1, 1}}, {1, 3});
+  const OrbitShape shape{4, 2, 6, 4};
+  const Orbit x = any_orbit(shape, parameters({3.0, 2.0, 0.05, 0.8}));
+  CondensedSystem condensed(system, shape, {0, 2});
+  std::vector<EndVector> ends;
+  for (unsigned k = 0; k < 2; ++k) {
+    OrbitVector any = random_vector(condensed, 50 + k);
+    ends.push_back(keep_ends(any, shape));
+  }
+  OrbitResidual residual = condensed.make_residual();
+  REQUIRE(condensed.linearize(x, ends, {}, residual) == Linearization::ready);
+  OrbitVector z[2] = {condensed.make_vector(), condensed.make_vector()};
+  Eigen::Matrix2d products;
+  for (int k = 0; k < 2; ++k) condensed.null_vector(z[k], k);
+  for (int k = 0; k < 2; ++k)
+    for (int l = 0; l < 2; ++l) products(k, l) = dot(z[k], z[l]);
+  OrbitVector blind = random_vector(condensed, 60);
+  const OrbitVector across = random_vector(condensed, 61);
+  const Eigen::Vector2d seen = products.inverse() * Eigen::Vector2d(dot(blind, z[0]), dot(blind, z[1]));
+  for (int k = 0; k < 2; ++k) add(-seen(k), z[k], blind);
+
+  const auto problem_at = [&](double share, const OrbitVector& row) {
+    OrbitVector gradient = blind;
+    add(share, across, gradient);
+    auto problem = std::make_unique<BorderedProblem>(
+        system, shape, std::make_unique<GivenCondition>(std::vector{0.2}, std::vector{gradient}));
+    OrbitResidual of = problem->make_residual();
+    CHECK(problem->linearize(x, row, of) == Linearization::ready);
+    return problem;
+  };
+  const OrbitVector row = random_vector(condensed, 62), other_row = random_vector(condensed, 63);
+  const double distance = problem_at(1e-3, row)->signed_distance();
+  CHECK(std::abs(distance) > 1e-9);
+  for (const double share : {1e-4, 1e-6, -1e-6, -1e-3})
+    CHECK(problem_at(share, row)->signed_distance() == Approx(distance * share / 1e-3).epsilon(0.01));
+  CHECK(std::abs(problem_at(1e-3, other_row)->signed_distance()) == Approx(std::abs(distance)).epsilon(1e-9));
+
+  // Where nothing but rounding is left it is refused, and the direction is a null vector that the row annihilates.
+  const CondensedSystem::Singularity singularity = problem_at(0.0, row)->singularity();
+  CHECK(singularity.reciprocal_condition < 1e-11);
+  CHECK(std::abs(dot(row, singularity.direction)) < 1e-9);
+  OrbitVector rest = singularity.direction;
+  const Eigen::Vector2d parts = products.inverse() * Eigen::Vector2d(dot(rest, z[0]), dot(rest, z[1]));
+  for (int k = 0; k < 2; ++k) add(-parts(k), z[k], rest);
+  CHECK(rest.states.cwiseAbs().maxCoeff() < 1e-9 * singularity.direction.states.cwiseAbs().maxCoeff());
+  CHECK(problem_at(1e-3, row)->singularity().reciprocal_condition > 1e-6);
 }
 
 TEST_CASE("segment blocks are the flow Jacobian: A + C Phi = 0") {
