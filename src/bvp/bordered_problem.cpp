@@ -153,8 +153,7 @@ CondensedSystem::Singularity BorderedProblem::singularity() {
   const double reciprocal = svd.singularValues().minCoeff() / svd.singularValues().maxCoeff();
   if (!(reciprocal < result.reciprocal_condition)) return result;
   OrbitVector direction = condensed_.make_vector();
-  direction.set_zero();
-  add_null_vectors(svd.matrixV().rightCols<1>(), direction);
+  combine_null_vectors(svd.matrixV().rightCols<1>(), direction);
   return {reciprocal, direction};
 }
 
@@ -231,12 +230,25 @@ void BorderedProblem::add_null_vectors(const Numbers& shares, OrbitVector& dx) c
   }
 }
 
+void BorderedProblem::combine_null_vectors(const Numbers& shares, OrbitVector& v) const {
+  std::array<const double*, most_null_vectors> states{};
+  std::transform(null_vectors_.begin(), null_vectors_.end(), states.begin(),
+                 [](const OrbitVector& z) { return z.states.data(); });
+  array_functions().combine(states.data(), shares.data(), static_cast<int>(shares.size()), v.states.data(),
+                            v.states.size());
+  v.durations.setZero();
+  v.globals.setZero();
+  for (Eigen::Index j = 0; j < shares.size(); ++j) {
+    v.durations += shares(j) * null_vectors_[static_cast<std::size_t>(j)].durations;
+    v.globals += shares(j) * null_vectors_[static_cast<std::size_t>(j)].globals;
+  }
+}
+
 /// Without a condition the first null vector is the tangent, and is handed over.
 void BorderedProblem::find_tangent(OrbitVector& dx) {
   if (!first_known_) know_null_vectors();
   if (condition_) {
-    dx.set_zero();
-    add_null_vectors(along_, dx);
+    combine_null_vectors(along_, dx);
   } else {
     dx.states.swap(null_vectors_.front().states);
     dx.durations.swap(null_vectors_.front().durations);

@@ -127,6 +127,7 @@ class BorderedProblem {
   bool put_on_branch(double target, OrbitVector& dx) const;
   Numbers across(const OrbitVector& dx) const;
   void add_null_vectors(const Numbers& shares, OrbitVector& dx) const;
+  void combine_null_vectors(const Numbers& shares, OrbitVector& v) const;
   int conditions() const { return condition_ ? condition_->count() : 0; }
   /// The border's right-hand side with minus these in the rows of the integrals, zero in the others.
   std::span<const double> border(const std::vector<double>& integrals);
