@@ -1,6 +1,7 @@
 #include "bvp/mesh_adaptation.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "bvp/with_dimension.hpp"
@@ -90,6 +91,7 @@ std::vector<double> resampled_mesh(const std::vector<double>& mesh, int interval
 MeshTransfer::MeshTransfer(const OrbitShape& from, const std::vector<double>& from_mesh, const OrbitShape& to,
                            const std::vector<double>& to_mesh, const CollocationRule& rule)
     : from_(from), to_(to), first_(index(to.nodes())), weights_(from.collocation + 1, to.nodes()) {
+  assert(rule.points() == from.collocation);
   int j = 0;
   for (int k = 0; k < to.nodes(); ++k) {
     const int interval = std::min(k / to.collocation, to.intervals - 1);

@@ -11,19 +11,23 @@ WeightedNorm WeightedNorm::unit(int dimension) {
   return {Eigen::VectorXd::Ones(dimension), Eigen::VectorXd::Ones(parameter_length)};
 }
 
-void WeightedNorm::dual(const Orbit& x, const CollocationRule& rule, const std::vector<int>& free_parameters,
-                        const OrbitVector& v, OrbitVector& row) const {
+void add_mass(const Orbit& x, const CollocationRule& rule, const Eigen::VectorXd& weights, const double* v,
+              double* row) {
   const int c = x.shape.collocation;
   const int n = x.shape.dimension;
-  const ArrayFunctions& arrays = array_functions();
+  for (int j = 0; j < x.shape.intervals; ++j) {
+    const double h = x.mesh[static_cast<std::size_t>(j + 1)] - x.mesh[static_cast<std::size_t>(j)];
+    const std::ptrdiff_t first = static_cast<std::ptrdiff_t>(j) * c * n;
+    array_functions().add_mass(h, rule.mass.data(), c + 1, weights.data(), n, v + first, row + first);
+  }
+}
+
+void WeightedNorm::dual(const Orbit& x, const CollocationRule& rule, const std::vector<int>& free_parameters,
+                        const OrbitVector& v, OrbitVector& row) const {
   row.states.setZero();
   for (int s = 0; s < x.shape.segments; ++s) {
-    for (int j = 0; j < x.shape.intervals; ++j) {
-      const double h = x.mesh[static_cast<std::size_t>(j + 1)] - x.mesh[static_cast<std::size_t>(j)];
-      const Eigen::Index first = static_cast<Eigen::Index>(s * x.shape.nodes() + j * c) * n;
-      arrays.add_mass(h, rule.mass.data(), c + 1, state_weights_.data(), n, v.states.data() + first,
-                      row.states.data() + first);
-    }
+    const int first = s * x.shape.nodes();
+    add_mass(x, rule, state_weights_, v.states.col(first).data(), row.states.col(first).data());
     row.durations(s) = parameter_weights_(first_duration - 1 + s) * v.durations(s);
   }
   for (std::size_t g = 0; g < free_parameters.size(); ++g) {

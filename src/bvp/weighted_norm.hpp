@@ -13,6 +13,11 @@
 
 namespace tchat {
 
+/// row += M v for states v of one segment (n x nodes) on the mesh of x: a . M v is the integral of sum_i weights_i a_i
+/// v_i over its scaled time.
+void add_mass(const Orbit& x, const CollocationRule& rule, const Eigen::VectorXd& weights, const double* v,
+              double* row);
+
 class WeightedNorm {
  public:
   /// `state_weights` has n entries, `parameter_weights` those of PAR(1..parameter_length), all >= 0.

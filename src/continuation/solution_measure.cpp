@@ -2,15 +2,12 @@
 
 #include <cmath>
 
+#include "bvp/weighted_norm.hpp"
 #include "linear_algebra/array_kernel.hpp"
 
 namespace tchat {
 
 namespace {
-
-double interval_length(const Orbit& x, int j) {
-  return x.mesh[static_cast<std::size_t>(j + 1)] - x.mesh[static_cast<std::size_t>(j)];
-}
 
 /// The share of segment s in the period.
 double time_share(const Orbit& x, int s) {
@@ -26,8 +23,10 @@ double time_mean(const Orbit& x, const Integrand& integrand) {
   double mean = 0.0;
   for (int s = 0; s < x.shape.segments; ++s) {
     double segment = 0.0;
-    for (int j = 0; j < x.shape.intervals; ++j)
-      segment += interval_length(x, j) * integrand(x.states.middleCols(s * x.shape.nodes() + j * c, c + 1));
+    for (int j = 0; j < x.shape.intervals; ++j) {
+      const double h = x.mesh[static_cast<std::size_t>(j + 1)] - x.mesh[static_cast<std::size_t>(j)];
+      segment += h * integrand(x.states.middleCols(s * x.shape.nodes() + j * c, c + 1));
+    }
     mean += time_share(x, s) * segment;
   }
   return mean;
@@ -36,17 +35,12 @@ double time_mean(const Orbit& x, const Integrand& integrand) {
 }  // namespace
 
 double l2_norm(const Orbit& x, const CollocationRule& rule, const Eigen::VectorXd& state_weights) {
-  const ArrayFunctions& arrays = array_functions();
-  const int c = x.shape.collocation;
-  const int n = x.shape.dimension;
-  Eigen::MatrixXd product(n, x.shape.nodes());  // mass times states, interval by interval
+  Eigen::MatrixXd product(x.shape.dimension, x.shape.nodes());
   double mean = 0.0;
   for (int s = 0; s < x.shape.segments; ++s) {
     product.setZero();
-    for (int j = 0; j < x.shape.intervals; ++j)
-      arrays.add_mass(interval_length(x, j), rule.mass.data(), c + 1, state_weights.data(), n, x.node(s, j * c),
-                      product.col(j * c).data());
-    mean += time_share(x, s) * arrays.dot(product.data(), x.node(s, 0), product.size());
+    add_mass(x, rule, state_weights, x.node(s, 0), product.data());
+    mean += time_share(x, s) * array_functions().dot(product.data(), x.node(s, 0), product.size());
   }
   return std::sqrt(mean);
 }

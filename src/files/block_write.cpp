@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <memory>
 
 namespace tchat {
@@ -75,7 +76,10 @@ class OnThisProcessor {
     kept_ = ::sched_setaffinity(0, sizeof only, &only) == 0;
   }
   ~OnThisProcessor() {
-    if (kept_) ::sched_setaffinity(0, sizeof before_, &before_);
+    if (!kept_ || ::sched_setaffinity(0, sizeof before_, &before_) == 0) return;
+    // None of those before is left to this process: all that there are.
+    std::memset(&before_, 0xff, sizeof before_);
+    ::sched_setaffinity(0, sizeof before_, &before_);
   }
   OnThisProcessor(const OnThisProcessor&) = delete;
   OnThisProcessor& operator=(const OnThisProcessor&) = delete;

@@ -28,14 +28,13 @@ class EventAlongSegment {
         x_(x),
         s_(s),
         event_(event),
-        values_(x.shape.nodes()),
-        gradients_(x.shape.dimension, x.shape.nodes()),
+        values_(Vector::Constant(x.shape.nodes(), NAN)),
+        gradients_(Eigen::MatrixXd::Constant(x.shape.dimension, x.shape.nodes(), NAN)),
         rate_(x.shape.dimension),
         slopes_at_nodes_(x.shape.collocation + 1, x.shape.collocation + 1) {
     for (int i = 0; i <= x.shape.collocation; ++i)
       slopes_at_nodes_.col(i) = basis_at(static_cast<double>(i) / x.shape.collocation).slopes;
-    system.system().first_at_points(FunctionKind::event, event, x.shape.nodes(), x.node(s, 0), par(), {},
-                                    values_.data(), gradients_.data(), nullptr);
+    find_gradients();
   }
 
   double length(int j) const { return x_.mesh[static_cast<std::size_t>(j + 1)] - x_.mesh[static_cast<std::size_t>(j)]; }
@@ -80,6 +79,17 @@ class EventAlongSegment {
   }
 
  private:
+  /// All in one call; where one point spoils it for others (an exception makes all of them unknown), each on its own.
+  void find_gradients() {
+    const int nodes = x_.shape.nodes();
+    system().first_at_points(FunctionKind::event, event_, nodes, x_.node(s_, 0), par(), {}, values_.data(),
+                             gradients_.data(), nullptr);
+    for (int k = 0; k < nodes; ++k)
+      if (!std::isfinite(values_(k)) || !gradients_.col(k).allFinite())
+        system().first(FunctionKind::event, event_, x_.node(s_, k), par(), {}, &values_(k), gradients_.col(k).data(),
+                       nullptr);
+  }
+
   const HybridSystem& system() const { return defining_.system(); }
   const double* par() const { return x_.par.data(); }
 

@@ -1,5 +1,6 @@
 #include "files/block_file.hpp"
 
+#include <sched.h>
 #include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -46,6 +47,26 @@ TEST_CASE("Blocks of all sizes, within a page of memory and across many") {
     expected += block;
     CHECK(folder.read("q.x") == expected);
   }
+}
+
+TEST_CASE("A thread may run where it could before, whatever blocks it has written") {
+  const test_support::TemporaryFolder folder;
+  cpu_set_t before, after;
+  REQUIRE(::sched_getaffinity(0, sizeof before, &before) == 0);
+  {
+    BlockFile file(folder.file("q.x"));
+    for (int k = 0; k < 10; ++k) file.write(std::string(5000, 'x'));
+    REQUIRE(::sched_getaffinity(0, sizeof after, &after) == 0);
+    CHECK(CPU_EQUAL(&before, &after));
+  }
+  {
+    const test_support::FileSizeLimit limit(8000);
+    BlockFile full(folder.file("p.x"));
+    full.write(std::string(5000, 'x'));
+    CHECK_THROWS(full.write(std::string(5000, 'x')));
+  }
+  REQUIRE(::sched_getaffinity(0, sizeof after, &after) == 0);
+  CHECK(CPU_EQUAL(&before, &after));
 }
 
 TEST_CASE("A block is whole although the process is killed while it is stored") {

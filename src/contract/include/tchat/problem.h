@@ -124,8 +124,9 @@ typedef struct tchat_problem {
   int32_t sliding_modes;
   const tchat_sliding* sliding;
 
-  /* `first` at `points` points for one par, the arrays x, out, dx and dp of the points one behind the other: all Gauss
-   * points of some mesh intervals at once. NULL: tchat calls `first` for each. */
+  /* `first` at `points` points for one par, the arrays x, out, dx and dp of the points one behind the other: a field at
+   * the Gauss points of some mesh intervals, an event function at all nodes of a segment. NULL: tchat calls `first` for
+   * each. */
   void (*first_at_points)(const void* self, int32_t kind, int32_t index, int32_t points, const double* x,
                           const double* par, const int32_t* active, int32_t active_count, double* out, double* dx,
                           double* dp);
