@@ -239,3 +239,26 @@ TEST_CASE("impact velocity: rising ends the branch when asked") {
     CHECK((branch.points.size() < 12) == stop);
   }
 }
+
+TEST_CASE("contact: an event function that cannot be asked for many points at once is asked one by one") {
+  const std::array<double, 4> p = {1.5, 0.3, 0.2, 0.4};
+  const Orbit x = revolution(p, 0.3, 30, 4);
+  const PeriodicOrbitSystem plain(system_of<Circle>(), {{1, 1, 1}}, {1});
+  tchat_problem table = system_of<Circle>().table();
+  // As the guard of a plugin does where one point throws: nothing is known.
+  table.first_at_points = [](const void*, std::int32_t, std::int32_t, std::int32_t points, const double*, const double*,
+                             const std::int32_t*, std::int32_t, double* out, double* dx, double*) {
+    std::fill_n(out, points, NAN);
+    std::fill_n(dx, points * Circle::dimension, NAN);
+  };
+  const HybridSystem hybrid(table);
+  const PeriodicOrbitSystem spoiled(hybrid, {{1, 1, 1}}, {1});
+  const std::vector<Contact> expected = least_candidates(plain, CollocationRule(4), x, 0, 2);
+  const std::vector<Contact> found = least_candidates(spoiled, CollocationRule(4), x, 0, 2);
+  REQUIRE(expected.size() > 2);
+  REQUIRE(found.size() == expected.size());
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    CHECK(found[k].tau == expected[k].tau);
+    CHECK(found[k].value == expected[k].value);
+  }
+}
