@@ -4,6 +4,7 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -19,7 +20,11 @@ std::array<int, 2> end_columns(const OrbitShape& shape, int s) {
   return {s * shape.nodes(), (s + 1) * shape.nodes() - 1};
 }
 
-double length(const OrbitVector& v) { return std::sqrt(dot(v, v)); }
+/// The terms that row . v is the sum of, without their signs: its size, whatever the units of the unknowns are.
+double terms(const OrbitVector& row, const OrbitVector& v) {
+  return row.states.cwiseProduct(v.states).cwiseAbs().sum() + row.durations.cwiseProduct(v.durations).cwiseAbs().sum() +
+         row.globals.cwiseProduct(v.globals).cwiseAbs().sum();
+}
 
 /// Orthogonal to all rows: their vector product.
 template <class Rows>
@@ -45,19 +50,13 @@ BorderedProblem::BorderedProblem(const DefiningSystem& system, const OrbitShape&
       condition_(std::move(condition)),
       held_(std::move(held)),
       row_(condensed_.make_vector()),
-      closing_(static_cast<std::size_t>(1 + conditions()), condensed_.make_end_vector()),
+      closing_(condensed_.make_end_vector()),
       gradients_(static_cast<std::size_t>(system.integral_conditions()) + held_.size(), row_),
-      border_(closing_.size() + gradients_.size()),
-      null_vectors_(closing_.size(), row_),
+      border_(static_cast<std::size_t>(1 + conditions()) + gradients_.size()),
+      null_vectors_(static_cast<std::size_t>(1 + conditions()), row_),
       slopes_(conditions(), conditions() + 1),
-      closed_slopes_(conditions() + 1),
       along_(conditions() + 1),
-      row_slopes_(conditions() + 1) {
-  // Any rows serve for the condition: they give way.
-  for (std::size_t k = 1; k < closing_.size(); ++k)
-    for (std::size_t i = 0; i < closing_[k].size(); ++i)
-      closing_[k][i] = std::sin(0.5 + static_cast<double>(k) * (0.3 + 0.44 * static_cast<double>(i)));
-}
+      row_slopes_(conditions() + 1) {}
 
 void BorderedProblem::remember(ConditionMemory& memory) const {
   if (condition_) condition_->remember(memory);
@@ -89,19 +88,20 @@ void BorderedProblem::evaluate(const Orbit& x, OrbitResidual& residual) {
 }
 
 Linearization BorderedProblem::linearize(const Orbit& x, const OrbitVector& row, OrbitResidual& residual) {
+  outcome_ = Linearization::not_finite;
   first_known_ = false;
   row_along_.reset();
   row_.states = row.states;
   row_.durations = row.durations;
   row_.globals = row.globals;
-  close(row, closing_.front());
+  close(row);
   const auto integrals = static_cast<std::size_t>(system().integral_conditions());
   system().integral_gradients(x, reference_, condensed_.rule(), residual.integral.data(),
                               std::span(gradients_).first(integrals));
   for (std::size_t h = 0; h < held_.size(); ++h)
     residual.integral[integrals + h] =
         held_[h].monitor->gradient(x, condensed_.rule(), gradients_[integrals + h]) - held_[h].value;
-  outcome_ = condensed_.linearize(x, closing_, gradients_, residual);
+  outcome_ = condensed_.linearize(x, {&closing_, condition_ ? 0U : 1U}, gradients_, residual);
   if (outcome_ == Linearization::ready && condition_ && !condition_->evaluate(condensed_, x))
     outcome_ = Linearization::condition_lost;
   if (outcome_ != Linearization::ready) return outcome_;
@@ -111,9 +111,9 @@ Linearization BorderedProblem::linearize(const Orbit& x, const OrbitVector& row,
 
 /// A row at the ends of segments, each of which counts as many times as there are nodes, as these share the weight of a
 /// segment.
-void BorderedProblem::close(const OrbitVector& row, EndVector& closing) const {
+void BorderedProblem::close(const OrbitVector& row) {
   const OrbitShape& shape = condensed_.shape();
-  double* value = closing.data();
+  double* value = closing_.data();
   for (int s = 0; s < shape.segments; ++s) {
     for (const int column : end_columns(shape, s))
       for (int a = 0; a < shape.dimension; ++a) *value++ = shape.nodes() * row.states(a, column);
@@ -138,8 +138,15 @@ double BorderedProblem::signed_distance() {
   if (!row_along_) know_null_vectors();
   double distance = condensed_.signed_distance();
   if (condition_) distance *= along_.norm();
-  for (int k = 0; k < conditions(); ++k) distance /= length(condition_->gradient(k));
+  for (int k = 0; k < conditions(); ++k) distance /= size_on_null_vectors(condition_->gradient(k));
   return *row_along_ < 0.0 ? -distance : distance;
+}
+
+/// The largest length that row . Z may have with these sizes of its terms; not zero.
+double BorderedProblem::size_on_null_vectors(const OrbitVector& row) const {
+  double sum = std::numeric_limits<double>::min();
+  for (const OrbitVector& z : null_vectors_) sum += terms(row, z) * terms(row, z);
+  return std::sqrt(sum);
 }
 
 CondensedSystem::Singularity BorderedProblem::singularity() {
@@ -147,8 +154,10 @@ CondensedSystem::Singularity BorderedProblem::singularity() {
   if (outcome_ != Linearization::ready || !condition_) return result;
   if (!first_known_) know_null_vectors();
   Eigen::MatrixXd rows(conditions() + 1, conditions() + 1);
-  rows.row(0) = row_slopes_.transpose() / length(row_);
-  for (int k = 0; k < conditions(); ++k) rows.row(1 + k) = slopes_.row(k) / length(condition_->gradient(k));
+  rows.row(0) = row_slopes_.transpose() / size_on_null_vectors(row_);
+  for (int k = 0; k < conditions(); ++k)
+    rows.row(1 + k) = slopes_.row(k) / size_on_null_vectors(condition_->gradient(k));
+  if (!rows.allFinite()) return result;
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(rows, Eigen::ComputeFullV);
   const double reciprocal = svd.singularValues().minCoeff() / svd.singularValues().maxCoeff();
   if (!(reciprocal < result.reciprocal_condition)) return result;
@@ -158,16 +167,14 @@ CondensedSystem::Singularity BorderedProblem::singularity() {
 }
 
 std::span<const double> BorderedProblem::border(const std::vector<double>& integrals) {
-  const auto general = border_.begin() + static_cast<std::ptrdiff_t>(closing_.size());
+  const auto general = border_.end() - static_cast<std::ptrdiff_t>(gradients_.size());
   std::transform(integrals.begin(), integrals.end(), general, [](double value) { return -value; });
   return border_;
 }
 
 void BorderedProblem::solve_across(const OrbitResidual& residual, OrbitVector& dx) {
+  assert(allows_chord());
   condensed_.solve(residual, border(residual.integral), dx);
-  if (!condition_) return;
-  if (!row_along_) know_null_vectors();
-  add_null_vectors(across(dx), dx);
 }
 
 bool BorderedProblem::solve(const OrbitResidual& residual, double target, OrbitVector& dx) {
@@ -196,18 +203,26 @@ void BorderedProblem::measure_null_vectors() {
     for (int k = 0; k < count; ++k) slopes_(k, j) = dot(condition_->gradient(k), z);
   }
   along_ = vector_product(slopes_);
-  Small<most_null_vectors, most_null_vectors> closed(count + 1, count + 1);
-  closed << slopes_, along_.transpose();
-  closed_slopes_.compute(closed);
   row_along_ = row_slopes_.dot(along_);
   first_known_ = true;
 }
 
 /// The shares of null vectors that make grad G . (dx + Z b) = -G, with none along the tangent.
 BorderedProblem::Numbers BorderedProblem::across(const OrbitVector& dx) const {
-  Numbers wanted = Numbers::Zero(conditions() + 1);
-  for (int k = 0; k < conditions(); ++k) wanted(k) = -condition_->value(k) - dot(condition_->gradient(k), dx);
-  return condition_ ? Numbers(closed_slopes_.solve(wanted)) : wanted;
+  Numbers shares = Numbers::Zero(conditions() + 1);
+  for (int k = 0; k < conditions(); ++k) {
+    const double wanted = -condition_->value(k) - dot(condition_->gradient(k), dx);
+    shares += wanted / along_.squaredNorm() * dual_slope(k);
+  }
+  return shares;
+}
+
+/// |a|^2 times the vector that row k of grad G . Z has the value one on, and the other row, and a, zero.
+BorderedProblem::Numbers BorderedProblem::dual_slope(int k) const {
+  if (conditions() == 1) return slopes_.row(0).transpose();
+  const Eigen::Vector3d a = along_;
+  const Eigen::Vector3d other = slopes_.row(1 - k).transpose();
+  return k == 0 ? Numbers(other.cross(a)) : Numbers(a.cross(other));
 }
 
 /// Adds what meets the condition, and makes row . dx = target; false when the row is exactly orthogonal to the tangent,

@@ -7,7 +7,7 @@
 ///
 /// The branch's row and the gradients of G reach into all intervals, and would be eliminated from each; and those of G
 /// are known only after J has been condensed. So J is closed by rows at the ends of segments, which cost nothing there
-/// (CondensedSystem): one for the branch's row, one for each number of G. With the null vectors Z that these rows
+/// (CondensedSystem): one for the branch's row, one for each number of G. With the null vectors Z that all other rows
 /// leave, and a solution y,
 ///
 ///     dx = y + Z b,    (grad G . Z) b = -G - grad G . y    and    row . Z b = target - row . y
@@ -20,7 +20,7 @@
 /// the trial began from, and are brought back (`recall`) before the next one.
 #pragma once
 
-#include <Eigen/LU>
+#include <Eigen/Core>
 #include <memory>
 #include <optional>
 #include <span>
@@ -99,12 +99,13 @@ class BorderedProblem {
   bool solve(const OrbitResidual& residual, double target, OrbitVector& dx);
   /// The same where the residual is that of the last linearisation; the tangent is found on the way.
   bool correct(const OrbitResidual& linearized, double target, OrbitVector& dx);
-  /// All conditions to zero; dx has any component along the tangent.
+  /// All conditions to zero, where there is none of a curve; dx has any component along the tangent.
   void solve_across(const OrbitResidual& residual, OrbitVector& dx);
-  /// All conditions unchanged, row . dx > 0 (if it is not zero).
+  /// All conditions unchanged, row . dx > 0 (if it is not zero). dx has the shape of make_vector(): its arrays may be
+  /// exchanged for others.
   void find_tangent(OrbitVector& dx);
   /// CondensedSystem::signed_distance(), with the sign that the determinant has with the branch's row and the
-  /// condition's gradients themselves; with a condition times the size of a for gradients of length one, which is zero
+  /// condition's gradients themselves; with a condition times the length of a for gradients of unit size, which is zero
   /// where they leave more than the tangent. 0 where the last linearisation was singular, NaN where it failed
   /// otherwise. Allocates.
   double signed_distance();
@@ -121,11 +122,13 @@ class BorderedProblem {
   static constexpr int most_null_vectors = OrbitCondition::most + 1;
   using Numbers = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, most_null_vectors, 1>;
 
-  void close(const OrbitVector& row, EndVector& closing) const;
+  void close(const OrbitVector& row);
+  double size_on_null_vectors(const OrbitVector& row) const;
   void know_null_vectors();
   void measure_null_vectors();
   bool put_on_branch(double target, OrbitVector& dx) const;
   Numbers across(const OrbitVector& dx) const;
+  Numbers dual_slope(int k) const;
   void add_null_vectors(const Numbers& shares, OrbitVector& dx) const;
   void combine_null_vectors(const Numbers& shares, OrbitVector& v) const;
   int conditions() const { return condition_ ? condition_->count() : 0; }
@@ -136,7 +139,7 @@ class BorderedProblem {
   std::unique_ptr<OrbitCondition> condition_;
   std::vector<HeldMonitor> held_;
   OrbitVector row_;                     // the branch's
-  std::vector<EndVector> closing_;      // from it, and any for the condition
+  EndVector closing_;                   // from it, where there is no condition
   std::vector<OrbitVector> gradients_;  // of integrals and held monitors
   std::vector<double> border_;          // right-hand side of all these
   Orbit reference_;                     // only where there are integrals
@@ -146,10 +149,9 @@ class BorderedProblem {
   std::vector<OrbitVector> null_vectors_;                  // Z; the first one is found when it is asked for
   bool first_known_ = false;                               // and not taken as the tangent
   Small<OrbitCondition::most, most_null_vectors> slopes_;  // grad G . Z
-  Eigen::PartialPivLU<Small<most_null_vectors, most_null_vectors>> closed_slopes_;  // with a below them
-  Numbers along_;                                                                   // a
-  Numbers row_slopes_;                                                              // row . Z
-  std::optional<double> row_along_;                                                 // row . t
+  Numbers along_;                                          // a
+  Numbers row_slopes_;                                     // row . Z
+  std::optional<double> row_along_;                        // row . t
 };
 
 }  // namespace tchat

@@ -217,27 +217,29 @@ Linearization CondensedSystem::linearize(const Orbit& x, std::span<const EndVect
 
 /// What the segments and the border leave.
 bool CondensedSystem::factorize(std::span<const EndVector> closing) {
-  closing_rows_gave_way_ = false;
+  assert(static_cast<int>(closing.size()) == (closing_ == 1 ? 1 : 0));
   if (closing_ == 0) return lu_.factorize(triplet_values_);
-  const bool known = factorize_with(closing);
-  if (known && closing_ == 1 && is_pronounced(closing.front(), null_ends_.front())) return true;
-  closing_rows_gave_way_ = true;
-  return close_along_null_vectors(known);
+  const bool known = closing_ == 1 && factorize_with(closing);
+  closing_rows_gave_way_ = !known || !is_pronounced(closing.front(), null_ends_.front());
+  return !closing_rows_gave_way_ || close_along_null_vectors(known);
 }
 
-/// A matrix that is singular with its closing rows becomes known with others. Null vectors that are known to few digits
+/// A matrix that is singular with its closing row becomes known with others. Null vectors that are known to few digits
 /// are known to more with closing rows along them.
 bool CondensedSystem::close_along_null_vectors(bool known) {
   constexpr int most_rounds = 3;
-  if (!known || !are_finite(null_ends_)) {
-    for (std::size_t r = 0; r < closing_rows_.size(); ++r) put_any_row(r, closing_rows_[r]);
-    if (!factorize_with(closing_rows_)) return false;
+  known = known && are_finite(null_ends_);
+  for (int trial = 0; trial < most_rounds && !known; ++trial) {
+    for (std::size_t r = 0; r < closing_rows_.size(); ++r)
+      put_any_row(r + static_cast<std::size_t>(trial) * closing_rows_.size(), closing_rows_[r]);
+    known = factorize_with(closing_rows_) && are_finite(null_ends_);
   }
+  if (!known) return false;
   for (int round = 0; round < most_rounds; ++round) {
     std::copy(null_ends_.begin(), null_ends_.end(), closing_rows_.begin());
     make_orthonormal(closing_rows_);
     if (!factorize_with(closing_rows_)) return false;
-    if (std::all_of(null_ends_.begin(), null_ends_.end(), has_unit_length)) break;  // they are these rows
+    if (std::all_of(null_ends_.begin(), null_ends_.end(), has_unit_length)) break;  // nearly these rows
   }
   return true;
 }

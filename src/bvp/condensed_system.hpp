@@ -8,10 +8,9 @@
 /// Border rows are general linear functionals of the unknowns, given as dual vectors. Each takes part in the
 /// elimination of every interval, but for closing rows, which have entries at the ends of segments alone, for durations
 /// and free parameters, and cost nothing there. They serve to find the vectors that all other rows annihilate, the null
-/// vectors. One closing row stands as it is given, unless its value on the null vector is a small difference of large
-/// terms, or zero; then, and where there are several, they give way to an orthonormal basis of the null vectors' ends,
-/// so that nothing depends on them but that basis. What a general row is to say is said with a closing row and one more
-/// solution (BorderedProblem).
+/// vectors. A single closing row is given, and stands unless its value on the null vector is a small difference of
+/// large terms, or zero; then, and where there are several, an orthonormal basis of the null vectors' ends closes the
+/// matrix. What a general row is to say is said with a closing row and one more solution (BorderedProblem).
 ///
 /// Where there is enough work for several threads, they share it by segments, or within each segment where there are
 /// few of these. What is left for SparseLu one thread does. Results are the same to the last bit for any number.
@@ -73,8 +72,8 @@ class CondensedSystem {
   void evaluate(const Orbit& x, OrbitResidual& residual);
 
   /// J(x) bordered by these rows, the general ones given as dual vectors, and factored; F(x) on the way, but for the
-  /// integral conditions, whose gradients are among the general rows. Where closing rows give way, their right-hand
-  /// sides are those of what takes their places, and the null vectors' ends are these rows.
+  /// integral conditions, whose gradients are among the general rows. `closing`: the row where a single one closes,
+  /// else nothing. Where it gives way, its right-hand side is that of what takes its place.
   Linearization linearize(const Orbit& x, std::span<const EndVector> closing, std::span<const OrbitVector> general,
                           OrbitResidual& residual);
   /// The same without closing rows.
@@ -93,7 +92,7 @@ class CondensedSystem {
   /// first null vector.
   void solve_both(const OrbitResidual& linearized, std::span<const double> border, OrbitVector& dx, OrbitVector& v);
 
-  /// Are the closing rows of the last linearisation other ones than those given? Always where there are several.
+  /// Do null vectors close the matrix of the last linearisation? Always where there are several closing rows.
   bool closing_rows_gave_way() const { return closing_rows_gave_way_; }
 
   /// Row-major n x n blocks A_s and C_s: on every segment a flow perturbation satisfies A_s v(0) + C_s v(1) = 0.

@@ -152,7 +152,7 @@ PointData SpecialPointSearch::begin(PathPoint& start) {
 
 void SpecialPointSearch::remember(const PointData& data, double ds) {
   const double arclength = history_.empty() ? 0.0 : history_.back().arclength + std::abs(ds);
-  distance_here_ = data.singular_distance;
+  if (std::isfinite(data.singular_distance)) distance_here_ = data.singular_distance;
   if (history_.size() == history_length) history_.erase(history_.begin());
   history_.push_back({arclength, data.tests});
 }

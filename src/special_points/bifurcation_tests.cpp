@@ -123,7 +123,8 @@ SpecialPoint FoldTest::classify(const TestedPoint& point, bool) const {
 
 TestValue BranchPointTest::evaluate(const TestedPoint& point) const {
   constexpr double level = 1e-13;  // what rounding makes of a singular matrix
-  return TestValue::of(point.singular_distance, level);
+  return std::isfinite(point.singular_distance) ? TestValue::of(point.singular_distance, level)
+                                                : TestValue::undefined();
 }
 
 SpecialPoint BranchPointTest::classify(const TestedPoint&, bool) const { return {type_, {}, stop_, "branch point"}; }
