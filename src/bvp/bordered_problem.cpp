@@ -94,7 +94,7 @@ Linearization BorderedProblem::linearize(const Orbit& x, const OrbitVector& row,
   row_.states = row.states;
   row_.durations = row.durations;
   row_.globals = row.globals;
-  close(row);
+  if (!condition_) close(row);
   const auto integrals = static_cast<std::size_t>(system().integral_conditions());
   system().integral_gradients(x, reference_, condensed_.rule(), residual.integral.data(),
                               std::span(gradients_).first(integrals));

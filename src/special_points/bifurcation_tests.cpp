@@ -123,8 +123,7 @@ SpecialPoint FoldTest::classify(const TestedPoint& point, bool) const {
 
 TestValue BranchPointTest::evaluate(const TestedPoint& point) const {
   constexpr double level = 1e-13;  // what rounding makes of a singular matrix
-  return std::isfinite(point.singular_distance) ? TestValue::of(point.singular_distance, level)
-                                                : TestValue::undefined();
+  return TestValue::of(point.singular_distance, level);
 }
 
 SpecialPoint BranchPointTest::classify(const TestedPoint&, bool) const { return {type_, {}, stop_, "branch point"}; }

@@ -230,6 +230,8 @@ TEST_CASE("search: undefined values change no sign, and what was the sign before
   const RecordedBranch branch = searched(0.0, 0.1, 8, {{"f", vanishing}});
   check_labels(branch, {});
   CHECK(branch.notes.empty());
+  const auto no_number = [&](double p) -> std::optional<double> { return gap(p).value_or(NAN); };
+  check_labels(searched(0.0, 0.1, 8, {{"f", no_number}}), {0.42});
 }
 
 TEST_CASE("search: two zeros within a step, where the last values tell of them") {
