@@ -56,7 +56,9 @@ BorderedProblem::BorderedProblem(const DefiningSystem& system, const OrbitShape&
       null_vectors_(static_cast<std::size_t>(1 + conditions()), row_),
       slopes_(conditions(), conditions() + 1),
       along_(conditions() + 1),
-      row_slopes_(conditions() + 1) {}
+      row_slopes_(conditions() + 1) {
+  if (condition_) tangent_ = row_;
+}
 
 void BorderedProblem::remember(ConditionMemory& memory) const {
   if (condition_) condition_->remember(memory);
@@ -259,18 +261,12 @@ void BorderedProblem::combine_null_vectors(const Numbers& shares, OrbitVector& v
   }
 }
 
-/// Without a condition the first null vector is the tangent, and is handed over.
-void BorderedProblem::find_tangent(OrbitVector& dx) {
+/// Without a condition the first null vector is the tangent.
+const OrbitVector& BorderedProblem::tangent() {
   if (!first_known_) know_null_vectors();
-  if (condition_) {
-    combine_null_vectors(along_, dx);
-  } else {
-    dx.states.swap(null_vectors_.front().states);
-    dx.durations.swap(null_vectors_.front().durations);
-    dx.globals.swap(null_vectors_.front().globals);
-    first_known_ = false;
-  }
-  if (*row_along_ < 0.0) dx.scale(-1.0);
+  if (!condition_) return null_vectors_.front();
+  combine_null_vectors(along_, tangent_);
+  return tangent_;
 }
 
 double BorderedProblem::residual_size(const OrbitResidual& residual) const {

@@ -101,9 +101,10 @@ class BorderedProblem {
   bool correct(const OrbitResidual& linearized, double target, OrbitVector& dx);
   /// All conditions to zero, where there is none of a curve; dx has any component along the tangent.
   void solve_across(const OrbitResidual& residual, OrbitVector& dx);
-  /// All conditions unchanged, row . dx > 0 (if it is not zero). dx has the shape of make_vector(): its arrays may be
-  /// exchanged for others.
-  void find_tangent(OrbitVector& dx);
+  /// What all conditions, but for the row, leave, of any length; until the next linearisation, or this is asked again.
+  const OrbitVector& tangent();
+  /// The sign of row . tangent(), 1 where it is zero.
+  double tangent_sign() const { return *row_along_ < 0.0 ? -1.0 : 1.0; }
   /// CondensedSystem::signed_distance(), with the sign that the determinant has with the branch's row and the
   /// condition's gradients themselves; with a condition times the length of a for gradients of unit size, which is zero
   /// where they leave more than the tangent. 0 where the last linearisation was singular, NaN where it failed
@@ -147,11 +148,12 @@ class BorderedProblem {
   // of the last linearisation
   Linearization outcome_ = Linearization::not_finite;
   std::vector<OrbitVector> null_vectors_;                  // Z; the first one is found when it is asked for
-  bool first_known_ = false;                               // and not taken as the tangent
+  bool first_known_ = false;
   Small<OrbitCondition::most, most_null_vectors> slopes_;  // grad G . Z
   Numbers along_;                                          // a
   Numbers row_slopes_;                                     // row . Z
   std::optional<double> row_along_;                        // row . t
+  OrbitVector tangent_;                                    // t where there is a condition
 };
 
 }  // namespace tchat

@@ -34,10 +34,8 @@ PathFollower::PathFollower(const DefiningSystem& system, const OrbitShape& shape
       problem_(system, shape, std::move(condition), std::move(monitors.held), settings.threads),
       newton_(problem_, settings),
       settings_(settings),
-      row_(condensed().make_vector()),
       dx_(condensed().make_vector()),
-      on_tangent_{shape, uniform_mesh(shape.intervals), dx_.states, ParameterVector::Zero(parameter_length)},
-      factored_tangent_(condensed().make_vector()) {
+      on_tangent_{shape, uniform_mesh(shape.intervals), dx_.states, ParameterVector::Zero(parameter_length)} {
   problem_.remember(unused_);
 }
 
@@ -99,20 +97,22 @@ double PathFollower::distance(const Orbit& a, const Orbit& b) const {
 bool PathFollower::linearize_at(const PathPoint& point) {
   problem_.recall(point.memory);
   problem_.set_reference(point.orbit);
-  if (!linearize(point.orbit, point.dual)) return false;
-  know_factors(point.tangent);
-  return true;
+  return factors_known_ = linearize(point.orbit, point.dual);
 }
 
 bool PathFollower::linearize(const Orbit& x, const OrbitVector& row) {
   factors_known_ = false;
-  if (&row != &row_) row_ = row;
-  return problem_.linearize(x, row_, newton_.residual()) == Linearization::ready;
+  return problem_.linearize(x, row, newton_.residual()) == Linearization::ready;
+}
+
+/// The dual of v, and v's length.
+double PathFollower::measure(const Orbit& x, const OrbitVector& v, OrbitVector& dual) const {
+  norm_.dual(x, condensed().rule(), system_.free_parameters(), v, dual);
+  return std::sqrt(std::abs(dot(dual, v)));
 }
 
 void PathFollower::normalise(const Orbit& x, OrbitVector& tangent, OrbitVector& dual) const {
-  norm_.dual(x, condensed().rule(), system_.free_parameters(), tangent, dual);
-  const double length = std::sqrt(std::abs(dot(dual, tangent)));
+  const double length = measure(x, tangent, dual);
   if (!(length > 0.0)) return;
   tangent.scale(1.0 / length);
   dual.scale(1.0 / length);
@@ -120,38 +120,36 @@ void PathFollower::normalise(const Orbit& x, OrbitVector& tangent, OrbitVector& 
 
 /// From the current factors: the vector that every condition but the border annihilates.
 bool PathFollower::find_tangent(const Orbit& x, OrbitVector& tangent, OrbitVector& dual) {
-  problem_.find_tangent(tangent);
-  if (!array_functions().range(tangent.states.data(), tangent.states.size()).finite || !tangent.durations.allFinite() ||
-      !tangent.globals.allFinite())
-    return false;
-  normalise(x, tangent, dual);
+  const OrbitVector& along = problem_.tangent();
+  const double length = measure(x, along, dual);
+  if (!std::isfinite(length)) return false;
+  const double factor = problem_.tangent_sign() / (length > 0.0 ? length : 1.0);
+  tangent.states = factor * along.states;
+  tangent.durations = factor * along.durations;
+  tangent.globals = factor * along.globals;
+  dual.scale(factor);
   return true;
 }
 
-NewtonResult PathFollower::correct_and_orient(PathPoint& point, const Orbit& base, double target) {
-  return correct_and_orient(point, base, target, current_enough);
+NewtonResult PathFollower::correct_and_orient(PathPoint& point, const OrbitVector& row, const Orbit& base,
+                                              double target) {
+  return correct_and_orient(point, row, base, target, current_enough);
 }
 
-/// Newton on the border in row_, then the tangent at the result, with factors that are not older than this.
-NewtonResult PathFollower::correct_and_orient(PathPoint& point, const Orbit& base, double target, double oldest) {
+/// Newton with this row, then the tangent at the result, with factors that are not older than this.
+NewtonResult PathFollower::correct_and_orient(PathPoint& point, const OrbitVector& row, const Orbit& base,
+                                              double target, double oldest) {
   factors_known_ = false;
-  NewtonResult result = newton_.correct(point.orbit, row_, base, target);
+  NewtonResult result = newton_.correct(point.orbit, row, base, target);
   if (!result.converged()) return result;
   const bool current = result.change_since_factorization <= oldest;
-  if ((!current && !linearize(point.orbit, row_)) || !find_tangent(point.orbit, point.tangent, point.dual))
+  if ((!current && !linearize(point.orbit, row)) || !find_tangent(point.orbit, point.tangent, point.dual))
     result.status = NewtonStatus::singular;
   else
-    know_factors(point.tangent);
+    factors_known_ = true;
   problem_.remember(point.memory);
   monitors_.store(point.orbit, condensed().rule());
   return result;
-}
-
-void PathFollower::know_factors(const OrbitVector& tangent) {
-  factored_tangent_.states = tangent.states;
-  factored_tangent_.durations = tangent.durations;
-  factored_tangent_.globals = tangent.globals;
-  factors_known_ = true;
 }
 
 void PathFollower::put_on_tangent(const PathPoint& from, double ds, Orbit& x) const {
@@ -162,11 +160,8 @@ void PathFollower::put_on_tangent(const PathPoint& from, double ds, Orbit& x) co
   advance(x, ds, from.tangent, system_.free_parameters());
 }
 
-/// The row and what else the equations of a step take from the point that it goes from.
+/// What the equations of a step take from the point that it goes from, besides its row, the dual.
 void PathFollower::begin_step(const PathPoint& from) {
-  row_.states = from.dual.states;
-  row_.durations = from.dual.durations;
-  row_.globals = from.dual.globals;
   problem_.recall(from.memory);
   problem_.set_reference(from.orbit);
 }
@@ -206,20 +201,21 @@ NewtonResult PathFollower::step_near(const PathPoint& from, double ds, PathPoint
   begin_step(from);
   to.newton_constant = from.newton_constant;
   to.trail.follow(from, system_.free_parameters());
-  return correct_and_orient(to, from.orbit, ds, oldest);
+  return correct_and_orient(to, from.dual, from.orbit, ds, oldest);
 }
 
-/// dx_ is set to the correction of x by the factors at hand, whatever the border was that they have, with
-/// row_ (x + dx - base) = target.
-OrbitChange PathFollower::chord(const Orbit& base, double target, const Orbit& x) {
+/// dx_ is set to the correction of x by the factors at hand, whatever the row was that they have, with that of a step
+/// from `from`.
+OrbitChange PathFollower::chord(const PathPoint& from, double ds, const Orbit& x) {
   const std::vector<int>& free_parameters = system_.free_parameters();
   problem_.evaluate(x, newton_.residual());
   problem_.solve_across(newton_.residual(), dx_);
-  const double rest = target - dot_difference(row_, x, base, free_parameters) - dot(row_, dx_);
-  const double along = rest / dot(row_, factored_tangent_);
-  dx_.states += along * factored_tangent_.states;
-  dx_.durations += along * factored_tangent_.durations;
-  dx_.globals += along * factored_tangent_.globals;
+  const OrbitVector& along = problem_.tangent();
+  const double rest = ds - dot_difference(from.dual, x, from.orbit, free_parameters) - dot(from.dual, dx_);
+  const double share = rest / dot(from.dual, along);
+  dx_.states += share * along.states;
+  dx_.durations += share * along.durations;
+  dx_.globals += share * along.globals;
   return change_by(dx_, x, free_parameters);
 }
 
@@ -229,7 +225,7 @@ double PathFollower::polish(const PathPoint& from, double ds, double expected, O
   double last = 0.0;
   double moved = 0.0;
   for (int k = 0; k < most_chords; ++k) {
-    const double size = chord(from.orbit, ds, x).larger();
+    const double size = chord(from, ds, x).larger();
     const double factor = k == 0 ? contraction : size / last;
     if (!(factor <= contraction)) break;
     advance(x, 1.0, dx_, system_.free_parameters());
@@ -253,7 +249,7 @@ IterationRange PathFollower::iterations_along_tangent(const PathPoint& from, dou
   OrbitChange second{0.0, estimated * first.larger()};
   if (measured) {
     begin_step(from);
-    first = chord(from.orbit, ds, on_tangent_);
+    first = chord(from, ds, on_tangent_);
     advance(on_tangent_, 1.0, dx_, system_.free_parameters());
     second = difference(to.orbit, on_tangent_);
     to.newton_constant = second.larger() / (first.larger() * first.larger());
@@ -316,11 +312,11 @@ void PathFollower::orient(PathPoint& point) const {
 
 NewtonResult PathFollower::start_at_fixed_parameter(PathPoint& point) {
   point.trail.clear();
-  row_ = principal_row(point.orbit);
+  const OrbitVector row = principal_row(point.orbit);
   problem_.recall(point.memory);
   const Orbit base = point.orbit;
   problem_.set_reference(base);
-  NewtonResult result = correct_and_orient(point, base, 0.0);
+  NewtonResult result = correct_and_orient(point, row, base, 0.0);
   if (result.converged()) orient(point);
   return result;
 }
@@ -329,34 +325,34 @@ NewtonResult PathFollower::start_along(PathPoint& point, const OrbitVector& dire
   point.trail.clear();
   point.tangent = direction;
   normalise(point.orbit, point.tangent, point.dual);
-  row_ = point.dual;
+  const OrbitVector row = point.dual;
   problem_.recall(point.memory);
   const Orbit base = point.orbit;
   problem_.set_reference(base);
-  return correct_and_orient(point, base, 0.0);
+  return correct_and_orient(point, row, base, 0.0);
 }
 
 NewtonResult PathFollower::start_by_minimum_norm(PathPoint& point) {
   point.trail.clear();
   // Any border that is not orthogonal to the null vector will do to find it the first time.
-  row_.states.setZero();
-  for (Eigen::Index i = 0; i < row_.states.size(); ++i)
-    row_.states.data()[i] = std::cos(1.0 + 0.37 * static_cast<double>(i));
-  row_.durations.setOnes();
-  row_.globals.setOnes();
+  OrbitVector row = condensed().make_vector();
+  for (Eigen::Index i = 0; i < row.states.size(); ++i)
+    row.states.data()[i] = std::cos(1.0 + 0.37 * static_cast<double>(i));
+  row.durations.setOnes();
+  row.globals.setOnes();
   problem_.recall(point.memory);
   problem_.set_reference(point.orbit);
   NewtonResult result;
   result.status = NewtonStatus::singular;
-  if (!linearize(point.orbit, row_) || !find_tangent(point.orbit, point.tangent, point.dual)) return result;
+  if (!linearize(point.orbit, row) || !find_tangent(point.orbit, point.tangent, point.dual)) return result;
   // A few Gauss-Newton steps with a fresh null vector each, then the ordinary iteration across the last one.
   for (int iteration = 0; iteration < settings_.max_iterations; ++iteration) {
-    row_ = point.dual;
+    row = point.dual;
     const Orbit base = point.orbit;
     problem_.set_reference(base);
-    result = correct_and_orient(point, base, 0.0);
+    result = correct_and_orient(point, row, base, 0.0);
     if (result.converged() || result.status == NewtonStatus::not_finite) break;
-    if (!linearize(point.orbit, row_) || !find_tangent(point.orbit, point.tangent, point.dual)) return result;
+    if (!linearize(point.orbit, row) || !find_tangent(point.orbit, point.tangent, point.dual)) return result;
   }
   if (result.converged()) orient(point);
   return result;
@@ -379,10 +375,9 @@ void PathFollower::reverse(PathPoint& point) const {
 
 CondensedSystem::Singularity PathFollower::singularity(const PathPoint& point) {
   factors_known_ = false;
-  row_ = point.dual;
   problem_.recall(point.memory);
   problem_.set_reference(point.orbit);
-  if (problem_.linearize(point.orbit, row_, newton_.residual()) == Linearization::not_finite) return {1.0, {}};
+  if (problem_.linearize(point.orbit, point.dual, newton_.residual()) == Linearization::not_finite) return {1.0, {}};
   return problem_.singularity();
 }
 

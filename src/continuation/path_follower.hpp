@@ -116,17 +116,18 @@ class PathFollower {
 
  private:
   NewtonResult step_near(const PathPoint& from, double ds, PathPoint& to, double oldest);
-  NewtonResult correct_and_orient(PathPoint& point, const Orbit& base, double target);
-  NewtonResult correct_and_orient(PathPoint& point, const Orbit& base, double target, double oldest);
+  NewtonResult correct_and_orient(PathPoint& point, const OrbitVector& row, const Orbit& base, double target);
+  NewtonResult correct_and_orient(PathPoint& point, const OrbitVector& row, const Orbit& base, double target,
+                                  double oldest);
   void put_on_tangent(const PathPoint& from, double ds, Orbit& x) const;
   void begin_step(const PathPoint& from);
   double polish(const PathPoint& from, double ds, double expected, Orbit& x);
   OrbitChange difference(const Orbit& to, const Orbit& x);
   int iterations_of(const OrbitChange& first, const OrbitChange& second, double constant) const;
-  void know_factors(const OrbitVector& tangent);
-  OrbitChange chord(const Orbit& base, double target, const Orbit& x);
+  OrbitChange chord(const PathPoint& from, double ds, const Orbit& x);
   bool linearize(const Orbit& x, const OrbitVector& row);
   bool find_tangent(const Orbit& x, OrbitVector& tangent, OrbitVector& dual);
+  double measure(const Orbit& x, const OrbitVector& v, OrbitVector& dual) const;
   void normalise(const Orbit& x, OrbitVector& tangent, OrbitVector& dual) const;
   void orient(PathPoint& point) const;
   OrbitVector principal_row(const Orbit& x) const;
@@ -140,11 +141,9 @@ class PathFollower {
   NewtonChord newton_;
   NewtonSettings settings_;
   ConditionMemory unused_;  // the condition's before anything was evaluated
-  OrbitVector row_;         // the branch's row of the next linearisation
   OrbitVector dx_;          // of chord iterations
   Orbit on_tangent_;
-  bool factors_known_ = false;  // those of condensed(), with the tangent that they give
-  OrbitVector factored_tangent_;
+  bool factors_known_ = false;  // those of condensed()
 };
 
 }  // namespace tchat

@@ -135,6 +135,16 @@ void divide_differences(const std::array<Place, PathTrail::most>& places, int co
 /// of one point after the other.
 constexpr std::size_t most_sources = most_inputs + 2;
 static_assert(PathTrail::most == most_pairs);
+using Weights = std::array<double, most_sources>;
+
+void add(const Weights& term, Weights& sum) {
+  for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += term[i];
+}
+
+void add_tangent(double ds, Weights& sum) {
+  sum[0] += 1.0;
+  sum[1] += ds;
+}
 
 class Sources {
  public:
@@ -152,35 +162,37 @@ class Sources {
   const double* const* states() const { return states_.data(); }
 
   /// Those of the sources, given those of w and w'.
-  void weights(const Combination& combination, double* weights) const {
-    std::fill_n(weights, most_sources, 0.0);
+  Weights weights(const Combination& combination) const {
+    Weights weights{};
     for (int k = 0; k < count_; ++k) {
       const double of_place = combination[entry(2 * k)];
       const double of_slope = combination[entry(2 * k + 1)];
       weights[0] -= of_place;
       weights[1] -= of_place * places_[entry(k)].s + of_slope;
-      weights[2 * k + 2] = of_place;
-      weights[2 * k + 3] = of_slope / places_[entry(k)].cosine;
+      weights[entry(2 * k + 2)] = of_place;
+      weights[entry(2 * k + 3)] = of_slope / places_[entry(k)].cosine;
     }
+    return weights;
   }
 
-  double duration(const double* weights, int s) const {
+  double duration(const Weights& weights, int s) const {
     if (is_constant(from_, s)) return 0.0;
     double sum = weights[0] * from_.orbit.duration(s) + weights[1] * from_.tangent.durations(s);
     for (int k = 0; k < count_; ++k)
-      sum += weights[2 * k + 2] * mark(k).place.durations(s) + weights[2 * k + 3] * mark(k).tangent.durations(s);
+      sum += weights[entry(2 * k + 2)] * mark(k).place.durations(s) +
+             weights[entry(2 * k + 3)] * mark(k).tangent.durations(s);
     return sum;
   }
-  double global(const double* weights, std::size_t g) const {
+  double global(const Weights& weights, std::size_t g) const {
     const auto i = static_cast<Eigen::Index>(g);
     double sum = weights[0] * from_.orbit.par(free_[g] - 1) + weights[1] * from_.tangent.globals(i);
     for (int k = 0; k < count_; ++k)
-      sum += weights[2 * k + 2] * mark(k).place.globals(i) + weights[2 * k + 3] * mark(k).tangent.globals(i);
+      sum += weights[entry(2 * k + 2)] * mark(k).place.globals(i) + weights[entry(2 * k + 3)] * mark(k).tangent.globals(i);
     return sum;
   }
 
   /// As OrbitChange::larger() measures it.
-  double size(const double* weights, const ArrayRange& states, double largest_state) const {
+  double size(const Weights& weights, const ArrayRange& states, double largest_state) const {
     if (!states.finite) return std::numeric_limits<double>::quiet_NaN();
     double result = states.largest / (1.0 + largest_state);
     for (int s = 0; s < from_.orbit.shape.segments; ++s)
@@ -190,18 +202,29 @@ class Sources {
     return result;
   }
 
-  /// from + ds from.tangent + the sum with these weights, which are overwritten.
-  void put(double ds, double* weights, Orbit& x) const {
+  /// The states of `x` become those of from + ds from.tangent + the sum with these weights.
+  void put_states(double ds, Weights weights, Orbit& x) const {
+    add_tangent(ds, weights);
+    array_functions().combine(states_.data(), weights.data(), 2 * count_ + 2, x.states.data(), x.states.size());
+  }
+  /// The same for the sum of all terms, and their ranges on the way.
+  void measure_and_put_states(double ds, const std::array<Weights, PathTrail::most>& terms, ArrayRange* ranges,
+                              Orbit& x) const {
+    Weights sum{};
+    for (int k = 0; k < count_; ++k) add(terms[entry(k)], sum);
+    add_tangent(ds, sum);
+    x.states.resize(from_.orbit.states.rows(), from_.orbit.states.cols());
+    array_functions().ranges_of_sums(states_.data(), terms.front().data(), count_, ranges, sum.data(), x.states.data(),
+                                     x.states.size());
+  }
+  /// And what else an orbit has.
+  void put_rest(double ds, const Weights& weights, Orbit& x) const {
     x.shape = from_.orbit.shape;
     x.mesh = from_.orbit.mesh;
     x.par = from_.orbit.par;
     for (int s = 0; s < x.shape.segments; ++s) x.duration(s) += ds * from_.tangent.durations(s) + duration(weights, s);
     for (std::size_t g = 0; g < free_.size(); ++g)
       x.par(free_[g] - 1) += ds * from_.tangent.globals(static_cast<Eigen::Index>(g)) + global(weights, g);
-    weights[0] += 1.0;
-    weights[1] += ds;
-    x.states.resize(from_.orbit.states.rows(), from_.orbit.states.cols());
-    array_functions().combine(states_.data(), weights, 2 * count_ + 2, x.states.data(), x.states.size());
   }
 
  private:
@@ -288,34 +311,37 @@ TrailTerms predict(const PathPoint& from, double ds, const std::vector<int>& fre
   divide_differences(places, count, differences);
 
   const Sources sources(from, places, count, free_parameters);
-  std::array<double, PathTrail::most * most_sources> weights{};  // term by term
-  const auto of_term = [&](int k) { return weights.data() + entry(k) * most_sources; };
-  double product = ds * ds;  // of ds minus the nodes so far
+  std::array<Weights, PathTrail::most> weights{};  // term by term
+  double product = ds * ds;                        // of ds minus the nodes so far
   for (int k = 0; k < count; ++k) {
     const double to_node = ds - places[entry(k)].s;
     Combination combination{};
     for (std::size_t i = 0; i < entry(2 * k + 2); ++i)
       combination[i] = product * (differences[entry(2 * k + 2)][i] + to_node * differences[entry(2 * k + 3)][i]);
-    sources.weights(combination, of_term(k));
+    weights[entry(k)] = sources.weights(combination);
     product *= to_node * to_node;
   }
   std::array<ArrayRange, 2 + PathTrail::most> ranges;
-  array_functions().ranges_of_sums(sources.states(), weights.data(), count, ranges.data(), from.orbit.states.size());
+  sources.measure_and_put_states(ds, weights, ranges.data(), x);  // all terms are of use, nearly always
 
   const double largest = ranges[0].largest;
   double last = std::abs(ds) * change_by(from.tangent, from.orbit, free_parameters, ranges[1], largest).larger();
   TrailTerms terms;
-  std::array<double, most_sources> sum{};
+  Weights sum{};
+  int used = 0;
   for (int k = 0; k < count; ++k) {
-    const double size = sources.size(of_term(k), ranges[entry(2 + k)], largest);
+    const Weights& term = weights[entry(k)];
+    const double size = sources.size(term, ranges[entry(2 + k)], largest);
     if (!(size <= falling * last)) break;
-    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += of_term(k)[i];
+    add(term, sum);
+    used = k + 1;
     terms.change += size;
     terms.error = std::max(size * (size / last), negligible_term);
     if (size <= negligible_term) break;
     last = size;
   }
-  if (terms.error > 0.0) sources.put(ds, sum.data(), x);
+  if (used < count && used > 0) sources.put_states(ds, sum, x);
+  if (used > 0) sources.put_rest(ds, sum, x);
   return terms;
 }
 

@@ -75,7 +75,7 @@ struct TrailTerms {
   double error = 0.0;
 };
 
-/// `x` becomes from + ds from.tangent with the terms of from's trail; without a term it is left as it was.
+/// `x` becomes from + ds from.tangent with the terms of from's trail; without a term its states are of no use.
 TrailTerms predict(const PathPoint& from, double ds, const std::vector<int>& free_parameters, Orbit& x);
 
 }  // namespace tchat

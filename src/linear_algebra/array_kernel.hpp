@@ -31,8 +31,9 @@ struct ArrayFunctions {
   void (*project)(const double* a, const double* c, const double* const* places, const double* const* directions,
                   int pairs, double* distances, double* products, long count);
   /// Of 2 + 2 `pairs` arrays: the ranges of the first two, then of sum k = 1 .. pairs, that of the first 2 + 2 k arrays
-  /// with the weights in row k, of 2 + 2 most_pairs entries.
-  void (*ranges_of_sums)(const double* const* arrays, const double* weights, int pairs, ArrayRange* ranges, long count);
+  /// with the weights in row k, of 2 + 2 most_pairs entries. And y as combine() makes it of all arrays.
+  void (*ranges_of_sums)(const double* const* arrays, const double* weights, int pairs, ArrayRange* ranges,
+                         const double* weights_of_y, double* y, long count);
   /// y = sum of weights[k] arrays[k], one after the other; y is none of them.
   void (*combine)(const double* const* arrays, const double* weights, int arrays_count, double* y, long count);
   /// y_i += h sum_k mass[i nodes + k] v_k for nodes of n entries, one after the other, times weights[a] for entry a.

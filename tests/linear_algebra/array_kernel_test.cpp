@@ -81,6 +81,7 @@ TEST_CASE("array kernel: several pairs of arrays at a time") {
         CAPTURE(static_cast<int>(set), count, pairs);
         const MatrixXd arrays = MatrixXd::Random(count, static_cast<Eigen::Index>(row));
         const VectorXd a = VectorXd::Random(count), weights = VectorXd::Random(static_cast<Eigen::Index>(row) * pairs);
+        const VectorXd weights_of_y = VectorXd::Random(2 + 2 * pairs);
         std::array<const double*, row> all{};
         std::array<const double*, most_pairs> places{}, directions{};
         for (std::size_t k = 0; k < row; ++k) all[k] = arrays.col(static_cast<Eigen::Index>(k)).data();
@@ -89,7 +90,11 @@ TEST_CASE("array kernel: several pairs of arrays at a time") {
           std::vector<double> list(static_cast<std::size_t>(2 * pairs));
           f.project(a.data(), all[0], places.data(), directions.data(), pairs, list.data(), list.data() + pairs, count);
           std::array<ArrayRange, 2 + most_pairs> ranges{};
-          f.ranges_of_sums(all.data(), weights.data(), pairs, ranges.data(), count);
+          VectorXd y(count), combined(count);
+          f.ranges_of_sums(all.data(), weights.data(), pairs, ranges.data(), weights_of_y.data(), y.data(), count);
+          f.combine(all.data(), weights_of_y.data(), 2 + 2 * pairs, combined.data(), count);
+          CHECK(y == combined);
+          CHECK((y - arrays.leftCols(2 + 2 * pairs) * weights_of_y).cwiseAbs().maxCoeff() < rounding);
           for (int k = 0; k < 2 + pairs; ++k) {
             CHECK(ranges[static_cast<std::size_t>(k)].finite);
             list.push_back(ranges[static_cast<std::size_t>(k)].largest);
@@ -122,7 +127,9 @@ TEST_CASE("array kernel: a number that is not finite is found in the sums that i
         std::array<const double*, row> all{};
         for (int k = 0; k < row; ++k) all[static_cast<std::size_t>(k)] = arrays.col(k).data();
         std::array<ArrayRange, 2 + most_pairs> ranges{};
-        array_functions(set).ranges_of_sums(all.data(), weights.data(), most_pairs, ranges.data(), 10);
+        std::array<double, 10> y{};
+        array_functions(set).ranges_of_sums(all.data(), weights.data(), most_pairs, ranges.data(), weights.data(),
+                                            y.data(), 10);
         CAPTURE(bad, at);
         CHECK(ranges[0].finite == (bad != 0));
         CHECK(ranges[1].finite == (bad != 1));
