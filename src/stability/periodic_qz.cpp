@@ -104,6 +104,14 @@ struct PeriodicQz::TriangularBlock {
   Scalar last = 1.0;
   long exponent = 0;
 
+  /// Do its eigenvalues differ so much that half of the digits of the smaller one are lost beside the larger?
+  bool graded() const {
+    constexpr double share = 1e-7;
+    const double one = size1(first);
+    const double other = size1(last);
+    return one < share * other || other < share * one;
+  }
+
   /// By [p q; 0 r] from the left.
   void multiply(const Scalar& p, const Scalar& q, const Scalar& r) {
     first = times(p, first);
@@ -313,6 +321,7 @@ void PeriodicQz::single_step(const Range& window, int iteration) {
   const auto [low, high] = window;
   const TriangularBlock trailing = triangular_block(high);
   const TriangularBlock leading = low + 1 < high ? triangular_block(low + 1) : trailing;
+  if (leading.graded() || trailing.graded()) return unshifted_step(window);
   chase_backwards(low + 1, window, first_rotation(leading, low, shift(trailing, high, iteration)));
   for (int k = low + 2; k <= high; ++k) {
     const Rotation r = Rotation::zero_second(a(0, k - 1, k - 2), a(0, k, k - 2));
@@ -320,6 +329,27 @@ void PeriodicQz::single_step(const Range& window, int iteration) {
     rotate_rows(e_, 0, k, r, {k - 1, high});
     a(0, k, k - 2) = 0.0;
     chase(k, window, std::min(k + 1, high));
+  }
+}
+
+/// A step without a shift: A_1 = Q R, and Q goes round the cycle to its other side. Where many factors make the
+/// eigenvalues differ by orders of magnitude, it separates these at once; the rotation that a shifted step begins with,
+/// read off a product in which the large ones hide all else, would say nothing. Row rotations of A_1 are one ahead: a
+/// row is to be triangular before the columns that reach into it are combined.
+void PeriodicQz::unshifted_step(const Range& window) {
+  const auto [low, high] = window;
+  const auto triangularise_row = [&](int k) {
+    const Rotation r = Rotation::zero_second(a(0, k - 1, k - 1), a(0, k, k - 1));
+    rotate_rows(a_, 0, k, r, {k - 1, high});
+    a(0, k, k - 1) = 0.0;
+    return r;
+  };
+  Rotation next = triangularise_row(low + 1);
+  for (int k = low + 1; k <= high; ++k) {
+    const Rotation r = next;
+    if (k < high) next = triangularise_row(k + 1);
+    rotate_rows(e_, 0, k, r, {k - 1, high});
+    chase(k, window, k);
   }
 }
 

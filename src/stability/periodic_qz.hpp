@@ -8,7 +8,8 @@
 ///
 /// Method: Bojanczyk, Golub & Van Dooren's periodic Schur form in complex arithmetic. A_1 is reduced to Hessenberg form
 /// and all other factors to triangular form, then implicit single-shift steps chase a bulge round the cycle until A_1
-/// is triangular as well. They are applied to the diagonal blocks alone that they are about: no eigenvalue depends on
+/// is triangular as well. Many factors make eigenvalues that differ by more than any shift resolves: steps without one
+/// separate these. Steps are applied to the diagonal blocks alone that they are about: no eigenvalue depends on
 /// what stands beside these, so that it is not kept up to date. Zeros on the diagonal of a triangular factor are
 /// replaced by rounding-level numbers, a perturbation that the method commits anyway, so no case needs deflation of its
 /// own.
@@ -66,6 +67,7 @@ class PeriodicQz {
   Rotation first_rotation(const TriangularBlock& t, int low, const ScaledComplex& shift) const;
   void chase_backwards(int k, const Range& window, const Rotation& r);
   void single_step(const Range& window, int iteration);
+  void unshifted_step(const Range& window);
   void deflate(int k);
   void rotate_rows(std::vector<Scalar>& matrix, int s, int k, const Rotation& r, const Range& columns);
   void rotate_columns(std::vector<Scalar>& matrix, int s, int k, const Rotation& r, const Range& rows);

@@ -114,6 +114,30 @@ TEST_CASE("periodic QZ keeps eigenvalues from 1e-200 to 1e80 apart, each to near
   CHECK(relative_distance(periodic_qz(product_with(generator, diagonals)), expected) < 1e-8);
 }
 
+TEST_CASE("periodic QZ: products of any number of factors, powers among them") {
+  std::mt19937 generator(6);
+  for (const int n : {2, 3, 6})
+    for (const int m : {16, 64, 256, 1024}) {
+      CAPTURE(n, m);
+      periodic_qz(random_product(generator, n, m));  // REQUIREs that it converges
+      const Product once = random_product(generator, n, 1);
+      PeriodicQz qz(n, m);
+      for (int s = 0; s < m; ++s)
+        for (int i = 0; i < n; ++i)
+          for (int j = 0; j < n; ++j) qz.a(s, i, j) = once.a[0](i, j), qz.e(s, i, j) = once.e[0](i, j);
+      REQUIRE(qz.compute());
+      std::vector<double> sizes, expected;  // log2 of moduli, which no double need hold
+      for (const ScaledComplex& mu : qz.eigenvalues())
+        sizes.push_back((std::log2(std::abs(mu.mantissa)) + static_cast<double>(mu.exponent)) / m);
+      const Eigen::VectorXcd exact = eigenvalues(once.e[0].partialPivLu().solve(once.a[0]));
+      for (const auto& mu : exact) expected.push_back(std::log2(std::abs(mu)));
+      std::sort(sizes.begin(), sizes.end());
+      std::sort(expected.begin(), expected.end());
+      // Rounding times the condition of eigenvalues of a random pair.
+      for (std::size_t k = 0; k < sizes.size(); ++k) CHECK(std::abs(sizes[k] - expected[k]) < 1e-11);
+    }
+}
+
 TEST_CASE("periodic QZ: growth and decay in turns cancel without loss") {
   std::mt19937 generator(4);
   std::vector<std::vector<double>> diagonals;
