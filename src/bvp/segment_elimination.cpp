@@ -49,9 +49,9 @@ SegmentElimination::SegmentElimination(const OrbitShape& shape, int scalars, int
   const std::ptrdiff_t blocks = block(shape.segments, 0);
   const int interval_rows = interval_.rows() + border_;
   const int join_rows = join_.rows() + border_;
-  interval_blocks_ = {blocks, static_cast<std::ptrdiff_t>(interval_rows) * interval_.width() * lanes};
+  interval_blocks_ = {blocks, interval_.block_size(border_)};
   interval_swaps_ = {blocks, interval_.pivots() * lanes};
-  join_blocks_ = {blocks, join_rows * join_.width() * lanes};
+  join_blocks_ = {blocks, join_.block_size(border_)};
   join_swaps_ = {blocks, join_.pivots() * lanes};
   interval_rhs_ = {blocks, interval_rows * lanes};
   join_rhs_ = {blocks, join_rows * lanes};
@@ -147,14 +147,14 @@ LanePiece SegmentElimination::piece(int s, int first, int last) const {
   const LaneKernel& kernel = one_interval ? interval_ : join_;
   const double* block =
       one_interval ? interval_blocks_[this->block(s, first)] : join_blocks_[this->block(s, halfway(first, last))];
-  const int p = kernel.pivots(), width = kernel.width();
-  return {block + (p * width + p) * lanes, block + (kernel.rows() * width + p) * lanes, width};
+  const int p = kernel.pivots(), stride = kernel.stride();
+  return {block + (p * stride + p) * lanes, block + (kernel.rows() * stride + p) * lanes, stride};
 }
 
 bool SegmentElimination::join(int s, const Join& at) {
   double* target = join_blocks_[block(s, at.middle)];
   const LanePiece left = piece(s, at.first, at.middle);
-  assembly_.join(n_, columns_, border_, left, piece(s, at.middle, at.last), target);
+  assembly_.join({n_, columns_, border_, join_.stride()}, left, piece(s, at.middle, at.last), target);
   for (int l = 0; l < lanes; ++l)
     if (passes(at, l)) pass_on(left, l, target);
   return join_.eliminate(target, border_, join_swaps_[block(s, at.middle)]) == 0;
@@ -163,16 +163,15 @@ bool SegmentElimination::join(int s, const Join& at) {
 /// Where a lane has nothing on the right, the join's rows say that an unknown of no meaning is zero, and then what the
 /// left piece says: elimination leaves them as they are.
 void SegmentElimination::pass_on(const LanePiece& left, int lane, double* target) const {
-  const int width = join_.width();
-  const auto entry = [&](int i, int j) -> double& { return target[(i * width + j) * lanes + lane]; };
+  const auto entry = [&](int i, int j) -> double& { return target[(i * join_.stride() + j) * lanes + lane]; };
   for (int i = 0; i < join_.rows() + border_; ++i)
-    for (int j = 0; j < width; ++j) entry(i, j) = i == j && i < n_ ? 1.0 : 0.0;
+    for (int j = 0; j < join_.width(); ++j) entry(i, j) = i == j && i < n_ ? 1.0 : 0.0;
   for (int a = 0; a < n_; ++a) {
-    const double* from = left.rows + a * left.width * lanes;
+    const double* from = left.rows + a * left.stride * lanes;
     for (int j = 0; j < length(); ++j) entry(n_ + a, n_ + j) = from[j * lanes + lane];
   }
   for (int r = 0; r < border_; ++r) {
-    const double* from = left.border + r * left.width * lanes;
+    const double* from = left.border + r * left.stride * lanes;
     for (int j = 0; j < length(); ++j) entry(2 * n_ + r, n_ + j) = from[j * lanes + lane];
   }
 }
@@ -194,9 +193,9 @@ bool SegmentElimination::join_lanes(int s) {
   for (int k = 0; k < pieces; ++k) {
     double* to = lane_pieces_[top_block(s, k)];
     for (int a = 0; a < n_; ++a, to += length())
-      take_lane(all.rows + a * all.width * lanes, top_lanes_[index(k)], length(), to);
+      take_lane(all.rows + a * all.stride * lanes, top_lanes_[index(k)], length(), to);
     for (int r = 0; r < border_; ++r, to += length())
-      take_lane(all.border + r * all.width * lanes, top_lanes_[index(k)], length(), to);
+      take_lane(all.border + r * all.stride * lanes, top_lanes_[index(k)], length(), to);
   }
   const int width = top_join_.width();
   for (const Join& at : top_joins_) {
@@ -225,12 +224,12 @@ bool SegmentElimination::join_lanes(int s) {
 /// work(reciprocal pivot, is its row exchanged with another one?) for all pivots of all segments.
 template <class Work>
 void SegmentElimination::for_pivots(const Work& work) const {
-  const auto of_block = [&](int pivots, int width, int step, const double* block, const int* swaps) {
+  const auto of_block = [&](int pivots, int stride, int step, const double* block, const int* swaps) {
     for (int k = 0; k < pivots; ++k)  // the blocks hold reciprocal pivots
-      work(block[static_cast<std::ptrdiff_t>(k * width + k) * step], swaps[k * step] != k);
+      work(block[static_cast<std::ptrdiff_t>(k * stride + k) * step], swaps[k * step] != k);
   };
   const auto of_lane = [&](const LaneKernel& kernel, const double* block, const int* swaps, int lane) {
-    of_block(kernel.pivots(), kernel.width(), lanes, block + lane, swaps + lane);
+    of_block(kernel.pivots(), kernel.stride(), lanes, block + lane, swaps + lane);
   };
   for (int s = 0; s < shape_.segments; ++s) {
     for (int group = 0; group < groups_; ++group)

@@ -61,7 +61,7 @@ bool SegmentElimination::fill_group(int s, int group, const HybridSystem& system
     at.h[l] = x.mesh[index(j + 1)] - x.mesh[index(j)];
     at.scale[l] = at.h[l] * x.duration(s);
   }
-  const bool finite = assembly_.fill(at, interval_blocks_[block(s, group)], jacobian_.data(), residual_.data());
+  const bool finite = assembly_.fill(at, interval_.stride(), interval_blocks_[block(s, group)], jacobian_.data(), residual_.data());
   double* to[lanes];
   for (int l = 0; l < lanes; ++l)
     to[l] = schedule_.holds(group, l) ? collocation + schedule_.interval(group, l) * c * n_ : nullptr;
@@ -74,8 +74,9 @@ bool SegmentElimination::fill_group(int s, int group, const HybridSystem& system
 void SegmentElimination::fill_border(int s, int group, std::span<const OrbitVector> rows) {
   const int width = interval_.width();
   const int left = interval_.pivots();
-  double* row = interval_blocks_[block(s, group)] + interval_.rows() * width * lanes;
-  for (int r = 0; r < border_; ++r, row += width * lanes) {
+  const int stride = interval_.stride() * lanes;
+  double* row = interval_blocks_[block(s, group)] + interval_.rows() * stride;
+  for (int r = 0; r < border_; ++r, row += stride) {
     const double* left_node[lanes];
     const double* interior[lanes];
     for (int l = 0; l < lanes; ++l) {

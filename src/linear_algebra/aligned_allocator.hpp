@@ -1,5 +1,9 @@
-/// Memory that begins where a line of the processor's cache does, for arrays that are read in whole vectors.
+/// Memory that begins where a line of the processor's cache does, for arrays that are read in whole vectors. Long arrays
+/// are given large pages where the system has them to give: of small ones they fill more than the processor's table of
+/// addresses holds.
 #pragma once
+
+#include <sys/mman.h>
 
 #include <cstddef>
 #include <new>
@@ -9,7 +13,6 @@ namespace tchat {
 template <class T>
 struct AlignedAllocator {
   using value_type = T;
-  static constexpr std::align_val_t alignment{64};
 
   AlignedAllocator() = default;
   template <class U>
@@ -17,10 +20,19 @@ struct AlignedAllocator {
 
   T* allocate(std::size_t count) {
     if (count > static_cast<std::size_t>(-1) / sizeof(T)) throw std::bad_array_new_length();
-    return static_cast<T*>(::operator new(count * sizeof(T), alignment));
+    void* const memory = ::operator new(count * sizeof(T), alignment(count));
+    if (is_long(count)) madvise(memory, count * sizeof(T), MADV_HUGEPAGE);  // refused: as it was
+    return static_cast<T*>(memory);
   }
-  void deallocate(T* memory, std::size_t) { ::operator delete(memory, alignment); }
+  void deallocate(T* memory, std::size_t count) { ::operator delete(memory, alignment(count)); }
   friend bool operator==(const AlignedAllocator&, const AlignedAllocator&) { return true; }
+
+ private:
+  static constexpr std::size_t cache_line = 64, large_page = std::size_t{2} << 20;
+  static bool is_long(std::size_t count) { return count * sizeof(T) >= large_page; }
+  static std::align_val_t alignment(std::size_t count) {
+    return std::align_val_t{is_long(count) ? large_page : cache_line};
+  }
 };
 
 }  // namespace tchat

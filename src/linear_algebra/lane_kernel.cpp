@@ -8,6 +8,7 @@ namespace {
 
 struct LaneSizes {
   int rows, pivots, width;
+  int stride;  // from one row to the next
 };
 
 }  // namespace
@@ -21,8 +22,8 @@ struct LaneFunctions {
   void (*gather)(const double* const*, int, double*);
   void (*scatter)(const double*, int, double* const*);
   void (*interpolate)(const LaneCollocation&, const double*, double*, double*);
-  bool (*fill)(const LaneCollocation&, double*, double*, double*);
-  void (*join)(int, int, int, const LanePiece&, const LanePiece&, double*);
+  bool (*fill)(const LaneCollocation&, int, double*, double*, double*);
+  void (*join)(const LaneJoin&, const LanePiece&, const LanePiece&, double*);
 };
 
 #define TCHAT_VECTOR_NAMESPACE lane_sets
@@ -48,6 +49,9 @@ VectorSet set_for(int width, VectorSet set) {
   return set == VectorSet::avx512 && width < least_width ? VectorSet::avx2 : set;
 }
 
+/// Pairs of columns begin where a line of the cache does.
+int stride_for(int width, VectorSet set) { return set == VectorSet::avx512 ? (width + 1) / 2 * 2 : width; }
+
 }  // namespace
 
 std::vector<VectorSet> available_vector_sets() {
@@ -60,26 +64,30 @@ std::vector<VectorSet> available_vector_sets() {
 }
 
 LaneKernel::LaneKernel(int rows, int pivots, int width, VectorSet set)
-    : rows_(rows), pivots_(pivots), width_(width), functions_(lane_functions(set_for(width, set))) {}
+    : rows_(rows),
+      pivots_(pivots),
+      width_(width),
+      stride_(stride_for(width, set_for(width, set))),
+      functions_(lane_functions(set_for(width, set))) {}
 
 unsigned LaneKernel::eliminate(double* a, int border, int* swaps) const {
-  return functions_->eliminate({rows_, pivots_, width_}, a, border, swaps);
+  return functions_->eliminate({rows_, pivots_, width_, stride_}, a, border, swaps);
 }
 
 void LaneKernel::forward(const double* a, int border, const int* swaps, double* rhs) const {
-  functions_->forward({rows_, pivots_, width_}, a, border, swaps, rhs);
+  functions_->forward({rows_, pivots_, width_, stride_}, a, border, swaps, rhs);
 }
 
 void LaneKernel::forward_transposed(const double* a, const int* swaps, double* weights) const {
-  functions_->forward_transposed({rows_, pivots_, width_}, a, swaps, weights);
+  functions_->forward_transposed({rows_, pivots_, width_, stride_}, a, swaps, weights);
 }
 
 void LaneKernel::backward(const double* a, const double* rhs, double* x) const {
-  functions_->backward({rows_, pivots_, width_}, a, rhs, x);
+  functions_->backward({rows_, pivots_, width_, stride_}, a, rhs, x);
 }
 
 void LaneKernel::backward_of_two(const double* a, double* x, double* y) const {
-  functions_->backward_of_two({rows_, pivots_, width_}, a, x, y);
+  functions_->backward_of_two({rows_, pivots_, width_, stride_}, a, x, y);
 }
 
 LaneAssembly::LaneAssembly(VectorSet set) : functions_(lane_functions(set)) {}
@@ -97,13 +105,13 @@ void LaneAssembly::interpolate(const LaneCollocation& at, const double* nodes, d
   functions_->interpolate(at, nodes, points, derivatives);
 }
 
-bool LaneAssembly::fill(const LaneCollocation& at, double* blocks, double* jacobian, double* residual) const {
-  return functions_->fill(at, blocks, jacobian, residual);
+bool LaneAssembly::fill(const LaneCollocation& at, int stride, double* blocks, double* jacobian,
+                        double* residual) const {
+  return functions_->fill(at, stride, blocks, jacobian, residual);
 }
 
-void LaneAssembly::join(int n, int scalars, int border, const LanePiece& left, const LanePiece& right,
-                        double* target) const {
-  functions_->join(n, scalars, border, left, right, target);
+void LaneAssembly::join(const LaneJoin& at, const LanePiece& left, const LanePiece& right, double* target) const {
+  functions_->join(at, left, right, target);
 }
 
 }  // namespace tchat

@@ -1,7 +1,7 @@
 /// partial_lu.hpp for four blocks of one size side by side: each occupies one lane of the processor's vector registers
 /// and has pivots of its own.
 ///
-/// Entry (i, j) of the block in lane l is a[(i width + j) lanes + l], entry i of its right-hand side r[i lanes + l].
+/// Entry (i, j) of the block in lane l is a[(i stride + j) lanes + l], entry i of its right-hand side r[i lanes + l].
 /// The functions are compiled for several kinds of processors, one of which is chosen when the program runs. In each
 /// lane all of them do the same operations in the same order, products and sums rounded separately (no fused
 /// multiply-add), so that results do not depend on the processor to the last bit, nor on the blocks in other lanes.
@@ -9,6 +9,7 @@
 /// collocation points would outgrow the first cache.
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "linear_algebra/aligned_allocator.hpp"
@@ -33,13 +34,19 @@ struct LaneFunctions;
 
 class LaneKernel {
  public:
-  /// rows x width blocks whose first `pivots` columns are eliminated; no padding.
+  /// rows x width blocks whose first `pivots` columns are eliminated.
   LaneKernel(int rows, int pivots, int width) : LaneKernel(rows, pivots, width, available_vector_sets().back()) {}
   LaneKernel(int rows, int pivots, int width, VectorSet set);
 
   int rows() const { return rows_; }
   int pivots() const { return pivots_; }
   int width() const { return width_; }
+  /// From one row of a block to the next, in entries: the width, or more where columns are taken in pairs.
+  int stride() const { return stride_; }
+  /// How many numbers a block has, with its border rows.
+  std::ptrdiff_t block_size(int border) const {
+    return static_cast<std::ptrdiff_t>(rows_ + border) * stride_ * lanes;
+  }
 
   /// Bit l of the result is set when the block in lane l has a pivot that is zero or not finite; that block is then
   /// useless, the others are not touched by it. swaps[k lanes + l] is the row exchanged with row k in lane l.
@@ -54,6 +61,7 @@ class LaneKernel {
   int rows_;
   int pivots_;
   int width_;
+  int stride_;
   const LaneFunctions* functions_;
 };
 
@@ -77,7 +85,15 @@ struct LaneCollocation {
 struct LanePiece {
   const double* rows;
   const double* border;
-  int width;  ///< from one row to the next, in columns
+  int stride;  ///< from one row to the next, in entries
+};
+
+/// The rows that couple two pieces.
+struct LaneJoin {
+  int n;        ///< dimension
+  int scalars;  ///< columns that are not those of nodes
+  int border;
+  int stride;  ///< from one row of the join to the next, in entries
 };
 
 /// The work around the elimination that is done in lanes as well.
@@ -95,13 +111,13 @@ class LaneAssembly {
   /// the intervals' own variable: c n entries of `lanes` numbers each.
   void interpolate(const LaneCollocation& at, const double* nodes, double* points, double* derivatives) const;
 
-  /// The c n rows of the blocks, columns (interior nodes | left node | right node | T, p | residual), and the residual
-  /// once more, c n entries of `lanes` numbers. `jacobian` is scratch of n (n + scalars - 1) lanes numbers. False when
-  /// a value is not finite in some lane.
-  bool fill(const LaneCollocation& at, double* blocks, double* jacobian, double* residual) const;
+  /// The c n rows of the blocks, `stride` entries from one to the next, columns (interior nodes | left node | right
+  /// node | T, p | residual), and the residual once more, c n entries of `lanes` numbers. `jacobian` is scratch of
+  /// n (n + scalars - 1) lanes numbers. False when a value is not finite in some lane.
+  bool fill(const LaneCollocation& at, int stride, double* blocks, double* jacobian, double* residual) const;
 
   /// The 2 n rows and the border rows of a join: columns (middle node | first node | last node | scalars).
-  void join(int n, int scalars, int border, const LanePiece& left, const LanePiece& right, double* target) const;
+  void join(const LaneJoin& at, const LanePiece& left, const LanePiece& right, double* target) const;
 
  private:
   const LaneFunctions* functions_;

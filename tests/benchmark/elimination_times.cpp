@@ -21,7 +21,7 @@ namespace tchat::benchmark {
 namespace {
 
 constexpr int border = 1;
-constexpr int scalars = 2;  // duration and alpha
+constexpr int scalars = 2;  // duration and alpha; the residual is one more column
 constexpr int intervals = 50;
 
 struct IntervalSizes {
@@ -29,7 +29,7 @@ struct IntervalSizes {
   explicit IntervalSizes(int n)
       : rows(collocation_points * n),
         pivots((collocation_points - 1) * n),
-        columns((collocation_points + 1) * n + scalars) {}
+        columns((collocation_points + 1) * n + scalars + 1) {}
   /// Multiplications and additions of the elimination of one block.
   double operations() const {
     double sum = 0.0;
@@ -94,7 +94,7 @@ void print_elimination_times(const std::vector<int>& dimensions, int rounds) {
     const int repeated = std::max(1, rounds * 64 / (n * n));
     std::vector<int> swaps(static_cast<std::size_t>(sizes.pivots * lanes));
     const LaneKernel kernel(sizes.rows, sizes.pivots, sizes.columns);
-    const double in_lanes = least_time(interval_blocks(sizes, n, sizes.columns, lanes), repeated,
+    const double in_lanes = least_time(interval_blocks(sizes, n, kernel.stride(), lanes), repeated,
                                        [&](double* a) { keep(kernel.eliminate(a, border, swaps.data())); }) *
                             intervals / lanes;
     const BlockKernel single = interval_kernel(n, collocation_points, scalars);

@@ -46,10 +46,14 @@ std::vector<Block> random_blocks(std::mt19937& generator, const Sizes& k) {
   return blocks;
 }
 
-LaneArray side_by_side(const std::vector<Block>& blocks) {
-  LaneArray all(place(static_cast<int>(blocks[0].size()) * lanes));
+/// `stride` entries from one row to the next, those beyond the blocks' own not finite; 0: as many as there are columns.
+LaneArray side_by_side(const std::vector<Block>& blocks, int stride = 0) {
+  const int rows = static_cast<int>(blocks[0].rows()), columns = static_cast<int>(blocks[0].cols());
+  if (stride == 0) stride = columns;
+  LaneArray all(place(rows * stride * lanes), NAN);
   for (int l = 0; l < lanes; ++l)
-    for (int i = 0; i < blocks[0].size(); ++i) all[place(i * lanes + l)] = blocks[place(l)].data()[i];
+    for (int i = 0; i < rows; ++i)
+      for (int j = 0; j < columns; ++j) all[place((i * stride + j) * lanes + l)] = blocks[place(l)](i, j);
   return all;
 }
 
@@ -61,7 +65,7 @@ VectorXd lane_of(const LaneArray& all, int lane) {
 
 Block block_of(const LaneArray& all, int lane, const Block& like) {
   const VectorXd values = lane_of(all, lane);
-  return Eigen::Map<const Block>(values.data(), like.rows(), like.cols());
+  return Eigen::Map<const Block>(values.data(), like.rows(), values.size() / like.rows()).leftCols(like.cols());
 }
 
 struct Eliminated {
@@ -71,8 +75,9 @@ struct Eliminated {
 };
 
 Eliminated eliminated(const Sizes& k, const std::vector<Block>& blocks, VectorSet set) {
-  Eliminated result{side_by_side(blocks), std::vector<int>(place(k.pivots * lanes + 1))};
   const LaneKernel kernel(k.rows, k.pivots, k.width, set);
+  Eliminated result{side_by_side(blocks, kernel.stride()), std::vector<int>(place(k.pivots * lanes + 1))};
+  REQUIRE(static_cast<std::ptrdiff_t>(result.blocks.size()) == kernel.block_size(k.border));
   result.failed = kernel.eliminate(result.blocks.data(), k.border, result.swaps.data());
   return result;
 }
@@ -325,7 +330,7 @@ TEST_CASE("arrays of lanes are gathered and scattered, but for lanes that have n
 }
 
 TEST_CASE("collocation rows are filled as the formula says, alike with every set of instructions") {
-  constexpr int n = 3, c = 2, scalars = 3, width = (c + 1) * n + scalars + 1;
+  constexpr int n = 3, c = 2, scalars = 3, width = (c + 1) * n + scalars + 1, stride = width + 1;
   std::mt19937 generator(10);
   const MatrixXd value = random_block(generator, c, c + 1);
   const MatrixXd slope = random_block(generator, c, c + 1);
@@ -347,10 +352,10 @@ TEST_CASE("collocation rows are filled as the formula says, alike with every set
   for (const VectorSet set : available_vector_sets()) {
     const LaneAssembly assembly(set);
     LaneArray points(place(c * n * lanes)), derivatives = points, residual = points;
-    LaneArray blocks(place(c * n * width * lanes)), jacobian(place(n * (n + scalars - 1) * lanes));
+    LaneArray blocks(place(c * n * stride * lanes)), jacobian(place(n * (n + scalars - 1) * lanes));
     assembly.interpolate(at, states.data(), points.data(), derivatives.data());
     at.derivatives = derivatives.data();
-    REQUIRE(assembly.fill(at, blocks.data(), jacobian.data(), residual.data()));
+    REQUIRE(assembly.fill(at, stride, blocks.data(), jacobian.data(), residual.data()));
     filled.push_back(blocks);
     for (int l = 0; l < lanes; ++l) {
       const auto k = place(l);
@@ -375,7 +380,7 @@ TEST_CASE("collocation rows are filled as the formula says, alike with every set
     broken(1, 4) = NAN;
     LaneCollocation with_nan = at;
     with_nan.fx[2] = broken.data();
-    CHECK_FALSE(assembly.fill(with_nan, blocks.data(), jacobian.data(), residual.data()));
+    CHECK_FALSE(assembly.fill(with_nan, stride, blocks.data(), jacobian.data(), residual.data()));
   }
   for (const LaneArray& blocks : filled) CHECK(blocks == filled.front());
 }
