@@ -24,9 +24,9 @@ void add_mass(const Orbit& x, const CollocationRule& rule, const Eigen::VectorXd
 
 void WeightedNorm::dual(const Orbit& x, const CollocationRule& rule, const std::vector<int>& free_parameters,
                         const OrbitVector& v, OrbitVector& row) const {
-  row.states.setZero();
   for (int s = 0; s < x.shape.segments; ++s) {
     const int first = s * x.shape.nodes();
+    row.states.middleCols(first, x.shape.nodes()).setZero();  // not all at once, to find it in the cache
     add_mass(x, rule, state_weights_, v.states.col(first).data(), row.states.col(first).data());
     row.durations(s) = parameter_weights_(first_duration - 1 + s) * v.durations(s);
   }
