@@ -104,14 +104,6 @@ struct PeriodicQz::TriangularBlock {
   Scalar last = 1.0;
   long exponent = 0;
 
-  /// Do its eigenvalues differ so much that half of the digits of the smaller one are lost beside the larger?
-  bool graded() const {
-    constexpr double share = 1e-7;
-    const double one = size1(first);
-    const double other = size1(last);
-    return one < share * other || other < share * one;
-  }
-
   /// By [p q; 0 r] from the left.
   void multiply(const Scalar& p, const Scalar& q, const Scalar& r) {
     first = times(p, first);
@@ -259,6 +251,17 @@ PeriodicQz::TriangularBlock PeriodicQz::triangular_block(int k) const {
   return t;
 }
 
+/// Do the eigenvalues of T A_1's block at rows k-1, k differ so much that half of the digits of the smaller one are lost
+/// beside the larger? `t` is the block of T there.
+bool PeriodicQz::graded(const TriangularBlock& t, int k) const {
+  constexpr double share = 1e-7;
+  const Scalar determinant = times(times(t.first, t.last), times(a(0, k - 1, k - 1), a(0, k, k)) -
+                                                               times(a(0, k - 1, k), a(0, k, k - 1)));
+  const Scalar first = times(t.first, a(0, k - 1, k - 1)) + times(t.off, a(0, k, k - 1));
+  const Scalar sum = first + times(t.last, a(0, k, k));
+  return size1(determinant) < share * std::norm(sum);
+}
+
 /// The eigenvalue of the trailing block of T A_1 nearest to its last entry; now and then an exceptional one. `t` is the
 /// block of T there.
 ScaledComplex PeriodicQz::shift(const TriangularBlock& t, int high, int iteration) const {
@@ -321,7 +324,8 @@ void PeriodicQz::single_step(const Range& window, int iteration) {
   const auto [low, high] = window;
   const TriangularBlock trailing = triangular_block(high);
   const TriangularBlock leading = low + 1 < high ? triangular_block(low + 1) : trailing;
-  if (leading.graded() || trailing.graded()) return unshifted_step(window);
+  const bool is_graded = graded(leading, low + 1) || graded(trailing, high);
+  if (is_graded && iteration % 4 != 0) return unshifted_step(window);  // where that does not help, a shift may
   chase_backwards(low + 1, window, first_rotation(leading, low, shift(trailing, high, iteration)));
   for (int k = low + 2; k <= high; ++k) {
     const Rotation r = Rotation::zero_second(a(0, k - 1, k - 2), a(0, k, k - 2));

@@ -63,6 +63,7 @@ class PeriodicQz {
   void regularise();
   bool iterate();
   TriangularBlock triangular_block(int k) const;
+  bool graded(const TriangularBlock& t, int k) const;
   ScaledComplex shift(const TriangularBlock& t, int high, int iteration) const;
   Rotation first_rotation(const TriangularBlock& t, int low, const ScaledComplex& shift) const;
   void chase_backwards(int k, const Range& window, const Rotation& r);

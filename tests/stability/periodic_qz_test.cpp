@@ -138,6 +138,18 @@ TEST_CASE("periodic QZ: products of any number of factors, powers among them") {
     }
 }
 
+TEST_CASE("periodic QZ: rows of a pair that are small in both factors say nothing of the eigenvalues' sizes") {
+  std::mt19937 generator(7);
+  for (int trial = 0; trial < 20; ++trial) {
+    CAPTURE(trial);
+    Product p = random_product(generator, 3, 1);
+    const Eigen::VectorXcd exact = eigenvalues(p.e[0].partialPivLu().solve(p.a[0]));
+    for (MatrixXd* factor : {&p.a[0], &p.e[0]}) factor->row(trial % 3) *= 1e-10;
+    // Rounding beside the other rows, 1e-6 of this one, times the condition of the eigenvalues.
+    CHECK(mixed_distance(periodic_qz(p), {exact.begin(), exact.end()}) < 1e-3);
+  }
+}
+
 TEST_CASE("periodic QZ: growth and decay in turns cancel without loss") {
   std::mt19937 generator(4);
   std::vector<std::vector<double>> diagonals;
