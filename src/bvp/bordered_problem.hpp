@@ -147,7 +147,7 @@ class BorderedProblem {
 
   // of the last linearisation
   Linearization outcome_ = Linearization::not_finite;
-  std::vector<OrbitVector> null_vectors_;                  // Z; the first one is found when it is asked for
+  std::vector<OrbitVector> null_vectors_;  // Z; the first one is found when it is asked for
   bool first_known_ = false;
   Small<OrbitCondition::most, most_null_vectors> slopes_;  // grad G . Z
   Numbers along_;                                          // a

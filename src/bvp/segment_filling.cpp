@@ -61,7 +61,8 @@ bool SegmentElimination::fill_group(int s, int group, const HybridSystem& system
     at.h[l] = x.mesh[index(j + 1)] - x.mesh[index(j)];
     at.scale[l] = at.h[l] * x.duration(s);
   }
-  const bool finite = assembly_.fill(at, interval_.stride(), interval_blocks_[block(s, group)], jacobian_.data(), residual_.data());
+  const bool finite =
+      assembly_.fill(at, interval_.stride(), interval_blocks_[block(s, group)], jacobian_.data(), residual_.data());
   double* to[lanes];
   for (int l = 0; l < lanes; ++l)
     to[l] = schedule_.holds(group, l) ? collocation + schedule_.interval(group, l) * c * n_ : nullptr;

@@ -187,7 +187,8 @@ class Sources {
     const auto i = static_cast<Eigen::Index>(g);
     double sum = weights[0] * from_.orbit.par(free_[g] - 1) + weights[1] * from_.tangent.globals(i);
     for (int k = 0; k < count_; ++k)
-      sum += weights[entry(2 * k + 2)] * mark(k).place.globals(i) + weights[entry(2 * k + 3)] * mark(k).tangent.globals(i);
+      sum +=
+          weights[entry(2 * k + 2)] * mark(k).place.globals(i) + weights[entry(2 * k + 3)] * mark(k).tangent.globals(i);
     return sum;
   }
 

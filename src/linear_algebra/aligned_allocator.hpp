@@ -1,6 +1,6 @@
-/// Memory that begins where a line of the processor's cache does, for arrays that are read in whole vectors. Long arrays
-/// are given large pages where the system has them to give: of small ones they fill more than the processor's table of
-/// addresses holds.
+/// Memory that begins where a line of the processor's cache does, for arrays that are read in whole vectors. Long
+/// arrays are given large pages where the system has them to give: of small ones they fill more than the processor's
+/// table of addresses holds.
 #pragma once
 
 #include <sys/mman.h>

@@ -44,9 +44,7 @@ class LaneKernel {
   /// From one row of a block to the next, in entries: the width, or more where columns are taken in pairs.
   int stride() const { return stride_; }
   /// How many numbers a block has, with its border rows.
-  std::ptrdiff_t block_size(int border) const {
-    return static_cast<std::ptrdiff_t>(rows_ + border) * stride_ * lanes;
-  }
+  std::ptrdiff_t block_size(int border) const { return static_cast<std::ptrdiff_t>(rows_ + border) * stride_ * lanes; }
 
   /// Bit l of the result is set when the block in lane l has a pivot that is zero or not finite; that block is then
   /// useless, the others are not touched by it. swaps[k lanes + l] is the row exchanged with row k in lane l.

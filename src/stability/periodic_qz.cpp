@@ -251,12 +251,12 @@ PeriodicQz::TriangularBlock PeriodicQz::triangular_block(int k) const {
   return t;
 }
 
-/// Do the eigenvalues of T A_1's block at rows k-1, k differ so much that half of the digits of the smaller one are lost
-/// beside the larger? `t` is the block of T there.
+/// Do the eigenvalues of T A_1's block at rows k-1, k differ so much that half of the digits of the smaller one are
+/// lost beside the larger? `t` is the block of T there.
 bool PeriodicQz::graded(const TriangularBlock& t, int k) const {
   constexpr double share = 1e-7;
-  const Scalar determinant = times(times(t.first, t.last), times(a(0, k - 1, k - 1), a(0, k, k)) -
-                                                               times(a(0, k - 1, k), a(0, k, k - 1)));
+  const Scalar determinant =
+      times(times(t.first, t.last), times(a(0, k - 1, k - 1), a(0, k, k)) - times(a(0, k - 1, k), a(0, k, k - 1)));
   const Scalar first = times(t.first, a(0, k - 1, k - 1)) + times(t.off, a(0, k, k - 1));
   const Scalar sum = first + times(t.last, a(0, k, k));
   return size1(determinant) < share * std::norm(sum);
@@ -319,7 +319,7 @@ void PeriodicQz::chase_backwards(int k, const Range& window, const Rotation& r) 
 }
 
 /// One implicit single-shift step on the window's rows and columns of the Hessenberg factor: the first rotation makes a
-/// bulge, which is chased down the diagonal.
+/// bulge, which is chased down the diagonal. Where no shift is of use, one without.
 void PeriodicQz::single_step(const Range& window, int iteration) {
   const auto [low, high] = window;
   const TriangularBlock trailing = triangular_block(high);
@@ -341,7 +341,8 @@ void PeriodicQz::single_step(const Range& window, int iteration) {
 /// read off a product in which the large ones hide all else, would say nothing. Row rotations of A_1 are one ahead: a
 /// row is to be triangular before the columns that reach into it are combined.
 void PeriodicQz::unshifted_step(const Range& window) {
-  const auto [low, high] = window;
+  const int low = window.first;
+  const int high = window.last;
   const auto triangularise_row = [&](int k) {
     const Rotation r = Rotation::zero_second(a(0, k - 1, k - 1), a(0, k, k - 1));
     rotate_rows(a_, 0, k, r, {k - 1, high});
