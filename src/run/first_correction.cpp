@@ -58,12 +58,18 @@ std::string all_lines(const std::vector<std::pair<double, std::string>>& lines) 
   return text;
 }
 
-/// The residual of each boundary condition of the uncorrected start, largest collocation defect included.
-std::string residual_report(PathFollower& follower, const DefiningSystem& defining, const Orbit& start) {
+OrbitResidual residual_at(PathFollower& follower, const DefiningSystem& defining, const Orbit& x) {
   CondensedSystem& condensed = follower.condensed();
   OrbitResidual residual = condensed.make_residual();
-  condensed.evaluate(start, residual);
-  defining.integral_values(start, start, condensed.rule(), residual.integral.data());
+  condensed.evaluate(x, residual);
+  defining.integral_values(x, x, condensed.rule(), residual.integral.data());
+  return residual;
+}
+
+/// The residual of each boundary condition of the uncorrected start, largest collocation defect included.
+std::string residual_report(PathFollower& follower, const DefiningSystem& defining, const Orbit& start) {
+  const CondensedSystem& condensed = follower.condensed();
+  const OrbitResidual residual = residual_at(follower, defining, start);
   const int m = defining.segments();
   std::vector<std::pair<double, std::string>> lines;
   const auto add = [&lines](double value, const std::string& what) {
@@ -148,6 +154,13 @@ std::string values_at(const SelectedStart& selected, const HybridSystem& system,
   return text;
 }
 
+/// Does the start of a curve with a condition satisfy all other equations, or as well as five digits of data do?
+bool solves_but_for_condition(PathFollower& follower, const DefiningSystem& system, const Orbit& start) {
+  if (follower.condition() == nullptr) return false;
+  const OrbitResidual residual = residual_at(follower, system, start);
+  return residual.finite() && residual.largest() < absolute_move;
+}
+
 [[noreturn]] void refuse(PathFollower& follower, const DefiningSystem& system, const SelectedStart& selected,
                          const std::string& trouble) {
   const Orbit& start = selected.start.orbit;
@@ -158,8 +171,11 @@ std::string values_at(const SelectedStart& selected, const HybridSystem& system,
   const bool rests = !start.shape.is_point() && !system.has_event(0) &&
                      (start.states.colwise() - start.states.col(0)).cwiseAbs().maxCoeff() == 0.0;
   const char* cure =
-      rests ? "The start does not move: without a section (GCHIND = [0]) an orbit needs a start that goes round; "
-              "IPS = 1 follows equilibria."
+      solves_but_for_condition(follower, system, start)
+          ? "The start satisfies all of these: what fails is the curve's own condition. With these parameters free it "
+            "may hold at every point, so that there is no curve, or nowhere near; free others (ICP)."
+      : rests ? "The start does not move: without a section (GCHIND = [0]) an orbit needs a start that goes round; "
+                "IPS = 1 follows equilibria."
       : start.shape.is_point()
           ? "There may be no equilibrium near the start with these parameters; a better start or a larger "
             "ITNW may help."

@@ -104,6 +104,24 @@ TEST_CASE("no convergence at the first point: the residual of every condition by
   for (const char* file : {"p.branch", "q.branch", "d.branch", "r.branch"}) CHECK_FALSE(workspace.has(file));
 }
 
+TEST_CASE("a curve whose condition holds at every point is refused") {
+  const Workspace workspace;
+  const std::string free_of_wall = " GCHGRZIND=[[]] GCIPSI=[] UZR={omega:1.7}";
+  workspace.run("-c nonimpacting_alpha -d nonimpacting -o slower ICP=[omega,61] RL0=1 RL1=3 DS=-0.1 PAR(alpha)=0.5" +
+                free_of_wall);
+  workspace.run("-c r.slower -s slower -o undamped IRS=UZ1 ICP=[zeta,61] RL0=-0.1 RL1=0.2 DS=-0.01 DSMAX=0.02 UZR={}");
+  // Without damping all multipliers have size 1, whatever the force is.
+  const std::string from_torus = "run linosc -c r.undamped -s undamped IRS=TR1 ISW=2 RL0=1 RL1=3 DS=0.01 NMX=3 ";
+  const Outcome outcome = workspace.tchat(from_torus + "-o nowhere ICP=[omega,alpha,61]");
+  CHECK(outcome.status == 1);
+  // What rounding makes of such a condition leads Newton anywhere, or nowhere.
+  check_contains(outcome.err, {"q.undamped", "critical multiplier of the curve is lost", "with it free"});
+  CHECK_FALSE(workspace.has("p.nowhere"));
+  const Outcome curve = workspace.tchat(from_torus + "-o curve ICP=[omega,zeta,61]");
+  CHECK(curve.status == 0);
+  for (const PointRow& row : rows_of(workspace.points("curve"))) CHECK(std::abs(row.values.at(6)) < 1e-9);  // zeta
+}
+
 TEST_CASE("Newton that falls to an orbit of zero period is no start") {
   const Workspace workspace;
   const Outcome outcome = workspace.tchat("run linosc -c impacting -d impacting -o branch NTST=1 NCOL=2");
