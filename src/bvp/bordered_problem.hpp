@@ -103,7 +103,7 @@ class BorderedProblem {
   void solve_across(const OrbitResidual& residual, OrbitVector& dx);
   /// What all conditions, but for the row, leave, of any length; until the next linearisation, or this is asked again.
   const OrbitVector& tangent();
-  /// The sign of row . tangent(), 1 where it is zero.
+  /// The sign of row . tangent(), 1 where it is zero; once that has been asked for.
   double tangent_sign() const { return *row_along_ < 0.0 ? -1.0 : 1.0; }
   /// CondensedSystem::signed_distance(), with the sign that the determinant has with the branch's row and the
   /// condition's gradients themselves; with a condition times the length of a for gradients of unit size, which is zero

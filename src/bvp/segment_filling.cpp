@@ -75,9 +75,9 @@ bool SegmentElimination::fill_group(int s, int group, const HybridSystem& system
 void SegmentElimination::fill_border(int s, int group, std::span<const OrbitVector> rows) {
   const int width = interval_.width();
   const int left = interval_.pivots();
-  const int stride = interval_.stride() * lanes;
-  double* row = interval_blocks_[block(s, group)] + interval_.rows() * stride;
-  for (int r = 0; r < border_; ++r, row += stride) {
+  const int row_length = interval_.stride() * lanes;
+  double* row = interval_blocks_[block(s, group)] + interval_.rows() * row_length;
+  for (int r = 0; r < border_; ++r, row += row_length) {
     const double* left_node[lanes];
     const double* interior[lanes];
     for (int l = 0; l < lanes; ++l) {

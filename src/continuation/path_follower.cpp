@@ -1,6 +1,7 @@
 #include "continuation/path_follower.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "bvp/mesh_adaptation.hpp"
@@ -97,7 +98,8 @@ double PathFollower::distance(const Orbit& a, const Orbit& b) const {
 bool PathFollower::linearize_at(const PathPoint& point) {
   problem_.recall(point.memory);
   problem_.set_reference(point.orbit);
-  return factors_known_ = linearize(point.orbit, point.dual);
+  factors_known_ = linearize(point.orbit, point.dual);
+  return factors_known_;
 }
 
 bool PathFollower::linearize(const Orbit& x, const OrbitVector& row) {
@@ -118,7 +120,8 @@ void PathFollower::normalise(const Orbit& x, OrbitVector& tangent, OrbitVector& 
   dual.scale(1.0 / length);
 }
 
-/// From the current factors: the vector that every condition but the border annihilates.
+/// From the current factors: the vector that every condition but the border annihilates. False where it is not finite;
+/// the dual is of no use then.
 bool PathFollower::find_tangent(const Orbit& x, OrbitVector& tangent, OrbitVector& dual) {
   const OrbitVector& along = problem_.tangent();
   const double length = measure(x, along, dual);
@@ -139,6 +142,7 @@ NewtonResult PathFollower::correct_and_orient(PathPoint& point, const OrbitVecto
 /// Newton with this row, then the tangent at the result, with factors that are not older than this.
 NewtonResult PathFollower::correct_and_orient(PathPoint& point, const OrbitVector& row, const Orbit& base,
                                               double target, double oldest) {
+  assert(&row != &point.dual);
   factors_known_ = false;
   NewtonResult result = newton_.correct(point.orbit, row, base, target);
   if (!result.converged()) return result;

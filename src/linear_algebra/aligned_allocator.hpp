@@ -21,7 +21,9 @@ struct AlignedAllocator {
   T* allocate(std::size_t count) {
     if (count > static_cast<std::size_t>(-1) / sizeof(T)) throw std::bad_array_new_length();
     void* const memory = ::operator new(count * sizeof(T), alignment(count));
+#ifdef MADV_HUGEPAGE
     if (is_long(count)) madvise(memory, count * sizeof(T), MADV_HUGEPAGE);  // refused: as it was
+#endif
     return static_cast<T*>(memory);
   }
   void deallocate(T* memory, std::size_t count) { ::operator delete(memory, alignment(count)); }

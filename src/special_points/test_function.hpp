@@ -36,7 +36,7 @@ struct TestValue {
   int sign = 0;  ///< of the value, 0 within the zero level; of an undefined one the sign that it stands for, 0: none
 
   static TestValue of(double value, double zero_level) {
-    if (std::isnan(value)) return undefined();
+    if (!std::isfinite(value)) return undefined();
     const bool is_zero = !(std::abs(value) > zero_level);
     return {value, zero_level, is_zero ? 0 : value > 0.0 ? 1 : -1};
   }

@@ -40,6 +40,9 @@ int exponent_of(double size) {
   return exponent;
 }
 
+/// Now and then a shift is no eigenvalue of any block, so that no iteration goes round in circles.
+bool is_exceptional(int iteration) { return iteration % 10 == 9; }
+
 void rescale(ScaledComplex& z) {
   const int exponent = exponent_of(size1(z.mantissa));
   if (exponent == 0) return;
@@ -251,14 +254,19 @@ PeriodicQz::TriangularBlock PeriodicQz::triangular_block(int k) const {
   return t;
 }
 
-/// Do the eigenvalues of T A_1's block at rows k-1, k differ so much that half of the digits of the smaller one are
-/// lost beside the larger? `t` is the block of T there.
+/// Do the eigenvalues of T's block at rows k-1, k (`t`) times that of A_1 (T A_1's own where the window ends there)
+/// differ so much that half of the digits of the smaller one are lost beside the larger?
 bool PeriodicQz::graded(const TriangularBlock& t, int k) const {
   constexpr double share = 1e-7;
+  const double size = size1(a(0, k - 1, k - 1)) + size1(a(0, k - 1, k)) + size1(a(0, k, k - 1)) + size1(a(0, k, k));
+  if (size < std::numeric_limits<double>::min()) return false;
+  const double scale = 1.0 / size;  // squares of what is small may vanish
+  const Scalar upper_left = scale * a(0, k - 1, k - 1);
+  const Scalar lower_left = scale * a(0, k, k - 1);
+  const Scalar lower_right = scale * a(0, k, k);
   const Scalar determinant =
-      times(times(t.first, t.last), times(a(0, k - 1, k - 1), a(0, k, k)) - times(a(0, k - 1, k), a(0, k, k - 1)));
-  const Scalar first = times(t.first, a(0, k - 1, k - 1)) + times(t.off, a(0, k, k - 1));
-  const Scalar sum = first + times(t.last, a(0, k, k));
+      times(times(t.first, t.last), times(upper_left, lower_right) - times(scale * a(0, k - 1, k), lower_left));
+  const Scalar sum = times(t.first, upper_left) + times(t.off, lower_left) + times(t.last, lower_right);
   return size1(determinant) < share * std::norm(sum);
 }
 
@@ -270,7 +278,7 @@ ScaledComplex PeriodicQz::shift(const TriangularBlock& t, int high, int iteratio
   const Scalar lower = times(t.last, a(0, high, high - 1));
   const Scalar last = times(t.last, a(0, high, high));
   ScaledComplex result{size1(lower) + size1(last), t.exponent};  // exceptional
-  if (iteration % 10 != 9) {
+  if (!is_exceptional(iteration)) {
     const Scalar half_difference = 0.5 * (first - last);
     const Scalar off = times(upper, lower);
     const Scalar root = std::sqrt(times(half_difference, half_difference) + off);
@@ -324,8 +332,9 @@ void PeriodicQz::single_step(const Range& window, int iteration) {
   const auto [low, high] = window;
   const TriangularBlock trailing = triangular_block(high);
   const TriangularBlock leading = low + 1 < high ? triangular_block(low + 1) : trailing;
-  const bool is_graded = graded(leading, low + 1) || graded(trailing, high);
-  if (is_graded && iteration % 4 != 0) return unshifted_step(window);  // where that does not help, a shift may
+  // Where steps without a shift do not help, others may.
+  const bool may_be_unshifted = iteration % 4 != 0 && !is_exceptional(iteration);
+  if (may_be_unshifted && (graded(leading, low + 1) || graded(trailing, high))) return unshifted_step(window);
   chase_backwards(low + 1, window, first_rotation(leading, low, shift(trailing, high, iteration)));
   for (int k = low + 2; k <= high; ++k) {
     const Rotation r = Rotation::zero_second(a(0, k - 1, k - 2), a(0, k, k - 2));

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -40,6 +41,7 @@ struct IntervalSizes {
 
 /// Interval blocks as a short interval has them: multiples of the identity for each node, and something small.
 LaneArray interval_blocks(const IntervalSizes& sizes, int n, int width, int together) {
+  assert(sizes.columns <= width);
   std::mt19937 generator(1);
   std::uniform_real_distribution<double> uniform(-0.1, 0.1);
   LaneArray blocks(static_cast<std::size_t>((sizes.rows + border) * width * together), 0.0);
@@ -97,7 +99,7 @@ void print_elimination_times(const std::vector<int>& dimensions, int rounds) {
     const double in_lanes = least_time(interval_blocks(sizes, n, kernel.stride(), lanes), repeated,
                                        [&](double* a) { keep(kernel.eliminate(a, border, swaps.data())); }) *
                             intervals / lanes;
-    const BlockKernel single = interval_kernel(n, collocation_points, scalars);
+    const BlockKernel single = interval_kernel(n, collocation_points, scalars + 1);
     const double one_by_one = least_time(interval_blocks(sizes, n, single.width(), 1), repeated,
                                          [&](double* a) { keep(single.eliminate(a, border, swaps.data())); }) *
                               intervals;

@@ -236,7 +236,7 @@ TEST_CASE("a lane without a pivot, or with NaN or infinity, is told and leaves i
         CHECK(e.failed == 1u << l);
         for (int other = 0; other < lanes; ++other) {
           if (other == l) continue;
-          CHECK(lane_of(e.blocks, other) == lane_of(alone.blocks, other));
+          CHECK(block_of(e.blocks, other, block) == block_of(alone.blocks, other, block));
           for (int p = 0; p < k.pivots; ++p)
             CHECK(e.swaps[place(p * lanes + other)] == alone.swaps[place(p * lanes + other)]);
         }

@@ -150,6 +150,20 @@ TEST_CASE("periodic QZ: rows of a pair that are small in both factors say nothin
   }
 }
 
+TEST_CASE("periodic QZ: blocks that look graded in a matrix whose eigenvalues all have one size") {
+  for (const double g : {1e-5, 0.001, 0.035, 0.2, 0.7, 0.999})
+    for (const double sign : {1.0, -1.0})
+      for (const int factors : {1, 3}) {
+        CAPTURE(g, sign, factors);
+        const double c = sign * std::sqrt(1.0 - g * g);
+        MatrixXd a(4, 4);
+        a << g, 0, 0, c, c, 0, 0, -g, 0, 1, 0, 0, 0, 0, 1, 0;
+        Product p{{a}, {MatrixXd::Identity(4, 4)}};
+        for (int s = 1; s < factors; ++s) p.a.push_back(p.e[0]), p.e.push_back(p.e[0]);
+        for (const auto& mu : periodic_qz(p)) CHECK(std::abs(mu) == Approx(1.0).margin(1e-12));
+      }
+}
+
 TEST_CASE("periodic QZ: growth and decay in turns cancel without loss") {
   std::mt19937 generator(4);
   std::vector<std::vector<double>> diagonals;
