@@ -200,9 +200,9 @@ class SegmentElimination {
   std::vector<Join> top_joins_;            // of top_lanes_
 
   // of groups
-  BlockArray<double> interval_blocks_;  // (c n + b) x width
+  BlockArray<double> interval_blocks_;  // (c n + b) x stride
   BlockArray<int> interval_swaps_;
-  BlockArray<double> join_blocks_;  // (2 n + b) x width
+  BlockArray<double> join_blocks_;  // (2 n + b) x stride
   BlockArray<int> join_swaps_;
   BlockArray<double> interval_rhs_;
   BlockArray<double> join_rhs_;

@@ -159,8 +159,6 @@ class Sources {
     }
   }
 
-  const double* const* states() const { return states_.data(); }
-
   /// Those of the sources, given those of w and w'.
   Weights weights(const Combination& combination) const {
     Weights weights{};

@@ -35,9 +35,10 @@ struct TestValue {
   double zero_level = 0.0;      ///< |value| up to this counts as zero
   int sign = 0;  ///< of the value, 0 within the zero level; of an undefined one the sign that it stands for, 0: none
 
+  /// Undefined where the value is not finite.
   static TestValue of(double value, double zero_level) {
     if (!std::isfinite(value)) return undefined();
-    const bool is_zero = !(std::abs(value) > zero_level);
+    const bool is_zero = std::abs(value) <= zero_level;
     return {value, zero_level, is_zero ? 0 : value > 0.0 ? 1 : -1};
   }
   static TestValue undefined(int sign = 0) { return {std::nullopt, 0.0, sign}; }
