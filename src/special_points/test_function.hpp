@@ -38,7 +38,7 @@ struct TestValue {
   /// Undefined where the value is not finite.
   static TestValue of(double value, double zero_level) {
     if (!std::isfinite(value)) return undefined();
-    const bool is_zero = std::abs(value) <= zero_level;
+    const bool is_zero = !(std::abs(value) > zero_level);  // of a level that is not known, too
     return {value, zero_level, is_zero ? 0 : value > 0.0 ? 1 : -1};
   }
   static TestValue undefined(int sign = 0) { return {std::nullopt, 0.0, sign}; }
