@@ -7,6 +7,7 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <tuple>
 #include <utility>
 
 #include "linear_algebra/array_kernel.hpp"
@@ -49,15 +50,13 @@ BorderedProblem::BorderedProblem(const DefiningSystem& system, const OrbitShape&
           threads),
       condition_(std::move(condition)),
       held_(std::move(held)),
-      row_(condensed_.make_vector()),
       closing_(condensed_.make_end_vector()),
-      gradients_(static_cast<std::size_t>(system.integral_conditions()) + held_.size(), row_),
+      gradients_(static_cast<std::size_t>(system.integral_conditions()) + held_.size(), condensed_.make_vector()),
       border_(static_cast<std::size_t>(1 + conditions()) + gradients_.size()),
-      null_vectors_(static_cast<std::size_t>(1 + conditions()), row_),
+      null_vectors_(static_cast<std::size_t>(1 + conditions()), condensed_.make_vector()),
       slopes_(conditions(), conditions() + 1),
-      along_(conditions() + 1),
-      row_slopes_(conditions() + 1) {
-  if (condition_) tangent_ = row_;
+      along_(conditions() + 1) {
+  if (condition_) tangent_ = condensed_.make_vector();
 }
 
 void BorderedProblem::remember(ConditionMemory& memory) const {
@@ -93,9 +92,6 @@ Linearization BorderedProblem::linearize(const Orbit& x, const OrbitVector& row,
   outcome_ = Linearization::not_finite;
   first_known_ = false;
   row_along_.reset();
-  row_.states = row.states;
-  row_.durations = row.durations;
-  row_.globals = row.globals;
   if (!condition_) close(row);
   const auto integrals = static_cast<std::size_t>(system().integral_conditions());
   system().integral_gradients(x, reference_, condensed_.rule(), residual.integral.data(),
@@ -134,14 +130,20 @@ double BorderedProblem::at_ends(const OrbitVector& row, const OrbitVector& v) co
 
 /// The determinant with row and gradients is that with the closing rows, whose values on the null vectors are those of
 /// the unit matrix, times that of all rows on Z.
-double BorderedProblem::signed_distance() {
+double BorderedProblem::signed_distance(const OrbitVector& row) {
   if (outcome_ == Linearization::singular) return 0.0;
   if (outcome_ != Linearization::ready) return std::numeric_limits<double>::quiet_NaN();
-  if (!row_along_) know_null_vectors();
+  const double sign = tangent_sign(row);
   double distance = condensed_.signed_distance();
   if (condition_) distance *= along_.norm();
   for (int k = 0; k < conditions(); ++k) distance /= size_on_null_vectors(condition_->gradient(k));
-  return *row_along_ < 0.0 ? -distance : distance;
+  return sign * distance;
+}
+
+BorderedProblem::Numbers BorderedProblem::on_null_vectors(const OrbitVector& row) const {
+  Numbers values(conditions() + 1);
+  for (int j = 0; j <= conditions(); ++j) values(j) = dot(row, null_vectors_[static_cast<std::size_t>(j)]);
+  return values;
 }
 
 /// The largest length that row . Z may have with these sizes of its terms; not zero.
@@ -151,12 +153,12 @@ double BorderedProblem::size_on_null_vectors(const OrbitVector& row) const {
   return std::sqrt(sum);
 }
 
-CondensedSystem::Singularity BorderedProblem::singularity() {
+CondensedSystem::Singularity BorderedProblem::singularity(const OrbitVector& row) {
   CondensedSystem::Singularity result = condensed_.singularity();
   if (outcome_ != Linearization::ready || !condition_) return result;
   if (!first_known_) know_null_vectors();
   Eigen::MatrixXd rows(conditions() + 1, conditions() + 1);
-  rows.row(0) = row_slopes_.transpose() / size_on_null_vectors(row_);
+  rows.row(0) = on_null_vectors(row).transpose() / size_on_null_vectors(row);
   for (int k = 0; k < conditions(); ++k)
     rows.row(1 + k) = slopes_.row(k) / size_on_null_vectors(condition_->gradient(k));
   if (!rows.allFinite()) return result;
@@ -179,16 +181,16 @@ void BorderedProblem::solve_across(const OrbitResidual& residual, OrbitVector& d
   condensed_.solve(residual, border(residual.integral), dx);
 }
 
-bool BorderedProblem::solve(const OrbitResidual& residual, double target, OrbitVector& dx) {
+bool BorderedProblem::solve(const OrbitResidual& residual, const OrbitVector& row, double target, OrbitVector& dx) {
   if (!first_known_) know_null_vectors();
   condensed_.solve(residual, border(residual.integral), dx);
-  return put_on_branch(target, dx);
+  return put_on_branch(row, target, dx);
 }
 
-bool BorderedProblem::correct(const OrbitResidual& linearized, double target, OrbitVector& dx) {
+bool BorderedProblem::correct(const OrbitResidual& linearized, const OrbitVector& row, double target, OrbitVector& dx) {
   condensed_.solve_both(linearized, border(linearized.integral), dx, null_vectors_.front());
   measure_null_vectors();
-  return put_on_branch(target, dx);
+  return put_on_branch(row, target, dx);
 }
 
 void BorderedProblem::know_null_vectors() {
@@ -196,17 +198,17 @@ void BorderedProblem::know_null_vectors() {
   measure_null_vectors();
 }
 
-/// What row and gradients say of them.
+/// What gradients say of them.
 void BorderedProblem::measure_null_vectors() {
-  const int count = conditions();
-  for (int j = 0; j <= count; ++j) {
-    const OrbitVector& z = null_vectors_[static_cast<std::size_t>(j)];
-    row_slopes_(j) = dot(row_, z);
-    for (int k = 0; k < count; ++k) slopes_(k, j) = dot(condition_->gradient(k), z);
-  }
+  for (int k = 0; k < conditions(); ++k) slopes_.row(k) = on_null_vectors(condition_->gradient(k)).transpose();
   along_ = vector_product(slopes_);
-  row_along_ = row_slopes_.dot(along_);
   first_known_ = true;
+}
+
+double BorderedProblem::tangent_sign(const OrbitVector& row) {
+  if (!first_known_) know_null_vectors();
+  if (!row_along_) row_along_ = on_null_vectors(row).dot(along_);
+  return *row_along_ < 0.0 ? -1.0 : 1.0;
 }
 
 /// The shares of null vectors that make grad G . (dx + Z b) = -G, with none along the tangent.
@@ -229,10 +231,15 @@ BorderedProblem::Numbers BorderedProblem::dual_slope(int k) const {
 
 /// Adds what meets the condition, and makes row . dx = target; false when the row is exactly orthogonal to the tangent,
 /// or there is none.
-bool BorderedProblem::put_on_branch(double target, OrbitVector& dx) const {
+bool BorderedProblem::put_on_branch(const OrbitVector& row, double target, OrbitVector& dx) {
+  Numbers row_slopes(conditions() + 1);
+  double row_dx = 0.0;
+  std::tie(row_dx, row_slopes(0)) = dot_both(row, dx, null_vectors_.front());
+  for (int k = 1; k <= conditions(); ++k) row_slopes(k) = dot(row, null_vectors_[static_cast<std::size_t>(k)]);
+  row_along_ = row_slopes.dot(along_);
   if (*row_along_ == 0.0 || !std::isfinite(*row_along_)) return false;
   Numbers shares = across(dx);
-  shares += (target - dot(row_, dx) - row_slopes_.dot(shares)) / *row_along_ * along_;
+  shares += (target - row_dx - row_slopes.dot(shares)) / *row_along_ * along_;
   add_null_vectors(shares, dx);
   return true;
 }

@@ -91,27 +91,27 @@ class BorderedProblem {
 
   /// The orbit that integral conditions compare phases with, on the mesh of those that follow. Copied.
   void set_reference(const Orbit& x);
-  /// `row` is copied.
   Linearization linearize(const Orbit& x, const OrbitVector& row, OrbitResidual& residual);
   void evaluate(const Orbit& x, OrbitResidual& residual);
   /// Newton's correction, all conditions to zero, row . dx = target; false when the row is exactly orthogonal to the
   /// tangent.
-  bool solve(const OrbitResidual& residual, double target, OrbitVector& dx);
+  bool solve(const OrbitResidual& residual, const OrbitVector& row, double target, OrbitVector& dx);
   /// The same where the residual is that of the last linearisation; the tangent is found on the way.
-  bool correct(const OrbitResidual& linearized, double target, OrbitVector& dx);
+  bool correct(const OrbitResidual& linearized, const OrbitVector& row, double target, OrbitVector& dx);
   /// All conditions to zero, where there is none of a curve; dx has any component along the tangent.
   void solve_across(const OrbitResidual& residual, OrbitVector& dx);
   /// What all conditions, but for the row, leave, of any length; until the next linearisation, or this is asked again.
   const OrbitVector& tangent();
-  /// The sign of row . tangent(), 1 where it is zero; once that has been asked for.
-  double tangent_sign() const { return *row_along_ < 0.0 ? -1.0 : 1.0; }
+  /// The sign of row . tangent(), 1 where it is zero. All rows that are asked about after a linearisation, those of
+  /// corrections among them, grow in one direction of the branch: the first one's sign is kept.
+  double tangent_sign(const OrbitVector& row);
   /// CondensedSystem::signed_distance(), with the sign that the determinant has with the branch's row and the
   /// condition's gradients themselves; with a condition times the length of a for gradients of unit size, which is zero
   /// where they leave more than the tangent. 0 where the last linearisation was singular, NaN where it failed
   /// otherwise. Allocates.
-  double signed_distance();
+  double signed_distance(const OrbitVector& row);
   /// CondensedSystem::singularity() with row and gradients in place of the closing rows of a condition.
-  CondensedSystem::Singularity singularity();
+  CondensedSystem::Singularity singularity(const OrbitVector& row);
   /// What stands for this row of a branch, on v.
   double at_ends(const OrbitVector& row, const OrbitVector& v) const;
   /// Largest residual, the condition's included.
@@ -124,10 +124,11 @@ class BorderedProblem {
   using Numbers = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, most_null_vectors, 1>;
 
   void close(const OrbitVector& row);
+  Numbers on_null_vectors(const OrbitVector& row) const;
   double size_on_null_vectors(const OrbitVector& row) const;
   void know_null_vectors();
   void measure_null_vectors();
-  bool put_on_branch(double target, OrbitVector& dx) const;
+  bool put_on_branch(const OrbitVector& row, double target, OrbitVector& dx);
   Numbers across(const OrbitVector& dx) const;
   Numbers dual_slope(int k) const;
   void add_null_vectors(const Numbers& shares, OrbitVector& dx) const;
@@ -139,7 +140,6 @@ class BorderedProblem {
   CondensedSystem condensed_;
   std::unique_ptr<OrbitCondition> condition_;
   std::vector<HeldMonitor> held_;
-  OrbitVector row_;                     // the branch's
   EndVector closing_;                   // from it, where there is no condition
   std::vector<OrbitVector> gradients_;  // of integrals and held monitors
   std::vector<double> border_;          // right-hand side of all these
@@ -151,7 +151,6 @@ class BorderedProblem {
   bool first_known_ = false;
   Small<OrbitCondition::most, most_null_vectors> slopes_;  // grad G . Z
   Numbers along_;                                          // a
-  Numbers row_slopes_;                                     // row . Z
   std::optional<double> row_along_;                        // row . t
   OrbitVector tangent_;                                    // t where there is a condition
 };

@@ -29,7 +29,8 @@ void CondensedSystem::solve_both(const OrbitResidual& linearized, std::span<cons
   solve_ends(own_rhs_, linearized, border);
   if (closing_ == 0) find_null_vectors();
   const EndVector& null_ends = null_ends_.front();
-  segment_work_.each(shape_.segments, [&](int s, int thread) {
+  segment_work_.each(shape_.segments, [&](int k, int thread) {
+    const int s = shape_.segments - 1 - k;  // as in expand()
     elimination_.expand_both(s, in_segment(s, solution_, RightHandSide::own, dx),
                              in_segment(s, null_ends, RightHandSide::zero, v), thread);
   });
@@ -68,10 +69,13 @@ void CondensedSystem::find_null_vectors() {
   }
 }
 
-/// From the ends of segments to all nodes.
+/// From the ends of segments to all nodes. The last segments, whose blocks were made last and may still be in the
+/// cache, are the first.
 void CondensedSystem::expand(const EndVector& ends, RightHandSide right, OrbitVector& dx) {
-  segment_work_.each(shape_.segments,
-                     [&](int s, int thread) { elimination_.expand(s, in_segment(s, ends, right, dx), thread); });
+  segment_work_.each(shape_.segments, [&](int k, int thread) {
+    const int s = shape_.segments - 1 - k;
+    elimination_.expand(s, in_segment(s, ends, right, dx), thread);
+  });
   put_globals(ends, dx);
 }
 

@@ -48,8 +48,19 @@ double dot(const OrbitVector& row, const OrbitVector& v) {
          row.globals.dot(v.globals);
 }
 
+std::pair<double, double> dot_both(const OrbitVector& row, const OrbitVector& v, const OrbitVector& w) {
+  double sums[2];
+  array_functions().dot_both(row.states.data(), v.states.data(), w.states.data(), row.states.size(), sums);
+  return {sums[0] + row.durations.dot(v.durations) + row.globals.dot(v.globals),
+          sums[1] + row.durations.dot(w.durations) + row.globals.dot(w.globals)};
+}
+
 void advance(Orbit& x, double step, const OrbitVector& v, const std::vector<int>& free_parameters) {
   array_functions().add(step, v.states.data(), x.states.data(), x.states.size());
+  advance_parameters(x, step, v, free_parameters);
+}
+
+void advance_parameters(Orbit& x, double step, const OrbitVector& v, const std::vector<int>& free_parameters) {
   for (int s = 0; s < x.shape.segments; ++s) x.duration(s) += step * v.durations(s);
   for (std::size_t g = 0; g < free_parameters.size(); ++g)
     x.par(free_parameters[g] - 1) += step * v.globals(static_cast<Eigen::Index>(g));

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <utility>
 #include <vector>
 
 #include "hybrid/parameter_vector.hpp"
@@ -67,8 +68,13 @@ struct OrbitVector {
 /// Plain sum of products of all entries; the value of the dual vector `row` on `v`.
 double dot(const OrbitVector& row, const OrbitVector& v);
 
+/// dot(row, v) and dot(row, w).
+std::pair<double, double> dot_both(const OrbitVector& row, const OrbitVector& v, const OrbitVector& w);
+
 /// x + step v; `free_parameters` are the PAR indices of v.globals.
 void advance(Orbit& x, double step, const OrbitVector& v, const std::vector<int>& free_parameters);
+/// The same of durations and parameters alone.
+void advance_parameters(Orbit& x, double step, const OrbitVector& v, const std::vector<int>& free_parameters);
 
 /// The value of the dual vector `row` on x - base.
 double dot_difference(const OrbitVector& row, const Orbit& x, const Orbit& base,

@@ -74,7 +74,7 @@ NewtonChord::NewtonChord(BorderedProblem& problem, const NewtonSettings& setting
   history_.reserve(static_cast<std::size_t>(settings.max_iterations) + 2);
 }
 
-NewtonResult NewtonChord::correct(Orbit& x, const OrbitVector& row, const Orbit& base, double target) {
+NewtonResult NewtonChord::correct(Orbit& x, const OrbitVector& row, double change_along_row) {
   NewtonResult result;
   history_.clear();
   const std::vector<int>& free_parameters = problem_.system().free_parameters();
@@ -96,8 +96,8 @@ NewtonResult NewtonChord::correct(Orbit& x, const OrbitVector& row, const Orbit&
       problem_.evaluate(x, residual_);
     }
     result.residual = problem_.residual_size(residual_);
-    const double rest = target - dot_difference(row, x, base, free_parameters);
-    if (!(full ? problem_.correct(residual_, rest, dx_) : problem_.solve(residual_, rest, dx_))) {
+    const double along_row = iteration == 1 ? change_along_row : 0.0;  // a correction makes it so exactly
+    if (!(full ? problem_.correct(residual_, row, along_row, dx_) : problem_.solve(residual_, row, along_row, dx_))) {
       result.status = NewtonStatus::singular;
       return result;
     }
@@ -138,8 +138,11 @@ NewtonResult NewtonChord::correct(Orbit& x, const OrbitVector& row, const Orbit&
 
 /// x += dx; the relative sizes of the correction as AUTO measures them.
 OrbitChange NewtonChord::apply(Orbit& x) const {
-  advance(x, 1.0, dx_, problem_.system().free_parameters());
-  return change_by(dx_, x, problem_.system().free_parameters());
+  const std::vector<int>& free_parameters = problem_.system().free_parameters();
+  ArrayRange change{}, states{};
+  array_functions().add_and_measure(dx_.states.data(), x.states.data(), x.states.size(), &change, &states);
+  advance_parameters(x, 1.0, dx_, free_parameters);
+  return change_by(dx_, x, free_parameters, change, states.largest);
 }
 
 }  // namespace tchat

@@ -72,8 +72,8 @@ class NewtonChord {
   /// Allocates all work space.
   NewtonChord(BorderedProblem& problem, const NewtonSettings& settings);
 
-  /// Corrects x in place, with the dual vector `row` (x - base) = target.
-  NewtonResult correct(Orbit& x, const OrbitVector& row, const Orbit& base, double target);
+  /// Corrects x in place, so that the value of the dual vector `row` on it changes by `change_along_row`.
+  NewtonResult correct(Orbit& x, const OrbitVector& row, double change_along_row);
 
   const std::vector<NewtonIteration>& history() const { return history_; }
   const OrbitResidual& residual() const { return residual_; }

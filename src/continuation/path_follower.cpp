@@ -120,13 +120,13 @@ void PathFollower::normalise(const Orbit& x, OrbitVector& tangent, OrbitVector& 
   dual.scale(1.0 / length);
 }
 
-/// From the current factors: the vector that every condition but the border annihilates. False where it is not finite;
-/// the dual is of no use then.
-bool PathFollower::find_tangent(const Orbit& x, OrbitVector& tangent, OrbitVector& dual) {
+/// From the current factors: the vector that every condition but the border annihilates, along which `row` grows. False
+/// where it is not finite; the dual is of no use then.
+bool PathFollower::find_tangent(const Orbit& x, const OrbitVector& row, OrbitVector& tangent, OrbitVector& dual) {
   const OrbitVector& along = problem_.tangent();
   const double length = measure(x, along, dual);
   if (!std::isfinite(length)) return false;
-  const double factor = problem_.tangent_sign() / (length > 0.0 ? length : 1.0);
+  const double factor = problem_.tangent_sign(row) / (length > 0.0 ? length : 1.0);
   tangent.states = factor * along.states;
   tangent.durations = factor * along.durations;
   tangent.globals = factor * along.globals;
@@ -134,20 +134,16 @@ bool PathFollower::find_tangent(const Orbit& x, OrbitVector& tangent, OrbitVecto
   return true;
 }
 
-NewtonResult PathFollower::correct_and_orient(PathPoint& point, const OrbitVector& row, const Orbit& base,
-                                              double target) {
-  return correct_and_orient(point, row, base, target, current_enough);
-}
-
-/// Newton with this row, then the tangent at the result, with factors that are not older than this.
-NewtonResult PathFollower::correct_and_orient(PathPoint& point, const OrbitVector& row, const Orbit& base,
-                                              double target, double oldest) {
+/// Newton with this row, whose value changes by so much; then the tangent at the result, with factors that are not
+/// older than this.
+NewtonResult PathFollower::correct_and_orient(PathPoint& point, const OrbitVector& row, double change_along_row,
+                                              double oldest) {
   assert(&row != &point.dual);
   factors_known_ = false;
-  NewtonResult result = newton_.correct(point.orbit, row, base, target);
+  NewtonResult result = newton_.correct(point.orbit, row, change_along_row);
   if (!result.converged()) return result;
   const bool current = result.change_since_factorization <= oldest;
-  if ((!current && !linearize(point.orbit, row)) || !find_tangent(point.orbit, point.tangent, point.dual))
+  if ((!current && !linearize(point.orbit, row)) || !find_tangent(point.orbit, row, point.tangent, point.dual))
     result.status = NewtonStatus::singular;
   else
     factors_known_ = true;
@@ -174,8 +170,8 @@ NewtonResult PathFollower::step(const PathPoint& from, double ds, PathPoint& to)
   const TrailTerms terms = predict(from, ds, system_.free_parameters(), to.orbit);
   if (terms.error > 0.0) {
     begin_step(from);
-    double taken_back = polish(from, ds, terms.error, to.orbit);
-    const NewtonResult result = step_near(from, ds, to);
+    double taken_back = polish(from, terms.error, to.orbit);
+    const NewtonResult result = step_from_plane(from, 0.0, to, current_enough);
     for (const NewtonIteration& iteration : newton_.history()) taken_back += iteration.larger();
     if (result.converged() && taken_back <= std::max(share_taken_back * terms.change, small_change)) return result;
   }
@@ -184,7 +180,7 @@ NewtonResult PathFollower::step(const PathPoint& from, double ds, PathPoint& to)
 
 NewtonResult PathFollower::step_along_tangent(const PathPoint& from, double ds, PathPoint& to) {
   put_on_tangent(from, ds, to.orbit);
-  NewtonResult result = step_near(from, ds, to);
+  NewtonResult result = step_from_plane(from, 0.0, to, current_enough);
   result.from_tangent = true;
   const std::vector<NewtonIteration>& history = newton_.history();
   if (result.converged() && history.size() > 1 && history[0].larger() > 0.0)
@@ -193,30 +189,36 @@ NewtonResult PathFollower::step_along_tangent(const PathPoint& from, double ds, 
 }
 
 NewtonResult PathFollower::step_near(const PathPoint& from, double ds, PathPoint& to) {
-  return step_near(from, ds, to, current_enough);
+  return step_from_plane(from, ahead(from, ds, to.orbit), to, current_enough);
 }
 
 NewtonResult PathFollower::step_beside_branch_point(const PathPoint& from, double ds, PathPoint& to) {
-  return step_near(from, ds, to, 0.0);
+  return step_from_plane(from, ahead(from, ds, to.orbit), to, 0.0);
 }
 
-/// With factors for the tangent that are not older than this.
-NewtonResult PathFollower::step_near(const PathPoint& from, double ds, PathPoint& to, double oldest) {
+/// How far the plane of a step of length ds is ahead of x.
+double PathFollower::ahead(const PathPoint& from, double ds, const Orbit& x) const {
+  return ds - dot_difference(from.dual, x, from.orbit, system_.free_parameters());
+}
+
+/// From a plane that the one of the step is so far `ahead` of, 0 where to.orbit was predicted, with factors for the
+/// tangent that are not older than this.
+NewtonResult PathFollower::step_from_plane(const PathPoint& from, double ahead, PathPoint& to, double oldest) {
   begin_step(from);
   to.newton_constant = from.newton_constant;
   to.trail.follow(from, system_.free_parameters());
-  return correct_and_orient(to, from.dual, from.orbit, ds, oldest);
+  return correct_and_orient(to, from.dual, ahead, oldest);
 }
 
-/// dx_ is set to the correction of x by the factors at hand, whatever the row was that they have, with that of a step
-/// from `from`.
-OrbitChange PathFollower::chord(const PathPoint& from, double ds, const Orbit& x) {
+/// dx_ is set to the correction of x by the factors at hand, whatever the row was that they have, in the plane of a
+/// step from `from` that x is in.
+OrbitChange PathFollower::chord(const PathPoint& from, const Orbit& x) {
   const std::vector<int>& free_parameters = system_.free_parameters();
   problem_.evaluate(x, newton_.residual());
   problem_.solve_across(newton_.residual(), dx_);
   const OrbitVector& along = problem_.tangent();
-  const double rest = ds - dot_difference(from.dual, x, from.orbit, free_parameters) - dot(from.dual, dx_);
-  const double share = rest / dot(from.dual, along);
+  const auto [of_dx, of_tangent] = dot_both(from.dual, dx_, along);
+  const double share = -of_dx / of_tangent;
   dx_.states += share * along.states;
   dx_.durations += share * along.durations;
   dx_.globals += share * along.globals;
@@ -224,12 +226,12 @@ OrbitChange PathFollower::chord(const PathPoint& from, double ds, const Orbit& x
 }
 
 /// Brings a prediction nearer to the branch while that takes few chord iterations. How far it is moved.
-double PathFollower::polish(const PathPoint& from, double ds, double expected, Orbit& x) {
+double PathFollower::polish(const PathPoint& from, double expected, Orbit& x) {
   if (!factors_known_ || !problem_.allows_chord() || expected <= near_enough) return 0.0;
   double last = 0.0;
   double moved = 0.0;
   for (int k = 0; k < most_chords; ++k) {
-    const double size = chord(from, ds, x).larger();
+    const double size = chord(from, x).larger();
     const double factor = k == 0 ? contraction : size / last;
     if (!(factor <= contraction)) break;
     advance(x, 1.0, dx_, system_.free_parameters());
@@ -253,7 +255,7 @@ IterationRange PathFollower::iterations_along_tangent(const PathPoint& from, dou
   OrbitChange second{0.0, estimated * first.larger()};
   if (measured) {
     begin_step(from);
-    first = chord(from, ds, on_tangent_);
+    first = chord(from, on_tangent_);
     advance(on_tangent_, 1.0, dx_, system_.free_parameters());
     second = difference(to.orbit, on_tangent_);
     to.newton_constant = second.larger() / (first.larger() * first.larger());
@@ -318,9 +320,8 @@ NewtonResult PathFollower::start_at_fixed_parameter(PathPoint& point) {
   point.trail.clear();
   const OrbitVector row = principal_row(point.orbit);
   problem_.recall(point.memory);
-  const Orbit base = point.orbit;
-  problem_.set_reference(base);
-  NewtonResult result = correct_and_orient(point, row, base, 0.0);
+  problem_.set_reference(point.orbit);
+  NewtonResult result = correct_and_orient(point, row, 0.0, current_enough);
   if (result.converged()) orient(point);
   return result;
 }
@@ -331,9 +332,8 @@ NewtonResult PathFollower::start_along(PathPoint& point, const OrbitVector& dire
   normalise(point.orbit, point.tangent, point.dual);
   const OrbitVector row = point.dual;
   problem_.recall(point.memory);
-  const Orbit base = point.orbit;
-  problem_.set_reference(base);
-  return correct_and_orient(point, row, base, 0.0);
+  problem_.set_reference(point.orbit);
+  return correct_and_orient(point, row, 0.0, current_enough);
 }
 
 NewtonResult PathFollower::start_by_minimum_norm(PathPoint& point) {
@@ -348,15 +348,14 @@ NewtonResult PathFollower::start_by_minimum_norm(PathPoint& point) {
   problem_.set_reference(point.orbit);
   NewtonResult result;
   result.status = NewtonStatus::singular;
-  if (!linearize(point.orbit, row) || !find_tangent(point.orbit, point.tangent, point.dual)) return result;
+  if (!linearize(point.orbit, row) || !find_tangent(point.orbit, row, point.tangent, point.dual)) return result;
   // A few Gauss-Newton steps with a fresh null vector each, then the ordinary iteration across the last one.
   for (int iteration = 0; iteration < settings_.max_iterations; ++iteration) {
     row = point.dual;
-    const Orbit base = point.orbit;
-    problem_.set_reference(base);
-    result = correct_and_orient(point, row, base, 0.0);
+    problem_.set_reference(point.orbit);
+    result = correct_and_orient(point, row, 0.0, current_enough);
     if (result.converged() || result.status == NewtonStatus::not_finite) break;
-    if (!linearize(point.orbit, row) || !find_tangent(point.orbit, point.tangent, point.dual)) return result;
+    if (!linearize(point.orbit, row) || !find_tangent(point.orbit, row, point.tangent, point.dual)) return result;
   }
   if (result.converged()) orient(point);
   return result;
@@ -382,7 +381,7 @@ CondensedSystem::Singularity PathFollower::singularity(const PathPoint& point) {
   problem_.recall(point.memory);
   problem_.set_reference(point.orbit);
   if (problem_.linearize(point.orbit, point.dual, newton_.residual()) == Linearization::not_finite) return {1.0, {}};
-  return problem_.singularity();
+  return problem_.singularity(point.dual);
 }
 
 }  // namespace tchat

@@ -106,7 +106,7 @@ class PathFollower {
   double cosine_at_ends(const PathPoint& from, const PathPoint& to) const;
 
   /// To a singular problem, at the point whose linearisation is held (BorderedProblem::signed_distance).
-  double signed_distance() { return problem_.signed_distance(); }
+  double signed_distance(const PathPoint& held) { return problem_.signed_distance(held.dual); }
 
   /// The length of the difference of two orbits on one mesh, in the weighted norm.
   double distance(const Orbit& a, const Orbit& b) const;
@@ -115,18 +115,17 @@ class PathFollower {
   CondensedSystem::Singularity singularity(const PathPoint& point);
 
  private:
-  NewtonResult step_near(const PathPoint& from, double ds, PathPoint& to, double oldest);
-  NewtonResult correct_and_orient(PathPoint& point, const OrbitVector& row, const Orbit& base, double target);
-  NewtonResult correct_and_orient(PathPoint& point, const OrbitVector& row, const Orbit& base, double target,
-                                  double oldest);
+  NewtonResult step_from_plane(const PathPoint& from, double ahead, PathPoint& to, double oldest);
+  double ahead(const PathPoint& from, double ds, const Orbit& x) const;
+  NewtonResult correct_and_orient(PathPoint& point, const OrbitVector& row, double change_along_row, double oldest);
   void put_on_tangent(const PathPoint& from, double ds, Orbit& x) const;
   void begin_step(const PathPoint& from);
-  double polish(const PathPoint& from, double ds, double expected, Orbit& x);
+  double polish(const PathPoint& from, double expected, Orbit& x);
   OrbitChange difference(const Orbit& to, const Orbit& x);
   int iterations_of(const OrbitChange& first, const OrbitChange& second, double constant) const;
-  OrbitChange chord(const PathPoint& from, double ds, const Orbit& x);
+  OrbitChange chord(const PathPoint& from, const Orbit& x);
   bool linearize(const Orbit& x, const OrbitVector& row);
-  bool find_tangent(const Orbit& x, OrbitVector& tangent, OrbitVector& dual);
+  bool find_tangent(const Orbit& x, const OrbitVector& row, OrbitVector& tangent, OrbitVector& dual);
   double measure(const Orbit& x, const OrbitVector& v, OrbitVector& dual) const;
   void normalise(const Orbit& x, OrbitVector& tangent, OrbitVector& dual) const;
   void orient(PathPoint& point) const;

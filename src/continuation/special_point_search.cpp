@@ -113,7 +113,7 @@ std::vector<std::string> SpecialPointSearch::details(const PathPoint& at, const 
 double SpecialPointSearch::signed_distance(const PathPoint& at) const {
   const bool one_parameter = follower_.condition() == nullptr;
   return system_.is_point() && one_parameter ? equilibrium_signed_distance(system_, at.orbit, at.tangent)
-                                             : follower_.signed_distance();
+                                             : follower_.signed_distance(at);
 }
 
 PointData SpecialPointSearch::evaluate(PathPoint& at) {

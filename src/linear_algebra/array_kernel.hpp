@@ -22,11 +22,15 @@ inline constexpr int most_pairs = 3;
 struct ArrayFunctions {
   /// sum a_i b_i
   double (*dot)(const double* a, const double* b, long count);
+  /// sum a_i b_i and sum a_i c_i, as dot() finds each
+  void (*dot_both)(const double* a, const double* b, const double* c, long count, double* results);
   /// sum a_i (b_i - c_i)
   double (*dot_difference)(const double* a, const double* b, const double* c, long count);
   ArrayRange (*range)(const double* a, long count);
   /// y += factor a
   void (*add)(double factor, const double* a, double* y, long count);
+  /// y += a, and the ranges of a and of the new y
+  void (*add_and_measure)(const double* a, double* y, long count, ArrayRange* of_a, ArrayRange* of_y);
   /// For each of `pairs` (at least one) the sums of a_i (places[k]_i - c_i) and of a_i directions[k]_i.
   void (*project)(const double* a, const double* c, const double* const* places, const double* const* directions,
                   int pairs, double* distances, double* products, long count);

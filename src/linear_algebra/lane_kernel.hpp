@@ -32,6 +32,8 @@ std::vector<VectorSet> available_vector_sets();
 
 struct LaneFunctions;
 
+/// Blocks that are eliminated one after the other should lie one behind the other: meanwhile the next one is brought
+/// into the cache.
 class LaneKernel {
  public:
   /// rows x width blocks whose first `pivots` columns are eliminated.

@@ -156,7 +156,7 @@ void print_matrix_times(int rounds) {
   parts[single].work = [&] { single_blocks.run(eliminate_single); };
   parts[single_copy].work = [&] { single_blocks.copy(); };
   parts[linearization].work = [&] { keep(problem.linearize(x, row, residual)); };
-  parts[solution].work = [&] { keep(problem.correct(residual, 0.0, dx)); };
+  parts[solution].work = [&] { keep(problem.correct(residual, row, 0.0, dx)); };
   parts[derivative].work = derivatives;
   parts[join_work].work = [&] { join_blocks.run(eliminate_join); };
   parts[join_copy].work = [&] { join_blocks.copy(); };

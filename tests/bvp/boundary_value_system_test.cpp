@@ -130,7 +130,7 @@ TEST_CASE("Newton's step of a boundary value problem with integrals: the residua
     for (std::size_t i = 0; i < there.coupling.size(); ++i) difference.coupling[i] -= here.coupling[i];
     for (std::size_t i = 0; i < there.integral.size(); ++i) difference.integral[i] -= here.integral[i];
     OrbitVector back = condensed.make_vector();
-    problem.solve(difference, -h * dot(row, v), back);
+    problem.solve(difference, row, -h * dot(row, v), back);
     advance(moved, 1.0, back, system.free_parameters());
     problem.evaluate(moved, there);
     double largest = 0.0;

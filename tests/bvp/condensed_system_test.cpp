@@ -249,21 +249,21 @@ TEST_CASE("what stands for a branch's row gives the corrections, tangents and si
     const double rounding = 1e-9;
 
     with_row.solve(residual, std::vector<double>{0.4}, expected);
-    REQUIRE(problem.correct(residual, 0.4, dx));
+    REQUIRE(problem.correct(residual, rows[0], 0.4, dx));
     CHECK(largest_difference(dx, expected) < rounding * expected.states.cwiseAbs().maxCoeff());
-    REQUIRE(problem.solve(residual, 0.4, dx));
+    REQUIRE(problem.solve(residual, rows[0], 0.4, dx));
     CHECK(largest_difference(dx, expected) < rounding * expected.states.cwiseAbs().maxCoeff());
 
     with_row.solve(std::vector<double>{1.0}, expected);
     tangent = problem.tangent();
-    tangent.scale(problem.tangent_sign());
+    tangent.scale(problem.tangent_sign(rows[0]));
     CHECK(dot(rows[0], tangent) > 0.0);
-    REQUIRE(problem.solve(residual, 0.4, dx));  // after the tangent was taken
+    REQUIRE(problem.solve(residual, rows[0], 0.4, dx));  // after the tangent was taken
     CHECK(dot(rows[0], dx) == Approx(0.4).margin(1e-9));
     tangent.scale(1.0 / dot(rows[0], tangent));
     CHECK(largest_difference(tangent, expected) < rounding * expected.states.cwiseAbs().maxCoeff());
 
-    const double distance = problem.signed_distance();
+    const double distance = problem.signed_distance(rows[0]);
     CHECK((distance < 0.0 ? -1 : distance > 0.0) == with_row.determinant().sign);
     negative += distance < 0.0 ? 1 : 0;
     opposite += problem.condensed().determinant().sign != with_row.determinant().sign ? 1 : 0;
@@ -308,23 +308,23 @@ TEST_CASE("what stands for a condition's gradients gives what they give themselv
     const double rounding = 1e-8;
 
     with_rows.solve(of_rows, border, expected);
-    REQUIRE(problem.correct(residual, 0.4, dx));
+    REQUIRE(problem.correct(residual, rows[0], 0.4, dx));
     CHECK(largest_difference(dx, expected) < rounding * expected.states.cwiseAbs().maxCoeff());
-    REQUIRE(problem.solve(residual, 0.4, dx));
+    REQUIRE(problem.solve(residual, rows[0], 0.4, dx));
     CHECK(largest_difference(dx, expected) < rounding * expected.states.cwiseAbs().maxCoeff());
 
     with_rows.null_vector(expected);
     tangent = problem.tangent();
-    tangent.scale(problem.tangent_sign());
+    tangent.scale(problem.tangent_sign(rows[0]));
     CHECK(dot(rows[0], tangent) > 0.0);
     tangent.scale(1.0 / dot(rows[0], tangent));
     CHECK(largest_difference(tangent, expected) < rounding * expected.states.cwiseAbs().maxCoeff());
 
     // Another order of the rows: the gradients were moved before the monitor's, which turns the sign for each of them.
     const int sign = with_rows.determinant().sign * (numbers % 2 == 0 ? 1 : -1);
-    const double distance = problem.signed_distance();
+    const double distance = problem.signed_distance(rows[0]);
     CHECK((distance < 0.0 ? -1 : distance > 0.0) == sign);
-    CHECK(problem.singularity().reciprocal_condition > 1e-8);
+    CHECK(problem.singularity(rows[0]).reciprocal_condition > 1e-8);
     negative += sign < 0 ? 1 : 0;
     opposite += problem.condensed().determinant().sign != sign ? 1 : 0;
   }
@@ -362,22 +362,22 @@ TEST_CASE("the distance to a singular problem with a condition depends on no clo
     return problem;
   };
   const OrbitVector row = random_vector(condensed, 62), other_row = random_vector(condensed, 63);
-  const double distance = problem_at(1e-3, row)->signed_distance();
+  const double distance = problem_at(1e-3, row)->signed_distance(row);
   CHECK(std::abs(distance) > 1e-9);
   for (const double share : {1e-4, 1e-6, -1e-6, -1e-3})
-    CHECK(problem_at(share, row)->signed_distance() == Approx(distance * share / 1e-3).epsilon(0.01));
-  CHECK(problem_at(1e-3, row, 1e9)->signed_distance() == Approx(distance).epsilon(1e-9));
-  CHECK(std::abs(problem_at(1e-3, other_row)->signed_distance()) == Approx(std::abs(distance)).epsilon(1e-9));
+    CHECK(problem_at(share, row)->signed_distance(row) == Approx(distance * share / 1e-3).epsilon(0.01));
+  CHECK(problem_at(1e-3, row, 1e9)->signed_distance(row) == Approx(distance).epsilon(1e-9));
+  CHECK(std::abs(problem_at(1e-3, other_row)->signed_distance(other_row)) == Approx(std::abs(distance)).epsilon(1e-9));
 
   // Where nothing but rounding is left it is refused, and the direction is a null vector that the row annihilates.
-  const CondensedSystem::Singularity singularity = problem_at(0.0, row)->singularity();
+  const CondensedSystem::Singularity singularity = problem_at(0.0, row)->singularity(row);
   CHECK(singularity.reciprocal_condition < 1e-11);
   CHECK(std::abs(dot(row, singularity.direction)) < 1e-9);
   OrbitVector rest = singularity.direction;
   const Eigen::Vector2d parts = products.inverse() * Eigen::Vector2d(dot(rest, z[0]), dot(rest, z[1]));
   for (int k = 0; k < 2; ++k) add(-parts(k), z[k], rest);
   CHECK(rest.states.cwiseAbs().maxCoeff() < 1e-9 * singularity.direction.states.cwiseAbs().maxCoeff());
-  CHECK(problem_at(1e-3, row)->singularity().reciprocal_condition > 1e-6);
+  CHECK(problem_at(1e-3, row)->singularity(row).reciprocal_condition > 1e-6);
 }
 
 TEST_CASE("segment blocks are the flow Jacobian: A + C Phi = 0") {

@@ -1,5 +1,6 @@
 // Sums over arrays against Eigen's in long double, for each set of instructions, and equal bits between them.
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -35,6 +36,15 @@ std::vector<double> results(const ArrayFunctions& f, const VectorXd& a, const Ve
                           f.range(a.data(), count).largest};
   all.insert(all.end(), sum.begin(), sum.end());
   all.insert(all.end(), combined.begin(), combined.end());
+
+  VectorXd moved = c;
+  std::array<ArrayRange, 2> ranges{};
+  f.add_and_measure(a.data(), moved.data(), count, &ranges[0], &ranges[1]);
+  all.insert(all.end(), moved.begin(), moved.end());
+  for (const ArrayRange& range : ranges) all.insert(all.end(), {range.largest, range.finite ? 1.0 : 0.0});
+  std::array<double, 2> both{};
+  f.dot_both(a.data(), b.data(), c.data(), count, both.data());
+  all.insert(all.end(), both.begin(), both.end());
   return all;
 }
 
@@ -55,6 +65,14 @@ TEST_CASE("array kernel: sums of any length") {
         CHECK(error(found[static_cast<std::size_t>(3 + count + i)], 0.7L * a(i) - 1.3L * b(i) + 0.1L * c(i)) <
               rounding);
       }
+      const double* const moved = &found[static_cast<std::size_t>(3 + 2 * count)];
+      const VectorXd wanted = c + a;
+      CHECK(std::equal(wanted.begin(), wanted.end(), moved));
+      const ArrayRange of_wanted = f.range(wanted.data(), count);
+      const std::vector<double> ranges{found[2], 1.0, of_wanted.largest, 1.0};
+      CHECK(std::equal(ranges.begin(), ranges.end(), moved + count));
+      CHECK(found[found.size() - 2] == found[0]);
+      CHECK(found.back() == f.dot(a.data(), c.data(), count));
       CHECK(found == results(array_functions(VectorSet::baseline), a, b, c));
     }
   }
@@ -70,6 +88,11 @@ TEST_CASE("array kernel: a number that is not finite is found wherever it stands
           CHECK(array_functions(set).range(a.data(), count).finite);
           a(at) = bad;
           CHECK_FALSE(array_functions(set).range(a.data(), count).finite);
+          VectorXd y = VectorXd::Zero(count);
+          ArrayRange of_a{}, of_y{};
+          array_functions(set).add_and_measure(a.data(), y.data(), count, &of_a, &of_y);
+          CHECK_FALSE(of_a.finite);
+          CHECK_FALSE(of_y.finite);
         }
 }
 
