@@ -102,8 +102,8 @@ class BorderedProblem {
   void solve_across(const OrbitResidual& residual, OrbitVector& dx);
   /// What all conditions, but for the row, leave, of any length; until the next linearisation, or this is asked again.
   const OrbitVector& tangent();
-  /// The sign of row . tangent(), 1 where it is zero. All rows that are asked about after a linearisation, those of
-  /// corrections among them, grow in one direction of the branch: the first one's sign is kept.
+  /// The sign of row . tangent(), 1 where it is zero. After a linearisation all rows, those of corrections among them,
+  /// must grow in one direction of the branch: once found the sign is that of all.
   double tangent_sign(const OrbitVector& row);
   /// CondensedSystem::signed_distance(), with the sign that the determinant has with the branch's row and the
   /// condition's gradients themselves; with a condition times the length of a for gradients of unit size, which is zero

@@ -96,7 +96,7 @@ NewtonResult NewtonChord::correct(Orbit& x, const OrbitVector& row, double chang
       problem_.evaluate(x, residual_);
     }
     result.residual = problem_.residual_size(residual_);
-    const double along_row = iteration == 1 ? change_along_row : 0.0;  // a correction makes it so exactly
+    const double along_row = iteration == 1 ? change_along_row : 0.0;  // then it is so, to rounding
     if (!(full ? problem_.correct(residual_, row, along_row, dx_) : problem_.solve(residual_, row, along_row, dx_))) {
       result.status = NewtonStatus::singular;
       return result;

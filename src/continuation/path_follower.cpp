@@ -188,10 +188,6 @@ NewtonResult PathFollower::step_along_tangent(const PathPoint& from, double ds, 
   return result;
 }
 
-NewtonResult PathFollower::step_near(const PathPoint& from, double ds, PathPoint& to) {
-  return step_from_plane(from, ahead(from, ds, to.orbit), to, current_enough);
-}
-
 NewtonResult PathFollower::step_beside_branch_point(const PathPoint& from, double ds, PathPoint& to) {
   return step_from_plane(from, ahead(from, ds, to.orbit), to, 0.0);
 }
@@ -233,7 +229,7 @@ double PathFollower::polish(const PathPoint& from, double expected, Orbit& x) {
   for (int k = 0; k < most_chords; ++k) {
     const double size = chord(from, x).larger();
     const double factor = k == 0 ? contraction : size / last;
-    if (!(factor <= contraction)) break;
+    if (!(factor <= contraction) || !std::isfinite(size)) break;
     advance(x, 1.0, dx_, system_.free_parameters());
     moved += size;
     const double rest = size * factor;

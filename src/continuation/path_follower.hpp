@@ -68,11 +68,9 @@ class PathFollower {
   /// `exactly` and to.newton_constant, else it is estimated by that of `from`.
   IterationRange iterations_along_tangent(const PathPoint& from, double ds, PathPoint& to, bool exactly);
 
-  /// The same point, but Newton starts at what to.orbit holds.
-  NewtonResult step_near(const PathPoint& from, double ds, PathPoint& to);
-
-  /// The same beside a branch point: the matrix is always made anew for the tangent, of which the other branch would
-  /// take a share that is the distance to an older matrix, over that to the branch point.
+  /// The same point beside a branch point. Newton starts at what to.orbit holds, and the matrix is always made anew for
+  /// the tangent, of which the other branch would take a share that is the distance to an older matrix, over that to
+  /// the branch point.
   NewtonResult step_beside_branch_point(const PathPoint& from, double ds, PathPoint& to);
 
   /// Are the equations satisfied to rounding?

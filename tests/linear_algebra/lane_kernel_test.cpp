@@ -329,8 +329,12 @@ TEST_CASE("arrays of lanes are gathered and scattered, but for lanes that have n
     }
 }
 
-TEST_CASE("collocation rows are filled as the formula says, alike with every set of instructions") {
-  constexpr int n = 3, c = 2, scalars = 3, width = (c + 1) * n + scalars + 1, stride = width + 1;
+namespace {
+
+void check_filling(int n, int c, int scalars) {
+  CAPTURE(n, c, scalars);
+  const double tolerance = 1e-14 * 10 * n;
+  const int width = (c + 1) * n + scalars + 1, stride = width + 1;
   std::mt19937 generator(10);
   const MatrixXd value = random_block(generator, c, c + 1);
   const MatrixXd slope = random_block(generator, c, c + 1);
@@ -362,8 +366,8 @@ TEST_CASE("collocation rows are filled as the formula says, alike with every set
       const MatrixXd wanted_points = nodes[k] * value.transpose();
       const MatrixXd wanted_rest = nodes[k] * slope.transpose() - at.scale[l] * f[k];
       const VectorXd found_points = lane_of(points, l), found_rest = lane_of(residual, l);
-      CHECK((found_points - wanted_points.reshaped()).norm() < 1e-14 * 10);
-      CHECK((found_rest - wanted_rest.reshaped()).norm() < 1e-14 * 10);
+      CHECK((found_points - wanted_points.reshaped()).norm() < tolerance);
+      CHECK((found_rest - wanted_rest.reshaped()).norm() < tolerance);
       const Block found = block_of(blocks, l, Block(c * n, width));
       for (int g = 0; g < c; ++g) {
         Block wanted(n, width);
@@ -371,16 +375,37 @@ TEST_CASE("collocation rows are filled as the formula says, alike with every set
         const auto node = [&](int i) -> MatrixXd {
           return value(g, i) * jacobian_of_f + slope(g, i) * MatrixXd::Identity(n, n);
         };
-        wanted << node(1), node(0), node(2), -at.h[l] * f[k].col(g),
-            -at.scale[l] * fp[k].middleCols(g * (scalars - 1), scalars - 1), wanted_rest.col(g);
-        CHECK((found.middleRows(g * n, n) - wanted).norm() < 1e-14 * 10);
+        for (int i = 1; i < c; ++i) wanted.middleCols((i - 1) * n, n) = node(i);
+        wanted.middleCols((c - 1) * n, 2 * n) << node(0), node(c);
+        wanted.col((c + 1) * n) = -at.h[l] * f[k].col(g);
+        wanted.middleCols((c + 1) * n + 1, scalars - 1) =
+            -at.scale[l] * fp[k].middleCols(g * (scalars - 1), scalars - 1);
+        wanted.col(width - 1) = wanted_rest.col(g);
+        CHECK((found.middleRows(g * n, n) - wanted).norm() < tolerance);
       }
     }
-    MatrixXd broken = fx[2];
-    broken(1, 4) = NAN;
-    LaneCollocation with_nan = at;
-    with_nan.fx[2] = broken.data();
-    CHECK_FALSE(assembly.fill(with_nan, stride, blocks.data(), jacobian.data(), residual.data()));
+    for (int k = 0; k < n * n * c; ++k) {
+      MatrixXd broken = fx[2];
+      broken.data()[k] = NAN;
+      LaneCollocation with_nan = at;
+      with_nan.fx[2] = broken.data();
+      CHECK_FALSE(assembly.fill(with_nan, stride, blocks.data(), jacobian.data(), residual.data()));
+    }
+    for (int k = 0; k < n * c; ++k) {
+      MatrixXd broken = f[1];
+      broken.data()[k] = INFINITY;
+      LaneCollocation with_infinity = at;
+      with_infinity.f[1] = broken.data();
+      CHECK_FALSE(assembly.fill(with_infinity, stride, blocks.data(), jacobian.data(), residual.data()));
+    }
   }
   for (const LaneArray& blocks : filled) CHECK(blocks == filled.front());
+}
+
+}  // namespace
+
+TEST_CASE("collocation rows are filled as the formula says, alike with every set of instructions") {
+  for (const int n : {1, 2, 3, 4, 5, 9})  // loops over 2, 3 and 4 states are unrolled, and those over four of them
+    for (const int c : {1, 2, 4})
+      for (const int scalars : {1, 3}) check_filling(n, c, scalars);
 }
