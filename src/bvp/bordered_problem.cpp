@@ -73,6 +73,12 @@ OrbitResidual BorderedProblem::make_residual() const {
   return residual;
 }
 
+OrbitResidual BorderedProblem::make_residual_of_ends() const {
+  OrbitResidual residual = condensed_.make_residual_of_ends();
+  residual.integral.resize(gradients_.size(), 0.0);
+  return residual;
+}
+
 void BorderedProblem::set_reference(const Orbit& x) {
   if (system().integral_conditions() == 0) return;
   reference_.shape = x.shape;

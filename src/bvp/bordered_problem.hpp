@@ -81,6 +81,8 @@ class BorderedProblem {
 
   /// Zero, with an entry for each integral condition and each held monitor in `integral`.
   OrbitResidual make_residual() const;
+  /// One for linearize() and correct() alone, without entries for the collocation rows.
+  OrbitResidual make_residual_of_ends() const;
 
   /// Old factors may be used for another point: not with a condition, whose value comes with the factors.
   bool allows_chord() const { return condition_ == nullptr; }

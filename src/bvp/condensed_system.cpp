@@ -7,7 +7,6 @@
 #include <numeric>
 
 #include "bvp/with_dimension.hpp"
-#include "linear_algebra/array_kernel.hpp"
 #include "linear_algebra/frontal_lu.hpp"
 
 namespace tchat {
@@ -99,11 +98,11 @@ EliminationThreads sharing(const OrbitShape& shape, int threads) {
 }  // namespace
 
 double OrbitResidual::largest() const {
-  return std::max({range_of(integral).largest, range_of(coupling).largest, range_of(collocation).largest});
+  return std::max({range_of(integral).largest, range_of(coupling).largest, of_collocation.largest});
 }
 
 bool OrbitResidual::finite() const {
-  return range_of(collocation).finite && range_of(coupling).finite && range_of(integral).finite;
+  return of_collocation.finite && range_of(coupling).finite && range_of(integral).finite;
 }
 
 CondensedSystem::CondensedSystem(const DefiningSystem& system, const OrbitShape& shape, BorderRows border, int threads)
@@ -158,8 +157,13 @@ SparseLu CondensedSystem::make_sparse() {
 }
 
 OrbitResidual CondensedSystem::make_residual() const {
-  OrbitResidual r;
+  OrbitResidual r = make_residual_of_ends();
   r.collocation = zeros(collocation_row(shape_.segments));
+  return r;
+}
+
+OrbitResidual CondensedSystem::make_residual_of_ends() const {
+  OrbitResidual r;
   r.coupling = zeros(total_coupling_rows(system_));
   r.integral = zeros(system_.integral_conditions());
   return r;
@@ -202,15 +206,18 @@ void CondensedSystem::evaluate(const Orbit& x, OrbitResidual& residual) {
     system_.coupling_values(s, x, coupling);
     coupling += system_.coupling_rows(s);
   }
+  residual.of_collocation = range_of(residual.collocation);
 }
 
 // ---- linearisation --------------------------------------------------------------------------------------------------
 
 Linearization CondensedSystem::linearize(const Orbit& x, std::span<const EndVector> closing,
                                          std::span<const OrbitVector> general, OrbitResidual& residual) {
+  residual.of_collocation = {0.0, false};
   const Linearization condensed =
       threads_.segments > 1 ? condense_together(x, general, residual) : condense_one_by_one(x, general, residual);
   if (condensed != Linearization::ready) return condensed;
+  residual.of_collocation = {elimination_.largest_residual(), true};
   if (!assemble(x, general, residual)) return Linearization::not_finite;
   return factorize(closing) ? Linearization::ready : Linearization::singular;
 }
@@ -253,12 +260,17 @@ bool CondensedSystem::factorize_with(std::span<const EndVector> closing) {
   return true;
 }
 
+/// Where the collocation residual of segment s goes, or null.
+double* CondensedSystem::collocation_of(int s, OrbitResidual& residual) const {
+  return residual.collocation.empty() ? nullptr : &residual.collocation[index(collocation_row(s))];
+}
+
 Linearization CondensedSystem::condense_one_by_one(const Orbit& x, std::span<const OrbitVector> general,
                                                    OrbitResidual& residual) {
   for (int s = 0; s < shape_.segments; ++s) {
     const Linearization outcome =
         elimination_.condense(s, system_.system(), system_.signature()[index(s)].field, system_.free_parameters(), x,
-                              general, &residual.collocation[index(collocation_row(s))]);
+                              general, collocation_of(s, residual));
     if (outcome != Linearization::ready) return outcome;
     keep_segment_blocks(s);
   }
@@ -273,9 +285,8 @@ Linearization CondensedSystem::condense_together(const Orbit& x, std::span<const
   segment_work_.run(
       shape_.segments,
       [&](int s) {
-        const bool finite =
-            elimination_.fill(s, system_.system(), system_.signature()[index(s)].field, system_.free_parameters(), x,
-                              general, &residual.collocation[index(collocation_row(s))]);
+        const bool finite = elimination_.fill(s, system_.system(), system_.signature()[index(s)].field,
+                                              system_.free_parameters(), x, general, collocation_of(s, residual));
         if (!finite) outcomes_[index(s)] = Linearization::not_finite;
         return finite;
       },

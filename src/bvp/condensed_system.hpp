@@ -25,6 +25,7 @@
 #include "bvp/defining_system.hpp"
 #include "bvp/orbit.hpp"
 #include "bvp/segment_elimination.hpp"
+#include "linear_algebra/array_kernel.hpp"
 #include "linear_algebra/block_array.hpp"
 #include "linear_algebra/sparse_lu.hpp"
 
@@ -35,6 +36,7 @@ struct OrbitResidual {
   std::vector<double> collocation;  ///< m N c n: segment, interval, Gauss point, component; scaled by the interval
   std::vector<double> coupling;     ///< the coupling rows, group by group
   std::vector<double> integral;     ///< the integral conditions
+  ArrayRange of_collocation{};      ///< of those entries, also where they are not kept
 
   double largest() const;
   bool finite() const;
@@ -65,6 +67,8 @@ class CondensedSystem {
   /// How the work is shared; by one thread alone where there is little.
   const EliminationThreads& threads() const { return threads_; }
   OrbitResidual make_residual() const;
+  /// Without entries for the collocation rows: linearize() then keeps nothing of them but their range.
+  OrbitResidual make_residual_of_ends() const;
   OrbitVector make_vector() const { return OrbitVector(shape_, system_.free_count()); }
   EndVector make_end_vector() const { return EndVector(index(lu_.size())); }
 
@@ -153,6 +157,7 @@ class CondensedSystem {
   SparseLu make_sparse();
   template <class Dimension>
   void interpolate(Dimension n, const Orbit& x, int s, int j, int gauss_point);
+  double* collocation_of(int s, OrbitResidual& residual) const;
   Linearization condense_one_by_one(const Orbit& x, std::span<const OrbitVector> general, OrbitResidual& residual);
   Linearization condense_together(const Orbit& x, std::span<const OrbitVector> general, OrbitResidual& residual);
   void keep_segment_blocks(int s);

@@ -47,14 +47,17 @@ SegmentElimination::SegmentElimination(const OrbitShape& shape, int scalars, int
       within_(threads.within),
       done_(index(groups_)) {
   const std::ptrdiff_t blocks = block(shape.segments, 0);
+  const std::ptrdiff_t joins = static_cast<std::ptrdiff_t>(shape.segments) * (groups_ - 1);
+  number_of_middle_.resize(index(groups_));
+  for (const Join& at : joins_) number_of_middle_[index(at.middle)] = at.number;
   const int interval_rows = interval_.rows() + border_;
   const int join_rows = join_.rows() + border_;
   interval_blocks_ = {blocks, interval_.block_size(border_)};
   interval_swaps_ = {blocks, interval_.pivots() * lanes};
-  join_blocks_ = {blocks, join_.block_size(border_)};
-  join_swaps_ = {blocks, join_.pivots() * lanes};
+  join_blocks_ = {joins, join_.block_size(border_)};
+  join_swaps_ = {joins, join_.pivots() * lanes};
   interval_rhs_ = {blocks, interval_rows * lanes};
-  join_rhs_ = {blocks, join_rows * lanes};
+  join_rhs_ = {joins, join_rows * lanes};
 
   const std::ptrdiff_t tops = top_block(shape.segments, 0);
   lane_pieces_ = {tops, (n_ + border_) * length()};
@@ -63,6 +66,7 @@ SegmentElimination::SegmentElimination(const OrbitShape& shape, int scalars, int
   lane_rhs_ = {tops, n_ + border_};
   top_rhs_ = {tops, join_rows};
   whole_ = {shape.segments, (n_ + border_) * length()};
+  largest_residuals_.resize(index(shape.segments));
 
   const int c = shape.collocation;
   nodes_ = lane_zeros((c + 1) * n_);
@@ -93,6 +97,7 @@ std::vector<SegmentElimination::Join> SegmentElimination::joins_of_halves(int pi
     open.push_back({at.middle, halfway(at.middle, at.last), at.last});
   }
   std::reverse(result.begin(), result.end());
+  for (std::size_t i = 0; i < result.size(); ++i) result[i].number = static_cast<int>(i);
   return result;
 }
 
@@ -124,6 +129,10 @@ Linearization SegmentElimination::condense(int s, const HybridSystem& system, in
   return join_groups(s) && join_lanes(s) ? Linearization::ready : Linearization::singular;
 }
 
+double SegmentElimination::largest_residual() const {
+  return *std::max_element(largest_residuals_.begin(), largest_residuals_.end());
+}
+
 bool SegmentElimination::eliminate(int s) {
   for (int group = 0; group < groups_; ++group)
     if (!eliminate_group(s, group)) return false;
@@ -134,7 +143,7 @@ bool SegmentElimination::eliminate(int s) {
 
 bool SegmentElimination::eliminate_group(int s, int group) {
   const std::ptrdiff_t b = block(s, group);
-  return interval_.eliminate(interval_blocks_[b], border_, interval_swaps_[b]) == 0;
+  return interval_.eliminate(interval_blocks_[b], border_, interval_swaps_[b], interval_blocks_.behind(b)) == 0;
 }
 
 bool SegmentElimination::join_groups(int s) {
@@ -146,18 +155,19 @@ LanePiece SegmentElimination::piece(int s, int first, int last) const {
   const bool one_interval = last - first == 1;
   const LaneKernel& kernel = one_interval ? interval_ : join_;
   const double* block =
-      one_interval ? interval_blocks_[this->block(s, first)] : join_blocks_[this->block(s, halfway(first, last))];
+      one_interval ? interval_blocks_[this->block(s, first)] : join_blocks_[this->block(s, join_of(first, last))];
   const int p = kernel.pivots(), stride = kernel.stride();
   return {block + (p * stride + p) * lanes, block + (kernel.rows() * stride + p) * lanes, stride};
 }
 
 bool SegmentElimination::join(int s, const Join& at) {
-  double* target = join_blocks_[block(s, at.middle)];
+  const std::ptrdiff_t b = block(s, at);
+  double* target = join_blocks_[b];
   const LanePiece left = piece(s, at.first, at.middle);
   assembly_.join({n_, columns_, border_, join_.stride()}, left, piece(s, at.middle, at.last), target);
   for (int l = 0; l < lanes; ++l)
     if (passes(at, l)) pass_on(left, l, target);
-  return join_.eliminate(target, border_, join_swaps_[block(s, at.middle)]) == 0;
+  return join_.eliminate(target, border_, join_swaps_[b], join_blocks_.behind(b)) == 0;
 }
 
 /// Where a lane has nothing on the right, the join's rows say that an unknown of no meaning is zero, and then what the
@@ -238,7 +248,7 @@ void SegmentElimination::for_pivots(const Work& work) const {
           of_lane(interval_, interval_blocks_[block(s, group)], interval_swaps_[block(s, group)], l);
     for (const Join& at : joins_)
       for (int l = 0; l < lanes; ++l)
-        if (!passes(at, l)) of_lane(join_, join_blocks_[block(s, at.middle)], join_swaps_[block(s, at.middle)], l);
+        if (!passes(at, l)) of_lane(join_, join_blocks_[block(s, at)], join_swaps_[block(s, at)], l);
     for (const Join& at : top_joins_)
       of_block(n_, top_join_.width(), 1, top_blocks_[top_block(s, at.middle)], top_swaps_[top_block(s, at.middle)]);
   }

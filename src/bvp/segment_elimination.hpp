@@ -96,8 +96,8 @@ class SegmentElimination {
                      const EliminationThreads& threads = {});
 
   /// The collocation rows of segment s, whose field has this number, at x and `rows`' parts of the segment, eliminated.
-  /// `collocation` becomes their residual: interval, Gauss point, component. The same as fill() and eliminate(), each
-  /// piece eliminated as soon as it is filled.
+  /// `collocation` becomes their residual, unless it is null: interval, Gauss point, component. The same as fill() and
+  /// eliminate(), each piece eliminated as soon as it is filled.
   Linearization condense(int s, const HybridSystem& system, int field, std::span<const int> active, const Orbit& x,
                          std::span<const OrbitVector> rows, double* collocation);
   /// Only the rows; false when one is not finite. For one segment at a time.
@@ -105,6 +105,9 @@ class SegmentElimination {
             std::span<const OrbitVector> rows, double* collocation);
   /// The rows that fill() left; false when they are singular.
   bool eliminate(int s);
+
+  /// The largest magnitude of the residual of all segments' rows, as they were filled last.
+  double largest_residual() const;
 
   /// What is left of segment s: n rows of length() entries, columns (first node | last node | scalars | residual), and
   /// b border rows.
@@ -130,16 +133,20 @@ class SegmentElimination {
   int determinant_sign() const;
 
  private:
-  /// The elimination of what is between pieces first..middle-1 and middle..last-1; its block is number `middle`.
+  /// The elimination of what is between pieces first..middle-1 and middle..last-1.
   struct Join {
     int first, middle, last;
+    int number = 0;  // among all joins in the order in which they are done
   };
   static std::vector<Join> joins_of_halves(int pieces);
   static std::vector<std::vector<Join>> levels_of(const std::vector<Join>& joins);
   static int halfway(int first, int last) { return first + (last - first) / 2; }
   static std::size_t index(std::ptrdiff_t i) { return static_cast<std::size_t>(i); }
-  /// Numbers of blocks of a group or join within lanes, and of a join between lanes.
+  /// Numbers of blocks of a group, of a join within lanes, and of a lane or a join between lanes.
   std::ptrdiff_t block(int s, int group) const { return static_cast<std::ptrdiff_t>(s) * groups_ + group; }
+  std::ptrdiff_t block(int s, const Join& at) const {
+    return static_cast<std::ptrdiff_t>(s) * (groups_ - 1) + at.number;
+  }
   std::ptrdiff_t top_block(int s, int middle) const { return static_cast<std::ptrdiff_t>(s) * lanes + middle; }
   /// Does a lane have nothing on the right side of a join?
   bool passes(const Join& at, int lane) const { return at.middle >= schedule_.size(lane); }
@@ -149,9 +156,13 @@ class SegmentElimination {
   void for_pivots(const Work& work) const;
   bool fill_group(int s, int group, const HybridSystem& system, int field, std::span<const int> active, const Orbit& x,
                   double* collocation);
+  void keep_residual(int s, int group, double* collocation);
   void evaluate_field(int s, int group, const HybridSystem& system, int field, std::span<const int> active,
                       const Orbit& x);
   void fill_border(int s, int group, std::span<const OrbitVector> rows);
+  const Join& join_of(int first, int last) const {
+    return joins_[index(number_of_middle_[index(halfway(first, last))])];
+  }
   LanePiece piece(int s, int first, int last) const;
   bool fill_piece(int s, int group, const HybridSystem& system, int field, std::span<const int> active, const Orbit& x,
                   std::span<const OrbitVector> rows, double* collocation);
@@ -195,11 +206,12 @@ class SegmentElimination {
   LaneKernel join_;
   BlockKernel top_join_;
   std::vector<Join> joins_;                // of groups, each after those that make its two pieces
+  std::vector<int> number_of_middle_;      // of those joins
   std::vector<std::vector<Join>> levels_;  // the same, those of one level independent of one another
   std::vector<int> top_lanes_;             // that have intervals
   std::vector<Join> top_joins_;            // of top_lanes_
 
-  // of groups
+  // of groups and joins
   BlockArray<double> interval_blocks_;  // (c n + b) x stride
   BlockArray<int> interval_swaps_;
   BlockArray<double> join_blocks_;  // (2 n + b) x stride
@@ -214,6 +226,8 @@ class SegmentElimination {
   BlockArray<double> top_rhs_;   // 2 n + b
   // one each
   BlockArray<double> whole_;  // (n + b) x length
+
+  std::vector<double> largest_residuals_;  // of segments
 
   SharedWork within_;
   std::vector<char> done_;  // of each group or join: was it not singular?

@@ -1,6 +1,9 @@
 // The rows of a segment's Newton matrix: SegmentElimination::fill.
+#include <algorithm>
+
 #include "bvp/lane_entries.hpp"
 #include "bvp/segment_elimination.hpp"
+#include "linear_algebra/array_kernel.hpp"
 
 namespace tchat {
 
@@ -63,11 +66,21 @@ bool SegmentElimination::fill_group(int s, int group, const HybridSystem& system
   }
   const bool finite =
       assembly_.fill(at, interval_.stride(), interval_blocks_[block(s, group)], jacobian_.data(), residual_.data());
+  if (finite) keep_residual(s, group, collocation);
+  return finite;
+}
+
+/// Lanes that hold no interval have the residual of one that is held.
+void SegmentElimination::keep_residual(int s, int group, double* collocation) {
+  const double of_group = array_functions().range(residual_.data(), static_cast<long>(residual_.size())).largest;
+  double& largest = largest_residuals_[index(s)];
+  largest = group == 0 ? of_group : std::max(largest, of_group);
+  if (collocation == nullptr) return;
+  const int rows = interval_.rows();
   double* to[lanes];
   for (int l = 0; l < lanes; ++l)
-    to[l] = schedule_.holds(group, l) ? collocation + schedule_.interval(group, l) * c * n_ : nullptr;
-  assembly_.scatter(residual_.data(), c * n_, to);
-  return finite;
+    to[l] = schedule_.holds(group, l) ? collocation + schedule_.interval(group, l) * rows : nullptr;
+  assembly_.scatter(residual_.data(), rows, to);
 }
 
 /// Border rows of intervals: the interior nodes and the left mesh node; the right one belongs to the next interval,

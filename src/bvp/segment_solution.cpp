@@ -13,15 +13,15 @@ namespace {
 /// The pivot unknowns of a block for one solution, with this right-hand side, or for two with none: `gather` puts what
 /// is known into the local unknowns, `scatter` takes what was found.
 template <class Gather, class Scatter>
-void solve_block(const LaneKernel& kernel, const double* block, const double* right,
+void solve_block(const LaneKernel& kernel, const BlockArray<double>& blocks, std::ptrdiff_t b, const double* right,
                  const std::array<double*, 2>& local, const std::array<const SegmentSolution*, 2>& solutions,
                  const Gather& gather, const Scatter& scatter) {
   gather(*solutions[0], local[0]);
   if (solutions[1] == nullptr) {
-    kernel.backward(block, right, local[0]);
+    kernel.backward(blocks[b], right, local[0], blocks.before(b));
   } else {
     gather(*solutions[1], local[1]);
-    kernel.backward_of_two(block, local[0], local[1]);
+    kernel.backward_of_two(blocks[b], local[0], local[1], blocks.before(b));
     scatter(*solutions[1], local[1]);
   }
   scatter(*solutions[0], local[0]);
@@ -32,7 +32,7 @@ void solve_block(const LaneKernel& kernel, const double* block, const double* ri
 /// The right-hand sides of a piece's n condensed rows and its border rows.
 double* SegmentElimination::piece_rhs(int s, int first, int last) {
   return last - first == 1 ? interval_rhs_[block(s, first)] + interval_.pivots() * lanes
-                           : join_rhs_[block(s, halfway(first, last))] + n_ * lanes;
+                           : join_rhs_[block(s, join_of(first, last))] + n_ * lanes;
 }
 
 double* SegmentElimination::top_rhs(int s, int first, int last) {
@@ -52,7 +52,7 @@ void SegmentElimination::condense_group(int s, int group, const double* collocat
 }
 
 void SegmentElimination::condense_join(int s, const Join& at) {
-  const std::ptrdiff_t b = block(s, at.middle);
+  const std::ptrdiff_t b = block(s, at);
   const double* left = piece_rhs(s, at.first, at.middle);
   const double* right = piece_rhs(s, at.middle, at.last);
   double* r = join_rhs_[b];
@@ -98,7 +98,9 @@ void SegmentElimination::expand(int s, const SegmentSolution* one, const Segment
   }
   for_joins_in_reverse(
       [&](const Join& at, int within) { expand_lane_join(s, at, one, other, std::max(thread, within)); });
-  within_.each(groups_, [&](int group, int within) { expand_group(s, group, one, other, std::max(thread, within)); });
+  within_.each(groups_, [&](int i, int within) {
+    expand_group(s, groups_ - 1 - i, one, other, std::max(thread, within));  // as blocks are fetched
+  });
 }
 
 void SegmentElimination::put_ends(int s, const SegmentSolution& of) {
@@ -133,10 +135,10 @@ void SegmentElimination::put_scalars(const SegmentSolution& of, double* to) cons
 
 void SegmentElimination::expand_lane_join(int s, const Join& at, const SegmentSolution* one,
                                           const SegmentSolution* other, int thread) {
-  const std::ptrdiff_t b = block(s, at.middle);
+  const std::ptrdiff_t b = block(s, at);
   const double* right = one->right == RightHandSide::condensed ? join_rhs_[b] : zero_rhs_.data();
   solve_block(
-      join_, join_blocks_[b], right, {join_local_[2 * thread], join_local_[2 * thread + 1]}, {one, other},
+      join_, join_blocks_, b, right, {join_local_[2 * thread], join_local_[2 * thread + 1]}, {one, other},
       [&](const SegmentSolution& of, double* local) { gather_around_join(s, at, of, local); },
       [&](const SegmentSolution& of, const double* local) { scatter_from_join(s, at, local, of); });
 }
@@ -169,7 +171,7 @@ void SegmentElimination::expand_group(int s, int group, const SegmentSolution* o
   const std::ptrdiff_t b = block(s, group);
   const double* right = one->right == RightHandSide::condensed ? interval_rhs_[b] : zero_rhs_.data();
   solve_block(
-      interval_, interval_blocks_[b], right, {local_[2 * thread], local_[2 * thread + 1]}, {one, other},
+      interval_, interval_blocks_, b, right, {local_[2 * thread], local_[2 * thread + 1]}, {one, other},
       [&](const SegmentSolution& of, double* local) { gather_around_group(s, group, of, local); },
       [&](const SegmentSolution& of, const double* local) { scatter_from_group(s, group, local, of); });
 }
@@ -219,7 +221,7 @@ void SegmentElimination::expand_adjoint(int s, const double* weights, double* co
 
 void SegmentElimination::expand_adjoint_join(int s, const Join& at) {
   const int count = n_ * lanes;
-  const std::ptrdiff_t b = block(s, at.middle);
+  const std::ptrdiff_t b = block(s, at);
   double* w = join_rhs_[b];
   std::fill_n(w, count, 0.0);
   join_.forward_transposed(join_blocks_[b], join_swaps_[b], w);

@@ -70,7 +70,8 @@ NewtonChord::NewtonChord(BorderedProblem& problem, const NewtonSettings& setting
     : problem_(problem),
       settings_(settings),
       dx_(problem.condensed().make_vector()),
-      residual_(problem.make_residual()) {
+      residual_(problem.make_residual()),
+      linearized_(problem.make_residual_of_ends()) {
   history_.reserve(static_cast<std::size_t>(settings.max_iterations) + 2);
 }
 
@@ -86,7 +87,7 @@ NewtonResult NewtonChord::correct(Orbit& x, const OrbitVector& row, double chang
         iteration > 1 && problem_.allows_chord() && result.change_since_factorization <= as_good_as_new;
     const bool full = iteration <= full_iterations && !still_new;
     if (full) {
-      const Linearization outcome = problem_.linearize(x, row, residual_);
+      const Linearization outcome = problem_.linearize(x, row, linearized_);
       if (outcome != Linearization::ready) {
         result.status = failure(outcome);
         return result;
@@ -95,9 +96,9 @@ NewtonResult NewtonChord::correct(Orbit& x, const OrbitVector& row, double chang
     } else {
       problem_.evaluate(x, residual_);
     }
-    result.residual = problem_.residual_size(residual_);
+    result.residual = problem_.residual_size(full ? linearized_ : residual_);
     const double along_row = iteration == 1 ? change_along_row : 0.0;  // then it is so, to rounding
-    if (!(full ? problem_.correct(residual_, row, along_row, dx_) : problem_.solve(residual_, row, along_row, dx_))) {
+    if (!(full ? problem_.correct(linearized_, row, along_row, dx_) : problem_.solve(residual_, row, along_row, dx_))) {
       result.status = NewtonStatus::singular;
       return result;
     }

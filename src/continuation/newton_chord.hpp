@@ -78,6 +78,8 @@ class NewtonChord {
   const std::vector<NewtonIteration>& history() const { return history_; }
   const OrbitResidual& residual() const { return residual_; }
   OrbitResidual& residual() { return residual_; }
+  /// Space for what BorderedProblem::linearize() finds.
+  OrbitResidual& linearized() { return linearized_; }
 
  private:
   OrbitChange apply(Orbit& x) const;
@@ -85,7 +87,8 @@ class NewtonChord {
   BorderedProblem& problem_;
   NewtonSettings settings_;
   OrbitVector dx_;
-  OrbitResidual residual_;
+  OrbitResidual residual_;    // of chord iterations
+  OrbitResidual linearized_;  // of the others
   std::vector<NewtonIteration> history_;
 };
 

@@ -104,7 +104,7 @@ bool PathFollower::linearize_at(const PathPoint& point) {
 
 bool PathFollower::linearize(const Orbit& x, const OrbitVector& row) {
   factors_known_ = false;
-  return problem_.linearize(x, row, newton_.residual()) == Linearization::ready;
+  return problem_.linearize(x, row, newton_.linearized()) == Linearization::ready;
 }
 
 /// The dual of v, and v's length.
@@ -376,7 +376,7 @@ CondensedSystem::Singularity PathFollower::singularity(const PathPoint& point) {
   factors_known_ = false;
   problem_.recall(point.memory);
   problem_.set_reference(point.orbit);
-  if (problem_.linearize(point.orbit, point.dual, newton_.residual()) == Linearization::not_finite) return {1.0, {}};
+  if (problem_.linearize(point.orbit, point.dual, newton_.linearized()) == Linearization::not_finite) return {1.0, {}};
   return problem_.singularity(point.dual);
 }
 

@@ -18,11 +18,14 @@ class BlockArray {
  public:
   BlockArray() = default;
   /// `count` blocks of `size` zeros. Throws std::length_error when these are more than memory can hold.
-  BlockArray(std::ptrdiff_t count, std::ptrdiff_t size) : size_(size), values_(checked(count, size)) {}
+  BlockArray(std::ptrdiff_t count, std::ptrdiff_t size) : count_(count), size_(size), values_(checked(count, size)) {}
 
   /// The first entry of a block.
   T* operator[](std::ptrdiff_t block) { return values_.data() + offset(block); }
   const T* operator[](std::ptrdiff_t block) const { return values_.data() + offset(block); }
+  /// The block behind this one, and the one before it, or null.
+  const T* behind(std::ptrdiff_t block) const { return block + 1 < count_ ? (*this)[block + 1] : nullptr; }
+  const T* before(std::ptrdiff_t block) const { return block > 0 ? (*this)[block - 1] : nullptr; }
 
  private:
   static std::size_t checked(std::ptrdiff_t count, std::ptrdiff_t size) {
@@ -37,6 +40,7 @@ class BlockArray {
     return block * size_;
   }
 
+  std::ptrdiff_t count_ = 0;
   std::ptrdiff_t size_ = 0;
   std::vector<T, AlignedAllocator<T>> values_;
 };

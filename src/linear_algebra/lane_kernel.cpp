@@ -14,11 +14,11 @@ struct LaneSizes {
 }  // namespace
 
 struct LaneFunctions {
-  unsigned (*eliminate)(const LaneSizes&, double*, int, int*);
+  unsigned (*eliminate)(const LaneSizes&, double*, int, int*, const double*);
   void (*forward)(const LaneSizes&, const double*, int, const int*, double*);
   void (*forward_transposed)(const LaneSizes&, const double*, const int*, double*);
-  void (*backward)(const LaneSizes&, const double*, const double*, double*);
-  void (*backward_of_two)(const LaneSizes&, const double*, double*, double*);
+  void (*backward)(const LaneSizes&, const double*, const double*, double*, const double*);
+  void (*backward_of_two)(const LaneSizes&, const double*, double*, double*, const double*);
   void (*gather)(const double* const*, int, double*);
   void (*scatter)(const double*, int, double* const*);
   void (*interpolate)(const LaneCollocation&, const double*, double*, double*);
@@ -70,8 +70,8 @@ LaneKernel::LaneKernel(int rows, int pivots, int width, VectorSet set)
       stride_(stride_for(width, set_for(width, set))),
       functions_(lane_functions(set_for(width, set))) {}
 
-unsigned LaneKernel::eliminate(double* a, int border, int* swaps) const {
-  return functions_->eliminate({rows_, pivots_, width_, stride_}, a, border, swaps);
+unsigned LaneKernel::eliminate(double* a, int border, int* swaps, const double* next) const {
+  return functions_->eliminate({rows_, pivots_, width_, stride_}, a, border, swaps, next);
 }
 
 void LaneKernel::forward(const double* a, int border, const int* swaps, double* rhs) const {
@@ -82,12 +82,12 @@ void LaneKernel::forward_transposed(const double* a, const int* swaps, double* w
   functions_->forward_transposed({rows_, pivots_, width_, stride_}, a, swaps, weights);
 }
 
-void LaneKernel::backward(const double* a, const double* rhs, double* x) const {
-  functions_->backward({rows_, pivots_, width_, stride_}, a, rhs, x);
+void LaneKernel::backward(const double* a, const double* rhs, double* x, const double* next) const {
+  functions_->backward({rows_, pivots_, width_, stride_}, a, rhs, x, next);
 }
 
-void LaneKernel::backward_of_two(const double* a, double* x, double* y) const {
-  functions_->backward_of_two({rows_, pivots_, width_, stride_}, a, x, y);
+void LaneKernel::backward_of_two(const double* a, double* x, double* y, const double* next) const {
+  functions_->backward_of_two({rows_, pivots_, width_, stride_}, a, x, y, next);
 }
 
 LaneAssembly::LaneAssembly(VectorSet set) : functions_(lane_functions(set)) {}

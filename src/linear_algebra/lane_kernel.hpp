@@ -32,8 +32,8 @@ std::vector<VectorSet> available_vector_sets();
 
 struct LaneFunctions;
 
-/// Blocks that are eliminated one after the other should lie one behind the other: meanwhile the next one is brought
-/// into the cache.
+/// `next`, where it is not null, is a block of the same sizes that the same is done to next: meanwhile it is brought
+/// into the cache. Nothing else depends on it.
 class LaneKernel {
  public:
   /// rows x width blocks whose first `pivots` columns are eliminated.
@@ -50,12 +50,12 @@ class LaneKernel {
 
   /// Bit l of the result is set when the block in lane l has a pivot that is zero or not finite; that block is then
   /// useless, the others are not touched by it. swaps[k lanes + l] is the row exchanged with row k in lane l.
-  unsigned eliminate(double* a, int border, int* swaps) const;
+  unsigned eliminate(double* a, int border, int* swaps, const double* next = nullptr) const;
   void forward(const double* a, int border, const int* swaps, double* rhs) const;
   void forward_transposed(const double* a, const int* swaps, double* weights) const;
-  void backward(const double* a, const double* rhs, double* x) const;
+  void backward(const double* a, const double* rhs, double* x, const double* next = nullptr) const;
   /// x and y for right-hand sides that are zero, as if each was found by backward().
-  void backward_of_two(const double* a, double* x, double* y) const;
+  void backward_of_two(const double* a, double* x, double* y, const double* next = nullptr) const;
 
  private:
   int rows_;

@@ -103,6 +103,11 @@ TEST_CASE("solving with the differences of the residual along a direction gives 
   condensed.evaluate(x, evaluated);
   CHECK(residual.collocation == evaluated.collocation);
   CHECK(residual.coupling == evaluated.coupling);
+  OrbitResidual of_ends = condensed.make_residual_of_ends();
+  REQUIRE(condensed.linearize(x, rows, of_ends) == Linearization::ready);
+  CHECK(of_ends.collocation.empty());
+  CHECK(of_ends.coupling == evaluated.coupling);
+  CHECK(of_ends.largest() == evaluated.largest());
 
   OrbitResidual change = directional_derivative(condensed, x, v);
   negate(change);

@@ -13,6 +13,10 @@ TEST_CASE("block array: blocks of zeros one behind the other") {
     }
   CHECK(array[1] - array[0] == 4);
   CHECK(array[2][3] == 23.0);
+  CHECK(array.behind(1) == array[2]);
+  CHECK(array.behind(2) == nullptr);
+  CHECK(array.before(1) == array[0]);
+  CHECK(array.before(0) == nullptr);
   const BlockArray<int> empty(0, 7);
   CHECK_NOTHROW(BlockArray<int>(5, 0));
 }

@@ -274,6 +274,36 @@ TEST_CASE("two solutions at once are those found one by one, to the last bit") {
   }
 }
 
+TEST_CASE("a block that comes next is left as it is and changes nothing") {
+  for (const VectorSet set : available_vector_sets()) {
+    std::mt19937 generator(10);
+    for (const Sizes& k : all_sizes()) {
+      CAPTURE(static_cast<int>(set), k.rows, k.pivots, k.width);
+      const std::vector<Block> blocks = random_blocks(generator, k);
+      const Eliminated e = eliminated(k, blocks, set);
+      const LaneKernel kernel(k.rows, k.pivots, k.width, set);
+      const LaneArray next(e.blocks.size(), 2.5);
+      LaneArray again = side_by_side(blocks, kernel.stride());
+      std::vector<int> swaps(e.swaps.size());
+      CHECK(kernel.eliminate(again.data(), k.border, swaps.data(), next.data()) == 0);
+      CHECK(swaps == e.swaps);
+      for (int l = 0; l < lanes; ++l)
+        CHECK(block_of(again, l, blocks[place(l)]) == block_of(e.blocks, l, blocks[place(l)]));
+
+      const LaneArray right(place(k.rows * lanes), 0.5);
+      std::vector<LaneArray> alone(2, LaneArray(place(k.width * lanes), 1.5));
+      std::vector<LaneArray> before_next = alone;
+      kernel.backward(e.blocks.data(), right.data(), alone[0].data());
+      kernel.backward(e.blocks.data(), right.data(), before_next[0].data(), next.data());
+      CHECK(alone == before_next);
+      kernel.backward_of_two(e.blocks.data(), alone[0].data(), alone[1].data());
+      kernel.backward_of_two(e.blocks.data(), before_next[0].data(), before_next[1].data(), next.data());
+      CHECK(alone == before_next);
+      CHECK(next == LaneArray(e.blocks.size(), 2.5));
+    }
+  }
+}
+
 TEST_CASE("forward elimination in lanes and its transpose agree") {
   for (const VectorSet set : available_vector_sets()) {
     std::mt19937 generator(9);
