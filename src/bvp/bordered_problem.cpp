@@ -96,7 +96,7 @@ void BorderedProblem::evaluate(const Orbit& x, OrbitResidual& residual) {
 
 Linearization BorderedProblem::linearize(const Orbit& x, const OrbitVector& row, OrbitResidual& residual) {
   outcome_ = Linearization::not_finite;
-  first_known_ = false;
+  null_vectors_known_ = false;
   row_along_.reset();
   if (!condition_) close(row);
   const auto integrals = static_cast<std::size_t>(system().integral_conditions());
@@ -108,8 +108,6 @@ Linearization BorderedProblem::linearize(const Orbit& x, const OrbitVector& row,
   outcome_ = condensed_.linearize(x, {&closing_, condition_ ? 0U : 1U}, gradients_, residual);
   if (outcome_ == Linearization::ready && condition_ && !condition_->evaluate(condensed_, x))
     outcome_ = Linearization::condition_lost;
-  if (outcome_ != Linearization::ready) return outcome_;
-  for (int k = 1; k <= conditions(); ++k) condensed_.null_vector(null_vectors_[static_cast<std::size_t>(k)], k);
   return outcome_;
 }
 
@@ -162,7 +160,7 @@ double BorderedProblem::size_on_null_vectors(const OrbitVector& row) const {
 CondensedSystem::Singularity BorderedProblem::singularity(const OrbitVector& row) {
   CondensedSystem::Singularity result = condensed_.singularity();
   if (outcome_ != Linearization::ready || !condition_) return result;
-  if (!first_known_) know_null_vectors();
+  if (!null_vectors_known_) know_null_vectors();
   Eigen::MatrixXd rows(conditions() + 1, conditions() + 1);
   rows.row(0) = on_null_vectors(row).transpose() / size_on_null_vectors(row);
   for (int k = 0; k < conditions(); ++k)
@@ -188,19 +186,19 @@ void BorderedProblem::solve_across(const OrbitResidual& residual, OrbitVector& d
 }
 
 bool BorderedProblem::solve(const OrbitResidual& residual, const OrbitVector& row, double target, OrbitVector& dx) {
-  if (!first_known_) know_null_vectors();
+  if (!null_vectors_known_) know_null_vectors();
   condensed_.solve(residual, border(residual.integral), dx);
   return put_on_branch(row, target, dx);
 }
 
 bool BorderedProblem::correct(const OrbitResidual& linearized, const OrbitVector& row, double target, OrbitVector& dx) {
-  condensed_.solve_both(linearized, border(linearized.integral), dx, null_vectors_.front());
+  condensed_.solve_with_null_vectors(linearized, border(linearized.integral), dx, null_vectors_);
   measure_null_vectors();
   return put_on_branch(row, target, dx);
 }
 
 void BorderedProblem::know_null_vectors() {
-  condensed_.null_vector(null_vectors_.front());
+  for (int k = 0; k <= conditions(); ++k) condensed_.null_vector(null_vectors_[static_cast<std::size_t>(k)], k);
   measure_null_vectors();
 }
 
@@ -208,11 +206,11 @@ void BorderedProblem::know_null_vectors() {
 void BorderedProblem::measure_null_vectors() {
   for (int k = 0; k < conditions(); ++k) slopes_.row(k) = on_null_vectors(condition_->gradient(k)).transpose();
   along_ = vector_product(slopes_);
-  first_known_ = true;
+  null_vectors_known_ = true;
 }
 
 double BorderedProblem::tangent_sign(const OrbitVector& row) {
-  if (!first_known_) know_null_vectors();
+  if (!null_vectors_known_) know_null_vectors();
   if (!row_along_) row_along_ = on_null_vectors(row).dot(along_);
   return *row_along_ < 0.0 ? -1.0 : 1.0;
 }
@@ -276,7 +274,7 @@ void BorderedProblem::combine_null_vectors(const Numbers& shares, OrbitVector& v
 
 /// Without a condition the first null vector is the tangent.
 const OrbitVector& BorderedProblem::tangent() {
-  if (!first_known_) know_null_vectors();
+  if (!null_vectors_known_) know_null_vectors();
   if (!condition_) return null_vectors_.front();
   combine_null_vectors(along_, tangent_);
   return tangent_;

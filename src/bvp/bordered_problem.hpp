@@ -149,8 +149,8 @@ class BorderedProblem {
 
   // of the last linearisation
   Linearization outcome_ = Linearization::not_finite;
-  std::vector<OrbitVector> null_vectors_;  // Z; the first one is found when it is asked for
-  bool first_known_ = false;
+  std::vector<OrbitVector> null_vectors_;  // Z, found when they are asked for
+  bool null_vectors_known_ = false;
   Small<OrbitCondition::most, most_null_vectors> slopes_;  // grad G . Z
   Numbers along_;                                          // a
   std::optional<double> row_along_;                        // row . t

@@ -115,23 +115,18 @@ void CondensedReturnMap::subtract_derivative(CondensedSystem& condensed, const O
 /// States and null vectors at the Gauss points of intervals first..last - 1.
 void CondensedReturnMap::put_points(const CondensedSystem& condensed, const Orbit& x, int s, int first, int last,
                                     std::span<const OrbitVector> extended) {
-  const Eigen::MatrixXd& value = condensed.rule().value;
-  const int c = shape_.collocation;
-  const auto interpolate = [&](auto n, const double* nodes, int g, double* to) {
-    for (int a = 0; a < n; ++a) to[a] = value(g, 0) * nodes[a];
-    for (int i = 1; i <= c; ++i)
-      for (int a = 0; a < n; ++a) to[a] += value(g, i) * nodes[i * n + a];
-  };
-  with_dimension(n_, [&](auto n) {
-    int point = 0;
-    for (int j = first; j < last; ++j)
-      for (int g = 0; g < c; ++g, ++point) {
-        interpolate(n, x.node(s, j * c), g, curvature_.point(point));
-        for (int k = 0; k < curvature_.directions(); ++k)
-          interpolate(n, extended[static_cast<std::size_t>(k)].states.col(s * shape_.nodes() + j * c).data(), g,
-                      curvature_.direction(point, k));
-      }
-  });
+  const IntervalBasis basis = this->basis(condensed, first, last);
+  const int node = first * shape_.collocation;
+  const int directions = curvature_.directions();
+  array_functions().interpolate(basis, x.node(s, node), curvature_.point(0), n_);
+  for (int k = 0; k < directions; ++k)
+    array_functions().interpolate(basis,
+                                  extended[static_cast<std::size_t>(k)].states.col(s * shape_.nodes() + node).data(),
+                                  curvature_.direction(0, k), directions * n_);
+}
+
+IntervalBasis CondensedReturnMap::basis(const CondensedSystem& condensed, int first, int last) const {
+  return {condensed.rule().value.data(), shape_.collocation, n_, last - first};
 }
 
 /// Collocation rows: slope v - h T (f_x v + f_p q) - h sigma f, with the weights w; minus their derivative is that of
@@ -161,31 +156,39 @@ void CondensedReturnMap::put_weights(const Orbit& x, int s, int first, int last,
   });
 }
 
+/// The directional derivative number k at a point, times its weights.
+template <class Dimension>
+double CondensedReturnMap::along(Dimension n, int s, int gauss_point, int point, int k) const {
+  const int from = (s * shape_.intervals * shape_.collocation + gauss_point) * n;
+  const double* const w = &collocation_weights_[static_cast<std::size_t>(k)][static_cast<std::size_t>(from)];
+  const double* const directional = curvature_.directional(point, k);
+  double sum = 0.0;
+  for (int a = 0; a < n; ++a) sum += w[a] * directional[a];
+  return sum;
+}
+
 /// What the field says at the Gauss points of intervals first..last - 1.
 void CondensedReturnMap::add_intervals(const CondensedSystem& condensed, const Orbit& x, int s, int first, int last,
                                        OrbitVector& gradient) {
-  const Eigen::MatrixXd& value = condensed.rule().value;
   const int c = shape_.collocation;
+  const int points = (last - first) * c;
+  const auto free = static_cast<int>(gradient.globals.size());
+  array_functions().add_interpolated(basis(condensed, first, last), curvature_.gradient(0), n_ + free,
+                                     gradient.states.col(s * shape_.nodes() + first * c).data());
+  for (int k = 0; k < free; ++k) {
+    double sum = 0.0;
+    for (int point = 0; point < points; ++point) sum += curvature_.gradient(point)[n_ + k];
+    gradient.globals(k) += sum;
+  }
   with_dimension(n_, [&](auto n) {
     int point = 0;
-    double by_duration = 0.0;
     for (int j = first; j < last; ++j) {
       const double h = x.mesh[static_cast<std::size_t>(j + 1)] - x.mesh[static_cast<std::size_t>(j)];
-      double* const by_states = gradient.states.col(s * shape_.nodes() + j * c).data();
-      for (int g = 0; g < c; ++g, ++point) {
-        const double* const by_point = curvature_.gradient(point);
-        for (int i = 0; i <= c; ++i)
-          for (int a = 0; a < n; ++a) by_states[i * n + a] += value(g, i) * by_point[a];
-        for (int k = 0; k < gradient.globals.size(); ++k) gradient.globals(k) += by_point[n_ + k];
-        const auto from = static_cast<std::size_t>(((s * shape_.intervals + j) * c + g) * n_);
-        for (int k = 0; k < curvature_.directions(); ++k) {
-          const double* const w = &collocation_weights_[static_cast<std::size_t>(k)][from];
-          const double* const directional = curvature_.directional(point, k);
-          for (int a = 0; a < n; ++a) by_duration += h * w[a] * directional[a];
-        }
-      }
+      double sum = 0.0;
+      for (int g = 0; g < c; ++g, ++point)
+        for (int k = 0; k < curvature_.directions(); ++k) sum += along(n, s, j * c + g, point, k);
+      gradient.durations(s) += h * sum;
     }
-    gradient.durations(s) += by_duration;
   });
 }
 

@@ -15,6 +15,7 @@
 
 #include "bvp/condensed_system.hpp"
 #include "hybrid/weighted_second.hpp"
+#include "linear_algebra/array_kernel.hpp"
 
 namespace tchat {
 
@@ -49,8 +50,11 @@ class CondensedReturnMap {
   void put_points(const CondensedSystem& condensed, const Orbit& x, int s, int first, int last,
                   std::span<const OrbitVector> extended);
   void put_weights(const Orbit& x, int s, int first, int last, std::span<const OrbitVector> extended);
+  IntervalBasis basis(const CondensedSystem& condensed, int first, int last) const;
   void add_intervals(const CondensedSystem& condensed, const Orbit& x, int s, int first, int last,
                      OrbitVector& gradient);
+  template <class Dimension>
+  double along(Dimension n, int s, int gauss_point, int point, int k) const;
   void section_change(const Orbit& x, int s, const Eigen::Ref<const Eigen::VectorXd>& v);
   void add_ends(const Orbit& x, int s, const double* weights, const OrbitVector& v, OrbitVector& gradient);
 

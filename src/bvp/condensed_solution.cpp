@@ -1,5 +1,6 @@
 // The second half of CondensedSystem: solutions, extensions and the determinant from the factors that linearize() left.
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "bvp/condensed_system.hpp"
@@ -24,18 +25,20 @@ void CondensedSystem::null_vector(OrbitVector& v, int closing_row) {
   expand(null_ends_[index(closing_row)], RightHandSide::zero, v);
 }
 
-void CondensedSystem::solve_both(const OrbitResidual& linearized, std::span<const double> border, OrbitVector& dx,
-                                 OrbitVector& v) {
+void CondensedSystem::solve_with_null_vectors(const OrbitResidual& linearized, std::span<const double> border,
+                                              OrbitVector& dx, std::span<OrbitVector> v) {
   solve_ends(own_rhs_, linearized, border);
   if (closing_ == 0) find_null_vectors();
-  const EndVector& null_ends = null_ends_.front();
   segment_work_.each(shape_.segments, [&](int k, int thread) {
     const int s = shape_.segments - 1 - k;  // as in expand()
-    elimination_.expand_both(s, in_segment(s, solution_, RightHandSide::own, dx),
-                             in_segment(s, null_ends, RightHandSide::zero, v), thread);
+    std::array<SegmentSolution, SegmentElimination::most_together> solutions;
+    solutions[0] = in_segment(s, solution_, RightHandSide::own, dx);
+    for (std::size_t z = 0; z < v.size(); ++z)
+      solutions[1 + z] = in_segment(s, null_ends_[z], RightHandSide::zero, v[z]);
+    elimination_.expand_together(s, std::span(solutions).first(1 + v.size()), thread);
   });
   put_globals(solution_, dx);
-  put_globals(null_ends, v);
+  for (std::size_t z = 0; z < v.size(); ++z) put_globals(null_ends_[z], v[z]);
 }
 
 /// solution_ from the right-hand sides of the condensed rows of segments, -residual of the coupling rows, and `border`.
@@ -107,7 +110,8 @@ void CondensedSystem::extend(const double* small, OrbitVector& dx) {
 void CondensedSystem::extend_both(const double* small, OrbitVector& dx, const double* other_small,
                                   OrbitVector& other_dx) {
   segment_work_.each(shape_.segments, [&](int s, int thread) {
-    elimination_.expand_both(s, beyond_ends(s, small, dx), beyond_ends(s, other_small, other_dx), thread);
+    elimination_.expand_together(s, std::array{beyond_ends(s, small, dx), beyond_ends(s, other_small, other_dx)},
+                                 thread);
   });
 }
 

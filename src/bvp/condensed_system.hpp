@@ -93,8 +93,9 @@ class CondensedSystem {
   /// The solution for F = 0 and a one in the first border row, or in another closing row.
   void null_vector(OrbitVector& v, int closing_row = 0);
   /// Both at once, which takes little more than one: dx for the residual that linearize() found and `border`, and the
-  /// first null vector.
-  void solve_both(const OrbitResidual& linearized, std::span<const double> border, OrbitVector& dx, OrbitVector& v);
+  /// null vectors of the first closing rows, at most three.
+  void solve_with_null_vectors(const OrbitResidual& linearized, std::span<const double> border, OrbitVector& dx,
+                               std::span<OrbitVector> v);
 
   /// Do null vectors close the matrix of the last linearisation? Always where there are several closing rows.
   bool closing_rows_gave_way() const { return closing_rows_gave_way_; }

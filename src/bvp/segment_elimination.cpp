@@ -79,8 +79,9 @@ SegmentElimination::SegmentElimination(const OrbitShape& shape, int scalars, int
   fx_.resize(evaluations * index(n_ * n_));
   fp_.resize(evaluations * index(n_ * (scalars_ - 1)));
   const int workers = std::max(threads.segments, threads.within);
-  local_ = {2 * workers, interval_.width() * lanes};
-  join_local_ = {2 * workers, join_.width() * lanes};
+  constexpr auto together = static_cast<std::ptrdiff_t>(most_together);
+  local_ = {together * workers, interval_.width() * lanes};
+  join_local_ = {together * workers, join_.width() * lanes};
   top_local_ = {workers, top_join_.width()};
 }
 

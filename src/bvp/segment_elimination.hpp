@@ -118,11 +118,13 @@ class SegmentElimination {
   /// The right-hand side -collocation of segment s, condensed to n + b entries.
   void condense_right_hand_side(int s, const double* collocation, double* condensed);
   /// From the ends of segment s to all nodes. `thread` < `segments` of the threads, another one for each at a time.
-  void expand(int s, const SegmentSolution& solution, int thread = 0) { expand(s, &solution, nullptr, thread); }
-  /// Two at once, to the last bit what each is alone; neither of them for a condensed right-hand side.
-  void expand_both(int s, const SegmentSolution& one, const SegmentSolution& other, int thread = 0) {
-    expand(s, &one, &other, thread);
+  void expand(int s, const SegmentSolution& solution, int thread = 0) {
+    expand_together(s, std::span(&solution, 1), thread);
   }
+  /// At most `most_together` at once, each to the last bit what it is alone; where there are several, none for a
+  /// condensed right-hand side.
+  void expand_together(int s, std::span<const SegmentSolution> solutions, int thread = 0);
+  static constexpr std::size_t most_together = 4;
   /// The adjoint: weights (n) of the condensed rows to weights of the collocation rows of segment s. Right-hand sides
   /// are lost.
   void expand_adjoint(int s, const double* weights, double* collocation);
@@ -180,14 +182,14 @@ class SegmentElimination {
   const double* top_piece(int s, int first, int last, int& width) const;
   double* piece_rhs(int s, int first, int last);
   double* top_rhs(int s, int first, int last);
-  void expand(int s, const SegmentSolution* one, const SegmentSolution* other, int thread);
+  static std::ptrdiff_t first_local(int thread) { return static_cast<std::ptrdiff_t>(most_together) * thread; }
   void put_ends(int s, const SegmentSolution& of);
   void expand_top_join(int s, const Join& at, const SegmentSolution& of, int thread);
   void put_scalars(const SegmentSolution& of, double* to) const;
-  void expand_lane_join(int s, const Join& at, const SegmentSolution* one, const SegmentSolution* other, int thread);
+  void expand_lane_join(int s, const Join& at, std::span<const SegmentSolution> solutions, int thread);
   void gather_around_join(int s, const Join& at, const SegmentSolution& of, double* local) const;
   void scatter_from_join(int s, const Join& at, const double* local, const SegmentSolution& of) const;
-  void expand_group(int s, int group, const SegmentSolution* one, const SegmentSolution* other, int thread);
+  void expand_group(int s, int group, std::span<const SegmentSolution> solutions, int thread);
   void gather_around_group(int s, int group, const SegmentSolution& of, double* local) const;
   void scatter_from_group(int s, int group, const double* local, const SegmentSolution& of) const;
   void expand_adjoint_join(int s, const Join& at);

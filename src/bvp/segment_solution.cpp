@@ -10,21 +10,22 @@ namespace tchat {
 
 namespace {
 
-/// The pivot unknowns of a block for one solution, with this right-hand side, or for two with none: `gather` puts what
-/// is known into the local unknowns, `scatter` takes what was found.
+/// The pivot unknowns of a block for one solution, with this right-hand side, or for several with none: `gather` puts
+/// what is known into the local unknowns, `scatter` takes what was found. Those of a thread begin at `first_local`.
 template <class Gather, class Scatter>
 void solve_block(const LaneKernel& kernel, const BlockArray<double>& blocks, std::ptrdiff_t b, const double* right,
-                 const std::array<double*, 2>& local, const std::array<const SegmentSolution*, 2>& solutions,
+                 BlockArray<double>& locals, std::ptrdiff_t first_local, std::span<const SegmentSolution> solutions,
                  const Gather& gather, const Scatter& scatter) {
-  gather(*solutions[0], local[0]);
-  if (solutions[1] == nullptr) {
-    kernel.backward(blocks[b], right, local[0], blocks.before(b));
-  } else {
-    gather(*solutions[1], local[1]);
-    kernel.backward_of_two(blocks[b], local[0], local[1], blocks.before(b));
-    scatter(*solutions[1], local[1]);
+  std::array<double*, SegmentElimination::most_together> local{};
+  for (std::size_t k = 0; k < solutions.size(); ++k) {
+    local[k] = locals[first_local + static_cast<std::ptrdiff_t>(k)];
+    gather(solutions[k], local[k]);
   }
-  scatter(*solutions[0], local[0]);
+  if (solutions.size() == 1)
+    kernel.backward(blocks[b], right, local[0], blocks.before(b));
+  else
+    kernel.backward_of_several(blocks[b], std::span(local).first(solutions.size()), blocks.before(b));
+  for (std::size_t k = 0; k < solutions.size(); ++k) scatter(solutions[k], local[k]);
 }
 
 }  // namespace
@@ -88,18 +89,19 @@ void SegmentElimination::condense_right_hand_side(int s, const double* collocati
 }
 
 /// From the ends of a segment back to the ends of lanes, to mesh nodes, joins in reverse, and on to the interior nodes.
-/// `other` may be null.
-void SegmentElimination::expand(int s, const SegmentSolution* one, const SegmentSolution* other, int thread) {
-  assert(other == nullptr || (one->right != RightHandSide::condensed && other->right != RightHandSide::condensed));
-  for (const SegmentSolution* of : {one, other}) {
-    if (of == nullptr) continue;
-    put_ends(s, *of);
-    for (auto at = top_joins_.rbegin(); at != top_joins_.rend(); ++at) expand_top_join(s, *at, *of, thread);
+void SegmentElimination::expand_together(int s, std::span<const SegmentSolution> solutions, int thread) {
+  assert(solutions.size() <= most_together);
+  assert(solutions.size() == 1 || std::none_of(solutions.begin(), solutions.end(), [](const SegmentSolution& of) {
+           return of.right == RightHandSide::condensed;
+         }));
+  for (const SegmentSolution& of : solutions) {
+    put_ends(s, of);
+    for (auto at = top_joins_.rbegin(); at != top_joins_.rend(); ++at) expand_top_join(s, *at, of, thread);
   }
   for_joins_in_reverse(
-      [&](const Join& at, int within) { expand_lane_join(s, at, one, other, std::max(thread, within)); });
+      [&](const Join& at, int within) { expand_lane_join(s, at, solutions, std::max(thread, within)); });
   within_.each(groups_, [&](int i, int within) {
-    expand_group(s, groups_ - 1 - i, one, other, std::max(thread, within));  // as blocks are fetched
+    expand_group(s, groups_ - 1 - i, solutions, std::max(thread, within));  // as blocks are fetched
   });
 }
 
@@ -133,12 +135,12 @@ void SegmentElimination::put_scalars(const SegmentSolution& of, double* to) cons
   put_lanes(of.right == RightHandSide::own ? 1.0 : 0.0, to + scalars_ * lanes);
 }
 
-void SegmentElimination::expand_lane_join(int s, const Join& at, const SegmentSolution* one,
-                                          const SegmentSolution* other, int thread) {
+void SegmentElimination::expand_lane_join(int s, const Join& at, std::span<const SegmentSolution> solutions,
+                                          int thread) {
   const std::ptrdiff_t b = block(s, at);
-  const double* right = one->right == RightHandSide::condensed ? join_rhs_[b] : zero_rhs_.data();
+  const double* right = solutions.front().right == RightHandSide::condensed ? join_rhs_[b] : zero_rhs_.data();
   solve_block(
-      join_, join_blocks_, b, right, {join_local_[2 * thread], join_local_[2 * thread + 1]}, {one, other},
+      join_, join_blocks_, b, right, join_local_, first_local(thread), solutions,
       [&](const SegmentSolution& of, double* local) { gather_around_join(s, at, of, local); },
       [&](const SegmentSolution& of, const double* local) { scatter_from_join(s, at, local, of); });
 }
@@ -166,12 +168,11 @@ void SegmentElimination::scatter_from_join(int s, const Join& at, const double* 
   assembly_.scatter(local, n_, to);
 }
 
-void SegmentElimination::expand_group(int s, int group, const SegmentSolution* one, const SegmentSolution* other,
-                                      int thread) {
+void SegmentElimination::expand_group(int s, int group, std::span<const SegmentSolution> solutions, int thread) {
   const std::ptrdiff_t b = block(s, group);
-  const double* right = one->right == RightHandSide::condensed ? interval_rhs_[b] : zero_rhs_.data();
+  const double* right = solutions.front().right == RightHandSide::condensed ? interval_rhs_[b] : zero_rhs_.data();
   solve_block(
-      interval_, interval_blocks_, b, right, {local_[2 * thread], local_[2 * thread + 1]}, {one, other},
+      interval_, interval_blocks_, b, right, local_, first_local(thread), solutions,
       [&](const SegmentSolution& of, double* local) { gather_around_group(s, group, of, local); },
       [&](const SegmentSolution& of, const double* local) { scatter_from_group(s, group, local, of); });
 }

@@ -16,6 +16,15 @@ struct ArrayRange {
   bool finite;
 };
 
+/// Polynomials of n entries through c + 1 nodes on each of some intervals one behind the other, whose last node is the
+/// first of the next one.
+struct IntervalBasis {
+  const double* value;  ///< of the basis at c points: that of node i at point g is value[i c + g]
+  int c;
+  int n;
+  int intervals;
+};
+
 /// Functions of several pairs of arrays take this many at a time at most.
 inline constexpr int most_pairs = 3;
 
@@ -42,6 +51,10 @@ struct ArrayFunctions {
   void (*combine)(const double* const* arrays, const double* weights, int arrays_count, double* y, long count);
   /// y_i += h sum_k mass[i nodes + k] v_k for nodes of n entries, one after the other, times weights[a] for entry a.
   void (*add_mass)(double h, const double* mass, int nodes, const double* weights, int n, const double* v, double* y);
+  /// The polynomials through `nodes` at the points of the intervals: n entries each, `stride` from one to the next.
+  void (*interpolate)(const IntervalBasis& basis, const double* nodes, double* points, int stride);
+  /// And its transpose: nodes += what weights of the values at the points make of them.
+  void (*add_interpolated)(const IntervalBasis& basis, const double* points, int stride, double* nodes);
 };
 
 /// Those for what this processor has.

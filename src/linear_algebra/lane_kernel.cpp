@@ -1,6 +1,7 @@
 #include "linear_algebra/lane_kernel.hpp"
 
 #include <algorithm>
+#include <cassert>
 
 namespace tchat {
 
@@ -18,7 +19,8 @@ struct LaneFunctions {
   void (*forward)(const LaneSizes&, const double*, int, const int*, double*);
   void (*forward_transposed)(const LaneSizes&, const double*, const int*, double*);
   void (*backward)(const LaneSizes&, const double*, const double*, double*, const double*);
-  void (*backward_of_two)(const LaneSizes&, const double*, double*, double*, const double*);
+  void (*backward_of_two)(const LaneSizes&, const double*, double* const*, const double*);
+  void (*backward_of_three)(const LaneSizes&, const double*, double* const*, const double*);
   void (*gather)(const double* const*, int, double*);
   void (*scatter)(const double*, int, double* const*);
   void (*interpolate)(const LaneCollocation&, const double*, double*, double*);
@@ -86,8 +88,11 @@ void LaneKernel::backward(const double* a, const double* rhs, double* x, const d
   functions_->backward({rows_, pivots_, width_, stride_}, a, rhs, x, next);
 }
 
-void LaneKernel::backward_of_two(const double* a, double* x, double* y, const double* next) const {
-  functions_->backward_of_two({rows_, pivots_, width_, stride_}, a, x, y, next);
+void LaneKernel::backward_of_several(const double* a, std::span<double* const> x, const double* next) const {
+  assert(x.size() >= 2);
+  const LaneSizes sizes = {rows_, pivots_, width_, stride_};
+  for (; x.size() > 3; x = x.subspan(2)) functions_->backward_of_two(sizes, a, x.data(), nullptr);
+  (x.size() == 2 ? functions_->backward_of_two : functions_->backward_of_three)(sizes, a, x.data(), next);
 }
 
 LaneAssembly::LaneAssembly(VectorSet set) : functions_(lane_functions(set)) {}

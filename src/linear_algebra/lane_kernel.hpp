@@ -10,6 +10,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "linear_algebra/aligned_allocator.hpp"
@@ -54,8 +55,8 @@ class LaneKernel {
   void forward(const double* a, int border, const int* swaps, double* rhs) const;
   void forward_transposed(const double* a, const int* swaps, double* weights) const;
   void backward(const double* a, const double* rhs, double* x, const double* next = nullptr) const;
-  /// x and y for right-hand sides that are zero, as if each was found by backward().
-  void backward_of_two(const double* a, double* x, double* y, const double* next = nullptr) const;
+  /// Two or more solutions for right-hand sides that are zero, as if each was found by backward().
+  void backward_of_several(const double* a, std::span<double* const> x, const double* next = nullptr) const;
 
  private:
   int rows_;

@@ -163,11 +163,16 @@ TEST_CASE("a segment condensed in lanes against the dense matrix of its collocat
       // Homogeneous, and the adjoint.
       elimination.expand(s, {RightHandSide::zero, ends.data(), dx.globals.data(), &dx});
       const VectorXd homogeneous = unknowns(dx, shape, s);
-      OrbitVector own_again = dx, zero_again = dx;
-      elimination.expand_both(s, {RightHandSide::own, ends.data(), dx.globals.data(), &own_again},
-                              {RightHandSide::zero, ends.data(), dx.globals.data(), &zero_again});
-      CHECK(unknowns(own_again, shape, s) == unknowns(own, shape, s));
-      CHECK(unknowns(zero_again, shape, s) == homogeneous);
+      for (const int together : {2, 3, 4}) {
+        std::vector<OrbitVector> again(static_cast<std::size_t>(together), dx);
+        std::vector<SegmentSolution> solutions;
+        for (OrbitVector& solution : again)
+          solutions.push_back({&solution == &again[1] ? RightHandSide::zero : RightHandSide::own, ends.data(),
+                               dx.globals.data(), &solution});
+        elimination.expand_together(s, solutions);
+        for (const OrbitVector& solution : again)
+          CHECK(unknowns(solution, shape, s) == (&solution == &again[1] ? homogeneous : unknowns(own, shape, s)));
+      }
       const VectorXd of_ends = left * ends;
       const VectorXd weights = random_matrix(generator, n, 1);
       VectorXd adjoint(residual.size());

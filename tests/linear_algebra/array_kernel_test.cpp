@@ -161,6 +161,37 @@ TEST_CASE("array kernel: a number that is not finite is found in the sums that i
       }
 }
 
+TEST_CASE("array kernel: polynomials on intervals, and the transpose of their interpolation") {
+  for (const VectorSet set : available_vector_sets())
+    for (const int n : {1, 2, 3, 4, 5, 6, 7, 9})
+      for (const int c : {2, 4, 7}) {
+        CAPTURE(static_cast<int>(set), n, c);
+        constexpr int intervals = 3;
+        const int stride = n + 2;
+        const MatrixXd value = MatrixXd::Random(c, c + 1), nodes = MatrixXd::Random(n, intervals * c + 1);
+        const MatrixXd weights = MatrixXd::Random(stride, intervals * c);
+        const IntervalBasis basis{value.data(), c, n, intervals};
+        MatrixXd points = weights;
+        array_functions(set).interpolate(basis, nodes.data(), points.data(), stride);
+        MatrixXd sums = nodes;
+        array_functions(set).add_interpolated(basis, weights.data(), stride, sums.data());
+        MatrixXd wanted_points = weights, wanted_sums = nodes;
+        for (int j = 0; j < intervals; ++j) {
+          wanted_points.block(0, j * c, n, c) = nodes.middleCols(j * c, c + 1) * value.transpose();
+          wanted_sums.middleCols(j * c, c + 1) += weights.block(0, j * c, n, c) * value;
+        }
+        CHECK((points - wanted_points).cwiseAbs().maxCoeff() < rounding);
+        CHECK((sums - wanted_sums).cwiseAbs().maxCoeff() < rounding);
+
+        MatrixXd same_points = weights, same_sums = nodes;
+        const ArrayFunctions& baseline = array_functions(VectorSet::baseline);
+        baseline.interpolate(basis, nodes.data(), same_points.data(), stride);
+        baseline.add_interpolated(basis, weights.data(), stride, same_sums.data());
+        CHECK(points == same_points);
+        CHECK(sums == same_sums);
+      }
+}
+
 TEST_CASE("array kernel: the mass matrix of nodes of any dimension") {
   for (const VectorSet set : available_vector_sets())
     for (const int n : {1, 2, 3, 4, 5, 8, 11}) {

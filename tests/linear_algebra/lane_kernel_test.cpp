@@ -68,6 +68,12 @@ Block block_of(const LaneArray& all, int lane, const Block& like) {
   return Eigen::Map<const Block>(values.data(), like.rows(), values.size() / like.rows()).leftCols(like.cols());
 }
 
+std::vector<double*> places_of(std::vector<LaneArray>& arrays) {
+  std::vector<double*> places;
+  for (LaneArray& array : arrays) places.push_back(array.data());
+  return places;
+}
+
 struct Eliminated {
   LaneArray blocks;
   std::vector<int> swaps;
@@ -252,7 +258,7 @@ TEST_CASE("border rows are no pivots in any lane, however large") {
     for (const int row : eliminated(k, blocks, set).swaps) CHECK(row < k.rows);
 }
 
-TEST_CASE("two solutions at once are those found one by one, to the last bit") {
+TEST_CASE("several solutions at once are those found one by one, to the last bit") {
   for (const VectorSet set : available_vector_sets()) {
     std::mt19937 generator(8);
     for (const Sizes& k : all_sizes()) {
@@ -260,16 +266,18 @@ TEST_CASE("two solutions at once are those found one by one, to the last bit") {
       const Eliminated e = eliminated(k, random_blocks(generator, k), set);
       const LaneKernel kernel(k.rows, k.pivots, k.width, set);
       const LaneArray zero(place(k.rows * lanes));
-      std::vector<LaneArray> together;
-      for (int solution = 0; solution < 2; ++solution) {
-        std::vector<Block> known;
-        for (int l = 0; l < lanes; ++l) known.push_back(random_block(generator, k.width, 1));
-        together.push_back(side_by_side(known));
+      for (const int count : {2, 3, 4, 5}) {
+        std::vector<LaneArray> together;
+        for (int solution = 0; solution < count; ++solution) {
+          std::vector<Block> known;
+          for (int l = 0; l < lanes; ++l) known.push_back(random_block(generator, k.width, 1));
+          together.push_back(side_by_side(known));
+        }
+        std::vector<LaneArray> alone = together;
+        kernel.backward_of_several(e.blocks.data(), places_of(together));
+        for (LaneArray& x : alone) kernel.backward(e.blocks.data(), zero.data(), x.data());
+        CHECK(together == alone);
       }
-      std::vector<LaneArray> alone = together;
-      kernel.backward_of_two(e.blocks.data(), together[0].data(), together[1].data());
-      for (LaneArray& x : alone) kernel.backward(e.blocks.data(), zero.data(), x.data());
-      CHECK(together == alone);
     }
   }
 }
@@ -291,13 +299,13 @@ TEST_CASE("a block that comes next is left as it is and changes nothing") {
         CHECK(block_of(again, l, blocks[place(l)]) == block_of(e.blocks, l, blocks[place(l)]));
 
       const LaneArray right(place(k.rows * lanes), 0.5);
-      std::vector<LaneArray> alone(2, LaneArray(place(k.width * lanes), 1.5));
+      std::vector<LaneArray> alone(3, LaneArray(place(k.width * lanes), 1.5));
       std::vector<LaneArray> before_next = alone;
       kernel.backward(e.blocks.data(), right.data(), alone[0].data());
       kernel.backward(e.blocks.data(), right.data(), before_next[0].data(), next.data());
       CHECK(alone == before_next);
-      kernel.backward_of_two(e.blocks.data(), alone[0].data(), alone[1].data());
-      kernel.backward_of_two(e.blocks.data(), before_next[0].data(), before_next[1].data(), next.data());
+      kernel.backward_of_several(e.blocks.data(), places_of(alone));
+      kernel.backward_of_several(e.blocks.data(), places_of(before_next), next.data());
       CHECK(alone == before_next);
       CHECK(next == LaneArray(e.blocks.size(), 2.5));
     }
