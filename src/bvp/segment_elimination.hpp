@@ -161,6 +161,8 @@ class SegmentElimination {
   void keep_residual(int s, int group, double* collocation);
   void evaluate_field(int s, int group, const HybridSystem& system, int field, std::span<const int> active,
                       const Orbit& x);
+  void evaluate_field_at_points(int group, const HybridSystem& system, int field, std::span<const int> active,
+                                const Orbit& x);
   void fill_border(int s, int group, std::span<const OrbitVector> rows);
   const Join& join_of(int first, int last) const {
     return joins_[index(number_of_middle_[index(halfway(first, last))])];
@@ -236,7 +238,8 @@ class SegmentElimination {
 
   // scratch of one group, for the thread that calls the problem
   LaneArray nodes_, points_, derivatives_, jacobian_, residual_, zero_rhs_;
-  std::vector<double> x_, f_, fx_, fp_;
+  LaneArray f_, fx_, fp_;
+  std::vector<double> x_of_points_, f_of_points_, fx_of_points_, fp_of_points_;  // of problems that have no lanes
   // of threads
   BlockArray<double> local_, join_local_, top_local_;
 };

@@ -22,45 +22,57 @@ bool SegmentElimination::fill_piece(int s, int group, const HybridSystem& system
   return true;
 }
 
-/// The field and its derivatives at the Gauss points of a group's intervals, from the lanes that hold one.
+/// The field and its derivatives at the Gauss points of a group's intervals.
 void SegmentElimination::evaluate_field(int s, int group, const HybridSystem& system, int field,
                                         std::span<const int> active, const Orbit& x) {
-  const int count = shape_.collocation * n_;  // numbers of one lane
   const double* from[lanes];
-  double* to[lanes];
-  int held = 0;
-  for (int l = 0; l < lanes; ++l) {
-    from[l] = x.node(s, schedule_.interval(group, l) * shape_.collocation);
-    to[l] = schedule_.holds(group, l) ? x_.data() + held++ * count : nullptr;
-  }
-  assembly_.gather(from, count + n_, nodes_.data());
+  for (int l = 0; l < lanes; ++l) from[l] = x.node(s, schedule_.interval(group, l) * shape_.collocation);
+  assembly_.gather(from, (shape_.collocation + 1) * n_, nodes_.data());
   LaneCollocation at{};
   at.n = n_;
   at.c = shape_.collocation;
   at.value = rule_.value.data();
   at.slope = rule_.slope.data();
   assembly_.interpolate(at, nodes_.data(), points_.data(), derivatives_.data());
-  assembly_.scatter(points_.data(), count, to);
-  system.first_at_points(FunctionKind::field, field, held * shape_.collocation, x_.data(), x.par.data(), active,
-                         f_.data(), fx_.data(), fp_.data());
+  if (system.has_first_in_lanes())
+    system.first_in_lanes(FunctionKind::field, field, shape_.collocation, points_.data(), x.par.data(), active,
+                          f_.data(), fx_.data(), fp_.data());
+  else
+    evaluate_field_at_points(group, system, field, active, x);
+}
+
+/// The same at the points of the lanes that hold an interval, one after the other.
+void SegmentElimination::evaluate_field_at_points(int group, const HybridSystem& system, int field,
+                                                  std::span<const int> active, const Orbit& x) {
+  const int c = shape_.collocation;
+  int place[lanes];  // of a lane's first point
+  int held = 0;
+  for (int l = 0; l < lanes; ++l)
+    if (schedule_.holds(group, l)) place[l] = held, held += c;
+  double* to[lanes];
+  for (int l = 0; l < lanes; ++l) to[l] = schedule_.holds(group, l) ? x_of_points_.data() + place[l] * n_ : nullptr;
+  assembly_.scatter(points_.data(), c * n_, to);
+  system.first_at_points(FunctionKind::field, field, held, x_of_points_.data(), x.par.data(), active,
+                         f_of_points_.data(), fx_of_points_.data(), fp_of_points_.data());
+  const auto gather = [&](const std::vector<double>& of_points, int size, LaneArray& of_lanes) {
+    const double* from[lanes];
+    for (int l = 0; l < lanes; ++l) from[l] = of_points.data() + place[schedule_.source(group, l)] * size;
+    assembly_.gather(from, c * size, of_lanes.data());
+  };
+  gather(f_of_points_, n_, f_);
+  gather(fx_of_points_, n_ * n_, fx_);
+  gather(fp_of_points_, n_ * (scalars_ - 1), fp_);
 }
 
 /// Collocation rows slope - h T f at the Gauss points, columns (interior | left | right | T, p | residual).
 bool SegmentElimination::fill_group(int s, int group, const HybridSystem& system, int field,
                                     std::span<const int> active, const Orbit& x, double* collocation) {
   evaluate_field(s, group, system, field, active, x);
-  const int c = shape_.collocation;
-  LaneCollocation at{n_, c, scalars_, rule_.value.data(), rule_.slope.data(), {}, {}, {}, {}, {}, derivatives_.data()};
-  std::ptrdiff_t place[lanes];  // of the first Gauss point among those evaluated
-  std::ptrdiff_t next = 0;
-  for (int l = 0; l < lanes; ++l)
-    if (schedule_.holds(group, l)) place[l] = next, next += c;
+  LaneCollocation at{
+      n_, shape_.collocation, scalars_, rule_.value.data(), rule_.slope.data(), f_.data(), fx_.data(), fp_.data(), {},
+      {}, derivatives_.data()};
   for (int l = 0; l < lanes; ++l) {
     const int j = schedule_.interval(group, l);
-    const std::ptrdiff_t from = place[schedule_.source(group, l)];
-    at.f[l] = f_.data() + from * n_;
-    at.fx[l] = fx_.data() + from * n_ * n_;
-    at.fp[l] = fp_.data() + from * n_ * (scalars_ - 1);
     at.h[l] = x.mesh[index(j + 1)] - x.mesh[index(j)];
     at.scale[l] = at.h[l] * x.duration(s);
   }

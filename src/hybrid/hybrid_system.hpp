@@ -90,6 +90,16 @@ class HybridSystem {
   void first_at_points(FunctionKind kind, int index, int points, const double* x, const double* par,
                        std::span<const int> active, double* out, double* dx, double* dp) const;
 
+  /// Does the problem give them at four points side by side?
+  bool has_first_in_lanes() const { return table_->derivative_order >= 1 && table_->first_in_lanes != nullptr; }
+  /// If it does, the same at `sets` sets of four points: entry k of the point in lane l is number 4 k + l of its set's
+  /// arrays. No jumps.
+  void first_in_lanes(FunctionKind kind, int index, int sets, const double* x, const double* par,
+                      std::span<const int> active, double* out, double* dx, double* dp) const {
+    table_->first_in_lanes(table_->self, static_cast<int>(kind), index, sets, x, par, active.data(),
+                           static_cast<int>(active.size()), out, dx, dp);
+  }
+
   /// D = F_x v + F_p w and its derivatives by x and the active parameters; direction = (v, w).
   void second(FunctionKind kind, int index, const double* x, const double* par, std::span<const int> active,
               const double* direction, double* out, double* dx, double* dp) const;

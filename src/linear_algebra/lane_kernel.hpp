@@ -73,9 +73,9 @@ struct LaneCollocation {
   int scalars;                ///< columns of the duration and of the free parameters
   const double* value;        ///< c x (c + 1), column-major: the basis at the Gauss points
   const double* slope;        ///< and its derivatives
-  const double* f[lanes];     ///< n values for each Gauss point
-  const double* fx[lanes];    ///< n x n, column-major, for each Gauss point
-  const double* fp[lanes];    ///< n x (scalars - 1)
+  const double* f;            ///< c n entries of `lanes` numbers: the field at the Gauss points
+  const double* fx;           ///< c times n x n, column-major
+  const double* fp;           ///< c times n x (scalars - 1)
   double h[lanes];            ///< lengths of the intervals
   double scale[lanes];        ///< times the duration
   const double* derivatives;  ///< of the polynomials at the Gauss points: c n entries of `lanes` numbers
@@ -114,7 +114,7 @@ class LaneAssembly {
 
   /// The c n rows of the blocks, `stride` entries from one to the next, columns (interior nodes | left node | right
   /// node | T, p | residual), and the residual once more, c n entries of `lanes` numbers. `jacobian` is scratch of
-  /// n (n + scalars - 1) lanes numbers. False when a value is not finite in some lane.
+  /// n n lanes numbers. False when a value is not finite in some lane.
   bool fill(const LaneCollocation& at, int stride, double* blocks, double* jacobian, double* residual) const;
 
   /// The 2 n rows and the border rows of a join: columns (middle node | first node | last node | scalars).

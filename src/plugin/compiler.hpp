@@ -31,8 +31,8 @@ class Compiler {
 
   /// The command's words, without a source.
   const std::vector<std::string>& command() const { return command_; }
-  /// Text that changes when the compiler does (command, resolved programs, their sizes and times); empty when the
-  /// compiler is not installed.
+  /// Text that changes when the compiler does (command, resolved programs, their sizes and times), or the instructions
+  /// of this processor that it may use; empty when the compiler is not installed.
   std::string identity() const;
 
   /// Throws UserError with the compiler's own message.

@@ -70,6 +70,22 @@ struct GuardedProblem::Calls {
     }
   }
 
+  static void first_in_lanes(const void* self, std::int32_t kind, std::int32_t index, std::int32_t sets,
+                             const double* x, const double* par, const std::int32_t* active, std::int32_t count,
+                             double* out, double* dx, double* dp) {
+    const tchat_problem& plugin = object(self).plugin_;
+    const PluginCall call(object(self).path_.c_str(), place_of(kind), index);
+    try {
+      plugin.first_in_lanes(plugin.self, kind, index, sets, x, par, active, count, out, dx, dp);
+    } catch (...) {
+      constexpr int points = 4;  // of a set
+      const int numbers = sets * points * rows(plugin, kind);
+      set_nan(out, numbers);
+      set_nan(dx, numbers * plugin.dimension);
+      if (count > 0) set_nan(dp, numbers * count);
+    }
+  }
+
   static void second(const void* self, std::int32_t kind, std::int32_t index, const double* x, const double* par,
                      const std::int32_t* active, std::int32_t count, const double* direction, double* out, double* dx,
                      double* dp) {
@@ -181,6 +197,7 @@ GuardedProblem::GuardedProblem(const tchat_problem& plugin, const std::string& p
   if (plugin.first != nullptr) table_.first = &Calls::first;
   if (plugin.second != nullptr) table_.second = &Calls::second;
   if (plugin.first_at_points != nullptr) table_.first_at_points = &Calls::first_at_points;
+  if (plugin.first_in_lanes != nullptr) table_.first_in_lanes = &Calls::first_in_lanes;
   if (plugin.second_at_points != nullptr) table_.second_at_points = &Calls::second_at_points;
   if (plugin.boundary != nullptr) table_.boundary = &Calls::boundary;
   if (plugin.boundary_first != nullptr) table_.boundary_first = &Calls::boundary_first;

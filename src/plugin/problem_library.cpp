@@ -16,6 +16,7 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "plugin/instruction_set.hpp"
 #include "plugin/plugin_call.hpp"
 #include "text/user_error.hpp"
 
@@ -160,8 +161,17 @@ std::unique_ptr<FortranProblem> wrap_fortran(const std::string& path, void* hand
   return std::make_unique<FortranProblem>(path, handle, known);
 }
 
+/// A library that was compiled on another machine would end this process at its first instruction that is not there.
+void require_instructions(const std::string& path, void* handle) {
+  const auto* const needed = static_cast<const char*>(dlsym(handle, "tchat_problem_instructions"));
+  if (needed != nullptr && !runs_instructions(needed))
+    refuse(path, fmt::format("it was compiled for processors with {} instructions, which this one has not", needed),
+           "Delete it and give its source, which is then compiled for this machine.");
+}
+
 /// The table of a C++ or C plugin.
 const tchat_problem* find_table(const std::string& path, void* handle) {
+  require_instructions(path, handle);
   void* const symbol = dlsym(handle, TCHAT_PROBLEM_ENTRY);
   if (symbol == nullptr)
     refuse(path, "it does not export " TCHAT_PROBLEM_ENTRY " nor the Fortran subroutines GCFUNC, GCBOUND, JUMPMAP",
@@ -174,10 +184,11 @@ const tchat_problem* find_table(const std::string& path, void* handle) {
 }
 
 /// A table made before boundary value problems, sliding modes or many points at once, for first derivatives or for
-/// second ones, has none of their members.
+/// second ones or side by side, has none of their members.
 tchat_problem completed(const tchat_problem& table) {
-  const std::array<std::size_t, 4> earlier = {TCHAT_PROBLEM_FIRST_SIZE, TCHAT_PROBLEM_SECOND_SIZE,
-                                              TCHAT_PROBLEM_THIRD_SIZE, TCHAT_PROBLEM_FOURTH_SIZE};
+  const std::array<std::size_t, 5> earlier = {TCHAT_PROBLEM_FIRST_SIZE, TCHAT_PROBLEM_SECOND_SIZE,
+                                              TCHAT_PROBLEM_THIRD_SIZE, TCHAT_PROBLEM_FOURTH_SIZE,
+                                              TCHAT_PROBLEM_FIFTH_SIZE};
   if (std::find(earlier.begin(), earlier.end(), table.struct_size) == earlier.end()) return table;
   tchat_problem whole{};
   std::memcpy(&whole, &table, table.struct_size);

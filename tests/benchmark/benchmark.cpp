@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "benchmark/auto_comparison.hpp"
+#include "benchmark/compiled_problem.hpp"
 #include "benchmark/elimination_times.hpp"
 #include "benchmark/matrix_times.hpp"
 #include "benchmark/memory_sizes.hpp"
@@ -107,6 +108,7 @@ int main(int argc, char** argv) {
   app.add_flag("--quick", choice.quick, "few and small measurements: shows that the program works, times mean nothing");
   CLI11_PARSE(app, argc, argv);
   try {
+    const tchat::benchmark::CompiledProblems problems;
     return run(choice);
   } catch (const std::exception& error) {
     fmt::print(stderr, "tchat_benchmark: {}\n", error.what());

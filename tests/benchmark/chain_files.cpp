@@ -46,10 +46,13 @@ std::string contents(const std::filesystem::path& path) {
 
 }  // namespace
 
+std::string chain_source(int n) {
+  return fmt::format("#include \"{}\"\nusing Chain = tchat::benchmark::OscillatorChain<{}>;\nTCHAT_PROBLEM(Chain)\n",
+                     OSCILLATOR_CHAIN_HEADER, (n - 2) / 2);
+}
+
 void write_chain_files(const std::filesystem::path& folder, const Orbit& x, int points) {
-  const std::string source =
-      fmt::format("#include \"{}\"\nusing Chain = tchat::benchmark::OscillatorChain<{}>;\nTCHAT_PROBLEM(Chain)\n",
-                  OSCILLATOR_CHAIN_HEADER, (x.shape.dimension - 2) / 2);
+  const std::string source = chain_source(x.shape.dimension);
   // A source that is written again is compiled again.
   if (contents(folder / "chain.cpp") != source) std::ofstream(folder / "chain.cpp") << source;
   std::ofstream(folder / "gc.chain") << constants_text(x.shape, points);

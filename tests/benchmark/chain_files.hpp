@@ -8,6 +8,9 @@
 
 namespace tchat::benchmark {
 
+/// The plugin of the chain with n states.
+std::string chain_source(int n);
+
 /// Writes chain.cpp, gc.chain and chain.dat for an orbit of the oscillator or of the chain, and `points` points of its
 /// branch in alpha.
 void write_chain_files(const std::filesystem::path& folder, const Orbit& x, int points);

@@ -2,10 +2,9 @@
 
 #include <cmath>
 #include <numbers>
-#include <stdexcept>
 
-#include "benchmark/oscillator_chain.hpp"
-#include "hybrid/linear_oscillator.hpp"
+#include "benchmark/chain_files.hpp"
+#include "benchmark/compiled_problem.hpp"
 
 namespace tchat::benchmark {
 
@@ -37,22 +36,9 @@ Eigen::Vector4d state(const ImpactData& p, double t) {
 
 }  // namespace
 
-HybridSystem oscillator() { return HybridSystem(*ProblemTable<LinearOscillator>::get("LinearOscillator")); }
+const HybridSystem& oscillator() { return problem_of_repository("linosc"); }
 
-HybridSystem chain(int n) {
-  switch (n) {
-    case 4:
-      return HybridSystem(*ProblemTable<OscillatorChain<1>>::get("OscillatorChain"));
-    case 10:
-      return HybridSystem(*ProblemTable<OscillatorChain<4>>::get("OscillatorChain"));
-    case 20:
-      return HybridSystem(*ProblemTable<OscillatorChain<9>>::get("OscillatorChain"));
-    case 50:
-      return HybridSystem(*ProblemTable<OscillatorChain<24>>::get("OscillatorChain"));
-    default:
-      throw std::invalid_argument("there is no chain of so many states");
-  }
-}
+const HybridSystem& chain(int n) { return compiled_problem(chain_source(n)); }
 
 Signature impacting_signature(int segments) { return Signature(static_cast<std::size_t>(segments), {1, 1, 1}); }
 

@@ -20,8 +20,8 @@ struct ImpactData {
   double y2 = -0.898354194553;
 };
 
-/// The class of problems/linosc/linosc.cpp.
-HybridSystem oscillator();
+/// problems/linosc/linosc.cpp.
+const HybridSystem& oscillator();
 
 /// Its signature repeated m times.
 Signature impacting_signature(int segments);
@@ -33,7 +33,7 @@ Orbit impacting_orbit(const OrbitShape& shape);
 /// Weak, so that the orbit of the chain is found from that without coupling.
 inline constexpr double chain_coupling = 0.02;
 
-/// The chain with n = 4, 10, 20 or 50 states (oscillator_chain.hpp). Throws std::invalid_argument for others.
-HybridSystem chain(int n);
+/// The chain with n = 4, 6, 8, ... states (oscillator_chain.hpp).
+const HybridSystem& chain(int n);
 
 }  // namespace tchat::benchmark

@@ -108,10 +108,11 @@ void print_matrix_times(int rounds) {
   OrbitResidual residual = problem.make_residual();
   OrbitVector dx = condensed.make_vector();
   FloquetSolver floquet(x.shape);
-  const int points = 4 * lanes;  // that are evaluated in one call
-  std::vector<double> f(static_cast<std::size_t>(points * n));
-  std::vector<double> fx(f.size() * n);
-  std::vector<double> fp(f.size());
+  constexpr int sets = collocation_points;  // of points side by side, that are evaluated in one call
+  const LaneArray states(x.node(0, 0), x.node(0, 0) + sets * lanes * n);
+  LaneArray f(states.size());
+  LaneArray fx(f.size() * n);
+  LaneArray fp(f.size());
 
   const LaneKernel interval(16, 12, 22);
   RandomBlocks interval_blocks(intervals, interval.rows(), interval.pivots(), interval.width(), lanes);
@@ -127,9 +128,9 @@ void print_matrix_times(int rounds) {
   };
   const auto eliminate_join = [&](double* a, int* swaps) { keep(join.eliminate(a, border, swaps)); };
   const auto derivatives = [&] {
-    for (int k = 0; k + 1 < x.shape.nodes(); k += points)
-      system.first_at_points(FunctionKind::field, 1, std::min(points, x.shape.nodes() - 1 - k), x.node(0, k),
-                             x.par.data(), walk.system().free_parameters(), f.data(), fx.data(), fp.data());
+    for (int j = 0; j < intervals; j += lanes)
+      system.first_in_lanes(FunctionKind::field, 1, sets, states.data(), x.par.data(), walk.system().free_parameters(),
+                            f.data(), fx.data(), fp.data());
   };
 
   enum {

@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "benchmark/compiled_problem.hpp"
 #include "benchmark/timing.hpp"
 #include "bvp/critical_multiplier.hpp"
 #include "bvp/critical_pair.hpp"
@@ -118,7 +119,7 @@ Bifurcation of_oscillator(const std::string& name, int multiplier, bool two_segm
       fold ? one_impact_orbit(1.8901, fold_velocity()) : one_impact_orbit(2.0072, period_doubling_velocity());
   const CutOrbit cut = two_segments ? cut_at_minimum(orbit, false) : whole(orbit);
   Bifurcation result{name,
-                     &linosc(),
+                     &problem_of_repository("linosc"),
                      cut.signature,
                      sampled_orbit(cut.pieces, 4, intervals, 4, orbit.par()),
                      Bifurcation::Kept::multiplier,
@@ -132,7 +133,7 @@ Bifurcation grazing_oscillator(int intervals) {
   using namespace tchat::test;
   const OscillatorOrbit orbit = one_impact_orbit(grazing_omega, 0.0);
   Bifurcation result{"grazing, linosc",
-                     &linosc(),
+                     &problem_of_repository("linosc"),
                      {{1, 1, 2}},
                      sampled_orbit(whole(orbit).pieces, 4, intervals, 4, orbit.par()),
                      Bifurcation::Kept::contact};
@@ -144,7 +145,7 @@ Bifurcation grazing_oscillator(int intervals) {
 Bifurcation of_langford(int intervals) {
   using namespace tchat::test;
   const LangfordCircle circle = LangfordCircle{}.at_torus();
-  Bifurcation result{"torus, langford", &system_of<Langford>(), {{1, 1, 1}}, circle.orbit(intervals, 4)};
+  Bifurcation result{"torus, langford", &problem_of_repository("langford"), {{1, 1, 1}}, circle.orbit(intervals, 4)};
   result.kept = Bifurcation::Kept::pair;
   result.pair = circle.multiplier();
   result.wanted = 3.0;

@@ -369,6 +369,14 @@ TEST_CASE("arrays of lanes are gathered and scattered, but for lanes that have n
 
 namespace {
 
+LaneArray in_lanes(const std::vector<MatrixXd>& of_lanes) {
+  const int count = static_cast<int>(of_lanes.front().size());
+  LaneArray result(place(count * lanes));
+  for (int l = 0; l < lanes; ++l)
+    for (int k = 0; k < count; ++k) result[place(k * lanes + l)] = of_lanes[place(l)].data()[k];
+  return result;
+}
+
 void check_filling(int n, int c, int scalars) {
   CAPTURE(n, c, scalars);
   const double tolerance = 1e-14 * 10 * n;
@@ -383,10 +391,11 @@ void check_filling(int n, int c, int scalars) {
     fp.emplace_back(random_block(generator, n, (scalars - 1) * c));
     nodes.emplace_back(random_block(generator, n, c + 1));
   }
-  LaneCollocation at{n, c, scalars, value.data(), slope.data(), {}, {}, {}, {}, {}, nullptr};
+  const LaneArray field = in_lanes(f), by_state = in_lanes(fx), by_parameter = in_lanes(fp);
+  LaneCollocation at{n,  c,  scalars, value.data(), slope.data(), field.data(), by_state.data(), by_parameter.data(),
+                     {}, {}, nullptr};
   LaneArray states(place((c + 1) * n * lanes));
   for (int l = 0; l < lanes; ++l) {
-    at.f[l] = f[place(l)].data(), at.fx[l] = fx[place(l)].data(), at.fp[l] = fp[place(l)].data();
     at.h[l] = 0.1 * (l + 1), at.scale[l] = at.h[l] * 0.7;
     for (int i = 0; i < (c + 1) * n; ++i) states[place(i * lanes + l)] = nodes[place(l)].data()[i];
   }
@@ -394,7 +403,7 @@ void check_filling(int n, int c, int scalars) {
   for (const VectorSet set : available_vector_sets()) {
     const LaneAssembly assembly(set);
     LaneArray points(place(c * n * lanes)), derivatives = points, residual = points;
-    LaneArray blocks(place(c * n * stride * lanes)), jacobian(place(n * (n + scalars - 1) * lanes));
+    LaneArray blocks(place(c * n * stride * lanes)), jacobian(place(n * n * lanes));
     assembly.interpolate(at, states.data(), points.data(), derivatives.data());
     at.derivatives = derivatives.data();
     REQUIRE(assembly.fill(at, stride, blocks.data(), jacobian.data(), residual.data()));
@@ -423,17 +432,17 @@ void check_filling(int n, int c, int scalars) {
       }
     }
     for (int k = 0; k < n * n * c; ++k) {
-      MatrixXd broken = fx[2];
-      broken.data()[k] = NAN;
+      LaneArray broken = by_state;
+      broken[place(k * lanes + 2)] = NAN;
       LaneCollocation with_nan = at;
-      with_nan.fx[2] = broken.data();
+      with_nan.fx = broken.data();
       CHECK_FALSE(assembly.fill(with_nan, stride, blocks.data(), jacobian.data(), residual.data()));
     }
     for (int k = 0; k < n * c; ++k) {
-      MatrixXd broken = f[1];
-      broken.data()[k] = INFINITY;
+      LaneArray broken = field;
+      broken[place(k * lanes + 1)] = INFINITY;
       LaneCollocation with_infinity = at;
-      with_infinity.f[1] = broken.data();
+      with_infinity.f = broken.data();
       CHECK_FALSE(assembly.fill(with_infinity, stride, blocks.data(), jacobian.data(), residual.data()));
     }
   }

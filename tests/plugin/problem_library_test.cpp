@@ -96,6 +96,9 @@ TEST_CASE("libraries that are no usable plugins") {
        {"threw an exception: table.txt is missing", "constructor"}},
       {R"(extern "C" __attribute__((visibility("default"))) void* tchat_problem_table() { throw 1; })",
        {"threw an exception"}},
+      {R"(extern "C" __attribute__((visibility("default"))) const char tchat_problem_instructions[] = "avx9";
+          extern "C" __attribute__((visibility("default"))) void* tchat_problem_table() { __builtin_trap(); })",
+       {"compiled for processors with avx9 instructions", "Delete it and give its source"}},
   };
   const PluginFolder folder;
   int number = 0;
@@ -227,6 +230,37 @@ TEST_CASE("a table made before second derivatives could be asked for at many poi
 )";
   const ProblemLibrary library(resolve_plugin(folder.write("fourth.cpp", small_plugin(spoil)), build_options));
   CHECK(library.system().table().second_at_points == nullptr);
+}
+
+TEST_CASE("a table made before four points could be side by side still loads") {
+  const PluginFolder folder;
+  // What stands behind its end is not part of it.
+  const std::string spoil = R"(
+  table.struct_size = TCHAT_PROBLEM_FIFTH_SIZE;
+  table.first_in_lanes = reinterpret_cast<decltype(table.first_in_lanes)>(table.value);
+)";
+  const ProblemLibrary library(resolve_plugin(folder.write("fifth.cpp", small_plugin(spoil)), build_options));
+  CHECK_FALSE(library.system().has_first_in_lanes());
+}
+
+TEST_CASE("an exception on the way through points side by side makes all of them NaN") {
+  const PluginFolder folder;
+  const std::string spoil = R"(
+  table.derivative_order = 1;
+  table.first = [](const void*, int32_t, int32_t, const double*, const double*, const int32_t*, int32_t, double*,
+                   double*, double*) {};
+  table.first_in_lanes = [](const void*, int32_t, int32_t, int32_t, const double*, const double*, const int32_t*,
+                            int32_t, double* out, double*, double*) { out[0] = 1.0; throw 1; };
+)";
+  const ProblemLibrary library(resolve_plugin(folder.write("throws3.cpp", small_plugin(spoil)), build_options));
+  REQUIRE(library.system().has_first_in_lanes());
+  constexpr int sets = 2, n = 2, points = 4 * sets;
+  const double x[points * n] = {};
+  std::vector<double> values(points * n * (1 + n + 1), 0.0);
+  double* const f = values.data();
+  library.system().first_in_lanes(FunctionKind::field, 1, sets, x, some_par.data(), std::vector<int>{1}, f,
+                                  f + points * n, f + points * n * (1 + n));
+  for (const double value : values) CHECK(std::isnan(value));
 }
 
 TEST_CASE("an exception on the way through second derivatives at many points makes all of them NaN") {

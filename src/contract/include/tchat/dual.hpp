@@ -14,7 +14,11 @@
 
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <type_traits>
+#include <utility>
+
+#include "tchat/lanes.hpp"
 
 namespace tchat {
 
@@ -24,6 +28,9 @@ struct Dual {
   std::array<Base, N> derivative{};
 
   Dual() = default;
+  // Number by number: g++ copies arrays of this size by a call, which takes longer than a multiplication.
+  TCHAT_INLINE Dual(const Dual& other) : Dual(other, std::make_index_sequence<N>{}) {}
+  TCHAT_INLINE Dual& operator=(const Dual& other) { return assign(other, std::make_index_sequence<N>{}); }
 
   // Constants convert without being asked, so that formulas read as with doubles.
   // NOLINTBEGIN(google-explicit-constructor)
@@ -33,31 +40,31 @@ struct Dual {
   Dual(const Base& constant) : value(constant) {}
   // NOLINTEND(google-explicit-constructor)
 
-  Dual& operator+=(const Dual& b) {
+  TCHAT_INLINE Dual& operator+=(const Dual& b) {
     value += b.value;
     for (int k = 0; k < N; ++k) derivative[k] += b.derivative[k];
     return *this;
   }
-  Dual& operator-=(const Dual& b) {
+  TCHAT_INLINE Dual& operator-=(const Dual& b) {
     value -= b.value;
     for (int k = 0; k < N; ++k) derivative[k] -= b.derivative[k];
     return *this;
   }
-  Dual& operator*=(const Dual& b) { return *this = *this * b; }
-  Dual& operator/=(const Dual& b) { return *this = *this / b; }
+  TCHAT_INLINE Dual& operator*=(const Dual& b) { return *this = *this * b; }
+  TCHAT_INLINE Dual& operator/=(const Dual& b) { return *this = *this / b; }
 
-  Dual operator-() const { return chain(*this, -value, Base(-1.0)); }
+  TCHAT_INLINE Dual operator-() const { return chain(*this, -value, Base(-1.0)); }
   Dual operator+() const { return *this; }
 
-  friend Dual operator+(Dual a, const Dual& b) { return a += b; }
-  friend Dual operator-(Dual a, const Dual& b) { return a -= b; }
-  friend Dual operator*(const Dual& a, const Dual& b) {
+  TCHAT_INLINE friend Dual operator+(Dual a, const Dual& b) { return a += b; }
+  TCHAT_INLINE friend Dual operator-(Dual a, const Dual& b) { return a -= b; }
+  TCHAT_INLINE friend Dual operator*(const Dual& a, const Dual& b) {
     Dual c;
     c.value = a.value * b.value;
     for (int k = 0; k < N; ++k) c.derivative[k] = a.derivative[k] * b.value + a.value * b.derivative[k];
     return c;
   }
-  friend Dual operator/(const Dual& a, const Dual& b) {
+  TCHAT_INLINE friend Dual operator/(const Dual& a, const Dual& b) {
     Dual c;
     const Base inverse = Base(1.0) / b.value;
     c.value = a.value / b.value;
@@ -66,19 +73,19 @@ struct Dual {
   }
 
   /// Mixed arithmetic with plain numbers, cheaper than with a constant Dual.
-  friend Dual operator+(Dual a, double b) { return a.value += b, a; }
-  friend Dual operator+(double a, Dual b) { return b.value += a, b; }
-  friend Dual operator-(Dual a, double b) { return a.value -= b, a; }
-  friend Dual operator-(double a, const Dual& b) { return -b + a; }
-  friend Dual operator*(const Dual& a, double b) { return chain(a, a.value * b, Base(b)); }
-  friend Dual operator*(double a, const Dual& b) { return chain(b, b.value * a, Base(a)); }
-  friend Dual operator/(const Dual& a, double b) {
+  TCHAT_INLINE friend Dual operator+(Dual a, double b) { return a.value += b, a; }
+  TCHAT_INLINE friend Dual operator+(double a, Dual b) { return b.value += a, b; }
+  TCHAT_INLINE friend Dual operator-(Dual a, double b) { return a.value -= b, a; }
+  TCHAT_INLINE friend Dual operator-(double a, const Dual& b) { return -b + a; }
+  TCHAT_INLINE friend Dual operator*(const Dual& a, double b) { return chain(a, a.value * b, Base(b)); }
+  TCHAT_INLINE friend Dual operator*(double a, const Dual& b) { return chain(b, b.value * a, Base(a)); }
+  TCHAT_INLINE friend Dual operator/(const Dual& a, double b) {
     Dual c;
     c.value = a.value / b;
     for (int k = 0; k < N; ++k) c.derivative[k] = a.derivative[k] / b;
     return c;
   }
-  friend Dual operator/(double a, const Dual& b) {
+  TCHAT_INLINE friend Dual operator/(double a, const Dual& b) {
     const Base quotient = a / b.value;
     return chain(b, quotient, -quotient / b.value);
   }
@@ -101,11 +108,22 @@ struct Dual {
   friend bool operator>=(double a, const Dual& b) { return a >= b.value; }
 
   /// phi(a) by the chain rule, given phi(a.value) and phi'(a.value).
-  static Dual chain(const Dual& a, const Base& value, const Base& slope) {
+  TCHAT_INLINE static Dual chain(const Dual& a, const Base& value, const Base& slope) {
     Dual c;
     c.value = value;
     for (int k = 0; k < N; ++k) c.derivative[k] = slope * a.derivative[k];
     return c;
+  }
+
+ private:
+  template <std::size_t... K>
+  TCHAT_INLINE Dual(const Dual& other, std::index_sequence<K...>)
+      : value(other.value), derivative{other.derivative[K]...} {}
+  template <std::size_t... K>
+  TCHAT_INLINE Dual& assign(const Dual& other, std::index_sequence<K...>) {
+    value = other.value;
+    ((derivative[K] = other.derivative[K]), ...);
+    return *this;
   }
 };
 
@@ -186,9 +204,9 @@ Dual<N, B> pow(const Dual<N, B>& a, const Dual<N, B>& b) {
   using std::log, std::pow;
   Dual<N, B> c;
   c.value = pow(a.value, b.value);
-  const bool constant = plain(a) == 0.0 && plain(b) == 0.0;  // 0 * 0^-1 below, where the derivative is 0
+  const bool constant = a == 0.0 && b == 0.0;  // 0 * 0^-1 below, where the derivative is 0
   const B by_base = constant ? B(0.0) : b.value * pow(a.value, b.value - 1.0);
-  const bool has_log = plain(a) > 0.0;
+  const bool has_log = a > 0.0;
   const B by_exponent = has_log ? c.value * log(a.value) : B(0.0);
   for (int k = 0; k < N; ++k) c.derivative[k] = by_base * a.derivative[k] + by_exponent * b.derivative[k];
   return c;
@@ -224,11 +242,24 @@ template <int N, class B>
 Dual<N, B> fmax(const Dual<N, B>& a, const Dual<N, B>& b) {
   return max(a, b);
 }
+/// a rounded down, which counts as a constant.
+inline double floored(double a) { return std::floor(a); }
+template <int N, class B>
+Dual<N, B> floored(const Dual<N, B>& a) {
+  return Dual<N, B>(floored(a.value));
+}
+/// a rounded towards zero.
+inline double truncated(double a) { return std::trunc(a); }
+template <int N, class B>
+Dual<N, B> truncated(const Dual<N, B>& a) {
+  return Dual<N, B>(truncated(a.value));
+}
+
 /// a - m b, with the whole number m of std::fmod; m counts as a constant.
 template <int N, class B>
 Dual<N, B> fmod(const Dual<N, B>& a, const Dual<N, B>& b) {
   using std::fmod;
-  Dual<N, B> c = a - std::trunc(plain(a) / plain(b)) * b;
+  Dual<N, B> c = a - truncated(Dual<N, B>(a.value / b.value)) * b;
   c.value = fmod(a.value, b.value);
   return c;
 }
@@ -252,7 +283,8 @@ TCHAT_DUAL_MIXED(fmod)
 
 template <int N, class B>
 bool isfinite(const Dual<N, B>& a) {
-  return std::isfinite(plain(a));
+  using std::isfinite;
+  return isfinite(a.value);
 }
 
 }  // namespace tchat

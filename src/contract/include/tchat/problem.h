@@ -140,6 +140,13 @@ typedef struct tchat_problem {
   void (*second_at_points)(const void* self, int32_t kind, int32_t index, int32_t points, int32_t directions,
                            const double* x, const double* par, const int32_t* active, int32_t active_count,
                            const double* v, const double* q, const double* weights, double* out, double* gradient);
+
+  /* `first` at `sets` sets of four points for one par. The points of a set are side by side: entry k of x, out, dx or
+   * dp of the point l = 0..3 is number 4 k + l of the set's array; the sets stand one behind the other. NULL: tchat
+   * calls `first_at_points`. */
+  void (*first_in_lanes)(const void* self, int32_t kind, int32_t index, int32_t sets, const double* x,
+                         const double* par, const int32_t* active, int32_t active_count, double* out, double* dx,
+                         double* dp);
 } tchat_problem;
 
 /* Size of the table before the conditions of boundary value problems were added: such a table has none. */
@@ -150,6 +157,8 @@ typedef struct tchat_problem {
 #define TCHAT_PROBLEM_THIRD_SIZE offsetof(tchat_problem, first_at_points)
 /* And before second derivatives could be asked for at many points. */
 #define TCHAT_PROBLEM_FOURTH_SIZE offsetof(tchat_problem, second_at_points)
+/* And before four points could be side by side. */
+#define TCHAT_PROBLEM_FIFTH_SIZE offsetof(tchat_problem, first_in_lanes)
 
 typedef const tchat_problem* (*tchat_problem_entry)(void);
 #define TCHAT_PROBLEM_ENTRY "tchat_problem_table"

@@ -90,7 +90,8 @@ class Ends {
 };
 
 /// Fills the C table of problem.h from a problem class. The class is default-constructed once and is never changed.
-template <class Problem>
+/// `Numbers` are what derivatives at many points are computed with, Lanes or double; the values are the same.
+template <class Problem, class Numbers = PointNumbers>
 class ProblemTable {
  public:
   /// The table of a problem class; the same object at every call.
@@ -244,10 +245,10 @@ class ProblemTable {
   }
 
   /// F(x, par), rows preset to NaN by the caller. A problem may throw where it cannot be evaluated: the callers are C
-  /// code, so the exception ends here as NaN.
+  /// code, so the exception ends here as NaN. Compiled once for each kind of numbers.
   template <class T>
-  static void evaluate(const void* self, std::int32_t kind, int index, const T* x, const T* par,
-                       [[maybe_unused]] const T* durations, T* out) {
+  __attribute__((noinline)) static void evaluate(const void* self, std::int32_t kind, int index, const T* x,
+                                                 const T* par, [[maybe_unused]] const T* durations, T* out) {
     const Problem& problem = object(self);
     try {
       if (const Sliding* const mode = mode_of(kind, index)) {
@@ -288,46 +289,130 @@ class ProblemTable {
     first_at_points(self, kind, index, 1, x, par, active, active_count, out, dx, dp);
   }
 
+  static constexpr bool has_lanes = std::is_same_v<Numbers, Lanes>;
+  /// How many points are evaluated together.
+  static constexpr int together = has_lanes ? Lanes::count : 1;
+  static constexpr int points_of_set = 4;  ///< of first_in_lanes
+  static_assert(points_of_set == Lanes::count);
+
+  /// Numbers of points that are evaluated together, in an array with the numbers of all points: of each point `size`,
+  /// one point after the other, or side by side as first_in_lanes has them.
+  struct Place {
+    double* begin;
+    std::ptrdiff_t number_step, point_step;
+    int held;
+
+    static Place one_by_one(double* all, std::ptrdiff_t size, std::ptrdiff_t first, int held) {
+      return {all + first * size, 1, size, held};
+    }
+    static Place side_by_side(double* all, std::ptrdiff_t size, std::ptrdiff_t first, int held) {
+      const std::ptrdiff_t set = first / points_of_set, lane = first % points_of_set;
+      return {all + set * points_of_set * size + lane, points_of_set, 1, held};
+    }
+
+    /// Number k of each point; the last one's is in all lanes that are left.
+    Numbers load(std::ptrdiff_t k) const {
+      const double* const from = begin + k * number_step;
+      if constexpr (has_lanes) {
+        if (held == Lanes::count && point_step == 1) return Lanes::from(from);
+        const auto of_lane = [&](int l) { return from[(l < held ? l : held - 1) * point_step]; };
+        return Lanes(of_lane(0), of_lane(1), of_lane(2), of_lane(3));
+      } else {
+        return *from;
+      }
+    }
+    void store(std::ptrdiff_t k, const Numbers& numbers) const {
+      double* const to = begin + k * number_step;
+      if constexpr (has_lanes) {
+        if (held == Lanes::count && point_step == 1) return numbers.to(to);
+        numbers.scatter(to, point_step, held);
+      } else {
+        *to = numbers;
+      }
+    }
+  };
+  using PlaceOf = Place (*)(double* all, std::ptrdiff_t size, std::ptrdiff_t first, int held);
+
+  /// work(first, held, all_agree) for all points, as many as are evaluated together at a time. Where all_agree() is
+  /// false after the evaluation it returns false, without results; its points are then worked on one by one.
+  template <class Work>
+  static void in_sets(std::ptrdiff_t points, const Work& work) {
+    const auto one_agrees = [] { return true; };
+    if constexpr (has_lanes) {
+      bool& disagreed = parted();
+      for (std::ptrdiff_t first = 0; first < points; first += together) {
+        const int held = static_cast<int>(std::min<std::ptrdiff_t>(points - first, together));
+        disagreed = false;
+        if (work(first, held, [&] { return held == 1 || !disagreed; })) continue;
+        for (int l = 0; l < held; ++l) work(first + l, 1, one_agrees);
+      }
+    } else {
+      for (std::ptrdiff_t point = 0; point < points; ++point) work(point, 1, one_agrees);
+    }
+  }
+
   /// Arrays of dual numbers are made and set to zero once for all points: for a field of a few terms that takes longer
-  /// than the field.
-  static void first_at_points(const void* self, std::int32_t kind, std::int32_t index, std::int32_t points,
-                              const double* x, const double* par, const std::int32_t* active, std::int32_t active_count,
-                              double* out, double* dx, double* dp) {
-    if (points <= 0 || hand_written_at_points(self, kind, index, points, x, par, active, active_count, out, dx, dp))
-      return;
-    using T = Dual<width>;
-    const int r = rows(kind);
+  /// than the field. There is at least one point.
+  template <PlaceOf place>
+  __attribute__((noinline)) static void first_of(const void* self, std::int32_t kind, std::int32_t index,
+                                                 std::ptrdiff_t points, const double* x, const double* par,
+                                                 const std::int32_t* active, std::int32_t active_count, double* out,
+                                                 double* dx, double* dp) {
+    using T = Dual<width, Numbers>;
     const int columns = n + active_count;
     for (int begin = 0; begin < columns; begin += width) {
-      const int count = columns - begin < width ? columns - begin : width;
       States<T> xs;
       Parameters<T> ps;
       Durations<T> ts;
       Values<T> ys;
       load(x, par, xs, ps, ts);
-      for (int k = 0; k < count; ++k)
+      for (int k = 0; k < width && begin + k < columns; ++k)
         if (T* seed = variable(begin + k, active, xs, ps, ts)) seed->derivative[static_cast<std::size_t>(k)] = 1.0;
-      for (std::int32_t point = 0; point < points; ++point) {
-        for (int i = 0; i < n; ++i) xs[static_cast<std::size_t>(i)].value = x[point * n + i];
+      in_sets(points, [&](std::ptrdiff_t first, int held, const auto& all_agree) {
+        const Place states = place(const_cast<double*>(x), n, first, held);
+        for (int i = 0; i < n; ++i) xs[static_cast<std::size_t>(i)].value = states.load(i);
         for (T& y : ys) y.value = NAN;
         evaluate<T>(self, kind, index, xs.data(), ps.data(), ts.data(), ys.data());
-        double* const by_state = dx + static_cast<std::ptrdiff_t>(point) * r * n;
-        double* const by_parameter = dp + static_cast<std::ptrdiff_t>(point) * r * active_count;
-        for (int k = 0; k < count; ++k) {
-          const int c = begin + k;
-          double* const column = c < n ? by_state + c * r : by_parameter + (c - n) * r;
-          for (int i = 0; i < r; ++i)
-            column[i] = ys[static_cast<std::size_t>(i)].derivative[static_cast<std::size_t>(k)];
+        if (!all_agree()) return false;
+        const int r = rows(kind);
+        const Place values = place(out, r, first, held);
+        const Place by_state = place(dx, r * n, first, held);
+        const Place by_parameter = place(dp, r * active_count, first, held);
+        for (int i = 0; i < r; ++i) {
+          const T& y = ys[static_cast<std::size_t>(i)];
+          values.store(i, y.value);
+          for (int k = 0; k < width && begin + k < columns; ++k) {
+            const int c = begin + k;
+            (c < n ? by_state : by_parameter)
+                .store((c < n ? c : c - n) * r + i, y.derivative[static_cast<std::size_t>(k)]);
+          }
         }
-        for (int i = 0; i < r; ++i) out[point * r + i] = ys[static_cast<std::size_t>(i)].value;
-      }
+        return true;
+      });
     }
+  }
+
+  static void first_at_points(const void* self, std::int32_t kind, std::int32_t index, std::int32_t points,
+                              const double* x, const double* par, const std::int32_t* active, std::int32_t active_count,
+                              double* out, double* dx, double* dp) {
+    if (points <= 0 || hand_written_at_points(self, kind, index, points, x, par, active, active_count, out, dx, dp))
+      return;
+    first_of<&Place::one_by_one>(self, kind, index, points, x, par, active, active_count, out, dx, dp);
+  }
+
+  /// For problems without derivatives of their own.
+  static void first_in_lanes(const void* self, std::int32_t kind, std::int32_t index, std::int32_t sets,
+                             const double* x, const double* par, const std::int32_t* active, std::int32_t active_count,
+                             double* out, double* dx, double* dp) {
+    first_of<&Place::side_by_side>(self, kind, index, static_cast<std::ptrdiff_t>(sets) * points_of_set, x, par, active,
+                                   active_count, out, dx, dp);
   }
 
   static void second(const void* self, std::int32_t kind, std::int32_t index, const double* x, const double* par,
                      const std::int32_t* active, std::int32_t active_count, const double* direction, double* out,
                      double* dx, double* dp) {
-    using T = Dual<width, Dual<1>>;
+    using T = Dual<width, Dual<1, Numbers>>;
+    const int r = rows(kind);
     const int columns = n + active_count;
     for (int begin = 0; begin < columns; begin += width) {
       States<T> xs;
@@ -341,14 +426,13 @@ class ProblemTable {
         if (T* seed = variable(begin + k, active, xs, ps, ts)) seed->derivative[static_cast<std::size_t>(k)] = 1.0;
       preset(ys);
       evaluate<T>(self, kind, index, xs.data(), ps.data(), ts.data(), ys.data());
-      const int r = rows(kind);
       for (int k = 0; k < width && begin + k < columns; ++k) {
         const int c = begin + k;
-        double* column = c < n ? dx + c * r : dp + (c - n) * r;
+        double* const column = c < n ? dx + c * r : dp + (c - n) * r;
         for (int i = 0; i < r; ++i)
-          column[i] = ys[static_cast<std::size_t>(i)].derivative[static_cast<std::size_t>(k)].derivative[0];
+          column[i] = plain(ys[static_cast<std::size_t>(i)].derivative[static_cast<std::size_t>(k)].derivative[0]);
       }
-      for (int i = 0; i < r; ++i) out[i] = ys[static_cast<std::size_t>(i)].value.derivative[0];
+      for (int i = 0; i < r; ++i) out[i] = plain(ys[static_cast<std::size_t>(i)].value.derivative[0]);
     }
   }
 
@@ -357,7 +441,6 @@ class ProblemTable {
                                std::int32_t directions, const double* x, const double* par, const std::int32_t* active,
                                std::int32_t active_count, const double* v, const double* q, const double* weights,
                                double* out, double* gradient) {
-    std::fill_n(gradient, static_cast<std::ptrdiff_t>(points) * (n + active_count), 0.0);
     const WeightedPoints at{self,   kind,         index, points, directions, x,   par,
                             active, active_count, v,     q,      weights,    out, gradient};
     for (int k = 0; k < directions; ++k) add_direction(at, k);
@@ -380,8 +463,8 @@ class ProblemTable {
 
   /// The share of direction k in the gradients; u . F belongs to direction 0.
   static void add_direction(const WeightedPoints& at, int k) {
-    using T = Dual<width, Dual<1>>;
-    const int r = rows(at.kind);
+    using Along = Dual<1, Numbers>;
+    using T = Dual<width, Along>;
     const int columns = n + at.active_count;
     for (int begin = 0; begin < columns; begin += width) {
       const int count = columns - begin < width ? columns - begin : width;
@@ -395,30 +478,34 @@ class ProblemTable {
           moved->value.derivative[0] += at.q[k * at.active_count + c - n];
       for (int c = 0; c < count; ++c)
         if (T* seed = variable(begin + c, at.active, xs, ps, ts)) seed->derivative[static_cast<std::size_t>(c)] = 1.0;
-      for (std::ptrdiff_t point = 0; point < at.points; ++point) {
-        const double* const v = at.v + (point * at.directions + k) * n;
+      in_sets(at.points, [&](std::ptrdiff_t first, int held, const auto& all_agree) {
+        const Place states = Place::one_by_one(const_cast<double*>(at.x), n, first, held);
+        const Place directions = Place::one_by_one(const_cast<double*>(at.v), at.directions * n, first, held);
         for (int i = 0; i < n; ++i) {
-          Dual<1>& value = xs[static_cast<std::size_t>(i)].value;
-          value.value = at.x[point * n + i];
-          value.derivative[0] = v[i];
+          xs[static_cast<std::size_t>(i)].value.value = states.load(i);
+          xs[static_cast<std::size_t>(i)].value.derivative[0] = directions.load(k * n + i);
         }
         for (T& y : ys) y.value = NAN;
         evaluate<T>(at.self, at.kind, at.index, xs.data(), ps.data(), ts.data(), ys.data());
-        const double* const weights = at.weights + point * (at.directions + 1) * r;
-        double* const out = at.out + (point * at.directions + k) * r;
-        double* const gradient = at.gradient + point * columns + begin;
+        if (!all_agree()) return false;
+        const int r = rows(at.kind);
+        const Place weights = Place::one_by_one(const_cast<double*>(at.weights), (at.directions + 1) * r, first, held);
+        const Place out = Place::one_by_one(at.out, at.directions * r, first, held);
+        const Place gradient = Place::one_by_one(at.gradient, columns, first, held);
+        std::array<Numbers, static_cast<std::size_t>(width)> sums{};
+        for (int c = 0; c < count && k > 0; ++c) sums[static_cast<std::size_t>(c)] = gradient.load(begin + c);
         for (int i = 0; i < r; ++i) {
           const T& y = ys[static_cast<std::size_t>(i)];
-          const double unknown = y.value.value - y.value.value;  // NaN where it cannot be evaluated
-          const double w = weights[k * r + i];
-          const double u = (k == 0 ? weights[at.directions * r + i] : 0.0) + unknown;
-          out[i] = y.value.derivative[0] + unknown;
-          for (int c = 0; c < count; ++c) {
-            const Dual<1>& by = y.derivative[static_cast<std::size_t>(c)];
-            gradient[c] += u * by.value + w * by.derivative[0];
-          }
+          const Numbers unknown = y.value.value - y.value.value;  // NaN where it cannot be evaluated
+          const Numbers w = weights.load(k * r + i);
+          const Numbers u = (k == 0 ? weights.load(at.directions * r + i) : Numbers(0.0)) + unknown;
+          out.store(k * r + i, y.value.derivative[0] + unknown);
+          for (std::size_t c = 0; c < sums.size(); ++c)
+            sums[c] += u * y.derivative[c].value + w * y.derivative[c].derivative[0];
         }
-      }
+        for (int c = 0; c < count; ++c) gradient.store(begin + c, sums[static_cast<std::size_t>(c)]);
+        return true;
+      });
     }
   }
 
@@ -612,6 +699,7 @@ class ProblemTable {
     table.second = &second;
     table.first_at_points = &first_at_points;
     table.second_at_points = &second_at_points;
+    if constexpr (!gives_derivatives) table.first_in_lanes = &first_in_lanes;
     table.user_value = &user_value;
     if constexpr (boundary_count() > 0) {
       table.boundary_conditions = boundary_count();
@@ -645,8 +733,17 @@ class ProblemTable {
 
 }  // namespace tchat
 
+/// Tells tchat, before it calls anything, what the processor must have for this library.
+#ifdef __AVX2__
+#define TCHAT_PROBLEM_INSTRUCTIONS \
+  extern "C" __attribute__((visibility("default"))) const char tchat_problem_instructions[] = "avx2";
+#else
+#define TCHAT_PROBLEM_INSTRUCTIONS
+#endif
+
 /// Makes the class PROBLEM the problem of this shared library. Once per library, at namespace scope.
 #define TCHAT_PROBLEM(PROBLEM)                                                                       \
+  TCHAT_PROBLEM_INSTRUCTIONS                                                                         \
   extern "C" __attribute__((visibility("default"))) const tchat_problem* tchat_problem_table(void) { \
     return ::tchat::ProblemTable<PROBLEM>::get(#PROBLEM);                                            \
   }
