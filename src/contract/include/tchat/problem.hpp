@@ -295,6 +295,16 @@ class ProblemTable {
   static constexpr int points_of_set = 4;  ///< of first_in_lanes
   static_assert(points_of_set == Lanes::count);
 
+  /// Points first .. first + held - 1, which are evaluated together.
+  struct PointSet {
+    std::ptrdiff_t first;
+    int held;
+    const bool* disagreed;  ///< null for one point
+
+    /// After the evaluation: has every comparison had one answer?
+    bool is_of_use() const { return disagreed == nullptr || !*disagreed; }
+  };
+
   /// Numbers of points that are evaluated together, in an array with the numbers of all points: of each point `size`,
   /// one point after the other, or side by side as first_in_lanes has them.
   struct Place {
@@ -302,12 +312,12 @@ class ProblemTable {
     std::ptrdiff_t number_step, point_step;
     int held;
 
-    static Place one_by_one(double* all, std::ptrdiff_t size, std::ptrdiff_t first, int held) {
-      return {all + first * size, 1, size, held};
+    static Place one_by_one(double* all, std::ptrdiff_t size, const PointSet& set) {
+      return {all + set.first * size, 1, size, set.held};
     }
-    static Place side_by_side(double* all, std::ptrdiff_t size, std::ptrdiff_t first, int held) {
-      const std::ptrdiff_t set = first / points_of_set, lane = first % points_of_set;
-      return {all + set * points_of_set * size + lane, points_of_set, 1, held};
+    static Place side_by_side(double* all, std::ptrdiff_t size, const PointSet& set) {
+      const std::ptrdiff_t lane = set.first % points_of_set;
+      return {all + (set.first - lane) * size + lane, points_of_set, 1, set.held};
     }
 
     /// Number k of each point; the last one's is in all lanes that are left.
@@ -331,23 +341,23 @@ class ProblemTable {
       }
     }
   };
-  using PlaceOf = Place (*)(double* all, std::ptrdiff_t size, std::ptrdiff_t first, int held);
+  using PlaceOf = Place (*)(double* all, std::ptrdiff_t size, const PointSet& set);
 
-  /// work(first, held, all_agree) for all points, as many as are evaluated together at a time. Where all_agree() is
-  /// false after the evaluation it returns false, without results; its points are then worked on one by one.
+  /// work(set) for all points, as many as are evaluated together at a time. Where it is false, as the set is of no use,
+  /// its points are worked on one by one.
   template <class Work>
   static void in_sets(std::ptrdiff_t points, const Work& work) {
-    const auto one_agrees = [] { return true; };
-    if constexpr (has_lanes) {
-      bool& disagreed = parted();
-      for (std::ptrdiff_t first = 0; first < points; first += together) {
-        const int held = static_cast<int>(std::min<std::ptrdiff_t>(points - first, together));
-        disagreed = false;
-        if (work(first, held, [&] { return held == 1 || !disagreed; })) continue;
-        for (int l = 0; l < held; ++l) work(first + l, 1, one_agrees);
+    bool& disagreed = parted();
+    int alone = 0;  // so many points are still to be worked on one by one
+    for (std::ptrdiff_t first = 0; first < points;) {
+      const int held = alone > 0 ? 1 : static_cast<int>(std::min<std::ptrdiff_t>(points - first, together));
+      disagreed = false;
+      if (work(PointSet{first, held, held > 1 ? &disagreed : nullptr})) {
+        first += held;
+        if (alone > 0) --alone;
+      } else {
+        alone = held;
       }
-    } else {
-      for (std::ptrdiff_t point = 0; point < points; ++point) work(point, 1, one_agrees);
     }
   }
 
@@ -368,16 +378,16 @@ class ProblemTable {
       load(x, par, xs, ps, ts);
       for (int k = 0; k < width && begin + k < columns; ++k)
         if (T* seed = variable(begin + k, active, xs, ps, ts)) seed->derivative[static_cast<std::size_t>(k)] = 1.0;
-      in_sets(points, [&](std::ptrdiff_t first, int held, const auto& all_agree) {
-        const Place states = place(const_cast<double*>(x), n, first, held);
+      in_sets(points, [&](const PointSet& set) {
+        const Place states = place(const_cast<double*>(x), n, set);
         for (int i = 0; i < n; ++i) xs[static_cast<std::size_t>(i)].value = states.load(i);
         for (T& y : ys) y.value = NAN;
         evaluate<T>(self, kind, index, xs.data(), ps.data(), ts.data(), ys.data());
-        if (!all_agree()) return false;
+        if (!set.is_of_use()) return false;
         const int r = rows(kind);
-        const Place values = place(out, r, first, held);
-        const Place by_state = place(dx, r * n, first, held);
-        const Place by_parameter = place(dp, r * active_count, first, held);
+        const Place values = place(out, r, set);
+        const Place by_state = place(dx, r * n, set);
+        const Place by_parameter = place(dp, r * active_count, set);
         for (int i = 0; i < r; ++i) {
           const T& y = ys[static_cast<std::size_t>(i)];
           values.store(i, y.value);
@@ -408,9 +418,9 @@ class ProblemTable {
                                    active_count, out, dx, dp);
   }
 
-  static void second(const void* self, std::int32_t kind, std::int32_t index, const double* x, const double* par,
-                     const std::int32_t* active, std::int32_t active_count, const double* direction, double* out,
-                     double* dx, double* dp) {
+  __attribute__((cold)) static void second(const void* self, std::int32_t kind, std::int32_t index, const double* x,
+                                           const double* par, const std::int32_t* active, std::int32_t active_count,
+                                           const double* direction, double* out, double* dx, double* dp) {
     using T = Dual<width, Dual<1, Numbers>>;
     const int r = rows(kind);
     const int columns = n + active_count;
@@ -478,20 +488,20 @@ class ProblemTable {
           moved->value.derivative[0] += at.q[k * at.active_count + c - n];
       for (int c = 0; c < count; ++c)
         if (T* seed = variable(begin + c, at.active, xs, ps, ts)) seed->derivative[static_cast<std::size_t>(c)] = 1.0;
-      in_sets(at.points, [&](std::ptrdiff_t first, int held, const auto& all_agree) {
-        const Place states = Place::one_by_one(const_cast<double*>(at.x), n, first, held);
-        const Place directions = Place::one_by_one(const_cast<double*>(at.v), at.directions * n, first, held);
+      in_sets(at.points, [&](const PointSet& set) {
+        const Place states = Place::one_by_one(const_cast<double*>(at.x), n, set);
+        const Place directions = Place::one_by_one(const_cast<double*>(at.v), at.directions * n, set);
         for (int i = 0; i < n; ++i) {
           xs[static_cast<std::size_t>(i)].value.value = states.load(i);
           xs[static_cast<std::size_t>(i)].value.derivative[0] = directions.load(k * n + i);
         }
         for (T& y : ys) y.value = NAN;
         evaluate<T>(at.self, at.kind, at.index, xs.data(), ps.data(), ts.data(), ys.data());
-        if (!all_agree()) return false;
+        if (!set.is_of_use()) return false;
         const int r = rows(at.kind);
-        const Place weights = Place::one_by_one(const_cast<double*>(at.weights), (at.directions + 1) * r, first, held);
-        const Place out = Place::one_by_one(at.out, at.directions * r, first, held);
-        const Place gradient = Place::one_by_one(at.gradient, columns, first, held);
+        const Place weights = Place::one_by_one(const_cast<double*>(at.weights), (at.directions + 1) * r, set);
+        const Place out = Place::one_by_one(at.out, at.directions * r, set);
+        const Place gradient = Place::one_by_one(at.gradient, columns, set);
         std::array<Numbers, static_cast<std::size_t>(width)> sums{};
         for (int c = 0; c < count && k > 0; ++c) sums[static_cast<std::size_t>(c)] = gradient.load(begin + c);
         for (int i = 0; i < r; ++i) {
@@ -510,7 +520,8 @@ class ProblemTable {
   }
 
   template <class T>
-  static void load(const double* x, const double* par, States<T>& xs, Parameters<T>& ps, Durations<T>& ts) {
+  __attribute__((noinline)) static void load(const double* x, const double* par, States<T>& xs, Parameters<T>& ps,
+                                             Durations<T>& ts) {
     for (std::size_t i = 0; i < static_cast<std::size_t>(n); ++i) xs[i] = T(x[i]);
     for (std::size_t i = 0; i < static_cast<std::size_t>(q); ++i) ps[i] = T(par[i]);
     for (std::size_t i = 0; integral_count() > 0 && i < ts.size(); ++i) ts[i] = T(par[durations_begin + i]);
