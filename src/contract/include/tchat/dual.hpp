@@ -23,14 +23,14 @@
 namespace tchat {
 
 template <int N, class Base = double>
-struct Dual {
+struct Dual {  // NOLINT(cppcoreguidelines-special-member-functions): nothing but numbers
   Base value{};
   std::array<Base, N> derivative{};
 
   Dual() = default;
   // Number by number: g++ copies arrays of this size by a call, which takes longer than a multiplication.
-  TCHAT_INLINE Dual(const Dual& other) : Dual(other, std::make_index_sequence<N>{}) {}
-  TCHAT_INLINE Dual& operator=(const Dual& other) { return assign(other, std::make_index_sequence<N>{}); }
+  Dual(const Dual& other) : Dual(other, std::make_index_sequence<N>{}) {}
+  Dual& operator=(const Dual& other) { return assign(other, std::make_index_sequence<N>{}); }
 
   // Constants convert without being asked, so that formulas read as with doubles.
   // NOLINTBEGIN(google-explicit-constructor)
@@ -40,31 +40,31 @@ struct Dual {
   Dual(const Base& constant) : value(constant) {}
   // NOLINTEND(google-explicit-constructor)
 
-  TCHAT_INLINE Dual& operator+=(const Dual& b) {
+  Dual& operator+=(const Dual& b) {
     value += b.value;
     for (int k = 0; k < N; ++k) derivative[k] += b.derivative[k];
     return *this;
   }
-  TCHAT_INLINE Dual& operator-=(const Dual& b) {
+  Dual& operator-=(const Dual& b) {
     value -= b.value;
     for (int k = 0; k < N; ++k) derivative[k] -= b.derivative[k];
     return *this;
   }
-  TCHAT_INLINE Dual& operator*=(const Dual& b) { return *this = *this * b; }
-  TCHAT_INLINE Dual& operator/=(const Dual& b) { return *this = *this / b; }
+  Dual& operator*=(const Dual& b) { return *this = *this * b; }
+  Dual& operator/=(const Dual& b) { return *this = *this / b; }
 
-  TCHAT_INLINE Dual operator-() const { return chain(*this, -value, Base(-1.0)); }
+  Dual operator-() const { return chain(*this, -value, Base(-1.0)); }
   Dual operator+() const { return *this; }
 
-  TCHAT_INLINE friend Dual operator+(Dual a, const Dual& b) { return a += b; }
-  TCHAT_INLINE friend Dual operator-(Dual a, const Dual& b) { return a -= b; }
-  TCHAT_INLINE friend Dual operator*(const Dual& a, const Dual& b) {
+  friend Dual operator+(Dual a, const Dual& b) { return a += b; }
+  friend Dual operator-(Dual a, const Dual& b) { return a -= b; }
+  friend Dual operator*(const Dual& a, const Dual& b) {
     Dual c;
     c.value = a.value * b.value;
     for (int k = 0; k < N; ++k) c.derivative[k] = a.derivative[k] * b.value + a.value * b.derivative[k];
     return c;
   }
-  TCHAT_INLINE friend Dual operator/(const Dual& a, const Dual& b) {
+  friend Dual operator/(const Dual& a, const Dual& b) {
     Dual c;
     const Base inverse = Base(1.0) / b.value;
     c.value = a.value / b.value;
@@ -73,19 +73,19 @@ struct Dual {
   }
 
   /// Mixed arithmetic with plain numbers, cheaper than with a constant Dual.
-  TCHAT_INLINE friend Dual operator+(Dual a, double b) { return a.value += b, a; }
-  TCHAT_INLINE friend Dual operator+(double a, Dual b) { return b.value += a, b; }
-  TCHAT_INLINE friend Dual operator-(Dual a, double b) { return a.value -= b, a; }
-  TCHAT_INLINE friend Dual operator-(double a, const Dual& b) { return -b + a; }
-  TCHAT_INLINE friend Dual operator*(const Dual& a, double b) { return chain(a, a.value * b, Base(b)); }
-  TCHAT_INLINE friend Dual operator*(double a, const Dual& b) { return chain(b, b.value * a, Base(a)); }
-  TCHAT_INLINE friend Dual operator/(const Dual& a, double b) {
+  friend Dual operator+(Dual a, double b) { return a.value += b, a; }
+  friend Dual operator+(double a, Dual b) { return b.value += a, b; }
+  friend Dual operator-(Dual a, double b) { return a.value -= b, a; }
+  friend Dual operator-(double a, const Dual& b) { return -b + a; }
+  friend Dual operator*(const Dual& a, double b) { return chain(a, a.value * b, Base(b)); }
+  friend Dual operator*(double a, const Dual& b) { return chain(b, b.value * a, Base(a)); }
+  friend Dual operator/(const Dual& a, double b) {
     Dual c;
     c.value = a.value / b;
     for (int k = 0; k < N; ++k) c.derivative[k] = a.derivative[k] / b;
     return c;
   }
-  TCHAT_INLINE friend Dual operator/(double a, const Dual& b) {
+  friend Dual operator/(double a, const Dual& b) {
     const Base quotient = a / b.value;
     return chain(b, quotient, -quotient / b.value);
   }
@@ -108,7 +108,7 @@ struct Dual {
   friend bool operator>=(double a, const Dual& b) { return a >= b.value; }
 
   /// phi(a) by the chain rule, given phi(a.value) and phi'(a.value).
-  TCHAT_INLINE static Dual chain(const Dual& a, const Base& value, const Base& slope) {
+  static Dual chain(const Dual& a, const Base& value, const Base& slope) {
     Dual c;
     c.value = value;
     for (int k = 0; k < N; ++k) c.derivative[k] = slope * a.derivative[k];
@@ -117,10 +117,9 @@ struct Dual {
 
  private:
   template <std::size_t... K>
-  TCHAT_INLINE Dual(const Dual& other, std::index_sequence<K...>)
-      : value(other.value), derivative{other.derivative[K]...} {}
+  Dual(const Dual& other, std::index_sequence<K...>) : value(other.value), derivative{other.derivative[K]...} {}
   template <std::size_t... K>
-  TCHAT_INLINE Dual& assign(const Dual& other, std::index_sequence<K...>) {
+  Dual& assign(const Dual& other, std::index_sequence<K...>) {
     value = other.value;
     ((derivative[K] = other.derivative[K]), ...);
     return *this;

@@ -15,7 +15,7 @@
 #include <cstdint>
 #include <type_traits>
 
-/// For operations of a few instructions, of which g++ makes calls where a formula has many of them.
+/// For operations of one or two instructions, of which g++ makes calls where a formula has many of them.
 #define TCHAT_INLINE __attribute__((always_inline)) inline
 
 namespace tchat {
@@ -26,7 +26,7 @@ inline bool& parted() {
   return disagreed;
 }
 
-class Lanes {
+class Lanes {  // NOLINT(cppcoreguidelines-special-member-functions): nothing but numbers
  public:
   static constexpr int count = 4;
 
@@ -35,7 +35,7 @@ class Lanes {
   TCHAT_INLINE Lanes(const Lanes& other) {
     for (int p = 0; p < part_count; ++p) parts_[p] = other.parts_[p];
   }
-  TCHAT_INLINE Lanes& operator=(const Lanes& other) {
+  TCHAT_INLINE Lanes& operator=(const Lanes& other) {  // NOLINT(bugprone-unhandled-self-assignment)
     for (int p = 0; p < part_count; ++p) parts_[p] = other.parts_[p];
     return *this;
   }
@@ -129,7 +129,9 @@ inline double plain(const Lanes& a) {
   return a.lane(0);
 }
 
-inline bool isfinite(const Lanes& a) { return a - a == 0.0; }
+inline bool isfinite(const Lanes& a) {
+  return a - a == 0.0;  // NOLINT(misc-redundant-expression)
+}
 
 /// phi(a) in each lane; once where it is the same in all, as for a single point.
 template <class Function>

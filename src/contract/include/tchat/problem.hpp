@@ -305,20 +305,12 @@ class ProblemTable {
     bool is_of_use() const { return disagreed == nullptr || !*disagreed; }
   };
 
-  /// Numbers of points that are evaluated together, in an array with the numbers of all points: of each point `size`,
-  /// one point after the other, or side by side as first_in_lanes has them.
+  /// Numbers of the points of a set, in an array with the numbers of all points. `D` is double, or constant.
+  template <class D>
   struct Place {
-    double* begin;
+    D* begin;
     std::ptrdiff_t number_step, point_step;
     int held;
-
-    static Place one_by_one(double* all, std::ptrdiff_t size, const PointSet& set) {
-      return {all + set.first * size, 1, size, set.held};
-    }
-    static Place side_by_side(double* all, std::ptrdiff_t size, const PointSet& set) {
-      const std::ptrdiff_t lane = set.first % points_of_set;
-      return {all + (set.first - lane) * size + lane, points_of_set, 1, set.held};
-    }
 
     /// Number k of each point; the last one's is in all lanes that are left.
     Numbers load(std::ptrdiff_t k) const {
@@ -332,7 +324,7 @@ class ProblemTable {
       }
     }
     void store(std::ptrdiff_t k, const Numbers& numbers) const {
-      double* const to = begin + k * number_step;
+      D* const to = begin + k * number_step;
       if constexpr (has_lanes) {
         if (held == Lanes::count && point_step == 1) return numbers.to(to);
         numbers.scatter(to, point_step, held);
@@ -341,7 +333,22 @@ class ProblemTable {
       }
     }
   };
-  using PlaceOf = Place (*)(double* all, std::ptrdiff_t size, const PointSet& set);
+
+  /// Of each point `size` numbers, one point after the other.
+  struct OneByOne {
+    template <class D>
+    static Place<D> place(D* all, std::ptrdiff_t size, const PointSet& set) {
+      return {all + set.first * size, 1, size, set.held};
+    }
+  };
+  /// Four points side by side, as first_in_lanes has them.
+  struct SideBySide {
+    template <class D>
+    static Place<D> place(D* all, std::ptrdiff_t size, const PointSet& set) {
+      const std::ptrdiff_t lane = set.first % points_of_set;
+      return {all + (set.first - lane) * size + lane, points_of_set, 1, set.held};
+    }
+  };
 
   /// work(set) for all points, as many as are evaluated together at a time. Where it is false, as the set is of no use,
   /// its points are worked on one by one.
@@ -363,7 +370,7 @@ class ProblemTable {
 
   /// Arrays of dual numbers are made and set to zero once for all points: for a field of a few terms that takes longer
   /// than the field. There is at least one point.
-  template <PlaceOf place>
+  template <class Order>
   __attribute__((noinline)) static void first_of(const void* self, std::int32_t kind, std::int32_t index,
                                                  std::ptrdiff_t points, const double* x, const double* par,
                                                  const std::int32_t* active, std::int32_t active_count, double* out,
@@ -379,15 +386,15 @@ class ProblemTable {
       for (int k = 0; k < width && begin + k < columns; ++k)
         if (T* seed = variable(begin + k, active, xs, ps, ts)) seed->derivative[static_cast<std::size_t>(k)] = 1.0;
       in_sets(points, [&](const PointSet& set) {
-        const Place states = place(const_cast<double*>(x), n, set);
+        const Place<const double> states = Order::place(x, n, set);
         for (int i = 0; i < n; ++i) xs[static_cast<std::size_t>(i)].value = states.load(i);
         for (T& y : ys) y.value = NAN;
         evaluate<T>(self, kind, index, xs.data(), ps.data(), ts.data(), ys.data());
         if (!set.is_of_use()) return false;
         const int r = rows(kind);
-        const Place values = place(out, r, set);
-        const Place by_state = place(dx, r * n, set);
-        const Place by_parameter = place(dp, r * active_count, set);
+        const Place<double> values = Order::place(out, r, set);
+        const Place<double> by_state = Order::place(dx, r * n, set);
+        const Place<double> by_parameter = Order::place(dp, r * active_count, set);
         for (int i = 0; i < r; ++i) {
           const T& y = ys[static_cast<std::size_t>(i)];
           values.store(i, y.value);
@@ -407,15 +414,15 @@ class ProblemTable {
                               double* out, double* dx, double* dp) {
     if (points <= 0 || hand_written_at_points(self, kind, index, points, x, par, active, active_count, out, dx, dp))
       return;
-    first_of<&Place::one_by_one>(self, kind, index, points, x, par, active, active_count, out, dx, dp);
+    first_of<OneByOne>(self, kind, index, points, x, par, active, active_count, out, dx, dp);
   }
 
   /// For problems without derivatives of their own.
   static void first_in_lanes(const void* self, std::int32_t kind, std::int32_t index, std::int32_t sets,
                              const double* x, const double* par, const std::int32_t* active, std::int32_t active_count,
                              double* out, double* dx, double* dp) {
-    first_of<&Place::side_by_side>(self, kind, index, static_cast<std::ptrdiff_t>(sets) * points_of_set, x, par, active,
-                                   active_count, out, dx, dp);
+    first_of<SideBySide>(self, kind, index, static_cast<std::ptrdiff_t>(sets) * points_of_set, x, par, active,
+                         active_count, out, dx, dp);
   }
 
   __attribute__((cold)) static void second(const void* self, std::int32_t kind, std::int32_t index, const double* x,
@@ -447,6 +454,7 @@ class ProblemTable {
   }
 
   /// Directions one by one: two in one dual number are slower, and every kind of dual number has to be compiled.
+  // NOLINTBEGIN(readability-non-const-parameter): written by way of WeightedPoints
   static void second_at_points(const void* self, std::int32_t kind, std::int32_t index, std::int32_t points,
                                std::int32_t directions, const double* x, const double* par, const std::int32_t* active,
                                std::int32_t active_count, const double* v, const double* q, const double* weights,
@@ -455,6 +463,7 @@ class ProblemTable {
                             active, active_count, v,     q,      weights,    out, gradient};
     for (int k = 0; k < directions; ++k) add_direction(at, k);
   }
+  // NOLINTEND(readability-non-const-parameter)
 
   /// The arguments of second_at_points.
   struct WeightedPoints {
@@ -489,8 +498,8 @@ class ProblemTable {
       for (int c = 0; c < count; ++c)
         if (T* seed = variable(begin + c, at.active, xs, ps, ts)) seed->derivative[static_cast<std::size_t>(c)] = 1.0;
       in_sets(at.points, [&](const PointSet& set) {
-        const Place states = Place::one_by_one(const_cast<double*>(at.x), n, set);
-        const Place directions = Place::one_by_one(const_cast<double*>(at.v), at.directions * n, set);
+        const Place<const double> states = OneByOne::place(at.x, n, set);
+        const Place<const double> directions = OneByOne::place(at.v, at.directions * n, set);
         for (int i = 0; i < n; ++i) {
           xs[static_cast<std::size_t>(i)].value.value = states.load(i);
           xs[static_cast<std::size_t>(i)].value.derivative[0] = directions.load(k * n + i);
@@ -499,9 +508,9 @@ class ProblemTable {
         evaluate<T>(at.self, at.kind, at.index, xs.data(), ps.data(), ts.data(), ys.data());
         if (!set.is_of_use()) return false;
         const int r = rows(at.kind);
-        const Place weights = Place::one_by_one(const_cast<double*>(at.weights), (at.directions + 1) * r, set);
-        const Place out = Place::one_by_one(at.out, at.directions * r, set);
-        const Place gradient = Place::one_by_one(at.gradient, columns, set);
+        const Place<const double> weights = OneByOne::place(at.weights, (at.directions + 1) * r, set);
+        const Place<double> out = OneByOne::place(at.out, at.directions * r, set);
+        const Place<double> gradient = OneByOne::place(at.gradient, columns, set);
         std::array<Numbers, static_cast<std::size_t>(width)> sums{};
         for (int c = 0; c < count && k > 0; ++c) sums[static_cast<std::size_t>(c)] = gradient.load(begin + c);
         for (int i = 0; i < r; ++i) {
