@@ -31,10 +31,11 @@ constexpr std::array<Helper, 8> helpers = {{
      "}\n"},
     {"heaviside<T>(",
      "  template <class T>\n  static T heaviside(const T& a) {\n    return T(a >= 0.0 ? 1.0 : 0.0);\n  }\n"},
-    {"floor_of<T>(", "  template <class T>\n  static T floor_of(const T& a) {\n    return tchat::floored(a);\n  }\n"},
+    {"floor_of<T>(",
+     "  template <class T>\n  static T floor_of(const T& a) {\n    return tchat::whole_numbers::floor(a);\n  }\n"},
     {"remainder_of<T>(",
      "  template <class T>\n  static T remainder_of(const T& a, const T& b) {\n    return a - b * "
-     "tchat::floored(T(a / b));\n  }\n"},
+     "tchat::whole_numbers::floor(T(a / b));\n  }\n"},
 }};
 
 class CppWriter {

@@ -7,6 +7,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstdlib>
@@ -196,8 +197,14 @@ std::string Compiler::identity() const {
     text += fmt::format("{} {} {}\n", file.string(), fs::file_size(file, failed),
                         fs::last_write_time(file, failed).time_since_epoch().count());
   }
-  if (language_ != Language::fortran) text.append(instruction_option());
-  return text;
+  return text + instructions();
+}
+
+/// The option for this processor's instructions, unless the command says which ones there are.
+std::string Compiler::instructions() const {
+  const auto says = [](const std::string& word) { return word.starts_with("-march=") || word.starts_with("-mno-avx"); };
+  const bool said = std::any_of(command_.begin(), command_.end(), says);
+  return said || language_ == Language::fortran ? "" : std::string(instruction_option());
 }
 
 std::vector<std::string> Compiler::flags(const Compilation& what) const {
@@ -209,8 +216,6 @@ std::vector<std::string> Compiler::flags(const Compilation& what) const {
                                     "-MMD", "-MF",        what.dependencies};
   // Loops over derivatives take a third of the time that they take with -O2.
   if (!is_clang(command_)) flags.insert(flags.end(), {"-fno-gnu-unique", "-mtune=native"});
-  // Four numbers in a register; products and sums are still rounded one by one, so that digits do not depend on it.
-  if (const std::string_view option = instruction_option(); !option.empty()) flags.emplace_back(option);
   return flags;
 }
 
@@ -219,6 +224,14 @@ void Compiler::compile(const Compilation& what) const {
   for (const char* flag : {"-O2", "-fPIC", "-shared"}) words.emplace_back(flag);
   for (const std::string& flag : flags(what)) words.push_back(flag);
   for (const std::string& word : {std::string("-o"), what.library, what.source}) words.push_back(word);
+  // Four numbers in a register; products and sums are still rounded one by one. A problem that cannot be compiled so
+  // (its own functions may be for numbers one by one) is compiled without.
+  if (const std::string option = instructions(); !option.empty()) {
+    std::vector<std::string> with_option = words;
+    with_option.insert(with_option.end() - 1, option);
+    const ProcessResult result = run_process(with_option);
+    if (result.spawn_error == 0 && result.status == 0) return;
+  }
   const ProcessResult result = run_process(words);
   if (result.spawn_error != 0) refuse_missing_compiler(language_, command_[0], what.source, result.spawn_error);
   require_success(result, command_, what, language_);

@@ -40,6 +40,7 @@ class Compiler {
 
  private:
   std::vector<std::string> flags(const Compilation& what) const;
+  std::string instructions() const;
 
   Language language_;
   std::vector<std::string> command_;

@@ -9,7 +9,7 @@ namespace tchat {
 
 /// The option of g++ and clang++ for them; "" where there are none.
 inline std::string_view instruction_option() {
-#if defined(__x86_64__) || defined(__i386__)
+#ifdef __x86_64__
   if (__builtin_cpu_supports("avx2") != 0) return "-mavx2";
 #endif
   return {};

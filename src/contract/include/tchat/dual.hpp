@@ -26,11 +26,12 @@ template <int N, class Base = double>
 struct Dual {  // NOLINT(cppcoreguidelines-special-member-functions): nothing but numbers
   Base value{};
   std::array<Base, N> derivative{};
+  using OneByOne = std::make_index_sequence<N <= 16 ? N : 0>;  // many are copied as a whole
 
   Dual() = default;
   // Number by number: g++ copies arrays of this size by a call, which takes longer than a multiplication.
-  Dual(const Dual& other) : Dual(other, std::make_index_sequence<N>{}) {}
-  Dual& operator=(const Dual& other) { return assign(other, std::make_index_sequence<N>{}); }
+  Dual(const Dual& other) : Dual(other, OneByOne{}) {}
+  Dual& operator=(const Dual& other) { return assign(other, OneByOne{}); }
 
   // Constants convert without being asked, so that formulas read as with doubles.
   // NOLINTBEGIN(google-explicit-constructor)
@@ -118,10 +119,14 @@ struct Dual {  // NOLINT(cppcoreguidelines-special-member-functions): nothing bu
  private:
   template <std::size_t... K>
   Dual(const Dual& other, std::index_sequence<K...>) : value(other.value), derivative{other.derivative[K]...} {}
+  Dual(const Dual& other, std::index_sequence<>) : value(other.value), derivative(other.derivative) {}
   template <std::size_t... K>
   Dual& assign(const Dual& other, std::index_sequence<K...>) {
     value = other.value;
-    ((derivative[K] = other.derivative[K]), ...);
+    if constexpr (sizeof...(K) == 0)
+      derivative = other.derivative;
+    else
+      ((derivative[K] = other.derivative[K]), ...);
     return *this;
   }
 };
@@ -241,24 +246,29 @@ template <int N, class B>
 Dual<N, B> fmax(const Dual<N, B>& a, const Dual<N, B>& b) {
   return max(a, b);
 }
-/// a rounded down, which counts as a constant.
-inline double floored(double a) { return std::floor(a); }
+/// Whole numbers, which count as constants. In a namespace of their own: a problem's own functions of these names are
+/// not to be taken for these.
+namespace whole_numbers {
+inline double floor(double a) { return std::floor(a); }
+inline Lanes floor(const Lanes& a) { return tchat::floor(a); }
 template <int N, class B>
-Dual<N, B> floored(const Dual<N, B>& a) {
-  return Dual<N, B>(floored(a.value));
+Dual<N, B> floor(const Dual<N, B>& a) {
+  return Dual<N, B>(whole_numbers::floor(a.value));
 }
-/// a rounded towards zero.
-inline double truncated(double a) { return std::trunc(a); }
+inline double trunc(double a) { return std::trunc(a); }
+inline Lanes trunc(const Lanes& a) { return tchat::trunc(a); }
 template <int N, class B>
-Dual<N, B> truncated(const Dual<N, B>& a) {
-  return Dual<N, B>(truncated(a.value));
+Dual<N, B> trunc(const Dual<N, B>& a) {
+  return Dual<N, B>(whole_numbers::trunc(a.value));
 }
+}  // namespace whole_numbers
 
 /// a - m b, with the whole number m of std::fmod; m counts as a constant.
 template <int N, class B>
 Dual<N, B> fmod(const Dual<N, B>& a, const Dual<N, B>& b) {
   using std::fmod;
-  Dual<N, B> c = a - truncated(Dual<N, B>(a.value / b.value)) * b;
+  const B m = whole_numbers::trunc(a.value / b.value);
+  Dual<N, B> c = a - Dual<N, B>::chain(b, m * b.value, m);
   c.value = fmod(a.value, b.value);
   return c;
 }

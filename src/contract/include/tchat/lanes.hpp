@@ -1,9 +1,11 @@
 /// Four numbers side by side in vector registers: the same formula at four points, for a problem's functions at many
 /// points in one call. Included by tchat/problem.hpp; a problem's code need not know of it.
 ///
-/// Operations are those on doubles, in each lane, so that values do not depend on the lanes to the last bit. A
-/// comparison has one answer for all lanes. Where they disagree it is the first lane's, and `parted()` tells afterwards
-/// that the others are of no use: whoever evaluates puts one point into all four then, which always agree.
+/// Operations are those on doubles, in each lane, so that in one library values do not depend on the lanes to the last
+/// bit. A comparison has one answer for all lanes, and so has plain(), the one number that they have. Where they
+/// disagree it is the first lane's, and `parted()` tells afterwards that the others are of no use: whoever evaluates
+/// puts one point into all four then, which always agree. Code that decides by anything else (errno) must ask for
+/// plain() first.
 #pragma once
 
 #include <math.h>
@@ -30,7 +32,7 @@ class Lanes {  // NOLINT(cppcoreguidelines-special-member-functions): nothing bu
  public:
   static constexpr int count = 4;
 
-  Lanes() : Lanes(0.0) {}
+  constexpr Lanes() : parts_{} {}
   // Copied register by register: g++ copies large arrays of what is trivial to copy by a call.
   TCHAT_INLINE Lanes(const Lanes& other) {
     for (int p = 0; p < part_count; ++p) parts_[p] = other.parts_[p];
@@ -42,7 +44,7 @@ class Lanes {  // NOLINT(cppcoreguidelines-special-member-functions): nothing bu
   // NOLINTBEGIN(google-explicit-constructor): constants convert without being asked, as with Dual
   template <class S, class = std::enable_if_t<std::is_arithmetic_v<S>>>
   Lanes(S constant) {
-    for (Part& part : parts_) part = static_cast<double>(constant) - Part{};
+    for (Part& part : parts_) part = static_cast<double>(constant) - Part{};  // spreads it; less 0.0 keeps even -0.0
   }
   // NOLINTEND(google-explicit-constructor)
 
@@ -106,7 +108,7 @@ class Lanes {  // NOLINT(cppcoreguidelines-special-member-functions): nothing bu
 #undef TCHAT_LANE_COMPARISON
 
  private:
-#ifdef __AVX__
+#ifdef __AVX2__
   static constexpr int part_lanes = 4;
 #else
   static constexpr int part_lanes = 2;
@@ -171,6 +173,14 @@ TCHAT_LANE_FUNCTION(log10)
 TCHAT_LANE_FUNCTION(log1p)
 TCHAT_LANE_FUNCTION(sqrt)
 TCHAT_LANE_FUNCTION(cbrt)
+TCHAT_LANE_FUNCTION(erf)
+TCHAT_LANE_FUNCTION(erfc)
+TCHAT_LANE_FUNCTION(tgamma)
+TCHAT_LANE_FUNCTION(lgamma)
+TCHAT_LANE_FUNCTION(floor)
+TCHAT_LANE_FUNCTION(ceil)
+TCHAT_LANE_FUNCTION(trunc)
+TCHAT_LANE_FUNCTION(round)
 #undef TCHAT_LANE_FUNCTION
 
 #define TCHAT_LANE_FUNCTION_OF_TWO(NAME)                                       \
@@ -180,17 +190,18 @@ TCHAT_LANE_FUNCTION(cbrt)
 TCHAT_LANE_FUNCTION_OF_TWO(pow)
 TCHAT_LANE_FUNCTION_OF_TWO(atan2)
 TCHAT_LANE_FUNCTION_OF_TWO(fmod)
+TCHAT_LANE_FUNCTION_OF_TWO(hypot)
+TCHAT_LANE_FUNCTION_OF_TWO(fmin)
+TCHAT_LANE_FUNCTION_OF_TWO(fmax)
 #undef TCHAT_LANE_FUNCTION_OF_TWO
 
-inline Lanes floored(const Lanes& a) {
-  return in_lanes([](double x) { return std::floor(x); }, a);
+inline Lanes fabs(const Lanes& a) {
+  return in_lanes([](double x) { return std::fabs(x); }, a);
 }
-inline Lanes truncated(const Lanes& a) {
-  return in_lanes([](double x) { return std::trunc(x); }, a);
-}
+inline Lanes abs(const Lanes& a) { return fabs(a); }
 
 /// What derivatives at many points are computed with: lanes where four numbers have a register.
-#ifdef __AVX__
+#ifdef __AVX2__
 using PointNumbers = Lanes;
 #else
 using PointNumbers = double;

@@ -346,6 +346,7 @@ class ProblemTable {
     template <class D>
     static Place<D> place(D* all, std::ptrdiff_t size, const PointSet& set) {
       const std::ptrdiff_t lane = set.first % points_of_set;
+      if (size == 0) return {all, 0, 0, 0};  // perhaps null
       return {all + (set.first - lane) * size + lane, points_of_set, 1, set.held};
     }
   };
@@ -376,6 +377,7 @@ class ProblemTable {
                                                  const std::int32_t* active, std::int32_t active_count, double* out,
                                                  double* dx, double* dp) {
     using T = Dual<width, Numbers>;
+    if (points <= 0) return;
     const int columns = n + active_count;
     for (int begin = 0; begin < columns; begin += width) {
       States<T> xs;
@@ -461,6 +463,7 @@ class ProblemTable {
                                double* out, double* gradient) {
     const WeightedPoints at{self,   kind,         index, points, directions, x,   par,
                             active, active_count, v,     q,      weights,    out, gradient};
+    if (directions <= 0) std::fill_n(gradient, static_cast<std::ptrdiff_t>(points) * (n + active_count), 0.0);
     for (int k = 0; k < directions; ++k) add_direction(at, k);
   }
   // NOLINTEND(readability-non-const-parameter)
@@ -719,7 +722,7 @@ class ProblemTable {
     table.second = &second;
     table.first_at_points = &first_at_points;
     table.second_at_points = &second_at_points;
-    if constexpr (!gives_derivatives) table.first_in_lanes = &first_in_lanes;
+    if constexpr (has_lanes && !gives_derivatives) table.first_in_lanes = &first_in_lanes;
     table.user_value = &user_value;
     if constexpr (boundary_count() > 0) {
       table.boundary_conditions = boundary_count();
