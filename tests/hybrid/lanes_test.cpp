@@ -29,7 +29,7 @@ struct Everything {
           atan(x[0]) + atan2(x[1], x[0] + 3.0) + asinh(x[2]) + acosh(3.0 + x[0]) + atanh(0.3 * x[1]) + cbrt(4.0 + x[2]);
       f[1] = pow(x[0] + 3.0, x[1]) + pow(x[1], 3) + pow(2.0, x[2]) + hypot(x[0], 2.0) + fmod(5.0 * x[0], par[2]);
       f[2] = fabs(x[0]) + fmax(x[1], x[2]) + fmin(x[1], 0.1) + whole_numbers::floor(3.0 * x[0]) * x[1] +
-             whole::trunc(4.0 * x[2]);
+             whole_numbers::trunc(4.0 * x[2]);
       if (x[0] > 0.2) f[0] = x[1] / x[0];
       while (f[2] > 1.0) f[2] *= 0.5;
     } else {
@@ -211,40 +211,28 @@ TEST_CASE("four points are evaluated at once, and one by one where a comparison 
 }
 
 namespace {
-/// A problem's own function of a name that tchat has as well, and one that dual numbers do not know.
+/// Not to be taken for any function of tchat's.
 template <class T>
 T truncated(const T& a) {
   return a > 0.0 ? a : T(0.0);
 }
-}  // namespace
-
-namespace tchat {
-template <int N, class B>
-Dual<N, B> erf(const Dual<N, B>& a) {
-  using std::erf, std::exp;
-  return Dual<N, B>::chain(a, erf(a.value), 1.1283791670955126 * exp(-(a.value * a.value)));
-}
-}  // namespace tchat
-
-namespace {
 struct OwnFunctions {
   static constexpr int dimension = 1, parameters = 1, fields = 1;
   template <class T>
   void field(int, const T* x, const T* par, T* f) const {
-    using std::erf;
-    f[0] = truncated(x[0]) * par[0] + erf(x[0]) + fmod(x[0], 1e300);
+    f[0] = truncated(x[0]) * par[0] + fmod(x[0], T(INFINITY));
   }
 };
 }  // namespace
 
-TEST_CASE("a problem's own functions are not taken for tchat's, nor lost on lanes") {
+TEST_CASE("a problem's own functions are not taken for tchat's") {
   const Tables<OwnFunctions> tables;
   const double x = 1.7, par[] = {2.0};
   for (const tchat_problem* table : {&tables.plain, &tables.lanes}) {
     double f = 0.0, dx = 0.0;
     table->first(table->self, TCHAT_FIELD, 1, &x, par, nullptr, 0, &f, &dx, nullptr);
-    CHECK(f == Approx(2.0 * 1.7 + std::erf(1.7) + 1.7));
-    CHECK(dx == Approx(2.0 + 1.1283791670955126 * std::exp(-1.7 * 1.7) + 1.0));
+    CHECK(f == 2.0 * 1.7 + 1.7);
+    CHECK(dx == 3.0);
   }
 }
 
@@ -265,6 +253,7 @@ TEST_CASE("the numbers of all lanes") {
   CHECK_FALSE(is_one_number(Lanes(0.0, -0.0, 0.0, 0.0)));
   CHECK(std::signbit(sin(Lanes(0.0, -0.0, 0.0, 0.0)).lane(1)));
   CHECK(std::signbit((-Lanes(0.0)).lane(3)));
+  CHECK(erf(a).lane(2) == std::erf(3.0));
   CHECK(isfinite(a));
   CHECK_FALSE(isfinite(Lanes(INFINITY)));
   CHECK_FALSE(isfinite(Lanes(NAN)));
