@@ -251,15 +251,15 @@ Dual<N, B> fmax(const Dual<N, B>& a, const Dual<N, B>& b) {
 namespace whole_numbers {
 inline double floor(double a) { return std::floor(a); }
 inline Lanes floor(const Lanes& a) { return tchat::floor(a); }
-template <int N, class B>
-Dual<N, B> floor(const Dual<N, B>& a) {
-  return Dual<N, B>(whole_numbers::floor(a.value));
+template <int M, class B>
+Dual<M, B> floor(const Dual<M, B>& a) {
+  return Dual<M, B>(whole_numbers::floor(a.value));
 }
 inline double trunc(double a) { return std::trunc(a); }
 inline Lanes trunc(const Lanes& a) { return tchat::trunc(a); }
-template <int N, class B>
-Dual<N, B> trunc(const Dual<N, B>& a) {
-  return Dual<N, B>(whole_numbers::trunc(a.value));
+template <int M, class B>
+Dual<M, B> trunc(const Dual<M, B>& a) {
+  return Dual<M, B>(whole_numbers::trunc(a.value));
 }
 }  // namespace whole_numbers
 
