@@ -26,12 +26,11 @@ template <int N, class Base = double>
 struct Dual {  // NOLINT(cppcoreguidelines-special-member-functions): nothing but numbers
   Base value{};
   std::array<Base, N> derivative{};
-  using OneByOne = std::make_index_sequence<N <= 16 ? N : 0>;  // many are copied as a whole
 
   Dual() = default;
   // Number by number: g++ copies arrays of this size by a call, which takes longer than a multiplication.
-  Dual(const Dual& other) : Dual(other, OneByOne{}) {}
-  Dual& operator=(const Dual& other) { return assign(other, OneByOne{}); }
+  Dual(const Dual& other) : Dual(other, Numbers{}) {}
+  Dual& operator=(const Dual& other) { return assign(other, Numbers{}); }
 
   // Constants convert without being asked, so that formulas read as with doubles.
   // NOLINTBEGIN(google-explicit-constructor)
@@ -117,6 +116,7 @@ struct Dual {  // NOLINT(cppcoreguidelines-special-member-functions): nothing bu
   }
 
  private:
+  using Numbers = std::make_index_sequence<N <= 16 ? N : 0>;  // none: many are copied as a whole
   template <std::size_t... K>
   Dual(const Dual& other, std::index_sequence<K...>) : value(other.value), derivative{other.derivative[K]...} {}
   Dual(const Dual& other, std::index_sequence<>) : value(other.value), derivative(other.derivative) {}

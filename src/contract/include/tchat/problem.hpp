@@ -370,7 +370,7 @@ class ProblemTable {
   }
 
   /// Arrays of dual numbers are made and set to zero once for all points: for a field of a few terms that takes longer
-  /// than the field. There is at least one point.
+  /// than the field.
   template <class Order>
   __attribute__((noinline)) static void first_of(const void* self, std::int32_t kind, std::int32_t index,
                                                  std::ptrdiff_t points, const double* x, const double* par,
