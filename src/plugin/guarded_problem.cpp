@@ -78,8 +78,7 @@ struct GuardedProblem::Calls {
     try {
       plugin.first_in_lanes(plugin.self, kind, index, sets, x, par, active, count, out, dx, dp);
     } catch (...) {
-      constexpr int points = 4;  // of a set
-      const int numbers = sets * points * rows(plugin, kind);
+      const int numbers = sets * TCHAT_POINTS_OF_SET * rows(plugin, kind);
       set_nan(out, numbers);
       set_nan(dx, numbers * plugin.dimension);
       if (count > 0) set_nan(dp, numbers * count);

@@ -24,6 +24,7 @@
 
 #define TCHAT_PROBLEM_ABI 2
 #define TCHAT_PAR_LENGTH 512
+#define TCHAT_POINTS_OF_SET 4 /* of first_in_lanes */
 
 #ifdef __cplusplus
 extern "C" {
@@ -141,9 +142,9 @@ typedef struct tchat_problem {
                            const double* x, const double* par, const int32_t* active, int32_t active_count,
                            const double* v, const double* q, const double* weights, double* out, double* gradient);
 
-  /* `first` at `sets` sets of four points for one par. The points of a set are side by side: entry k of x, out, dx or
-   * dp of the point l = 0..3 is number 4 k + l of the set's array; the sets stand one behind the other. NULL: tchat
-   * calls `first_at_points`. */
+  /* `first` at `sets` sets of TCHAT_POINTS_OF_SET = 4 points for one par. The points of a set are side by side: entry k
+   * of x, out, dx or dp of the point l = 0..3 is number 4 k + l of the set's array; the sets stand one behind the
+   * other. NULL: tchat calls `first_at_points`. */
   void (*first_in_lanes)(const void* self, int32_t kind, int32_t index, int32_t sets, const double* x,
                          const double* par, const int32_t* active, int32_t active_count, double* out, double* dx,
                          double* dp);

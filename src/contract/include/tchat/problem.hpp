@@ -292,8 +292,7 @@ class ProblemTable {
   static constexpr bool has_lanes = std::is_same_v<Numbers, Lanes>;
   /// How many points are evaluated together.
   static constexpr int together = has_lanes ? Lanes::count : 1;
-  static constexpr int points_of_set = 4;  ///< of first_in_lanes
-  static_assert(points_of_set == Lanes::count);
+  static_assert(Lanes::count == TCHAT_POINTS_OF_SET);
 
   /// Points first .. first + held - 1, which are evaluated together.
   struct PointSet {
@@ -345,9 +344,9 @@ class ProblemTable {
   struct SideBySide {
     template <class D>
     static Place<D> place(D* all, std::ptrdiff_t size, const PointSet& set) {
-      const std::ptrdiff_t lane = set.first % points_of_set;
+      const std::ptrdiff_t lane = set.first % TCHAT_POINTS_OF_SET;
       if (size == 0) return {all, 0, 0, 0};  // perhaps null
-      return {all + (set.first - lane) * size + lane, points_of_set, 1, set.held};
+      return {all + (set.first - lane) * size + lane, TCHAT_POINTS_OF_SET, 1, set.held};
     }
   };
 
@@ -423,7 +422,7 @@ class ProblemTable {
   static void first_in_lanes(const void* self, std::int32_t kind, std::int32_t index, std::int32_t sets,
                              const double* x, const double* par, const std::int32_t* active, std::int32_t active_count,
                              double* out, double* dx, double* dp) {
-    first_of<SideBySide>(self, kind, index, static_cast<std::ptrdiff_t>(sets) * points_of_set, x, par, active,
+    first_of<SideBySide>(self, kind, index, static_cast<std::ptrdiff_t>(sets) * TCHAT_POINTS_OF_SET, x, par, active,
                          active_count, out, dx, dp);
   }
 
