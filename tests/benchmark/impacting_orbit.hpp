@@ -9,7 +9,7 @@
 
 namespace tchat::benchmark {
 
-/// One point of the branch in closed form (SPEC 13.1): impact velocity and phase belong to alpha.
+/// One point of the branch in closed form: impact velocity and phase belong to alpha.
 struct ImpactData {
   double alpha = 3.39159789647371;
   double omega = 2.0072;

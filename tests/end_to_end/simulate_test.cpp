@@ -118,7 +118,7 @@ TEST_CASE("simulate: without any option, from the problem's start to its orbit")
     if (e.event == 1) CHECK(e.after[1] == Approx(-0.8 * e.before[1]));
     if (e.event == 2) CHECK(e.after == e.before);
   }
-  // SPEC section 13.1, and no number of this program.
+  // From the orbit in closed form, and no number of this program.
   CHECK(events.back().before[0] == Approx(0.997785157856609).margin(1e-5));
 
   std::istringstream rows(workspace.read("linosc.trajectory"));
@@ -169,7 +169,7 @@ TEST_CASE("simulate: a start from a label of an earlier run, on both sides of it
   workspace.run("-c to_grazing -d nonimpacting -o grazing");
   workspace.run("-c grazing_curve -s grazing -o grazing_curve --both");
   workspace.run("-c impacting_20072 -s grazing_curve -o impacting");
-  // SPEC section 13.1: period doubling at alpha = 3.03619356554716, the doubled orbit lives below it.
+  // Closed form: period doubling at alpha = 3.03619356554716, the doubled orbit lives below it.
   const Outcome above = simulate(workspace, "linosc -c impacting_20072 -s impacting IRS=PD1 PAR(alpha)=3.038 -o above");
   CHECK(contains(above.out, "signature {(1,1,1)}"));
   const Outcome below =

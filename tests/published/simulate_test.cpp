@@ -12,7 +12,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// What is known of the orbit without this program: SPEC section 13 or a closed form; NaN is not looked at.
+/// What is known of the orbit without this program: by shooting, or from a closed form; NaN is not looked at.
 struct Example {
   std::string name, arguments, signature;
   double period;

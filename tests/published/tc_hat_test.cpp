@@ -1,6 +1,5 @@
 // TC-HAT's way of working: the Makefile of Appendix A, the constants file of Appendix B, the MEMS oscillator in
-// Fortran. Values by shooting (SPEC section 13.2), and the same chain with the C++ problem, whose derivatives are
-// exact.
+// Fortran. Values by shooting, and the same chain with the C++ problem, whose derivatives are exact.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <filesystem>
