@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "linear_algebra/array_kernel.hpp"
+#include "support/upper_halves.hpp"
 
 using namespace tchat;
 using Eigen::MatrixXd;
@@ -208,4 +209,42 @@ TEST_CASE("array kernel: the mass matrix of nodes of any dimension") {
       array_functions(VectorSet::baseline).add_mass(0.02, mass.data(), nodes, weights.data(), n, v.data(), same.data());
       CHECK(y == same);
     }
+}
+
+TEST_CASE("array kernel: no function leaves anything in the upper halves of registers") {
+  constexpr int n = 5, c = 4, intervals = 3;
+  constexpr std::size_t row = 2 + 2 * most_pairs;
+  const std::vector<double> numbers(200, 0.5);
+  const double* const a = numbers.data();
+  std::vector<double> result(200, 0.25);
+  double* const y = result.data();
+  std::array<const double*, row> arrays{};
+  arrays.fill(a);
+  std::array<ArrayRange, row> ranges{};
+  const IntervalBasis basis{a, c, n, intervals};
+  for (const VectorSet set : available_vector_sets()) {
+    const ArrayFunctions& f = array_functions(set);
+    const auto check = [&](const char* name, const auto& call) {
+      CAPTURE(name, static_cast<int>(set));
+      call();
+      const bool in_use = upper_halves_in_use();
+      CHECK_FALSE(in_use);
+    };
+    for (const long count : {0L, 1L, 37L}) {
+      check("dot", [&] { f.dot(a, a, count); });
+      check("dot_both", [&] { f.dot_both(a, a, a, count, y); });
+      check("dot_difference", [&] { f.dot_difference(a, a, a, count); });
+      check("range", [&] { f.range(a, count); });
+      check("add", [&] { f.add(2.0, a, y, count); });
+      check("add_and_measure", [&] { f.add_and_measure(a, y, count, &ranges[0], &ranges[1]); });
+      check("combine", [&] { f.combine(arrays.data(), a, 3, y, count); });
+      for (int pairs = 1; pairs <= most_pairs; ++pairs) {
+        check("project", [&] { f.project(a, a, arrays.data(), arrays.data(), pairs, y, y + 20, count); });
+        check("ranges_of_sums", [&] { f.ranges_of_sums(arrays.data(), a, pairs, ranges.data(), a, y, count); });
+      }
+    }
+    check("add_mass", [&] { f.add_mass(0.1, a, c, a, n, a, y); });
+    check("interpolate", [&] { f.interpolate(basis, a, y, n); });
+    check("add_interpolated", [&] { f.add_interpolated(basis, a, n, y); });
+  }
 }

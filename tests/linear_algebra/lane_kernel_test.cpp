@@ -5,6 +5,7 @@
 
 #include "linear_algebra/block_kernel.hpp"
 #include "linear_algebra/lane_kernel.hpp"
+#include "support/upper_halves.hpp"
 
 using namespace tchat;
 using Block = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -85,6 +86,7 @@ Eliminated eliminated(const Sizes& k, const std::vector<Block>& blocks, VectorSe
   Eliminated result{side_by_side(blocks, kernel.stride()), std::vector<int>(place(k.pivots * lanes + 1))};
   REQUIRE(static_cast<std::ptrdiff_t>(result.blocks.size()) == kernel.block_size(k.border));
   result.failed = kernel.eliminate(result.blocks.data(), k.border, result.swaps.data());
+  CHECK_FALSE(upper_halves_in_use());
   return result;
 }
 
@@ -142,6 +144,7 @@ void check_against_eigen(const Sizes& k, const std::vector<Block>& blocks, Vecto
   }
   LaneArray rhs = side_by_side(right);
   kernel.forward(e.blocks.data(), k.border, e.swaps.data(), rhs.data());
+  CHECK_FALSE(upper_halves_in_use());
   LaneArray x(place(k.width * lanes), 0.0);
   for (int l = 0; l < lanes; ++l) {
     const Block lu = block_of(e.blocks, l, blocks[place(l)]);
@@ -153,6 +156,7 @@ void check_against_eigen(const Sizes& k, const std::vector<Block>& blocks, Vecto
     for (int i = 0; i < rest; ++i) x[place((k.pivots + i) * lanes + l)] = ends(i);
   }
   kernel.backward(e.blocks.data(), rhs.data(), x.data());
+  CHECK_FALSE(upper_halves_in_use());
   for (int l = 0; l < lanes; ++l) {
     MatrixXd whole = MatrixXd::Zero(k.width, k.width);
     whole.topRows(k.rows) = blocks[place(l)].topRows(k.rows);
@@ -275,6 +279,7 @@ TEST_CASE("several solutions at once are those found one by one, to the last bit
         }
         std::vector<LaneArray> alone = together;
         kernel.backward_of_several(e.blocks.data(), places_of(together));
+        CHECK_FALSE(upper_halves_in_use());
         for (LaneArray& x : alone) kernel.backward(e.blocks.data(), zero.data(), x.data());
         CHECK(together == alone);
       }
@@ -329,6 +334,7 @@ TEST_CASE("forward elimination in lanes and its transpose agree") {
       LaneArray w = side_by_side(weights);
       LaneArray b = side_by_side(right);
       kernel.forward_transposed(e.blocks.data(), e.swaps.data(), w.data());
+      CHECK_FALSE(upper_halves_in_use());
       kernel.forward(e.blocks.data(), 0, e.swaps.data(), b.data());
       for (int l = 0; l < lanes; ++l) {
         const double condensed = weights[place(l)].col(0).dot(lane_of(b, l));
@@ -354,11 +360,13 @@ TEST_CASE("arrays of lanes are gathered and scattered, but for lanes that have n
       for (int l = 0; l < lanes; ++l) from[l] = arrays[place(l)].data();
       LaneArray together(place(count * lanes));
       assembly.gather(from, count, together.data());
+      CHECK_FALSE(upper_halves_in_use());
       for (int k = 0; k < count; ++k)
         for (int l = 0; l < lanes; ++l) CHECK(together[place(k * lanes + l)] == 10.0 * k + l);
       std::vector<std::vector<double>> back(lanes, std::vector<double>(place(count + 1), -1.0));
       double* const to[lanes] = {back[0].data(), back[1].data(), nullptr, back[3].data()};
       assembly.scatter(together.data(), count, to);
+      CHECK_FALSE(upper_halves_in_use());
       for (int l = 0; l < lanes; ++l) {
         CHECK(back[place(l)].back() == -1.0);  // not beyond the end
         back[place(l)].pop_back();
@@ -405,8 +413,10 @@ void check_filling(int n, int c, int scalars) {
     LaneArray points(place(c * n * lanes)), derivatives = points, residual = points;
     LaneArray blocks(place(c * n * stride * lanes)), jacobian(place(n * n * lanes));
     assembly.interpolate(at, states.data(), points.data(), derivatives.data());
+    CHECK_FALSE(upper_halves_in_use());
     at.derivatives = derivatives.data();
     REQUIRE(assembly.fill(at, stride, blocks.data(), jacobian.data(), residual.data()));
+    CHECK_FALSE(upper_halves_in_use());
     filled.push_back(blocks);
     for (int l = 0; l < lanes; ++l) {
       const auto k = place(l);
