@@ -29,8 +29,7 @@ void CondensedSystem::solve_with_null_vectors(const OrbitResidual& linearized, s
                                               OrbitVector& dx, std::span<OrbitVector> v) {
   solve_ends(own_rhs_, linearized, border);
   if (closing_ == 0) find_null_vectors();
-  segment_work_.each(shape_.segments, [&](int k, int thread) {
-    const int s = shape_.segments - 1 - k;  // as in expand()
+  segment_work_.each_in_reverse(shape_.segments, [&](int s, int thread) {  // as in expand()
     std::array<SegmentSolution, SegmentElimination::most_together> solutions;
     solutions[0] = in_segment(s, solution_, RightHandSide::own, dx);
     for (std::size_t z = 0; z < v.size(); ++z)
@@ -75,10 +74,8 @@ void CondensedSystem::find_null_vectors() {
 /// From the ends of segments to all nodes. The last segments, whose blocks were made last and may still be in the
 /// cache, are the first.
 void CondensedSystem::expand(const EndVector& ends, RightHandSide right, OrbitVector& dx) {
-  segment_work_.each(shape_.segments, [&](int k, int thread) {
-    const int s = shape_.segments - 1 - k;
-    elimination_.expand(s, in_segment(s, ends, right, dx), thread);
-  });
+  segment_work_.each_in_reverse(
+      shape_.segments, [&](int s, int thread) { elimination_.expand(s, in_segment(s, ends, right, dx), thread); });
   put_globals(ends, dx);
 }
 

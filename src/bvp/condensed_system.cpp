@@ -88,7 +88,8 @@ double elimination_work(const OrbitShape& shape) {
 /// Whose work is shared by threads: that of segments where there are enough of them to keep all threads busy to the
 /// end, else that of the pieces of each segment. None where threads would wait for one another longer than they work.
 EliminationThreads sharing(const OrbitShape& shape, int threads) {
-  constexpr double least_work = 1e6, least_within = 4e6;
+  // Within a segment joins wait for one another, and what one thread made goes to the cache of another one.
+  constexpr double least_work = 1e6, least_within = 1e7;
   constexpr int segments_for_each = 4;
   const double of_segment = elimination_work(shape);
   if (shape.segments >= segments_for_each * threads && shape.segments * of_segment >= least_work) return {threads, 1};
@@ -277,24 +278,18 @@ Linearization CondensedSystem::condense_one_by_one(const Orbit& x, std::span<con
   return Linearization::ready;
 }
 
-/// Segments are filled by this thread one after the other, and eliminated by any. What is told is what the first one
-/// says that is not ready.
+/// The problem is asked by this thread, for one segment after the other, and they are condensed by any. What is told is
+/// what the first one says that is not ready.
 Linearization CondensedSystem::condense_together(const Orbit& x, std::span<const OrbitVector> general,
                                                  OrbitResidual& residual) {
-  std::fill(outcomes_.begin(), outcomes_.end(), Linearization::ready);
   segment_work_.run(
       shape_.segments,
       [&](int s) {
-        const bool finite = elimination_.fill(s, system_.system(), system_.signature()[index(s)].field,
-                                              system_.free_parameters(), x, general, collocation_of(s, residual));
-        if (!finite) outcomes_[index(s)] = Linearization::not_finite;
-        return finite;
+        elimination_.evaluate(s, system_.system(), system_.signature()[index(s)].field, system_.free_parameters(), x);
       },
-      [&](int s, int) {
-        if (elimination_.eliminate(s))
-          keep_segment_blocks(s);
-        else
-          outcomes_[index(s)] = Linearization::singular;
+      [&](int s, int thread) {
+        outcomes_[index(s)] = elimination_.condense_evaluated(s, x, general, collocation_of(s, residual), thread);
+        if (outcomes_[index(s)] == Linearization::ready) keep_segment_blocks(s);
       });
   const auto first = std::find_if(outcomes_.begin(), outcomes_.end(),
                                   [](Linearization outcome) { return outcome != Linearization::ready; });

@@ -1,6 +1,7 @@
 #include "bvp/segment_elimination.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "bvp/lane_entries.hpp"
@@ -45,7 +46,9 @@ SegmentElimination::SegmentElimination(const OrbitShape& shape, int scalars, int
       top_lanes_(lanes_in_use(schedule_)),
       top_joins_(joins_of_halves(static_cast<int>(top_lanes_.size()))),
       within_(threads.within),
-      done_(index(groups_)) {
+      kept_segments_(threads.segments > 1 ? shape.segments : 1),
+      kept_groups_(threads.segments > 1 || threads.within > 1 ? groups_ : 1),
+      outcomes_(index(groups_)) {
   const std::ptrdiff_t blocks = block(shape.segments, 0);
   const std::ptrdiff_t joins = static_cast<std::ptrdiff_t>(shape.segments) * (groups_ - 1);
   number_of_middle_.resize(index(groups_));
@@ -66,22 +69,24 @@ SegmentElimination::SegmentElimination(const OrbitShape& shape, int scalars, int
   lane_rhs_ = {tops, n_ + border_};
   top_rhs_ = {tops, join_rows};
   whole_ = {shape.segments, (n_ + border_) * length()};
-  largest_residuals_.resize(index(shape.segments));
+  largest_residuals_.resize(index(blocks));
 
   const int c = shape.collocation;
   nodes_ = lane_zeros((c + 1) * n_);
-  points_ = derivatives_ = residual_ = lane_zeros(c * n_);
-  jacobian_ = lane_zeros(n_ * n_);
+  points_ = lane_zeros(c * n_);
   zero_rhs_ = lane_zeros(std::max(interval_rows, join_rows));
-  f_ = lane_zeros(c * n_);
-  fx_ = lane_zeros(c * n_ * n_);
-  fp_ = lane_zeros(c * n_ * (scalars_ - 1));
-  x_of_points_.resize(f_.size());
-  f_of_points_.resize(f_.size());
-  fx_of_points_.resize(fx_.size());
-  fp_of_points_.resize(fp_.size());
+  const std::ptrdiff_t kept = static_cast<std::ptrdiff_t>(kept_segments_) * kept_groups_;
+  f_ = derivatives_ = {kept, c * n_ * lanes};
+  fx_ = {kept, c * n_ * n_ * lanes};
+  fp_ = {kept, c * n_ * (scalars_ - 1) * lanes};
+  x_of_points_.resize(index(c * n_ * lanes));
+  f_of_points_.resize(index(c * n_ * lanes));
+  fx_of_points_.resize(index(c * n_ * n_ * lanes));
+  fp_of_points_.resize(index(c * n_ * (scalars_ - 1) * lanes));
   const int workers = std::max(threads.segments, threads.within);
   constexpr auto together = static_cast<std::ptrdiff_t>(most_together);
+  jacobian_ = {workers, n_ * n_ * lanes};
+  residual_ = {workers, c * n_ * lanes};
   local_ = {together * workers, interval_.width() * lanes};
   join_local_ = {together * workers, join_.width() * lanes};
   top_local_ = {workers, top_join_.width()};
@@ -121,27 +126,51 @@ int SegmentElimination::top_node(int piece) const {
   return piece < static_cast<int>(top_lanes_.size()) ? schedule_.start(top_lanes_[index(piece)]) : shape_.intervals;
 }
 
+namespace {
+
+/// Of pieces that are all finite, or not.
+Linearization worst(std::span<const Linearization> outcomes) {
+  for (const Linearization worse : {Linearization::not_finite, Linearization::singular})
+    if (std::find(outcomes.begin(), outcomes.end(), worse) != outcomes.end()) return worse;
+  return Linearization::ready;
+}
+
+}  // namespace
+
 Linearization SegmentElimination::condense(int s, const HybridSystem& system, int field, std::span<const int> active,
                                            const Orbit& x, std::span<const OrbitVector> rows, double* collocation) {
-  bool finite = true;
   within_.run(
-      groups_, [&](int group) { return finite = fill_piece(s, group, system, field, active, x, rows, collocation); },
-      [&](int group, int) { done_[index(group)] = eliminate_group(s, group) ? 1 : 0; });
-  if (!finite) return Linearization::not_finite;
-  if (std::find(done_.begin(), done_.end(), 0) != done_.end()) return Linearization::singular;
+      groups_, [&](int group) { evaluate_group(s, group, system, field, active, x); },
+      [&](int group, int thread) { outcomes_[index(group)] = condense_group(s, group, x, rows, collocation, thread); });
+  if (const Linearization outcome = worst(outcomes_); outcome != Linearization::ready) return outcome;
   return join_groups(s) && join_lanes(s) ? Linearization::ready : Linearization::singular;
+}
+
+void SegmentElimination::evaluate(int s, const HybridSystem& system, int field, std::span<const int> active,
+                                  const Orbit& x) {
+  for (int group = 0; group < groups_; ++group) evaluate_group(s, group, system, field, active, x);
+}
+
+Linearization SegmentElimination::condense_evaluated(int s, const Orbit& x, std::span<const OrbitVector> rows,
+                                                     double* collocation, int thread) {
+  Linearization all = Linearization::ready;
+  for (int group = 0; group < groups_; ++group)
+    all = worst(std::array{all, condense_group(s, group, x, rows, collocation, thread)});
+  if (all != Linearization::ready) return all;
+  for (const Join& at : joins_)
+    if (!join(s, at)) return Linearization::singular;
+  return join_lanes(s) ? Linearization::ready : Linearization::singular;
 }
 
 double SegmentElimination::largest_residual() const {
   return *std::max_element(largest_residuals_.begin(), largest_residuals_.end());
 }
 
-bool SegmentElimination::eliminate(int s) {
-  for (int group = 0; group < groups_; ++group)
-    if (!eliminate_group(s, group)) return false;
-  for (const Join& at : joins_)
-    if (!join(s, at)) return false;
-  return join_lanes(s);
+Linearization SegmentElimination::condense_group(int s, int group, const Orbit& x, std::span<const OrbitVector> rows,
+                                                 double* collocation, int thread) {
+  if (!fill_group(s, group, x, collocation, thread)) return Linearization::not_finite;
+  fill_border(s, group, rows);
+  return eliminate_group(s, group) ? Linearization::ready : Linearization::singular;
 }
 
 bool SegmentElimination::eliminate_group(int s, int group) {
@@ -150,8 +179,10 @@ bool SegmentElimination::eliminate_group(int s, int group) {
 }
 
 bool SegmentElimination::join_groups(int s) {
-  for_joins([&](const Join& at, int) { done_[index(at.middle)] = join(s, at) ? 1 : 0; });
-  return std::find(done_.begin(), done_.end(), 0) == done_.end();
+  for_joins([&](const Join& at, int) {
+    outcomes_[index(at.middle)] = join(s, at) ? Linearization::ready : Linearization::singular;
+  });
+  return worst(outcomes_) == Linearization::ready;
 }
 
 LanePiece SegmentElimination::piece(int s, int first, int last) const {

@@ -20,8 +20,9 @@
 ///
 /// Several threads: segments have nothing to do with one another, and neither have the groups of a segment, nor joins
 /// of one level. Whoever has a piece writes to its own blocks alone, so that results do not depend on the threads to
-/// the last bit. The problem's functions need not be re-entrant: one thread calls them, and others eliminate meanwhile
-/// what it has filled.
+/// the last bit. The problem's functions need not be re-entrant: one thread calls them, and others fill and eliminate
+/// meanwhile with what it has found. Blocks are large and stay with the thread that they were filled by, where they are
+/// eliminated, joined and solved: processors may share no cache.
 #pragma once
 
 #include <span>
@@ -96,15 +97,15 @@ class SegmentElimination {
                      const EliminationThreads& threads = {});
 
   /// The collocation rows of segment s, whose field has this number, at x and `rows`' parts of the segment, eliminated.
-  /// `collocation` becomes their residual, unless it is null: interval, Gauss point, component. The same as fill() and
-  /// eliminate(), each piece eliminated as soon as it is filled.
+  /// `collocation` becomes their residual, unless it is null: interval, Gauss point, component. The same as evaluate()
+  /// and condense_evaluated(), each piece condensed as soon as it is evaluated.
   Linearization condense(int s, const HybridSystem& system, int field, std::span<const int> active, const Orbit& x,
                          std::span<const OrbitVector> rows, double* collocation);
-  /// Only the rows; false when one is not finite. For one segment at a time.
-  bool fill(int s, const HybridSystem& system, int field, std::span<const int> active, const Orbit& x,
-            std::span<const OrbitVector> rows, double* collocation);
-  /// The rows that fill() left; false when they are singular.
-  bool eliminate(int s);
+  /// Only what the problem's functions say. For one segment at a time.
+  void evaluate(int s, const HybridSystem& system, int field, std::span<const int> active, const Orbit& x);
+  /// What evaluate() left, by thread number `thread` < `segments` of the threads.
+  Linearization condense_evaluated(int s, const Orbit& x, std::span<const OrbitVector> rows, double* collocation,
+                                   int thread);
 
   /// The largest magnitude of the residual of all segments' rows, as they were filled last.
   double largest_residual() const;
@@ -156,20 +157,21 @@ class SegmentElimination {
 
   template <class Work>
   void for_pivots(const Work& work) const;
-  bool fill_group(int s, int group, const HybridSystem& system, int field, std::span<const int> active, const Orbit& x,
-                  double* collocation);
-  void keep_residual(int s, int group, double* collocation);
-  void evaluate_field(int s, int group, const HybridSystem& system, int field, std::span<const int> active,
+  /// Where the values of the field in a group are kept, until its block is filled.
+  std::ptrdiff_t field_block(int s, int group) const;
+  void evaluate_group(int s, int group, const HybridSystem& system, int field, std::span<const int> active,
                       const Orbit& x);
-  void evaluate_field_at_points(int group, const HybridSystem& system, int field, std::span<const int> active,
-                                const Orbit& x);
+  void evaluate_at_points(int s, int group, const HybridSystem& system, int field, std::span<const int> active,
+                          const Orbit& x);
+  Linearization condense_group(int s, int group, const Orbit& x, std::span<const OrbitVector> rows, double* collocation,
+                               int thread);
+  bool fill_group(int s, int group, const Orbit& x, double* collocation, int thread);
+  void keep_residual(int s, int group, double* collocation, const double* residual);
   void fill_border(int s, int group, std::span<const OrbitVector> rows);
   const Join& join_of(int first, int last) const {
     return joins_[index(number_of_middle_[index(halfway(first, last))])];
   }
   LanePiece piece(int s, int first, int last) const;
-  bool fill_piece(int s, int group, const HybridSystem& system, int field, std::span<const int> active, const Orbit& x,
-                  std::span<const OrbitVector> rows, double* collocation);
   bool eliminate_group(int s, int group);
   bool join_groups(int s);
   template <class Work>
@@ -179,8 +181,8 @@ class SegmentElimination {
   bool join(int s, const Join& at);
   void pass_on(const LanePiece& left, int lane, double* target) const;
   bool join_lanes(int s);
-  void condense_group(int s, int group, const double* collocation);
-  void condense_join(int s, const Join& at);
+  void condense_group_rhs(int s, int group, const double* collocation);
+  void condense_join_rhs(int s, const Join& at);
   const double* top_piece(int s, int first, int last, int& width) const;
   double* piece_rhs(int s, int first, int last);
   double* top_rhs(int s, int first, int last);
@@ -231,17 +233,20 @@ class SegmentElimination {
   // one each
   BlockArray<double> whole_;  // (n + b) x length
 
-  std::vector<double> largest_residuals_;  // of segments
+  std::vector<double> largest_residuals_;  // of groups
 
   SharedWork within_;
-  std::vector<char> done_;  // of each group or join: was it not singular?
+  int kept_segments_, kept_groups_;  // whose fields are kept at a time: all that several threads may have begun, or 1
+  std::vector<Linearization> outcomes_;  // of groups, or of the joins of these numbers
 
+  // of groups that are evaluated and not yet filled: the field, its derivatives, and those of the polynomials
+  BlockArray<double> f_, fx_, fp_, derivatives_;
   // scratch of one group, for the thread that calls the problem
-  LaneArray nodes_, points_, derivatives_, jacobian_, residual_, zero_rhs_;
-  LaneArray f_, fx_, fp_;
+  LaneArray nodes_, points_;
   std::vector<double> x_of_points_, f_of_points_, fx_of_points_, fp_of_points_;  // of problems that have no lanes
+  LaneArray zero_rhs_;
   // of threads
-  BlockArray<double> local_, join_local_, top_local_;
+  BlockArray<double> jacobian_, residual_, local_, join_local_, top_local_;
 };
 
 /// work(join, thread), each after those that make its two pieces: one after the other in the order that goes on with
@@ -262,7 +267,8 @@ void SegmentElimination::for_joins_in_reverse(const Work& work) {
     for (auto at = joins_.rbegin(); at != joins_.rend(); ++at) work(*at, 0);
   else
     for (auto level = levels_.rbegin(); level != levels_.rend(); ++level)
-      within_.each(static_cast<int>(level->size()), [&](int i, int thread) { work((*level)[index(i)], thread); });
+      within_.each_in_reverse(static_cast<int>(level->size()),
+                              [&](int i, int thread) { work((*level)[index(i)], thread); });
 }
 
 }  // namespace tchat

@@ -1,4 +1,4 @@
-// The rows of a segment's Newton matrix: SegmentElimination::fill.
+// The rows of a segment's Newton matrix: SegmentElimination::evaluate_group and fill_group.
 #include <algorithm>
 
 #include "bvp/lane_entries.hpp"
@@ -7,23 +7,15 @@
 
 namespace tchat {
 
-bool SegmentElimination::fill(int s, const HybridSystem& system, int field, std::span<const int> active, const Orbit& x,
-                              std::span<const OrbitVector> rows, double* collocation) {
-  for (int group = 0; group < groups_; ++group)
-    if (!fill_piece(s, group, system, field, active, x, rows, collocation)) return false;
-  return true;
-}
+// What a problem gives in lanes goes to the elimination as it is.
+static_assert(lanes == TCHAT_POINTS_OF_SET);
 
-bool SegmentElimination::fill_piece(int s, int group, const HybridSystem& system, int field,
-                                    std::span<const int> active, const Orbit& x, std::span<const OrbitVector> rows,
-                                    double* collocation) {
-  if (!fill_group(s, group, system, field, active, x, collocation)) return false;
-  fill_border(s, group, rows);
-  return true;
+std::ptrdiff_t SegmentElimination::field_block(int s, int group) const {
+  return static_cast<std::ptrdiff_t>(s % kept_segments_) * kept_groups_ + group % kept_groups_;
 }
 
 /// The field and its derivatives at the Gauss points of a group's intervals.
-void SegmentElimination::evaluate_field(int s, int group, const HybridSystem& system, int field,
+void SegmentElimination::evaluate_group(int s, int group, const HybridSystem& system, int field,
                                         std::span<const int> active, const Orbit& x) {
   const double* from[lanes];
   for (int l = 0; l < lanes; ++l) from[l] = x.node(s, schedule_.interval(group, l) * shape_.collocation);
@@ -33,18 +25,20 @@ void SegmentElimination::evaluate_field(int s, int group, const HybridSystem& sy
   at.c = shape_.collocation;
   at.value = rule_.value.data();
   at.slope = rule_.slope.data();
-  assembly_.interpolate(at, nodes_.data(), points_.data(), derivatives_.data());
+  const std::ptrdiff_t b = field_block(s, group);
+  assembly_.interpolate(at, nodes_.data(), points_.data(), derivatives_[b]);
   if (system.has_first_in_lanes())
-    system.first_in_lanes(FunctionKind::field, field, shape_.collocation, points_.data(), x.par.data(), active,
-                          f_.data(), fx_.data(), fp_.data());
+    system.first_in_lanes(FunctionKind::field, field, shape_.collocation, points_.data(), x.par.data(), active, f_[b],
+                          fx_[b], fp_[b]);
   else
-    evaluate_field_at_points(group, system, field, active, x);
+    evaluate_at_points(s, group, system, field, active, x);
 }
 
 /// The same at the points of the lanes that hold an interval, one after the other.
-void SegmentElimination::evaluate_field_at_points(int group, const HybridSystem& system, int field,
-                                                  std::span<const int> active, const Orbit& x) {
+void SegmentElimination::evaluate_at_points(int s, int group, const HybridSystem& system, int field,
+                                            std::span<const int> active, const Orbit& x) {
   const int c = shape_.collocation;
+  const std::ptrdiff_t b = field_block(s, group);
   int place[lanes];  // of a lane's first point
   int held = 0;
   for (int l = 0; l < lanes; ++l)
@@ -54,45 +48,43 @@ void SegmentElimination::evaluate_field_at_points(int group, const HybridSystem&
   assembly_.scatter(points_.data(), c * n_, to);
   system.first_at_points(FunctionKind::field, field, held, x_of_points_.data(), x.par.data(), active,
                          f_of_points_.data(), fx_of_points_.data(), fp_of_points_.data());
-  const auto gather = [&](const std::vector<double>& of_points, int size, LaneArray& of_lanes) {
+  const auto gather = [&](const std::vector<double>& of_points, int size, double* of_lanes) {
     const double* from[lanes];
     for (int l = 0; l < lanes; ++l) from[l] = of_points.data() + place[schedule_.source(group, l)] * size;
-    assembly_.gather(from, c * size, of_lanes.data());
+    assembly_.gather(from, c * size, of_lanes);
   };
-  gather(f_of_points_, n_, f_);
-  gather(fx_of_points_, n_ * n_, fx_);
-  gather(fp_of_points_, n_ * (scalars_ - 1), fp_);
+  gather(f_of_points_, n_, f_[b]);
+  gather(fx_of_points_, n_ * n_, fx_[b]);
+  gather(fp_of_points_, n_ * (scalars_ - 1), fp_[b]);
 }
 
 /// Collocation rows slope - h T f at the Gauss points, columns (interior | left | right | T, p | residual).
-bool SegmentElimination::fill_group(int s, int group, const HybridSystem& system, int field,
-                                    std::span<const int> active, const Orbit& x, double* collocation) {
-  evaluate_field(s, group, system, field, active, x);
+bool SegmentElimination::fill_group(int s, int group, const Orbit& x, double* collocation, int thread) {
+  const std::ptrdiff_t b = field_block(s, group);
   LaneCollocation at{
-      n_, shape_.collocation, scalars_, rule_.value.data(), rule_.slope.data(), f_.data(), fx_.data(), fp_.data(), {},
-      {}, derivatives_.data()};
+      n_, shape_.collocation, scalars_, rule_.value.data(), rule_.slope.data(), f_[b], fx_[b], fp_[b], {},
+      {}, derivatives_[b]};
   for (int l = 0; l < lanes; ++l) {
     const int j = schedule_.interval(group, l);
     at.h[l] = x.mesh[index(j + 1)] - x.mesh[index(j)];
     at.scale[l] = at.h[l] * x.duration(s);
   }
   const bool finite =
-      assembly_.fill(at, interval_.stride(), interval_blocks_[block(s, group)], jacobian_.data(), residual_.data());
-  if (finite) keep_residual(s, group, collocation);
+      assembly_.fill(at, interval_.stride(), interval_blocks_[block(s, group)], jacobian_[thread], residual_[thread]);
+  if (finite) keep_residual(s, group, collocation, residual_[thread]);
   return finite;
 }
 
 /// Lanes that hold no interval have the residual of one that is held.
-void SegmentElimination::keep_residual(int s, int group, double* collocation) {
-  const double of_group = array_functions().range(residual_.data(), static_cast<long>(residual_.size())).largest;
-  double& largest = largest_residuals_[index(s)];
-  largest = group == 0 ? of_group : std::max(largest, of_group);
-  if (collocation == nullptr) return;
+void SegmentElimination::keep_residual(int s, int group, double* collocation, const double* residual) {
   const int rows = interval_.rows();
+  largest_residuals_[index(block(s, group))] =
+      array_functions().range(residual, static_cast<long>(rows) * lanes).largest;
+  if (collocation == nullptr) return;
   double* to[lanes];
   for (int l = 0; l < lanes; ++l)
     to[l] = schedule_.holds(group, l) ? collocation + schedule_.interval(group, l) * rows : nullptr;
-  assembly_.scatter(residual_.data(), rows, to);
+  assembly_.scatter(residual, rows, to);
 }
 
 /// Border rows of intervals: the interior nodes and the left mesh node; the right one belongs to the next interval,

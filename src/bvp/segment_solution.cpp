@@ -40,7 +40,7 @@ double* SegmentElimination::top_rhs(int s, int first, int last) {
   return last - first == 1 ? lane_rhs_[top_block(s, first)] : top_rhs_[top_block(s, halfway(first, last))] + n_;
 }
 
-void SegmentElimination::condense_group(int s, int group, const double* collocation) {
+void SegmentElimination::condense_group_rhs(int s, int group, const double* collocation) {
   const int rows = interval_.rows();
   const std::ptrdiff_t b = block(s, group);
   double* r = interval_rhs_[b];
@@ -52,7 +52,7 @@ void SegmentElimination::condense_group(int s, int group, const double* collocat
   interval_.forward(interval_blocks_[b], border_, interval_swaps_[b], r);
 }
 
-void SegmentElimination::condense_join(int s, const Join& at) {
+void SegmentElimination::condense_join_rhs(int s, const Join& at) {
   const std::ptrdiff_t b = block(s, at);
   const double* left = piece_rhs(s, at.first, at.middle);
   const double* right = piece_rhs(s, at.middle, at.last);
@@ -70,8 +70,8 @@ void SegmentElimination::condense_join(int s, const Join& at) {
 }
 
 void SegmentElimination::condense_right_hand_side(int s, const double* collocation, double* condensed) {
-  within_.each(groups_, [&](int group, int) { condense_group(s, group, collocation); });
-  for_joins([&](const Join& at, int) { condense_join(s, at); });
+  within_.each(groups_, [&](int group, int) { condense_group_rhs(s, group, collocation); });
+  for_joins([&](const Join& at, int) { condense_join_rhs(s, at); });
   const double* all = piece_rhs(s, 0, groups_);
   const int pieces = static_cast<int>(top_lanes_.size());
   for (int k = 0; k < pieces; ++k) take_lane(all, top_lanes_[index(k)], n_ + border_, lane_rhs_[top_block(s, k)]);
@@ -100,9 +100,8 @@ void SegmentElimination::expand_together(int s, std::span<const SegmentSolution>
   }
   for_joins_in_reverse(
       [&](const Join& at, int within) { expand_lane_join(s, at, solutions, std::max(thread, within)); });
-  within_.each(groups_, [&](int i, int within) {
-    expand_group(s, groups_ - 1 - i, solutions, std::max(thread, within));  // as blocks are fetched
-  });
+  within_.each_in_reverse(  // as blocks are fetched
+      groups_, [&](int group, int within) { expand_group(s, group, solutions, std::max(thread, within)); });
 }
 
 void SegmentElimination::put_ends(int s, const SegmentSolution& of) {

@@ -6,26 +6,16 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
+#include <exception>
 #include <thread>
+#include <vector>
 
 namespace tchat {
 
-struct SharedWork::Arena {
-  /// oneTBB complains on the screen of more threads than there are processors.
-  explicit Arena(int threads) : arena(std::min(threads, tbb::info::default_concurrency())) {}
-  tbb::task_arena arena;
-};
-
-SharedWork::SharedWork(int threads)
-    : threads_(threads), arena_(threads > 1 ? std::make_unique<Arena>(threads) : nullptr) {}
-
-SharedWork::~SharedWork() = default;
-SharedWork::SharedWork(SharedWork&&) noexcept = default;
-SharedWork& SharedWork::operator=(SharedWork&&) noexcept = default;
-
 namespace {
 
-/// Pieces 0 .. prepared - 1, of which the first `taken` have somebody who does them.
+/// A queue of pieces 0 .. prepared - 1, of which the first `taken` have somebody who does them.
 class Pieces {
  public:
   /// One more is prepared.
@@ -52,38 +42,141 @@ class Pieces {
 
 }  // namespace
 
-/// Every other thread takes pieces until there will be none. The caller prepares no more than one ahead for each of
-/// them, and does pieces itself in between: what is prepared is then still in the cache when it is done.
-void SharedWork::share(int count, const Calls& calls) const {
-  arena_->arena.execute([&] {
-    Pieces pieces;
-    const auto do_one = [&](int thread) {
-      const int piece = pieces.take();
-      if (piece >= 0) calls.work(calls.object, piece, thread);
-      return piece >= 0;
-    };
-    tbb::task_group others;
-    try {
-      const int present = arena_->arena.max_concurrency();
-      for (int thread = 1; thread < present; ++thread)
-        others.run([&, thread] {
-          while (!pieces.ended())
-            if (!do_one(thread)) std::this_thread::yield();
-        });
-      for (int i = 0; i < count && calls.prepare(calls.object, i); ++i) {
-        pieces.add();
-        while (pieces.waiting() >= present) do_one(0);
-      }
-      pieces.close();
+/// What run() was called for. The others' pieces are a queue from the last one on.
+class SharedWork::Job {
+ public:
+  Job(int count, const Calls& calls) : count_(count), calls_(calls) {}
+
+  /// The caller prepares pieces for `others`, so that one waits for each of them, does its own in between, and in the
+  /// end what nobody has taken.
+  void lead(int others) {
+    guard([&] {
+      int queued = 0;
+      for (int own = 0; own + queued < count_ && !others_.ended();)
+        if (others_.waiting() < others) {
+          prepare(last() - queued++);
+          others_.add();
+        } else {
+          prepare(own);
+          work(own++, 0);
+        }
+      others_.close();
       while (do_one(0)) {
       }
+    });
+  }
+  /// Pieces until there will be none.
+  void help(int thread) {
+    guard([&] {
+      while (!others_.ended())
+        if (!do_one(thread)) std::this_thread::yield();
+    });
+  }
+  /// What the first one threw that did; when nobody works any more.
+  void rethrow() const {
+    if (thrown_) std::rethrow_exception(thrown_);
+  }
+
+ private:
+  int last() const { return count_ - 1; }
+  void prepare(int piece) const { calls_.prepare(calls_.object, piece); }
+  void work(int piece, int thread) const { calls_.work(calls_.object, piece, thread); }
+  bool do_one(int thread) {
+    const int place = others_.take();
+    if (place >= 0) work(last() - place, thread);
+    return place >= 0;
+  }
+  template <class Part>
+  void guard(const Part& part) {
+    try {
+      part();
     } catch (...) {
-      pieces.stop();
-      others.wait();  // they write to what the caller is about to destroy
-      throw;
+      if (!failed_.exchange(true)) thrown_ = std::current_exception();
+      others_.stop();
     }
-    others.wait();
-  });
+  }
+
+  int count_;
+  const Calls& calls_;
+  Pieces others_;
+  std::atomic<bool> failed_ = false;
+  std::exception_ptr thrown_;
+};
+
+/// The other threads. To wake one takes as long as many a job, where its processor has been halted, so that they look
+/// out for the next one for a while before they are given back to oneTBB.
+class SharedWork::Team {
+ public:
+  /// oneTBB complains on the screen of more threads than there are processors.
+  explicit Team(int threads)
+      : present_(std::min(threads, tbb::info::default_concurrency())),
+        arena_(present_),
+        awake_(static_cast<std::size_t>(present_)) {}
+  ~Team() {
+    leaving_ = true;
+    arena_.execute([&] { helpers_.wait(); });
+  }
+  Team(const Team&) = delete;
+  Team& operator=(const Team&) = delete;
+
+  void run(Job& job) {
+    job_ = &job;
+    for (int thread = 1; thread < present_; ++thread)
+      if (!awake(thread).exchange(true)) arena_.enqueue(helpers_.defer([this, thread] { help(thread); }));
+    job.lead(present_ - 1);
+    job_ = nullptr;
+    while (inside_ != 0) std::this_thread::yield();  // they read the job
+  }
+
+ private:
+  std::atomic<bool>& awake(int thread) { return awake_[static_cast<std::size_t>(thread)]; }
+
+  void help(int thread) {
+    do help_while_needed(thread);
+    while (falls_asleep_too_early(thread));
+  }
+
+  void help_while_needed(int thread) {
+    using Clock = std::chrono::steady_clock;
+    constexpr auto patience = std::chrono::microseconds(300);
+    for (auto last = Clock::now(); !leaving_ && Clock::now() - last < patience;) {
+      if (job_ == nullptr) {
+        std::this_thread::yield();
+        continue;
+      }
+      ++inside_;
+      if (Job* const job = job_) job->help(thread);
+      --inside_;
+      last = Clock::now();
+    }
+  }
+
+  /// Whoever has a job thinks that this thread looks out for it, unless it was told in time; then it is woken.
+  bool falls_asleep_too_early(int thread) {
+    awake(thread) = false;
+    return job_ != nullptr && !awake(thread).exchange(true);
+  }
+
+  int present_;
+  tbb::task_arena arena_;
+  tbb::task_group helpers_;
+  std::atomic<Job*> job_ = nullptr;
+  std::atomic<int> inside_ = 0;  // so many may be reading the job
+  std::atomic<bool> leaving_ = false;
+  std::vector<std::atomic<bool>> awake_;  // the caller's is not used
+};
+
+SharedWork::SharedWork(int threads)
+    : threads_(threads), team_(threads > 1 ? std::make_unique<Team>(threads) : nullptr) {}
+
+SharedWork::~SharedWork() = default;
+SharedWork::SharedWork(SharedWork&&) noexcept = default;
+SharedWork& SharedWork::operator=(SharedWork&&) noexcept = default;
+
+void SharedWork::share(int count, const Calls& calls) const {
+  Job job(count, calls);
+  team_->run(job);
+  job.rethrow();
 }
 
 }  // namespace tchat

@@ -22,39 +22,51 @@ class SharedWork {
 
   int threads() const { return threads_; }
 
-  /// bool prepare(i) for i = 0 .. count - 1 in this order, by the calling thread, until it is false; after each that is
-  /// true work(i, thread), by any thread, while the caller goes on preparing. `thread` is less than threads(), and no
-  /// two at a time have the same. Returns when all that began has ended; throws what a piece or a preparation throws.
+  /// prepare(i) for i = 0 .. count - 1 by the calling thread, and after each work(i, thread) by any thread; `thread` is
+  /// less than threads(), and no two at a time have the same. The caller begins at 0, the others at count - 1, and they
+  /// go on until they meet: most pieces are done by the thread that did them last time, whose cache may still hold
+  /// what they need. One thread: in order, each piece done as soon as it is prepared. Returns when all that began has
+  /// ended; throws what a piece or a preparation throws.
   template <class Prepare, class Work>
   void run(int count, Prepare&& prepare, Work&& work) const {
     if (threads_ > 1 && count > 1) {
       const auto both = std::pair<Prepare&, Work&>(prepare, work);
       using Both = decltype(both);
-      share(count, {&both, [](const void* p, int i) { return static_cast<Both*>(p)->first(i); },
+      share(count, {&both, [](const void* p, int i) { static_cast<Both*>(p)->first(i); },
                     [](const void* p, int i, int thread) { static_cast<Both*>(p)->second(i, thread); }});
       return;
     }
-    for (int i = 0; i < count && prepare(i); ++i) work(i, 0);
+    for (int i = 0; i < count; ++i) {
+      prepare(i);
+      work(i, 0);
+    }
   }
 
   /// work(i, thread) for i = 0 .. count - 1.
   template <class Work>
   void each(int count, Work&& work) const {
     run(
-        count, [](int) { return true; }, work);
+        count, [](int) {}, work);
+  }
+  /// The same; one thread begins with the last one.
+  template <class Work>
+  void each_in_reverse(int count, Work&& work) const {
+    if (threads_ > 1) return each(count, work);
+    for (int i = count - 1; i >= 0; --i) work(i, 0);
   }
 
  private:
   struct Calls {
     const void* object;
-    bool (*prepare)(const void*, int);
+    void (*prepare)(const void*, int);
     void (*work)(const void*, int, int);
   };
-  struct Arena;
+  class Job;
+  class Team;
   void share(int count, const Calls& calls) const;
 
   int threads_;
-  std::unique_ptr<Arena> arena_;  // none for one thread
+  std::unique_ptr<Team> team_;  // none for one thread
 };
 
 }  // namespace tchat

@@ -7,12 +7,14 @@
 #include <vector>
 
 #include "benchmark/auto_comparison.hpp"
+#include "benchmark/branch_walk.hpp"
 #include "benchmark/compiled_problem.hpp"
 #include "benchmark/elimination_times.hpp"
 #include "benchmark/matrix_times.hpp"
 #include "benchmark/memory_sizes.hpp"
 #include "benchmark/start_times.hpp"
 #include "benchmark/step_times.hpp"
+#include "benchmark/thread_times.hpp"
 #include "benchmark/torus_times.hpp"
 #include "benchmark/two_parameter_times.hpp"
 
@@ -30,7 +32,8 @@ constexpr const char* purpose =
     "  (e) the elimination of mesh intervals for n = 4, 10, 20, 50, in lanes of vector registers and one by one;\n"
     "  (f) with --auto, time per step of AUTO-07p on the same k-segment problem, divided by ours;\n"
     "  (g) the peak resident size of the program;\n"
-    "  (h) start-up: what a run that computes nothing takes.";
+    "  (h) start-up: what a run that computes nothing takes;\n"
+    "  (i) one Newton matrix by two threads, compared with one.";
 
 constexpr const char* how_to_read =
     "How to read it. The machine's speed drops out of exponents, units and ratios; microseconds only tell where the\n"
@@ -44,9 +47,9 @@ constexpr const char* how_to_read =
     "(f) Processor times of one thread; a ratio of 10 says that AUTO needs ten times as long for a step. AUTO\n"
     "computes no multipliers when IPS = 4, hence the two ratios. The difference is that of the states on the two\n"
     "branches at the same alpha; AUTO's file has ten digits. (e) Rates count multiplications and additions; dgemm is\n"
-    "that of the BLAS that is installed. (g) Read when the program ends, its libraries included. Compare only numbers "
-    "of\n"
-    "an optimised build.";
+    "that of the BLAS that is installed. (g) Read when the program ends, its libraries included. (i) Wall-clock "
+    "times,\n"
+    "for a machine with two processors that do nothing else. Compare only numbers of an optimised build.";
 
 struct Choice {
   bool quick = false;
@@ -55,12 +58,20 @@ struct Choice {
   bool has(char table) const { return tables.empty() || tables.find(table) != std::string::npos; }
 };
 
+using tchat::OrbitShape;
 using tchat::benchmark::AutoSize;
+using tchat::benchmark::walk_shape;
 
 std::vector<AutoSize> auto_sizes(const Choice& choice) {
   if (choice.quick) return {{1, 50}, {2, 50}, {1, 10, 10}};
   return {{1, 50, 4, 5},  {2, 50, 4, 12}, {4, 50, 4, 20}, {8, 50, 4, 40}, {64, 50},
           {1, 200, 4, 5}, {1, 800, 4, 5}, {1, 50, 10},    {1, 50, 20},    {1, 50, 50}};
+}
+
+std::vector<OrbitShape> thread_shapes(bool quick) {
+  if (quick) return {walk_shape(1, 10), walk_shape(10, 50)};
+  return {walk_shape(1, 50, 50), walk_shape(1, 100, 50), walk_shape(1, 50, 20), walk_shape(1, 40, 20),
+          walk_shape(64, 50),    walk_shape(10, 50),     walk_shape(8, 50),     walk_shape(1, 50)};
 }
 
 void print_tables(const Choice& choice) {
@@ -85,6 +96,7 @@ void print_tables(const Choice& choice) {
     print_memory_sizes(sizes);
   }
   if (choice.has('h')) print_start_times(quick ? 2 : 40, quick);
+  if (choice.has('i')) print_thread_times(thread_shapes(quick), quick ? 1 : 9);
 }
 
 int run(const Choice& choice) {

@@ -43,7 +43,7 @@ Shared shared(int segments, int intervals, int collocation, const EliminationThr
 }
 
 Shared many_segments() { return shared<4>(64, 20, 4, {2, 1}); }
-Shared many_dimensions() { return shared<50>(2, 9, 2, {1, 2}); }
+Shared many_dimensions() { return shared<50>(2, 21, 2, {1, 2}); }
 
 /// Everything that is asked of a Newton matrix.
 struct Answers {
