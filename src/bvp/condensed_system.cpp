@@ -278,7 +278,7 @@ Linearization CondensedSystem::condense_one_by_one(const Orbit& x, std::span<con
   return Linearization::ready;
 }
 
-/// The problem is asked by this thread, for one segment after the other, and they are condensed by any. What is told is
+/// The problem is asked by this thread, for one segment at a time, and they are condensed by any. What is told is
 /// what the first one says that is not ready.
 Linearization CondensedSystem::condense_together(const Orbit& x, std::span<const OrbitVector> general,
                                                  OrbitResidual& residual) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 
 #include "bvp/lane_entries.hpp"
@@ -128,7 +129,7 @@ int SegmentElimination::top_node(int piece) const {
 
 namespace {
 
-/// Of pieces that are all finite, or not.
+/// Not finite before singular: the order in which pieces are done does not matter.
 Linearization worst(std::span<const Linearization> outcomes) {
   for (const Linearization worse : {Linearization::not_finite, Linearization::singular})
     if (std::find(outcomes.begin(), outcomes.end(), worse) != outcomes.end()) return worse;
@@ -148,6 +149,7 @@ Linearization SegmentElimination::condense(int s, const HybridSystem& system, in
 
 void SegmentElimination::evaluate(int s, const HybridSystem& system, int field, std::span<const int> active,
                                   const Orbit& x) {
+  assert(kept_segments_ == shape_.segments && kept_groups_ == groups_);
   for (int group = 0; group < groups_; ++group) evaluate_group(s, group, system, field, active, x);
 }
 

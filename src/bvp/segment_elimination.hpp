@@ -21,8 +21,8 @@
 /// Several threads: segments have nothing to do with one another, and neither have the groups of a segment, nor joins
 /// of one level. Whoever has a piece writes to its own blocks alone, so that results do not depend on the threads to
 /// the last bit. The problem's functions need not be re-entrant: one thread calls them, and others fill and eliminate
-/// meanwhile with what it has found. Blocks are large and stay with the thread that they were filled by, where they are
-/// eliminated, joined and solved: processors may share no cache.
+/// meanwhile with what it has found. As a rule blocks, which are large, stay with the thread that they were filled by,
+/// where they are eliminated, joined and solved: processors may share no cache.
 #pragma once
 
 #include <span>
@@ -101,7 +101,7 @@ class SegmentElimination {
   /// and condense_evaluated(), each piece condensed as soon as it is evaluated.
   Linearization condense(int s, const HybridSystem& system, int field, std::span<const int> active, const Orbit& x,
                          std::span<const OrbitVector> rows, double* collocation);
-  /// Only what the problem's functions say. For one segment at a time.
+  /// Only what the problem's functions say, where several threads have segments; for one segment at a time.
   void evaluate(int s, const HybridSystem& system, int field, std::span<const int> active, const Orbit& x);
   /// What evaluate() left, by thread number `thread` < `segments` of the threads.
   Linearization condense_evaluated(int s, const Orbit& x, std::span<const OrbitVector> rows, double* collocation,

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cassert>
 #include <chrono>
 #include <exception>
 #include <thread>
@@ -120,9 +121,10 @@ class SharedWork::Team {
   Team& operator=(const Team&) = delete;
 
   void run(Job& job) {
+    assert(job_ == nullptr);
     job_ = &job;
     for (int thread = 1; thread < present_; ++thread)
-      if (!awake(thread).exchange(true)) arena_.enqueue(helpers_.defer([this, thread] { help(thread); }));
+      if (!awake(thread).exchange(true)) wake(thread);
     job.lead(present_ - 1);
     job_ = nullptr;
     while (inside_ != 0) std::this_thread::yield();  // they read the job
@@ -131,9 +133,20 @@ class SharedWork::Team {
  private:
   std::atomic<bool>& awake(int thread) { return awake_[static_cast<std::size_t>(thread)]; }
 
+  /// Where there is no memory for it the others do the work.
+  void wake(int thread) {
+    try {
+      arena_.enqueue(helpers_.defer([this, thread] { help(thread); }));
+    } catch (const std::exception&) {
+      awake(thread) = false;
+    }
+  }
+
   void help(int thread) {
-    do help_while_needed(thread);
-    while (falls_asleep_too_early(thread));
+    while (true) {
+      help_while_needed(thread);
+      if (!falls_asleep_too_early(thread)) return;
+    }
   }
 
   void help_while_needed(int thread) {
@@ -147,6 +160,7 @@ class SharedWork::Team {
       ++inside_;
       if (Job* const job = job_) job->help(thread);
       --inside_;
+      std::this_thread::yield();  // the caller may be at its own last piece
       last = Clock::now();
     }
   }

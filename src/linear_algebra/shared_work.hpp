@@ -22,11 +22,13 @@ class SharedWork {
 
   int threads() const { return threads_; }
 
-  /// prepare(i) for i = 0 .. count - 1 by the calling thread, and after each work(i, thread) by any thread; `thread` is
+  /// For each i of 0 .. count - 1 prepare(i) by the calling thread, and then work(i, thread) by any thread; `thread` is
   /// less than threads(), and no two at a time have the same. The caller begins at 0, the others at count - 1, and they
-  /// go on until they meet: most pieces are done by the thread that did them last time, whose cache may still hold
-  /// what they need. One thread: in order, each piece done as soon as it is prepared. Returns when all that began has
-  /// ended; throws what a piece or a preparation throws.
+  /// go on until they meet, with little that is prepared ahead: as a rule a piece is done by the thread that did it
+  /// last time, whose cache may still hold what it needs. One thread: in order, each piece done as soon as it is
+  /// prepared. Returns when all that began has ended; throws what a piece or a preparation throws. One call at a time,
+  /// and none from within a piece. The other threads look out for the next call for some tenths of a millisecond;
+  /// another object's pieces are done by its caller alone meanwhile.
   template <class Prepare, class Work>
   void run(int count, Prepare&& prepare, Work&& work) const {
     if (threads_ > 1 && count > 1) {
@@ -48,7 +50,7 @@ class SharedWork {
     run(
         count, [](int) {}, work);
   }
-  /// The same; one thread begins with the last one.
+  /// The same; one thread begins with the last one, several do as in each().
   template <class Work>
   void each_in_reverse(int count, Work&& work) const {
     if (threads_ > 1) return each(count, work);
