@@ -1,7 +1,0 @@
-.impactoscillator.tch.so.DhlXku/impactoscillator.tch.so: \
- .impactoscillator.tch.so.DhlXku/impactoscillator.cpp \
- /work/main/src/contract/include/tchat/problem.hpp \
- /work/main/src/contract/include/tchat/dual.hpp \
- /work/main/src/contract/include/tchat/lanes.hpp \
- /work/main/src/contract/include/tchat/problem.h \
- /work/main/src/contract/include/tchat/sliding.hpp

@@ -1,7 +1,0 @@
-.slowpitchfork.tch.so.4gpefW/slowpitchfork.tch.so: \
- .slowpitchfork.tch.so.4gpefW/slowpitchfork.cpp \
- /work/main/src/contract/include/tchat/problem.hpp \
- /work/main/src/contract/include/tchat/dual.hpp \
- /work/main/src/contract/include/tchat/lanes.hpp \
- /work/main/src/contract/include/tchat/problem.h \
- /work/main/src/contract/include/tchat/sliding.hpp
