@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 
 #include "bvp/with_dimension.hpp"
 
@@ -14,8 +15,14 @@ std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 double length(const std::vector<double>& mesh, int j) { return mesh[index(j + 1)] - mesh[index(j)]; }
 
-/// Estimates of |u^(c+1)| of every component of segment s on every interval: n x N. On a single interval no jump of the
-/// c-th derivative tells of the next one: it is taken for as large as one that falls to zero over the interval.
+/// A node's value is known to a few roundings of its component: those of its own sum and of the equations behind it.
+constexpr double roundings_of_a_node = 4.0;
+/// Equations couple a component with larger ones, whose roundings reach it: none is taken for smaller than this share
+/// of the largest.
+constexpr double least_share = 1e-3;
+
+/// Estimates of |u^(c+1)| of every component of segment s on every interval: n x N. On a single interval the jump of
+/// the c-th derivative is unknown; it is estimated as if the derivative fell to zero over the interval.
 Eigen::MatrixXd highest_derivatives(const Orbit& x, const CollocationRule& rule, int s) {
   const OrbitShape& shape = x.shape;
   const int c = shape.collocation;
@@ -34,6 +41,72 @@ Eigen::MatrixXd highest_derivatives(const Orbit& x, const CollocationRule& rule,
   result.col(intervals - 1) = jump.col(intervals - 2);
   for (int j = 1; j + 1 < intervals; ++j) result.col(j) = 0.5 * (jump.col(j - 1) + jump.col(j));
   return result;
+}
+
+/// The size of every component on the whole orbit.
+Eigen::VectorXd component_sizes(const Orbit& x) {
+  const Eigen::VectorXd sizes = x.states.cwiseAbs().rowwise().maxCoeff();
+  return sizes.cwiseMax(least_share * sizes.maxCoeff());
+}
+
+/// What rounding alone makes of these estimates, n x N. Rounding of size delta at the nodes changes the c-th derivative
+/// sum_i highest_i u_i / h^c by up to delta sum_i |highest_i| / h^c = delta (2 c)^c / h^c, its jump between two
+/// intervals by twice that, and the jump is divided by h once more:
+///
+///     2 delta (2 c)^c / h^(c+1),   delta = a few units in the last place of the component.
+Eigen::MatrixXd rounding_of_derivatives(const Orbit& x, const CollocationRule& rule, const Eigen::VectorXd& sizes) {
+  const double of_a_node = roundings_of_a_node * std::numeric_limits<double>::epsilon();
+  const double factor = 2.0 * rule.highest.cwiseAbs().sum();
+  Eigen::MatrixXd result(x.shape.dimension, x.shape.intervals);
+  for (int j = 0; j < x.shape.intervals; ++j)
+    result.col(j) = of_a_node * factor / std::pow(length(x.mesh, j), x.shape.collocation + 1) * sizes;
+  return result;
+}
+
+/// |u^(c+1)| of all components of all segments that last, one a row, on every interval. Where the estimates of a
+/// component are rounding on every interval of a segment (a polynomial of degree c, or one resolved to rounding), it
+/// has no row. An estimate of another one counts for at least its rounding, whose (c+1)-th root is proportional to 1 /
+/// h: where an error is too small to be seen, the mesh stays.
+struct KnownDerivatives {
+  Eigen::MatrixXd rows;
+  Eigen::VectorXd sizes;  // of the component of each row
+};
+
+KnownDerivatives known_derivatives(const Orbit& x, const CollocationRule& rule) {
+  const Eigen::VectorXd sizes = component_sizes(x);
+  const Eigen::MatrixXd rounding = rounding_of_derivatives(x, rule, sizes);
+  const Eigen::Index most = static_cast<Eigen::Index>(x.shape.segments) * x.shape.dimension;
+  KnownDerivatives known{Eigen::MatrixXd(most, x.shape.intervals), Eigen::VectorXd(most)};
+  Eigen::Index count = 0;
+  for (int s = 0; s < x.shape.segments; ++s) {
+    if (x.duration(s) == 0.0) continue;
+    const Eigen::MatrixXd derivatives = highest_derivatives(x, rule, s);
+    for (int k = 0; k < x.shape.dimension; ++k) {
+      if ((derivatives.row(k).array() <= rounding.row(k).array()).all()) continue;
+      known.rows.row(count) = derivatives.row(k).cwiseMax(rounding.row(k));
+      known.sizes(count++) = sizes(k);
+    }
+  }
+  known.rows.conservativeResize(count, Eigen::NoChange);
+  known.sizes.conservativeResize(count);
+  return known;
+}
+
+/// The largest integral of a density, constant on each interval of `old`, over an interval of `mesh`.
+double largest_share(const Eigen::VectorXd& density, const std::vector<double>& old, const std::vector<double>& mesh) {
+  double largest = 0.0;
+  int j = 0;
+  for (std::size_t i = 0; i + 1 < mesh.size(); ++i) {
+    double share = 0.0;
+    for (double from = mesh[i]; from < mesh[i + 1];) {
+      while (j + 1 < density.size() && old[index(j + 1)] <= from) ++j;
+      const double to = j + 1 < density.size() ? std::min(mesh[i + 1], old[index(j + 1)]) : mesh[i + 1];
+      share += density(j) * (to - from);
+      from = to;
+    }
+    largest = std::max(largest, share);
+  }
+  return largest;
 }
 
 }  // namespace
@@ -57,27 +130,21 @@ std::vector<double> equal_parts(const std::vector<double>& mesh, const Eigen::Ve
 
 std::vector<double> equidistributed_mesh(const Orbit& x, const CollocationRule& rule, int intervals) {
   const double power = 1.0 / (x.shape.collocation + 1);
-  // Derivatives below this count as zero, so that a constant solution keeps a uniform mesh.
-  const double negligible = 1e-7;
-  Eigen::VectorXd monitor = Eigen::VectorXd::Zero(x.shape.intervals);
-  for (int s = 0; s < x.shape.segments; ++s) {
-    if (x.duration(s) == 0.0) continue;
-    const Eigen::MatrixXd derivatives = highest_derivatives(x, rule, s);
-    if (derivatives.maxCoeff() < negligible) continue;
-    monitor += derivatives.array().pow(power).matrix().colwise().sum().transpose();
+  const KnownDerivatives known = known_derivatives(x, rule);
+  if (known.rows.rows() == 0 || !known.rows.allFinite()) return resampled_mesh(x.mesh, intervals);
+  Eigen::VectorXd monitor = known.rows.array().pow(power).matrix().colwise().sum().transpose();
+  // Two sweeps of smoothing keep neighbouring intervals comparable; a floor keeps every interval finite.
+  for (int sweep = 0; sweep < 2; ++sweep) {
+    const Eigen::VectorXd old = monitor;
+    for (Eigen::Index j = 1; j + 1 < old.size(); ++j) monitor(j) = 0.25 * (old(j - 1) + 2.0 * old(j) + old(j + 1));
   }
-  const double peak = monitor.size() > 0 ? monitor.maxCoeff() : 0.0;
-  if (!(peak > 0.0) || !std::isfinite(peak)) {
-    monitor.setOnes();
-  } else {
-    // Two sweeps of smoothing keep neighbouring intervals comparable; a floor keeps every interval finite.
-    for (int sweep = 0; sweep < 2; ++sweep) {
-      const Eigen::VectorXd old = monitor;
-      for (Eigen::Index j = 1; j + 1 < old.size(); ++j) monitor(j) = 0.25 * (old(j - 1) + 2.0 * old(j) + old(j + 1));
-    }
-    monitor = monitor.cwiseMax(1e-3 * peak);
-  }
-  return equal_parts(x.mesh, monitor, intervals);
+  const std::vector<double> adapted = equal_parts(x.mesh, monitor.cwiseMax(1e-3 * monitor.maxCoeff()), intervals);
+  // The sum over components equidistributes none of them by itself. The local error on an interval is the (c+1)-th
+  // power of the integral of |u^(c+1)|^(1/(c+1)).
+  const std::vector<double> uniform = uniform_mesh(intervals);
+  const auto relative = known.sizes.cwiseInverse().asDiagonal() * known.rows;
+  const Eigen::VectorXd largest = relative.eval().colwise().maxCoeff().array().pow(power).transpose();
+  return largest_share(largest, x.mesh, adapted) <= largest_share(largest, x.mesh, uniform) ? adapted : uniform;
 }
 
 std::vector<double> resampled_mesh(const std::vector<double>& mesh, int intervals) {

@@ -2,7 +2,7 @@
 ///
 /// The (c+1)-th derivative of the exact solution is estimated by differencing the c-th derivatives of the polynomials
 /// of neighbouring intervals. The monitor is the sum over components and segments of |u^(c+1)|^(1/(c+1)); one mesh in
-/// tau serves all segments. Segments of zero duration have no weight.
+/// tau serves all segments. Segments of zero duration have no weight, nor have components whose estimates are rounding.
 #pragma once
 
 #include "bvp/collocation_rule.hpp"
@@ -10,7 +10,9 @@
 
 namespace tchat {
 
-/// The mesh of `intervals` intervals that equidistributes the monitor of x. Uniform when all derivatives vanish.
+/// The mesh of `intervals` intervals that equidistributes the monitor of x; the uniform one where the largest local
+/// error h^(c+1) |u^(c+1)|, relative to the size of its component, is expected to be less on that. The density of the
+/// old mesh is kept where all derivatives vanish to rounding: no mesh is better.
 std::vector<double> equidistributed_mesh(const Orbit& x, const CollocationRule& rule, int intervals);
 
 /// The old mesh's density at another number of intervals.

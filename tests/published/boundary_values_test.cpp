@@ -103,6 +103,48 @@ void check_bratu(const Workspace& workspace, const std::string& plugin, const st
   check_near(fold->parameter(1), 8.0 * (c * c - 1.0), 1e-8);
 }
 
+/// With its independent variable as a third state, which is a polynomial of degree 1 whatever the mesh.
+std::string with_time_as_state(const std::string& second_derivative, const std::string& end_condition) {
+  return R"(#include <tchat/problem.hpp>
+struct Linear {
+  static constexpr int dimension = 3, parameters = 1, fields = 1;
+  template <class T>
+  void field(int, const T* x, const T* par, T* f) const {
+    f[0] = x[1];
+    f[1] = )" +
+         second_derivative + R"(;
+    f[2] = T(1.0);
+  }
+  static constexpr int boundary_conditions = 3;
+  template <class T>
+  void boundary(const tchat::Ends<T>& u, const T*, T* b) const {
+    b[0] = u.start(1)[1];
+    b[1] = )" +
+         end_condition + R"(;
+    b[2] = u.start(1)[2];
+  }
+};
+TCHAT_PROBLEM(Linear)
+)";
+}
+
+/// The values of PAR(1) at the branch points of the trivial solution, from `low` to `high` with NTST = 40.
+std::vector<double> branch_points(const Workspace& workspace, const std::string& length, double low, double high,
+                                  int adapt_every) {
+  workspace.write("linear.dat",
+                  "# PAR(1) = " + std::to_string(low + 1) + "\n0 0 0 0\n" + length + " 0 0 " + length + "\n");
+  workspace.write("gc.linear", "NDIM = 3, IPS = 4, NBC = 3, ICP = [1], NTST = 40, NMX = 200, RL0 = " +
+                                   std::to_string(low) + ", RL1 = " + std::to_string(high) +
+                                   ", EPSL = 1e-10, EPSU = 1e-10, EPSS = 1e-9, DS = 0.1, DSMAX = 2");
+  const Outcome outcome = workspace.tchat("run linear -q IAD=" + std::to_string(adapt_every));
+  INFO(outcome.err);
+  REQUIRE(outcome.status == 0);
+  std::vector<double> values;
+  for (const SolutionEntry& u : workspace.solutions("linear"))
+    if (u.type % 10 == 6) values.push_back(u.parameter(1));
+  return values;
+}
+
 }  // namespace
 
 TEST_CASE("make -j2 in problems/elastica: buckling loads and bent rods in closed form") {
@@ -252,4 +294,37 @@ TCHAT_PROBLEM(Pendulum)
   for (const SolutionEntry& x : workspace.solutions("time"))
     if (x.type % 10 == -4) check_near(x.parameter(61), 1.2, 1e-9), found = true;
   CHECK(found);
+}
+
+TEST_CASE("a heavy rod whose arclength is a state: an adapted mesh is as good as a uniform one") {
+  // angle'' = -q s angle, s from the free end, clamped at s = 1: J_{-1/3}(2 sqrt(q) / 3) = 0.
+  const Workspace workspace;
+  workspace.write("linear.cpp", with_time_as_state("-par[0] * x[2] * sin(x[0])", "u.end(1)[0]"));
+  for (const int adapt_every : {0, 1, 3}) {
+    CAPTURE(adapt_every);
+    const std::vector<double> loads = branch_points(workspace, "1", 0, 100, adapt_every);
+    REQUIRE(loads.size() == 2);
+    // What q-files keep of a located point; a mesh that follows rounding is 4e-9 to 4e-6 off.
+    check_near(loads[0], 7.83734743886, 1e-9);
+    check_near(loads[1], 55.9770296813, 1e-9);
+  }
+}
+
+TEST_CASE("Mathieu's equation with its time as a state: an adapted mesh is as good as a uniform one") {
+  // y'' = -(a - 10 cos 2t) y, y' = 0 at 0 and pi: the characteristic values a_0 .. a_4 for q = 5 (Abramowitz and
+  // Stegun, table 20.1).
+  const Workspace workspace;
+  workspace.write("linear.cpp", with_time_as_state("-(par[0] - T(10.0) * cos(T(2.0) * x[2])) * x[0]", "u.end(1)[1]"));
+  std::vector<std::vector<double>> values;
+  for (const int adapt_every : {0, 1, 3})
+    values.push_back(branch_points(workspace, "3.141592653589793", -10, 20, adapt_every));
+  const std::vector<double> exact{-5.80004602085, 1.85818754147, 7.44910973950, 11.5488320364, 17.0965816844};
+  for (const std::vector<double>& found : values) {
+    REQUIRE(found.size() == exact.size());
+    for (std::size_t k = 0; k < exact.size(); ++k) {
+      CAPTURE(k);
+      CHECK(std::abs(found[k] - exact[k]) < 1e-8);  // NTST = 40 resolves a_4 to 5e-9
+      CHECK(std::abs(found[k] - values.front()[k]) < 1e-9);
+    }
+  }
 }
