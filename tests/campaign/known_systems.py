@@ -53,9 +53,9 @@ def integrate_and_fire(random):
                   Truth("periodic", 1, math.log(a / (a - 1)), 0.0))
 
 
-# Two oscillators on unit circles, z1' = i z1, phi' = w - K sin(q phi - p theta)/q. Their difference obeys Adler's equation
-# psi' = q w - p - K sin psi: locked for |q w - p| < K at the rate sqrt(K^2 - (q w - p)^2), else conjugate to a rotation
-# whose mean frequency is (p +- sqrt((q w - p)^2 - K^2))/q.
+# Two oscillators on unit circles, theta' = 1, phi' = w - K sin(q phi - p theta)/q. Their difference obeys Adler's
+# equation psi' = q w - p - K sin psi: locked for |q w - p| < K at the rate sqrt(K^2 - (q w - p)^2), else conjugate to a
+# rotation whose mean frequency is (p +- sqrt((q w - p)^2 - K^2))/q.
 def locked_oscillators(p, q):
     def power(name, n):
         lines = "%s1 = c%s\n%sI1 = s%s\n" % (name, name, name, name)
@@ -328,8 +328,9 @@ def walker_gait(th, w, gamma, steps):
         return th, w, duration
     for _ in range(4):
         e = 1e-6
-        (a, c, _), (b, d, _) = [[(after - before) / (2 * e) for after, before in zip(image(th + p, w + q), image(th - p, w - q))]
-                                for p, q in ((e, 0), (0, e))]
+        (a, c, _), (b, d, _) = [
+            [(after - before) / (2 * e) for after, before in zip(image(th + p, w + q), image(th - p, w - q))]
+            for p, q in ((e, 0), (0, e))]
         f, g, period = image(th, w)
         f, g = f - th, g - w
         det = (a - 1) * (d - 1) - b * c
@@ -340,7 +341,8 @@ def walker_gait(th, w, gamma, steps):
 
 def walker(random):
     # Period one is stable up to 0.01512, period two up to 0.01683 (the first two doublings).
-    gamma = random.choice([random.uniform(0.006, 0.0149), random.uniform(0.0149, 0.0151), random.uniform(0.0152, 0.0165)])
+    low, high = random.choice([(0.006, 0.0149), (0.0149, 0.0151), (0.0152, 0.0165)])
+    gamma = random.uniform(low, high)
     steps = 1 if gamma < 0.01512 else 2
     th, w = 0.20031, -0.19983  # the gait at 0.009, followed from there
     for k in range(1, 11):
@@ -375,8 +377,8 @@ after any: turn -> identity
 
 def motion_that_ends(random):
     if random.random() < 0.5:
-        return System("ball on the floor", BALL, {"r": random.uniform(0.2, 0.9)}, {"h": random.uniform(0.5, 2), "v": 0.0},
-                      Truth("chattering"))
+        return System("ball on the floor", BALL, {"r": random.uniform(0.2, 0.9)},
+                      {"h": random.uniform(0.5, 2), "v": 0.0}, Truth("chattering"))
     return System("spiral", SPIRAL, {"zeta": log_uniform(random, 0.01, 0.3)}, {"x": 1.0, "y": 0.0}, Truth("rest"))
 
 
@@ -389,5 +391,6 @@ SHARES = [(integrate_and_fire, 8), (torus_near_resonance, 18), (moebius_circle_m
 def draw(random, count):
     """`count` systems in the shares above, the families in turn."""
     total = sum(share for _, share in SHARES)
-    due = [(((k + 0.5) * total / share), family) for family, share in SHARES for k in range(share * (count // total + 1))]
+    due = [((k + 0.5) * total / share, family)
+           for family, share in SHARES for k in range(share * (count // total + 1))]
     return [family(random) for _, family in sorted(due, key=lambda pair: pair[0])[:count]]

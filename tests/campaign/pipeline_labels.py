@@ -44,7 +44,8 @@ def lines_of_branch(tchat, folder, name, problem):
             continue
         columns = list(row)
         first = columns.index("admissible") + 1
-        values = [rounded(row[column]) for column in (columns[first], "PERIOD") if isinstance(row.get(column), float | int)]
+        values = [rounded(row[column]) for column in (columns[first], "PERIOD")
+                  if isinstance(row.get(column), float | int)]
         lines.append("%s/%s %s [%s] %s = %s" % (problem, name, row["type"], row["kind"] or "", columns[first],
                                                  " ".join(values)))
     return lines

@@ -60,8 +60,8 @@ def orbit_in(text):
         return None
     multipliers = re.search(r"multipliers (.*?): (not stable|\w+)", text)
     sizes = [abs(number_with_i(part)) for part in multipliers.group(1).split(",")] if multipliers else []
-    return {"events": orbit.group(1).count("("), "period": float(orbit.group(2)), "multiplier": max(sizes, default=None),
-            "stable": bool(multipliers) and multipliers.group(2) == "stable"}
+    return {"events": orbit.group(1).count("("), "period": float(orbit.group(2)),
+            "multiplier": max(sizes, default=None), "stable": bool(multipliers) and multipliers.group(2) == "stable"}
 
 
 def kind_in_words(text):
@@ -94,8 +94,9 @@ def answer_of_lyapunov(text):
     head, found, tail = text.partition("Lyapunov exponents per")
     if not found:
         return Answer(kind_in_words(text) or "undecided")
+    lines = re.findall(r"^\s+\d+\s+(-?[\d.]+(?:e-?\d+)?|-infinity)(?: \+- (\S+))?", tail, re.M)
     exponents = [(float(value.replace("infinity", "inf")), float(error) if error and error != "unknown" else 0.0)
-                 for value, error in re.findall(r"^\s+\d+\s+(-?[\d.]+(?:e-?\d+)?|-infinity)(?: \+- (\S+))?", tail, re.M)]
+                 for value, error in lines]
     orbit = orbit_in(head) or {}
     kind = kind_in_words(tail) or "undecided"
     return Answer(kind, orbit.get("events") if kind == "periodic" else None, None, None, exponents)
