@@ -27,6 +27,8 @@ class System:
     parameters: dict
     start: dict
     truth: Truth
+    # Over this range of the first parameter a sweep sees one branch: one attractor with one number.
+    branch: tuple | None = None
 
     @property
     def name(self):
@@ -50,7 +52,7 @@ after any: threshold -> reset
 def integrate_and_fire(random):
     a = 1 + log_uniform(random, 1e-5, 3)
     return System("integrate and fire", INTEGRATE_AND_FIRE, {"a": a}, {"x": random.uniform(-1, 0.9)},
-                  Truth("periodic", 1, math.log(a / (a - 1)), 0.0))
+                  Truth("periodic", 1, math.log(a / (a - 1)), 0.0), (a, 1 + 1.5 * (a - 1)))
 
 
 # Two oscillators on unit circles, theta' = 1, phi' = w - K sin(q phi - p theta)/q. Their difference obeys Adler's
@@ -84,7 +86,8 @@ def torus_near_resonance(random):
         truth = Truth("periodic", q, period, math.exp(-min(rate, 2.0) * period))
     else:
         truth = Truth("quasi-periodic")
-    return System("oscillators %d to %d" % (p, q), locked_oscillators(p, q), parameters, start, truth)
+    middle = (parameters["w"], (p + 0.9 * detuning) / q) if abs(detuning) < K else None
+    return System("oscillators %d to %d" % (p, q), locked_oscillators(p, q), parameters, start, truth, middle)
 
 
 # Maps that a clock applies once per unit of time; between its ticks nothing moves.
@@ -273,7 +276,8 @@ def impact_oscillator(random):
         if found and found[2] < 0.999:
             (x, v, c, s), T, multiplier = found
             return System("impact oscillator", IMPACT_OSCILLATOR, {"A": A, "omega": omega, "zeta": zeta, "r": r},
-                          {"x": x, "v": v * (1 + 1e-4), "c": c, "s": s}, Truth("periodic", 1, T, multiplier))
+                          {"x": x, "v": v * (1 + 1e-4), "c": c, "s": s}, Truth("periodic", 1, T, multiplier),
+                          (A, A * (1 + 1e-5)))
 
 
 # The simplest walker (Garcia, Chatterjee, Ruina, Coleman 1998), legs th and ph, slope gamma.

@@ -147,10 +147,11 @@ def faults_of_label(row, constants, answers, stated, orbit):
         faults.append("integration leaves the stored points by %.2g, stated is %.2g" % (found["interval"], stated))
     if found["connection"] > accuracy:
         faults.append("segments do not meet: %.2g, stated is %.2g" % (found["connection"], stated))
-    grazes = "velocity zero" in (row["kind"] or "") or row["type"] in ("GR", "HB") or constants["IPS"] == 150
-    if found["event"] > accuracy and not grazes:
-        faults.append("an event is off by %.2g of its segment's time, stated is %.2g" % (found["event"], stated))
-    if found["shortest"] < (-1e-9 if grazes else 0):
+    # Where a segment shrinks to a point.
+    at_zero = row["type"] in ("GR", "BE") or "velocity zero" in (row["kind"] or "")
+    if found["event"] > accuracy:
+        faults.append("a segment ends off its surface by %.2g, stated is %.2g" % (found["event"], stated))
+    if found["shortest"] < (-1e-9 if at_zero else 0):
         faults.append("a segment lasts %.3g" % found["shortest"])
     kind = row["kind"] or ""
     for segment in re.findall(r"velocity zero at the end of segment (\d+)", kind):
@@ -160,7 +161,7 @@ def faults_of_label(row, constants, answers, stated, orbit):
     if row["type"] == "GR":
         for least in found["least"]:
             if abs(least) > LEAST + 100 * stated:
-                faults.append("contact, but the least value of h is %.3g of its largest" % least)
+                faults.append("contact, but the least value of h is %.3g, relative to the states" % least)
     if has_type(row, constants):
         faults.append(fault_of_type(row["type"], answers, constants))
     return [fault for fault in faults if fault]

@@ -9,10 +9,10 @@
 /// where t runs from 0 to 1; event 0 is an orbit without a section, jump 0 the identity. For each orbit one line of
 /// JSON answers: `interval` is the largest difference between a stored point and the integration from the one before
 /// it, `connection` that between the image of a segment's end and the next start, both relative to the largest state;
-/// `event` is h / (h_x f), the error in time at the end of a segment, relative to its duration; `velocity` is h_x f
-/// there; `real` and `imaginary` are the parts of the multipliers of the return map, from central differences over each
+/// `event` is h at the ends of segments relative to its gradient and the largest state; `velocity` is h_x f there;
+/// `real` and `imaginary` are the parts of the multipliers of the return map, from central differences over each
 /// interval and, at events, from the saltation matrix; `least` is the local minimum of each monitored function that is
-/// nearest to zero, relative to its largest value.
+/// nearest to zero, relative as `event` is.
 #include <dlfcn.h>
 
 #include <Eigen/Core>
@@ -136,7 +136,7 @@ void check_segment(const Orbit& orbit, std::size_t s, Findings& found) {
     const MatrixXd gradient = derivative(orbit, end, 1, h);
     const double velocity = (gradient * f)(0);
     found.velocities.push_back(velocity);
-    found.event = std::max(found.event, std::abs(h(end)(0) / (velocity * segment.duration)));
+    found.event = std::max(found.event, std::abs(h(end)(0)) / (gradient.lpNorm<Eigen::Infinity>() * orbit.scale));
     monodromy -= f * (gradient * monodromy) / velocity;
   }
   monodromy =
@@ -156,8 +156,7 @@ double least_value(const Orbit& orbit, const Segment& segment, int event) {
       values.push_back(event_at(orbit, event, flow(orbit, segment.field, segment.points[k], time * part / parts)));
   }
   values.push_back(event_at(orbit, event, segment.points.back()));
-  double largest = 0.0, nearest = std::numeric_limits<double>::infinity();
-  for (const double v : values) largest = std::max(largest, std::abs(v));
+  double nearest = std::numeric_limits<double>::infinity();
   for (std::size_t k = 1; k + 1 < values.size(); ++k) {
     if (values[k] > values[k - 1] || values[k] > values[k + 1]) continue;
     const double slope = (values[k + 1] - values[k - 1]) / 2;
@@ -168,7 +167,9 @@ double least_value(const Orbit& orbit, const Segment& segment, int event) {
   // A minimum may be at the start or the end, where segments are cut.
   for (const double v : {values.front(), values.back()})
     if (std::abs(v) < std::abs(nearest)) nearest = v;
-  return nearest / largest;
+  const MatrixXd gradient = derivative(orbit, segment.points.front(), 1,
+                                       [&](const VectorXd& x) { return value(orbit, TCHAT_EVENT, event, x, 1); });
+  return nearest / (gradient.lpNorm<Eigen::Infinity>() * orbit.scale);
 }
 
 /// None where the matrix is not finite.
