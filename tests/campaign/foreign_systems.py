@@ -88,18 +88,15 @@ MORRIS_LECAR = smooth("I=90, phi=0.04", "v=-20, n=0.1",
                       "n' = phi*(ninf - n)*cosh((v - 2)/60)", "v")
 CHUA = smooth("alpha=8.3, beta=14.3", "x=1, y=0.1, z=-1",
               "x' = alpha*(y - x^3/16 + x/6)\ny' = x - y + z\nz' = -beta*y", "y")
-REACTION = smooth("D=0.25, alpha=1, sigma=0.04, B=8, beta=1.55", "x=0.5, y=0.4, z=3",
-                  "e = D*exp(z)*(1 - x)\nx' = -x + e\ny' = -y + e - D*exp(z)*sigma*y\n"
-                  "z' = -z - beta*z + B*e + D*B*alpha*sigma*exp(z)*y", "z - 2.5")
 SUBCRITICAL = smooth("mu=-0.1, w=1", "x=1, y=0",
                      "r2 = x^2 + y^2\nx' = (mu + r2 - r2^2)*x - w*y\ny' = (mu + r2 - r2^2)*y + w*x", "y")
 HINDMARSH_ROSE = smooth("I=4, b=3, r=0.01", "x=0, y=0, z=3.5",
                         "x' = y - x^3 + b*x^2 - z + I\ny' = 1 - 5*x^2 - y\nz' = r*(4*(x + 1.6) - z)", "x")
 SELKOV = smooth("b=0.6, a=0.1", "x=0.6, y=1.2", "x' = -x + a*y + x^2*y\ny' = b - a*y - x^2*y", "x - b")
 # The peroxidase-oxidase reaction.
-STEINMETZ_LARTER = smooth("k8=0.85, k7=1.5", "A=6, B=60, X=0.01, Y=0.05",
+STEINMETZ_LARTER = smooth("k8=0.5, k7=1.5", "A=6, B=10, X=0.01, Y=0.05",
                           "f = 0.1631021*A*B*X\ng = 0.046875*A*B*Y\nA' = -f - g + k7 - 0.1175*A\nB' = -f - g + k8\n"
-                          "X' = f - 2500*X^2 + 2*g - 20*X + 0.001\nY' = -g + 2500*X^2 - 1.104*Y", "A - 5")
+                          "X' = f - 2500*X^2 + 2*g - 20*X + 0.001\nY' = -g + 2500*X^2 - 1.104*Y", "A - 7")
 REPRESSILATOR = smooth("a=10, n=4", "x=1, y=2, z=3",
                        "x' = a/(1 + z^n) - x\ny' = a/(1 + x^n) - y\nz' = a/(1 + y^n) - z", "x - 1.5")
 
@@ -122,10 +119,9 @@ FOREIGN = {
     "fitzhugh": (FITZHUGH, [], "I", (0.2, 1.6)),
     "morrislecar": (MORRIS_LECAR, [], "I", (30, 250)),
     "chua": (CHUA, [], "alpha", (6, 12)),
-    "reaction": (REACTION, [], "D", (0.1, 0.3)),
     "subcritical": (SUBCRITICAL, [], "mu", (-0.3, 0.5)),
     "hindmarshrose": (HINDMARSH_ROSE, [], "I", (1, 6)),
     "selkov": (SELKOV, [], "b", (0.3, 0.9)),
-    "steinmetzlarter": (STEINMETZ_LARTER, [], "k8", (0.4, 1.3)),
+    "steinmetzlarter": (STEINMETZ_LARTER, [], "k8", (0.3, 0.8)),
     "repressilator": (REPRESSILATOR, [], "a", (2, 50)),
 }
