@@ -17,6 +17,7 @@ import os
 import random
 import re
 import shlex
+import shutil
 import subprocess
 import sys
 
@@ -264,6 +265,7 @@ def main():
     parser.add_argument("--folder", default="label_accuracy")
     options = parser.parse_args()
     tchat, folder = os.path.abspath(options.tchat), os.path.abspath(options.folder)
+    shutil.rmtree(os.path.join(folder, "foreign"), ignore_errors=True)
     os.makedirs(folder, exist_ok=True)
     if not options.foreign and not os.path.exists(os.path.join(folder, "pipelines")):
         pipeline_labels.make(tchat, options.source, os.path.join(folder, "pipelines"), os.path.join(folder, "labels"))
@@ -271,6 +273,8 @@ def main():
     for place, words, library in draw_runs(random.Random(options.seed), tchat, folder, options.count, options.only):
         name = words[words.index("-o") + 1]
         counts["runs"] += 1
+        for old in glob.glob(os.path.join(place, "[pqdr]." + name)):
+            os.remove(old)
         try:
             done = subprocess.run([tchat] + words, cwd=place, capture_output=True, text=True, timeout=TIME_LIMIT)
         except subprocess.TimeoutExpired:

@@ -1,6 +1,6 @@
 """Verdicts of `tchat simulate`, `simulate --lyapunov` and `sweep` on systems whose attractor is known.
 
-    python3 verdicts.py TCHAT [--count N] [--seed S] [--family NAME] [--verbose]
+    python3 verdicts.py TCHAT [--count N] [--seed S] [--family PATTERN] [--verbose]
 
 Draws N systems of known_systems.py (100), runs the three commands on each as a user would, and compares what they say
 with the truth. A sweep along one branch must give its attractor one number. The exit status is 1 where a verdict is
@@ -213,13 +213,13 @@ def main():
     parser.add_argument("tchat")
     parser.add_argument("--count", type=int, default=100)
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--family", help="only families whose name has this in it")
+    parser.add_argument("--family", help="only families whose name has this regular expression in it")
     parser.add_argument("--folder", help="where to keep formulas and results")
     parser.add_argument("--verbose", action="store_true")
     options = parser.parse_args()
     systems = known_systems.draw(random.Random(options.seed), options.count)
     if options.family:
-        systems = [system for system in systems if options.family in system.family]
+        systems = [system for system in systems if re.search(options.family, system.family)]
     with tempfile.TemporaryDirectory() as scratch:
         folder = options.folder or scratch
         os.makedirs(folder, exist_ok=True)
