@@ -39,7 +39,7 @@ Eigen::MatrixXd return_matrices(const TorusSystem& system, const CondensedSystem
   return columns;
 }
 
-/// That along the curve u first; `curve`: u - w phi.
+/// That along the curve u first.
 Eigen::VectorXd exponents(const Eigen::MatrixXd& matrices, const Eigen::MatrixXd& curve, const Eigen::VectorXd& w,
                           double rho) {
   const Eigen::Index n = curve.rows();
@@ -68,15 +68,18 @@ Eigen::VectorXd exponents(const Eigen::MatrixXd& matrices, const Eigen::MatrixXd
 
 }  // namespace
 
+Eigen::VectorXd moduli_along_rotation(const Eigen::MatrixXd& matrices, const Eigen::MatrixXd& curve,
+                                      const Eigen::VectorXd& w, double rho) {
+  return exponents(matrices, curve, w, rho).array().exp();
+}
+
 FloquetMultipliers torus_multipliers(const CondensedSystem& condensed, const Orbit& x) {
   const auto& system = dynamic_cast<const TorusSystem&>(condensed.system());
   FloquetMultipliers result;
   const Eigen::MatrixXd matrices = return_matrices(system, condensed, x);
   if (!matrices.allFinite() || x.shape.dimension < 2) return result;
-  Eigen::VectorXd moduli =
-      exponents(matrices, periodic_section_curve(system, x), system.winding().curve, TorusSystem::rotation(x))
-          .array()
-          .exp();
+  Eigen::VectorXd moduli = moduli_along_rotation(matrices, periodic_section_curve(system, x), system.winding().curve,
+                                                 TorusSystem::rotation(x));
   std::sort(moduli.begin() + 1, moduli.end(), [](double a, double b) { return std::abs(a - 1.0) < std::abs(b - 1.0); });
   result.values.assign(moduli.begin(), moduli.end());
   result.values.emplace_back(0.0);

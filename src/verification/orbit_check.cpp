@@ -20,6 +20,8 @@ using Eigen::VectorXd;
 /// What q-files round away, and Newton's method leaves.
 constexpr double stored_accuracy = 1e-9;
 constexpr double least_scale = 1e-3;
+/// What integration along a segment must at least tell: where errors of the start grow by more, its end says nothing.
+constexpr double most_allowed = 1e-2;
 /// A difference of multipliers is no defect where a change of the map by this part of the tolerance explains it.
 constexpr double explained = 1e-2;
 
@@ -32,6 +34,7 @@ StoredSegment stored_segment(const HybridSystem& system, const RunSettings& sett
   StoredSegment segment;
   segment.index = own.index;
   segment.next_field = after.index.field;
+  segment.integrand = has_ring(settings.problem_type) || system.integral_conditions() == 0 ? 0 : s + 1;
   segment.grazing = contact_segment(settings) == s;
   segment.start = Eigen::Map<const VectorXd>(x.start(s), n);
   segment.end = Eigen::Map<const VectorXd>(x.end(s), n);
@@ -79,7 +82,7 @@ double jump_defect(const HybridSystem& system, const IndexVector& index, const O
                    const VectorXd& following, const VectorXd& scale) {
   VectorXd after(x.shape.dimension);
   system.value(FunctionKind::jump, index.jump, x.end(s), x.par.data(), after.data());
-  return (after - following).cwiseAbs().cwiseQuotient(scale).maxCoeff();
+  return (after - following).cwiseAbs().cwiseQuotient(scale).maxCoeff<Eigen::PropagateNaN>();
 }
 
 /// The starts of the segments after each, in a ring.
@@ -115,7 +118,21 @@ double boundary_defect(const HybridSystem& system, const Orbit& x) {
   }
   VectorXd values(system.boundary_conditions());
   system.boundary({m, starts.data(), ends.data(), x.par.data()}, values.data());
-  return values.cwiseAbs().maxCoeff();
+  return values.cwiseAbs().maxCoeff<Eigen::PropagateNaN>();
+}
+
+/// The largest integral condition, relative to its size (IntegralValues). NaN where a segment could not be integrated.
+std::optional<double> integral_defect(const OrbitCheck& check) {
+  Eigen::ArrayXd sums, sizes;
+  for (const SegmentCheck& segment : check.segments) {
+    if (!segment.message.empty()) return NAN;
+    if (segment.integrals.values.size() == 0) return std::nullopt;
+    if (sums.size() == 0) sums = sizes = Eigen::ArrayXd::Zero(segment.integrals.values.size());
+    sums += segment.integrals.values.array();
+    sizes += segment.integrals.sizes.array();
+  }
+  // An integrand that is zero along the orbit for all that rounding says has no size.
+  return (sums.abs() / (sizes + stored_accuracy * check.period)).maxCoeff<Eigen::PropagateNaN>();
 }
 
 void compare_critical(const std::vector<std::complex<double>>& critical, const ReturnPencil& pencil,
@@ -163,26 +180,35 @@ std::vector<SegmentCheck> check_segments(const HybridSystem& system, const RunSe
   return checks;
 }
 
+std::vector<SegmentLink> links_of(const HybridSystem& system, const RunSettings& settings, const Orbit& x,
+                                  const std::vector<SegmentCheck>& segments, const VectorXd& scale) {
+  std::vector<SegmentLink> links;
+  for (int s = 0; s < x.shape.segments; ++s) {
+    const SegmentCheck& segment = segments[static_cast<std::size_t>(s)];
+    if (!segment.message.empty()) return {};
+    links.push_back(link_at(system, stored_segment(system, settings, x, s), segment, x.par, scale));
+  }
+  return links;
+}
+
 OrbitCheck check_orbit(const HybridSystem& system, const RunSettings& settings, const Orbit& x,
                        const std::vector<std::complex<double>>& stored, double tolerance,
                        const CriticalMultipliers& critical) {
   OrbitCheck check;
   const VectorXd scale = state_scales(x);
-  const VectorXd par = x.par;
   const bool ring = has_ring(settings.problem_type);
   check.segments = check_segments(system, settings, x, scale, ring ? next_starts(x) : MatrixXd(), tolerance);
   if (!ring) take_larger(check.segments.back().state_defect, boundary_defect(system, x));
-  std::vector<SegmentLink> links;
   for (int s = 0; s < x.shape.segments; ++s) {
-    const SegmentCheck& segment = check.segments[static_cast<std::size_t>(s)];
-    if (ring && segment.message.empty())
-      links.push_back(link_at(system, stored_segment(system, settings, x, s), segment, par, scale));
     check.durations.push_back(x.duration(s));
     check.period += std::abs(x.duration(s));
   }
+  check.goes_forward = x.period() > 0.0 && std::isfinite(x.period());
   if (!(check.period > 0.0)) check.period = 1.0;
-  if (links.size() != check.segments.size()) return check;
+  if (!ring) check.integral_defect = integral_defect(check);
   if (!ring) return check;
+  const std::vector<SegmentLink> links = links_of(system, settings, x, check.segments, scale);
+  if (links.empty()) return check;
   const ReturnPencil pencil(links);
   if (!pencil.determines_multipliers(tolerance)) return check;
   check.multipliers = pencil.multipliers();
@@ -195,13 +221,21 @@ OrbitCheck check_orbit(const HybridSystem& system, const RunSettings& settings, 
 
 std::vector<Defect> defects_of(const OrbitCheck& check, std::size_t s, double tolerance) {
   const SegmentCheck& segment = check.segments[s];
-  if (!segment.message.empty()) return {Defect::not_integrated};
-  const double allowed = std::max(tolerance, stored_accuracy * segment.growth);
   std::vector<Defect> defects;
+  if (s == 0 && !check.goes_forward) defects.push_back(Defect::duration);
+  const double growing = stored_accuracy * segment.growth;
+  if (!segment.message.empty() || !(growing <= most_allowed)) {
+    defects.push_back(segment.message.empty() ? Defect::undecided : Defect::not_integrated);
+    return defects;
+  }
+  const double allowed = std::max(tolerance, growing);
   if (!(segment.state_defect <= allowed)) defects.push_back(Defect::state);
-  const bool is_in_time = segment.time_defect <= allowed * check.period;
-  const bool is_on_surface = segment.event_level <= allowed;
-  if (!is_in_time && !is_on_surface) defects.push_back(Defect::time);
+  if (s + 1 == check.segments.size() && check.integral_defect && !(*check.integral_defect <= allowed))
+    defects.push_back(Defect::integral);
+  // Where the flow touches the surface, an error of the state moves the event by its root.
+  const bool is_touched = segment.touches && segment.event_level <= allowed;
+  if (!(segment.time_defect <= (is_touched ? std::sqrt(allowed) : allowed) * check.period))
+    defects.push_back(Defect::time);
   if (!segment.wrong.empty() || segment.leaves_surface || check.durations[s] < -allowed * check.period)
     defects.push_back(Defect::event);
   return defects;

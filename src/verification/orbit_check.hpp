@@ -18,6 +18,9 @@ struct OrbitCheck {
   std::vector<SegmentCheck> segments;  ///< state_defect counts the jump after the segment
   std::vector<double> durations;       ///< T_s
   double period = 0.0;                 ///< sum |T_s|, 1 for an orbit that takes no time
+  bool goes_forward = true;            ///< sum T_s > 0, finite
+  /// Of boundary value problems with integral conditions: the largest one, relative to its size.
+  std::optional<double> integral_defect;
   /// Of the return map along the integrated segments; empty when one of them could not be integrated, or the
   /// map does not determine them.
   std::vector<std::complex<double>> multipliers;
@@ -40,6 +43,11 @@ std::vector<SegmentCheck> check_segments(const HybridSystem& system, const RunSe
                                          const Eigen::VectorXd& scale, const Eigen::MatrixXd& following,
                                          double tolerance, const std::vector<Eigen::Index>& angles = {});
 
+/// What the checked segments make of the return map's derivative, in states divided by `scale`; empty where one of them
+/// could not be integrated.
+std::vector<SegmentLink> links_of(const HybridSystem& system, const RunSettings& settings, const Orbit& x,
+                                  const std::vector<SegmentCheck>& segments, const Eigen::VectorXd& scale);
+
 /// `stored`: the multipliers of the d-file; empty when there are none. `critical`: those that the label must have, by
 /// the computed ones.
 using CriticalMultipliers =
@@ -48,9 +56,10 @@ OrbitCheck check_orbit(const HybridSystem& system, const RunSettings& settings, 
                        const std::vector<std::complex<double>>& stored, double tolerance,
                        const CriticalMultipliers& critical = {});
 
-/// What is beyond `tolerance`, with the growth of errors (growth * 1e-9 where that is more): one list for a segment,
-/// one for the multipliers.
-enum class Defect { not_integrated, state, time, event, multipliers, critical };
+/// What is beyond `tolerance`, with the growth of errors (growth * 1e-9 where that is more; undecided beyond 1e-2): one
+/// list for a segment, with the duration of the whole orbit at the first and integral conditions at the last one; one
+/// for the multipliers.
+enum class Defect { not_integrated, undecided, duration, state, integral, time, event, multipliers, critical };
 std::vector<Defect> defects_of(const OrbitCheck& check, std::size_t segment, double tolerance);
 /// They differ by more than `tolerance`, and by more than a change of the map by a hundredth of it explains:
 /// multipliers that are many times as sensitive as the map (Jordan blocks, impacts of low velocity) are known to less.

@@ -1,7 +1,9 @@
 #include "verification/segment_check.hpp"
 
 #include <algorithm>
+#include <boost/math/quadrature/gauss.hpp>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <map>
 #include <set>
@@ -26,16 +28,12 @@ struct EventToSecondOrder {
   double h = 0.0;
   double rate = 0.0;          // h_x f
   double acceleration = 0.0;  // d (h_x f) / dt = f' h_xx f + h_x f_x f
-  double size = 1.0;          // sum |h_x| scale: what a change of all states by their scales makes of h
 
-  EventToSecondOrder(const HybridSystem& system, int field, int event, const VectorXd& x, const VectorXd& par,
-                     const VectorXd& scale) {
+  EventToSecondOrder(const HybridSystem& system, int field, int event, const VectorXd& x, const VectorXd& par) {
     const EventAt at = event_at(system, event, field, x.data(), par.data());
     h = at.h;
     rate = at.rate();
     acceleration = rate_gradient(system, at, event, field, x.data(), par.data()).dot(at.f);
-    size = at.gradient.cwiseAbs().dot(scale);
-    if (!(size > 0.0)) size = 1.0;
   }
 
   /// How far in time the event is; of a surface that is hardly more than touched, h is least.
@@ -50,10 +48,21 @@ struct EventToSecondOrder {
     if (rate == 0.0) return 0.0;
     return acceleration != 0.0 ? std::abs(rate / acceleration) : INFINITY;
   }
+  /// Does the flow meet the surface as a parabola touches its tangent, as far as h can be told from h + `level`?
+  bool touches(double level) const {
+    return rate * rate <= 2.0 * std::abs(acceleration) * level && acceleration != 0.0;
+  }
 };
 
+/// sum |h_x| scale: what a change of all states by their scales makes of h, to first order.
+double event_size(const HybridSystem& system, int event, const VectorXd& x, const VectorXd& par,
+                  const VectorXd& scale) {
+  return event_at(system, event, x.data(), par.data()).gradient.cwiseAbs().dot(scale);
+}
+
+/// NaN where an entry is.
 double largest(const VectorXd& difference, const VectorXd& scale) {
-  return difference.cwiseAbs().cwiseQuotient(scale).maxCoeff();
+  return difference.cwiseAbs().cwiseQuotient(scale).maxCoeff<Eigen::PropagateNaN>();
 }
 
 /// The events of one segment while the flow passes: which fell when, and how far below zero each has gone since.
@@ -62,6 +71,7 @@ class Watcher {
   Watcher(const HybridSystem& system, const StoredSegment& segment, const VectorXd& par, const VectorXd& scale)
       : system_(system), segment_(segment), par_(par), scale_(scale) {
     for (const int event : segment.monitored) depths_[event] = {event, 0.0, 0.0};
+    all_ = events();
     look(segment.start, 0.0);
   }
 
@@ -74,11 +84,22 @@ class Watcher {
   }
 
   void look(const VectorXd& x, double time) {
+    for (const int event : all_) {
+      double& size = sizes_[event];
+      size = std::max(size, event_size(system_, event, x, par_, scale_));
+    }
     for (auto& [event, met] : depths_) {
       if (met.depth == 0.0 && fallen_.count(event) == 0) met.time = time;
       deepen(met, x);
     }
     for (EventMet& met : passed_) deepen(met, x);
+  }
+
+  /// The largest sum |h_x| scale that has been seen: where the gradient vanishes at the surface, the size there is none
+  /// to measure by. 1 where it vanishes everywhere.
+  double size(int event) const {
+    const auto found = sizes_.find(event);
+    return found != sizes_.end() && found->second > 0.0 ? found->second : 1.0;
   }
 
   void fall(int event, const VectorXd& x, double time) {
@@ -104,12 +125,11 @@ class Watcher {
  private:
   void deepen(EventMet& met, const VectorXd& x) const {
     const double h = system_.event(met.event, x.data(), par_.data());
-    if (!(h < 0.0)) return;
-    met.depth =
-        std::max(met.depth, -h / EventToSecondOrder(system_, segment_.index.field, met.event, x, par_, scale_).size);
+    if (h < 0.0) met.depth = std::max(met.depth, -h);
   }
 
-  static std::vector<EventMet> deep_ones(std::vector<EventMet> all, double tolerance) {
+  std::vector<EventMet> deep_ones(std::vector<EventMet> all, double tolerance) const {
+    for (EventMet& met : all) met.depth /= size(met.event);
     std::erase_if(all, [&](const EventMet& met) { return met.depth <= tolerance; });
     std::sort(all.begin(), all.end(), [](const EventMet& a, const EventMet& b) { return a.time < b.time; });
     return all;
@@ -135,7 +155,9 @@ class Watcher {
   const StoredSegment& segment_;
   const VectorXd& par_;
   const VectorXd& scale_;
-  std::map<int, EventMet> depths_;  // of events that matter: monitored ones, and those that have fallen
+  std::vector<int> all_;            // events()
+  std::map<int, double> sizes_;     // of each, the largest so far
+  std::map<int, EventMet> depths_;  // -min h of events that matter: monitored ones, and those that have fallen
   std::set<int> fallen_;
   std::vector<EventMet> passed_;
 };
@@ -145,9 +167,55 @@ struct Passage {
   VectorXd end;
   MatrixXd flow;
   std::vector<EventMet> wrong, passed;
+  double size = 1.0;  // of the segment's own event
+  IntegralValues integrals;
 };
 
-Passage taylor(const HybridSystem& system, const StoredSegment& segment, const VectorXd& par) {
+/// The integrals of a problem's integrands along one segment, piece by piece of the integrator's dense output.
+class IntegralSum {
+ public:
+  IntegralSum(const HybridSystem& system, const StoredSegment& segment, const VectorXd& par, const VectorXd& scale)
+      : system_(system), segment_(segment), par_(par), scale_(scale) {
+    const int count = segment.integrand > 0 ? system.integral_conditions() : 0;
+    values_ = {VectorXd::Zero(count), VectorXd::Zero(count)};
+  }
+
+  bool is_empty() const { return values_.values.size() == 0; }
+
+  /// With Gauss' rule of seven points.
+  void add(const std::function<VectorXd(double)>& state_at, double from, double to) {
+    using Gauss = boost::math::quadrature::gauss<double, 7>;
+    const double half = 0.5 * (to - from);
+    for (std::size_t k = 0; k < Gauss::abscissa().size(); ++k)
+      for (const double sign : {1.0, -1.0}) {
+        const double node = sign * Gauss::abscissa()[k];
+        if (node == 0.0 && sign < 0.0) continue;
+        add_point(state_at(from + half * (1.0 + node)), half * Gauss::weights()[k]);
+      }
+  }
+
+  void add_point(const VectorXd& x, double weight) {
+    const Eigen::Index count = values_.values.size();
+    VectorXd q(count);
+    MatrixXd by_state(count, x.size());
+    double no_parameters = 0.0;
+    system_.first(FunctionKind::integrand, segment_.integrand, x.data(), par_.data(), {}, q.data(), by_state.data(),
+                  &no_parameters);
+    values_.values += weight * q;
+    values_.sizes += std::abs(weight) * (q.cwiseAbs() + by_state.cwiseAbs() * scale_);
+  }
+
+  IntegralValues values() const { return values_; }
+
+ private:
+  const HybridSystem& system_;
+  const StoredSegment& segment_;
+  const VectorXd& par_;
+  const VectorXd& scale_;
+  IntegralValues values_;
+};
+
+Passage taylor(const HybridSystem& system, const StoredSegment& segment, const VectorXd& par, const VectorXd& scale) {
   const int n = system.dimension();
   VectorXd f(n);
   MatrixXd fx(n, n);
@@ -155,36 +223,54 @@ Passage taylor(const HybridSystem& system, const StoredSegment& segment, const V
   const double t = segment.duration;
   system.first(FunctionKind::field, segment.index.field, segment.start.data(), par.data(), {}, f.data(), fx.data(),
                &no_parameters);
-  return {"", segment.start + t * f + 0.5 * t * t * (fx * f), MatrixXd::Identity(n, n) + t * fx, {}, {}};
+  const Watcher watcher(system, segment, par, scale);
+  IntegralSum integrals(system, segment, par, scale);
+  if (!integrals.is_empty()) integrals.add_point(segment.start, t);
+  return {"",
+          segment.start + t * f + 0.5 * t * t * (fx * f),
+          MatrixXd::Identity(n, n) + t * fx,
+          {},
+          {},
+          watcher.size(segment.index.event),
+          integrals.values()};
 }
 
 Passage integrate(const HybridSystem& system, const StoredSegment& segment, const VectorXd& par, const VectorXd& scale,
                   const FlowOptions& options, double tolerance) {
   CvodesFlow flow(system, segment.index.field, segment.start, par, options);
   Watcher watcher(system, segment, par, scale);
-  if (segment.duration > 0.0) {
-    flow.watch(watcher.events());
+  IntegralSum integrals(system, segment, par, scale);
+  const bool is_forward = segment.duration > 0.0;
+  if (is_forward) flow.watch(watcher.events());
+  if (is_forward || !integrals.is_empty())
     flow.on_piece([&](double from, double to) {
-      for (int k = 1; k <= samples_of_a_step; ++k) {
+      for (int k = 1; is_forward && k <= samples_of_a_step; ++k) {
         const double t = from + (to - from) * k / samples_of_a_step;
         watcher.look(flow.state_at(t), t);
       }
+      if (!integrals.is_empty()) integrals.add([&flow](double t) { return flow.state_at(t); }, from, to);
       return true;
     });
-  }
   Progress progress = Progress::root;
   while (progress == Progress::root) {
     progress = flow.advance(segment.duration);
     if (progress == Progress::root) watcher.fall(flow.fallen(), flow.state(), flow.time());
   }
-  if (progress == Progress::failed) return {flow.message(), {}, {}, {}, {}};
-  return {"", flow.state(), flow.jacobian(), watcher.wrong(tolerance), watcher.passed(tolerance)};
+  if (progress == Progress::failed) return {flow.message(), {}, {}, {}, {}, 1.0, {}};
+  return {"",
+          flow.state(),
+          flow.jacobian(),
+          watcher.wrong(tolerance),
+          watcher.passed(tolerance),
+          watcher.size(segment.index.event),
+          integrals.values()};
 }
 
 /// Adams' method first; what is stiff for it goes to the other one.
 Passage pass(const HybridSystem& system, const StoredSegment& segment, const VectorXd& par, const VectorXd& scale,
              double tolerance) {
-  if (std::abs(segment.duration) < shortest_duration * std::abs(segment.period)) return taylor(system, segment, par);
+  if (std::abs(segment.duration) < shortest_duration * std::abs(segment.period))
+    return taylor(system, segment, par, scale);
   FlowOptions options;
   options.relative_tolerance = 1e-13;
   options.absolute_tolerance = 1e-15 * std::min(1.0, scale.minCoeff());
@@ -210,15 +296,17 @@ SegmentCheck check_segment(const HybridSystem& system, const StoredSegment& segm
   check.flow = passage.flow;
   check.wrong = std::move(passage.wrong);
   check.passed = std::move(passage.passed);
+  check.integrals = std::move(passage.integrals);
   const MatrixXd scaled = scale.cwiseInverse().asDiagonal() * check.flow * scale.asDiagonal();
   check.growth = std::max(1.0, scaled.cwiseAbs().rowwise().sum().maxCoeff());
   check.state_defect = largest(check.end - segment.end, scale);
   if (segment.index.event == no_function) return check;
-  const EventToSecondOrder at(system, segment.index.field, segment.index.event, check.end, par, scale);
-  check.event_level = std::abs(at.h) / at.size;
+  const EventToSecondOrder at(system, segment.index.field, segment.index.event, check.end, par);
+  check.event_level = std::abs(at.h) / passage.size;
   check.time_defect = segment.grazing ? at.time_to_contact() : at.time_to_zero();
-  const EventToSecondOrder stored(system, segment.index.field, segment.index.event, segment.end, par, scale);
-  check.leaves_surface = !segment.grazing && stored.rate > tolerance * std::abs(stored.size);
+  check.touches = !segment.grazing && at.touches(tolerance * passage.size);
+  const EventToSecondOrder stored(system, segment.index.field, segment.index.event, segment.end, par);
+  check.leaves_surface = !segment.grazing && stored.rate > tolerance * passage.size;
   return check;
 }
 

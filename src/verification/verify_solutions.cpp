@@ -72,6 +72,12 @@ const char* word_for(Defect defect) {
   switch (defect) {
     case Defect::not_integrated:
       return "not integrated";
+    case Defect::undecided:
+      return "undecided: errors grow too much";
+    case Defect::duration:
+      return "no positive duration";
+    case Defect::integral:
+      return "integral condition";
     case Defect::state:
       return "state";
     case Defect::time:
@@ -115,8 +121,10 @@ class Table {
       return {false, false};
     }
     const Orbit x = orbit_of(solution);
-    if (is_torus(settings_.problem_type)) return torus_rows(solution, x, recorded);
     const auto stored = recorded != nullptr ? recorded->multipliers : std::vector<std::complex<double>>{};
+    if (is_torus(settings_.problem_type))
+      return rows(solution, check_torus(system_, settings_, x, stored, tolerance_),
+                  recorded != nullptr && !recorded->admissible);
     const OrbitCheck check =
         check_orbit(system_, settings_, x, stored, tolerance_, [&](const std::vector<std::complex<double>>& computed) {
           return critical_multipliers(solution, stored, computed);
@@ -128,16 +136,16 @@ class Table {
   }
 
   std::string worst() const {
-    if (is_torus(settings_.problem_type))
-      return fmt::format(
-          "Largest defects over returns from the stored phases and half way between them: states {:.1e} ({}), times "
-          "{:.1e} ({}); multipliers are not verified.\n",
-          state_.value, state_.where, time_.value, time_.where);
+    const std::string over =
+        is_torus(settings_.problem_type) ? " over returns from the stored phases and half way between them" : "";
     const std::string critical =
         critical_.where == "none" ? "" : fmt::format(", critical ones {:.1e} ({})", critical_.value, critical_.where);
-    return fmt::format("Largest defects: states {:.1e} ({}), times {:.1e} ({}), multipliers {:.1e} ({}){}.\n",
+    const std::string integral =
+        integral_.where == "none" ? ""
+                                  : fmt::format(", integral conditions {:.1e} ({})", integral_.value, integral_.where);
+    return fmt::format("Largest defects{}: states {:.1e} ({}), times {:.1e} ({}), multipliers {:.1e} ({}){}{}.\n", over,
                        state_.value, state_.where, time_.value, time_.where, multipliers_.value, multipliers_.where,
-                       critical);
+                       critical, integral);
   }
 
  private:
@@ -174,11 +182,6 @@ class Table {
     return segment.message.empty() ? text : segment.message;
   }
 
-  /// A row for each segment of the return, the worst over all phases.
-  Verdict torus_rows(const LabelledSolution& solution, const Orbit& x, const DiagnosticPoint* recorded) {
-    return rows(solution, check_torus(system_, settings_, x, tolerance_), recorded != nullptr && !recorded->admissible);
-  }
-
   /// Of an orbit for which none are stored, or which has none.
   static std::string multipliers_of(const OrbitCheck& check) {
     std::string list;
@@ -205,7 +208,7 @@ class Table {
                               : excused      ? "  inadmissible as stored"
                                              : "";
       const std::string place = fmt::format("label {}, segment {}", solution.label, s + 1);
-      const double time = segment.event_level == 0.0 ? 0.0 : segment.time_defect / check.period;
+      const double time = segment.time_defect / check.period;
       state_.take(segment.state_defect, place);
       time_.take(time, place);
       const std::string name = s == 0 ? fmt::format("{:>4}  {:<2}", solution.label, type_name(solution)) : "";
@@ -220,6 +223,7 @@ class Table {
       screen_ << multipliers_of(check);
     if (check.multiplier_difference)
       multipliers_.take(*check.multiplier_difference, fmt::format("label {}", solution.label));
+    if (check.integral_defect) integral_.take(*check.integral_defect, fmt::format("label {}", solution.label));
     if (check.critical_difference) critical_.take(*check.critical_difference, fmt::format("label {}", solution.label));
     return verdict;
   }
@@ -228,7 +232,7 @@ class Table {
   const RunSettings& settings_;
   double tolerance_;
   std::ostream& screen_;
-  Largest state_, time_, multipliers_, critical_;
+  Largest state_, time_, multipliers_, critical_, integral_;
 };
 
 /// Labels in a summary.
@@ -276,7 +280,7 @@ bool verify_solutions(const VerifyRequest& request, std::ostream& screen, std::o
 
   const std::string diagnostics = sibling_path(path, 'd');
   const std::map<int, DiagnosticPoint> recorded = recorded_points(diagnostics);
-  if (recorded.empty() && !is_torus(settings.problem_type))
+  if (recorded.empty() && has_multipliers(settings.problem_type))
     warnings << fmt::format("tchat: warning: there is no {}: multipliers are compared with nothing\n",
                             diagnostics.empty() ? "d-file" : diagnostics);
   Table table(system, settings, request.tolerance, screen);

@@ -1,4 +1,6 @@
 // tchat verify through the binary: what passes, what is found and named, statuses, problems without optional members.
+#include <fmt/format.h>
+
 #include <filesystem>
 
 #include "end_to_end/bad_input.hpp"
@@ -79,6 +81,36 @@ TEST_CASE("a digit changed in the q-file or the d-file is found, its label named
   INFO(multipliers.text());
   CHECK(multipliers.status == 1);
   CHECK(contains(line_of(multipliers.out, "   1  EP"), "<< multipliers"));
+}
+
+TEST_CASE("a duration, a parameter and a duration without direction are found in the q-file") {
+  const Workspace workspace;
+  run_branch(workspace);
+  const std::string solutions = workspace.read("q.branch");
+  const SolutionEntry first = workspace.solutions("branch").front();
+  // From 1 to 10 the 17 digits of a parameter are those of a fixed point.
+  const auto verify_with = [&](double from, double to) {
+    std::string changed = solutions;
+    const std::string before = fmt::format("{:.16f}E+000", from);
+    const std::size_t at = changed.find(before);
+    REQUIRE(at != std::string::npos);
+    changed.replace(at, before.size(), fmt::format("{:.16f}E+000", to));
+    workspace.write("q.branch", changed);
+    return workspace.tchat("verify q.branch 1 -p linosc");
+  };
+  const double duration = first.parameter(61), alpha = first.parameter(1);
+  const Outcome longer = verify_with(duration, duration + 1e-4);
+  INFO(longer.text());
+  CHECK(longer.status == 1);
+  CHECK(contains(line_of(longer.out, "   1  EP"), "<< state, time"));
+  const Outcome backwards = verify_with(duration, -duration);
+  INFO(backwards.text());
+  CHECK(backwards.status == 1);
+  CHECK(contains(line_of(backwards.out, "   1  EP"), "<< no positive duration"));
+  const Outcome forced = verify_with(alpha, alpha + 1e-4);
+  INFO(forced.text());
+  CHECK(forced.status == 1);
+  CHECK(contains(line_of(forced.out, "   1  EP"), "<< state"));
 }
 
 TEST_CASE("a label whose multipliers are not those of its type is found") {

@@ -1,5 +1,7 @@
 // Boundary value problems with conditions of their own, against closed forms: Euler's elastica as
 // problems/elastica/Makefile runs it, Bratu's problem, a quarter of a pendulum's period on two segments.
+#include <fmt/format.h>
+
 #include <boost/math/special_functions/ellint_1.hpp>
 #include <boost/math/special_functions/ellint_2.hpp>
 #include <boost/math/tools/toms748_solve.hpp>
@@ -164,6 +166,28 @@ TEST_CASE("make -j2 in problems/elastica: buckling loads and bent rods in closed
     CHECK(bent == 3);
   }
   chain.check_verified();
+
+  // The shortening is in the integral condition alone: a label with another one satisfies all but that.
+  const double shortening = 0.5;
+  const SolutionEntry rod = chain.solution("mode1", "UZ", 1);
+  check_near(rod.parameter(2), shortening, 1e-9);
+  const std::string before = fmt::format("{:.16E}", rod.parameter(2));  // 5.0...E-01 here, E-001 in the file
+  const std::string mantissa = before.substr(0, before.find('E'));
+  std::string changed = chain.read("q.mode1");
+  const std::size_t at = changed.find(mantissa + "E-001");
+  REQUIRE(at != std::string::npos);
+  changed[at + 5] = changed[at + 5] == '9' ? '8' : static_cast<char>(changed[at + 5] + 1);
+  chain.write("q.changed", changed);
+  const auto verify = [&](const std::string& name) {
+    return chain.tchat({"verify", name, "-p", chain.plugin(), "-c", "r.mode1"});
+  };
+  const Outcome right = verify("q.mode1");
+  CHECK(right.status == 0);
+  CHECK(right.out.find("integral conditions") != std::string::npos);
+  const Outcome wrong = verify("q.changed");
+  INFO(wrong.text());
+  CHECK(wrong.status == 1);
+  CHECK(wrong.out.find("<< integral condition\n") != std::string::npos);
 }
 
 TEST_CASE("Bratu's problem in closed form: C++ and Fortran, with derivatives by hand and without") {

@@ -152,6 +152,16 @@ TEST_CASE("verify: returns from a torus's label land on its curve, and not with 
   done(workspace, "run torus -q -c torus -s found -o right NMX=1 HARMTOL=1e-9");
   const std::string text = done(workspace, "verify q.right -p torus");
   CHECK(text.find("half way between") != std::string::npos);
+  // Another second digit of the first multiplier across the torus, 0.02 or so: by 1e-4 or more.
+  std::string diagnostics = workspace.read("d.right");
+  const std::size_t line = diagnostics.find("   Multiplier   2");
+  REQUIRE(line != std::string::npos);
+  char& digit = diagnostics.at(diagnostics.find('.', line) + 2);
+  digit = digit == '5' ? '4' : '5';
+  workspace.write("d.right", diagnostics);
+  const Outcome changed = workspace.tchat("verify q.right -p torus");
+  CHECK(changed.status == 1);
+  CHECK(changed.text().find("<< multipliers") != std::string::npos);
   // 0.414^6: the N orbits solve their equations all the same.
   done(workspace, "run torus -q -c torus -s found -o rough NMX=1 NHARM=6 HARMTOL=0");
   const Outcome rough = workspace.tchat("verify q.rough -p torus");

@@ -3,9 +3,11 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <functional>
 
 #include "support/linear_oscillator.hpp"
 #include "support/multiplier_sets.hpp"
+#include "support/test_system.hpp"
 
 using namespace tchat;
 using namespace tchat::test;
@@ -38,7 +40,109 @@ Orbit impacting(double v) {
 
 using Defects = std::vector<Defect>;
 
+/// x' = 1, z' = rate z: along x with z beside it.
+struct Drift {
+  static constexpr int dimension = 2, parameters = 1, fields = 1, events = 1, jumps = 1;
+  template <class T>
+  void field(int, const T* x, const T* par, T* f) const {
+    f[0] = T(1.0);
+    f[1] = par[0] * x[1];
+  }
+  template <class T>
+  T event(int, const T* x, const T*) const {
+    return x[1];
+  }
+  template <class T>
+  void jump(int, const T* x, const T*, T* g) const {
+    g[0] = x[0];
+    g[1] = x[1];
+  }
+};
+
+/// A circle, cut where y falls through zero, and a surface whose gradient vanishes where the circle meets it.
+struct Circle {
+  static constexpr int dimension = 2, parameters = 1, fields = 1, events = 2, jumps = 1;
+  template <class T>
+  void field(int, const T* x, const T*, T* f) const {
+    f[0] = -x[1];
+    f[1] = x[0];
+  }
+  template <class T>
+  T event(int j, const T* x, const T* par) const {
+    if (j == 1) return x[1];
+    return (1.0 - x[0]) * (1.0 - x[0]) + x[1] * x[1] + par[0];
+  }
+  template <class T>
+  void jump(int, const T* x, const T*, T* g) const {
+    g[0] = x[0];
+    g[1] = x[1];
+  }
+};
+
+/// One segment of a problem with states of a closed form.
+Orbit piece_of(double duration, std::function<Eigen::VectorXd(double)> state, double par) {
+  return sampled_orbit({{duration, std::move(state)}}, 2, 10, 4, parameters({par}));
+}
+
+RunSettings plane_settings(const std::vector<int>& monitored = {}) {
+  RunSettings settings = settings_of({{1, 1, 0}}, monitored);
+  settings.dimension = 2;
+  return settings;
+}
+
+Defects defects(const HybridSystem& system, const RunSettings& settings, const Orbit& x) {
+  return defects_of(check_orbit(system, settings, x, {}, tolerance), 0, tolerance);
+}
+
+bool has(const Defects& all, Defect defect) { return std::find(all.begin(), all.end(), defect) != all.end(); }
+
 }  // namespace
+
+TEST_CASE("a small event function excuses no time: h = z = 1e-10 all along is never met") {
+  const auto along = [](double t) { return Eigen::Vector2d(t, 1e-10); };
+  const OrbitCheck check = check_orbit(system_of<Drift>(), plane_settings(), piece_of(3.0, along, 0.0), {}, tolerance);
+  CHECK(std::isinf(check.segments[0].time_defect));
+  CHECK(has(defects_of(check, 0, tolerance), Defect::time));
+  // z falls to 1e-10 and would go on falling for ever.
+  const auto falling = [](double t) { return Eigen::Vector2d(t, std::exp(-t)); };
+  CHECK(has(defects(system_of<Drift>(), plane_settings(), piece_of(23.0, falling, -1.0)), Defect::time));
+}
+
+TEST_CASE("contact with a surface whose gradient vanishes there is measured by its gradient along the orbit") {
+  const auto circle = [](double t) { return Eigen::Vector2d(std::cos(t - pi), std::sin(t - pi)); };
+  const RunSettings settings = plane_settings({2});
+  // At (1, 0) h = par: located to 1e-9 it is a contact, at -1e-3 it is an event.
+  const auto wrong = [&](double least) {
+    return check_orbit(system_of<Circle>(), settings, piece_of(2 * pi, circle, least), {}, tolerance).segments[0].wrong;
+  };
+  CHECK(wrong(-1e-9).empty());
+  const auto found = wrong(-1e-3);
+  REQUIRE(found.size() == 1);
+  CHECK(found[0].depth < 1e-3);  // of the size of h_x, 4 at the far side
+  CHECK(found[0].depth > 1e-4);
+}
+
+TEST_CASE("an orbit lasts a positive time, and its numbers are finite") {
+  const auto circle = [](double t) { return Eigen::Vector2d(std::cos(t), std::sin(t)); };
+  const Orbit right = piece_of(2 * pi, circle, 1.0);
+  for (const double duration : {-2 * pi, 0.0, std::nan("")}) {
+    CAPTURE(duration);
+    Orbit x = right;
+    x.duration(0) = duration;
+    CHECK(has(defects(system_of<Circle>(), plane_settings(), x), Defect::duration));
+  }
+  CHECK_FALSE(has(defects(system_of<Circle>(), plane_settings(), right), Defect::duration));
+  for (const Eigen::Index column : {Eigen::Index{0}, Eigen::Index{40}}) {
+    Orbit x = right;
+    x.states(1, column) = NAN;
+    CHECK_FALSE(defects(system_of<Circle>(), plane_settings(), x).empty());
+  }
+}
+
+TEST_CASE("where errors of the start grow by more than 1e7 the end says nothing") {
+  const auto growing = [](double t) { return Eigen::Vector2d(t, 1e-13 * std::exp(t)); };
+  CHECK(defects(system_of<Drift>(), plane_settings(), piece_of(20.0, growing, 1.0)) == Defects{Defect::undecided});
+}
 
 TEST_CASE("closed forms pass, with their multipliers, down to impacts of low velocity") {
   const RunSettings settings = settings_of({{1, 1, 1}}, {1});
