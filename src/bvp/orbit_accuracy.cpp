@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "hybrid/event_at.hpp"
 
@@ -14,6 +15,13 @@ double event_scale(const HybridSystem& system, const Orbit& x, int event) {
     for (int k = 0; k < x.shape.nodes(); k += x.shape.collocation)
       largest = std::max(largest, std::abs(system.event(event, x.node(s, k), x.par.data())));
   return largest;
+}
+
+Eigen::VectorXd state_uncertainty(const Orbit& x) {
+  constexpr double rounding = 1e-14;
+  const Eigen::VectorXd sizes = x.states.cwiseAbs().rowwise().maxCoeff();
+  const double least = std::max(rounding * sizes.maxCoeff(), std::numeric_limits<double>::min());
+  return (orbit_accuracy * sizes).cwiseMax(least);
 }
 
 }  // namespace tchat

@@ -6,6 +6,7 @@
 
 #include "bvp/admissibility.hpp"
 #include "continuation/path_follower.hpp"
+#include "continuation/point_data.hpp"
 #include "special_points/test_function.hpp"
 #include "stability/floquet_multipliers.hpp"
 
@@ -52,6 +53,10 @@ class BranchSink {
   virtual void next_step(int point_number, double ds) = 0;
   /// Something worth a line in the d-file, about the point being computed.
   virtual void note(int point_number, const std::string& text) = 0;
+  /// The branch starts at a zero of this test function, which has no label.
+  virtual void starts_at_zero(const std::string& name) {
+    note(1, "The run starts at a zero of " + name + ": no label of its own");
+  }
   /// A point that the step to a point has passed, which is not located.
   virtual void passed(const LostPoint& point) { note(point.number, point.text); }
   /// Something that the user must hear of: a special point may be missing.
@@ -91,7 +96,8 @@ struct BranchSummary {
   double worst_structural = 0.0;  ///< largest structural multiplier, or distance of the trivial one from 1
   bool has_trivial = false;       ///< orbits without a section have this one instead
   double worst_estimated_error = 0.0;
-  std::vector<LostPoint> lost;  ///< special points that may be missing
+  std::vector<LostPoint> lost;               ///< special points that may be missing
+  std::vector<VanishingFunction> vanishing;  ///< test functions without zeros to look for
 };
 
 }  // namespace tchat

@@ -11,6 +11,7 @@
 #include "bvp/evaluation_failure.hpp"
 #include "bvp/mesh_adaptation.hpp"
 #include "continuation/bound_tests.hpp"
+#include "continuation/homoclinic_limit.hpp"
 #include "continuation/solution_measure.hpp"
 #include "hybrid/identity_jump.hpp"
 #include "special_points/bifurcation_tests.hpp"
@@ -127,7 +128,10 @@ BranchSummary ContinuationRun::run(PathPoint start) {
     if (!limited_) step_.converged(iterations_, number_);
     if (!ended_ && settings_.outgrown && settings_.outgrown(here_.orbit)) end(EndReason::outgrown, "");
   }
-  if (settings_.periodic) summary_.remark = trend_.growing_period(settings_.principal_name);
+  summary_.vanishing = search_.vanishing(here_, accepted_data_);
+  const std::optional<PeriodGrowth> growth = trend_.period_growth();
+  if (growth && settings_.periodic && system_.orbits() == 1)
+    summary_.remark = homoclinic_limit(system_, here_.orbit, *growth, settings_.principal_name);
   return summary_;
 }
 
@@ -183,7 +187,8 @@ SpecialPoint ContinuationRun::arrive(SpecialPoint special, double length) {
 /// bound.
 SpecialPoint ContinuationRun::advance() {
   const SpecialPointSearch::Reports reports{[this](const std::string& text) { sink_.note(number_ + 1, text); },
-                                            [this](const std::string& text) { report_lost(text); }};
+                                            [this](const std::string& text) { report_lost(text); },
+                                            [this](const std::string& name) { report_start(name); }};
   const bool through_point = leads_through_point();
   const double before = std::abs(follower_.principal_direction(here_));
   const double turn = std::min(before, std::abs(follower_.principal_direction(next_.point)));
@@ -245,13 +250,13 @@ SpecialPoint ContinuationRun::shrunk_orbit(SpecialPoint special, bool through_po
     end(EndReason::equilibrium,
         fmt::format(
             "the torus has shrunk to a periodic orbit, {}: its torus bifurcation, where the branch of tori ends",
-            state_text(system_.system(), next_.point.orbit.start(0))));
+            state_text(system_.system(), next_.point.orbit, next_.point.orbit.start(0))));
     return {PointType::torus, {}, false, summary_.detail};
   }
   const std::optional<double> omega = hopf_frequency(system_, next_.point.orbit);
   end(EndReason::equilibrium,
       fmt::format("the orbit has shrunk to a point, {}: an equilibrium, where the branch of periodic orbits ends{}",
-                  state_text(system_.system(), next_.point.orbit.start(0)),
+                  state_text(system_.system(), next_.point.orbit, next_.point.orbit.start(0)),
                   omega ? fmt::format(" (Hopf bifurcation, omega = {:.6g})", *omega) : ""));
   return {omega ? PointType::hopf : PointType::end, {}, false, summary_.detail};
 }
@@ -301,7 +306,7 @@ bool ContinuationRun::take_step() {
       trouble = describe(newton_.status);
     else if (!step_.is_short() && !search_.same_branch(here_, next_.point))
       trouble = "it may have come to another branch";
-    else if (next_.data = search_.evaluate(next_.point); !step_.is_short() && !search_.resolved(next_))
+    else if (next_.data = search_.evaluate(next_.point); !step_.is_short() && !search_.resolved(here_, next_))
       trouble = "a test function may have changed sign twice";
     else
       return true;
@@ -422,6 +427,14 @@ void ContinuationRun::report_lost(const std::string& text) {
   const auto parameter = [this](const PathPoint& point) { return point.orbit.par(settings_.principal - 1); };
   summary_.lost.push_back({number_ + 1, text, parameter(here_), parameter(next_.point)});
   sink_.lost(summary_.lost.back());
+}
+
+/// A start from a label is known for what it is.
+void ContinuationRun::report_start(const std::string& test_name) {
+  if (number_ == 1 && settings_.label_start)
+    sink_.starts_at_zero(test_name);
+  else
+    sink_.note(number_, fmt::format("The run starts at a zero of {}: no label of its own", test_name));
 }
 
 /// A new mesh where it is due, and the step length for the d-file.

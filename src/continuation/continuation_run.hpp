@@ -76,6 +76,7 @@ class ContinuationRun {
   void end(EndReason reason, std::string detail);
   void prepare_next_step();
   void report_lost(const std::string& text);
+  void report_start(const std::string& test_name);
   void give_up();
 
   PathFollower& follower_;

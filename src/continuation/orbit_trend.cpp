@@ -1,7 +1,5 @@
 #include "continuation/orbit_trend.hpp"
 
-#include <fmt/format.h>
-
 #include <cmath>
 
 namespace tchat {
@@ -65,12 +63,9 @@ bool OrbitTrend::has_shrunk(const Orbit& x, double share) const {
   return moves;
 }
 
-std::string OrbitTrend::growing_period(const std::string& parameter_name) const {
-  if (!(last_.period > growth * still_.period)) return "";
-  return fmt::format(
-      "the period grows, from {:.5g} to {:.5g}, while {} stays at {:.10g}: so it does without bound towards a "
-      "homoclinic or heteroclinic orbit",
-      still_.period, last_.period, parameter_name, last_.parameter);
+std::optional<PeriodGrowth> OrbitTrend::period_growth() const {
+  if (!(still_.period > 0.0 && last_.period > growth * still_.period)) return std::nullopt;
+  return PeriodGrowth{still_.period, last_.period, last_.parameter};
 }
 
 }  // namespace tchat

@@ -5,7 +5,7 @@
 /// returns: it vanishes on a periodic orbit, run through so many times.
 #pragma once
 
-#include <string>
+#include <optional>
 
 #include "bvp/orbit.hpp"
 
@@ -25,6 +25,13 @@ double deviation_cosine(const Orbit& x, const Orbit& y, int orbits = 1);
 /// the deviation, in its own direction.
 double deviation_growth(const Orbit& x, const Eigen::MatrixXd& direction, int orbits = 1);
 
+/// How the period has grown since the parameter stands still.
+struct PeriodGrowth {
+  double from = 0.0;
+  double to = 0.0;
+  double parameter = 0.0;
+};
+
 class OrbitTrend {
  public:
   explicit OrbitTrend(int orbits = 1) : orbits_(orbits) {}
@@ -35,8 +42,8 @@ class OrbitTrend {
   /// Is every state's range at most this share of its largest one so far?
   bool has_shrunk(const Orbit& x, double share) const;
 
-  /// "" or, where the period has grown much since the parameter stands still, a line that says so.
-  std::string growing_period(const std::string& parameter_name) const;
+  /// Nothing unless the period is positive and has grown by more than half since the parameter stands still.
+  std::optional<PeriodGrowth> period_growth() const;
 
  private:
   struct Place {

@@ -18,6 +18,12 @@ struct PointData {
   std::vector<std::string> details;      ///< of a labelled point
 };
 
+/// A test function that is zero within its uncertainty all along a branch.
+struct VanishingFunction {
+  std::string name;
+  std::string reason;  ///< "" where none is known
+};
+
 /// A converged step of length ds and what is known of the point that it has come to.
 struct Candidate {
   PathPoint point;

@@ -26,14 +26,18 @@ constexpr double together = 1e-5;
 /// falls below this share.
 constexpr double same_direction = 0.95;
 constexpr double small_distance = 0.3;
+/// Near a crossing of two curves a step along one of them turns by less (cosine): states or periods that change alike
+/// along both make the angle between the curves small.
+constexpr double hardly_turned = 0.99;
 constexpr std::size_t history_length = 12;
 
 /// A defined value without its rounding.
 double beyond_level(const TestValue& test) { return std::abs(*test.value) > test.zero_level ? *test.value : 0.0; }
 
 /// A multiplier +1 where the bordered determinant changes sign is a branch point, no grazing-fold; a branch that turns
-/// where an end of a segment is tangent to its surface has the label of that.
+/// where an end of a segment is tangent to its surface has the label of that. A resonance may have two functions.
 bool is_the_same(const SpecialPoint& special, const SpecialPoint& other) {
+  if (special.type != PointType::user && special.type == other.type) return true;
   constexpr auto velocity = UserPointKind::impact_velocity;
   if (special.kind.kind == velocity && other.kind.kind == velocity) return special.kind.segment == other.kind.segment;
   return special.type == PointType::branch_point && other.kind.kind == UserPointKind::grazing_codimension_two &&
@@ -89,6 +93,7 @@ SpecialPointSearch::SpecialPointSearch(PathFollower& follower, const DefiningSys
       tests_(std::move(tests)),
       settings_(settings),
       floquet_(follower.condensed().shape()),
+      evidence_(tests_.size()),
       signs_(tests_.size(), 0) {}
 
 TestedPoint SpecialPointSearch::tested(const PathPoint& at, const PointData& data) const {
@@ -106,6 +111,15 @@ std::vector<std::string> SpecialPointSearch::details(const PathPoint& at, const 
   std::vector<std::string> list;
   for (const auto& test : tests_)
     if (const std::string text = test->details(tested(at, data)); !text.empty()) list.push_back(text);
+  return list;
+}
+
+std::vector<VanishingFunction> SpecialPointSearch::vanishing(const PathPoint& at, const PointData& data) const {
+  constexpr int least_points = 3;
+  std::vector<VanishingFunction> list;
+  for (std::size_t i = 0; i < tests_.size(); ++i)
+    if (evidence_[i].points >= least_points && !evidence_[i].has_sign)
+      list.push_back({tests_[i]->name(), tests_[i]->reason_to_vanish(tested(at, data))});
   return list;
 }
 
@@ -153,11 +167,16 @@ PointData SpecialPointSearch::begin(PathPoint& start) {
 void SpecialPointSearch::remember(const PointData& data, double ds) {
   const double arclength = history_.empty() ? 0.0 : history_.back().arclength + std::abs(ds);
   if (std::isfinite(data.singular_distance)) distance_here_ = data.singular_distance;
+  for (std::size_t i = 0; i < tests_.size(); ++i) {
+    evidence_[i].points += data.tests[i].value.has_value();
+    evidence_[i].has_sign = evidence_[i].has_sign || labelled_[i] || data.tests[i].sign != 0;
+  }
   if (history_.size() == history_length) history_.erase(history_.begin());
   history_.push_back({arclength, data.tests});
 }
 
-bool SpecialPointSearch::resolved(const Candidate& next) const {
+bool SpecialPointSearch::resolved(const PathPoint& here, const Candidate& next) const {
+  const bool turns = !(dot(here.dual, next.point.tangent) > hardly_turned);
   const double at = history_.back().arclength + std::abs(next.ds);
   for (std::size_t i = 0; i < tests_.size(); ++i) {
     if (!next.data.tests[i].value) continue;
@@ -165,11 +184,19 @@ bool SpecialPointSearch::resolved(const Candidate& next) const {
     for (const Past& point : history_)
       if (point.tests[i].value) past.push_back({point.arclength, beyond_level(point.tests[i])});
     const TrendValue last{at, beyond_level(next.data.tests[i])};
-    const bool is_resolved =
-        tests_[i]->resolution() == Resolution::trend ? follows_trend(past, last) : !has_two_zeros(past, last);
+    const Resolution resolution = tests_[i]->resolution();
+    if (resolution == Resolution::direction && turns && is_near_zero(i, next.data.tests[i])) return false;
+    const bool is_resolved = resolution == Resolution::trend ? follows_trend(past, last) : !has_two_zeros(past, last);
     if (!is_resolved) return false;
   }
   return true;
+}
+
+/// At the end of a step, or somewhere on it.
+bool SpecialPointSearch::is_near_zero(std::size_t test, const TestValue& end) const {
+  constexpr double nearby = 0.1;
+  const TestValue& start = history_.back().tests[test];
+  return end.sign == -signs_[test] || std::abs(*end.value) < nearby || (start.value && std::abs(*start.value) < nearby);
 }
 
 bool SpecialPointSearch::same_branch(const PathPoint& here, const PathPoint& next) {
@@ -195,6 +222,7 @@ std::optional<SpecialPoint> SpecialPointSearch::advance(const PathPoint& here, C
   const Candidate step = searched_step(here, next);
   std::optional<SpecialPoint> special;
   rest_ = std::max(rest_ - std::abs(next.ds), 0.0);
+  report_start(step.data, reports);
   if (!changed(step.data).empty()) special = advance_to_first_zero(here, next, newton, step);
   report_lost(next.data, reports);
   for (std::size_t i = 0; i < tests_.size(); ++i)
@@ -317,13 +345,23 @@ double SpecialPointSearch::limited(double ds) const {
   return rest_ > settings_.tolerance && rest_ < std::abs(ds) ? std::copysign(rest_, ds) : ds;
 }
 
+/// Functions that are zero at the first point of the branch and are not at the second one.
+void SpecialPointSearch::report_start(const PointData& next, const Reports& reports) const {
+  if (history_.size() != 1) return;
+  for (std::size_t i = 0; i < tests_.size(); ++i)
+    if (const TestValue& at_start = history_.back().tests[i];
+        at_start.value && at_start.sign == 0 && signs_[i] == 0 && next.tests[i].sign != 0)
+      reports.start(tests_[i]->name());
+}
+
 /// Changes of sign that `next` leaves behind without a label.
 void SpecialPointSearch::report_lost(const PointData& next, const Reports& reports) const {
   for (const std::size_t i : changed(next)) {
     const std::string name = tests_[i]->name();
-    if (searches_[i] == Search::start)
-      reports.note(fmt::format("The {} at a zero of {}: no label of its own",
-                               history_.size() == 1 ? "run starts" : "last label is", name));
+    if (searches_[i] == Search::start && history_.size() == 1)
+      reports.start(name);
+    else if (searches_[i] == Search::start)
+      reports.note(fmt::format("The last label is at a zero of {}: no label of its own", name));
     else if (searches_[i] == Search::jump)
       reports.note(fmt::format("{} changes sign by a jump: no special point", name));
     else if (searches_[i] != Search::no_special_point)
@@ -347,7 +385,12 @@ std::optional<BranchPointBracket> SpecialPointSearch::find_branch_point(const Pa
   BranchPointBracket bracket(follower_, here, evaluate_again(start), step, *found, signs_[*found]);
   const auto evaluated = [this](PathPoint& point) { return evaluate(point); };
   const bool narrowed = bracket.narrow(evaluated, trial, settings_.tolerance);
-  searches_[*found] = !narrowed ? Search::failed : is_start(bracket.length()) ? Search::start : Search::located;
+  bracket.put_zero(trial);
+  const PointData at_zero = evaluate_again(trial);
+  searches_[*found] = !tests_[*found]->is_genuine(tested(trial, at_zero)) ? Search::no_special_point
+                      : !narrowed                                         ? Search::failed
+                      : is_start(bracket.length())                        ? Search::start
+                                                                          : Search::located;
   if (searches_[*found] != Search::located) return std::nullopt;
   return bracket;
 }

@@ -20,11 +20,12 @@ struct LocationSettings {
 
 class SpecialPointSearch {
  public:
-  /// Who hears of what deserves no label: a note for the d-file, and what the user must know, as a point may be
-  /// missing.
+  /// Who hears of what deserves no label: a note for the d-file, what the user must know, as a point may be missing,
+  /// and the name of a test function whose zero is the start of the branch.
   struct Reports {
     std::function<void(const std::string&)> note;
     std::function<void(const std::string&)> lost;
+    std::function<void(const std::string&)> start;
   };
 
   SpecialPointSearch(PathFollower& follower, const DefiningSystem& system,
@@ -39,8 +40,8 @@ class SpecialPointSearch {
   PointData evaluate(PathPoint& at);
 
   /// Do the points of the branch follow each other as closely as the test functions ask for (Resolution)? Else one of
-  /// them may have changed sign twice on the step to `next`, and a shorter one will tell.
-  bool resolved(const Candidate& next) const;
+  /// them may have changed sign twice on the step from `here` to `next`, and a shorter one will tell.
+  bool resolved(const PathPoint& here, const Candidate& next) const;
 
   /// Does a converged step go on along the same branch? Close to a branch point Newton may come out on another one: the
   /// tangent turns much there and the problem is nearly singular.
@@ -55,6 +56,10 @@ class SpecialPointSearch {
   /// A step that was cut at a zero has shown what lies beyond. As long as further zeros are known there, the next steps
   /// end where it ended, not farther: `ds`, or what is left of that step.
   double limited(double ds) const;
+
+  /// Functions that were within their uncertainty at every point so far where they are defined, three or more; `at` is
+  /// the last one.
+  std::vector<VanishingFunction> vanishing(const PathPoint& at, const PointData& data) const;
 
   /// What the test functions know of `at`, whose linearisation the follower holds.
   std::vector<std::string> details(const PathPoint& at, const PointData& data) const;
@@ -77,6 +82,7 @@ class SpecialPointSearch {
   };
 
   double signed_distance(const PathPoint& at) const;
+  bool is_near_zero(std::size_t test, const TestValue& end) const;
   PointData evaluate_again(PathPoint& at);  // with a new linearisation
   std::vector<std::size_t> changed(const PointData& end) const;
   Candidate searched_step(const PathPoint& here, Candidate& next);
@@ -84,6 +90,7 @@ class SpecialPointSearch {
                                                     const Candidate& whole);
   std::optional<Cut> first_in(const PathPoint& here, PathPoint& trial, const Candidate& step);
   void keep_rest(const Candidate& whole, const PathPoint& cut);
+  void report_start(const PointData& next, const Reports& reports) const;
   void report_lost(const PointData& next, const Reports& reports) const;
   bool is_start(double length) const;
   std::optional<BranchPointBracket> find_branch_point(const PathPoint& here, PathPoint& trial, const Candidate& step);
@@ -104,6 +111,12 @@ class SpecialPointSearch {
   std::vector<std::unique_ptr<TestFunction>> tests_;
   LocationSettings settings_;
   FloquetSolver floquet_;
+  /// At how many points a function was defined, and whether its value exceeded its uncertainty at one of them.
+  struct Evidence {
+    int points = 0;
+    bool has_sign = false;
+  };
+  std::vector<Evidence> evidence_;  // of each test function
   struct Past {
     double arclength;
     std::vector<TestValue> tests;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "constants/settings_type.hpp"
@@ -153,12 +154,14 @@ void BranchWriter::tell_unknown_user_values(const PointLine& line) {
   }
 }
 
+/// Of the parameters. What is too small for the full precision of a double is rounding.
 std::string BranchWriter::place(const PointLine& line) const {
   std::string text;
   for (std::size_t k = 0; k < columns_.size(); ++k)
     if (const PointColumn& column = columns_[k];
         column.kind == PointColumn::Kind::parameter && (k == 0 || column.index < first_duration))
-      text += fmt::format("{}{} = {:.10g}", text.empty() ? "" : ", ", column.name, line.values[k]);
+      text += fmt::format("{}{} = {:.10g}", text.empty() ? "" : ", ", column.name,
+                          std::abs(line.values[k]) < std::numeric_limits<double>::min() ? 0.0 : line.values[k]);
   return text;
 }
 
@@ -279,6 +282,13 @@ void BranchWriter::next_step(int point_number, double ds) {
 
 void BranchWriter::note(int point_number, const std::string& text) {
   files_.write_diagnostics(format_note(setup_.branch, point_number, text));
+}
+
+void BranchWriter::starts_at_zero(const std::string& name) {
+  BranchSink::starts_at_zero(name);
+  if (screen_ == nullptr) return;
+  progress_.clear();
+  *screen_ << fmt::format("       the start is itself a zero of {}, and gets no label for it\n", name) << std::flush;
 }
 
 void BranchWriter::passed(const LostPoint& point) {

@@ -42,6 +42,7 @@ class BranchWriter final : public BranchSink {
   void clear_progress() { progress_.clear(); }
   void next_step(int point_number, double ds) override;
   void note(int point_number, const std::string& text) override;
+  void starts_at_zero(const std::string& name) override;
   void passed(const LostPoint& point) override;
   void lost(const LostPoint& point) override;
 

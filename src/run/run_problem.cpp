@@ -1,6 +1,7 @@
 #include "run/run_problem.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -15,6 +16,7 @@
 #include "files/labelled_solution.hpp"
 #include "plugin/plugin_build.hpp"
 #include "plugin/problem_library.hpp"
+#include "problem_type/problem_type.hpp"
 #include "run/branch_setup.hpp"
 #include "run/branch_writer.hpp"
 #include "run/parameter_remarks.hpp"
@@ -72,10 +74,33 @@ void refuse_start_outside(const Orbit& start, const CollocationRule& rule, const
          settings.measure_min, settings.measure_max, "A0, A1");
 }
 
+/// A line where the start is a special point, which this run neither switches at nor follows in two parameters, nor
+/// labels again.
+std::string special_start_text(const ProblemType& type, const SelectedStart& start) {
+  if (type.facts().switches_branch || type.facts().free_parameters > 1) return "";
+  const std::vector<std::string> names = type_names(start.type, start.kind, {});
+  const bool is_special = !names.empty() && names.front() != "EP" && names.front() != "RG" && names.front() != "MX" &&
+                          names.front() != "UZ" && !names.front().empty();
+  if (!is_special) return "";
+  return fmt::format("Start: label {} of {}, itself a special point ({}), which gets no label of this run\n",
+                     start.label, start.source, fmt::join(names, " "));
+}
+
 /// Where a restart goes, for the sign of DS alone does not tell it.
-std::string direction_text(double step, const SelectedStart& start) {
-  return fmt::format("DS {} 0: {} the direction stored with label {} of {}\n", step > 0.0 ? ">" : "<",
-                     step > 0.0 ? "on in" : "back against", start.label, start.source);
+std::string direction_text(const BranchSetup& setup, const SelectedStart& start, const std::string& parameter) {
+  const double step = setup.settings.step;
+  const char* const sign = step > 0.0 ? ">" : "<";
+  if (setup.start.stored_direction)
+    return fmt::format("DS {} 0: {} the direction stored with label {} of {}\n{}", sign,
+                       step > 0.0 ? "on in" : "back against", start.label, start.source,
+                       step > 0.0 ? ""
+                                  : fmt::format("        DS={:g} goes on (where AUTO-07p goes on by DS < 0 after a run "
+                                                "with DS < 0)\n",
+                                                -step));
+  const double rate = step * setup.follower->principal_direction(setup.start.point);
+  if (!start.from_solution || setup.type->facts().switches_branch || rate == 0.0) return "";
+  return fmt::format("DS {} 0: {} {} at first; label {} of {} has no direction of such a run\n", sign, parameter,
+                     rate > 0.0 ? "grows" : "falls", start.label, start.source);
 }
 
 /// What a run prints besides its table.
@@ -221,6 +246,10 @@ class Direction {
     after.has_trivial = before.has_trivial;
     after.worst_structural = std::max(before.worst_structural, after.worst_structural);
     after.worst_estimated_error = std::max(before.worst_estimated_error, after.worst_estimated_error);
+    std::erase_if(after.vanishing, [&](const VanishingFunction& function) {
+      return std::none_of(before.vanishing.begin(), before.vanishing.end(),
+                          [&](const VanishingFunction& other) { return other.name == function.name; });
+    });
     after.lost.insert(after.lost.begin(), before.lost.begin(), before.lost.end());
     return after;
   }
@@ -254,8 +283,9 @@ int run_problem(const RunRequest& request, std::ostream& screen, std::ostream& w
 
   const RunSettings constants = setup.constants.value_or(setup.settings);
   files.open(positional_text(constants));  // only now are files touched
-  if (reports.table != nullptr && setup.start.stored_direction)
-    *reports.table << direction_text(setup.settings.step, selected);
+  if (reports.table != nullptr)
+    *reports.table << special_start_text(problem_type(problem.settings), selected)
+                   << direction_text(setup, selected, continuation.principal_name);
   const int last_label = request.append ? std::max(files.last_label(), 0) : selected.last_label;
   BranchWriter writer(system, setup.follower->condensed().rule(),
                       {constants, active_parameters(constants), setup.type->facts().curve, selected.branch, last_label},

@@ -1,6 +1,7 @@
 #include "run/run_summary.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -116,6 +117,22 @@ std::string lost_points(const BranchSummary& summary, const std::string& paramet
                      : "  you might: lower DSMAX; raise NTST or NCOL; EPSL and EPSU smaller than EPSS\n");
 }
 
+/// Functions that vanish identically, those of one reason in one sentence.
+std::string vanishing_functions(const std::vector<VanishingFunction>& functions) {
+  std::string text;
+  for (auto one = functions.begin(); one != functions.end(); ++one) {
+    const auto has_reason = [one](const VanishingFunction& other) { return other.reason == one->reason; };
+    if (std::any_of(functions.begin(), one, has_reason)) continue;
+    std::vector<std::string> names;
+    for (const VanishingFunction& other : functions)
+      if (has_reason(other)) names.push_back(other.name);
+    text += folded(fmt::format("  zero at every point within {} uncertainty, so without special points: {}{}{}",
+                               names.size() > 1 ? "their" : "its", fmt::join(names, ", "),
+                               one->reason.empty() ? "" : "; ", one->reason));
+  }
+  return text;
+}
+
 bool is_special(const BranchWriter::Labelled& label) {
   return label.type != "EP" && label.type != "RG" && !label.type.empty();
 }
@@ -141,7 +158,8 @@ std::string summary_text(const BranchSummary& summary, const std::vector<BranchW
   });
   text += folded(fmt::format("  stopped: {}", reason_text(summary, parameter, told)));
   if (!summary.remark.empty()) text += folded("  " + summary.remark);
-  return text + advice(summary) + lost_points(summary, parameter) + trust(summary) + inadmissible(summary);
+  return text + vanishing_functions(summary.vanishing) + advice(summary) + lost_points(summary, parameter) +
+         trust(summary) + inadmissible(summary);
 }
 
 }  // namespace tchat

@@ -70,10 +70,12 @@ double distance_to(const FloquetMultipliers& multipliers, double target) {
 
 }  // namespace
 
-std::string state_text(const HybridSystem& system, const double* x) {
+std::string state_text(const HybridSystem& system, const Orbit& orbit, const double* state) {
+  const Eigen::VectorXd uncertainty = state_uncertainty(orbit);
   std::string text;
   for (int k = 1; k <= system.dimension(); ++k)
-    text += fmt::format("{}{} = {:.10g}", k > 1 ? ", " : "", system.state_name(k), x[k - 1]);
+    text += fmt::format("{}{} = {:.10g}", k > 1 ? ", " : "", system.state_name(k),
+                        std::abs(state[k - 1]) > uncertainty(k - 1) ? state[k - 1] : 0.0);
   return text;
 }
 
@@ -177,7 +179,7 @@ SpecialPoint ImpactVelocityTest::lost_contact(const TestedPoint& point, int cont
                   "orbits without it: tchat resegment --to signature",
                   contact + 1, system.function_name(FunctionKind::field, field), entered.event,
                   system.function_name(FunctionKind::event, entered.event), before + 1,
-                  state_text(system, point.orbit.end(before)))};
+                  state_text(system, point.orbit, point.orbit.end(before)))};
 }
 
 SpecialPoint ImpactVelocityTest::classify(const TestedPoint& point, bool rising) const {
@@ -193,7 +195,7 @@ SpecialPoint ImpactVelocityTest::classify(const TestedPoint& point, bool rising)
                           ? "section tangent: orbits go on, cut elsewhere (tchat simulate --without-sections)"
                           : "grazing",
                       segment_ + 1, event, system_.system().function_name(FunctionKind::event, event),
-                      state_text(system_.system(), point.orbit.end(segment_)))};
+                      state_text(system_.system(), point.orbit, point.orbit.end(segment_)))};
 }
 
 }  // namespace tchat

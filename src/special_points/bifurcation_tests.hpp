@@ -21,6 +21,7 @@ class FoldTest final : public TestFunction {
            PointType type = PointType::fold, std::string held = {});
   std::string name() const override { return "fold"; }
   TestValue evaluate(const TestedPoint& point) const override;
+  std::string reason_to_vanish(const TestedPoint&) const override { return "ICP(1) stays the same along the branch"; }
   SpecialPoint classify(const TestedPoint& point, bool rising) const override;
 
  private:
@@ -101,7 +102,7 @@ TestValue multiplier_product(const TestedPoint& point, int target);
 /// plane, the product vanishes with that a_s.
 bool is_multiplier_at(const TestedPoint& point, int target);
 
-/// "x1 = 1, x2 = 0, ..."
-std::string state_text(const HybridSystem& system, const double* x);
+/// "x1 = 1, x2 = 0, ...": a state of `orbit`, n entries; what is below its uncertainty there is written as 0.
+std::string state_text(const HybridSystem& system, const Orbit& orbit, const double* state);
 
 }  // namespace tchat

@@ -282,7 +282,7 @@ SpecialPoint ContactTest::classify(const TestedPoint& point, bool rising) const 
           ends_branch,
           fmt::format("{} with {}, tau = {:.10g}, {}",
                       crosses(point, *contact) ? "two events at once: crossing" : "grazing: contact", where,
-                      contact->tau, state_text(system_.system(), contact->state.data()))};
+                      contact->tau, state_text(system_.system(), point.orbit, contact->state.data()))};
 }
 
 }  // namespace tchat

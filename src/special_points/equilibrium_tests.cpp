@@ -43,7 +43,8 @@ SpecialPoint BoundaryEquilibriumTest::classify(const TestedPoint& point, bool ri
           {UserPointKind::boundary_equilibrium, 1, event_, 0.0},
           stop_ && !rising,
           fmt::format("boundary equilibrium: contact with event {} ({}), {}", event_,
-                      problem.function_name(FunctionKind::event, event_), state_text(problem, point.orbit.end(0)))};
+                      problem.function_name(FunctionKind::event, event_),
+                      state_text(problem, point.orbit, point.orbit.end(0)))};
 }
 
 }  // namespace tchat

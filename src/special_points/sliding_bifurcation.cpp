@@ -162,7 +162,7 @@ SpecialPoint SlidingOnsetTest::classify(const TestedPoint& point, bool rising) c
           fmt::format("h_x f = 0 of field {} ({}) where segment {} crosses event {} ({}), {}", field_after(),
                       system.function_name(FunctionKind::field, field_after()), segment_ + 1, mode_.surface,
                       system.function_name(FunctionKind::event, mode_.surface),
-                      state_text(system, point.orbit.start(next())))};
+                      state_text(system, point.orbit, point.orbit.start(next())))};
 }
 
 }  // namespace tchat

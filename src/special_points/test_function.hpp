@@ -32,7 +32,7 @@ struct TestedPoint {
 /// What a test function says of a point.
 struct TestValue {
   std::optional<double> value;  ///< nothing where the function is not defined: an undefined value has no zero
-  double zero_level = 0.0;      ///< |value| up to this counts as zero
+  double zero_level = 0.0;      ///< the uncertainty of the value: |value| up to this counts as zero
   int sign = 0;  ///< of the value, 0 within the zero level; of an undefined one the sign that it stands for, 0: none
 
   /// Undefined where the value is not finite.
@@ -48,7 +48,8 @@ struct TestValue {
 /// shortened until they do.
 enum class Resolution {
   crossings,  ///< the polynomial through the last values has no two zeros between two points
-  trend       ///< each value is about what the last ones let expect, and they do not come near to zero in between
+  trend,      ///< each value is about what the last ones let expect, and they do not come near to zero in between
+  direction   ///< near a zero the branch hardly turns within a step, for another one may cross it there
 };
 
 /// What a point of the branch is; for a zero of a test function, what it found.
@@ -73,6 +74,8 @@ class TestFunction {
   virtual bool singular_at_zero() const { return false; }
   /// True when a zero is told of, but neither located nor labelled: the equations are singular there.
   virtual bool is_told_only() const { return false; }
+  /// Why the function is zero at every point of a branch, where that is known; `point` is one of them.
+  virtual std::string reason_to_vanish(const TestedPoint&) const { return ""; }
   /// What else there is to know of a labelled point, in lines for the d-file; empty: nothing.
   virtual std::string details(const TestedPoint&) const { return ""; }
   /// The special point at a located zero; `rising` says which way the function went through it.

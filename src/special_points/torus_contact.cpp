@@ -123,7 +123,7 @@ SpecialPoint TorusContactTest::classify(const TestedPoint& point, bool rising) c
                        fmt::format("grazing: the torus touches event {} ({})", event, name)};
   if (contact)
     special.description += fmt::format(" at phi = {:.8g}, tau = {:.8g}, {}", contact->phi, contact->tau,
-                                       state_text(system_.system(), contact->state.data()));
+                                       state_text(system_.system(), point.orbit, contact->state.data()));
   return special;
 }
 

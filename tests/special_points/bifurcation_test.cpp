@@ -202,7 +202,7 @@ TEST_CASE("period doubling beside grazing: found on the way out of the grazing o
     REQUIRE(found.size() == 1);
     CHECK(found[0]->orbit.par(0) == Approx(expected).epsilon(1e-11));
     CHECK(branch.special().size() == 1);
-    CHECK(branch.notes.empty());
+    for (const std::string& note : branch.notes) CHECK(note.starts_with("The run starts at a zero of h_x f"));
   }
 }
 
