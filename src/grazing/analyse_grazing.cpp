@@ -96,7 +96,7 @@ void analyse_label(const GrazingRequest& request, std::ostream& screen, std::ost
   const GrazingOrbit orbit = find_grazing_orbit(system, turn, source);
   const DiscontinuityMap map(system, orbit.point);
   const std::vector<ImpactReturn> xi =
-      impact_returns(orbit.point.event_gradient, orbit.A, orbit.point.beta, request.returns);
+      impact_returns(orbit.point.event_gradient, orbit.A, orbit.point.impact, request.returns);
   screen << fmt::format("Grazing orbit: {}, problem {}.\n", source, system.name()) << point_report(system, orbit.point)
          << '\n'
          << orbit_report(system, orbit, xi) << '\n';

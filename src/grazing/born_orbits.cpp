@@ -36,7 +36,7 @@ int sign(double value) { return value > 0.0 ? 1 : value < 0.0 ? -1 : 0; }
 BornOrbit with_square_root(const GrazingPoint& at, const LinearReturn& smooth, double clearance, int k) {
   const Eigen::Index n = at.x.size();
   MatrixXd power = MatrixXd::Identity(n, n);
-  std::vector<VectorXd> turned{at.beta};  // A^j beta
+  std::vector<VectorXd> turned{at.impact.beta};  // A^j beta
   for (int j = 1; j <= k; ++j) {
     power = smooth.A * power;
     turned.push_back(smooth.A * turned.back());
@@ -46,7 +46,7 @@ BornOrbit with_square_root(const GrazingPoint& at, const LinearReturn& smooth, d
   const double stretch = std::sqrt(2.0 / at.a);
   const double last = sum(k);
   BornOrbit born{k};
-  if (!std::isfinite(last) || std::abs(last) <= none * smooth.hx.norm() * at.beta.norm()) return born;
+  if (!std::isfinite(last) || std::abs(last) <= none * smooth.hx.norm() * at.impact.beta.norm()) return born;
   const double slope = -clearance / (stretch * last);  // y = slope delta
   born.side = sign(slope);
   born.beyond_contact = last > 0.0;

@@ -7,7 +7,6 @@
 #include "bvp/surface_rate.hpp"
 #include "hybrid/event_at.hpp"
 #include "linear_algebra/dense_matrix.hpp"
-#include "stability/grazing_response.hpp"
 #include "text/user_error.hpp"
 
 namespace tchat {
@@ -98,10 +97,7 @@ void require_on_surfaces(const HybridSystem& system, const GrazingPoint& at, dou
 
 }  // namespace
 
-bool GrazingPoint::has_square_root() const {
-  constexpr double none = 1e-9;
-  return beta.norm() > none * f.norm();
-}
+bool GrazingPoint::has_square_root() const { return !impact.is_zero(); }
 
 GrazingPoint grazing_point(const HybridSystem& system, int field, int event, int jump, const VectorXd& x,
                            const ParameterVector& par, const std::string& source, const Signature& aftermath) {
@@ -128,8 +124,8 @@ GrazingPoint grazing_point(const HybridSystem& system, int field, int event, int
   require_identity_at_contact(system, at, after, gx, source);
   at.jump_derivative = gx;
   for (const IndexVector& v : aftermath) at.jump_derivative = short_segment(system, v, at, source) * at.jump_derivative;
-  at.beta = impact_direction(at.f, at.section_gradient, at.jump_derivative);
-  at.B = -std::sqrt(2.0 / at.a) * at.beta;
+  at.impact = impact_direction(at.f, at.section_gradient, at.jump_derivative);
+  at.B = -std::sqrt(2.0 / at.a) * at.impact.beta;
   return at;
 }
 

@@ -16,6 +16,7 @@
 #include "hybrid/hybrid_system.hpp"
 #include "hybrid/index_vector.hpp"
 #include "hybrid/parameter_vector.hpp"
+#include "stability/grazing_response.hpp"
 
 namespace tchat {
 
@@ -32,10 +33,10 @@ struct GrazingPoint {
   Eigen::VectorXd event_gradient;    ///< h_{D,x}, n
   Eigen::VectorXd section_gradient;  ///< h_{P,x}, n
   Eigen::MatrixXd jump_derivative;   ///< G, n x n
-  Eigen::VectorXd beta;              ///< n
+  ImpactDirection impact;            ///< beta and its uncertainty
   Eigen::VectorXd B;                 ///< n; the coefficient of sqrt(-h_D) in the discontinuity map on P
 
-  /// In a plane, and wherever the contact is without an effect of first order: B is zero but for rounding.
+  /// False in a plane, and wherever contact has no effect of first order: beta is zero within its uncertainty.
   bool has_square_root() const;
 };
 

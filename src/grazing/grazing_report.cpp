@@ -155,7 +155,7 @@ std::string point_report(const HybridSystem& system, const GrazingPoint& point) 
           row("h_P,x", point.section_gradient) + row("f", point.f);
   const double scale = point.f.norm();
   const auto direction = [&](const VectorXd& v) { return v.norm() <= 1e-12 * scale ? VectorXd::Zero(v.size()) : v; };
-  text += row("beta", direction(point.beta)) + row("B", direction(point.B));
+  text += row("beta", direction(point.impact.beta)) + row("B", direction(point.B));
   return text + fmt::format("a* = {:.12g}{}\n", point.a,
                             point.has_square_root() ? "" : "; beta = 0: the map has no square root on P");
 }

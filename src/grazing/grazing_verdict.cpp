@@ -16,7 +16,7 @@ using Eigen::VectorXd;
 using Kind = GrazingVerdict::Kind;
 
 constexpr double stable = 1e-5;       // as for labels: |mu| <= 1 + 1e-5
-constexpr double xi_rounding = 1e-9;  // of xi_n against its scale, of shares
+constexpr double xi_rounding = 1e-9;  // of shares in xi_n, of determinants
 std::string number(double value) { return fmt::format("{:.6g}", value); }
 
 std::string text(std::complex<double> value) {
@@ -87,7 +87,7 @@ std::vector<Share> shares(const GrazingOrbit& orbit) {
     const Eigen::VectorXcd left = eigenvector(orbit.A.transpose(), value);
     const std::complex<double> size = left.transpose() * right;
     const std::complex<double> seen = at.event_gradient.cast<std::complex<double>>().transpose() * right;
-    const std::complex<double> excited = left.transpose() * at.beta.cast<std::complex<double>>();
+    const std::complex<double> excited = left.transpose() * at.impact.beta.cast<std::complex<double>>();
     result.push_back({value, -seen * excited / size});
   }
   return result;
@@ -120,7 +120,7 @@ GrazingVerdict by_returns(const GrazingOrbit& orbit, const std::vector<ImpactRet
   const int count = static_cast<int>(xi.size());
   for (int n = 1; n <= count; ++n) {
     const ImpactReturn& at = xi[static_cast<std::size_t>(n - 1)];
-    if (std::abs(at.xi) <= xi_rounding * at.scale)
+    if (at.is_zero())
       return {Kind::unknown, n,
               fmt::format("xi_{} = {:.2g} is zero to rounding (codimension two), and no earlier one is negative", n,
                           at.xi)};

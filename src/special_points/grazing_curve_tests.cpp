@@ -54,15 +54,15 @@ Matrix once_around(const GrazingOrbitSystem& system, const CondensedSystem& cond
   return v;
 }
 
-/// xi_n of beta. Few powers of A are taken one by one, as cheap and most accurate.
+/// xi_n. Few powers of A are taken one by one, as cheap and most accurate.
 ImpactReturn return_of_impact(const GrazingOrbitSystem& system, const CondensedSystem& condensed, const Orbit& x,
-                              const Vector& event_gradient, const Vector& beta, int n) {
+                              const Vector& event_gradient, const ImpactDirection& direction, int n) {
   constexpr int one_by_one = 40;
+  const Eigen::Index size = event_gradient.size();
   if (n > one_by_one)
-    return impact_return(event_gradient, once_around(system, condensed, x, Matrix::Identity(beta.size(), beta.size())),
-                         beta, n);
-  Vector before = beta;
-  Vector last = beta;
+    return impact_return(event_gradient, once_around(system, condensed, x, Matrix::Identity(size, size)), direction, n);
+  Matrix before = direction.with_errors();
+  Matrix last = before;
   for (int k = 1; k <= n; ++k) {
     before = last;
     last = once_around(system, condensed, x, before);
@@ -70,8 +70,7 @@ ImpactReturn return_of_impact(const GrazingOrbitSystem& system, const CondensedS
   return impact_return(event_gradient, before, last);
 }
 
-/// beta at the contact.
-Vector direction_of_impact(const GrazingOrbitSystem& system, const Orbit& x, int jump) {
+ImpactDirection direction_of_impact(const GrazingOrbitSystem& system, const Orbit& x, int jump) {
   const int s = system.grazing_segment();
   Vector f(system.dimension());
   system.system().value(FunctionKind::field, system.signature()[static_cast<std::size_t>(s)].field, x.end(s),
@@ -92,7 +91,7 @@ std::string row_text(const Eigen::RowVectorXd& row) {
 GrazingMatrices grazing_matrices(const GrazingOrbitSystem& system, const CondensedSystem& condensed, const Orbit& x,
                                  int jump) {
   const int n = system.dimension();
-  return {direction_of_impact(system, x, jump), once_around(system, condensed, x, Matrix::Identity(n, n))};
+  return {direction_of_impact(system, x, jump).beta, once_around(system, condensed, x, Matrix::Identity(n, n))};
 }
 
 GrazingUnfolding grazing_unfolding(const GrazingOrbitSystem& system, const CondensedSystem& condensed, const Orbit& x,
@@ -108,10 +107,11 @@ GrazingUnfolding grazing_unfolding(const GrazingOrbitSystem& system, const Conde
   GrazingUnfolding result;
   result.acceleration = section.dot(event.f);
   if (number == 0) return result;
-  const Vector beta = direction_of_impact(system, x, jump);
-  const ImpactReturn turned = return_of_impact(system, condensed, x, event.gradient, beta, number);
+  const ImpactDirection direction = direction_of_impact(system, x, jump);
+  const ImpactReturn turned = return_of_impact(system, condensed, x, event.gradient, direction, number);
   result.xi = turned.xi;
-  result.scale = turned.scale;
+  result.uncertainty = turned.uncertainty;
+  result.no_square_root = direction.is_zero();
   return result;
 }
 
@@ -132,7 +132,12 @@ std::string AccelerationTest::name() const { return acceleration_name; }
 
 TestValue XiTest::evaluate(const TestedPoint& point) const {
   const GrazingUnfolding unfolding = grazing_unfolding(system_, point.condensed, point.orbit, jump_, n_);
-  return TestValue::of(unfolding.xi, orbit_accuracy * unfolding.scale);
+  return TestValue::of(unfolding.xi, unfolding.uncertainty);
+}
+
+std::string XiTest::reason_to_vanish(const TestedPoint& point) const {
+  const bool no_root = grazing_unfolding(system_, point.condensed, point.orbit, jump_, n_).no_square_root;
+  return no_root ? "beta = 0: contact has no square root here, so there is no xi_n" : "";
 }
 
 SpecialPoint XiTest::classify(const TestedPoint&, bool) const {

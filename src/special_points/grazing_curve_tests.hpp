@@ -18,8 +18,8 @@ namespace tchat {
 struct GrazingUnfolding {
   double acceleration = 0.0;  ///< a*
   double xi = 0.0;
-  /// What xi_n is small or large against (stability/grazing_response.hpp).
-  double scale = 0.0;
+  double uncertainty = 0.0;     ///< of xi_n (stability/grazing_response.hpp)
+  bool no_square_root = false;  ///< beta = 0 within its uncertainty: there is no xi_n
 };
 /// beta (n) and A (n x n) at that point.
 struct GrazingMatrices {
@@ -29,7 +29,7 @@ struct GrazingMatrices {
 GrazingMatrices grazing_matrices(const GrazingOrbitSystem& system, const CondensedSystem& condensed, const Orbit& x,
                                  int jump);
 
-/// n >= 1, or 0 for a* alone. Beyond 2^-900 and 2^900 xi_n and its scale stop at that size and keep their sign.
+/// n >= 1, or 0 for a* alone. Beyond 2^-900 and 2^900 xi_n and its uncertainty stop at that size and keep their sign.
 GrazingUnfolding grazing_unfolding(const GrazingOrbitSystem& system, const CondensedSystem& condensed, const Orbit& x,
                                    int jump, int n);
 
@@ -42,6 +42,7 @@ class XiTest final : public TestFunction {
   std::string name() const override;
   TestValue evaluate(const TestedPoint& point) const override;
   Resolution resolution() const override { return Resolution::trend; }
+  std::string reason_to_vanish(const TestedPoint& point) const override;
   SpecialPoint classify(const TestedPoint& point, bool rising) const override;
 
  private:

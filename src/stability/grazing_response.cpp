@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bvp/orbit_accuracy.hpp"
+
 namespace tchat {
 
 namespace {
@@ -39,7 +41,7 @@ ScaledMatrix power_times(ScaledMatrix a, int n, ScaledMatrix v) {
   return v;
 }
 
-/// Of before = A^(n-1) beta.
+/// Of before = A^(n-1) (beta and its errors).
 ImpactReturn one_more(const VectorXd& event_gradient, const MatrixXd& return_map, const ScaledMatrix& before) {
   constexpr double smallest = -900.0;  // a sign that underflow would swallow is kept, at this size
   constexpr double largest = 900.0;
@@ -49,23 +51,35 @@ ImpactReturn one_more(const VectorXd& event_gradient, const MatrixXd& return_map
 
 }  // namespace
 
-VectorXd impact_direction(const VectorXd& f, const VectorXd& section_gradient, const MatrixXd& jump_derivative) {
+MatrixXd ImpactDirection::with_errors() const {
+  MatrixXd columns(beta.size(), 1 + beta.size());
+  columns << beta, uncertainty * MatrixXd::Identity(beta.size(), beta.size());
+  return columns;
+}
+
+ImpactDirection impact_direction(const VectorXd& f, const VectorXd& section_gradient, const MatrixXd& jump_derivative) {
   const VectorXd v = jump_derivative * f;
-  return v - f * (section_gradient.dot(v) / section_gradient.dot(f));
+  const double acceleration = section_gradient.dot(f);
+  const double terms =
+      jump_derivative.norm() * f.norm() * (1.0 + f.norm() * section_gradient.norm() / std::abs(acceleration));
+  return {v - f * (section_gradient.dot(v) / acceleration), orbit_accuracy * terms};
 }
 
-ImpactReturn impact_return(const VectorXd& event_gradient, const VectorXd& before, const VectorXd& last) {
-  return {-event_gradient.dot(last), event_gradient.norm() * std::max(before.norm(), last.norm())};
+ImpactReturn impact_return(const VectorXd& event_gradient, const MatrixXd& before, const MatrixXd& last) {
+  const double of_powers = orbit_accuracy * std::max(before.col(0).norm(), last.col(0).norm());
+  const double of_beta = last.rightCols(last.cols() - 1).norm();
+  return {-event_gradient.dot(last.col(0)), event_gradient.norm() * (of_powers + of_beta)};
 }
 
-ImpactReturn impact_return(const VectorXd& event_gradient, const MatrixXd& return_map, const VectorXd& beta, int n) {
-  return one_more(event_gradient, return_map, power_times({return_map}, n - 1, {beta}));
+ImpactReturn impact_return(const VectorXd& event_gradient, const MatrixXd& return_map, const ImpactDirection& direction,
+                           int n) {
+  return one_more(event_gradient, return_map, power_times({return_map}, n - 1, {direction.with_errors()}));
 }
 
 std::vector<ImpactReturn> impact_returns(const VectorXd& event_gradient, const MatrixXd& return_map,
-                                         const VectorXd& beta, int count) {
+                                         const ImpactDirection& direction, int count) {
   std::vector<ImpactReturn> result;
-  ScaledMatrix turned{beta};
+  ScaledMatrix turned{direction.with_errors()};
   for (int n = 1; n <= count; ++n) {
     result.push_back(one_more(event_gradient, return_map, turned));
     turned = product({return_map}, turned);

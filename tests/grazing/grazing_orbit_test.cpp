@@ -53,7 +53,7 @@ struct Analysis {
   Analysis(const HybridSystem& system, const ContactTurn& turn, int returns = 20)
       : orbit(find_grazing_orbit(system, turn, "test")),
         map(system, orbit.point),
-        xi(impact_returns(orbit.point.event_gradient, orbit.A, orbit.point.beta, returns)),
+        xi(impact_returns(orbit.point.event_gradient, orbit.A, orbit.point.impact, returns)),
         verdict(grazing_verdict(orbit, map, xi)) {}
 };
 
@@ -220,7 +220,7 @@ TEST_CASE("Verdicts of orbits that bifurcate or are unstable without contact") {
   const auto scaled_to = [&](double largest) {
     orbit.A = at.orbit.A * largest / at.orbit.multipliers(0).real();
     orbit.multipliers = at.orbit.multipliers * (largest / at.orbit.multipliers(0).real());
-    return grazing_verdict(orbit, at.map, impact_returns(orbit.point.event_gradient, orbit.A, orbit.point.beta, 20));
+    return grazing_verdict(orbit, at.map, impact_returns(orbit.point.event_gradient, orbit.A, orbit.point.impact, 20));
   };
   CHECK(scaled_to(1.5).words() == "none");
   CHECK_THAT(scaled_to(1.5).reason, Contains("unstable without contact") && Contains("1.5"));
@@ -229,7 +229,7 @@ TEST_CASE("Verdicts of orbits that bifurcate or are unstable without contact") {
   // A negative dominant eigenvalue whose xi_1 is positive: xi_2 is negative.
   CHECK(scaled_to(-0.5).words() == "discontinuous, n = 2");
   const GrazingVerdict short_look =
-      grazing_verdict(orbit, at.map, impact_returns(orbit.point.event_gradient, orbit.A, orbit.point.beta, 1));
+      grazing_verdict(orbit, at.map, impact_returns(orbit.point.event_gradient, orbit.A, orbit.point.impact, 1));
   CHECK(short_look.words() == "cannot tell");
   CHECK_THAT(short_look.reason, Contains("is negative, so that xi_n changes its sign") && Contains("--xi 4"));
 }
