@@ -48,6 +48,10 @@ class CriticalPair final : public OrbitCondition {
 
   /// Half the sum of the pair: the cosine of its angle on the curve, beyond +-1 where it is real.
   double cosine() const { return 0.5 * pair_.trace(); }
+  /// The sine of the angle but for a positive factor, with the sense in which the plane is turned; the orientation of
+  /// the plane is kept along the curve. A complex pair gives it one sign, which changes only where L is the unit matrix
+  /// or its opposite: there the angle passes 0 or pi.
+  double turning() const { return 0.5 * (pair_(1, 0) - pair_(0, 1)); }
   /// In the closed upper half plane; for a real pair the one nearer to zero.
   std::complex<double> multiplier() const;
 

@@ -43,6 +43,10 @@ class HopfPair final : public OrbitCondition {
   /// The same as a share of |f_x|^2.
   double relative_square() const { return square() / jacobian_.squaredNorm(); }
 
+  /// omega but for a positive factor, as a share of |f_x|, with the sense in which the plane is turned; the orientation
+  /// of the plane is kept along the curve. A complex pair gives it one sign, which changes only where L = 0.
+  double turning() const { return 0.5 * (pair_(1, 0) - pair_(0, 1)) / jacobian_.norm(); }
+
  private:
   using Plane = Eigen::Matrix<double, Eigen::Dynamic, 2>;
 

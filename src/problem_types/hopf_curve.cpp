@@ -20,6 +20,8 @@ class HopfCurve final : public EquilibriumCurve {
  protected:
   void add_codimension_two(TestList& tests) const override {
     tests.push_back(std::make_unique<ZeroFrequencyTest>());
+    tests.push_back(std::make_unique<MirroredFrequencyTest>());
+    tests.push_back(std::make_unique<PassedFrequencyTest>());
     tests.push_back(std::make_unique<HopfFoldTest>());
     tests.push_back(std::make_unique<BautinTest>());
   }

@@ -26,6 +26,8 @@ class TorusCurve final : public TwoParameterCurve {
     constexpr std::array resonances{PointType::resonance_1, PointType::resonance_2, PointType::resonance_3,
                                     PointType::resonance_4};
     for (const PointType type : resonances) tests.push_back(std::make_unique<AngleTest>(type));
+    tests.push_back(std::make_unique<MirroredResonanceTest>());
+    tests.push_back(std::make_unique<PassedResonanceTest>());
   }
 };
 

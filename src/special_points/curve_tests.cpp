@@ -17,6 +17,16 @@ const Condition& condition_at(const TestedPoint& point) {
   return static_cast<const Condition&>(*point.condition);
 }
 
+constexpr double at_resonance = 1e-6;  // of the cosine at a located resonance
+
+bool has_double_multiplier(const TestedPoint& point) {
+  return std::abs(std::abs(condition_at<CriticalPair>(point).cosine()) - 1.0) <= at_resonance;
+}
+
+PointType double_resonance(const TestedPoint& point) {
+  return condition_at<CriticalPair>(point).cosine() > 0.0 ? PointType::resonance_1 : PointType::resonance_2;
+}
+
 }  // namespace
 
 /// The zero level is against the sizes of the two vectors.
@@ -67,9 +77,42 @@ TestValue AngleTest::evaluate(const TestedPoint& point) const {
   }
 }
 
+Resolution AngleTest::resolution() const {
+  const bool double_multiplier = type_ == PointType::resonance_1 || type_ == PointType::resonance_2;
+  return double_multiplier ? Resolution::direction : Resolution::crossings;
+}
+
 SpecialPoint AngleTest::classify(const TestedPoint&, bool) const {
   const bool double_multiplier = type_ == PointType::resonance_1 || type_ == PointType::resonance_2;
   return {type_, {}, double_multiplier, name() + (double_multiplier ? ", where the torus curve ends" : "")};
+}
+
+/// The angle from 0 or pi with the sign of the determinant, which alone may be normalised to a jump. Elsewhere a curve
+/// that crosses is none of a resonance.
+TestValue MirroredResonanceTest::evaluate(const TestedPoint& point) const {
+  constexpr double nearby = 0.5;
+  constexpr double level = 1e-6;  // the root of what rounding makes of a cosine
+  const double square = 2.0 * std::abs(std::abs(condition_at<CriticalPair>(point).cosine()) - 1.0);
+  const TestValue angle = TestValue::of(std::copysign(std::sqrt(square), point.singular_distance), level);
+  return square < 2.0 * nearby ? angle : TestValue::undefined(angle.sign);
+}
+
+bool MirroredResonanceTest::is_genuine(const TestedPoint& point) const { return has_double_multiplier(point); }
+
+SpecialPoint MirroredResonanceTest::classify(const TestedPoint& point, bool) const {
+  const PointType type = double_resonance(point);
+  return {type, {}, true, AngleTest(type).name() + ", where the torus curve ends: it meets its mirror image"};
+}
+
+TestValue PassedResonanceTest::evaluate(const TestedPoint& point) const {
+  return TestValue::of(condition_at<CriticalPair>(point).turning(), orbit_accuracy);
+}
+
+bool PassedResonanceTest::is_genuine(const TestedPoint& point) const { return has_double_multiplier(point); }
+
+SpecialPoint PassedResonanceTest::classify(const TestedPoint& point, bool) const {
+  const PointType type = double_resonance(point);
+  return {type, {}, false, AngleTest(type).name() + ", which the angle passes: two eigenvectors, the curve goes on"};
 }
 
 }  // namespace tchat

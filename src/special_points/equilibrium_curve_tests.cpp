@@ -62,6 +62,34 @@ TestValue ZeroFrequencyTest::evaluate(const TestedPoint& point) const {
   return TestValue::of(made_by_curve<HopfPair>(point).relative_square(), orbit_accuracy);
 }
 
+namespace {
+
+/// Of a located point, where omega is known to the accuracy of its location.
+bool has_double_zero(const TestedPoint& point) {
+  constexpr double at_double_zero = 1e-10;
+  return std::abs(made_by_curve<HopfPair>(point).relative_square()) <= at_double_zero;
+}
+
+}  // namespace
+
+/// omega with the sign of the determinant, which alone may be normalised to a jump. Elsewhere a curve that crosses is
+/// none of a double eigenvalue 0.
+TestValue MirroredFrequencyTest::evaluate(const TestedPoint& point) const {
+  constexpr double nearby = 0.1;
+  constexpr double level = 1e-7;  // the root of what rounding makes of omega^2
+  const double square = std::abs(made_by_curve<HopfPair>(point).relative_square());
+  const TestValue omega = TestValue::of(std::copysign(std::sqrt(square), point.singular_distance), level);
+  return square < nearby ? omega : TestValue::undefined(omega.sign);
+}
+
+bool MirroredFrequencyTest::is_genuine(const TestedPoint& point) const { return has_double_zero(point); }
+
+TestValue PassedFrequencyTest::evaluate(const TestedPoint& point) const {
+  return TestValue::of(made_by_curve<HopfPair>(point).turning(), orbit_accuracy);
+}
+
+bool PassedFrequencyTest::is_genuine(const TestedPoint& point) const { return has_double_zero(point); }
+
 TestValue FoldHopfTest::evaluate(const TestedPoint& point) const {
   const Eigenvalues others = without_zero(point.multipliers.values);
   if (!point.multipliers.valid || others.size() < 2) return TestValue::undefined();

@@ -24,13 +24,43 @@ class DoubleZeroTest final : public TestFunction {
   }
 };
 
-/// BT on a Hopf curve: omega^2 = 0. The curve ends there.
+/// BT on a Hopf curve: omega^2 = 0. The curve ends there. By symmetry omega^2 may touch zero, omega going through it:
+/// MirroredFrequencyTest, PassedFrequencyTest.
 class ZeroFrequencyTest final : public TestFunction {
  public:
   std::string name() const override { return "Bogdanov-Takens"; }
   TestValue evaluate(const TestedPoint& point) const override;
+  Resolution resolution() const override { return Resolution::direction; }
   SpecialPoint classify(const TestedPoint&, bool) const override {
     return {PointType::bogdanov_takens, {}, true, "Bogdanov-Takens point: omega = 0, where the Hopf curve ends"};
+  }
+};
+
+/// BT where the Hopf curve of an equilibrium without the symmetry of the problem meets its mirror image at an
+/// equilibrium that has it: omega is proportional to the arclength. The Hopf curve of the symmetric equilibria goes
+/// through the same point, so the bordered determinant changes sign; with its sign omega goes through zero.
+class MirroredFrequencyTest final : public TestFunction {
+ public:
+  std::string name() const override { return "Bogdanov-Takens at the mirror image"; }
+  TestValue evaluate(const TestedPoint& point) const override;
+  bool is_genuine(const TestedPoint& point) const override;
+  bool singular_at_zero() const override { return true; }
+  SpecialPoint classify(const TestedPoint&, bool) const override {
+    return {PointType::bogdanov_takens,
+            {},
+            true,
+            "Bogdanov-Takens point: omega = 0, where the Hopf curve ends: it meets its mirror image"};
+  }
+};
+
+/// BT that omega passes, the eigenvalue 0 having two eigenvectors: the curve goes on.
+class PassedFrequencyTest final : public TestFunction {
+ public:
+  std::string name() const override { return "omega through 0"; }
+  TestValue evaluate(const TestedPoint& point) const override;
+  bool is_genuine(const TestedPoint& point) const override;
+  SpecialPoint classify(const TestedPoint&, bool) const override {
+    return {PointType::bogdanov_takens, {}, false, "omega passes 0: two eigenvectors, the Hopf curve goes on"};
   }
 };
 

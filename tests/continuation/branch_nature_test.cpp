@@ -2,8 +2,10 @@
 // orbit that shrinks to an equilibrium, a period without bound, a torus curve beyond its 1:1 resonance.
 #include <Eigen/LU>
 #include <catch2/catch.hpp>
+#include <map>
 
 #include "bvp/critical_pair.hpp"
+#include "continuation/homoclinic_limit.hpp"
 #include "special_points/bifurcation_tests.hpp"
 #include "special_points/curve_tests.hpp"
 #include "support/branch_fixture.hpp"
@@ -52,6 +54,16 @@ struct HomoclinicField {
   }
 };
 
+/// The unit circle, turned with the rate p1.
+struct ScaledField {
+  template <class T>
+  static void value(const T* x, const T* p, T* f) {
+    const T growth = 1.0 - x[0] * x[0] - x[1] * x[1];
+    f[0] = p[0] * (x[0] * growth - x[1]);
+    f[1] = p[0] * (x[1] * growth + x[0]);
+  }
+};
+
 /// Bogdanov's normal form beside a rotation of period 2 pi: with the equilibrium x = 0, y = 0 at p1 = 0 the multipliers
 /// exp(+-2 pi sqrt(p2)), a torus curve for p2 < 0 and neutral saddles for p2 > 0.
 struct BogdanovField {
@@ -59,6 +71,20 @@ struct BogdanovField {
   static void value(const T* x, const T* p, T* f) {
     f[0] = x[1];
     f[1] = p[0] + p[1] * x[0] + x[0] * x[0] - x[0] * x[1];
+    const T growth = 1.0 - x[2] * x[2] - x[3] * x[3];
+    f[2] = x[2] * growth - x[3];
+    f[3] = x[3] * growth + x[2];
+  }
+};
+
+/// Takens' normal form with x -> -x beside a rotation of period 2 pi. The equilibria x = +-a, y = 0 at p1 = p2 = a^2
+/// have the eigenvalues +-i sqrt(2) a, so multipliers exp(+-2 pi i sqrt(2) a): a torus curve that meets its mirror
+/// image where a = 0, in the 1:1 resonance, at the torus curve p1 < 0, p2 = 0 of the orbit x = 0.
+struct TakensField {
+  template <class T>
+  static void value(const T* x, const T* p, T* f) {
+    f[0] = x[1];
+    f[1] = p[0] * x[0] + p[1] * x[1] - x[0] * x[0] * (x[0] + x[1]);
     const T growth = 1.0 - x[2] * x[2] - x[3] * x[3];
     f[2] = x[2] * growth - x[3];
     f[3] = x[3] * growth + x[2];
@@ -181,7 +207,35 @@ TEST_CASE("a parameter that tends to a limit while the period grows does not tur
   CHECK(folds(sink) == 0);
   CHECK(sink.points.back().orbit.period() > 40.0);
   CHECK(sink.points.back().orbit.par(0) == Approx(-0.8645452).epsilon(1e-6));
-  CHECK_THAT(summary.remark, Contains("period grows"));
+  // The saddle has lambda^2 - mu lambda - 1 = 0.
+  CHECK_THAT(summary.remark, Contains("period grows") && Contains("homoclinic") && Contains("U(1) = 0, U(2) = 0") &&
+                                 Contains("-1.5217") && Contains("0.65715"));
+}
+
+TEST_CASE("a period that grows with nothing at rest nearby tends to no homoclinic orbit") {
+  using Scaled = Cut<ScaledField, 2, 1>;
+  const OrbitShape shape{2, 1, 20, 4};
+  PeriodicOrbits orbits(system_of<Scaled>(), {{1, 1, 1}}, 1, shape);
+  const auto orbit = [&](double rate) {
+    const auto circle = [=](double t) { return Eigen::Vector2d(-std::cos(rate * t), -std::sin(rate * t)); };
+    return sampled_orbit({{2 * pi / rate, circle}}, 2, 20, 4, parameters({rate}));
+  };
+  OrbitTrend trend;
+  for (const double rate : {5e-7, 4e-7, 2e-7}) trend.add(orbit(rate), rate);
+  const auto growth = trend.period_growth();
+  REQUIRE(growth);
+  CHECK(growth->from == Approx(2 * pi / 5e-7));
+  CHECK(growth->to == Approx(2 * pi / 2e-7));
+  CHECK(homoclinic_limit(orbits.system, orbit(2e-7), *growth, "rate").empty());
+}
+
+TEST_CASE("a negative period does not grow") {
+  const auto still = [](double) { return Eigen::Vector2d(1.0, 0.0); };
+  OrbitTrend trend;
+  for (const double period : {-6.227, -6.227, -3.0}) {
+    trend.add(sampled_orbit({{period, still}}, 2, 5, 4, parameters({0.3})), 0.3);
+    CHECK_FALSE(trend.period_growth());
+  }
 }
 
 TEST_CASE("beyond the 1:1 resonance that it begins at a torus curve ends, it does not follow neutral saddles") {
@@ -205,4 +259,47 @@ TEST_CASE("beyond the 1:1 resonance that it begins at a torus curve ends, it doe
   CHECK((summary.reason == EndReason::curve_end) == (direction > 0.0));
   CHECK((sink.points.size() == 2) == (direction > 0.0));
   if (direction > 0.0) CHECK_THAT(summary.detail, Contains("neutral saddles") && Contains("1:1"));
+}
+
+TEST_CASE("a torus curve that meets its mirror image ends there, in the 1:1 resonance, with short and long steps") {
+  using Takens = Cut<TakensField, 4, 3>;
+  const double longest = GENERATE(0.003, 0.01, 0.1, 0.5);
+  const double direction = GENERATE(1.0, -1.0);  // of p2 at the start: to the resonance where it falls
+  const double mirror = GENERATE(1.0, -1.0);
+  CAPTURE(longest, direction, mirror);
+  constexpr double a = 0.2;
+  const auto state = [=](double t) { return Eigen::Vector4d(mirror * a, 0.0, -std::cos(t), -std::sin(t)); };
+  const OrbitShape shape{4, 1, 10, 4};
+  const PeriodicOrbitSystem defining(system_of<Takens>(), {{1, 1, 1}}, {2, 1});
+  auto pair = std::make_unique<CriticalPair>(defining, shape, std::polar(1.0, 2 * pi * std::sqrt(2.0) * a));
+  PathFollower follower(defining, shape, WeightedNorm::unit(4), tight_newton(), 2, std::move(pair));
+  PathPoint start = follower.make_point(sampled_orbit({{2 * pi, state}}, 4, 10, 4, parameters({a * a, a * a})));
+  REQUIRE(follower.start_at_fixed_parameter(start).converged());
+  Tests tests;
+  for (const PointType type : {PointType::resonance_1, PointType::resonance_2, PointType::resonance_4})
+    tests.push_back(std::make_unique<AngleTest>(type));
+  tests.push_back(std::make_unique<MirroredResonanceTest>());
+  tests.push_back(std::make_unique<PassedResonanceTest>());
+  const double rising = follower.principal_direction(start) > 0.0 ? direction : -direction;
+  ContinuationSettings settings = branch_settings(shape, 2, 0.5 * longest * rising, longest, 600);
+  settings.parameter_max = 0.4;
+  KeepingSink sink;
+  ContinuationRun run(follower, defining, settings, std::move(tests), sink);
+  const BranchSummary summary = run.run(start);
+  CHECK(summary.lost.empty());
+  std::map<PointType, double> found;  // p2
+  for (const KeptPoint& point : sink.points)
+    if (point.special.type != PointType::ordinary && point.special.type != PointType::end)
+      CHECK(found.emplace(point.special.type, point.orbit.par(1)).second);
+  if (direction < 0.0) {
+    REQUIRE(found.count(PointType::resonance_1) == 1);
+    CHECK(summary.reason == EndReason::special_point);
+    CHECK(std::abs(found[PointType::resonance_1]) < 1e-8);
+    CHECK(found[PointType::resonance_4] == Approx(1.0 / 32.0).epsilon(1e-6));
+    CHECK(sink.points.back().orbit.states.topRows(2).cwiseAbs().maxCoeff() < 1e-4);
+  } else {
+    // sqrt(2) a = 1/2: L = -Id
+    CHECK(found[PointType::resonance_2] == Approx(0.125).epsilon(1e-6));
+    CHECK(found[PointType::resonance_4] == Approx(9.0 / 32.0).epsilon(1e-6));
+  }
 }

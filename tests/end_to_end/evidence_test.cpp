@@ -143,3 +143,24 @@ TEST_CASE("states below their accuracy are written as 0") {
   CHECK(contains(out, "x = 1, v = 0"));
   CHECK_FALSE(contains(out, "e-324"));
 }
+
+TEST_CASE("a Hopf curve that meets its mirror image ends there, in a Bogdanov-Takens point") {
+  // Takens' normal form with x -> -x: x = a, p = q = a^2, omega^2 = 2 a^2, along which omega touches zero at the
+  // origin.
+  const Workspace workspace;
+  workspace.write("takens.tch", "par p=0.04, q=0.03\ninit x=0.2, y=0\nx' = y\ny' = p*x + q*y - x^2*(x + y)\n");
+  workspace.write("takens.dat", "0.2 0\n");
+  workspace.write("gc.takens",
+                  "NDIM = 2, IPS = 1, IRS = 0\nICP = [q]\nNMX = 30, DS = 0.005, DSMAX = 0.02, RL1 = 0.06\n");
+  out_of(workspace, {"run", "takens", "-o", "equilibria"});
+  for (const std::string longest : {"0.003", "0.1"}) {
+    const std::string out =
+        out_of(workspace, {"run", "takens", "-c", "r.equilibria", "-s", "equilibria", "-o", "curve", "IRS=HB1", "ISW=2",
+                           "ICP=[p,q]", "DS=-0.002", "DSMAX=" + longest, "NMX=200", "RL0=-0.1", "RL1=0.2"});
+    INFO(out);
+    CHECK(contains(out, "BT label"));
+    const SolutionEntry end = workspace.solutions("curve").back();
+    CHECK(std::abs(end.parameter(1)) < 1e-8);
+    CHECK(std::abs(end.parameter(2)) < 1e-8);
+  }
+}
