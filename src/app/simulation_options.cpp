@@ -58,6 +58,18 @@ std::optional<int> exponent_count(const CLI::App& command, const std::string& te
   return 0;
 }
 
+namespace {
+
+CLI::Option* add_side_option(CLI::App& command, SimulationRequest& request, const char* name, StartSide::Given side,
+                             const char* help, const char* group) {
+  return command
+      .add_flag_callback(
+          name, [&request, side] { request.side.given = side; }, help)
+      ->group(group);
+}
+
+}  // namespace
+
 void add_start_options(CLI::App& command, SimulationRequest& request) {
   const char* const group = "Start";
   command.add_option("-d,--data", request.data, "start in the first row of D.dat, with its parameters")
@@ -66,6 +78,12 @@ void add_start_options(CLI::App& command, SimulationRequest& request) {
   command.add_option("-s,--start", request.start, "start in the orbit that IRS names in q.S, with its parameters")
       ->type_name("S")
       ->group(group);
+  CLI::Option* const after =
+      add_side_option(command, request, "--after-event", StartSide::Given::after,
+                      "a start on the surface of an event is a state after that event [what its jump suggests]", group);
+  add_side_option(command, request, "--before-event", StartSide::Given::before,
+                  "a start on the surface of an event is a state before that event, which happens at once", group)
+      ->excludes(after);
   command
       .add_option("--mode", request.modes,
                   "index vectors to watch first, as 1,2,1 or '1,2,1;1,3,2' [what the problem says of a start, else the "

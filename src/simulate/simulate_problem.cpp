@@ -17,6 +17,7 @@
 #include "simulate/orbit_hand_over.hpp"
 #include "simulate/simulation_start.hpp"
 #include "simulate/simulation_summary.hpp"
+#include "simulate/start_notice.hpp"
 #include "simulation/found_orbit.hpp"
 #include "text/user_error.hpp"
 
@@ -158,11 +159,13 @@ int simulate_problem(const SimulationRequest& request, std::ostream& screen, std
   }
 
   SimulationSettings settings = simulation_settings(request, interrupted);
+  settings.side = start.side;
   const std::unique_ptr<LyapunovAccumulator> exponents = exponents_to_measure(request, system, start.par);
   if (exponents) exponents->attach(settings);
   HybridSimulation simulation(start.rule, start.state, start.par, settings);
   say(start_text(system, start, simulation.mode()));
-  warnings << start_warnings(start, simulation);
+  warnings << side_without_effect(simulation, request.side);
+  for (const StartNotice& notice : start_notices(simulation)) warnings << notice_text(system, notice);
   SimulationFiles files(system, output, problem_text(system, start.par), start.par,
                         has_length(request.plan) ? SimulationFiles::everything : kept_size);
   SimulationResult result;

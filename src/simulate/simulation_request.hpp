@@ -23,6 +23,8 @@ struct SimulationRequest {
   std::optional<std::string> signature;  ///< "1,1,1;2,2,2", followed cyclically
   bool follow_signature = false;         ///< of the constants file, even where there is an index jump function
 
+  StartSide side;  ///< --after-event, --before-event; else of a label or .dat after, of other states not given
+
   SimulationPlan plan;
   double tolerance = 1e-10;  ///< relative, of one integration step
   double wait = 1000.0;      ///< longest time without an event

@@ -80,6 +80,13 @@ std::vector<IndexVector> parse_modes(const std::string& text) {
   return different;
 }
 
+std::string modes_text(const std::vector<IndexVector>& modes) {
+  std::string text;
+  for (const IndexVector& v : modes)
+    text += fmt::format("{}{},{},{}", text.empty() ? "" : ";", v.field, v.event, v.jump);
+  return text;
+}
+
 ModeRule simulation_rule(const SimulationRequest& request, const SimulationConstants& constants,
                          const HybridSystem& system, const VectorXd& x, const VectorXd& par) {
   if (!system.has_successors() || request.follow_signature || request.signature)

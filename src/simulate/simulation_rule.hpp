@@ -12,6 +12,8 @@ namespace tchat {
 
 /// "1,2,1;1,3,2" of --mode, each once. Throws UserError when it is no list of triples.
 std::vector<IndexVector> parse_modes(const std::string& text);
+/// As parse_modes() reads them.
+std::string modes_text(const std::vector<IndexVector>& modes);
 
 /// The index jump function, where there is one and neither --signature nor --follow-signature is given, beginning at
 /// --mode, at what it says of a start, or at the first index vector of gc.C. Otherwise the signature, cyclically, from

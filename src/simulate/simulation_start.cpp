@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <optional>
@@ -9,6 +10,7 @@
 
 #include "files/dat_file.hpp"
 #include "files/solution_file_reader.hpp"
+#include "hybrid/event_at.hpp"
 #include "setup/parameter_values.hpp"
 #include "setup/problem_setup.hpp"
 #include "setup/run_request.hpp"
@@ -21,6 +23,8 @@ namespace tchat {
 namespace {
 
 using Eigen::VectorXd;
+
+constexpr double orbit_tolerance = 1e-4;  // of a label or a .dat, relative
 
 std::vector<std::string> split(const std::string& text, char separator) {
   std::vector<std::string> parts;
@@ -69,6 +73,46 @@ void apply_state_option(const HybridSystem& system, const std::string& text, Vec
   for (std::size_t i = 0; i < parts.size(); ++i) state(static_cast<Eigen::Index>(i)) = read_state_value(parts[i], text);
 }
 
+/// The last index vector of the orbit of m segments whose states, n m x (number of points), are given, if the
+/// constants' signature is that of the orbit: its last event and jump lead from the end to the start.
+std::optional<IndexVector> last_index(const HybridSystem& system, const SimulationConstants& constants,
+                                      const Eigen::MatrixXd& states, const VectorXd& par) {
+  if (!constants.has_signature) return std::nullopt;
+  const IndexVector last = constants.settings.segments.back().index;
+  const Eigen::Index n = system.dimension();
+  const auto m = static_cast<Eigen::Index>(constants.settings.segments.size());
+  if (states.rows() != n * m || !fault_of(system, {last}).empty()) return std::nullopt;
+  const VectorXd start = states.col(0).head(n);
+  const VectorXd end = states.col(states.cols() - 1).tail(n);
+  VectorXd image(n);
+  system.value(FunctionKind::jump, last.jump, end.data(), par.data(), image.data());
+  const EventAt at = event_at(system, last.event, end.data(), par.data());
+  const bool is_closed = (image - start).norm() <= orbit_tolerance * (1.0 + start.norm());
+  if (!is_closed || !(std::abs(at.h) <= orbit_tolerance * at.scale(end.data()))) return std::nullopt;
+  return last;
+}
+
+/// The index vectors watched after the orbit's last event, where the problem's index jump function decides and agrees
+/// with the signature; else empty.
+std::vector<IndexVector> watched_after(const HybridSystem& system, const SimulationConstants& constants,
+                                       const IndexVector& last, const VectorXd& end, const VectorXd& par) {
+  const auto next = system.successors(last, end.data(), par.data());
+  if (!next || !fault_of(system, *next).empty()) return {};
+  const IndexVector first = constants.settings.segments.front().index;
+  return std::find(next->begin(), next->end(), first) == next->end() ? std::vector<IndexVector>{} : *next;
+}
+
+/// The start is that of an orbit with these states: it lies behind the orbit's last event.
+void begin_after_orbit(const HybridSystem& system, const SimulationConstants& constants, const Eigen::MatrixXd& states,
+                       SimulationStart& start) {
+  start.side.given = StartSide::Given::after;
+  const std::optional<IndexVector> last = last_index(system, constants, states, start.par);
+  if (!last) return;
+  start.side.event = last->event;
+  const VectorXd end = states.col(states.cols() - 1).tail(system.dimension());
+  start.watched = watched_after(system, constants, *last, end, start.par);
+}
+
 /// Of an orbit of the signature, that of the constants file or --signature's, or of one segment: the first row is all
 /// that matters.
 DatFile read_start(const std::string& path, const SimulationConstants& constants, int n) {
@@ -92,6 +136,7 @@ void apply_data(const SimulationRequest& request, const SimulationConstants& con
   for (const auto& [name, value] : data.named_parameters) start.par(parameter_index(system, name, path) - 1) = value;
   start.state = data.states.col(0).head(system.dimension());
   start.source = fmt::format("first row of {}", path);
+  begin_after_orbit(system, constants, data.states, start);
 }
 
 void apply_label(const SimulationRequest& request, const SimulationConstants& constants, const HybridSystem& system,
@@ -113,6 +158,7 @@ void apply_label(const SimulationRequest& request, const SimulationConstants& co
     start.par(static_cast<Eigen::Index>(k)) = solution.parameters[k];
   start.state = solution.states.col(0).head(system.dimension());
   start.source = fmt::format("label {} of {}", solution.label, path);
+  begin_after_orbit(system, constants, solution.states, start);
 }
 
 }  // namespace
@@ -130,7 +176,7 @@ SimulationStart simulation_start(const SimulationRequest& request, const Simulat
                                  const HybridSystem& system) {
   if (request.data && request.start)
     throw UserError("-d and -s are both given; a simulation starts from data (-d) or from a label of a q-file (-s)");
-  SimulationStart start{initial_parameters(system), VectorXd::Zero(system.dimension()), "zero", ModeRule(system)};
+  SimulationStart start{initial_parameters(system), VectorXd::Zero(system.dimension()), "zero", ModeRule(system), {}};
   if (const double* const initial = system.table().initial_state) {
     start.state = Eigen::Map<const VectorXd>(initial, system.dimension());
     start.source = "the problem's starting state";
@@ -141,12 +187,16 @@ SimulationStart simulation_start(const SimulationRequest& request, const Simulat
   if (request.state) {
     apply_state_option(system, *request.state, start.state);
     start.source = "--state";
+    start.side = {};
+    start.watched.clear();
   }
+  if (request.side.given != StartSide::Given::nothing) start.side = request.side;
   if (!start.state.allFinite())
     throw UserError(fmt::format("the start {} ({}) is not finite", state_text(start.state), start.source));
-  SimulationStart result{start.par, start.state, start.source,
-                         simulation_rule(request, constants, system, start.state, start.par)};
-  return result;
+  if (!system.has_successors() || request.follow_signature || request.signature || request.modes) start.watched.clear();
+  const ModeRule rule = start.watched.empty() ? simulation_rule(request, constants, system, start.state, start.par)
+                                              : ModeRule(system, Mode{start.watched, {}});
+  return {start.par, start.state, start.source, rule, start.side, start.watched};
 }
 
 }  // namespace tchat

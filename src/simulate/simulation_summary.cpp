@@ -4,9 +4,7 @@
 
 #include <cmath>
 
-#include "hybrid/event_at.hpp"
-#include "hybrid/identity_jump.hpp"
-#include "hybrid/relevant_events.hpp"
+#include "simulate/start_notice.hpp"
 
 namespace tchat {
 
@@ -14,33 +12,10 @@ namespace {
 
 using Eigen::VectorXd;
 
-std::string event_name(const HybridSystem& system, int event) {
-  const std::string name = system.function_name(FunctionKind::event, event);
-  return name == fmt::format("event {}", event) ? name : fmt::format("event {} ({})", event, name);
-}
-
 /// "1 event", "3 events"
 std::string counted(long n, const char* what) { return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s"); }
 
 std::string index_text(const IndexVector& v) { return fmt::format("({},{},{})", v.field, v.event, v.jump); }
-
-constexpr double rounding = 1e-6;  // of the state at a label or in a .dat, relative
-
-/// h at x; 0 where it cannot be told from zero.
-double clear_value(const HybridSystem& system, int event, const VectorXd& x, const VectorXd& par) {
-  const EventAt at = event_at(system, event, x.data(), par.data());
-  return std::abs(at.h) <= rounding * at.scale(x.data()) ? 0.0 : at.h;
-}
-
-/// Those of the first mode that change something: by their jump or, where the problem says what follows, the field.
-std::vector<int> events_that_matter(const SimulationStart& start, const Mode& mode, const HybridSystem& system) {
-  if (!start.rule.is_cyclic())
-    return relevant_events(system, mode.index_vectors, mode.field(), start.state.data(), start.par.data());
-  std::vector<int> events;
-  for (const IndexVector& v : mode.index_vectors)
-    if (!is_identity_jump(system, v.jump)) events.push_back(v.event);
-  return events;
-}
 
 std::string multiplier_text(const std::complex<double>& mu) {
   if (mu.imag() == 0.0) return fmt::format("{:.10g}", mu.real());
@@ -102,29 +77,6 @@ std::string start_text(const HybridSystem& system, const SimulationStart& start,
   system.value(FunctionKind::field, mode.field(), start.state.data(), start.par.data(), f.data());
   if (f.isZero(0.0))
     text += "  The field is zero there, so nothing will move; give another start with --state, -d or -s.\n";
-  return text;
-}
-
-std::string start_warnings(const SimulationStart& start, const HybridSimulation& simulation) {
-  const HybridSystem& system = simulation.system();
-  const Mode& mode = simulation.mode();
-  std::string text;
-  for (const int event : events_that_matter(start, mode, system)) {
-    const IndexVector& v = mode.ended_by(event);
-    const double h = clear_value(system, event, start.state, start.par);
-    const bool is_left = simulation.leaves_downwards(v) && !start.rule.is_cyclic() &&
-                         !keeps_field(system, v, v.field, start.state.data(), start.par.data());
-    if (!(h < 0.0) && !is_left) continue;
-    text += fmt::format(
-        "tchat: the start {} {}: its function is {:.6g} there{}, and nothing happens until it has risen "
-        "above zero.\n",
-        is_left ? "lies on" : "is behind", event_name(system, event), h, is_left ? " and falls" : "");
-    text += is_left ? "  The field changes there: start a little before it, or let the problem say what "
-                      "follows (0,0,0) at such a state.\n"
-                    : "  If that is a wall the motion is outside the model; start where the function is positive, with "
-                      "--state, -d or -s;\n  if the field changes there, begin in the field that holds, with --mode "
-                      "FIELD,EVENT,JUMP, or let the problem say what follows (0,0,0) there.\n";
-  }
   return text;
 }
 

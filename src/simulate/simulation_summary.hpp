@@ -5,7 +5,6 @@
 
 #include "simulate/simulation_start.hpp"
 #include "simulation/found_orbit.hpp"
-#include "simulation/hybrid_simulation.hpp"
 #include "simulation/simulation_run.hpp"
 
 namespace tchat {
@@ -15,10 +14,6 @@ std::string problem_text(const HybridSystem& system, const Eigen::VectorXd& par)
 
 /// Parameters, start and first mode.
 std::string start_text(const HybridSystem& system, const SimulationStart& start, const Mode& mode);
-
-/// One paragraph for each event of the first mode that the start is behind, h < 0, or on and leaves behind; sections,
-/// after which all goes on as before, take both signs. Usually empty.
-std::string start_warnings(const SimulationStart& start, const HybridSimulation& simulation);
 
 /// How long it ran, why it ended, what was seen on the way.
 std::string course_text(const HybridSystem& system, const SimulationResult& result, double end_time, double contact);

@@ -289,10 +289,10 @@ CvodesFlow::CvodesFlow(const HybridSystem& system, int field, const VectorXd& x0
 
 CvodesFlow::~CvodesFlow() = default;
 
-void CvodesFlow::watch(const std::vector<int>& events) {
+void CvodesFlow::watch(const std::vector<int>& events, const std::vector<int>& after) {
   p_->events = events;
   p_->watch.emplace(p_->system, p_->field, events, p_->par, N_VGetArrayPointer(p_->x.get()),
-                    p_->options.surface_tolerance);
+                    p_->options.surface_tolerance, after);
   p_->start_roots();
 }
 

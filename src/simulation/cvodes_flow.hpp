@@ -27,7 +27,8 @@ class CvodesFlow final : public WatchedFlow {
 
   /// CVODES finds the zeros of h and of h_P = h_x f; the watch looks at every step it takes, so that a pair of
   /// crossings inside one step, near grazing, is not missed, and zeros that CVODES finds too close are no harm.
-  void watch(const std::vector<int>& events) override;
+  using WatchedFlow::watch;
+  void watch(const std::vector<int>& events, const std::vector<int>& after) override;
   void on_piece(std::function<bool(double from, double to)> observer) override;
   Progress advance(double end_time) override;
   int fallen() const override;

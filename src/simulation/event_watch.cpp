@@ -32,14 +32,16 @@ double last_change(double a, double b, const std::function<double(double)>& f) {
 }  // namespace
 
 EventWatch::EventWatch(const HybridSystem& system, int field, const std::vector<int>& events, const VectorXd& par,
-                       const double* x0, double tolerance)
-    : system_(system), field_(field), par_(par), tolerance_(tolerance), f_(system.dimension()), h_x_(f_.size()) {
+                       const double* x0, double tolerance, const std::vector<int>& after)
+    : system_(system), field_(field), par_(par), f_(system.dimension()), h_x_(f_.size()) {
   for (const int event : events) {
     const Value start = at(event, x0);
-    const bool on_surface = std::abs(start.h) <= tolerance * start.scale;
+    const bool is_after = std::find(after.begin(), after.end(), event) != after.end();
+    const double around = is_after ? std::max(tolerance, std::abs(start.h) / start.scale) : tolerance;
+    const bool on_surface = std::abs(start.h) <= around * start.scale;
     Readiness readiness = start.h > 0.0 ? Readiness::armed : Readiness::below;
     if (on_surface) readiness = start.rate > 0.0 ? Readiness::leaving_upwards : Readiness::below;
-    events_.push_back({event, readiness, start.h, start.rate});
+    events_.push_back({event, readiness, start.h, start.rate, around});
   }
 }
 
@@ -103,7 +105,7 @@ std::optional<double> EventWatch::fall(Watched& watched, double end, double h, d
     if (watched.readiness == Readiness::leaving_upwards) return top;  // a flight as short as rounding
   }
   const double scale = at(event, state(end)).scale;
-  const bool has_risen = watched.readiness == Readiness::leaving_upwards || rate > 0.0 || h > tolerance_ * scale;
+  const bool has_risen = watched.readiness == Readiness::leaving_upwards || rate > 0.0 || h > watched.tolerance * scale;
   if (h > 0.0 && has_risen) watched.readiness = Readiness::armed;
   return std::nullopt;
 }

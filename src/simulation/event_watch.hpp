@@ -3,7 +3,8 @@
 ///
 /// Only an *armed* event can fall, one whose h has been positive. At the start: h > tolerance is armed; a start on the
 /// surface (|h| within tolerance, as after an impact or on a section) that leaves upwards is armed as soon as h > 0;
-/// one that leaves downwards, and a start below zero, when h has risen again. The start itself never counts.
+/// one that leaves downwards, a start below zero, and a start just after the event, when h has risen again. The start
+/// itself never counts.
 ///
 /// h_P = h_x f tells where h is least between two looks (2.57-2.60), so that a pair of crossings inside one step is
 /// found; a least value that is not below zero is a contact.
@@ -36,9 +37,10 @@ class EventWatch {
   };
 
   /// A view of `system` and `par`, which outlive this object. `tolerance` on |h| / (1 + |h_x| |x|) says what is on the
-  /// surface at the start x0 (time 0).
+  /// surface at the start x0 (time 0); of the events `after`, which have just happened, the start is on the surface
+  /// whatever h.
   EventWatch(const HybridSystem& system, int field, const std::vector<int>& events, const Eigen::VectorXd& par,
-             const double* x0, double tolerance);
+             const double* x0, double tolerance, const std::vector<int>& after = {});
 
   int count() const { return static_cast<int>(events_.size()); }
   /// h_j and then h_x f of every event: 2 count() values, falling and rising through zero at what is looked for. False
@@ -69,7 +71,8 @@ class EventWatch {
   struct Watched {
     int event;
     Readiness readiness;
-    double h, rate;  // at the time last looked at
+    double h, rate;    // at the time last looked at
+    double tolerance;  // |h| / (1 + |h_x| |x|) up to this has not risen
   };
 
   /// When this event falls in (time_, end], where its h and rate are now those given; updates its readiness.
@@ -80,7 +83,6 @@ class EventWatch {
   const HybridSystem& system_;
   int field_;
   const Eigen::VectorXd& par_;
-  double tolerance_;
   double time_ = 0.0;
   std::vector<Watched> events_;
   // What is looked at at every step is kept here.

@@ -65,6 +65,7 @@ HybridSimulation::HybridSimulation(ModeRule rule, const VectorXd& x0, const Vect
   require_state(system_, x0);
   settings_.flow.variational = false;
   mode_ = rule_.first(x0, par_);
+  surface_starts_ = tchat::surface_starts(rule_, mode_, x0, par_, settings_.side, settings_.flow.surface_tolerance);
 }
 
 HybridSimulation::Surface HybridSimulation::surface(int field, int event, const VectorXd& x) const {
@@ -74,17 +75,13 @@ HybridSimulation::Surface HybridSimulation::surface(int field, int event, const 
 
 /// Does the jump send the flow back from the surface, as an impact does?
 bool HybridSimulation::is_wall(const IndexVector& index, const VectorXd& x) const {
-  if (walls_.contains(index.event)) return true;
-  VectorXd g(x.size());
-  system_.value(FunctionKind::jump, index.jump, x.data(), par_.data(), g.data());
-  const double before = surface(index.field, index.event, x).rate;
-  const double after = surface(index.field, index.event, g).rate;
-  return before * after < 0.0;
+  return walls_.contains(index.event) || reverses_flow(system_, index, x, par_);
 }
 
 bool HybridSimulation::leaves_downwards(const IndexVector& index) const {
   const Surface at = surface(index.field, index.event, x_);
-  return at.is_near && at.rate < 0.0 && !is_wall(index, x_) && !moves(index, x_);
+  return at.is_near && at.rate < 0.0 && !is_wall(index, x_) &&
+         !moves_state(system_, index, x_, par_, settings_.flow.surface_tolerance);
 }
 
 SimulatedSegment HybridSimulation::next(double end_time) {
@@ -137,25 +134,20 @@ void HybridSimulation::mark_walls_behind(SimulatedSegment& segment) const {
   }
 }
 
-/// Does the jump take the state from the surface to another place?
-bool HybridSimulation::moves(const IndexVector& index, const VectorXd& x) const {
-  VectorXd g(x.size());
-  system_.value(FunctionKind::jump, index.jump, x.data(), par_.data(), g.data());
-  return (g - x).norm() > settings_.flow.surface_tolerance * (1.0 + x.norm());
-}
-
-/// Events that happen at the very start: they came together with the last one; or the start lies on a wall and moves
-/// into it; or the simulation begins on a surface, moves through it, and something happens there. (A section does not
-/// count where the simulation begins.)
+/// Events that happen at the very start: those of surface_starts() where the simulation begins; else they came together
+/// with the last one, or the segment starts on a wall and moves into it.
 std::vector<int> HybridSimulation::due_at_start(const SimulatedSegment& segment) const {
   std::vector<int> due;
+  if (begins()) {
+    for (const SurfaceStart& start : surface_starts_)
+      if (!start.is_after) due.push_back(start.index.event);
+    return due;
+  }
   for (const IndexVector& index : segment.mode.index_vectors) {
     const bool is_pending = contains(pending_, index.event);
     if ((!is_pending && index.event == last_.event) || contains(due, index.event)) continue;
     const Surface at = surface(index.field, index.event, x_);
-    const bool begins = last_.field == 0;
-    if (at.is_near && at.rate < 0.0 && (is_pending || is_wall(index, x_) || (begins && moves(index, x_))))
-      due.push_back(index.event);
+    if (at.is_near && at.rate < 0.0 && (is_pending || is_wall(index, x_))) due.push_back(index.event);
   }
   return due;
 }
@@ -194,11 +186,20 @@ std::vector<int> HybridSimulation::watched_events() const {
   return events;
 }
 
+/// Events after which the simulation begins, in its first segment.
+std::vector<int> HybridSimulation::events_begun_after() const {
+  std::vector<int> events;
+  if (!begins()) return events;
+  for (const SurfaceStart& start : surface_starts_)
+    if (start.is_after) events.push_back(start.index.event);
+  return events;
+}
+
 void HybridSimulation::integrate(SimulatedSegment& segment, double end_time) {
   const std::unique_ptr<WatchedFlow> integrated = make_flow(system_, mode_.field(), x_, par_, settings_.flow);
   WatchedFlow& flow = *integrated;
   watched_ = watched_events();
-  flow.watch(watched_);
+  flow.watch(watched_, events_begun_after());
   flow.on_piece([&](double from, double to) { return pass_piece(segment, flow, from, to); });
   const std::vector<int> terminal = mode_.terminal_events();
   const double left = end_time - time_;

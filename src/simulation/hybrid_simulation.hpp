@@ -4,7 +4,7 @@
 ///
 /// What decides the next mode is in mode_rule.hpp. When two event functions come to zero together the first in the
 /// mode's order ends the segment and the other one, if the flow still goes through it after the jump, a segment of zero
-/// duration (likewise an event on whose surface the start lies, with an impact and moving into it). Trouble is a value:
+/// duration. What a start on a surface means is in surface_start.hpp. Trouble is a value:
 /// an integration that fails, an event after whose jump the flow leaves the region h >= 0 again at once (it sticks).
 #pragma once
 
@@ -18,6 +18,7 @@
 #include "simulation/event_watch.hpp"
 #include "simulation/flow_options.hpp"
 #include "simulation/mode_rule.hpp"
+#include "simulation/surface_start.hpp"
 
 namespace tchat {
 
@@ -25,6 +26,7 @@ class WatchedFlow;
 
 struct SimulationSettings {
   FlowOptions flow;           ///< max_duration: give up waiting for an event after this time
+  StartSide side;             ///< of events on whose surface the start lies
   double contact = 1e-3;      ///< a least value of h below this share of its largest value is a near-grazing contact
   std::vector<int> sections;  ///< event functions whose falls are marked wherever they do not end the segment
   std::size_t samples = 200;  ///< at most so many states are kept of each segment; 0 none
@@ -100,9 +102,13 @@ class HybridSimulation {
   const Eigen::VectorXd& state() const { return x_; }
   /// Of the last segment; before any, that of the start.
   const Mode& mode() const { return mode_; }
+  /// Does it follow a signature?
+  bool is_cyclic() const { return rule_.is_cyclic(); }
   /// Whether the state lies on the surface of this index vector's event and goes to h < 0 without being ended by it, as
   /// after a section: nothing happens there until h has risen above zero.
   bool leaves_downwards(const IndexVector& index) const;
+  /// Events of the first mode on whose surface the simulation began, and on which side of them.
+  const std::vector<SurfaceStart>& surface_starts() const { return surface_starts_; }
 
  private:
   /// h_j and h_x f under field i at x.
@@ -112,13 +118,14 @@ class HybridSimulation {
   };
   Surface surface(int field, int event, const Eigen::VectorXd& x) const;
   bool is_wall(const IndexVector& index, const Eigen::VectorXd& x) const;
-  bool moves(const IndexVector& index, const Eigen::VectorXd& x) const;
+  bool begins() const { return last_.field == 0; }
 
   SimulatedSegment begin_segment();
   std::vector<int> due_at_start(const SimulatedSegment& segment) const;
   bool sticks_at_start(SimulatedSegment& segment) const;
   void mark_walls_behind(SimulatedSegment& segment) const;
   std::vector<int> watched_events() const;
+  std::vector<int> events_begun_after() const;
   void integrate(SimulatedSegment& segment, double end_time);
   bool pass_piece(SimulatedSegment& segment, const WatchedFlow& flow, double from, double to);
   void note_contacts(SimulatedSegment& segment, WatchedFlow& flow) const;
@@ -134,6 +141,7 @@ class HybridSimulation {
   Eigen::VectorXd x_;
   double time_ = 0.0;
   long segments_ = 0;
+  std::vector<SurfaceStart> surface_starts_;
   IndexVector last_{0, 0, 0};      // that ended the segment before
   double last_rate_ = 0.0;         // h_x f there
   Eigen::VectorXd before_jump_;    // the state there

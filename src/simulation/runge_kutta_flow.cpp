@@ -197,9 +197,9 @@ RungeKuttaFlow::RungeKuttaFlow(const HybridSystem& system, int field, const Vect
 
 RungeKuttaFlow::~RungeKuttaFlow() = default;
 
-void RungeKuttaFlow::watch(const std::vector<int>& events) {
+void RungeKuttaFlow::watch(const std::vector<int>& events, const std::vector<int>& after) {
   p_->events = events;
-  p_->watch.emplace(p_->system, p_->field, events, p_->par, p_->start.data(), p_->options.surface_tolerance);
+  p_->watch.emplace(p_->system, p_->field, events, p_->par, p_->start.data(), p_->options.surface_tolerance, after);
 }
 
 void RungeKuttaFlow::on_piece(std::function<bool(double, double)> observer) { p_->observer = std::move(observer); }

@@ -23,7 +23,8 @@ class RungeKuttaFlow final : public WatchedFlow {
   RungeKuttaFlow& operator=(const RungeKuttaFlow&) = delete;
   ~RungeKuttaFlow() override;
 
-  void watch(const std::vector<int>& events) override;
+  using WatchedFlow::watch;
+  void watch(const std::vector<int>& events, const std::vector<int>& after) override;
   void on_piece(std::function<bool(double from, double to)> observer) override;
   Progress advance(double end_time) override;
   int fallen() const override;

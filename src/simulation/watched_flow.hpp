@@ -23,8 +23,9 @@ class WatchedFlow {
   virtual ~WatchedFlow() = default;
 
   /// Stop where one of these event functions falls through zero (event_watch.hpp says what counts). Once, before the
-  /// first advance().
-  virtual void watch(const std::vector<int>& events) = 0;
+  /// first advance(). The flow begins just after the events `after`.
+  virtual void watch(const std::vector<int>& events, const std::vector<int>& after) = 0;
+  void watch(const std::vector<int>& events) { watch(events, {}); }
   /// Called for every piece of the flow that has been passed, from one time to the next; state_at() is valid in it.
   /// False stops the flow (Progress::stopped).
   virtual void on_piece(std::function<bool(double from, double to)> observer) = 0;

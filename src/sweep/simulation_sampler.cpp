@@ -63,19 +63,17 @@ class SampleRun {
         interrupted_(interrupted),
         recurrence_(setup.request.plan.max_period, setup.request.plan.recognition),
         capture_(setup.known) {
-    par_ = setup.par;
-    VectorXd start = setup.starts[static_cast<std::size_t>(point.start) - 1];
-    for (std::size_t q = 0; q < setup.over.size(); ++q) {
-      VectorXd& changed = setup.over[q].quantity.is_state ? start : par_;
-      changed(setup.over[q].position - 1) = point.values(static_cast<Eigen::Index>(q));
-    }
-    start_ = point.at ? point.at->x : start;
+    SampleStart start = sample_start(setup, point);
+    par_ = std::move(start.par);
+    start_ = std::move(start.state);
+    side_ = start.side;
   }
 
   AttractorSample run() {
     SimulationRequest request = setup_.request;
-    if (point_.at && !point_.at->watched.empty()) request.modes = mode_option(point_.at->watched);
+    if (point_.at && !point_.at->watched.empty()) request.modes = modes_text(point_.at->watched);
     SimulationSettings with_exponents = settings();
+    with_exponents.side = side_;
     LyapunovAccumulator exponents(system_, par_, lyapunov_settings(with_exponents.flow));
     exponents.attach(with_exponents);
     HybridSimulation simulation(simulation_rule(request, setup_.constants, system_, start_, par_), start_, par_,
@@ -93,13 +91,6 @@ class SampleRun {
   }
 
  private:
-  static std::string mode_option(const std::vector<IndexVector>& watched) {
-    std::string text;
-    for (const IndexVector& v : watched)
-      text += fmt::format("{}{},{},{}", text.empty() ? "" : ";", v.field, v.event, v.jump);
-    return text;
-  }
-
   SimulationSettings plain_settings() const {
     SimulationSettings settings = simulation_settings(setup_.request, interrupted_);
     if (!setup_.request.stiff) settings.flow.method = IntegrationMethod::runge_kutta;
@@ -558,6 +549,7 @@ class SampleRun {
   const SweepPoint& point_;
   const std::function<bool()>& interrupted_;
   VectorXd par_, start_;
+  StartSide side_;
   Recurrence recurrence_;
   ChatteringDetector chattering_;
   DecayDetector decay_;
@@ -573,6 +565,19 @@ class SampleRun {
 };
 
 }  // namespace
+
+SampleStart sample_start(const SamplerSetup& setup, const SweepPoint& point) {
+  const auto number = static_cast<std::size_t>(point.start) - 1;
+  SampleStart start{setup.starts[number], setup.par, setup.sides[number]};
+  for (std::size_t q = 0; q < setup.over.size(); ++q) {
+    const SweepTarget& target = setup.over[q];
+    VectorXd& changed = target.quantity.is_state ? start.state : start.par;
+    changed(target.position - 1) = point.values(static_cast<Eigen::Index>(q));
+    if (target.quantity.is_state) start.side = setup.request.side;  // no longer the start of an orbit
+  }
+  if (point.at) start = {point.at->x, start.par, {StartSide::Given::after, 0}};
+  return start;
+}
 
 AttractorSample SimulationSampler::operator()(const SweepPoint& point, const std::function<bool()>& interrupted) const {
   return SampleRun(setup_, system_, point, interrupted).run();

@@ -40,11 +40,19 @@ struct SamplerSetup {
   SimulationConstants constants;
   std::vector<SweepTarget> over;
   std::vector<Eigen::VectorXd> starts;  ///< states, of start 1, 2, ...
+  std::vector<StartSide> sides;         ///< of events on whose surface they lie
   Eigen::VectorXd par;                  ///< parameter_length
   Recording recording;
   bool follows = false;
   std::vector<CaptureRegion> known;  ///< of the known attractors 1, 2, ...; empty: nothing is captured
 };
+
+/// Where the simulation of a value begins.
+struct SampleStart {
+  Eigen::VectorXd state, par;
+  StartSide side;
+};
+SampleStart sample_start(const SamplerSetup& setup, const SweepPoint& point);
 
 /// One for each worker. `setup` and `system` outlive it; the system is the worker's own.
 class SimulationSampler {

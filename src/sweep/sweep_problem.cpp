@@ -10,7 +10,9 @@
 
 #include "plugin/build_stamp.hpp"
 #include "simulate/loaded_problem.hpp"
+#include "simulate/simulation_rule.hpp"
 #include "simulate/simulation_start.hpp"
+#include "simulate/start_notice.hpp"
 #include "sweep/attractor_numbering.hpp"
 #include "sweep/simulation_sampler.hpp"
 #include "sweep/sweep_job.hpp"
@@ -75,8 +77,10 @@ void add_starts(const SweepRequest& request, const LoadedProblem& loaded, Sample
     own.state = state;
     const SimulationStart start = simulation_start(own, setup.constants, system);
     setup.par = start.par;
+    if (!start.watched.empty()) setup.request.modes = modes_text(start.watched);
     for (const Following direction : follow_directions(request.follow)) {
       setup.starts.push_back(start.state);
+      setup.sides.push_back(start.side);
       job.following.push_back(direction);
       std::string text = fmt::format("x = ({})", fmt::join(start.state.begin(), start.state.end(), ", "));
       if (direction != Following::none)
@@ -125,6 +129,9 @@ SweepIdentity identity_of(const LoadedProblem& loaded, const SamplerSetup& setup
   const bool by_signature = r.signature || r.follow_signature || !loaded.library->system().has_successors();
   if (by_signature && setup.constants.has_signature) rule += " " + to_string(setup.constants.settings.signature());
   add("modes", rule.empty() ? "of the problem" : rule);
+  for (const StartSide& side : setup.sides)
+    if (side.given != StartSide::Given::nothing)
+      add("side", fmt::format("{} {}", side.given == StartSide::Given::after ? "after" : "before", side.event));
   add("tolerance", fmt::format("{}", r.tolerance));
   add("method", r.stiff ? "stiff" : "explicit");
   add("wait", fmt::format("{}", r.wait));
@@ -136,6 +143,28 @@ SweepIdentity identity_of(const LoadedProblem& loaded, const SamplerSetup& setup
   add("exponents", fmt::format("{}", setup.recording.exponents));
   add("capture", captures ? "yes" : "no");
   return identity;
+}
+
+/// What is to be said of the values that begin at a given start: all of them, or the first of each chain of neighbours.
+std::string start_warnings(const SamplerSetup& setup, const HybridSystem& system, const SweepJob& job) {
+  const SweepGrid grid(job.heading.over);
+  std::vector<StartNotice> notices;
+  std::size_t starts = 0;
+  for (std::size_t s = 0; s < setup.starts.size(); ++s) {
+    const Following direction = job.following[s];
+    const std::size_t stride = direction == Following::none ? 1 : grid.chain_length();
+    for (std::size_t i = direction == Following::down ? stride - 1 : 0; i < grid.size(); i += stride) {
+      const SampleStart start = sample_start(setup, {i, grid.values(i), static_cast<int>(s) + 1, {}});
+      SimulationSettings settings;
+      settings.side = start.side;
+      const HybridSimulation simulation(simulation_rule(setup.request, setup.constants, system, start.state, start.par),
+                                        start.state, start.par, settings);
+      const std::vector<StartNotice> own = start_notices(simulation);
+      notices.insert(notices.end(), own.begin(), own.end());
+      ++starts;
+    }
+  }
+  return notice_summary(system, notices, starts);
 }
 
 /// Regions of the attractors that the first values have found. Who comes to which is decided by the sampler itself.
@@ -188,6 +217,7 @@ int sweep_problem(const SweepRequest& request, std::ostream& screen, std::ostrea
   if (captures) job.first_values = std::min(most_first, values / share_of_first);
   job.identity = identity_of(loaded, setup, job, captures);
 
+  if (!task.gather) warnings << start_warnings(setup, system, job);
   const WorkerSystems workers(loaded, setup.request, task.gather ? 1 : task.workers);
   std::vector<SimulationSampler> samplers;
   for (int worker = 0; worker < task.workers && !task.gather; ++worker)

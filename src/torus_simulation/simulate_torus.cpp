@@ -21,6 +21,7 @@
 #include "simulate/orbit_hand_over.hpp"
 #include "simulate/simulation_start.hpp"
 #include "simulate/simulation_summary.hpp"
+#include "simulate/start_notice.hpp"
 #include "start/orbit_start.hpp"
 #include "text/user_error.hpp"
 #include "torus_simulation/simulated_torus.hpp"
@@ -124,9 +125,12 @@ int simulate_torus(const SimulationRequest& request, const std::string& torus_na
                     "--torus {}_torus",
                     constants_file, request.name));
 
-  HybridSimulation simulation(start.rule, start.state, start.par, simulation_settings(request, interrupted));
+  SimulationSettings motion_settings = simulation_settings(request, interrupted);
+  motion_settings.side = start.side;
+  HybridSimulation simulation(start.rule, start.state, start.par, motion_settings);
   say(start_text(system, start, simulation.mode()));
-  warnings << start_warnings(start, simulation);
+  warnings << side_without_effect(simulation, request.side);
+  for (const StartNotice& notice : start_notices(simulation)) warnings << notice_text(system, notice);
   std::vector<PassedSegment> motion;
   SimulationResult result;
   {
