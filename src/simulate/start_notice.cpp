@@ -67,7 +67,8 @@ std::string cure_of(Kind kind) {
       return "  The jump sends such a state to the same surface, falling again. With --before-event the event happens "
              "at t = 0.\n";
     default:
-      return "  The jump takes the state off the surface, and the event happens at t = 0. With --after-event it does not happen.\n";
+      return "  The jump takes the state off the surface, and the event happens at t = 0. With --after-event it does "
+             "not happen.\n";
   }
 }
 
@@ -103,8 +104,9 @@ std::vector<StartNotice> start_notices(const HybridSimulation& simulation) {
 
 std::string notice_text(const HybridSystem& system, const StartNotice& notice) {
   const bool waits = notice.kind == Kind::behind || notice.kind == Kind::field_changes;
-  return fmt::format("tchat: the start {}: its function is {:.6g} there{}.\n{}", position_text(system, notice), notice.h,
-                     waits ? ", and nothing happens until it has risen above zero" : "", cure_of(notice.kind));
+  return fmt::format("tchat: the start {}: its function is {:.6g} there{}.\n{}", position_text(system, notice),
+                     notice.h, waits ? ", and nothing happens until it has risen above zero" : "",
+                     cure_of(notice.kind));
 }
 
 std::string notice_summary(const HybridSystem& system, const std::vector<StartNotice>& notices, std::size_t starts) {
@@ -113,9 +115,9 @@ std::string notice_summary(const HybridSystem& system, const std::vector<StartNo
   std::string text;
   for (const auto& [key, h] : values) {
     const auto [least, largest] = std::minmax_element(h.begin(), h.end());
-    text += fmt::format("tchat: {} of {} starts: the start {}; its function is {:.6g} to {:.6g} there.\n{}", h.size(),
-                        starts, position_text(system, {key.first, key.second, 0.0}), *least, *largest,
-                        cure_of(key.first));
+    text +=
+        fmt::format("tchat: {} of {} starts: the start {}; its function is {:.6g} to {:.6g} there.\n{}", h.size(),
+                    starts, position_text(system, {key.first, key.second, 0.0}), *least, *largest, cure_of(key.first));
   }
   return text;
 }

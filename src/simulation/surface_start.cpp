@@ -72,8 +72,8 @@ bool moves_state(const HybridSystem& system, const IndexVector& index, const Vec
   return (image_of(system, index, x, par) - x).norm() > rounding * (1.0 + x.norm());
 }
 
-std::vector<SurfaceStart> surface_starts(const ModeRule& rule, const Mode& mode, const VectorXd& x,
-                                         const VectorXd& par, const StartSide& side, double rounding) {
+std::vector<SurfaceStart> surface_starts(const ModeRule& rule, const Mode& mode, const VectorXd& x, const VectorXd& par,
+                                         const StartSide& side, double rounding) {
   std::vector<SurfaceStart> starts;
   for (const IndexVector& index : mode.index_vectors) {
     const bool is_known = std::any_of(starts.begin(), starts.end(),

@@ -30,7 +30,7 @@ struct StartSide {
 struct SurfaceStart {
   IndexVector index;
   double h = 0.0;
-  bool is_after = false;     ///< false: the event happens at once
+  bool is_after = false;      ///< false: the event happens at once
   bool is_undecided = false;  ///< nothing was given, and the jump decided
 };
 

@@ -89,10 +89,10 @@ TEST_CASE("simulate: a walker that starts just after a heel strike walks") {
 
 TEST_CASE("simulate: from a label the motion is that of the label, and so are its durations") {
   const Workspace workspace;
-  const auto [rule, segments, constants] = GENERATE(table<std::string, std::size_t, std::string>(
-      {{std::string(walker) + successors, 1, " -c gait"},
-       {std::string(walker) + successors, 1, ""},
-       {walker_in_halves, 2, " -c gait"}}));
+  const auto [rule, segments, constants] =
+      GENERATE(table<std::string, std::size_t, std::string>({{std::string(walker) + successors, 1, " -c gait"},
+                                                             {std::string(walker) + successors, 1, ""},
+                                                             {walker_in_halves, 2, " -c gait"}}));
   workspace.write("walker.tch", rule);
   tchat(workspace, "simulate walker --after-event --dat gait");
   tchat(workspace, "run walker -c gait -d gait -o branch RL0=0.008 RL1=0.0095 NMX=3");
