@@ -105,10 +105,9 @@ SpecialPoint MirroredResonanceTest::classify(const TestedPoint& point, bool) con
 }
 
 TestValue PassedResonanceTest::evaluate(const TestedPoint& point) const {
-  return TestValue::of(condition_at<CriticalPair>(point).turning(), orbit_accuracy);
+  constexpr double level = 1e-5;  // at a located resonance of another kind it is none
+  return TestValue::of(condition_at<CriticalPair>(point).turning(), level);
 }
-
-bool PassedResonanceTest::is_genuine(const TestedPoint& point) const { return has_double_multiplier(point); }
 
 SpecialPoint PassedResonanceTest::classify(const TestedPoint& point, bool) const {
   const PointType type = double_resonance(point);

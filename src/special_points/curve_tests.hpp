@@ -58,12 +58,12 @@ class MirroredResonanceTest final : public TestFunction {
 };
 
 /// 1:1 or 1:2 resonance that the angle passes, the double multiplier having two eigenvectors, as on curves of orbits
-/// with a symmetry: the curve goes on.
+/// with a symmetry: the curve goes on. It is reported without a label, for no curve starts there.
 class PassedResonanceTest final : public TestFunction {
  public:
   std::string name() const override { return "angle through 0 or pi"; }
   TestValue evaluate(const TestedPoint& point) const override;
-  bool is_genuine(const TestedPoint& point) const override;
+  bool is_told_only() const override { return true; }
   SpecialPoint classify(const TestedPoint& point, bool rising) const override;
 };
 

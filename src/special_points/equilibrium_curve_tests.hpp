@@ -53,12 +53,12 @@ class MirroredFrequencyTest final : public TestFunction {
   }
 };
 
-/// BT that omega passes, the eigenvalue 0 having two eigenvectors: the curve goes on.
+/// BT that omega passes, the eigenvalue 0 having two eigenvectors: the curve goes on. Reported without a label.
 class PassedFrequencyTest final : public TestFunction {
  public:
   std::string name() const override { return "omega through 0"; }
   TestValue evaluate(const TestedPoint& point) const override;
-  bool is_genuine(const TestedPoint& point) const override;
+  bool is_told_only() const override { return true; }
   SpecialPoint classify(const TestedPoint&, bool) const override {
     return {PointType::bogdanov_takens, {}, false, "omega passes 0: two eigenvectors, the Hopf curve goes on"};
   }

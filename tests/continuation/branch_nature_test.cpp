@@ -298,8 +298,8 @@ TEST_CASE("a torus curve that meets its mirror image ends there, in the 1:1 reso
     CHECK(found[PointType::resonance_4] == Approx(1.0 / 32.0).epsilon(1e-6));
     CHECK(sink.points.back().orbit.states.topRows(2).cwiseAbs().maxCoeff() < 1e-4);
   } else {
-    // sqrt(2) a = 1/2: L = -Id
-    CHECK(found[PointType::resonance_2] == Approx(0.125).epsilon(1e-6));
+    // sqrt(2) a = 1/2: L = -Id, which the angle passes without a label
+    CHECK(found.count(PointType::resonance_2) == 0);
     CHECK(found[PointType::resonance_4] == Approx(9.0 / 32.0).epsilon(1e-6));
   }
 }
