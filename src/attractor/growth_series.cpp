@@ -22,8 +22,10 @@ constexpr Index least_weighted = 16;  // bins in each of those
 // 97.7 % of Student's distribution with 7 degrees of freedom, as a share of the two deviations of a normal one.
 constexpr double student = 1.21;
 constexpr double clearly_better = 0.2;
+constexpr double significant = 2.0;  // bars
 
 struct Mean {
+  Index direction = 0;
   double value = 0.0;
   double error = std::numeric_limits<double>::infinity();
 };
@@ -54,6 +56,18 @@ Rates after_alignment(const Rates& rates) {
   return {rates.logarithms.tail(kept), rates.durations.tail(kept)};
 }
 
+/// What the mean is off if the rate still changes along the motion: half the difference of its halves, or a quarter of
+/// that of its outer quarters.
+double drift_error(const Rates& rates) {
+  const auto rate = [&](Index begin, Index length) {
+    return rates.logarithms.segment(begin, length).sum() / rates.durations.segment(begin, length).sum();
+  };
+  const Index half = rates.size() / 2, quarter = rates.size() / 4;
+  const double halves = 0.5 * std::abs(rate(0, half) - rate(rates.size() - half, half));
+  const double quarters = 0.25 * std::abs(rate(0, quarter) - rate(rates.size() - quarter, quarter));
+  return std::max(halves, quarters);
+}
+
 Mean plain_mean(const Rates& all) {
   const Rates rates = after_alignment(all);
   Mean mean;
@@ -64,6 +78,7 @@ Mean plain_mean(const Rates& all) {
   while (rates.size() / length >= most_blocks) length *= 2;
   for (; rates.size() / length >= least_blocks; length *= 2)
     mean.error = std::max(mean.error, block_error(rates, mean.value, length));
+  if (const double drift = drift_error(rates); drift > significant * mean.error) mean.error = drift;
   return mean;
 }
 
@@ -92,7 +107,7 @@ Mean weighted_mean(const Rates& rates) {
 }
 
 Mean mean_of(const Rates& rates) {
-  if (!rates.logarithms.allFinite()) return {rates.logarithms.sum(), 0.0};
+  if (!rates.logarithms.allFinite()) return {0, rates.logarithms.sum(), 0.0};
   const Mean plain = plain_mean(rates);
   const Mean weighted = weighted_mean(rates);
   return weighted.error < clearly_better * plain.error ? weighted : plain;
@@ -130,7 +145,7 @@ void GrowthSeries::double_pieces() {
   if (pieces_ == 0) in_last_ = 0;
 }
 
-LyapunovSpectrum GrowthSeries::spectrum() const {
+LyapunovSpectrum GrowthSeries::spectrum(Index structural) const {
   const Index directions = bins_.rows() - 1;
   LyapunovSpectrum spectrum;
   spectrum.exponents = VectorXd::Constant(directions, std::nan(""));
@@ -140,12 +155,16 @@ LyapunovSpectrum GrowthSeries::spectrum() const {
   // Where there are many, a last one that is not complete would disturb what makes all of them alike.
   const Index complete = in_last_ == width_ || used_ <= least_blocks ? used_ : used_ - 1;
   std::vector<Mean> means;
-  for (Index j = 0; j < directions; ++j)
+  for (Index j = 0; j < directions; ++j) {
     means.push_back(mean_of({bins_.row(j).head(complete), bins_.row(directions).head(complete)}));
+    means.back().direction = j;
+  }
   std::stable_sort(means.begin(), means.end(), [](const Mean& a, const Mean& b) { return a.value > b.value; });
   for (Index j = 0; j < directions; ++j) {
-    spectrum.exponents(j) = means[static_cast<std::size_t>(j)].value;
-    spectrum.errors(j) = means[static_cast<std::size_t>(j)].error;
+    const Mean& mean = means[static_cast<std::size_t>(j)];
+    spectrum.exponents(j) = mean.value;
+    spectrum.errors(j) = mean.error;
+    if (mean.direction < structural) spectrum.structural.push_back(j);
   }
   return spectrum;
 }

@@ -15,7 +15,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <string>
+#include <vector>
 
 namespace tchat {
 
@@ -24,9 +26,14 @@ struct LyapunovSpectrum {
   Eigen::VectorXd errors;     ///< standard errors; infinite while there are too few pieces; 0 of minus infinity
   double time = 0.0;          ///< of the motion averaged over
   long events = 0;            ///< in that time
-  long tangential = 0;        ///< events met so slowly, |h_x f-| < 1e-7 |h_x| |f-|, that S loses its digits
-  std::string fault;          ///< why nothing can be said, exponents are nan; "" when all went well
+  /// Positions of exponents that are zero whatever the motion does: along the flow, of states that nothing depends on.
+  std::vector<Eigen::Index> structural;
+  long tangential = 0;  ///< events met so slowly, |h_x f-| < 1e-7 |h_x| |f-|, that S loses its digits
+  std::string fault;    ///< why nothing can be said, exponents are nan; "" when all went well
 
+  bool is_structural(Eigen::Index j) const {
+    return std::find(structural.begin(), structural.end(), j) != structural.end();
+  }
   /// Largest of the errors.
   double accuracy() const { return errors.size() == 0 ? 0.0 : errors.maxCoeff(); }
 };
@@ -41,8 +48,8 @@ class GrowthSeries {
   void double_pieces();
   long pieces() const { return pieces_; }
 
-  /// exponents and errors, time.
-  LyapunovSpectrum spectrum() const;
+  /// exponents and errors, time. Those of the first `structural` directions are marked.
+  LyapunovSpectrum spectrum(Eigen::Index structural = 0) const;
 
  private:
   void join_pairs();

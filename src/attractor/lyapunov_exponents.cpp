@@ -12,6 +12,7 @@
 #include "hybrid/event_at.hpp"
 #include "simulation/cvodes_flow.hpp"
 #include "simulation/event_watch.hpp"
+#include "simulation/recurrence.hpp"
 #include "text/user_error.hpp"
 
 namespace tchat {
@@ -24,6 +25,7 @@ using Eigen::VectorXd;
 
 constexpr double hardly_transversal = 1e-7;  // |h_x f-| / (|h_x| |f-|)
 constexpr long least_ticks = 256;            // before ticks become longer
+constexpr double least_speed = 1e-9;         // |f|, as a share of its largest: below it the motion rests
 constexpr double steps_of_tick = 4.0;        // at least, of the integrator
 
 /// An event whose saltation waits for the field after it.
@@ -37,6 +39,29 @@ struct Saltation {
 
 Index most_exponents(const HybridSystem& system, const LyapunovSettings& settings) {
   return settings.section == 0 ? system.dimension() : system.dimension() - 1;
+}
+
+/// Found at the start and, as a column may vanish there by chance, at states beside it.
+std::vector<Index> states_that_nothing_depends_on(const HybridSystem& system, const VectorXd& x, const VectorXd& par) {
+  std::vector<VectorXd> points{x};
+  for (int k = 1; k <= 2; ++k) {
+    VectorXd beside = x;
+    for (Index i = 0; i < x.size(); ++i)
+      beside(i) += 1e-3 * (1.0 + std::abs(x(i))) * std::sin(1.0 + 2.3 * static_cast<double>(i) + 4.1 * k);
+    points.push_back(beside);
+  }
+  const std::vector<bool> flags = ignorable_states(system, points, par);
+  std::vector<Index> states;
+  for (std::size_t i = 0; i < flags.size(); ++i)
+    if (flags[i]) states.push_back(static_cast<Index>(i));
+  return states;
+}
+
+void keep_first(LyapunovSpectrum& spectrum, Index count) {
+  if (spectrum.exponents.size() <= count) return;
+  spectrum.exponents.conservativeResize(count);
+  spectrum.errors.conservativeResize(count);
+  std::erase_if(spectrum.structural, [&](Index j) { return j >= count; });
 }
 
 Index checked_columns(const HybridSystem& system, const LyapunovSettings& settings) {
@@ -59,12 +84,18 @@ struct LyapunovAccumulator::Implementation {
   const HybridSystem& system;
   VectorXd par;
   LyapunovSettings settings;
+  Index wanted;  // exponents
   OrthonormalFrame frame;
   TangentFlow tangent;
   GrowthSeries by_event, by_time;
   VectorXd growth_of_event, growth_of_tick;  // since the last event (with a section: return), since the last tick
   double duration_of_event = 0.0;
 
+  std::vector<Index> ignorable;  // states that nothing depends on
+  bool has_flow = false;         // the direction along the flow is among the known ones
+  Index known = -1;              // first columns of the frame, whose directions are known; -1: it has not begun
+  double fastest = 0.0;          // |f|
+  bool is_resting = false;
   bool has_begun = false;
   bool is_in_segment = false;
   double carried = 0.0;  // of the segment
@@ -83,12 +114,11 @@ struct LyapunovAccumulator::Implementation {
       : system(s),
         par(p),
         settings(given),
-        frame(s.dimension(), checked_columns(s, given)),
+        wanted(checked_columns(s, given)),
+        frame(s.dimension(), wanted),
         tangent(system, par),
-        by_event(frame.vectors().cols()),
-        by_time(frame.vectors().cols()),
-        growth_of_event(VectorXd::Zero(frame.vectors().cols())),
-        growth_of_tick(growth_of_event) {
+        by_event(wanted),
+        by_time(wanted) {
     settings.flow.variational = false;
   }
 
@@ -111,7 +141,48 @@ struct LyapunovAccumulator::Implementation {
     growth_of_event.setZero();
   }
 
+  /// The frame begins with the directions that are known: of states that nothing depends on, and of the flow.
+  void set_up(int field, const double* start) {
+    const Index n = system.dimension();
+    const Eigen::Map<const VectorXd> x(start, n);
+    ignorable = states_that_nothing_depends_on(system, x, par);
+    has_flow = !has_section() && flow_direction(field, start).size() > 0;
+    known = static_cast<Index>(ignorable.size()) + (has_flow ? 1 : 0);
+    const Index columns = std::min(most_exponents(system, settings), wanted + known);
+    known = std::min(known, columns);
+    frame = OrthonormalFrame(n, columns);
+    by_event = by_time = GrowthSeries(columns);
+    growth_of_event = growth_of_tick = VectorXd::Zero(columns);
+    restore_known(field, start);
+    orthonormalise();
+    frame.take_growth();
+  }
+
+  /// f without the states that nothing depends on, of unit length; empty where nothing is left.
+  VectorXd flow_direction(int field, const double* x) const {
+    VectorXd f(system.dimension());
+    system.value(FunctionKind::field, field, x, par.data(), f.data());
+    const double whole = f.norm();
+    for (const Index k : ignorable) f(k) = 0.0;
+    const double size = f.norm();
+    if (!(size > 1e-12 * whole) || !(size > least_speed * fastest)) return {};
+    return f / size;
+  }
+
+  /// Rounding and chaos turn known directions away from where they are.
+  void restore_known(int field, const double* x) {
+    for (std::size_t k = 0; k < ignorable.size() && static_cast<Index>(k) < known; ++k)
+      frame.vectors().col(static_cast<Index>(k)) = VectorXd::Unit(system.dimension(), ignorable[k]);
+    if (!has_flow || static_cast<Index>(ignorable.size()) >= known) return;
+    const VectorXd f = flow_direction(field, x);
+    if (f.size() > 0) frame.vectors().col(static_cast<Index>(ignorable.size())) = f;
+  }
+
+  /// Exponents that are zero whatever the motion does. A motion that has come to rest has no direction of flow.
+  Index structural() const { return has_flow && is_resting ? known - 1 : known; }
+
   void begin_segment(int field, const double* start) {
+    if (known < 0) set_up(field, start);
     is_in_segment = true;
     carried = 0.0;
     if (waiting) apply_saltation(field);
@@ -137,6 +208,7 @@ struct LyapunovAccumulator::Implementation {
     tangential += event.is_tangential ? 1 : 0;
     orthonormalise(!event.is_tangential);
     collect();
+    restore_known(field, event.after.data());
   }
 
   void wait_for_field(const SimulatedSegment& segment) {
@@ -168,6 +240,14 @@ struct LyapunovAccumulator::Implementation {
     left_of_tick = tick;
   }
 
+  void look_at_speed(int field, const double* x) {
+    VectorXd f(system.dimension());
+    system.value(FunctionKind::field, field, x, par.data(), f.data());
+    for (const Index k : ignorable) f(k) = 0.0;
+    fastest = std::max(fastest, f.norm());
+    is_resting = f.norm() <= least_speed * fastest;
+  }
+
   void carry_with_ticks(int field, const DenseOutput& state, double from, double to) {
     if (tick == 0.0) tick = left_of_tick = steps_of_tick * (to - from);
     least_tick = std::max(least_tick, steps_of_tick * (to - from));
@@ -175,6 +255,8 @@ struct LyapunovAccumulator::Implementation {
       const double until = std::min(to, from + left_of_tick);
       carry(field, state, from, until);
       end_tick();
+      look_at_speed(field, state(until));
+      restore_known(field, state(until));
       from = until;
     }
     carry(field, state, from, to);
@@ -257,9 +339,9 @@ struct LyapunovAccumulator::Implementation {
   }
 
   LyapunovSpectrum spectrum() const {
-    LyapunovSpectrum best = by_event.spectrum();
+    LyapunovSpectrum best = by_event.spectrum(structural());
     if (!has_section()) {
-      const LyapunovSpectrum timed = by_time.spectrum();
+      const LyapunovSpectrum timed = by_time.spectrum(structural());
       if (by_event.pieces() == 0 || timed.errors.sum() < best.errors.sum()) best = timed;
     }
     best.time = has_section() ? time_of_returns : time;
@@ -268,6 +350,7 @@ struct LyapunovAccumulator::Implementation {
     best.fault = fault;
     if (!fault.empty()) best.exponents.setConstant(std::nan(""));
     add_integration_error(best);
+    keep_first(best, wanted);
     return best;
   }
 

@@ -3,9 +3,10 @@
 ///     V' = f_x V   on a segment,      V -> S V,  S = g_x + (f+ - g_x f-) h_x / (h_x f-)   at an event       (2.109)
 ///
 /// with f- before and f+ after the jump, and made orthonormal again (Householder QR) at every event and often enough
-/// between. Exponents are mean rates of growth, natural logarithms per unit of time; one of them is zero, along the
-/// flow (unless the motion rests). Where sliding begins S is singular: a direction is lost and its exponent is minus
-/// infinity.
+/// between. Exponents are mean rates of growth, natural logarithms per unit of time. The frame begins with the
+/// directions whose exponents are zero whatever the motion does, that of the flow and those of states that nothing
+/// depends on, so that the others are measured beside them; the spectrum says which these are (`structural`). Where
+/// sliding begins S is singular: a direction is lost and its exponent is minus infinity.
 ///
 /// With a section J, exponents of the return map from one fall of h_J to the next, per return: at each of them
 /// V -> (Id - f- h_x / (h_x f-)) V, so that the frame, of n - 1 columns at most, stays tangent to the section and the

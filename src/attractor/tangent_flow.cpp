@@ -72,6 +72,21 @@ void TangentFlow::apply_exponential(MatrixXd& vectors) {
 }
 
 bool TangentFlow::carry(OrthonormalFrame& frame, int field, const DenseOutput& state, double from, double to) {
+  return carry(frame.vectors(), field, state, from, to, [&] {
+    stretched_ += norm_;
+    if (stretched_ <= most_stretched) return;
+    frame.orthonormalise();
+    stretched_ = 0.0;
+  });
+}
+
+bool TangentFlow::carry(MatrixXd& vectors, int field, const DenseOutput& state, double from, double to) {
+  return carry(vectors, field, state, from, to, [] {});
+}
+
+template <class Stretched>
+bool TangentFlow::carry(MatrixXd& vectors, int field, const DenseOutput& state, double from, double to,
+                        const Stretched& stretched) {
   const double shortest = shortest_share * (to - from);
   double step = to - from;
   for (double t = from; t < to;) {
@@ -82,12 +97,8 @@ bool TangentFlow::carry(OrthonormalFrame& frame, int field, const DenseOutput& s
       step *= 0.5;
       continue;
     }
-    apply_exponential(frame.vectors());
-    stretched_ += norm_;
-    if (stretched_ > most_stretched) {
-      frame.orthonormalise();
-      stretched_ = 0.0;
-    }
+    apply_exponential(vectors);
+    stretched();
     t = is_last ? to : t + step;
     if (difference_ < 0.01 * most_difference && changes_ < 0.1 && norm_ < 0.5 * most_norm) step *= 2.0;
   }

@@ -30,10 +30,15 @@ class TangentFlow {
   /// Carries `frame` from one time to the next, and makes it orthonormal where it may have lost some digits. False when
   /// f_x has no finite value on the way; the frame is then as far as it came.
   bool carry(OrthonormalFrame& frame, int field, const DenseOutput& state, double from, double to);
+  /// V -> Phi V for n x K vectors, Phi the Jacobian of the flow from one time to the next. False as above.
+  bool carry(Eigen::MatrixXd& vectors, int field, const DenseOutput& state, double from, double to);
   /// The frame has been made orthonormal by others.
   void restart() { stretched_ = 0.0; }
 
  private:
+  template <class Stretched>
+  bool carry(Eigen::MatrixXd& vectors, int field, const DenseOutput& state, double from, double to,
+             const Stretched& stretched);
   bool series(int field, const DenseOutput& state, double from, double step);
   bool evaluate(int field, const double* x, Eigen::MatrixXd& out);
   void apply_exponential(Eigen::MatrixXd& vectors);

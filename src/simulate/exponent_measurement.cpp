@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "attractor/attractor_recognition.hpp"
+#include "attractor/exponent_signs.hpp"
 #include "setup/progress_line.hpp"
 
 namespace tchat {
@@ -34,38 +34,35 @@ std::string bar_text(double error) {
   return std::isfinite(error) ? fmt::format(" +- {:.2g}", error) : " +- unknown";
 }
 
-/// The one nearest to zero of those that are zero; -1 when there is none.
-Index trivial_exponent(const LyapunovSpectrum& spectrum) {
-  Index best = -1;
-  for (Index j = 0; j < spectrum.exponents.size(); ++j) {
-    const double size = std::abs(spectrum.exponents(j));
-    if (!(size <= 3.0 * spectrum.errors(j)) || !std::isfinite(spectrum.errors(j))) continue;
-    if (best < 0 || size < std::abs(spectrum.exponents(best))) best = j;
-  }
-  return best;
-}
-
 std::string counted(int n, const char* what) { return fmt::format("{} {} exponent{}", n, what, n == 1 ? "" : "s"); }
 
-/// `neutral` is how many zeros a periodic orbit has: one of a flow, none of a return map.
-std::string meaning(const ExponentSigns& signs, int neutral, bool orbit_is_known) {
+std::string meaning(const LyapunovSpectrum& spectrum, int section, bool orbit_attracts) {
+  const bool has_flow = !spectrum.structural.empty() && section == 0;
+  const char* const others = has_flow ? "One zero exponent, the others negative" : "All exponents are negative";
+  const ExponentSigns signs = signs_of(spectrum);
+  if (orbit_attracts && (signs.positive > 0 || signs.zero > 0 || signs.unclear > 0))
+    return "A stable periodic orbit, by its multipliers; the exponents have not converged to ln |multiplier| / period "
+           "yet (--time, --events, --accuracy).";
+  if (orbit_attracts) return fmt::format("{}: a stable periodic orbit.", others);
   if (signs.positive > 0) return fmt::format("{}: the motion is chaotic.", counted(signs.positive, "positive"));
   if (signs.unclear > 0)
-    return "The bars are too large to tell what the motion is: a longer one has smaller bars (--time, --events, "
-           "--accuracy).";
-  if (signs.zero > neutral)
+    return "Undecided: the bars are too large to tell what the motion is; a longer one has smaller bars (--time, "
+           "--events, --accuracy).";
+  if (signs.zero > 0)
     return fmt::format(
         "{}, none positive: quasi-periodic motion on a torus of dimension {}, if it does not repeat itself.",
-        counted(signs.zero, "zero"), signs.zero + 1 - neutral);
-  if (signs.zero == neutral && signs.negative > 0) {
-    const char* const others = neutral > 0 ? "One zero exponent, the others negative" : "All exponents are negative";
-    return fmt::format("{}: a stable periodic orbit{}.", others,
-                       orbit_is_known ? "" : ", of a longer period than looked for or not reached yet");
-  }
-  if (signs.zero == neutral && neutral > 0)
-    return "The largest exponent is zero: not chaotic; with one more (--lyapunov 2) periodic and quasi-periodic motion "
-           "are told apart.";
-  return "All exponents are negative: the motion comes to rest.";
+        counted(signs.zero + (has_flow ? 1 : 0), "zero"), signs.zero + 1);
+  if (signs.negative > 0 && (has_flow || section != 0))
+    return fmt::format("{}: a stable periodic orbit, of a longer period than looked for or not reached yet.", others);
+  if (signs.negative > 0) return "All exponents are negative: the motion comes to rest.";
+  return "The largest exponent is zero: not chaotic; with one more (--lyapunov 2) periodic and quasi-periodic motion "
+         "are told apart.";
+}
+
+/// The first of them is that along the flow; there is none on a section.
+const char* structural_text(const LyapunovSpectrum& spectrum, int section, Index j) {
+  return section == 0 && j == spectrum.structural.front() ? "   along the flow, where it is zero"
+                                                          : "   of a state that nothing depends on";
 }
 
 std::string losses(const LyapunovSpectrum& spectrum) {
@@ -124,23 +121,23 @@ std::unique_ptr<LyapunovAccumulator> exponents_to_measure(const SimulationReques
 }
 
 std::string spectrum_text(const HybridSystem& system, const LyapunovSpectrum& spectrum, int section,
-                          bool orbit_is_known) {
+                          bool orbit_attracts) {
   if (!spectrum.fault.empty()) return fmt::format("No Lyapunov exponents: {}.\n", spectrum.fault);
   std::string text =
       section == 0 ? fmt::format("Lyapunov exponents per unit of time, of {} events in a time of {:.6g}\n",
                                  spectrum.events, spectrum.time)
                    : fmt::format("Lyapunov exponents per return to {}, of {} returns in a time of {:.6g}\n",
                                  system.function_name(FunctionKind::event, section), spectrum.events, spectrum.time);
-  const Index trivial = section == 0 ? trivial_exponent(spectrum) : -1;
   for (Index j = 0; j < spectrum.exponents.size(); ++j)
     text += fmt::format("  {:2}  {}{}{}\n", j + 1, value_text(spectrum.exponents(j), spectrum.errors(j)),
-                        bar_text(spectrum.errors(j)), j == trivial ? "   along the flow, where it is zero" : "");
+                        bar_text(spectrum.errors(j)),
+                        spectrum.is_structural(j) ? structural_text(spectrum, section, j) : "");
   text += losses(spectrum);
-  return text + "  " + meaning(signs_of(spectrum), section == 0 ? 1 : 0, orbit_is_known) + "\n";
+  return text + "  " + meaning(spectrum, section, orbit_attracts) + "\n";
 }
 
 std::string exponents_of(const SimulationRequest& request, const SimulationResult& result, HybridSimulation& simulation,
-                         LyapunovAccumulator& exponents, std::ostream* progress) {
+                         LyapunovAccumulator& exponents, bool orbit_attracts, std::ostream* progress) {
   const HybridSystem& system = simulation.system();
   const bool goes_on = !has_wanted_length(request.plan);
   if (goes_on && (result.last.ended_by != SegmentEnd::event || result.accumulation || result.dies_out))
@@ -156,7 +153,7 @@ std::string exponents_of(const SimulationRequest& request, const SimulationResul
     remark =
         fmt::format("  After {} events a bar is still above {:g} (--accuracy); --events or --time simulate longer.\n",
                     spectrum.events, request.accuracy);
-  return spectrum_text(system, spectrum, request.section, result.is_periodic()) + remark;
+  return spectrum_text(system, spectrum, request.section, orbit_attracts) + remark;
 }
 
 }  // namespace tchat

@@ -18,12 +18,13 @@ std::unique_ptr<LyapunovAccumulator> exponents_to_measure(const SimulationReques
                                                           const Eigen::VectorXd& par);
 
 /// Without a wanted length the simulation goes on from where `result` left it, until the bars are small enough, at most
-/// 100000 events. The exponents for people, with a line that says what they mean. `progress` may be null.
+/// 100000 events. The exponents for people, with a line that says what they mean; `orbit_attracts` when the motion has
+/// settled on a stable periodic orbit. `progress` may be null.
 std::string exponents_of(const SimulationRequest& request, const SimulationResult& result, HybridSimulation& simulation,
-                         LyapunovAccumulator& exponents, std::ostream* progress);
+                         LyapunovAccumulator& exponents, bool orbit_attracts, std::ostream* progress);
 
-/// The table of them and what they mean; `orbit_is_known` when the motion has been seen to repeat itself.
+/// The table of them and what they mean; `orbit_attracts` when the motion has settled on a stable periodic orbit.
 std::string spectrum_text(const HybridSystem& system, const LyapunovSpectrum& spectrum, int section,
-                          bool orbit_is_known);
+                          bool orbit_attracts);
 
 }  // namespace tchat

@@ -4,6 +4,8 @@
 
 #include <filesystem>
 
+#include "attractor/attractor_search.hpp"
+#include "attractor/equilibrium_approach.hpp"
 #include "constants/constants_writer.hpp"
 #include "files/simulation_files.hpp"
 #include "files/whole_file.hpp"
@@ -138,6 +140,25 @@ std::string obstacle(const HybridSystem& system, const SimulationResult& result,
 
 }  // namespace
 
+namespace {
+
+/// The turn of `result` is that of the orbit which the motion has settled on, if it has.
+void take_orbit(AttractorSearch& search, const HybridSimulation& simulation, SimulationResult& result) {
+  result.turn.clear();
+  if (result.accumulation || result.dies_out || result.last.ended_by == SegmentEnd::failed) return;
+  if (!search.orbit() && !search.equilibrium()) search.conclude(simulation);
+  if (search.orbit()) result.turn = search.orbit()->turn;
+}
+
+/// The equilibrium that the motion comes to, at events or after the last one.
+std::optional<VectorXd> equilibrium_of(const AttractorSearch& search, const HybridSimulation& simulation,
+                                       const SimulatedSegment& last) {
+  if (last.ended_by != SegmentEnd::no_event) return search.equilibrium();
+  return reached_equilibrium(simulation.system(), last, simulation.parameters(), search.ignorable());
+}
+
+}  // namespace
+
 int simulate_problem(const SimulationRequest& request, std::ostream& screen, std::ostream& warnings,
                      const std::function<bool()>& interrupted, std::ostream* progress) {
   const auto say = [&](const std::string& text) {
@@ -170,15 +191,20 @@ int simulate_problem(const SimulationRequest& request, std::ostream& screen, std
                         has_length(request.plan) ? SimulationFiles::everything : kept_size);
   SimulationResult result;
   const bool measures_on_the_way = exponents && has_wanted_length(request.plan);
+  AttractorSearch search(request.plan.max_period, request.plan.recognition, simulation_settings(request, interrupted));
   {
     ProgressLine line(progress);
-    result = run_simulation(simulation, request.plan, [&](const SimulatedSegment& segment) {
+    const auto keep = [&](const SimulatedSegment& segment) {
       files.write(segment);
       if (measures_on_the_way) exponents->pass(segment);
+      if (has_wanted_length(request.plan) && segment.ended_by == SegmentEnd::event) search.add(simulation, segment);
       if (line.is_due()) line.show(fmt::format("{} events, t = {:.6g} ", segment.number, segment.end_time()));
-    });
+    };
+    result = run_simulation(simulation, request.plan, keep,
+                            [&](const SimulatedSegment& segment) { return search.has_settled(simulation, segment); });
   }
   files.finish();
+  take_orbit(search, simulation, result);
   say(course_text(system, result, result.last.end_time(), request.contact));
 
   FoundOrbit orbit;
@@ -191,10 +217,18 @@ int simulate_problem(const SimulationRequest& request, std::ostream& screen, std
             ? orbit_text(system, orbit)
             : fmt::format("The motion repeats itself after {} event(s), but shooting does not find the orbit: {}\n",
                           result.turn.size(), orbit.message));
+  } else if (const std::optional<VectorXd> rest = equilibrium_of(search, simulation, result.last)) {
+    say(rest_text(*rest));
   } else {
-    say(no_orbit_text(result, request.plan));
+    say(no_orbit_text(result, request.plan, search.doubt()));
   }
-  if (exponents) say(exponents_of(request, result, simulation, *exponents, progress));
+  const bool is_attracting = orbit.converged && orbit.stability() == OrbitStability::stable;
+  if (exponents) {
+    // Those of the orbit itself, not of the way to it.
+    HybridSimulation measured =
+        is_attracting && search.orbit() ? HybridSimulation(simulation, search.orbit()->end, settings) : simulation;
+    say(exponents_of(request, result, measured, *exponents, is_attracting, progress));
+  }
   say(written_text(output, files));
   if (result.last.ended_by == SegmentEnd::failed) {
     warnings << "tchat: " << result.last.message << '\n';

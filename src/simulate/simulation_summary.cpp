@@ -109,6 +109,14 @@ std::string course_text(const HybridSystem& system, const SimulationResult& resu
   return text;
 }
 
+std::string rest_text(const VectorXd& equilibrium) {
+  return fmt::format(
+      "The motion comes to rest at x = {}, where the field is zero and its derivative has no eigenvalue with a "
+      "positive "
+      "real part.\n",
+      state_text(equilibrium));
+}
+
 std::string orbit_text(const HybridSystem& system, const FoundOrbit& orbit) {
   std::string text =
       fmt::format("Periodic orbit, signature {}, period {:.13g}\n", to_string(orbit.signature), orbit.map.period);
@@ -127,8 +135,7 @@ std::string orbit_text(const HybridSystem& system, const FoundOrbit& orbit) {
   text += "\n  multipliers";
   for (std::size_t i = 0; i < orbit.multipliers.size(); ++i)
     text += fmt::format("{} {}", i > 0 ? "," : "", multiplier_text(orbit.multipliers[i]));
-  text += orbit.is_stable() ? ": stable\n"
-                            : ": not stable, the simulation will leave it; look again after a longer transient\n";
+  text += ": " + stability_text(orbit.stability(), orbit.uncertainty) + "\n";
   for (Eigen::Index i = 0; i < orbit.advance.size(); ++i)
     if (orbit.advance(i) != 0.0)
       text += fmt::format(
@@ -137,7 +144,19 @@ std::string orbit_text(const HybridSystem& system, const FoundOrbit& orbit) {
   return text;
 }
 
-std::string no_orbit_text(const SimulationResult& result, const SimulationPlan& plan) {
+std::string stability_text(OrbitStability stability, double uncertainty) {
+  switch (stability) {
+    case OrbitStability::stable:
+      return "stable";
+    case OrbitStability::neutral:
+      return fmt::format("neutral, the largest modulus is 1 within {:.1g}: the orbit is no attractor", uncertainty);
+    default:
+      return "not stable, so the orbit is no attractor: the simulation will leave it; look again after a longer "
+             "transient";
+  }
+}
+
+std::string no_orbit_text(const SimulationResult& result, const SimulationPlan& plan, const std::string& doubt) {
   if (result.accumulation || result.dies_out) return "";
   switch (result.last.ended_by) {
     case SegmentEnd::failed:
@@ -145,6 +164,9 @@ std::string no_orbit_text(const SimulationResult& result, const SimulationPlan& 
     case SegmentEnd::no_event:
       return "";
     default:
+      if (!doubt.empty())
+        return fmt::format("Undecided after {} events: {}. A longer simulation decides (--transient-events).\n",
+                           result.events, doubt);
       return fmt::format(
           "No periodic orbit recognised: the last events do not repeat, within {:g} of the orbit's range, after 1 to "
           "{} events.\nIt may need longer (--transient-time, --events), have a longer period (--max-period), be "

@@ -18,10 +18,15 @@ std::string start_text(const HybridSystem& system, const SimulationStart& start,
 /// How long it ran, why it ended, what was seen on the way.
 std::string course_text(const HybridSystem& system, const SimulationResult& result, double end_time, double contact);
 
+/// That the motion comes to rest at this equilibrium of a field.
+std::string rest_text(const Eigen::VectorXd& equilibrium);
+
 /// The periodic orbit: signature, segments, multipliers, stability.
 std::string orbit_text(const HybridSystem& system, const FoundOrbit& orbit);
+/// "stable", or what else the multipliers say.
+std::string stability_text(OrbitStability stability, double uncertainty);
 
-/// Why no orbit was recognised and what may help.
-std::string no_orbit_text(const SimulationResult& result, const SimulationPlan& plan);
+/// Why no orbit was recognised and what may help; `doubt` is what is known of an orbit nearby, or "".
+std::string no_orbit_text(const SimulationResult& result, const SimulationPlan& plan, const std::string& doubt);
 
 }  // namespace tchat

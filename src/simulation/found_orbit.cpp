@@ -15,7 +15,6 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double stability_margin = 1e-5;
 constexpr double same_orbit = 0.1;   // largest correction, as a share of the orbit's range
 constexpr double same_state = 1e-7;  // of points of the refined orbit, likewise
 
@@ -47,12 +46,14 @@ PeriodicOrbit shoot_finely(const HybridSystem& system, FoundOrbit& found, const 
   ShootingOptions options;
   options.ignorable = ignorable;
   const PeriodicOrbit orbit = shoot(system, found.signature, guess, par, options);
+  found.uncertainty = 1e-9;
   if (orbit.converged) return orbit;
   // Large derivatives leave fewer digits.
   options.flow.relative_tolerance = 1e-12;
   options.flow.absolute_tolerance = 1e-13;
   options.tolerance = 1e-9;
   const PeriodicOrbit roughly = shoot(system, found.signature, guess, par, options);
+  found.uncertainty = 1e-6;
   if (roughly.converged) return roughly;
   // On a stiff problem the steps of a method for others are too many.
   options.flow.method = IntegrationMethod::bdf;
@@ -61,18 +62,6 @@ PeriodicOrbit shoot_finely(const HybridSystem& system, FoundOrbit& found, const 
   if (!stiff.converged) return roughly;
   found.method = IntegrationMethod::bdf;
   return stiff;
-}
-
-std::vector<std::complex<double>> multipliers_without(const MatrixXd& m, const std::vector<Eigen::Index>& ignorable) {
-  std::vector<Eigen::Index> kept;
-  for (Eigen::Index i = 0; i < m.rows(); ++i)
-    if (std::find(ignorable.begin(), ignorable.end(), i) == ignorable.end()) kept.push_back(i);
-  const Eigen::VectorXcd values = eigenvalues(MatrixXd(m(kept, kept)));
-  std::vector<std::complex<double>> sorted(values.begin(), values.end());
-  std::sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) {
-    return std::abs(a) != std::abs(b) ? std::abs(a) > std::abs(b) : a.imag() > b.imag();
-  });
-  return sorted;
 }
 
 /// How far each state goes on the simulated orbit; infinitely far where it does not matter.
@@ -108,9 +97,23 @@ std::size_t true_period(const FoundOrbit& found, const PeriodicOrbit& orbit, con
 
 }  // namespace
 
-bool FoundOrbit::is_stable() const {
-  return std::all_of(multipliers.begin(), multipliers.end(),
-                     [](const auto& mu) { return std::abs(mu) <= 1.0 + stability_margin; });
+OrbitStability stability_of(const std::vector<std::complex<double>>& multipliers, double uncertainty) {
+  double largest = 0.0;
+  for (const auto& mu : multipliers) largest = std::max(largest, std::abs(mu));
+  if (largest < 1.0 - uncertainty) return OrbitStability::stable;
+  return largest > 1.0 + uncertainty ? OrbitStability::unstable : OrbitStability::neutral;
+}
+
+std::vector<std::complex<double>> multipliers_without(const MatrixXd& m, const std::vector<Eigen::Index>& ignorable) {
+  std::vector<Eigen::Index> kept;
+  for (Eigen::Index i = 0; i < m.rows(); ++i)
+    if (std::find(ignorable.begin(), ignorable.end(), i) == ignorable.end()) kept.push_back(i);
+  const Eigen::VectorXcd values = eigenvalues(MatrixXd(m(kept, kept)));
+  std::vector<std::complex<double>> sorted(values.begin(), values.end());
+  std::sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) {
+    return std::abs(a) != std::abs(b) ? std::abs(a) > std::abs(b) : a.imag() > b.imag();
+  });
+  return sorted;
 }
 
 std::vector<SimulatedSegment> in_standard_order(std::vector<SimulatedSegment> turn, const IndexVector& first) {

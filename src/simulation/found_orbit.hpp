@@ -10,6 +10,19 @@
 
 namespace tchat {
 
+enum class OrbitStability {
+  stable,    ///< every multiplier inside the unit circle
+  neutral,   ///< the largest one on it, as far as its uncertainty tells
+  unstable,  ///< one outside
+};
+
+/// By the largest modulus, known to +- uncertainty.
+OrbitStability stability_of(const std::vector<std::complex<double>>& multipliers, double uncertainty);
+
+/// Eigenvalues of a return map's derivative without the rows and columns of ignorable states, largest modulus first.
+std::vector<std::complex<double>> multipliers_without(const Eigen::MatrixXd& derivative,
+                                                      const std::vector<Eigen::Index>& ignorable);
+
 struct FoundOrbit {
   bool converged = false;
   std::string message;  ///< why not
@@ -23,8 +36,9 @@ struct FoundOrbit {
   int iterations = 0;                                   ///< Newton steps of shooting
   IntegrationMethod method = IntegrationMethod::adams;  ///< by which it was found
 
-  /// Every multiplier at most 1 + 1e-5 in modulus.
-  bool is_stable() const;
+  double uncertainty = 0.0;  ///< of the moduli of multipliers: what integration leaves
+
+  OrbitStability stability() const { return stability_of(multipliers, uncertainty); }
 };
 
 /// A turn whose Poincare sections (identity jump, the same field after it) no longer end segments: each joins the

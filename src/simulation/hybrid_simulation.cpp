@@ -68,6 +68,14 @@ HybridSimulation::HybridSimulation(ModeRule rule, const VectorXd& x0, const Vect
   surface_starts_ = tchat::surface_starts(rule_, mode_, x0, par_, settings_.side, settings_.flow.surface_tolerance);
 }
 
+HybridSimulation::HybridSimulation(const HybridSimulation& at, const VectorXd& end, SimulationSettings settings)
+    : HybridSimulation(at) {
+  settings_ = std::move(settings);
+  settings_.flow.variational = false;
+  before_jump_ = end;
+  system_.value(FunctionKind::jump, last_.jump, end.data(), par_.data(), x_.data());
+}
+
 HybridSimulation::Surface HybridSimulation::surface(int field, int event, const VectorXd& x) const {
   const EventAt at = event_at(system_, event, field, x.data(), par_.data());
   return {at.h, at.rate(), std::abs(at.h) <= settings_.flow.surface_tolerance * at.scale(x.data())};
@@ -101,7 +109,8 @@ SimulatedSegment HybridSimulation::begin_segment() {
   segment.number = ++segments_;
   segment.start_time = time_;
   segment.start = segment.end = segment.low = segment.high = x_;
-  if (last_.field != 0) mode_ = rule_.next(last_, std::exchange(before_jump_, {}), par_);
+  if (last_.field != 0 && !is_cut_) mode_ = rule_.next(last_, std::exchange(before_jump_, {}), par_);
+  is_cut_ = true;
   segment.mode = mode_;
   if (mode_.index_vectors.empty()) stop(segment, SegmentEnd::failed, rule_.fault());
   if (settings_.samples > 0) segment.samples.push_back({time_, x_});
@@ -259,6 +268,7 @@ void HybridSimulation::end_by(SimulatedSegment& segment, const std::vector<int>&
   last_ = segment.index;
   last_rate_ = segment.event_velocity;
   before_jump_ = segment.end;
+  is_cut_ = false;
   x_ = segment.after;
   time_ = segment.end_time();
 }

@@ -91,6 +91,9 @@ class HybridSimulation {
   /// par has parameter_length entries. The system behind `rule` outlives this object. Throws UserError for a state of
   /// the wrong length or not finite, and when there is no first mode.
   HybridSimulation(ModeRule rule, const Eigen::VectorXd& x0, const Eigen::VectorXd& par, SimulationSettings settings);
+  /// Continues behind the last event of `at`, as if it had been met in the state `end` (before its jump), with other
+  /// settings. Requires an event in `at`.
+  HybridSimulation(const HybridSimulation& at, const Eigen::VectorXd& end, SimulationSettings settings);
 
   /// The next segment, or the part of it up to `end_time`. When one has not ended in an event there is nothing to go on
   /// with.
@@ -100,6 +103,8 @@ class HybridSimulation {
   const Eigen::VectorXd& parameters() const { return par_; }
   double time() const { return time_; }
   const Eigen::VectorXd& state() const { return x_; }
+  /// The index vector that ended the last segment; (0,0,0) before any.
+  const IndexVector& last_event() const { return last_; }
   /// Of the last segment; before any, that of the start.
   const Mode& mode() const { return mode_; }
   /// Does it follow a signature?
@@ -138,6 +143,7 @@ class HybridSimulation {
   SimulationSettings settings_;
 
   Mode mode_;
+  bool is_cut_ = false;  // the last segment has not ended in an event: mode_ is still that behind the last event
   Eigen::VectorXd x_;
   double time_ = 0.0;
   long segments_ = 0;

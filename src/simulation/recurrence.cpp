@@ -1,6 +1,7 @@
 #include "simulation/recurrence.hpp"
 
 #include <cmath>
+#include <limits>
 
 namespace tchat {
 
@@ -50,24 +51,44 @@ VectorXd Recurrence::scale(std::size_t segments) const {
     low = low.cwiseMin(back(i).low);
     high = high.cwiseMax(back(i).high);
   }
-  const VectorXd range = high - low;
+  VectorXd range = high - low;
   double largest = 0.0;
   for (Eigen::Index i = 0; i < range.size(); ++i)
     if (!is_ignored(ignorable_, i)) largest = std::max(largest, range(i));
   // States that hardly move are compared on the scale of the others.
-  return range.array() + 1e-3 * largest;
+  range.array() += 1e-3 * largest;
+  for (Eigen::Index i = 0; i < range.size(); ++i)
+    if (is_ignored(ignorable_, i)) range(i) = std::numeric_limits<double>::infinity();
+  return range;
+}
+
+Signature Recurrence::last(std::size_t segments) const {
+  Signature signature;
+  for (std::size_t i = segments; i > 0; --i) signature.push_back(back(i - 1).index);
+  return signature;
+}
+
+bool Recurrence::repeats_events(std::size_t period) const {
+  if (period == 0 || 2 * period > ends_.size()) return false;
+  for (std::size_t i = 0; i < period; ++i)
+    if (back(i).index != back(i + period).index) return false;
+  return true;
+}
+
+double Recurrence::difference(std::size_t period) const {
+  const VectorXd scale = this->scale(2 * period);
+  double largest = 0.0;
+  for (std::size_t i = 0; i < period; ++i) {
+    const VectorXd d = (back(i).after - back(i + period).after).cwiseAbs();
+    for (Eigen::Index k = 0; k < d.size(); ++k)
+      if (d(k) != 0.0) largest = std::max(largest, d(k) / scale(k));
+  }
+  return largest;
 }
 
 bool Recurrence::repeats(std::size_t period) const {
-  for (std::size_t i = 0; i < period; ++i)
-    if (back(i).index != back(i + period).index) return false;
-  const VectorXd scale = this->scale(2 * period);
-  for (std::size_t i = 0; i < period; ++i)
-    for (Eigen::Index k = 0; k < scale.size(); ++k)
-      if (!is_ignored(ignorable_, k) &&
-          !(std::abs(back(i).after(k) - back(i + period).after(k)) <= tolerance_ * scale(k)))
-        return false;
-  return scale.maxCoeff() > 0.0;
+  // Where nothing moves the motion rests.
+  return repeats_events(period) && difference(period) <= tolerance_ && scale(2 * period).maxCoeff() > 0.0;
 }
 
 std::vector<bool> ignorable_states(const HybridSystem& system, const std::vector<VectorXd>& points,

@@ -26,6 +26,16 @@ class Recurrence {
   /// The smallest period in segments.
   std::optional<int> period() const;
 
+  std::size_t size() const { return ends_.size(); }
+  /// Index vectors of the last segments, in the order of time.
+  Signature last(std::size_t segments) const;
+  /// Have the last `period` segments ended by the index vectors of those before them?
+  bool repeats_events(std::size_t period) const;
+  /// Largest difference of the last `period` states from those before them, in units of scale(2 period).
+  double difference(std::size_t period) const;
+  /// Range of each state over the last segments, at least 1e-3 of the largest; infinite where a state is ignored.
+  Eigen::VectorXd scale(std::size_t segments) const;
+
  private:
   struct End {
     IndexVector index;
@@ -33,7 +43,6 @@ class Recurrence {
     Eigen::VectorXd low, high;  // of the states on the segment
   };
   bool repeats(std::size_t period) const;
-  Eigen::VectorXd scale(std::size_t segments) const;
   const End& back(std::size_t i) const { return ends_[ends_.size() - 1 - i]; }
 
   int max_period_;

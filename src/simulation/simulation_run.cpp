@@ -67,7 +67,8 @@ class Observation {
 }  // namespace
 
 SimulationResult run_simulation(HybridSimulation& simulation, const SimulationPlan& plan,
-                                const std::function<void(const SimulatedSegment&)>& kept) {
+                                const std::function<void(const SimulatedSegment&)>& kept,
+                                const std::function<bool(const SimulatedSegment&)>& has_settled) {
   SimulationResult result;
   Observation observation(simulation, plan, result);
   ChatteringDetector chattering;
@@ -91,7 +92,8 @@ SimulationResult run_simulation(HybridSimulation& simulation, const SimulationPl
     result.accumulation = chattering.accumulation();
     decay.add(result.last.index, result.last.event_velocity);
     result.dies_out = until_it_repeats && decay.dies_out();
-    if (result.accumulation || result.dies_out || (until_it_repeats && observation.repeats())) break;
+    if (result.accumulation || result.dies_out) break;
+    if (until_it_repeats && !is_transient && (has_settled ? has_settled(result.last) : observation.repeats())) break;
   }
   if (!result.accumulation && !result.dies_out) observation.finish();
   return result;

@@ -37,8 +37,10 @@ struct SimulationResult {
   bool is_periodic() const { return !turn.empty(); }
 };
 
-/// `kept` is handed every segment after the transient.
+/// `kept` is handed every segment after the transient. Without a wanted length the simulation ends where `has_settled`,
+/// asked after each event behind the transient, says so; by itself where the motion repeats itself.
 SimulationResult run_simulation(HybridSimulation& simulation, const SimulationPlan& plan,
-                                const std::function<void(const SimulatedSegment&)>& kept);
+                                const std::function<void(const SimulatedSegment&)>& kept,
+                                const std::function<bool(const SimulatedSegment&)>& has_settled = {});
 
 }  // namespace tchat

@@ -17,9 +17,11 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double infinite_distance = std::numeric_limits<double>::infinity();
-constexpr double same_orbit = 1e-3;   // relative to the range; recognition leaves 1e-6 / (1 - multiplier)
-constexpr double same_cloud = 0.25;   // means of some hundred points of motions that do not repeat themselves
-constexpr double to_neighbour = 0.1;  // from one value of a parameter to the next
+constexpr double same_orbit = 1e-3;        // relative to the range; recognition leaves 1e-6 / (1 - multiplier)
+constexpr double same_cloud = 0.25;        // means of some hundred points of motions that do not repeat themselves
+constexpr double to_neighbour = 0.1;       // from one value of a parameter to the next
+constexpr double to_next_of_branch = 1.0;  // where a branch joins them
+constexpr double bend = 0.5;               // of a branch: second difference of its states, as a share of the first
 constexpr std::size_t most_compared = 1000;
 
 bool repeats(const AttractorSample& sample) { return sample.kind == AttractorKind::periodic; }
@@ -31,13 +33,15 @@ VectorXd scale_of(const AttractorSample& a, const AttractorSample& b) {
   return range.array() + floor;
 }
 
-double orbit_distance(const AttractorSample& a, const AttractorSample& b) {
-  if (a.signature != b.signature || a.identity.cols() != b.identity.cols()) return infinite_distance;
-  const VectorXd scale = scale_of(a, b);
+/// States of b turned so that they belong to those of a: a signature may repeat itself within a period. Empty when the
+/// signatures differ.
+MatrixXd aligned(const AttractorSample& a, const AttractorSample& b) {
   const auto m = static_cast<Eigen::Index>(a.signature.size());
-  if (m != a.identity.cols()) return infinite_distance;
+  if (a.signature != b.signature || m != a.identity.cols() || m != b.identity.cols()) return {};
+  const VectorXd scale = scale_of(a, b);
   double least = infinite_distance;
-  for (Eigen::Index turn = 0; turn < m; ++turn) {  // a signature may repeat itself within a period
+  Eigen::Index best = 0;
+  for (Eigen::Index turn = 0; turn < m; ++turn) {
     double largest = 0.0;
     for (Eigen::Index s = 0; s < m && largest < least; ++s) {
       const Eigen::Index t = (s + turn) % m;
@@ -48,9 +52,27 @@ double orbit_distance(const AttractorSample& a, const AttractorSample& b) {
       const double d = ((a.identity.col(s) - b.identity.col(t)).array() / scale.array()).abs().maxCoeff();
       largest = std::max(largest, d);
     }
+    if (largest < least) best = turn;
     least = std::min(least, largest);
   }
-  return least;
+  MatrixXd states(b.identity.rows(), m);
+  for (Eigen::Index s = 0; s < m; ++s) states.col(s) = b.identity.col((s + best) % m);
+  return states;
+}
+
+double orbit_distance(const AttractorSample& a, const AttractorSample& b) {
+  const MatrixXd states = aligned(a, b);
+  if (states.size() == 0) return infinite_distance;
+  return ((a.identity - states).array().colwise() / scale_of(a, b).array()).abs().maxCoeff();
+}
+
+/// Do three orbits at neighbouring values lie on one smooth branch, as far as they are apart?
+bool lie_on_branch(const AttractorSample& a, const AttractorSample& b, const AttractorSample& c) {
+  const MatrixXd before = aligned(b, a), after = aligned(b, c);
+  if (before.size() == 0 || after.size() == 0) return false;
+  const auto size = [&](const MatrixXd& d) { return (d.array().colwise() / scale_of(a, c).array()).abs().maxCoeff(); };
+  const double first = std::min(size(b.identity - before), size(after - b.identity));
+  return size(before - 2.0 * b.identity + after) <= bend * first;
 }
 
 double cloud_distance(const AttractorSample& a, const AttractorSample& b) {
@@ -128,14 +150,31 @@ class Numberer {
     return groups;
   }
 
-  /// Numbers of the neighbours' attractors, nearest pairs first; new ones for the rest.
-  void go_on(const std::vector<Group>& before, std::vector<Group>& groups) {
+  /// Numbers of the neighbours' attractors, nearest pairs first; new ones for the rest. `groups` are of all values in
+  /// order, those of value k get their numbers.
+  void go_on(std::vector<std::vector<Group>>& all, std::size_t k) {
+    const std::vector<Group> none;
+    std::vector<Group>& groups = all[k];
+    const std::vector<Group>& before = k > 0 ? all[k - 1] : none;
+    const std::vector<Group>& before_that = k > 1 ? all[k - 2] : none;
+    const std::vector<Group>& behind = k + 1 < all.size() ? all[k + 1] : none;
+    const auto is_joined = [&](const Group& from, const Group& to) {
+      const AttractorSample &a = sample(from.first), &b = sample(to.first);
+      return std::any_of(before_that.begin(), before_that.end(),
+                         [&](const Group& earlier) {
+                           return earlier.number == from.number && lie_on_branch(sample(earlier.first), a, b);
+                         }) ||
+             std::any_of(behind.begin(), behind.end(),
+                         [&](const Group& later) { return lie_on_branch(a, b, sample(later.first)); });
+    };
     std::vector<std::tuple<double, std::size_t, std::size_t>> pairs;
     for (std::size_t g = 0; g < groups.size(); ++g)
       for (std::size_t b = 0; b < before.size(); ++b) {
         const AttractorSample& there = sample(before[b].first);
         const double d = attractor_distance(there, sample(groups[g].first));
-        if (d <= (repeats(there) ? to_neighbour : same_cloud)) pairs.emplace_back(d, g, b);
+        const bool is_near = d <= (repeats(there) ? to_neighbour : same_cloud);
+        if (is_near || (repeats(there) && d <= to_next_of_branch && is_joined(before[b], groups[g])))
+          pairs.emplace_back(d, g, b);
       }
     std::sort(pairs.begin(), pairs.end());
     std::vector<bool> taken(before.size(), false);
@@ -221,12 +260,9 @@ AttractorNumbers number_attractors(const std::vector<SampleRecord>& records, con
   }
   std::map<std::size_t, std::vector<std::size_t>> values;
   for (std::size_t r = 0; r < records.size(); ++r) values[parameter_position(grid, records[r].index)].push_back(r);
-  std::vector<Numberer::Group> before;
-  for (const auto& [position, at] : values) {
-    std::vector<Numberer::Group> groups = numberer.groups(at);
-    numberer.go_on(before, groups);
-    before = std::move(groups);
-  }
+  std::vector<std::vector<Numberer::Group>> groups;
+  for (const auto& [position, at] : values) groups.push_back(numberer.groups(at));
+  for (std::size_t k = 0; k < groups.size(); ++k) numberer.go_on(groups, k);
   return numberer.take();
 }
 

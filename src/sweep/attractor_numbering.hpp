@@ -3,7 +3,8 @@
 ///
 /// At one parameter value attractors are the same when their orbits are (the same kind and signature, section states
 /// that agree). From one value of a swept parameter to the next an attractor goes on in the nearest one of the same
-/// kind and signature that is not further away than a tenth of its range. Over two parameters a number stands for a
+/// kind and signature that is not further away than a tenth of its range, or up to its range where the states of three
+/// neighbouring values lie on a line, as those of a branch do. Over two parameters a number stands for a
 /// kind and signature.
 #pragma once
 

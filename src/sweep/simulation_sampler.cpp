@@ -8,7 +8,9 @@
 #include <limits>
 #include <utility>
 
-#include "attractor/attractor_recognition.hpp"
+#include "attractor/attractor_search.hpp"
+#include "attractor/equilibrium_approach.hpp"
+#include "attractor/exponent_signs.hpp"
 #include "attractor/lyapunov_exponents.hpp"
 #include "hybrid/event_at.hpp"
 #include "hybrid/identity_jump.hpp"
@@ -16,7 +18,6 @@
 #include "simulate/simulation_rule.hpp"
 #include "simulation/chattering.hpp"
 #include "simulation/decay.hpp"
-#include "simulation/recurrence.hpp"
 #include "simulation/watched_flow.hpp"
 #include "sweep/incoming_states.hpp"
 #include "text/user_error.hpp"
@@ -31,12 +32,9 @@ using Eigen::VectorXd;
 constexpr double never = 1e300;
 constexpr double not_there = std::numeric_limits<double>::quiet_NaN();
 constexpr double far_away = 1e6;               // a state of this size has escaped
-constexpr double nearly_same = 1e-2;           // parts of a period that may become the same, relative to the range
-constexpr long doubt_window = 32;              // events in which it is seen whether they do
 constexpr double every_minimum = 1e300;        // as a share of the largest value: all contacts are noted
 constexpr std::size_t samples_following = 12;  // of a segment, among which the hand-over is chosen
-constexpr std::size_t points_for_ignorable = 6;
-constexpr long first_decision = 64;  // events after which exponents may tell the kind of a motion
+constexpr long first_decision = 64;            // events after which exponents may tell the kind of a motion
 constexpr long last_decision = 4096;
 constexpr long events_of_exponents = 512;     // of an attractor whose kind is known
 constexpr double same_time = 1e-6;            // as a share of the longest segment
@@ -61,7 +59,7 @@ class SampleRun {
         system_(system),
         point_(point),
         interrupted_(interrupted),
-        recurrence_(setup.request.plan.max_period, setup.request.plan.recognition),
+        search_(setup.request.plan.max_period, setup.request.plan.recognition, settings()),
         capture_(setup.known) {
     SampleStart start = sample_start(setup, point);
     par_ = std::move(start.par);
@@ -83,7 +81,8 @@ class SampleRun {
     if (is_open_) tell_kind(simulation, exponents);
     if (sample_.kind == AttractorKind::periodic && setup_.recording.exponents > 0) {
       const auto turns = 1 + events_of_exponents / static_cast<long>(kept_.size());
-      go_on(simulation, exponents, turns * static_cast<long>(kept_.size()));
+      HybridSimulation on_orbit(simulation, search_.orbit()->end, with_exponents);
+      go_on(on_orbit, exponents, turns * static_cast<long>(kept_.size()));
       keep_exponents(exponents.spectrum());
     }
     finish();
@@ -128,11 +127,11 @@ class SampleRun {
     return true;
   }
 
-  /// Of a motion that does not repeat itself: goes on until the exponents tell.
+  /// Of a motion that has not settled yet: goes on until it does, or the exponents tell.
   void tell_kind(HybridSimulation& simulation, LyapunovAccumulator& exponents) {
     exponents.begin();
     long done = 0;
-    for (long decision = first_decision; decision <= last_decision; decision *= 2) {
+    for (long decision = first_decision;; decision *= 2) {
       for (; done < decision; ++done) {
         const SimulatedSegment segment = simulation.next(never);
         if (segment.ended_by == SegmentEnd::interrupted) throw SampleInterrupted();
@@ -141,30 +140,35 @@ class SampleRun {
           sample_.message = "it has ended while its exponents were computed: " + segment.message;
           return;
         }
+        if (search_.has_settled(simulation, segment)) {
+          sample_.kind = settled_kind();
+          return;
+        }
       }
       const LyapunovSpectrum spectrum = exponents.spectrum();
       const AttractorKind kind = kind_by_exponents(spectrum);
-      if (kind != AttractorKind::chaotic && kind != AttractorKind::quasi_periodic && decision < last_decision) continue;
-      keep_exponents(spectrum);
       const bool tells = kind == AttractorKind::chaotic || kind == AttractorKind::quasi_periodic;
-      sample_.kind = tells ? kind : AttractorKind::none;
-      if (!tells) sample_.message = unclear_text(kind);
+      if (!tells && decision < last_decision) continue;
+      if (search_.conclude(simulation)) {
+        sample_.kind = settled_kind();
+        return;
+      }
+      const bool is_told = tells && !search_.is_near_unstable_orbit();
+      if (!is_told && decision < last_decision) continue;
+      keep_exponents(spectrum);
+      sample_.kind = is_told ? kind : AttractorKind::none;
+      if (!is_told) sample_.message = undecided_text(spectrum, kind);
       return;
     }
   }
 
-  /// What may tell the kind of a motion whose exponents are as of this kind, and that has not repeated itself.
-  std::string unclear_text(AttractorKind kind) const {
-    const int most = setup_.request.plan.max_period;
+  std::string undecided_text(const LyapunovSpectrum& spectrum, AttractorKind kind) const {
+    std::string text = "undecided: " + largest_exponents_text(spectrum) + " are the largest exponents";
+    if (!search_.doubt().empty()) return text + "; " + search_.doubt();
     if (kind == AttractorKind::periodic)
-      return fmt::format(
-          "the exponents are those of a periodic orbit, and none repeats itself after 1 to {} events: it is longer, or "
-          "approached slowly; try --max-period {}, or more --transient-events",
-          most, 4 * most);
-    return fmt::format(
-        "no repetition after 1 to {} events, and the exponents do not tell; try more --transient-events, or "
-        "--max-period {}",
-        most, 4 * most);
+      text += fmt::format(", as of a periodic orbit, and none of 1 to {} events is approached",
+                          setup_.request.plan.max_period);
+    return text + fmt::format("; try more --transient-events, or --max-period {}", 4 * setup_.request.plan.max_period);
   }
 
   void keep_exponents(const LyapunovSpectrum& spectrum) {
@@ -192,7 +196,7 @@ class SampleRun {
       SimulatedSegment segment = simulation.next(never);
       if (segment.ended_by != SegmentEnd::event) return end_without_event(segment);
       ++events_;
-      if (const std::optional<AttractorKind> kind = look(segment)) {
+      if (const std::optional<AttractorKind> kind = look(simulation, segment)) {
         sample_.kind = *kind;
         return;
       }
@@ -201,65 +205,31 @@ class SampleRun {
   }
 
   /// What the motion has settled on with this segment, if it has.
-  std::optional<AttractorKind> look(const SimulatedSegment& segment) {
-    if (points_.size() < points_for_ignorable) find_ignorable(segment);
-    recurrence_.add(segment);
+  std::optional<AttractorKind> look(const HybridSimulation& simulation, const SimulatedSegment& segment) {
     chattering_.add(segment.index, segment.duration);
     decay_.add(segment.index, segment.event_velocity);
     keep(segment);
     if (!setup_.known.empty()) sample_.known = capture_.look(segment.index, segment.after);
-    // A turn that began in the transient is not kept whole.
-    const std::optional<int> period = recurrence_.period();
-    if (period && static_cast<std::size_t>(*period) <= kept_.size() && is_least_period(*period)) {
-      kept_.erase(kept_.begin(), kept_.end() - *period);
-      return AttractorKind::periodic;
-    }
+    if (sample_.known > 0) return std::nullopt;
+    if (search_.has_settled(simulation, segment)) return settled_kind();
     if (chattering_.accumulation()) {
       sample_.message = fmt::format("events accumulate at t = {:.6g}", segment.end_time());
       return AttractorKind::chattering;
     }
     if (decay_.dies_out()) return AttractorKind::rest;
-    if (!(segment.after.cwiseAbs().maxCoeff() < far_away)) {
+    if (search_.is_beyond(segment.after, far_away)) {
       sample_.message = fmt::format("a state is larger than {:g} at t = {:.6g}", far_away, segment.end_time());
       return AttractorKind::escape;
     }
     return std::nullopt;
   }
 
-  /// Near an orbit with a multiplier close to -1 the motion comes back best after two turns: while what is left between
-  /// one turn and the next still shrinks, the period is not known.
-  bool is_least_period(int period) {
-    const double left = least_part_left(period);
-    if (left > nearly_same) return true;
-    left_in_window_ = std::max(left_in_window_, left);
-    if (++asked_ % doubt_window != 0) return false;
-    const bool shrinks = !left_before_ || left_in_window_ < 0.9 * *left_before_;
-    left_before_ = std::exchange(left_in_window_, 0.0);
-    return !shrinks;
-  }
-
-  /// The least difference, relative to the range, of the period's states from those a proper part of it before.
-  double least_part_left(int period) const {
-    const auto p = static_cast<std::size_t>(period);
-    double least = never;
-    for (std::size_t q = 1; q < p; ++q) {
-      if (p % q != 0 || kept_.size() < p) continue;
-      double largest = 0.0;
-      VectorXd low = kept_.back().low, high = kept_.back().high;
-      for (std::size_t i = 0; i < p; ++i) {
-        low = low.cwiseMin(kept_[kept_.size() - 1 - i].low);
-        high = high.cwiseMax(kept_[kept_.size() - 1 - i].high);
-      }
-      const VectorXd range = (high - low).array() + 1e-3 * (high - low).maxCoeff();
-      for (std::size_t i = 0; i < p; ++i) {
-        const SimulatedSegment& a = kept_[kept_.size() - 1 - i];
-        const SimulatedSegment& b = kept_[kept_.size() - 1 - (i + q) % p];
-        const double d = ((a.after - b.after).array() / range.array()).abs().maxCoeff();
-        largest = std::max(largest, a.index == b.index ? d : never);
-      }
-      least = std::min(least, largest);
-    }
-    return least;
+  /// Dots are those of the orbit itself.
+  AttractorKind settled_kind() {
+    if (!search_.orbit()) return AttractorKind::rest;
+    const std::vector<SimulatedSegment>& turn = search_.orbit()->turn;
+    kept_.assign(turn.begin(), turn.end());
+    return AttractorKind::periodic;
   }
 
   /// Segments of which dots are made: of the transient only what may turn out to be a period.
@@ -271,33 +241,21 @@ class SampleRun {
     while (is_transient && kept_.size() > most) kept_.pop_front();
   }
 
-  void find_ignorable(const SimulatedSegment& segment) {
-    points_.push_back(segment.start);
-    points_.push_back(segment.end);
-    recurrence_.ignore(ignorable_states(system_, points_, par_));
-  }
-
   void end_without_event(const SimulatedSegment& segment) {
     if (segment.ended_by == SegmentEnd::interrupted) throw SampleInterrupted();
     sample_.message = segment.message;
     kept_.clear();
     kept_.push_back(segment);
     const VectorXd& x = segment.end;
-    const bool is_far = !(x.cwiseAbs().maxCoeff() < far_away);
+    const bool is_far = search_.is_beyond(x, far_away);
     if (segment.ended_by == SegmentEnd::sticks) {
       sample_.kind = AttractorKind::chattering;
     } else if (is_far) {
       sample_.kind = AttractorKind::escape;
     } else if (segment.ended_by == SegmentEnd::no_event) {
-      sample_.kind = rests(segment) ? AttractorKind::rest : AttractorKind::escape;
+      const bool rests = reached_equilibrium(system_, segment, par_, search_.ignorable()).has_value();
+      sample_.kind = rests ? AttractorKind::rest : AttractorKind::escape;
     }
-  }
-
-  /// Has the flow come to an equilibrium?
-  bool rests(const SimulatedSegment& segment) const {
-    VectorXd f(segment.end.size());
-    system_.value(FunctionKind::field, segment.mode.field(), segment.end.data(), par_.data(), f.data());
-    return f.norm() * segment.duration <= 1e-3 * (1.0 + segment.end.norm());
   }
 
   void finish() {
@@ -340,6 +298,7 @@ class SampleRun {
       high = high.cwiseMax(segment.high);
     }
     sample_.range = high - low;
+    for (const Eigen::Index k : search_.ignorable()) sample_.range(k) = 0.0;
   }
 
   void describe_period() {
@@ -359,6 +318,8 @@ class SampleRun {
       if (segment.ended_by == SegmentEnd::event && ends.size() < identity_points)
         ends.push_back({segment.end_time(), segment.index.event, segment.after});
     sample_.identity = columns_of(ends, n);
+    // Attractors are not told apart by states that nothing depends on.
+    for (const Eigen::Index k : search_.ignorable()) sample_.identity.row(k).setZero();
     std::vector<Dot> dots, contacts;
     for (const SimulatedSegment& segment : kept_) {
       add_dots(segment, dots);
@@ -550,17 +511,13 @@ class SampleRun {
   const std::function<bool()>& interrupted_;
   VectorXd par_, start_;
   StartSide side_;
-  Recurrence recurrence_;
+  AttractorSearch search_;
   ChatteringDetector chattering_;
   DecayDetector decay_;
   Capture capture_;
   long events_ = 0;
-  double left_in_window_ = 0.0;        // between one part of a period and the next: largest in the last questions
-  std::optional<double> left_before_;  // in the questions before those
-  long asked_ = 0;
   bool is_open_ = false;  // it has been simulated as long as wanted, and has not repeated itself
   std::deque<SimulatedSegment> kept_;
-  std::vector<VectorXd> points_;
   AttractorSample sample_;
 };
 

@@ -50,6 +50,14 @@ TEST_CASE("growth series: bars of correlated pieces are honest") {
   CHECK(mean_of_bars == Approx(1.0 / (1.0 - phi) / std::sqrt(20000.0)).epsilon(0.3));
 }
 
+TEST_CASE("growth series: a rate that changes along the motion has a bar as large as the change") {
+  // 0.1 in the first half, 0.3 in the second: what the motion goes on with is 0.1 away from the mean.
+  std::mt19937 random(5);
+  std::normal_distribution<double> normal;
+  const LyapunovSpectrum s = spectrum_of(4000, [&](int i) { return (i < 2000 ? 0.1 : 0.3) + 0.01 * normal(random); });
+  CHECK(s.errors(0) > 0.09);
+}
+
 TEST_CASE("growth series: what the next piece takes back does not count") {
   // Differences of normal numbers: their sum stays bounded.
   std::mt19937 random(3);

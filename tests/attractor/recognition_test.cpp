@@ -1,11 +1,12 @@
-// What a simulation has settled on.
+// What a simulation settles on: orbits corrected by Newton's method, stable ones that are approached, and no others.
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "attractor/attractor_recognition.hpp"
+#include "attractor/attractor_search.hpp"
+#include "attractor/equilibrium_approach.hpp"
+#include "attractor/exponent_signs.hpp"
 #include "lyapunov_problems.hpp"
 #include "support/linear_oscillator.hpp"
-#include "text/user_error.hpp"
 
 using namespace tchat;
 using namespace tchat::test;
@@ -13,110 +14,180 @@ using Eigen::VectorXd;
 
 namespace {
 
-RecognitionSettings so_many(long transient, long events) {
-  RecognitionSettings settings;
-  settings.plan.transient_events = transient;
-  settings.plan.events = events;
-  return settings;
-}
+/// x = (clock, c), c -> PAR(1) c (1 - c) once per unit of time; period 1 at c = 1 - 1 / a with the multiplier 2 - a.
+struct Clocked {
+  static constexpr int dimension = 2, parameters = 1, fields = 1, events = 1, jumps = 1;
+  template <class T>
+  void field(int, const T*, const T*, T* f) const {
+    f[0] = T(1.0), f[1] = T(0.0);
+  }
+  template <class T>
+  T event(int, const T* x, const T*) const {
+    return 1.0 - x[0];
+  }
+  template <class T>
+  void jump(int, const T* x, const T* p, T* g) const {
+    g[0] = x[0] - 1.0, g[1] = p[0] * x[1] * (1.0 - x[1]);
+  }
+};
 
-Attractor recognise(const ModeRule& rule, const VectorXd& x0, const ParameterVector& par,
-                    const RecognitionSettings& settings) {
-  SimulationSettings simulation = settings_for_tests(1e-10);
-  simulation.samples = 0;
-  return recognise_attractor(rule, x0, par, simulation, settings);
+/// x, y attract to the unit circle, z' = -PAR(1) z; event 1 where y falls through zero. Period 2 pi, multiplier
+/// exp(-2 pi PAR(1)).
+struct SlowMode {
+  static constexpr int dimension = 3, parameters = 1, fields = 1, events = 1, jumps = 1;
+  template <class T>
+  void field(int, const T* x, const T* p, T* f) const {
+    const T growth = 1.0 - x[0] * x[0] - x[1] * x[1];
+    f[0] = growth * x[0] - x[1];
+    f[1] = growth * x[1] + x[0];
+    f[2] = -p[0] * x[2];
+  }
+  template <class T>
+  T event(int, const T* x, const T*) const {
+    return x[1];
+  }
+  template <class T>
+  void jump(int, const T* x, const T*, T* g) const {
+    for (int i = 0; i < 3; ++i) g[i] = x[i];
+  }
+};
+
+struct Settled {
+  std::optional<SettledOrbit> orbit;
+  std::string doubt;
+  long events = 0;
+};
+
+Settled settle(const ModeRule& rule, const VectorXd& x0, const ParameterVector& par, long most_events) {
+  SimulationSettings settings = settings_for_tests(1e-10);
+  settings.samples = 0;
+  HybridSimulation simulation(rule, x0, par, settings);
+  AttractorSearch search(16, 1e-6, settings);
+  Settled settled;
+  while (settled.events < most_events) {
+    const SimulatedSegment segment = simulation.next(1e300);
+    if (segment.ended_by != SegmentEnd::event) break;
+    ++settled.events;
+    if (search.has_settled(simulation, segment)) break;
+  }
+  settled.orbit = search.orbit();
+  settled.doubt = search.doubt();
+  return settled;
 }
 
 }  // namespace
 
-TEST_CASE("recognised: a periodic orbit, with signature, period and exponents on request") {
+TEST_CASE("an orbit that attracts is found with its multipliers") {
   const OscillatorOrbit orbit = one_impact_orbit(2.0072, 1.0);
   const ModeRule rule(linosc(), std::vector<Mode>{Mode{{IndexVector{1, 1, 1}, IndexVector{1, 2, 2}}, {}}});
-  RecognitionSettings settings = so_many(200, 64);
-  const Attractor plain = recognise(rule, orbit.state(0.1), orbit.par(), settings);
-  CHECK(plain.kind == AttractorKind::periodic);
-  CHECK(plain.signature == Signature{{1, 1, 1}});
-  CHECK(plain.period == Approx(orbit.constants.period()).epsilon(1e-7));
-  CHECK_FALSE(plain.spectrum.has_value());
-  CHECK(plain.events == 264);
-  CHECK((plain.state - plain.last.after).norm() < 1e-5);
-
-  settings.exponents = RecognitionSettings::Exponents::always;
-  const Attractor with = recognise(rule, orbit.state(0.1), orbit.par(), settings);
-  REQUIRE(with.spectrum.has_value());
-  CHECK(std::abs(with.spectrum->exponents(0)) <= 3.0 * with.spectrum->errors(0));
-  CHECK(with.spectrum->events == 64);
+  const Settled settled = settle(rule, orbit.state(0.1), orbit.par(), 1000);
+  REQUIRE(settled.orbit.has_value());
+  CHECK(settled.orbit->stability == OrbitStability::stable);
+  REQUIRE(settled.orbit->turn.size() == 1);
+  CHECK(settled.orbit->turn.front().duration == Approx(orbit.constants.period()).epsilon(1e-7));
+  double largest = 0.0;
+  for (const auto& mu : one_impact_multipliers(2.0072, 1.0)) largest = std::max(largest, std::abs(mu));
+  CHECK(std::abs(settled.orbit->multipliers.front()) == Approx(largest).epsilon(1e-6));
 }
 
-TEST_CASE("recognised: chaotic, of a long period, quasi-periodic, not told") {
+TEST_CASE(
+    "near a period doubling the shorter orbit is the attractor as long as it is stable, and then the longer one") {
+  const ModeRule clock = always<Clocked>({{1, 1, 1}});
+  for (const double a : {2.99, 2.997, 2.999, 2.9999}) {
+    CAPTURE(a);
+    const Settled settled = settle(clock, Eigen::Vector2d(0.0, 0.6), parameters({a}), 4000);
+    REQUIRE(settled.orbit.has_value());
+    CHECK(settled.orbit->turn.size() == 1);
+    CHECK(settled.orbit->stability == OrbitStability::stable);
+    CHECK(std::abs(settled.orbit->multipliers.front()) == Approx(a - 2.0).margin(1e-7));
+  }
+  for (const double a : {3.001, 3.01, 3.1}) {
+    CAPTURE(a);
+    // Also from next to the unstable orbit at 1 - 1 / a, where the motion stays for some time.
+    for (const double start : {0.6, 1.0 - 1.0 / a + 1e-9}) {
+      const Settled settled = settle(clock, Eigen::Vector2d(0.0, start), parameters({a}), 50000);
+      REQUIRE(settled.orbit.has_value());
+      CHECK(settled.orbit->turn.size() == 2);
+      CHECK(settled.orbit->stability == OrbitStability::stable);
+      // 4 + 2 a - a^2
+      CHECK(settled.orbit->multipliers.front().real() == Approx(4.0 + 2.0 * a - a * a).margin(1e-6));
+    }
+  }
+}
+
+TEST_CASE("an orbit that the motion does not leave is none that attracts it") {
+  const double a = 3.3;
+  const Settled settled =
+      settle(always<Clocked>({{1, 1, 1}}), Eigen::Vector2d(0.0, 1.0 - 1.0 / a), parameters({a}), 30);
+  CHECK_FALSE(settled.orbit.has_value());
+  CHECK(settled.doubt.find("no attractor") != std::string::npos);
+}
+
+TEST_CASE("slow modes: the orbit is found long before the motion has come to it") {
+  const ModeRule rule = always<SlowMode>({{1, 1, 1}});
+  for (const double rate : {1e-3, 1e-5, 1e-7}) {
+    CAPTURE(rate);
+    const Settled settled = settle(rule, Eigen::Vector3d(1.0, 0.1, 1.0), parameters({rate}), 4000);
+    REQUIRE(settled.orbit.has_value());
+    CHECK(settled.orbit->stability == OrbitStability::stable);
+    CHECK(settled.orbit->turn.size() == 1);
+    const double gap = 1.0 - std::abs(settled.orbit->multipliers.front());
+    CHECK(gap == Approx(-std::expm1(-2.0 * std::acos(-1.0) * rate)).epsilon(0.02).margin(2e-8));
+    CHECK(std::abs(settled.orbit->turn.front().start(2)) < 1e-3);
+  }
+  // The other way round the mode grows.
+  CHECK_FALSE(settle(rule, Eigen::Vector3d(1.0, 0.1, 1e-3), parameters({-1e-5}), 1000).orbit.has_value());
+}
+
+TEST_CASE("a state that nothing depends on may grow; chaos and tori settle on no orbit") {
   const ModeRule logistic = always<LogisticClock>({{1, 1, 1}});
-  const Eigen::Vector3d start(0.0, 0.1234, 0.0);
-  const Attractor chaotic = recognise(logistic, start, parameters({4.0}), so_many(50, 100));
-  CHECK(chaotic.kind == AttractorKind::chaotic);
-  REQUIRE(chaotic.spectrum.has_value());
-  CHECK(chaotic.spectrum->exponents(0) > 0.5);
-  CHECK(std::isnan(chaotic.period));
-  CHECK(chaotic.signature.empty());
-
-  RecognitionSettings never = so_many(50, 100);
-  never.exponents = RecognitionSettings::Exponents::never;
-  CHECK(recognise(logistic, start, parameters({4.0}), never).kind == AttractorKind::none);
-
-  // a = 3.55 has the period 8.
-  RecognitionSettings up_to_four = so_many(3000, 100);
-  up_to_four.plan.max_period = 8;
-  CHECK(recognise(logistic, start, parameters({3.55}), up_to_four).signature.size() == 8);
-
-  const ModeRule circles = always<TwoCircles>({{1, 1, 1}});
+  CHECK(settle(logistic, Eigen::Vector3d(0.0, 0.1234, 0.0), parameters({3.55}), 3000).orbit->turn.size() == 8);
+  CHECK_FALSE(settle(logistic, Eigen::Vector3d(0.0, 0.1234, 0.0), parameters({4.0}), 3000).orbit.has_value());
   const ParameterVector golden = parameters({1.0, 0.5 * (std::sqrt(5.0) - 1.0)});
-  const Attractor torus = recognise(circles, Eigen::Vector4d(1.0, 0.1, 0.6, 0.8), golden, so_many(20, 128));
-  CAPTURE(torus.reason);
-  CHECK(torus.kind == AttractorKind::quasi_periodic);
+  CHECK_FALSE(
+      settle(always<TwoCircles>({{1, 1, 1}}), Eigen::Vector4d(1.0, 0.1, 0.6, 0.8), golden, 1000).orbit.has_value());
 }
 
-TEST_CASE("recognised: with a time instead of events") {
-  RecognitionSettings settings;
-  settings.plan.transient_time = 50.0;
-  settings.plan.time = 150.0;
-  const Attractor a =
-      recognise(always<LogisticClock>({{1, 1, 1}}), Eigen::Vector3d(0.0, 0.1234, 0.0), parameters({4.0}), settings);
-  CHECK(a.kind == AttractorKind::chaotic);
-  CHECK(a.time == Approx(200.0).margin(1.0));
-}
-
-TEST_CASE("recognised: chattering, rest, escape, no event") {
+TEST_CASE("a motion of a conservative system that repeats itself is periodic, and neutral") {
+  // A ball that loses nothing: period 2 sqrt(2 h / g) * ..., every height its own orbit.
   const ModeRule ball = always<BouncingBall>({{1, 1, 1}});
-  const Attractor chatters = recognise(ball, Eigen::Vector2d(1.0, 0.0), parameters({1.0, 0.5}), so_many(0, 1000));
-  CHECK(chatters.kind == AttractorKind::chattering);
-  CHECK_FALSE(chatters.reason.empty());
-
-  const Attractor bounces = recognise(ball, Eigen::Vector2d(1.0, 0.0), parameters({1.0, 1.2}), so_many(0, 1000));
-  CHECK(bounces.kind == AttractorKind::escape);
-
-  const ModeRule diagonal = always<Diagonal>({{1, 1, 1}});
-  const Eigen::Vector3d start(1.0, 1.0, 1.0);
-  CHECK(recognise(diagonal, start, parameters({-1.0, -1.0, -1.0}), so_many(0, 10)).kind == AttractorKind::rest);
-  const Attractor grows = recognise(diagonal, start, parameters({1.0, -1.0, -1.0}), so_many(0, 10));
-  CHECK(grows.kind == AttractorKind::escape);
-  CHECK(grows.reason.find("exceeds") != std::string::npos);
-  CHECK(grows.time < 15.0);  // e^13.8 = 1e6
+  const Settled settled = settle(ball, Eigen::Vector2d(1.0, 0.0), parameters({1.0, 1.0}), 1000);
+  REQUIRE(settled.orbit.has_value());
+  CHECK(settled.orbit->stability == OrbitStability::neutral);
+  CHECK(settled.orbit->turn.front().duration == Approx(2.0 * std::sqrt(2.0)).epsilon(1e-8));
 }
 
-TEST_CASE("recognised: the signs of exponents") {
+TEST_CASE("an equilibrium that attracts, and motions that do not come to one") {
+  const HybridSystem& system = system_of<Diagonal>();
+  const std::vector<VectorXd> falling = {Eigen::Vector3d(1.0, 1.0, 1.0), Eigen::Vector3d(0.5, 0.5, 0.5),
+                                         Eigen::Vector3d(0.2, 0.2, 0.2), Eigen::Vector3d(0.1, 0.1, 0.1)};
+  const ParameterVector sink = parameters({-1.0, -2.0, -1.0});
+  const std::vector<VectorXd> rising(falling.rbegin(), falling.rend());
+  REQUIRE(approached_equilibrium(system, 1, falling, sink, {}).has_value());
+  CHECK(approached_equilibrium(system, 1, falling, sink, {})->norm() < 1e-12);
+  CHECK_FALSE(approached_equilibrium(system, 1, falling, parameters({1.0, -2.0, -1.0}), {}).has_value());
+  CHECK_FALSE(approached_equilibrium(system, 1, rising, sink, {}).has_value());
+}
+
+TEST_CASE("the signs of exponents, that along the flow left out") {
   LyapunovSpectrum s;
   s.time = 100.0;
   s.events = 100;
-  const auto kind = [&](std::initializer_list<double> exponents, std::initializer_list<double> errors) {
+  const auto kind = [&](std::initializer_list<double> exponents, std::initializer_list<double> errors,
+                        std::vector<Eigen::Index> structural) {
     s.exponents = Eigen::Map<const VectorXd>(exponents.begin(), static_cast<Eigen::Index>(exponents.size()));
     s.errors = Eigen::Map<const VectorXd>(errors.begin(), static_cast<Eigen::Index>(errors.size()));
+    s.structural = std::move(structural);
     return kind_by_exponents(s);
   };
-  CHECK(kind({0.1, 0.0, -1.0}, {0.01, 0.01, 0.01}) == AttractorKind::chaotic);
-  CHECK(kind({0.002, 0.0, -1.0}, {0.001, 0.001, 0.01}) == AttractorKind::quasi_periodic);
-  CHECK(kind({0.02, 0.0, -1.0}, {0.01, 0.001, 0.01}) == AttractorKind::none);  // a torus, or weak chaos
-  CHECK(kind({0.02, 0.0, -1.0}, {0.1, 0.01, 0.01}) == AttractorKind::none);
-  CHECK(kind({0.0, -0.5, -INFINITY}, {0.001, 0.01, 0.0}) == AttractorKind::periodic);
-  CHECK(kind({-0.1, -0.5, -1.0}, {0.01, 0.01, 0.0}) == AttractorKind::rest);
-  CHECK(kind({0.0}, {0.01}) == AttractorKind::none);  // one exponent does not tell
-  CHECK(kind({0.0, NAN}, {0.01, INFINITY}) == AttractorKind::none);
+  CHECK(kind({0.1, 0.0, -1.0}, {0.01, 0.01, 0.01}, {1}) == AttractorKind::chaotic);
+  CHECK(kind({2e-5, 0.0, -1.0}, {1e-5, 1e-5, 0.01}, {1}) == AttractorKind::quasi_periodic);
+  CHECK(kind({0.02, 0.0, -1.0}, {0.01, 0.001, 0.01}, {1}) == AttractorKind::none);  // a torus, or weak chaos
+  CHECK(kind({0.02, 0.0, -1.0}, {0.1, 0.01, 0.01}, {1}) == AttractorKind::none);
+  CHECK(kind({0.0, -0.5, -INFINITY}, {0.001, 0.01, 0.0}, {0}) == AttractorKind::periodic);
+  // However far the mean along the flow is from zero, by chance or by bias.
+  CHECK(kind({2.2e-5, -0.5}, {5.6e-6, 0.01}, {0}) == AttractorKind::periodic);
+  CHECK(kind({-0.1, -0.5, -1.0}, {0.01, 0.01, 0.0}, {}) == AttractorKind::rest);
+  CHECK(kind({0.0}, {0.01}, {0}) == AttractorKind::none);  // one exponent does not tell
+  CHECK(kind({NAN, 0.0}, {INFINITY, 0.01}, {1}) == AttractorKind::none);
 }

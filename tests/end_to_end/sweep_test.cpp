@@ -276,3 +276,54 @@ TEST_CASE("sweep: a library whose copies would share their data has one worker, 
   CHECK(contains(outcome.err, "-fno-gnu-unique"));
   CHECK(contains(outcome.err, "one worker computes instead of 2"));
 }
+
+TEST_CASE(
+    "sweep and simulate: next to a period doubling the orbit that attracts, with one number though a state drifts") {
+  // c -> a c (1 - c) once per unit of time: period 1 attracts for a < 3 (multiplier 2 - a), period 2 from there to
+  // 1 + sqrt(6). Nothing depends on s.
+  const Workspace workspace;
+  workspace.write("logistic.tch", R"(par a=2.9
+init clock=0, c=0.4, s=0
+clock' = 1
+c' = 0
+s' = c
+event tick = 1 - clock
+jump iterate: clock -> clock - 1, c -> a*c*(1 - c)
+after any: tick -> iterate
+)");
+  const tchat::SweepTable table = sweep(workspace, "logistic --over a=2.99:3.01:21 --section none --follow up", "near");
+  const std::vector<double>&a = column(table, "a"), &period = column(table, "period");
+  const std::vector<double>& number = column(table, "attractor");
+  REQUIRE(a.size() == 21);
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    CAPTURE(a[k]);
+    if (std::abs(a[k] - 3.0) < 1e-9) continue;  // at the doubling itself
+    CHECK(period[k] == (a[k] < 3.0 ? 1 : 2));
+    CHECK(number[k] == (a[k] < 3.0 ? number.front() : number.back()));
+  }
+  const Outcome outcome = workspace.tchat("simulate logistic PAR(a)=2.9999 --lyapunov --rows 0");
+  INFO(outcome.text());
+  CHECK(outcome.out.find("Periodic orbit, signature {(1,1,1)}, period 1") != std::string::npos);
+  CHECK(outcome.out.find("a stable periodic orbit.") != std::string::npos);
+  CHECK(outcome.out.find("chaotic") == std::string::npos);
+}
+
+TEST_CASE("simulate: a slow mode delays no verdict, and unstable orbits attract nothing") {
+  // The unit circle with a mode that decays by exp(-2 pi 1e-6) in each turn, and one that grows as slowly.
+  const Workspace workspace;
+  workspace.write("slow.tch", R"(par rate=1e-6
+init x=1, y=0.1, z=1
+x' = x - y - x*(x^2 + y^2)
+y' = x + y - y*(x^2 + y^2)
+z' = -rate*z
+event turn = y
+after any: turn -> identity
+)");
+  const Outcome stable = workspace.tchat("simulate slow --lyapunov --rows 0");
+  INFO(stable.text());
+  CHECK(stable.out.find("a stable periodic orbit.") != std::string::npos);
+  const Outcome growing = workspace.tchat("simulate slow PAR(rate)=-1e-6 --state x=1,y=0.1,z=0 --rows 0");
+  INFO(growing.text());
+  CHECK(growing.out.find("no attractor") != std::string::npos);
+  CHECK(growing.out.find(": stable") == std::string::npos);
+}

@@ -169,7 +169,7 @@ TEST_CASE("periodic orbits of 1 to 32 events: the logistic map's cascade", "[slo
     CHECK(orbit.advance(2) == Approx(advance).epsilon(1e-7));
     REQUIRE(orbit.multipliers.size() == 2);
     CHECK(orbit.multipliers[0].real() == Approx(multiplier).margin(1e-5));
-    CHECK(orbit.is_stable());
+    CHECK(orbit.stability() == OrbitStability::stable);
   }
   CHECK_FALSE(logistic(3.569, 16).result.is_periodic());
   CHECK(logistic(3.569, 32, 100000.0).result.turn.size() == 32);

@@ -60,6 +60,17 @@ TEST_CASE("two branches that come near each other do not change numbers") {
   CHECK(numbers(records, mu) == std::vector<int>{1, 2, 2, 1, 2, 1});
 }
 
+TEST_CASE("a branch that is steep in the parameter has one number, also where it bends") {
+  const SweptQuantity mu{"mu", 0, 1, 5, false};
+  // Steps of 0.15 to 0.3 of the range; then a jump, with steps as before behind it.
+  const std::vector<SampleRecord> records = {{0, 1, orbit({0.10})},
+                                             {1, 1, orbit({0.25})},
+                                             {2, 1, orbit({0.45})},
+                                             {3, 1, orbit({0.75})},
+                                             {4, 1, orbit({-0.20})}};
+  CHECK(numbers(records, mu) == std::vector<int>{1, 1, 1, 1, 2});
+}
+
 TEST_CASE("in a basin the same orbit has one number, captured or not") {
   const SweptQuantity x{"x1", 0, 1, 5, true};
   AttractorSample captured;

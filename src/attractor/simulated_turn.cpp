@@ -1,0 +1,72 @@
+#include "attractor/simulated_turn.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <utility>
+
+#include "attractor/tangent_flow.hpp"
+#include "hybrid/event_at.hpp"
+
+namespace tchat {
+
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double tangential = 1e-14;  // |h_x f| / (|h_x| |f|): rounding
+constexpr double endless = 1e300;
+
+MatrixXd jump_derivative(const HybridSystem& system, int jump, const VectorXd& x, const VectorXd& par) {
+  VectorXd g(x.size());
+  MatrixXd gx(x.size(), x.size());
+  double no_parameters = 0.0;
+  system.first(FunctionKind::jump, jump, x.data(), par.data(), {}, g.data(), gx.data(), &no_parameters);
+  return gx;
+}
+
+/// V -> (Id - f h_x / (h_x f)) V at the end of a segment. False where its event is met tangentially.
+bool project_on_event(const HybridSystem& system, const SimulatedSegment& segment, const VectorXd& par, MatrixXd& v) {
+  const EventAt at = event_at(system, segment.index.event, segment.mode.field(), segment.end.data(), par.data());
+  if (!(std::abs(at.rate()) > tangential * at.sizes())) return false;
+  v -= at.f * ((at.gradient.transpose() * v) / at.rate());
+  return v.allFinite();
+}
+
+}  // namespace
+
+SimulatedTurn simulate_turn(const HybridSimulation& at, const VectorXd& y, const Signature& expected,
+                            SimulationSettings settings, bool with_derivative) {
+  const HybridSystem& system = at.system();
+  const VectorXd& par = at.parameters();
+  TangentFlow tangent(system, par);
+  SimulatedTurn turn;
+  MatrixXd& v = turn.derivative;
+  settings.on_piece = {};
+  if (with_derivative) {
+    v = jump_derivative(system, at.last_event().jump, y, par);
+    settings.on_piece = [&](int field, const DenseOutput& state, double from, double to) {
+      turn.is_smooth = turn.is_smooth && tangent.carry(v, field, state, from, to);
+    };
+  }
+  HybridSimulation simulation(at, y, std::move(settings));
+  for (std::size_t s = 0; s < expected.size(); ++s) {
+    turn.segments.push_back(simulation.next(endless));
+    const SimulatedSegment& segment = turn.segments.back();
+    if (segment.ended_by != SegmentEnd::event || segment.index != expected[s]) {
+      turn.fault = fmt::format("segment {} does not end as that of the motion", s + 1);
+      return turn;
+    }
+    if (!with_derivative) continue;
+    turn.is_smooth = turn.is_smooth && project_on_event(system, segment, par, v);
+    if (!turn.is_smooth) {
+      turn.fault = fmt::format("segment {} has no finite derivative", s + 1);
+      return turn;
+    }
+    if (s + 1 < expected.size()) v = jump_derivative(system, segment.index.jump, segment.end, par) * v;
+  }
+  return turn;
+}
+
+}  // namespace tchat
