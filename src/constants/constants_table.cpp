@@ -147,6 +147,8 @@ std::vector<Constant> make_table() {
        range(0, max_orbit_segments), "", "10", "of IPS = 182 and 152"},
       {"HARMTOL", "size of the last harmonics of a torus, by which their number adapts; 0: it stays", extension_record,
        &R::harmonic_tolerance, at_least(0), "", "1e-8", "of IPS = 182 and 152"},
+      {"ERRMAX", "estimated error or structural multiplier beyond which NTST is doubled, or the branch ends; 0: any",
+       extension_record, &R::error_bound, at_least(0), "", "1e-2", ""},
       {"PAR", "values of parameters", command_line_record, &R::parameter_values, any(),
        "a finite number for PAR(index) or PAR(name)", "{2: 0.8}", ""},
   };

@@ -93,6 +93,7 @@ struct RunSettings {
   std::vector<SegmentSettings> segments;
 
   double harmonic_tolerance = 1e-7;  ///< HARMTOL, of the last harmonics of a torus; 0: their number stays
+  double error_bound = 1e-2;         ///< ERRMAX, of estimated error and structural multiplier; 0: none
   int harmonics = 0;                 ///< NHARM, of a torus; 0: as the start has
   int grazing_jump = 1;              ///< GRJUMP
   bool stop_at_grazing = true;       ///< GRSTOP

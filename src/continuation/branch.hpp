@@ -66,6 +66,7 @@ class BranchSink {
 enum class EndReason {
   outgrown,    ///< it goes on with another discretisation
   unresolved,  ///< no discretisation within the limits resolves what follows
+  no_orbit,    ///< the period has passed infinity or zero
   max_points,
   parameter_bound,
   measure_bound,

@@ -10,7 +10,9 @@
 
 #include "bvp/evaluation_failure.hpp"
 #include "bvp/mesh_adaptation.hpp"
+#include "bvp/orbit_accuracy.hpp"
 #include "continuation/bound_tests.hpp"
+#include "continuation/branch_limits.hpp"
 #include "continuation/homoclinic_limit.hpp"
 #include "continuation/solution_measure.hpp"
 #include "hybrid/identity_jump.hpp"
@@ -106,10 +108,14 @@ BranchSummary ContinuationRun::run(PathPoint start) {
   SpecialPoint special;
   if (settings_.label_start) special.type = PointType::end;
   closed_.begin(here_, settings_.step.initial);
+  turned_at_ = parameter_at(here_);
+  first_period_ = here_.orbit.period();
   if (number_ > 1)
     resume();
   else
     accept(end_conditions(special));
+  if (const std::string exceeded = exceeded_bound(next_); !ended_ && settings_.may_refine && !exceeded.empty())
+    end(EndReason::outgrown, exceeded);
 
   while (!ended_) {
     prepare_next_step();
@@ -117,10 +123,17 @@ BranchSummary ContinuationRun::run(PathPoint start) {
       give_up();
       break;
     }
+    if (!may_go_to_next()) break;
     const std::optional<double> to_first = come_back();
     const bool is_there = to_first && std::abs(*to_first) <= same_place * location_settings(settings_).tolerance;
     special = is_there ? SpecialPoint{} : advance();
     if (to_first) special = arrive(special, *to_first);
+    if (const std::string zero = settings_.periodic ? passed_zero(here_.orbit, next_.point.orbit) : "";
+        !ended_ && !zero.empty()) {
+      end(EndReason::no_orbit, end_text(zero));
+      write_last_again(PointType::end);
+      break;
+    }
     closed_.went(next_.ds);
     std::swap(here_, next_.point);
     ++number_;
@@ -141,6 +154,7 @@ void ContinuationRun::resume() {
   accepted_data_ = next_.data;
   trend_.add(here_.orbit, here_.orbit.par(settings_.principal - 1));
   summary_.points = number_;
+  stability_.begin({number_, parameter_at(here_), {}, accepted_data_.multipliers});
 }
 
 /// Where the step to next_ passes the first point of the branch: next_ is moved to just beyond it, so that special
@@ -201,10 +215,19 @@ SpecialPoint ContinuationRun::advance() {
   }
   const double level = insignificant_turn * steepest_;
   const double earlier = std::exchange(before_, before);
-  if (!is_fold(special.type) || turn > level || std::max(before, earlier) > sudden * level)
-    return shrunk_orbit(special, through_point);
-  reports.note(fmt::format("ICP(1) turns by rounding only (its share of the tangent is {:.1e}): no fold", turn));
-  return {};
+  const bool is_visible = turn > level || std::max(before, earlier) > sudden * level;
+  if (is_fold(special.type) && !(is_visible && turns_visibly(parameter_at(next_.point)))) {
+    reports.note(fmt::format("ICP(1) turns by rounding only (its share of the tangent is {:.1e}): no fold", turn));
+    return {};
+  }
+  if (is_fold(special.type)) turned_at_ = parameter_at(next_.point);
+  return shrunk_orbit(special, through_point);
+}
+
+/// Has the principal parameter moved by more than an orbit's accuracy since it last turned?
+bool ContinuationRun::turns_visibly(double parameter) const {
+  const double size = std::max(std::abs(parameter), std::abs(turned_at_));
+  return std::abs(parameter - turned_at_) > orbit_accuracy * size;
 }
 
 /// Has the step gone through an equilibrium, to the same orbits run through from another point? Then next_ is moved
@@ -292,8 +315,15 @@ int ContinuationRun::tried_along_tangent(const PathPoint& from, Candidate& to) {
   return newton.converged() ? newton.iterations : settings_.step.max_newton;
 }
 
+/// Where the period has become long, or steps short, a branch that passes infinity ends without a further approach.
+bool ContinuationRun::is_near_end() const {
+  constexpr double long_period = 100.0;  // as a multiple of the first one
+  return step_.is_short() || std::abs(here_.orbit.period()) > long_period * std::abs(first_period_);
+}
+
 /// Predicts and corrects, halving the step until it succeeds. False when it cannot be made any smaller.
 bool ContinuationRun::take_step() {
+  passed_.clear();
   for (;;) {
     next_.ds = search_.limited(step_.value());
     limited_ = next_.ds != step_.value();
@@ -304,6 +334,8 @@ bool ContinuationRun::take_step() {
     std::string trouble;
     if (!converged)
       trouble = describe(newton_.status);
+    else if (std::string passed = is_near_end() ? "" : passed_end(); !passed.empty())
+      trouble = passed_ = std::move(passed);
     else if (!step_.is_short() && !search_.same_branch(here_, next_.point))
       trouble = "it may have come to another branch";
     else if (next_.data = search_.evaluate(next_.point); !step_.is_short() && !search_.resolved(here_, next_))
@@ -361,6 +393,12 @@ SpecialPoint ContinuationRun::end_conditions(SpecialPoint special) {
 /// here_ with what the search knows of it; kept, for the steps from it move it to another mesh.
 void ContinuationRun::accept(const SpecialPoint& special) {
   tell_passed();
+  if (settings_.reports_stability) {
+    const bool is_reported = summary_.lost.size() > lost_before_;
+    const auto change = stability_.add({number_, parameter_at(here_), special, next_.data.multipliers}, is_reported);
+    if (change) report(*change);
+    lost_before_ = summary_.lost.size();
+  }
   accepted_ = here_;
   accepted_data_ = next_.data;
   if (special.type != PointType::ordinary) accepted_data_.details = search_.details(here_, accepted_data_);
@@ -375,9 +413,8 @@ void ContinuationRun::tell_passed() {
     const int before = accepted_data_.tests[i].sign;
     const int now = next_.data.tests[i].sign;
     if (!test.is_told_only() || before * now >= 0) continue;
-    const auto parameter = [this](const PathPoint& point) { return point.orbit.par(settings_.principal - 1); };
     const TestedPoint at = search_.tested(here_, next_.data);
-    sink_.passed({number_, test.classify(at, now > 0).description, parameter(accepted_), parameter(here_)});
+    sink_.passed({number_, test.classify(at, now > 0).description, parameter_at(accepted_), parameter_at(here_)});
   }
 }
 
@@ -424,9 +461,12 @@ void ContinuationRun::end(EndReason reason, std::string detail) {
 }
 
 void ContinuationRun::report_lost(const std::string& text) {
-  const auto parameter = [this](const PathPoint& point) { return point.orbit.par(settings_.principal - 1); };
-  summary_.lost.push_back({number_ + 1, text, parameter(here_), parameter(next_.point)});
-  sink_.lost(summary_.lost.back());
+  report({number_ + 1, text, parameter_at(here_), parameter_at(next_.point)});
+}
+
+void ContinuationRun::report(const LostPoint& point) {
+  summary_.lost.push_back(point);
+  sink_.lost(point);
 }
 
 /// A start from a label is known for what it is.
@@ -454,16 +494,60 @@ void ContinuationRun::give_up() {
     if (!where.empty()) trouble = where;
     summary_.undefined_function = true;
   }
+  if (!passed_.empty()) {
+    end(EndReason::no_orbit, passed_);
+    write_last_again(PointType::end);
+    return;
+  }
   end(number_ == 1 ? EndReason::first_step_failed : EndReason::no_convergence,
       fmt::format("{}; steps down to {:.3e} were tried", trouble, std::abs(next_.ds)));
   sink_.note(number_ + 1, settings_.step.adapt_every == 0 ? "No convergence with fixed step size"
                                                           : "No convergence using minimum step size");
+  write_last_again(PointType::no_convergence);
+}
+
+/// The last accepted point, as it was accepted, with the label and reason of the branch's end.
+void ContinuationRun::write_last_again(PointType type) {
   ++number_;
   SpecialPoint special;
-  special.type = PointType::no_convergence;
+  special.type = type;
   special.description = summary_.detail;
   std::swap(here_, accepted_);
   record(special, accepted_data_);
 }
+
+/// Before any special point is looked for on the step: one on the way to what is no orbit, or none that the mesh
+/// resolves, would have no evidence. False where the branch ends or goes on with another mesh.
+bool ContinuationRun::may_go_to_next() {
+  if (const std::string passed = passed_end(); !passed.empty()) {
+    end(EndReason::no_orbit, passed);
+  } else {
+    const std::string exceeded = exceeded_bound(next_);
+    if (exceeded.empty()) return true;
+    end(settings_.may_refine ? EndReason::outgrown : EndReason::unresolved, exceeded);
+  }
+  if (summary_.reason != EndReason::outgrown) write_last_again(PointType::end);
+  return false;
+}
+
+std::string ContinuationRun::exceeded_bound(const Candidate& at) const {
+  return unresolved_by_mesh(system_, at.point.orbit, follower_.condensed().rule(), at.data.multipliers,
+                            settings_.error_bound);
+}
+
+std::string ContinuationRun::passed_end() const {
+  if (!settings_.periodic || system_.is_point()) return "";
+  const std::string what = passed_infinity(here_, next_.point, next_.ds);
+  return end_text(what.empty() ? undetermined_duration(system_, next_.point.orbit) : what);
+}
+
+/// "" for "".
+std::string ContinuationRun::end_text(const std::string& what) const {
+  if (what.empty()) return "";
+  return fmt::format("between {} = {:.8g} and {:.8g} {}: there the branch of orbits ends", settings_.principal_name,
+                     parameter_at(here_), parameter_at(next_.point), what);
+}
+
+double ContinuationRun::parameter_at(const PathPoint& point) const { return point.orbit.par(settings_.principal - 1); }
 
 }  // namespace tchat

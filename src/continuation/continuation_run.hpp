@@ -8,6 +8,7 @@
 #include "continuation/closed_branch.hpp"
 #include "continuation/orbit_trend.hpp"
 #include "continuation/special_point_search.hpp"
+#include "continuation/stability_watch.hpp"
 #include "continuation/step_size.hpp"
 
 namespace tchat {
@@ -40,7 +41,11 @@ struct ContinuationSettings {
   std::function<bool(const Orbit&)> outgrown = {};
   /// Asked after every point: why the branch ends there, or "".
   std::function<std::string(const Orbit&)> unresolved = {};
-  int first_number = 1;  ///< of the start; one that goes on with another discretisation was recorded before
+  /// Largest estimated error and structural multiplier of a point that the branch goes on to (ERRMAX); 0: any.
+  double error_bound = 0.0;
+  bool may_refine = false;         ///< a finer mesh is tried where the bound is exceeded (EndReason::outgrown)
+  bool reports_stability = false;  ///< all bifurcations are detected: a change of stability has a label, or is reported
+  int first_number = 1;            ///< of the start; one that goes on with another discretisation was recorded before
 };
 
 /// Outside of the bounds, and not just by the accuracy of a located point (a user value may be a bound).
@@ -77,7 +82,16 @@ class ContinuationRun {
   void prepare_next_step();
   void report_lost(const std::string& text);
   void report_start(const std::string& test_name);
+  void report(const LostPoint& point);
+  double parameter_at(const PathPoint& point) const;
   void give_up();
+  std::string exceeded_bound(const Candidate& at) const;
+  bool is_near_end() const;
+  std::string passed_end() const;
+  std::string end_text(const std::string& what) const;
+  bool may_go_to_next();
+  void write_last_again(PointType type);
+  bool turns_visibly(double parameter) const;
 
   PathFollower& follower_;
   const DefiningSystem& system_;
@@ -97,8 +111,13 @@ class ContinuationRun {
   bool limited_ = false;      // by zeros that are known to lie ahead: it says nothing of the next one
   double steepest_ = 0.0;     // largest part of the principal parameter in a tangent so far
   double before_ = 0.0;       // that part at the last point but one
-  double measure_ = 0.0;      // at here_
-  int number_ = 1;            // of here_
+  double turned_at_ = 0.0;    // the principal parameter at the last turn of the branch, or at its start
+  double first_period_ = 0.0;
+  std::string passed_;  // why a longer trial of the step was no orbit
+  StabilityWatch stability_;
+  std::size_t lost_before_ = 0;  // reports at the last accepted point
+  double measure_ = 0.0;         // at here_
+  int number_ = 1;               // of here_
   bool ended_ = false;
   BranchSummary summary_;
 };

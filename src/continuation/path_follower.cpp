@@ -301,6 +301,12 @@ bool PathFollower::solves(const Orbit& x) {
   return is_rounding(problem_.residual_size(newton_.residual()), x);
 }
 
+double PathFollower::relative_residual(const Orbit& x) {
+  problem_.set_reference(x);
+  problem_.evaluate(x, newton_.residual());
+  return problem_.residual_size(newton_.residual()) / (1.0 + largest_state(x));
+}
+
 /// The first component of the tangent that is not negligible decides: the principal parameter's when it varies.
 void PathFollower::orient(PathPoint& point) const {
   constexpr double negligible = 1e-8;

@@ -75,6 +75,8 @@ class PathFollower {
 
   /// Are the equations satisfied to rounding?
   bool solves(const Orbit& x);
+  /// The largest residual over 1 + max |u|.
+  double relative_residual(const Orbit& x);
 
   /// Moves the point to a new mesh of the same size: states and tangent are interpolated, the tangent renormalised.
   void change_mesh(PathPoint& point, const std::vector<double>& mesh) const;

@@ -94,6 +94,8 @@ SpecialPointSearch::SpecialPointSearch(PathFollower& follower, const DefiningSys
       settings_(settings),
       floquet_(follower.condensed().shape()),
       evidence_(tests_.size()),
+      is_one_parameter_family_(system.free_count() == 1 && system.orbits() == 1 && follower.condition() == nullptr &&
+                               follower.held().empty()),
       signs_(tests_.size(), 0) {}
 
 TestedPoint SpecialPointSearch::tested(const PathPoint& at, const PointData& data) const {
@@ -104,7 +106,8 @@ TestedPoint SpecialPointSearch::tested(const PathPoint& at, const PointData& dat
           data.transversalities,
           data.singular_distance,
           follower_.condition(),
-          follower_.principal_direction(at)};
+          follower_.principal_direction(at),
+          is_one_parameter_family_};
 }
 
 std::vector<std::string> SpecialPointSearch::details(const PathPoint& at, const PointData& data) const {
@@ -219,6 +222,7 @@ std::vector<std::size_t> SpecialPointSearch::changed(const PointData& end) const
 std::optional<SpecialPoint> SpecialPointSearch::advance(const PathPoint& here, Candidate& next, NewtonResult& newton,
                                                         const Reports& reports) {
   searches_.assign(tests_.size(), Search::none);
+  objections_.assign(tests_.size(), "");
   const Candidate step = searched_step(here, next);
   std::optional<SpecialPoint> special;
   rest_ = std::max(rest_ - std::abs(next.ds), 0.0);
@@ -364,6 +368,8 @@ void SpecialPointSearch::report_lost(const PointData& next, const Reports& repor
       reports.note(fmt::format("The last label is at a zero of {}: no label of its own", name));
     else if (searches_[i] == Search::jump)
       reports.note(fmt::format("{} changes sign by a jump: no special point", name));
+    else if (searches_[i] == Search::refused)
+      reports.lost(objections_[i]);
     else if (searches_[i] != Search::no_special_point)
       reports.lost(fmt::format("Possible special point: {} changes sign, but no zero of it was located", name));
   }
@@ -392,7 +398,22 @@ std::optional<BranchPointBracket> SpecialPointSearch::find_branch_point(const Pa
                       : is_start(bracket.length())                        ? Search::start
                                                                           : Search::located;
   if (searches_[*found] != Search::located) return std::nullopt;
-  return bracket;
+  objections_[*found] = objection_at(bracket, trial, at_zero);
+  if (objections_[*found].empty()) return bracket;
+  searches_[*found] = Search::refused;
+  return std::nullopt;
+}
+
+/// The place of a branch point is interpolated: it has to satisfy the equations as well as a point that Newton's method
+/// ends with, or as well as a branch point can be interpolated.
+std::string SpecialPointSearch::objection_at(const BranchPointBracket& bracket, const PathPoint& trial,
+                                             const PointData& at_zero) {
+  constexpr double interpolated = 1e-8;
+  const double residual = follower_.relative_residual(trial.orbit);
+  if (!(residual <= std::max(interpolated, follower_.newton_settings().tolerance_states)))
+    return fmt::format("{} changes sign, but no solution was found there (relative residual {:.1e}): no label",
+                       tests_[bracket.test()]->name(), residual);
+  return tests_[bracket.test()]->objection(tested(trial, at_zero));
 }
 
 /// All zeros on a step of length ds, which ends with the values `end`, that Newton's method can come near to.
@@ -404,6 +425,7 @@ std::vector<SpecialPointSearch::Zero> SpecialPointSearch::find_zeros(const PathP
     if (tests_[i]->singular_at_zero()) continue;
     const Zero zero = locate(i, here, trial, ds, *end.tests[i].value);
     searches_[i] = zero.search;
+    objections_[i] = zero.objection;
     if (zero.search != Search::located) continue;
     if (is_start(zero.ds))
       searches_[i] = Search::start;
@@ -420,6 +442,7 @@ SpecialPointSearch::Zero SpecialPointSearch::locate(std::size_t test, const Path
                                                     double ds, double end_value) {
   TestValue found;
   bool genuine = true;
+  std::string objection;
   PathPoint start = here;
   const auto arrive = [&](double length) {
     const bool at_start = length == 0.0;
@@ -428,6 +451,7 @@ SpecialPointSearch::Zero SpecialPointSearch::locate(std::size_t test, const Path
     const PointData data = evaluate(there);
     found = data.tests[test];
     genuine = tests_[test]->is_genuine(tested(there, data));
+    objection = tests_[test]->objection(tested(there, data));
     return true;
   };
   const auto has_sign = [&] { return found.value && found.sign == signs_[test]; };
@@ -447,20 +471,23 @@ SpecialPointSearch::Zero SpecialPointSearch::locate(std::size_t test, const Path
   bracket.low_value = *found.value;
   double least = std::numeric_limits<double>::infinity();
   bool genuine_at_least = true;
+  std::string objection_at_least;
   const auto at = [&](double length) {
     if (!arrive(length)) return std::optional<double>();
     if (found.value && std::abs(*found.value) < least) {
       least = std::abs(*found.value);
       genuine_at_least = genuine;
+      objection_at_least = objection;
     }
     return found.value;
   };
   // No level of rounding: where a function is flat, it is small far from its zero.
   const LocatedZero zero = locate_zero_surely(at, bracket, settings_.tolerance, 0.0, settings_.max_evaluations);
-  const Search search = !zero.converged()  ? zero.status == ZeroSearch::jump ? Search::jump : Search::failed
-                        : genuine_at_least ? Search::located
-                                           : Search::no_special_point;
-  return {test, zero.ds, search};
+  const Search search = !zero.converged()             ? zero.status == ZeroSearch::jump ? Search::jump : Search::failed
+                        : !objection_at_least.empty() ? Search::refused
+                        : genuine_at_least            ? Search::located
+                                                      : Search::no_special_point;
+  return {test, zero.ds, search, objection_at_least};
 }
 
 /// The branch leaves the start of the step with another sign than it came with.

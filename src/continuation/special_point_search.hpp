@@ -68,11 +68,12 @@ class SpecialPointSearch {
 
  private:
   /// What came of the search for a zero.
-  enum class Search { none, located, start, jump, no_special_point, failed };
+  enum class Search { none, located, start, jump, no_special_point, refused, failed };
   struct Zero {
     std::size_t test;
     double ds;
     Search search;
+    std::string objection = {};  // of a zero that is refused
   };
   /// Where a step is cut: the zero of a group of functions.
   struct Cut {
@@ -103,6 +104,7 @@ class SpecialPointSearch {
   std::vector<std::size_t> vanishing_with(const Zero& first, const std::vector<Zero>& zeros, const PointData& there,
                                           double length, const PointData& end) const;
   std::vector<std::size_t> vanishing_at(const BranchPointBracket& branch_point) const;
+  std::string objection_at(const BranchPointBracket& bracket, const PathPoint& trial, const PointData& at_zero) const;
   SpecialPoint classify(const std::vector<std::size_t>& group, Candidate& at);
   void remember(const PointData& data, double ds);
 
@@ -117,6 +119,7 @@ class SpecialPointSearch {
     bool has_sign = false;
   };
   std::vector<Evidence> evidence_;  // of each test function
+  bool is_one_parameter_family_;    // TestedPoint
   struct Past {
     double arclength;
     std::vector<TestValue> tests;
@@ -126,7 +129,8 @@ class SpecialPointSearch {
   std::vector<int> signs_;        // of the test functions at the last accepted point; 0: none yet
   std::vector<bool> labelled_;    // the last accepted point is labelled as their zero
   std::vector<Search> searches_;  // on the step being searched
-  double rest_ = 0.0;             // of a step that was cut; 0: nothing more is known there
+  std::vector<std::string> objections_;
+  double rest_ = 0.0;  // of a step that was cut; 0: nothing more is known there
 };
 
 }  // namespace tchat

@@ -75,7 +75,8 @@ class ProblemType {
 
   /// Is the branch to go on with another one?
   virtual bool outgrown(const BranchSetup&, const Orbit&) const { return false; }
-  /// That one, at the point where the branch was left; without a follower where no solution is found on it.
+  /// That one, at the point where the branch was left; without a follower where no solution is found on it. Unless the
+  /// type says otherwise twice as many mesh intervals, for types without a scalar condition of a curve.
   virtual BranchSetup refined(const BranchSetup& setup, const PathPoint& last) const;
   /// Why the branch ends here, for want of one within the limits; "".
   virtual std::string unresolved(const BranchSetup&, const Orbit&) const { return {}; }

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
 #include "bvp/bordered_problem.hpp"
+#include "bvp/mesh_adaptation.hpp"
 #include "constants/settings_type.hpp"
 #include "files/labelled_solution.hpp"
 #include "problem_type/problem_type.hpp"
@@ -64,8 +64,41 @@ BranchSetup ProblemType::set_up(const HybridSystem& system, const RunSettings& s
   return setup;
 }
 
-BranchSetup ProblemType::refined(const BranchSetup&, const PathPoint&) const {
-  throw std::logic_error("this problem type has one discretisation");
+BranchSetup ProblemType::refined(const BranchSetup& setup, const PathPoint& last) const {
+  BranchSetup next{setup.type, setup.settings, nullptr, nullptr, {}, setup.constants};
+  next.settings.mesh_intervals *= 2;
+  const HybridSystem& system = setup.defining->system();
+  const CollocationRule& rule = setup.follower->condensed().rule();
+  const int intervals = next.settings.mesh_intervals;
+  const std::vector<double> mesh = next.settings.adapt_mesh_every > 0
+                                       ? equidistributed_mesh(last.orbit, rule, intervals)
+                                       : resampled_mesh(last.orbit.mesh, intervals);
+  OrbitShape shape = last.orbit.shape;
+  shape.intervals = intervals;
+  const MeshTransfer transfer(last.orbit.shape, last.orbit.mesh, shape, mesh, rule);
+  Orbit orbit{shape, mesh, transfer(last.orbit.states), last.orbit.par};
+  OrbitVector direction(shape, setup.defining->free_count());
+  direction.states = transfer(last.tangent.states);
+  direction.durations = last.tangent.durations;
+  direction.globals = last.tangent.globals;
+
+  next.defining = make_system(system, next.settings, free_problem_parameters(next.settings));
+  BranchMonitors monitors = branch_monitors(*next.defining, next.settings, orbit);
+  for (std::size_t k = 0; k < monitors.held.size(); ++k) monitors.held[k].value = setup.follower->held()[k].value;
+  next.follower = std::make_unique<PathFollower>(*next.defining, shape, weighted_norm(next.settings),
+                                                 newton_settings(next.settings), next.settings.free_parameters.front(),
+                                                 nullptr, std::move(monitors));
+  PathPoint point = next.follower->make_point(std::move(orbit));
+  const NewtonResult result = next.follower->start_along(point, direction);
+  if (!result.converged()) {
+    next.follower.reset();
+    next.start.note = fmt::format("no convergence with NTST = {} ({})", intervals, describe(result.status));
+    return next;
+  }
+  if (next.follower->alignment(point, direction) < 0.0) next.follower->reverse(point);
+  next.start = {std::move(point), next.follower->newton().history(), fmt::format("NTST = {} from here on", intervals),
+                setup.start.stored_direction};
+  return next;
 }
 
 BranchSetup set_up_branch(const HybridSystem& system, const RunSettings& settings, const SelectedStart& selected) {

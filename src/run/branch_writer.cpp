@@ -299,6 +299,13 @@ void BranchWriter::passed(const LostPoint& point) {
            << std::flush;
 }
 
+void BranchWriter::mesh_changed(int point_number, double parameter, const std::string& text) {
+  note(point_number, text);
+  if (screen_ == nullptr) return;
+  progress_.clear();
+  *screen_ << fmt::format("       {} = {:.8g}: {}\n", columns_.front().name, parameter, text) << std::flush;
+}
+
 void BranchWriter::lost(const LostPoint& point) {
   note(point.number, point.text);
   if (screen_ == nullptr) return;

@@ -45,6 +45,8 @@ class BranchWriter final : public BranchSink {
   void starts_at_zero(const std::string& name) override;
   void passed(const LostPoint& point) override;
   void lost(const LostPoint& point) override;
+  /// The branch goes on from this point with a finer mesh, or could not.
+  void mesh_changed(int point_number, double parameter, const std::string& text);
 
   struct Labelled {
     int label;

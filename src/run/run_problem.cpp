@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
+#include <memory>
 
 #include "constants/constants_file.hpp"
 #include "constants/constants_writer.hpp"
@@ -39,15 +40,18 @@ constexpr int ended_by_mx = 3;
 
 /// STOP: true at the n-th labelled point of a type.
 std::function<bool(const SpecialPoint&)> make_stop_rule(const RunSettings& settings) {
-  return [rules = settings.stop_rules, seen = std::map<std::string, int>{}](const SpecialPoint& special) mutable {
-    bool stops = false;
-    for (const std::string& type : type_names(static_cast<int>(special.type), special.kind, special.further)) {
-      const int count = ++seen[type];
-      stops = stops || std::any_of(rules.begin(), rules.end(),
-                                   [&](const StopRule& rule) { return rule.type == type && rule.count == count; });
-    }
-    return stops;
-  };
+  // Copies count together: a branch goes on with a finer mesh.
+  return
+      [rules = settings.stop_rules, all = std::make_shared<std::map<std::string, int>>()](const SpecialPoint& special) {
+        std::map<std::string, int>& seen = *all;
+        bool stops = false;
+        for (const std::string& type : type_names(static_cast<int>(special.type), special.kind, special.further)) {
+          const int count = ++seen[type];
+          stops = stops || std::any_of(rules.begin(), rules.end(),
+                                       [&](const StopRule& rule) { return rule.type == type && rule.count == count; });
+        }
+        return stops;
+      };
 }
 
 void refuse_to_replace_start(const RunRequest& request, const SelectedStart& start, const std::string& output) {
@@ -196,11 +200,20 @@ int status_of(const BranchSummary& summary, bool strict, std::ostream& warnings)
   return ended_by_mx;
 }
 
+/// NTST is doubled up to here where the mesh does not resolve the orbit.
+int most_mesh_intervals(const RunSettings& settings) {
+  constexpr int times = 8, enough = 400, many = 2000;
+  return std::max(enough, std::min(times * settings.mesh_intervals, many));
+}
+
 /// One direction of a run: a section of its files.
 class Direction {
  public:
   Direction(const BranchSetup& setup, ContinuationSettings continuation, int branch)
-      : setup_(setup), continuation_(std::move(continuation)), branch_(branch) {}
+      : setup_(setup),
+        continuation_(std::move(continuation)),
+        branch_(branch),
+        most_intervals_(most_mesh_intervals(setup.settings)) {}
 
   /// `correction`: how Newton came to the first point, as far as this section is to tell it.
   BranchSummary follow(BranchWriter& writer, std::vector<NewtonIteration> correction,
@@ -226,12 +239,18 @@ class Direction {
       return --patience < 0 && type.outgrown(setup, x);
     };
     continuation_.unresolved = [&](const Orbit& x) { return type.unresolved(setup, x); };
+    continuation_.may_refine =
+        patience == 0 && setup.follower->condition() == nullptr && 2 * setup.settings.mesh_intervals <= most_intervals_;
     ContinuationRun run(*setup.follower, *setup.defining, continuation_, type.tests(*setup.defining, setup.settings),
                         writer);
     const BranchSummary summary = run.run(start);
     if (summary.reason != EndReason::outgrown) return summary;
     const BranchSetup next = type.refined(setup, run.last());
-    writer.note(summary.points, next.start.note);
+    if (summary.detail.empty())
+      writer.note(summary.points, next.start.note);
+    else
+      writer.mesh_changed(summary.points, run.last().orbit.par(continuation_.principal - 1),
+                          summary.detail + "; " + next.start.note);
     continuation_.step.initial = run.next_length();
     continuation_.first_number = summary.points;
     continuation_.label_start = false;
@@ -257,6 +276,7 @@ class Direction {
   const BranchSetup& setup_;
   ContinuationSettings continuation_;
   int branch_;
+  int most_intervals_;
 };
 
 /// Against the direction of DS.

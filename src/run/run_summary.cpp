@@ -24,6 +24,7 @@ std::string reason_text(const BranchSummary& summary, const std::string& paramet
     case EndReason::curve_end:
     case EndReason::closed:
     case EndReason::unresolved:
+    case EndReason::no_orbit:
       return summary.detail;
     case EndReason::special_point:
       if (!summary.stopped_at_grazing) return "at the last special point above, where the run was to end";

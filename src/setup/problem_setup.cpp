@@ -231,6 +231,11 @@ ContinuationSettings continuation_settings(const RunSettings& settings) {
   c.multipliers = settings.detect_bifurcations != 0 && has_multipliers(settings.problem_type);
   c.periodic = has_ring(settings.problem_type);
   c.stop_when_closed = settings.stop_when_closed;
+  const bool has_mesh = !is_point(settings.problem_type) && !is_torus(settings.problem_type);  // of tori see HARMTOL
+  const bool has_stability = c.multipliers && has_mesh && !keeps_contact(settings.problem_type) &&
+                             !has_critical_multiplier(settings.problem_type, settings.branch_mode);
+  c.reports_stability = has_stability && std::abs(settings.detect_bifurcations) == 2 && settings.detect_folds != 0;
+  c.error_bound = has_mesh ? settings.error_bound : 0.0;
   c.location_tolerance = settings.tolerance_special;
   c.max_location = settings.max_location_iterations;
   for (const SegmentSettings& segment : settings.segments) c.monitored.push_back(segment.monitor);

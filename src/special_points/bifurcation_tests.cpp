@@ -4,13 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "bvp/no_duration.hpp"
-#include "bvp/orbit_accuracy.hpp"
 #include "bvp/transversality.hpp"
 #include "hybrid/contact_segment.hpp"
 #include "hybrid/identity_jump.hpp"
+#include "special_points/label_evidence.hpp"
 
 namespace tchat {
 
@@ -62,12 +61,6 @@ const std::complex<double>* nearest_pair(const FloquetMultipliers& multipliers) 
   return nearest;
 }
 
-double distance_to(const FloquetMultipliers& multipliers, double target) {
-  double nearest = std::numeric_limits<double>::infinity();
-  for (const auto& mu : multipliers.telling()) nearest = std::min(nearest, std::abs(mu - target));
-  return nearest;
-}
-
 }  // namespace
 
 std::string state_text(const HybridSystem& system, const Orbit& orbit, const double* state) {
@@ -81,15 +74,15 @@ std::string state_text(const HybridSystem& system, const Orbit& orbit, const dou
 
 TestValue multiplier_product(const TestedPoint& point, int target) {
   if (!trusted(point.multipliers)) return TestValue::undefined();
-  const double nearest = distance_to(point.multipliers, target);
+  const double nearest = multiplier_distance(point.multipliers, target);
+  const double accuracy = multiplier_accuracy(point.multipliers);
   const MultiplierProduct& product = product_of(point.multipliers, target);
-  const double level = nearest > 0.0 ? orbit_accuracy * std::abs(product.value) / nearest : orbit_accuracy;
+  const double level = nearest > 0.0 ? accuracy * std::abs(product.value) / nearest : accuracy;
   return TestValue::of(product.value, std::max(level, product.uncertainty));
 }
 
 bool is_multiplier_at(const TestedPoint& point, int target) {
-  constexpr double close = 0.05;  // far more than a located zero misses it by, unless the multiplier is about infinite
-  return distance_to(point.multipliers, target) <= close;
+  return multiplier_distance(point.multipliers, target) <= agreeing_multiplier;
 }
 
 FoldTest::FoldTest(int parameter, const std::vector<int>& free_parameters, int segments, bool stop, PointType type,
@@ -123,9 +116,20 @@ SpecialPoint FoldTest::classify(const TestedPoint& point, bool) const {
           fmt::format("turning point of the branch, no fold of orbits: h_x f = 0 at the end of segment {}", s + 1)};
 }
 
+/// A duration or a monitor in place of the parameter turns without a multiplier +1, and so does a curve of orbits on
+/// which something is held.
+std::string FoldTest::objection(const TestedPoint& point) const {
+  if (is_duration_ || is_monitor_ || !held_.empty()) return "";
+  return objection_without_multiplier_one(point, "the parameter turns");
+}
+
 TestValue BranchPointTest::evaluate(const TestedPoint& point) const {
   constexpr double level = 1e-13;  // what rounding makes of a singular matrix
   return TestValue::of(point.singular_distance, level);
+}
+
+std::string BranchPointTest::objection(const TestedPoint& point) const {
+  return objection_without_multiplier_one(point, "the determinant changes sign");
 }
 
 SpecialPoint BranchPointTest::classify(const TestedPoint&, bool) const { return {type_, {}, stop_, "branch point"}; }
@@ -145,7 +149,7 @@ TestValue TorusTest::evaluate(const TestedPoint& point) const {
   double sign = 1.0;
   for (const auto& mu : point.multipliers.values)
     if (is_upper(mu) && std::abs(mu) < 1.0) sign = -sign;
-  return TestValue::of(sign * std::abs(std::abs(*nearest) - 1.0), orbit_accuracy);
+  return TestValue::of(sign * std::abs(std::abs(*nearest) - 1.0), multiplier_accuracy(point.multipliers));
 }
 
 SpecialPoint TorusTest::classify(const TestedPoint& point, bool) const {

@@ -22,6 +22,7 @@ class FoldTest final : public TestFunction {
   std::string name() const override { return "fold"; }
   TestValue evaluate(const TestedPoint& point) const override;
   std::string reason_to_vanish(const TestedPoint&) const override { return "ICP(1) stays the same along the branch"; }
+  std::string objection(const TestedPoint& point) const override;
   SpecialPoint classify(const TestedPoint& point, bool rising) const override;
 
  private:
@@ -40,6 +41,7 @@ class BranchPointTest final : public TestFunction {
   std::string name() const override { return "branch point"; }
   TestValue evaluate(const TestedPoint& point) const override;
   bool singular_at_zero() const override { return true; }
+  std::string objection(const TestedPoint& point) const override;
   SpecialPoint classify(const TestedPoint& point, bool rising) const override;
 
  private:

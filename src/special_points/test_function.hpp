@@ -27,6 +27,8 @@ struct TestedPoint {
   double singular_distance = 1.0;  ///< of the bordered problem to a singular one, with its determinant's sign
   const OrbitCondition* condition = nullptr;  ///< of a two-parameter curve, evaluated at this point
   double principal_rate = 0.0;                ///< by which the principal parameter grows along the tangent
+  /// Periodic orbits in one free parameter, nothing held: where the problem is singular a multiplier is +1.
+  bool one_parameter_family = false;
 };
 
 /// What a test function says of a point.
@@ -70,6 +72,8 @@ class TestFunction {
   virtual Resolution resolution() const { return Resolution::crossings; }
   /// False at a zero that is none of the special points looked for: a factor that keeps the function regular vanishes.
   virtual bool is_genuine(const TestedPoint&) const { return true; }
+  /// Why a located zero is no special point of this type, which the user is to know; "" where it may be one.
+  virtual std::string objection(const TestedPoint&) const { return ""; }
   /// True when Newton's matrix is singular at the zeros, which are then located from both sides.
   virtual bool singular_at_zero() const { return false; }
   /// True when a zero is told of, but neither located nor labelled: the equations are singular there.

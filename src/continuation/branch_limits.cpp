@@ -1,0 +1,117 @@
+#include "continuation/branch_limits.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "bvp/mesh_adaptation.hpp"
+#include "bvp/no_duration.hpp"
+#include "continuation/newton_chord.hpp"
+#include "linear_algebra/dense_matrix.hpp"
+
+namespace tchat {
+
+namespace {
+
+/// The largest z whose growth exp(z) an interval of `collocation` Gauss points has with a relative error below 1.
+double resolved_growth(int collocation) {
+  double constant = 1.0;  // (c!)^2 / ((2c)! (2c+1)!)
+  for (int k = 1; k <= collocation; ++k) constant *= static_cast<double>(k) * k;
+  for (int k = 1; k <= 2 * collocation + 1; ++k) constant /= k;
+  for (int k = 1; k <= 2 * collocation; ++k) constant /= k;
+  return std::pow(constant, -1.0 / (2 * collocation + 1));
+}
+
+/// The largest z of the orbit's mesh intervals, 0 where none exceeds `least`, which is cheap to see.
+double largest_growth(const DefiningSystem& system, const Orbit& x, double least) {
+  const int n = x.shape.dimension;
+  const int c = x.shape.collocation;
+  Eigen::VectorXd f(n);
+  Eigen::MatrixXd fx(n, n);
+  double largest = 0.0;
+  for (int s = 0; s < x.shape.segments; ++s) {
+    const int field = system.signature()[static_cast<std::size_t>(s)].field;
+    const auto growth_at = [&](int mesh_point, double time) {
+      system.system().first(FunctionKind::field, field, x.node(s, mesh_point * c), x.par.data(), {}, f.data(),
+                            fx.data(), nullptr);
+      if (!fx.allFinite() || !(fx.norm() * time > least)) return 0.0;
+      const double flow = f.dot(fx * f) / f.squaredNorm();  // d ln |f| / dt
+      return std::max(eigenvalues(fx).real().maxCoeff(), std::isfinite(flow) ? std::abs(flow) : 0.0) * time;
+    };
+    for (int j = 0; j < x.shape.intervals; ++j) {
+      const auto at = static_cast<std::size_t>(j);
+      const double time = (x.mesh[at + 1] - x.mesh[at]) * x.duration(s);
+      const double left = growth_at(j, time);
+      if (left > std::max(largest, least)) largest = std::max(largest, std::min(left, growth_at(j + 1, time)));
+    }
+  }
+  return largest > least ? largest : 0.0;
+}
+
+}  // namespace
+
+std::string unresolved_by_mesh(const DefiningSystem& system, const Orbit& x, const CollocationRule& rule,
+                               const FloquetMultipliers& multipliers, double bound) {
+  if (!(bound > 0.0)) return "";
+  const auto text = [&](const char* figure, double value) {
+    return fmt::format("NTST = {} does not resolve the next orbit: {} {:.1e} exceeds ERRMAX = {:.3g}",
+                       x.shape.intervals, figure, value, bound);
+  };
+  const double error = estimated_error(x, rule);
+  if (!(error <= bound)) return text("the estimated relative error", error);
+  if (!(multipliers.structural <= bound))
+    return text(multipliers.has_trivial ? "the trivial multiplier's distance from 1" : "the structural multiplier",
+                multipliers.structural);
+  if (!multipliers.valid) return "";
+  const double limit = resolved_growth(x.shape.collocation);
+  const double growth = largest_growth(system, x, limit);
+  if (growth == 0.0) return "";
+  return fmt::format(
+      "NTST = {} does not resolve the next orbit: perturbations or the flow change by a factor of exp({:.3g}) "
+      "on one mesh interval, where NCOL = {} resolves exp({:.2g})",
+      x.shape.intervals, growth, x.shape.collocation, limit);
+}
+
+std::string undetermined_duration(const DefiningSystem& system, const Orbit& x) {
+  constexpr double rounding = 1e-12;
+  Eigen::VectorXd f(x.shape.dimension);
+  const double sizes = 1.0 + largest_state(x);
+  for (int s = 0; s < x.shape.segments; ++s) {
+    if (lasts_no_time(x, s)) continue;
+    system.system().value(FunctionKind::field, system.signature()[static_cast<std::size_t>(s)].field, x.end(s),
+                          x.par.data(), f.data());
+    const double moved = f.cwiseAbs().maxCoeff() * std::abs(x.duration(s));
+    if (moved < rounding * sizes)
+      return fmt::format(
+          "segment {} ends at rest but for rounding (|f| T = {:.1e}), so that its duration {:.6g} is not "
+          "determined",
+          s + 1, moved, x.duration(s));
+  }
+  return "";
+}
+
+std::string passed_infinity(const PathPoint& from, const PathPoint& to, double ds) {
+  const Orbit& x = from.orbit;
+  const Orbit& y = to.orbit;
+  const auto passes = [ds](double before, double rate, double after) {
+    return before * after < 0.0 && before * rate * ds > 0.0;
+  };
+  const auto text = [](const std::string& what, double before, double after) {
+    return fmt::format("{} passes infinity (from {:.6g} to {:.6g})", what, before, after);
+  };
+  if (passes(x.period(), from.tangent.durations.sum(), y.period())) return text("the period", x.period(), y.period());
+  for (int s = 0; s < x.shape.segments; ++s)
+    if (!lasts_no_time(x, s) && passes(x.duration(s), from.tangent.durations(s), y.duration(s)))
+      return text(fmt::format("the duration of segment {}", s + 1), x.duration(s), y.duration(s));
+  return "";
+}
+
+std::string passed_zero(const Orbit& from, const Orbit& to) {
+  const double before = from.period();
+  const double after = to.period();
+  const bool is_negative = after < -no_duration * std::abs(before) && before > -no_duration * std::abs(after);
+  return is_negative ? fmt::format("the period passes zero (from {:.6g} to {:.6g})", before, after) : "";
+}
+
+}  // namespace tchat

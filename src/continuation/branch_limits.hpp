@@ -1,0 +1,32 @@
+/// Where a branch of orbits ends of itself: the mesh no longer resolves them, or a duration passes infinity or zero.
+#pragma once
+
+#include <string>
+
+#include "continuation/path_follower.hpp"
+#include "stability/floquet_multipliers.hpp"
+
+namespace tchat {
+
+/// Which figure of accuracy exceeds `bound` (ERRMAX; 0: none does), with its value, or "". The figures are
+///   - estimated_error() of the orbit,
+///   - the structural multiplier, or the trivial one's distance from 1, where multipliers are computed,
+///   - the factor exp(z) by which perturbations grow, or the flow grows or decays, on one mesh interval. Here z is
+///     h T Re lambda with an eigenvalue lambda of f_x, or h T |d ln |f| / dt|, the lesser of the values at both ends.
+///     Collocation at c Gauss points has the relative error (c!)^2 / ((2c)! (2c+1)!) z^(2c+1) of this factor. Where it
+///     exceeds 1, multipliers and durations are those of the mesh.
+std::string unresolved_by_mesh(const DefiningSystem& system, const Orbit& x, const CollocationRule& rule,
+                               const FloquetMultipliers& multipliers, double bound);
+
+/// "" or that a segment ends at rest but for rounding, |f| T below 1e-12 of the states: its duration is not determined.
+std::string undetermined_duration(const DefiningSystem& system, const Orbit& x);
+
+/// The period or the duration of a segment that has passed infinity on a step of signed length ds between two points,
+/// or "". No orbits lie beyond.
+std::string passed_infinity(const PathPoint& from, const PathPoint& to, double ds);
+
+/// "" or that the period has passed zero, beyond the accuracy of a located point. A single segment of several whose
+/// duration passes zero is grazing, which has a label of its own, and GRSTOP decides whether the branch goes on.
+std::string passed_zero(const Orbit& from, const Orbit& to);
+
+}  // namespace tchat

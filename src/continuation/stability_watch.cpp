@@ -1,0 +1,41 @@
+#include "continuation/stability_watch.hpp"
+
+#include "special_points/label_evidence.hpp"
+
+namespace tchat {
+
+namespace {
+
+/// Multipliers are critical at such a point, or about infinite.
+bool explains_change(const SpecialPoint& special) {
+  return is_bifurcation(special.type) || special.kind.kind == UserPointKind::impact_velocity ||
+         !special.further.empty();
+}
+
+}  // namespace
+
+void StabilityWatch::begin(const Point& point) {
+  known_.reset();
+  if (point.multipliers.determined()) known_ = {point.parameter, point.multipliers};
+}
+
+std::optional<LostPoint> StabilityWatch::add(const Point& point, bool is_reported) {
+  if (explains_change(point.special) || !point.multipliers.determined() || is_reported || !known_) {
+    if (explains_change(point.special))
+      known_.reset();
+    else
+      begin(point);
+    return std::nullopt;
+  }
+  const StabilityChange change = stability_change(known_->multipliers, point.multipliers);
+  std::optional<LostPoint> result;
+  if (change.count != 0)
+    result = LostPoint{point.number, describe(change, point.multipliers.are_eigenvalues), known_->parameter,
+                       point.parameter};
+  // A multiplier that takes several points to cross is compared with the last point at which its side was known.
+  if (result || count_unstable(point.multipliers).undecided <= count_unstable(known_->multipliers).undecided)
+    known_ = {point.parameter, point.multipliers};
+  return result;
+}
+
+}  // namespace tchat

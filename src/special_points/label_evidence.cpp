@@ -1,0 +1,125 @@
+#include "special_points/label_evidence.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "bvp/orbit_accuracy.hpp"
+#include "bvp/transversality.hpp"
+
+namespace tchat {
+
+namespace {
+
+using Complex = std::complex<double>;
+
+/// The rule of the column PT: |mu| <= 1 + 1e-5 is stable. Closer to the circle nothing is decided.
+constexpr double stability_margin = 1e-5;
+/// Multipliers of a mesh with a larger structural one say nothing.
+constexpr double structural_limit = 5e-2;
+
+bool is_known(const FloquetMultipliers& multipliers) {
+  return multipliers.determined() && multipliers.structural <= structural_limit;
+}
+
+double largest_modulus(const FloquetMultipliers& multipliers) {
+  double largest = 0.0;
+  for (const Complex& mu : multipliers.telling()) largest = std::max(largest, std::abs(mu));
+  return largest;
+}
+
+/// By how much a multiplier is outside of the unit circle, an eigenvalue to the right of the imaginary axis, as a share
+/// of its size.
+double excess(const FloquetMultipliers& multipliers, const Complex& mu) {
+  return multipliers.are_eigenvalues ? mu.real() : std::abs(mu) - 1.0;
+}
+
+double margin(const FloquetMultipliers& multipliers) {
+  if (multipliers.are_eigenvalues) return orbit_accuracy * largest_modulus(multipliers);
+  return std::max(stability_margin, multiplier_accuracy(multipliers));
+}
+
+/// Those that tell of the orbit, the most unstable one first.
+std::vector<Complex> by_excess(const FloquetMultipliers& multipliers) {
+  const auto telling = multipliers.telling();
+  std::vector<Complex> list(telling.begin(), telling.end());
+  std::stable_sort(list.begin(), list.end(),
+                   [&](const Complex& a, const Complex& b) { return excess(multipliers, a) > excess(multipliers, b); });
+  return list;
+}
+
+bool touches_surface(const TestedPoint& point) {
+  constexpr double tangent = 1e-4;
+  return std::any_of(point.transversalities.begin(), point.transversalities.end(),
+                     [](double a) { return std::abs(a) < tangent; });
+}
+
+}  // namespace
+
+double multiplier_accuracy(const FloquetMultipliers& multipliers) {
+  return std::max(orbit_accuracy, multipliers.are_eigenvalues ? 0.0 : multipliers.structural);
+}
+
+double multiplier_distance(const FloquetMultipliers& multipliers, double target) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const Complex& mu : multipliers.telling()) nearest = std::min(nearest, std::abs(mu - target));
+  return nearest;
+}
+
+std::string objection_without_multiplier_one(const TestedPoint& point, const std::string& what) {
+  const FloquetMultipliers& multipliers = point.multipliers;
+  if (!point.one_parameter_family || multipliers.are_eigenvalues || !multipliers.determined()) return "";
+  if (touches_surface(point)) return "";
+  const double distance = multiplier_distance(multipliers, 1.0);
+  if (multipliers.structural > structural_limit)
+    return fmt::format("{}, but the multipliers are not known (structural multiplier {:.1e}): no label", what,
+                       multipliers.structural);
+  if (distance <= std::max(agreeing_multiplier, multipliers.structural)) return "";
+  return fmt::format("{}, but no multiplier is near +1 (the nearest is {:.4g} away from it): no label", what, distance);
+}
+
+UnstableCount count_unstable(const FloquetMultipliers& multipliers) {
+  UnstableCount count;
+  const double level = margin(multipliers);
+  for (const Complex& mu : multipliers.telling()) {
+    const double by = excess(multipliers, mu);
+    ++(by > level ? count.outside : by < -level ? count.inside : count.undecided);
+  }
+  return count;
+}
+
+StabilityChange stability_change(const FloquetMultipliers& before, const FloquetMultipliers& after) {
+  if (!is_known(before) || !is_known(after) || before.telling().size() != after.telling().size()) return {};
+  const UnstableCount a = count_unstable(before);
+  const UnstableCount b = count_unstable(after);
+  StabilityChange change;
+  if (b.outside > a.outside + a.undecided) change.count = b.outside - a.outside - a.undecided;
+  if (a.outside > b.outside + b.undecided) change.count = b.outside + b.undecided - a.outside;
+  if (change.count == 0) return change;
+  const auto first = static_cast<std::size_t>(change.count > 0 ? b.outside - 1 : a.outside - 1);
+  change.before = by_excess(before)[first];
+  change.after = by_excess(after)[first];
+  return change;
+}
+
+std::string describe(const StabilityChange& change, bool are_eigenvalues) {
+  const auto text = [](const Complex& mu) {
+    return mu.imag() == 0.0
+               ? fmt::format("{:.6g}", mu.real())
+               : fmt::format("{:.6g} {} {:.6g} i", mu.real(), mu.imag() < 0.0 ? "-" : "+", std::abs(mu.imag()));
+  };
+  const bool is_real = change.before.imag() == 0.0 && change.after.imag() == 0.0;
+  const char* through = are_eigenvalues             ? "the imaginary axis"
+                        : !is_real                  ? "the unit circle"
+                        : change.after.real() > 0.0 ? "+1"
+                                                    : "-1";
+  const std::string kind = are_eigenvalues ? "eigenvalue" : "multiplier";
+  const int count = std::abs(change.count);
+  const std::string what = count == 1 ? fmt::format("one {} goes", kind) : fmt::format("{} {}s go, one", count, kind);
+  return fmt::format("the stability changes without a special point: {} from {} to {}, through {}", what,
+                     text(change.before), text(change.after), through);
+}
+
+}  // namespace tchat

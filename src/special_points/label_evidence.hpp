@@ -1,0 +1,51 @@
+/// What a label needs besides a change of sign: how well multipliers are known, and whether those of a located point
+/// agree with its type.
+///
+/// A singular boundary value problem of periodic orbits in one parameter has a multiplier +1 (fold, branch point).
+/// Where no multiplier is near +1, the parameter or the determinant turned for another reason: the mesh no longer
+/// resolves the orbit, or what changed sign is rounding. Such a point is reported in words and has no label.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "special_points/test_function.hpp"
+#include "stability/floquet_multipliers.hpp"
+
+namespace tchat {
+
+/// Far more than a located zero misses its multiplier by, unless that is about infinite.
+inline constexpr double agreeing_multiplier = 5e-2;
+
+/// Relative error of the return map: that of a corrected orbit, and of the mesh as the structural multiplier shows it.
+double multiplier_accuracy(const FloquetMultipliers& multipliers);
+
+/// Distance of the multiplier nearest to `target`, infinite without multipliers. The trivial one is left out.
+double multiplier_distance(const FloquetMultipliers& multipliers, double target);
+
+/// Why a located zero of the fold or of the branch point's function is no such point, "" where it may be one. `what`
+/// changes there, for the text. Decides nothing where multipliers are not computed or partly unknown (h_x f = 0), and
+/// where the problem is not that of orbits in one parameter (TestedPoint::one_parameter_family).
+std::string objection_without_multiplier_one(const TestedPoint& point, const std::string& what);
+
+/// The multipliers that surely crossed the unit circle (of eigenvalues: the imaginary axis) between two points.
+struct StabilityChange {
+  int count = 0;  ///< more unstable ones behind, negative: fewer
+  std::complex<double> before, after;
+};
+
+/// Number of unstable multipliers, as far as it is known.
+struct UnstableCount {
+  int inside = 0;
+  int outside = 0;
+  int undecided = 0;  ///< within their uncertainty of the unit circle
+};
+UnstableCount count_unstable(const FloquetMultipliers& multipliers);
+
+/// count = 0 where those that are undecided explain the difference, or multipliers of either point are not known.
+StabilityChange stability_change(const FloquetMultipliers& before, const FloquetMultipliers& after);
+
+/// "a multiplier goes from 0.93 to 1.49, through +1, without a label"
+std::string describe(const StabilityChange& change, bool are_eigenvalues);
+
+}  // namespace tchat
