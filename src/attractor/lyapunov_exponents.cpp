@@ -10,6 +10,7 @@
 
 #include "attractor/tangent_flow.hpp"
 #include "hybrid/event_at.hpp"
+#include "hybrid/finite_derivatives.hpp"
 #include "simulation/cvodes_flow.hpp"
 #include "simulation/event_watch.hpp"
 #include "simulation/recurrence.hpp"
@@ -35,6 +36,7 @@ struct Saltation {
   VectorXd hx;
   double rate = 0.0;  // h_x f-
   bool is_tangential = false;
+  std::string without_derivatives;  // which function has none, and where
 };
 
 Index most_exponents(const HybridSystem& system, const LyapunovSettings& settings) {
@@ -201,7 +203,8 @@ struct LyapunovAccumulator::Implementation {
     MatrixXd moved = event.gx * v;
     if (event.rate != 0.0) moved += difference * ((event.hx.transpose() * v) / event.rate);
     if (!moved.allFinite()) {
-      fault = "a jump has no finite derivatives at an event";
+      fault =
+          event.without_derivatives.empty() ? "a field or a jump is not finite at an event" : event.without_derivatives;
       return;
     }
     v = moved;
@@ -213,12 +216,18 @@ struct LyapunovAccumulator::Implementation {
 
   void wait_for_field(const SimulatedSegment& segment) {
     const EventAt at = event_at(system, segment.index.event, segment.mode.field(), segment.end.data(), par.data());
-    Saltation event{MatrixXd(system.dimension(), system.dimension()),     at.f, segment.after, at.gradient, at.rate(),
-                    std::abs(at.rate()) < hardly_transversal * at.sizes()};
+    Saltation event{MatrixXd(system.dimension(), system.dimension()),      at.f, segment.after, at.gradient, at.rate(),
+                    std::abs(at.rate()) < hardly_transversal * at.sizes(), ""};
     VectorXd g(system.dimension());
     double no_parameters = 0.0;
     system.first(FunctionKind::jump, segment.index.jump, segment.end.data(), par.data(), {}, g.data(), event.gx.data(),
                  &no_parameters);
+    const auto tell = [&](FunctionKind kind, int index) {
+      if (!has_finite_derivatives(system, kind, index, segment.end.data(), par.data()))
+        event.without_derivatives = no_finite_derivatives(system, kind, index, segment.end);
+    };
+    if (!event.hx.allFinite()) tell(FunctionKind::event, segment.index.event);
+    if (!event.gx.allFinite()) tell(FunctionKind::jump, segment.index.jump);
     waiting = std::move(event);
   }
 

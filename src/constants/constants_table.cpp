@@ -24,7 +24,8 @@ Limits nonzero() { return {.zero_excluded = true}; }
 Limits one_of(std::vector<int> choices) { return {.choices = std::move(choices)}; }
 Limits any() { return {}; }
 
-constexpr double max_list = 1000;  // length of lists that nothing else bounds
+constexpr double largest_weight = 1e15;  // beyond it rounding of one entry hides the step of all others
+constexpr double max_list = 1000;        // length of lists that nothing else bounds
 constexpr std::string_view kept = "read and kept, no effect";
 constexpr std::string_view type_with_count =
     "a type with a count (BP, LP, HB, PD, TR, UZ, GR, BE, XI, GC, CP, R1, ..., R4, BT, ZH, GH, EP, MX or RG) and a "
@@ -65,7 +66,8 @@ std::vector<Constant> make_table() {
        "angle), -1 (switch to the branch that bifurcates at IRS); 0 means 1",
        "1", ""},
       {"IPLT", "solution measure", 3, &R::measure, any(),
-       "an integer; with n = NDIM, k = 1..n: 0 L2-norm, k or -k maximum or minimum, n+k integral, 2n+k L2-norm of U(k)",
+       "an integer from -n to 3n; with n = NDIM, k = 1..n: 0 L2-norm, k or -k maximum or minimum, n+k integral, 2n+k "
+       "L2-norm of U(k)",
        "0", ""},
       {"NBC", "number of boundary conditions", 3, &R::boundary_conditions, range(0, 1000), "", "0",
        "of IPS = 4; else read and kept, no effect: follows from the signature"},
@@ -96,11 +98,11 @@ std::vector<Constant> make_table() {
       {"IADS", "points between step size adaptations, 0: fixed step", 7, &R::adapt_step_every, at_least(0), "", "1",
        ""},
       {"NTHL", "number of parameter weights", 8, ListCount{"THL"}, range(0, 256), "", "0", ""},
-      {"THL", "weights of parameters in the step length", 8, &R::parameter_weights, at_least(0), "", "{61: 0.0}", "",
-       range(1, parameter_length)},
+      {"THL", "weights of parameters in the step length", 8, &R::parameter_weights, range(0, largest_weight), "",
+       "{61: 0.0}", "", range(1, parameter_length)},
       {"NTHU", "number of state weights", 9, ListCount{"THU"}, range(0, 1000), "", "0", ""},
-      {"THU", "weights of states in the step length and norm", 9, &R::state_weights, at_least(0), "", "{1: 0.5}", "",
-       range(1, 1000)},
+      {"THU", "weights of states in the step length and norm", 9, &R::state_weights, range(0, largest_weight), "",
+       "{1: 0.5}", "", range(1, 1000)},
       {"NUZR", "number of user values", 10, ListCount{"UZR"}, range(0, max_list), "", "0", ""},
       {"UZR",
        "values of parameters to locate; index negative: and stop there",

@@ -119,6 +119,19 @@ class SettingsCheck {
   void steps() const {
     if (settings_.adapt_step_every > 0 && settings_.step_max == 0.0)
       refuse_constant("DSMAX", "DSMAX", "'0'", "a finite number > 0 (0 only with IADS = 0)");
+    if (settings_.adapt_step_every > 0 && settings_.step_min > settings_.step_max)
+      refuse_constant("DSMIN", "DSMIN", in_quotes(fmt::format("{}", settings_.step_min)),
+                      fmt::format("0 to DSMAX = {}", settings_.step_max));
+  }
+
+  void measure() const {
+    const int n = settings_.dimension;
+    if (settings_.measure < -n || settings_.measure > 3 * n)
+      refuse_constant(
+          "IPLT", "IPLT", in_quotes(std::to_string(settings_.measure)),
+          fmt::format("an integer from {} to {} (-n to 3n with n = NDIM = {}): 0 L2-norm, k or -k maximum or "
+                      "minimum, n+k integral, 2n+k L2-norm of U(k)",
+                      -n, 3 * n, n));
   }
 
   void weights() const {
@@ -225,6 +238,7 @@ void check_settings(const RunSettings& settings, const PlaceOf& place) {
   check.bounds("RL0", settings.parameter_min, "RL1", settings.parameter_max);
   check.bounds("A0", settings.measure_min, "A1", settings.measure_max);
   check.steps();
+  check.measure();
   check.weights();
   check.user_values();
   check.held_values();

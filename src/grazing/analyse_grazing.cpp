@@ -13,6 +13,7 @@
 #include "plugin/plugin_build.hpp"
 #include "plugin/problem_library.hpp"
 #include "resegment/empty_segments.hpp"
+#include "resegment/section_needed.hpp"
 #include "setup/named_parameters.hpp"
 #include "setup/problem_setup.hpp"
 #include "setup/run_request.hpp"
@@ -87,6 +88,8 @@ void analyse_label(const GrazingRequest& request, std::ostream& screen, std::ost
   if (named_parameters) settings = read_constants_file(constants, nullptr, names_of(system));
   check_settings_against(system, settings, {constants});
   print_warnings(warnings, file.warnings);
+  require_section(solution, settings, system, "the local analysis of grazing", request.problem.value_or(run_path(path)),
+                  path);
 
   const std::string source = fmt::format("label {} of {}", solution.label, path);
   const std::optional<int> jump = request.jump ? std::optional(checked_jump(system, *request.jump)) : std::nullopt;

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "hybrid/checked_function.hpp"
+#include "hybrid/finite_derivatives.hpp"
 #include "hybrid/parameter_vector.hpp"
 #include "text/user_error.hpp"
 
@@ -25,6 +26,23 @@ constexpr double untouched = -7.25e77;        // what the room behind the output
 constexpr int most_faults = 10;               // wrong entries of one function that are listed
 constexpr int many_variables = 16;            // from here on random directions instead of every variable
 
+/// Where roots and angles are likely to have zero arguments, and asin and acos arguments of modulus 1: the problem's
+/// start and zero, and those with one state 0, 1 or -1.
+std::vector<VectorXd> special_states(const HybridSystem& system) {
+  std::vector<VectorXd> states;
+  if (const double* const initial = system.table().initial_state)
+    states.emplace_back(Eigen::Map<const VectorXd>(initial, system.dimension()));
+  states.emplace_back(VectorXd::Zero(system.dimension()));
+  const std::vector<VectorXd> bases = states;
+  for (const VectorXd& base : bases)
+    for (int k = 0; k < system.dimension(); ++k)
+      for (const double value : {0.0, 1.0, -1.0}) {
+        states.push_back(base);
+        states.back()(k) = value;
+      }
+  return states;
+}
+
 /// Keeps the messages of one function: the worst entry, and the first fault of each sort.
 class FunctionChecker {
  public:
@@ -39,6 +57,7 @@ class FunctionChecker {
     check_bounds();  // first: a function that writes too much would spoil memory in what follows
     if (check_.faults.empty()) check_values();
     if (!check_.faults.empty()) return check_;
+    if (system_.table().derivative_order >= 1) note_singular_state();
     if (system_.table().derivative_order >= 1)
       for (const TestPoint& at : evaluable_) check_first(at);
     if (system_.table().derivative_order >= 2)
@@ -110,9 +129,22 @@ class FunctionChecker {
     return out;
   }
 
+  /// Random states miss the zeros of roots: the first special state with a value and no finite derivatives is noted.
+  void note_singular_state() {
+    const bool is_of_states = check_.kind != FunctionKind::integrand;
+    for (const VectorXd& x : is_of_states ? special_states(system_) : std::vector<VectorXd>{}) {
+      const TestPoint at{x, points_.front().par, true};
+      if (has_finite_derivatives(system_, check_.kind, check_.index, at.x.data(), at.par.data())) continue;
+      check_.notes.push_back(no_finite_derivatives(system_, check_.kind, check_.index, at.x));
+      return;
+    }
+  }
+
   void check_first(const TestPoint& at) {
     VectorXd value;
     const MatrixXd derivative = function_.first(at, value);
+    if (!derivative.allFinite() && function_.value(at).allFinite())
+      return add_fault("derivatives", no_finite_derivatives(system_, check_.kind, check_.index, at.x));
     const VectorXd expected = function_.value(at);
     if (!((value - expected).norm() <= consistency_factor * (1.0 + expected.norm())))
       add_fault("value", fmt::format("the value of {} with derivatives differs from its value alone at {}",
@@ -147,6 +179,7 @@ class FunctionChecker {
   }
 
   void check_second(const TestPoint& at) {
+    if (!has_finite_derivatives(system_, check_.kind, check_.index, at.x.data(), at.par.data())) return;
     const int variables = function_.variables();
     const bool every_variable = variables <= many_variables;
     for (int k = 0; k < (every_variable ? variables : 4); ++k)

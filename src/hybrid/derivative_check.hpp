@@ -6,6 +6,8 @@
 ///   - F_x, F_p against extrapolated differences of F;
 ///   - D = F_x v + F_p w against the first derivatives, and D_x, D_p against extrapolated differences of D, along every
 ///     state and parameter (along a few random directions when there are many).
+///   - derivatives that are not finite where the value is: a fault at a given state, a note at special ones (the
+///     problem's start, zero, and those with one state 0, 1 or -1).
 /// An entry is at fault when it differs by more than the differences' own error estimate (times 20) and 1e-8 of the
 /// function's scale.
 #pragma once

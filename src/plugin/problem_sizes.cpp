@@ -40,7 +40,8 @@ ProblemSizes problem_sizes(const RunSettings& settings) {
     sizes.add(segment.index);
     for (const int event : segment.monitor) insert(sizes.events, event);
   }
-  if (keeps_contact(settings.problem_type)) sizes.add_jump(settings.grazing_jump);
+  const bool is_given = settings.grazing_jump != RunSettings{}.grazing_jump;
+  if (keeps_contact(settings.problem_type) || is_given) sizes.add_jump(settings.grazing_jump);
   return sizes;
 }
 

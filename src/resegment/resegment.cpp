@@ -27,6 +27,7 @@
 #include "resegment/lost_contacts.hpp"
 #include "resegment/new_orbit.hpp"
 #include "resegment/new_settings.hpp"
+#include "resegment/section_needed.hpp"
 #include "resegment/segment_list.hpp"
 #include "run/branch_setup.hpp"
 #include "setup/named_parameters.hpp"
@@ -317,6 +318,8 @@ std::vector<std::string> resegment(const ResegmentRequest& asked, std::ostream& 
   const HybridSystem& system = library.system();
   if (named_parameters) labelled.settings = read_constants_file(constants, nullptr, names_of(system));
   check_settings_against(system, labelled.settings, {constants});
+  require_section(labelled.solution, labelled.settings, system, "resegmentation",
+                  problem_arguments(request.problem.value_or(run_path(path))), path);
 
   std::vector<Birth::InnerContact> lost;
   const LabelledOrbit source = without_contacts(request, labelled, system, lost);

@@ -90,12 +90,13 @@ void check_conditions(const HybridSystem& system, const RunSettings& settings, c
 /// The jump that contact would bring, which xi_n is made of on a grazing curve.
 void check_contact_jump(const HybridSystem& system, const RunSettings& settings, const SettingsSource& source,
                         std::vector<std::string>& warnings) {
-  if (!keeps_contact(settings.problem_type)) return;
   const int jumps = system.count(FunctionKind::jump);
-  if (settings.grazing_jump > jumps)
+  const bool is_default = settings.grazing_jump == RunSettings{}.grazing_jump;
+  if (settings.grazing_jump > jumps && (keeps_contact(settings.problem_type) || !is_default))
     throw UserError(fmt::format("{}: GRJUMP is {}, but problem {} has {} jump functions; allowed: 1..{}",
                                 source.of("GRJUMP"), settings.grazing_jump, system.name(), jumps, jumps));
-  if (!settings.test_functions.empty() && is_identity_jump(system, settings.grazing_jump))
+  if (keeps_contact(settings.problem_type) && !settings.test_functions.empty() &&
+      is_identity_jump(system, settings.grazing_jump))
     warnings.push_back(fmt::format(
         "{}: GRJUMP = {} ({}) is the identity, for which there are no xi_n: GCIPSI has no effect; if contact is an "
         "impact, GRJUMP is to name its jump",

@@ -29,6 +29,9 @@ void check_monitor(const RunSettings& settings, int index, const MonitorName& mo
   if (!ring || settings.detect_bifurcations == 0)
     refuse("ICP",
            ring ? "multipliers are not computed with ISP = 0; give ISP another value" : "there are no multipliers");
+  if (monitor.number > settings.dimension)
+    refuse("UZR", fmt::format("the orbit has as many multipliers as states; allowed: multiplier(1) to multiplier({})",
+                              settings.dimension));
   const auto holds = [index](const HeldValue& held) { return held.parameter == index; };
   if (std::any_of(settings.held.begin(), settings.held.end(), holds))
     refuse("HOLD",

@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "hybrid/finite_derivatives.hpp"
 #include "hybrid/parameter_vector.hpp"
 
 namespace tchat {
@@ -142,7 +143,7 @@ struct CvodesFlow::Implementation {
 
   static int jacobian(double, N_Vector at, N_Vector, SUNMatrix out, void* user_data, N_Vector, N_Vector, N_Vector) {
     Implementation& flow = self(user_data);
-    if (!flow.evaluate(at)) return not_evaluable;
+    if (!flow.evaluate(at)) return flow.remember_no_derivatives(at);
     std::copy(flow.fx.data(), flow.fx.data() + flow.fx.size(), SUNDenseMatrix_Data(out));
     return 0;
   }
@@ -150,7 +151,7 @@ struct CvodesFlow::Implementation {
   static int variational_equations(int, double, N_Vector at, N_Vector, N_Vector* s, N_Vector* derivative,
                                    void* user_data, N_Vector, N_Vector) {
     Implementation& flow = self(user_data);
-    if (!flow.evaluate(at)) return not_evaluable;
+    if (!flow.evaluate(at)) return flow.remember_no_derivatives(at);
     for (int c = 0; c < flow.columns; ++c) {
       const Eigen::Map<const VectorXd> column(N_VGetArrayPointer(s[c]), flow.n);
       Eigen::Map<VectorXd> out(N_VGetArrayPointer(derivative[c]), flow.n);
@@ -169,6 +170,12 @@ struct CvodesFlow::Implementation {
     const double* const state = N_VGetArrayPointer(at);
     not_evaluated = fmt::format("{} has no finite value at x = ({:.6g})", system.function_name(kind, index),
                                 fmt::join(state, state + n, ", "));
+  }
+
+  int remember_no_derivatives(N_Vector at) {
+    const double* const state = N_VGetArrayPointer(at);
+    not_evaluated = no_finite_derivatives(system, FunctionKind::field, field, Eigen::Map<const VectorXd>(state, n));
+    return not_evaluable;
   }
 
   const double* dense_output(double t) {

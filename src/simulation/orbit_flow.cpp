@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "hybrid/finite_derivatives.hpp"
 #include "linear_algebra/dense_matrix.hpp"
 #include "text/user_error.hpp"
 
@@ -58,6 +60,12 @@ bool add_segment(const HybridSystem& system, const IndexVector& index, const Vec
     return false;
   }
   const EndPoint end(system, index, flow.end_state, par, options.active);
+  for (const auto& [kind, number_of] : {std::pair(FunctionKind::event, index.event), {FunctionKind::jump, index.jump}})
+    if (!has_finite_derivatives(system, kind, number_of, flow.end_state.data(), par.data())) {
+      map.message =
+          fmt::format("segment {}: {}", number, no_finite_derivatives(system, kind, number_of, flow.end_state));
+      return false;
+    }
   if (!end.is_transversal()) {
     map.message = fmt::format("segment {} ends tangentially to the event surface, the map has no derivative", number);
     return false;

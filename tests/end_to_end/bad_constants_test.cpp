@@ -178,3 +178,34 @@ TEST_CASE("overrides that cannot be") {
     CHECK(contains(outcome.err, "command line"));
   }
 }
+
+TEST_CASE("constants that no run can use are refused with what is allowed") {
+  const Workspace workspace;
+  struct Refused {
+    std::string constant;
+    std::vector<std::string> expected;
+  };
+  // The oscillator has 4 states, 2 jumps; gc.impacting has DSMAX = 0.5.
+  const std::vector<Refused> table{{"UZR={multiplier(9):3}", {"multiplier(9)", "multiplier(1) to multiplier(4)"}},
+                                   {"ICP=[alpha,61,multiplier(5)]", {"multiplier(5)", "multiplier(4)"}},
+                                   {"DSMIN=1", {"DSMIN", "'1'", "0 to DSMAX = 0.5"}},
+                                   {"IPLT=13", {"IPLT", "'13'", "-4 to 12"}},
+                                   {"IPLT=-5", {"IPLT", "'-5'", "-4 to 12"}},
+                                   {"GRJUMP=9", {"GRJUMP", "9", "1..2"}},
+                                   {"THL={1:1e300}", {"THL", "1e300", "from 0 to 1000000000000000"}},
+                                   {"THU={1:1e300}", {"THU", "1e300", "from 0 to 1000000000000000"}}};
+  for (const Refused& refused : table) {
+    INFO(refused.constant);
+    check_refused(workspace.tchat(
+                      {"run", "linosc", "-c", "impacting", "-d", "impacting", "-o", "none", "NMX=2", refused.constant}),
+                  refused.expected);
+    CHECK_FALSE(workspace.has("p.none"));
+  }
+  for (const char* const allowed : {"IPLT=12", "IPLT=-4", "DSMIN=0.5", "GRJUMP=2", "UZR={multiplier(4):3}"}) {
+    INFO(allowed);
+    CHECK(workspace
+              .tchat({"run", "linosc", "-c", "impacting", "-d", "impacting", "-o", "some", "NMX=2", "NTST=10", "A0=-10",
+                      allowed})
+              .status == 0);
+  }
+}

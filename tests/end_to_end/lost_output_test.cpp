@@ -82,10 +82,13 @@ TEST_CASE("a label that leaves no room for further ones is refused") {
   }
 }
 
-TEST_CASE("IPLT of any size") {
+TEST_CASE("IPLT of any size is refused or has its column") {
   const Workspace workspace;
-  const Outcome outcome = workspace.tchat(few_points + " IPLT=-2147483647");
-  CHECK(outcome.status == 0);
+  for (const char* const measure : {"2147483647", "-2147483647", "-2147483648"}) {
+    const Outcome outcome = workspace.tchat(few_points + " IPLT=" + measure);
+    CHECK(outcome.status == 2);
+    CHECK(outcome.err.find("IPLT") != std::string::npos);
+  }
+  CHECK(workspace.tchat(few_points + " IPLT=0").status == 0);
   CHECK(workspace.points("branch").front().names[1] == "L2-NORM");
-  CHECK(workspace.tchat(few_points + " IPLT=-2147483648").status == 2);
 }
