@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <string_view>
 
 namespace tchat {
@@ -46,10 +47,7 @@ class LineWriter {
     }
   }
   /// The line so far, and the rest of it as it is.
-  std::string finished(const std::string& rest) {
-    text_ += rest;
-    return fmt::format("{} {:016x}\n", text_, line_hash(text_));
-  }
+  std::string finished(const std::string& rest) const { return hashed_line(text_ + rest); }
 
  private:
   std::string text_;
@@ -102,17 +100,23 @@ class LineReader {
     for (double& value : values.reshaped()) value = number();
     return values;
   }
+  /// An integer that no array is as long as is as good as damage.
+  int small_integer() {
+    const long value = integer();
+    if (value < std::numeric_limits<int>::min() || value > std::numeric_limits<int>::max()) ok_ = false;
+    return ok_ ? static_cast<int>(value) : 0;
+  }
   std::vector<int> integers() {
     std::vector<int> values(static_cast<std::size_t>(size()));
-    for (int& value : values) value = static_cast<int>(integer());
+    for (int& value : values) value = small_integer();
     return values;
   }
   std::vector<IndexVector> index_vectors() {
     std::vector<IndexVector> values(static_cast<std::size_t>(size()));
     for (IndexVector& v : values) {
-      v.field = static_cast<int>(integer());
-      v.event = static_cast<int>(integer());
-      v.jump = static_cast<int>(integer());
+      v.field = small_integer();
+      v.event = small_integer();
+      v.jump = small_integer();
     }
     return values;
   }
@@ -130,6 +134,8 @@ std::string one_line(std::string text) {
 }
 
 }  // namespace
+
+std::string hashed_line(const std::string& text) { return fmt::format("{} {:016x}\n", text, line_hash(text)); }
 
 std::string record_line(const SampleRecord& record) {
   const AttractorSample& sample = record.sample;
@@ -163,12 +169,12 @@ std::optional<SampleRecord> read_record(const std::string& line) {
   SampleRecord record;
   AttractorSample& sample = record.sample;
   record.index = static_cast<std::size_t>(reader.integer());
-  record.start = static_cast<int>(reader.integer());
-  sample.known = static_cast<int>(reader.integer());
+  record.start = reader.small_integer();
+  sample.known = reader.small_integer();
   const std::optional<AttractorKind> kind = attractor_kind(reader.word());
   sample.signature = reader.index_vectors();
   sample.period = reader.number();
-  sample.impacts = static_cast<int>(reader.integer());
+  sample.impacts = reader.small_integer();
   sample.penetration = reader.number();
   sample.exponents = reader.vector();
   sample.errors = reader.vector();

@@ -15,6 +15,8 @@ struct SampleRecord {
   AttractorSample sample;
 };
 
+/// `text` with its hash behind it and a newline: a line of a journal.
+std::string hashed_line(const std::string& text);
 /// Ends in a hash of the line and a newline.
 std::string record_line(const SampleRecord& record);
 /// Nothing for a line that is damaged or cut.

@@ -77,9 +77,6 @@ std::string duration_text(double seconds) {
 
 using RecordKey = std::pair<std::size_t, int>;
 
-/// start 0 in a journal: a known attractor, its number as index; behind the last one an empty record.
-constexpr int of_known = 0;
-
 /// The values of one part, or of all, on their way into the journal.
 class Computation {
  public:
@@ -89,19 +86,13 @@ class Computation {
     for (int worker = 0; worker < task.workers; ++worker) functions_.push_back(job.maker(worker));
   }
 
-  /// What a journal held. True when the known attractors are among it.
+  /// What a journal held.
   void take(std::vector<SampleRecord> records) {
-    for (SampleRecord& record : records) {
-      if (record.start != of_known) {
-        records_.emplace(RecordKey{record.index, record.start}, std::move(record));
-      } else if (record.sample.kind == AttractorKind::none) {
-        knows_ = true;
-      } else {
-        if (record.index == 1) known_.clear();  // of a search that did not end
-        known_.push_back(std::move(record.sample));
-      }
+    if (std::optional<std::vector<AttractorSample>> known = take_known(records)) {
+      knows_ = true;
+      known_ = std::move(*known);
     }
-    if (!knows_) known_.clear();
+    for (SampleRecord& record : records) records_.emplace(RecordKey{record.index, record.start}, std::move(record));
     kept_ = records_.size();
   }
 
@@ -146,8 +137,8 @@ class Computation {
     std::vector<SampleRecord> records;
     for (auto& [key, record] : first) records.push_back(std::move(record));
     known_ = distinct_attractors(records);
-    for (std::size_t k = 0; k < known_.size(); ++k) journal.add({k + 1, of_known, known_[k]});
-    journal.add({known_.size() + 1, of_known, {}});
+    for (std::size_t k = 0; k < known_.size(); ++k) journal.add({k + 1, start_of_known, known_[k]});
+    journal.add({known_.size() + 1, start_of_known, {}});
     return true;
   }
 
@@ -359,8 +350,8 @@ void write_part(const SweepJob& job, const SweepTask& task, const std::vector<Sa
                 const std::vector<AttractorSample>& known, SweepOutcome& outcome) {
   ReplacedFile file(part_path(task.output, task.part));
   std::string text = journal_heading(with_part(job, task.part, task.parts));
-  for (std::size_t k = 0; k < known.size(); ++k) text += record_line({k + 1, of_known, known[k]});
-  if (job.first_values > 0) text += record_line({known.size() + 1, of_known, {}});
+  for (std::size_t k = 0; k < known.size(); ++k) text += record_line({k + 1, start_of_known, known[k]});
+  if (job.first_values > 0) text += record_line({known.size() + 1, start_of_known, {}});
   for (const SampleRecord& record : records) {
     text += record_line(record);
     if (text.size() < block) continue;
@@ -389,77 +380,108 @@ std::set<int> part_numbers(const std::string& output) {
 }
 
 /// N of "I of N" at the end of a part's identity.
-int parts_of(const std::string& path, const SweepIdentity& identity) {
+int parts_of(const std::string& path, int part, const SweepIdentity& identity) {
   if (!identity.empty() && identity.back().first == "part") {
     const std::string& text = identity.back().second;
     if (const std::size_t of = text.find(" of "); of != std::string::npos)
-      if (const std::optional<int> parts = parse_integer(text.substr(of + 4))) return *parts;
+      if (const std::optional<int> parts = parse_integer(text.substr(of + 4));
+          parts && *parts >= part && *parts <= most_parts)
+        return *parts;
   }
   throw UserError(fmt::format("{}: it is no part of a sweep; remove it, or make parts with --part I/N", path));
 }
+
+std::set<RecordKey> values_of_part(const std::vector<Unit>& units, int part, int parts) {
+  std::set<RecordKey> values;
+  for (auto u = static_cast<std::size_t>(part) - 1; u < units.size(); u += static_cast<std::size_t>(parts))
+    values.insert(units[u].values.begin(), units[u].values.end());
+  return values;
+}
+
+RecordLimits limits_of(const SweepJob& job) {
+  RecordLimits limits = job.limits;
+  limits.values = SweepGrid(job.heading.over).size();
+  limits.starts = static_cast<int>(job.following.size());
+  return limits;
+}
+
+[[noreturn]] void refuse_missing(const std::vector<int>& missing, int parts, const std::string& command) {
+  constexpr std::size_t most_named = 20;
+  std::string text;
+  for (std::size_t k = 0; k < std::min(missing.size(), most_named); ++k)
+    text += fmt::format("\n  {} --part {}/{}", command, missing[k], parts);
+  if (missing.size() > most_named) text += fmt::format("\n  and {} more", missing.size() - most_named);
+  throw UserError(fmt::format("{} of {} parts are missing; these commands make them:{}", missing.size(), parts, text));
+}
+
+/// Parts that have been read and found to belong to one sweep.
+class Gathering {
+ public:
+  Gathering(const SweepJob& job, const SweepTask& task)
+      : job_(job), task_(task), units_(units_of(job, SweepGrid(job.heading.over))) {}
+
+  void add(int part) {
+    const std::string path = part_path(task_.output, part);
+    JournalContents contents = read_journal(path);
+    if (parts_ == 0) parts_ = parts_of(path, part, contents.identity);
+    if (const std::string what = difference(contents.identity, with_part(job_, part, parts_)); !what.empty())
+      throw UserError(
+          fmt::format("{} is a part of another sweep: {}; give the command that made it with --gather, or "
+                      "make the part again",
+                      path, what));
+    const std::string again = fmt::format("{} --part {}/{}", task_.command, part, parts_);
+    check_records(contents, limits_of(job_), path, fmt::format("Make it again: {}", again));
+    std::vector<AttractorSample> known = take_known(contents.records).value_or(std::vector<AttractorSample>{});
+    const std::set<RecordKey> expected = values_of_part(units_, part, parts_);
+    std::size_t values = 0;
+    for (SampleRecord& record : contents.records) {
+      const RecordKey key{record.index, record.start};
+      if (expected.contains(key) && records_.emplace(key, std::move(record)).second) ++values;
+    }
+    if (values != expected.size())
+      throw UserError(fmt::format("{}: it holds {} of {} values, for it was cut or damaged; make it again: {}", path,
+                                  values, expected.size(), again));
+    if (known_ && known_->size() != known.size())
+      throw UserError(fmt::format("{}: it has {} known attractors, and the parts before it {}; make it again: {}", path,
+                                  known.size(), known_->size(), again));
+    if (!known_) known_ = std::move(known);
+  }
+
+  /// N; 0 as long as there is none.
+  int parts() const { return parts_; }
+  std::vector<SampleRecord> take_records() {
+    std::vector<SampleRecord> sorted;
+    for (auto& [key, record] : records_) sorted.push_back(std::move(record));
+    return sorted;
+  }
+  const std::vector<AttractorSample>& known() const { return *known_; }
+
+ private:
+  const SweepJob& job_;
+  const SweepTask& task_;
+  std::vector<Unit> units_;
+  int parts_ = 0;
+  std::map<RecordKey, SampleRecord> records_;
+  std::optional<std::vector<AttractorSample>> known_;
+};
 
 SweepOutcome gather(const SweepJob& job, const SweepTask& task) {
   const std::set<int> there = part_numbers(task.output);
   if (there.empty())
     throw UserError(fmt::format("there is no part {} to gather; `{} --part 1/N` to `--part N/N` make N of them",
                                 part_path(task.output, 1), task.command));
-  SweepOutcome outcome;
-  std::map<RecordKey, SampleRecord> records;
-  std::vector<AttractorSample> known;
-  int parts = 0;
+  Gathering gathering(job, task);
+  for (const int part : there)
+    if (gathering.parts() == 0 || part <= gathering.parts()) gathering.add(part);
   std::vector<int> missing;
-  for (int part = *there.begin(); parts == 0 || part <= parts; ++part) {
-    const std::string path = part_path(task.output, part);
-    if (!there.contains(part)) {
-      missing.push_back(part);
-      continue;
-    }
-    JournalContents contents = read_journal(path);
-    if (parts == 0) {
-      parts = parts_of(path, contents.identity);
-      for (int before = 1; before < part; ++before) missing.push_back(before);
-    }
-    if (const std::string what = difference(contents.identity, with_part(job, part, parts)); !what.empty())
-      throw UserError(
-          fmt::format("{} is a part of another sweep: {}; give the command that made it with --gather, or "
-                      "make the part again",
-                      path, what));
-    const std::size_t expected = [&] {
-      SweepTask own = task;
-      own.part = part;
-      own.parts = parts;
-      std::size_t values = 0;
-      for (const Unit& unit : units_of_part(units_of(job, SweepGrid(job.heading.over)), own))
-        values += unit.values.size();
-      return values;
-    }();
-    std::vector<AttractorSample> of_part;
-    std::size_t values = 0;
-    for (SampleRecord& record : contents.records) {
-      if (record.start == of_known) {
-        if (record.sample.kind != AttractorKind::none) of_part.push_back(std::move(record.sample));
-        continue;
-      }
-      ++values;
-      records.emplace(RecordKey{record.index, record.start}, std::move(record));
-    }
-    if (values != expected)
-      throw UserError(
-          fmt::format("{}: it holds {} of {} values, for it was cut or damaged; make it again: {} --part {}/{}", path,
-                      values, expected, task.command, part, parts));
-    if (known.empty()) known = std::move(of_part);
-  }
-  if (!missing.empty()) {
-    std::string commands;
-    for (const int part : missing) commands += fmt::format("\n  {} --part {}/{}", task.command, part, parts);
-    throw UserError(
-        fmt::format("{} of {} parts are missing; these commands make them:{}", missing.size(), parts, commands));
-  }
-  std::vector<SampleRecord> sorted;
-  for (auto& [key, record] : records) sorted.push_back(std::move(record));
-  outcome.values = sorted.size();
-  outcome.kept = sorted.size();
-  write_table(job, task, sorted, known, outcome);
+  for (int part = 1; part <= gathering.parts(); ++part)
+    if (!there.contains(part)) missing.push_back(part);
+  if (!missing.empty()) refuse_missing(missing, gathering.parts(), task.command);
+  SweepOutcome outcome;
+  const std::vector<SampleRecord> records = gathering.take_records();
+  outcome.values = records.size();
+  outcome.kept = records.size();
+  write_table(job, task, records, gathering.known(), outcome);
   outcome.is_complete = true;
   return outcome;
 }
@@ -474,8 +496,8 @@ SweepOutcome run_sweep(const SweepJob& job, const SweepTask& task, const std::fu
   if (task.gather) return gather(job, task);
 
   const std::string journal_path = result + ".journal";
-  if (task.fresh) fs::remove(journal_path);
-  SweepJournal journal(journal_path, with_part(job, task.part, task.parts));
+  if (std::error_code error; task.fresh) fs::remove(journal_path, error);
+  SweepJournal journal(journal_path, with_part(job, task.part, task.parts), limits_of(job));
   Computation computation(job, task, interrupted, progress);
   computation.take(journal.take_records());
   if (computation.kept() > 0)

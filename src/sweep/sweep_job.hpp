@@ -38,6 +38,7 @@ struct SweepJob {
   std::vector<Following> following;  ///< of each start, 1, 2, ...
   SweepColumns columns;
   SweepIdentity identity;  ///< what the results depend on
+  RecordLimits limits;     ///< of what journals and parts may hold: dimension and functions of the problem
   SampleMaker maker;
   /// Values, not more than there are, that are computed first, all the way, to learn which attractors there are; 0
   /// none.
@@ -46,6 +47,9 @@ struct SweepJob {
   /// `known`.
   std::function<void(const std::vector<AttractorSample>& known)> learn;
 };
+
+/// Into so many parts a sweep can be cut at most.
+inline constexpr int most_parts = 100'000;
 
 struct SweepTask {
   std::string output;  ///< O

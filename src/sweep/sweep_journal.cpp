@@ -6,6 +6,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 
 #include "text/text_file.hpp"
 #include "text/user_error.hpp"
@@ -26,6 +27,28 @@ bool take_line(const std::string& text, std::size_t& at, std::string& line) {
   return true;
 }
 
+/// How many attractors take_known gives; none where the search for them did not come to its end.
+int known_count(const std::vector<SampleRecord>& records) {
+  int count = 0;
+  bool is_complete = false;
+  for (const SampleRecord& record : records) {
+    if (record.start != start_of_known) continue;
+    is_complete = record.sample.kind == AttractorKind::none;
+    if (!is_complete) count = record.index == 1 ? 1 : count + 1;
+  }
+  return is_complete ? count : 0;
+}
+
+/// Whoever may write in the folder could have another file of ours written through a link.
+void refuse_link(const std::string& path) {
+  std::error_code error;
+  if (!std::filesystem::is_symlink(std::filesystem::symlink_status(path, error))) return;
+  throw UserError(fmt::format(
+      "{}: this is a symbolic link, and a journal is not written through links.\n  Remove it (rm {}), or give another "
+      "name with -o.",
+      path, path));
+}
+
 [[noreturn]] void fail(const std::string& path, const char* what) {
   throw ComputationError(fmt::format("{}: {}: {}", path, what, std::strerror(errno)));
 }
@@ -38,33 +61,68 @@ std::string journal_heading(const SweepIdentity& identity) {
   return text + heading_end + "\n";
 }
 
-JournalContents read_journal(const std::string& path) {
+JournalContents parse_journal(const std::string& text, const std::string& path) {
   JournalContents contents;
-  const std::optional<std::string> text = read_text_if_there(path, "journal of a sweep");
-  if (!text) return contents;
   std::size_t at = 0;
   std::string line;
-  if (!text->empty() && !text->starts_with(std::string(journal_line).substr(0, text->size())))
+  if (!text.empty() && !text.starts_with(std::string(journal_line).substr(0, text.size())))
     throw UserError(
         fmt::format("{}: this is no journal or part of a sweep of this version of tchat; give another name "
                     "with -o, or remove it",
                     path));
-  if (!take_line(*text, at, line)) return contents;
-  while (take_line(*text, at, line) && line != heading_end) {
+  if (!take_line(text, at, line)) return contents;
+  contents.first_line = 2;
+  for (; take_line(text, at, line) && line != heading_end; ++contents.first_line) {
     const std::size_t blank = line.find(' ', 2);
     if (!line.starts_with("# ") || blank == std::string::npos) return contents;
     contents.identity.emplace_back(line.substr(2, blank - 2), line.substr(blank + 1));
   }
   if (line != heading_end) return contents;
+  ++contents.first_line;
   contents.is_there = true;
   contents.whole = at;
-  while (take_line(*text, at, line)) {
+  while (take_line(text, at, line)) {
     std::optional<SampleRecord> record = read_record(line);
     if (!record) break;
     contents.records.push_back(std::move(*record));
     contents.whole = at;
   }
   return contents;
+}
+
+JournalContents read_journal(const std::string& path) {
+  std::error_code error;
+  const auto status = std::filesystem::status(path, error);
+  if (!std::filesystem::exists(status)) return {};
+  if (!std::filesystem::is_regular_file(status))
+    throw UserError(
+        fmt::format("{}: this is no file, as a journal or part of a sweep is; remove it: rm {}", path, path));
+  const std::optional<std::string> text = read_text_if_there(path, "journal of a sweep");
+  return text ? parse_journal(*text, path) : JournalContents{};
+}
+
+void check_records(const JournalContents& contents, RecordLimits limits, const std::string& path,
+                   const std::string& cure) {
+  limits.known = known_count(contents.records);
+  for (std::size_t r = 0; r < contents.records.size(); ++r)
+    if (const std::string fault = fault_of(contents.records[r], limits); !fault.empty())
+      throw UserError(fmt::format("{}:{}: {}.\n  The file has been changed since tchat wrote it. {}", path,
+                                  contents.first_line + r, fault, cure));
+}
+
+std::optional<std::vector<AttractorSample>> take_known(std::vector<SampleRecord>& records) {
+  std::vector<AttractorSample> known;
+  bool is_complete = false;
+  for (SampleRecord& record : records) {
+    if (record.start != start_of_known) continue;
+    is_complete = record.sample.kind == AttractorKind::none;
+    if (is_complete) continue;
+    if (record.index == 1) known.clear();  // of a search that did not end
+    known.push_back(std::move(record.sample));
+  }
+  std::erase_if(records, [](const SampleRecord& record) { return record.start == start_of_known; });
+  if (!is_complete) return std::nullopt;
+  return known;
 }
 
 std::string difference(const SweepIdentity& there, const SweepIdentity& here) {
@@ -80,7 +138,9 @@ std::string difference(const SweepIdentity& there, const SweepIdentity& here) {
   return "";
 }
 
-SweepJournal::SweepJournal(std::string path, const SweepIdentity& identity) : path_(std::move(path)) {
+SweepJournal::SweepJournal(std::string path, const SweepIdentity& identity, const RecordLimits& limits)
+    : path_(std::move(path)) {
+  refuse_link(path_);
   JournalContents contents = read_journal(path_);
   if (contents.is_there && contents.records.empty()) contents = {};
   if (contents.is_there)
@@ -89,7 +149,9 @@ SweepJournal::SweepJournal(std::string path, const SweepIdentity& identity) : pa
           "{} holds {} computed values of another sweep: {}; give that command to go on with it, another name with "
           "-o, or --fresh to throw them away",
           path_, contents.records.size(), what));
-  descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
+  check_records(contents, limits, path_, fmt::format("Remove it, and give the command again: rm {}", path_));
+  descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0666);
+  if (descriptor_ < 0 && errno == ELOOP) refuse_link(path_);
   if (descriptor_ < 0) fail(path_, "it cannot be written");
   if (::ftruncate(descriptor_, static_cast<off_t>(contents.whole)) != 0) fail(path_, "it cannot be cut");
   if (::lseek(descriptor_, 0, SEEK_END) < 0) fail(path_, "it cannot be written");

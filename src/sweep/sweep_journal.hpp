@@ -7,10 +7,12 @@
 ///     0 1 ...                sample_record.hpp
 #pragma once
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "sweep/record_limits.hpp"
 #include "sweep/sample_record.hpp"
 
 namespace tchat {
@@ -25,20 +27,35 @@ struct JournalContents {
   bool is_there = false;  ///< with a whole heading
   SweepIdentity identity;
   std::vector<SampleRecord> records;
-  std::size_t whole = 0;  ///< bytes up to the end of the last good line
+  std::size_t first_line = 0;  ///< number of the line of the first record, from 1; the others follow it
+  std::size_t whole = 0;       ///< bytes up to the end of the last good line
 };
 
-/// A journal or a part. Lines behind a damaged one do not count. Throws ComputationError when the device fails, and
-/// UserError for a file that is no journal.
+/// A journal or a part from its text. Lines behind a damaged one do not count. The numbers in records have not been
+/// compared with any sweep (record_limits.hpp). Throws UserError for a text that is no journal; `path` is its name.
+JournalContents parse_journal(const std::string& text, const std::string& path);
+
+/// The same of a file; nothing is there when the file is missing. Throws ComputationError when the device fails, and
+/// UserError also for what is no regular file.
 JournalContents read_journal(const std::string& path);
+
+/// Throws UserError with file, line and `cure` where a record has a number that is out of range. The number of known
+/// attractors is that of the contents themselves.
+void check_records(const JournalContents& contents, RecordLimits limits, const std::string& path,
+                   const std::string& cure);
+
+/// The attractors that the first values have found, taken out of the records; nothing when the search for them did not
+/// come to its end.
+std::optional<std::vector<AttractorSample>> take_known(std::vector<SampleRecord>& records);
 
 /// "" or what differs, for people: "tolerance is 1e-10 there and 1e-08 here".
 std::string difference(const SweepIdentity& there, const SweepIdentity& here);
 
 class SweepJournal {
  public:
-  /// Opens it, or makes it. Throws UserError when it belongs to another sweep.
-  SweepJournal(std::string path, const SweepIdentity& identity);
+  /// Opens it, or makes it, never through a symbolic link. Throws UserError when it belongs to another sweep, or when
+  /// it holds what `limits` (but for `known`, which it sets itself) do not allow.
+  SweepJournal(std::string path, const SweepIdentity& identity, const RecordLimits& limits);
   ~SweepJournal();
   SweepJournal(const SweepJournal&) = delete;
   SweepJournal& operator=(const SweepJournal&) = delete;

@@ -26,6 +26,11 @@ void read_part(const std::string& text, SweepTask& task) {
   const auto parts = slash == std::string::npos ? std::nullopt : parse_integer(text.substr(slash + 1));
   if (!part || !parts || *part < 1 || *part > *parts)
     throw UserError(fmt::format("--part {}: it is no part I of N, 1 <= I <= N; an example is --part 3/7", text));
+  if (*parts > most_parts)
+    throw UserError(
+        fmt::format("--part {}: a sweep is cut into at most {} parts, and {} are given; an example is "
+                    "--part 1/{}",
+                    text, most_parts, *parts, most_parts));
   task.part = *part;
   task.parts = *parts;
 }
@@ -76,6 +81,7 @@ std::vector<Following> follow_directions(const std::string& follow) {
 void fill_heading(const HybridSystem& system, const std::vector<SweepTarget>& over, const VectorXd& par,
                   SweepJob& job) {
   job.heading.problem = system.name();
+  job.limits = RecordLimits::of(system);
   for (const SweepTarget& target : over) job.heading.over.push_back(target.quantity);
   for (int k = 1; k <= system.parameters(); ++k) {
     const bool is_swept = std::any_of(over.begin(), over.end(), [k](const SweepTarget& target) {

@@ -1,17 +1,18 @@
 #include "sweep/sweep_workers.hpp"
 
-#include <tbb/blocked_range.h>
-#include <tbb/global_control.h>
-#include <tbb/parallel_for.h>
-#include <tbb/partitioner.h>
-#include <tbb/task_arena.h>
+#include <fmt/format.h>
+#include <pthread.h>
 
+#include <algorithm>
 #include <chrono>
 #include <condition_variable>
+#include <cstring>
 #include <exception>
 #include <mutex>
+#include <vector>
 
 #include "plugin/exit_guard.hpp"
+#include "text/user_error.hpp"
 
 namespace tchat {
 
@@ -19,60 +20,111 @@ namespace {
 
 constexpr std::size_t worker_stack = 8 << 20;  // as much as a program's first thread usually has
 
-void give_signal_stack() {
-  static thread_local const SignalStack stack;
-  static_cast<void>(stack);
+/// What the threads share.
+struct Team {
+  explicit Team(const SweepWork& what) : work(what) {}
+
+  /// Tasks one after the other, for as long as there are any.
+  void do_tasks(int worker) {
+    try {
+      const SignalStack signals;
+      for (std::size_t task = next++; task < work.tasks && !stop; task = next++) work.work(task, worker, stop);
+    } catch (...) {
+      const std::lock_guard lock(mutex);
+      if (!thrown) thrown = std::current_exception();
+      stop = true;
+    }
+    const std::lock_guard lock(mutex);
+    --running;
+    ended.notify_all();
+  }
+
+  const SweepWork& work;
+  std::atomic<bool> stop = false;
+  std::atomic<std::size_t> next = 0;
+  std::mutex mutex;
+  std::condition_variable ended;
+  int running = 0;
+  std::exception_ptr thrown;
+};
+
+/// One worker's number in its team, for the thread that is it.
+struct Member {
+  Team* team;
+  int worker;
+};
+
+extern "C" void* run_member(void* member) {
+  const auto* const self = static_cast<const Member*>(member);
+  self->team->do_tasks(self->worker);
+  return nullptr;
+}
+
+/// Joins its threads at the end, which stop early when not all of them could be started.
+class Threads {
+ public:
+  Threads(Team& team, int count) : members_(static_cast<std::size_t>(count)) {
+    team.running = count;
+    pthread_attr_t attributes;
+    pthread_attr_init(&attributes);
+    pthread_attr_setstacksize(&attributes, worker_stack);
+    int error = 0;
+    for (int worker = 0; worker < count && error == 0; ++worker) {
+      Member& member = members_[static_cast<std::size_t>(worker)];
+      member = {&team, worker};
+      pthread_t thread{};
+      error = pthread_create(&thread, &attributes, &run_member, &member);
+      if (error == 0) started_.push_back(thread);
+    }
+    pthread_attr_destroy(&attributes);
+    if (error == 0) return;
+    team.stop = true;
+    join();
+    throw ComputationError(
+        fmt::format("only {} of {} threads can be started ({}).\n"
+                    "  Use fewer workers (-j {}), or raise the limits on threads and memory (ulimit -u, ulimit -v).",
+                    started_.size(), count, std::strerror(error), std::max<std::size_t>(1, started_.size() / 2)));
+  }
+  ~Threads() { join(); }
+  Threads(const Threads&) = delete;
+  Threads& operator=(const Threads&) = delete;
+
+ private:
+  void join() {
+    for (; joined_ < started_.size(); ++joined_) pthread_join(started_[joined_], nullptr);
+  }
+
+  std::vector<Member> members_;
+  std::vector<pthread_t> started_;
+  std::size_t joined_ = 0;
+};
+
+/// Calls `meanwhile` ten times a second and at the end.
+void wait_for(Team& team) {
+  std::unique_lock lock(team.mutex);
+  const auto is_done = [&team] { return team.running == 0; };
+  while (!is_done()) {
+    team.ended.wait_for(lock, std::chrono::milliseconds(100), is_done);
+    lock.unlock();
+    if (team.work.meanwhile()) team.stop = true;
+    lock.lock();
+  }
 }
 
 }  // namespace
 
 void run_workers(int workers, const SweepWork& work) {
-  const auto allowed = static_cast<std::size_t>(workers) + 1;  // the calling thread counts, and does none of the work
-  const tbb::global_control threads(tbb::global_control::max_allowed_parallelism, allowed);
-  const tbb::global_control stack(tbb::global_control::thread_stack_size, worker_stack);
-  std::atomic<bool> stop = false;
-  std::atomic<std::size_t> next = 0;
-  std::mutex mutex;
-  std::condition_variable ended;
-  bool is_done = false;
-  std::exception_ptr thrown;
-
-  tbb::task_arena arena(workers, 0);
-  arena.enqueue([&] {
-    try {
-      // A worker is a task that takes one after the other, for as long as there are any: its number is its own, however
-      // many threads there are.
-      tbb::parallel_for(
-          tbb::blocked_range<int>(0, workers, 1),
-          [&](const tbb::blocked_range<int>& numbers) {
-            give_signal_stack();
-            for (int worker = numbers.begin(); worker < numbers.end(); ++worker)
-              for (std::size_t task = next++; task < work.tasks && !stop; task = next++) work.work(task, worker, stop);
-          },
-          tbb::simple_partitioner());
-    } catch (...) {
-      thrown = std::current_exception();
-      stop = true;
-    }
-    const std::lock_guard lock(mutex);
-    is_done = true;
-    ended.notify_all();
-  });
-  std::unique_lock lock(mutex);
-  while (!is_done) {
-    ended.wait_for(lock, std::chrono::milliseconds(100), [&] { return is_done; });
-    lock.unlock();
-    try {
-      if (work.meanwhile()) stop = true;
-    } catch (...) {
-      stop = true;
-      lock.lock();
-      ended.wait(lock, [&] { return is_done; });
-      throw;
-    }
-    lock.lock();
+  Team team(work);
+  const auto count =
+      static_cast<int>(std::min(static_cast<std::size_t>(workers), std::max<std::size_t>(1, work.tasks)));
+  const Threads threads(team, count);
+  try {
+    wait_for(team);
+  } catch (...) {
+    team.stop = true;
+    throw;
   }
-  if (thrown) std::rethrow_exception(thrown);
+  if (team.thrown) std::rethrow_exception(team.thrown);
 }
 
 }  // namespace tchat

@@ -44,3 +44,13 @@ TEST_CASE("no memory is a sentence with status 1, in labels, constants and run")
     if (arguments.starts_with("run")) CHECK(failures > 3);
   }
 }
+
+TEST_CASE("threads that cannot be started are no fault of the plugin") {
+  const Workspace workspace;
+  // 999 stacks of 8 MB do not fit into 3 GB.
+  const Outcome outcome = workspace.tchat_in_memory(3'000'000, "sweep linosc --over alpha=2:6:2000 -j 999");
+  CHECK(outcome.status == 1);
+  CHECK(contains(outcome.err, "of 999 threads can be started"));
+  CHECK(contains(outcome.err, "(-j "));
+  CHECK_FALSE(contains(outcome.err, "plugin"));
+}
