@@ -20,6 +20,7 @@ namespace {
 
 constexpr const char* first_line = "# tchat sweep of ";
 constexpr const char* part_line = "# tchat sweep journal";
+constexpr long most_values_of_file = 10'000'000;  // parse_overs allows no more
 
 /// Reads the lines of one file; knows where it is for messages.
 class SweepReader {
@@ -71,6 +72,21 @@ class SweepReader {
     return value;
   }
 
+  /// A whole number that something is counted or found by.
+  long whole(std::string_view word, const char* what, long least, long most) const {
+    const double value = number(word);
+    if (value >= static_cast<double>(least) && value <= static_cast<double>(most) && value == std::floor(value))
+      return static_cast<long>(value);
+    fault(fmt::format("{} is {}, a whole number from {} to {} is needed", what, in_quotes(word), least, most));
+  }
+
+  /// Of the sweep, by its heading.
+  long values() const {
+    long all = 1;
+    for (const SweptQuantity& quantity : table_.over) all *= quantity.count;
+    return all;
+  }
+
   /// What follows `key` in a heading line up to the next ", " (or its end); nothing when the key is not there.
   static std::optional<std::string_view> after(std::string_view line, std::string_view key, std::string_view end) {
     const std::size_t at = line.find(key);
@@ -90,7 +106,7 @@ class SweepReader {
       quantity.name = needed(line, " over ", " from ");
       quantity.from = number(needed(line, " from ", " to "));
       quantity.to = number(needed(line, " to ", ", "));
-      quantity.count = static_cast<long>(number(needed(line, ", ", " values")));
+      quantity.count = whole(needed(line, ", ", " values"), "the number of values", 1, most_values_of_file / values());
       quantity.is_state = line.ends_with(", initial state");
       table_.over.push_back(quantity);
     } else if (line.starts_with(" PAR ")) {
@@ -104,15 +120,19 @@ class SweepReader {
 
   void read_attractor(std::string_view line) {
     SweepAttractor attractor;
-    attractor.number = static_cast<int>(number(needed(line, " attractor ", ": ")));
+    attractor.number = static_cast<int>(
+        whole(needed(line, " attractor ", ": "), "the number of an attractor", 1, std::numeric_limits<int>::max()));
     const std::optional<AttractorKind> kind = attractor_kind(std::string(needed(line, ": ", ", ")));
     if (!kind) fault("the kind of an attractor is unknown");
     attractor.kind = *kind;
     if (const auto signature = after(line, "signature {", "}")) attractor.signature = fmt::format("{{{}}}", *signature);
-    if (const auto impacts = after(line, ", impacts ", ", ")) attractor.impacts = static_cast<int>(number(*impacts));
+    if (const auto impacts = after(line, ", impacts ", ", "))
+      attractor.impacts =
+          static_cast<int>(whole(*impacts, "the number of impacts", 0, std::numeric_limits<int>::max()));
     const auto period = after(line, ", period ", ", ");
     attractor.period = period ? number(*period) : std::numeric_limits<double>::quiet_NaN();
-    attractor.index = static_cast<std::size_t>(number(needed(line, ", index ", ", ")));
+    attractor.index =
+        static_cast<std::size_t>(whole(needed(line, ", index ", ", "), "the index of an attractor", 0, values() - 1));
     if (const auto mode = after(line, ", mode ", ", ")) attractor.mode = *mode;
     if (const auto state = after(line, ", state ", "\n")) {
       std::vector<double> values;
@@ -145,6 +165,7 @@ class SweepReader {
     std::size_t column = 0;
     for (std::size_t i = 0; i < words_; ++i) {
       if (i != *kind_) {
+        if (column == 0) whole(words[i], "the index", 0, values() - 1);
         table_.columns[column++].push_back(number(words[i]));
         continue;
       }

@@ -99,6 +99,13 @@ TEST_CASE("files that are no sweep, or damaged, are refused with their line") {
   says(replaced("1 1 periodic", "1 1 periodical"), "a.sweep:9: 'periodical' is no kind");
   says(replaced("index mu x1(0)", "mu x1(0)"), "a.sweep:8: these are not the columns");
   says(replaced(" from -0.5", ""), "a.sweep:2: the heading lacks");
+  // Numbers that pictures count and find cells by.
+  says(replaced("3 values", "0 values"), "a.sweep:2: the number of values is '0', a whole number from 1 to 10000000");
+  says(replaced("3 values", "1e18 values"), "a.sweep:2: the number of values is '1e18'");
+  says(replaced("3 values", "2.5 values"), "a.sweep:2: the number of values is '2.5'");
+  says(replaced("0 -0.5 0 1 1 periodic 2", "-1 -0.5 0 1 1 periodic 2"), "a.sweep:9: the index is '-1'");
+  says(replaced("0 -0.5 0 1 1 periodic 2", "1e9 -0.5 0 1 1 periodic 2"), "a.sweep:9: the index is '1e9'");
+  says(replaced("# attractor 1", "# attractor 1e99"), "the number of an attractor is '1e99'");
   says(std::string(good).substr(0, std::string(good).size() - 3), "ends within a line");
   says(std::string(good).substr(0, std::string(good).find("index mu")), "column names is missing");
   CHECK_THROWS_AS(read_sweep_file(folder.file("none.sweep")), UserError);
