@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "formulas/dependence.hpp"
+#include "formulas/evaluation_cost.hpp"
 #include "formulas/expression_check.hpp"
 #include "formulas/expression_value.hpp"
 
@@ -77,7 +78,9 @@ class ModelCheck {
     jumps();
     user_values();
     successors();
-    if (table != nullptr) smoothness(*table);
+    if (table == nullptr) return;
+    smoothness(*table);
+    refuse_expensive_functions(file(), model_.names, errors_);
   }
 
  private:

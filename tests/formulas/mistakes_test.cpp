@@ -172,3 +172,26 @@ TEST_CASE("too many parameters") {
   for (int k = 1; k <= 60; ++k) text += ", p" + std::to_string(k) + "=0";
   CHECK_THAT(mistake_in(text), Contains("there are 61 parameters, at most 60"));
 }
+
+TEST_CASE("functions that double their work at every level are refused, definitions are not") {
+  // f0 has 1 part and each further one 5 with its two calls: f(k) takes 6 * 2^k - 5 operations, 98299 for k = 14.
+  const auto functions = [](int levels) {
+    std::string text = "f0(y) = y\n";
+    for (int k = 1; k <= levels; ++k) {
+      const std::string before = "f" + std::to_string(k - 1) + "(y)";
+      text += "f" + std::to_string(k) + "(y) = " + before + " + " + before + "\n";
+    }
+    return text + "x' = v\nv' = -f" + std::to_string(levels) + "(x)\n";
+  };
+  CHECK_NOTHROW(translate_formulas(functions(14), "mine.tch"));
+  CHECK_THAT(
+      mistake_in(functions(30)),
+      StartsWith("mine.tch:16:1: a value of the function f15 takes 2e+05 operations") && Contains("NAME = EXPRESSION"));
+
+  std::string definitions = "a0 = x\n";
+  for (int k = 1; k <= 30; ++k) {
+    const std::string before = "a" + std::to_string(k - 1);
+    definitions += "a" + std::to_string(k) + " = " + before + " + " + before + "\n";
+  }
+  CHECK(translate_formulas(definitions + "x' = v\nv' = -a30\n", "mine.tch").cpp.size() < 10'000);
+}
