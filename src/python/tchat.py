@@ -56,7 +56,20 @@ def _warn(text):
 # ---------------------------------------------------------------------------------------------------------- text
 
 
+def _checked_path(name, what):
+    """`name` as text; an Error for what is no name of a file."""
+    try:
+        path = os.fsdecode(name)
+    except TypeError:
+        raise Error("%r is no name of a file (%s); give a text such as \"mems\"" % (name, what)) from None
+    if not path or "\0" in path:
+        raise Error("%r is no name of a file (%s): it %s; give a name such as \"mems\"" %
+                    (path, what, "is empty" if not path else "has a zero byte in it"))
+    return path
+
+
 def _read_text(path, what):
+    path = _checked_path(path, what)
     try:
         with open(path, encoding="latin-1", newline="") as file:
             return file.read()
@@ -111,6 +124,7 @@ def _sibling(path, letter):
 
 def _resolve(name, letter):
     """`name`, or LETTER.NAME in its folder where there is no such file but that one."""
+    name = _checked_path(name, letter + "-file")
     folder, last = os.path.split(name)
     prefixed = os.path.join(folder, letter + "." + last)
     return prefixed if not os.path.exists(name) and os.path.exists(prefixed) else name
@@ -943,11 +957,13 @@ class Trajectory:
 
 def read_trajectory(path):
     """O.trajectory of tchat simulate, `O` for short."""
+    path = _checked_path(path, "what tchat simulate writes")
     return Trajectory(path if os.path.exists(path) else path + ".trajectory")
 
 
 def read_events(path):
     """O.events of tchat simulate, `O` for short."""
+    path = _checked_path(path, "what tchat simulate writes")
     return Trajectory(path if path.endswith(".events") else path + ".events")
 
 
@@ -1027,6 +1043,9 @@ class _GrowingPoints:
 
 def _execute(words, cwd, program, poll=lambda: True):
     """Runs tchat to its end, calling poll() now and then; SIGINT when it returns False or raises. (status, screen)."""
+    for word in words:
+        if "\0" in word:
+            raise Error("the argument %r has a zero byte in it, which no program can be given; leave it out" % word)
     with tempfile.TemporaryFile() as screen, tempfile.TemporaryFile() as errors:
         process = subprocess.Popen([_program(program)] + words, stdin=subprocess.DEVNULL, stdout=screen, stderr=errors,
                                    cwd=cwd)

@@ -9,6 +9,7 @@ import csv
 import io
 import json
 import os
+import pathlib
 import shutil
 import subprocess
 import sys
@@ -283,6 +284,19 @@ class Refused(unittest.TestCase):
         self.assertIn("No such file", self.message(tchat.load, "nothing"))
         self.assertIn("no column 'beta'; there are section", self.message(tchat.load("alpha").__getitem__, "beta"))
         self.assertIn("no label GR7; there are 1 (EP1)", self.message(tchat.load("alpha").orbit, "GR7"))
+
+    def test_what_is_no_name_of_a_file(self):
+        for read in (tchat.load, tchat.read_points, tchat.read_solutions, tchat.read_diagnostics, tchat.read_trajectory,
+                     tchat.read_events):
+            for name, what in (("\0", "a zero byte"), ("alpha\0", "a zero byte"), ("", "empty"), (None, "None")):
+                message = self.message(read, name)
+                self.assertIn("no name of a file", message)
+                self.assertIn(what, message)
+        self.assertEqual(len(tchat.load(b"alpha")), len(tchat.load("alpha")))
+        self.assertEqual(len(tchat.load(pathlib.Path("alpha"))), len(tchat.load("alpha")))
+        with self.assertRaises(tchat.Error) as caught:
+            tchat.run("linosc\0")
+        self.assertIn("zero byte", str(caught.exception))
 
     def test_table_refuses_in_one_sentence(self):
         cases = [(["p.alpha", "d.impacting"], "it is of another run, the one needed is d.alpha"),
