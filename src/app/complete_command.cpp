@@ -16,7 +16,7 @@
 #include "app/commands.hpp"
 #include "constants/constants_table.hpp"
 #include "files/solution_file_reader.hpp"
-#include "plugin/problem_library.hpp"
+#include "plugin/source_names.hpp"
 #include "text/user_error.hpp"
 
 namespace tchat {
@@ -122,20 +122,9 @@ void add_labels(Candidates& to, const std::string& path, const std::string& begi
   }
 }
 
-/// Parameters of a problem whose library is there: nothing is compiled for a completion.
+/// Parameters that the problem's source names: for a completion nothing is compiled, and nothing in the folder is run.
 void add_parameters(Candidates& to, const std::string& name) {
-  std::error_code error;
-  for (const fs::path& path : {fs::path(name), fs::path(name) / fs::path(name).filename()}) {
-    const std::string library = path.string() + ".so";
-    if (!fs::is_regular_file(library, error)) continue;
-    try {
-      const ProblemLibrary problem(library, []() -> ProblemSizes { throw UserError("sizes are not known"); });
-      for (int k = 1; k <= problem.system().parameters(); ++k)
-        to.insert(fmt::format("PAR({})=", problem.system().parameter_name(k)));
-    } catch (const std::exception&) {  // a library that cannot be loaded has no names
-    }
-    return;
-  }
+  for (const std::string& parameter : parameter_names_in_source(name)) to.insert(fmt::format("PAR({})=", parameter));
 }
 
 /// KEY=, and IRS=LABEL.

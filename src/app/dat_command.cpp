@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <iostream>
 #include <memory>
 
 #include "app/problem_argument.hpp"
@@ -23,7 +24,7 @@ void add_dat_command(CLI::App& app, std::function<int()>& chosen) {
   command->callback([&chosen, request] {
     chosen = [request] {
       take_source_as_problem(request->name, request->problem);
-      fmt::print("{} written, label 1\n", convert_data(*request));
+      fmt::print("{} written, label 1\n", convert_data(*request, std::cerr));
       return 0;
     };
   });

@@ -33,7 +33,7 @@ int do_resegment(ResegmentRequest request, const std::string& kind, bool quiet) 
   request.kind = resegment_kind(kind);
   std::ostringstream unseen;
   std::ostream& screen = quiet ? static_cast<std::ostream&>(unseen) : std::cout;
-  print_warnings(std::cerr, resegment(request, screen));
+  print_warnings(std::cerr, resegment(request, screen, quiet ? screen : std::cerr));
   return 0;
 }
 

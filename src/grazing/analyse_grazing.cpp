@@ -82,7 +82,7 @@ void analyse_label(const GrazingRequest& request, std::ostream& screen, std::ost
   bool named_parameters = false;
   RunSettings settings = read_constants_file(constants, nullptr, names_to_come(named_parameters));
   const LabelledSolution& solution = chosen(request, file, settings, path, constants);
-  const ProblemLibrary library(resolve_plugin(request.problem.value_or(run_path(path))),
+  const ProblemLibrary library(resolve_plugin_of_run(request.problem, run_path(path), warnings),
                                [&] { return problem_sizes(settings); });
   const HybridSystem& system = library.system();
   if (named_parameters) settings = read_constants_file(constants, nullptr, names_of(system));
@@ -134,10 +134,10 @@ IndexVector checked_mode(const HybridSystem& system, const GrazingRequest& reque
   return mode;
 }
 
-void analyse_state(const GrazingRequest& request, std::ostream& screen) {
+void analyse_state(const GrazingRequest& request, std::ostream& screen, std::ostream& warnings) {
   mode_of(request);  // before a plugin is compiled
   const SimulationRequest start_of = start_request(request);
-  const std::string plugin = resolve_plugin(request.problem.value_or(request.name));
+  const std::string plugin = resolve_plugin_of_run(request.problem, request.name, warnings);
   bool named_parameters = false;
   SimulationConstants constants = read_simulation_constants(start_of, names_to_come(named_parameters));
   const ProblemLibrary library(plugin, [&] { return sizes_of(start_of, constants); });
@@ -188,7 +188,7 @@ void check_request(const GrazingRequest& request) {
 void analyse_grazing(const GrazingRequest& request, std::ostream& screen, std::ostream& warnings) {
   check_request(request);
   if (request.state)
-    analyse_state(request, screen);
+    analyse_state(request, screen, warnings);
   else
     analyse_label(request, screen, warnings);
 }

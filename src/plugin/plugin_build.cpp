@@ -315,12 +315,28 @@ std::string source_named(const std::string& name) {
   return "";
 }
 
+/// The file that a name or path stands for, in the order of the header: a source or a library; "" when there is none.
+std::string plugin_file(const std::string& name_or_path) {
+  const fs::path given(name_or_path);
+  if (given.extension() == ".so" || language_of(given)) return is_file(given) ? name_or_path : "";
+  for (const std::string& name : {name_or_path, (given / given.filename()).string()}) {
+    if (std::string source = source_named(name); !source.empty()) return source;
+    if (is_file(name + ".so")) return name + ".so";
+  }
+  return "";
+}
+
 }  // namespace
 
 NamedProblem named_problem(const std::string& given) {
   if (!language_of(given) || !is_file(given)) return {given, std::nullopt};
   const std::string name = fs::path(given).replace_extension().string();
   return {name, source_named(name) == given ? std::nullopt : std::optional(given)};
+}
+
+std::string source_of(const std::string& name_or_path) {
+  std::string file = plugin_file(name_or_path);
+  return language_of(file) ? file : "";
 }
 
 std::optional<std::string> formulas_of(const std::string& name_or_path) {
@@ -339,12 +355,19 @@ std::string resolve_plugin(const std::string& name_or_path, const PluginBuildOpt
                       name_or_path));
     return language_of(given) ? build_source(given, options) : name_or_path;
   }
-  const std::string in_own_folder = (given / given.filename()).string();
-  for (const std::string& name : {name_or_path, in_own_folder}) {
-    if (const std::string source = source_named(name); !source.empty()) return build_source(source, options);
-    if (is_file(name + ".so")) return name + ".so";
-  }
-  refuse_missing(name_or_path);
+  const std::string file = plugin_file(name_or_path);
+  if (file.empty()) refuse_missing(name_or_path);
+  return language_of(file) ? build_source(file, options) : file;
+}
+
+std::string resolve_plugin_of_run(const std::optional<std::string>& given, const std::string& run,
+                                  std::ostream& notices) {
+  if (given) return resolve_plugin(*given);
+  if (const std::string file = plugin_file(run); fs::path(run).has_parent_path() && !file.empty())
+    notices << fmt::format("plugin: {} is {}loaded, and its code is run; -p names another one\n", file,
+                           language_of(file) ? "compiled where its library is not up to date, " : "")
+            << std::flush;
+  return resolve_plugin(run);
 }
 
 }  // namespace tchat

@@ -15,6 +15,7 @@
 #pragma once
 
 #include <optional>
+#include <ostream>
 #include <string>
 
 #include "plugin/compiler.hpp"
@@ -24,6 +25,15 @@ namespace tchat {
 /// Path of a shared library that is up to date. Throws UserError: nothing there under that name, no compiler, the
 /// compiler's own message, no folder to write to.
 std::string resolve_plugin(const std::string& name_or_path, const PluginBuildOptions& options = {});
+
+/// The plugin `given` with -p, or that of the name in the place of the q-file `run` (its path without q.). Where nobody
+/// has named a plugin and that one is in another folder, whose code is then compiled and run, `notices` is told which
+/// it is before that happens. Throws like resolve_plugin.
+std::string resolve_plugin_of_run(const std::optional<std::string>& given, const std::string& run,
+                                  std::ostream& notices);
+
+/// The source that a name or path stands for, in the searching order above; "" when there is none.
+std::string source_of(const std::string& name_or_path);
 
 /// What a problem is called, and its plugin where that is not the one of this name.
 struct NamedProblem {

@@ -266,7 +266,7 @@ Outputs outputs_of(const std::string& name) {
 /// The start of a curve of grazing tori: nothing is cut.
 std::vector<std::string> begin_grazing_tori(const ResegmentRequest& request, const std::string& path,
                                             const SolutionFile& file, const std::string& constants,
-                                            std::ostream& screen) {
+                                            std::ostream& screen, std::ostream& notices) {
   std::vector<std::string> warnings = file.warnings;
   bool named_parameters = false;
   RunSettings given = read_constants_file(constants, &warnings, names_to_come(named_parameters));
@@ -279,7 +279,7 @@ std::vector<std::string> begin_grazing_tori(const ResegmentRequest& request, con
                     name));
   if (request.data)
     throw UserError(fmt::format("{} is a torus, which a .dat file does not hold; leave --dat out", name));
-  const ProblemLibrary library(resolve_plugin(request.problem.value_or(run_path(path))),
+  const ProblemLibrary library(resolve_plugin_of_run(request.problem, run_path(path), notices),
                                [&] { return problem_sizes(given); });
   const HybridSystem& system = library.system();
   if (named_parameters) given = read_constants_file(constants, nullptr, names_of(system));
@@ -302,18 +302,18 @@ std::vector<std::string> begin_grazing_tori(const ResegmentRequest& request, con
 
 }  // namespace
 
-std::vector<std::string> resegment(const ResegmentRequest& asked, std::ostream& screen) {
+std::vector<std::string> resegment(const ResegmentRequest& asked, std::ostream& screen, std::ostream& notices) {
   ResegmentRequest request = asked;
   std::vector<std::string> warnings;
   const std::string path = resolve_solution_path(request.solutions);
   const SolutionFile file = read_solution_file(path);
   const std::string constants = constants_of_run(request.constants, path);
   if (is_torus(find_solution(file.solutions, read_label(request.label), path).problem_type))
-    return begin_grazing_tori(request, path, file, constants, screen);
+    return begin_grazing_tori(request, path, file, constants, screen, notices);
   bool named_parameters = false;
   LabelledOrbit labelled = read_source(request, path, constants, file, warnings, names_to_come(named_parameters));
 
-  const std::string plugin = resolve_plugin(request.problem.value_or(run_path(path)));
+  const std::string plugin = resolve_plugin_of_run(request.problem, run_path(path), notices);
   const ProblemLibrary library(plugin, [&] { return sizes_for(request, labelled.settings); });
   const HybridSystem& system = library.system();
   if (named_parameters) labelled.settings = read_constants_file(constants, nullptr, names_of(system));

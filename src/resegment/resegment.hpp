@@ -33,8 +33,9 @@ struct ResegmentRequest {
   std::vector<std::string> overrides;    ///< KEY=VALUE, for gc.O
 };
 
-/// Writes q.O (or O.dat) and gc.O and tells on `screen` what they hold; returns warnings. Throws UserError when label,
-/// signature, constants and problem do not go together.
-std::vector<std::string> resegment(const ResegmentRequest& request, std::ostream& screen);
+/// Writes q.O (or O.dat) and gc.O and tells on `screen` what they hold; returns warnings. `notices` is told which
+/// plugin of another folder is loaded. Throws UserError when label, signature, constants and problem do not go
+/// together.
+std::vector<std::string> resegment(const ResegmentRequest& request, std::ostream& screen, std::ostream& notices);
 
 }  // namespace tchat

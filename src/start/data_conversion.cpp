@@ -13,7 +13,7 @@
 
 namespace tchat {
 
-std::string convert_data(const RunRequest& request) {
+std::string convert_data(const RunRequest& request, std::ostream& notices) {
   const std::string constants = constants_path(request.constants.value_or(request.name));
   const auto settings_with = [&](const ParameterNames& names) {
     RunSettings settings = read_constants_file(constants, nullptr, names);
@@ -23,7 +23,7 @@ std::string convert_data(const RunRequest& request) {
   };
   bool named_parameters = false;
   RunSettings settings = settings_with(names_to_come(named_parameters));
-  const std::string plugin = resolve_plugin(request.problem.value_or(request.name));
+  const std::string plugin = resolve_plugin_of_run(request.problem, request.name, notices);
   const ProblemLibrary library(plugin, [&settings] { return problem_sizes(settings); });
   if (named_parameters) settings = settings_with(names_of(library.system()));
   check_settings_against(library.system(), settings, {constants, request.overrides});

@@ -270,7 +270,7 @@ bool verify_solutions(const VerifyRequest& request, std::ostream& screen, std::o
                     "the d-file",
                     path, settings.problem_type));
 
-  const std::string plugin = resolve_plugin(request.problem.value_or(run_path(path)));
+  const std::string plugin = resolve_plugin_of_run(request.problem, run_path(path), warnings);
   const ExitGuard guard(plugin);
   const ProblemLibrary library(plugin, [&] { return problem_sizes(settings); });
   const HybridSystem& system = library.system();

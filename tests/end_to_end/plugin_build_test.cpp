@@ -101,3 +101,50 @@ TEST_CASE("tchat check passes the oscillator and finds a wrong derivative") {
   CHECK(wrong.out.find("minimum of x1") != std::string::npos);
   CHECK(wrong.out.find("x2") != std::string::npos);
 }
+
+TEST_CASE("completion names parameters and runs nothing of the folder") {
+  const Workspace workspace(Workspace::Plugin::source);
+  CHECK(workspace.tchat({"complete", "--", "run", "linosc", "PAR(a"}).out == "PAR(alpha)=\n");
+  CHECK_FALSE(workspace.has("linosc.so"));
+  workspace.write("ball.tch", "par Gamma = 1, r = 0.8\nx' = v\nv' = -Gamma\n");
+  CHECK(workspace.tchat({"complete", "--", "check", "ball", "PAR("}).out == "PAR(Gamma)=\nPAR(r)=\n");
+
+  workspace.write("stranger.c",
+                  "#include <stdio.h>\n"
+                  "__attribute__((constructor)) static void run(void) { fclose(fopen(\"has_run\", \"w\")); }\n");
+  const Outcome compiled = Process({"/usr/bin/cc", "-shared", "-fPIC", "-o", "stranger.so", "stranger.c"},
+                                   workspace.file(""), workspace.file("log"))
+                               .wait(std::chrono::seconds(60));
+  REQUIRE(compiled.status == 0);
+  for (const char* command : {"run", "simulate", "check", "dat", "constants"})
+    CHECK(workspace.tchat({"complete", "--", command, "stranger", "PAR("}).out.empty());
+  CHECK(workspace.tchat({"complete", "--", "run", "linosc", "-p", "stranger", "PAR("}).out.empty());
+  for (const char* command : {"help", "--help", "--version", "constants"}) workspace.tchat(command);
+  CHECK_FALSE(workspace.has("has_run"));
+  workspace.tchat("check stranger");  // which is asked to load it
+  CHECK(workspace.has("has_run"));
+}
+
+TEST_CASE("a plugin beside a q-file of another folder is named before it is compiled and loaded") {
+  const Workspace workspace(Workspace::Plugin::source);
+  workspace.run(quick + "-o linosc");
+  const fs::path folder = workspace.file("theirs");
+  fs::create_directory(folder);
+  for (const char* name : {"linosc.cpp", "q.linosc", "p.linosc", "d.linosc", "r.linosc"})
+    fs::copy_file(workspace.file(name), folder / name);
+  const std::string notice = "plugin: theirs/linosc.cpp is compiled where its library is not up to date, loaded";
+  for (const char* command : {"verify theirs/q.linosc", "resegment theirs/q.linosc EP1 --to double -o twice",
+                              "dat theirs/linosc -c impacting -d impacting -o data"}) {
+    INFO(command);
+    CHECK(workspace.tchat(command).err.starts_with(notice));
+    CHECK(workspace.tchat(std::string(command) + " -p linosc").err.find("plugin: ") == std::string::npos);
+  }
+  CHECK(workspace.tchat("grazing theirs/linosc --state 0,0,0,1 --mode 1,1,1").err.starts_with(notice));
+  CHECK(workspace.tchat("verify q.linosc").err.find("plugin: ") == std::string::npos);
+  // Where it cannot be compiled, the notice has already been given.
+  fs::remove(folder / "linosc.so");
+  workspace.write("theirs/linosc.cpp", "#error not today\n");
+  const std::string said = workspace.tchat("verify theirs/q.linosc").err;
+  CHECK(said.starts_with(notice));
+  CHECK(said.find("not today") != std::string::npos);
+}
