@@ -407,7 +407,7 @@ std::optional<BranchPointBracket> SpecialPointSearch::find_branch_point(const Pa
 /// The place of a branch point is interpolated: it has to satisfy the equations as well as a point that Newton's method
 /// ends with, or as well as a branch point can be interpolated.
 std::string SpecialPointSearch::objection_at(const BranchPointBracket& bracket, const PathPoint& trial,
-                                             const PointData& at_zero) {
+                                             const PointData& at_zero) const {
   constexpr double interpolated = 1e-8;
   const double residual = follower_.relative_residual(trial.orbit);
   if (!(residual <= std::max(interpolated, follower_.newton_settings().tolerance_states)))
