@@ -139,7 +139,7 @@ TEST_CASE("slow modes: the orbit is found long before the motion has come to it"
   CHECK_FALSE(settle(rule, Eigen::Vector3d(1.0, 0.1, 1e-3), parameters({-1e-5}), 1000).orbit.has_value());
 }
 
-TEST_CASE("a state that nothing depends on may grow; chaos and tori settle on no orbit") {
+TEST_CASE("a state that nothing depends on may grow, chaos and tori settle on no orbit") {
   const ModeRule logistic = always<LogisticClock>({{1, 1, 1}});
   CHECK(settle(logistic, Eigen::Vector3d(0.0, 0.1234, 0.0), parameters({3.55}), 3000).orbit->turn.size() == 8);
   CHECK_FALSE(settle(logistic, Eigen::Vector3d(0.0, 0.1234, 0.0), parameters({4.0}), 3000).orbit.has_value());
