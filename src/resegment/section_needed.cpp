@@ -21,7 +21,7 @@ std::string name_of(const std::string& path) {
 }
 
 /// The first identity jump; the next new one if there is none.
-int identity_jump(const HybridSystem& system) {
+int first_identity_jump(const HybridSystem& system) {
   const int count = system.count(FunctionKind::jump);
   for (int k = 1; k <= count; ++k)
     if (is_identity_jump(system, k)) return k;
@@ -44,7 +44,7 @@ void require_section(const LabelledSolution& solution, const RunSettings& settin
       "    tchat run {} -c {}_cut -d {}_cut -o {}_cut\n"
       "  and its labels are of orbits with a section.",
       solution.label, path, what, system.state_name(1), middle, problem, name, settings.segments.front().index.field,
-      system.count(FunctionKind::event) + 1, identity_jump(system), name, problem, name, name, name));
+      system.count(FunctionKind::event) + 1, first_identity_jump(system), name, problem, name, name, name));
 }
 
 }  // namespace tchat

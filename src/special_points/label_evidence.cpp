@@ -18,10 +18,10 @@ using Complex = std::complex<double>;
 /// The rule of the column PT: |mu| <= 1 + 1e-5 is stable. Closer to the circle nothing is decided.
 constexpr double stability_margin = 1e-5;
 /// Multipliers of a mesh with a larger structural one say nothing.
-constexpr double structural_limit = 5e-2;
+constexpr double structural_bound = 5e-2;
 
 bool is_known(const FloquetMultipliers& multipliers) {
-  return multipliers.determined() && multipliers.structural <= structural_limit;
+  return multipliers.determined() && multipliers.structural <= structural_bound;
 }
 
 double largest_modulus(const FloquetMultipliers& multipliers) {
@@ -36,7 +36,7 @@ double excess(const FloquetMultipliers& multipliers, const Complex& mu) {
   return multipliers.are_eigenvalues ? mu.real() : std::abs(mu) - 1.0;
 }
 
-double margin(const FloquetMultipliers& multipliers) {
+double doubt_of_stability(const FloquetMultipliers& multipliers) {
   if (multipliers.are_eigenvalues) return orbit_accuracy * largest_modulus(multipliers);
   return std::max(stability_margin, multiplier_accuracy(multipliers));
 }
@@ -73,7 +73,7 @@ std::string objection_without_multiplier_one(const TestedPoint& point, const std
   if (!point.one_parameter_family || multipliers.are_eigenvalues || !multipliers.determined()) return "";
   if (touches_surface(point)) return "";
   const double distance = multiplier_distance(multipliers, 1.0);
-  if (multipliers.structural > structural_limit)
+  if (multipliers.structural > structural_bound)
     return fmt::format("{}, but the multipliers are not known (structural multiplier {:.1e}): no label", what,
                        multipliers.structural);
   if (distance <= std::max(agreeing_multiplier, multipliers.structural)) return "";
@@ -82,7 +82,7 @@ std::string objection_without_multiplier_one(const TestedPoint& point, const std
 
 UnstableCount count_unstable(const FloquetMultipliers& multipliers) {
   UnstableCount count;
-  const double level = margin(multipliers);
+  const double level = doubt_of_stability(multipliers);
   for (const Complex& mu : multipliers.telling()) {
     const double by = excess(multipliers, mu);
     ++(by > level ? count.outside : by < -level ? count.inside : count.undecided);
