@@ -37,7 +37,10 @@ double largest_growth(const DefiningSystem& system, const Orbit& x, double least
                             fx.data(), nullptr);
       if (!fx.allFinite() || !(fx.norm() * time > least)) return 0.0;
       const double flow = f.dot(fx * f) / f.squaredNorm();  // d ln |f| / dt
-      return std::max(eigenvalues(fx).real().maxCoeff(), std::isfinite(flow) ? std::abs(flow) : 0.0) * time;
+      const Eigen::VectorXd rates = eigenvalues(fx).real();
+      // What decays beside what grows has its share in the multipliers, what decays alone has none.
+      const double perturbations = rates.maxCoeff() * time > 1.0 ? rates.cwiseAbs().maxCoeff() : 0.0;
+      return std::max(perturbations, std::isfinite(flow) ? std::abs(flow) : 0.0) * time;
     };
     for (int j = 0; j < x.shape.intervals; ++j) {
       const auto at = static_cast<std::size_t>(j);
@@ -71,6 +74,22 @@ std::string unresolved_by_mesh(const DefiningSystem& system, const Orbit& x, con
       "NTST = {} does not resolve the next orbit: perturbations or the flow change by a factor of exp({:.3g}) "
       "on one mesh interval, where NCOL = {} resolves exp({:.2g})",
       x.shape.intervals, growth, x.shape.collocation, limit);
+}
+
+double growth_exponent(const DefiningSystem& system, const Orbit& x) {
+  const int n = x.shape.dimension;
+  Eigen::VectorXd f(n);
+  Eigen::MatrixXd fx(n, n);
+  double exponent = 0.0;
+  for (int s = 0; s < x.shape.segments; ++s)
+    for (int j = 0; j < x.shape.intervals; ++j) {
+      const auto at = static_cast<std::size_t>(j);
+      const double time = (x.mesh[at + 1] - x.mesh[at]) * x.duration(s);
+      system.system().first(FunctionKind::field, system.signature()[static_cast<std::size_t>(s)].field,
+                            x.node(s, j * x.shape.collocation), x.par.data(), {}, f.data(), fx.data(), nullptr);
+      if (fx.allFinite()) exponent += std::max(eigenvalues(fx).real().maxCoeff() * time, 0.0);
+    }
+  return exponent;
 }
 
 std::string undetermined_duration(const DefiningSystem& system, const Orbit& x) {

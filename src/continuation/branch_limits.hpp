@@ -12,11 +12,16 @@ namespace tchat {
 ///   - estimated_error() of the orbit,
 ///   - the structural multiplier, or the trivial one's distance from 1, where multipliers are computed,
 ///   - the factor exp(z) by which perturbations grow, or the flow grows or decays, on one mesh interval. Here z is
-///     h T Re lambda with an eigenvalue lambda of f_x, or h T |d ln |f| / dt|, the lesser of the values at both ends.
-///     Collocation at c Gauss points has the relative error (c!)^2 / ((2c)! (2c+1)!) z^(2c+1) of this factor. Where it
-///     exceeds 1, multipliers and durations are those of the mesh.
+///     h T |Re lambda| with an eigenvalue lambda of f_x, where one of them grows by more than exp(1) on the interval,
+///     or h T |d ln |f| / dt|, the lesser of the values at both ends. Collocation at c Gauss points has the relative
+///     error (c!)^2 / ((2c)! (2c+1)!) z^(2c+1) of this factor. Where it exceeds 1, multipliers and durations are those
+///     of the mesh.
 std::string unresolved_by_mesh(const DefiningSystem& system, const Orbit& x, const CollocationRule& rule,
                                const FloquetMultipliers& multipliers, double bound);
+
+/// Rounding of the orbit is magnified by exp(this) on the way round: the integral of the largest growth rate of f_x,
+/// where it is positive. Multipliers are known to about 1e-16 times that factor.
+double growth_exponent(const DefiningSystem& system, const Orbit& x);
 
 /// "" or that a segment ends at rest but for rounding, |f| T below 1e-12 of the states: its duration is not determined.
 std::string undetermined_duration(const DefiningSystem& system, const Orbit& x);

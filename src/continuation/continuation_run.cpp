@@ -97,7 +97,7 @@ ContinuationRun::ContinuationRun(PathFollower& follower, const DefiningSystem& s
       sink_(sink),
       search_(follower, system, with_bounds(std::move(tests), settings_), location_settings(settings_)),
       step_(settings_.step),
-      trend_(system.orbits()),
+      trend_(settings_.trend.value_or(OrbitTrend(system.orbits()))),
       closed_(follower, system, has_fixed_phase(system, settings_)) {}
 
 BranchSummary ContinuationRun::run(PathPoint start) {
@@ -396,7 +396,12 @@ void ContinuationRun::accept(const SpecialPoint& special) {
   if (settings_.reports_stability) {
     const bool is_reported = summary_.lost.size() > lost_before_;
     const auto change = stability_.add({number_, parameter_at(here_), special, next_.data.multipliers}, is_reported);
-    if (change) report(*change);
+    constexpr double most_growth = 30.0;  // rounding is then 1e-3 of a multiplier
+    if (const double growth = change ? growth_exponent(system_, here_.orbit) : 0.0; growth > most_growth)
+      sink_.note(number_,
+                 fmt::format("Multipliers are not known: rounding grows by exp({:.3g}) on the way round", growth));
+    else if (change)
+      report(*change);
     lost_before_ = summary_.lost.size();
   }
   accepted_ = here_;

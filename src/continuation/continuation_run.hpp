@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 
 #include "continuation/branch.hpp"
 #include "continuation/closed_branch.hpp"
@@ -45,7 +46,8 @@ struct ContinuationSettings {
   double error_bound = 0.0;
   bool may_refine = false;         ///< a finer mesh is tried where the bound is exceeded (EndReason::outgrown)
   bool reports_stability = false;  ///< all bifurcations are detected: a change of stability has a label, or is reported
-  int first_number = 1;            ///< of the start; one that goes on with another discretisation was recorded before
+  std::optional<OrbitTrend> trend = {};  ///< of the part of the branch before the start, on another mesh
+  int first_number = 1;  ///< of the start; one that goes on with another discretisation was recorded before
 };
 
 /// Outside of the bounds, and not just by the accuracy of a located point (a user value may be a bound).
@@ -60,6 +62,7 @@ class ContinuationRun {
   BranchSummary run(PathPoint start);
   /// Where it has ended.
   const PathPoint& last() const { return here_; }
+  const OrbitTrend& trend() const { return trend_; }
   /// The next step that it would have tried.
   double next_length() const { return step_.value(); }
 

@@ -251,6 +251,7 @@ class Direction {
     else
       writer.mesh_changed(summary.points, run.last().orbit.par(continuation_.principal - 1),
                           summary.detail + "; " + next.start.note);
+    if (!summary.detail.empty()) continuation_.trend = run.trend();
     continuation_.step.initial = run.next_length();
     continuation_.first_number = summary.points;
     continuation_.label_start = false;

@@ -55,7 +55,7 @@ after any: spike -> reset
 )");
   REQUIRE(workspace.tchat("simulate neuron -q --dat start").status == 0);
   const Outcome outcome =
-      workspace.tchat("run neuron -c start -d start -o tonic ICP=[I] RL0=-100 RL1=100 DS=-0.05 DSMAX=0.5 NMX=150");
+      workspace.tchat("run neuron -c start -d start -o tonic ICP=[I] RL0=-100 RL1=100 DS=-0.05 DSMAX=0.5 NMX=400");
   INFO(outcome.text());
   CHECK(outcome.status == 0);
   CHECK(contains(outcome.out, "NTST = 100 from here on"));
