@@ -16,13 +16,13 @@ using Eigen::Index;
 using Eigen::VectorXd;
 
 constexpr std::size_t points_looked_at = 6;
-constexpr long first_nearby = 48;         // events
+constexpr long first_nearby = 48;  // events
 constexpr std::size_t most_passed = 8192;
-constexpr long first_gap = 8;             // events between two tries where the motion repeats itself
-constexpr double near = 0.05;             // states one period apart, in ranges
-constexpr int most_nearby = 3;            // candidates of one try
-constexpr long held_events = 64;          // for so long a motion that cannot be corrected repeats itself
-constexpr double held_movement = 10.0;    // recognitions
+constexpr long first_gap = 8;           // events between two tries where the motion repeats itself
+constexpr double near = 0.05;           // states one period apart, in ranges
+constexpr int most_nearby = 3;          // candidates of one try
+constexpr long held_events = 64;        // for so long a motion that cannot be corrected repeats itself
+constexpr double held_movement = 10.0;  // recognitions
 
 /// "a multiplier of modulus 1.0123 (+- 1e-08)"
 std::string modulus_text(const CorrectedOrbit& orbit) {
@@ -139,8 +139,9 @@ bool AttractorSearch::try_nearby(const HybridSimulation& motion) {
 }
 
 bool AttractorSearch::try_period(const HybridSimulation& motion, std::size_t period) {
-  const OrbitCandidate candidate{motion,     last_.back().end, recurrence_.last(period), recurrence_.scale(2 * period),
-                                 ignorable_, settings_, passed(period)};
+  const OrbitCandidate candidate{
+      motion,    last_.back().end, recurrence_.last(period), recurrence_.scale(2 * period), ignorable_,
+      settings_, passed(period)};
   const CorrectedOrbit corrected = correct_orbit(candidate);
   const bool repeats = recurrence_.period() == static_cast<int>(period);
   SettledOrbit found;
@@ -158,8 +159,8 @@ bool AttractorSearch::try_period(const HybridSimulation& motion, std::size_t per
   }
   if (found.stability == OrbitStability::stable) {
     if (!approaches(candidate, corrected)) {
-      doubt_ = fmt::format("a stable orbit of {} event(s), {}, is near, and the motion does not approach it yet", period,
-                           modulus_text(corrected));
+      doubt_ = fmt::format("a stable orbit of {} event(s), {}, is near, and the motion does not approach it yet",
+                           period, modulus_text(corrected));
       return false;
     }
     orbit_ = std::move(found);
@@ -169,8 +170,8 @@ bool AttractorSearch::try_period(const HybridSimulation& motion, std::size_t per
   if (!is_near) return false;
   is_near_unstable_ = found.stability == OrbitStability::unstable;
   if (corrected.converged)
-    doubt_ = fmt::format("the orbit of {} event(s) that the motion keeps to, or is leaving, has {} and is no attractor", period,
-                         modulus_text(corrected));
+    doubt_ = fmt::format("the orbit of {} event(s) that the motion keeps to, or is leaving, has {} and is no attractor",
+                         period, modulus_text(corrected));
   if (!repeats) return false;
   kept_to_ = std::move(found);
   if (kept_to_->stability == OrbitStability::neutral && !held_)

@@ -4,8 +4,8 @@
 /// those. It is corrected by Newton's method (attractor/orbit_correction.hpp) and is the attractor when the corrected
 /// orbit is stable and the motion approaches it. Shorter periods come first: near a multiplier of -1 a motion repeats
 /// itself best after two turns. Candidates are tried where the motion repeats itself (simulation/recurrence.hpp) and,
-/// before it does, after numbers of events that double. An orbit that is not stable is no attractor: the motion is still
-/// to leave it, or passes by.
+/// before it does, after numbers of events that double. An orbit that is not stable is no attractor: the motion is
+/// still to leave it, or passes by.
 ///
 /// Where nothing can be corrected, as events without a derivative are met, and where an orbit is neutral (of a
 /// conservative system), a motion that keeps repeating itself without moving is periodic all the same.
@@ -47,9 +47,11 @@ class AttractorSearch {
   const std::optional<SettledOrbit>& orbit() const { return orbit_; }
   /// An equilibrium of the field that the motion comes to.
   const std::optional<Eigen::VectorXd>& equilibrium() const { return equilibrium_; }
-  /// An orbit that the motion is or was near and that does not attract it: why it is no attractor. "" when there is none.
+  /// An orbit that the motion is or was near and that does not attract it: why it is no attractor. "" when there is
+  /// none.
   const std::string& doubt() const { return doubt_; }
-  /// At the last try the motion kept to an orbit that is not stable, or was still leaving it: exponents say nothing yet.
+  /// At the last try the motion kept to an orbit that is not stable, or was still leaving it: exponents say nothing
+  /// yet.
   bool is_near_unstable_orbit() const { return is_near_unstable_; }
   const std::vector<Eigen::Index>& ignorable() const { return ignorable_; }
   /// A state is larger than so much; those that nothing depends on do not count.
@@ -83,7 +85,7 @@ class AttractorSearch {
     int period = 0;
     Eigen::VectorXd state;
   };
-  std::optional<Held> held_;  // a motion that repeats itself and could not be corrected, or is neutral
+  std::optional<Held> held_;             // a motion that repeats itself and could not be corrected, or is neutral
   std::optional<SettledOrbit> kept_to_;  // that orbit
   std::optional<SettledOrbit> orbit_;
   std::optional<Eigen::VectorXd> equilibrium_;

@@ -17,8 +17,8 @@ constexpr int most_steps = 20;
 constexpr double converged_step = 1e-10;  // relative to 1 + |x|
 constexpr double rounding = 1e-9;         // of real parts, relative to |f_x|
 constexpr std::size_t least_states = 4;
-constexpr double no_movement = 1e-3;      // relative to 1 + |x|
-constexpr double there = 1e-8;            // distance that integration cannot tell from zero, relative to 1 + |x|
+constexpr double no_movement = 1e-3;  // relative to 1 + |x|
+constexpr double there = 1e-8;        // distance that integration cannot tell from zero, relative to 1 + |x|
 
 }  // namespace
 

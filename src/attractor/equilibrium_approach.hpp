@@ -12,8 +12,8 @@ namespace tchat {
 
 /// x with f_i(x, p) = 0 near a state, whose f_x has no eigenvalue with a positive real part; nothing where Newton's
 /// method does not converge. States that nothing depends on (`ignorable`, from 0) keep their values, and may move.
-std::optional<Eigen::VectorXd> attracting_equilibrium(const HybridSystem& system, int field, const Eigen::VectorXd& near,
-                                                      const Eigen::VectorXd& par,
+std::optional<Eigen::VectorXd> attracting_equilibrium(const HybridSystem& system, int field,
+                                                      const Eigen::VectorXd& near, const Eigen::VectorXd& par,
                                                       const std::vector<Eigen::Index>& ignorable);
 
 /// Such an equilibrium where a motion is that has had no event for so long (SegmentEnd::no_event): its speed times that

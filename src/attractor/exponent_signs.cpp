@@ -12,7 +12,8 @@ namespace {
 using Eigen::Index;
 
 constexpr double bars_of_zero = 3.0;
-// Against the largest exponent or the frequency of events: chaos may be weak, and means of regular motion converge fast.
+// Against the largest exponent or the frequency of events: chaos may be weak, and means of regular motion converge
+// fast.
 constexpr double small_bar = 1e-4;
 
 }  // namespace

@@ -17,10 +17,10 @@ using Eigen::VectorXd;
 constexpr double tolerance_of_turns = 1e-10;
 constexpr double noise_of_turns = 100.0;  // tolerances, of R(y)
 constexpr int most_newton_steps = 10;
-constexpr double farthest = 2000.0;    // of a Newton step, in scales
+constexpr double farthest = 2000.0;  // of a Newton step, in scales
 constexpr double newton_converged = 1e-7;
-constexpr double rough_step = 1e-3;    // enough where R(y) - y is noise already
-constexpr double doubtful = 1e-2;      // distance of a modulus from 1 that two tolerances are compared for
+constexpr double rough_step = 1e-3;  // enough where R(y) - y is noise already
+constexpr double doubtful = 1e-2;    // distance of a modulus from 1 that two tolerances are compared for
 constexpr double least_uncertainty = 1e-8;
 constexpr double linear = 1e-4;        // distance, in scales, in which one turn tells
 constexpr double wanted_decay = 0.25;  // 1 - |mu| summed over the turns that are watched
@@ -28,7 +28,7 @@ constexpr double most_turns = 128.0;
 constexpr std::size_t least_passed = 8;  // turns that the motion has made
 constexpr std::size_t turns_of_leaving = 16;
 constexpr double like_growth = 0.2;
-constexpr double noticeable = 0.05;    // fall of V in them
+constexpr double noticeable = 0.05;                             // fall of V in them
 constexpr double shares_of_distance[] = {1.0, 0.3, 0.1, 0.02};  // of the motion's, that turns begin from
 
 SimulationSettings accurate(SimulationSettings settings, double tolerance) {
@@ -156,8 +156,8 @@ class ApproachTest {
  private:
   VectorXd distance(const VectorXd& y) const { return without_ignorable(candidate_, y - orbit_.end); }
 
-  /// By half of what M makes of V, at least: where that is noticeable, on average over the first and the last quarter of
-  /// the turns; otherwise in every two turns.
+  /// By half of what M makes of V, at least: where that is noticeable, on average over the first and the last quarter
+  /// of the turns; otherwise in every two turns.
   bool falls_as_predicted(const std::vector<VectorXd>& seen) const {
     std::vector<VectorXd> linear_ones{seen.front()};
     while (linear_ones.size() < seen.size()) linear_ones.push_back(map_ * linear_ones.back());
@@ -191,7 +191,8 @@ class ApproachTest {
 }  // namespace
 
 SimulatedTurn turn_of(const OrbitCandidate& candidate, const VectorXd& y) {
-  return simulate_turn(candidate.motion, y, candidate.signature, accurate(candidate.settings, tolerance_of_turns), false);
+  return simulate_turn(candidate.motion, y, candidate.signature, accurate(candidate.settings, tolerance_of_turns),
+                       false);
 }
 
 CorrectedOrbit correct_orbit(const OrbitCandidate& candidate) {

@@ -46,14 +46,14 @@ CorrectedOrbit correct_orbit(const OrbitCandidate& candidate);
 /// The turn from y as accurately as it is corrected, with the samples and marks of the candidate's settings.
 SimulatedTurn turn_of(const OrbitCandidate& candidate, const Eigen::VectorXd& y);
 
-/// Does the motion approach this stable orbit? V(d) = sum over k of |D M^k d|^2, D = diag(1 / scale), falls from turn to
-/// turn where the orbit's linearisation M holds. V of the motion's distance d from the orbit must fall by half of what M
-/// predicts, at least, in the turns that follow, and in turns from states between the motion and the orbit, so that M
-/// holds all the way. A distance that integration cannot tell from zero is no distance.
+/// Does the motion approach this stable orbit? V(d) = sum over k of |D M^k d|^2, D = diag(1 / scale), falls from turn
+/// to turn where the orbit's linearisation M holds. V of the motion's distance d from the orbit must fall by half of
+/// what M predicts, at least, in the turns that follow, and in turns from states between the motion and the orbit, so
+/// that M holds all the way. A distance that integration cannot tell from zero is no distance.
 bool approaches(const OrbitCandidate& candidate, const CorrectedOrbit& orbit);
 
-/// Is the motion still leaving this unstable orbit? Its distance has grown in each of the last turns about as the largest
-/// multiplier says. Its exponents are then those of the orbit.
+/// Is the motion still leaving this unstable orbit? Its distance has grown in each of the last turns about as the
+/// largest multiplier says. Its exponents are then those of the orbit.
 bool is_leaving(const OrbitCandidate& candidate, const CorrectedOrbit& orbit);
 
 }  // namespace tchat

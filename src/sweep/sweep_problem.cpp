@@ -217,7 +217,6 @@ int sweep_problem(const SweepRequest& request, std::ostream& screen, std::ostrea
   if (captures) job.first_values = std::min(most_first, values / share_of_first);
   job.identity = identity_of(loaded, setup, job, captures);
 
-  if (!task.gather) warnings << start_warnings(setup, system, job);
   const WorkerSystems workers(loaded, setup.request, task.gather ? 1 : task.workers);
   std::vector<SimulationSampler> samplers;
   for (int worker = 0; worker < task.workers && !task.gather; ++worker)
@@ -228,6 +227,8 @@ int sweep_problem(const SweepRequest& request, std::ostream& screen, std::ostrea
     setup.known = capture_regions(setup, system, known, stop.ask());
   };
   run_and_tell(job, task, loaded, stop, progress, screen, warnings, request.simulation.quiet);
+  // Not before: a plugin that dies at some value must leave what is computed up to there.
+  if (!task.gather) warnings << start_warnings(setup, system, job);
   return 0;
 }
 

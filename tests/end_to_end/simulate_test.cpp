@@ -205,6 +205,11 @@ TEST_CASE("simulate: walls are monitored on the orbit handed over, sections are 
   INFO(constants);
   for (const char* line : {"GCHGRZIND = [[1], [1]] ", "GCIPSI = [1, 2] ", "GRJUMP = 2 ", "NPR = 0 "})
     CHECK(contains(constants, line));
+  // A GRJUMP that is given stays, where the problem has such a jump.
+  check_refused(workspace.tchat("simulate driven GRJUMP=3 --dat other -q"), {"GRJUMP is 3", "allowed: 1..2"});
+  std::string with_another_jump = driven;
+  with_another_jump.replace(with_another_jump.find("jumps = 2"), 9, "jumps = 3");
+  workspace.write("driven.cpp", with_another_jump);
   simulate(workspace, "driven GRJUMP=3 --dat other -q");
   CHECK(contains(workspace.read("gc.other"), "GRJUMP = 3 "));
 }
