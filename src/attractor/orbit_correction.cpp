@@ -19,8 +19,9 @@ constexpr double noise_of_turns = 100.0;  // tolerances, of R(y)
 constexpr int most_newton_steps = 10;
 constexpr double farthest = 2000.0;  // of a Newton step, in scales
 constexpr double newton_converged = 1e-7;
-constexpr double rough_step = 1e-3;  // enough where R(y) - y is noise already
-constexpr double doubtful = 1e-2;    // distance of a modulus from 1 that two tolerances are compared for
+constexpr double rough_step = 1e-3;   // enough where R(y) - y is noise already
+constexpr double least_range = 1e-3;  // of an orbit, in scales
+constexpr double doubtful = 1e-2;     // distance of a modulus from 1 that two tolerances are compared for
 constexpr double least_uncertainty = 1e-8;
 constexpr double linear = 1e-4;        // distance, in scales, in which one turn tells
 constexpr double wanted_decay = 0.25;  // 1 - |mu| summed over the turns that are watched
@@ -94,6 +95,16 @@ bool is_repeated(const OrbitCandidate& candidate, const SimulatedTurn& turn) {
     if (repeats) return true;
   }
   return false;
+}
+
+/// A motion that comes to rest has turns as small as one likes; Newton's method takes it to the equilibrium itself.
+bool is_point(const OrbitCandidate& candidate, const SimulatedTurn& turn) {
+  VectorXd low = turn.segments.front().low, high = turn.segments.front().high;
+  for (const SimulatedSegment& segment : turn.segments) {
+    low = low.cwiseMin(segment.low);
+    high = high.cwiseMax(segment.high);
+  }
+  return size_of(candidate, without_ignorable(candidate, high - low)) <= least_range;
 }
 
 double largest_modulus(const std::vector<std::complex<double>>& multipliers) {
@@ -223,6 +234,10 @@ CorrectedOrbit correct_orbit(const OrbitCandidate& candidate) {
   }
   if (is_repeated(candidate, orbit.turn)) {
     orbit.fault = "the orbit near the motion is shorter";
+    return orbit;
+  }
+  if (is_point(candidate, orbit.turn)) {
+    orbit.fault = "the motion comes to rest";
     return orbit;
   }
   const double last_change = std::abs(largest_modulus(orbit.multipliers) - last_modulus);

@@ -52,7 +52,25 @@ struct SlowMode {
   }
 };
 
+/// A focus at the origin, x' = -PAR(1) x - y, y' = x - PAR(1) y; event 1 where y falls through zero.
+struct Focus {
+  static constexpr int dimension = 2, parameters = 1, fields = 1, events = 1, jumps = 1;
+  template <class T>
+  void field(int, const T* x, const T* p, T* f) const {
+    f[0] = -p[0] * x[0] - x[1], f[1] = x[0] - p[0] * x[1];
+  }
+  template <class T>
+  T event(int, const T* x, const T*) const {
+    return x[1];
+  }
+  template <class T>
+  void jump(int, const T* x, const T*, T* g) const {
+    g[0] = x[0], g[1] = x[1];
+  }
+};
+
 struct Settled {
+  std::optional<VectorXd> equilibrium;
   std::optional<SettledOrbit> orbit;
   std::string doubt;
   long events = 0;
@@ -71,6 +89,7 @@ Settled settle(const ModeRule& rule, const VectorXd& x0, const ParameterVector& 
     if (search.has_settled(simulation, segment)) break;
   }
   settled.orbit = search.orbit();
+  settled.equilibrium = search.equilibrium();
   settled.doubt = search.doubt();
   return settled;
 }
@@ -155,6 +174,16 @@ TEST_CASE("a motion of a conservative system that repeats itself is periodic, an
   REQUIRE(settled.orbit.has_value());
   CHECK(settled.orbit->stability == OrbitStability::neutral);
   CHECK(settled.orbit->turn.front().duration == Approx(2.0 * std::sqrt(2.0)).epsilon(1e-8));
+}
+
+TEST_CASE("a motion that comes to rest is no orbit, however small its turns have become") {
+  for (const double damping : {0.05, 0.01, 1e-4}) {
+    CAPTURE(damping);
+    const Settled settled = settle(always<Focus>({{1, 1, 1}}), Eigen::Vector2d(1.0, 0.0), parameters({damping}), 400);
+    CHECK_FALSE(settled.orbit.has_value());
+    REQUIRE(settled.equilibrium.has_value());
+    CHECK(settled.equilibrium->norm() < 1e-9);
+  }
 }
 
 TEST_CASE("an equilibrium that attracts, and motions that do not come to one") {

@@ -138,7 +138,7 @@ TEST_CASE("simulate: without any option, from the problem's start to its orbit")
 
 TEST_CASE("simulate: two equal runs write the same bytes, and keep what was there before") {
   const Workspace workspace;
-  const std::string run = "linosc PAR(alpha)=3.2 PAR(omega)=2.0072 --events 5 --dat found";
+  const std::string run = "linosc PAR(alpha)=3.2 PAR(omega)=2.0072 --events 1 --dat found";
   simulate(workspace, run + " -o a", 1);
   CHECK_FALSE(workspace.has("found.dat"));
   const std::string orbit = "linosc PAR(alpha)=3.0485 PAR(omega)=2.0072 --dat found -o ";
