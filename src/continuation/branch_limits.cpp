@@ -9,6 +9,7 @@
 #include "bvp/no_duration.hpp"
 #include "continuation/newton_chord.hpp"
 #include "linear_algebra/dense_matrix.hpp"
+#include "special_points/label_evidence.hpp"
 
 namespace tchat {
 
@@ -66,7 +67,7 @@ std::string unresolved_by_mesh(const DefiningSystem& system, const Orbit& x, con
   if (!(multipliers.structural <= bound))
     return text(multipliers.has_trivial ? "the trivial multiplier's distance from 1" : "the structural multiplier",
                 multipliers.structural);
-  if (!multipliers.valid) return "";
+  if (count_unstable(multipliers).outside == 0) return "";
   const double limit = resolved_growth(x.shape.collocation);
   const double growth = largest_growth(system, x, limit);
   if (growth == 0.0) return "";

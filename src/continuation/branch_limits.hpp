@@ -15,7 +15,8 @@ namespace tchat {
 ///     h T |Re lambda| with an eigenvalue lambda of f_x, where one of them grows by more than exp(1) on the interval,
 ///     or h T |d ln |f| / dt|, the lesser of the values at both ends. Collocation at c Gauss points has the relative
 ///     error (c!)^2 / ((2c)! (2c+1)!) z^(2c+1) of this factor. Where it exceeds 1, multipliers and durations are those
-///     of the mesh.
+///     of the mesh. It counts for orbits with a multiplier outside of the unit circle: the others contract local
+///     errors, as relaxation oscillations do.
 std::string unresolved_by_mesh(const DefiningSystem& system, const Orbit& x, const CollocationRule& rule,
                                const FloquetMultipliers& multipliers, double bound);
 
