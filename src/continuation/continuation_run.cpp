@@ -110,7 +110,7 @@ BranchSummary ContinuationRun::run(PathPoint start) {
   closed_.begin(here_, settings_.step.initial);
   turned_at_ = parameter_at(here_);
   first_period_ = here_.orbit.period();
-  if (number_ > 1)
+  if (settings_.resumes)
     resume();
   else
     accept(end_conditions(special));

@@ -44,6 +44,7 @@ struct ContinuationSettings {
   std::function<std::string(const Orbit&)> unresolved = {};
   /// Largest estimated error and structural multiplier of a point that the branch goes on to (ERRMAX); 0: any.
   double error_bound = 0.0;
+  bool resumes = false;            ///< the first point is the last of a run with another mesh, and written
   bool may_refine = false;         ///< a finer mesh is tried where the bound is exceeded (EndReason::outgrown)
   bool reports_stability = false;  ///< all bifurcations are detected: a change of stability has a label, or is reported
   std::optional<OrbitTrend> trend = {};  ///< of the part of the branch before the start, on another mesh

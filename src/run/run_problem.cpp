@@ -254,6 +254,7 @@ class Direction {
     if (!summary.detail.empty()) continuation_.trend = run.trend();
     continuation_.step.initial = run.next_length();
     continuation_.first_number = summary.points;
+    continuation_.resumes = true;
     continuation_.label_start = false;
     return joined(summary, next.follower ? follow_on(next, next.start.point, writer)
                                          : follow_on(setup, run.last(), writer, points_before_next));
