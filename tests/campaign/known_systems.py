@@ -265,7 +265,7 @@ def one_impact_orbit(A, omega, zeta, r, n, root):
     (a, c), (b, d) = image(1, 0), image(0, 1)
     half, root2 = (a + d) / 2, cmath.sqrt((a + d) ** 2 / 4 - (a * d - b * c))
     multiplier = max(abs(half + root2), abs(half - root2))
-    return (1.0, v0, force / A, quadrature / A), T, multiplier
+    return (1.0, v0, force / A, -quadrature / A), T, multiplier
 
 
 def impact_oscillator(random):

@@ -8,11 +8,12 @@
 ///
 /// where t runs from 0 to 1; event 0 is an orbit without a section, jump 0 the identity. For each orbit one line of
 /// JSON answers: `interval` is the largest difference between a stored point and the integration from the one before
-/// it, `connection` that between the image of a segment's end and the next start, both relative to the largest state;
-/// `event` is h at the ends of segments relative to its gradient and the largest state; `velocity` is h_x f there;
-/// `real` and `imaginary` are the parts of the multipliers of the return map, from central differences over each
-/// interval and, at events, from the saltation matrix; `least` is the local minimum of each monitored function that is
-/// nearest to zero, relative as `event` is.
+/// it, divided by how far the flow between them takes neighbours apart (each state in units of its size), `connection`
+/// that between the image of a segment's end and the next start, both relative to the largest state; `event` is h at
+/// the ends of segments relative to its gradient and the largest state; `velocity` is h_x f there; `real` and
+/// `imaginary` are the parts of the multipliers of the return map, from central differences over each interval and, at
+/// events, from the saltation matrix; `least` is the local minimum of each monitored function that is nearest to zero,
+/// relative as `event` is.
 #include <dlfcn.h>
 
 #include <Eigen/Core>
@@ -55,6 +56,7 @@ struct Orbit {
   std::vector<Segment> segments;
   std::vector<std::pair<int, int>> monitored;  // segment, event
   double scale = 0.0;                          // the largest state
+  VectorXd sizes;                              // of each state, at least 1e-6 of the largest
 };
 
 VectorXd value(const Orbit& orbit, int kind, int index, const VectorXd& x, Eigen::Index rows) {
@@ -126,8 +128,12 @@ void check_segment(const Orbit& orbit, std::size_t s, Findings& found) {
   for (std::size_t k = 0; k + 1 < segment.points.size(); ++k) {
     const double time = (segment.times[k + 1] - segment.times[k]) * segment.duration;
     const auto advance = [&](const VectorXd& x) { return flow(orbit, segment.field, x, time); };
-    found.interval = std::max(found.interval, distance(orbit, advance(segment.points[k]), segment.points[k + 1]));
-    monodromy = derivative(orbit, segment.points[k], n, advance) * monodromy;
+    const MatrixXd growth = derivative(orbit, segment.points[k], n, advance);
+    const MatrixXd relative = orbit.sizes.cwiseInverse().asDiagonal() * growth * orbit.sizes.asDiagonal();
+    const double largest = std::max(1.0, relative.cwiseAbs().rowwise().sum().maxCoeff());
+    const double error = distance(orbit, advance(segment.points[k]), segment.points[k + 1]);
+    found.interval = std::max(found.interval, error / largest);
+    monodromy = growth * monodromy;
   }
   const VectorXd& end = segment.points.back();
   if (segment.event > 0) {
@@ -216,6 +222,7 @@ bool read(std::istream& in, Orbit& orbit) {
   orbit.par.assign(std::max<std::size_t>(count, TCHAT_PAR_LENGTH), 0.0);
   for (std::size_t k = 0; k < count; ++k) in >> orbit.par[k];
   orbit.segments.resize(segments);
+  orbit.sizes = VectorXd::Zero(n);
   for (Segment& segment : orbit.segments) {
     std::size_t points = 0;
     in >> segment.field >> segment.event >> segment.jump >> segment.duration >> points;
@@ -224,9 +231,11 @@ bool read(std::istream& in, Orbit& orbit) {
     for (std::size_t k = 0; k < points; ++k) {
       in >> segment.times[k];
       for (Eigen::Index i = 0; i < n; ++i) in >> segment.points[k](i);
-      orbit.scale = std::max(orbit.scale, segment.points[k].lpNorm<Eigen::Infinity>());
+      orbit.sizes = orbit.sizes.cwiseMax(segment.points[k].cwiseAbs());
     }
   }
+  orbit.scale = orbit.sizes.maxCoeff();
+  orbit.sizes = orbit.sizes.cwiseMax(1e-6 * orbit.scale);
   in >> monitored;
   orbit.monitored.resize(monitored);
   for (auto& [segment, event] : orbit.monitored) in >> segment >> event;
