@@ -26,8 +26,9 @@ constexpr double least_uncertainty = 1e-8;
 constexpr double linear = 1e-4;        // distance, in scales, in which one turn tells
 constexpr double wanted_decay = 0.25;  // 1 - |mu| summed over the turns that are watched
 constexpr double most_turns = 128.0;
-constexpr std::size_t least_passed = 8;  // turns that the motion has made
-constexpr std::size_t turns_of_leaving = 16;
+constexpr std::size_t least_passed = 8;       // turns that the motion has made
+constexpr std::size_t turns_of_leaving = 16;  // at least
+constexpr double growth_of_leaving = 100.0;   // in them: within chaos of small range distances grow by less
 constexpr double like_growth = 0.2;
 constexpr double noticeable = 0.05;                             // fall of V in them
 constexpr double shares_of_distance[] = {1.0, 0.3, 0.1, 0.02};  // of the motion's, that turns begin from
@@ -222,9 +223,10 @@ CorrectedOrbit correct_orbit(const OrbitCandidate& candidate) {
     last_modulus = largest_modulus(orbit.multipliers);
     orbit.multipliers = multipliers_without(orbit.turn.derivative, candidate.ignorable);
     const bool is_noise = size_of(candidate, residual) <= noise(candidate);
-    if (last_step <= newton_converged || (is_noise && last_step <= rough_step)) break;
     const VectorXd dy = newton_step(candidate, orbit.turn.derivative, residual);
     const double size = size_of(candidate, dy);
+    const bool is_rough = is_noise && last_step <= rough_step && !(size < 0.25 * last_step);
+    if (last_step <= newton_converged || is_rough) break;
     if (step == most_newton_steps || !(size < farthest) || (step > 1 && size > 2.0 * last_step)) {
       orbit.fault = "no periodic orbit near the motion";
       return orbit;
@@ -261,9 +263,11 @@ bool approaches(const OrbitCandidate& candidate, const CorrectedOrbit& orbit) {
 }
 
 bool is_leaving(const OrbitCandidate& candidate, const CorrectedOrbit& orbit) {
-  if (candidate.passed.size() <= turns_of_leaving) return false;
   const double growth = largest_modulus(orbit.multipliers);
-  for (std::size_t k = candidate.passed.size() - turns_of_leaving; k < candidate.passed.size(); ++k) {
+  const auto wanted = static_cast<std::size_t>(std::min(std::log(growth_of_leaving) / std::log(growth), 1e6));
+  const std::size_t turns = std::min(std::max(wanted, turns_of_leaving), candidate.passed.size() - 1);
+  if (turns < turns_of_leaving) return false;
+  for (std::size_t k = candidate.passed.size() - turns; k < candidate.passed.size(); ++k) {
     const double before = size_of(candidate, without_ignorable(candidate, candidate.passed[k - 1] - orbit.end));
     const double after = size_of(candidate, without_ignorable(candidate, candidate.passed[k] - orbit.end));
     if (!(std::abs(after - growth * before) <= like_growth * growth * before)) return false;

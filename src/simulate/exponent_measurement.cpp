@@ -17,6 +17,7 @@ using Eigen::Index;
 using Eigen::VectorXd;
 
 constexpr long most_measured = 100000;  // events
+constexpr long most_undecided = 16384;  // however small the bars, while they do not tell what the motion is
 constexpr long least_measured = 1024;   // so that weighted means of periodic motion have converged
 
 /// With the digits that the bar leaves.
@@ -101,7 +102,8 @@ bool go_on(HybridSimulation& simulation, LyapunovAccumulator& exponents, double 
                             value_text(now.exponents(0), now.errors(0)), bar_text(now.errors(0)), now.accuracy()));
     }
     if (done < next_look) continue;
-    if (exponents.spectrum().accuracy() <= accuracy) return true;
+    const LyapunovSpectrum spectrum = exponents.spectrum();
+    if (spectrum.accuracy() <= accuracy && (signs_of(spectrum).unclear == 0 || done >= most_undecided)) return true;
     next_look += next_look / 4;
   }
   return true;

@@ -223,7 +223,9 @@ int simulate_problem(const SimulationRequest& request, std::ostream& screen, std
     say(no_orbit_text(result, request.plan, search.doubt()));
   }
   const bool is_attracting = orbit.converged && orbit.stability() == OrbitStability::stable;
-  if (exponents) {
+  if (exponents && search.equilibrium() && !has_wanted_length(request.plan)) {
+    say("No Lyapunov exponents: the motion comes to rest; those of a part of it are told with --events or --time.\n");
+  } else if (exponents) {
     // Those of the orbit itself, not of the way to it.
     HybridSimulation measured =
         is_attracting && search.orbit() ? HybridSimulation(simulation, search.orbit()->end, settings) : simulation;
