@@ -28,7 +28,7 @@ constexpr double wanted_decay = 0.25;  // 1 - |mu| summed over the turns that ar
 constexpr double most_turns = 128.0;
 constexpr std::size_t least_passed = 8;       // turns that the motion has made
 constexpr std::size_t turns_of_leaving = 16;  // at least
-constexpr double growth_of_leaving = 100.0;   // in them: within chaos of small range distances grow by less
+constexpr double growth_of_leaving = 100.0;   // in them
 constexpr double like_growth = 0.2;
 constexpr double noticeable = 0.05;                             // fall of V in them
 constexpr double shares_of_distance[] = {1.0, 0.3, 0.1, 0.02};  // of the motion's, that turns begin from
@@ -267,12 +267,14 @@ bool is_leaving(const OrbitCandidate& candidate, const CorrectedOrbit& orbit) {
   const auto wanted = static_cast<std::size_t>(std::min(std::log(growth_of_leaving) / std::log(growth), 1e6));
   const std::size_t turns = std::min(std::max(wanted, turns_of_leaving), candidate.passed.size() - 1);
   if (turns < turns_of_leaving) return false;
-  for (std::size_t k = candidate.passed.size() - turns; k < candidate.passed.size(); ++k) {
-    const double before = size_of(candidate, without_ignorable(candidate, candidate.passed[k - 1] - orbit.end));
-    const double after = size_of(candidate, without_ignorable(candidate, candidate.passed[k] - orbit.end));
-    if (!(std::abs(after - growth * before) <= like_growth * growth * before)) return false;
-  }
-  return true;
+  const auto distance = [&](std::size_t k) {
+    return size_of(candidate, without_ignorable(candidate, candidate.passed[k] - orbit.end));
+  };
+  const std::size_t last = candidate.passed.size() - 1;
+  for (std::size_t k = last - turns; k < last; ++k)
+    if (!(std::abs(distance(k + 1) - growth * distance(k)) <= like_growth * growth * distance(k))) return false;
+  const double expected = static_cast<double>(turns) * std::log(growth);
+  return std::log(distance(last) / distance(last - turns)) >= 0.5 * expected;
 }
 
 }  // namespace tchat
