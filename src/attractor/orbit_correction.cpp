@@ -168,13 +168,14 @@ class ApproachTest {
  private:
   VectorXd distance(const VectorXd& y) const { return without_ignorable(candidate_, y - orbit_.end); }
 
-  /// By half of what M makes of V, at least: where that is noticeable, on average over the first and the last quarter
-  /// of the turns; otherwise in every two turns.
+  /// At half the rate at which M lowers V, at least: where that is noticeable, from the mean over the first quarter of
+  /// the turns to that over the last, unless no distance is left; otherwise in every two turns.
   bool falls_as_predicted(const std::vector<VectorXd>& seen) const {
     std::vector<VectorXd> linear_ones{seen.front()};
     while (linear_ones.size() < seen.size()) linear_ones.push_back(map_ * linear_ones.back());
-    const double expected = fall_of_means(linear_ones);
-    if (expected > noticeable * mean(linear_ones, 0)) return fall_of_means(seen) >= 0.5 * expected;
+    const double expected = ratio_of_means(linear_ones);
+    if (expected < 1.0 - noticeable)
+      return ratio_of_means(seen) <= std::sqrt(expected) || size_of(candidate_, seen.back()) <= noise(candidate_);
     for (std::size_t k = 2; k < seen.size(); ++k)
       if (fall(seen[k - 2], seen[k]) < 0.5 * fall(seen[k - 2], map_ * map_ * seen[k - 2])) return false;
     return true;
@@ -191,8 +192,9 @@ class ApproachTest {
     for (std::size_t k = from; k < from + quarter; ++k) sum += distances[k].dot(weight_ * distances[k]);
     return sum / static_cast<double>(quarter);
   }
-  double fall_of_means(const std::vector<VectorXd>& distances) const {
-    return mean(distances, 0) - mean(distances, distances.size() - distances.size() / 4);
+  /// That over the last quarter as a share of that over the first.
+  double ratio_of_means(const std::vector<VectorXd>& distances) const {
+    return mean(distances, distances.size() - distances.size() / 4) / mean(distances, 0);
   }
 
   const OrbitCandidate& candidate_;

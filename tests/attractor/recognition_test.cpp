@@ -52,6 +52,31 @@ struct SlowMode {
   }
 };
 
+/// x = (clock, c, s), PAR = (a, b): once per unit of time z = c + i s goes to e^{i a} (w + b) / (1 + b w), w = z
+/// (3 - |z|^2) / 2.
+struct Moebius {
+  static constexpr int dimension = 3, parameters = 2, fields = 1, events = 1, jumps = 1;
+  template <class T>
+  void field(int, const T*, const T*, T* f) const {
+    f[0] = T(1.0), f[1] = T(0.0), f[2] = T(0.0);
+  }
+  template <class T>
+  T event(int, const T* x, const T*) const {
+    return 1.0 - x[0];
+  }
+  template <class T>
+  void jump(int, const T* x, const T* p, T* g) const {
+    using std::cos;
+    using std::sin;
+    const T growth = 0.5 * (3.0 - x[1] * x[1] - x[2] * x[2]);
+    const T c = growth * x[1], s = growth * x[2];
+    const T size = (1.0 + p[1] * c) * (1.0 + p[1] * c) + p[1] * s * p[1] * s;
+    const T u = ((c + p[1]) * (1.0 + p[1] * c) + p[1] * s * s) / size;
+    const T v = (s * (1.0 + p[1] * c) - (c + p[1]) * p[1] * s) / size;
+    g[0] = T(0.0), g[1] = cos(p[0]) * u - sin(p[0]) * v, g[2] = sin(p[0]) * u + cos(p[0]) * v;
+  }
+};
+
 /// A focus at the origin, x' = -PAR(1) x - y, y' = x - PAR(1) y; event 1 where y falls through zero.
 struct Focus {
   static constexpr int dimension = 2, parameters = 1, fields = 1, events = 1, jumps = 1;
@@ -165,6 +190,14 @@ TEST_CASE("a state that nothing depends on may grow, chaos and tori settle on no
   const ParameterVector golden = parameters({1.0, 0.5 * (std::sqrt(5.0) - 1.0)});
   CHECK_FALSE(
       settle(always<TwoCircles>({{1, 1, 1}}), Eigen::Vector4d(1.0, 0.1, 0.6, 0.8), golden, 1000).orbit.has_value());
+}
+
+TEST_CASE("a stable orbit far from a motion on a circle is none that it approaches") {
+  // Off the unit circle the map has a fixed point that attracts (moduli 0.257 and 0.229), at (3.65, -2.01); on it none.
+  const Settled settled =
+      settle(always<Moebius>({{1, 1, 1}}), Eigen::Vector3d(0.0, 0.36456096879362471, 0.93117952084023725),
+             parameters({-0.56789320700131429, 0.26676600878645029}), 3000);
+  CHECK_FALSE(settled.orbit.has_value());
 }
 
 TEST_CASE("a motion of a conservative system that repeats itself is periodic, and neutral") {
