@@ -103,6 +103,10 @@ Mean weighted_mean(const Rates& rates) {
   const auto count = static_cast<double>(weighted_blocks);
   mean.error = student * std::sqrt((blocks.array() - blocks.mean()).square().sum() / (count - 1.0) / count);
   mean.error = std::max(mean.error, std::abs(blocks.mean() - mean.value));
+  // Blocks that are alike, as where two directions turn by nearly a share of a turn, are off alike.
+  const Index half = rates.size() / 2;
+  for (const Index begin : {Index(0), rates.size() - half})
+    mean.error = std::max(mean.error, std::abs(weighted_value(rates, begin, half) - mean.value));
   return mean;
 }
 
