@@ -24,8 +24,25 @@ double resolved_growth(int collocation) {
   return std::pow(constant, -1.0 / (2 * collocation + 1));
 }
 
-/// The largest z of the orbit's mesh intervals, 0 where none exceeds `least`, which is cheap to see.
-double largest_growth(const DefiningSystem& system, const Orbit& x, double least) {
+/// What changes by a factor of exp(z) on a mesh interval.
+enum class Rate {
+  of_perturbations_and_flow,
+  of_decaying_flow  ///< |f| before an event, whose time has the relative error of f
+};
+
+/// Per unit time at one state.
+double rate_at(const Eigen::VectorXd& f, const Eigen::MatrixXd& fx, double time, Rate rate) {
+  const double flow = f.dot(fx * f) / f.squaredNorm();  // d ln |f| / dt
+  const double of_flow = std::isfinite(flow) ? flow : 0.0;
+  if (rate == Rate::of_decaying_flow) return std::max(-of_flow, 0.0);
+  const Eigen::VectorXd rates = eigenvalues(fx).real();
+  // What decays beside what grows has its share in the multipliers, what decays alone has none.
+  const double perturbations = rates.maxCoeff() * time > 1.0 ? rates.cwiseAbs().maxCoeff() : 0.0;
+  return std::max(perturbations, std::abs(of_flow));
+}
+
+/// The largest z of the orbit's mesh intervals from `first` on, 0 where none exceeds `least`, which is cheap to see.
+double largest_growth(const DefiningSystem& system, const Orbit& x, int first, Rate rate, double least) {
   const int n = x.shape.dimension;
   const int c = x.shape.collocation;
   Eigen::VectorXd f(n);
@@ -36,14 +53,9 @@ double largest_growth(const DefiningSystem& system, const Orbit& x, double least
     const auto growth_at = [&](int mesh_point, double time) {
       system.system().first(FunctionKind::field, field, x.node(s, mesh_point * c), x.par.data(), {}, f.data(),
                             fx.data(), nullptr);
-      if (!fx.allFinite() || !(fx.norm() * time > least)) return 0.0;
-      const double flow = f.dot(fx * f) / f.squaredNorm();  // d ln |f| / dt
-      const Eigen::VectorXd rates = eigenvalues(fx).real();
-      // What decays beside what grows has its share in the multipliers, what decays alone has none.
-      const double perturbations = rates.maxCoeff() * time > 1.0 ? rates.cwiseAbs().maxCoeff() : 0.0;
-      return std::max(perturbations, std::isfinite(flow) ? std::abs(flow) : 0.0) * time;
+      return fx.allFinite() && fx.norm() * time > least ? rate_at(f, fx, time, rate) * time : 0.0;
     };
-    for (int j = 0; j < x.shape.intervals; ++j) {
+    for (int j = first; j < x.shape.intervals; ++j) {
       const auto at = static_cast<std::size_t>(j);
       const double time = (x.mesh[at + 1] - x.mesh[at]) * x.duration(s);
       const double left = growth_at(j, time);
@@ -67,9 +79,11 @@ std::string unresolved_by_mesh(const DefiningSystem& system, const Orbit& x, con
   if (!(multipliers.structural <= bound))
     return text(multipliers.has_trivial ? "the trivial multiplier's distance from 1" : "the structural multiplier",
                 multipliers.structural);
-  if (count_unstable(multipliers).outside == 0) return "";
+  if (!multipliers.valid) return "";
   const double limit = resolved_growth(x.shape.collocation);
-  const double growth = largest_growth(system, x, limit);
+  const double growth = count_unstable(multipliers).outside > 0
+                            ? largest_growth(system, x, 0, Rate::of_perturbations_and_flow, limit)
+                            : largest_growth(system, x, x.shape.intervals - 1, Rate::of_decaying_flow, limit);
   if (growth == 0.0) return "";
   return fmt::format(
       "NTST = {} does not resolve the next orbit: perturbations or the flow change by a factor of exp({:.3g}) "

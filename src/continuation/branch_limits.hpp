@@ -16,7 +16,8 @@ namespace tchat {
 ///     or h T |d ln |f| / dt|, the lesser of the values at both ends. Collocation at c Gauss points has the relative
 ///     error (c!)^2 / ((2c)! (2c+1)!) z^(2c+1) of this factor. Where it exceeds 1, multipliers and durations are those
 ///     of the mesh. It counts for orbits with a multiplier outside of the unit circle: the others contract local
-///     errors, as relaxation oscillations do.
+///     errors, as relaxation oscillations do. Of those only the decay of |f| on the last interval of a segment counts,
+///     on which the time of the event depends.
 std::string unresolved_by_mesh(const DefiningSystem& system, const Orbit& x, const CollocationRule& rule,
                                const FloquetMultipliers& multipliers, double bound);
 

@@ -47,8 +47,12 @@ TEST_CASE("no memory is a sentence with status 1, in labels, constants and run")
 
 TEST_CASE("threads that cannot be started are no fault of the plugin") {
   const Workspace workspace;
+  workspace.write("clock.tch",
+                  "par rate=1\ninit x=1\nx' = -rate\nevent zero = x\njump reset: x -> 1\nafter any: zero -> reset\n");
+  REQUIRE(workspace.tchat("check clock").status == 0);
   // 999 stacks of 8 MB do not fit into 3 GB.
-  const Outcome outcome = workspace.tchat_in_memory(3'000'000, "sweep linosc --over alpha=2:6:2000 -j 999");
+  const Outcome outcome = workspace.tchat_in_memory(3'000'000, "sweep clock --over rate=1:2:2000 -j 999");
+  INFO(outcome.text());
   CHECK(outcome.status == 1);
   CHECK(contains(outcome.err, "of 999 threads can be started"));
   CHECK(contains(outcome.err, "(-j "));

@@ -175,11 +175,10 @@ TEST_CASE("a wrong second derivative is named") {
 
 TEST_CASE("directional derivatives that contradict the first ones are named") {
   tchat_problem table = *ProblemTable<Sound>::get("tested");
-  table.first = [](const void*, int32_t kind, int32_t, const double* x, const double* par, const int32_t*, int32_t,
-                   double* out, double* dx, double* dp) {
-    const int32_t active[] = {1};
+  table.first = [](const void*, int32_t kind, int32_t, const double* x, const double* par, const int32_t* active,
+                   int32_t count, double* out, double* dx, double* dp) {
     const tchat_problem& right = *ProblemTable<Sound>::get("tested");
-    right.first(right.self, kind, 1, x, par, active, 1, out, dx, dp);
+    right.first(right.self, kind, 1, x, par, active, count, out, dx, dp);
     if (kind == TCHAT_JUMP) dx[0] += 1e-10;  // too small for differences to see
   };
   const HybridSystem system(table);
