@@ -107,9 +107,9 @@ TEST_CASE("a sharp cycle on a coarser mesh than simulate recommends") {
   check_cycle({"reactor, section u2' = 0", reactor, reactor_maximum, {0.16, 17, 3}, {0.2, 3.5}}, " NTST=50", 1e-7);
 }
 
-TEST_CASE("a sharp cycle on a finer mesh than that of its data, and on one of NTST = 50") {
+TEST_CASE("a sharp cycle on a finer mesh than that of its data, and on a coarser one") {
   check_cycle({"Oregonator", oregonator2, "x[0] - 0.1", {1, 8e-4, 0.004}, {0.5, 0.1}}, " NTST=400", 1e-10);
-  check_cycle({"Lienard", lienard, "x[0]", {100}, {2, 0.5}}, " NTST=50 ERRMAX=0", 1e-5);
+  check_cycle({"Lienard", lienard, "x[0]", {100}, {2, 0.5}}, " NTST=60", 1e-8);
 }
 
 TEST_CASE("a step that fails on an adapted mesh is tried again on the mesh before") {
