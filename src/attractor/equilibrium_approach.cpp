@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bvp/nearby_equilibrium.hpp"
 #include "linear_algebra/dense_matrix.hpp"
 
 namespace tchat {
@@ -10,43 +11,23 @@ namespace tchat {
 namespace {
 
 using Eigen::Index;
-using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr int most_steps = 20;
-constexpr double converged_step = 1e-10;  // relative to 1 + |x|
-constexpr double rounding = 1e-9;         // of real parts, relative to |f_x|
+constexpr double rounding = 1e-9;  // of real parts, relative to |f_x|
 constexpr std::size_t least_states = 4;
 constexpr double no_movement = 1e-3;  // relative to 1 + |x|
 constexpr double there = 1e-8;        // distance that integration cannot tell from zero, relative to 1 + |x|
 
-}  // namespace
-
+/// An equilibrium whose f_x has no eigenvalue with a positive real part.
 std::optional<VectorXd> attracting_equilibrium(const HybridSystem& system, int field, const VectorXd& near,
                                                const VectorXd& par, const std::vector<Index>& ignorable) {
-  const Index n = near.size();
-  std::vector<Index> kept;
-  for (Index i = 0; i < n; ++i)
-    if (std::find(ignorable.begin(), ignorable.end(), i) == ignorable.end()) kept.push_back(i);
-  VectorXd x = near, f(n);
-  MatrixXd fx(n, n);
-  double no_parameters = 0.0;
-  for (int step = 0; step < most_steps; ++step) {
-    system.first(FunctionKind::field, field, x.data(), par.data(), {}, f.data(), fx.data(), &no_parameters);
-    if (!f.allFinite() || !fx.allFinite()) return std::nullopt;
-    const MatrixXd matrix = fx(kept, kept);
-    VectorXd value(matrix.rows());
-    for (Index i = 0; i < value.size(); ++i) value(i) = f(kept[static_cast<std::size_t>(i)]);
-    const VectorXd dx = -solve_with_complete_pivoting(matrix, value);
-    if (!dx.allFinite()) return std::nullopt;
-    for (Index i = 0; i < dx.size(); ++i) x(kept[static_cast<std::size_t>(i)]) += dx(i);
-    if (dx.norm() > converged_step * (1.0 + x.norm())) continue;
-    if (value.norm() > 1e-6 * (matrix.norm() + 1.0) * (1.0 + x.norm())) return std::nullopt;
-    if ((eigenvalues(matrix).real().array() > rounding * matrix.norm()).any()) return std::nullopt;
-    return x;
-  }
-  return std::nullopt;
+  const std::optional<NearbyEquilibrium> found = find_equilibrium(system, field, near, par.data(), ignorable);
+  if (!found) return std::nullopt;
+  const bool attracts = (eigenvalues(found->jacobian).real().array() <= rounding * found->jacobian.norm()).all();
+  return attracts ? std::optional(found->state) : std::nullopt;
 }
+
+}  // namespace
 
 std::optional<VectorXd> reached_equilibrium(const HybridSystem& system, const SimulatedSegment& last,
                                             const VectorXd& par, const std::vector<Index>& ignorable) {

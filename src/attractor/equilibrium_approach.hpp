@@ -1,4 +1,4 @@
-/// Whether a motion comes to rest: an equilibrium of its field, found by Newton's method from where the motion is.
+/// Whether a trajectory converges to an equilibrium of its field.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,14 +10,9 @@
 
 namespace tchat {
 
-/// x with f_i(x, p) = 0 near a state, whose f_x has no eigenvalue with a positive real part; nothing where Newton's
-/// method does not converge. States that nothing depends on (`ignorable`, from 0) keep their values, and may move.
-std::optional<Eigen::VectorXd> attracting_equilibrium(const HybridSystem& system, int field,
-                                                      const Eigen::VectorXd& near, const Eigen::VectorXd& par,
-                                                      const std::vector<Eigen::Index>& ignorable);
-
-/// Such an equilibrium where a motion is that has had no event for so long (SegmentEnd::no_event): its speed times that
-/// duration is nothing.
+/// An equilibrium whose f_x has no eigenvalue with a positive real part, found by Newton's method from the end of a
+/// motion that has had no event for so long (SegmentEnd::no_event) that its speed times that duration is nothing.
+/// States that nothing depends on (`ignorable`, from 0) keep their values, and may move.
 std::optional<Eigen::VectorXd> reached_equilibrium(const HybridSystem& system, const SimulatedSegment& last,
                                                    const Eigen::VectorXd& par,
                                                    const std::vector<Eigen::Index>& ignorable);

@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 
+#include "bvp/nearby_equilibrium.hpp"
 #include "linear_algebra/dense_matrix.hpp"
 #include "special_points/bifurcation_tests.hpp"
 
@@ -56,29 +57,15 @@ SlowPoint slowest_point(const DefiningSystem& system, const Orbit& x, const Vect
 }
 
 std::optional<Equilibrium> near_equilibrium(const DefiningSystem& system, const Orbit& x) {
-  constexpr int most_iterations = 20;
-  constexpr double small = 1e-10;
   const VectorXd ranges = state_ranges(x);
   const SlowPoint start = slowest_point(system, x, ranges);
-  const Eigen::Index n = x.shape.dimension;
   if (start.state.size() == 0) return std::nullopt;
-  Equilibrium found{start.field, start.state, 0.0, {}};
-  VectorXd f(n);
-  Eigen::MatrixXd jacobian(n, n);
-  for (int iteration = 0; iteration < most_iterations; ++iteration) {
-    system.system().first(FunctionKind::field, found.field, found.state.data(), x.par.data(), {}, f.data(),
-                          jacobian.data(), nullptr);
-    if (!f.allFinite() || !jacobian.allFinite()) return std::nullopt;
-    const VectorXd step = least_squares(jacobian, -f);
-    found.state += step;
-    found.distance = scaled_size(found.state - start.state, ranges);
-    if (!(found.distance <= at_rest_nearby)) return std::nullopt;
-    if (step.norm() > small * (1.0 + found.state.norm())) continue;
-    if ((jacobian * step + f).norm() > small * (1.0 + jacobian.norm() * found.state.norm())) return std::nullopt;
-    found.eigenvalues = eigenvalues(jacobian);
-    return found;
-  }
-  return std::nullopt;
+  const std::optional<NearbyEquilibrium> found =
+      find_equilibrium(system.system(), start.field, start.state, x.par.data(), {});
+  if (!found) return std::nullopt;
+  const double distance = scaled_size(found->state - start.state, ranges);
+  if (!(distance <= at_rest_nearby)) return std::nullopt;
+  return Equilibrium{start.field, found->state, distance, eigenvalues(found->jacobian)};
 }
 
 std::string eigenvalue_text(const Eigen::VectorXcd& values) {
