@@ -98,13 +98,13 @@ std::string direction_text(const BranchSetup& setup, const SelectedStart& start,
     return fmt::format("DS {} 0: {} the direction stored with label {} of {}\n{}", sign,
                        step > 0.0 ? "on in" : "back against", start.label, start.source,
                        step > 0.0 ? ""
-                                  : fmt::format("        DS={:g} goes on (where AUTO-07p goes on by DS < 0 after a run "
-                                                "with DS < 0)\n",
+                                  : fmt::format("        DS={:g} continues the earlier run (AUTO-07p continues a run "
+                                                "that had DS < 0 with DS < 0)\n",
                                                 -step));
   const double rate = step * setup.follower->principal_direction(setup.start.point);
   if (!start.from_solution || setup.type->facts().switches_branch || rate == 0.0) return "";
-  return fmt::format("DS {} 0: {} {} at first; label {} of {} has no direction of such a run\n", sign, parameter,
-                     rate > 0.0 ? "grows" : "falls", start.label, start.source);
+  return fmt::format("DS {} 0: {} {} first (label {} of {} stores no direction for these free parameters)\n", sign,
+                     parameter, rate > 0.0 ? "increases" : "decreases", start.label, start.source);
 }
 
 /// What a run prints besides its table.

@@ -55,7 +55,7 @@ std::string meaning(const LyapunovSpectrum& spectrum, int section, bool orbit_at
         counted(signs.zero + (has_flow ? 1 : 0), "zero"), signs.zero + 1);
   if (signs.negative > 0 && (has_flow || section != 0))
     return fmt::format("{}: a stable periodic orbit, of a longer period than looked for or not reached yet.", others);
-  if (signs.negative > 0) return "All exponents are negative: the motion comes to rest.";
+  if (signs.negative > 0) return "All exponents are negative: the trajectory converges to an equilibrium.";
   return "The largest exponent is zero: not chaotic; with one more (--lyapunov 2) periodic and quasi-periodic motion "
          "are told apart.";
 }

@@ -111,9 +111,8 @@ std::string course_text(const HybridSystem& system, const SimulationResult& resu
 
 std::string rest_text(const VectorXd& equilibrium) {
   return fmt::format(
-      "The motion comes to rest at x = {}, where the field is zero and its derivative has no eigenvalue with a "
-      "positive "
-      "real part.\n",
+      "The trajectory converges to the equilibrium x = {}, where the derivative of the field has no eigenvalue with a "
+      "positive real part.\n",
       state_text(equilibrium));
 }
 

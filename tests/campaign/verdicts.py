@@ -73,7 +73,7 @@ def kind_in_words(text):
             (r"quasi-periodic motion|motion is quasi-periodic", "quasi-periodic"),
             (r"stable periodic orbit", "periodic"),
             (r"[Ee]vents accumulate|chattering", "chattering"),
-            (r"comes to rest|dies out|converges to an equilibrium", "rest")):
+            (r"comes to rest|dies out|converges to (an|the) equilibrium", "rest")):
         if re.search(pattern, text):
             return kind
     return None
