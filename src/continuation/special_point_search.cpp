@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "bvp/critical_multiplier.hpp"
+#include "bvp/discretisation_error.hpp"
 #include "bvp/equilibrium_system.hpp"
 #include "bvp/transversality.hpp"
 #include "continuation/value_trend.hpp"
@@ -147,6 +148,7 @@ PointData SpecialPointSearch::evaluate(PathPoint& at) {
   for (int s = 0; s < system_.segments(); ++s)
     data.transversalities.push_back(crossing_at_end(system_, at.orbit, s).transversality());
   data.singular_distance = signed_distance(at);
+  data.estimated_error = estimated_error(system_.system(), system_.signature(), at.orbit, follower_.condensed().rule());
   const TestedPoint point = tested(at, data);
   for (const auto& test : tests_) data.tests.push_back(test->evaluate(point));
   return data;
@@ -292,19 +294,33 @@ std::optional<SpecialPointSearch::Cut> SpecialPointSearch::first_in(const PathPo
   // What vanishes within the bracket, vanishes with the branch point and not before it.
   const double length = branch_point ? branch_point->length_before() : step.ds;
   const PointData& end = branch_point ? branch_point->before().data : step.data;
-  const std::vector<Zero> zeros = find_zeros(here, trial, length, end);
-  if (!zeros.empty()) {
+  std::vector<Zero> zeros = find_zeros(here, trial, length, end);
+  while (!zeros.empty()) {
     const Zero first = first_sharp_zero(here, trial, length, zeros, end);
     const NewtonResult result = follower_.step(here, first.ds, trial);
-    if (result.converged()) {
-      const PointData there = evaluate(trial);
-      return Cut{{trial, first.ds, there}, vanishing_with(first, zeros, there, length, step.data), result};
+    if (!result.converged()) {
+      searches_[first.test] = Search::failed;
+      break;
     }
-    searches_[first.test] = Search::failed;
+    const PointData there = evaluate(trial);
+    std::vector<std::size_t> group = vanishing_with(first, zeros, there, length, step.data);
+    std::erase_if(group, [&](std::size_t test) { return !has_evidence(test, trial, there); });
+    if (!group.empty()) return Cut{{trial, first.ds, there}, group, result};
+    std::erase_if(zeros, [&](const Zero& zero) { return searches_[zero.test] != Search::located; });
   }
   if (!branch_point) return std::nullopt;
   branch_point->put_zero(trial);
   return Cut{{trial, branch_point->length(), evaluate_again(trial)}, vanishing_at(*branch_point), std::nullopt};
+}
+
+/// At the point that would be labelled as its zero, no trial point beside it: where orbits depend on the parameter
+/// steeply the two differ.
+bool SpecialPointSearch::has_evidence(std::size_t test, const PathPoint& at, const PointData& data) {
+  const TestedPoint point = tested(at, data);
+  objections_[test] = tests_[test]->objection(point);
+  if (objections_[test].empty() && tests_[test]->is_genuine(point)) return true;
+  searches_[test] = objections_[test].empty() ? Search::no_special_point : Search::refused;
+  return false;
 }
 
 /// At a point `distance` from the place of its zero: is the function so small there that the point may be its zero as
@@ -425,7 +441,6 @@ std::vector<SpecialPointSearch::Zero> SpecialPointSearch::find_zeros(const PathP
     if (tests_[i]->singular_at_zero()) continue;
     const Zero zero = locate(i, here, trial, ds, *end.tests[i].value);
     searches_[i] = zero.search;
-    objections_[i] = zero.objection;
     if (zero.search != Search::located) continue;
     if (is_start(zero.ds))
       searches_[i] = Search::start;
@@ -442,7 +457,6 @@ SpecialPointSearch::Zero SpecialPointSearch::locate(std::size_t test, const Path
                                                     double ds, double end_value) {
   TestValue found;
   bool genuine = true;
-  std::string objection;
   PathPoint start = here;
   const auto arrive = [&](double length) {
     const bool at_start = length == 0.0;
@@ -451,7 +465,6 @@ SpecialPointSearch::Zero SpecialPointSearch::locate(std::size_t test, const Path
     const PointData data = evaluate(there);
     found = data.tests[test];
     genuine = tests_[test]->is_genuine(tested(there, data));
-    objection = tests_[test]->objection(tested(there, data));
     return true;
   };
   const auto has_sign = [&] { return found.value && found.sign == signs_[test]; };
@@ -469,25 +482,13 @@ SpecialPointSearch::Zero SpecialPointSearch::locate(std::size_t test, const Path
   if (!arrived) return {test, 0.0, Search::failed};
   if (!has_sign()) return {test, bracket.high, genuine_at_start ? zero_at_start(test) : Search::no_special_point};
   bracket.low_value = *found.value;
-  double least = std::numeric_limits<double>::infinity();
-  bool genuine_at_least = true;
-  std::string objection_at_least;
-  const auto at = [&](double length) {
-    if (!arrive(length)) return std::optional<double>();
-    if (found.value && std::abs(*found.value) < least) {
-      least = std::abs(*found.value);
-      genuine_at_least = genuine;
-      objection_at_least = objection;
-    }
-    return found.value;
-  };
+  const auto at = [&](double length) { return arrive(length) ? found.value : std::optional<double>(); };
   // No level of rounding: where a function is flat, it is small far from its zero.
   const LocatedZero zero = locate_zero_surely(at, bracket, settings_.tolerance, 0.0, settings_.max_evaluations);
-  const Search search = !zero.converged()             ? zero.status == ZeroSearch::jump ? Search::jump : Search::failed
-                        : !objection_at_least.empty() ? Search::refused
-                        : genuine_at_least            ? Search::located
-                                                      : Search::no_special_point;
-  return {test, zero.ds, search, objection_at_least};
+  const Search search = zero.converged()                  ? Search::located
+                        : zero.status == ZeroSearch::jump ? Search::jump
+                                                          : Search::failed;
+  return {test, zero.ds, search};
 }
 
 /// The branch leaves the start of the step with another sign than it came with.

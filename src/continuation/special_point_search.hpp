@@ -73,7 +73,6 @@ class SpecialPointSearch {
     std::size_t test;
     double ds;
     Search search;
-    std::string objection = {};  // of a zero that is refused
   };
   /// Where a step is cut: the zero of a group of functions.
   struct Cut {
@@ -98,6 +97,7 @@ class SpecialPointSearch {
   std::vector<Zero> find_zeros(const PathPoint& here, PathPoint& trial, double ds, const PointData& end);
   Zero locate(std::size_t test, const PathPoint& here, PathPoint& trial, double ds, double end_value);
   Search zero_at_start(std::size_t test) const;
+  bool has_evidence(std::size_t test, const PathPoint& at, const PointData& data);
   bool is_flat(const Zero& zero, const PointData& there, double distance, double length, const PointData& end) const;
   Zero first_sharp_zero(const PathPoint& here, PathPoint& trial, double length, const std::vector<Zero>& zeros,
                         const PointData& end);

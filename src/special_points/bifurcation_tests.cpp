@@ -15,12 +15,11 @@ namespace tchat {
 
 namespace {
 
-constexpr double structural_limit = 5e-2;
 /// A pair whose imaginary parts are smaller, relatively, is real.
 constexpr double complex_level = 1e-7;
 
 bool trusted(const FloquetMultipliers& multipliers) {
-  return multipliers.valid && multipliers.structural <= structural_limit;
+  return multipliers.valid && multipliers.structural <= structural_bound;
 }
 
 const MultiplierProduct& product_of(const FloquetMultipliers& multipliers, int target) {
@@ -41,14 +40,6 @@ bool is_section(const DefiningSystem& system, int s) {
 bool has_multiplier_one(const FloquetMultipliers& multipliers) {
   const auto list = multipliers.telling();
   return std::any_of(list.begin(), list.end(), [](const auto& mu) { return std::abs(mu - 1.0) < 1e-3; });
-}
-
-/// The segment (from 0) whose end touches its event's surface but for the accuracy of a located point, -1: none.
-int touching_segment(const TestedPoint& point) {
-  constexpr double tangent = 1e-4;
-  for (std::size_t s = 0; s < point.transversalities.size(); ++s)
-    if (std::abs(point.transversalities[s]) < tangent) return static_cast<int>(s);
-  return -1;
 }
 
 /// The complex multiplier (upper half plane) nearest to the unit circle; null without one.
@@ -120,7 +111,7 @@ SpecialPoint FoldTest::classify(const TestedPoint& point, bool) const {
 /// which something is held.
 std::string FoldTest::objection(const TestedPoint& point) const {
   if (is_duration_ || is_monitor_ || !held_.empty()) return "";
-  return objection_without_multiplier_one(point, "the parameter turns");
+  return objection_without_multiplier(point, 1, "the parameter turns");
 }
 
 TestValue BranchPointTest::evaluate(const TestedPoint& point) const {
@@ -129,12 +120,16 @@ TestValue BranchPointTest::evaluate(const TestedPoint& point) const {
 }
 
 std::string BranchPointTest::objection(const TestedPoint& point) const {
-  return objection_without_multiplier_one(point, "the determinant changes sign");
+  return objection_without_multiplier(point, 1, "the determinant changes sign");
 }
 
 SpecialPoint BranchPointTest::classify(const TestedPoint&, bool) const { return {type_, {}, stop_, "branch point"}; }
 
 TestValue PeriodDoublingTest::evaluate(const TestedPoint& point) const { return multiplier_product(point, -1); }
+
+std::string PeriodDoublingTest::objection(const TestedPoint& point) const {
+  return objection_without_multiplier(point, -1, "the product of (multiplier + 1) changes sign");
+}
 
 bool PeriodDoublingTest::is_genuine(const TestedPoint& point) const { return is_multiplier_at(point, -1); }
 

@@ -57,6 +57,7 @@ class PeriodDoublingTest final : public TestFunction {
   explicit PeriodDoublingTest(bool stop) : stop_(stop) {}
   std::string name() const override { return "period doubling"; }
   TestValue evaluate(const TestedPoint& point) const override;
+  std::string objection(const TestedPoint& point) const override;
   bool is_genuine(const TestedPoint& point) const override;
   SpecialPoint classify(const TestedPoint& point, bool rising) const override;
 

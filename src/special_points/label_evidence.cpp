@@ -17,8 +17,6 @@ using Complex = std::complex<double>;
 
 /// The rule of the column PT: |mu| <= 1 + 1e-5 is stable. Closer to the circle nothing is decided.
 constexpr double stability_margin = 1e-5;
-/// Multipliers of a mesh with a larger structural one say nothing.
-constexpr double structural_bound = 5e-2;
 
 bool is_known(const FloquetMultipliers& multipliers) {
   return multipliers.determined() && multipliers.structural <= structural_bound;
@@ -50,12 +48,6 @@ std::vector<Complex> by_excess(const FloquetMultipliers& multipliers) {
   return list;
 }
 
-bool touches_surface(const TestedPoint& point) {
-  constexpr double tangent = 1e-4;
-  return std::any_of(point.transversalities.begin(), point.transversalities.end(),
-                     [](double a) { return std::abs(a) < tangent; });
-}
-
 }  // namespace
 
 double multiplier_accuracy(const FloquetMultipliers& multipliers) {
@@ -68,16 +60,24 @@ double multiplier_distance(const FloquetMultipliers& multipliers, double target)
   return nearest;
 }
 
-std::string objection_without_multiplier_one(const TestedPoint& point, const std::string& what) {
+int touching_segment(const TestedPoint& point) {
+  constexpr double tangent = 1e-4;
+  for (std::size_t s = 0; s < point.transversalities.size(); ++s)
+    if (std::abs(point.transversalities[s]) < tangent) return static_cast<int>(s);
+  return -1;
+}
+
+std::string objection_without_multiplier(const TestedPoint& point, int target, const std::string& what) {
   const FloquetMultipliers& multipliers = point.multipliers;
   if (!point.one_parameter_family || multipliers.are_eigenvalues || !multipliers.determined()) return "";
-  if (touches_surface(point)) return "";
-  const double distance = multiplier_distance(multipliers, 1.0);
+  if (touching_segment(point) >= 0) return "";
+  const double distance = multiplier_distance(multipliers, target);
   if (multipliers.structural > structural_bound)
     return fmt::format("{}, but the multipliers are not known (structural multiplier {:.1e}): no label", what,
                        multipliers.structural);
   if (distance <= std::max(agreeing_multiplier, multipliers.structural)) return "";
-  return fmt::format("{}, but no multiplier is near +1 (the nearest is {:.4g} away from it): no label", what, distance);
+  return fmt::format("{}, but no multiplier is near {:+d} (the nearest is {:.4g} away from it): no label", what, target,
+                     distance);
 }
 
 UnstableCount count_unstable(const FloquetMultipliers& multipliers) {

@@ -23,10 +23,17 @@ double multiplier_accuracy(const FloquetMultipliers& multipliers);
 /// Distance of the multiplier nearest to `target`, infinite without multipliers. The trivial one is left out.
 double multiplier_distance(const FloquetMultipliers& multipliers, double target);
 
-/// Why a located zero of the fold or of the branch point's function is no such point, "" where it may be one. `what`
-/// changes there, for the text. Decides nothing where multipliers are not computed or partly unknown (h_x f = 0), and
-/// where the problem is not that of orbits in one parameter (TestedPoint::one_parameter_family).
-std::string objection_without_multiplier_one(const TestedPoint& point, const std::string& what);
+/// The largest structural multiplier of a mesh whose other multipliers say anything.
+inline constexpr double structural_bound = 5e-2;
+
+/// The segment (from 0) whose end touches its event's surface but for the accuracy of a located point, -1: none.
+int touching_segment(const TestedPoint& point);
+
+/// Why a located zero of the function of folds or branch points (`target` 1) or of period doublings (-1) is no such
+/// point, "" where it may be one. `what` changes there, for the text. Decides nothing where multipliers are not
+/// computed or partly unknown (h_x f = 0), and where the problem is not that of orbits in one parameter
+/// (TestedPoint::one_parameter_family).
+std::string objection_without_multiplier(const TestedPoint& point, int target, const std::string& what);
 
 /// The multipliers that surely crossed the unit circle (of eigenvalues: the imaginary axis) between two points.
 struct StabilityChange {

@@ -58,6 +58,15 @@ event right = v
 after any: right -> identity
 )";
 
+/// FitzHugh's neuron: its cycles end in a canard, where the period and the multipliers depend on I steeply.
+constexpr const char* canard = R"(par I=0.5, a=0.7, b=0.8, e=0.08
+init v=1, w=0.5
+v' = v - v^3/3 - w + I
+w' = e*(v + a - b*w)
+event section = v
+after any: section -> identity
+)";
+
 }  // namespace
 
 TEST_CASE("a xi_n that beta = 0 makes zero is said once, and has no labels") {
@@ -126,7 +135,7 @@ TEST_CASE("a start that is a special point is said to be one") {
   INFO(repeated);
   CHECK(contains(repeated, "Start: label 2 of q.branch, itself a special point (LP)"));
   CHECK(contains(repeated, "DS < 0: back against the direction stored with label 2 of q.branch"));
-  CHECK(contains(repeated, "DS=0.05 goes on"));
+  CHECK(contains(repeated, "DS=0.05 continues the earlier run"));
   CHECK_FALSE(contains(out_of(workspace, {"run", "fold", "-s", "branch", "-o", "next", "NMX=3", "IRS=EP2"}), "itself"));
 }
 
@@ -163,4 +172,22 @@ TEST_CASE("a Hopf curve that meets its mirror image ends there, in a Bogdanov-Ta
     CHECK(std::abs(end.parameter(1)) < 1e-8);
     CHECK(std::abs(end.parameter(2)) < 1e-8);
   }
+}
+
+TEST_CASE("a label's own orbit has the multiplier of its type, also where orbits change fast") {
+  const Workspace workspace;
+  workspace.write("canard.tch", canard);
+  out_of(workspace, {"simulate", "canard", "--dat", "canard"});
+  const std::string out =
+      out_of(workspace, {"run", "canard", "-c", "canard", "-d", "canard", "NTST=20", "DS=0.02", "DSMAX=0.231",
+                         "DSMIN=0", "NMX=150", "NPR=10", "RL0=0.2", "RL1=1.6", "ICP=[I,multiplier(1)]"});
+  INFO(out);
+  for (const PointSection& section : workspace.points("canard"))
+    for (const PointRow& row : section.rows) {
+      if (row.type < 5 || row.type > 7) continue;
+      CAPTURE(row.label, row.type);
+      CHECK(std::abs(row.values[section.column("multiplier(1)")] - (row.type == 7 ? -1.0 : 1.0)) < 0.05);
+    }
+  // Its one multiplier changes fast, and what the mesh makes of it has no label.
+  CHECK(contains(out, "no label"));
 }
