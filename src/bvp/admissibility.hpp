@@ -3,13 +3,16 @@
 /// Checked with the accuracy of orbits (orbit_accuracy.hpp), of the period, of the size of h and of |h_x| |f|: T_s >=
 /// 0; h >= 0 at the stored points of every event function monitored on a segment; h_x f <= 0 at every terminal point;
 /// and what sliding asks for at the starts of segments (sliding_violations.hpp).
-/// Pinned ends are left out: the segment's own terminal event at its end, and a start on the event surface just left (h
-/// = 0 there, and h o g has a gradient parallel to that of the previous terminal event).
+/// Between two stored points h is looked at where the parabola through them and a neighbour falls below zero: a
+/// narrower dip is not seen. It counts there beyond 1e-6 of its size and twice what the error of the states makes of
+/// it. Pinned ends are left out: the segment's own terminal event at its end, and a start on the event surface just
+/// left (h = 0 there, and h o g has a gradient parallel to that of the previous terminal event).
 #pragma once
 
 #include <string>
 #include <vector>
 
+#include "bvp/collocation_rule.hpp"
 #include "bvp/orbit.hpp"
 #include "bvp/transversality.hpp"
 #include "hybrid/hybrid_system.hpp"
@@ -32,12 +35,13 @@ struct Violation {
   double value = 0.0;  ///< T_s, h, or h_x f; of the last two kinds h_x f in the direction that it must not have
 };
 
-/// `monitored[s]` lists the event functions monitored on segment s. A segment leaves its terminal surface when h_x f is
-/// more than `leaving` of |h_x| |f|: at a located special point, where two segments may meet their surfaces
-/// tangentially at once, that is known to the accuracy of the location.
+/// `monitored[s]` lists the event functions monitored on segment s. `error` is the estimated relative error of the
+/// states between mesh points (discretisation_error.hpp). A segment leaves its terminal surface when h_x f is more than
+/// `leaving` of |h_x| |f|: at a located special point, where two segments may meet their surfaces tangentially at once,
+/// that is known to the accuracy of the location.
 std::vector<Violation> inadmissibilities(const HybridSystem& system, const Signature& signature,
                                          const std::vector<std::vector<int>>& monitored, const Orbit& x,
-                                         double leaving = no_transversality);
+                                         const CollocationRule& rule, double error, double leaving = no_transversality);
 
 /// Is the start of segment s (from 0) pinned for an event function: does the jump before it land on the surface h = 0
 /// by structure (h = 0 there, gradient of h o g parallel to that of the previous terminal event)?

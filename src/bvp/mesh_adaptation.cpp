@@ -193,7 +193,7 @@ Eigen::MatrixXd interpolate_states(const Eigen::MatrixXd& states, const OrbitSha
   return MeshTransfer(from, from_mesh, to, to_mesh, CollocationRule(from.collocation))(states);
 }
 
-double estimated_error(const Orbit& x, const CollocationRule& rule) {
+double estimated_interpolation_error(const Orbit& x, const CollocationRule& rule) {
   const int c = x.shape.collocation;
   double worst = 0.0;
   for (int s = 0; s < x.shape.segments; ++s) {

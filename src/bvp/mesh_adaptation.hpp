@@ -41,8 +41,9 @@ Eigen::MatrixXd interpolate_states(const Eigen::MatrixXd& states, const OrbitSha
                                    const std::vector<double>& from_mesh, const OrbitShape& to,
                                    const std::vector<double>& to_mesh);
 
-/// Estimated largest error of the states between mesh points, relative to 1 + max |u|: h^(c+1) |u^(c+1)| times the
-/// interpolation constant, the largest over intervals and components.
-double estimated_error(const Orbit& x, const CollocationRule& rule);
+/// Estimated largest error of polynomials that agree with a smooth function at the nodes, relative to 1 + max |u|:
+/// h^(c+1) |u^(c+1)| times the interpolation constant, the largest over intervals and components. That of a solution
+/// of the equations is in discretisation_error.hpp.
+double estimated_interpolation_error(const Orbit& x, const CollocationRule& rule);
 
 }  // namespace tchat

@@ -20,10 +20,11 @@ std::optional<NearbyEquilibrium> find_equilibrium(const HybridSystem& system, in
     system.first(FunctionKind::field, field, x.data(), par, {}, f.data(), fx.data(), nullptr);
     if (!f.allFinite() || !fx.allFinite()) return std::nullopt;
     const Eigen::MatrixXd jacobian = fx(kept, kept);
-    const Eigen::VectorXd value = f(kept);
+    Eigen::VectorXd value(jacobian.rows());
+    for (Eigen::Index i = 0; i < value.size(); ++i) value(i) = f(kept[static_cast<std::size_t>(i)]);
     const Eigen::VectorXd dx = least_squares(jacobian, -value);
     if (!dx.allFinite()) return std::nullopt;
-    x(kept) += dx;
+    for (Eigen::Index i = 0; i < dx.size(); ++i) x(kept[static_cast<std::size_t>(i)]) += dx(i);
     if (dx.norm() > converged * (1.0 + x.norm())) continue;
     // Where f_x is singular the shortest step may leave f as it is.
     if ((jacobian * dx + value).norm() > converged * (1.0 + jacobian.norm() * x.norm())) return std::nullopt;

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bvp/mesh_adaptation.hpp"
 #include "bvp/no_duration.hpp"
 #include "continuation/newton_chord.hpp"
 #include "linear_algebra/dense_matrix.hpp"
@@ -67,15 +66,14 @@ double largest_growth(const DefiningSystem& system, const Orbit& x, int first, R
 
 }  // namespace
 
-std::string unresolved_by_mesh(const DefiningSystem& system, const Orbit& x, const CollocationRule& rule,
-                               const FloquetMultipliers& multipliers, double bound) {
+std::string unresolved_by_mesh(const DefiningSystem& system, const Orbit& x, const PointData& data, double bound) {
   if (!(bound > 0.0)) return "";
   const auto text = [&](const char* figure, double value) {
     return fmt::format("NTST = {} does not resolve the next orbit: {} {:.1e} exceeds ERRMAX = {:.3g}",
                        x.shape.intervals, figure, value, bound);
   };
-  const double error = estimated_error(x, rule);
-  if (!(error <= bound)) return text("the estimated relative error", error);
+  if (!(data.estimated_error <= bound)) return text("the estimated relative error", data.estimated_error);
+  const FloquetMultipliers& multipliers = data.multipliers;
   if (!(multipliers.structural <= bound))
     return text(multipliers.has_trivial ? "the trivial multiplier's distance from 1" : "the structural multiplier",
                 multipliers.structural);

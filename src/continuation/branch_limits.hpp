@@ -3,13 +3,12 @@
 
 #include <string>
 
-#include "continuation/path_follower.hpp"
-#include "stability/floquet_multipliers.hpp"
+#include "continuation/point_data.hpp"
 
 namespace tchat {
 
 /// Which figure of accuracy exceeds `bound` (ERRMAX; 0: none does), with its value, or "". The figures are
-///   - estimated_error() of the orbit,
+///   - the estimated error of the orbit (bvp/discretisation_error.hpp),
 ///   - the structural multiplier, or the trivial one's distance from 1, where multipliers are computed,
 ///   - the factor exp(z) by which perturbations grow, or the flow grows or decays, on one mesh interval. Here z is
 ///     h T |Re lambda| with an eigenvalue lambda of f_x, where one of them grows by more than exp(1) on the interval,
@@ -18,8 +17,7 @@ namespace tchat {
 ///     of the mesh. It counts for orbits with a multiplier outside of the unit circle: the others contract local
 ///     errors, as relaxation oscillations do. Of those only the decay of |f| on the last interval of a segment counts,
 ///     on which the time of the event depends.
-std::string unresolved_by_mesh(const DefiningSystem& system, const Orbit& x, const CollocationRule& rule,
-                               const FloquetMultipliers& multipliers, double bound);
+std::string unresolved_by_mesh(const DefiningSystem& system, const Orbit& x, const PointData& data, double bound);
 
 /// Rounding of the orbit is magnified by exp(this) on the way round: the integral of the largest growth rate of f_x,
 /// where it is positive. Multipliers are known to about 1e-16 times that factor.

@@ -429,14 +429,15 @@ void ContinuationRun::record(const SpecialPoint& special, const PointData& data)
   const double leaving =
       is_located ? std::max(no_transversality, errors_of_location * settings_.location_tolerance) : no_transversality;
   const std::vector<Violation> violations =
-      inadmissibilities(system_.system(), system_.signature(), settings_.monitored, here_.orbit, leaving);
+      inadmissibilities(system_.system(), system_.signature(), settings_.monitored, here_.orbit,
+                        follower_.condensed().rule(), data.estimated_error, leaving);
   BranchPoint point{number_,
                     special,
                     here_,
                     data.multipliers,
                     violations,
                     measure_,
-                    estimated_error(here_.orbit, follower_.condensed().rule()),
+                    data.estimated_error,
                     newton_.iterations,
                     follower_.newton().history(),
                     number_ > 1 ? next_.ds : 0.0,
@@ -536,8 +537,7 @@ bool ContinuationRun::may_go_to_next() {
 }
 
 std::string ContinuationRun::exceeded_bound(const Candidate& at) const {
-  return unresolved_by_mesh(system_, at.point.orbit, follower_.condensed().rule(), at.data.multipliers,
-                            settings_.error_bound);
+  return unresolved_by_mesh(system_, at.point.orbit, at.data, settings_.error_bound);
 }
 
 std::string ContinuationRun::passed_end() const {

@@ -14,6 +14,7 @@ struct PointData {
   FloquetMultipliers multipliers;
   std::vector<double> transversalities;  ///< h_x f / (|h_x| |f|) at the end of each segment
   double singular_distance = 1.0;        ///< as in TestedPoint
+  double estimated_error = 0.0;          ///< of the states between mesh points, relative
   std::vector<TestValue> tests;          ///< one for each test function
   std::vector<std::string> details;      ///< of a labelled point
 };

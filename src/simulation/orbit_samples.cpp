@@ -103,7 +103,7 @@ OrbitSamples sample_orbit(const HybridSystem& system, const FoundOrbit& orbit, c
     std::vector<double> mesh = resampled_mesh(tau, samples.intervals);
     for (int pass = 0; pass < 6; ++pass)
       mesh = equidistributed_mesh(on_mesh(system, orbit, par, mesh, collocation), rule, samples.intervals);
-    samples.error = estimated_error(on_mesh(system, orbit, par, mesh, collocation), rule);
+    samples.error = estimated_interpolation_error(on_mesh(system, orbit, par, mesh, collocation), rule);
     if (samples.error > wanted_error && samples.intervals < most_intervals) continue;
     samples.tau = divided(mesh, 2 * collocation);
     samples.states = sample_all(system, orbit, par, samples.tau);

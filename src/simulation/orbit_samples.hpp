@@ -13,7 +13,7 @@ struct OrbitSamples {
   std::vector<double> tau;  ///< rising, from 0 to 1: every mesh interval in 2 c equal parts
   Eigen::MatrixXd states;   ///< (n m) x tau.size(), segment 1's states first
   int intervals = 0;        ///< of the mesh
-  double error = 0.0;       ///< of polynomials of degree c on it, estimated_error()
+  double error = 0.0;       ///< of polynomials of degree c on it, estimated_interpolation_error()
 };
 
 /// The mesh equidistributes the error that polynomials of degree `collocation` would make. It has `intervals`

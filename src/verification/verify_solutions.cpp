@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "bvp/admissibility.hpp"
+#include "bvp/discretisation_error.hpp"
 #include "constants/constant_value.hpp"
 #include "constants/constants_file.hpp"
 #include "files/diagnostics_file_reader.hpp"
@@ -129,9 +130,7 @@ class Table {
         check_orbit(system_, settings_, x, stored, tolerance_, [&](const std::vector<std::complex<double>>& computed) {
           return critical_multipliers(solution, stored, computed);
         });
-    const bool is_inadmissible = recorded != nullptr
-                                     ? !recorded->admissible
-                                     : !inadmissibilities(system_, settings_.signature(), monitored(), x).empty();
+    const bool is_inadmissible = recorded != nullptr ? !recorded->admissible : has_inadmissibilities(x);
     return rows(solution, check, is_inadmissible);
   }
 
@@ -155,6 +154,12 @@ class Table {
                                {settings_.dimension, segments, solution.mesh_intervals, solution.collocation_points},
                                {}, "the q-file")
         .orbit;
+  }
+
+  bool has_inadmissibilities(const Orbit& x) const {
+    const CollocationRule rule(x.shape.collocation);
+    const double error = estimated_error(system_, settings_.signature(), x, rule);
+    return !inadmissibilities(system_, settings_.signature(), monitored(), x, rule, error).empty();
   }
 
   std::vector<std::vector<int>> monitored() const {

@@ -212,15 +212,16 @@ TEST_CASE("equidistribution: an adapted mesh is not worse than the uniform one")
   }
 }
 
-TEST_CASE("estimated error: the interpolation error of a power, exactly") {
+TEST_CASE("estimated interpolation error: the interpolation error of a power, exactly") {
   // u = tau^(c+1) has a constant (c+1)-th derivative: the error between the nodes of an interval is
   // max prod |tau - node|, here for c = 2, h = 1/10: (h/2)^3 2 / (3 sqrt 3).
   const Orbit x = scalar_orbit([](double t) { return t * t * t; }, 10, 2);
   const double exact = std::pow(0.05, 3) * 2 / (3 * std::sqrt(3.0));
-  CHECK(estimated_error(x, CollocationRule(2)) == Approx(exact / 2).epsilon(1e-3));  // relative to 1 + max |u| = 2
+  CHECK(estimated_interpolation_error(x, CollocationRule(2)) ==
+        Approx(exact / 2).epsilon(1e-3));  // relative to 1 + max |u| = 2
 }
 
-TEST_CASE("estimated error: one interval has no neighbour, and its error is not called zero") {
+TEST_CASE("estimated interpolation error: one interval has no neighbour, and its error is not called zero") {
   // exp on one interval: the error that interpolation makes, within a factor of ten.
   for (const int c : {2, 4, 6}) {
     CAPTURE(c);
@@ -233,7 +234,7 @@ TEST_CASE("estimated error: one interval has no neighbour, and its error is not 
       worst = std::max(worst, std::abs((x.states * basis)(0) - std::exp(0.03 * k)));
     }
     const double error = worst / (1.0 + std::exp(3.0));
-    CHECK(estimated_error(x, rule) > 0.1 * error);
-    CHECK(estimated_error(x, rule) < 10.0 * error);
+    CHECK(estimated_interpolation_error(x, rule) > 0.1 * error);
+    CHECK(estimated_interpolation_error(x, rule) < 10.0 * error);
   }
 }

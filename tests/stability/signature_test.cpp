@@ -26,7 +26,8 @@ Corrected corrected(const Signature& signature, const std::vector<Piece>& pieces
   const FloquetMultipliers multipliers = orbits.multipliers(point);
   REQUIRE(multipliers.valid);
   return {point.orbit, multipliers.values, nontrivial(multipliers.values, multipliers.structural),
-          inadmissibilities(linosc(), signature, std::vector<std::vector<int>>(signature.size(), {1}), point.orbit)};
+          inadmissibilities(linosc(), signature, std::vector<std::vector<int>>(signature.size(), {1}), point.orbit,
+                            CollocationRule(4), 0.0)};
 }
 
 struct Place {
