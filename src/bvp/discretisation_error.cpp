@@ -56,8 +56,8 @@ double estimated_error(const HybridSystem& system, const Signature& signature, c
   double residual = 0.0;
   for (int s = 0; s < x.shape.segments; ++s)
     if (x.duration(s) != 0.0)
-      residual = std::max(
-          residual, largest_residual(system, signature[static_cast<std::size_t>(s)].field, x, slopes, s));
+      residual =
+          std::max(residual, largest_residual(system, signature[static_cast<std::size_t>(s)].field, x, slopes, s));
   return error_of_residual(rule) * residual / (1.0 + x.states.cwiseAbs().maxCoeff());
 }
 

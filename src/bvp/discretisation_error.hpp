@@ -17,8 +17,8 @@
 
 namespace tchat {
 
-/// The largest |e| of all intervals and components, relative to 1 + max |u|; 0 for equilibria, infinite where a field is
-/// not finite. Segments of zero duration have none.
+/// The largest |e| of all intervals and components, relative to 1 + max |u|; 0 for equilibria, infinite where a field
+/// is not finite. Segments of zero duration have none.
 double estimated_error(const HybridSystem& system, const Signature& signature, const Orbit& x,
                        const CollocationRule& rule);
 

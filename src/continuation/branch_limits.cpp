@@ -146,4 +146,12 @@ std::string passed_zero(const Orbit& from, const Orbit& to) {
   return is_negative ? fmt::format("the period passes zero (from {:.6g} to {:.6g})", before, after) : "";
 }
 
+std::string passed_zero_segment(const Orbit& from, const Orbit& to) {
+  for (int s = 0; s < from.shape.segments; ++s)
+    if (from.duration(s) >= -no_contact * from.period() && to.duration(s) < -no_contact * to.period())
+      return fmt::format("the duration of segment {} passes zero (from {:.6g} to {:.6g})", s + 1,
+                         contact_lasts_no_time(from, s) ? 0.0 : from.duration(s), to.duration(s));
+  return "";
+}
+
 }  // namespace tchat

@@ -30,8 +30,11 @@ std::string undetermined_duration(const DefiningSystem& system, const Orbit& x);
 /// or "". No orbits lie beyond.
 std::string passed_infinity(const PathPoint& from, const PathPoint& to, double ds);
 
-/// "" or that the period has passed zero, beyond the accuracy of a located point. A single segment of several whose
-/// duration passes zero is grazing, which has a label of its own, and GRSTOP decides whether the branch goes on.
+/// "" or that the period has passed zero, beyond the accuracy of a located point.
 std::string passed_zero(const Orbit& from, const Orbit& to);
+
+/// "" or that the duration of a segment has. That is grazing, which has a label of its own where the branch ends unless
+/// GRSTOP = 0; a branch that begins at one may lead to the wrong side.
+std::string passed_zero_segment(const Orbit& from, const Orbit& to);
 
 }  // namespace tchat

@@ -128,9 +128,8 @@ BranchSummary ContinuationRun::run(PathPoint start) {
     const bool is_there = to_first && std::abs(*to_first) <= same_place * location_settings(settings_).tolerance;
     special = is_there ? SpecialPoint{} : advance();
     if (to_first) special = arrive(special, *to_first);
-    if (const std::string zero = settings_.periodic ? passed_zero(here_.orbit, next_.point.orbit) : "";
-        !ended_ && !zero.empty()) {
-      end(EndReason::no_orbit, end_text(zero));
+    if (const std::string zero = passed_zero_duration(); !ended_ && !zero.empty()) {
+      end(EndReason::no_orbit, zero);
       write_last_again(PointType::end);
       break;
     }
@@ -544,6 +543,16 @@ std::string ContinuationRun::passed_end() const {
   if (!settings_.periodic || system_.is_point()) return "";
   const std::string what = passed_infinity(here_, next_.point, next_.ds);
   return end_text(what.empty() ? undetermined_duration(system_, next_.point.orbit) : what);
+}
+
+std::string ContinuationRun::passed_zero_duration() const {
+  if (!settings_.periodic) return "";
+  if (const std::string what = passed_zero(here_.orbit, next_.point.orbit); !what.empty()) return end_text(what);
+  const std::string what = settings_.negative_durations ? "" : passed_zero_segment(here_.orbit, next_.point.orbit);
+  const std::string cure = number_ == settings_.first_number
+                               ? fmt::format("; DS={:g} goes the other way, GRSTOP=0 on", -settings_.step.initial)
+                               : "; with GRSTOP=0 it goes on";
+  return what.empty() ? "" : end_text(what) + cure;
 }
 
 /// "" for "".

@@ -31,6 +31,7 @@ struct ContinuationSettings {
   bool label_start = true;                               ///< false at a restart: the first point is known already
   bool periodic = true;                                  ///< a branch of orbits ends where they shrink to a point
   bool stop_when_closed = true;                          ///< CLSTOP
+  bool negative_durations = false;                       ///< a segment's may become so (GRSTOP = 0)
   bool clip = false;                                     ///< end on the bounds, not at the first point beyond them
   /// Called for every labelled point; true ends the branch there (STOP).
   std::function<bool(const SpecialPoint&)> stop_at;
@@ -92,6 +93,7 @@ class ContinuationRun {
   std::string exceeded_bound(const Candidate& at) const;
   bool is_near_end() const;
   std::string passed_end() const;
+  std::string passed_zero_duration() const;
   std::string end_text(const std::string& what) const;
   bool may_go_to_next();
   void write_last_again(PointType type);

@@ -232,6 +232,7 @@ ContinuationSettings continuation_settings(const RunSettings& settings) {
   c.multipliers = settings.detect_bifurcations != 0 && has_multipliers(settings.problem_type);
   c.periodic = has_ring(settings.problem_type);
   c.stop_when_closed = settings.stop_when_closed;
+  c.negative_durations = !settings.stop_at_grazing;
   const bool has_mesh = !is_point(settings.problem_type) && !is_torus(settings.problem_type);  // of tori see HARMTOL
   const bool has_stability = c.multipliers && has_mesh && !keeps_contact(settings.problem_type) &&
                              !has_critical_multiplier(settings.problem_type, settings.branch_mode);

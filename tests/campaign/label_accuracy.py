@@ -27,7 +27,8 @@ import pipeline_labels
 # The run estimates the error between mesh points. At mesh points, which are compared, collocation is more accurate; the
 # estimate is of the last two meshes' leading term, which on a mesh that is too coarse for it is off by some factor.
 SAFETY = 10
-# States in q-files have eleven digits.
+# States in q-files have eleven digits; what these do to an integration is found by disturbing the orbit by as much.
+LAST_DIGIT = 1e-10
 STORED = 1e-9
 # A multiplier moves like the square root of the distance from a fold, which is located to EPSS = 1e-9 or less; what the
 # error of the orbit itself does to it is found by disturbing the orbit.
@@ -155,13 +156,15 @@ def text_of(multipliers):
 
 
 def faults_of_label(row, constants, answers, stated, orbit):
-    """`answers` of orbit_check: of the orbit, and of disturbed copies where its type is looked at."""
-    found = answers[0]
+    """`answers` of orbit_check: of the orbit, of one with other last digits, and of disturbed copies where its type is
+    looked at."""
+    found, rounded = answers[0], answers[1]
     if "fault" in found:
         return ["unverifiable: " + found["fault"]]
     faults = []
     accuracy = SAFETY * (stated + constants["EPSU"]) + STORED
-    if found["interval"] > accuracy:
+    of_digits = SAFETY * abs(rounded.get("interval", 0.0) - found["interval"])
+    if found["interval"] > accuracy + of_digits:
         faults.append("integration leaves the stored points by %.2g, stated is %.2g" % (found["interval"], stated))
     if found["connection"] > accuracy:
         faults.append("segments do not meet: %.2g, stated is %.2g" % (found["connection"], stated))
@@ -182,7 +185,7 @@ def faults_of_label(row, constants, answers, stated, orbit):
             if abs(least) > LEAST + 100 * stated:
                 faults.append("contact, but the least value of h is %.3g, relative to the states" % least)
     if has_type(row, constants):
-        faults.append(fault_of_type(row, answers, constants))
+        faults.append(fault_of_type(row, [found] + answers[2:], constants))
     return [fault for fault in faults if fault]
 
 
@@ -204,7 +207,7 @@ def check_run(tchat, checker, folder, name, library):
         contacts = [(int(s), int(j)) for s, j in
                     re.findall(r"contact inside segment (\d+), event function (\d+)", row["kind"] or "")]
         stated = errors.get((row["branch"], abs(row["point"])), 0.0)
-        copies = [orbit]
+        copies = [orbit, disturbed(orbit, LAST_DIGIT, 2)]
         if has_type(row, constants):
             copies += [disturbed(orbit, max(stated, STORED), seed) for seed in range(2)]
         lines += [description(library, constants, copy, contacts) for copy in copies]

@@ -214,3 +214,24 @@ TEST_CASE("elastic stop: a contact that changes the field alone begins a branch,
   INFO(verified.text());
   CHECK(verified.status == 0);
 }
+
+TEST_CASE("elastic stop: from grazing, the direction in which the contact would last a negative time ends at once") {
+  const Workspace workspace;
+  workspace.write("stop.tch", elastic_stop);
+  REQUIRE(workspace.tchat("simulate stop PAR(w)=2.5 PAR(a)=1 --dat free").status == 0);
+  REQUIRE(workspace.tchat("run stop -c free -d free -o free DS=-0.02 RL0=0.3 RL1=3").status == 0);
+  REQUIRE(workspace.tchat("resegment q.free GR1 --to impacting -o born -p stop NMX=8").status == 0);
+  int ended = 0;
+  for (const std::string ds : {"0.02", "-0.02"}) {
+    const Outcome run = workspace.tchat("run stop -c born -s born -o born DS=" + ds);
+    INFO(run.text());
+    REQUIRE(run.status == 0);
+    CHECK_FALSE(contains(run.out, "inadmissible"));
+    const bool is_wrong_side = contains(run.out, "the duration of segment 2 passes zero");
+    CHECK(is_wrong_side == contains(run.out, ds[0] == '-' ? "DS=0.02 goes the other way" : "DS=-0.02 goes the other"));
+    ended += is_wrong_side;
+    const Outcome on = workspace.tchat("run stop -c born -s born -o on GRSTOP=0 DS=" + ds);
+    CHECK(contains(on.out, "inadmissible") == is_wrong_side);
+  }
+  CHECK(ended == 1);
+}
