@@ -549,10 +549,9 @@ std::string ContinuationRun::passed_zero_duration() const {
   if (!settings_.periodic) return "";
   if (const std::string what = passed_zero(here_.orbit, next_.point.orbit); !what.empty()) return end_text(what);
   const std::string what = settings_.negative_durations ? "" : passed_zero_segment(here_.orbit, next_.point.orbit);
-  const std::string cure = number_ == settings_.first_number
-                               ? fmt::format("; DS={:g} goes the other way, GRSTOP=0 on", -settings_.step.initial)
-                               : "; with GRSTOP=0 it goes on";
-  return what.empty() ? "" : end_text(what) + cure;
+  const std::string cure =
+      number_ == settings_.first_number ? fmt::format("; DS={:g} leads the other way", -settings_.step.initial) : "";
+  return what.empty() ? "" : end_text(what) + cure + "; with GRSTOP=0 it goes on";
 }
 
 /// "" for "".

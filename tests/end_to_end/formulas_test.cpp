@@ -223,12 +223,13 @@ TEST_CASE("elastic stop: from grazing, the direction in which the contact would 
   REQUIRE(workspace.tchat("resegment q.free GR1 --to impacting -o born -p stop NMX=8").status == 0);
   int ended = 0;
   for (const std::string ds : {"0.02", "-0.02"}) {
-    const Outcome run = workspace.tchat("run stop -c born -s born -o born DS=" + ds);
+    const Outcome run = workspace.tchat("run stop -c born -s born -o side DS=" + ds);
     INFO(run.text());
     REQUIRE(run.status == 0);
     CHECK_FALSE(contains(run.out, "inadmissible"));
     const bool is_wrong_side = contains(run.out, "the duration of segment 2 passes zero");
-    CHECK(is_wrong_side == contains(run.out, ds[0] == '-' ? "DS=0.02 goes the other way" : "DS=-0.02 goes the other"));
+    CHECK(is_wrong_side ==
+          contains(run.out, ds[0] == '-' ? "DS=0.02 leads the other way" : "DS=-0.02 leads the other"));
     ended += is_wrong_side;
     const Outcome on = workspace.tchat("run stop -c born -s born -o on GRSTOP=0 DS=" + ds);
     CHECK(contains(on.out, "inadmissible") == is_wrong_side);
