@@ -27,8 +27,8 @@ import pipeline_labels
 # The run estimates the error between mesh points. At mesh points, which are compared, collocation is more accurate; the
 # estimate is of the last two meshes' leading term, which on a mesh that is too coarse for it is off by some factor.
 SAFETY = 10
-# States in q-files have eleven digits; what these do to an integration is found by disturbing the orbit by as much.
-LAST_DIGIT = 1e-10
+# Times and states in q-files have eleven digits; what the last ones do to an integration is found by disturbing them.
+LAST_DIGIT = 1e-11
 STORED = 1e-9
 # A multiplier moves like the square root of the distance from a fold, which is located to EPSS = 1e-9 or less; what the
 # error of the orbit itself does to it is found by disturbing the orbit.
@@ -123,6 +123,14 @@ def disturbed(orbit, error, seed):
     return head, [row[:1] + [x + size * noise.uniform(-1, 1) for x in row[1:]] for row in rows], par
 
 
+def with_other_digits(orbit):
+    """A copy whose times and states are off by as much as rounding to eleven digits allows."""
+    head, rows, par = disturbed(orbit, 10 * LAST_DIGIT, 2)
+    noise = random.Random(2)
+    return head, [[row[0] + LAST_DIGIT * noise.uniform(-1, 1) if 0 < row[0] < 1 else row[0]] + row[1:]
+                  for row in rows], par
+
+
 def relative_change(multipliers, others):
     """The largest change of a multiplier, relative to it or to 0.1, whichever is larger; both sets by size."""
     pairs = zip(sorted(multipliers, key=abs), sorted(others, key=abs))
@@ -207,7 +215,7 @@ def check_run(tchat, checker, folder, name, library):
         contacts = [(int(s), int(j)) for s, j in
                     re.findall(r"contact inside segment (\d+), event function (\d+)", row["kind"] or "")]
         stated = errors.get((row["branch"], abs(row["point"])), 0.0)
-        copies = [orbit, disturbed(orbit, LAST_DIGIT, 2)]
+        copies = [orbit, with_other_digits(orbit)]
         if has_type(row, constants):
             copies += [disturbed(orbit, max(stated, STORED), seed) for seed in range(2)]
         lines += [description(library, constants, copy, contacts) for copy in copies]
