@@ -31,7 +31,7 @@ double largest_residual(const HybridSystem& system, int field, const Orbit& x, c
   double largest = 0.0;
   for (int j = 0; j <= x.shape.intervals; ++j) {
     system.value(FunctionKind::field, field, x.node(s, j * c), x.par.data(), f.data());
-    if (!f.allFinite()) return std::numeric_limits<double>::infinity();
+    if (!f.allFinite()) continue;
     // The end of one interval is the start of the next one.
     for (const int side : {0, 1}) {
       const int interval = j - side;
@@ -50,6 +50,7 @@ double largest_residual(const HybridSystem& system, int field, const Orbit& x, c
 double estimated_error(const HybridSystem& system, const Signature& signature, const Orbit& x,
                        const CollocationRule& rule) {
   if (x.shape.is_point()) return 0.0;
+  if (!x.states.allFinite()) return std::numeric_limits<double>::infinity();
   MatrixXd slopes(rule.points() + 1, 2);  // of the polynomial at the start and at the end of an interval
   rule.basis(0.0, nullptr, slopes.col(0).data());
   rule.basis(1.0, nullptr, slopes.col(1).data());

@@ -8,7 +8,8 @@
 ///
 /// which is h^(c+1) |u^(c+1)| times a constant (Ascher, Mattheij and Russell, Numerical Solution of Boundary Value
 /// Problems, 5.4). Where it does not, derivatives of p say nothing of those of the orbit, but r still says how far p is
-/// from a solution. The ends of the intervals are looked at, where |r| is largest.
+/// from a solution. The ends of the intervals are looked at, where |r| is largest. Collocation does not ask for the
+/// field there: where it has no value, as a root on a surface has none, the other ends tell.
 #pragma once
 
 #include "bvp/collocation_rule.hpp"
@@ -17,7 +18,7 @@
 
 namespace tchat {
 
-/// The largest |e| of all intervals and components, relative to 1 + max |u|; 0 for equilibria, infinite where a field
+/// The largest |e| of all intervals and components, relative to 1 + max |u|; 0 for equilibria, infinite where a state
 /// is not finite. Segments of zero duration have none.
 double estimated_error(const HybridSystem& system, const Signature& signature, const Orbit& x,
                        const CollocationRule& rule);
