@@ -116,7 +116,7 @@ std::string undetermined_duration(const DefiningSystem& system, const Orbit& x) 
     const double moved = f.cwiseAbs().maxCoeff() * std::abs(x.duration(s));
     if (moved < rounding * sizes)
       return fmt::format(
-          "segment {} ends at rest but for rounding (|f| T = {:.1e}), so that its duration {:.6g} is not "
+          "segment {} ends at rest to within rounding (|f| T = {:.1e}), so that its duration {:.6g} is not "
           "determined",
           s + 1, moved, x.duration(s));
   }

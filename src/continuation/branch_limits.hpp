@@ -23,7 +23,8 @@ std::string unresolved_by_mesh(const DefiningSystem& system, const Orbit& x, con
 /// where it is positive. Multipliers are known to about 1e-16 times that factor.
 double growth_exponent(const DefiningSystem& system, const Orbit& x);
 
-/// "" or that a segment ends at rest but for rounding, |f| T below 1e-12 of the states: its duration is not determined.
+/// "" or that a segment ends at rest to within rounding, |f| T below 1e-12 of the states: its duration is not
+/// determined.
 std::string undetermined_duration(const DefiningSystem& system, const Orbit& x);
 
 /// The period or the duration of a segment that has passed infinity on a step of signed length ds between two points,

@@ -128,9 +128,11 @@ std::string orbit_text(const HybridSystem& system, const FoundOrbit& orbit) {
                         system.function_name(FunctionKind::jump, v.jump));
   }
   text += "  start";
+  // Of the largest state 13 digits are shown; what is smaller than the last of them is rounding.
+  const double rounding = 1e-13 * orbit.start.cwiseAbs().maxCoeff();
   for (Eigen::Index i = 0; i < orbit.start.size(); ++i)
-    text +=
-        fmt::format("{} {} = {:.13g}", i > 0 ? "," : "", system.state_name(static_cast<int>(i) + 1), orbit.start(i));
+    text += fmt::format("{} {} = {:.13g}", i > 0 ? "," : "", system.state_name(static_cast<int>(i) + 1),
+                        std::abs(orbit.start(i)) > rounding ? orbit.start(i) : 0.0);
   text += "\n  multipliers";
   for (std::size_t i = 0; i < orbit.multipliers.size(); ++i)
     text += fmt::format("{} {}", i > 0 ? "," : "", multiplier_text(orbit.multipliers[i]));

@@ -23,10 +23,10 @@ double multiplier_accuracy(const FloquetMultipliers& multipliers);
 /// Distance of the multiplier nearest to `target`, infinite without multipliers. The trivial one is left out.
 double multiplier_distance(const FloquetMultipliers& multipliers, double target);
 
-/// The largest structural multiplier of a mesh whose other multipliers say anything.
+/// Where the structural multiplier is larger, the other multipliers of that mesh are not used.
 inline constexpr double structural_bound = 5e-2;
 
-/// The segment (from 0) whose end touches its event's surface but for the accuracy of a located point, -1: none.
+/// The first segment (from 0) whose end is tangent to its event surface, |h_x f| < 1e-4 |h_x| |f|; -1: none.
 int touching_segment(const TestedPoint& point);
 
 /// Why a located zero of the function of folds or branch points (`target` 1) or of period doublings (-1) is no such

@@ -14,20 +14,12 @@ namespace {
 
 /// x = x(0) exp(sin(omega t)), y = t: x' = omega x cos(omega y). Collocation is linear in x.
 struct Pulsation {
-  static constexpr int dimension = 2, parameters = 1, fields = 1, events = 1, jumps = 1;
+  static constexpr int dimension = 2, parameters = 1, fields = 1;
   template <class T>
   void field(int, const T* x, const T* p, T* f) const {
     using std::cos;
     f[0] = x[1] < 0.0 ? T(NAN) : p[0] * x[0] * cos(p[0] * x[1]);
     f[1] = T(1.0);
-  }
-  template <class T>
-  T event(int, const T* x, const T*) const {
-    return x[1];
-  }
-  template <class T>
-  void jump(int, const T* x, const T*, T* g) const {
-    g[0] = x[0], g[1] = x[1];
   }
 };
 
@@ -69,7 +61,7 @@ double error_of(const Orbit& x, double omega, const CollocationRule& rule) {
 }
 
 double estimate(const Orbit& x, const CollocationRule& rule) {
-  return estimated_error(system_of<Pulsation>(), {{1, 1, 1}}, x, rule);
+  return estimated_error(system_of<Pulsation>(), {{1, no_function, no_function}}, x, rule);
 }
 
 }  // namespace

@@ -12,12 +12,10 @@ import argparse
 import collections
 import json
 import os
-import shutil
 import subprocess
 import sys
 
 import label_accuracy
-import pipeline_labels
 
 INTERVALS = 20
 FINE = ["NTST=200", "NCOL=5", "IAD=1", "ERRMAX=0"]
@@ -58,16 +56,10 @@ def distance(values, exact):
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("tchat")
-    parser.add_argument("source")
-    parser.add_argument("--only", default="", help="only problems and systems whose name has this in it")
-    parser.add_argument("--foreign", action="store_true", help="no pipelines")
-    parser.add_argument("--folder", default="adapted_meshes")
+    label_accuracy.add_options(parser, "adapted_meshes")
     options = parser.parse_args()
-    tchat, folder = os.path.abspath(options.tchat), os.path.abspath(options.folder)
-    shutil.rmtree(os.path.join(folder, "foreign"), ignore_errors=True)
-    os.makedirs(folder, exist_ok=True)
-    if not options.foreign and not os.path.exists(os.path.join(folder, "pipelines")):
-        pipeline_labels.make(tchat, options.source, os.path.join(folder, "pipelines"), os.path.join(folder, "labels"))
+    tchat = os.path.abspath(options.tchat)
+    folder = label_accuracy.prepared_folder(tchat, options)
     runs = [] if options.foreign else label_accuracy.pipeline_runs(os.path.join(folder, "pipelines", "results"))
     runs = [(place, words) for place, words, _ in runs]
     runs += [label_accuracy.foreign_run(tchat, folder, name)[:2] for name in label_accuracy.foreign_systems.FOREIGN]

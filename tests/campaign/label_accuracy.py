@@ -282,22 +282,33 @@ def draw_runs(random, tchat, folder, count, only):
         yield place, with_new_name(words, "campaign%d" % number) + settings, library
 
 
-def main():
-    parser = argparse.ArgumentParser()
-    parser.add_argument("tchat")
-    parser.add_argument("orbit_check")
+def add_options(parser, folder):
     parser.add_argument("source")
-    parser.add_argument("--count", type=int, default=300)
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--only", help="only problems and systems whose name has this in it")
+    parser.add_argument("--only", default="", help="only problems and systems whose name has this in it")
     parser.add_argument("--foreign", action="store_true", help="no pipelines")
-    parser.add_argument("--folder", default="label_accuracy")
-    options = parser.parse_args()
-    tchat, folder = os.path.abspath(options.tchat), os.path.abspath(options.folder)
+    parser.add_argument("--folder", default=folder)
+
+
+def prepared_folder(tchat, options):
+    """The folder of the runs, with the pipelines' results unless they are there or not asked for."""
+    folder = os.path.abspath(options.folder)
     shutil.rmtree(os.path.join(folder, "foreign"), ignore_errors=True)
     os.makedirs(folder, exist_ok=True)
     if not options.foreign and not os.path.exists(os.path.join(folder, "pipelines")):
         pipeline_labels.make(tchat, options.source, os.path.join(folder, "pipelines"), os.path.join(folder, "labels"))
+    return folder
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("tchat")
+    parser.add_argument("orbit_check")
+    parser.add_argument("--count", type=int, default=300)
+    parser.add_argument("--seed", type=int, default=1)
+    add_options(parser, "label_accuracy")
+    options = parser.parse_args()
+    tchat = os.path.abspath(options.tchat)
+    folder = prepared_folder(tchat, options)
     counts, wrong = collections.Counter(), 0
     for place, words, library in draw_runs(random.Random(options.seed), tchat, folder, options.count, options.only):
         name = words[words.index("-o") + 1]
