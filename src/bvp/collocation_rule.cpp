@@ -42,6 +42,19 @@ double interpolation_constant(int c) {
   return worst / std::tgamma(c + 2.0);
 }
 
+/// The error that arises on an interval, per size of the residual at its ends.
+double residual_integral_of(const Eigen::VectorXd& gauss) {
+  constexpr int samples = 400;
+  const auto product = [&](double sigma) { return (sigma - gauss.array()).prod(); };
+  double integral = 0.0;
+  double largest = 0.0;
+  for (int k = 0; k < samples; ++k) {
+    integral += product((k + 0.5) / samples) / samples;
+    largest = std::max(largest, std::abs(integral));
+  }
+  return largest / std::abs(product(0.0));
+}
+
 }  // namespace
 
 CollocationRule::CollocationRule(int points)
@@ -51,6 +64,7 @@ CollocationRule::CollocationRule(int points)
       integral(Eigen::VectorXd::Zero(points + 1)),
       highest(points + 1),
       interpolation(interpolation_constant(points)),
+      end_slope(points + 1, 2),
       points_(points),
       nodes_(points + 1),
       barycentric_(points + 1) {
@@ -81,6 +95,10 @@ CollocationRule::CollocationRule(int points)
   weights = order * weights;
   value = order * value;
   slope = order * slope;
+
+  basis(0.0, nullptr, end_slope.col(0).data());
+  basis(1.0, nullptr, end_slope.col(1).data());
+  residual_integral = residual_integral_of(gauss);
 
   const GaussRule exact = gauss_rule(nodes);  // exact to degree 2c + 1, the products have 2c
   for (int j = 0; j < nodes; ++j) {

@@ -16,14 +16,16 @@ class CollocationRule {
 
   int points() const { return points_; }
 
-  Eigen::VectorXd gauss;     ///< c: Gauss points
-  Eigen::VectorXd weights;   ///< c: Gauss weights of the interval, of unit sum
-  Eigen::MatrixXd value;     ///< c x (c+1): value(j, i) = l_i(gauss_j)
-  Eigen::MatrixXd slope;     ///< c x (c+1): slope(j, i) = l_i'(gauss_j)
-  Eigen::MatrixXd mass;      ///< (c+1) x (c+1): integral of l_i l_k over the interval, exact
-  Eigen::VectorXd integral;  ///< c+1: integral of l_i
-  Eigen::VectorXd highest;   ///< c+1: the c-th derivative of sum u_i l_i is sum highest_i u_i
-  double interpolation;      ///< largest |prod (sigma - node_i)| / (c+1)!: of the error between mesh points
+  Eigen::VectorXd gauss;      ///< c: Gauss points
+  Eigen::VectorXd weights;    ///< c: Gauss weights of the interval, of unit sum
+  Eigen::MatrixXd value;      ///< c x (c+1): value(j, i) = l_i(gauss_j)
+  Eigen::MatrixXd slope;      ///< c x (c+1): slope(j, i) = l_i'(gauss_j)
+  Eigen::MatrixXd mass;       ///< (c+1) x (c+1): integral of l_i l_k over the interval, exact
+  Eigen::VectorXd integral;   ///< c+1: integral of l_i
+  Eigen::VectorXd highest;    ///< c+1: the c-th derivative of sum u_i l_i is sum highest_i u_i
+  double interpolation;       ///< largest |prod (sigma - node_i)| / (c+1)!: of the error between mesh points
+  Eigen::MatrixXd end_slope;  ///< (c+1) x 2: l_i'(0), l_i'(1)
+  double residual_integral;   ///< max |integral of Pi from 0 to sigma| / |Pi(0)|, Pi = prod (sigma - gauss_j)
 
   /// l_i(sigma) and l_i'(sigma) for i = 0..c; either may be null.
   void basis(double sigma, double* values, double* slopes) const;
