@@ -3,10 +3,8 @@
 /// Checked with the accuracy of orbits (orbit_accuracy.hpp), of the period, of the size of h and of |h_x| |f|: T_s >=
 /// 0; h >= 0 at the stored points of every event function monitored on a segment; h_x f <= 0 at every terminal point;
 /// and what sliding asks for at the starts of segments (sliding_violations.hpp).
-/// Between two stored points h is looked at where the parabola through them and a neighbour falls below zero: a
-/// narrower dip is not seen. It counts there beyond 1e-6 of its size and twice what the error of the states makes of
-/// it. Pinned ends are left out: the segment's own terminal event at its end, and a start on the event surface just
-/// left (h = 0 there, and h o g has a gradient parallel to that of the previous terminal event).
+/// Between stored points h is looked at where it has a minimum (event_minima.hpp); it counts there beyond 1e-6 of its
+/// size and twice what the error of the states makes of it. Pinned ends are left out.
 #pragma once
 
 #include <string>
@@ -42,10 +40,6 @@ struct Violation {
 std::vector<Violation> inadmissibilities(const HybridSystem& system, const Signature& signature,
                                          const std::vector<std::vector<int>>& monitored, const Orbit& x,
                                          const CollocationRule& rule, double error, double leaving = no_transversality);
-
-/// Is the start of segment s (from 0) pinned for an event function: does the jump before it land on the surface h = 0
-/// by structure (h = 0 there, gradient of h o g parallel to that of the previous terminal event)?
-bool is_pinned_start(const HybridSystem& system, const Signature& signature, const Orbit& x, int s, int event);
 
 /// "segment 1: h1 (wall) = -0.02 at tau = 0.31"
 std::string describe(const Violation& violation, const HybridSystem& system);

@@ -4,8 +4,8 @@
 
 #include <cstdlib>
 
-#include "bvp/admissibility.hpp"
 #include "bvp/event_condition.hpp"
+#include "bvp/event_minima.hpp"
 #include "bvp/no_duration.hpp"
 #include "bvp/periodic_orbit_system.hpp"
 #include "constants/run_settings.hpp"

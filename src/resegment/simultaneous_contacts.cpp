@@ -4,12 +4,12 @@
 #include <cmath>
 #include <tuple>
 
+#include "bvp/event_minima.hpp"
 #include "bvp/no_duration.hpp"
 #include "bvp/periodic_orbit_system.hpp"
 #include "bvp/transversality.hpp"
 #include "hybrid/event_at.hpp"
 #include "hybrid/identity_jump.hpp"
-#include "special_points/contact_test.hpp"
 
 namespace tchat {
 
@@ -89,7 +89,7 @@ class Search {
     const PeriodicOrbitSystem orbit(system_, settings_.signature(), {});
     const CollocationRule rule(x_.shape.collocation);
     const double level = touching * largest_value(system_, x_, s, event);
-    for (const Contact& contact : least_candidates(orbit, rule, x_, s, event)) {
+    for (const EventMinimum& contact : least_candidates(orbit, rule, x_, s, event)) {
       if (!(std::abs(contact.value) <= level)) continue;
       if (contact.tau > same_place && contact.tau < 1.0 - same_place)
         add({ContactPoint::inside, s, event, contact.tau});

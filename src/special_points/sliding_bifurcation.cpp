@@ -6,12 +6,12 @@
 #include <cmath>
 #include <set>
 
+#include "bvp/event_minima.hpp"
 #include "bvp/no_duration.hpp"
 #include "bvp/orbit_accuracy.hpp"
 #include "bvp/transversality.hpp"
 #include "hybrid/sliding_modes.hpp"
 #include "special_points/bifurcation_tests.hpp"
-#include "special_points/contact_test.hpp"
 
 namespace tchat {
 

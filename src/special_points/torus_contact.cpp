@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "bvp/admissibility.hpp"
+#include "bvp/event_minima.hpp"
 #include "hybrid/event_at.hpp"
 #include "special_points/bifurcation_tests.hpp"
-#include "special_points/contact_test.hpp"
 
 namespace tchat {
 

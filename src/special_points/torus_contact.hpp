@@ -4,8 +4,8 @@
 ///
 /// x(.; phi) the orbit of one return that starts at the phase phi: the trigonometric polynomial through the N orbits
 /// (bvp/torus_system.hpp), node by node. On each orbit the least value is found as on a periodic orbit
-/// (contact_test.hpp), polished by the flow, and then over phi between the neighbours of each that may have the least
-/// one beside it.
+/// (bvp/event_minima.hpp), polished by the flow, and then over phi between the neighbours of each that may have the
+/// least one beside it.
 #pragma once
 
 #include "bvp/torus_system.hpp"

@@ -95,7 +95,7 @@ TEST_CASE("a contact between nodes is seen") {
     CAPTURE(shift);
     const std::vector<Violation> found = worst(shift, 1e-5);
     REQUIRE(found.size() == 1);
-    CHECK(found[0].value == Approx(-depth).epsilon(0.1));
+    CHECK(found[0].value == Approx(-depth).epsilon(1e-3));
     // Where the states are not known so well, h may be positive.
     CHECK(worst(shift, depth).empty());
   }

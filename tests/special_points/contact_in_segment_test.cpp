@@ -55,7 +55,7 @@ Orbit revolution(const std::array<double, 4>& p, double from, int intervals, int
 
 /// Of event 2, with the orbit converged on the section of event `terminal`.
 template <class Problem = Circle>
-std::optional<Contact> least(const Orbit& start, int terminal) {
+std::optional<EventMinimum> least(const Orbit& start, int terminal) {
   PeriodicOrbits orbits(system_of<Problem>(), {{1, terminal, 1}}, 1, start.shape, {12, 6, 1e-12, 1e-12});
   const PathPoint point = orbits.corrected(start);
   REQUIRE(orbits.result.converged());
@@ -253,8 +253,8 @@ TEST_CASE("contact: an event function that cannot be asked for many points at on
   };
   const HybridSystem hybrid(table);
   const PeriodicOrbitSystem spoiled(hybrid, {{1, 1, 1}}, {1});
-  const std::vector<Contact> expected = least_candidates(plain, CollocationRule(4), x, 0, 2);
-  const std::vector<Contact> found = least_candidates(spoiled, CollocationRule(4), x, 0, 2);
+  const std::vector<EventMinimum> expected = least_candidates(plain, CollocationRule(4), x, 0, 2);
+  const std::vector<EventMinimum> found = least_candidates(spoiled, CollocationRule(4), x, 0, 2);
   REQUIRE(expected.size() > 2);
   REQUIRE(found.size() == expected.size());
   for (std::size_t k = 0; k < found.size(); ++k) {
