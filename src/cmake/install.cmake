@@ -1,6 +1,6 @@
 # What `cmake --install` puts where: the program with its pages for man and the completion of shells, the plugin headers
 # (the program looks for them in ../include beside its own folder), the README and the pages, the problems with their
-# constants, a package so that find_package(tchat) gives tchat::plugin, and the commands of TC-HAT in a folder of their
+# constants, a package so that find_package(tchat) gives tchat::plugin and tchat::core, and the commands of TC-HAT in a folder of their
 # own: AUTO-07p has commands of the same names.
 include(CMakePackageConfigHelpers)
 
@@ -10,10 +10,15 @@ install(PROGRAMS ${tc_hat_commands} DESTINATION "${CMAKE_INSTALL_LIBEXECDIR}/tch
 install(FILES scripts/tc-hat DESTINATION "${CMAKE_INSTALL_LIBEXECDIR}/tchat")
 install(FILES README.md LICENSE TYPE DOC)
 # The pages lie as in the source tree, with a link to the problems, so that their links and those of the README hold.
-install(DIRECTORY src/docs DESTINATION "${CMAKE_INSTALL_DOCDIR}/src" FILES_MATCHING PATTERN "*.md")
+install(DIRECTORY src/docs DESTINATION "${CMAKE_INSTALL_DOCDIR}/src" FILES_MATCHING PATTERN "*.md" PATTERN "library/*")
 install(CODE "file(CREATE_LINK \"../../tchat/problems\"
   \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DOCDIR}/problems\" SYMBOLIC)")
-install(TARGETS tchat_plugin EXPORT tchatConfig FILE_SET HEADERS)
+install(TARGETS tchat_plugin EXPORT tchatPlugin FILE_SET HEADERS)
+# The library with the headers of its rooms, for programs that compute without the executable.
+install(TARGETS tchat_core ARCHIVE)
+foreach(room ${core_rooms})
+  install(DIRECTORY "src/${room}" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/tchat-core" FILES_MATCHING PATTERN "*.hpp")
+endforeach()
 install(DIRECTORY problems constants DESTINATION "${CMAKE_INSTALL_DATADIR}/tchat"
         PATTERN "*.so" EXCLUDE PATTERN "*.o" EXCLUDE PATTERN "*~" EXCLUDE)
 
@@ -26,9 +31,13 @@ add_custom_command(OUTPUT "${manual_folder}/tchat.1" COMMAND tchat manual "${man
 add_custom_target(tchat_manual ALL DEPENDS "${manual_folder}/tchat.1")
 install(DIRECTORY "${manual_folder}/" DESTINATION "${CMAKE_INSTALL_MANDIR}/man1" FILES_MATCHING PATTERN "*.1")
 
-# tchat::plugin depends on nothing, so that its exported targets serve as the package's configuration.
+# find_package(tchat) gives tchat::plugin, which depends on nothing; with COMPONENTS core also tchat::core.
 set(package_folder "${CMAKE_INSTALL_DATADIR}/cmake/tchat")
-install(EXPORT tchatConfig NAMESPACE tchat:: DESTINATION "${package_folder}")
+install(EXPORT tchatPlugin NAMESPACE tchat:: DESTINATION "${package_folder}")
+configure_package_config_file(src/cmake/tchatConfig.cmake.in "${PROJECT_BINARY_DIR}/tchatConfig.cmake"
+                              INSTALL_DESTINATION "${package_folder}"
+                              PATH_VARS CMAKE_INSTALL_LIBDIR CMAKE_INSTALL_INCLUDEDIR)
+install(FILES "${PROJECT_BINARY_DIR}/tchatConfig.cmake" src/cmake/FindUMFPACK.cmake DESTINATION "${package_folder}")
 write_basic_package_version_file("${PROJECT_BINARY_DIR}/tchatConfigVersion.cmake" COMPATIBILITY SameMajorVersion
                                  ARCH_INDEPENDENT)
 install(FILES "${PROJECT_BINARY_DIR}/tchatConfigVersion.cmake" DESTINATION "${package_folder}")

@@ -1,5 +1,6 @@
 // What `cmake --install` puts in place is enough: a problem from `tchat new`, the Fortran example with TC-HAT's
-// commands, and a plugin built by another project through find_package(tchat).
+// commands, a plugin and a program that computes, built by other projects
+// through find_package(tchat).
 #include <catch2/catch.hpp>
 #include <filesystem>
 
@@ -95,5 +96,13 @@ TEST_CASE("installed, and moved elsewhere: everything works outside the source t
                            "' --build build\n"
                            "cp build/ball.so . && tchat check ball");
     CHECK(outcome.out.find("Ball") != std::string::npos);
+  }
+  SECTION("a program that computes with the library, as on the page library.md") {
+    const Outcome outcome =
+        installation.shell("cp -r prefix/share/doc/tchat/src/docs/library example\n'" CMAKE_PROGRAM
+                           "' -S example -B build -DCMAKE_PREFIX_PATH=\"$PWD/prefix\" "
+                           "-DCMAKE_BUILD_TYPE=Debug\n'" CMAKE_PROGRAM "' --build build\nbuild/clock");
+    CHECK(outcome.out.find("it is 0.4") != std::string::npos);
+    CHECK(outcome.out.find("Largest difference from the closed form: ") != std::string::npos);
   }
 }
