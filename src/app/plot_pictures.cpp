@@ -16,15 +16,16 @@
 #include "plot/data_file.hpp"
 #include "plot/multiplier_figure.hpp"
 #include "plot/orbit_figure.hpp"
-#include "plot/orbit_stability.hpp"
 #include "plot/problem_finder.hpp"
 #include "plot/sweep_layer.hpp"
-#include "plot/torus_trace.hpp"
 #include "plot/trajectory_file.hpp"
+#include "problem_type/family.hpp"
 #include "problem_type/problem_type.hpp"
 #include "text/number.hpp"
 #include "text/user_error.hpp"
 #include "text/words.hpp"
+#include "traces/orbit_stability.hpp"
+#include "traces/torus_trace.hpp"
 
 namespace tchat {
 
@@ -145,22 +146,17 @@ void add_trajectory(const PlotItem& item, Orbits& orbits) {
 
 OrbitTrace trace_of(const LabelledSolution& solution, const std::string& name, const PlotArguments& arguments,
                     const std::string& path) {
-  if (arguments.section && !is_torus(solution.problem_type))
-    throw UserError(
-        fmt::format("--section: label {} of {} is no torus (IPS = {}), and its orbit no curve on a section; leave "
-                    "--section out",
-                    solution.label, path, solution.problem_type));
-  if (arguments.section) return section_trace(solution, name, arguments.dimension, path);
-  return is_torus(solution.problem_type) ? torus_bundle(solution, name, arguments.dimension, path)
-                                         : orbit_trace(solution, name, arguments.dimension, path);
+  const SolutionFamily& family = family_of(solution.problem_type);
+  return arguments.section ? family.section_trace(solution, name, arguments.dimension, path)
+                           : family.trace(solution, name, arguments.dimension, path);
 }
 
 void add_orbits(const PlotItem& item, bool several_files, const PlotArguments& arguments, Orbits& orbits) {
   if (item.kind == PlotItem::Kind::trajectory) return add_trajectory(item, orbits);
   const SolutionFile file = read_solution_file(item.path);
   for (const std::string& warning : file.warnings) orbits.warnings.push_back(warning);
-  const bool are_tori = !file.solutions.empty() && is_torus(file.solutions.front().problem_type);
-  const std::map<int, LineKind> kinds = are_tori ? torus_label_kinds(item.path) : label_kinds(item.path);
+  const int problem_type = file.solutions.empty() ? 0 : file.solutions.front().problem_type;
+  const std::map<int, LineKind> kinds = family_of(problem_type).label_kinds(item.path);
   const auto add = [&](const LabelledSolution& solution, const std::string& word) {
     const std::string name = several_files ? fmt::format("{} {}", run_name(item.path), word) : word;
     orbits.traces.push_back(trace_of(solution, name, arguments, item.path));

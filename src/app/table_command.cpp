@@ -13,6 +13,7 @@
 #include "files/run_file_names.hpp"
 #include "setup/warnings.hpp"
 #include "tables/branch_table.hpp"
+#include "tables/point_type_table.hpp"
 #include "text/user_error.hpp"
 
 namespace tchat {
@@ -21,8 +22,8 @@ namespace {
 
 struct TableArguments {
   std::vector<std::string> files;
-  bool csv = false;
-  bool json = false;
+  bool types = false;
+  std::size_t format = 0;  // in the list of formats
 };
 
 /// The files of one run, "" for those that are not named.
@@ -57,13 +58,16 @@ RunPaths read_paths(const std::vector<std::string>& words) {
 }
 
 int print_table(const TableArguments& arguments) {
+  const std::unique_ptr<TableWriter> writer = table_formats()[arguments.format].make(std::cout);
+  if (arguments.types) {
+    write_point_types(*writer);
+    return 0;
+  }
+  if (arguments.files.empty()) throw UserError("give the p-file of a run, as in tchat table p.mems");
   const RunPaths paths = read_paths(arguments.files);
   const BranchFile file = read_branch_file(paths.points, paths.solutions, paths.diagnostics);
   print_warnings(std::cerr, file.warnings);
-  if (arguments.json)
-    write_branch_json(std::cout, file);
-  else
-    write_branch_csv(std::cout, file);
+  write_branch_table(*writer, file);
   return 0;
 }
 
@@ -80,12 +84,17 @@ void add_table_command(CLI::App& app, std::function<int()>& chosen) {
       "is empty (null in JSON), infinite multipliers are inf (null in JSON).\n"
       "Example: tchat table p.mems > mems.csv");
   const auto arguments = std::make_shared<TableArguments>();
-  command
-      ->add_option("FILES", arguments->files,
-                   "p-file (`mems` is taken for p.mems); q- and d-file where they are not beside it")
-      ->required();
-  CLI::Option* csv = command->add_flag("--csv", arguments->csv, "CSV (this is the default)");
-  command->add_flag("--json", arguments->json, "JSON: an array of objects, one a point")->excludes(csv);
+  command->add_option("FILES", arguments->files,
+                      "p-file (`mems` is taken for p.mems); q- and d-file where they are not beside it");
+  command->add_flag("--types", arguments->types, "the types of points instead: letters, numbers in files, meaning");
+  std::vector<CLI::Option*> before;
+  for (std::size_t k = 0; k < table_formats().size(); ++k) {
+    CLI::Option* format = command->add_flag_callback(
+        fmt::format("--{}", table_formats()[k].option), [arguments, k] { arguments->format = k; },
+        table_formats()[k].what);
+    for (CLI::Option* other : before) format->excludes(other);
+    before.push_back(format);
+  }
   command->callback([&chosen, arguments] { chosen = [arguments] { return print_table(*arguments); }; });
 }
 

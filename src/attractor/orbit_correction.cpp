@@ -99,7 +99,7 @@ bool is_repeated(const OrbitCandidate& candidate, const SimulatedTurn& turn) {
 }
 
 /// A motion that comes to rest has turns as small as one likes; Newton's method takes it to the equilibrium itself.
-bool is_point(const OrbitCandidate& candidate, const SimulatedTurn& turn) {
+bool is_at_rest(const OrbitCandidate& candidate, const SimulatedTurn& turn) {
   VectorXd low = turn.segments.front().low, high = turn.segments.front().high;
   for (const SimulatedSegment& segment : turn.segments) {
     low = low.cwiseMin(segment.low);
@@ -240,7 +240,7 @@ CorrectedOrbit correct_orbit(const OrbitCandidate& candidate) {
     orbit.fault = "the orbit near the motion is shorter";
     return orbit;
   }
-  if (is_point(candidate, orbit.turn)) {
+  if (is_at_rest(candidate, orbit.turn)) {
     orbit.fault = "the motion comes to rest";
     return orbit;
   }

@@ -34,7 +34,7 @@ std::vector<Violation> inadmissibilities(const HybridSystem& system, const Signa
       result.push_back({Violation::negative_duration, s + 1, 0, 0.0, x.duration(s)});
 
     for (const int event : monitored[index]) {
-      Violation worst{Violation::event_crossed, x.shape.is_point() ? 0 : s + 1, event, 0.0, 0.0};
+      Violation worst{Violation::event_crossed, x.shape.stored_nodes() == 1 ? 0 : s + 1, event, 0.0, 0.0};
       const int first = is_pinned_start(system, signature, x, s, event) ? 1 : 0;
       const int last = event == v.event ? end_node - 1 : end_node;
       const double scale = event_scale(system, x, event);

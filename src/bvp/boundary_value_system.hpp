@@ -21,6 +21,7 @@ class BoundaryValueSystem final : public DefiningSystem {
   BoundaryValueSystem(const HybridSystem& system, Signature signature, std::vector<int> free_parameters,
                       std::vector<bool> free_durations);
 
+  std::unique_ptr<BranchAnalysis> make_analysis(const OrbitShape& shape) const override;
   int coupling_rows(int s) const override { return kept_rows(s) + boundary_rows(s); }
   void coupling_pattern(int s, CouplingPattern& pattern) const override;
   void coupling_values(int s, const Orbit& x, double* values) const override;

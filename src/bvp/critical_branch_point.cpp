@@ -7,21 +7,22 @@
 
 namespace tchat {
 
-CriticalBranchPoint::CriticalBranchPoint(const DefiningSystem& system, const OrbitShape& shape)
-    : unfolded_(nullptr),
+CriticalBranchPoint::CriticalBranchPoint(const DefiningSystem& system, const OrbitShape& shape,
+                                         const UnfoldedSystem* unfolded)
+    : unfolded_(unfolded),
       map_(system, shape),
       multiplier_(system, shape, 1),
       extended_(shape, system.free_count()),
       gradient_(shape, system.free_count()) {
+  if (unfolded_ != nullptr) next_phi_.resize(static_cast<std::size_t>(unfolded_->rows()));
   begin();
 }
 
+CriticalBranchPoint::CriticalBranchPoint(const DefiningSystem& system, const OrbitShape& shape)
+    : CriticalBranchPoint(system, shape, nullptr) {}
+
 CriticalBranchPoint::CriticalBranchPoint(const UnfoldedSystem& system, const OrbitShape& shape)
-    : CriticalBranchPoint(static_cast<const DefiningSystem&>(system), shape) {
-  unfolded_ = &system;
-  next_phi_.resize(static_cast<std::size_t>(system.rows()));
-  begin();
-}
+    : CriticalBranchPoint(system, shape, &system) {}
 
 /// The label is a branch point in the first parameter; any phi does that is not in the range of F_u.
 void CriticalBranchPoint::begin() {

@@ -54,6 +54,7 @@ class CriticalBranchPoint final : public RealMultiplierCondition {
   double multiplicity_function() const override { return multiplier_.multiplicity_function(); }
 
  private:
+  CriticalBranchPoint(const DefiningSystem& system, const OrbitShape& shape, const UnfoldedSystem* unfolded);
   int directions() const { return unfolded_ != nullptr ? 2 : 1; }
   Eigen::Map<const Eigen::VectorXd> left_null() const {
     return Eigen::Map<const Eigen::VectorXd>(multiplier_.left_null_vector().data(), map_.size());

@@ -9,6 +9,8 @@
 /// n m + m + q = R + I + b.
 #pragma once
 
+#include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -19,6 +21,8 @@
 #include "hybrid/hybrid_system.hpp"
 
 namespace tchat {
+
+class BranchAnalysis;
 
 class DefiningSystem {
  public:
@@ -31,11 +35,11 @@ class DefiningSystem {
   const Signature& signature() const { return signature_; }
   const std::vector<int>& free_parameters() const { return free_parameters_; }
   int dimension() const { return system_.dimension(); }
-  /// Are the orbits equilibria (OrbitShape::point), with eigenvalues of f_x in the place of multipliers?
-  virtual bool is_point() const { return false; }
-  /// How many orbits of one return each are coupled: several lie on a torus (torus_system.hpp), which has no
-  /// multipliers of a ring.
+  /// How many orbits of one return each are coupled: several lie on a torus (torus_system.hpp).
   virtual int orbits() const { return 1; }
+  /// What a branch of solutions of this shape needs while it is computed. Defined with the system's family
+  /// (src/families), which alone knows the classes of analyses.
+  virtual std::unique_ptr<BranchAnalysis> make_analysis(const OrbitShape& shape) const = 0;
   int segments() const { return static_cast<int>(signature_.size()); }
   /// Does an event end segment s?
   bool has_event(int s) const { return signature_[static_cast<std::size_t>(s)].event != no_function; }
@@ -77,6 +81,18 @@ class DefiningSystem {
   /// Gradient (n) of the section that ends segment s, on which its part of the return map is taken: that of the
   /// terminal event, unless the problem type says otherwise; zero where there is no section.
   virtual void section_gradient(int s, const double* x, const double* par, double* gradient) const;
+
+  /// A function of the points of a branch in one parameter whose sign is that of the bordered determinant and that
+  /// vanishes where it does, `tangent` at x given; nothing where that of Newton's own matrix will do.
+  virtual std::optional<double> singular_distance(const Orbit& /*x*/, const OrbitVector& /*tangent*/) const {
+    return std::nullopt;
+  }
+  /// Sets `direction` to that of the branch that crosses the one of `tangent` at a branch point x. False where Newton's
+  /// own matrix is to give it.
+  virtual bool find_crossing_branch(const Orbit& /*x*/, const OrbitVector& /*tangent*/,
+                                    OrbitVector& /*direction*/) const {
+    return false;
+  }
 
  private:
   HybridSystem system_;

@@ -37,7 +37,6 @@ double largest_residual(const HybridSystem& system, int field, const Orbit& x, c
 
 double estimated_error(const HybridSystem& system, const Signature& signature, const Orbit& x,
                        const CollocationRule& rule) {
-  if (x.shape.is_point()) return 0.0;
   if (!x.states.allFinite()) return std::numeric_limits<double>::infinity();
   double residual = 0.0;
   for (int s = 0; s < x.shape.segments; ++s) {

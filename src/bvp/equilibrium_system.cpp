@@ -58,7 +58,7 @@ std::string EquilibriumSystem::coupling_failure(int s, const Orbit& x) const {
 
 namespace {
 
-/// [f_x f_p; t^T] with rows divided by |r| + (1 + |x| + |p|) |dr/ds|, as in equilibrium_signed_distance().
+/// [f_x f_p; t^T] with rows divided by |r| + (1 + |x| + |p|) |dr/ds|, as in singular_distance().
 Eigen::MatrixXd bordered_by_tangent(const DefiningSystem& system, const Orbit& x, const OrbitVector& tangent) {
   const int n = system.dimension();
   const HybridSystem& problem = system.system();
@@ -84,8 +84,8 @@ Eigen::MatrixXd bordered_by_tangent(const DefiningSystem& system, const Orbit& x
 
 }  // namespace
 
-double equilibrium_signed_distance(const DefiningSystem& system, const Orbit& x, const OrbitVector& tangent) {
-  const Eigen::MatrixXd matrix = bordered_by_tangent(system, x, tangent);
+std::optional<double> EquilibriumSystem::singular_distance(const Orbit& x, const OrbitVector& tangent) const {
+  const Eigen::MatrixXd matrix = bordered_by_tangent(*this, x, tangent);
   if (!matrix.allFinite()) return 0.0;
   const PivotedLu lu(matrix);
   int sign = lu.parity();
@@ -93,14 +93,14 @@ double equilibrium_signed_distance(const DefiningSystem& system, const Orbit& x,
   return sign * least_singular_value(matrix.cast<std::complex<double>>());
 }
 
-void find_crossing_branch(const DefiningSystem& system, const Orbit& x, const OrbitVector& tangent,
-                          OrbitVector& direction) {
-  const int n = system.dimension();
-  const Eigen::MatrixXd matrix = bordered_by_tangent(system, x, tangent);
+bool EquilibriumSystem::find_crossing_branch(const Orbit& x, const OrbitVector& tangent, OrbitVector& direction) const {
+  const int n = dimension();
+  const Eigen::MatrixXd matrix = bordered_by_tangent(*this, x, tangent);
   const Eigen::VectorXd v = eigenvector(matrix.transpose() * matrix, 0.0).real().normalized();
   direction.set_zero();
   direction.states = v.head(n).replicate(1, direction.states.cols());
   direction.globals(0) = v(n);
+  return true;
 }
 
 }  // namespace tchat

@@ -18,7 +18,7 @@ class EquilibriumSystem final : public DefiningSystem {
   /// `signature` has one segment, of which the field counts.
   EquilibriumSystem(const HybridSystem& system, Signature signature, std::vector<int> free_parameters);
 
-  bool is_point() const override { return true; }
+  std::unique_ptr<BranchAnalysis> make_analysis(const OrbitShape& shape) const override;
   int field() const { return signature().front().field; }
 
   int coupling_rows(int) const override { return 1 + dimension(); }
@@ -28,18 +28,17 @@ class EquilibriumSystem final : public DefiningSystem {
   std::string coupling_name(int s, int r) const override;
   std::string coupling_failure(int s, const Orbit& x) const override;
 
+  /// The sign of det [f_x f_p; t^T] for one free parameter, t the tangent at x, times the least singular value of this
+  /// matrix scaled: zero at branch points, of constant sign through folds. At a branch point all of a row may vanish,
+  /// so that none is scaled to unit size: a row r is divided by |r| + (1 + |x| + |p|) |dr/ds|, s the arclength.
+  /// Allocates.
+  std::optional<double> singular_distance(const Orbit& x, const OrbitVector& tangent) const override;
+  /// The null vector of that matrix. Newton's own, in which a row may be zero, need not have factors at a branch point.
+  /// Allocates.
+  bool find_crossing_branch(const Orbit& x, const OrbitVector& tangent, OrbitVector& direction) const override;
+
  private:
   mutable std::vector<double> by_state_, by_parameter_;  // n x n, n x q: scratch, as Newton's loop is not to allocate
 };
-
-/// The sign of det [f_x f_p; t^T] for one free parameter, t the tangent at x, times the least singular value of this
-/// matrix scaled: zero at branch points, of constant sign through folds. At a branch point all of a row may vanish, so
-/// that none is scaled to unit size: a row r is divided by |r| + (1 + |x| + |p|) |dr/ds|, s the arclength. Allocates.
-double equilibrium_signed_distance(const DefiningSystem& system, const Orbit& x, const OrbitVector& tangent);
-
-/// At a branch point, with the tangent of one branch: the direction of the other one, the null vector of that matrix.
-/// Newton's own, in which a row may be zero, need not have factors there. Allocates.
-void find_crossing_branch(const DefiningSystem& system, const Orbit& x, const OrbitVector& tangent,
-                          OrbitVector& direction);
 
 }  // namespace tchat

@@ -84,11 +84,11 @@ class EventAlongSegment {
   void find_gradients() {
     const int nodes = x_.shape.nodes();
     system_.first_at_points(FunctionKind::event, event_, nodes, x_.node(s_, 0), par(), {}, values_.data(),
-                             gradients_.data(), nullptr);
+                            gradients_.data(), nullptr);
     for (int k = 0; k < nodes; ++k)
       if (!std::isfinite(values_(k)) || !gradients_.col(k).allFinite())
         system_.first(FunctionKind::event, event_, x_.node(s_, k), par(), {}, &values_(k), gradients_.col(k).data(),
-                       nullptr);
+                      nullptr);
   }
 
   const double* par() const { return x_.par.data(); }
@@ -219,7 +219,7 @@ bool is_pinned_start(const HybridSystem& system, const Signature& signature, con
 std::vector<EventMinimum> interior_minima(const HybridSystem& system, const Signature& signature,
                                           const CollocationRule& rule, const Orbit& x, int s, int event, double below) {
   std::vector<EventMinimum> result;
-  if (x.shape.is_point() || !(x.duration(s) > 0.0)) return result;
+  if (!(x.duration(s) > 0.0)) return result;
   const IndexVector& v = signature[static_cast<std::size_t>(s)];
   EventAlongSegment along(system, v.field, rule, x, s, event);
   const Minima minima = find_minima(along, x.shape.intervals, x.shape.collocation);

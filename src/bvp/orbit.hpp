@@ -24,7 +24,8 @@ struct OrbitShape {
   int columns() const { return segments * nodes(); }
   /// An equilibrium: one interval of degree 1, both of whose nodes are the same state.
   static OrbitShape point(int dimension) { return {dimension, 1, 1, 1}; }
-  bool is_point() const { return segments == 1 && intervals == 1 && collocation == 1; }
+  /// Nodes of one segment whose states differ, so that files store them.
+  int stored_nodes() const { return *this == point(dimension) ? 1 : nodes(); }
   bool operator==(const OrbitShape&) const = default;
 };
 

@@ -9,7 +9,8 @@
 namespace tchat {
 
 double event_scale(const HybridSystem& system, const Orbit& x, int event) {
-  if (x.shape.is_point()) return event_at(system, event, x.end(0), x.par.data()).scale(x.end(0));
+  // One state says nothing of the sizes that h has.
+  if (x.shape.stored_nodes() == 1) return event_at(system, event, x.end(0), x.par.data()).scale(x.end(0));
   double largest = 0.0;
   for (int s = 0; s < x.shape.segments; ++s)
     for (int k = 0; k < x.shape.nodes(); k += x.shape.collocation)

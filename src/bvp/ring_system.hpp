@@ -20,6 +20,8 @@ class RingSystem : public DefiningSystem {
  public:
   RingSystem(const HybridSystem& system, Signature signature, std::vector<int> free_parameters);
 
+  std::unique_ptr<BranchAnalysis> make_analysis(const OrbitShape& shape) const override;
+
   int coupling_rows(int s) const final { return end_conditions(s) + dimension(); }
   void coupling_pattern(int s, CouplingPattern& pattern) const final;
   void coupling_values(int s, const Orbit& x, double* values) const final;

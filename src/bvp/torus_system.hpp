@@ -41,6 +41,7 @@ class TorusSystem final : public PeriodicOrbitSystem {
   TorusSystem(const HybridSystem& system, const Signature& one_return, int orbits, std::vector<int> free_parameters,
               TorusWinding winding);
 
+  std::unique_ptr<BranchAnalysis> make_analysis(const OrbitShape& shape) const override;
   int orbits() const override { return orbits_; }
   int segments_per_return() const { return segments() / orbits_; }
   static double rotation(const Orbit& x) { return x.par(rotation_parameter - 1); }

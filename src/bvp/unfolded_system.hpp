@@ -30,6 +30,7 @@ class UnfoldedSystem final : public DefiningSystem {
   void unfold_along(const std::vector<double>& direction) const { direction_ = direction; }
   const std::vector<double>& direction() const { return direction_; }
 
+  std::unique_ptr<BranchAnalysis> make_analysis(const OrbitShape& shape) const override;
   int coupling_rows(int s) const override { return ring_->coupling_rows(s); }
   void coupling_pattern(int s, CouplingPattern& pattern) const override;
   void coupling_values(int s, const Orbit& x, double* values) const override;

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 
+#include "problem_type/point_type.hpp"
 #include "text/number.hpp"
 #include "text/printable.hpp"
 #include "text/user_error.hpp"
@@ -69,9 +70,8 @@ std::optional<StartLabel> parse_typed_label(std::string_view text) {
   if (text.size() < 3 || !is_digit(text[2])) return std::nullopt;
   StartLabel label;
   for (const char c : text.substr(0, 2)) label.type += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
-  const auto types = point_type_names();
   const auto count = parse_integer(text.substr(2));
-  if (std::find(types.begin(), types.end(), label.type) == types.end() || !count || *count < 1) return std::nullopt;
+  if (find_point_type(label.type) == nullptr || !count || *count < 1) return std::nullopt;
   label.number = *count;
   return label;
 }

@@ -4,7 +4,7 @@
 #include <fmt/ranges.h>
 
 #include "constants/constants_writer.hpp"
-#include "problem_type/problem_type.hpp"
+#include "constants/settings_type.hpp"
 
 namespace tchat {
 
@@ -17,9 +17,9 @@ std::string limits_line(const Constant& constant) {
   return fmt::format("{:{}}   allowed: {}{}\n", "", keyword_width, allowed_text(constant), effect);
 }
 
-std::string segment_text(int number, const SegmentSettings& segment, bool ring) {
+std::string segment_text(int number, const SegmentSettings& segment, bool ends_in_event) {
   std::string text = fmt::format("  segment {}: field {}", number, segment.index.field);
-  if (!ring) return text + "\n";
+  if (!ends_in_event) return text + "\n";
   text += segment.index.event == no_function
               ? " for one period, fixed by the integral phase condition"
               : fmt::format(" until event function {} falls to zero{}", segment.index.event,
@@ -59,7 +59,7 @@ std::string constants_guide() {
 std::string explained_text(const RunSettings& settings) {
   std::string text = "The signature:\n";
   for (std::size_t s = 0; s < settings.segments.size(); ++s)
-    text += segment_text(static_cast<int>(s + 1), settings.segments[s], has_ring(settings.problem_type));
+    text += segment_text(static_cast<int>(s + 1), settings.segments[s], signature_rules(settings).ends_in_events);
   const std::string contacts = contacts_text(settings);
   if (!keeps_contact(settings.problem_type) && !contacts.empty()) text += "GCIPSI chooses from these:\n" + contacts;
   text += "\n";

@@ -239,11 +239,4 @@ std::string allowed_text(const Constant& constant) {
   return limits_text(constant.limits, has_real_values(constant));
 }
 
-std::span<const std::string_view> point_type_names() {
-  static constexpr std::array<std::string_view, 21> names{"BP", "LP", "HB", "PD", "TR", "UZ", "GR",
-                                                          "BE", "XI", "GC", "CP", "BT", "ZH", "GH",
-                                                          "R1", "R2", "R3", "R4", "EP", "MX", "RG"};
-  return names;
-}
-
 }  // namespace tchat

@@ -93,7 +93,4 @@ bool has_real_values(const Constant& constant);
 std::string allowed_text(const Constant& constant);
 std::string limits_text(const Limits& limits, bool real);
 
-/// The type names that IRS and STOP know: BP LP PD TR UZ GR XI EP MX RG.
-std::span<const std::string_view> point_type_names();
-
 }  // namespace tchat

@@ -10,7 +10,7 @@
 
 #include "hybrid/index_vector.hpp"
 #include "hybrid/parameter_vector.hpp"
-#include "problem_type/problem_type.hpp"
+#include "problem_type/problem_id.hpp"
 
 namespace tchat {
 

@@ -31,21 +31,17 @@ class SettingsCheck {
         refuse_constant("ICP", name, fmt::format("{} twice", in_quotes(std::to_string(list[i]))),
                         "each parameter once");
     }
-    if (has_own_conditions(settings_.problem_type)) return conditions();
+    if (rules().counts_conditions) return conditions();
     const auto held = static_cast<int>(settings_.held.size());
     const int needed = free_parameter_count(settings_.problem_type, settings_.branch_mode) + held;
     const auto of_problem = std::count_if(list.begin(), list.end(), [this](int k) {
       return k < first_duration || (k > last_index && !is_monitor(settings_, k));
     });
     if (of_problem < needed)
-      refuse_constant("ICP", "ICP", fmt::format("{} parameters that are not durations", of_problem),
-                      fmt::format("at least {} with IPS = {}, ISW = {}{}; {}", needed, settings_.problem_type,
-                                  settings_.branch_mode, held == 0 ? "" : fmt::format(", HOLD of {}", held),
-                                  is_point(settings_.problem_type)   ? "an equilibrium has no duration"
-                                  : is_torus(settings_.problem_type) ? "rho, the rotation number, may be one of them, "
-                                                                       "as in ICP=[a,rho]; durations are free in any "
-                                                                       "case"
-                                                                     : "durations are free in any case"));
+      refuse_constant(
+          "ICP", "ICP", fmt::format("{} parameters that are not durations", of_problem),
+          fmt::format("at least {} with IPS = {}, ISW = {}{}; {}", needed, settings_.problem_type,
+                      settings_.branch_mode, held == 0 ? "" : fmt::format(", HOLD of {}", held), rules().parameters));
   }
 
   /// The count of unknowns and conditions of a boundary value problem.
@@ -73,14 +69,14 @@ class SettingsCheck {
   /// Events and jumps of the signature: there is none where segments form no ring. In one, jump 0 is the identity, and
   /// event 0 the phase condition of an orbit without a section.
   void signature() const {
-    if (is_point(settings_.problem_type) && segments() > 1)
+    if (rules().most_segments > 0 && segments() > rules().most_segments)
       refuse_constant(
           "GCNOSEG", "GCNOSEG", in_quotes(std::to_string(segments())),
-          fmt::format("1 with IPS = {}: an equilibrium is one state of one vector field", settings_.problem_type));
+          fmt::format("{} with IPS = {}: {}", rules().most_segments, settings_.problem_type, rules().why_most));
     int s = 0;
     for (const SegmentSettings& segment : settings_.segments) {
       ++s;
-      if (has_ring(settings_.problem_type)) {
+      if (rules().ends_in_events) {
         if (segment.index.event == no_function) phase_condition(s);
       } else {
         no_index("GCHIND", s, segment.index.event);
@@ -103,11 +99,8 @@ class SettingsCheck {
 
   void no_index(const char* keyword, int s, int index) const {
     if (index == no_function) return;
-    refuse_constant(
-        keyword, fmt::format("{}({})", keyword, s), in_quotes(std::to_string(index)),
-        fmt::format("0, or leave it out: with IPS = {} {}", settings_.problem_type,
-                    is_point(settings_.problem_type) ? "nothing ends a segment; events to watch are in GCHGRZIND"
-                                                     : "the problem's boundary conditions tie the segments"));
+    refuse_constant(keyword, fmt::format("{}({})", keyword, s), in_quotes(std::to_string(index)),
+                    fmt::format("0, or leave it out: with IPS = {} {}", settings_.problem_type, rules().why_no_events));
   }
 
   void bounds(std::string_view low_keyword, double low, std::string_view high_keyword, double high) const {
@@ -183,6 +176,7 @@ class SettingsCheck {
   }
 
  private:
+  const SignatureRules& rules() const { return signature_rules(settings_); }
   int segments() const { return static_cast<int>(settings_.segments.size()); }
 
   /// A switch to a period-doubled orbit doubles the segments.
@@ -216,7 +210,7 @@ struct Contact {
 std::vector<Contact> not_chosen(const RunSettings& settings) {
   std::vector<Contact> result;
   const std::vector<int>& chosen = settings.test_functions;
-  if (chosen.empty() && is_torus(settings.problem_type)) return result;  // all are, on tori
+  if (chosen.empty() && signature_rules(settings).watches_all_contacts) return result;
   Contact contact;
   for (const SegmentSettings& segment : settings.segments) {
     ++contact.segment;
@@ -261,8 +255,8 @@ std::string unlocated_contacts(const RunSettings& before, const RunSettings& now
   const std::vector<Contact> earlier = not_chosen(before);
   const std::vector<Contact> left = not_chosen(now);
   const bool none_wanted = before.test_functions.empty() && !earlier.empty();
-  if (keeps_contact(now.problem_type) || is_point(now.problem_type) || none_wanted || left.size() <= earlier.size())
-    return "";
+  const bool chooses = signature_rules(now).has_contacts_to_choose && !keeps_contact(now.problem_type);
+  if (!chooses || none_wanted || left.size() <= earlier.size()) return "";
   constexpr std::size_t most = 6;
   std::string list;
   for (std::size_t i = 0; i < std::min(left.size(), most); ++i)

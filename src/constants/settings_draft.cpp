@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include "constants/settings_check.hpp"
-#include "problem_type/problem_type.hpp"
+#include "constants/settings_type.hpp"
 #include "text/number.hpp"
 #include "text/user_error.hpp"
 #include "text/words.hpp"
@@ -288,7 +288,7 @@ int SettingsDraft::settle_segment_count() const {
 
 /// Of a list that is not given.
 int SettingsDraft::missing_value(const SegmentInteger& member) const {
-  return member.of_ring && !has_ring(settings_.problem_type) ? no_function : 1;
+  return member.of_ring && !signature_rules(settings_).ends_in_events ? no_function : 1;
 }
 
 void SettingsDraft::settle_segment_integers(const Constant& constant, const SegmentInteger& member) {

@@ -20,7 +20,10 @@ const ProblemType& problem_type(const RunSettings& settings) {
 }
 
 int ProblemType::free_entries(const RunSettings& settings) const {
-  return facts_.free_parameters + static_cast<int>(settings.held.size());
+  const auto held = static_cast<int>(settings.held.size());
+  if (!family().facts().signature.counts_conditions) return facts_.free_parameters + held;
+  return settings.boundary_conditions + settings.integral_conditions - settings.dimension * segment_count(settings) +
+         1 + held;
 }
 
 int free_parameter_count(int number, int branch_mode) {
@@ -30,7 +33,7 @@ int free_parameter_count(int number, int branch_mode) {
 
 std::vector<int> free_entries(const RunSettings& settings) {
   const ProblemType& type = problem_type(settings);
-  const bool own_conditions = has_own_conditions(settings.problem_type);
+  const bool own_conditions = signature_rules(settings).counts_conditions;
   const auto needed = static_cast<std::size_t>(type.free_entries(settings));
   std::vector<int> result;
   for (const int k : settings.free_parameters)
@@ -48,8 +51,7 @@ std::vector<int> free_entries(const RunSettings& settings) {
                   "parameters to vary, for example ICP = [{}]",
                   result.size(), settings.problem_type, settings.branch_mode,
                   settings.held.empty() ? "" : fmt::format(" and {} held", settings.held.size()), needed,
-                  type.facts().is_point ? "an equilibrium has no duration" : "durations are free in any case",
-                  type.facts().is_point ? "1" : "1, 61"));
+                  type.family().facts().signature.durations, type.family().facts().signature.example));
 }
 
 std::vector<int> free_problem_parameters(const RunSettings& settings) {
@@ -60,7 +62,7 @@ std::vector<int> free_problem_parameters(const RunSettings& settings) {
 }
 
 std::vector<bool> free_durations(const RunSettings& settings) {
-  std::vector<bool> free(settings.segments.size(), problem_type(settings).facts().has_ring);
+  std::vector<bool> free(settings.segments.size(), signature_rules(settings).ends_in_events);
   for (const int k : free_entries(settings))
     if (is_duration(k, segment_count(settings))) free[static_cast<std::size_t>(duration_segment(k))] = true;
   return free;

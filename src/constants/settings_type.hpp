@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "constants/run_settings.hpp"
+#include "problem_type/family.hpp"
 #include "problem_type/problem_type.hpp"
 
 namespace tchat {
@@ -14,17 +15,23 @@ inline int segment_count(const RunSettings& settings) { return static_cast<int>(
 /// Throws UserError with the list of what there is.
 const ProblemType& problem_type(const RunSettings& settings);
 
-/// How many problem parameters a type with a ring frees; that of the nearest type where there is none of this IPS and
-/// ISW.
+/// The family of the solutions, and its rules for constants.
+inline const SolutionFamily& family_of(const RunSettings& settings) { return family_of(settings.problem_type); }
+inline const SignatureRules& signature_rules(const RunSettings& settings) {
+  return family_of(settings).facts().signature;
+}
+
+/// How many problem parameters a type frees whose segments end in events; that of the nearest type where there is none
+/// of this IPS and ISW.
 int free_parameter_count(int number, int branch_mode);
 
-/// The first entries of ICP that the type frees: in a ring problem parameters only. Throws UserError when ICP names too
-/// few.
+/// The first entries of ICP that the type frees: where conditions are counted durations too, else problem parameters
+/// only. Throws UserError when ICP names too few.
 std::vector<int> free_entries(const RunSettings& settings);
 
 /// The problem parameters among them: what the run frees besides durations.
 std::vector<int> free_problem_parameters(const RunSettings& settings);
-/// One flag for each segment: in a ring every duration is free.
+/// One flag for each segment: where events end segments every duration is free.
 std::vector<bool> free_durations(const RunSettings& settings);
 
 /// All that the run really frees, in the order of ICP, durations that are free without being in it last.

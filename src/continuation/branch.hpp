@@ -7,6 +7,7 @@
 #include "bvp/admissibility.hpp"
 #include "continuation/path_follower.hpp"
 #include "continuation/point_data.hpp"
+#include "problem_type/family.hpp"
 #include "special_points/test_function.hpp"
 #include "stability/floquet_multipliers.hpp"
 
@@ -90,12 +91,11 @@ struct BranchSummary {
   int inadmissible_points = 0;
   int unstable_points = 0;
   bool multipliers_computed = false;
-  bool equilibria = false;        ///< the multipliers are eigenvalues, and there is no mesh
-  bool tori = false;              ///< several orbits of one return each: the trivial multiplier tells of their number
-  bool critical_curve = false;    ///< every point has a critical multiplier, so stability says nothing
-  bool without_contact = false;   ///< stability is that of the orbit without the contact that the curve keeps
-  double worst_structural = 0.0;  ///< largest structural multiplier, or distance of the trivial one from 1
-  bool has_trivial = false;       ///< orbits without a section have this one instead
+  const FamilyFacts* family = nullptr;  ///< of the points
+  bool critical_curve = false;          ///< every point has a critical multiplier, so stability says nothing
+  bool without_contact = false;         ///< stability is that of the orbit without the contact that the curve keeps
+  double worst_structural = 0.0;        ///< largest structural multiplier, or distance of the trivial one from 1
+  bool has_trivial = false;             ///< orbits without a section have this one instead
   double worst_estimated_error = 0.0;
   std::vector<LostPoint> lost;               ///< special points that may be missing
   std::vector<VanishingFunction> vanishing;  ///< test functions without zeros to look for

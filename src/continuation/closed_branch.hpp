@@ -25,7 +25,7 @@ class ClosedBranch {
   /// The first point of a branch; `direction` is the sign of its steps.
   void begin(const PathPoint& first, double direction);
   /// A step that has been accepted.
-  void went(double ds) { travelled_ += ds < 0.0 ? -ds : ds; }
+  void add_step(double ds) { travelled_ += ds < 0.0 ? -ds : ds; }
 
   /// The first point on the way: a step of this length from `from`, which is the start of the step moved to the mesh of
   /// the first point.

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -13,11 +12,8 @@
 #include "bvp/orbit_accuracy.hpp"
 #include "continuation/bound_tests.hpp"
 #include "continuation/branch_limits.hpp"
-#include "continuation/homoclinic_limit.hpp"
 #include "continuation/solution_measure.hpp"
-#include "hybrid/identity_jump.hpp"
 #include "special_points/bifurcation_tests.hpp"
-#include "stability/equilibrium_eigenvalues.hpp"
 
 namespace tchat {
 
@@ -40,22 +36,6 @@ constexpr double shrunk = 1e-6;
 /// Special points that are so many tolerances of their location away from a point are at that point.
 constexpr double same_place = 10.0;
 
-/// The angular frequency with which an orbit that has shrunk to a point goes around it, if the flow is smooth there and
-/// the period is that of the linear oscillation: a Hopf bifurcation.
-std::optional<double> hopf_frequency(const DefiningSystem& system, const Orbit& x) {
-  constexpr double accuracy = 1e-2;
-  const Signature& signature = system.signature();
-  const bool smooth = std::all_of(signature.begin(), signature.end(), [&](const IndexVector& index) {
-    return index.field == signature.front().field && is_identity_jump(system.system(), index.jump);
-  });
-  if (!smooth) return std::nullopt;
-  const FloquetMultipliers eigenvalues = equilibrium_eigenvalues(system, x);
-  const EigenvaluePair pair = hopf_pairs(eigenvalues.values).nearest;
-  const double omega = std::abs(pair.first.imag());
-  const bool same_period = std::abs(omega * x.period() - 2.0 * std::numbers::pi) < accuracy * 2.0 * std::numbers::pi;
-  return pair.is_oscillation() && pair.distance < accuracy && same_period ? std::optional(omega) : std::nullopt;
-}
-
 LocationSettings location_settings(const ContinuationSettings& settings) {
   const double scale = 1.0 + std::sqrt(std::abs(settings.step.initial * settings.step.maximum));
   return {settings.multipliers, settings.location_tolerance * scale, std::max(settings.max_location, 2)};
@@ -75,13 +55,6 @@ bool bounds_measure(const ContinuationSettings& settings) {
   return settings.measure_min > -none || settings.measure_max < none;
 }
 
-/// Do events fix the phase, or conditions of the problem's own?
-bool has_fixed_phase(const DefiningSystem& system, const ContinuationSettings& settings) {
-  const Signature& signature = system.signature();
-  return !settings.periodic || std::none_of(signature.begin(), signature.end(),
-                                            [](const IndexVector& index) { return index.event == no_function; });
-}
-
 }  // namespace
 
 bool is_beyond(const ContinuationSettings& settings, double value, double least, double most) {
@@ -95,10 +68,11 @@ ContinuationRun::ContinuationRun(PathFollower& follower, const DefiningSystem& s
       system_(system),
       settings_(std::move(settings)),
       sink_(sink),
-      search_(follower, system, with_bounds(std::move(tests), settings_), location_settings(settings_)),
+      analysis_(system.make_analysis(follower.condensed().shape())),
+      search_(follower, system, *analysis_, with_bounds(std::move(tests), settings_), location_settings(settings_)),
       step_(settings_.step),
       trend_(settings_.trend.value_or(OrbitTrend(system.orbits()))),
-      closed_(follower, system, has_fixed_phase(system, settings_)) {}
+      closed_(follower, system, analysis_->has_fixed_phase()) {}
 
 BranchSummary ContinuationRun::run(PathPoint start) {
   here_ = std::move(start);
@@ -124,16 +98,16 @@ BranchSummary ContinuationRun::run(PathPoint start) {
       break;
     }
     if (!may_go_to_next()) break;
-    const std::optional<double> to_first = come_back();
+    const std::optional<double> to_first = move_to_first_point();
     const bool is_there = to_first && std::abs(*to_first) <= same_place * location_settings(settings_).tolerance;
     special = is_there ? SpecialPoint{} : advance();
-    if (to_first) special = arrive(special, *to_first);
+    if (to_first) special = end_at_first_point(special, *to_first);
     if (const std::string zero = passed_zero_duration(); !ended_ && !zero.empty()) {
       end(EndReason::no_orbit, zero);
       write_last_again(PointType::end);
       break;
     }
-    closed_.went(next_.ds);
+    closed_.add_step(next_.ds);
     std::swap(here_, next_.point);
     ++number_;
     accept(end_conditions(curve_end(special)));
@@ -141,9 +115,8 @@ BranchSummary ContinuationRun::run(PathPoint start) {
     if (!ended_ && settings_.outgrown && settings_.outgrown(here_.orbit)) end(EndReason::outgrown, "");
   }
   summary_.vanishing = search_.vanishing(here_, accepted_data_);
-  const std::optional<PeriodGrowth> growth = trend_.period_growth();
-  if (growth && settings_.periodic && system_.orbits() == 1)
-    summary_.remark = homoclinic_limit(system_, here_.orbit, *growth, settings_.principal_name);
+  if (const std::optional<PeriodGrowth> growth = trend_.period_growth())
+    summary_.remark = analysis_->tendency(here_.orbit, *growth, settings_.principal_name);
   return summary_;
 }
 
@@ -159,7 +132,7 @@ void ContinuationRun::resume() {
 /// Where the step to next_ passes the first point of the branch: next_ is moved to just beyond it, so that special
 /// points are looked for as far as there, also at the first point itself; here_ is moved to the mesh of the first
 /// point. The length of a step to it.
-std::optional<double> ContinuationRun::come_back() {
+std::optional<double> ContinuationRun::move_to_first_point() {
   if (!settings_.stop_when_closed) return std::nullopt;
   const std::optional<ClosedBranch::Return> way = closed_.on_step(here_, next_.point, next_.ds);
   if (!way) return std::nullopt;
@@ -179,7 +152,7 @@ std::optional<double> ContinuationRun::come_back() {
 }
 
 /// The end of a closed branch, `length` from here_, unless a special point comes before it: next_ is moved there.
-SpecialPoint ContinuationRun::arrive(SpecialPoint special, double length) {
+SpecialPoint ContinuationRun::end_at_first_point(SpecialPoint special, double length) {
   if (ended_) return special;
   const double rest = std::abs(length) - std::abs(next_.ds);
   const bool is_special = special.type != PointType::ordinary;
@@ -232,7 +205,7 @@ bool ContinuationRun::turns_visibly(double parameter) const {
 /// Has the step gone through an equilibrium, to the same orbits run through from another point? Then next_ is moved
 /// back to short of it. Whatever changes sign there is hardly located, for Newton's matrix is singular.
 bool ContinuationRun::leads_through_point() {
-  if (!settings_.periodic || deviation_cosine(here_.orbit, next_.point.orbit, system_.orbits()) > opposite)
+  if (!analysis_->may_shrink() || deviation_cosine(here_.orbit, next_.point.orbit, system_.orbits()) > opposite)
     return false;
   constexpr int max_steps = 30;
   PathPoint near = here_;
@@ -264,23 +237,13 @@ bool ContinuationRun::leads_through_point() {
 
 /// Where the branch turns, or ends of itself, because its orbit has shrunk to a point: the end of the branch.
 SpecialPoint ContinuationRun::shrunk_orbit(SpecialPoint special, bool through_point) {
-  if (!settings_.periodic) return special;
+  if (!analysis_->may_shrink()) return special;
   const bool turns =
       through_point || special.type == PointType::fold || special.kind.kind == UserPointKind::impact_velocity;
   if (!trend_.has_shrunk(next_.point.orbit, turns ? shrunk_where_located : shrunk)) return special;
-  if (system_.orbits() > 1) {
-    end(EndReason::equilibrium,
-        fmt::format(
-            "the torus has shrunk to a periodic orbit, {}: its torus bifurcation, where the branch of tori ends",
-            state_text(system_.system(), next_.point.orbit, next_.point.orbit.start(0))));
-    return {PointType::torus, {}, false, summary_.detail};
-  }
-  const std::optional<double> omega = hopf_frequency(system_, next_.point.orbit);
-  end(EndReason::equilibrium,
-      fmt::format("the orbit has shrunk to a point, {}: an equilibrium, where the branch of periodic orbits ends{}",
-                  state_text(system_.system(), next_.point.orbit, next_.point.orbit.start(0)),
-                  omega ? fmt::format(" (Hopf bifurcation, omega = {:.6g})", *omega) : ""));
-  return {omega ? PointType::hopf : PointType::end, {}, false, summary_.detail};
+  special = analysis_->shrunk(next_.point.orbit);
+  end(EndReason::equilibrium, special.description);
+  return special;
 }
 
 /// A two-parameter curve may be left without a special point where it ends: from a start there, or when it was missed.
@@ -391,7 +354,7 @@ SpecialPoint ContinuationRun::end_conditions(SpecialPoint special) {
 
 /// here_ with what the search knows of it; kept, for the steps from it move it to another mesh.
 void ContinuationRun::accept(const SpecialPoint& special) {
-  tell_passed();
+  report_passed_points();
   if (settings_.reports_stability) {
     const bool is_reported = summary_.lost.size() > lost_before_;
     const auto change = stability_.add({number_, parameter_at(here_), special, next_.data.multipliers}, is_reported);
@@ -411,12 +374,12 @@ void ContinuationRun::accept(const SpecialPoint& special) {
 }
 
 /// Between the last accepted point and here_.
-void ContinuationRun::tell_passed() {
+void ContinuationRun::report_passed_points() {
   for (std::size_t i = 0; i < search_.tests().size() && !accepted_data_.tests.empty(); ++i) {
     const TestFunction& test = *search_.tests()[i];
     const int before = accepted_data_.tests[i].sign;
     const int now = next_.data.tests[i].sign;
-    if (!test.is_told_only() || before * now >= 0) continue;
+    if (!test.is_only_reported() || before * now >= 0) continue;
     const TestedPoint at = search_.tested(here_, next_.data);
     sink_.passed({number_, test.classify(at, now > 0).description, parameter_at(accepted_), parameter_at(here_)});
   }
@@ -449,8 +412,7 @@ void ContinuationRun::record(const SpecialPoint& special, const PointData& data)
   summary_.points = number_;
   summary_.inadmissible_points += !violations.empty();
   summary_.multipliers_computed = settings_.multipliers;
-  summary_.equilibria = system_.is_point();
-  summary_.tori = system_.orbits() > 1;
+  summary_.family = &analysis_->facts();
   summary_.critical_curve = follower_.condition() != nullptr;
   summary_.unstable_points += settings_.multipliers && !data.multipliers.stable();
   summary_.worst_structural = std::max(summary_.worst_structural, data.multipliers.structural);
@@ -484,7 +446,7 @@ void ContinuationRun::report_start(const std::string& test_name) {
 
 /// A new mesh where it is due, and the step length for the d-file.
 void ContinuationRun::prepare_next_step() {
-  if (settings_.adapt_mesh_every > 0 && number_ % settings_.adapt_mesh_every == 0)
+  if (settings_.adapt_mesh_every > 0 && here_.orbit.shape.intervals > 1 && number_ % settings_.adapt_mesh_every == 0)
     follower_.change_mesh(here_,
                           equidistributed_mesh(here_.orbit, follower_.condensed().rule(), here_.orbit.shape.intervals));
   sink_.next_step(number_, step_.value());
@@ -540,15 +502,13 @@ std::string ContinuationRun::exceeded_bound(const Candidate& at) const {
 }
 
 std::string ContinuationRun::passed_end() const {
-  if (!settings_.periodic || system_.is_point()) return "";
-  const std::string what = passed_infinity(here_, next_.point, next_.ds);
-  return end_text(what.empty() ? undetermined_duration(system_, next_.point.orbit) : what);
+  return end_text(analysis_->passed_infinity(here_, next_.point, next_.ds));
 }
 
 std::string ContinuationRun::passed_zero_duration() const {
-  if (!settings_.periodic) return "";
-  if (const std::string what = passed_zero(here_.orbit, next_.point.orbit); !what.empty()) return end_text(what);
-  const std::string what = settings_.negative_durations ? "" : passed_zero_segment(here_.orbit, next_.point.orbit);
+  const Orbit& beyond = next_.point.orbit;
+  if (const std::string what = analysis_->passed_zero(here_.orbit, beyond); !what.empty()) return end_text(what);
+  const std::string what = settings_.negative_durations ? "" : analysis_->passed_zero_segment(here_.orbit, beyond);
   const std::string cure =
       number_ == settings_.first_number ? fmt::format("; DS={:g} leads the other way", -settings_.step.initial) : "";
   return what.empty() ? "" : end_text(what) + cure + "; with GRSTOP=0 it goes on";

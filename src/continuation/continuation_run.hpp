@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "continuation/branch.hpp"
+#include "continuation/branch_analysis.hpp"
 #include "continuation/closed_branch.hpp"
 #include "continuation/orbit_trend.hpp"
 #include "continuation/special_point_search.hpp"
@@ -29,7 +30,6 @@ struct ContinuationSettings {
   double location_tolerance = 1e-7;                      ///< EPSS
   int max_location = 10;                                 ///< ITMX
   bool label_start = true;                               ///< false at a restart: the first point is known already
-  bool periodic = true;                                  ///< a branch of orbits ends where they shrink to a point
   bool stop_when_closed = true;                          ///< CLSTOP
   bool negative_durations = false;                       ///< a segment's may become so (GRSTOP = 0)
   bool clip = false;                                     ///< end on the bounds, not at the first point beyond them
@@ -73,14 +73,14 @@ class ContinuationRun {
   bool take_step();
   void count_iterations(const PathPoint& from, Candidate& to);
   int tried_along_tangent(const PathPoint& from, Candidate& to);
-  std::optional<double> come_back();
-  SpecialPoint arrive(SpecialPoint special, double length);
+  std::optional<double> move_to_first_point();
+  SpecialPoint end_at_first_point(SpecialPoint special, double length);
   SpecialPoint advance();
   bool leads_through_point();
   SpecialPoint shrunk_orbit(SpecialPoint special, bool through_point);
   SpecialPoint curve_end(SpecialPoint special);
   SpecialPoint end_conditions(SpecialPoint special);
-  void tell_passed();
+  void report_passed_points();
   void record(const SpecialPoint& special, const PointData& data);
   void accept(const SpecialPoint& special);
   void end(EndReason reason, std::string detail);
@@ -103,6 +103,7 @@ class ContinuationRun {
   const DefiningSystem& system_;
   ContinuationSettings settings_;
   BranchSink& sink_;
+  std::unique_ptr<BranchAnalysis> analysis_;
   SpecialPointSearch search_;
   StepSize step_;
   OrbitTrend trend_;

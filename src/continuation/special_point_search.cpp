@@ -86,17 +86,16 @@ std::string with_sliding_names(const SpecialPoint& special, const TestedPoint& p
 
 }  // namespace
 
-SpecialPointSearch::SpecialPointSearch(PathFollower& follower, const DefiningSystem& system,
+SpecialPointSearch::SpecialPointSearch(PathFollower& follower, const DefiningSystem& system, BranchAnalysis& analysis,
                                        std::vector<std::unique_ptr<TestFunction>> tests,
                                        const LocationSettings& settings)
     : follower_(follower),
       system_(system),
       tests_(std::move(tests)),
       settings_(settings),
-      floquet_(follower.condensed().shape()),
+      analysis_(analysis),
       evidence_(tests_.size()),
-      is_one_parameter_family_(system.free_count() == 1 && system.orbits() == 1 && follower.condition() == nullptr &&
-                               follower.held().empty()),
+      is_one_parameter_family_(system.free_count() == 1 && follower.condition() == nullptr && follower.held().empty()),
       signs_(tests_.size(), 0) {}
 
 TestedPoint SpecialPointSearch::tested(const PathPoint& at, const PointData& data) const {
@@ -129,17 +128,15 @@ std::vector<VanishingFunction> SpecialPointSearch::vanishing(const PathPoint& at
 
 /// At a point whose linearisation the follower holds.
 double SpecialPointSearch::signed_distance(const PathPoint& at) const {
-  const bool one_parameter = follower_.condition() == nullptr;
-  return system_.is_point() && one_parameter ? equilibrium_signed_distance(system_, at.orbit, at.tangent)
-                                             : follower_.signed_distance(at);
+  std::optional<double> own;
+  if (follower_.condition() == nullptr) own = system_.singular_distance(at.orbit, at.tangent);
+  return own ? *own : follower_.signed_distance(at);
 }
 
 PointData SpecialPointSearch::evaluate(PathPoint& at) {
   PointData data;
   if (settings_.multipliers) {
-    data.multipliers = system_.is_point()     ? equilibrium_eigenvalues(system_, at.orbit)
-                       : system_.orbits() > 1 ? torus_multipliers(follower_.condensed(), at.orbit)
-                                              : floquet_.compute(follower_.condensed(), at.orbit);
+    data.multipliers = analysis_.multipliers(follower_.condensed(), at.orbit);
     const OrbitCondition* condition = follower_.condition();
     const std::optional<int> kept = condition != nullptr ? condition->kept_multiplier() : std::nullopt;
     if (kept) put_critical(data.multipliers, *kept);
@@ -216,7 +213,7 @@ bool SpecialPointSearch::same_branch(const PathPoint& here, const PathPoint& nex
 std::vector<std::size_t> SpecialPointSearch::changed(const PointData& end) const {
   std::vector<std::size_t> result;
   for (std::size_t i = 0; i < tests_.size(); ++i)
-    if (!tests_[i]->is_told_only() && end.tests[i].value && signs_[i] != 0 && end.tests[i].sign == -signs_[i])
+    if (!tests_[i]->is_only_reported() && end.tests[i].value && signs_[i] != 0 && end.tests[i].sign == -signs_[i])
       result.push_back(i);
   return result;
 }
@@ -458,7 +455,7 @@ SpecialPointSearch::Zero SpecialPointSearch::locate(std::size_t test, const Path
   TestValue found;
   bool genuine = true;
   PathPoint start = here;
-  const auto arrive = [&](double length) {
+  const auto evaluate_at = [&](double length) {
     const bool at_start = length == 0.0;
     if (!(at_start ? follower_.linearize_at(here) : follower_.step(here, length, trial).converged())) return false;
     PathPoint& there = at_start ? start : trial;
@@ -469,11 +466,11 @@ SpecialPointSearch::Zero SpecialPointSearch::locate(std::size_t test, const Path
   };
   const auto has_sign = [&] { return found.value && found.sign == signs_[test]; };
   SignChange bracket{0.0, ds, 0.0, end_value};
-  bool arrived = arrive(bracket.low);
+  bool arrived = evaluate_at(bracket.low);
   const bool genuine_at_start = arrived && genuine;
   while (arrived && !has_sign() && bracket.length() > settings_.tolerance) {
     const double middle = 0.5 * (bracket.low + bracket.high);
-    arrived = arrive(middle);
+    arrived = evaluate_at(middle);
     if (found.value && found.sign == -signs_[test])
       bracket.high = middle, bracket.high_value = *found.value;
     else
@@ -482,7 +479,7 @@ SpecialPointSearch::Zero SpecialPointSearch::locate(std::size_t test, const Path
   if (!arrived) return {test, 0.0, Search::failed};
   if (!has_sign()) return {test, bracket.high, genuine_at_start ? zero_at_start(test) : Search::no_special_point};
   bracket.low_value = *found.value;
-  const auto at = [&](double length) { return arrive(length) ? found.value : std::optional<double>(); };
+  const auto at = [&](double length) { return evaluate_at(length) ? found.value : std::optional<double>(); };
   // No level of rounding: where a function is flat, it is small far from its zero.
   const LocatedZero zero = locate_zero_surely(at, bracket, settings_.tolerance, 0.0, settings_.max_evaluations);
   const Search search = zero.converged()                  ? Search::located

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 
+#include "continuation/branch_analysis.hpp"
 #include "continuation/branch_point_bracket.hpp"
 #include "continuation/point_data.hpp"
 #include "special_points/locator.hpp"
@@ -28,7 +29,7 @@ class SpecialPointSearch {
     std::function<void(const std::string&)> start;
   };
 
-  SpecialPointSearch(PathFollower& follower, const DefiningSystem& system,
+  SpecialPointSearch(PathFollower& follower, const DefiningSystem& system, BranchAnalysis& analysis,
                      std::vector<std::unique_ptr<TestFunction>> tests, const LocationSettings& settings);
 
   const std::vector<std::unique_ptr<TestFunction>>& tests() const { return tests_; }
@@ -112,7 +113,7 @@ class SpecialPointSearch {
   const DefiningSystem& system_;
   std::vector<std::unique_ptr<TestFunction>> tests_;
   LocationSettings settings_;
-  FloquetSolver floquet_;
+  BranchAnalysis& analysis_;
   /// At how many points a function was defined, and whether its value exceeded its uncertainty at one of them.
   struct Evidence {
     int points = 0;

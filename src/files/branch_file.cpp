@@ -13,7 +13,7 @@
 #include "files/labelled_solution.hpp"
 #include "files/run_file_names.hpp"
 #include "files/solution_file_reader.hpp"
-#include "special_points/point_type.hpp"
+#include "problem_type/point_type.hpp"
 #include "text/user_error.hpp"
 
 namespace tchat {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "problem_type/problem_type.hpp"
-#include "special_points/point_type.hpp"
+#include "problem_type/point_type.hpp"
+#include "problem_type/problem_id.hpp"
 
 namespace tchat {
 

@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "hybrid/parameter_vector.hpp"
+#include "problem_type/family.hpp"
 
 namespace tchat {
 
@@ -80,12 +81,13 @@ std::vector<PointColumn> point_columns(const RunSettings& settings, const Proble
   std::vector<PointColumn> columns;
   if (!free.empty()) columns.push_back(parameter_column(free.front(), names));
   columns.push_back(measure_column(settings.measure, settings.dimension, names));
-  const std::string of_orbit = is_point(settings.problem_type) ? "" : "MAX ";
-  for (int k = 1; k <= maxima; ++k) columns.push_back({PointColumn::Kind::maximum, k, of_orbit + names.state(k)});
+  const FileHeadings& headings = family_of(settings.problem_type).facts().headings;
+  for (int k = 1; k <= maxima; ++k)
+    columns.push_back({PointColumn::Kind::maximum, k, headings.maximum + names.state(k)});
   for (std::size_t i = 1; i < free.size(); ++i) columns.push_back(parameter_column(free[i], names));
   for (std::size_t i = 0; i < names.user_functions.size(); ++i)
     columns.push_back({PointColumn::Kind::user_function, static_cast<int>(i) + 1, names.user_functions[i]});
-  if (!is_point(settings.problem_type)) columns.push_back({PointColumn::Kind::period, 0, "PERIOD"});
+  if (headings.has_period) columns.push_back({PointColumn::Kind::period, 0, "PERIOD"});
   return columns;
 }
 

@@ -7,7 +7,7 @@
 
 #include "files/labelled_solution.hpp"
 #include "files/number_format.hpp"
-#include "special_points/point_type.hpp"
+#include "problem_type/point_type.hpp"
 
 namespace tchat {
 

@@ -9,7 +9,7 @@
 #include "files/labelled_solution.hpp"
 #include "files/number_format.hpp"
 #include "hybrid/parameter_vector.hpp"
-#include "special_points/point_type.hpp"
+#include "problem_type/point_type.hpp"
 
 namespace tchat {
 

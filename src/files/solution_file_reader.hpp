@@ -12,7 +12,7 @@
 
 #include "constants/run_settings.hpp"
 #include "files/labelled_solution.hpp"
-#include "special_points/point_type.hpp"
+#include "problem_type/point_type.hpp"
 
 namespace tchat {
 

@@ -61,17 +61,11 @@ const LabelledSolution& chosen(const GrazingRequest& request, const SolutionFile
     throw UserError(fmt::format(
         "label {} of {} was computed with IPS = {}, but {} has IPS = {}; give the constants of that run with -c",
         solution.label, path, solution.problem_type, constants, settings.problem_type));
-  if (is_torus(solution.problem_type))
-    throw UserError(fmt::format(
-        "label {} of {} is a torus (IPS = {}), and this analysis one of periodic orbits; `tchat sweep --map "
-        "{}:{} --over ...` makes its composite map, `tchat resegment --to grazing-curve` the start of a curve "
-        "of tori in contact",
-        solution.label, path, solution.problem_type, path, *request.label));
-  if (!has_ring(settings.problem_type))
-    throw UserError(
-        fmt::format("label {} of {} is no periodic orbit (IPS = {}); choose a GR label of periodic orbits "
-                    "(IPS = 180) or a label of a grazing curve (IPS = 150)",
-                    solution.label, path, solution.problem_type));
+  const std::string why_not =
+      family_of(settings).why_not(Analysis::grazing, fmt::format("{}:{}", path, *request.label));
+  if (!why_not.empty())
+    throw UserError(fmt::format("label {} of {} is {} (IPS = {}){}", solution.label, path,
+                                family_of(settings).facts().solution, solution.problem_type, why_not));
   return solution;
 }
 

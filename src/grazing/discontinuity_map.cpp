@@ -66,7 +66,7 @@ struct DiscontinuityMap::Implementation {
   // --- The smooth map X, in deviations. `d` on the section or near it.
 
   /// To P; for the exact map also the derivative.
-  static bool arrive(LocalFlow& local, VectorXd& d, MatrixXd* derivative) {
+  static bool flow_to_p(LocalFlow& local, VectorXd& d, MatrixXd* derivative) {
     return local.to_least_height(d, derivative);
   }
 
@@ -89,7 +89,7 @@ struct DiscontinuityMap::Implementation {
   }
 
   VectorXd smooth(LocalFlow& local, VectorXd d, double y) const {
-    return arrive(local, d, nullptr) && pass(local, d, y, nullptr) ? d : no_value(n());
+    return flow_to_p(local, d, nullptr) && pass(local, d, y, nullptr) ? d : no_value(n());
   }
 
   /// X(x* + d, 0) and d X / dy there, side by side: with dv/dy = sqrt(2 / a(x0)) the state x_in leaves x0 by
@@ -97,7 +97,7 @@ struct DiscontinuityMap::Implementation {
   MatrixXd first_in_y(LocalFlow& local, VectorXd d) const {
     MatrixXd result(n(), 2);
     result.setConstant(std::numeric_limits<double>::quiet_NaN());
-    if (!arrive(local, d, nullptr)) return result;
+    if (!flow_to_p(local, d, nullptr)) return result;
     MatrixXd change = -std::sqrt(2.0 / local.acceleration(d)) * local.field(d);
     if (!bring_back(local, d, &change)) return result;
     result << d, change;
@@ -198,14 +198,14 @@ const DiscontinuityExpansion& DiscontinuityMap::expansion() const { return p_->e
 double DiscontinuityMap::penetration(const VectorXd& x, const ParameterVector& par) const {
   LocalFlow local = p_->flow(par);
   VectorXd d = x - p_->point.x;
-  return Implementation::arrive(local, d, nullptr) ? -local.height(d) : std::numeric_limits<double>::quiet_NaN();
+  return Implementation::flow_to_p(local, d, nullptr) ? -local.height(d) : std::numeric_limits<double>::quiet_NaN();
 }
 
 VectorXd DiscontinuityMap::apply(const VectorXd& x, const ParameterVector& par, MapOrder order) const {
   LocalFlow local = p_->flow(par);
   const VectorXd start = x - p_->point.x;
   VectorXd d = start;
-  if (!Implementation::arrive(local, d, nullptr)) return no_value(x.size());
+  if (!Implementation::flow_to_p(local, d, nullptr)) return no_value(x.size());
   const double depth = -local.height(d);
   if (!(depth > 0.0)) return x;
   const double y = std::sqrt(depth);
@@ -221,7 +221,7 @@ MatrixXd DiscontinuityMap::derivative(const VectorXd& x, const ParameterVector& 
   VectorXd d = start;
   MatrixXd change = MatrixXd::Identity(n, n);
   const MatrixXd none = MatrixXd::Constant(n, n, std::numeric_limits<double>::quiet_NaN());
-  if (!Implementation::arrive(local, d, &change)) return none;
+  if (!Implementation::flow_to_p(local, d, &change)) return none;
   const double depth = -local.height(d);
   if (!(depth > 0.0)) return MatrixXd::Identity(n, n);
   const double y = std::sqrt(depth);
@@ -247,7 +247,7 @@ VectorXd DiscontinuityMap::onto_section(const VectorXd& d) const {
 double DiscontinuityMap::penetration_of_deviation(const VectorXd& d) const {
   LocalFlow local = p_->flow(p_->point.par);
   VectorXd at = d;
-  return Implementation::arrive(local, at, nullptr) ? -local.height(at) : std::numeric_limits<double>::quiet_NaN();
+  return Implementation::flow_to_p(local, at, nullptr) ? -local.height(at) : std::numeric_limits<double>::quiet_NaN();
 }
 
 VectorXd DiscontinuityMap::expanded_deviation(const VectorXd& d, double y, MapOrder order) const {

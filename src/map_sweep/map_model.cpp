@@ -101,6 +101,10 @@ struct LabelledRun {
   std::string source;
 };
 
+bool has_several_returns(const LabelledSolution& label) {
+  return family_of(label.problem_type).facts().has_several_returns;
+}
+
 LabelledRun labelled_run(const MapRequest& request, const MapContext& context, const HybridSystem& system) {
   const std::size_t colon = request.source.rfind(':');
   const std::string path = resolve_solution_path(request.source.substr(0, colon));
@@ -112,8 +116,8 @@ LabelledRun labelled_run(const MapRequest& request, const MapContext& context, c
   run.settings = read_constants_file(constants, nullptr, names_of(system));
   check_settings_against(system, run.settings, {constants});
   if (!is_same_problem_type(run.solution.problem_type, run.settings.problem_type) ||
-      !has_ring(run.settings.problem_type) ||
-      is_torus(run.solution.problem_type) != is_torus(run.settings.problem_type))
+      !family_of(run.settings).why_not(Analysis::composite_map, request.source).empty() ||
+      has_several_returns(run.solution) != family_of(run.settings).facts().has_several_returns)
     throw UserError(
         fmt::format("{} is no periodic orbit or torus of {} (IPS = {} there, {} here); choose a GR label of periodic "
                     "orbits or of tori, or give the constants of its run with -c",
@@ -423,8 +427,8 @@ MapOrder map_order(const std::string& text) {
 MapModel map_model(const MapRequest& request, const MapContext& context, const HybridSystem& system) {
   std::optional<LabelledRun> run;
   if (names_label(request.source)) run = labelled_run(request, context, system);
-  MapModel model = run && !is_torus(run->solution.problem_type) ? periodic_model(request, context, system, *run)
-                                                                : torus_model(request, context, system, run);
+  MapModel model = run && !has_several_returns(run->solution) ? periodic_model(request, context, system, *run)
+                                                              : torus_model(request, context, system, run);
   model.free = free_return(system, model.point, model.section);
   model.contact = {model.point.field, model.point.event, model.point.jump};
   return model;

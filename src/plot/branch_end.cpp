@@ -8,7 +8,7 @@
 #include "constants/constants_file.hpp"
 #include "files/labelled_solution.hpp"
 #include "files/run_file_names.hpp"
-#include "special_points/point_type.hpp"
+#include "problem_type/point_type.hpp"
 #include "text/user_error.hpp"
 
 namespace tchat {

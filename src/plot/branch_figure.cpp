@@ -12,6 +12,7 @@
 #include "plot/branch_end.hpp"
 #include "plot/branch_quantity.hpp"
 #include "plot/smooth_line.hpp"
+#include "problem_type/family.hpp"
 #include "problem_type/problem_type.hpp"
 #include "text/user_error.hpp"
 
@@ -31,7 +32,8 @@ int curve_type_of(const PointSection& section) {
 }
 
 CurveKind kind_of(const PointSection& section) {
-  return curve_kind(curve_type_of(section), keeps_contact(section.problem_type) || is_torus(section.problem_type));
+  return curve_kind(curve_type_of(section),
+                    keeps_contact(section.problem_type) || family_of(section.problem_type).is_drawn_as_contact());
 }
 
 /// The curves of one kind in one file share a line.

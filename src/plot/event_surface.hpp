@@ -12,7 +12,7 @@
 
 #include "hybrid/hybrid_system.hpp"
 #include "plot/figure.hpp"
-#include "plot/orbit_trace.hpp"
+#include "traces/orbit_trace.hpp"
 
 namespace tchat {
 

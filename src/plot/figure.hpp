@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "plot/label_text.hpp"
+#include "problem_type/point_type.hpp"
 
 namespace tchat {
 
@@ -32,7 +33,7 @@ struct Stroke {
   std::string colour = "#000000";
 };
 
-enum class Symbol { square, circle, triangle, diamond, pentagon, reversed_triangle, dot };
+using Symbol = PointSymbol;
 
 struct Marker {
   PicturePoint at;

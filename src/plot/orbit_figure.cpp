@@ -122,8 +122,8 @@ Marker jump_marker(std::size_t k, const PicturePoint& at, bool before) {
 
 KeyEntry orbit_entry(const std::vector<OrbitTrace>& orbits, std::size_t k, const OrbitFigureOptions& options) {
   KeyEntry entry{orbit_name(orbits, k, options), orbit_stroke(orbits, k), std::nullopt};
-  const bool is_torus = orbits[k].segments_per_return > 0;  // whose lines are many
-  for (std::size_t s = 0; s < orbits[k].segments.size() && !entry.marker && !is_torus; ++s)
+  const bool is_bundle = orbits[k].segments_per_return > 0;  // whose lines are many
+  for (std::size_t s = 0; s < orbits[k].segments.size() && !entry.marker && !is_bundle; ++s)
     if (orbits[k].jumps_after(s)) entry.marker = jump_marker(k, {}, true);
   return entry;
 }

@@ -9,43 +9,6 @@ namespace tchat {
 
 namespace {
 
-struct PointStyle {
-  const char* type;
-  Symbol symbol;
-  bool filled;
-  bool by_default;
-};
-
-constexpr std::array<PointStyle, 27> point_styles = {{
-    {"LP", Symbol::square, true, true},
-    {"PD", Symbol::triangle, true, true},
-    {"TR", Symbol::diamond, true, true},
-    {"BP", Symbol::pentagon, true, true},
-    {"HB", Symbol::reversed_triangle, true, true},
-    {"GR", Symbol::circle, false, true},
-    {"BE", Symbol::pentagon, false, true},
-    {"XI", Symbol::circle, true, true},
-    {"GC", Symbol::diamond, false, true},
-    {"CP", Symbol::square, false, true},
-    {"R1", Symbol::reversed_triangle, false, true},
-    {"R2", Symbol::triangle, false, true},
-    {"R3", Symbol::pentagon, false, true},
-    {"R4", Symbol::diamond, false, true},
-    {"BT", Symbol::reversed_triangle, false, true},
-    {"ZH", Symbol::pentagon, false, true},
-    {"GH", Symbol::diamond, false, true},
-    {"LTR", Symbol::square, false, true},
-    {"LPD", Symbol::square, false, true},
-    {"PTR", Symbol::triangle, false, true},
-    {"TTR", Symbol::diamond, false, true},
-    {"UZ", Symbol::circle, true, false},
-    {"RG", Symbol::dot, true, false},
-    {"EP", Symbol::dot, true, false},
-    {"MX", Symbol::reversed_triangle, true, false},
-    {"FP", Symbol::square, true, true},
-    {"", Symbol::dot, true, false},
-}};
-
 /// The first ones differ in hue and in lightness, those of the kinds of curve are among them.
 constexpr std::array<const char*, 12> colours = {"#000000", "#0060a8", "#c04000", "#3a9a4a", "#9a5aa0", "#d09a00",
                                                  "#50b8e8", "#e060a0", "#7a4420", "#008a8a", "#8a9a20", "#8888d8"};
@@ -56,12 +19,6 @@ std::string paler(const std::string& colour) {
   for (std::size_t k = 1; k + 1 < colour.size(); k += 2)
     result += fmt::format("{:02x}", (2 * std::stoi(colour.substr(k, 2), nullptr, 16) + 255) / 3);
   return result;
-}
-
-const PointStyle& style_of(const std::string& type) {
-  const auto found = std::find_if(point_styles.begin(), point_styles.end(),
-                                  [&type](const PointStyle& style) { return type == style.type; });
-  return found != point_styles.end() ? *found : point_styles.back();
 }
 
 }  // namespace
@@ -111,23 +68,26 @@ std::vector<KeyEntry> line_kind_entries(const std::set<LineKind>& kinds, const s
 }
 
 Marker special_point_marker(const std::string& type, const PicturePoint& at) {
-  const PointStyle& style = style_of(type);
+  const PointTypeFacts* const facts = find_point_type(type);
   Marker marker;
   marker.at = at;
-  marker.symbol = style.symbol;
-  marker.filled = style.filled;
+  marker.symbol = facts != nullptr ? facts->symbol : Symbol::dot;
+  marker.filled = facts == nullptr || facts->is_filled;
   marker.one_of_many = type == "XI";
   marker.size = marker.one_of_many ? 0.8 : 1.0;
   marker.label = plain_text(type);
   return marker;
 }
 
-bool is_labelled_by_default(const std::string& type) { return style_of(type).by_default; }
+bool is_labelled_by_default(const std::string& type) {
+  const PointTypeFacts* const facts = find_point_type(type);
+  return facts != nullptr && facts->is_labelled;
+}
 
 std::vector<std::string> all_point_types() {
   std::vector<std::string> types;
-  for (const PointStyle& style : point_styles)
-    if (*style.type != '\0' && std::string(style.type) != "FP") types.emplace_back(style.type);
+  for (const PointTypeFacts& row : point_types())
+    if (types.empty() || types.back() != row.name) types.emplace_back(row.name);
   return types;
 }
 

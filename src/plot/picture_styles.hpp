@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "plot/figure.hpp"
+#include "traces/line_kind.hpp"
 
 namespace tchat {
 
@@ -20,9 +21,6 @@ Marker cloud_marker(const std::string& colour);
 
 /// Symbol of the k-th orbit in one picture, for its jumps.
 Symbol series_symbol(std::size_t k);
-
-/// Stability and admissibility of an orbit, or of a piece of a branch.
-enum class LineKind { stable, unstable, inadmissible };
 
 /// Solid, dashed and thinner, or dotted and paler; `width` is that of a stable line.
 Stroke line_stroke(LineKind kind, const std::string& colour, double width);

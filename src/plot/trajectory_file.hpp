@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "plot/orbit_trace.hpp"
+#include "traces/orbit_trace.hpp"
 
 namespace tchat {
 

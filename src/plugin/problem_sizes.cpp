@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "constants/settings_type.hpp"
 #include "hybrid/parameter_vector.hpp"
-#include "problem_type/problem_type.hpp"
 
 namespace tchat {
 
@@ -30,7 +30,7 @@ ProblemSizes problem_sizes(const RunSettings& settings) {
   sizes.dimension = settings.dimension;
   sizes.segments = static_cast<int>(settings.segments.size());
   sizes.derivative_order = settings.derivative_order;
-  if (has_own_conditions(settings.problem_type)) {
+  if (signature_rules(settings).counts_conditions) {
     sizes.boundary_conditions = settings.boundary_conditions;
     sizes.integral_conditions = settings.integral_conditions;
   }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "problem_type/family.hpp"
 #include "text/user_error.hpp"
 
 namespace tchat {
@@ -75,8 +76,8 @@ std::vector<int> branch_modes() {
 std::string problem_families() {
   std::string text;
   for (const int number : problem_type_numbers())
-    text +=
-        fmt::format("{}{} ({})", text.empty() ? "" : " or ", number, nearest_problem_type(number, 1)->facts().family);
+    text += fmt::format("{}{} ({})", text.empty() ? "" : " or ", number,
+                        nearest_problem_type(number, 1)->facts().solutions);
   return text;
 }
 
@@ -86,27 +87,15 @@ bool is_shared_problem_type(int number) {
   return is_own_problem_type(number) && std::find(std::begin(shared), std::end(shared), number) != std::end(shared);
 }
 
-bool has_ring(int number) {
+const SolutionFamily& family_of(int number) {
   const ProblemType* type = nearest_problem_type(number, 1);
-  return type == nullptr || type->facts().has_ring;
+  return (type != nullptr ? *type : problem_type(periodic_orbit.number, 1)).family();
 }
 
-bool is_torus(int number) {
-  const ProblemType* type = nearest_problem_type(number, 1);
-  return type != nullptr && type->facts().is_torus;
-}
-
-bool is_point(int number) {
-  const ProblemType* type = nearest_problem_type(number, 1);
-  return type != nullptr && type->facts().is_point;
-}
-
-bool has_own_conditions(int number) { return !has_ring(number) && !is_point(number); }
-
-bool tells_problem_type(int number) { return number != 0; }
+bool records_problem_type(int number) { return number != 0; }
 
 bool is_same_problem_type(int number, int other) {
-  return !tells_problem_type(number) || !tells_problem_type(other) || number == other;
+  return !records_problem_type(number) || !records_problem_type(other) || number == other;
 }
 
 bool keeps_contact(int number) {
@@ -116,9 +105,7 @@ bool keeps_contact(int number) {
 
 bool is_two_parameter_curve(int number, int branch_mode) {
   const ProblemType* type = nearest_problem_type(number, branch_mode);
-  if (std::abs(branch_mode) == in_two_parameters) return true;
-  // Tori are a family in two parameters, rho among them.
-  return type != nullptr && type->facts().has_ring && type->facts().free_parameters >= (type->facts().is_torus ? 3 : 2);
+  return std::abs(branch_mode) == in_two_parameters || (type != nullptr && type->facts().in_two_parameters);
 }
 
 bool has_two_parameter_curves(int number) { return !problem_types_of(number, in_two_parameters).empty(); }

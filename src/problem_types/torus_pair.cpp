@@ -6,6 +6,7 @@
 
 #include "bvp/bordered_problem.hpp"
 #include "bvp/periodic_orbit_system.hpp"
+#include "problem_type/point_type.hpp"
 #include "stability/floquet_multipliers.hpp"
 #include "start/start_selection.hpp"
 #include "text/user_error.hpp"
@@ -48,6 +49,21 @@ std::complex<double> pair_at(const DefiningSystem& defining, const SelectedStart
     throw UserError(fmt::format("{}: label {} has no complex pair of multipliers, so no torus curve begins there",
                                 selected.source, selected.label));
   return nearest;
+}
+
+double fixed_cosine(const DefiningSystem& defining, const SelectedStart& start) {
+  const auto is = [&start](PointType type) {
+    const int number = basic_type(start.type);
+    return number == static_cast<int>(type);
+  };
+  if (is(PointType::resonance_1) || is(PointType::resonance_2))
+    throw UserError(
+        fmt::format("{}: at label {}, a 1:1 or 1:2 resonance, the pair of multipliers is a double one and has no angle "
+                    "to keep; start from a label TR, R3 or R4, or one of the torus curve (IRS=TR1)",
+                    start.source, start.label));
+  if (is(PointType::resonance_3)) return -0.5;
+  if (is(PointType::resonance_4)) return 0.0;
+  return std::cos(std::arg(pair_at(defining, start)));
 }
 
 }  // namespace tchat

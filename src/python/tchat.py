@@ -12,6 +12,7 @@ tchat simulate). What cannot be read, and what tchat itself refuses, raises tcha
 out is told by a warning (tchat.TchatWarning). AUTO-07p's files are read too. src/docs/results.md has examples.
 """
 
+import functools
 import os
 import re
 import shutil
@@ -143,20 +144,56 @@ def _distinct(names):
 
 # ----------------------------------------------------------------------------------------------- types of points
 
-_BASIC_TYPES = {1: "BP", 6: "BP", 2: "LP", 5: "LP", 3: "HB", 4: "RG", -4: "UZ", 7: "PD", 8: "TR", 9: "EP", -9: "MX",
-                -1: "BT", -2: "CP", -3: "ZH", -5: "R1", -6: "R2", -7: "R3", -8: "R4"}
-_PAIRS = {23: "LTR", 83: "LTR", 28: "LPD", 78: "LPD", 77: "PTR", 87: "PTR", 88: "TTR", -32: "GH"}
+# generated: tchat table --types
+_POINT_TYPES = [
+    ("BP", 6, 0, False),
+    ("BP", 1, 0, False),
+    ("LP", 5, 0, False),
+    ("LP", 2, 0, False),
+    ("HB", 3, 0, False),
+    ("PD", 7, 0, False),
+    ("TR", 8, 0, False),
+    ("UZ", -4, 0, False),
+    ("UZ", -4, 1, False),
+    ("GR", -4, 2, False),
+    ("GR", -4, 4, False),
+    ("BE", -4, 7, False),
+    ("XI", -4, 3, False),
+    ("GC", -4, 5, False),
+    ("CP", -2, 0, False),
+    ("BT", -1, 0, False),
+    ("ZH", -3, 0, False),
+    ("GH", -32, 0, True),
+    ("R1", -5, 0, False),
+    ("R2", -6, 0, False),
+    ("R3", -7, 0, False),
+    ("R4", -8, 0, False),
+    ("EP", 9, 0, False),
+    ("MX", -9, 0, False),
+    ("RG", 4, 0, False),
+    ("LTR", 23, 0, True),
+    ("LTR", 83, 0, True),
+    ("LPD", 28, 0, True),
+    ("LPD", 78, 0, True),
+    ("PTR", 77, 0, True),
+    ("PTR", 87, 0, True),
+    ("TTR", 88, 0, True),
+]
+# end
 _NO_KIND, _USER_VALUE, _CONTACT, _XI, _IMPACT_VELOCITY, _GRAZING_CODIMENSION_TWO, _OTHER_TYPE, _BOUNDARY_EQUILIBRIUM = range(8)
-_KIND_TYPES = {_CONTACT: "GR", _IMPACT_VELOCITY: "GR", _XI: "XI", _GRAZING_CODIMENSION_TWO: "GC",
-               _BOUNDARY_EQUILIBRIUM: "BE"}
+_USER_POINT = -4
 
 
-def type_name(number, kind=_NO_KIND):
+@functools.lru_cache(maxsize=None)
+def type_name(number, kind=0):
     """Letters of a type number: "PD"; of UZ points by their kind (GR, XI, GC, BE); "" for an ordinary point."""
-    if number in _PAIRS:
-        return _PAIRS[number]
+    for letters, whole, _, is_whole in _POINT_TYPES:
+        if is_whole and whole == number:
+            return letters
     basic = int(np.fmod(number, 10))
-    return _KIND_TYPES.get(kind, "UZ") if basic == -4 else _BASIC_TYPES.get(basic, "")
+    found = {of_kind if basic == _USER_POINT else kind: letters
+             for letters, basic_number, of_kind, is_whole in _POINT_TYPES if basic_number == basic and not is_whole}
+    return found.get(kind, found.get(0, ""))
 
 
 # ------------------------------------------------------------------------------------------------------- p-files

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "constants/settings_type.hpp"
-#include "special_points/point_type.hpp"
+#include "problem_type/point_type.hpp"
 #include "text/user_error.hpp"
 
 namespace tchat {

@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "files/labelled_solution.hpp"
+#include "problem_type/point_type.hpp"
 #include "resegment/branch_side.hpp"
 #include "resegment/new_settings.hpp"
 #include "resegment/resegment.hpp"
-#include "special_points/point_type.hpp"
 #include "start/orbit_start.hpp"
 
 namespace tchat {

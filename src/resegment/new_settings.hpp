@@ -4,7 +4,7 @@
 
 #include "constants/run_settings.hpp"
 #include "hybrid/hybrid_system.hpp"
-#include "problem_type/problem_type.hpp"
+#include "problem_type/problem_id.hpp"
 #include "resegment/segment_list.hpp"
 
 namespace tchat {

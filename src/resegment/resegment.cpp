@@ -20,6 +20,7 @@
 #include "files/whole_file.hpp"
 #include "plugin/plugin_build.hpp"
 #include "plugin/problem_library.hpp"
+#include "problem_type/point_type.hpp"
 #include "resegment/branch_side.hpp"
 #include "resegment/data_text.hpp"
 #include "resegment/empty_segments.hpp"
@@ -33,7 +34,6 @@
 #include "setup/named_parameters.hpp"
 #include "setup/problem_setup.hpp"
 #include "setup/run_request.hpp"
-#include "special_points/point_type.hpp"
 #include "start/orbit_start.hpp"
 #include "text/user_error.hpp"
 
@@ -55,11 +55,10 @@ LabelledOrbit read_source(const ResegmentRequest& request, const std::string& pa
         fmt::format("{} was computed with IPS = {}, but {} has IPS = {}; give the constants of that run "
                     "with -c",
                     source.name, solution.problem_type, constants, source.settings.problem_type));
-  if (!has_ring(source.settings.problem_type))
-    throw UserError(fmt::format(
-        "{} is {} (IPS = {}): {} no signature that could change; `tchat run` restarts from it", source.name,
-        is_point(source.settings.problem_type) ? "an equilibrium" : "of a boundary value problem",
-        source.settings.problem_type, is_point(source.settings.problem_type) ? "it has" : "its segments have"));
+  const SolutionFamily& family = family_of(source.settings);
+  if (const std::string why = family.why_not(Analysis::resegmentation, request.label); !why.empty())
+    throw UserError(
+        fmt::format("{} is {} (IPS = {}){}", source.name, family.facts().solution, source.settings.problem_type, why));
   for (const int k : solution.free_parameters)
     if (!is_duration(k, m)) source.free_parameters.push_back(k);
   source.start = orbit_from_solution(
@@ -308,7 +307,8 @@ std::vector<std::string> resegment(const ResegmentRequest& asked, std::ostream& 
   const std::string path = resolve_solution_path(request.solutions);
   const SolutionFile file = read_solution_file(path);
   const std::string constants = constants_of_run(request.constants, path);
-  if (is_torus(find_solution(file.solutions, read_label(request.label), path).problem_type))
+  const LabelledSolution& label = find_solution(file.solutions, read_label(request.label), path);
+  if (family_of(label.problem_type).facts().has_several_returns)
     return begin_grazing_tori(request, path, file, constants, screen, notices);
   bool named_parameters = false;
   LabelledOrbit labelled = read_source(request, path, constants, file, warnings, names_to_come(named_parameters));

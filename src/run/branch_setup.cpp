@@ -9,10 +9,10 @@
 #include "bvp/mesh_adaptation.hpp"
 #include "constants/settings_type.hpp"
 #include "files/labelled_solution.hpp"
+#include "problem_type/point_type.hpp"
 #include "problem_type/problem_type.hpp"
 #include "setup/problem_setup.hpp"
 #include "setup/run_monitors.hpp"
-#include "special_points/point_type.hpp"
 #include "text/user_error.hpp"
 
 namespace tchat {
@@ -47,48 +47,37 @@ const ProblemType& type_at(const RunSettings& settings, const SelectedStart& sel
 
 }  // namespace
 
-std::unique_ptr<OrbitCondition> ProblemType::make_condition(const DefiningSystem&, const SelectedStart&) const {
-  return nullptr;
-}
+std::vector<int> free_of_run(const RunSettings& settings) { return free_problem_parameters(settings); }
 
-BranchSetup ProblemType::set_up(const HybridSystem& system, const RunSettings& settings,
-                                const SelectedStart& start) const {
-  BranchSetup setup{this, settings, nullptr, nullptr, {}};
-  setup.defining = make_system(system, settings, free_problem_parameters(settings));
-  const OrbitShape& shape = start.start.orbit.shape;
-  check_memory(shape, setup.defining->free_count());
+void attach_follower(BranchSetup& setup, std::unique_ptr<OrbitCondition> condition, const Orbit& start) {
+  const RunSettings& settings = setup.settings;
+  check_memory(start.shape, setup.defining->free_count());
   setup.follower = std::make_unique<PathFollower>(
-      *setup.defining, shape, weighted_norm(settings), newton_settings(settings), settings.free_parameters.front(),
-      make_condition(*setup.defining, start), branch_monitors(*setup.defining, settings, start.start.orbit));
-  setup.start = first_point(*setup.follower, *setup.defining, start, settings);
-  return setup;
+      *setup.defining, start.shape, weighted_norm(settings), newton_settings(settings),
+      settings.free_parameters.front(), std::move(condition), branch_monitors(*setup.defining, settings, start));
 }
 
-BranchSetup ProblemType::refined(const BranchSetup& setup, const PathPoint& last) const {
-  BranchSetup next{setup.type, setup.settings, nullptr, nullptr, {}, setup.constants};
-  next.settings.mesh_intervals *= 2;
-  const HybridSystem& system = setup.defining->system();
+BranchSetup Discretisation::refined(const BranchSetup& setup, const PathPoint& last) const {
+  RunSettings settings = setup.settings;
+  settings.mesh_intervals *= 2;
+  for (std::size_t k = 0; k < settings.held.size(); ++k) settings.held[k].value = setup.follower->held()[k].value;
   const CollocationRule& rule = setup.follower->condensed().rule();
-  const int intervals = next.settings.mesh_intervals;
-  const std::vector<double> mesh = next.settings.adapt_mesh_every > 0
-                                       ? equidistributed_mesh(last.orbit, rule, intervals)
-                                       : resampled_mesh(last.orbit.mesh, intervals);
+  const int intervals = settings.mesh_intervals;
+  const std::vector<double> mesh = settings.adapt_mesh_every > 0 ? equidistributed_mesh(last.orbit, rule, intervals)
+                                                                 : resampled_mesh(last.orbit.mesh, intervals);
   OrbitShape shape = last.orbit.shape;
   shape.intervals = intervals;
   const MeshTransfer transfer(last.orbit.shape, last.orbit.mesh, shape, mesh, rule);
-  Orbit orbit{shape, mesh, transfer(last.orbit.states), last.orbit.par};
+  SelectedStart start;
+  start.start.orbit = {shape, mesh, transfer(last.orbit.states), last.orbit.par};
   OrbitVector direction(shape, setup.defining->free_count());
   direction.states = transfer(last.tangent.states);
   direction.durations = last.tangent.durations;
   direction.globals = last.tangent.globals;
 
-  next.defining = make_system(system, next.settings, free_problem_parameters(next.settings));
-  BranchMonitors monitors = branch_monitors(*next.defining, next.settings, orbit);
-  for (std::size_t k = 0; k < monitors.held.size(); ++k) monitors.held[k].value = setup.follower->held()[k].value;
-  next.follower = std::make_unique<PathFollower>(*next.defining, shape, weighted_norm(next.settings),
-                                                 newton_settings(next.settings), next.settings.free_parameters.front(),
-                                                 nullptr, std::move(monitors));
-  PathPoint point = next.follower->make_point(std::move(orbit));
+  BranchSetup next = setup.type->prepare(setup.defining->system(), settings, start);
+  next.constants = setup.constants;
+  PathPoint point = next.follower->make_point(start.start.orbit);
   const NewtonResult result = next.follower->start_along(point, direction);
   if (!result.converged()) {
     next.follower.reset();

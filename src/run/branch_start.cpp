@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "continuation/orbit_trend.hpp"
+#include "continuation/branch_analysis.hpp"
 #include "files/labelled_solution.hpp"
+#include "problem_type/point_type.hpp"
 #include "problem_type/problem_type.hpp"
 #include "run/first_correction.hpp"
 #include "setup/problem_setup.hpp"
-#include "special_points/point_type.hpp"
 #include "text/user_error.hpp"
 
 namespace tchat {
@@ -21,12 +21,6 @@ namespace {
 constexpr double singular_condition = 1e-12;
 /// The stored direction is a tangent when its angle to the tangent is smaller than about 2 degrees.
 constexpr double parallel = 0.999;
-/// An orbit whose period is a smaller part of its start's is the empty orbit that every event surface has.
-constexpr double vanishing_period = 1e-5;
-/// An orbit whose states all move by a smaller part of what they did at the start, or by no more than Newton's method
-/// ends with, is an equilibrium.
-constexpr double vanishing_range = 1e-4;
-constexpr double no_range = 1e-7;
 
 /// The largest entries of the null direction, each as a share of the largest.
 std::string undetermined(const HybridSystem& system, const DefiningSystem& defining, const OrbitVector& direction,
@@ -91,24 +85,6 @@ void use_direction(PathFollower& follower, const OrbitVector& direction, PathPoi
   follower.renormalise(point);
 }
 
-/// x_s(0) = x_s(1) with T_s = 0 for all s satisfies every condition where h = 0 and g(x) = x: no orbit.
-void refuse_empty_orbit(const Orbit& found, const Orbit& start, const std::string& source) {
-  if (!(found.period() > vanishing_period * std::abs(start.period())))
-    throw ComputationError(fmt::format(
-        "Newton left the start from {}, of period {:.6g}, for an orbit of period {:.1e}: a point, no orbit; "
-        "the start is too far from an orbit of this signature or the mesh too coarse, so improve the start "
-        "or raise NTST",
-        source, start.period(), found.period()));
-  const Eigen::VectorXd least =
-      (vanishing_range * state_ranges(start)).cwiseMax(no_range * (1.0 + found.states.cwiseAbs().maxCoeff()));
-  if ((state_ranges(found).array() <= least.array()).all())
-    throw ComputationError(
-        fmt::format("Newton left the start from {} for an orbit on which no state moves by more than {:.1e}: an "
-                    "equilibrium, no orbit; the start is too far from an orbit of this signature, or there is none at "
-                    "these parameters",
-                    source, state_ranges(found).maxCoeff()));
-}
-
 }  // namespace
 
 FirstPoint first_point(PathFollower& follower, const DefiningSystem& system, const SelectedStart& selected,
@@ -148,7 +124,9 @@ FirstPoint first_point(PathFollower& follower, const DefiningSystem& system, con
   } else if (!as_stored) {
     first.correction = follower.newton().history();
   }
-  if (has_ring(settings.problem_type)) refuse_empty_orbit(first.point.orbit, start.orbit, selected.source);
+  const std::string why_none =
+      system.make_analysis(start.orbit.shape)->why_no_solution(first.point.orbit, start.orbit, selected.source);
+  if (!why_none.empty()) throw ComputationError(why_none);
   // A branch point is where the matrix is singular.
   if (!start_is_branch_point(selected)) refuse_singular(follower, system, first.point);
   if (!refusal.empty()) throw ComputationError(refusal);

@@ -7,12 +7,10 @@
 #include <optional>
 
 #include "bvp/critical_multiplier.hpp"
-#include "bvp/equilibrium_system.hpp"
 #include "constants/settings_type.hpp"
 #include "files/labelled_solution.hpp"
+#include "problem_type/point_type.hpp"
 #include "setup/problem_setup.hpp"
-#include "setup/run_monitors.hpp"
-#include "special_points/point_type.hpp"
 #include "text/user_error.hpp"
 
 namespace tchat {
@@ -67,17 +65,6 @@ RunSettings doubled(RunSettings settings) {
     if (is_duration(w.index, static_cast<int>(m)) && !given) settings.parameter_weights.push_back({repeated, w.value});
   }
   return settings;
-}
-
-std::unique_ptr<DefiningSystem> make_system(const HybridSystem& system, const RunSettings& settings) {
-  return problem_type(settings).make_system(system, settings, free_problem_parameters(settings));
-}
-
-std::unique_ptr<PathFollower> make_follower(const DefiningSystem& defining, const Orbit& start,
-                                            const RunSettings& settings) {
-  return std::make_unique<PathFollower>(defining, start.shape, weighted_norm(settings), newton_settings(settings),
-                                        settings.free_parameters.front(), nullptr,
-                                        branch_monitors(defining, settings, start));
 }
 
 /// The critical vector v, which changes sign after one period (5.21), on one segment of two periods. In the first its
@@ -165,9 +152,8 @@ void orient(const Orbit& x, OrbitVector& v) {
 /// nearly singular matrix.
 Bifurcation branch_at(PathFollower& follower, const PathPoint& point) {
   CondensedSystem& condensed = follower.condensed();
-  if (condensed.system().is_point()) {
-    OrbitVector crossing = condensed.make_vector();
-    find_crossing_branch(condensed.system(), point.orbit, point.tangent, crossing);
+  OrbitVector crossing = condensed.make_vector();
+  if (condensed.system().find_crossing_branch(point.orbit, point.tangent, crossing)) {
     orient(point.orbit, crossing);
     return {point.orbit, crossing, point.tangent};
   }
@@ -279,16 +265,11 @@ BranchSetup switch_branch(const HybridSystem& system, const RunSettings& setting
   });
   const bool doubling = bifurcation_type != selected.types.end() && *bifurcation_type == period_doubling;
   if (bifurcation_type == selected.types.end())
-    throw UserError(
-        fmt::format("{}: ISW = -1 switches at {}, but the run does not start from such a label; name one, for example "
-                    "IRS={}1",
-                    selected.source,
-                    is_point(settings.problem_type) ? "a branch point (BP)"
-                    : has_ring(settings.problem_type) && !keeps_contact(settings.problem_type)
-                        ? "a period doubling (PD), a branch point (BP) or a Hopf bifurcation of equilibria (HB)"
-                        : "a period doubling (PD) or a branch point (BP)",
-                    is_point(settings.problem_type) ? "BP" : "PD"));
-  if (selected.start.orbit.shape.is_point() != is_point(settings.problem_type))
+    throw UserError(fmt::format(
+        "{}: ISW = -1 switches at {}, but the run does not start from such a label; name one, for example "
+        "IRS={}1",
+        selected.source, problem_type(settings).facts().starts_at, problem_type(settings).facts().start_example));
+  if (selected.start.orbit.shape != family_of(settings).shape(settings))
     throw UserError(
         fmt::format("{}: label {} is an equilibrium: its branch point is left with IPS = {}, and periodic "
                     "orbits (IPS = {}) begin at a Hopf bifurcation (HB)",
@@ -301,17 +282,15 @@ BranchSetup switch_branch(const HybridSystem& system, const RunSettings& setting
         selected.source, settings.segments.front().index.jump));
 
   const RunSettings before = once(settings);
-  const std::unique_ptr<DefiningSystem> known = make_system(system, before);
-  const std::unique_ptr<PathFollower> along_known = make_follower(*known, selected.start.orbit, before);
-  const FirstPoint at = first_point(*along_known, *known, selected, before);
-  along_known->linearize_at(at.point);
+  const BranchSetup known = problem_type(before).prepare(system, before, selected);
+  const FirstPoint at = first_point(*known.follower, *known.defining, selected, before);
+  known.follower->linearize_at(at.point);
   const Bifurcation bifurcation =
-      doubling ? double_at(*along_known, *known, at.point) : branch_at(*along_known, at.point);
+      doubling ? double_at(*known.follower, *known.defining, at.point) : branch_at(*known.follower, at.point);
 
-  BranchSetup setup{&problem_type(before), doubling ? doubled(before) : before, nullptr, nullptr, {}};
-  setup.defining = make_system(system, setup.settings);
-  check_memory(bifurcation.orbit.shape, setup.defining->free_count());
-  setup.follower = make_follower(*setup.defining, bifurcation.orbit, setup.settings);
+  SelectedStart there = selected;
+  there.start = {bifurcation.orbit, {}};
+  BranchSetup setup = problem_type(before).prepare(system, doubling ? doubled(before) : before, there);
   PathPoint from = setup.follower->make_point(bifurcation.orbit);
   from.tangent = bifurcation.direction;
   setup.follower->renormalise(from);

@@ -14,9 +14,9 @@
 #include "files/point_table.hpp"
 #include "files/solution_file.hpp"
 #include "hybrid/parameter_vector.hpp"
+#include "problem_type/point_type.hpp"
 #include "setup/problem_setup.hpp"
 #include "special_points/grazing_curve_tests.hpp"
-#include "special_points/point_type.hpp"
 #include "start/orbit_start.hpp"
 
 namespace tchat {
@@ -25,7 +25,8 @@ namespace {
 
 ProblemNames names_of_run(const HybridSystem& system, const RunSettings& settings) {
   ProblemNames names = ProblemNames::of(system, settings.monitors);
-  if (is_torus(settings.problem_type)) names.set_parameter(rotation_parameter, rotation_name);
+  const FamilyFacts& family = family_of(settings).facts();
+  if (family.own_parameter) names.set_parameter(*family.own_parameter, family.own_parameter_name);
   return names;
 }
 
@@ -133,7 +134,7 @@ void BranchWriter::point(const BranchPoint& point) {
   has_points_ = true;
   write_diagnostics(point, line);
   if (screen_ != nullptr) show(point, line);
-  tell_unknown_user_values(line);
+  report_unknown_user_values(line);
   if (point.labelled())
     labels_.push_back({line.label,
                        fmt::format("{}", fmt::join(type_names(line.type, line.kind, point.special.further), " ")),
@@ -141,7 +142,7 @@ void BranchWriter::point(const BranchPoint& point) {
 }
 
 /// User functions are for output only: one that is not finite stops nothing, so it is told, once.
-void BranchWriter::tell_unknown_user_values(const PointLine& line) {
+void BranchWriter::report_unknown_user_values(const PointLine& line) {
   for (std::size_t k = 0; k < columns_.size(); ++k) {
     const bool unknown = columns_[k].kind == PointColumn::Kind::user_function && !std::isfinite(line.values[k]);
     if (!unknown || !told_user_functions_.insert(columns_[k].index).second) continue;
@@ -182,7 +183,7 @@ void BranchWriter::show_contact(const BranchPoint& point) {
   const std::string indent(7, ' ');
   std::string line;
   for (const NamedTestValue& test : point.tests) {
-    if (!tells_of_contact(test.name) || !test.value) continue;
+    if (!reports_contact(test.name) || !test.value) continue;
     const std::string text = fmt::format("{}{} = {:.8g}", line.empty() ? indent : ", ", test.name, *test.value);
     if (line.size() + text.size() > width) {
       *screen_ << line << ",\n";
@@ -266,7 +267,7 @@ void BranchWriter::write_diagnostics(const BranchPoint& point, const PointLine& 
     for (const NamedTestValue& test : point.tests)
       tests.push_back({test.name, test.value.value_or(0.0), test.value.has_value()});
     text += format_test_functions(tests);
-    if (!point.path.orbit.shape.is_point())
+    if (family_of(setup_.settings).facts().headings.has_mesh)
       text += fmt::format("{:4}{:6}  Structural multiplier {:.3e}   estimated error between mesh points {:.3e}\n",
                           line.branch, wrapped_point(line.point), point.multipliers.structural, point.estimated_error);
   }

@@ -65,7 +65,7 @@ class BranchWriter final : public BranchSink {
   bool shown_stable(const BranchPoint& point);
   void show(const BranchPoint& point, const PointLine& line);
   void show_contact(const BranchPoint& point);
-  void tell_unknown_user_values(const PointLine& line);
+  void report_unknown_user_values(const PointLine& line);
   void write_diagnostics(const BranchPoint& point, const PointLine& line);
   void write_solution(const BranchPoint& point, const PointLine& line);
 

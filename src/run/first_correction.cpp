@@ -11,6 +11,7 @@
 
 #include "bvp/evaluation_failure.hpp"
 #include "bvp/mesh_adaptation.hpp"
+#include "continuation/branch_analysis.hpp"
 #include "setup/run_monitors.hpp"
 #include "text/user_error.hpp"
 
@@ -81,7 +82,7 @@ std::string residual_report(PathFollower& follower, const DefiningSystem& defini
     double defect = 0.0;
     for (std::size_t i = 0; i < per_segment; ++i)
       defect = std::max(defect, std::abs(residual.collocation[static_cast<std::size_t>(s) * per_segment + i]));
-    if (!start.shape.is_point())
+    if (start.shape.stored_nodes() > 1)
       add(defect, fmt::format("differential equations on segment {} (largest defect)", s + 1));
     for (int r = 0; r < defining.coupling_rows(s); ++r)
       add(residual.coupling[coupling++], defining.coupling_name(s, r));
@@ -168,22 +169,14 @@ bool solves_but_for_condition(PathFollower& follower, const DefiningSystem& syst
   if (!failure.empty())
     throw ComputationError(
         fmt::format("the starting solution from {} cannot be evaluated: {}", selected.source, failure));
-  const bool rests = !start.shape.is_point() && !system.has_event(0) &&
-                     (start.states.colwise() - start.states.col(0)).cwiseAbs().maxCoeff() == 0.0;
-  const char* cure =
+  const std::string advice =
       solves_but_for_condition(follower, system, start)
           ? "The start satisfies all of these: what fails is the curve's own condition. With these parameters free it "
             "may hold at every point, so that there is no curve, or nowhere near; free others (ICP)."
-      : rests ? "The start does not move: without a section (GCHIND = [0]) an orbit needs a start that goes round; "
-                "IPS = 1 follows equilibria."
-      : start.shape.is_point()
-          ? "There may be no equilibrium near the start with these parameters; a better start or a larger "
-            "ITNW may help."
-          : "The largest ones say which part of the start, of the parameters or of the signature is "
-            "wrong; a better start, a larger NTST or ITNW may help.";
+          : system.make_analysis(start.shape)->start_advice(start);
   throw ComputationError(fmt::format(
       "no convergence at the first point, from {}: {} Residuals of the start, condition by condition:{}\n  {}",
-      selected.source, trouble, residual_report(follower, system, start), cure));
+      selected.source, trouble, residual_report(follower, system, start), advice));
 }
 
 /// The orbit on the mesh adapted to it, or on one that is half or a quarter of the way there: on a coarse mesh the
@@ -315,7 +308,8 @@ FirstCorrection correct_start(PathFollower& follower, const DefiningSystem& syst
     corrected.point = std::move(point);
     return corrected;
   }
-  if (!selected.from_solution && settings.adapt_mesh_every > 0 && !start.shape.is_point()) settle_mesh(follower, point);
+  if (!selected.from_solution && settings.adapt_mesh_every > 0 && start.shape.intervals > 1)
+    settle_mesh(follower, point);
   corrected.note = moved_beside(start, point.orbit, system, principal, selected.source);
   corrected.point = std::move(point);
   return corrected;

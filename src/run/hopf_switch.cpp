@@ -126,7 +126,7 @@ std::optional<FirstPoint> first_orbit(PathFollower& follower, const Orbit& still
 
 BranchSetup begin_periodic_orbits(const HybridSystem& system, const RunSettings& settings,
                                   const SelectedStart& selected) {
-  if (!selected.start.orbit.shape.is_point())
+  if (selected.start.orbit.shape.stored_nodes() > 1)
     throw UserError(fmt::format(
         "{}: label {} (HB) is where a branch of orbits has shrunk to a point, not an equilibrium; start from "
         "the HB label of a run with IPS = {}",
@@ -143,14 +143,12 @@ BranchSetup begin_periodic_orbits(const HybridSystem& system, const RunSettings&
   if (event != no_function) begin_on_section(system, event, x, selected, oscillation.vector);
 
   const RunSettings of_orbit = of_periodic_orbit(settings);
-  BranchSetup setup{&problem_type(of_orbit), of_orbit, nullptr, nullptr, {}};
-  setup.defining = setup.type->make_system(system, of_orbit, free_problem_parameters(of_orbit));
-  const OrbitShape shape{settings.dimension, 1, settings.mesh_intervals, settings.collocation_points};
-  check_memory(shape, setup.defining->free_count());
-  setup.follower = std::make_unique<PathFollower>(*setup.defining, shape, weighted_norm(of_orbit),
-                                                  newton_settings(of_orbit), of_orbit.free_parameters.front());
+  const OrbitShape shape = family_of(of_orbit).shape(of_orbit);
   Orbit still{shape, uniform_mesh(shape.intervals), x.states.col(0).replicate(1, shape.columns()), x.par};
   still.duration(0) = 2.0 * std::numbers::pi / oscillation.omega;
+  SelectedStart start = selected;
+  start.start = {still, {}};
+  BranchSetup setup = problem_type(of_orbit).prepare(system, of_orbit, start);
   PathPoint from = setup.follower->make_point(still);
   set_oscillation(oscillation.vector, still, from.tangent);
   setup.follower->renormalise(from);

@@ -8,7 +8,7 @@
 #include "constants/constants_file.hpp"
 #include "constants/settings_type.hpp"
 #include "hybrid/parameter_vector.hpp"
-#include "special_points/point_type.hpp"
+#include "problem_type/point_type.hpp"
 
 namespace tchat {
 

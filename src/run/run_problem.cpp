@@ -17,6 +17,7 @@
 #include "files/labelled_solution.hpp"
 #include "plugin/plugin_build.hpp"
 #include "plugin/problem_library.hpp"
+#include "problem_type/point_type.hpp"
 #include "problem_type/problem_type.hpp"
 #include "run/branch_setup.hpp"
 #include "run/branch_writer.hpp"
@@ -27,7 +28,6 @@
 #include "setup/problem_setup.hpp"
 #include "setup/run_monitors.hpp"
 #include "setup/warnings.hpp"
-#include "special_points/point_type.hpp"
 #include "start/start_selection.hpp"
 #include "text/user_error.hpp"
 
@@ -232,20 +232,19 @@ class Direction {
   /// the torus is found, as at a resonance, it goes on for some points before it is asked again.
   BranchSummary follow_on(const BranchSetup& setup, const PathPoint& start, BranchWriter& writer, int patience = 0) {
     constexpr int points_before_next = 5;
-    const ProblemType& type = *setup.type;
     continuation_.monitored = continuation_settings(setup.settings).monitored;
-    continuation_.remark = [&](const Orbit& x) { return type.remark(setup, x); };
+    const Discretisation& discretisation = *setup.discretisation;
+    continuation_.remark = [&](const Orbit& x) { return discretisation.remark(x); };
     continuation_.outgrown = [&, patience](const Orbit& x) mutable {
-      return --patience < 0 && type.outgrown(setup, x);
+      return --patience < 0 && discretisation.is_outgrown(x);
     };
-    continuation_.unresolved = [&](const Orbit& x) { return type.unresolved(setup, x); };
+    continuation_.unresolved = [&](const Orbit& x) { return discretisation.why_unresolved(x); };
     continuation_.may_refine =
         patience == 0 && setup.follower->condition() == nullptr && 2 * setup.settings.mesh_intervals <= most_intervals_;
-    ContinuationRun run(*setup.follower, *setup.defining, continuation_, type.tests(*setup.defining, setup.settings),
-                        writer);
+    ContinuationRun run(*setup.follower, *setup.defining, continuation_, setup.make_tests(), writer);
     const BranchSummary summary = run.run(start);
     if (summary.reason != EndReason::outgrown) return summary;
-    const BranchSetup next = type.refined(setup, run.last());
+    const BranchSetup next = discretisation.refined(setup, run.last());
     if (summary.detail.empty())
       writer.note(summary.points, next.start.note);
     else

@@ -9,6 +9,9 @@ namespace tchat {
 
 namespace {
 
+/// A larger relative error is one of the mesh.
+constexpr double inaccurate = 1e-3;
+
 /// `told`: the line of the label MX says it all.
 std::string reason_text(const BranchSummary& summary, const std::string& parameter, bool told) {
   const char* left = summary.points > 1 ? "left" : "starts outside";
@@ -29,7 +32,7 @@ std::string reason_text(const BranchSummary& summary, const std::string& paramet
     case EndReason::special_point:
       if (!summary.stopped_at_grazing) return "at the last special point above, where the run was to end";
       return fmt::format("at the {} above; with GRSTOP=0 the branch goes on beyond it",
-                         summary.equilibria ? "boundary equilibrium" : "grazing point");
+                         summary.family->summary.contact);
     case EndReason::interrupted:
       return "interrupted; all files are complete up to the last point";
     case EndReason::no_convergence:
@@ -49,20 +52,7 @@ std::string advice(const BranchSummary& summary) {
            "of\n"
            "  what becomes negative, a division by what becomes 0); look at the last orbit (tchat orbit) for a border\n"
            "  of the model, which an event function should guard.\n";
-  if (summary.equilibria)
-    return "  tried: halving the step down to DSMIN, Newton with ITNW iterations, NWTN of them with a new Jacobian.\n"
-           "  you might: lower DSMIN (0 goes to 1e-10 DSMAX) or DSMAX; raise ITNW, NWTN; loosen EPSL and EPSU if they\n"
-           "  are near rounding.\n";
-  if (summary.tori)
-    return "  tried: halving the step down to DSMIN, Newton with ITNW iterations, NWTN of them with a new Jacobian.\n"
-           "  you might: raise NHARM where the last harmonics are large; keep rho at an irrational value and free a\n"
-           "  second parameter (ICP=[a,b]) where rho is near a fraction of small numbers and the motion locks; look "
-           "by\n"
-           "  simulation whether there is a torus beyond the last point; lower DSMIN or DSMAX, raise NTST or ITNW.\n";
-  return "  tried: halving the step down to DSMIN, Newton with ITNW iterations, NWTN of them with a new Jacobian.\n"
-         "  you might: lower DSMIN (0 goes to 1e-10 DSMAX); raise NTST, NCOL or ITNW, NWTN; adapt the mesh more often\n"
-         "  (IAD = 1); lower DSMAX; loosen EPSL and EPSU if they are near rounding; look at the last orbit\n"
-         "  (tchat orbit) for an event that the signature misses.\n";
+  return summary.family->summary.advice;
 }
 
 std::string inadmissible(const BranchSummary& summary) {
@@ -71,9 +61,9 @@ std::string inadmissible(const BranchSummary& summary) {
                      summary.inadmissible_points, summary.points);
 }
 
-/// An equilibrium has no mesh, whose error this is.
+/// The error between mesh points, where there is a mesh, and that of a multiplier which is known.
 std::string trust(const BranchSummary& summary) {
-  if (summary.equilibria) return "";
+  if (!summary.family->headings.has_mesh) return "";
   std::string text = fmt::format("  trust: estimated relative error between mesh points at most {:.1e}",
                                  summary.worst_estimated_error);
   if (summary.multipliers_computed)
@@ -82,13 +72,10 @@ std::string trust(const BranchSummary& summary) {
                                             : "structural multiplier (0 for the exact orbit) at most",
                         summary.worst_structural);
   text += "\n";
-  if (summary.tori && summary.worst_structural > 1e-3)
-    text +=
-        "  the harmonics are too few where the trivial multiplier is off: raise NHARM, lower HARMTOL, or stop before\n"
-        "  the torus loses its smoothness\n";
-  if ((summary.worst_structural > 1e-3 && !summary.tori) || summary.worst_estimated_error > 1e-3)
-    text += "  the mesh is too coarse for this orbit: raise NTST or NCOL, or adapt it (IAD = 1)\n";
-  return text;
+  const SummaryWords& words = summary.family->summary;
+  const std::string structural = summary.worst_structural > inaccurate ? words.structural_advice : "";
+  const std::string mesh = summary.worst_estimated_error > inaccurate ? mesh_advice : "";
+  return text + structural + (mesh == structural ? "" : mesh);
 }
 
 /// Lines of at most 120 characters, broken at blanks, the further ones indented.
@@ -113,9 +100,7 @@ std::string lost_points(const BranchSummary& summary, const std::string& paramet
   for (const LostPoint& lost : summary.lost)
     text += folded(fmt::format("    between {} = {:.8g} and {:.8g} (point {}): {}", parameter, lost.from, lost.to,
                                lost.number, lost.text));
-  return text + (summary.equilibria
-                     ? "  you might: lower DSMAX; EPSL and EPSU smaller than EPSS\n"
-                     : "  you might: lower DSMAX; raise NTST or NCOL; EPSL and EPSU smaller than EPSS\n");
+  return text + summary.family->summary.lost_advice;
 }
 
 /// Functions that vanish identically, those of one reason in one sentence.

@@ -1,30 +1,37 @@
-/// What the problem types of invariant tori share.
+/// The problem types of invariant tori: what their runs do with settings of one return.
 #pragma once
 
-#include "problem_type/problem_type.hpp"
+#include "run/problem_row.hpp"
 
 namespace tchat {
 
 class TorusSystem;
-struct OrbitShape;
 
-class TorusProblem : public ProblemType {
+class TorusProblem final : public ProblemType {
  public:
-  explicit TorusProblem(const ProblemFacts& facts) : ProblemType(facts) {}
+  /// The curve that tori of this shape make; `one_return`: the settings as the user gave them. Throws UserError where
+  /// they do not say what the curve keeps.
+  using MakeCurve = BranchCurve (*)(const TorusSystem& system, const OrbitShape& shape, const RunSettings& one_return);
 
-  /// The condition of a curve of tori that have one; `one_return`: the settings as the user gave them.
-  virtual std::unique_ptr<OrbitCondition> torus_condition(const TorusSystem& system, const OrbitShape& shape,
-                                                          const RunSettings& one_return) const;
+  TorusProblem(const ProblemFacts& facts, MakeCurve make_curve) : ProblemType(facts), make_curve_(make_curve) {}
+
+  /// Of the fewest orbits: the start decides how many there are (prepare).
   std::unique_ptr<DefiningSystem> make_system(const HybridSystem& system, const RunSettings& settings,
                                               std::vector<int> free_parameters) const override;
   BranchSetup set_up(const HybridSystem& system, const RunSettings& settings,
                      const SelectedStart& start) const override;
-  /// Rotation number, frequencies, harmonics.
-  std::string remark(const BranchSetup& setup, const Orbit& x) const override;
-  bool outgrown(const BranchSetup& setup, const Orbit& x) const override;
-  BranchSetup refined(const BranchSetup& setup, const PathPoint& last) const override;
-  std::string unresolved(const BranchSetup& setup, const Orbit& x) const override;
+  /// As many orbits as the start has.
+  BranchSetup prepare(const HybridSystem& system, const RunSettings& one_return,
+                      const SelectedStart& start) const override;
+
+ private:
+  MakeCurve make_curve_;
 };
+
+/// Tori, without a further condition.
+BranchCurve free_torus(const TorusSystem& system, const OrbitShape& shape, const RunSettings& one_return);
+/// Tori in grazing contact (special_points/torus_contact_condition.hpp) with the first chosen event.
+BranchCurve touching_torus(const TorusSystem& system, const OrbitShape& shape, const RunSettings& one_return);
 
 /// A monitored event function on a segment (from 0) of the return.
 struct MonitoredEvent {
@@ -34,9 +41,5 @@ struct MonitoredEvent {
 
 /// Those that GCIPSI chooses, in its order; all of GCHGRZIND with an empty GCIPSI.
 std::vector<MonitoredEvent> chosen_events(const RunSettings& settings, int segments_per_return);
-
-/// Least values of the events, strong resonances where rho is free, the fold, user values.
-std::vector<std::unique_ptr<TestFunction>> torus_tests(const TorusSystem& system, const RunSettings& settings,
-                                                       const std::vector<MonitoredEvent>& events);
 
 }  // namespace tchat

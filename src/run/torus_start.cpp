@@ -11,10 +11,9 @@
 #include "constants/settings_type.hpp"
 #include "hybrid/event_at.hpp"
 #include "linear_algebra/dense_matrix.hpp"
+#include "problem_type/point_type.hpp"
 #include "run/torus_problem.hpp"
 #include "setup/problem_setup.hpp"
-#include "setup/run_monitors.hpp"
-#include "special_points/point_type.hpp"
 #include "stability/segment_map.hpp"
 #include "text/user_error.hpp"
 
@@ -87,38 +86,6 @@ void check_events(const HybridSystem& system, const RunSettings& settings, const
 int harmonics_wanted(const RunSettings& settings, int otherwise) {
   const int wanted = settings.harmonics > 0 ? settings.harmonics : otherwise;
   return std::clamp(wanted, fewest_harmonics, most_harmonics(settings));
-}
-
-/// The inner product of pseudo-arclength, a mean over the orbits: steps mean the same for any number of them.
-WeightedNorm mean_norm(const RunSettings& settings, int orbits) {
-  Eigen::VectorXd states = state_weights(settings) / orbits;
-  Eigen::VectorXd parameters = Eigen::VectorXd::Ones(parameter_length);
-  for (const IndexedValue& w : settings.parameter_weights) parameters(w.index - 1) = w.value;
-  parameters.segment(first_duration - 1, max_orbit_segments) /= orbits;
-  return {std::move(states), std::move(parameters)};
-}
-
-std::unique_ptr<OrbitCondition> condition_of(const ProblemType& type, const DefiningSystem& defining,
-                                             const OrbitShape& shape, const RunSettings& one_return) {
-  return dynamic_cast<const TorusProblem&>(type).torus_condition(dynamic_cast<const TorusSystem&>(defining), shape,
-                                                                 one_return);
-}
-
-/// Defining system and follower for `orbits` returns.
-BranchSetup torus_setup(const ProblemType& type, const HybridSystem& system, const RunSettings& one_return, int orbits,
-                        const SelectedStart& selected) {
-  BranchSetup setup{&type, settings_of_orbits(one_return, orbits), nullptr, nullptr, {}, one_return};
-  OrbitShape shape = selected.start.orbit.shape;
-  shape.segments = orbits * segment_count(one_return);
-  const std::vector<int> free = free_problem_parameters(one_return);
-  check_memory(shape, static_cast<int>(free.size()));
-  setup.defining = std::make_unique<TorusSystem>(system, one_return.signature(), orbits, free,
-                                                 torus_winding(system, one_return.signature(), selected.start.orbit));
-  setup.follower = std::make_unique<PathFollower>(
-      *setup.defining, shape, mean_norm(setup.settings, orbits), newton_settings(one_return),
-      one_return.free_parameters.front(), condition_of(type, *setup.defining, shape, one_return),
-      branch_monitors(*setup.defining, setup.settings, selected.start.orbit));
-  return setup;
 }
 
 RunSettings on_periodic_orbit(RunSettings settings) {
@@ -246,7 +213,7 @@ BranchSetup continue_torus(const ProblemType& type, const HybridSystem& system, 
     start.known_parameters.tail(parameter_length - first_duration + 1) =
         start.start.orbit.par.tail(parameter_length - first_duration + 1);
   }
-  BranchSetup setup = torus_setup(type, system, settings, orbits, start);
+  BranchSetup setup = type.prepare(system, settings, start);
   setup.start = first_point(*setup.follower, *setup.defining, start, setup.settings);
   return setup;
 }
@@ -273,7 +240,7 @@ BranchSetup begin_torus(const HybridSystem& system, const RunSettings& settings,
   const Birth birth = birth_at(along, at.orbit, orbits, globals, selected);
   SelectedStart start = selected;
   start.start.orbit = birth.still;
-  BranchSetup setup = torus_setup(problem_type(of_run), system, of_run, orbits, start);
+  BranchSetup setup = problem_type(of_run).prepare(system, of_run, start);
   PathPoint from = setup.follower->make_point(birth.still);
   from.tangent = birth.direction;
   setup.follower->renormalise(from);
@@ -325,14 +292,13 @@ std::string rough_torus(const RunSettings& one_return, const TorusSystem& system
       harmonics < most_harmonics(one_return) ? "their number is fixed (HARMTOL = 0): give NHARM more; " : "");
 }
 
-BranchSetup with_harmonics(const BranchSetup& setup, const PathPoint& last, int harmonics) {
+BranchSetup with_harmonics(const BranchSetup& setup, const TorusSystem& system, const PathPoint& last, int harmonics) {
   const RunSettings& one_return = *setup.constants;
-  const auto& system = static_cast<const TorusSystem&>(*setup.defining);
   const int orbits = 2 * harmonics + 1;
   SelectedStart start;
   start.start.orbit = resampled_torus(last.orbit, system.orbits(), orbits, system.winding().curve);
   start.problem_type = one_return.problem_type;
-  BranchSetup next = torus_setup(*setup.type, system.system(), one_return, orbits, start);
+  BranchSetup next = setup.type->prepare(system.system(), one_return, start);
   PathPoint point = next.follower->make_point(start.start.orbit);
   const OrbitVector direction = resampled_torus(last.tangent, last.orbit.shape, system.orbits(), orbits);
   const NewtonResult result = next.follower->start_along(point, direction);

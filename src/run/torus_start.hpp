@@ -20,6 +20,7 @@
 
 namespace tchat {
 
+class ProblemType;
 class TorusSystem;
 
 /// The settings of `orbits` returns: segments, monitored events and weights of durations repeated.
@@ -43,6 +44,6 @@ std::optional<int> fitting_harmonics(const RunSettings& one_return, const TorusS
 std::string rough_torus(const RunSettings& one_return, const TorusSystem& system, const Orbit& x);
 
 /// The branch from `last` on with another number of orbits; without a follower when that does not converge.
-BranchSetup with_harmonics(const BranchSetup& setup, const PathPoint& last, int harmonics);
+BranchSetup with_harmonics(const BranchSetup& setup, const TorusSystem& system, const PathPoint& last, int harmonics);
 
 }  // namespace tchat

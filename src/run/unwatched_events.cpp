@@ -8,6 +8,7 @@
 #include <map>
 #include <set>
 
+#include "constants/settings_type.hpp"
 #include "hybrid/relevant_events.hpp"
 
 namespace tchat {
@@ -54,7 +55,7 @@ bool is_negative(const HybridSystem& system, int event, const Orbit& x, int s, i
 
 SegmentsByEvent missing_events(const HybridSystem& system, const RunSettings& settings, const Orbit& start) {
   SegmentsByEvent missing;
-  if (!system.has_successors() || !has_ring(settings.problem_type)) return missing;
+  if (!system.has_successors() || !signature_rules(settings).ends_in_events) return missing;
   const std::set<int> seen = watched(settings);
   const Signature signature = settings.signature();
   const std::size_t m = signature.size();

@@ -108,12 +108,12 @@ void check_rotation(const HybridSystem& system, const RunSettings& settings, con
                     const std::vector<int>& free) {
   const bool is_free = std::find(free.begin(), free.end(), rotation_parameter) != free.end();
   const bool has_own = system.parameters() >= rotation_parameter;
-  if (is_torus(settings.problem_type) && has_own)
+  if (family_of(settings).facts().own_parameter == rotation_parameter && has_own)
     throw UserError(
         fmt::format("IPS = {}: PAR({}) is the rotation number of a torus, but problem {} has a parameter of its "
                     "own there; a problem with tori may have {} parameters",
                     settings.problem_type, rotation_parameter, system.name(), rotation_parameter - 1));
-  if (is_free && !has_own && !is_torus(settings.problem_type) && !has_further_parameters(system))
+  if (is_free && !has_own && !family_of(settings).facts().own_parameter && !has_further_parameters(system))
     throw UserError(fmt::format("{}: ICP: {} is the rotation number of a torus, a parameter with IPS = {} alone",
                                 source.of("ICP"), system.parameter_name(rotation_parameter), invariant_torus.number));
 }
@@ -131,7 +131,7 @@ void check_parameters(const HybridSystem& system, const RunSettings& settings, c
   const std::vector<int> free = free_problem_parameters(settings);
   check_rotation(system, settings, source, free);
   const auto is_parameter_here = [&](int k) {
-    return is_own_parameter(system, k) || (k == rotation_parameter && is_torus(settings.problem_type));
+    return is_own_parameter(system, k) || k == family_of(settings).facts().own_parameter;
   };
   for (const int k : settings.free_parameters) {
     if (k >= first_duration || is_parameter_here(k)) continue;
@@ -161,15 +161,15 @@ std::vector<std::string> check_settings_against(const HybridSystem& system, cons
     throw UserError(fmt::format("{}: NDIM is {}, but problem {} has {} states; set NDIM = {}", source.of("NDIM"),
                                 settings.dimension, system.name(), system.dimension(), system.dimension()));
   std::vector<std::string> warnings;
-  const bool ring = has_ring(settings.problem_type);
-  if (has_own_conditions(settings.problem_type)) check_conditions(system, settings, source);
+  const SignatureRules& rules = signature_rules(settings);
+  if (rules.counts_conditions) check_conditions(system, settings, source);
   int s = 0;
   for (const SegmentSettings& segment : settings.segments) {
     ++s;
     check_index(system, FunctionKind::field, segment.index.field, "GCFIND", "vector fields", s, source);
     for (const int event : segment.monitor)
       check_index(system, FunctionKind::event, event, "GCHGRZIND", "event functions", s, source);
-    if (!ring) continue;
+    if (!rules.ends_in_events) continue;
     if (segment.index.event != no_function)
       check_index(system, FunctionKind::event, segment.index.event, "GCHIND", "event functions", s, source);
     if (segment.index.jump != no_function)
@@ -228,16 +228,15 @@ ContinuationSettings continuation_settings(const RunSettings& settings) {
   c.measure = settings.measure;
   c.state_weights = state_weights(settings);
   c.print_every = settings.print_every;
-  c.adapt_mesh_every = is_point(settings.problem_type) ? 0 : settings.adapt_mesh_every;
+  c.adapt_mesh_every = settings.adapt_mesh_every;
   c.multipliers = settings.detect_bifurcations != 0 && has_multipliers(settings.problem_type);
-  c.periodic = has_ring(settings.problem_type);
   c.stop_when_closed = settings.stop_when_closed;
   c.negative_durations = !settings.stop_at_grazing;
-  const bool has_mesh = !is_point(settings.problem_type) && !is_torus(settings.problem_type);  // of tori see HARMTOL
-  const bool has_stability = c.multipliers && has_mesh && !keeps_contact(settings.problem_type) &&
+  const FamilyFacts& family = family_of(settings).facts();
+  const bool has_stability = c.multipliers && family.reports_stability && !keeps_contact(settings.problem_type) &&
                              !has_critical_multiplier(settings.problem_type, settings.branch_mode);
   c.reports_stability = has_stability && std::abs(settings.detect_bifurcations) == 2 && settings.detect_folds != 0;
-  c.error_bound = has_mesh ? settings.error_bound : 0.0;
+  c.error_bound = family.doubles_mesh ? settings.error_bound : 0.0;
   c.location_tolerance = settings.tolerance_special;
   c.max_location = settings.max_location_iterations;
   for (const SegmentSettings& segment : settings.segments) c.monitored.push_back(segment.monitor);

@@ -17,7 +17,7 @@ void check_monitor(const RunSettings& settings, int index, const MonitorName& mo
     throw UserError(fmt::format("{}: {}: {}", source.of(keyword),
                                 settings.monitors[static_cast<std::size_t>(index - first_monitor)], why));
   };
-  const bool ring = has_ring(settings.problem_type);
+  const bool has_multipliers = family_of(settings).facts().has_return_map;
   const bool of_segment = monitor.kind != MonitorName::Kind::multiplier && monitor.number > 0;
   if (of_segment && monitor.number > segment_count(settings))
     refuse("ICP",
@@ -26,9 +26,9 @@ void check_monitor(const RunSettings& settings, int index, const MonitorName& mo
       settings.segments[static_cast<std::size_t>(monitor.number - 1)].index.event == no_function)
     refuse("ICP", "no event function ends that segment; end(X, S) is the value of any function there");
   if (monitor.kind != MonitorName::Kind::multiplier) return;
-  if (!ring || settings.detect_bifurcations == 0)
-    refuse("ICP",
-           ring ? "multipliers are not computed with ISP = 0; give ISP another value" : "there are no multipliers");
+  if (!has_multipliers || settings.detect_bifurcations == 0)
+    refuse("ICP", has_multipliers ? "multipliers are not computed with ISP = 0; give ISP another value"
+                                  : "there are no multipliers");
   if (monitor.number > settings.dimension)
     refuse("UZR", fmt::format("the orbit has as many multipliers as states; allowed: multiplier(1) to multiplier({})",
                               settings.dimension));

@@ -2,8 +2,6 @@
 
 #include <cmath>
 
-#include "bvp/critical_multiplier.hpp"
-#include "bvp/critical_pair.hpp"
 #include "bvp/orbit_accuracy.hpp"
 #include "bvp/transversality.hpp"
 
@@ -11,35 +9,26 @@ namespace tchat {
 
 namespace {
 
-/// The condition that the curve's problem type has made.
-template <class Condition>
-const Condition& condition_at(const TestedPoint& point) {
-  return static_cast<const Condition&>(*point.condition);
-}
-
 constexpr double at_resonance = 1e-6;  // of the cosine at a located resonance
 
-bool has_double_multiplier(const TestedPoint& point) {
-  return std::abs(std::abs(condition_at<CriticalPair>(point).cosine()) - 1.0) <= at_resonance;
-}
+bool has_double_multiplier(const CriticalPair& pair) { return std::abs(std::abs(pair.cosine()) - 1.0) <= at_resonance; }
 
-PointType double_resonance(const TestedPoint& point) {
-  return condition_at<CriticalPair>(point).cosine() > 0.0 ? PointType::resonance_1 : PointType::resonance_2;
+PointType double_resonance(const CriticalPair& pair) {
+  return pair.cosine() > 0.0 ? PointType::resonance_1 : PointType::resonance_2;
 }
 
 }  // namespace
 
 /// The zero level is against the sizes of the two vectors.
-TestValue CuspTest::evaluate(const TestedPoint& point) const {
-  const auto& condition = condition_at<CriticalMultiplier>(point);
-  const OrbitVector& gradient = condition.gradient(0);
-  const OrbitVector& v = condition.null_vector();
-  return TestValue::of(condition.cusp_function(), orbit_accuracy * std::sqrt(dot(gradient, gradient) * dot(v, v)));
+TestValue CuspTest::evaluate(const TestedPoint&) const {
+  const OrbitVector& gradient = condition_.gradient(0);
+  const OrbitVector& v = condition_.null_vector();
+  return TestValue::of(condition_.cusp_function(), orbit_accuracy * std::sqrt(dot(gradient, gradient) * dot(v, v)));
 }
 
 /// The zero level is against the a_s, with which the function and the factors that it is multiplied by vanish.
 TestValue ResonanceTest::evaluate(const TestedPoint& point) const {
-  double result = condition_at<RealMultiplierCondition>(point).multiplicity_function();
+  double result = condition_.multiplicity_function();
   double level = orbit_accuracy;
   for (const double a : point.transversalities) {
     if (std::abs(a) <= no_transversality) return TestValue::undefined();
@@ -49,8 +38,10 @@ TestValue ResonanceTest::evaluate(const TestedPoint& point) const {
   return TestValue::of(result, level);
 }
 
-std::string AngleTest::name() const {
-  switch (type_) {
+namespace {
+
+std::string resonance_name(PointType type) {
+  switch (type) {
     case PointType::resonance_1:
       return "1:1 resonance";
     case PointType::resonance_2:
@@ -62,8 +53,12 @@ std::string AngleTest::name() const {
   }
 }
 
-TestValue AngleTest::evaluate(const TestedPoint& point) const {
-  const double cosine = condition_at<CriticalPair>(point).cosine();
+}  // namespace
+
+std::string AngleTest::name() const { return resonance_name(type_); }
+
+TestValue AngleTest::evaluate(const TestedPoint&) const {
+  const double cosine = condition_.cosine();
   const auto above = [cosine](double resonant) { return TestValue::of(cosine - resonant, orbit_accuracy); };
   switch (type_) {
     case PointType::resonance_1:
@@ -92,26 +87,26 @@ SpecialPoint AngleTest::classify(const TestedPoint&, bool) const {
 TestValue MirroredResonanceTest::evaluate(const TestedPoint& point) const {
   constexpr double nearby = 0.5;
   constexpr double level = 1e-6;  // the root of what rounding makes of a cosine
-  const double square = 2.0 * std::abs(std::abs(condition_at<CriticalPair>(point).cosine()) - 1.0);
+  const double square = 2.0 * std::abs(std::abs(condition_.cosine()) - 1.0);
   const TestValue angle = TestValue::of(std::copysign(std::sqrt(square), point.singular_distance), level);
   return square < 2.0 * nearby ? angle : TestValue::undefined(angle.sign);
 }
 
-bool MirroredResonanceTest::is_genuine(const TestedPoint& point) const { return has_double_multiplier(point); }
+bool MirroredResonanceTest::is_genuine(const TestedPoint&) const { return has_double_multiplier(condition_); }
 
-SpecialPoint MirroredResonanceTest::classify(const TestedPoint& point, bool) const {
-  const PointType type = double_resonance(point);
-  return {type, {}, true, AngleTest(type).name() + ", where the torus curve ends: it meets its mirror image"};
+SpecialPoint MirroredResonanceTest::classify(const TestedPoint&, bool) const {
+  const PointType type = double_resonance(condition_);
+  return {type, {}, true, resonance_name(type) + ", where the torus curve ends: it meets its mirror image"};
 }
 
-TestValue PassedResonanceTest::evaluate(const TestedPoint& point) const {
+TestValue PassedResonanceTest::evaluate(const TestedPoint&) const {
   constexpr double level = 1e-5;  // at a located resonance of another kind it is none
-  return TestValue::of(condition_at<CriticalPair>(point).turning(), level);
+  return TestValue::of(condition_.turning(), level);
 }
 
-SpecialPoint PassedResonanceTest::classify(const TestedPoint& point, bool) const {
-  const PointType type = double_resonance(point);
-  return {type, {}, false, AngleTest(type).name() + ", which the angle passes: two eigenvectors, the curve goes on"};
+SpecialPoint PassedResonanceTest::classify(const TestedPoint&, bool) const {
+  const PointType type = double_resonance(condition_);
+  return {type, {}, false, resonance_name(type) + ", which the angle passes: two eigenvectors, the curve goes on"};
 }
 
 }  // namespace tchat

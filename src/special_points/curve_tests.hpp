@@ -1,7 +1,9 @@
 /// Codimension-two points on fold, period-doubling and torus curves: cusp and resonances. They read the curve's
-/// condition at the tested point: one of a real multiplier, on torus curves a CriticalPair.
+/// condition, which is evaluated at the tested point.
 #pragma once
 
+#include "bvp/critical_multiplier.hpp"
+#include "bvp/critical_pair.hpp"
 #include "special_points/test_function.hpp"
 
 namespace tchat {
@@ -9,9 +11,13 @@ namespace tchat {
 /// The curve's null vector and the gradient of its condition are orthogonal: a cusp of a fold curve.
 class CuspTest final : public TestFunction {
  public:
+  explicit CuspTest(const CriticalMultiplier& condition) : condition_(condition) {}
   std::string name() const override { return "cusp"; }
   TestValue evaluate(const TestedPoint& point) const override;
   SpecialPoint classify(const TestedPoint&, bool) const override { return {PointType::cusp, {}, false, "cusp"}; }
+
+ private:
+  const CriticalMultiplier& condition_;
 };
 
 /// The critical multiplier is a double one: 1:1 resonance on fold curves, 1:2 on period-doubling curves. The
@@ -19,13 +25,14 @@ class CuspTest final : public TestFunction {
 /// more, and undefined where one is about zero.
 class ResonanceTest final : public TestFunction {
  public:
-  explicit ResonanceTest(PointType type) : type_(type) {}
+  ResonanceTest(PointType type, const RealMultiplierCondition& condition) : type_(type), condition_(condition) {}
   std::string name() const override { return type_ == PointType::resonance_1 ? "1:1 resonance" : "1:2 resonance"; }
   TestValue evaluate(const TestedPoint& point) const override;
   SpecialPoint classify(const TestedPoint&, bool) const override { return {type_, {}, false, name()}; }
 
  private:
   PointType type_;
+  const RealMultiplierCondition& condition_;
 };
 
 /// The angle of the critical pair on a torus curve, by its cosine, which is smooth also where the pair meets: 1:3 and
@@ -34,7 +41,7 @@ class ResonanceTest final : public TestFunction {
 /// these points.
 class AngleTest final : public TestFunction {
  public:
-  explicit AngleTest(PointType type) : type_(type) {}
+  AngleTest(PointType type, const CriticalPair& condition) : type_(type), condition_(condition) {}
   std::string name() const override;
   TestValue evaluate(const TestedPoint& point) const override;
   Resolution resolution() const override;
@@ -42,6 +49,7 @@ class AngleTest final : public TestFunction {
 
  private:
   PointType type_;
+  const CriticalPair& condition_;
 };
 
 /// 1:1 or 1:2 resonance where a torus curve meets its mirror image: that of an orbit without the symmetry of the
@@ -50,21 +58,29 @@ class AngleTest final : public TestFunction {
 /// point, so the bordered determinant changes sign; with its sign the angle goes through zero.
 class MirroredResonanceTest final : public TestFunction {
  public:
+  explicit MirroredResonanceTest(const CriticalPair& condition) : condition_(condition) {}
   std::string name() const override { return "resonance at the mirror image"; }
   TestValue evaluate(const TestedPoint& point) const override;
   bool is_genuine(const TestedPoint& point) const override;
   bool singular_at_zero() const override { return true; }
   SpecialPoint classify(const TestedPoint& point, bool rising) const override;
+
+ private:
+  const CriticalPair& condition_;
 };
 
 /// 1:1 or 1:2 resonance that the angle passes, the double multiplier having two eigenvectors, as on curves of orbits
 /// with a symmetry: the curve goes on. It is reported without a label, for no curve starts there.
 class PassedResonanceTest final : public TestFunction {
  public:
+  explicit PassedResonanceTest(const CriticalPair& condition) : condition_(condition) {}
   std::string name() const override { return "angle through 0 or pi"; }
   TestValue evaluate(const TestedPoint& point) const override;
-  bool is_told_only() const override { return true; }
+  bool is_only_reported() const override { return true; }
   SpecialPoint classify(const TestedPoint& point, bool rising) const override;
+
+ private:
+  const CriticalPair& condition_;
 };
 
 }  // namespace tchat

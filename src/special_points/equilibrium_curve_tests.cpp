@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bvp/equilibrium_fold.hpp"
-#include "bvp/hopf_pair.hpp"
 #include "bvp/orbit_accuracy.hpp"
 #include "stability/equilibrium_eigenvalues.hpp"
 #include "stability/lyapunov_coefficient.hpp"
@@ -19,12 +17,6 @@ using Eigenvalues = std::vector<std::complex<double>>;
 
 /// Of differences that a coefficient is made of.
 constexpr double difference_accuracy = 1e-8;
-
-/// The condition that the curve's problem type has made.
-template <class Condition>
-const Condition& made_by_curve(const TestedPoint& point) {
-  return static_cast<const Condition&>(*point.condition);
-}
 
 double largest_modulus(const Eigenvalues& values) {
   double largest = 0.0;
@@ -50,43 +42,37 @@ Eigenvalues without_pair(Eigenvalues values) {
 
 }  // namespace
 
-TestValue EquilibriumCuspTest::evaluate(const TestedPoint& point) const {
-  return TestValue::of(made_by_curve<EquilibriumFold>(point).cusp_function(), orbit_accuracy);
+TestValue EquilibriumCuspTest::evaluate(const TestedPoint&) const {
+  return TestValue::of(condition_.cusp_function(), orbit_accuracy);
 }
 
-TestValue DoubleZeroTest::evaluate(const TestedPoint& point) const {
-  return TestValue::of(made_by_curve<EquilibriumFold>(point).multiplicity_function(), orbit_accuracy);
+TestValue DoubleZeroTest::evaluate(const TestedPoint&) const {
+  return TestValue::of(condition_.multiplicity_function(), orbit_accuracy);
 }
 
-TestValue ZeroFrequencyTest::evaluate(const TestedPoint& point) const {
-  return TestValue::of(made_by_curve<HopfPair>(point).relative_square(), orbit_accuracy);
+TestValue ZeroFrequencyTest::evaluate(const TestedPoint&) const {
+  return TestValue::of(condition_.relative_square(), orbit_accuracy);
 }
-
-namespace {
-
-/// Of a located point, where omega is known to the accuracy of its location.
-bool has_double_zero(const TestedPoint& point) {
-  constexpr double at_double_zero = 1e-10;
-  return std::abs(made_by_curve<HopfPair>(point).relative_square()) <= at_double_zero;
-}
-
-}  // namespace
 
 /// omega with the sign of the determinant, which alone may be normalised to a jump. Elsewhere a curve that crosses is
 /// none of a double eigenvalue 0.
 TestValue MirroredFrequencyTest::evaluate(const TestedPoint& point) const {
   constexpr double nearby = 0.1;
   constexpr double level = 1e-7;  // the root of what rounding makes of omega^2
-  const double square = std::abs(made_by_curve<HopfPair>(point).relative_square());
+  const double square = std::abs(condition_.relative_square());
   const TestValue omega = TestValue::of(std::copysign(std::sqrt(square), point.singular_distance), level);
   return square < nearby ? omega : TestValue::undefined(omega.sign);
 }
 
-bool MirroredFrequencyTest::is_genuine(const TestedPoint& point) const { return has_double_zero(point); }
+/// omega is known to the accuracy of its location.
+bool MirroredFrequencyTest::is_genuine(const TestedPoint&) const {
+  constexpr double at_double_zero = 1e-10;
+  return std::abs(condition_.relative_square()) <= at_double_zero;
+}
 
-TestValue PassedFrequencyTest::evaluate(const TestedPoint& point) const {
+TestValue PassedFrequencyTest::evaluate(const TestedPoint&) const {
   constexpr double level = 1e-5;  // at a located point of another kind it is none
-  return TestValue::of(made_by_curve<HopfPair>(point).turning(), level);
+  return TestValue::of(condition_.turning(), level);
 }
 
 TestValue FoldHopfTest::evaluate(const TestedPoint& point) const {
@@ -118,15 +104,15 @@ TestValue HopfFoldTest::evaluate(const TestedPoint& point) const {
   return TestValue::of(sign * least / largest_modulus(point.multipliers.values), orbit_accuracy);
 }
 
-SpecialPoint HopfFoldTest::classify(const TestedPoint& point, bool) const {
-  const double square = made_by_curve<HopfPair>(point).square();
+SpecialPoint HopfFoldTest::classify(const TestedPoint&, bool) const {
+  const double square = condition_.square();
   return {
       PointType::zero_hopf, {}, false, fmt::format("zero-Hopf point, omega = {:.10g}", std::sqrt(std::abs(square)))};
 }
 
 /// Scaled to omega, with which it goes to infinity at a Bogdanov-Takens point.
 TestValue BautinTest::evaluate(const TestedPoint& point) const {
-  const double square = made_by_curve<HopfPair>(point).square();
+  const double square = condition_.square();
   if (!(square > 0.0)) return TestValue::undefined();
   const double omega = std::sqrt(square);
   const double coefficient = omega * first_lyapunov_coefficient(point.condensed.system(), point.orbit, omega);

@@ -122,7 +122,7 @@ constexpr const char* xi_name = "xi_";
 
 }  // namespace
 
-bool tells_of_contact(const std::string& test_name) {
+bool reports_contact(const std::string& test_name) {
   return test_name == acceleration_name || test_name.starts_with(xi_name);
 }
 

@@ -34,7 +34,7 @@ GrazingUnfolding grazing_unfolding(const GrazingOrbitSystem& system, const Conde
                                    int jump, int n);
 
 /// Is this the name of one of the test functions by whose values the dynamics near grazing go: a* and xi_n?
-bool tells_of_contact(const std::string& test_name);
+bool reports_contact(const std::string& test_name);
 
 class XiTest final : public TestFunction {
  public:

@@ -12,7 +12,7 @@
 
 #include "bvp/bordered_problem.hpp"
 #include "bvp/condensed_system.hpp"
-#include "special_points/point_type.hpp"
+#include "problem_type/point_type.hpp"
 #include "stability/floquet_multipliers.hpp"
 
 namespace tchat {
@@ -77,7 +77,7 @@ class TestFunction {
   /// True when Newton's matrix is singular at the zeros, which are then located from both sides.
   virtual bool singular_at_zero() const { return false; }
   /// True when a zero is told of, but neither located nor labelled: the equations are singular there.
-  virtual bool is_told_only() const { return false; }
+  virtual bool is_only_reported() const { return false; }
   /// Why the function is zero at every point of a branch, where that is known; `point` is one of them.
   virtual std::string reason_to_vanish(const TestedPoint&) const { return ""; }
   /// What else there is to know of a labelled point, in lines for the d-file; empty: nothing.

@@ -65,7 +65,7 @@ class StrongResonanceTest final : public TestFunction {
  public:
   StrongResonanceTest(int p, int q) : p_(p), q_(q) {}
   std::string name() const override;
-  bool is_told_only() const override { return true; }
+  bool is_only_reported() const override { return true; }
   TestValue evaluate(const TestedPoint& point) const override;
   SpecialPoint classify(const TestedPoint& point, bool rising) const override;
 

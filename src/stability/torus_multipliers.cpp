@@ -73,8 +73,7 @@ Eigen::VectorXd moduli_along_rotation(const Eigen::MatrixXd& matrices, const Eig
   return exponents(matrices, curve, w, rho).array().exp();
 }
 
-FloquetMultipliers torus_multipliers(const CondensedSystem& condensed, const Orbit& x) {
-  const auto& system = dynamic_cast<const TorusSystem&>(condensed.system());
+FloquetMultipliers torus_multipliers(const TorusSystem& system, const CondensedSystem& condensed, const Orbit& x) {
   FloquetMultipliers result;
   const Eigen::MatrixXd matrices = return_matrices(system, condensed, x);
   if (!matrices.allFinite() || x.shape.dimension < 2) return result;

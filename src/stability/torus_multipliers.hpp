@@ -26,7 +26,7 @@ Eigen::VectorXd moduli_along_rotation(const Eigen::MatrixXd& matrices, const Eig
                                       const Eigen::VectorXd& w, double rho);
 
 /// Moduli as FloquetMultipliers orders them: that along the curve first, as the trivial one, the structural zero last.
-/// Not valid where a section is touched, h_x f = 0. `condensed` holds the linearisation of a TorusSystem at x.
-FloquetMultipliers torus_multipliers(const CondensedSystem& condensed, const Orbit& x);
+/// Not valid where a section is touched, h_x f = 0. `condensed` holds the linearisation of `system` at x.
+FloquetMultipliers torus_multipliers(const TorusSystem& system, const CondensedSystem& condensed, const Orbit& x);
 
 }  // namespace tchat

@@ -101,7 +101,7 @@ bool is_stored_point(const LabelledSolution& solution) { return solution.tau.siz
 
 /// A point is stored with one state, its shape has two nodes.
 Eigen::MatrixXd at_nodes(const Eigen::MatrixXd& states, const OrbitShape& shape) {
-  return shape.is_point() ? states.replicate(1, shape.nodes()) : unstack(states, shape.dimension);
+  return shape.stored_nodes() == 1 ? states.replicate(1, shape.nodes()) : unstack(states, shape.dimension);
 }
 
 /// The stored direction on the stored mesh; nothing when it belongs to other free parameters.
@@ -192,16 +192,17 @@ OrbitStart orbit_from_solution(const LabelledSolution& solution, const OrbitShap
         solution.dimension > 0 ? fmt::format("{} segments of {}", rows / solution.dimension, solution.dimension)
                                : "dimension of a segment not recorded",
         shape.segments, shape.dimension));
-  if (is_stored_point(solution) != shape.is_point())
+  const bool is_one_state = shape.stored_nodes() == 1;
+  if (is_stored_point(solution) != is_one_state)
     throw UserError(
-        shape.is_point()
+        is_one_state
             ? fmt::format("{}: label {} is an orbit, not an equilibrium; restart from a label of a run with IPS = {}, "
                           "or from data",
                           source, solution.label, equilibrium.number)
             : fmt::format("{}: label {} is an equilibrium, not an orbit; at a Hopf bifurcation (HB) ISW = -1 begins "
                           "the periodic orbits, and IPS = {} goes on with equilibria",
                           source, solution.label, equilibrium.number));
-  if (shape.is_point()) return point_start(solution, shape, free_parameters);
+  if (is_one_state) return point_start(solution, shape, free_parameters);
   if (solution.collocation_points < 1 || solution.collocation_points > 7 || solution.mesh_intervals < 1)
     throw UserError(
         fmt::format("{}: label {} has {} collocation points on {} mesh intervals, not an orbit; restart "
@@ -243,9 +244,10 @@ LabelledSolution labelled_solution(const Orbit& orbit, const OrbitVector& direct
   LabelledSolution solution;
   solution.dimension = shape.dimension;
   solution.mesh_intervals = shape.intervals;
-  solution.collocation_points = shape.is_point() ? 0 : shape.collocation;
-  solution.tau = shape.is_point() ? std::vector<double>{0.0} : orbit.node_times();
-  const Eigen::Index points = static_cast<Eigen::Index>(solution.tau.size());
+  const int points = shape.stored_nodes();
+  solution.collocation_points = (points - 1) / shape.intervals;
+  solution.tau = orbit.node_times();
+  solution.tau.resize(static_cast<std::size_t>(points));
   solution.states = stack(orbit.states, shape).leftCols(points);
   if (direction.states.size() > 0) solution.state_direction = stack(direction.states, shape).leftCols(points);
   solution.free_parameters = listed;

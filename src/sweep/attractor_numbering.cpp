@@ -234,8 +234,8 @@ double attractor_distance(const AttractorSample& a, const AttractorSample& b) {
 }
 
 bool is_same_attractor(const AttractorSample& a, const AttractorSample& b) {
-  const bool is_point = repeats(a) || a.kind == AttractorKind::rest;
-  return attractor_distance(a, b) <= (is_point ? same_orbit : same_cloud);
+  const bool has_few_points = repeats(a) || a.kind == AttractorKind::rest;
+  return attractor_distance(a, b) <= (has_few_points ? same_orbit : same_cloud);
 }
 
 std::vector<AttractorSample> distinct_attractors(const std::vector<SampleRecord>& records) {

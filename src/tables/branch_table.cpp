@@ -17,8 +17,8 @@
 #include "files/number_format.hpp"
 #include "files/solution_file_reader.hpp"
 #include "hybrid/parameter_vector.hpp"
+#include "problem_type/point_type.hpp"
 #include "problem_type/problem_type.hpp"
-#include "special_points/point_type.hpp"
 #include "tables/table_format.hpp"
 
 namespace tchat {
@@ -36,7 +36,7 @@ TableCell number_cell(double value) { return is_not_finite(value) ? TableCell() 
 
 TableCell text_cell(const std::string& text) { return text.empty() ? TableCell() : TableCell(text); }
 
-TableCell multiplier_cell(double value) {
+double finite_or_infinite(double value) {
   return is_not_finite(value) ? std::copysign(std::numeric_limits<double>::infinity(), value) : value;
 }
 
@@ -140,15 +140,20 @@ class BranchTable {
     cells.push_back(solution == nullptr ? TableCell() : name(section, row));
     cells.emplace_back(point.label);
     cells.push_back(solution == nullptr ? TableCell() : kind(section, *solution));
-    cells.push_back(tells_stability(section) ? TableCell(point.point < 0) : TableCell());
+    cells.push_back(has_stability(section) ? TableCell(point.point < 0) : TableCell());
     cells.push_back(diagnostic == nullptr ? TableCell() : TableCell(diagnostic->admissible));
     numbers_.append(cells, section, row);
     return cells;
   }
 
-  const std::vector<std::complex<double>>* multipliers(std::size_t section, std::size_t row) const {
+  /// Empty where they are not known.
+  ComplexList multipliers(std::size_t section, std::size_t row) const {
     const DiagnosticPoint* diagnostic = file_.diagnostic_of(section, row);
-    return diagnostic == nullptr || diagnostic->multipliers.empty() ? nullptr : &diagnostic->multipliers;
+    ComplexList list;
+    if (diagnostic != nullptr)
+      for (const std::complex<double>& mu : diagnostic->multipliers)
+        list.emplace_back(finite_or_infinite(mu.real()), finite_or_infinite(mu.imag()));
+    return list;
   }
 
   TableCell iterations(std::size_t section, std::size_t row) const {
@@ -158,9 +163,7 @@ class BranchTable {
 
   std::size_t most_multipliers() const {
     std::size_t most = 0;
-    each_point([&](std::size_t s, std::size_t k) {
-      if (const auto* values = multipliers(s, k)) most = std::max(most, values->size());
-    });
+    each_point([&](std::size_t s, std::size_t k) { most = std::max(most, multipliers(s, k).size()); });
     return most;
   }
 
@@ -181,7 +184,7 @@ class BranchTable {
   }
 
   /// Not along curves of folds, period doublings and torus bifurcations.
-  bool tells_stability(std::size_t section) const {
+  bool has_stability(std::size_t section) const {
     const PointSection& s = file_.sections[section];
     return s.has_stability() && s.curve_type == 0 && !has_critical_multiplier(s.problem_type, s.branch_mode);
   }
@@ -193,52 +196,21 @@ class BranchTable {
 
 }  // namespace
 
-void write_branch_csv(std::ostream& out, const BranchFile& file) {
+void write_branch_table(TableWriter& out, const BranchFile& file) {
   const BranchTable table(file);
-  const std::size_t most = table.most_multipliers();
-  std::vector<std::string> fields;
-  for (const std::string& heading : table.headings()) fields.push_back(csv_field(heading));
-  for (std::size_t k = 1; k <= most; ++k)
-    fields.insert(fields.end(), {fmt::format("multiplier{}_re", k), fmt::format("multiplier{}_im", k)});
-  fields.emplace_back(iterations_heading);
-  out << csv_line(fields);
+  std::vector<TableColumn> columns;
+  for (const std::string& heading : table.headings()) columns.push_back({heading});
+  columns.push_back({multipliers_heading, table.most_multipliers(), "multiplier"});
+  columns.push_back({iterations_heading});
+  out.begin(columns);
   table.each_point([&](std::size_t section, std::size_t row) {
-    fields.clear();
-    for (const TableCell& cell : table.cells(section, row)) fields.push_back(csv_field(cell));
-    const auto* multipliers = table.multipliers(section, row);
-    for (std::size_t k = 0; k < most; ++k) {
-      const bool there = multipliers != nullptr && k < multipliers->size();
-      fields.push_back(there ? csv_field(multiplier_cell((*multipliers)[k].real())) : "");
-      fields.push_back(there ? csv_field(multiplier_cell((*multipliers)[k].imag())) : "");
-    }
-    fields.push_back(csv_field(table.iterations(section, row)));
-    out << csv_line(fields);
+    std::vector<TableValue> values;
+    for (TableCell& cell : table.cells(section, row)) values.emplace_back(std::move(cell));
+    values.emplace_back(table.multipliers(section, row));
+    values.emplace_back(table.iterations(section, row));
+    out.row(values);
   });
-}
-
-void write_branch_json(std::ostream& out, const BranchFile& file) {
-  const BranchTable table(file);
-  std::vector<std::string> keys;
-  for (const std::string& heading : table.headings()) keys.push_back(json_value(heading));
-  const char* before = "[\n";
-  table.each_point([&](std::size_t section, std::size_t row) {
-    const std::vector<TableCell> cells = table.cells(section, row);
-    out << before << '{';
-    for (std::size_t k = 0; k < cells.size(); ++k) out << keys[k] << ": " << json_value(cells[k]) << ", ";
-    out << '"' << multipliers_heading << "\": ";
-    if (const auto* multipliers = table.multipliers(section, row)) {
-      std::vector<std::string> pairs;
-      for (const std::complex<double>& mu : *multipliers)
-        pairs.push_back(
-            fmt::format("[{}, {}]", json_value(multiplier_cell(mu.real())), json_value(multiplier_cell(mu.imag()))));
-      out << fmt::format("[{}]", fmt::join(pairs, ", "));
-    } else {
-      out << "null";
-    }
-    out << ", \"" << iterations_heading << "\": " << json_value(table.iterations(section, row)) << '}';
-    before = ",\n";
-  });
-  out << "\n]\n";
+  out.end();
 }
 
 }  // namespace tchat

@@ -11,17 +11,12 @@
 /// for a multiplier and otherwise not known.
 #pragma once
 
-#include <ostream>
-
 #include "files/branch_file.hpp"
+#include "tables/table_writer.hpp"
 
 namespace tchat {
 
-/// Headings, then one line for each point.
-void write_branch_csv(std::ostream& out, const BranchFile& file);
-
-/// An array of objects, one for each point, with the headings as keys; the multipliers are one array of pairs
-/// [re, im], null when not known.
-void write_branch_json(std::ostream& out, const BranchFile& file);
+/// One row for each point; the multipliers are a list.
+void write_branch_table(TableWriter& out, const BranchFile& file);
 
 }  // namespace tchat

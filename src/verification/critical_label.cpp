@@ -6,8 +6,8 @@
 #include <optional>
 
 #include "files/labelled_solution.hpp"
+#include "problem_type/point_type.hpp"
 #include "problem_type/problem_type.hpp"
-#include "special_points/point_type.hpp"
 
 namespace tchat {
 

@@ -34,7 +34,7 @@ StoredSegment stored_segment(const HybridSystem& system, const RunSettings& sett
   StoredSegment segment;
   segment.index = own.index;
   segment.next_field = after.index.field;
-  segment.integrand = has_ring(settings.problem_type) || system.integral_conditions() == 0 ? 0 : s + 1;
+  segment.integrand = signature_rules(settings).counts_conditions && system.integral_conditions() > 0 ? s + 1 : 0;
   segment.grazing = contact_segment(settings) == s;
   segment.start = Eigen::Map<const VectorXd>(x.start(s), n);
   segment.end = Eigen::Map<const VectorXd>(x.end(s), n);
@@ -191,23 +191,38 @@ std::vector<SegmentLink> links_of(const HybridSystem& system, const RunSettings&
   return links;
 }
 
-OrbitCheck check_orbit(const HybridSystem& system, const RunSettings& settings, const Orbit& x,
-                       const std::vector<std::complex<double>>& stored, double tolerance,
-                       const CriticalMultipliers& critical) {
+namespace {
+
+/// Segments and durations.
+OrbitCheck check_segments_of(const HybridSystem& system, const RunSettings& settings, const Orbit& x,
+                             const MatrixXd& following, double tolerance) {
   OrbitCheck check;
-  const VectorXd scale = state_scales(x);
-  const bool ring = has_ring(settings.problem_type);
-  check.segments = check_segments(system, settings, x, scale, ring ? next_starts(x) : MatrixXd(), tolerance);
-  if (!ring) take_larger(check.segments.back().state_defect, boundary_defect(system, x));
+  check.segments = check_segments(system, settings, x, state_scales(x), following, tolerance);
   for (int s = 0; s < x.shape.segments; ++s) {
     check.durations.push_back(x.duration(s));
     check.period += std::abs(x.duration(s));
   }
   check.goes_forward = x.period() > 0.0 && std::isfinite(x.period());
   if (!(check.period > 0.0)) check.period = 1.0;
-  if (!ring) check.integral_defect = integral_defect(check);
-  if (!ring) return check;
-  const std::vector<SegmentLink> links = links_of(system, settings, x, check.segments, scale);
+  return check;
+}
+
+}  // namespace
+
+OrbitCheck check_boundary_values(const HybridSystem& system, const RunSettings& settings, const Orbit& x,
+                                 double tolerance) {
+  OrbitCheck check = check_segments_of(system, settings, x, MatrixXd(), tolerance);
+  take_larger(check.segments.back().state_defect, boundary_defect(system, x));
+  check.integral_defect = integral_defect(check);
+  return check;
+}
+
+OrbitCheck check_orbit(const HybridSystem& system, const RunSettings& settings, const Orbit& x,
+                       const std::vector<std::complex<double>>& stored, double tolerance,
+                       const CriticalMultipliers& critical) {
+  OrbitCheck check = check_segments_of(system, settings, x, next_starts(x), tolerance);
+  check.computes_multipliers = true;
+  const std::vector<SegmentLink> links = links_of(system, settings, x, check.segments, state_scales(x));
   if (links.empty()) return check;
   const ReturnPencil pencil(links);
   if (!pencil.determines_multipliers(tolerance)) return check;

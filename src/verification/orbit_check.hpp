@@ -3,12 +3,12 @@
 #pragma once
 
 #include <complex>
-#include <functional>
 #include <optional>
 #include <vector>
 
 #include "bvp/orbit.hpp"
 #include "constants/run_settings.hpp"
+#include "problem_type/family.hpp"
 #include "verification/return_pencil.hpp"
 #include "verification/segment_check.hpp"
 
@@ -24,6 +24,7 @@ struct OrbitCheck {
   /// Of the return map along the integrated segments; empty when one of them could not be integrated, or the
   /// map does not determine them.
   std::vector<std::complex<double>> multipliers;
+  bool computes_multipliers = false;            ///< those of the return map were asked for
   std::optional<double> multiplier_difference;  ///< from the stored ones (largest_difference)
   double multiplier_error = 0.0;                ///< largest backward error of a stored one
   /// Of the multipliers that the label must have (critical_label.hpp): the largest distance from the nearest one, and
@@ -50,11 +51,13 @@ std::vector<SegmentLink> links_of(const HybridSystem& system, const RunSettings&
 
 /// `stored`: the multipliers of the d-file; empty when there are none. `critical`: those that the label must have, by
 /// the computed ones.
-using CriticalMultipliers =
-    std::function<std::vector<std::complex<double>>(const std::vector<std::complex<double>>& computed)>;
 OrbitCheck check_orbit(const HybridSystem& system, const RunSettings& settings, const Orbit& x,
                        const std::vector<std::complex<double>>& stored, double tolerance,
                        const CriticalMultipliers& critical = {});
+
+/// The solution of a boundary value problem: segments, boundary and integral conditions.
+OrbitCheck check_boundary_values(const HybridSystem& system, const RunSettings& settings, const Orbit& x,
+                                 double tolerance);
 
 /// What is beyond `tolerance`, with the growth of errors (growth * 1e-9 where that is more; undecided beyond 1e-2): one
 /// list for a segment, with the duration of the whole orbit at the first and integral conditions at the last one; one

@@ -20,16 +20,15 @@
 #include "plugin/exit_guard.hpp"
 #include "plugin/plugin_build.hpp"
 #include "plugin/problem_library.hpp"
+#include "problem_type/point_type.hpp"
 #include "problem_type/problem_type.hpp"
 #include "setup/named_parameters.hpp"
 #include "setup/problem_setup.hpp"
 #include "setup/run_request.hpp"
-#include "special_points/point_type.hpp"
 #include "start/orbit_start.hpp"
 #include "text/user_error.hpp"
 #include "verification/critical_label.hpp"
 #include "verification/orbit_check.hpp"
-#include "verification/torus_check.hpp"
 
 namespace tchat {
 
@@ -50,23 +49,6 @@ std::map<int, DiagnosticPoint> recorded_points(const std::string& path) {
   for (DiagnosticPoint& point : read_diagnostics_file(path))
     if (point.label > 0) result[point.label] = std::move(point);
   return result;
-}
-
-/// Why this entry of a q-file is not an orbit of these constants; "" when it is.
-std::string mismatch(const LabelledSolution& solution, const RunSettings& settings) {
-  const auto states = static_cast<Eigen::Index>(settings.segments.size()) * settings.dimension;
-  if (!is_same_problem_type(solution.problem_type, settings.problem_type))
-    return fmt::format("computed with IPS = {}, the constants have {}", solution.problem_type, settings.problem_type);
-  if (is_torus(settings.problem_type)) {
-    const Eigen::Index orbits = solution.states.rows() / states;
-    if (solution.states.rows() % states == 0 && orbits >= 3 && orbits % 2 == 1) return "";
-    return fmt::format("has {} states, no odd number of returns of {} segments of {}", solution.states.rows(),
-                       settings.segments.size(), settings.dimension);
-  }
-  if (solution.states.rows() != states)
-    return fmt::format("has {} states, the constants {} segments of {}", solution.states.rows(),
-                       settings.segments.size(), settings.dimension);
-  return "";
 }
 
 const char* word_for(Defect defect) {
@@ -111,40 +93,39 @@ struct Largest {
 class Table {
  public:
   Table(const HybridSystem& system, const RunSettings& settings, double tolerance, std::ostream& screen)
-      : system_(system), settings_(settings), tolerance_(tolerance), screen_(screen) {
+      : system_(system),
+        settings_(settings),
+        family_(family_of(settings.problem_type)),
+        tolerance_(tolerance),
+        screen_(screen) {
     screen_ << " LAB  TY SEG              T    STATE     TIME   GROWTH  MULTIPL.  CRITICAL  EVENT\n";
   }
 
   Verdict add(const LabelledSolution& solution, const DiagnosticPoint* recorded) {
-    const std::string why_not = mismatch(solution, settings_);
+    const std::string why_not = family_.mismatch(solution, settings_);
     if (!why_not.empty()) {
       screen_ << fmt::format("{:>4}  {:<2}  not verified: {}\n", solution.label, type_name(solution), why_not);
       return {false, false};
     }
     const Orbit x = orbit_of(solution);
     const auto stored = recorded != nullptr ? recorded->multipliers : std::vector<std::complex<double>>{};
-    if (is_torus(settings_.problem_type))
-      return rows(solution, check_torus(system_, settings_, x, stored, tolerance_),
-                  recorded != nullptr && !recorded->admissible);
-    const OrbitCheck check =
-        check_orbit(system_, settings_, x, stored, tolerance_, [&](const std::vector<std::complex<double>>& computed) {
-          return critical_multipliers(solution, stored, computed);
-        });
+    const OrbitCheck check = family_.check(system_, settings_, x, stored, tolerance_,
+                                           [&](const std::vector<std::complex<double>>& computed) {
+                                             return critical_multipliers(solution, stored, computed);
+                                           });
     const bool is_inadmissible = recorded != nullptr ? !recorded->admissible : has_inadmissibilities(x);
     return rows(solution, check, is_inadmissible);
   }
 
   std::string worst() const {
-    const std::string over =
-        is_torus(settings_.problem_type) ? " over returns from the stored phases and half way between them" : "";
     const std::string critical =
         critical_.where == "none" ? "" : fmt::format(", critical ones {:.1e} ({})", critical_.value, critical_.where);
     const std::string integral =
         integral_.where == "none" ? ""
                                   : fmt::format(", integral conditions {:.1e} ({})", integral_.value, integral_.where);
-    return fmt::format("Largest defects{}: states {:.1e} ({}), times {:.1e} ({}), multipliers {:.1e} ({}){}{}.\n", over,
-                       state_.value, state_.where, time_.value, time_.where, multipliers_.value, multipliers_.where,
-                       critical, integral);
+    return fmt::format("Largest defects{}: states {:.1e} ({}), times {:.1e} ({}), multipliers {:.1e} ({}){}{}.\n",
+                       family_.checked_trajectories(), state_.value, state_.where, time_.value, time_.where,
+                       multipliers_.value, multipliers_.where, critical, integral);
   }
 
  private:
@@ -157,15 +138,16 @@ class Table {
   }
 
   bool has_inadmissibilities(const Orbit& x) const {
+    Signature signature;  // of all returns
+    std::vector<std::vector<int>> monitored;
+    for (std::size_t s = 0; s < static_cast<std::size_t>(x.shape.segments); ++s) {
+      const SegmentSettings& segment = settings_.segments[s % settings_.segments.size()];
+      signature.push_back(segment.index);
+      monitored.push_back(segment.monitor);
+    }
     const CollocationRule rule(x.shape.collocation);
-    const double error = estimated_error(system_, settings_.signature(), x, rule);
-    return !inadmissibilities(system_, settings_.signature(), monitored(), x, rule, error).empty();
-  }
-
-  std::vector<std::vector<int>> monitored() const {
-    std::vector<std::vector<int>> result;
-    for (const SegmentSettings& segment : settings_.segments) result.push_back(segment.monitor);
-    return result;
+    const double error = estimated_error(system_, signature, x, rule);
+    return !inadmissibilities(system_, signature, monitored, x, rule, error).empty();
   }
 
   std::string event_name(int event) const { return system_.function_name(FunctionKind::event, event); }
@@ -224,8 +206,7 @@ class Table {
                              check.durations[s], segment.state_defect, time, segment.growth,
                              once(check.multiplier_difference), once(check.critical_difference), events(check, s), end);
     }
-    if (!check.multiplier_difference && has_ring(settings_.problem_type) && !is_torus(settings_.problem_type))
-      screen_ << multipliers_of(check);
+    if (!check.multiplier_difference && check.computes_multipliers) screen_ << multipliers_of(check);
     if (check.multiplier_difference)
       multipliers_.take(*check.multiplier_difference, fmt::format("label {}", solution.label));
     if (check.integral_defect) integral_.take(*check.integral_defect, fmt::format("label {}", solution.label));
@@ -235,6 +216,7 @@ class Table {
 
   const HybridSystem& system_;
   const RunSettings& settings_;
+  const SolutionFamily& family_;
   double tolerance_;
   std::ostream& screen_;
   Largest state_, time_, multipliers_, critical_, integral_;
@@ -269,11 +251,8 @@ bool verify_solutions(const VerifyRequest& request, std::ostream& screen, std::o
   bool named_parameters = false;
   RunSettings settings = read_constants_file(constants, nullptr, names_to_come(named_parameters));
 
-  if (is_point(settings.problem_type))
-    throw UserError(
-        fmt::format("{}: these are equilibria (IPS = {}), with nothing to integrate; their eigenvalues are in "
-                    "the d-file",
-                    path, settings.problem_type));
+  if (const std::string why = family_of(settings.problem_type).why_unverifiable(settings); !why.empty())
+    throw UserError(fmt::format("{}: {}", path, why));
 
   const std::string plugin = resolve_plugin_of_run(request.problem, run_path(path), warnings);
   const ExitGuard guard(plugin);

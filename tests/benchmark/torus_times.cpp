@@ -103,7 +103,7 @@ class TorusWalk {
     if (++steps_ % 10 == 0) ds_ = -ds_;
     if (!follower_.step(point_, ds_, next_).converged()) throw std::runtime_error("a step along the tori failed");
     std::swap(point_, next_);
-    keep(torus_multipliers(follower_.condensed(), point_.orbit));
+    keep(torus_multipliers(system_, follower_.condensed(), point_.orbit));
   }
   double error() const {
     double largest = 0.0;

@@ -247,11 +247,12 @@ TEST_CASE("beyond the 1:1 resonance that it begins at a torus curve ends, it doe
   const OrbitShape shape{4, 1, 10, 4};
   const PeriodicOrbitSystem defining(system, {{1, 1, 1}}, {2, 1});
   auto pair = std::make_unique<CriticalPair>(defining, shape, std::polar(1.0, 2 * pi * std::sqrt(1e-6)));
+  const CriticalPair& condition = *pair;
   PathFollower follower(defining, shape, WeightedNorm::unit(4), tight_newton(), 2, std::move(pair));
   PathPoint start = follower.make_point(sampled_orbit({{2 * pi, state}}, 4, 10, 4, parameters({0.0, -1e-6})));
   REQUIRE(follower.start_at_fixed_parameter(start).converged());
   Tests tests;
-  if (direction < 0.0) tests.push_back(std::make_unique<AngleTest>(PointType::resonance_1));
+  if (direction < 0.0) tests.push_back(std::make_unique<AngleTest>(PointType::resonance_1, condition));
   const ContinuationSettings settings = branch_settings(shape, 2, 1e-3 * direction, 5e-3, 15);
   KeepingSink sink;
   ContinuationRun run(follower, defining, settings, std::move(tests), sink);
@@ -272,14 +273,15 @@ TEST_CASE("a torus curve that meets its mirror image ends there, in the 1:1 reso
   const OrbitShape shape{4, 1, 10, 4};
   const PeriodicOrbitSystem defining(system_of<Takens>(), {{1, 1, 1}}, {2, 1});
   auto pair = std::make_unique<CriticalPair>(defining, shape, std::polar(1.0, 2 * pi * std::sqrt(2.0) * a));
+  const CriticalPair& condition = *pair;
   PathFollower follower(defining, shape, WeightedNorm::unit(4), tight_newton(), 2, std::move(pair));
   PathPoint start = follower.make_point(sampled_orbit({{2 * pi, state}}, 4, 10, 4, parameters({a * a, a * a})));
   REQUIRE(follower.start_at_fixed_parameter(start).converged());
   Tests tests;
   for (const PointType type : {PointType::resonance_1, PointType::resonance_2, PointType::resonance_4})
-    tests.push_back(std::make_unique<AngleTest>(type));
-  tests.push_back(std::make_unique<MirroredResonanceTest>());
-  tests.push_back(std::make_unique<PassedResonanceTest>());
+    tests.push_back(std::make_unique<AngleTest>(type, condition));
+  tests.push_back(std::make_unique<MirroredResonanceTest>(condition));
+  tests.push_back(std::make_unique<PassedResonanceTest>(condition));
   const double rising = follower.principal_direction(start) > 0.0 ? direction : -direction;
   ContinuationSettings settings = branch_settings(shape, 2, 0.5 * longest * rising, longest, 600);
   settings.parameter_max = 0.4;

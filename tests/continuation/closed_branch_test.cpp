@@ -205,7 +205,7 @@ TEST_CASE("orbits of no fixed phase are compared by what does not depend on it")
       REQUIRE(orbits.follower.step(here, ds, next).converged());
       back = closed.on_step(here, next, ds);
       if (back) break;
-      closed.went(ds);
+      closed.add_step(ds);
       length += ds;
       std::swap(here, next);
     }

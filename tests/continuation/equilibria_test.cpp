@@ -9,6 +9,7 @@
 #include "bvp/hopf_pair.hpp"
 #include "constants/run_settings.hpp"
 #include "problem_type/problem_type.hpp"
+#include "run/branch_setup.hpp"
 #include "stability/equilibrium_eigenvalues.hpp"
 #include "stability/lyapunov_coefficient.hpp"
 #include "support/branch_fixture.hpp"
@@ -144,6 +145,10 @@ RunSettings settings_of(const HybridSystem& system, const std::vector<int>& free
   settings.branch_mode = curve == Curve::none ? 1 : 2;
   settings.free_parameters = free;
   settings.segments = {{0, {1, no_function, no_function}, monitor}};
+  settings.max_newton = tight_newton().max_iterations;
+  settings.full_newton = tight_newton().full_iterations;
+  settings.tolerance_parameters = tight_newton().tolerance_parameters;
+  settings.tolerance_states = tight_newton().tolerance_states;
   return settings;
 }
 
@@ -161,22 +166,19 @@ Branch follow(const Eigen::VectorXd& state, const ParameterVector& par, const st
   const HybridSystem& system = system_of<Problem>();
   const RunSettings run_settings = settings_of(system, free, curve, monitor);
   const ProblemType& type = type_of(curve);
-  const std::unique_ptr<DefiningSystem> defining = type.make_system(system, run_settings, free);
   const OrbitShape shape = OrbitShape::point(system.dimension());
-  std::unique_ptr<OrbitCondition> condition;
-  if (curve == Curve::fold) condition = std::make_unique<EquilibriumFold>(*defining, shape);
-  if (curve == Curve::hopf) condition = std::make_unique<HopfPair>(*defining, shape);
-  PathFollower follower(*defining, shape, WeightedNorm::unit(shape.dimension), tight_newton(), free.front(),
-                        std::move(condition));
-  PathPoint start = follower.make_point({shape, uniform_mesh(1), state.replicate(1, 2), par});
+  SelectedStart selected;
+  selected.start.orbit = {shape, uniform_mesh(1), state.replicate(1, 2), par};
+  const BranchSetup setup = type.prepare(system, run_settings, selected);
+  PathFollower& follower = *setup.follower;
+  PathPoint start = follower.make_point(selected.start.orbit);
   REQUIRE(follower.start_at_fixed_parameter(start).converged());
   ContinuationSettings settings = branch_settings(shape, free.front(), ds, largest, points);
-  settings.periodic = false;
   settings.location_tolerance = 1e-10;
   settings.max_location = 20;
   settings.monitored = {monitor};
   Branch branch;
-  ContinuationRun run(follower, *defining, settings, type.tests(*defining, run_settings), branch.sink);
+  ContinuationRun run(follower, *setup.defining, settings, setup.make_tests(), branch.sink);
   branch.summary = run.run(start);
   return branch;
 }

@@ -77,7 +77,7 @@ TEST_CASE("torus: normal multipliers of the closed form") {
   Torus torus(31, {4, 1, 20, 4});
   const PathPoint point = torus.solved(2.0);
   REQUIRE(torus.follower.linearize_at(point));
-  const FloquetMultipliers multipliers = torus_multipliers(torus.follower.condensed(), point.orbit);
+  const FloquetMultipliers multipliers = torus_multipliers(torus.system, torus.follower.condensed(), point.orbit);
   REQUIRE(multipliers.values.size() == 4);
   CHECK(multipliers.stable());
   CHECK(multipliers.structural < 1e-8);
@@ -191,7 +191,7 @@ TEST_CASE("torus: a state that is an angle winds along the curve, and a return e
   CHECK((back.states - point.orbit.states).cwiseAbs().maxCoeff() < 1e-11);
 
   REQUIRE(follower.linearize_at(point));
-  const FloquetMultipliers multipliers = torus_multipliers(follower.condensed(), point.orbit);
+  const FloquetMultipliers multipliers = torus_multipliers(system, follower.condensed(), point.orbit);
   REQUIRE(multipliers.values.size() == 3);
   CHECK(multipliers.structural < 1e-8);
   CHECK(multipliers.values[1].real() == Approx(std::exp(-2.0 * pi / golden)).epsilon(1e-6));

@@ -7,9 +7,9 @@
 #include <set>
 
 #include "plot/multiplier_figure.hpp"
-#include "plot/orbit_stability.hpp"
 #include "support/temporary_folder.hpp"
 #include "text/user_error.hpp"
+#include "traces/orbit_stability.hpp"
 
 using namespace tchat;
 using test_support::message_of;

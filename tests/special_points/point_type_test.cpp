@@ -1,4 +1,4 @@
-#include "special_points/point_type.hpp"
+#include "problem_type/point_type.hpp"
 #include "files/labelled_solution.hpp"
 
 #include <catch2/catch.hpp>

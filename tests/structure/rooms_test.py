@@ -2,7 +2,8 @@
 
 - a room of src includes itself, the rooms before it in the list of src/CMakeLists.txt, and nothing after it;
 - IPS and ISW are compared with numbers by their owner alone, the rooms problem_type and problem_types;
-- every problem type is one file of less than 200 lines.
+- what kind of solution something is, nobody asks but its owner, the room families: no questions by name (has_ring,
+  is_torus, is_point), no comparison of families, no cast to a class of equations, conditions or problem types.
 
     rooms_test.py SOURCE_FOLDER
 """
@@ -48,9 +49,14 @@ def comparisons(source):
             for line in text.splitlines() if number.search(line)]
 
 
-def long_types(source):
-    return [f"{path} has {text.count(chr(10))} lines" for path, text in sources(source)
-            if path.startswith("problem_types" + os.sep) and text.count("\n") >= 200]
+def questions_about_families(source):
+    question = re.compile(r"\b(has_ring|is_torus|is_point|is_equilibrium|is_ring)\b"
+                          r"|(==|!=)\s*&?\w+_family\(\)|&\w+_family\(\)\s*(==|!=)"
+                          r"|(static|dynamic)_cast<(const )?\w*(System|Condition|Problem|Family|Multiplier|Pair|Fold)\s*[&*]>"
+                          r"|(static|dynamic)_cast<const DefiningSystem&>")
+    own_object = re.compile(r"static_cast<const \w+\s*\*>\(\w+\)")  # from the void* of an interface in C
+    return [f"{path}: {line.strip()}" for path, text in sources(source) if path.split(os.sep)[0] != "families"
+            for line in text.splitlines() if question.search(line) and not own_object.search(line)]
 
 
 def check_that_faults_are_found():
@@ -65,9 +71,13 @@ def check_that_faults_are_found():
             file.write('#include "text/words.hpp"\n#include "tchat/problem.h"\n')
         assert includes_up(folder) == ["text/words.cpp includes bvp/orbit.hpp, of a room above it"]
         assert len(comparisons(folder)) == 1
+        with open(os.path.join(folder, "bvp", "orbit.cpp"), "w") as file:
+            file.write("bool g(int n) { return is_torus(n); }\n"
+                       "auto& h(const DefiningSystem& x) { return static_cast<const TorusSystem&>(x); }\n")
+        assert len(questions_about_families(folder)) == 2
 
 
 check_that_faults_are_found()
-found = includes_up(sys.argv[1]) + comparisons(sys.argv[1]) + long_types(sys.argv[1])
+found = includes_up(sys.argv[1]) + comparisons(sys.argv[1]) + questions_about_families(sys.argv[1])
 print("\n".join(found))
 sys.exit(1 if found else 0)

@@ -24,7 +24,7 @@ std::vector<std::string> lines_of(const std::string& text) {
 
 std::string csv(const BranchFile& file) {
   std::ostringstream out;
-  write_branch_csv(out, file);
+  write_branch_table(*table_formats()[0].make(out), file);
   return out.str();
 }
 
@@ -82,7 +82,7 @@ TEST_CASE("sections with different columns, names like our own, numbers that are
                                  "multiplier1_re,multiplier1_im,newton_iterations",
                                  "1,1,1,EP,,1,,1,1,1.5,,,inf,0,3", "2,2,1,EP,,2,,,,,3.5,2.5,,,"});
   std::ostringstream json;
-  write_branch_json(json, file);
+  write_branch_table(*table_formats()[1].make(json), file);
   CHECK(lines_of(json.str()) ==
         std::vector<std::string>{
             "[",

@@ -1,0 +1,73 @@
+/// Boundary value problems: segments that conditions of the problem tie.
+#include "bvp/boundary_value_system.hpp"
+
+#include "continuation/branch_analysis.hpp"
+#include "families/families.hpp"
+#include "families/label_checks.hpp"
+#include "start/data_start.hpp"
+#include "traces/orbit_trace.hpp"
+#include "verification/orbit_check.hpp"
+
+namespace tchat {
+
+namespace {
+
+class BoundaryValueFamily final : public SolutionFamily {
+ public:
+  BoundaryValueFamily()
+      : SolutionFamily({.solution = "a solution of a boundary value problem",
+                        .signature = {.ends_in_events = false,
+                                      .why_no_events = "the problem's boundary conditions tie the segments",
+                                      .counts_conditions = true},
+                        .summary = {.contact = "grazing point",
+                                    .advice = orbit_advice,
+                                    .lost_advice = lost_orbit_advice,
+                                    .structural_advice = mesh_advice},
+                        .has_return_map = false}) {}
+
+  OrbitShape shape(const RunSettings& settings) const override { return shape_of_segments(settings); }
+  SelectedStart start_from_data(const std::string& path, const RunSettings& settings,
+                                const HybridSystem& system) const override {
+    return start_from_orbit(path, settings, system);
+  }
+  OrbitShape restart_shape(const RunSettings& settings, const LabelledSolution& label,
+                           const std::string&) const override {
+    return switches_at_state(settings, label) ? OrbitShape::point(settings.dimension) : shape(settings);
+  }
+
+  OrbitCheck check(const HybridSystem& system, const RunSettings& settings, const Orbit& x,
+                   const std::vector<std::complex<double>>&, double tolerance,
+                   const CriticalMultipliers&) const override {
+    return check_boundary_values(system, settings, x, tolerance);
+  }
+  OrbitTrace trace(const LabelledSolution& label, const std::string& name, int dimension,
+                   const std::string& path) const override {
+    OrbitTrace trace = orbit_trace(label, name, dimension, path);
+    trace.is_closed = false;
+    return trace;
+  }
+  std::string why_not(Analysis analysis, const std::string&) const override {
+    if (analysis == Analysis::resegmentation)
+      return ": its segments have no signature that could change; `tchat run` restarts from it";
+    return no_periodic_orbit;
+  }
+};
+
+class BoundaryValueAnalysis final : public BranchAnalysis {
+ public:
+  const FamilyFacts& facts() const override { return boundary_value_family().facts(); }
+  FloquetMultipliers multipliers(const CondensedSystem&, const Orbit&) override { return {}; }
+};
+
+}  // namespace
+
+const SolutionFamily& boundary_value_family() {
+  static const BoundaryValueFamily family;
+  return family;
+}
+
+std::unique_ptr<BranchAnalysis> BoundaryValueSystem::make_analysis(const OrbitShape&) const {
+  return std::make_unique<BoundaryValueAnalysis>();
+}
+
+}  // namespace tchat

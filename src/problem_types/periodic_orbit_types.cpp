@@ -1,0 +1,180 @@
+/// The problem types of periodic orbits (IPS = 180): branches in one parameter (5.1-5.7), curves in two or three with
+/// one or two conditions more (5.11-5.22), and switches to other branches.
+#include "bvp/critical_branch_point.hpp"
+#include "bvp/critical_multiplier.hpp"
+#include "bvp/critical_pair.hpp"
+#include "bvp/periodic_orbit_system.hpp"
+#include "families/families.hpp"
+#include "problem_types/branch_point_start.hpp"
+#include "problem_types/double_event.hpp"
+#include "problem_types/problem_types.hpp"
+#include "problem_types/torus_pair.hpp"
+#include "run/branch_switch.hpp"
+#include "run/hopf_switch.hpp"
+#include "run/problem_row.hpp"
+#include "special_points/bifurcation_tests.hpp"
+#include "special_points/curve_tests.hpp"
+
+namespace tchat {
+
+namespace {
+
+/// The facts of a curve of `type` points with ISW = `branch_mode`, which is the number of free parameters.
+ProblemFacts curve_facts(PointType type, int branch_mode, const char* title) {
+  return {.number = periodic_orbit.number,
+          .branch_mode = branch_mode,
+          .curve = static_cast<int>(type),
+          .family = periodic_orbit_family,
+          .solutions = "periodic orbits",
+          .title = title,
+          .free_parameters = branch_mode,
+          .in_two_parameters = true,
+          .stability = StabilityMeaning::critical};
+}
+
+ProblemFacts switch_facts(const char* title, bool may_double) {
+  return {.number = branch_switch.number,
+          .branch_mode = branch_switch.branch_mode,
+          .curve = 0,
+          .family = periodic_orbit_family,
+          .solutions = "periodic orbits",
+          .title = title,
+          .free_parameters = 1,
+          .may_double = may_double,
+          .switches_branch = true,
+          .starts_at = "a period doubling (PD), a branch point (BP) or a Hopf bifurcation of equilibria (HB)",
+          .start_example = "PD"};
+}
+
+std::unique_ptr<PeriodicOrbitSystem> ring(const HybridSystem& system, const RunSettings& settings,
+                                          std::vector<int> free) {
+  return std::make_unique<PeriodicOrbitSystem>(system, settings.signature(), std::move(free));
+}
+
+/// With the unfolding parameter among the free ones of the defining system, but not among those of the run.
+std::unique_ptr<UnfoldedSystem> unfolded(const HybridSystem& system, const RunSettings& settings,
+                                         std::vector<int> free) {
+  free.push_back(unfolding_parameter);
+  return std::make_unique<UnfoldedSystem>(ring(system, settings, std::move(free)));
+}
+
+BranchCurve branch(const PeriodicOrbitSystem& system, const RunSettings&, const SelectedStart&) {
+  return {nullptr, [&system](const RunSettings& settings) {
+            TestList tests = contact_tests(system, settings);
+            add_bifurcations(tests, system, settings);
+            add_user_values(tests, system.system(), settings);
+            return tests;
+          }};
+}
+
+/// The curve of a condition; `add_codimension_two(tests, condition)` adds the points of codimension two on it.
+template <class Condition, class Add>
+BranchCurve curve_of(const DefiningSystem& system, std::unique_ptr<Condition> condition, Add add_codimension_two) {
+  const Condition& kept = *condition;
+  return {std::move(condition), [&system, &kept, add_codimension_two](const RunSettings& settings) {
+            TestList tests = contact_tests(system, settings);
+            add_codimension_two(tests, kept);
+            add_user_values(tests, system.system(), settings);
+            return tests;
+          }};
+}
+
+BranchCurve fold(const PeriodicOrbitSystem& system, const RunSettings&, const SelectedStart& start) {
+  return curve_of(system, std::make_unique<CriticalMultiplier>(system, start.start.orbit.shape, 1),
+                  [](TestList& tests, const CriticalMultiplier& condition) {
+                    tests.push_back(std::make_unique<CuspTest>(condition));
+                    tests.push_back(std::make_unique<ResonanceTest>(PointType::resonance_1, condition));
+                  });
+}
+
+BranchCurve period_doubling(const PeriodicOrbitSystem& system, const RunSettings&, const SelectedStart& start) {
+  return curve_of(system, std::make_unique<CriticalMultiplier>(system, start.start.orbit.shape, -1),
+                  [](TestList& tests, const CriticalMultiplier& condition) {
+                    tests.push_back(std::make_unique<ResonanceTest>(PointType::resonance_2, condition));
+                  });
+}
+
+BranchCurve torus(const PeriodicOrbitSystem& system, const RunSettings&, const SelectedStart& start) {
+  return curve_of(system, std::make_unique<CriticalPair>(system, start.start.orbit.shape, pair_at(system, start)),
+                  [](TestList& tests, const CriticalPair& pair) {
+                    for (const PointType type : {PointType::resonance_1, PointType::resonance_2, PointType::resonance_3,
+                                                 PointType::resonance_4})
+                      tests.push_back(std::make_unique<AngleTest>(type, pair));
+                    tests.push_back(std::make_unique<MirroredResonanceTest>(pair));
+                    tests.push_back(std::make_unique<PassedResonanceTest>(pair));
+                  });
+}
+
+BranchCurve fixed_angle(const PeriodicOrbitSystem& system, const RunSettings&, const SelectedStart& start) {
+  return curve_of(system,
+                  std::make_unique<CriticalPair>(system, start.start.orbit.shape, pair_at(system, start),
+                                                 fixed_cosine(system, start)),
+                  [](TestList&, const CriticalPair&) {});
+}
+
+template <class System>
+BranchCurve branch_point(const System& system, const RunSettings&, const SelectedStart& start) {
+  return curve_of(system, std::make_unique<CriticalBranchPoint>(system, start.start.orbit.shape),
+                  [](TestList& tests, const CriticalBranchPoint& condition) {
+                    tests.push_back(std::make_unique<ResonanceTest>(PointType::resonance_1, condition));
+                  });
+}
+
+/// A fold in the principal parameter means nothing here.
+BranchCurve double_event(const PeriodicOrbitSystem& system, const RunSettings&, const SelectedStart& start) {
+  return {double_event_condition(system, start), [&system](const RunSettings& settings) {
+            TestList tests = contact_tests(system, settings);
+            RunSettings without_folds = settings;
+            without_folds.detect_folds = 0;
+            add_bifurcations(tests, system, without_folds);
+            add_user_values(tests, system.system(), settings);
+            return tests;
+          }};
+}
+
+}  // namespace
+
+std::vector<const ProblemType*> periodic_orbit_types() {
+  using Ring = ProblemRow<PeriodicOrbitSystem>;
+  static const Ring orbits({.number = periodic_orbit.number,
+                            .branch_mode = periodic_orbit.branch_mode,
+                            .curve = 0,
+                            .family = periodic_orbit_family,
+                            .solutions = "periodic orbits",
+                            .title = "periodic orbits in one parameter",
+                            .free_parameters = 1},
+                           {}, ring, branch);
+  static const Ring folds(curve_facts(PointType::fold, 2, "folds of periodic orbits in two parameters"),
+                          {PointType::fold}, ring, fold);
+  static const Ring doublings(curve_facts(PointType::period_doubling, 2, "period doublings in two parameters"),
+                              {PointType::period_doubling}, ring, period_doubling);
+  static const Ring tori(curve_facts(PointType::torus, 2, "torus bifurcations in two parameters"), {PointType::torus},
+                         ring, torus);
+  static const ProblemRow<UnfoldedSystem> persistent_branch_points(
+      curve_facts(PointType::branch_point, 2, "branch points that persist (symmetry breaking) in two parameters"),
+      {PointType::branch_point}, unfolded, branch_point<UnfoldedSystem>, start_persistent_branch_points);
+  static const Ring angles(
+      curve_facts(PointType::torus, 3, "torus bifurcations of the start's angle in three parameters"),
+      {PointType::torus}, ring, fixed_angle);
+  static const Ring branch_points(curve_facts(PointType::branch_point, 3, "generic branch points in three parameters"),
+                                  {PointType::branch_point}, ring, branch_point<PeriodicOrbitSystem>,
+                                  start_generic_branch_points);
+  static const Ring double_events({.number = periodic_orbit.number,
+                                   .branch_mode = 2,
+                                   .curve = -static_cast<int>(PointType::user),  // GR labels are UZ in files
+                                   .family = periodic_orbit_family,
+                                   .solutions = "periodic orbits",
+                                   .title = "two events at once, such as the onset of sliding, in two parameters",
+                                   .free_parameters = 2,
+                                   .in_two_parameters = true},
+                                  {PointType::user}, ring, double_event);
+  static const SwitchRow switches(
+      switch_facts("the branch that bifurcates at a PD or BP label", true),
+      {PointType::period_doubling, PointType::branch_point, PointType::equilibrium_branch_point}, switch_branch);
+  static const SwitchRow births(switch_facts("the periodic orbits that are born at an HB label of equilibria", false),
+                                {PointType::hopf}, begin_periodic_orbits);
+  return {&orbits, &folds,         &doublings,     &tori,     &persistent_branch_points,
+          &angles, &branch_points, &double_events, &switches, &births};
+}
+
+}  // namespace tchat

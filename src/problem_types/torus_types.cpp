@@ -1,0 +1,42 @@
+/// The problem types of invariant tori (IPS = 182) and of tori in grazing contact (IPS = 152): the equations are those
+/// of bvp/torus_system.hpp (dissertation, 2.4, 3.3, 4.3). rho may be one of the free parameters.
+#include "families/families.hpp"
+#include "problem_types/problem_types.hpp"
+#include "run/problem_row.hpp"
+#include "run/torus_problem.hpp"
+#include "run/torus_start.hpp"
+
+namespace tchat {
+
+namespace {
+
+ProblemFacts torus_facts(const ProblemId& id, const char* solutions, const char* title, int free_parameters) {
+  return {.number = id.number,
+          .branch_mode = id.branch_mode,
+          .curve = 0,
+          .family = torus_family,
+          .solutions = solutions,
+          .title = title,
+          .free_parameters = free_parameters,
+          .in_two_parameters = free_parameters > 2,  // a family has two itself, rho among them
+          .switches_branch = id.branch_mode < 0};
+}
+
+}  // namespace
+
+std::vector<const ProblemType*> torus_types() {
+  static const TorusProblem tori(torus_facts(invariant_torus, "invariant tori",
+                                             "invariant tori, rho and one parameter free, or two with rho fixed", 2),
+                                 free_torus);
+  static const SwitchRow births(
+      torus_facts(torus_birth, "invariant tori", "the torus that is born at a TR label of periodic orbits", 2),
+      {PointType::torus}, begin_torus);
+  ProblemFacts grazing =
+      torus_facts(grazing_torus, "invariant tori in grazing contact",
+                  "invariant tori in grazing contact, rho and two parameters free, or three with rho fixed", 3);
+  grazing.stability = StabilityMeaning::without_contact;
+  static const TorusProblem in_contact(grazing, touching_torus);
+  return {&tori, &births, &in_contact};
+}
+
+}  // namespace tchat

@@ -1,0 +1,103 @@
+/// A problem type as a row: facts, equations, the condition of a curve and its test functions.
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "bvp/bordered_problem.hpp"
+#include "problem_type/point_type.hpp"
+#include "problem_type/problem_type.hpp"
+#include "run/branch_setup.hpp"
+
+namespace tchat {
+
+/// What a type adds to the equations of one solution. `tests` are those of the curve: they may refer to the condition.
+struct BranchCurve {
+  std::unique_ptr<OrbitCondition> condition = nullptr;
+  std::function<TestList(const RunSettings&)> tests;
+};
+
+/// A type whose equations are those of a System.
+template <class System>
+class ProblemRow final : public ProblemType {
+ public:
+  /// The equations of one solution.
+  using MakeSystem = std::unique_ptr<System> (*)(const HybridSystem&, const RunSettings&, std::vector<int> free);
+  /// The curve that starts at a solution. Throws UserError where none does.
+  using MakeCurve = BranchCurve (*)(const System&, const RunSettings&, const SelectedStart&);
+  /// Changes a start so that it fits the equations. Throws UserError where no such branch starts there.
+  using Adapt = void (*)(const HybridSystem&, const RunSettings&, SelectedStart&);
+
+  /// `starts_at`: types of labels; empty: any.
+  ProblemRow(const ProblemFacts& facts, std::vector<PointType> starts_at, MakeSystem make_system, MakeCurve make_curve,
+             Adapt adapt = nullptr)
+      : ProblemType(facts),
+        starts_at_(std::move(starts_at)),
+        make_system_(make_system),
+        make_curve_(make_curve),
+        adapt_(adapt) {}
+
+  bool begins_at(int label_type) const override { return starts_at_.empty() || is_among(starts_at_, label_type); }
+
+  std::unique_ptr<DefiningSystem> make_system(const HybridSystem& system, const RunSettings& settings,
+                                              std::vector<int> free_parameters) const override {
+    return make_system_(system, settings, std::move(free_parameters));
+  }
+
+  BranchSetup set_up(const HybridSystem& system, const RunSettings& settings,
+                     const SelectedStart& start) const override {
+    SelectedStart adapted = start;
+    if (adapt_ != nullptr) adapt_(system, settings, adapted);
+    BranchSetup setup = prepare(system, settings, adapted);
+    setup.start = first_point(*setup.follower, *setup.defining, adapted, settings);
+    return setup;
+  }
+
+  BranchSetup prepare(const HybridSystem& system, const RunSettings& settings,
+                      const SelectedStart& start) const override {
+    std::unique_ptr<System> equations = make_system_(system, settings, free_of_run(settings));
+    BranchCurve curve = make_curve_(*equations, settings, start);
+    BranchSetup setup{this, settings};
+    setup.make_tests = [tests = std::move(curve.tests), settings] { return tests(settings); };
+    setup.defining = std::move(equations);
+    attach_follower(setup, std::move(curve.condition), start.start.orbit);
+    return setup;
+  }
+
+ private:
+  std::vector<PointType> starts_at_;
+  MakeSystem make_system_;
+  MakeCurve make_curve_;
+  Adapt adapt_;
+};
+
+/// A type that goes on, from a label, as the type of ISW = 1 and the same IPS.
+class SwitchRow final : public ProblemType {
+ public:
+  using SetUp = BranchSetup (*)(const HybridSystem&, const RunSettings&, const SelectedStart&);
+
+  SwitchRow(const ProblemFacts& facts, std::vector<PointType> starts_at, SetUp set_up)
+      : ProblemType(facts), starts_at_(std::move(starts_at)), set_up_(set_up) {}
+
+  bool begins_at(int label_type) const override { return is_among(starts_at_, label_type); }
+  std::unique_ptr<DefiningSystem> make_system(const HybridSystem& system, const RunSettings& settings,
+                                              std::vector<int> free_parameters) const override {
+    return followed().make_system(system, settings, std::move(free_parameters));
+  }
+  BranchSetup set_up(const HybridSystem& system, const RunSettings& settings,
+                     const SelectedStart& start) const override {
+    return set_up_(system, settings, start);
+  }
+  BranchSetup prepare(const HybridSystem& system, const RunSettings& settings,
+                      const SelectedStart& start) const override {
+    return followed().prepare(system, settings, start);
+  }
+
+ private:
+  const ProblemType& followed() const { return problem_type(facts().number, 1); }
+
+  std::vector<PointType> starts_at_;
+  SetUp set_up_;
+};
+
+}  // namespace tchat

@@ -1,0 +1,86 @@
+#include "start/data_start.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "constants/settings_type.hpp"
+#include "setup/parameter_values.hpp"
+#include "setup/problem_setup.hpp"
+#include "text/user_error.hpp"
+
+namespace tchat {
+
+namespace {
+
+bool given_on_command_line(const HybridSystem& system, const RunSettings& settings, int k) {
+  for (const RunSettings::ParameterValue& value : settings.parameter_values)
+    if (parameter_index(system, value.name, "command line") == k) return true;
+  return false;
+}
+
+void set_parameters(const DatFile& data, const HybridSystem& system, const std::string& path, ParameterVector& par) {
+  for (const auto& [k, value] : data.parameters) par(k - 1) = value;
+  for (const auto& [name, value] : data.named_parameters) par(parameter_index(system, name, path) - 1) = value;
+}
+
+}  // namespace
+
+OrbitShape shape_of_segments(const RunSettings& settings) {
+  return {settings.dimension, segment_count(settings), settings.mesh_intervals, settings.collocation_points};
+}
+
+SelectedStart start_from_state(const std::string& path, const RunSettings& settings, const HybridSystem& system) {
+  const DatFile data = read_point_dat_file(path, settings.dimension);
+  SelectedStart selected;
+  selected.source = path;
+  selected.known_parameters = initial_parameters(system);
+  set_parameters(data, system, path, selected.known_parameters);
+  ParameterVector par = selected.known_parameters;
+  apply_command_line(system, settings, par);
+  par(first_duration - 1) = 0.0;
+  selected.start.orbit = point_from_data(data, par);
+  selected.label_start = settings.start.from_data();
+  selected.last_label = selected.label_start ? 0 : 1;
+  return selected;
+}
+
+SelectedStart start_from_orbit(const std::string& path, const RunSettings& settings, const HybridSystem& system) {
+  const int m = segment_count(settings);
+  const DatFile data = read_dat_file(path, settings.dimension, m);
+  ParameterVector par = initial_parameters(system);
+  std::vector<bool> given(static_cast<std::size_t>(m), false);
+  const auto set = [&](int k, double value) {
+    par(k - 1) = value;
+    if (is_duration(k, m)) given[static_cast<std::size_t>(duration_segment(k))] = true;
+  };
+  const tchat_problem& table = system.table();
+  for (int s = 0; table.initial_durations != nullptr && s < std::min(m, table.durations); ++s)
+    if (std::isfinite(table.initial_durations[s])) set(first_duration + s, table.initial_durations[s]);
+  for (const auto& [k, value] : data.parameters) set(k, value);
+  for (const auto& [name, value] : data.named_parameters) set(parameter_index(system, name, path), value);
+  const ParameterVector known = par;
+  apply_command_line(system, settings, par);
+  for (int s = 0; s < m; ++s) {
+    if (given[static_cast<std::size_t>(s)] || given_on_command_line(system, settings, first_duration + s)) continue;
+    if (m > 1)
+      throw UserError(fmt::format(
+          "{}: the duration of segment {} is not given; with several segments every one is needed, add a line "
+          "`# PAR({}) = value` to the file or 'PAR({})=value' to the command line",
+          path, s + 1, first_duration + s, first_duration + s));
+    par(first_duration - 1) = data.span;
+  }
+  const OrbitShape shape = shape_of_segments(settings);
+  SelectedStart selected;
+  selected.source = path;
+  selected.start.orbit = orbit_from_data(data, shape, par);
+  selected.second = orbit_from_rows(data, shape, par);
+  selected.known_parameters = known;
+  selected.known_parameters.segment(first_duration - 1, m) = par.segment(first_duration - 1, m);
+  selected.label_start = settings.start.from_data();
+  selected.last_label = selected.label_start ? 0 : 1;
+  return selected;
+}
+
+}  // namespace tchat
