@@ -72,7 +72,9 @@ ContinuationRun::ContinuationRun(PathFollower& follower, const DefiningSystem& s
       search_(follower, system, *analysis_, with_bounds(std::move(tests), settings_), location_settings(settings_)),
       step_(settings_.step),
       trend_(settings_.trend.value_or(OrbitTrend(system.orbits()))),
-      closed_(follower, system, analysis_->has_fixed_phase()) {}
+      closed_(follower, system, analysis_->has_fixed_phase()) {
+  summary_.family = &analysis_->facts();
+}
 
 BranchSummary ContinuationRun::run(PathPoint start) {
   here_ = std::move(start);
@@ -412,7 +414,6 @@ void ContinuationRun::record(const SpecialPoint& special, const PointData& data)
   summary_.points = number_;
   summary_.inadmissible_points += !violations.empty();
   summary_.multipliers_computed = settings_.multipliers;
-  summary_.family = &analysis_->facts();
   summary_.critical_curve = follower_.condition() != nullptr;
   summary_.unstable_points += settings_.multipliers && !data.multipliers.stable();
   summary_.worst_structural = std::max(summary_.worst_structural, data.multipliers.structural);

@@ -60,6 +60,18 @@ class Breaking final : public TestFunction {
 
 }  // namespace
 
+TEST_CASE("a summary names its family also where a branch that goes on with another mesh has no point of its own") {
+  Branch branch;
+  branch.settings.resumes = true;
+  branch.settings.may_refine = true;
+  branch.settings.error_bound = 1e-300;
+  const BranchSummary summary = branch.run();
+  CHECK(summary.reason == EndReason::outgrown);
+  CHECK(branch.sink.points.empty());
+  REQUIRE(summary.family != nullptr);
+  CHECK(std::string(summary.family->solution) == "a periodic orbit");
+}
+
 TEST_CASE("a branch ends after NMX points, the first and the last labelled EP, every NPR-th labelled") {
   Branch branch;
   branch.settings.print_every = 4;
