@@ -93,7 +93,7 @@ class EventAlongSegment {
 
   const double* par() const { return x_.par.data(); }
 
-  /// A minimum on an end but for rounding is on it.
+  /// Rounding may place a minimum slightly inside an end; it is then moved onto the end.
   static double snapped(double tau) {
     constexpr double rounding = 1e-12;
     if (tau < rounding) return 0.0;

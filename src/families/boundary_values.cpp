@@ -1,10 +1,8 @@
 /// Boundary value problems: segments that conditions of the problem tie.
 #include "bvp/boundary_value_system.hpp"
-
 #include "continuation/branch_analysis.hpp"
 #include "families/families.hpp"
-#include "families/label_checks.hpp"
-#include "start/data_start.hpp"
+#include "families/segment_family.hpp"
 #include "traces/orbit_trace.hpp"
 #include "verification/orbit_check.hpp"
 
@@ -12,28 +10,18 @@ namespace tchat {
 
 namespace {
 
-class BoundaryValueFamily final : public SolutionFamily {
+class BoundaryValueFamily final : public SegmentFamily {
  public:
   BoundaryValueFamily()
-      : SolutionFamily({.solution = "a solution of a boundary value problem",
-                        .signature = {.ends_in_events = false,
-                                      .why_no_events = "the problem's boundary conditions tie the segments",
-                                      .counts_conditions = true},
-                        .summary = {.contact = "grazing point",
-                                    .advice = orbit_advice,
-                                    .lost_advice = lost_orbit_advice,
-                                    .structural_advice = mesh_advice},
-                        .has_return_map = false}) {}
-
-  OrbitShape shape(const RunSettings& settings) const override { return shape_of_segments(settings); }
-  SelectedStart start_from_data(const std::string& path, const RunSettings& settings,
-                                const HybridSystem& system) const override {
-    return start_from_orbit(path, settings, system);
-  }
-  OrbitShape restart_shape(const RunSettings& settings, const LabelledSolution& label,
-                           const std::string&) const override {
-    return switches_at_state(settings, label) ? OrbitShape::point(settings.dimension) : shape(settings);
-  }
+      : SegmentFamily({.solution = "a solution of a boundary value problem",
+                       .signature = {.ends_in_events = false,
+                                     .why_no_events = "the problem's boundary conditions tie the segments",
+                                     .counts_conditions = true},
+                       .summary = {.contact = "grazing point",
+                                   .advice = orbit_advice,
+                                   .lost_advice = lost_orbit_advice,
+                                   .structural_advice = mesh_advice},
+                       .has_return_map = false}) {}
 
   OrbitCheck check(const HybridSystem& system, const RunSettings& settings, const Orbit& x,
                    const std::vector<std::complex<double>>&, double tolerance,

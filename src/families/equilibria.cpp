@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 
 #include "families/families.hpp"
-#include "families/label_checks.hpp"
+#include "families/segment_family.hpp"
 #include "start/data_start.hpp"
 #include "verification/orbit_check.hpp"
 

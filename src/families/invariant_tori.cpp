@@ -2,8 +2,7 @@
 #include <fmt/format.h>
 
 #include "families/families.hpp"
-#include "families/label_checks.hpp"
-#include "start/data_start.hpp"
+#include "families/segment_family.hpp"
 #include "text/user_error.hpp"
 #include "traces/orbit_stability.hpp"
 #include "traces/torus_trace.hpp"
@@ -19,10 +18,10 @@ int orbits_of(Eigen::Index all, Eigen::Index segments) {
   return fits ? static_cast<int>(all / segments) : 0;
 }
 
-class TorusFamily final : public SolutionFamily {
+class TorusFamily final : public SegmentFamily {
  public:
   TorusFamily()
-      : SolutionFamily(
+      : SegmentFamily(
             {.solution = "a torus",
              .signature = {.parameters = "rho, the rotation number, may be one of them, as in ICP=[a,rho]; durations "
                                          "are free in any case",
@@ -47,32 +46,29 @@ class TorusFamily final : public SolutionFamily {
              .reports_stability = false,
              .has_several_returns = true}) {}
 
-  OrbitShape shape(const RunSettings& settings) const override { return shape_of_segments(settings); }
-
   SelectedStart start_from_data(const std::string& path, const RunSettings& settings,
                                 const HybridSystem&) const override {
     throw UserError(fmt::format(
-        "{}: tori (IPS = {}) do not begin from data; `tchat simulate --torus` makes a label of a torus that "
-        "a motion goes round, ISW = -1 begins at a torus bifurcation (-s NAME IRS=TR1), or give a label of "
-        "a torus with -s",
+        "{}: a run of tori (IPS = {}) does not start from data. It restarts from a label of a torus (-s NAME), or "
+        "starts at a torus bifurcation with ISW = -1 (-s NAME IRS=TR1); `tchat simulate --torus` makes the label of an "
+        "attracting torus",
         path, settings.problem_type));
   }
 
-  /// Of a torus as many orbits as the label has; of a periodic orbit at its torus bifurcation one.
+  /// A torus restarts with as many orbits as its label has. A switch starts from one periodic orbit.
   OrbitShape restart_shape(const RunSettings& settings, const LabelledSolution& label,
                            const std::string& path) const override {
-    if (switches_at_state(settings, label)) return OrbitShape::point(settings.dimension);
+    if (problem_type(settings).facts().switches_branch) return SegmentFamily::restart_shape(settings, label, path);
     OrbitShape wanted = shape(settings);
-    if (problem_type(settings).facts().switches_branch) return wanted;
     const int m = wanted.segments;
     wanted.segments = static_cast<int>(label.states.rows()) / settings.dimension;
     const bool is_known_otherwise = records_problem_type(label.problem_type) && &family_of(label.problem_type) != this;
     if (orbits_of(wanted.segments, m) > 0 && !is_known_otherwise) return wanted;
     throw UserError(fmt::format(
-        "{}: label {} is no torus, of which there are an odd number of orbits of {} segment{} each, but has {} "
-        "segment{} "
-        "(IPS = {}); start from a label of a run with IPS = {}, or at a torus bifurcation (TR) with ISW = -1",
-        path, label.label, m, m == 1 ? "" : "s", wanted.segments, wanted.segments == 1 ? "" : "s", label.problem_type,
+        "{}: label {} (IPS = {}) has {} segment{} and is no torus: a torus has an odd number of orbits, at least "
+        "three, "
+        "of {} segment{} each; start from a label of a run with IPS = {}, or at a torus bifurcation (TR) with ISW = -1",
+        path, label.label, label.problem_type, wanted.segments, wanted.segments == 1 ? "" : "s", m, m == 1 ? "" : "s",
         settings.problem_type));
   }
 

@@ -98,9 +98,10 @@ std::string RingAnalysis::why_no_solution(const Orbit& first, const Orbit& start
 
 std::string RingAnalysis::start_advice(const Orbit& start) const {
   const bool rests = !system_.has_event(0) && (start.states.colwise() - start.states.col(0)).isZero(0.0);
-  return rests ? "The start does not move: without a section (GCHIND = [0]) an orbit needs a start that goes round; "
-                 "IPS = 1 follows equilibria."
-               : BranchAnalysis::start_advice(start);
+  return rests
+             ? "All states of the start are equal. Without a section (GCHIND = [0]) the start must be a closed orbit; "
+               "IPS = 1 continues equilibria."
+             : BranchAnalysis::start_advice(start);
 }
 
 std::unique_ptr<BranchAnalysis> RingSystem::make_analysis(const OrbitShape& shape) const {

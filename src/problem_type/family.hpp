@@ -65,7 +65,7 @@ struct FamilyFacts {
   SummaryWords summary;
   const char* own_parameter_name = "";    ///< of a parameter that the family adds to those of the problem
   std::optional<int> own_parameter = {};  ///< its PAR index
-  bool doubles_mesh = true;               ///< NTST is doubled where it does not resolve a solution
+  bool doubles_mesh = true;               ///< a run doubles NTST when the mesh does not resolve a solution
   bool reports_stability = true;          ///< a change of stability without a special point is reported
   bool has_return_map = true;             ///< multipliers are those of a return map
   bool has_several_returns = false;       ///< a solution consists of several orbits of the signature, one return each

@@ -87,8 +87,7 @@ constexpr auto table = std::to_array<PointTypeFacts>({
      true, false, true},
 });
 
-/// Of a number in files; null where there is none. UZ points are found by their kind, and by none where it is not
-/// known.
+/// The row of a number in files; null for unknown numbers. A UZ point whose kind is unknown has the row of kind none.
 const PointTypeFacts* find_number(int type, const UserPointKind& kind) {
   const auto is_whole = [type](const PointTypeFacts& row) { return row.is_whole && row.number == type; };
   if (const auto whole = std::find_if(table.begin(), table.end(), is_whole); whole != table.end()) return whole;

@@ -66,7 +66,7 @@ TEST_CASE("the count of conditions and free parameters is checked and named") {
   check_refused(workspace, "run rod ICP=[load]", {"ICP", "1 parameters", "2 + 1 - 2 1 + 1 = 2"});
   check_refused(workspace, "run rod GCHIND=[1]", {"GCHIND(1)", "'1'", "boundary conditions tie"});
   check_refused(workspace, "run rod GCHGRZIND=[[1]] GCIPSI=[1]", {"GCHGRZIND"});
-  check_refused(workspace, "run rod IPS=180", {"does not move", "GCHIND = [0]", "IPS = 1"});
+  check_refused(workspace, "run rod IPS=180", {"All states of the start are equal", "GCHIND = [0]", "IPS = 1"});
   check_refused(workspace, "run rod ISW=2", {"IPS = 4 with ISW = 2"});
   check_refused(workspace,
                 "run linosc -c impacting -d impacting IPS=4 NBC=5 GCHIND=[0] GCGIND=[0] GCHGRZIND=[[]] GCIPSI=[]",

@@ -241,7 +241,8 @@ TEST_CASE("tori: what a user does wrong gets a sentence") {
   };
   refused("run langford -s langford -o x IRS=EP1 IPS=182 ISW=-1 ICP=[a,rho]",
           "begins the torus that is born at a torus");
-  refused("run langford -s langford -o x IRS=TR1 IPS=182 ICP=[a,rho]", "label 2 is no torus");
+  refused("run langford -s langford -o x IRS=TR1 IPS=182 ICP=[a,rho]",
+          "label 2 (IPS = 180) has 1 segment and is no torus");
   refused("run langford -s langford -o x IRS=TR1 ICP=[rho]", "rho is the rotation number of a torus");
   refused("run langford -s langford -o x IRS=TR1 IPS=182 ISW=-1 ICP=[a]", "ICP");
   refused("simulate langford -c langford --torus x PAR(a)=0.5", "");  // settles on the periodic orbit

@@ -232,7 +232,7 @@ TEST_CASE("tori that are not there, labels that are none: a sentence with the cu
   refused("run torus -c torus -s torus -o no IRS=EP1 IPS=180 ICP=[omega]", {"is a torus (IPS = 182)", "IPS = 152"});
   refused("run torus -c torus -s torus -o no IRS=EP1 ICP=[omega]", {"at least 2", "rho, the rotation number"});
   refused("grazing q.torus EP1 -p torus", {"is a torus (IPS = 182)", "sweep --map"});
-  refused("run langford -c langford -d langford IPS=182 ICP=[a,rho] -o no", {"do not begin from data", "--torus"});
+  refused("run langford -c langford -d langford IPS=182 ICP=[a,rho] -o no", {"does not start from data", "--torus"});
   refused("sweep torus --map q.torus:EP1 --over mu=1:2:3 -o no", {"is the identity"});
   done(workspace, "run langford -q");
   refused("plot q.langford 1 --section -o no.png", {"is no torus", "leave --section out"});

@@ -1,8 +1,9 @@
-/// What families share: the words of summaries, and which labels a run may restart from.
+/// What families of segments share: their sizes, how they start and restart, and the words of summaries.
 #pragma once
 
 #include "constants/settings_type.hpp"
 #include "files/labelled_solution.hpp"
+#include "start/data_start.hpp"
 
 namespace tchat {
 
@@ -23,5 +24,21 @@ inline constexpr const char* no_periodic_orbit =
 inline bool switches_at_state(const RunSettings& settings, const LabelledSolution& label) {
   return problem_type(settings).facts().switches_branch && label.tau.size() == 1;
 }
+
+/// A solution that consists of the segments of the signature on a mesh of NTST intervals.
+class SegmentFamily : public SolutionFamily {
+ public:
+  using SolutionFamily::SolutionFamily;
+
+  OrbitShape shape(const RunSettings& settings) const final { return shape_of_segments(settings); }
+  SelectedStart start_from_data(const std::string& path, const RunSettings& settings,
+                                const HybridSystem& system) const override {
+    return start_from_orbit(path, settings, system);
+  }
+  OrbitShape restart_shape(const RunSettings& settings, const LabelledSolution& label,
+                           const std::string& /*path*/) const override {
+    return switches_at_state(settings, label) ? OrbitShape::point(settings.dimension) : shape(settings);
+  }
+};
 
 }  // namespace tchat
