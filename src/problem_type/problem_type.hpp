@@ -14,7 +14,6 @@
 
 namespace tchat {
 
-class DefiningSystem;
 class HybridSystem;
 class SolutionFamily;
 struct BranchSetup;
@@ -60,9 +59,6 @@ class ProblemType {
   int free_entries(const RunSettings& settings) const;
   /// Can a branch of this type start at a label of this type (type number without its tens digit)?
   virtual bool begins_at(int) const { return true; }
-  /// The equations of one solution, without those of a curve and of a step.
-  virtual std::unique_ptr<DefiningSystem> make_system(const HybridSystem& system, const RunSettings& settings,
-                                                      std::vector<int> free_parameters) const = 0;
   /// Everything that a branch needs before it is computed. Throws UserError when it cannot start there,
   /// ComputationError when no first point is found.
   virtual BranchSetup set_up(const HybridSystem& system, const RunSettings& settings,

@@ -49,7 +49,7 @@ std::vector<const ProblemType*> boundary_value_types() {
   static const SwitchRow switches(
       boundary_value_facts(branch_switch.branch_mode,
                            "the branch of boundary value problems that crosses at a BP label"),
-      {PointType::period_doubling, PointType::branch_point, PointType::equilibrium_branch_point}, switch_branch);
+      branch_switch_labels(), switch_branch);
   return {&branches, &switches};
 }
 

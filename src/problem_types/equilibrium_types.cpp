@@ -88,7 +88,7 @@ std::vector<const ProblemType*> equilibrium_types() {
                                  {PointType::hopf}, state, hopf);
   static const SwitchRow switches(
       equilibrium_facts(branch_switch.branch_mode, "the branch of equilibria that crosses at a BP label"),
-      {PointType::period_doubling, PointType::branch_point, PointType::equilibrium_branch_point}, switch_branch);
+      branch_switch_labels(), switch_branch);
   return {&branches, &folds, &hopf_points, &switches};
 }
 

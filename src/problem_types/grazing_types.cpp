@@ -88,8 +88,8 @@ std::vector<const ProblemType*> grazing_types() {
       grazing_facts(grazing_orbit.branch_mode, "periodic orbits in grazing contact, in two parameters"), {},
       grazing_ring, grazing_curve);
   static const SwitchRow switches(
-      grazing_facts(branch_switch.branch_mode, "the grazing curve that crosses at a BP label"),
-      {PointType::period_doubling, PointType::branch_point, PointType::equilibrium_branch_point}, switch_branch);
+      grazing_facts(branch_switch.branch_mode, "the grazing curve that crosses at a BP label"), branch_switch_labels(),
+      switch_branch);
   return {&curves, &switches};
 }
 

@@ -168,9 +168,8 @@ std::vector<const ProblemType*> periodic_orbit_types() {
                                    .free_parameters = 2,
                                    .in_two_parameters = true},
                                   {PointType::user}, ring, double_event);
-  static const SwitchRow switches(
-      switch_facts("the branch that bifurcates at a PD or BP label", true),
-      {PointType::period_doubling, PointType::branch_point, PointType::equilibrium_branch_point}, switch_branch);
+  static const SwitchRow switches(switch_facts("the branch that bifurcates at a PD or BP label", true),
+                                  branch_switch_labels(), switch_branch);
   static const SwitchRow births(switch_facts("the periodic orbits that are born at an HB label of equilibria", false),
                                 {PointType::hopf}, begin_periodic_orbits);
   return {&orbits, &folds,         &doublings,     &tori,     &persistent_branch_points,

@@ -47,8 +47,6 @@ const ProblemType& type_at(const RunSettings& settings, const SelectedStart& sel
 
 }  // namespace
 
-std::vector<int> free_of_run(const RunSettings& settings) { return free_problem_parameters(settings); }
-
 void attach_follower(BranchSetup& setup, std::unique_ptr<OrbitCondition> condition, const Orbit& start) {
   const RunSettings& settings = setup.settings;
   check_memory(start.shape, setup.defining->free_count());

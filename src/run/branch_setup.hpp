@@ -47,8 +47,6 @@ struct BranchSetup {
   std::optional<RunSettings> constants = {};
 };
 
-/// The free problem parameters of the run.
-std::vector<int> free_of_run(const RunSettings& settings);
 /// Gives the set-up, whose equations are there, a follower for solutions like `start`. Throws UserError when it would
 /// need more memory than there is.
 void attach_follower(BranchSetup& setup, std::unique_ptr<OrbitCondition> condition, const Orbit& start);

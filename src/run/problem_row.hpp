@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "bvp/bordered_problem.hpp"
+#include "constants/settings_type.hpp"
 #include "problem_type/point_type.hpp"
 #include "problem_type/problem_type.hpp"
 #include "run/branch_setup.hpp"
@@ -39,11 +40,6 @@ class ProblemRow final : public ProblemType {
 
   bool begins_at(int label_type) const override { return starts_at_.empty() || is_among(starts_at_, label_type); }
 
-  std::unique_ptr<DefiningSystem> make_system(const HybridSystem& system, const RunSettings& settings,
-                                              std::vector<int> free_parameters) const override {
-    return make_system_(system, settings, std::move(free_parameters));
-  }
-
   BranchSetup set_up(const HybridSystem& system, const RunSettings& settings,
                      const SelectedStart& start) const override {
     SelectedStart adapted = start;
@@ -55,7 +51,7 @@ class ProblemRow final : public ProblemType {
 
   BranchSetup prepare(const HybridSystem& system, const RunSettings& settings,
                       const SelectedStart& start) const override {
-    std::unique_ptr<System> equations = make_system_(system, settings, free_of_run(settings));
+    std::unique_ptr<System> equations = make_system_(system, settings, free_problem_parameters(settings));
     BranchCurve curve = make_curve_(*equations, settings, start);
     BranchSetup setup{this, settings};
     setup.make_tests = [tests = std::move(curve.tests), settings] { return tests(settings); };
@@ -71,6 +67,11 @@ class ProblemRow final : public ProblemType {
   Adapt adapt_;
 };
 
+/// The labels at which switch_branch (run/branch_switch.hpp) starts.
+inline std::vector<PointType> branch_switch_labels() {
+  return {PointType::period_doubling, PointType::branch_point, PointType::equilibrium_branch_point};
+}
+
 /// A type that goes on, from a label, as the type of ISW = 1 and the same IPS.
 class SwitchRow final : public ProblemType {
  public:
@@ -80,10 +81,6 @@ class SwitchRow final : public ProblemType {
       : ProblemType(facts), starts_at_(std::move(starts_at)), set_up_(set_up) {}
 
   bool begins_at(int label_type) const override { return is_among(starts_at_, label_type); }
-  std::unique_ptr<DefiningSystem> make_system(const HybridSystem& system, const RunSettings& settings,
-                                              std::vector<int> free_parameters) const override {
-    return followed().make_system(system, settings, std::move(free_parameters));
-  }
   BranchSetup set_up(const HybridSystem& system, const RunSettings& settings,
                      const SelectedStart& start) const override {
     return set_up_(system, settings, start);

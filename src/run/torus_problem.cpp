@@ -73,12 +73,6 @@ WeightedNorm mean_norm(const RunSettings& settings, int orbits) {
 
 }  // namespace
 
-std::unique_ptr<DefiningSystem> TorusProblem::make_system(const HybridSystem& system, const RunSettings& settings,
-                                                          std::vector<int> free_parameters) const {
-  constexpr int fewest_orbits = 3;
-  return std::make_unique<TorusSystem>(system, settings.signature(), fewest_orbits, std::move(free_parameters));
-}
-
 BranchSetup TorusProblem::set_up(const HybridSystem& system, const RunSettings& settings,
                                  const SelectedStart& start) const {
   return continue_torus(*this, system, settings, start);

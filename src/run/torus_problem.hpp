@@ -15,9 +15,6 @@ class TorusProblem final : public ProblemType {
 
   TorusProblem(const ProblemFacts& facts, MakeCurve make_curve) : ProblemType(facts), make_curve_(make_curve) {}
 
-  /// Of the fewest orbits: the start decides how many there are (prepare).
-  std::unique_ptr<DefiningSystem> make_system(const HybridSystem& system, const RunSettings& settings,
-                                              std::vector<int> free_parameters) const override;
   BranchSetup set_up(const HybridSystem& system, const RunSettings& settings,
                      const SelectedStart& start) const override;
   /// As many orbits as the start has.

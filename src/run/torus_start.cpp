@@ -227,11 +227,10 @@ BranchSetup begin_torus(const HybridSystem& system, const RunSettings& settings,
         "IPS = {}, but the run does not start from such a label; name one, for example IRS=TR1",
         selected.source, settings.problem_type, periodic_orbit.number));
   const RunSettings before = on_periodic_orbit(settings);
-  const std::unique_ptr<DefiningSystem> known =
-      problem_type(before).make_system(system, before, {free_problem_parameters(before).front()});
-  PathFollower along(*known, selected.start.orbit.shape, weighted_norm(before), newton_settings(before),
-                     free_problem_parameters(before).front());
-  const PathPoint at = first_point(along, *known, selected, before).point;
+  const int principal = free_problem_parameters(before).front();
+  const PeriodicOrbitSystem known(system, before.signature(), {principal});
+  PathFollower along(known, selected.start.orbit.shape, weighted_norm(before), newton_settings(before), principal);
+  const PathPoint at = first_point(along, known, selected, before).point;
   along.linearize_at(at);
 
   const RunSettings of_run = on_torus(settings);
