@@ -18,10 +18,6 @@ constexpr double near_enough = 0.3 * current_enough;
 constexpr int most_chords = 3;
 /// Each is to make the next one smaller by this factor: expected of the first one, asked of the others.
 constexpr double contraction = 0.1;
-/// Newton's method may take back this share of what a prediction differs from that along the tangent; smaller changes
-/// lead to no other branch anyway.
-constexpr double share_taken_back = 0.5;
-constexpr double small_change = 1e-6;
 
 }  // namespace
 
@@ -34,6 +30,7 @@ PathFollower::PathFollower(const DefiningSystem& system, const OrbitShape& shape
       monitors_(std::move(monitors.watched)),
       problem_(system, shape, std::move(condition), std::move(monitors.held), settings.threads),
       newton_(problem_, settings),
+      predictor_(make_predictor(system.free_parameters())),
       settings_(settings),
       dx_(condensed().make_vector()),
       on_tangent_{shape, uniform_mesh(shape.intervals), dx_.states, ParameterVector::Zero(parameter_length)} {
@@ -167,13 +164,13 @@ void PathFollower::begin_step(const PathPoint& from) {
 }
 
 NewtonResult PathFollower::step(const PathPoint& from, double ds, PathPoint& to) {
-  const TrailTerms terms = predict(from, ds, system_.free_parameters(), to.orbit);
-  if (terms.error > 0.0) {
+  const Prediction prediction = predictor_->predict(from, ds, to.orbit);
+  if (prediction.error > 0.0) {
     begin_step(from);
-    double taken_back = polish(from, terms.error, to.orbit);
+    double correction = polish(from, prediction.error, to.orbit);
     const NewtonResult result = step_from_plane(from, 0.0, to, current_enough);
-    for (const NewtonIteration& iteration : newton_.history()) taken_back += iteration.larger();
-    if (result.converged() && taken_back <= std::max(share_taken_back * terms.change, small_change)) return result;
+    for (const NewtonIteration& iteration : newton_.history()) correction += iteration.larger();
+    if (result.converged() && !predictor_->rejected(prediction, correction)) return result;
   }
   return step_along_tangent(from, ds, to);
 }
@@ -202,8 +199,9 @@ double PathFollower::ahead(const PathPoint& from, double ds, const Orbit& x) con
 NewtonResult PathFollower::step_from_plane(const PathPoint& from, double ahead, PathPoint& to, double oldest) {
   begin_step(from);
   to.newton_constant = from.newton_constant;
-  to.trail.follow(from, system_.free_parameters());
-  return correct_and_orient(to, from.dual, ahead, oldest);
+  const NewtonResult result = correct_and_orient(to, from.dual, ahead, oldest);
+  if (result.converged()) predictor_->accepted(from, system_.free_parameters(), to);
+  return result;
 }
 
 /// dx_ is set to the correction of x by the factors at hand, whatever the row was that they have, in the plane of a

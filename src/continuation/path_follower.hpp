@@ -1,7 +1,7 @@
 /// Pseudo-arclength continuation of a defining system: starting, predicting, correcting (5.50-5.55).
 ///
 /// A path point carries its unit tangent in the weighted norm, oriented along the branch. A step of length ds predicts
-/// x + ds v, or with the points before it (path_trail.hpp), and corrects with <v, x_new - x> = ds; the tangent at the
+/// x + ds v, or as its predictor says (predictor.hpp), and corrects with <v, x_new - x> = ds; the tangent at the
 /// new point comes from the factors of its linearisation, which stay available for multipliers and test functions. A
 /// prediction of higher order is brought nearer by chord iterations with the factors at hand, so that one more matrix
 /// is enough; where Newton's method fails from it or takes much of it back, that along the tangent is taken. Everything
@@ -15,6 +15,7 @@
 #include "continuation/monitor_set.hpp"
 #include "continuation/newton_chord.hpp"
 #include "continuation/path_trail.hpp"
+#include "continuation/predictor.hpp"
 
 namespace tchat {
 
@@ -138,6 +139,7 @@ class PathFollower {
   MonitorSet monitors_;
   BorderedProblem problem_;
   NewtonChord newton_;
+  std::unique_ptr<Predictor> predictor_;
   NewtonSettings settings_;
   ConditionMemory unused_;  // the condition's before anything was evaluated
   OrbitVector dx_;          // of chord iterations

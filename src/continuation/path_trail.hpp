@@ -1,14 +1,6 @@
-/// Where a branch has come from, and what this says of the next point: a predictor of higher order.
+/// Where a branch has come from: the points before a path point, for predictors that use them.
 ///
-/// Near a point A with unit tangent v the branch is the graph y(s) = A + s v + w(s) over its tangent, <v, w> = 0,
-/// w(0) = w'(0) = 0. Of an earlier point B with unit tangent t
-///
-///     s_B = <v, B - A>,    w(s_B) = B - A - s_B v,    w'(s_B) = t / <v, t> - v
-///
-/// are known without error but that of the points, so that Hermite's interpolation through K of them predicts the point
-/// at s = ds with an error of order ds^(2K + 2), in the plane <v, y - A> = ds that Newton's method corrects in. In
-/// Newton's form each point adds a term to the prediction along the tangent. The terms are added while they fall; where
-/// the first one is no small change of the step, the branch bends too much, and nothing is added.
+/// A trail is a value that belongs to its point. Trial steps that fail leave no trace in it.
 #pragma once
 
 #include <array>
@@ -67,15 +59,5 @@ class PathTrail {
   int count_ = 0;
   std::vector<double> mesh_;
 };
-
-/// What the points of a trail change of a prediction, and about how far it then is from the branch (as OrbitChange); 0
-/// when there is no term.
-struct TrailTerms {
-  double change = 0.0;
-  double error = 0.0;
-};
-
-/// `x` becomes from + ds from.tangent with the terms of from's trail; without a term its states are of no use.
-TrailTerms predict(const PathPoint& from, double ds, const std::vector<int>& free_parameters, Orbit& x);
 
 }  // namespace tchat

@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "continuation/path_trail.hpp"
+#include "continuation/hermite_predictor.hpp"
 #include "support/branch_fixture.hpp"
 #include "support/linear_oscillator.hpp"
 
@@ -36,7 +36,8 @@ struct Branch {
   /// Of the prediction by the points before `here`, from the point that Newton's method finds.
   double error(double ds) {
     PathPoint predicted = here;
-    if (predict(here, ds, alpha, predicted.orbit).error == 0.0) advance(predicted.orbit, ds, here.tangent, alpha);
+    if (HermitePredictor(alpha).predict(here, ds, predicted.orbit).error == 0.0)
+      advance(predicted.orbit, ds, here.tangent, alpha);
     PathPoint found = here;
     REQUIRE(orbits.follower.step(here, ds, found).converged());
     return (found.orbit.states - predicted.orbit.states).cwiseAbs().maxCoeff();
