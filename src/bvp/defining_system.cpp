@@ -1,8 +1,16 @@
 #include "bvp/defining_system.hpp"
 
 #include <algorithm>
+#include <utility>
+
+#include "hybrid/contact_segment.hpp"
 
 namespace tchat {
+
+DefiningSystem::DefiningSystem(const HybridSystem& system, Signature signature, std::vector<int> free_parameters)
+    : system_(system), signature_(std::move(signature)), free_parameters_(std::move(free_parameters)) {
+  for (int s = 0; s < segments(); ++s) contact_segments_.push_back(tchat::is_contact_segment(system_, signature_, s));
+}
 
 void DefiningSystem::section_gradient(int s, const double* x, const double* par, double* gradient) const {
   double h = 0.0;

@@ -27,8 +27,7 @@ class BranchAnalysis;
 class DefiningSystem {
  public:
   /// `free_parameters`: PAR indices of the free problem parameters, durations not among them.
-  DefiningSystem(const HybridSystem& system, Signature signature, std::vector<int> free_parameters)
-      : system_(system), signature_(std::move(signature)), free_parameters_(std::move(free_parameters)) {}
+  DefiningSystem(const HybridSystem& system, Signature signature, std::vector<int> free_parameters);
   virtual ~DefiningSystem() = default;
 
   const HybridSystem& system() const { return system_; }
@@ -43,6 +42,8 @@ class DefiningSystem {
   int segments() const { return static_cast<int>(signature_.size()); }
   /// Does an event end segment s?
   bool has_event(int s) const { return signature_[static_cast<std::size_t>(s)].event != no_function; }
+  /// Does segment s begin and end on one surface (hybrid/contact_segment.hpp)?
+  bool is_contact_segment(int s) const { return contact_segments_[static_cast<std::size_t>(s)]; }
   int free_count() const { return static_cast<int>(free_parameters_.size()); }
 
   // The coupling rows, in m groups (some may be empty): group s stands behind the condensed rows of segment s.
@@ -98,6 +99,7 @@ class DefiningSystem {
   HybridSystem system_;
   Signature signature_;
   std::vector<int> free_parameters_;
+  std::vector<bool> contact_segments_;
 };
 
 }  // namespace tchat

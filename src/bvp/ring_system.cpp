@@ -6,15 +6,12 @@
 #include <cmath>
 
 #include "bvp/evaluation_failure.hpp"
-#include "hybrid/contact_segment.hpp"
 
 namespace tchat {
 
 RingSystem::RingSystem(const HybridSystem& system, Signature signature, std::vector<int> free_parameters)
     : DefiningSystem(system, std::move(signature), std::move(free_parameters)),
-      contact_row_(dimension(), free_count()) {
-  for (int s = 0; s < segments(); ++s) contacts_.push_back(is_contact_segment(system, this->signature(), s));
-}
+      contact_row_(dimension(), free_count()) {}
 
 bool RingSystem::is_divided(int s, const Orbit& x) const {
   constexpr double long_enough = 0.1;  // of the longest

@@ -54,11 +54,10 @@ class RingSystem : public DefiningSystem {
 
  private:
   /// May it be divided?
-  bool is_contact(int s) const { return contacts_[static_cast<std::size_t>(s)] && end_conditions(s) == 1; }
+  bool is_contact(int s) const { return is_contact_segment(s) && end_conditions(s) == 1; }
   double* end_rows(int s, const Orbit& x, double* values, double* entries) const;
   void put(const std::vector<double>& columns, int row_count, int column_count, double factor, double*& entries) const;
 
-  std::vector<bool> contacts_;  // of each segment: does it begin and end on one surface?
   mutable ContactRow contact_row_;
   mutable std::vector<double> value_, by_state_, by_parameter_;  // of one group, for Newton's loop is not to allocate
 };

@@ -7,7 +7,6 @@
 
 #include "bvp/no_duration.hpp"
 #include "bvp/transversality.hpp"
-#include "hybrid/contact_segment.hpp"
 #include "hybrid/identity_jump.hpp"
 #include "special_points/label_evidence.hpp"
 
@@ -183,7 +182,7 @@ SpecialPoint ImpactVelocityTest::lost_contact(const TestedPoint& point, int cont
 
 SpecialPoint ImpactVelocityTest::classify(const TestedPoint& point, bool rising) const {
   for (const int s : {segment_, (segment_ + 1) % system_.segments()})
-    if (is_contact_segment(system_.system(), system_.signature(), s) && contact_lasts_no_time(point.orbit, s))
+    if (system_.is_contact_segment(s) && contact_lasts_no_time(point.orbit, s))
       return lost_contact(point, s, stop_ && rising);
   const int event = system_.signature()[static_cast<std::size_t>(segment_)].event;
   return {PointType::user,

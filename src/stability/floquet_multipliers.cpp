@@ -5,7 +5,6 @@
 
 #include "bvp/no_duration.hpp"
 #include "bvp/transversality.hpp"
-#include "hybrid/contact_segment.hpp"
 #include "hybrid/event_at.hpp"
 #include "linear_algebra/dense_matrix.hpp"
 #include "linear_algebra/reflection.hpp"
@@ -83,8 +82,7 @@ void sort_by_interest(std::vector<std::complex<double>>& values) {
 bool is_passed(const DefiningSystem& defining, const Orbit& x, int s) {
   constexpr double continuous = 1e-6;
   const int m = x.shape.segments;
-  if (m < 2 || !is_contact_segment(defining.system(), defining.signature(), s) || !contact_lasts_no_time(x, s))
-    return false;
+  if (m < 2 || !defining.is_contact_segment(s) || !contact_lasts_no_time(x, s)) return false;
   const int before = defining.signature()[static_cast<std::size_t>((s + m - 1) % m)].field;
   const int own = defining.signature()[static_cast<std::size_t>(s)].field;
   Vector left(x.shape.dimension);
