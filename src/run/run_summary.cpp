@@ -17,7 +17,7 @@ std::string reason_text(const BranchSummary& summary, const std::string& paramet
   const char* left = summary.points > 1 ? "left" : "starts outside";
   switch (summary.reason) {
     case EndReason::max_points:
-      return fmt::format("the number of points asked for was reached ({})", summary.detail);
+      return fmt::format("{} points computed", summary.detail);
     case EndReason::parameter_bound:
       return fmt::format("{} {} the bounds RL0, RL1: {}", parameter, left, summary.detail);
     case EndReason::measure_bound:
@@ -30,8 +30,8 @@ std::string reason_text(const BranchSummary& summary, const std::string& paramet
     case EndReason::no_orbit:
       return summary.detail;
     case EndReason::special_point:
-      if (!summary.stopped_at_grazing) return "at the last special point above, where the run was to end";
-      return fmt::format("at the {} above; with GRSTOP=0 the branch goes on beyond it",
+      if (!summary.stopped_at_grazing) return "at the last special point above";
+      return fmt::format("at the {} above; with GRSTOP=0 the branch continues beyond it",
                          summary.family->summary.contact);
     case EndReason::interrupted:
       return "interrupted; all files are complete up to the last point";
@@ -61,16 +61,17 @@ std::string inadmissible(const BranchSummary& summary) {
                      summary.inadmissible_points, summary.points);
 }
 
-/// The error between mesh points, where there is a mesh, and that of a multiplier which is known.
-std::string trust(const BranchSummary& summary) {
+/// The largest estimated errors of the branch: between mesh points, where there is a mesh, and of the multiplier whose
+/// exact value is known.
+std::string accuracy(const BranchSummary& summary) {
   if (!summary.family->headings.has_mesh) return "";
-  std::string text = fmt::format("  trust: estimated relative error between mesh points at most {:.1e}",
-                                 summary.worst_estimated_error);
+  std::string text =
+      fmt::format("  accuracy: relative error between mesh points <= {:.1e}", summary.worst_estimated_error);
   if (summary.multipliers_computed)
-    text += fmt::format(", {} {:.1e}",
-                        summary.has_trivial ? "trivial multiplier off from 1 by at most"
-                                            : "structural multiplier (0 for the exact orbit) at most",
-                        summary.worst_structural);
+    text +=
+        fmt::format("; {}: {:.1e}",
+                    summary.has_trivial ? "error of the multiplier that should be 1" : "multiplier that should be 0",
+                    summary.worst_structural);
   text += "\n";
   const SummaryWords& words = summary.family->summary;
   const std::string structural = summary.worst_structural > inaccurate ? words.structural_advice : "";
@@ -145,7 +146,7 @@ std::string summary_text(const BranchSummary& summary, const std::vector<BranchW
   text += folded(fmt::format("  stopped: {}", reason_text(summary, parameter, told)));
   if (!summary.remark.empty()) text += folded("  " + summary.remark);
   return text + vanishing_functions(summary.vanishing) + advice(summary) + lost_points(summary, parameter) +
-         trust(summary) + inadmissible(summary);
+         accuracy(summary) + inadmissible(summary);
 }
 
 }  // namespace tchat

@@ -1,4 +1,4 @@
-/// The paragraph that ends a run: how many points, which are special, why it stopped, how far to trust it.
+/// The paragraph that ends a run: how many points, which are special, why it stopped, how accurate it is.
 #pragma once
 
 #include <string>

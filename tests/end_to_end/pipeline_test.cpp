@@ -101,7 +101,7 @@ void check_traces(const Workspace& workspace, const std::string& name, const Out
   CHECK(outcome.err.empty());
   CHECK(outcome.out.find("BR    PT  TY  LAB") != std::string::npos);
   CHECK(outcome.out.find("stopped: ") != std::string::npos);
-  CHECK(outcome.out.find("structural multiplier") != std::string::npos);
+  CHECK(outcome.out.find("multiplier that should be 0") != std::string::npos);
 }
 
 /// Velocity at the impact that began the orbit.
