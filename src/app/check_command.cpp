@@ -18,7 +18,6 @@
 #include "hybrid/parameter_vector.hpp"
 #include "plugin/plugin_build.hpp"
 #include "plugin/problem_library.hpp"
-#include "setup/named_parameters.hpp"
 #include "setup/run_request.hpp"
 #include "text/number.hpp"
 #include "text/user_error.hpp"
@@ -105,8 +104,7 @@ int check_problem(const CheckArguments& arguments) {
   options.random_states = arguments.random_states;
   const bool are_given = !arguments.constants.empty() || exists("gc." + arguments.name);
   if (library.system().boundary_conditions() > 0 && are_given)
-    options.segments =
-        segment_count(read_constants_file(constants_path(constants), nullptr, names_of(library.system())));
+    options.segments = segment_count(read_constants_file(constants_path(constants)));
   const DerivativeCheck check = check_derivatives(library.system(), options);
   fmt::print("{}", to_text(library.system(), check));
   if (const std::optional<std::string> formulas = formulas_of(plugin))

@@ -11,16 +11,9 @@
 #include <vector>
 
 #include "constants/constants_table.hpp"
+#include "constants/place.hpp"
 
 namespace tchat {
-
-/// Where something was found. Line 0: the source has no lines (the command line).
-struct Place {
-  std::string source;
-  int line = 0;
-  bool positional = false;  ///< in the positional form: examples show whole records
-  std::string text() const;
-};
 
 struct Token {
   std::string text;

@@ -97,11 +97,10 @@ void assign_override(SettingsDraft& draft, const Assignment& assignment) {
 
 }  // namespace
 
-RunSettings read_constants_text(std::string_view given, const std::string& name, Warnings* warnings,
-                                const ParameterNames& names) {
+RunSettings read_constants_text(std::string_view given, const std::string& name, Warnings* warnings) {
   refuse_binary(given, name);
   const std::string text = with_newlines(given);
-  SettingsDraft draft(RunSettings{}, name, names);
+  SettingsDraft draft(RunSettings{}, name);
   if (form_of(text, name) == ConstantsForm::positional)
     read_positional_form(text, name, draft, warnings);
   else
@@ -111,14 +110,13 @@ RunSettings read_constants_text(std::string_view given, const std::string& name,
 
 ConstantsForm constants_form(const std::string& path) { return form_of(with_newlines(file_contents(path)), path); }
 
-RunSettings read_constants_file(const std::string& path, Warnings* warnings, const ParameterNames& names) {
-  return read_constants_text(file_contents(path), path, warnings, names);
+RunSettings read_constants_file(const std::string& path, Warnings* warnings) {
+  return read_constants_text(file_contents(path), path, warnings);
 }
 
-void apply_overrides(RunSettings& settings, std::span<const std::string> key_values, Warnings* warnings,
-                     const ParameterNames& names) {
+void apply_overrides(RunSettings& settings, std::span<const std::string> key_values, Warnings* warnings) {
   const Place place{"command line"};
-  SettingsDraft draft(settings, place.source, names);
+  SettingsDraft draft(settings, place.source);
   for (const std::string& key_value : key_values) {
     const std::vector<Assignment> assignments = parse_assignments(key_value, place);
     if (assignments.empty())

@@ -14,9 +14,9 @@
 
 namespace tchat {
 
-/// `warnings`, if not null, receives sentences about what is accepted without effect; `names`: see SettingsDraft.
-RunSettings read_constants_file(const std::string& path, Warnings* warnings = nullptr,
-                                const ParameterNames& names = {});
+/// `warnings`, if not null, receives sentences about what is accepted without effect. Names of parameters are kept as
+/// they are (RunSettings::names) until resolve_names().
+RunSettings read_constants_file(const std::string& path, Warnings* warnings = nullptr);
 
 enum class ConstantsForm { positional, keyword };
 
@@ -24,15 +24,13 @@ enum class ConstantsForm { positional, keyword };
 ConstantsForm constants_form(const std::string& path);
 
 /// The same from memory; `name` stands for the path in messages.
-RunSettings read_constants_text(std::string_view text, const std::string& name, Warnings* warnings = nullptr,
-                                const ParameterNames& names = {});
+RunSettings read_constants_text(std::string_view text, const std::string& name, Warnings* warnings = nullptr);
 
 /// Overrides of the command line, all together: KEY=VALUE with any constant (a list replaces the whole list, its count
 /// follows), PAR(2)=0.8, PAR(omega)=0.8. The later of two for one constant wins. What ties constants together is
 /// checked when all are in place, so that a new signature can come as GCFIND=.. GCHIND=.. GCGIND=.. in any order.
 /// Settings are unchanged when it throws.
-void apply_overrides(RunSettings& settings, std::span<const std::string> key_values, Warnings* warnings = nullptr,
-                     const ParameterNames& names = {});
+void apply_overrides(RunSettings& settings, std::span<const std::string> key_values, Warnings* warnings = nullptr);
 
 /// Is the constant among what the overrides set?
 bool is_overridden(std::span<const std::string> key_values, std::string_view keyword);

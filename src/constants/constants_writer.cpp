@@ -26,10 +26,11 @@ std::vector<int> segment_values(const RunSettings& settings, const SegmentIntege
 
 std::string list_text(const std::vector<std::string>& items) { return fmt::format("[{}]", fmt::join(items, ", ")); }
 
-/// The number, or the name of a monitor, in quotes where it has blanks or commas.
+/// The number, or a name, in quotes where it has blanks or commas.
 std::string index_text(const RunSettings& settings, int k) {
-  if (!is_monitor(settings, k)) return std::to_string(k);
-  const std::string& name = settings.monitors[static_cast<std::size_t>(k - first_monitor)];
+  if (!is_monitor(settings, k) && !is_name(settings, k)) return std::to_string(k);
+  const std::string& name = is_name(settings, k) ? settings.names[static_cast<std::size_t>(parameter_length - k)].text
+                                                 : settings.monitors[static_cast<std::size_t>(k - first_monitor)];
   return name.find_first_of(" \t:#=[]{}") == std::string::npos ? name : "\"" + name + "\"";
 }
 

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "constants/place.hpp"
 #include "hybrid/index_vector.hpp"
 #include "hybrid/parameter_vector.hpp"
 #include "problem_type/problem_id.hpp"
@@ -43,6 +44,13 @@ struct HeldValue {
 struct StopRule {
   std::string type;
   int count = 1;
+};
+
+/// A name in ICP, UZR, THL or HOLD, and where it was found first.
+struct GivenName {
+  std::string text;
+  std::string keyword;
+  Place place;
 };
 
 /// One segment of the orbit and the event functions monitored along it.
@@ -104,6 +112,9 @@ struct RunSettings {
   std::vector<HeldValue> held;       ///< HOLD
   /// Names of monitors in ICP, UZR, THL and HOLD: PAR(first_monitor), ... stand for them in this order.
   std::vector<std::string> monitors;
+  /// All names in ICP, UZR, THL and HOLD, until resolve_names() has replaced them: PAR(name_index(k)) stands for name
+  /// k.
+  std::vector<GivenName> names;
 
   /// PAR(k) = v given on the command line, by index or by the problem's own name.
   struct ParameterValue {
@@ -122,6 +133,16 @@ struct RunSettings {
 /// Does PAR(k) stand for a monitor of this run?
 inline bool is_monitor(const RunSettings& settings, int k) {
   return k >= first_monitor && k < first_monitor + static_cast<int>(settings.monitors.size());
+}
+
+/// The index that stands for the k-th name (from 0) of the settings: from the end of PAR down, where neither parameters
+/// nor durations nor monitors are.
+constexpr int name_index(std::size_t k) { return parameter_length - static_cast<int>(k); }
+inline constexpr std::size_t max_names = parameter_length - first_monitor - max_monitors;
+
+/// Does PAR(k) stand for a name that has not been resolved?
+inline bool is_name(const RunSettings& settings, int k) {
+  return k <= parameter_length && k > name_index(settings.names.size());
 }
 
 }  // namespace tchat

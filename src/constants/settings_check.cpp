@@ -127,9 +127,16 @@ class SettingsCheck {
                       -n, 3 * n, n));
   }
 
-  void weights() const {
-    for (const IndexedValue& weight : settings_.parameter_weights)
+  void parameter_weights() const {
+    std::vector<int> indices;
+    for (const IndexedValue& weight : settings_.parameter_weights) {
       parameter_index("THL", "ITHL", weight.index, segments_of_run());
+      indices.push_back(weight.index);
+    }
+    each_once("THL", indices);
+  }
+
+  void state_weights() const {
     for (const IndexedValue& weight : settings_.state_weights)
       if (weight.index < 1 || weight.index > settings_.dimension)
         refuse_constant("THU", "ITHU", in_quotes(std::to_string(weight.index)),
@@ -162,6 +169,9 @@ class SettingsCheck {
   }
 
   void held_values() const {
+    std::vector<int> indices;
+    for (const HeldValue& held : settings_.held) indices.push_back(held.parameter);
+    each_once("HOLD", indices);
     for (const HeldValue& held : settings_.held)
       if (!is_duration(held.parameter, segments_of_run()) && held.parameter <= last_index)
         refuse_constant("HOLD", "HOLD", in_quotes(std::to_string(held.parameter)),
@@ -191,6 +201,14 @@ class SettingsCheck {
                                                     first_duration + segment_count - 1, segment_count);
     refuse_constant(keyword, name, in_quotes(std::to_string(k)),
                     fmt::format("1 to {} (parameters of the problem) or {}", first_duration - 1, durations));
+  }
+
+  /// Two of them may have come from a name and a number.
+  void each_once(std::string_view keyword, std::vector<int> indices) const {
+    std::sort(indices.begin(), indices.end());
+    const auto twice = std::adjacent_find(indices.begin(), indices.end());
+    if (twice != indices.end())
+      refuse_constant(keyword, std::string(keyword), fmt::format("the index '{}' twice", *twice), "each index once");
   }
 
   [[noreturn]] void refuse_constant(std::string_view keyword, const std::string& name, const std::string& found,
@@ -225,17 +243,23 @@ std::vector<Contact> not_chosen(const RunSettings& settings) {
 
 }  // namespace
 
+void check_parameter_indices(const RunSettings& settings, const PlaceOf& place) {
+  const SettingsCheck check(settings, place);
+  check.free_parameters();
+  check.parameter_weights();
+  check.user_values();
+  check.held_values();
+}
+
 void check_settings(const RunSettings& settings, const PlaceOf& place) {
   const SettingsCheck check(settings, place);
   check.signature();
-  check.free_parameters();
+  check_parameter_indices(settings, place);
   check.bounds("RL0", settings.parameter_min, "RL1", settings.parameter_max);
   check.bounds("A0", settings.measure_min, "A1", settings.measure_max);
   check.steps();
   check.measure();
-  check.weights();
-  check.user_values();
-  check.held_values();
+  check.state_weights();
   check.test_functions();
   check.grazing_segment();
   check.parameter_values();

@@ -13,7 +13,7 @@
 namespace tchat {
 
 /// The largest index of a duration (of the doubled orbit of a switch). Nothing beyond it may be written in constants:
-/// there names of parameters have their stand-ins until the problem is known.
+/// larger indices stand for names and monitors.
 inline constexpr int last_index = first_duration - 1 + 2 * max_segments;
 
 /// Checks: ICP not empty, without repetition, with the free parameters that problem type and branch mode need; indices
@@ -23,6 +23,9 @@ inline constexpr int last_index = first_duration - 1 + 2 * max_segments;
 /// one grazing segment (IPS 150). Indices of ICP, THL and UZR beyond last_index are stand-ins for names. Throws
 /// UserError; `place` tells where a constant was given.
 void check_settings(const RunSettings& settings, const std::function<Place(std::string_view keyword)>& place);
+
+/// The part of check_settings() that concerns ICP, THL, UZR and HOLD.
+void check_parameter_indices(const RunSettings& settings, const std::function<Place(std::string_view keyword)>& place);
 
 /// What is accepted without effect, in sentences beginning with `source`.
 std::vector<std::string> settings_warnings(const RunSettings& settings, const std::string& source);

@@ -40,7 +40,7 @@ std::vector<int> integers_of(const Constant& constant, const RawValue& value) {
   return integers_of(constant, items_of(constant, value));
 }
 
-bool is_name(std::string_view text) {
+bool starts_like_name(std::string_view text) {
   return !text.empty() && (std::isalpha(static_cast<unsigned char>(text.front())) != 0 || text.front() == '_');
 }
 
@@ -170,43 +170,29 @@ struct SettingsDraft::Assigner {
   }
 };
 
-SettingsDraft::SettingsDraft(RunSettings base, std::string source, ParameterNames names)
-    : settings_(std::move(base)), source_(std::move(source)), names_(std::move(names)) {}
+SettingsDraft::SettingsDraft(RunSettings base, std::string source)
+    : settings_(std::move(base)), source_(std::move(source)) {}
 
-/// The number in the place of a parameter's name, which may have the sign of an index; everything else as it is, but
-/// for indices in the place of stand-ins. `shown` is the value in messages, "ICP(2)".
+/// A name, which may have the sign of an index, becomes the index that stands for it (RunSettings::names); everything
+/// else stays as it is. `shown` is the value in messages, "ICP(2)".
 Token SettingsDraft::index_token(const Constant& constant, const std::string& shown, const Token& token) {
   const bool negative = token.text.starts_with('-');
   const std::string name = token.text.substr(negative ? 1 : 0);
   if (!has_parameter_indices(constant)) return token;
-  const auto refuse_token = [&](const std::string& allowed) {
-    refuse(constant, shown, token.place, in_quotes(token.text), allowed);
-  };
-  if (!is_name(name)) {
+  if (!starts_like_name(name)) {
     if (parse_integer(name).value_or(0) > last_index)
-      refuse_token(fmt::format("1 to {} (parameters of the problem) or {}, ... (durations of the segments)",
-                               first_duration - 1, first_duration));
+      refuse(constant, shown, token.place, in_quotes(token.text),
+             fmt::format("1 to {} (parameters of the problem) or {}, ... (durations of the segments)",
+                         first_duration - 1, first_duration));
     return token;
   }
-  if (!names_)
-    refuse_token(
-        "indices here; names are understood by tchat run, simulate, resegment, verify and dat, which know the problem");
-  const std::string where = fmt::format("{}: {} ({})", token.place.text(), constant.keyword, constant.meaning);
-  int index = names_(name, where);
-  if (index == names_a_monitor) index = monitor_index(name, where);
-  return {fmt::format("{}{}", negative ? "-" : "", index), token.place};
-}
-
-/// Of a monitor that is named for the first time the next one. Blanks in names would separate values in files.
-int SettingsDraft::monitor_index(std::string name, const std::string& where) {
-  std::erase_if(name, [](char c) { return c == ' ' || c == '\t'; });
-  std::vector<std::string>& list = settings_.monitors;
-  const auto known = std::find(list.begin(), list.end(), name);
-  const auto index = static_cast<int>(known - list.begin());
-  if (known != list.end()) return first_monitor + index;
-  if (index == max_monitors) throw UserError(fmt::format("{}: more than {} monitors are named", where, max_monitors));
-  list.push_back(name);
-  return first_monitor + index;
+  std::vector<GivenName>& names = settings_.names;
+  const auto known = std::find_if(names.begin(), names.end(), [&](const auto& given) { return given.text == name; });
+  const auto k = static_cast<std::size_t>(known - names.begin());
+  if (k == max_names)
+    refuse(constant, shown, token.place, in_quotes(token.text), fmt::format("at most {} different names", max_names));
+  if (known == names.end()) names.push_back({name, std::string(constant.keyword), token.place});
+  return {fmt::format("{}{}", negative ? "-" : "", name_index(k)), token.place};
 }
 
 void SettingsDraft::assign(const Constant& constant, const RawValue& value) {

@@ -2,7 +2,6 @@
 /// them together (list lengths, the segments' lists, indices of durations) is settled by `finish`.
 #pragma once
 
-#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -16,18 +15,10 @@ namespace tchat {
 /// Accepted without effect, or probably not what was meant: complete sentences for the user.
 using Warnings = std::vector<std::string>;
 
-/// What ParameterNames gives for the name of a monitor, to which the settings give an index.
-inline constexpr int names_a_monitor = 0;
-
-/// PAR index of a parameter's name, where names are known. `where` begins the message when there is no such name: the
-/// place and the constant.
-using ParameterNames = std::function<int(const std::string& name, const std::string& where)>;
-
 class SettingsDraft {
  public:
-  /// `source` names the text that the constants come from ("gc.mems", "command line"). With `names`, ICP, THL and UZR
-  /// may have names of parameters in the place of PAR indices.
-  SettingsDraft(RunSettings base, std::string source, ParameterNames names = {});
+  /// `source` names the text that the constants come from ("gc.mems", "command line").
+  SettingsDraft(RunSettings base, std::string source);
 
   /// Gives a constant a new value (a list is replaced as a whole). Throws UserError when the value by itself is wrong.
   void assign(const Constant& constant, const RawValue& value);
@@ -65,11 +56,9 @@ class SettingsDraft {
   void check_counts() const;
 
   Token index_token(const Constant& constant, const std::string& shown, const Token& token);
-  int monitor_index(std::string name, const std::string& where);
 
   RunSettings settings_;
   std::string source_;
-  ParameterNames names_;
   std::map<std::string_view, Place> places_;            // of what has been assigned, by keyword
   std::map<std::string_view, int> counts_;              // NICP, ...
   std::map<std::string_view, std::vector<int>> lists_;  // GCSEGTYP, GCFIND, ..., GCHNO, as given

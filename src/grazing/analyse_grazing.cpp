@@ -73,13 +73,12 @@ void analyse_label(const GrazingRequest& request, std::ostream& screen, std::ost
   const std::string path = resolve_solution_path(request.name);
   const SolutionFile file = read_solution_file(path);
   const std::string constants = constants_of_run(request.constants, path);
-  bool named_parameters = false;
-  RunSettings settings = read_constants_file(constants, nullptr, names_to_come(named_parameters));
+  RunSettings settings = read_constants_file(constants);
   const LabelledSolution& solution = chosen(request, file, settings, path, constants);
   const ProblemLibrary library(resolve_plugin_of_run(request.problem, run_path(path), warnings),
                                [&] { return problem_sizes(settings); });
   const HybridSystem& system = library.system();
-  if (named_parameters) settings = read_constants_file(constants, nullptr, names_of(system));
+  resolve_names(settings, system);
   check_settings_against(system, settings, {constants});
   print_warnings(warnings, file.warnings);
   require_section(solution, settings, system, "the local analysis of grazing", request.problem.value_or(run_path(path)),
@@ -132,11 +131,11 @@ void analyse_state(const GrazingRequest& request, std::ostream& screen, std::ost
   mode_of(request);  // before a plugin is compiled
   const SimulationRequest start_of = start_request(request);
   const std::string plugin = resolve_plugin_of_run(request.problem, request.name, warnings);
-  bool named_parameters = false;
-  SimulationConstants constants = read_simulation_constants(start_of, names_to_come(named_parameters));
-  const ProblemLibrary library(plugin, [&] { return sizes_of(start_of, constants); });
+  SimulationConstants constants = read_simulation_constants(start_of);
+  const ProblemLibrary library(plugin, [&] { return sizes_of(start_of, with_signature(start_of, constants)); });
   const HybridSystem& system = library.system();
-  if (named_parameters) constants = read_simulation_constants(start_of, names_of(system));
+  resolve_names(constants.settings, system);
+  constants = with_signature(start_of, constants);
   IndexVector contact = checked_mode(system, request);
   fit_to_problem(constants, system, request.overrides);
   if (request.jump) contact.jump = checked_jump(system, *request.jump);

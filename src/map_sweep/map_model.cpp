@@ -113,7 +113,8 @@ LabelledRun labelled_run(const MapRequest& request, const MapContext& context, c
   run.solution = find_solution(file.solutions, read_label(request.source.substr(colon + 1)), path);
   run.source = fmt::format("label {} of {}", run.solution.label, path);
   const std::string constants = constants_of_run(context.constants, path);
-  run.settings = read_constants_file(constants, nullptr, names_of(system));
+  run.settings = read_constants_file(constants);
+  resolve_names(run.settings, system);
   check_settings_against(system, run.settings, {constants});
   if (!is_same_problem_type(run.solution.problem_type, run.settings.problem_type) ||
       !family_of(run.settings).why_not(Analysis::composite_map, request.source).empty() ||

@@ -42,9 +42,9 @@ namespace tchat {
 namespace {
 
 LabelledOrbit read_source(const ResegmentRequest& request, const std::string& path, const std::string& constants,
-                          const SolutionFile& file, std::vector<std::string>& warnings, const ParameterNames& names) {
+                          const SolutionFile& file, std::vector<std::string>& warnings) {
   LabelledOrbit source;
-  source.settings = read_constants_file(constants, &warnings, names);
+  source.settings = read_constants_file(constants, &warnings);
   warnings.insert(warnings.end(), file.warnings.begin(), file.warnings.end());
   source.solution = find_solution(file.solutions, read_label(request.label), path);
   const LabelledSolution& solution = source.solution;
@@ -195,7 +195,8 @@ void choose_contact_jump(const ResegmentRequest& request, const LabelledOrbit& s
   for (const int candidate : target.contact_jumps) {
     jump = candidate;
     RunSettings settings = new_settings(source.settings, target.segments, target.problem, system);
-    apply_overrides(settings, request.overrides, nullptr, names_of(system));
+    apply_overrides(settings, request.overrides);
+    resolve_names(settings, system);
     const std::string refusal = obstacle(system, settings, assemble(source.start, pieces_of(target)));
     if (why.empty()) why = refusal;
     if (!refusal.empty()) continue;
@@ -267,8 +268,7 @@ std::vector<std::string> begin_grazing_tori(const ResegmentRequest& request, con
                                             const SolutionFile& file, const std::string& constants,
                                             std::ostream& screen, std::ostream& notices) {
   std::vector<std::string> warnings = file.warnings;
-  bool named_parameters = false;
-  RunSettings given = read_constants_file(constants, &warnings, names_to_come(named_parameters));
+  RunSettings given = read_constants_file(constants, &warnings);
   const LabelledSolution& solution = find_solution(file.solutions, read_label(request.label), path);
   const std::string name = fmt::format("label {} of {}", solution.label, path);
   if (request.kind != ResegmentKind::grazing_curve)
@@ -281,9 +281,10 @@ std::vector<std::string> begin_grazing_tori(const ResegmentRequest& request, con
   const ProblemLibrary library(resolve_plugin_of_run(request.problem, run_path(path), notices),
                                [&] { return problem_sizes(given); });
   const HybridSystem& system = library.system();
-  if (named_parameters) given = read_constants_file(constants, nullptr, names_of(system));
+  resolve_names(given, system);
   RunSettings settings = grazing_torus_settings(given, solution, name, system, is_overridden(request.overrides, "ICP"));
-  apply_overrides(settings, request.overrides, &warnings, names_of(system));
+  apply_overrides(settings, request.overrides, &warnings);
+  resolve_names(settings, system);
   const auto further = check_settings_against(system, settings, {"the new constants", request.overrides});
   warnings.insert(warnings.end(), further.begin(), further.end());
   const Outputs outputs = outputs_of(request.output);
@@ -310,13 +311,12 @@ std::vector<std::string> resegment(const ResegmentRequest& asked, std::ostream& 
   const LabelledSolution& label = find_solution(file.solutions, read_label(request.label), path);
   if (family_of(label.problem_type).facts().has_several_returns)
     return begin_grazing_tori(request, path, file, constants, screen, notices);
-  bool named_parameters = false;
-  LabelledOrbit labelled = read_source(request, path, constants, file, warnings, names_to_come(named_parameters));
+  LabelledOrbit labelled = read_source(request, path, constants, file, warnings);
 
   const std::string plugin = resolve_plugin_of_run(request.problem, run_path(path), notices);
   const ProblemLibrary library(plugin, [&] { return sizes_for(request, labelled.settings); });
   const HybridSystem& system = library.system();
-  if (named_parameters) labelled.settings = read_constants_file(constants, nullptr, names_of(system));
+  resolve_names(labelled.settings, system);
   check_settings_against(system, labelled.settings, {constants});
   require_section(labelled.solution, labelled.settings, system, "resegmentation",
                   problem_arguments(request.problem.value_or(run_path(path))), path);
@@ -334,7 +334,8 @@ std::vector<std::string> resegment(const ResegmentRequest& asked, std::ostream& 
         "{}: its monitors and HOLD are left out of the new constants, for segments have other numbers; name them again",
         constants));
   if (request.data) settings.start = {};
-  apply_overrides(settings, request.overrides, &warnings, names_of(system));
+  apply_overrides(settings, request.overrides, &warnings);
+  resolve_names(settings, system);
   if (!settings.parameter_values.empty())
     throw UserError("values of parameters are not kept in a constants file; give PAR(...)= to `tchat run`");
   const std::vector<std::string> contradictions =

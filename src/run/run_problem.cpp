@@ -124,12 +124,11 @@ struct ReadSettings {
   RunSettings used;  ///< with the changes of the command line
 };
 
-ReadSettings read_settings(const RunRequest& request, const std::string& constants, const ParameterNames& names,
-                           Warnings* warnings) {
+ReadSettings read_settings(const RunRequest& request, const std::string& constants, Warnings* warnings) {
   ReadSettings read;
-  read.in_file = read_constants_file(constants, warnings, names);
+  read.in_file = read_constants_file(constants, warnings);
   read.used = read.in_file;
-  apply_overrides(read.used, request.overrides, warnings, names);
+  apply_overrides(read.used, request.overrides, warnings);
   return read;
 }
 
@@ -143,16 +142,16 @@ struct Problem {
 /// Constants and plugin, checked against each other.
 Problem load_problem(const RunRequest& request, const Reports& reports) {
   Warnings constant_warnings;
-  bool named_parameters = false;
   const std::string constants = constants_path(request.constants.value_or(request.name));
-  ReadSettings read = read_settings(request, constants, names_to_come(named_parameters), &constant_warnings);
+  ReadSettings read = read_settings(request, constants, &constant_warnings);
   reports.warn(constant_warnings);
   free_problem_parameters(read.used);  // refuses what no plugin can cure
 
   const std::string plugin = resolve_plugin(request.problem.value_or(request.name), {.progress = reports.progress});
   auto library = std::make_unique<ProblemLibrary>(plugin, [&read] { return problem_sizes(read.used); });
   const HybridSystem& system = library->system();
-  if (named_parameters) read = read_settings(request, constants, names_of(system), nullptr);
+  resolve_names(read.in_file, system);
+  resolve_names(read.used, system);
   reports.warn(check_settings_against(system, read.used, {constants, request.overrides}));
   reports.warn_of(inherited_bounds(system, read.in_file, read.used, request.overrides, constants));
   read.used.threads = request.threads;

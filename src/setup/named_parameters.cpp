@@ -1,7 +1,6 @@
 #include "setup/named_parameters.hpp"
 
-#include <map>
-#include <memory>
+#include <optional>
 #include <string>
 
 #include "bvp/monitor.hpp"
@@ -23,22 +22,14 @@ std::optional<int> duration_index(const std::string& name) {
 
 }  // namespace
 
-ParameterNames names_to_come(bool& used) {
-  const auto seen = std::make_shared<std::map<std::string, int>>();
-  return [&used, seen](const std::string& name, const std::string&) {
-    used = true;
-    return seen->emplace(name, parameter_length - static_cast<int>(seen->size())).first->second;
-  };
-}
-
-ParameterNames names_of(const HybridSystem& system) {
-  return [&system](const std::string& name, const std::string& where) {
+void resolve_names(RunSettings& settings, const HybridSystem& system) {
+  resolve_names(settings, [&system](const std::string& name, const std::string& where) {
     if (const int k = system.parameter_index(name); k > 0) return k;
     if (const std::optional<int> k = duration_index(name)) return *k;
     if (name.find('(') == std::string::npos && name != "period") return parameter_index(system, name, where);
     parse_monitor(system, name, where);
     return names_a_monitor;
-  };
+  });
 }
 
 }  // namespace tchat

@@ -8,13 +8,13 @@ namespace tchat {
 LoadedProblem load_for_simulation(const SimulationRequest& request, std::ostream* progress) {
   LoadedProblem loaded;
   loaded.plugin = resolve_plugin(request.problem.value_or(request.name), {.progress = progress});
-  bool named_parameters = false;
-  SimulationConstants& constants = loaded.constants;
-  constants = read_simulation_constants(request, names_to_come(named_parameters));
-  loaded.library = std::make_unique<ProblemLibrary>(loaded.plugin, [&] { return sizes_of(request, constants); });
+  SimulationConstants constants = read_simulation_constants(request);
+  loaded.library = std::make_unique<ProblemLibrary>(
+      loaded.plugin, [&] { return sizes_of(request, with_signature(request, constants)); });
   const HybridSystem& system = loaded.library->system();
-  if (named_parameters) constants = read_simulation_constants(request, names_of(system));
-  fit_to_problem(constants, system, request.overrides);
+  resolve_names(constants.settings, system);
+  loaded.constants = with_signature(request, constants);
+  fit_to_problem(loaded.constants, system, request.overrides);
   return loaded;
 }
 

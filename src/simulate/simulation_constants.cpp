@@ -39,7 +39,7 @@ void require_events(const HybridSystem& system) {
 
 }  // namespace
 
-SimulationConstants read_simulation_constants(const SimulationRequest& request, const ParameterNames& names) {
+SimulationConstants read_simulation_constants(const SimulationRequest& request) {
   SimulationConstants constants;
   if (request.constants)
     constants.path = constants_path(*request.constants);
@@ -47,17 +47,23 @@ SimulationConstants read_simulation_constants(const SimulationRequest& request, 
     constants.path = own_constants_path(request.name);
   RunSettings& settings = constants.settings;
   if (constants.is_given()) {
-    settings = read_constants_file(constants.path, nullptr, names);
+    settings = read_constants_file(constants.path);
   } else {
     settings.free_parameters = {1};
     settings.segments.resize(1);
   }
-  apply_overrides(settings, request.overrides, nullptr, names);
+  apply_overrides(settings, request.overrides);
   constants.file_segments = static_cast<int>(settings.segments.size());
-  if (request.signature)
-    settings.segments = segments_of_signature(
-        *request.signature, constants.is_given() ? settings.segments : std::vector<SegmentSettings>{});
-  constants.has_signature = constants.is_given() || request.signature.has_value();
+  constants.has_signature = constants.is_given();
+  return constants;
+}
+
+SimulationConstants with_signature(const SimulationRequest& request, SimulationConstants constants) {
+  if (!request.signature) return constants;
+  std::vector<SegmentSettings>& segments = constants.settings.segments;
+  segments =
+      segments_of_signature(*request.signature, constants.is_given() ? segments : std::vector<SegmentSettings>{});
+  constants.has_signature = true;
   return constants;
 }
 

@@ -19,9 +19,10 @@ struct SimulationConstants {
   bool is_given() const { return !path.empty(); }
 };
 
-/// gc.C of -c, or gc.NAME if there is one, with the command line's constants; --signature replaces the file's. Throws
-/// UserError.
-SimulationConstants read_simulation_constants(const SimulationRequest& request, const ParameterNames& names);
+/// gc.C of -c, or gc.NAME if there is one, with the command line's constants, but not its signature. Throws UserError.
+SimulationConstants read_simulation_constants(const SimulationRequest& request);
+/// The signature of --signature, if it is given, replaces the file's. Throws UserError.
+SimulationConstants with_signature(const SimulationRequest& request, SimulationConstants constants);
 
 /// For a plugin that cannot say its sizes itself. Throws UserError without a constants file.
 ProblemSizes sizes_of(const SimulationRequest& request, const SimulationConstants& constants);

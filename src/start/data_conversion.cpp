@@ -15,17 +15,12 @@ namespace tchat {
 
 std::string convert_data(const RunRequest& request, std::ostream& notices) {
   const std::string constants = constants_path(request.constants.value_or(request.name));
-  const auto settings_with = [&](const ParameterNames& names) {
-    RunSettings settings = read_constants_file(constants, nullptr, names);
-    apply_overrides(settings, request.overrides, nullptr, names);
-    settings.start = {};
-    return settings;
-  };
-  bool named_parameters = false;
-  RunSettings settings = settings_with(names_to_come(named_parameters));
+  RunSettings settings = read_constants_file(constants);
+  apply_overrides(settings, request.overrides);
+  settings.start = {};
   const std::string plugin = resolve_plugin_of_run(request.problem, request.name, notices);
   const ProblemLibrary library(plugin, [&settings] { return problem_sizes(settings); });
-  if (named_parameters) settings = settings_with(names_of(library.system()));
+  resolve_names(settings, library.system());
   check_settings_against(library.system(), settings, {constants, request.overrides});
 
   RunRequest from_data = request;

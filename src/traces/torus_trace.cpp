@@ -10,7 +10,6 @@
 #include "constants/constants_file.hpp"
 #include "constants/settings_type.hpp"
 #include "files/run_file_names.hpp"
-#include "setup/named_parameters.hpp"
 #include "text/user_error.hpp"
 
 namespace tchat {
@@ -66,8 +65,7 @@ MatrixXd rows_of(const OrbitTrace& trace, int s, int m, Index node) {
 
 int segments_of_return(const LabelledSolution& solution, const std::string& solution_path) {
   const std::string constants = constants_beside(solution_path);
-  bool named_parameters = false;
-  const RunSettings settings = read_constants_file(constants, nullptr, names_to_come(named_parameters));
+  const RunSettings settings = read_constants_file(constants);
   const Index states = static_cast<Index>(segment_count(settings)) * settings.dimension;
   if (states > 0 && solution.states.rows() % states == 0 && solution.states.rows() / states >= 3)
     return segment_count(settings);

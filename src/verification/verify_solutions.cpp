@@ -248,8 +248,7 @@ bool verify_solutions(const VerifyRequest& request, std::ostream& screen, std::o
   const SolutionFile file = read_solution_file(path);
   const std::vector<LabelledSolution> solutions = chosen(request, file, path);
   const std::string constants = constants_of_run(request.constants, path);
-  bool named_parameters = false;
-  RunSettings settings = read_constants_file(constants, nullptr, names_to_come(named_parameters));
+  RunSettings settings = read_constants_file(constants);
 
   if (const std::string why = family_of(settings.problem_type).why_unverifiable(settings); !why.empty())
     throw UserError(fmt::format("{}: {}", path, why));
@@ -258,7 +257,7 @@ bool verify_solutions(const VerifyRequest& request, std::ostream& screen, std::o
   const ExitGuard guard(plugin);
   const ProblemLibrary library(plugin, [&] { return problem_sizes(settings); });
   const HybridSystem& system = library.system();
-  if (named_parameters) settings = read_constants_file(constants, nullptr, names_of(system));
+  resolve_names(settings, system);
   check_settings_against(system, settings, {constants});
   for (const std::string& warning : file.warnings) warnings << "tchat: warning: " << warning << '\n';
 

@@ -3,6 +3,7 @@
 #include "constants/constants_file.hpp"
 #include "constants/constants_writer.hpp"
 #include "constants/sample_files.hpp"
+#include "constants/settings_names.hpp"
 
 using namespace tchat;
 
@@ -109,7 +110,8 @@ TEST_CASE("The table knows each constant once, with an example that is accepted"
     const ParameterNames monitors = [](const std::string&, const std::string&) { return names_a_monitor; };
     std::vector<std::string> overrides{std::string(constant.keyword) + " = " + std::string(constant.example)};
     if (constant.keyword == "HOLD") overrides.emplace_back("ICP = [1, 2, 61, 62]");  // one more parameter is free
-    CHECK_NOTHROW(apply_overrides(s, overrides, nullptr, monitors));
+    CHECK_NOTHROW(apply_overrides(s, overrides));
+    CHECK_NOTHROW(resolve_names(s, monitors));
   }
 }
 

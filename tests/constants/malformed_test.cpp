@@ -168,7 +168,7 @@ TEST_CASE("Malformed keyword files", "[constants]") {
       {"ICP = 1\nTHL = {61 0}", {"gc.bad:2: ", "no ':' after '61'"}},
       {"ICP = 1\nTHL = {61: }", {"gc.bad:2: ", "a value"}},
       {"ICP = 1\nTHL = {61: [1]}", {"gc.bad:2: THL(61) (", "found '[1]'"}},
-      {"ICP = 1\nTHL = {omega: 1}", {"gc.bad:2: ITHL (", "found 'omega'"}},
+      {"ICP = 1\nTHL = {7a: 1}", {"gc.bad:2: ITHL (", "found '7a'"}},
       {"ICP = 1\n\nUZR = {1:\n2,\n1: x}", {"gc.bad:5: UZR(1) (", "found 'x'"}},
       {"ICP = 1\nIRS = 'PD1", {"gc.bad:2: ", "closing quote"}},
       {"ICP = 1\nNMX = 5\nNMX = 6", {"gc.bad:3: NMX (", "given on line 2 already"}},

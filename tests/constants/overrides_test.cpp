@@ -1,7 +1,9 @@
 #include <catch2/catch.hpp>
 
 #include "constants/constants_file.hpp"
+#include "constants/constants_writer.hpp"
 #include "constants/sample_files.hpp"
+#include "constants/settings_names.hpp"
 #include "text/user_error.hpp"
 
 using namespace tchat;
@@ -50,11 +52,15 @@ TEST_CASE("Overrides of lists", "[constants]") {
 }
 
 TEST_CASE("Names of parameters in the place of their indices", "[constants]") {
-  const ParameterNames names = [](const std::string& name, const std::string&) { return name == "omega" ? 2 : 1; };
-  RunSettings s;
-  const std::vector<std::string> words{"ICP=[omega, alpha, 61]", "UZR={omega: [1.5, 2], -alpha: 3}",
-                                       "THL={omega: 0.5}"};
-  apply_overrides(s, words, nullptr, names);
+  const ParameterNames names = [](const std::string& name, const std::string& where) {
+    if (name != "omega" && name != "alpha") throw UserError(where + ": no such name");
+    return name == "omega" ? 2 : 1;
+  };
+  RunSettings s = with({"ICP=[omega, alpha, 61]", "UZR={omega: [1.5, 2], -alpha: 3}", "THL={omega: 0.5}"});
+  CHECK(s.names.size() == 2);
+  CHECK(keyword_text(s).find("UZR = {omega: [1.5, 2], -alpha: 3} ") != std::string::npos);
+  resolve_names(s, names);
+  CHECK(s.names.empty());
   CHECK(s.free_parameters == std::vector<int>{2, 1, 61});
   REQUIRE(s.user_values.size() == 3);
   CHECK(s.user_values[1].parameter == 2);
@@ -62,9 +68,20 @@ TEST_CASE("Names of parameters in the place of their indices", "[constants]") {
   CHECK(s.user_values[2].parameter == 1);
   CHECK(s.user_values[2].stop);
   CHECK(s.parameter_weights.at(0).index == 2);
-  CHECK_THROWS_WITH(apply_override(s, "ICP=[omega, 61]"),
-                    Catch::Matchers::Contains("names are understood by tchat run"));
-  CHECK_THROWS_AS(apply_overrides(s, std::vector<std::string>{"THU={omega: 1}"}, nullptr, names), UserError);
+  CHECK_THROWS_AS(with({"THU={omega: 1}"}), UserError);
+
+  const auto refusal = [&names](const char* key_value) {
+    RunSettings wrong = with({key_value});
+    try {
+      resolve_names(wrong, names);
+    } catch (const UserError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  CHECK(refusal("ICP=[omega, 61, beta]") == "command line: ICP (free parameters, durations included): no such name");
+  CHECK(refusal("ICP=[omega, 61, 2]").find("command line: ICP(3)") == 0);
+  CHECK(refusal("THL={omega: 1, 2: 3}").find("the index '2' twice") != std::string::npos);
 }
 
 TEST_CASE("Overrides of start and stop", "[constants]") {

@@ -4,6 +4,7 @@
 
 #include "constants/constants_file.hpp"
 #include "constants/constants_writer.hpp"
+#include "constants/settings_names.hpp"
 #include "fuzz_target.hpp"
 #include "text/words.hpp"
 
@@ -37,11 +38,12 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   RunSettings settings = read_constants_text(base_text, fuzz::source);
   const std::string before = positional_text(settings);
   Warnings warnings;
-  const bool accepted = fuzz::accepts([&] { apply_overrides(settings, words, &warnings, index_of); }, "command line");
+  const bool accepted = fuzz::accepts([&] { apply_overrides(settings, words, &warnings); }, "command line");
   if (!accepted) {
     fuzz::require(positional_text(settings) == before, "refused overrides change nothing");
     return 0;
   }
+  if (!fuzz::accepts([&] { resolve_names(settings, index_of); }, "command line")) return 0;
   const std::string after = positional_text(settings);
   fuzz::require(fuzz::accepts([&] {
                   fuzz::require(positional_text(read_constants_text(after, fuzz::source)) == after, "same again");

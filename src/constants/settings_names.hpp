@@ -1,0 +1,20 @@
+/// Names of parameters, durations and monitors in constants: their PAR indices, once the problem is known.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "constants/run_settings.hpp"
+
+namespace tchat {
+
+/// What ParameterNames gives for the name of a monitor, to which the settings give an index.
+inline constexpr int names_a_monitor = 0;
+
+/// PAR index of a name. `where`, the place and the constant, begins the message when there is no such name.
+using ParameterNames = std::function<int(const std::string& name, const std::string& where)>;
+
+/// Replaces the stand-ins of all names by PAR indices and checks these again. Throws UserError.
+void resolve_names(RunSettings& settings, const ParameterNames& names);
+
+}  // namespace tchat
