@@ -49,7 +49,8 @@ void resolve_names(RunSettings& settings, const ParameterNames& names) {
   for (HeldValue& held : settings.held) resolve(held.parameter);
   const std::vector<GivenName> given = std::exchange(settings.names, {});
   check_parameter_indices(settings, [&given](std::string_view keyword) {
-    const auto found = std::find_if(given.begin(), given.end(), [&](const auto& name) { return name.keyword == keyword; });
+    const auto found =
+        std::find_if(given.begin(), given.end(), [&](const auto& name) { return name.keyword == keyword; });
     return found != given.end() ? found->place : Place{given.front().place.source};
   });
 }

@@ -22,8 +22,8 @@ class Predictor {
  public:
   virtual ~Predictor() = default;
 
-  /// `x` becomes a point of the plane <v, x - from> = ds near the branch, v the unit tangent of `from`. Where the result
-  /// has error 0, `x` need not be set: the step is predicted along the tangent.
+  /// `x` becomes a point of the plane <v, x - from> = ds near the branch, v the unit tangent of `from`. Where the
+  /// result has error 0, `x` need not be set: the step is predicted along the tangent.
   virtual Prediction predict(const PathPoint& from, double ds, Orbit& x) const = 0;
 
   /// Newton's method has led a step from `from` to `to`, which the next prediction may start from: stores what it needs

@@ -28,32 +28,25 @@ BranchCurve branch(const EquilibriumSystem& system, const RunSettings&, const Se
           }};
 }
 
-BranchCurve fold(const EquilibriumSystem& system, const RunSettings&, const SelectedStart& start) {
-  auto condition = std::make_unique<EquilibriumFold>(system, start.start.orbit.shape);
-  const EquilibriumFold& kept = *condition;
-  return {std::move(condition), [&system, &kept](const RunSettings& settings) {
+/// The curve of a condition with the points of codimension two on it.
+template <class Condition>
+BranchCurve curve_of(const EquilibriumSystem& system, std::unique_ptr<Condition> condition,
+                     TestList (*codimension_two)(const Condition&)) {
+  const Condition& kept = *condition;
+  return {std::move(condition), [&system, &kept, codimension_two](const RunSettings& settings) {
             TestList tests = boundary_equilibrium_tests(system, settings);
-            tests.push_back(std::make_unique<EquilibriumCuspTest>(kept));
-            tests.push_back(std::make_unique<DoubleZeroTest>(kept));
-            tests.push_back(std::make_unique<FoldHopfTest>());
+            for (auto& test : codimension_two(kept)) tests.push_back(std::move(test));
             add_user_values(tests, system.system(), settings);
             return tests;
           }};
 }
 
+BranchCurve fold(const EquilibriumSystem& system, const RunSettings&, const SelectedStart& start) {
+  return curve_of(system, std::make_unique<EquilibriumFold>(system, start.start.orbit.shape), equilibrium_fold_tests);
+}
+
 BranchCurve hopf(const EquilibriumSystem& system, const RunSettings&, const SelectedStart& start) {
-  auto condition = std::make_unique<HopfPair>(system, start.start.orbit.shape);
-  const HopfPair& kept = *condition;
-  return {std::move(condition), [&system, &kept](const RunSettings& settings) {
-            TestList tests = boundary_equilibrium_tests(system, settings);
-            tests.push_back(std::make_unique<ZeroFrequencyTest>(kept));
-            tests.push_back(std::make_unique<MirroredFrequencyTest>(kept));
-            tests.push_back(std::make_unique<PassedFrequencyTest>(kept));
-            tests.push_back(std::make_unique<HopfFoldTest>(kept));
-            tests.push_back(std::make_unique<BautinTest>(kept));
-            add_user_values(tests, system.system(), settings);
-            return tests;
-          }};
+  return curve_of(system, std::make_unique<HopfPair>(system, start.start.orbit.shape), hopf_curve_tests);
 }
 
 ProblemFacts equilibrium_facts(int branch_mode, const char* title) {

@@ -82,26 +82,22 @@ BranchCurve curve_of(const DefiningSystem& system, std::unique_ptr<Condition> co
 BranchCurve fold(const PeriodicOrbitSystem& system, const RunSettings&, const SelectedStart& start) {
   return curve_of(system, std::make_unique<CriticalMultiplier>(system, start.start.orbit.shape, 1),
                   [](TestList& tests, const CriticalMultiplier& condition) {
-                    tests.push_back(std::make_unique<CuspTest>(condition));
-                    tests.push_back(std::make_unique<ResonanceTest>(PointType::resonance_1, condition));
+                    tests.push_back(cusp_test(condition));
+                    tests.push_back(double_multiplier_test(PointType::resonance_1, condition));
                   });
 }
 
 BranchCurve period_doubling(const PeriodicOrbitSystem& system, const RunSettings&, const SelectedStart& start) {
   return curve_of(system, std::make_unique<CriticalMultiplier>(system, start.start.orbit.shape, -1),
                   [](TestList& tests, const CriticalMultiplier& condition) {
-                    tests.push_back(std::make_unique<ResonanceTest>(PointType::resonance_2, condition));
+                    tests.push_back(double_multiplier_test(PointType::resonance_2, condition));
                   });
 }
 
 BranchCurve torus(const PeriodicOrbitSystem& system, const RunSettings&, const SelectedStart& start) {
   return curve_of(system, std::make_unique<CriticalPair>(system, start.start.orbit.shape, pair_at(system, start)),
                   [](TestList& tests, const CriticalPair& pair) {
-                    for (const PointType type : {PointType::resonance_1, PointType::resonance_2, PointType::resonance_3,
-                                                 PointType::resonance_4})
-                      tests.push_back(std::make_unique<AngleTest>(type, pair));
-                    tests.push_back(std::make_unique<MirroredResonanceTest>(pair));
-                    tests.push_back(std::make_unique<PassedResonanceTest>(pair));
+                    for (auto& test : torus_curve_tests(pair)) tests.push_back(std::move(test));
                   });
 }
 
@@ -116,7 +112,7 @@ template <class System>
 BranchCurve branch_point(const System& system, const RunSettings&, const SelectedStart& start) {
   return curve_of(system, std::make_unique<CriticalBranchPoint>(system, start.start.orbit.shape),
                   [](TestList& tests, const CriticalBranchPoint& condition) {
-                    tests.push_back(std::make_unique<ResonanceTest>(PointType::resonance_1, condition));
+                    tests.push_back(double_multiplier_test(PointType::resonance_1, condition));
                   });
 }
 

@@ -1,16 +1,11 @@
 /// The test functions that problem types put together, by what the constants ask for: ILP, ISP, UZR, GCIPSI, GRSTOP.
 #pragma once
 
-#include <memory>
-#include <vector>
-
 #include "bvp/defining_system.hpp"
 #include "constants/run_settings.hpp"
 #include "special_points/test_function.hpp"
 
 namespace tchat {
-
-using TestList = std::vector<std::unique_ptr<TestFunction>>;
 
 /// Impact velocities, the contacts that GCIPSI chooses, counted through the monitored events of all segments in order,
 /// tangencies of the sections, and where crossings of a surface begin to slide.

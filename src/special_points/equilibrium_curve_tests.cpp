@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
+#include <memory>
+#include <utility>
 
 #include "bvp/orbit_accuracy.hpp"
 #include "stability/equilibrium_eigenvalues.hpp"
@@ -40,84 +43,190 @@ Eigenvalues without_pair(Eigenvalues values) {
   return values;
 }
 
+/// CP: w^T f_xx v v = 0 on a fold curve.
+class EquilibriumCuspTest final : public TestFunction {
+ public:
+  explicit EquilibriumCuspTest(const EquilibriumFold& fold) : fold_(fold) {}
+  std::string name() const override { return "cusp"; }
+  TestValue evaluate(const TestedPoint&) const override { return TestValue::of(fold_.cusp_function(), orbit_accuracy); }
+  SpecialPoint classify(const TestedPoint&, bool) const override { return {PointType::cusp, {}, false, "cusp"}; }
+
+ private:
+  const EquilibriumFold& fold_;
+};
+
+/// BT on a fold curve: the eigenvalue 0 is a double one.
+class DoubleZeroTest final : public TestFunction {
+ public:
+  explicit DoubleZeroTest(const EquilibriumFold& fold) : fold_(fold) {}
+  std::string name() const override { return "Bogdanov-Takens"; }
+  TestValue evaluate(const TestedPoint&) const override {
+    return TestValue::of(fold_.multiplicity_function(), orbit_accuracy);
+  }
+  SpecialPoint classify(const TestedPoint&, bool) const override {
+    return {PointType::bogdanov_takens, {}, false, "Bogdanov-Takens point: the eigenvalue 0 is a double one"};
+  }
+
+ private:
+  const EquilibriumFold& fold_;
+};
+
+/// BT on a Hopf curve: omega^2 = 0. The curve ends there. By symmetry omega^2 may touch zero, omega going through it:
+/// MirroredFrequencyTest, PassedFrequencyTest.
+class ZeroFrequencyTest final : public TestFunction {
+ public:
+  explicit ZeroFrequencyTest(const HopfPair& pair) : pair_(pair) {}
+  std::string name() const override { return "Bogdanov-Takens"; }
+  TestValue evaluate(const TestedPoint&) const override {
+    return TestValue::of(pair_.relative_square(), orbit_accuracy);
+  }
+  Resolution resolution() const override { return Resolution::direction; }
+  SpecialPoint classify(const TestedPoint&, bool) const override {
+    return {PointType::bogdanov_takens, {}, true, "Bogdanov-Takens point: omega = 0, where the Hopf curve ends"};
+  }
+
+ private:
+  const HopfPair& pair_;
+};
+
+/// BT where the Hopf curve of an equilibrium without the symmetry of the problem meets its mirror image at an
+/// equilibrium that has it: omega is proportional to the arclength. The Hopf curve of the symmetric equilibria passes
+/// through the same point, so the bordered determinant changes sign; with its sign omega goes through zero. Only that
+/// sign may be normalised to a jump. Elsewhere a curve that crosses is not that of a double eigenvalue 0.
+class MirroredFrequencyTest final : public TestFunction {
+ public:
+  explicit MirroredFrequencyTest(const HopfPair& pair) : pair_(pair) {}
+  std::string name() const override { return "Bogdanov-Takens at the mirror image"; }
+  TestValue evaluate(const TestedPoint& point) const override {
+    constexpr double nearby = 0.1;
+    constexpr double level = 1e-7;  // the root of what rounding makes of omega^2
+    const double square = std::abs(pair_.relative_square());
+    const TestValue omega = TestValue::of(std::copysign(std::sqrt(square), point.singular_distance), level);
+    return square < nearby ? omega : TestValue::undefined(omega.sign);
+  }
+  /// omega is known to the accuracy of its location.
+  bool is_genuine(const TestedPoint&) const override {
+    constexpr double at_double_zero = 1e-10;
+    return std::abs(pair_.relative_square()) <= at_double_zero;
+  }
+  bool singular_at_zero() const override { return true; }
+  SpecialPoint classify(const TestedPoint&, bool) const override {
+    return {PointType::bogdanov_takens,
+            {},
+            true,
+            "Bogdanov-Takens point: omega = 0, where the Hopf curve ends: it meets its mirror image"};
+  }
+
+ private:
+  const HopfPair& pair_;
+};
+
+/// BT that omega passes, the eigenvalue 0 having two eigenvectors: the curve continues. Reported without a label.
+class PassedFrequencyTest final : public TestFunction {
+ public:
+  explicit PassedFrequencyTest(const HopfPair& pair) : pair_(pair) {}
+  std::string name() const override { return "omega through 0"; }
+  TestValue evaluate(const TestedPoint&) const override {
+    constexpr double level = 1e-5;  // at a located point of another kind it is none
+    return TestValue::of(pair_.turning(), level);
+  }
+  bool is_only_reported() const override { return true; }
+  SpecialPoint classify(const TestedPoint&, bool) const override {
+    return {PointType::bogdanov_takens, {}, false, "omega passes 0: two eigenvectors, the Hopf curve goes on"};
+  }
+
+ private:
+  const HopfPair& pair_;
+};
+
+SpecialPoint zero_hopf_point(double omega) {
+  return {PointType::zero_hopf, {}, false, fmt::format("zero-Hopf point, omega = {:.10g}", omega)};
+}
+
+/// ZH on a fold curve: a pair of the other eigenvalues is on the imaginary axis.
+class FoldHopfTest final : public TestFunction {
+ public:
+  std::string name() const override { return "zero-Hopf"; }
+  TestValue evaluate(const TestedPoint& point) const override {
+    const Eigenvalues others = without_zero(point.multipliers.values);
+    if (!point.multipliers.valid || others.size() < 2) return TestValue::undefined();
+    const HopfPairs pairs = hopf_pairs(others);
+    return TestValue::of(pairs.sign * pairs.nearest.distance, orbit_accuracy);
+  }
+  bool is_genuine(const TestedPoint& point) const override { return nearest_pair(point).is_oscillation(); }
+  SpecialPoint classify(const TestedPoint& point, bool) const override {
+    return zero_hopf_point(std::abs(nearest_pair(point).first.imag()));
+  }
+
+ private:
+  static EigenvaluePair nearest_pair(const TestedPoint& point) {
+    return hopf_pairs(without_zero(point.multipliers.values)).nearest;
+  }
+};
+
+/// ZH on a Hopf curve: one of the other eigenvalues is zero.
+class HopfFoldTest final : public TestFunction {
+ public:
+  explicit HopfFoldTest(const HopfPair& pair) : pair_(pair) {}
+  std::string name() const override { return "zero-Hopf"; }
+  TestValue evaluate(const TestedPoint& point) const override {
+    const Eigenvalues others = without_pair(point.multipliers.values);
+    if (!point.multipliers.valid || others.empty()) return TestValue::undefined();
+    double least = std::abs(others.front());
+    double sign = 1.0;
+    for (const auto& value : others) {
+      least = std::min(least, std::abs(value));
+      if (value.imag() == 0.0 && value.real() < 0.0) sign = -sign;
+    }
+    return TestValue::of(sign * least / largest_modulus(point.multipliers.values), orbit_accuracy);
+  }
+  SpecialPoint classify(const TestedPoint&, bool) const override {
+    return zero_hopf_point(std::sqrt(std::abs(pair_.square())));
+  }
+
+ private:
+  const HopfPair& pair_;
+};
+
+/// GH on a Hopf curve: the first Lyapunov coefficient is zero (Bautin). It is scaled to omega, with which it goes to
+/// infinity at a Bogdanov-Takens point.
+class BautinTest final : public TestFunction {
+ public:
+  explicit BautinTest(const HopfPair& pair) : pair_(pair) {}
+  std::string name() const override { return "first Lyapunov coefficient"; }
+  TestValue evaluate(const TestedPoint& point) const override {
+    const double square = pair_.square();
+    if (!(square > 0.0)) return TestValue::undefined();
+    const double omega = std::sqrt(square);
+    const double coefficient = omega * first_lyapunov_coefficient(point.condensed.system(), point.orbit, omega);
+    return TestValue::of(coefficient, difference_accuracy);
+  }
+  SpecialPoint classify(const TestedPoint&, bool) const override {
+    return {PointType::generalized_hopf, {}, false, "generalised Hopf point: the first Lyapunov coefficient is 0"};
+  }
+
+ private:
+  const HopfPair& pair_;
+};
+
 }  // namespace
 
-TestValue EquilibriumCuspTest::evaluate(const TestedPoint&) const {
-  return TestValue::of(condition_.cusp_function(), orbit_accuracy);
+TestList equilibrium_fold_tests(const EquilibriumFold& fold) {
+  TestList tests;
+  tests.push_back(std::make_unique<EquilibriumCuspTest>(fold));
+  tests.push_back(std::make_unique<DoubleZeroTest>(fold));
+  tests.push_back(std::make_unique<FoldHopfTest>());
+  return tests;
 }
 
-TestValue DoubleZeroTest::evaluate(const TestedPoint&) const {
-  return TestValue::of(condition_.multiplicity_function(), orbit_accuracy);
-}
-
-TestValue ZeroFrequencyTest::evaluate(const TestedPoint&) const {
-  return TestValue::of(condition_.relative_square(), orbit_accuracy);
-}
-
-/// omega with the sign of the determinant, which alone may be normalised to a jump. Elsewhere a curve that crosses is
-/// none of a double eigenvalue 0.
-TestValue MirroredFrequencyTest::evaluate(const TestedPoint& point) const {
-  constexpr double nearby = 0.1;
-  constexpr double level = 1e-7;  // the root of what rounding makes of omega^2
-  const double square = std::abs(condition_.relative_square());
-  const TestValue omega = TestValue::of(std::copysign(std::sqrt(square), point.singular_distance), level);
-  return square < nearby ? omega : TestValue::undefined(omega.sign);
-}
-
-/// omega is known to the accuracy of its location.
-bool MirroredFrequencyTest::is_genuine(const TestedPoint&) const {
-  constexpr double at_double_zero = 1e-10;
-  return std::abs(condition_.relative_square()) <= at_double_zero;
-}
-
-TestValue PassedFrequencyTest::evaluate(const TestedPoint&) const {
-  constexpr double level = 1e-5;  // at a located point of another kind it is none
-  return TestValue::of(condition_.turning(), level);
-}
-
-TestValue FoldHopfTest::evaluate(const TestedPoint& point) const {
-  const Eigenvalues others = without_zero(point.multipliers.values);
-  if (!point.multipliers.valid || others.size() < 2) return TestValue::undefined();
-  const HopfPairs pairs = hopf_pairs(others);
-  return TestValue::of(pairs.sign * pairs.nearest.distance, orbit_accuracy);
-}
-
-bool FoldHopfTest::is_genuine(const TestedPoint& point) const {
-  return hopf_pairs(without_zero(point.multipliers.values)).nearest.is_oscillation();
-}
-
-SpecialPoint FoldHopfTest::classify(const TestedPoint& point, bool) const {
-  const EigenvaluePair pair = hopf_pairs(without_zero(point.multipliers.values)).nearest;
-  return {
-      PointType::zero_hopf, {}, false, fmt::format("zero-Hopf point, omega = {:.10g}", std::abs(pair.first.imag()))};
-}
-
-TestValue HopfFoldTest::evaluate(const TestedPoint& point) const {
-  const Eigenvalues others = without_pair(point.multipliers.values);
-  if (!point.multipliers.valid || others.empty()) return TestValue::undefined();
-  double least = std::abs(others.front());
-  double sign = 1.0;
-  for (const auto& value : others) {
-    least = std::min(least, std::abs(value));
-    if (value.imag() == 0.0 && value.real() < 0.0) sign = -sign;
-  }
-  return TestValue::of(sign * least / largest_modulus(point.multipliers.values), orbit_accuracy);
-}
-
-SpecialPoint HopfFoldTest::classify(const TestedPoint&, bool) const {
-  const double square = condition_.square();
-  return {
-      PointType::zero_hopf, {}, false, fmt::format("zero-Hopf point, omega = {:.10g}", std::sqrt(std::abs(square)))};
-}
-
-/// Scaled to omega, with which it goes to infinity at a Bogdanov-Takens point.
-TestValue BautinTest::evaluate(const TestedPoint& point) const {
-  const double square = condition_.square();
-  if (!(square > 0.0)) return TestValue::undefined();
-  const double omega = std::sqrt(square);
-  const double coefficient = omega * first_lyapunov_coefficient(point.condensed.system(), point.orbit, omega);
-  if (!std::isfinite(coefficient)) return TestValue::undefined();
-  return TestValue::of(coefficient, difference_accuracy);
+TestList hopf_curve_tests(const HopfPair& pair) {
+  TestList tests;
+  tests.push_back(std::make_unique<ZeroFrequencyTest>(pair));
+  tests.push_back(std::make_unique<MirroredFrequencyTest>(pair));
+  tests.push_back(std::make_unique<PassedFrequencyTest>(pair));
+  tests.push_back(std::make_unique<HopfFoldTest>(pair));
+  tests.push_back(std::make_unique<BautinTest>(pair));
+  return tests;
 }
 
 }  // namespace tchat

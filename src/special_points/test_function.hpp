@@ -2,10 +2,12 @@
 ///
 /// All share one mechanism (special_point_search): evaluated at every accepted point, a change of sign over a step
 /// brackets a zero, the zero is located on the arclength of that step (locator.hpp), classified, labelled and written.
-/// A new kind of special point is one new class. Test functions are pure: the same point gives the same value.
+/// A new kind of special point is one new class and the list that it is added to. Test functions are pure: the same
+/// point gives the same value.
 #pragma once
 
 #include <cmath>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -85,5 +87,7 @@ class TestFunction {
   /// The special point at a located zero; `rising` says which way the function went through it.
   virtual SpecialPoint classify(const TestedPoint& point, bool rising) const = 0;
 };
+
+using TestList = std::vector<std::unique_ptr<TestFunction>>;
 
 }  // namespace tchat
