@@ -160,7 +160,7 @@ double BorderedProblem::size_on_null_vectors(const OrbitVector& row) const {
 CondensedSystem::Singularity BorderedProblem::singularity(const OrbitVector& row) {
   CondensedSystem::Singularity result = condensed_.singularity();
   if (outcome_ != Linearization::ready || !condition_) return result;
-  if (!null_vectors_known_) know_null_vectors();
+  if (!null_vectors_known_) find_null_vectors();
   Eigen::MatrixXd rows(conditions() + 1, conditions() + 1);
   rows.row(0) = on_null_vectors(row).transpose() / size_on_null_vectors(row);
   for (int k = 0; k < conditions(); ++k)
@@ -186,7 +186,7 @@ void BorderedProblem::solve_across(const OrbitResidual& residual, OrbitVector& d
 }
 
 bool BorderedProblem::solve(const OrbitResidual& residual, const OrbitVector& row, double target, OrbitVector& dx) {
-  if (!null_vectors_known_) know_null_vectors();
+  if (!null_vectors_known_) find_null_vectors();
   condensed_.solve(residual, border(residual.integral), dx);
   return put_on_branch(row, target, dx);
 }
@@ -197,7 +197,7 @@ bool BorderedProblem::correct(const OrbitResidual& linearized, const OrbitVector
   return put_on_branch(row, target, dx);
 }
 
-void BorderedProblem::know_null_vectors() {
+void BorderedProblem::find_null_vectors() {
   for (int k = 0; k <= conditions(); ++k) condensed_.null_vector(null_vectors_[static_cast<std::size_t>(k)], k);
   measure_null_vectors();
 }
@@ -210,7 +210,7 @@ void BorderedProblem::measure_null_vectors() {
 }
 
 double BorderedProblem::tangent_sign(const OrbitVector& row) {
-  if (!null_vectors_known_) know_null_vectors();
+  if (!null_vectors_known_) find_null_vectors();
   if (!row_along_) row_along_ = on_null_vectors(row).dot(along_);
   return *row_along_ < 0.0 ? -1.0 : 1.0;
 }
@@ -274,7 +274,7 @@ void BorderedProblem::combine_null_vectors(const Numbers& shares, OrbitVector& v
 
 /// Without a condition the first null vector is the tangent.
 const OrbitVector& BorderedProblem::tangent() {
-  if (!null_vectors_known_) know_null_vectors();
+  if (!null_vectors_known_) find_null_vectors();
   if (!condition_) return null_vectors_.front();
   combine_null_vectors(along_, tangent_);
   return tangent_;

@@ -128,7 +128,7 @@ class BorderedProblem {
   void close(const OrbitVector& row);
   Numbers on_null_vectors(const OrbitVector& row) const;
   double size_on_null_vectors(const OrbitVector& row) const;
-  void know_null_vectors();
+  void find_null_vectors();
   void measure_null_vectors();
   bool put_on_branch(const OrbitVector& row, double target, OrbitVector& dx);
   Numbers across(const OrbitVector& dx) const;

@@ -25,7 +25,7 @@ void MonitorSet::store(Orbit& x, const FloquetMultipliers& multipliers) const {
   const bool wanted = std::any_of(list_.begin(), list_.end(), [](const Entry& entry) { return !entry.monitor; });
   if (!wanted) return;
   std::vector<double> moduli;
-  for (const auto& mu : multipliers.telling()) moduli.push_back(std::abs(mu));
+  for (const auto& mu : multipliers.nontrivial()) moduli.push_back(std::abs(mu));
   std::sort(moduli.begin(), moduli.end(), std::greater<>());
   for (std::size_t i = 0; i < list_.size(); ++i) {
     if (list_[i].monitor) continue;

@@ -258,12 +258,12 @@ void FrontalLu::solve_transposed(const double* b, double* x) {
     double* weights = rights_.data() + front->right;
     forward_transposed(DynamicSizes{front->rows + front->border, front->pivots, front->width},
                        blocks_.data() + front->block, swaps_.data() + front->swaps, weights);
-    give_back(*front, weights, x);
+    scatter_weights(*front, weights, x);
   }
 }
 
 /// The weights of a front's rows to those that the children left, and to x.
-void FrontalLu::give_back(const Front& front, const double* weights, double* x) {
+void FrontalLu::scatter_weights(const Front& front, const double* weights, double* x) {
   const double* own = weights;
   for (const Child& child : front.children) {
     const Front& to = fronts_[at(child.front)];

@@ -64,7 +64,7 @@ class FrontalLu {
   void put_children(const Front& front, double* block) const;
   bool eliminate_pivots(const Front& front, double* block);
   void gather_right(const Front& front, const double* b, double* right) const;
-  void give_back(const Front& front, const double* weights, double* x);
+  void scatter_weights(const Front& front, const double* weights, double* x);
 
   int size_ = 0;
   std::vector<Front> fronts_;  // each after its children

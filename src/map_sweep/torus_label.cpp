@@ -95,7 +95,7 @@ VectorXd TorusLabel::on_p(int wall, int field, const VectorXd& from, double dura
 }
 
 /// Those of one return, from its beginning on.
-std::vector<VectorXd> TorusLabel::met(int wall, int field, double phi) const {
+std::vector<VectorXd> TorusLabel::wall_contacts(int wall, int field, double phi) const {
   const Orbit x = return_at(torus_, orbit_, phase_fraction(phi));
   const int c = x.shape.collocation;
   std::vector<VectorXd> points;
@@ -127,7 +127,7 @@ MatrixXd TorusLabel::points_on_p(int wall, int field, int count) const {
           fmt::format("{}: nowhere on the torus is event {} ({}) least along a trajectory; name another wall with "
                       "--wall",
                       source_, wall, system_.function_name(FunctionKind::event, wall)));
-    for (const VectorXd& x : met(wall, field, k * rotation()))
+    for (const VectorXd& x : wall_contacts(wall, field, k * rotation()))
       if (known < count) points.col(known++) = x;
   }
   return points;

@@ -43,7 +43,7 @@ class TorusLabel {
   Eigen::MatrixXd points_on_p(int wall, int field, int count) const;
 
  private:
-  std::vector<Eigen::VectorXd> met(int wall, int field, double phi) const;
+  std::vector<Eigen::VectorXd> wall_contacts(int wall, int field, double phi) const;
   Eigen::VectorXd on_p(int wall, int field, const Eigen::VectorXd& from, double duration) const;
 
   const HybridSystem& system_;

@@ -313,7 +313,7 @@ int run_problem(const RunRequest& request, std::ostream& screen, std::ostream& w
 
   int status = 0;
   bool closed = false;
-  const auto tell = [&](const BranchSummary& summary, std::size_t labels_before) {
+  const auto report = [&](const BranchSummary& summary, std::size_t labels_before) {
     closed = summary.reason == EndReason::closed;
     const std::vector<BranchWriter::Labelled> labels(
         writer.labels().begin() + static_cast<std::ptrdiff_t>(labels_before), writer.labels().end());
@@ -323,9 +323,9 @@ int run_problem(const RunRequest& request, std::ostream& screen, std::ostream& w
     status = of_branch == 1 || status == 0 ? of_branch : status;
   };
   const int branch = request.append ? std::max(files.last_branch() + 1, 1) : selected.branch;
-  tell(Direction(setup, continuation, branch)
-           .follow(writer, setup.start.correction, problem.library->derivative_notes()),
-       0);
+  report(Direction(setup, continuation, branch)
+             .follow(writer, setup.start.correction, problem.library->derivative_notes()),
+         0);
   if (request.both_directions && closed && reports.table != nullptr)
     *reports.table << "  --both: the other direction goes round the same closed branch, and is left out\n";
   if (request.both_directions && !closed && !(interrupted && interrupted())) {
@@ -337,9 +337,9 @@ int run_problem(const RunRequest& request, std::ostream& screen, std::ostream& w
       against.step = -against.step;
       other_side = set_up_branch(system, against, selected);
     }
-    tell(Direction(is_other_branch ? other_side : setup, reversed(continuation), branch + 1)
-             .follow(writer, other_side.start.correction, {}),
-         labels_before);
+    report(Direction(is_other_branch ? other_side : setup, reversed(continuation), branch + 1)
+               .follow(writer, other_side.start.correction, {}),
+           labels_before);
   }
   files.finish();
   reports.warn_of(problem.library->complaint());

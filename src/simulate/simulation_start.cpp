@@ -103,7 +103,7 @@ std::vector<IndexVector> watched_after(const HybridSystem& system, const Simulat
 }
 
 /// The start is that of an orbit with these states: it lies behind the orbit's last event.
-void begin_after_orbit(const HybridSystem& system, const SimulationConstants& constants, const Eigen::MatrixXd& states,
+void start_after_orbit(const HybridSystem& system, const SimulationConstants& constants, const Eigen::MatrixXd& states,
                        SimulationStart& start) {
   start.side.given = StartSide::Given::after;
   const std::optional<IndexVector> last = last_index(system, constants, states, start.par);
@@ -136,7 +136,7 @@ void apply_data(const SimulationRequest& request, const SimulationConstants& con
   for (const auto& [name, value] : data.named_parameters) start.par(parameter_index(system, name, path) - 1) = value;
   start.state = data.states.col(0).head(system.dimension());
   start.source = fmt::format("first row of {}", path);
-  begin_after_orbit(system, constants, data.states, start);
+  start_after_orbit(system, constants, data.states, start);
 }
 
 void apply_label(const SimulationRequest& request, const SimulationConstants& constants, const HybridSystem& system,
@@ -158,7 +158,7 @@ void apply_label(const SimulationRequest& request, const SimulationConstants& co
     start.par(static_cast<Eigen::Index>(k)) = solution.parameters[k];
   start.state = solution.states.col(0).head(system.dimension());
   start.source = fmt::format("label {} of {}", solution.label, path);
-  begin_after_orbit(system, constants, solution.states, start);
+  start_after_orbit(system, constants, solution.states, start);
 }
 
 }  // namespace

@@ -37,7 +37,7 @@ bool is_section(const DefiningSystem& system, int s) {
 
 /// A fold located to EPSS has this multiplier nearer to 1.
 bool has_multiplier_one(const FloquetMultipliers& multipliers) {
-  const auto list = multipliers.telling();
+  const auto list = multipliers.nontrivial();
   return std::any_of(list.begin(), list.end(), [](const auto& mu) { return std::abs(mu - 1.0) < 1e-3; });
 }
 

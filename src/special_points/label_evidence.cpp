@@ -24,7 +24,7 @@ bool is_known(const FloquetMultipliers& multipliers) {
 
 double largest_modulus(const FloquetMultipliers& multipliers) {
   double largest = 0.0;
-  for (const Complex& mu : multipliers.telling()) largest = std::max(largest, std::abs(mu));
+  for (const Complex& mu : multipliers.nontrivial()) largest = std::max(largest, std::abs(mu));
   return largest;
 }
 
@@ -41,8 +41,8 @@ double doubt_of_stability(const FloquetMultipliers& multipliers) {
 
 /// Those that tell of the orbit, the most unstable one first.
 std::vector<Complex> by_excess(const FloquetMultipliers& multipliers) {
-  const auto telling = multipliers.telling();
-  std::vector<Complex> list(telling.begin(), telling.end());
+  const auto nontrivial = multipliers.nontrivial();
+  std::vector<Complex> list(nontrivial.begin(), nontrivial.end());
   std::stable_sort(list.begin(), list.end(),
                    [&](const Complex& a, const Complex& b) { return excess(multipliers, a) > excess(multipliers, b); });
   return list;
@@ -56,7 +56,7 @@ double multiplier_accuracy(const FloquetMultipliers& multipliers) {
 
 double multiplier_distance(const FloquetMultipliers& multipliers, double target) {
   double nearest = std::numeric_limits<double>::infinity();
-  for (const Complex& mu : multipliers.telling()) nearest = std::min(nearest, std::abs(mu - target));
+  for (const Complex& mu : multipliers.nontrivial()) nearest = std::min(nearest, std::abs(mu - target));
   return nearest;
 }
 
@@ -83,7 +83,7 @@ std::string objection_without_multiplier(const TestedPoint& point, int target, c
 UnstableCount count_unstable(const FloquetMultipliers& multipliers) {
   UnstableCount count;
   const double level = doubt_of_stability(multipliers);
-  for (const Complex& mu : multipliers.telling()) {
+  for (const Complex& mu : multipliers.nontrivial()) {
     const double by = excess(multipliers, mu);
     ++(by > level ? count.outside : by < -level ? count.inside : count.undecided);
   }
@@ -91,7 +91,7 @@ UnstableCount count_unstable(const FloquetMultipliers& multipliers) {
 }
 
 StabilityChange stability_change(const FloquetMultipliers& before, const FloquetMultipliers& after) {
-  if (!is_known(before) || !is_known(after) || before.telling().size() != after.telling().size()) return {};
+  if (!is_known(before) || !is_known(after) || before.nontrivial().size() != after.nontrivial().size()) return {};
   const UnstableCount a = count_unstable(before);
   const UnstableCount b = count_unstable(after);
   StabilityChange change;

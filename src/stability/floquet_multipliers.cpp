@@ -110,7 +110,7 @@ void section_at_end(const DefiningSystem& defining, const Orbit& x, int s, Vecto
 bool FloquetMultipliers::stable() const { return valid && stable_count() == static_cast<int>(values.size()); }
 
 int FloquetMultipliers::stable_count() const {
-  const auto list = telling();
+  const auto list = nontrivial();
   double largest = 0.0;
   for (const auto& mu : list) largest = std::max(largest, std::abs(mu));
   const auto stable = std::count_if(list.begin(), list.end(), [&](const auto& mu) {
