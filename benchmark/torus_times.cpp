@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <tchat/problem.hpp>
 
-#include "../../problems/torus/torus.cpp"
+#include "../problems/torus/torus.cpp"
 #include "benchmark/timing.hpp"
 #include "bvp/rotation.hpp"
 #include "bvp/torus_system.hpp"
