@@ -10,6 +10,7 @@
 #include <tuple>
 #include <utility>
 
+#include "bvp/monitor.hpp"
 #include "linear_algebra/array_kernel.hpp"
 
 namespace tchat {

@@ -28,35 +28,11 @@
 #include <vector>
 
 #include "bvp/condensed_system.hpp"
-#include "bvp/monitor.hpp"
+#include "bvp/orbit_condition.hpp"
 
 namespace tchat {
 
-/// A function G of the orbit, durations and free parameters, of one number or two, with its gradients.
-class OrbitCondition {
- public:
-  static constexpr int most = 2;
-
-  virtual ~OrbitCondition() = default;
-  /// How many numbers; constant.
-  virtual int count() const { return 1; }
-  /// G and its gradients at x, whose linearisation is in `condensed`. False when they cannot be found.
-  virtual bool evaluate(CondensedSystem& condensed, const Orbit& x) = 0;
-  /// Of number k = 0 .. count() - 1.
-  virtual double value(int k) const = 0;
-  virtual const OrbitVector& gradient(int k) const = 0;
-  /// The multiplier that is kept exactly, where it is one number: 1 or -1.
-  virtual std::optional<int> kept_multiplier() const { return std::nullopt; }
-  /// "" on the curve, or why the last point, which solves the equations, lies beyond its end.
-  virtual std::string beyond_end() const { return {}; }
-
-  /// What evaluations near the point of the last one begin from; `memory` is overwritten, empty before the first one.
-  virtual void remember(std::vector<double>& memory) const = 0;
-  virtual void recall(const std::vector<double>& memory) = 0;
-};
-
-/// What linearisations near a point of the branch begin from; empty without a condition.
-using ConditionMemory = std::vector<double>;
+class Monitor;
 
 /// A monitor that keeps this value.
 struct HeldMonitor {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "bvp/coupling.hpp"
 #include "bvp/evaluation_failure.hpp"
 #include "bvp/gauss_points.hpp"
 

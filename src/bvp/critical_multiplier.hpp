@@ -14,8 +14,8 @@
 
 #include <vector>
 
-#include "bvp/bordered_problem.hpp"
 #include "bvp/condensed_return_map.hpp"
+#include "bvp/orbit_condition.hpp"
 
 namespace tchat {
 

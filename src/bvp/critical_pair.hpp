@@ -22,8 +22,8 @@
 #include <optional>
 #include <vector>
 
-#include "bvp/bordered_problem.hpp"
 #include "bvp/condensed_return_map.hpp"
+#include "bvp/orbit_condition.hpp"
 #include "linear_algebra/sparse_lu.hpp"
 
 namespace tchat {

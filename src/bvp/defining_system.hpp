@@ -16,13 +16,13 @@
 #include <vector>
 
 #include "bvp/collocation_rule.hpp"
-#include "bvp/coupling.hpp"
 #include "bvp/orbit.hpp"
 #include "hybrid/hybrid_system.hpp"
 
 namespace tchat {
 
 class BranchAnalysis;
+class CouplingPattern;
 
 class DefiningSystem {
  public:

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bvp/condensed_system.hpp"
+#include "bvp/defining_system.hpp"
 #include "linear_algebra/dense_matrix.hpp"
 
 namespace tchat {

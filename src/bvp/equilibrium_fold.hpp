@@ -13,9 +13,11 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "bvp/bordered_problem.hpp"
+#include "bvp/orbit_condition.hpp"
 
 namespace tchat {
+
+class DefiningSystem;
 
 class EquilibriumFold final : public OrbitCondition {
  public:

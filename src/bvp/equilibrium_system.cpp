@@ -5,6 +5,7 @@
 #include <cmath>
 #include <complex>
 
+#include "bvp/coupling.hpp"
 #include "linear_algebra/dense_matrix.hpp"
 
 namespace tchat {

@@ -1,4 +1,6 @@
 #include "bvp/event_condition.hpp"
+#include "bvp/condensed_system.hpp"
+#include "bvp/defining_system.hpp"
 
 #include <cmath>
 

@@ -6,9 +6,11 @@
 /// free: n m + m + 2 unknowns besides the collocated functions, n m + m + 1 conditions and pseudo-arclength.
 #pragma once
 
-#include "bvp/bordered_problem.hpp"
+#include "bvp/orbit_condition.hpp"
 
 namespace tchat {
+
+class DefiningSystem;
 
 class EventCondition final : public OrbitCondition {
  public:

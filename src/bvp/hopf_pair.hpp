@@ -18,9 +18,11 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "bvp/bordered_problem.hpp"
+#include "bvp/orbit_condition.hpp"
 
 namespace tchat {
+
+class DefiningSystem;
 
 class HopfPair final : public OrbitCondition {
  public:

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bvp/coupling.hpp"
 #include "bvp/evaluation_failure.hpp"
 
 namespace tchat {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "bvp/coupling.hpp"
 #include "bvp/rotation.hpp"
 
 namespace tchat {

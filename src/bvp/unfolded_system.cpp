@@ -1,4 +1,5 @@
 #include "bvp/unfolded_system.hpp"
+#include "bvp/coupling.hpp"
 
 #include <algorithm>
 

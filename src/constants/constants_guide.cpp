@@ -5,6 +5,8 @@
 
 #include "constants/constants_writer.hpp"
 #include "constants/settings_type.hpp"
+#include "problem_type/family.hpp"
+#include "problem_type/problem_type.hpp"
 
 namespace tchat {
 

@@ -6,6 +6,8 @@
 
 #include "constants/settings_type.hpp"
 #include "hybrid/parameter_vector.hpp"
+#include "problem_type/family.hpp"
+#include "problem_type/problem_type.hpp"
 #include "text/number.hpp"
 #include "text/words.hpp"
 

@@ -8,6 +8,8 @@
 
 #include "constants/settings_check.hpp"
 #include "constants/settings_type.hpp"
+#include "problem_type/family.hpp"
+#include "problem_type/problem_type.hpp"
 #include "text/number.hpp"
 #include "text/user_error.hpp"
 #include "text/words.hpp"

@@ -5,6 +5,8 @@
 #include <algorithm>
 
 #include "hybrid/parameter_vector.hpp"
+#include "problem_type/family.hpp"
+#include "problem_type/problem_type.hpp"
 #include "text/user_error.hpp"
 
 namespace tchat {
@@ -18,6 +20,10 @@ bool contains(const std::vector<int>& list, int k) { return std::find(list.begin
 const ProblemType& problem_type(const RunSettings& settings) {
   return problem_type(settings.problem_type, settings.branch_mode);
 }
+
+const SolutionFamily& family_of(const RunSettings& settings) { return family_of(settings.problem_type); }
+
+const SignatureRules& signature_rules(const RunSettings& settings) { return family_of(settings).facts().signature; }
 
 int ProblemType::free_entries(const RunSettings& settings) const {
   const auto held = static_cast<int>(settings.held.size());

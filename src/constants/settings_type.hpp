@@ -5,10 +5,12 @@
 #include <vector>
 
 #include "constants/run_settings.hpp"
-#include "problem_type/family.hpp"
-#include "problem_type/problem_type.hpp"
 
 namespace tchat {
+
+class ProblemType;
+class SolutionFamily;
+struct SignatureRules;
 
 inline int segment_count(const RunSettings& settings) { return static_cast<int>(settings.segments.size()); }
 
@@ -16,10 +18,8 @@ inline int segment_count(const RunSettings& settings) { return static_cast<int>(
 const ProblemType& problem_type(const RunSettings& settings);
 
 /// The family of the solutions, and its rules for constants.
-inline const SolutionFamily& family_of(const RunSettings& settings) { return family_of(settings.problem_type); }
-inline const SignatureRules& signature_rules(const RunSettings& settings) {
-  return family_of(settings).facts().signature;
-}
+const SolutionFamily& family_of(const RunSettings& settings);
+const SignatureRules& signature_rules(const RunSettings& settings);
 
 /// How many problem parameters a type frees whose segments end in events; that of the nearest type where there is none
 /// of this IPS and ISW.

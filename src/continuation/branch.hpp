@@ -5,13 +5,15 @@
 #include <vector>
 
 #include "bvp/admissibility.hpp"
-#include "continuation/path_follower.hpp"
+#include "continuation/newton_result.hpp"
+#include "continuation/path_point.hpp"
 #include "continuation/point_data.hpp"
-#include "problem_type/family.hpp"
 #include "special_points/test_function.hpp"
-#include "stability/floquet_multipliers.hpp"
+#include "stability/multipliers.hpp"
 
 namespace tchat {
+
+struct FamilyFacts;
 
 /// The value of a test function under its name.
 struct NamedTestValue {

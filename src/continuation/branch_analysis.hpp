@@ -7,10 +7,12 @@
 #include <string>
 
 #include "continuation/orbit_trend.hpp"
-#include "problem_type/family.hpp"
 #include "special_points/test_function.hpp"
 
 namespace tchat {
+
+struct FamilyFacts;
+struct PathPoint;
 
 class BranchAnalysis {
  public:

@@ -7,6 +7,8 @@
 
 namespace tchat {
 
+class DefiningSystem;
+
 /// Which figure of accuracy exceeds `bound` (ERRMAX; 0: none does), with its value, or "". The figures are
 ///   - the estimated error of the orbit (bvp/discretisation_error.hpp),
 ///   - the structural multiplier, or the trivial one's distance from 1, where multipliers are computed,

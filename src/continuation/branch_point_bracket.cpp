@@ -1,4 +1,5 @@
 #include "continuation/branch_point_bracket.hpp"
+#include "continuation/path_follower.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -20,6 +20,8 @@
 
 namespace tchat {
 
+class PathFollower;
+
 class BranchPointBracket {
  public:
   /// Evaluates a converged point, whose linearisation the follower holds.

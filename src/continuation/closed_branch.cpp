@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "bvp/mesh_adaptation.hpp"
+#include "continuation/path_follower.hpp"
 #include "continuation/solution_measure.hpp"
 
 namespace tchat {

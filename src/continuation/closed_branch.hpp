@@ -12,9 +12,12 @@
 
 #include <optional>
 
-#include "continuation/path_follower.hpp"
+#include "continuation/path_point.hpp"
 
 namespace tchat {
+
+class DefiningSystem;
+class PathFollower;
 
 class ClosedBranch {
  public:

@@ -13,6 +13,7 @@
 #include "continuation/bound_tests.hpp"
 #include "continuation/branch_limits.hpp"
 #include "continuation/solution_measure.hpp"
+#include "problem_type/family.hpp"
 #include "special_points/bifurcation_tests.hpp"
 
 namespace tchat {

@@ -9,6 +9,7 @@
 #include "continuation/branch_analysis.hpp"
 #include "continuation/closed_branch.hpp"
 #include "continuation/orbit_trend.hpp"
+#include "continuation/path_follower.hpp"
 #include "continuation/special_point_search.hpp"
 #include "continuation/stability_watch.hpp"
 #include "continuation/step_size.hpp"

@@ -5,9 +5,8 @@
 #include <memory>
 #include <vector>
 
-#include "bvp/bordered_problem.hpp"
 #include "bvp/monitor.hpp"
-#include "stability/floquet_multipliers.hpp"
+#include "stability/multipliers.hpp"
 
 namespace tchat {
 

@@ -11,11 +11,10 @@
 /// rounding level is accepted, and such a correction not applied.
 #pragma once
 
-#include <algorithm>
-#include <string>
 #include <vector>
 
 #include "bvp/bordered_problem.hpp"
+#include "continuation/newton_result.hpp"
 #include "linear_algebra/array_kernel.hpp"
 
 namespace tchat {
@@ -26,28 +25,6 @@ struct NewtonSettings {
   double tolerance_parameters = 1e-7;
   double tolerance_states = 1e-7;
   int threads = 1;  ///< that may share the linear algebra of a Newton matrix; results do not depend on it
-};
-
-enum class NewtonStatus { converged, too_many_iterations, diverging, not_finite, singular, condition_lost };
-
-/// One line of the Newton history.
-struct NewtonIteration {
-  int number = 0;
-  double parameter = 0.0;         ///< the first free problem parameter after the correction
-  double parameter_change = 0.0;  ///< largest |dp| / (1 + |p|)
-  double state_change = 0.0;      ///< max |du| / (1 + max |u|)
-  double residual = 0.0;          ///< largest residual before the correction
-  double larger() const { return std::max(parameter_change, state_change); }
-};
-
-struct NewtonResult {
-  NewtonStatus status = NewtonStatus::too_many_iterations;
-  int iterations = 0;
-  double residual = 0.0;  ///< largest, at the last evaluation
-  /// How far x has moved, in the measures of the convergence test, since the factors were computed.
-  double change_since_factorization = 0.0;
-  bool from_tangent = false;  ///< it began on the tangent of the last point
-  bool converged() const { return status == NewtonStatus::converged; }
 };
 
 /// Largest relative change that dx makes of x, as Newton's method measures corrections.
@@ -61,8 +38,6 @@ OrbitChange change_by(const OrbitVector& dx, const Orbit& x, const std::vector<i
 OrbitChange change_by(const OrbitVector& dx, const Orbit& x, const std::vector<int>& free_parameters,
                       const ArrayRange& range, double largest);
 double largest_state(const Orbit& x);
-
-std::string describe(NewtonStatus status);
 
 /// Is a residual of this size zero but for rounding?
 bool is_rounding(double residual, const Orbit& x);

@@ -14,20 +14,10 @@
 #include "bvp/weighted_norm.hpp"
 #include "continuation/monitor_set.hpp"
 #include "continuation/newton_chord.hpp"
-#include "continuation/path_trail.hpp"
+#include "continuation/path_point.hpp"
 #include "continuation/predictor.hpp"
 
 namespace tchat {
-
-struct PathPoint {
-  Orbit orbit;
-  OrbitVector tangent;     ///< unit length
-  OrbitVector dual;        ///< <tangent, .> on the orbit's mesh
-  ConditionMemory memory;  ///< of a two-parameter curve's condition
-  PathTrail trail = {};    ///< points before it
-  /// Newton's second correction over the square of the first, from the tangent: the last that is known, 0 for none.
-  double newton_constant = 0.0;
-};
 
 /// What is known of a number of iterations: it is one of these.
 struct IterationRange {

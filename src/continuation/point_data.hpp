@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "continuation/path_follower.hpp"
+#include "continuation/path_point.hpp"
 #include "special_points/test_function.hpp"
-#include "stability/floquet_multipliers.hpp"
+#include "stability/multipliers.hpp"
 
 namespace tchat {
 

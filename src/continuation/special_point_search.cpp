@@ -8,9 +8,11 @@
 #include <limits>
 
 #include "bvp/critical_multiplier.hpp"
+#include "bvp/defining_system.hpp"
 #include "bvp/discretisation_error.hpp"
 #include "bvp/equilibrium_system.hpp"
 #include "bvp/transversality.hpp"
+#include "continuation/path_follower.hpp"
 #include "continuation/value_trend.hpp"
 #include "special_points/bifurcation_tests.hpp"
 #include "special_points/sliding_bifurcation.hpp"

@@ -8,10 +8,14 @@
 
 #include "continuation/branch_analysis.hpp"
 #include "continuation/branch_point_bracket.hpp"
+#include "continuation/newton_result.hpp"
 #include "continuation/point_data.hpp"
 #include "special_points/locator.hpp"
 
 namespace tchat {
+
+class DefiningSystem;
+class PathFollower;
 
 struct LocationSettings {
   bool multipliers = true;   ///< compute them (ISP > 0)

@@ -1,5 +1,6 @@
 /// Boundary value problems: segments that conditions of the problem tie.
 #include "bvp/boundary_value_system.hpp"
+#include "bvp/condensed_system.hpp"
 #include "continuation/branch_analysis.hpp"
 #include "families/families.hpp"
 #include "families/segment_family.hpp"

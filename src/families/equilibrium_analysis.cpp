@@ -1,4 +1,5 @@
 /// The analysis of branches of equilibria.
+#include "bvp/condensed_system.hpp"
 #include "bvp/equilibrium_system.hpp"
 #include "continuation/branch_analysis.hpp"
 #include "families/families.hpp"

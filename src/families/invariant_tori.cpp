@@ -3,6 +3,7 @@
 
 #include "families/families.hpp"
 #include "families/segment_family.hpp"
+#include "problem_type/problem_type.hpp"
 #include "text/user_error.hpp"
 #include "traces/orbit_stability.hpp"
 #include "traces/torus_trace.hpp"

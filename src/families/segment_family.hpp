@@ -3,6 +3,7 @@
 
 #include "constants/settings_type.hpp"
 #include "files/labelled_solution.hpp"
+#include "problem_type/problem_type.hpp"
 #include "start/data_start.hpp"
 
 namespace tchat {

@@ -12,6 +12,8 @@
 #include "hybrid/index_vector.hpp"
 #include "plugin/plugin_build.hpp"
 #include "plugin/problem_library.hpp"
+#include "problem_type/family.hpp"
+#include "problem_type/problem_type.hpp"
 #include "resegment/empty_segments.hpp"
 #include "resegment/section_needed.hpp"
 #include "setup/named_parameters.hpp"

@@ -20,6 +20,7 @@
 #include "hybrid/identity_jump.hpp"
 #include "map_sweep/section_points.hpp"
 #include "map_sweep/torus_label.hpp"
+#include "problem_type/family.hpp"
 #include "resegment/empty_segments.hpp"
 #include "run/torus_problem.hpp"
 #include "setup/named_parameters.hpp"

@@ -4,6 +4,8 @@
 
 #include "constants/settings_type.hpp"
 #include "hybrid/parameter_vector.hpp"
+#include "problem_type/family.hpp"
+#include "problem_type/problem_type.hpp"
 
 namespace tchat {
 

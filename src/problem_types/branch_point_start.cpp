@@ -5,6 +5,7 @@
 #include "bvp/critical_branch_point.hpp"
 #include "bvp/periodic_orbit_system.hpp"
 #include "constants/settings_type.hpp"
+#include "problem_type/problem_type.hpp"
 #include "start/start_selection.hpp"
 #include "text/user_error.hpp"
 

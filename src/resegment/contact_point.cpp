@@ -7,6 +7,7 @@
 #include "constants/settings_type.hpp"
 #include "files/labelled_solution.hpp"
 #include "problem_type/point_type.hpp"
+#include "problem_type/problem_type.hpp"
 #include "text/user_error.hpp"
 
 namespace tchat {

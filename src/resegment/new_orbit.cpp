@@ -7,6 +7,7 @@
 
 #include "constants/settings_type.hpp"
 #include "hybrid/identity_jump.hpp"
+#include "problem_type/problem_type.hpp"
 #include "resegment/born_contacts.hpp"
 #include "resegment/contact_point.hpp"
 #include "resegment/empty_segments.hpp"

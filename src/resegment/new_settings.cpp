@@ -7,6 +7,7 @@
 #include "constants/settings_type.hpp"
 #include "hybrid/identity_jump.hpp"
 #include "hybrid/parameter_vector.hpp"
+#include "problem_type/problem_type.hpp"
 #include "setup/problem_setup.hpp"
 #include "text/user_error.hpp"
 

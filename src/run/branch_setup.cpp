@@ -9,6 +9,7 @@
 #include "bvp/mesh_adaptation.hpp"
 #include "constants/settings_type.hpp"
 #include "files/labelled_solution.hpp"
+#include "problem_type/family.hpp"
 #include "problem_type/point_type.hpp"
 #include "problem_type/problem_type.hpp"
 #include "setup/problem_setup.hpp"

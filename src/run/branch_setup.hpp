@@ -11,6 +11,7 @@
 
 #include "bvp/defining_system.hpp"
 #include "constants/run_settings.hpp"
+#include "continuation/path_follower.hpp"
 #include "run/branch_start.hpp"
 #include "run/test_lists.hpp"
 

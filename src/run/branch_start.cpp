@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "continuation/branch_analysis.hpp"
+#include "continuation/path_follower.hpp"
 #include "files/labelled_solution.hpp"
 #include "problem_type/point_type.hpp"
 #include "problem_type/problem_type.hpp"

@@ -3,10 +3,14 @@
 #pragma once
 
 #include "constants/run_settings.hpp"
-#include "continuation/path_follower.hpp"
+#include "continuation/newton_result.hpp"
+#include "continuation/path_point.hpp"
 #include "start/start_selection.hpp"
 
 namespace tchat {
+
+class DefiningSystem;
+class PathFollower;
 
 struct FirstPoint {
   PathPoint point;

@@ -14,6 +14,7 @@
 #include "files/point_table.hpp"
 #include "files/solution_file.hpp"
 #include "hybrid/parameter_vector.hpp"
+#include "problem_type/family.hpp"
 #include "problem_type/point_type.hpp"
 #include "setup/problem_setup.hpp"
 #include "special_points/grazing_curve_tests.hpp"

@@ -11,6 +11,8 @@
 #include "hybrid/event_at.hpp"
 #include "hybrid/identity_jump.hpp"
 #include "linear_algebra/dense_matrix.hpp"
+#include "problem_type/family.hpp"
+#include "problem_type/problem_type.hpp"
 #include "setup/problem_setup.hpp"
 #include "stability/equilibrium_eigenvalues.hpp"
 #include "text/user_error.hpp"

@@ -8,7 +8,9 @@
 #include "constants/constants_file.hpp"
 #include "constants/settings_type.hpp"
 #include "hybrid/parameter_vector.hpp"
+#include "problem_type/family.hpp"
 #include "problem_type/point_type.hpp"
+#include "problem_type/problem_type.hpp"
 
 namespace tchat {
 

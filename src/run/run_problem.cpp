@@ -17,6 +17,7 @@
 #include "files/labelled_solution.hpp"
 #include "plugin/plugin_build.hpp"
 #include "plugin/problem_library.hpp"
+#include "problem_type/family.hpp"
 #include "problem_type/point_type.hpp"
 #include "problem_type/problem_type.hpp"
 #include "run/branch_setup.hpp"

@@ -1,4 +1,5 @@
 #include "run/run_summary.hpp"
+#include "problem_type/family.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

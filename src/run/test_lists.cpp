@@ -4,6 +4,7 @@
 #include <cstdlib>
 
 #include "hybrid/identity_jump.hpp"
+#include "problem_type/problem_type.hpp"
 #include "setup/run_monitors.hpp"
 #include "special_points/bifurcation_tests.hpp"
 #include "special_points/contact_test.hpp"

@@ -10,6 +10,7 @@
 
 #include "constants/settings_type.hpp"
 #include "hybrid/relevant_events.hpp"
+#include "problem_type/family.hpp"
 
 namespace tchat {
 

@@ -9,6 +9,8 @@
 
 #include "constants/constants_file.hpp"
 #include "constants/settings_type.hpp"
+#include "problem_type/family.hpp"
+#include "problem_type/problem_type.hpp"
 #include "setup/run_monitors.hpp"
 #include "text/number.hpp"
 #include "text/user_error.hpp"

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "constants/settings_type.hpp"
+#include "problem_type/family.hpp"
 #include "text/user_error.hpp"
 
 namespace tchat {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bvp/condensed_system.hpp"
 #include "bvp/no_duration.hpp"
 #include "bvp/transversality.hpp"
 #include "hybrid/identity_jump.hpp"

@@ -12,6 +12,9 @@
 
 namespace tchat {
 
+class DefiningSystem;
+class HybridSystem;
+
 /// LP: the component of the tangent along the principal parameter; where a section is tangent, its label (GR).
 class FoldTest final : public TestFunction {
  public:

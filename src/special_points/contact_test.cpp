@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "bvp/condensed_system.hpp"
 #include "bvp/event_minima.hpp"
 #include "bvp/no_duration.hpp"
 #include "bvp/transversality.hpp"

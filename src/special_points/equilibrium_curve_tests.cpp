@@ -8,6 +8,7 @@
 #include <memory>
 #include <utility>
 
+#include "bvp/condensed_system.hpp"
 #include "bvp/orbit_accuracy.hpp"
 #include "stability/equilibrium_eigenvalues.hpp"
 #include "stability/lyapunov_coefficient.hpp"

@@ -6,6 +6,8 @@
 
 namespace tchat {
 
+class DefiningSystem;
+
 /// HB: of all pairs of eigenvalues the least |a + b| / (|a| + |b|), with the sign of the product of all sums a + b.
 /// Relative, without poles, and defined where eigenvalues meet or vanish. At a zero with real a and b, a neutral
 /// saddle, nothing happens.

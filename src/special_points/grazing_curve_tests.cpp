@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "bvp/condensed_system.hpp"
 #include "bvp/transversality.hpp"
 #include "hybrid/event_at.hpp"
 #include "linear_algebra/dense_matrix.hpp"

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "special_points/test_function.hpp"
-#include "stability/floquet_multipliers.hpp"
+#include "stability/multipliers.hpp"
 
 namespace tchat {
 

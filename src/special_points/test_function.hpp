@@ -12,12 +12,14 @@
 #include <string>
 #include <vector>
 
-#include "bvp/bordered_problem.hpp"
-#include "bvp/condensed_system.hpp"
+#include "bvp/orbit.hpp"
 #include "problem_type/point_type.hpp"
-#include "stability/floquet_multipliers.hpp"
+#include "stability/multipliers.hpp"
 
 namespace tchat {
+
+class CondensedSystem;
+class OrbitCondition;
 
 /// What a test function may look at: a converged point and its linearisation.
 struct TestedPoint {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "bvp/admissibility.hpp"
+#include "bvp/condensed_system.hpp"
 #include "bvp/event_minima.hpp"
 #include "hybrid/event_at.hpp"
 #include "special_points/bifurcation_tests.hpp"

@@ -1,4 +1,5 @@
 #include "special_points/torus_contact_condition.hpp"
+#include "bvp/condensed_system.hpp"
 
 #include <cmath>
 

@@ -11,7 +11,7 @@
 ///     dG = h_x sum_{l,k} K_l B_k dx_{l,k} + h_p dp.
 #pragma once
 
-#include "bvp/bordered_problem.hpp"
+#include "bvp/orbit_condition.hpp"
 #include "special_points/torus_contact.hpp"
 #include "special_points/torus_contact_follower.hpp"
 

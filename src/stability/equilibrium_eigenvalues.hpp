@@ -2,7 +2,7 @@
 #pragma once
 
 #include "bvp/defining_system.hpp"
-#include "stability/floquet_multipliers.hpp"
+#include "stability/multipliers.hpp"
 
 namespace tchat {
 

@@ -15,9 +15,11 @@
 #pragma once
 
 #include "bvp/torus_system.hpp"
-#include "stability/floquet_multipliers.hpp"
+#include "stability/multipliers.hpp"
 
 namespace tchat {
+
+class CondensedSystem;
 
 /// exp lambda_k, n - 1 of them, that along the curve first. Column i of `matrices` holds A at the phase i / N, n n
 /// entries; `curve`: u(phi) - w phi at these phases, n x N; `w`: what a turn of phi adds to the states. Entries of

@@ -10,6 +10,7 @@
 #include "files/labelled_solution.hpp"
 #include "files/solution_file_reader.hpp"
 #include "files/writable_file.hpp"
+#include "problem_type/family.hpp"
 #include "problem_type/point_type.hpp"
 #include "setup/parameter_values.hpp"
 #include "setup/problem_setup.hpp"

@@ -4,6 +4,7 @@
 
 #include "bvp/bordered_problem.hpp"
 #include "bvp/condensed_system.hpp"
+#include "bvp/monitor.hpp"
 #include "bvp/periodic_orbit_system.hpp"
 #include "directional_derivative.hpp"
 #include "support/linear_oscillator.hpp"

@@ -1,6 +1,7 @@
 // How branches end, and which points are labelled.
 #include <catch2/catch.hpp>
 
+#include "problem_type/family.hpp"
 #include "special_points/normal_forms.hpp"
 #include "special_points/user_value_test.hpp"
 #include "support/branch_fixture.hpp"

@@ -7,6 +7,7 @@
 #include "bvp/mesh_adaptation.hpp"
 #include "bvp/periodic_orbit_system.hpp"
 #include "continuation/continuation_run.hpp"
+#include "stability/floquet_multipliers.hpp"
 
 namespace tchat::test {
 

@@ -1,0 +1,45 @@
+/// The multipliers of a point of a branch, however they are computed.
+#pragma once
+
+#include <complex>
+#include <span>
+#include <vector>
+
+namespace tchat {
+
+/// What is printed for a multiplier that is infinite (grazing) or too large for files.
+inline constexpr double infinite_multiplier = 1e99;
+
+/// det(1 - t M) a_1 ... a_m, see floquet_multipliers.hpp.
+struct MultiplierProduct {
+  double value = 0.0;
+  /// What errors of the size `no_transversality` make of it where an a_s is about zero; 0 elsewhere.
+  double uncertainty = 0.0;
+};
+
+struct FloquetMultipliers {
+  /// n multipliers, the structural zero among them: the one closest to 1 first, then by | |mu| - 1 |. Of an orbit
+  /// without a section the trivial one stands before these, in place of the zero.
+  std::vector<std::complex<double>> values;
+  bool has_trivial = false;
+  double structural = 0.0;  ///< size of the structural zero, or distance of the trivial one from 1
+  bool valid = false;       ///< false: not computed, or the eigenvalue iteration failed
+  /// They are the eigenvalues of f_x at an equilibrium (equilibrium_eigenvalues.hpp): stable on the left of the
+  /// imaginary axis.
+  bool are_eigenvalues = false;
+  /// Nontrivial multipliers that are left out of `values`: where h_x f = 0 they may be 0/0, and what comes out is
+  /// noise.
+  int undetermined = 0;
+  MultiplierProduct with_one = {};        ///< t = 1: vanishes with a multiplier +1
+  MultiplierProduct with_minus_one = {};  ///< t = -1: vanishes with a multiplier -1
+
+  /// All but the trivial one, which tells nothing of the orbit; the structural zero is among them.
+  std::span<const std::complex<double>> telling() const { return std::span(values).subspan(has_trivial ? 1 : 0); }
+  bool determined() const { return valid && undetermined == 0; }
+
+  /// All |mu| <= 1 + 1e-5 of those that are known; of eigenvalues all real parts <= 0 but for rounding.
+  bool stable() const;
+  int stable_count() const;
+};
+
+}  // namespace tchat
