@@ -5,7 +5,7 @@
 
 using namespace tchat;
 
-TEST_CASE("Type numbers and their names", "[start]") {
+TEST_CASE("Type numbers and their names") {
   const std::pair<int, const char*> cases[] = {
       {0, ""},     {1, "BP"},   {2, "LP"},   {3, "HB"},   {4, "RG"},   {5, "LP"},   {6, "BP"},
       {7, "PD"},   {8, "TR"},   {9, "EP"},   {-9, "MX"},  {-4, "UZ"},  {59, "EP"},  {-54, "UZ"},
@@ -17,7 +17,7 @@ TEST_CASE("Type numbers and their names", "[start]") {
   }
 }
 
-TEST_CASE("A UZ label is named by its kind, on every curve", "[start]") {
+TEST_CASE("A UZ label is named by its kind, on every curve") {
   CHECK(type_name(-4, {UserPointKind::user_value, 0, 1, 0.0}) == "UZ");
   CHECK(type_name(-4, {UserPointKind::contact, 1, 2, 0.5}) == "GR");
   CHECK(type_name(-74, {UserPointKind::impact_velocity, 1, 1, 1.0}) == "GR");
@@ -26,7 +26,7 @@ TEST_CASE("A UZ label is named by its kind, on every curve", "[start]") {
   CHECK(type_name(9, {UserPointKind::contact, 1, 2, 0.5}) == "EP");
 }
 
-TEST_CASE("What a UZ label is, in words", "[start]") {
+TEST_CASE("What a UZ label is, in words") {
   CHECK(description({}).empty());
   CHECK(description({UserPointKind::user_value, 0, 3, 0.0}) == "user value of PAR(3)");
   CHECK(description({UserPointKind::contact, 2, 1, 0.25}) == "contact inside segment 2, event function 1, tau = 0.25");
