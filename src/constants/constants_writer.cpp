@@ -203,14 +203,4 @@ std::string default_text(const Constant& constant) {
   return constant.keyword == "ICP" ? "" : value_text(constant, defaults);
 }
 
-std::string constants_markdown() {
-  std::string text = "| constant | meaning | default | allowed | effect |\n|---|---|---|---|---|\n";
-  for (const Constant& constant : constants_table()) {
-    const std::string value = default_text(constant);
-    text += fmt::format("| {} | {} | {} | {} | {} |\n", constant.keyword, constant.meaning, value,
-                        allowed_text(constant), constant.effect.empty() ? "in use" : constant.effect);
-  }
-  return text;
-}
-
 }  // namespace tchat

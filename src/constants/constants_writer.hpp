@@ -24,7 +24,4 @@ std::string value_text(const Constant& constant, const RunSettings& settings);
 /// The value that a keyword file without this constant has; empty when there is none.
 std::string default_text(const Constant& constant);
 
-/// All constants as a Markdown table: keyword, meaning, default, allowed, effect.
-std::string constants_markdown();
-
 }  // namespace tchat

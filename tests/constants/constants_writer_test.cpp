@@ -114,11 +114,3 @@ TEST_CASE("The table knows each constant once, with an example that is accepted"
     CHECK_NOTHROW(resolve_names(s, monitors));
   }
 }
-
-TEST_CASE("The documentation's table has a row for each constant", "[constants]") {
-  const std::string text = constants_markdown();
-  for (const Constant& constant : constants_table())
-    CHECK(text.find("\n| " + std::string(constant.keyword) + " | ") != std::string::npos);
-  CHECK(text.find("| NTST | number of mesh intervals of each segment | 50 | an integer from 1 to 5000 |") !=
-        std::string::npos);
-}
