@@ -6,6 +6,8 @@
 #include <cmath>
 #include <set>
 
+#include "bvp/condensed_system.hpp"
+#include "bvp/defining_system.hpp"
 #include "bvp/event_minima.hpp"
 #include "bvp/no_duration.hpp"
 #include "bvp/orbit_accuracy.hpp"

@@ -20,6 +20,8 @@
 
 namespace tchat {
 
+class DefiningSystem;
+
 /// The name of the sliding bifurcation that a contact or a vanishing h_x f is, "" for what is none.
 std::string sliding_bifurcation(const TestedPoint& point, const UserPointKind& kind);
 

@@ -33,8 +33,8 @@ struct FloquetMultipliers {
   MultiplierProduct with_one = {};        ///< t = 1: vanishes with a multiplier +1
   MultiplierProduct with_minus_one = {};  ///< t = -1: vanishes with a multiplier -1
 
-  /// All but the trivial one, which tells nothing of the orbit; the structural zero is among them.
-  std::span<const std::complex<double>> telling() const { return std::span(values).subspan(has_trivial ? 1 : 0); }
+  /// All but the trivial one, which is the same for every orbit; the structural zero is among them.
+  std::span<const std::complex<double>> nontrivial() const { return std::span(values).subspan(has_trivial ? 1 : 0); }
   bool determined() const { return valid && undetermined == 0; }
 
   /// All |mu| <= 1 + 1e-5 of those that are known; of eigenvalues all real parts <= 0 but for rounding.

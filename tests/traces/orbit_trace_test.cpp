@@ -11,21 +11,21 @@ using namespace tchat;
 
 namespace {
 
-/// An elastic ball with g = 2 that is thrown up with velocity 1 and held at the height of 1/4 for a time of 1/2:
-/// (height, velocity) up and down in 1, then at the top; the velocity jumps twice.
+/// A ball with g = 1 that is thrown up with velocity 1, caught after a time of 2 and held for 1/2: (height, velocity);
+/// the velocity jumps twice.
 LabelledSolution ball() {
   LabelledSolution label;
   label.label = 4;
   label.dimension = 2;
   label.tau = {0.0, 0.5, 1.0};
   label.states.resize(4, 3);
-  label.states << 0.0, 0.25, 0.0,  //
+  label.states << 0.0, 0.5, 0.0,  //
       1.0, 0.0, -1.0,              //
       0.0, 0.0, 0.0,               //
       0.0, 0.0, 0.0;
   label.parameters.assign(100, 0.0);
-  label.parameters[0] = 2.0;
-  label.parameters[first_duration - 1] = 1.0;
+  label.parameters[0] = 1.0;
+  label.parameters[first_duration - 1] = 2.0;
   label.parameters[first_duration] = 0.5;
   label.free_parameters = {1, first_duration, first_duration + 1};
   return label;
@@ -42,12 +42,12 @@ DiagnosticPoint point_with(std::complex<double> multiplier) {
 TEST_CASE("segments follow each other in time") {
   const OrbitTrace trace = orbit_trace(ball(), "UZ1", 0, "q.ball");
   REQUIRE(trace.segments.size() == 2);
-  CHECK(trace.segments[0].times == std::vector<double>{0.0, 0.5, 1.0});
-  CHECK(trace.segments[1].times == std::vector<double>{1.0, 1.25, 1.5});
-  CHECK(trace.period() == 1.5);
+  CHECK(trace.segments[0].times == std::vector<double>{0.0, 1.0, 2.0});
+  CHECK(trace.segments[1].times == std::vector<double>{2.0, 2.25, 2.5});
+  CHECK(trace.period() == 2.5);
   CHECK(trace.dimension() == 2);
-  CHECK(trace.segments[0].states(0, 1) == 0.25);
-  CHECK(trace.free_parameters == std::vector<std::pair<int, double>>{{1, 2.0}});
+  CHECK(trace.segments[0].states(0, 1) == 0.5);
+  CHECK(trace.free_parameters == std::vector<std::pair<int, double>>{{1, 1.0}});
 }
 
 TEST_CASE("states jump where their values differ, each by its own size") {
@@ -61,7 +61,7 @@ TEST_CASE("states jump where their values differ, each by its own size") {
   trace.segments[1].states(0, 0) = 1e-8;
   CHECK_FALSE(trace.jumps_after(0, 0));
   trace.segments[1].states(0, 0) = 1e-6;
-  CHECK(trace.jumps_after(0, 0));  // four millionths of the height
+  CHECK(trace.jumps_after(0, 0));  // two millionths of the height
 }
 
 TEST_CASE("files that do not say how many states a segment has need the dimension") {
