@@ -2,13 +2,13 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
 #include <utility>
 
-#include "files/block_write.hpp"
 #include "files/disk_sync.hpp"
 #include "text/user_error.hpp"
 
@@ -16,9 +16,33 @@ namespace tchat {
 
 namespace {
 
-const char* state_after(const BlockOutcome& outcome) {
-  return outcome.whole ? "cannot be written; it holds everything up to the last complete block"
-                       : "cannot be written; its last block is not complete";
+/// Size of an ordinary file; -1 for devices and pipes, which cannot be cut.
+off_t ordinary_size(int descriptor) {
+  struct stat status {};
+  if (::fstat(descriptor, &status) != 0 || !S_ISREG(status.st_mode)) return -1;
+  return status.st_size;
+}
+
+/// Nothing but system calls. errno of what failed, 0.
+int append(int descriptor, std::string_view text) {
+  while (!text.empty()) {
+    const ssize_t written = ::write(descriptor, text.data(), text.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) return written < 0 ? errno : ENOSPC;
+    text.remove_prefix(static_cast<std::size_t>(written));
+  }
+  return 0;
+}
+
+struct Outcome {
+  int error = 0;
+  bool whole = true;  ///< no part of the text that failed is left in the file
+};
+
+Outcome append_or_cut(int descriptor, std::string_view text) {
+  const off_t before = ordinary_size(descriptor);
+  const int error = append(descriptor, text);
+  return {error, error == 0 || before < 0 || ::ftruncate(descriptor, before) == 0};
 }
 
 }  // namespace
@@ -43,14 +67,17 @@ BlockFile::~BlockFile() {
   if (is_open()) ::close(descriptor_);
 }
 
-void BlockFile::write(std::string_view block) {
-  const BlockOutcome outcome = append_block_through_kill(descriptor_, block);
-  if (outcome.error != 0) fail(state_after(outcome), outcome.error);
+void BlockFile::write(std::string_view blocks) {
+  if (blocks.empty()) return;
+  const Outcome outcome = append_or_cut(descriptor_, blocks);
+  if (outcome.error == 0) return;
+  fail(outcome.whole ? "cannot be written; it holds everything up to the last complete block"
+                     : "cannot be written; its last block is not complete",
+       outcome.error);
 }
 
-void BlockFile::write_unread(std::string_view block) {
-  const BlockOutcome outcome = append_block(descriptor_, block);
-  if (outcome.error != 0) fail("cannot be written", outcome.error);
+void BlockFile::write_before_the_end(std::string_view blocks) noexcept {
+  if (is_open() && !blocks.empty()) append_or_cut(descriptor_, blocks);
 }
 
 void BlockFile::begin_sync() {

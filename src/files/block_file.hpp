@@ -1,4 +1,4 @@
-/// A text file that grows by whole blocks, so that a reader, a kill or a full disk finds no part of one.
+/// A text file that grows by whole blocks, so that a full disk leaves no part of one.
 #pragma once
 
 #include <string>
@@ -23,12 +23,12 @@ class BlockFile {
   bool is_open() const { return descriptor_ >= 0; }
   const std::string& path() const { return path_; }
 
-  /// Stores the block whole, also when this process is killed meanwhile. When only a part of it can be stored (disk
-  /// full) the part is removed again; throws ComputationError naming the file and the reason.
-  void write(std::string_view block);
+  /// Appends whole blocks. When only a part can be stored (disk full) the part is removed again; throws
+  /// ComputationError naming the file and the reason. A SIGKILL meanwhile may leave a part: readers leave it out.
+  void write(std::string_view blocks);
 
-  /// The same for a file that nobody reads before it is finished: a kill may cut it. Much cheaper.
-  void write_unread(std::string_view block);
+  /// The same, safe in a signal handler; says nothing about success.
+  void write_before_the_end(std::string_view blocks) noexcept;
 
   /// What was written goes to the disk from now on; sync() waits for it.
   void begin_sync();

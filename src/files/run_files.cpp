@@ -80,6 +80,13 @@ void mend_solutions(const std::string& path) {
 
 RunFiles::RunFiles(std::string name, Mode mode) : name_(std::move(name)), mode_(mode) {}
 
+RunFiles::~RunFiles() {
+  try {
+    write_gathered();
+  } catch (const std::exception&) {  // another failure is on its way already
+  }
+}
+
 void RunFiles::check_writable() {
   if (fs::path(name_).filename().empty())
     throw UserError(fmt::format("'{}' is no name for output files; an example is -o mems", name_));
@@ -112,18 +119,18 @@ void RunFiles::open(std::string_view constants) {
 void RunFiles::begin_new_set() {
   TemporaryFile diagnostics(path('d')), points(path('p')), solutions(path('q'));
   keep_run_set(name_);
-  diagnostics_ = diagnostics.put_in_place();
-  points_ = points.put_in_place();
-  solutions_ = solutions.put_in_place();
+  diagnostics_.file = diagnostics.put_in_place();
+  points_.file = points.put_in_place();
+  solutions_.file = solutions.put_in_place();
 }
 
 /// Files that are still those of the kept set too, because a run was killed at its very beginning, are separated.
 void RunFiles::go_on_with_set() {
   for (const char letter : letters) separate(path(letter), path(letter) + "~");
   mend_existing();
-  diagnostics_ = BlockFile(path('d'));
-  points_ = BlockFile(path('p'));
-  solutions_ = BlockFile(path('q'));
+  diagnostics_.file = BlockFile(path('d'));
+  points_.file = BlockFile(path('p'));
+  solutions_.file = BlockFile(path('q'));
 }
 
 void RunFiles::mend_existing() const {
@@ -132,18 +139,49 @@ void RunFiles::mend_existing() const {
   if (exists(path('q'))) mend_solutions(path('q'));
 }
 
+void RunFiles::add(Growing& growing, std::string_view block) {
+  changing_ = 1;
+  growing.gathered += block;
+  changing_ = 0;
+}
+
+void RunFiles::write_if_due() {
+  constexpr auto longest_wait = std::chrono::milliseconds(250);
+  constexpr std::size_t much = 1 << 18;
+  const std::size_t gathered = points_.gathered.size() + diagnostics_.gathered.size();
+  const bool is_late = std::chrono::steady_clock::now() - last_written_ >= longest_wait;
+  if (is_late || gathered > much || !solutions_.gathered.empty()) write_gathered();
+}
+
+void RunFiles::write_gathered() {
+  // After a failure nothing is tried again: the other files would name points of which that file has nothing.
+  changing_ = 1;
+  const std::string solutions = std::exchange(solutions_.gathered, "");
+  const std::string points = std::exchange(points_.gathered, "");
+  const std::string diagnostics = std::exchange(diagnostics_.gathered, "");
+  changing_ = 0;
+  solutions_.file.write(solutions);
+  points_.file.write(points);
+  diagnostics_.file.write(diagnostics);
+  last_written_ = std::chrono::steady_clock::now();
+}
+
+void RunFiles::act() noexcept {
+  if (changing_ != 0) return;
+  for (Growing* growing : {&solutions_, &points_, &diagnostics_}) growing->file.write_before_the_end(growing->gathered);
+}
+
 void RunFiles::finish() {
   if (!is_open()) return;
+  write_gathered();
   // The closing line says that all is there: on the disk it is the last one to come.
-  for (BlockFile* file : {&solutions_, &points_, &diagnostics_}) file->begin_sync();
-  points_.sync();
-  solutions_.sync();
+  for (Growing* growing : {&solutions_, &points_, &diagnostics_}) growing->file.begin_sync();
+  points_.file.sync();
+  solutions_.file.sync();
   sync_folder_of(name_);
-  diagnostics_.write(format_end_of_run());
-  diagnostics_.sync();
-  points_.close();
-  solutions_.close();
-  diagnostics_.close();
+  diagnostics_.file.write(format_end_of_run());
+  diagnostics_.file.sync();
+  for (Growing* growing : {&points_, &solutions_, &diagnostics_}) growing->file.close();
   lock_.reset();
 }
 

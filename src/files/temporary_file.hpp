@@ -21,7 +21,7 @@ class TemporaryFile {
 
   /// The name that it has until then, for programs that write into it.
   const std::string& name() const { return name_; }
-  void write(std::string_view text) { file_.write_unread(text); }
+  void write(std::string_view text) { file_.write(text); }
   /// It stays locked, and goes to the disk from now on.
   void close();
 

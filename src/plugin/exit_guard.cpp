@@ -47,8 +47,9 @@ constexpr std::array<FatalSignal, 13> fatal_signals = {{
 
 /// What the handlers know. Never destroyed: exit handlers run among the destructors of static objects.
 struct Watch {
-  std::list<std::string> plugins;                // the paths of the guards that live
-  std::atomic<const char*> plugin = nullptr;     // of the youngest
+  std::list<std::string> plugins;             // the paths of the guards that live
+  std::atomic<const char*> plugin = nullptr;  // of the youngest
+  std::atomic<LastAct*> last_act = nullptr;
   pid_t process = 0;                             // children that a plugin forks are none of ours
   std::array<struct sigaction, 65> before = {};  // handlers that ours replaced, by signal
   std::array<char, handler_stack_size> stack;    // for handlers: a plugin's endless recursion leaves none
@@ -211,7 +212,14 @@ SignalStack::~SignalStack() {
   ::sigaltstack(&none, nullptr);
 }
 
+LastAct::LastAct() : before_(watch().last_act.exchange(this)) {}
+
+LastAct::~LastAct() { watch().last_act = before_; }
+
 void leave_process(int status) noexcept {
+  // Taken away first: what it does may be interrupted, by a signal that ends the process too.
+  LastAct* const last = ::getpid() == watch().process ? watch().last_act.exchange(nullptr) : nullptr;
+  if (last != nullptr) last->act();
   while (true) ::syscall(SYS_exit_group, status);
 }
 

@@ -49,7 +49,23 @@ class SignalStack {
   std::vector<char> memory_;
 };
 
-/// Ends the process at once, without exit handlers, flushing and messages. Safe in a signal handler.
+/// What leave_process() does before the process ends, in the process that loaded the plugin: the youngest one that
+/// lives acts. It runs in a signal handler, perhaps in the middle of anything else, and must be safe there.
+class LastAct {
+ public:
+  LastAct();
+  LastAct(const LastAct&) = delete;
+  LastAct& operator=(const LastAct&) = delete;
+  virtual void act() noexcept = 0;
+
+ protected:
+  virtual ~LastAct();
+
+ private:
+  LastAct* before_;
+};
+
+/// Ends the process at once, without exit handlers, flushing and messages, after a LastAct. Safe in a signal handler.
 [[noreturn]] void leave_process(int status) noexcept;
 
 }  // namespace tchat

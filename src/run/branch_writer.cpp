@@ -64,7 +64,7 @@ void BranchWriter::begin_section(Section section) {
   setup_.branch = section.branch;
   setup_.settings.step = section.step;
   start_correction_ = std::move(section.correction);
-  if (has_points_) files_.write_diagnostics(format_bar());  // the last point of a branch has no next step and no bar
+  if (has_points_) files_.add_diagnostics(format_bar());  // the last point of a branch has no next step and no bar
   has_points_ = false;
   header_ = format_point_header({setup_.settings, setup_.active_parameters, names_, setup_.curve_type}, columns_);
   if (screen_ != nullptr) *screen_ << format_table_heading(columns_) << std::flush;
@@ -131,9 +131,10 @@ void BranchWriter::point(const BranchPoint& point) {
   if (point.labelled()) line.label = ++setup_.last_label;
 
   if (point.labelled()) write_solution(point, line);
-  files_.write_points(std::exchange(header_, "") + format_point(line));
+  files_.add_points(std::exchange(header_, "") + format_point(line));
   has_points_ = true;
   write_diagnostics(point, line);
+  files_.write_if_due();
   if (screen_ != nullptr) show(point, line);
   report_unknown_user_values(line);
   if (point.labelled())
@@ -236,7 +237,7 @@ void BranchWriter::write_solution(const BranchPoint& point, const PointLine& lin
   solution.problem_type = setup_.settings.problem_type;
   solution.kind = line.kind;
   solution.further = point.special.further;
-  files_.write_solution(format_solution(solution));
+  files_.add_solution(format_solution(solution));
 }
 
 void BranchWriter::write_diagnostics(const BranchPoint& point, const PointLine& line) {
@@ -273,17 +274,18 @@ void BranchWriter::write_diagnostics(const BranchPoint& point, const PointLine& 
                           line.branch, wrapped_point(line.point), point.multipliers.structural, point.estimated_error);
   }
   text += fmt::format("{:4}{:6}  Iterations   : {}\n", line.branch, wrapped_point(line.point), iterations);
-  files_.write_diagnostics(text);
+  files_.add_diagnostics(text);
 }
 
 void BranchWriter::next_step(int point_number, double ds) {
   if (setup_.settings.diagnostics_level <= 0) return;
-  files_.write_diagnostics(
+  files_.add_diagnostics(
       fmt::format("{:4}{:6}  Next Step    : {:.5e}\n", setup_.branch, wrapped_point(point_number), ds) + format_bar());
+  files_.write_if_due();
 }
 
 void BranchWriter::note(int point_number, const std::string& text) {
-  files_.write_diagnostics(format_note(setup_.branch, point_number, text));
+  files_.add_diagnostics(format_note(setup_.branch, point_number, text));
 }
 
 void BranchWriter::starts_at_zero(const std::string& name) {

@@ -1,8 +1,5 @@
 // Runs that are stopped from outside: what they leave can be read, and what was there before is not lost.
-#include <fcntl.h>
 #include <signal.h>
-#include <sys/file.h>
-#include <unistd.h>
 
 #include <catch2/catch.hpp>
 #include <thread>
@@ -28,14 +25,9 @@ void wait_for_points(const Workspace& workspace, Process& process, std::size_t b
 
 constexpr std::size_t some_solutions = 400'000;
 
-/// Kills the run. A block that it was storing is finished by a process of its own, which holds the lock as long.
-void kill(const Workspace& workspace, Process& process) {
+void kill(Process& process) {
   process.send(SIGKILL);
   CHECK(process.wait(std::chrono::seconds(30)).signal == SIGKILL);
-  const int lock = ::open(workspace.file(".branch.lock").c_str(), O_RDONLY);
-  REQUIRE(lock >= 0);
-  CHECK(::flock(lock, LOCK_EX) == 0);
-  ::close(lock);
 }
 
 bool is_complete(const std::string& diagnostics) {
@@ -84,7 +76,7 @@ TEST_CASE("after SIGKILL the files load, an incomplete set never replaces a comp
   for (int attempt = 0; attempt < 2; ++attempt) {
     const auto process = workspace.start_tchat(endless);
     wait_for_points(workspace, *process, some_solutions);
-    kill(workspace, *process);
+    kill(*process);
     CHECK_FALSE(is_complete(workspace.read("d.branch")));
     CHECK(workspace.tchat("labels q.branch").err.empty());
     const auto solutions = workspace.solutions("branch");
@@ -127,7 +119,7 @@ TEST_CASE("a complete set, an --append that is killed, a plain run: the set is k
   const std::string points = workspace.read("p.branch"), solutions = workspace.read("q.branch");
   const auto process = workspace.start_tchat(endless + " --append");
   wait_for_points(workspace, *process, solutions.size() + some_solutions);
-  kill(workspace, *process);
+  kill(*process);
   workspace.run("-c impacting -d impacting -o branch NMX=4");
   CHECK(workspace.read("p.branch~").compare(0, points.size(), points) == 0);
   CHECK(workspace.read("q.branch~").compare(0, solutions.size(), solutions) == 0);

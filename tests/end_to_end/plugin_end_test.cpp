@@ -113,6 +113,14 @@ TEST_CASE("a plugin that dies in the middle of a run is named, status 2, files a
   }
 }
 
+TEST_CASE("a plugin that dies between two labels: the points before are in the files") {
+  setenv("MISBEHAVE", "segfault", 1);
+  const RampWorkspace workspace;
+  CHECK(workspace.tchat("run ramp NPR=0").status == 2);
+  CHECK(workspace.points("ramp").front().rows.size() == 3);
+  CHECK(labels_of(workspace.solutions("ramp")) == std::vector<int>{1});
+}
+
 TEST_CASE("a user function that throws: the branch is computed, and what is missing is told") {
   const RampWorkspace workspace;
   const Outcome outcome = workspace.start("throw")->wait(long_enough);

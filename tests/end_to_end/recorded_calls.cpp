@@ -16,7 +16,7 @@
 
 namespace {
 
-const pid_t process = ::getpid();  // a block may be written by a child that shares this memory
+const pid_t process = ::getpid();
 std::atomic<long> calls = 0;
 
 void note(const char* what, const char* one, const char* two = "") {

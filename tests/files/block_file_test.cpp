@@ -1,15 +1,8 @@
 #include "files/block_file.hpp"
 
-#include <sched.h>
-#include <signal.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <catch2/catch.hpp>
-#include <chrono>
 #include <filesystem>
 #include <string>
-#include <thread>
 #include <utility>
 
 #include "files/file_size_limit.hpp"
@@ -46,53 +39,6 @@ TEST_CASE("Blocks of all sizes, within a page of memory and across many") {
     file.write(block);
     expected += block;
     CHECK(folder.read("q.x") == expected);
-  }
-}
-
-TEST_CASE("A thread may run where it could before, whatever blocks it has written") {
-  const test_support::TemporaryFolder folder;
-  cpu_set_t before, after;
-  REQUIRE(::sched_getaffinity(0, sizeof before, &before) == 0);
-  {
-    BlockFile file(folder.file("q.x"));
-    for (int k = 0; k < 10; ++k) file.write(std::string(5000, 'x'));
-    REQUIRE(::sched_getaffinity(0, sizeof after, &after) == 0);
-    CHECK(CPU_EQUAL(&before, &after));
-  }
-  {
-    const test_support::FileSizeLimit limit(8000);
-    BlockFile full(folder.file("p.x"));
-    full.write(std::string(5000, 'x'));
-    CHECK_THROWS(full.write(std::string(5000, 'x')));
-  }
-  REQUIRE(::sched_getaffinity(0, sizeof after, &after) == 0);
-  CHECK(CPU_EQUAL(&before, &after));
-}
-
-TEST_CASE("A block is whole although the process is killed while it is stored") {
-  const test_support::TemporaryFolder folder;
-  const std::string block = std::string(999'999, 'b') + "\n";
-  for (int attempt = 0; attempt < 10; ++attempt) {
-    const std::string name = folder.file(std::to_string(attempt));
-    BlockFile file(name);
-    const pid_t child = ::fork();
-    if (child == 0) {
-      while (true) file.write(block);
-    }
-    while (std::filesystem::file_size(name) < block.size())
-      ;
-    ::kill(child, SIGKILL);
-    ::waitpid(child, nullptr, 0);
-    // The process that stores the last block may still be at it.
-    std::uintmax_t size = 0;
-    for (int still = 0; still < 20; ++still) {
-      const std::uintmax_t now = std::filesystem::file_size(name);
-      still = now == size ? still : 0;
-      size = now;
-      std::this_thread::sleep_for(std::chrono::milliseconds(2));
-    }
-    CHECK(size % block.size() == 0);
-    std::filesystem::remove(name);
   }
 }
 

@@ -4,8 +4,10 @@
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
+#include <chrono>
 #include <filesystem>
 #include <string>
+#include <thread>
 
 #include "files/diagnostics_file.hpp"
 #include "files/file_size_limit.hpp"
@@ -44,9 +46,9 @@ void run(const TemporaryFolder& folder, int value, bool complete, RunFiles::Mode
   files.check_writable();
   files.open(fmt::format("constants {}\n", value));
   const int label = files.last_label() + 1;
-  files.write_solution(entry(label));
-  files.write_points(points(value, label));
-  files.write_diagnostics(diagnostics(value, label));
+  files.add_solution(entry(label));
+  files.add_points(points(value, label));
+  files.add_diagnostics(diagnostics(value, label));
   if (complete) files.finish();
 }
 
@@ -94,15 +96,42 @@ TEST_CASE("A complete run", "[output]") {
   CHECK_FALSE(folder.has(".x.lock"));
 }
 
-TEST_CASE("Blocks are on the disk at once", "[output]") {
+TEST_CASE("Blocks are gathered: a label is in the files at once, all others soon") {
   const TemporaryFolder folder;
   RunFiles files(folder.file("x"));
   files.open("");
-  files.write_points("point\n");
-  files.write_solution(entry(1));
-  files.write_diagnostics("note\n");
-  CHECK(folder.read("p.x") == "point\n");
+  files.add_points("first\n");
+  files.write_if_due();  // nothing was written before
+  CHECK(folder.read("p.x") == "first\n");
+  files.add_points("point\n");
+  files.add_diagnostics("note\n");
+  CHECK(folder.read("p.x") == "first\n");
+  files.add_solution(entry(1));
+  files.write_if_due();
+  CHECK(folder.read("p.x") == "first\npoint\n");
   CHECK(read_solution_file(folder.file("q.x")).solutions.size() == 1);
+  CHECK(folder.read("d.x") == "note\n");
+  const std::string many(300'000, '-');
+  files.add_diagnostics(many);
+  files.write_if_due();
+  CHECK(folder.read("d.x") == "note\n" + many);
+  files.add_points("late\n");
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  files.write_if_due();
+  CHECK(folder.read("p.x") == "first\npoint\nlate\n");
+}
+
+TEST_CASE("What was gathered is written when a run ends by an exception") {
+  const TemporaryFolder folder;
+  try {
+    RunFiles files(folder.file("x"));
+    files.open("");
+    files.add_points("point\n");
+    files.add_diagnostics("note\n");
+    throw ComputationError("no memory");
+  } catch (const ComputationError&) {
+  }
+  CHECK(folder.read("p.x") == "point\n");
   CHECK(folder.read("d.x") == "note\n");
 }
 
@@ -314,9 +343,13 @@ TEST_CASE("A disk that fills up leaves files that load", "[output]") {
   const TemporaryFolder folder;
   RunFiles files(folder.file("x"));
   files.open("");
-  files.write_solution(entry(1));
+  files.add_solution(entry(1));
+  files.write_if_due();
   const test_support::FileSizeLimit limit(entry(1).size() + 300);
-  CHECK_THAT(message_of<ComputationError>([&] { files.write_solution(entry(2)); }), Contains("q.x"));
+  files.add_solution(entry(2));
+  files.add_points("point\n");
+  CHECK_THAT(message_of<ComputationError>([&] { files.write_if_due(); }), Contains("q.x"));
+  CHECK(folder.read("p.x").empty());  // it may name the solution that is not there
   const SolutionFile file = read_solution_file(folder.file("q.x"));
   CHECK(file.solutions.size() == 1);
   CHECK(file.warnings.empty());

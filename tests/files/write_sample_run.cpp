@@ -96,17 +96,17 @@ void write_expected(std::FILE* expected, const Sample& sample) {
 void write_section(RunFiles& files, std::FILE* expected, const PointFileHeader& header, int first_label,
                    int first_type) {
   const auto columns = point_columns(header.settings, header.names);
-  files.write_points(format_point_header(header, columns));
+  files.add_points(format_point_header(header, columns));
   fmt::print(expected, "section:\n");
   for (const PointColumn& column : columns) fmt::print(expected, "column: {}\n", column.name);
   for (const Sample& sample : samples(columns.size(), first_label, first_type)) {
-    files.write_points(format_point(sample.line));
-    if (sample.line.label > 0) files.write_solution(format_solution(sample.orbit));
+    files.add_points(format_point(sample.line));
+    if (sample.line.label > 0) files.add_solution(format_solution(sample.orbit));
     std::string block = format_newton_history(sample.line.branch, sample.line.point, {{0, 1.0, 2.0, 0.0, 0.0}});
     block += format_diagnostics_point(sample.line, columns) + format_multipliers(sample.multipliers);
     block += format_test_functions({{"period doubling", -1.0, true}});
     block += format_note(sample.line.branch, sample.line.point, "Multiplier 0 is a figure of accuracy");
-    files.write_diagnostics(block + format_bar());
+    files.add_diagnostics(block + format_bar());
     write_expected(expected, sample);
   }
 }
