@@ -32,9 +32,8 @@ constexpr double steps_of_tick = 4.0;        // at least, of the integrator
 /// An event whose saltation waits for the field after it.
 struct Saltation {
   MatrixXd gx;
-  VectorXd f_before, after;
-  VectorXd hx;
-  double rate = 0.0;  // h_x f-
+  EventAt at;  // with f-
+  VectorXd after;
   bool is_tangential = false;
   std::string without_derivatives;  // which function has none, and where
 };
@@ -198,10 +197,10 @@ struct LyapunovAccumulator::Implementation {
     const Saltation event = *std::exchange(waiting, std::nullopt);
     VectorXd difference(system.dimension());
     system.value(FunctionKind::field, field, event.after.data(), par.data(), difference.data());
-    difference -= event.gx * event.f_before;
+    difference -= event.gx * event.at.f;
     MatrixXd& v = frame.vectors();
     MatrixXd moved = event.gx * v;
-    if (event.rate != 0.0) moved += difference * ((event.hx.transpose() * v) / event.rate);
+    if (event.at.rate() != 0.0) moved -= difference * change_of_time(event.at.f, event.at.gradient, v);
     if (!moved.allFinite()) {
       fault =
           event.without_derivatives.empty() ? "a field or a jump is not finite at an event" : event.without_derivatives;
@@ -216,17 +215,13 @@ struct LyapunovAccumulator::Implementation {
 
   void wait_for_field(const SimulatedSegment& segment) {
     const EventAt at = event_at(system, segment.index.event, segment.mode.field(), segment.end.data(), par.data());
-    Saltation event{MatrixXd(system.dimension(), system.dimension()),      at.f, segment.after, at.gradient, at.rate(),
+    Saltation event{jump_at(system, segment.index.jump, segment.end.data(), par.data()).derivative, at, segment.after,
                     std::abs(at.rate()) < hardly_transversal * at.sizes(), ""};
-    VectorXd g(system.dimension());
-    double no_parameters = 0.0;
-    system.first(FunctionKind::jump, segment.index.jump, segment.end.data(), par.data(), {}, g.data(), event.gx.data(),
-                 &no_parameters);
     const auto tell = [&](FunctionKind kind, int index) {
       if (!has_finite_derivatives(system, kind, index, segment.end.data(), par.data()))
         event.without_derivatives = no_finite_derivatives(system, kind, index, segment.end);
     };
-    if (!event.hx.allFinite()) tell(FunctionKind::event, segment.index.event);
+    if (!event.at.gradient.allFinite()) tell(FunctionKind::event, segment.index.event);
     if (!event.gx.allFinite()) tell(FunctionKind::jump, segment.index.jump);
     waiting = std::move(event);
   }
@@ -284,12 +279,11 @@ struct LyapunovAccumulator::Implementation {
     time_since_return += to - t;
   }
 
-  /// V -> (Id - f h_x / (h_x f)) V
   void cross_section(int field, const double* x) {
     const EventAt at = event_at(system, settings.section, field, x, par.data());
     const bool is_tangential = std::abs(at.rate()) < hardly_transversal * at.sizes();
     MatrixXd& v = frame.vectors();
-    const MatrixXd moved = v - at.f * ((at.gradient.transpose() * v) / at.rate());
+    const MatrixXd moved = at.project(v);
     if (moved.allFinite()) v = moved;
     tangential += is_tangential ? 1 : 0;
     orthonormalise(!is_tangential);

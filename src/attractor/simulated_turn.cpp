@@ -18,19 +18,11 @@ using Eigen::VectorXd;
 constexpr double tangential = 1e-14;  // |h_x f| / (|h_x| |f|): rounding
 constexpr double endless = 1e300;
 
-MatrixXd jump_derivative(const HybridSystem& system, int jump, const VectorXd& x, const VectorXd& par) {
-  VectorXd g(x.size());
-  MatrixXd gx(x.size(), x.size());
-  double no_parameters = 0.0;
-  system.first(FunctionKind::jump, jump, x.data(), par.data(), {}, g.data(), gx.data(), &no_parameters);
-  return gx;
-}
-
-/// V -> (Id - f h_x / (h_x f)) V at the end of a segment. False where its event is met tangentially.
+/// V at the end of a segment, onto the surface of its event. False where that is met tangentially.
 bool project_on_event(const HybridSystem& system, const SimulatedSegment& segment, const VectorXd& par, MatrixXd& v) {
   const EventAt at = event_at(system, segment.index.event, segment.mode.field(), segment.end.data(), par.data());
   if (!(std::abs(at.rate()) > tangential * at.sizes())) return false;
-  v -= at.f * ((at.gradient.transpose() * v) / at.rate());
+  v = at.project(v);
   return v.allFinite();
 }
 
@@ -45,7 +37,7 @@ SimulatedTurn simulate_turn(const HybridSimulation& at, const VectorXd& y, const
   MatrixXd& v = turn.derivative;
   settings.on_piece = {};
   if (with_derivative) {
-    v = jump_derivative(system, at.last_event().jump, y, par);
+    v = jump_at(system, at.last_event().jump, y.data(), par.data()).derivative;
     settings.on_piece = [&](int field, const DenseOutput& state, double from, double to) {
       turn.is_smooth = turn.is_smooth && tangent.carry(v, field, state, from, to);
     };
@@ -64,7 +56,7 @@ SimulatedTurn simulate_turn(const HybridSimulation& at, const VectorXd& y, const
       turn.fault = fmt::format("segment {} has no finite derivative", s + 1);
       return turn;
     }
-    if (s + 1 < expected.size()) v = jump_derivative(system, segment.index.jump, segment.end, par) * v;
+    if (s + 1 < expected.size()) v = jump_at(system, segment.index.jump, segment.end.data(), par.data()).derivative * v;
   }
   return turn;
 }

@@ -206,10 +206,7 @@ bool is_pinned_start(const HybridSystem& system, const Signature& signature, con
   if (v.event == no_function) return false;
   if (std::abs(system.event(event, x.start(s), par)) > structural_tolerance * event_scale(system, x, event))
     return false;
-  const int n = system.dimension();
-  Vector g(n);
-  Eigen::MatrixXd gx(n, n);
-  system.first(FunctionKind::jump, v.jump, x.end(before), par, {}, g.data(), gx.data(), nullptr);
+  const Eigen::MatrixXd gx = jump_at(system, v.jump, x.end(before), par).derivative;
   const Vector composed = gx.transpose() * event_at(system, event, x.start(s), par).gradient;
   const Vector terminal = event_at(system, v.event, x.end(before), par).gradient;
   const double sizes = composed.norm() * terminal.norm();

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "hybrid/event_at.hpp"
 #include "simulation/segment_flow.hpp"
 #include "text/user_error.hpp"
 
@@ -149,7 +150,7 @@ void pass_event(Passed& passed, const HybridSystem& system, const IndexVector& i
   const Expanded f(system, FunctionKind::field, index.field, passed.z, par);
   const Expanded h(system, FunctionKind::event, index.event, passed.z, par);
   const double rate = h.first.row(0).dot(f.value);
-  const RowVectorXd tau = -(h.first * passed.first) / rate;
+  const RowVectorXd tau = change_of_time(f.value, h.first.transpose(), passed.first);
   const MatrixXd onto = passed.first + f.value * tau;
   if (!passed.second.empty()) {
     const MatrixXd turned = f.first * passed.first;  // f_z Phi

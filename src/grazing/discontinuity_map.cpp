@@ -9,6 +9,7 @@
 
 #include "grazing/local_flow.hpp"
 #include "grazing/taylor_coefficients.hpp"
+#include "hybrid/event_at.hpp"
 #include "text/user_error.hpp"
 
 namespace tchat {
@@ -20,11 +21,6 @@ using Eigen::RowVectorXd;
 using Eigen::VectorXd;
 
 VectorXd no_value(Eigen::Index n) { return VectorXd::Constant(n, std::numeric_limits<double>::quiet_NaN()); }
-
-/// Id - f s_x / (s_x f): onto the section, along the flow.
-MatrixXd projection(const VectorXd& f, const VectorXd& gradient) {
-  return MatrixXd::Identity(f.size(), f.size()) - f * (gradient.transpose() / gradient.dot(f));
-}
 
 }  // namespace
 
@@ -108,8 +104,9 @@ struct DiscontinuityMap::Implementation {
 
   void expand() {
     LocalFlow local = flow(point.par);
-    const MatrixXd onto = section ? MatrixXd(projection(point.f, gradient)) : MatrixXd::Identity(n(), n());
-    const MatrixXd onto_p = projection(point.f, point.section_gradient);
+    const MatrixXd identity = MatrixXd::Identity(n(), n());
+    const MatrixXd onto = section ? project_along_flow(point.f, gradient, identity) : identity;
+    const MatrixXd onto_p = project_along_flow(point.f, point.section_gradient, identity);
     expansion.y = onto * point.B;
     expansion.dx = onto * onto_p * point.jump_derivative * onto_p;
 

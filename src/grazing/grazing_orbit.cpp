@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "bvp/surface_rate.hpp"
+#include "hybrid/event_at.hpp"
 #include "linear_algebra/dense_matrix.hpp"
 #include "simulation/orbit_flow.hpp"
 #include "text/user_error.hpp"
@@ -143,9 +144,7 @@ class ContactSearch {
                        {},
                        par_(free()) - start_.par(free())};
     const GrazingPoint& at = orbit.point;
-    const auto onto_p = [&](const MatrixXd& v) -> MatrixXd {
-      return v - at.f * (at.section_gradient.transpose() * v / at.a);
-    };
+    const auto onto_p = [&](const MatrixXd& v) -> MatrixXd { return project_along_flow(at.f, at.section_gradient, v); };
     orbit.A = onto_p(turn_.by_state);
     orbit.by_parameters = onto_p(turn_.by_parameters) - at.f * (surface_.rate_p.transpose() / at.a);
     orbit.multipliers = largest_first(orbit.A);

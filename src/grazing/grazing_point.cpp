@@ -55,9 +55,7 @@ MatrixXd short_segment(const HybridSystem& system, const IndexVector& v, const G
                        const std::string& source) {
   const Eigen::Index n = at.x.size();
   const EventAt event = event_at(system, v.event, v.field, at.x.data(), at.par.data());
-  VectorXd after(n);
-  MatrixXd gx(n, n);
-  system.first(FunctionKind::jump, v.jump, at.x.data(), at.par.data(), {}, after.data(), gx.data(), nullptr);
+  const auto [after, gx] = jump_at(system, v.jump, at.x.data(), at.par.data());
   const bool is_empty = std::abs(event.h) <= on_surfaces * event.scale(at.x.data()) &&
                         (after - at.x).lpNorm<Eigen::Infinity>() <= same_state * (1.0 + at.x.norm());
   if (!is_empty || !(std::abs(event.rate()) > no_minimum * event.sizes()))
@@ -66,7 +64,7 @@ MatrixXd short_segment(const HybridSystem& system, const IndexVector& v, const G
         "impacts after which the flow goes on as before, at once or after a short slip",
         source, to_string({v}), system.function_name(FunctionKind::field, v.field),
         is_empty ? "leaves its surface tangentially" : "lasts"));
-  return gx - (gx * event.f) * (event.gradient.transpose() / event.rate());
+  return gx * event.project(MatrixXd::Identity(n, n));
 }
 
 void require_minimum(const HybridSystem& system, const GrazingPoint& at, const std::string& source) {
@@ -106,9 +104,7 @@ GrazingPoint grazing_point(const HybridSystem& system, int field, int event, int
   SurfaceRate surface(n, 0);
   surface.evaluate(system, {field, event, jump}, x.data(), par.data(), {});
   system.value(FunctionKind::field, field, x.data(), par.data(), at.f.data());
-  VectorXd after(n);
-  MatrixXd gx(n, n);
-  system.first(FunctionKind::jump, jump, x.data(), par.data(), {}, after.data(), gx.data(), nullptr);
+  const auto [after, gx] = jump_at(system, jump, x.data(), par.data());
   at.event_gradient = surface.hx;
   at.section_gradient = surface.rate_x;
   at.a = at.section_gradient.dot(at.f);

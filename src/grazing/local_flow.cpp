@@ -202,9 +202,7 @@ bool LocalFlow::follow(Motion& motion, double time) {
 /// The derivative of the flow to the surface with this gradient at the end of the motion: (Id - f s_x / (s_x f)) Phi.
 void LocalFlow::change(const Motion& motion, const VectorXd& gradient, MatrixXd& derivative) {
   const VectorXd f = field(Eigen::Map<const VectorXd>(motion.z.data(), motion.n));
-  derivative = motion.phi() * derivative;
-  const Eigen::RowVectorXd along = gradient.transpose() * derivative / gradient.dot(f);
-  derivative -= f * along;
+  derivative = project_along_flow(f, gradient, motion.phi() * derivative);
 }
 
 bool LocalFlow::to_height(VectorXd& d, double y, MatrixXd* derivative) {

@@ -2,6 +2,15 @@
 
 namespace tchat {
 
+Eigen::RowVectorXd change_of_time(const Eigen::VectorXd& f, const Eigen::VectorXd& gradient, const Eigen::MatrixXd& v) {
+  return -(gradient.transpose() * v) / gradient.dot(f);
+}
+
+Eigen::MatrixXd project_along_flow(const Eigen::VectorXd& f, const Eigen::VectorXd& gradient,
+                                   const Eigen::MatrixXd& v) {
+  return v + f * change_of_time(f, gradient, v);
+}
+
 double EventAt::scale(const double* x) const {
   return 1.0 + gradient.norm() * Eigen::Map<const Eigen::VectorXd>(x, gradient.size()).norm();
 }
@@ -29,6 +38,13 @@ Eigen::VectorXd rate_gradient(const HybridSystem& system, const EventAt& at, int
   // h_xx f is the second derivative of h in the direction f.
   system.second(FunctionKind::event, event, x, par, {}, at.f.data(), &rate, gradient.data(), nullptr);
   return gradient + fx.transpose() * at.gradient;
+}
+
+JumpAt jump_at(const HybridSystem& system, int jump, const double* x, const double* par) {
+  const int n = system.dimension();
+  JumpAt at{Eigen::VectorXd(n), Eigen::MatrixXd(n, n)};
+  system.first(FunctionKind::jump, jump, x, par, {}, at.image.data(), at.derivative.data(), nullptr);
+  return at;
 }
 
 }  // namespace tchat

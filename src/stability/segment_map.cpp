@@ -1,5 +1,6 @@
 #include "stability/segment_map.hpp"
 
+#include "hybrid/event_at.hpp"
 #include "linear_algebra/dense_matrix.hpp"
 
 namespace tchat {
@@ -21,16 +22,13 @@ SegmentMap segment_map(const CondensedSystem& condensed, const Orbit& x, int s) 
 
   Eigen::VectorXd f(n);
   Eigen::VectorXd section(n);
-  Eigen::VectorXd g(n);
-  Eigen::MatrixXd gx(n, n);
   system.value(FunctionKind::field, index.field, x.end(s), x.par.data(), f.data());
   defining.section_gradient(s, x.end(s), x.par.data(), section.data());
-  system.first(FunctionKind::jump, index.jump, x.end(s), x.par.data(), {}, g.data(), gx.data(), nullptr);
 
   SegmentMap map;
-  map.to_duration = -(section.transpose() * flow) / section.dot(f);
+  map.to_duration = change_of_time(f, section, flow);
   map.to_end = flow + f * map.to_duration;
-  map.to_next = gx * map.to_end;
+  map.to_next = jump_at(system, index.jump, x.end(s), x.par.data()).derivative * map.to_end;
   return map;
 }
 

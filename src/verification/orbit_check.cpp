@@ -56,7 +56,8 @@ SegmentLink link_at(const HybridSystem& system, const StoredSegment& segment, co
   const int n = system.dimension();
   const IndexVector& index = segment.index;
   const double* const x = check.end.data();
-  SegmentLink link{check.flow, VectorXd(n), Eigen::RowVectorXd(n), MatrixXd(n, n)};
+  SegmentLink link{check.flow, VectorXd(n), Eigen::RowVectorXd(n),
+                   jump_at(system, index.jump, x, par.data()).derivative};
   if (index.event == no_function) {
     system.value(FunctionKind::field, index.field, x, par.data(), link.f.data());
     link.hx = link.f.transpose();
@@ -67,8 +68,6 @@ SegmentLink link_at(const HybridSystem& system, const StoredSegment& segment, co
         segment.grazing ? rate_gradient(system, at, index.event, index.field, x, par.data()) : at.gradient;
     link.hx = section.transpose();
   }
-  VectorXd after(n);
-  system.first(FunctionKind::jump, index.jump, x, par.data(), {}, after.data(), link.gx.data(), nullptr);
   const auto divide = scale.cwiseInverse().asDiagonal();
   link.flow = divide * link.flow * scale.asDiagonal();
   link.f = divide * link.f;

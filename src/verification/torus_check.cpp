@@ -6,6 +6,7 @@
 
 #include "bvp/torus_system.hpp"
 #include "constants/settings_type.hpp"
+#include "hybrid/event_at.hpp"
 #include "run/torus_start.hpp"
 #include "stability/torus_multipliers.hpp"
 
@@ -72,7 +73,7 @@ MatrixXd integrated_returns(const TorusSystem& torus, const std::vector<SegmentL
       const SegmentLink& link = links[static_cast<std::size_t>(i * m + s)];
       const double rate = link.hx * link.f;
       if (!(std::abs(rate) > least_rate * link.hx.norm() * link.f.norm())) return MatrixXd::Constant(n * n, 1, NAN);
-      product = link.gx * (link.flow * product - link.f * (link.hx * (link.flow * product)) / rate).eval();
+      product = link.gx * project_along_flow(link.f, link.hx.transpose(), link.flow * product);
     }
     columns.col(i) = Eigen::Map<const VectorXd>(product.data(), n * n);
   }
