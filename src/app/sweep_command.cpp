@@ -54,8 +54,8 @@ std::string command_without_part() {
 int do_sweep(const SweepRequest& request, const MapRequest& map) {
   std::ostream* const progress = ::isatty(STDERR_FILENO) != 0 && !request.simulation.quiet ? &std::cerr : nullptr;
   return run_interruptibly([&](const std::function<bool()>& interrupted) {
-    if (!map.source.empty()) return map_sweep_problem(request, map, std::cout, std::cerr, interrupted, progress);
-    return sweep_problem(request, std::cout, std::cerr, interrupted, progress);
+    const SweepConsole console{std::cout, std::cerr, interrupted, progress};
+    return map.source.empty() ? sweep_problem(request, console) : map_sweep_problem(request, map, console);
   });
 }
 

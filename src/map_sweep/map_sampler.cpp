@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "text/user_error.hpp"
 
@@ -59,14 +58,7 @@ void describe_period(const MapModel& model, const MapAttractor& attractor, Attra
 AttractorSample MapSampler::operator()(const SweepPoint& point, const std::function<bool()>& interrupted) const {
   ParameterVector par = model_.par;
   VectorXd x = point.at ? point.at->x : setup_.starts[static_cast<std::size_t>(point.start - 1)];
-  for (std::size_t q = 0; q < setup_.over.size(); ++q) {
-    const double value = point.values(static_cast<Index>(q));
-    const int position = setup_.over[q].position;
-    if (setup_.over[q].quantity.is_state)
-      x(position - 1) = value;
-    else
-      par(position - 1) = value;
-  }
+  set_swept_values(setup_.over, point.values, x, par);
   MapIteration iteration = setup_.iteration;
   iteration.interrupted = interrupted;
   MapAttractor attractor;
@@ -76,13 +68,10 @@ AttractorSample MapSampler::operator()(const SweepPoint& point, const std::funct
     if (interrupted && interrupted()) throw SampleInterrupted();
     throw;
   }
-  constexpr double none = std::numeric_limits<double>::quiet_NaN();
   AttractorSample sample;
   sample.kind = attractor.kind;
   sample.message = attractor.message;
-  sample.period = none;
-  sample.impacts = attractor.period > 0 ? 0 : -1;
-  sample.penetration = none;
+  if (attractor.period > 0) sample.impacts = 0;
   sample.range = map_->smooth().extent();
   sample.sections = attractor.points;
   sample.section_penetrations = attractor.penetrations;

@@ -23,7 +23,7 @@ struct MapSamplerSetup {
 /// One for each worker, with its own map. `setup` and `model` outlive it.
 class MapSampler {
  public:
-  MapSampler(const MapSamplerSetup& setup, const MapModel& model, std::unique_ptr<IteratedMap> map)
+  MapSampler(const MapSamplerSetup& setup, const MapModel& model, std::shared_ptr<const IteratedMap> map)
       : setup_(setup), model_(model), map_(std::move(map)) {}
 
   /// Throws SampleInterrupted when `interrupted` says so.
@@ -32,7 +32,7 @@ class MapSampler {
  private:
   const MapSamplerSetup& setup_;
   const MapModel& model_;
-  std::unique_ptr<IteratedMap> map_;
+  std::shared_ptr<const IteratedMap> map_;
 };
 
 }  // namespace tchat

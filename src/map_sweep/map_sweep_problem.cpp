@@ -1,7 +1,6 @@
 #include "map_sweep/map_sweep_problem.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <cmath>
 #include <memory>
@@ -76,15 +75,7 @@ void add_starts(const SweepRequest& request, const LoadedProblem& loaded, const 
     states.push_back(simulation_start(own, loaded.constants, system).state);
   }
   if (states.empty()) states.push_back(model.point.x);
-  for (const VectorXd& state : states)
-    for (const Following direction : follow_directions(request.follow)) {
-      setup.starts.push_back(state);
-      job.following.push_back(direction);
-      std::string text = fmt::format("x = ({})", fmt::join(state.begin(), state.end(), ", "));
-      if (direction != Following::none)
-        text = fmt::format("{} from {}", direction == Following::up ? "up" : "down", text);
-      job.heading.starts.push_back(std::move(text));
-    }
+  for (const VectorXd& state : states) add_start(request, state, job, [&] { setup.starts.push_back(state); });
 }
 
 MapIteration iteration_of(const SweepRequest& request, const HybridSystem& system, bool is_reduced) {
@@ -103,67 +94,44 @@ MapIteration iteration_of(const SweepRequest& request, const HybridSystem& syste
   return iteration;
 }
 
-SweepIdentity identity_of(const LoadedProblem& loaded, const MapRequest& map, const MapModel& model,
-                          const MapSamplerSetup& setup, const SweepJob& job) {
-  SweepIdentity identity;
+/// What the results of iterations depend on beside what every sweep does.
+void add_identity(const MapRequest& map, const MapModel& model, const MapIteration& i, SweepIdentity& identity) {
   const auto add = [&](const char* key, std::string value) { identity.emplace_back(key, std::move(value)); };
-  add("problem", loaded.library->system().name());
-  add("plugin", plugin_identity(loaded.plugin));
-  for (const SweepTarget& target : setup.over)
-    add("over", fmt::format("{} {} {} {}", target.quantity.column(), target.quantity.from, target.quantity.to,
-                            target.quantity.count));
-  for (const std::string& start : job.heading.starts) add("start", start);
   add("map", model.identity);
   add("order", fmt::format("{}, smooth {}", map.order, map.smooth_order));
   add("reduced", map.reduced.value_or("no"));
   add("neighbourhood", fmt::format("{}", model.neighbourhood));
-  for (const auto& [name, value] : job.heading.parameters) add("parameter", fmt::format("{} {}", name, value));
-  const MapIteration& i = setup.iteration;
   add("returns", fmt::format("{} after {}, period at most {}, recognised to {}", i.returns, i.transient, i.max_period,
                              i.recognition));
   add("exponents", fmt::format("{}", i.exponents));
-  return identity;
 }
 
 }  // namespace
 
-int map_sweep_problem(const SweepRequest& request, const MapRequest& map, std::ostream& screen, std::ostream& warnings,
-                      const std::function<bool()>& interrupted, std::ostream* progress) {
-  SweepTask task = sweep_task(request);
-  follow_directions(request.follow);
+int map_sweep_problem(const SweepRequest& request, const MapRequest& map, const SweepConsole& console) {
+  const SweepTask task = sweep_task(request);
   refuse_options_of_simulations(request);
   map_order(map.order);
-  const LoadedProblem loaded = load_for_simulation(request.simulation, progress);
+  const LoadedProblem loaded = load_for_simulation(request.simulation, console.progress);
   const HybridSystem& system = loaded.library->system();
-  limit_workers(loaded, task, warnings);
 
   MapSamplerSetup setup;
-  setup.over = parse_overs(system, request.over);
-  if (!request.follow.empty() && setup.over.front().quantity.is_state)
-    throw UserError(
-        fmt::format("--follow {}: attractors are followed along a parameter, and {} is an initial state; give "
-                    "a parameter as the first --over, or leave --follow out",
-                    request.follow, setup.over.front().quantity.name));
+  setup.over = swept_targets(system, request);
   setup.iteration = iteration_of(request, system, map.reduced.has_value());
   const MapModel model = map_model(map, context_of(request, loaded, swept_parameters(setup.over)), system);
   SweepJob job;
   add_starts(request, loaded, model, setup, job);
-  fill_heading(system, setup.over, model.par, job);
+  fill_heading(loaded, setup.over, model.par, job);
   job.columns.penetration = true;
   job.columns.exponents = setup.iteration.exponents;
   for (int k = 1; k <= system.dimension(); ++k) job.columns.states.push_back(system.state_name(k));
-  job.identity = identity_of(loaded, map, model, setup, job);
+  add_identity(map, model, setup.iteration, job.identity);
   if (!request.simulation.quiet)
-    for (const std::string& line : model.text) screen << line << '\n';
-
-  const int count = task.gather ? 1 : task.workers;
-  const WorkerSystems workers(loaded, request.simulation, count);
-  std::vector<MapSampler> samplers;
-  for (int worker = 0; worker < count; ++worker)
-    samplers.emplace_back(setup, model, iterated_map(map, model, workers.system(worker)));
-  const StopFlag stop(interrupted);
-  job.maker = maker_of(samplers, stop);
-  run_and_tell(job, task, loaded, stop, progress, screen, warnings, request.simulation.quiet);
+    for (const std::string& line : model.text) console.screen << line << '\n';
+  const auto sampler_of = [&](const HybridSystem& own) {
+    return MapSampler(setup, model, iterated_map(map, model, own));
+  };
+  run_with_workers(job, task, request, loaded, sampler_of, console);
   return 0;
 }
 

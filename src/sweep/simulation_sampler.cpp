@@ -30,7 +30,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double never = 1e300;
-constexpr double not_there = std::numeric_limits<double>::quiet_NaN();
 constexpr double far_away = 1e6;               // a state of this size has escaped
 constexpr double every_minimum = 1e300;        // as a share of the largest value: all contacts are noted
 constexpr std::size_t samples_following = 12;  // of a segment, among which the hand-over is chosen
@@ -259,9 +258,6 @@ class SampleRun {
   }
 
   void finish() {
-    sample_.period = not_there;
-    sample_.penetration = not_there;
-    sample_.impacts = -1;
     if (kept_.empty()) return;
     rotate_to_smallest();
     measure_range();
@@ -451,7 +447,7 @@ class SampleRun {
     dots = incoming_states(dots, times, span,
                            [&](std::size_t k, double within) { return incoming_state(*impacts[k], within); });
     const std::vector<int> nearest = nearest_contacts(dots, contacts, span);
-    sample_.section_penetrations = VectorXd::Constant(static_cast<Eigen::Index>(dots.size()), not_there);
+    sample_.section_penetrations = VectorXd::Constant(static_cast<Eigen::Index>(dots.size()), NAN);
     for (std::size_t k = 0; k < dots.size(); ++k)
       if (nearest[k] >= 0)
         sample_.section_penetrations(static_cast<Eigen::Index>(k)) = -system_.event(
@@ -526,12 +522,9 @@ class SampleRun {
 SampleStart sample_start(const SamplerSetup& setup, const SweepPoint& point) {
   const auto number = static_cast<std::size_t>(point.start) - 1;
   SampleStart start{setup.starts[number], setup.par, setup.sides[number]};
-  for (std::size_t q = 0; q < setup.over.size(); ++q) {
-    const SweepTarget& target = setup.over[q];
-    VectorXd& changed = target.quantity.is_state ? start.state : start.par;
-    changed(target.position - 1) = point.values(static_cast<Eigen::Index>(q));
+  set_swept_values(setup.over, point.values, start.state, start.par);
+  for (const SweepTarget& target : setup.over)
     if (target.quantity.is_state) start.side = setup.request.side;  // no longer the start of an orbit
-  }
   if (point.at) start = {point.at->x, start.par, {StartSide::Given::after, 0}};
   return start;
 }

@@ -100,6 +100,12 @@ std::vector<SweepTarget> parse_overs(const HybridSystem& system, const std::vect
   return targets;
 }
 
+void set_swept_values(const std::vector<SweepTarget>& over, const Eigen::VectorXd& values, Eigen::VectorXd& state,
+                      ParameterVector& par) {
+  for (std::size_t q = 0; q < over.size(); ++q)
+    (over[q].quantity.is_state ? state : par)(over[q].position - 1) = values(static_cast<Eigen::Index>(q));
+}
+
 std::size_t SweepGrid::size() const {
   std::size_t size = 1;
   for (const SweptQuantity& quantity : over_) size *= static_cast<std::size_t>(quantity.count);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "hybrid/hybrid_system.hpp"
+#include "hybrid/parameter_vector.hpp"
 #include "sweep/sweep_file.hpp"
 
 namespace tchat {
@@ -22,6 +23,10 @@ SweepTarget parse_over(const HybridSystem& system, const std::string& text);
 
 /// Both, which must differ; at most ten million values. Throws UserError.
 std::vector<SweepTarget> parse_overs(const HybridSystem& system, const std::vector<std::string>& texts);
+
+/// Writes the values of the swept quantities, in their order, into a state and PAR.
+void set_swept_values(const std::vector<SweepTarget>& over, const Eigen::VectorXd& values, Eigen::VectorXd& state,
+                      ParameterVector& par);
 
 class SweepGrid {
  public:

@@ -82,9 +82,7 @@ class Computation {
  public:
   Computation(const SweepJob& job, const SweepTask& task, const std::function<bool()>& interrupted,
               std::ostream* progress)
-      : job_(job), task_(task), grid_(job.heading.over), interrupted_(interrupted), line_(progress) {
-    for (int worker = 0; worker < task.workers; ++worker) functions_.push_back(job.maker(worker));
-  }
+      : job_(job), task_(task), grid_(job.heading.over), interrupted_(interrupted), line_(progress) {}
 
   /// What a journal held.
   void take(std::vector<SampleRecord> records) {
@@ -102,7 +100,7 @@ class Computation {
     values_ = 0;
     for (const Unit& unit : units) values_ += unit.values.size();
     if (job_.first_values > 0 && !knows_ && !find_known(journal)) return false;
-    if (job_.first_values > 0) job_.learn(known_);
+    if (job_.first_values > 0) job_.learn(known_, interrupted_);
     return work(units, [&](const SampleRecord& record) {
       journal.add(record);
       records_.emplace(RecordKey{record.index, record.start}, record);
@@ -157,7 +155,7 @@ class Computation {
     SweepWork work;
     work.tasks = units.size();
     work.work = [&](std::size_t task, int worker, const std::atomic<bool>& stop) {
-      do_unit(units[task], functions_[static_cast<std::size_t>(worker)], stop, [&](const SampleRecord& record) {
+      do_unit(units[task], job_.functions[static_cast<std::size_t>(worker)], stop, [&](const SampleRecord& record) {
         const std::lock_guard lock(mutex_);
         add(record);
         ++done;
@@ -222,7 +220,6 @@ class Computation {
   SweepGrid grid_;
   const std::function<bool()>& interrupted_;
   ProgressLine line_;
-  std::vector<SampleFunction> functions_;
   std::mutex mutex_;
   std::map<RecordKey, SampleRecord> records_;
   std::vector<AttractorSample> known_;

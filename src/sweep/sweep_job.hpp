@@ -39,13 +39,13 @@ struct SweepJob {
   SweepColumns columns;
   SweepIdentity identity;  ///< what the results depend on
   RecordLimits limits;     ///< of what journals and parts may hold: dimension and functions of the problem
-  SampleMaker maker;
+  std::vector<SampleFunction> functions;  ///< one for each worker
   /// Values, not more than there are, that are computed first, all the way, to learn which attractors there are; 0
   /// none.
   std::size_t first_values = 0;
   /// Is told the attractors found by the first values before any other value is computed: a sample may then be a mere
-  /// `known`.
-  std::function<void(const std::vector<AttractorSample>& known)> learn;
+  /// `known`. Asks whether it has been interrupted.
+  std::function<void(const std::vector<AttractorSample>& known, const std::function<bool()>& interrupted)> learn;
 };
 
 /// Into so many parts a sweep can be cut at most.

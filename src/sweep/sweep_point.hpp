@@ -1,11 +1,12 @@
 /// One value of a sweep: what goes into its computation and what comes out. A sweep knows nothing of how it is done: by
 /// simulation, or by iterating a composite map.
 ///
-/// A function of a sweep is called by several threads at once, each with one made for it by its `SampleMaker`: it may
-/// keep memory, but what it returns must depend on its argument alone, to the last bit.
+/// Each worker calls a function of its own, in its own thread: it may keep memory, but what it returns must depend on
+/// its argument alone, to the last bit.
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <cstddef>
 #include <functional>
 #include <optional>
@@ -35,9 +36,9 @@ struct SweepPoint {
 struct AttractorSample {
   AttractorKind kind = AttractorKind::none;
   Signature signature;                ///< of one period, cut where it is least; empty: not periodic
-  double period = 0.0;                ///< time of one period; NaN: not periodic
-  int impacts = 0;                    ///< per period: events whose jump is not the identity; -1: not periodic
-  double penetration = 0.0;           ///< minus the least value of a monitored event function over the attractor; NaN
+  double period = NAN;                ///< time of one period; NaN: not periodic
+  int impacts = -1;                   ///< per period: events whose jump is not the identity; -1: not periodic
+  double penetration = NAN;           ///< minus the least value of a monitored event function over the attractor; NaN
   Eigen::VectorXd exponents, errors;  ///< Lyapunov exponents, descending, with their error bars
   Eigen::MatrixXd sections;           ///< recorded states, n x (number of them), in the order of time
   std::vector<int> section_events;    ///< the event function of each, where several are recorded; else empty
@@ -59,7 +60,5 @@ class SampleInterrupted : public ComputationError {
 
 /// Throws SampleInterrupted, and then nothing of that value is kept.
 using SampleFunction = std::function<AttractorSample(const SweepPoint&)>;
-/// Called once for each worker, with its number from 0, in the main thread.
-using SampleMaker = std::function<SampleFunction(int worker)>;
 
 }  // namespace tchat

@@ -1,14 +1,12 @@
 #include "sweep/sweep_problem.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <optional>
 
-#include "plugin/build_stamp.hpp"
 #include "simulate/loaded_problem.hpp"
 #include "simulate/simulation_rule.hpp"
 #include "simulate/simulation_start.hpp"
@@ -18,7 +16,6 @@
 #include "sweep/sweep_job.hpp"
 #include "sweep/sweep_setup.hpp"
 #include "text/number.hpp"
-#include "text/text_file.hpp"
 #include "text/user_error.hpp"
 
 namespace tchat {
@@ -78,15 +75,10 @@ void add_starts(const SweepRequest& request, const LoadedProblem& loaded, Sample
     const SimulationStart start = simulation_start(own, setup.constants, system);
     setup.par = start.par;
     if (!start.watched.empty()) setup.request.modes = modes_text(start.watched);
-    for (const Following direction : follow_directions(request.follow)) {
+    add_start(request, start.state, job, [&] {
       setup.starts.push_back(start.state);
       setup.sides.push_back(start.side);
-      job.following.push_back(direction);
-      std::string text = fmt::format("x = ({})", fmt::join(start.state.begin(), start.state.end(), ", "));
-      if (direction != Following::none)
-        text = fmt::format("{} from {}", direction == Following::up ? "up" : "down", text);
-      job.heading.starts.push_back(std::move(text));
-    }
+    });
   }
 }
 
@@ -112,21 +104,13 @@ std::string recorded_text(const Recording& recording) {
   }
 }
 
-SweepIdentity identity_of(const LoadedProblem& loaded, const SamplerSetup& setup, const SweepJob& job, bool captures) {
+/// What the results of simulations depend on beside what every sweep does.
+void add_identity(const HybridSystem& system, const SamplerSetup& setup, bool captures, SweepIdentity& identity) {
   const SimulationRequest& r = setup.request;
   const SimulationPlan& plan = r.plan;
-  SweepIdentity identity;
   const auto add = [&](const char* key, std::string value) { identity.emplace_back(key, std::move(value)); };
-  add("problem", loaded.library->system().name());
-  add("plugin", plugin_identity(loaded.plugin));
-  for (const SweepTarget& target : setup.over) {
-    const SweptQuantity& q = target.quantity;
-    add("over", fmt::format("{}={}:{}:{}", q.column(), q.from, q.to, q.count));
-  }
-  for (const auto& [name, value] : job.heading.parameters) add("parameter", fmt::format("{} = {}", name, value));
-  for (const std::string& start : job.heading.starts) add("start", start);
   std::string rule = r.modes.value_or("");
-  const bool by_signature = r.signature || r.follow_signature || !loaded.library->system().has_successors();
+  const bool by_signature = r.signature || r.follow_signature || !system.has_successors();
   if (by_signature && setup.constants.has_signature) rule += " " + to_string(setup.constants.settings.signature());
   add("modes", rule.empty() ? "of the problem" : rule);
   for (const StartSide& side : setup.sides)
@@ -142,7 +126,6 @@ SweepIdentity identity_of(const LoadedProblem& loaded, const SamplerSetup& setup
   add("penetration", fmt::format("{}", setup.recording.penetration));
   add("exponents", fmt::format("{}", setup.recording.exponents));
   add("capture", captures ? "yes" : "no");
-  return identity;
 }
 
 /// What is to be said of the values that begin at a given start: all of them, or the first of each chain of neighbours.
@@ -186,28 +169,19 @@ std::vector<CaptureRegion> capture_regions(const SamplerSetup& setup, const Hybr
 
 }  // namespace
 
-int sweep_problem(const SweepRequest& request, std::ostream& screen, std::ostream& warnings,
-                  const std::function<bool()>& interrupted, std::ostream* progress) {
-  SweepTask task = sweep_task(request);
-  follow_directions(request.follow);
-  const LoadedProblem loaded = load_for_simulation(request.simulation, progress);
+int sweep_problem(const SweepRequest& request, const SweepConsole& console) {
+  const SweepTask task = sweep_task(request);
+  const LoadedProblem loaded = load_for_simulation(request.simulation, console.progress);
   const HybridSystem& system = loaded.library->system();
-  limit_workers(loaded, task, warnings);
-
   SamplerSetup setup;
   setup.request = request.simulation;
   setup.constants = loaded.constants;
-  setup.over = parse_overs(system, request.over);
+  setup.over = swept_targets(system, request);
   setup.follows = !request.follow.empty();
-  if (setup.follows && setup.over.front().quantity.is_state)
-    throw UserError(
-        fmt::format("--follow {}: attractors are followed along a parameter, and {} is an initial state; "
-                    "give a parameter as the first --over, or leave --follow out",
-                    request.follow, setup.over.front().quantity.name));
   setup.recording = read_recording(request, system, setup.over);
   SweepJob job;
   add_starts(request, loaded, setup, job);
-  fill_heading(system, setup.over, setup.par, job);
+  fill_heading(loaded, setup.over, setup.par, job);
   choose_columns(system, setup.recording, job.columns);
 
   const std::size_t values = SweepGrid(job.heading.over).size();
@@ -215,20 +189,14 @@ int sweep_problem(const SweepRequest& request, std::ostream& screen, std::ostrea
                                     [](const SweepTarget& target) { return target.quantity.is_state; });
   const bool captures = is_basin && values >= fewest_for_capture && !request.to_the_end;
   if (captures) job.first_values = std::min(most_first, values / share_of_first);
-  job.identity = identity_of(loaded, setup, job, captures);
-
-  const WorkerSystems workers(loaded, setup.request, task.gather ? 1 : task.workers);
-  std::vector<SimulationSampler> samplers;
-  for (int worker = 0; worker < task.workers && !task.gather; ++worker)
-    samplers.emplace_back(setup, workers.system(worker));
-  const StopFlag stop(interrupted);
-  job.maker = maker_of(samplers, stop);
-  job.learn = [&](const std::vector<AttractorSample>& known) {
-    setup.known = capture_regions(setup, system, known, stop.ask());
+  add_identity(system, setup, captures, job.identity);
+  job.learn = [&](const std::vector<AttractorSample>& known, const std::function<bool()>& is_stopped) {
+    setup.known = capture_regions(setup, system, known, is_stopped);
   };
-  run_and_tell(job, task, loaded, stop, progress, screen, warnings, request.simulation.quiet);
+  run_with_workers(
+      job, task, request, loaded, [&](const HybridSystem& own) { return SimulationSampler(setup, own); }, console);
   // Not before: a plugin that dies at some value must leave what is computed up to there.
-  if (!task.gather) warnings << start_warnings(setup, system, job);
+  if (!task.gather) console.warnings << start_warnings(setup, system, job);
   return 0;
 }
 

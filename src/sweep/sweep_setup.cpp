@@ -1,10 +1,12 @@
 #include "sweep/sweep_setup.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <atomic>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <utility>
 
@@ -68,8 +70,7 @@ std::string outcome_text(const SweepJob& job, const SweepOutcome& outcome) {
   return text + fmt::format("Written: {}\n", outcome.written);
 }
 
-}  // namespace
-
+/// Of --follow: the directions from each start.
 std::vector<Following> follow_directions(const std::string& follow) {
   if (follow.empty()) return {Following::none};
   if (follow == "up") return {Following::up};
@@ -78,19 +79,7 @@ std::vector<Following> follow_directions(const std::string& follow) {
   throw UserError(fmt::format("--follow {}: it is none of up, down, both; an example is --follow both", follow));
 }
 
-void fill_heading(const HybridSystem& system, const std::vector<SweepTarget>& over, const VectorXd& par,
-                  SweepJob& job) {
-  job.heading.problem = system.name();
-  job.limits = RecordLimits::of(system);
-  for (const SweepTarget& target : over) job.heading.over.push_back(target.quantity);
-  for (int k = 1; k <= system.parameters(); ++k) {
-    const bool is_swept = std::any_of(over.begin(), over.end(), [k](const SweepTarget& target) {
-      return !target.quantity.is_state && target.position == k;
-    });
-    if (!is_swept) job.heading.parameters.emplace_back(system.parameter_name(k), par(k - 1));
-  }
-}
-
+/// What the plugin was made of, wherever it stands; of a library that tchat has not compiled its bytes.
 std::string plugin_identity(const std::string& path) {
   if (const std::optional<BuildStamp> stamp = read_stamp(path); stamp && !stamp->contents.empty())
     return stamp->contents;
@@ -98,22 +87,34 @@ std::string plugin_identity(const std::string& path) {
 }
 
 void limit_workers(const LoadedProblem& loaded, SweepTask& task, std::ostream& warnings) {
-  if (task.workers > 1 && !task.gather && shares_data_of_copies(loaded.plugin)) {
-    warnings << fmt::format(
-        "tchat: warning: plugin {} was compiled without -fno-gnu-unique, so that copies of it would share their data: "
-        "one worker computes instead of {}; give its source, or compile it with that option\n",
-        loaded.plugin, task.workers);
-    task.workers = 1;
-  }
+  if (task.workers == 1 || task.gather || !shares_data_of_copies(loaded.plugin)) return;
+  warnings << fmt::format(
+      "tchat: warning: plugin {} was compiled without -fno-gnu-unique, so that copies of it would share their data: "
+      "one worker computes instead of {}; give its source, or compile it with that option\n",
+      loaded.plugin, task.workers);
+  task.workers = 1;
 }
 
-WorkerSystems::WorkerSystems(const LoadedProblem& loaded, const SimulationRequest& request, int count) {
-  systems_.push_back(&loaded.library->system());
-  for (int worker = 1; worker < count; ++worker) {
-    copies_.push_back(ProblemLibrary::copy_of(loaded.plugin, [&] { return sizes_of(request, loaded.constants); }));
-    systems_.push_back(&copies_.back()->system());
+/// Libraries of the workers, each its own copy where there are several.
+class WorkerSystems {
+ public:
+  /// A view of `loaded`.
+  WorkerSystems(const LoadedProblem& loaded, const SimulationRequest& request, int count) {
+    systems_.push_back(&loaded.library->system());
+    for (int worker = 1; worker < count; ++worker) {
+      copies_.push_back(ProblemLibrary::copy_of(loaded.plugin, [&] { return sizes_of(request, loaded.constants); }));
+      systems_.push_back(&copies_.back()->system());
+    }
   }
-}
+
+  const std::vector<const HybridSystem*>& all() const { return systems_; }
+
+ private:
+  std::vector<std::unique_ptr<ProblemLibrary>> copies_;
+  std::vector<const HybridSystem*> systems_;
+};
+
+}  // namespace
 
 SweepTask sweep_task(const SweepRequest& request) {
   SweepTask task;
@@ -128,25 +129,72 @@ SweepTask sweep_task(const SweepRequest& request) {
   if (request.part && request.gather)
     throw UserError("--part and --gather are both given; parts are made first, and then gathered");
   if (request.part) read_part(*request.part, task);
+  follow_directions(request.follow);
   return task;
 }
 
-StopFlag::StopFlag(std::function<bool()> interrupted) {
-  const auto is_stopped = std::make_shared<std::atomic<bool>>(false);
-  ask_ = [interrupted = std::move(interrupted), is_stopped] {
-    if (interrupted()) *is_stopped = true;
-    return is_stopped->load();
-  };
-  look_ = [is_stopped] { return is_stopped->load(std::memory_order_relaxed); };
+std::vector<SweepTarget> swept_targets(const HybridSystem& system, const SweepRequest& request) {
+  std::vector<SweepTarget> over = parse_overs(system, request.over);
+  if (!request.follow.empty() && over.front().quantity.is_state)
+    throw UserError(
+        fmt::format("--follow {}: attractors are followed along a parameter, and {} is an initial state; give a "
+                    "parameter as the first --over, or leave --follow out",
+                    request.follow, over.front().quantity.name));
+  return over;
 }
 
-void run_and_tell(const SweepJob& job, const SweepTask& task, const LoadedProblem& loaded, const StopFlag& stop,
-                  std::ostream* progress, std::ostream& screen, std::ostream& warnings, bool quiet) {
+void add_start(const SweepRequest& request, const VectorXd& state, SweepJob& job, const std::function<void()>& added) {
+  for (const Following direction : follow_directions(request.follow)) {
+    added();
+    job.following.push_back(direction);
+    std::string text = fmt::format("x = ({})", fmt::join(state.begin(), state.end(), ", "));
+    if (direction != Following::none)
+      text = fmt::format("{} from {}", direction == Following::up ? "up" : "down", text);
+    job.heading.starts.push_back(std::move(text));
+  }
+}
+
+void fill_heading(const LoadedProblem& loaded, const std::vector<SweepTarget>& over, const VectorXd& par,
+                  SweepJob& job) {
+  const HybridSystem& system = loaded.library->system();
+  job.limits = RecordLimits::of(system);
+  job.heading.problem = system.name();
+  job.identity = {{"problem", system.name()}, {"plugin", plugin_identity(loaded.plugin)}};
+  for (const SweepTarget& target : over) {
+    const SweptQuantity& q = target.quantity;
+    job.heading.over.push_back(q);
+    job.identity.emplace_back("over", fmt::format("{}={}:{}:{}", q.column(), q.from, q.to, q.count));
+  }
+  for (int k = 1; k <= system.parameters(); ++k) {
+    const bool is_swept = std::any_of(over.begin(), over.end(), [k](const SweepTarget& target) {
+      return !target.quantity.is_state && target.position == k;
+    });
+    if (is_swept) continue;
+    job.heading.parameters.emplace_back(system.parameter_name(k), par(k - 1));
+    job.identity.emplace_back("parameter", fmt::format("{} = {}", system.parameter_name(k), par(k - 1)));
+  }
+  for (const std::string& start : job.heading.starts) job.identity.emplace_back("start", start);
+}
+
+void run_with_workers(SweepJob& job, SweepTask task, const SweepRequest& request, const LoadedProblem& loaded,
+                      const SamplerMaker& sampler_of, const SweepConsole& console) {
+  limit_workers(loaded, task, console.warnings);
+  const WorkerSystems workers(loaded, request.simulation, task.gather ? 1 : task.workers);
+  std::atomic<bool> is_stopped = false;
+  const std::function<bool()> has_stopped = [&] { return is_stopped.load(std::memory_order_relaxed); };
+  for (const HybridSystem* const system : workers.all())
+    job.functions.emplace_back(
+        [sampler = sampler_of(*system), &has_stopped](const SweepPoint& point) { return sampler(point, has_stopped); });
+  const auto interrupted = [&] {
+    if (console.interrupted()) is_stopped = true;
+    return is_stopped.load();
+  };
+  const bool quiet = request.simulation.quiet;
   std::ostream nowhere(nullptr);
-  const SweepOutcome outcome = run_sweep(job, task, stop.ask(), progress, quiet ? nowhere : screen);
-  if (!quiet || !outcome.is_complete) screen << outcome_text(job, outcome) << std::flush;
+  const SweepOutcome outcome = run_sweep(job, task, interrupted, console.progress, quiet ? nowhere : console.screen);
+  if (!quiet || !outcome.is_complete) console.screen << outcome_text(job, outcome) << std::flush;
   if (const std::string complaint = loaded.library->complaint(); !complaint.empty())
-    warnings << "tchat: warning: " << complaint << '\n';
+    console.warnings << "tchat: warning: " << complaint << '\n';
 }
 
 }  // namespace tchat

@@ -1,10 +1,9 @@
-/// What every `tchat sweep` sets up, however its values are computed: the task, the heading, the workers' copies of the
-/// problem, the summary.
+/// What every `tchat sweep` sets up, however its values are computed: the task, the starts, the heading, the workers'
+/// copies of the problem, the summary.
 #pragma once
 
 #include <Eigen/Core>
 #include <functional>
-#include <memory>
 #include <ostream>
 #include <string>
 #include <vector>
@@ -17,56 +16,35 @@
 
 namespace tchat {
 
-/// Output, workers, part. Throws UserError.
+/// Output, workers, part; also checks --follow. Throws UserError.
 SweepTask sweep_task(const SweepRequest& request);
-/// Of --follow: the directions from each start. Throws UserError.
-std::vector<Following> follow_directions(const std::string& follow);
-/// Problem, swept quantities, and the parameters that are not swept.
-void fill_heading(const HybridSystem& system, const std::vector<SweepTarget>& over, const Eigen::VectorXd& par,
+/// The quantities of --over, the first of which is a parameter where attractors are followed. Throws UserError.
+std::vector<SweepTarget> swept_targets(const HybridSystem& system, const SweepRequest& request);
+/// Adds this start in each direction of --follow to the job, and calls `added` for each.
+void add_start(const SweepRequest& request, const Eigen::VectorXd& state, SweepJob& job,
+               const std::function<void()>& added);
+/// Problem, swept quantities, the parameters that are not swept, limits; and of the identity what every sweep depends
+/// on. Call it when the starts are known.
+void fill_heading(const LoadedProblem& loaded, const std::vector<SweepTarget>& over, const Eigen::VectorXd& par,
                   SweepJob& job);
-/// What the plugin was made of, wherever it stands; of a library that tchat has not compiled its bytes.
-std::string plugin_identity(const std::string& path);
-/// One worker, and a warning, where copies of the plugin would share their data.
-void limit_workers(const LoadedProblem& loaded, SweepTask& task, std::ostream& warnings);
 
-/// Libraries of the workers, each its own copy where there are several.
-class WorkerSystems {
- public:
-  /// A view of `loaded`.
-  WorkerSystems(const LoadedProblem& loaded, const SimulationRequest& request, int count);
+/// Computes values for one worker; asks now and then whether it has been interrupted, and then throws
+/// SampleInterrupted.
+using Sampler = std::function<AttractorSample(const SweepPoint&, const std::function<bool()>& interrupted)>;
+/// Makes a worker's sampler, with a copy of the problem that no other worker calls.
+using SamplerMaker = std::function<Sampler(const HybridSystem&)>;
 
-  const HybridSystem& system(int worker) const { return *systems_[static_cast<std::size_t>(worker)]; }
-
- private:
-  std::vector<std::unique_ptr<ProblemLibrary>> copies_;
-  std::vector<const HybridSystem*> systems_;
+/// The streams of a command, and a signal to stop, which only the calling thread asks for.
+struct SweepConsole {
+  std::ostream& screen;
+  std::ostream& warnings;
+  std::function<bool()> interrupted;
+  std::ostream* progress;  ///< may be null
 };
 
-/// A signal to stop, asked for by the calling thread alone; workers look at what it has seen.
-class StopFlag {
- public:
-  explicit StopFlag(std::function<bool()> interrupted);
-
-  const std::function<bool()>& ask() const { return ask_; }
-  const std::function<bool()>& look() const { return look_; }
-
- private:
-  std::function<bool()> ask_, look_;
-};
-
-/// Workers that each have a sampler, called with a point and the flag's look(). A view of both.
-template <class Sampler>
-SampleMaker maker_of(const std::vector<Sampler>& samplers, const StopFlag& stop) {
-  return [&samplers, &stop](int worker) -> SampleFunction {
-    return [&sampler = samplers[static_cast<std::size_t>(worker)], &stop](const SweepPoint& point) {
-      return sampler(point, stop.look());
-    };
-  };
-}
-
-/// Runs the job and tells its outcome on the screen (when quiet only an interruption), and what the plugin complains
-/// of.
-void run_and_tell(const SweepJob& job, const SweepTask& task, const LoadedProblem& loaded, const StopFlag& stop,
-                  std::ostream* progress, std::ostream& screen, std::ostream& warnings, bool quiet);
+/// Runs the job by as many workers as the task says, and prints a summary (when quiet only of an interruption) and what
+/// the plugin complains of. One worker, and a warning, where copies of the plugin would share their data.
+void run_with_workers(SweepJob& job, SweepTask task, const SweepRequest& request, const LoadedProblem& loaded,
+                      const SamplerMaker& sampler_of, const SweepConsole& console);
 
 }  // namespace tchat
