@@ -3,11 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <fstream>
 #include <optional>
+#include <regex>
 #include <sstream>
-#include <string_view>
 #include <vector>
 
 namespace tchat {
@@ -15,6 +14,7 @@ namespace tchat {
 namespace {
 
 constexpr std::size_t most_errors = 5;
+constexpr std::size_t longest_line = 4000;  // regular expressions recurse for each character
 
 struct PlaceInText {
   std::string file;
@@ -24,68 +24,19 @@ struct PlaceInText {
 
 struct CompileError {
   PlaceInText place;
-  std::string text;                        // the compiler's, names shortened
-  std::string called = {};                 // the function whose argument does not fit, as declared
-  bool called_is_foreign = false;          // it is declared in a header of the system
-  std::optional<PlaceInText> opened = {};  // the bracket that is not closed
+  std::string text;          // the compiler's, names shortened
+  std::string details = {};  // lines that the compiler adds: "author LINE: note" or "system LINE: note"
 };
 
-bool contains(std::string_view text, std::string_view part) { return text.find(part) != std::string_view::npos; }
-
-void replace_all(std::string& text, std::string_view from, std::string_view to) {
-  for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
-    text.replace(at, from.size(), to);
-}
-
-bool is_word_character(char c) {
-  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
-}
-
-/// The position of a whole word; npos when there is none.
-std::size_t find_word(std::string_view text, std::string_view word) {
-  for (std::size_t at = text.find(word); at != std::string_view::npos; at = text.find(word, at + 1)) {
-    const bool begins = at == 0 || !is_word_character(text[at - 1]);
-    const bool ends = at + word.size() == text.size() || !is_word_character(text[at + word.size()]);
-    if (begins && ends) return at;
-  }
-  return std::string_view::npos;
-}
+bool contains(const std::string& text, const char* pattern) { return std::regex_search(text, std::regex(pattern)); }
 
 /// Straight quotes, and T for every dual number.
-std::string tidied(std::string text) {
-  for (const char* quote : {"‘", "’"}) replace_all(text, quote, "'");
-  for (const std::string_view name : {"tchat::Dual<", "Dual<"}) {
-    for (std::size_t at = text.find(name); at != std::string::npos; at = text.find(name, at + 1)) {
-      std::size_t end = at + name.size();
-      for (int depth = 1; depth > 0 && end < text.size(); ++end)
-        depth += text[end] == '<' ? 1 : text[end] == '>' ? -1 : 0;
-      text.replace(at, end - at, "T");
-    }
-  }
-  return text;
-}
-
-/// "FILE:LINE:COLUMN: rest" or "FILE:LINE: rest" at the begin of a line.
-struct Positioned {
-  PlaceInText place;
-  std::string rest;
-};
-
-std::optional<Positioned> positioned(const std::string& line) {
-  for (std::size_t colon = line.find(':'); colon != std::string::npos; colon = line.find(':', colon + 1)) {
-    int number = 0;
-    const char* const begin = line.data() + colon + 1;
-    const auto [end, error] = std::from_chars(begin, line.data() + line.size(), number);
-    if (error != std::errc() || end == line.data() + line.size() || *end != ':') continue;
-    std::size_t rest = static_cast<std::size_t>(end - line.data()) + 1;
-    int column = 0;
-    const auto [stop, none] = std::from_chars(line.data() + rest, line.data() + line.size(), column);
-    if (none == std::errc() && stop != line.data() + line.size() && *stop == ':')
-      rest = static_cast<std::size_t>(stop - line.data()) + 1;
-    while (rest < line.size() && line[rest] == ' ') ++rest;
-    return Positioned{{line.substr(0, colon), number}, line.substr(rest)};
-  }
-  return std::nullopt;
+std::string tidied(const std::string& text) {
+  static const std::regex quote("‘|’");
+  static const std::regex dual("(?:tchat::)?Dual<(?:[^<>]|<[^<>]*>)*>");
+  std::string tidy = std::regex_replace(text, quote, "'");
+  while (std::regex_search(tidy, dual)) tidy = std::regex_replace(tidy, dual, "T");
+  return tidy;
 }
 
 std::vector<std::string> lines_of_file(const std::string& file) {
@@ -108,15 +59,20 @@ class OutputReader {
  public:
   explicit OutputReader(std::string include_folder) : include_folder_(std::move(include_folder)) {}
 
-  void read(const std::string& line) {
-    if (contains(line, ": In ") || contains(line, ": At ")) context_.reset();
-    const auto found = positioned(line);
-    if (!found) return;
-    const std::size_t word = found->rest.starts_with("error: ") ? 7 : found->rest.starts_with("fatal error: ") ? 13 : 0;
-    if (word > 0)
-      add({found->place, tidied(found->rest.substr(word))});
+  void read(const std::string& whole_line) {
+    static const std::regex positioned(R"((.*?):(\d{1,9}):(?:\d+:)? *(.*))");
+    static const std::regex error("(?:fatal )?error: (.*)");
+    const std::string line = whole_line.substr(0, longest_line);
+    if (contains(line, ": (In|At) ")) context_.reset();
+    std::smatch part;
+    if (!std::regex_match(line, part, positioned)) return;
+    const PlaceInText place = {part[1], std::stoi(part[2])};
+    const std::string text = tidied(part[3]);
+    std::smatch found;
+    if (std::regex_match(text, found, error))
+      add({place, found[1]});
     else
-      add_detail(*found);
+      add_detail(place, text);
   }
 
   /// Those without a place in the author's files come last.
@@ -135,30 +91,16 @@ class OutputReader {
   }
 
   /// A line that says more of the error before it, or from where the next one comes.
-  void add_detail(const Positioned& line) {
-    const bool authors = is_authors(line.place);
-    if (authors && !context_ && contains(line.rest, "required from")) context_ = line.place;
+  void add_detail(const PlaceInText& place, const std::string& text) {
+    const bool authors = is_authors(place);
+    if (authors && !context_ && contains(text, "required from")) context_ = place;
     if (errors_.empty()) return;
     CompileError& last = errors_.back();
-    const std::string text = tidied(line.rest);
-    if (authors && !placed_ && text.starts_with("note: ")) last.place = line.place, placed_ = true;
-    if (contains(text, "to match this '{'")) last.opened = line.place;
-    if (const std::size_t of = text.find("initializing argument"); of != std::string::npos && last.called.empty()) {
-      const std::size_t quote = text.find('\'', of);
-      if (quote != std::string::npos) last.called = text.substr(quote + 1, text.rfind('\'') - quote - 1);
-      last.called_is_foreign = !authors;
-    }
-    if (const std::size_t of = text.find("comparison reduces to '("); of != std::string::npos)
-      add_counts(last, text.substr(of + 24));
-  }
-
-  /// "3 == 4)'": how many there are and should be.
-  static void add_counts(CompileError& error, const std::string& comparison) {
-    const std::size_t sign = comparison.find(" == ");
-    const std::size_t end = comparison.find(')');
-    if (sign == std::string::npos || end == std::string::npos || end < sign) return;
-    error.text +=
-        fmt::format(" ({} found, {} needed)", comparison.substr(0, sign), comparison.substr(sign + 4, end - sign - 4));
+    if (authors && !placed_ && text.starts_with("note: ")) last.place = place, placed_ = true;
+    last.details += fmt::format("\n{} {}: {}", authors ? "author" : "system", place.line, text);
+    static const std::regex comparison(R"(comparison reduces to '\((.*) == (.*?)\))");
+    if (std::smatch counts; std::regex_search(text, counts, comparison))
+      last.text += fmt::format(" ({} found, {} needed)", counts[1].str(), counts[2].str());
   }
 
   std::string include_folder_;
@@ -167,178 +109,114 @@ class OutputReader {
   bool placed_ = false;                 // the last error is at a place of the author's
 };
 
-/// The first word in single quotes that is a name, without std::, arguments and template arguments.
-std::string quoted_name(const std::string& text) {
-  const std::size_t quote = text.find('\'');
-  if (quote == std::string::npos) return "";
-  std::size_t begin = quote + 1;
-  if (text.compare(begin, 5, "std::") == 0) begin += 5;
-  std::size_t end = begin;
-  while (end < text.size() && is_word_character(text[end])) ++end;
-  return text.substr(begin, end - begin);
-}
+/// What to do about a mistake that authors of problems often make.
+struct Cure {
+  Cure(const std::string& for_error, const std::string& for_line, std::string sentence)
+      : error(for_error), line(for_line), text(std::move(sentence)) {}
 
-/// "double cube(double)" -> cube
-std::string function_name(const std::string& declaration) {
-  const std::size_t bracket = declaration.find('(');
-  if (bracket == std::string::npos) return "";
-  std::size_t begin = bracket;
-  while (begin > 0 && is_word_character(declaration[begin - 1])) --begin;
-  return declaration.substr(begin, bracket - begin);
-}
-
-/// Functions of dual numbers: what tchat/dual.hpp defines.
-class KnownFunctions {
- public:
-  explicit KnownFunctions(const std::string& include_folder) {
-    for (const std::string& line : lines_of_file(include_folder + "/tchat/dual.hpp")) text_ += line + '\n';
-  }
-  bool has(const std::string& name) const {
-    return contains(text_, "TCHAT_DUAL_FUNCTION(" + name + ",") || contains(text_, "> " + name + "(const Dual<N, B>& ");
-  }
-
- private:
-  std::string text_;
+  std::regex error;  // of the compiler's text and details
+  std::regex line;   // of the author's line
+  std::string text;  // $1 is the first group of `error`
 };
 
-std::string unknown_function(const std::string& name, const KnownFunctions& known) {
-  if (name == "max" || name == "min") return fmt::format("write f{}(a, b)", name);
-  if (known.has(name)) return fmt::format("std::{0} takes no derivatives; write {0}(...), without std::", name);
-  return fmt::format(
-      "tchat has no derivative of {}; it knows sin, exp, log, sqrt, pow, atan2, fabs, fmax, fmod and the like "
-      "(tchat/dual.hpp lists them)",
-      name);
+const std::string wrong_call = "^(?:no matching function for call to|call of overloaded).*";
+const std::string wrong_type = "^.*(?:cannot convert|no viable conversion|cannot initialize).*\\bT\\b";
+const std::string system_argument = wrong_type + R"([^]*\nsystem \d+:.*initializing argument \d+ of '.*?\b)";
+const std::string own_argument = wrong_type + R"([^]*\nauthor \d+:.*initializing argument \d+ of '.*?\b)";
+
+const std::string array_given =
+    "an array is given where one number is needed: x[0] is the first state, par[0] is PAR(1)";
+const std::string without_std = "std::$1 takes no derivatives; write $1(...), without std::";
+const std::string unknown_function =
+    "tchat has no derivative of $1; it knows sin, exp, log, sqrt, pow, atan2, fabs, fmax, fmod and the like "
+    "(tchat/dual.hpp lists them)";
+const std::string smooth_sign =
+    "there is no $1; where the sign changes is an event: write two fields, or for a smooth model tanh(a / width)";
+
+/// The functions of dual numbers, those that tchat/dual.hpp defines, as alternatives of a regular expression.
+std::string known_functions(const std::string& include_folder) {
+  static const std::regex definition(R"(TCHAT_DUAL_FUNCTION\((\w+),|> (\w+)\(const Dual<N, B>& )");
+  std::string names = "none";
+  for (const std::string& line : lines_of_file(include_folder + "/tchat/dual.hpp"))
+    if (std::smatch name; std::regex_search(line, name, definition)) names += "|" + name[1].str() + name[2].str();
+  return names;
 }
 
-std::string wrong_call(const CompileError& error, const std::string&, const KnownFunctions& known) {
-  if (!contains(error.text, "no matching function for call to") && !contains(error.text, "call of overloaded"))
-    return "";
-  if (contains(error.text, "T*") || contains(error.text, "double*"))
-    return "an array is given where one number is needed: x[0] is the first state, par[0] is PAR(1)";
-  return unknown_function(quoted_name(error.text), known);
+/// The first one that fits is shown. `known`: the functions of dual numbers, as alternatives.
+std::vector<Cure> cures_of(const std::string& known) {
+  return {
+      {wrong_call + R"((?:\bT|double) ?\*)", "", array_given},
+      {wrong_call + R"('(?:std::)?(max|min)\b)", "", "write f$1(a, b)"},
+      {wrong_call + "'(?:std::)?(" + known + ")\\b", "", without_std},
+      {wrong_call + R"('(?:std::)?(\w+))", "", unknown_function},
+      {"'(max|min)' was not declared|undeclared identifier '(max|min)'", "", "there is no $1$2; write f$1$2(a, b)"},
+      {"'(pi|PI)' was not declared|undeclared identifier '(pi|PI)'", "", "there is no $1$2; write M_PI"},
+      {"'(sign|sgn|signum|heaviside)' was not declared", "", smooth_sign},
+      {"undeclared identifier '(sign|sgn|signum|heaviside)'", "", smooth_sign},
+      {R"(^.*double ?\*')", "", array_given},
+      {system_argument + "(" + known + ")\\(", "", without_std},
+      {system_argument + R"((\w+)\()", "", unknown_function},
+      {own_argument + R"((\w+)\()", "",
+       "$1 takes plain numbers, and derivatives are lost; make it a template: template <class T> T $1(const T& a)"},
+      {wrong_type + ".*in return", "",
+       "what depends on x or par is of type T; let the function return T (or auto), not double"},
+      {wrong_type, "^return", "what depends on x or par is of type T; let the function return T (or auto), not double"},
+      {wrong_type, "", "what depends on x or par is of type T; write T (or auto), not double or int"},
+      {"^.*(?:invalid cast|invalid 'static_cast|static_cast from)", "",
+       "a cast loses the derivatives; leave it out, or cast to T"},
+      {"^.*operator\\^'", "", "^ is no power in C++; write pow(a, b)"},
+      {"^.*operator%'", "", "% is for integers; write fmod(a, b)"},
+      {"^expected (?:',' or )?';'", "", "a ; is missing here or at the end of the line before"},
+      {R"(^expected '\}'[^]*\n\w+ (\d+): .*to match this '\{')", "",
+       "a } is missing above: the { of line $1 is not closed"},
+      {R"(^expected '\}')", "", "a } is missing above"},
+      {"^expected unqualified-id", "TCHAT_PROBLEM", "a ; is missing after the } that ends the class"},
+      {"^.*(?:cannot be used as a function|called object type)", "",
+       "elements are written in square brackets and count from 0: x[0] is the first state, par[0] is PAR(1)"},
+      {"^(?:expected constructor|.*type specifier)", "^TCHAT_PROBLEM",
+       "the first line of a problem is missing: #include <tchat/problem.hpp>"},
+      {"^.*o such file", "#include.*tchat", "the header is called <tchat/problem.hpp>"},
+      {"^.*(?:'T' does not name a type|unknown type name 'T')", "", "write template <class T> above the function"},
+      {"^.*(?:assignment of read-only|discards qualifiers|is not assignable)", "",
+       "x and par are given and stay as they are; copy what you change: T a = x[0]"}};
 }
 
-std::string undeclared(const CompileError& error, const std::string&, const KnownFunctions&) {
-  if (!contains(error.text, "was not declared") && !contains(error.text, "undeclared identifier")) return "";
-  const std::string name = quoted_name(error.text);
-  if (name == "max" || name == "min") return fmt::format("there is no {0}; write f{0}(a, b)", name);
-  if (name == "pi" || name == "PI") return fmt::format("there is no {}; write M_PI", name);
-  if (name == "sign" || name == "sgn" || name == "signum" || name == "heaviside")
-    return fmt::format(
-        "there is no {}; where the sign changes is an event: write two fields, or for a smooth model tanh(a / width)",
-        name);
-  return "";
+/// The cure, or what the compiler says.
+std::string sentence_for(const CompileError& error, const std::string& line, const std::vector<Cure>& cures) {
+  const std::string text = error.text + error.details;
+  for (const Cure& cure : cures)
+    if (std::smatch found; std::regex_search(line, cure.line) && std::regex_search(text, found, cure.error))
+      return found.format(cure.text);
+  return error.text;
 }
 
-std::string narrowed(const CompileError& error, const std::string& line, const KnownFunctions& known) {
-  const bool converts = contains(error.text, "cannot convert") || contains(error.text, "no viable conversion") ||
-                        contains(error.text, "cannot initialize");
-  if (contains(error.text, "double*'")) return "an array is given where one number is needed: x[0] is the first state";
-  if (!converts || find_word(error.text, "T") == std::string::npos) return "";
-  if (!error.called.empty()) {
-    const std::string name = function_name(error.called);
-    if (error.called_is_foreign) return unknown_function(name, known);
-    return fmt::format(
-        "{0} takes plain numbers, and derivatives are lost; make it a template: template <class T> T {0}(const T& a)",
-        name);
-  }
-  if (contains(error.text, "in return") || line.starts_with("return"))
-    return "what depends on x or par is of type T; let the function return T (or auto), not double";
-  return "what depends on x or par is of type T; write T (or auto), not double or int";
-}
+constexpr const char* own_words = "tchat: ";  // the static assertions of problem.hpp
 
-std::string cast(const CompileError& error, const std::string&, const KnownFunctions&) {
-  const bool casts = contains(error.text, "invalid cast") || contains(error.text, "invalid 'static_cast") ||
-                     contains(error.text, "static_cast from");
-  return casts ? "a cast loses the derivatives; leave it out, or cast to T" : "";
-}
-
-std::string wrong_operator(const CompileError& error, const std::string&, const KnownFunctions&) {
-  if (contains(error.text, "operator^'")) return "^ is no power in C++; write pow(a, b)";
-  if (contains(error.text, "operator%'")) return "% is for integers; write fmod(a, b)";
-  return "";
-}
-
-std::string missing_semicolon(const CompileError& error, const std::string&, const KnownFunctions&) {
-  if (error.text.starts_with("expected ';'")) return "a ; is missing here or at the end of the line before";
-  if (error.text.starts_with("expected ',' or ';'")) return "a , or ; is missing here or at the end of the line before";
-  return "";
-}
-
-std::string missing_end(const CompileError& error, const std::string& line, const KnownFunctions&) {
-  if (error.text.starts_with("expected '}'"))
-    return error.opened ? fmt::format("a }} is missing above: the {{ of line {} is not closed", error.opened->line)
-                        : "a } is missing above";
-  if (error.text.starts_with("expected unqualified-id") && contains(line, "TCHAT_PROBLEM"))
-    return "a ; is missing after the } that ends the class";
-  return "";
-}
-
-std::string round_brackets(const CompileError& error, const std::string&, const KnownFunctions&) {
-  if (!contains(error.text, "cannot be used as a function") && !contains(error.text, "called object type")) return "";
-  return "elements are written in square brackets and count from 0: x[0] is the first state, par[0] is PAR(1)";
-}
-
-std::string missing_header(const CompileError& error, const std::string& line, const KnownFunctions&) {
-  const bool registers = line.starts_with("TCHAT_PROBLEM");
-  if (registers && (error.text.starts_with("expected constructor") || contains(error.text, "type specifier")))
-    return "the first line of a problem is missing: #include <tchat/problem.hpp>";
-  if (contains(line, "#include") && contains(line, "tchat") && contains(error.text, "o such file"))
-    return "the header is called <tchat/problem.hpp>";
-  return "";
-}
-
-std::string missing_template(const CompileError& error, const std::string&, const KnownFunctions&) {
-  const bool missing =
-      contains(error.text, "'T' does not name a type") || contains(error.text, "unknown type name 'T'");
-  return missing ? "write template <class T> above the function" : "";
-}
-
-std::string changed_input(const CompileError& error, const std::string&, const KnownFunctions&) {
-  const bool changes = contains(error.text, "assignment of read-only") || contains(error.text, "discards qualifiers") ||
-                       contains(error.text, "is not assignable");
-  return changes ? "x and par are given and stay as they are; copy what you change: T a = x[0]" : "";
-}
-
-using Cure = std::string (*)(const CompileError&, const std::string& line, const KnownFunctions&);
-constexpr Cure cures[] = {wrong_call,     undeclared,        narrowed,     cast,
-                          wrong_operator, missing_semicolon, missing_end,  round_brackets,
-                          missing_header, missing_template,  changed_input};
-
-constexpr std::string_view own_words = "tchat: ";  // the static assertions of problem.hpp
-
-/// The assertions are in problem.hpp; the first word in backticks is the author's, if he has it.
+/// The assertions are in problem.hpp; the first word in backticks is the author's, if he has it outside of comments.
 PlaceInText place_of_word(const PlaceInText& place, const std::string& text) {
-  const std::size_t begin = text.find('`');
-  const std::size_t end = begin == std::string::npos ? begin : text.find('`', begin + 1);
-  if (end == std::string::npos) return place;
+  std::smatch word;
+  if (!std::regex_search(text, word, std::regex("`(\\w+)`"))) return place;
+  const std::regex uses_word("^(?:(?!//).)*\\b" + word[1].str() + "\\b");
   const std::vector<std::string> lines = lines_of_file(place.file);
-  const std::string_view word = std::string_view(text).substr(begin + 1, end - begin - 1);
   for (std::size_t k = 0; k < lines.size(); ++k)
-    if (const std::size_t at = find_word(lines[k], word);
-        at != std::string::npos && lines[k].find("//") > at)  // not in a comment
-      return {place.file, static_cast<int>(k) + 1};
+    if (std::regex_search(lines[k], uses_word)) return {place.file, static_cast<int>(k) + 1};
   return place;
 }
 
-std::string explained(const CompileError& error, const KnownFunctions& known) {
+std::string explained(const CompileError& error, const std::vector<Cure>& cures) {
+  const auto shown = [](const PlaceInText& place, const std::string& sentence) {
+    return fmt::format("{}:{}: {}\n      {}\n", place.file, place.line, sentence, line_of(place));
+  };
   const std::size_t own = error.text.find(own_words);
-  if (own != std::string::npos) {
-    std::string text = error.text.substr(own + own_words.size());
-    std::erase(text, '"');
-    const PlaceInText place = place_of_word(error.place, text);
-    return fmt::format("{}:{}: {}\n      {}\n", place.file, place.line, text, line_of(place));
-  }
-  const std::string line = line_of(error.place);
-  for (const Cure cure : cures)
-    if (const std::string text = cure(error, line, known); !text.empty())
-      return fmt::format("{}:{}: {}\n      {}\n", error.place.file, error.place.line, text, line);
-  return fmt::format("{}:{}: {}\n      {}\n", error.place.file, error.place.line, error.text, line);
+  if (own == std::string::npos) return shown(error.place, sentence_for(error, line_of(error.place), cures));
+  std::string text = error.text.substr(own + std::string(own_words).size());
+  std::erase(text, '"');
+  return shown(place_of_word(error.place, text), text);
 }
 
 /// A part of the errors that says it all: a bracket that is not closed, or what problem.hpp asserts; else all.
 std::vector<CompileError> decisive(const std::vector<CompileError>& errors) {
-  for (const char* sign : {"tchat: ", "expected '}' at end"}) {
+  for (const char* sign : {own_words, "expected '\\}' at end"}) {
     std::vector<CompileError> chosen;
     for (const CompileError& error : errors)
       if (contains(error.text, sign)) chosen.push_back(error);
@@ -353,14 +231,14 @@ std::string short_errors(const std::string& output, const std::string& include_f
   OutputReader reader(include_folder);
   std::istringstream in(output);
   for (std::string line; std::getline(in, line);) reader.read(line);
-  const KnownFunctions known(include_folder);
+  const std::vector<Cure> cures = cures_of(known_functions(include_folder));
   std::vector<std::string> texts;
   std::vector<PlaceInText> seen;
   for (const CompileError& error : decisive(reader.errors())) {
     const bool own = contains(error.text, own_words);
     if (!own && std::find(seen.begin(), seen.end(), error.place) != seen.end()) continue;
     seen.push_back(error.place);
-    const std::string text = explained(error, known);
+    const std::string text = explained(error, cures);
     if (std::find(texts.begin(), texts.end(), text) == texts.end()) texts.push_back(text);
   }
   std::string all;
