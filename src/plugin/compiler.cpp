@@ -31,13 +31,6 @@ std::string environment(const char* name) {
   return value != nullptr ? value : "";
 }
 
-std::vector<std::string> split_words(const std::string& text) {
-  std::istringstream in(text);
-  std::vector<std::string> words;
-  for (std::string word; in >> word;) words.push_back(word);
-  return words;
-}
-
 /// The program that `word` would start, searched along PATH; empty when there is none.
 std::string find_program(const std::string& word) {
   std::error_code failed;
@@ -180,9 +173,13 @@ bool has_interface(const std::string& folder) {
 }  // namespace
 
 Compiler::Compiler(const PluginBuildOptions& options, Language language) : language_(language) {
-  command_ = split_words(language == Language::fortran ? options.fortran_compiler : options.compiler);
-  if (command_.empty()) command_ = split_words(environment(words_of(language).variable));
-  if (command_.empty()) command_ = {words_of(language).usual};
+  const CompilerWords& words = words_of(language);
+  const std::string& given = language == Language::fortran ? options.fortran_compiler : options.compiler;
+  for (const std::string& command : {given, environment(words.variable), std::string(words.usual)}) {
+    const std::vector<std::string_view> parts = split_words(command);
+    command_.assign(parts.begin(), parts.end());
+    if (!command_.empty()) return;
+  }
 }
 
 std::string Compiler::identity() const {

@@ -34,82 +34,53 @@ std::string caught_text() {
 struct GuardedProblem::Calls {
   static const GuardedProblem& object(const void* self) { return *static_cast<const GuardedProblem*>(self); }
 
-  static void value(const void* self, std::int32_t kind, std::int32_t index, const double* x, const double* par,
-                    double* out) {
+  /// A function of the table that is called with a kind and an index; `fail` sets what it would have computed.
+  template <auto function, auto fail, class... Arguments>
+  static void evaluate(const void* self, std::int32_t kind, std::int32_t index, Arguments... arguments) {
     const tchat_problem& plugin = object(self).plugin_;
     const PluginCall call(object(self).path_.c_str(), place_of(kind), index);
     try {
-      plugin.value(plugin.self, kind, index, x, par, out);
+      (plugin.*function)(plugin.self, kind, index, arguments...);
     } catch (...) {
-      set_nan(out, rows(plugin, kind));
+      fail(plugin, kind, arguments...);
     }
   }
 
-  static void first(const void* self, std::int32_t kind, std::int32_t index, const double* x, const double* par,
-                    const std::int32_t* active, std::int32_t count, double* out, double* dx, double* dp) {
-    const tchat_problem& plugin = object(self).plugin_;
-    const PluginCall call(object(self).path_.c_str(), place_of(kind), index);
-    try {
-      plugin.first(plugin.self, kind, index, x, par, active, count, out, dx, dp);
-    } catch (...) {
-      set_all(plugin, kind, count, out, dx, dp);
-    }
+  static void fail_value(const tchat_problem& plugin, std::int32_t kind, const double*, const double*, double* out) {
+    set_nan(out, rows(plugin, kind));
   }
 
-  static void first_at_points(const void* self, std::int32_t kind, std::int32_t index, std::int32_t points,
-                              const double* x, const double* par, const std::int32_t* active, std::int32_t count,
-                              double* out, double* dx, double* dp) {
-    const tchat_problem& plugin = object(self).plugin_;
-    const PluginCall call(object(self).path_.c_str(), place_of(kind), index);
-    try {
-      plugin.first_at_points(plugin.self, kind, index, points, x, par, active, count, out, dx, dp);
-    } catch (...) {
-      const int r = rows(plugin, kind);
-      for (std::int32_t k = 0; k < points; ++k, out += r, dx += r * plugin.dimension, dp += r * count)
-        set_all(plugin, kind, count, out, dx, dp);
-    }
+  static void fail_first(const tchat_problem& plugin, std::int32_t kind, const double* x, const double* par,
+                         const std::int32_t* active, std::int32_t count, double* out, double* dx, double* dp) {
+    fail_points(plugin, kind, 1, x, par, active, count, out, dx, dp);
   }
 
-  static void first_in_lanes(const void* self, std::int32_t kind, std::int32_t index, std::int32_t sets,
-                             const double* x, const double* par, const std::int32_t* active, std::int32_t count,
-                             double* out, double* dx, double* dp) {
-    const tchat_problem& plugin = object(self).plugin_;
-    const PluginCall call(object(self).path_.c_str(), place_of(kind), index);
-    try {
-      plugin.first_in_lanes(plugin.self, kind, index, sets, x, par, active, count, out, dx, dp);
-    } catch (...) {
-      const int numbers = sets * TCHAT_POINTS_OF_SET * rows(plugin, kind);
-      set_nan(out, numbers);
-      set_nan(dx, numbers * plugin.dimension);
-      if (count > 0) set_nan(dp, numbers * count);
-    }
+  static void fail_second(const tchat_problem& plugin, std::int32_t kind, const double* x, const double* par,
+                          const std::int32_t* active, std::int32_t count, const double*, double* out, double* dx,
+                          double* dp) {
+    fail_points(plugin, kind, 1, x, par, active, count, out, dx, dp);
   }
 
-  static void second(const void* self, std::int32_t kind, std::int32_t index, const double* x, const double* par,
-                     const std::int32_t* active, std::int32_t count, const double* direction, double* out, double* dx,
-                     double* dp) {
-    const tchat_problem& plugin = object(self).plugin_;
-    const PluginCall call(object(self).path_.c_str(), place_of(kind), index);
-    try {
-      plugin.second(plugin.self, kind, index, x, par, active, count, direction, out, dx, dp);
-    } catch (...) {
-      set_all(plugin, kind, count, out, dx, dp);
-    }
+  static void fail_points(const tchat_problem& plugin, std::int32_t kind, std::int32_t points, const double*,
+                          const double*, const std::int32_t*, std::int32_t count, double* out, double* dx, double* dp) {
+    const int numbers = points * rows(plugin, kind);
+    set_nan(out, numbers);
+    set_nan(dx, numbers * plugin.dimension);
+    if (count > 0) set_nan(dp, numbers * count);
   }
 
-  static void second_at_points(const void* self, std::int32_t kind, std::int32_t index, std::int32_t points,
-                               std::int32_t directions, const double* x, const double* par, const std::int32_t* active,
-                               std::int32_t count, const double* v, const double* q, const double* weights, double* out,
-                               double* gradient) {
-    const tchat_problem& plugin = object(self).plugin_;
-    const PluginCall call(object(self).path_.c_str(), place_of(kind), index);
-    try {
-      plugin.second_at_points(plugin.self, kind, index, points, directions, x, par, active, count, v, q, weights, out,
-                              gradient);
-    } catch (...) {
-      set_nan(out, points * directions * rows(plugin, kind));
-      set_nan(gradient, points * (plugin.dimension + count));
-    }
+  static void fail_lanes(const tchat_problem& plugin, std::int32_t kind, std::int32_t sets, const double* x,
+                         const double* par, const std::int32_t* active, std::int32_t count, double* out, double* dx,
+                         double* dp) {
+    fail_points(plugin, kind, sets * TCHAT_POINTS_OF_SET, x, par, active, count, out, dx, dp);
+  }
+
+  static void fail_second_at_points(const tchat_problem& plugin, std::int32_t kind, std::int32_t points,
+                                    std::int32_t directions, const double*, const double*, const std::int32_t*,
+                                    std::int32_t count, const double*, const double*, const double*, double* out,
+                                    double* gradient) {
+    set_nan(out, points * directions * rows(plugin, kind));
+    set_nan(gradient, points * (plugin.dimension + count));
   }
 
   static std::int32_t successors(const void* self, const std::int32_t from[3], const double* x, const double* par,
@@ -177,13 +148,6 @@ struct GuardedProblem::Calls {
     return kind == TCHAT_INTEGRAND ? plugin.integral_conditions : plugin.dimension;
   }
 
-  static void set_all(const tchat_problem& plugin, std::int32_t kind, int count, double* out, double* dx, double* dp) {
-    const int r = rows(plugin, kind);
-    set_nan(out, r);
-    set_nan(dx, r * plugin.dimension);
-    if (count > 0) set_nan(dp, r * count);
-  }
-
   static void note_thrown(const void* self, const char* function) {
     if (object(self).thrown_.empty()) object(self).thrown_ = std::string(function) + ": " + caught_text();
   }
@@ -192,12 +156,15 @@ struct GuardedProblem::Calls {
 GuardedProblem::GuardedProblem(const tchat_problem& plugin, const std::string& path)
     : plugin_(plugin), path_(path), table_(plugin) {
   table_.self = this;
-  table_.value = &Calls::value;
-  if (plugin.first != nullptr) table_.first = &Calls::first;
-  if (plugin.second != nullptr) table_.second = &Calls::second;
-  if (plugin.first_at_points != nullptr) table_.first_at_points = &Calls::first_at_points;
-  if (plugin.first_in_lanes != nullptr) table_.first_in_lanes = &Calls::first_in_lanes;
-  if (plugin.second_at_points != nullptr) table_.second_at_points = &Calls::second_at_points;
+  table_.value = &Calls::evaluate<&tchat_problem::value, &Calls::fail_value>;
+  if (plugin.first != nullptr) table_.first = &Calls::evaluate<&tchat_problem::first, &Calls::fail_first>;
+  if (plugin.second != nullptr) table_.second = &Calls::evaluate<&tchat_problem::second, &Calls::fail_second>;
+  if (plugin.first_at_points != nullptr)
+    table_.first_at_points = &Calls::evaluate<&tchat_problem::first_at_points, &Calls::fail_points>;
+  if (plugin.first_in_lanes != nullptr)
+    table_.first_in_lanes = &Calls::evaluate<&tchat_problem::first_in_lanes, &Calls::fail_lanes>;
+  if (plugin.second_at_points != nullptr)
+    table_.second_at_points = &Calls::evaluate<&tchat_problem::second_at_points, &Calls::fail_second_at_points>;
   if (plugin.boundary != nullptr) table_.boundary = &Calls::boundary;
   if (plugin.boundary_first != nullptr) table_.boundary_first = &Calls::boundary_first;
   if (plugin.successors != nullptr) table_.successors = &Calls::successors;
