@@ -49,15 +49,6 @@ void set_interpolation_weights(double phi, int derivative, Eigen::RowVectorXd& w
     weights(l) = kernel((count - 1) / 2, phi - static_cast<double>(l) / count, derivative);
 }
 
-Eigen::MatrixXd shifted_curve(const Eigen::MatrixXd& values, double phi, int derivative) {
-  const auto count = static_cast<int>(values.cols());
-  const Eigen::RowVectorXd first = interpolation_weights(count, phi, derivative);
-  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(values.rows(), count);
-  for (int i = 0; i < count; ++i)
-    for (int l = 0; l < count; ++l) result.col(i) += first((l - i + count) % count) * values.col(l);
-  return result;
-}
-
 Eigen::MatrixXd resampled_curve(const Eigen::MatrixXd& values, int count) {
   const auto old_count = static_cast<int>(values.cols());
   const int harmonics = (std::min(count, old_count) - 1) / 2;

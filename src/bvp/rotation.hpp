@@ -16,10 +16,8 @@ Eigen::RowVectorXd interpolation_weights(int count, double phi, int derivative =
 /// The same into a vector of N entries: allocates nothing.
 void set_interpolation_weights(double phi, int derivative, Eigen::RowVectorXd& weights);
 
-/// u or a derivative of it at the phases phi + i / N, i = 0..N-1, where column l of `values` is u_l.
-Eigen::MatrixXd shifted_curve(const Eigen::MatrixXd& values, double phi, int derivative = 0);
-
-/// The same curve by `count` values (odd): harmonics that are new are zero, those that are too many are left out.
+/// The curve whose values are the columns of `values`, by `count` values (odd): harmonics that are new are zero, those
+/// that are too many are left out.
 Eigen::MatrixXd resampled_curve(const Eigen::MatrixXd& values, int count);
 
 /// Sizes of the harmonics k = 0..Q, the largest over the rows: |a_k - i b_k| of a_k cos 2 pi k phi + b_k sin 2 pi k

@@ -19,8 +19,6 @@ namespace tchat {
 struct TorusWinding {
   Eigen::VectorXd curve;    ///< w, n
   Eigen::VectorXd returns;  ///< c, n
-
-  bool is_none() const { return curve.isZero() && returns.isZero(); }
 };
 
 TorusWinding no_winding(int dimension);

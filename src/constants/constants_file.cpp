@@ -139,8 +139,4 @@ bool is_overridden(std::span<const std::string> key_values, std::string_view key
   });
 }
 
-void apply_override(RunSettings& settings, const std::string& key_value) {
-  apply_overrides(settings, std::span<const std::string>(&key_value, 1));
-}
-
 }  // namespace tchat

@@ -35,7 +35,4 @@ void apply_overrides(RunSettings& settings, std::span<const std::string> key_val
 /// Is the constant among what the overrides set?
 bool is_overridden(std::span<const std::string> key_values, std::string_view keyword);
 
-/// A single one.
-void apply_override(RunSettings& settings, const std::string& key_value);
-
 }  // namespace tchat

@@ -81,7 +81,7 @@ TEST_CASE("Overrides of random characters", "[constants][fuzz]") {
     for (unsigned i = 0, count = random() % 8; i < count; ++i) text += parts[random() % parts.size()];
     RunSettings settings = original;
     try {
-      apply_override(settings, text);
+      apply_overrides(settings, std::vector{text});
     } catch (const UserError&) {
       REQUIRE(testing::same_constants(settings, original));
     }

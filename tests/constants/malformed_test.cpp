@@ -243,7 +243,8 @@ TEST_CASE("Malformed overrides", "[constants]") {
   };
   for (const Malformed& override_text : overrides) {
     RunSettings settings = read_constants_text(appendix_b(), "gc.test");
-    const std::string message = message_of([&] { apply_override(settings, override_text.text); });
+    const std::string message =
+        message_of([&] { apply_overrides(settings, std::vector<std::string>{override_text.text}); });
     for (const std::string& part : override_text.expected) {
       CAPTURE(override_text.text, message, part);
       CHECK(message.find(part) != std::string::npos);

@@ -29,9 +29,7 @@ TEST_CASE("Overrides replace one constant and leave the rest", "[constants]") {
   expected.max_points = 50;
   CHECK(testing::same_constants(with({"DS=-0.01", "NMX=50"}), expected));
   CHECK(testing::same_constants(with({"NMX=70", "DS=-0.01, NMX=50"}), expected));
-  RunSettings one = appendix();
-  apply_override(one, "NTST=80");
-  CHECK(one.mesh_intervals == 80);
+  CHECK(with({"NTST=80"}).mesh_intervals == 80);
 }
 
 TEST_CASE("Overrides of lists", "[constants]") {
