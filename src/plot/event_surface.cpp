@@ -4,9 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 #include "hybrid/event_at.hpp"
-#include "plot/zero_contour.hpp"
+#include "plot/gnuplot.hpp"
 #include "text/user_error.hpp"
 
 namespace tchat {
@@ -39,6 +40,33 @@ double bisected(Function f, double low, double high) {
     ((f(middle) < 0.0) == negative ? low : high) = middle;
   }
   return 0.5 * (low + high);
+}
+
+/// The curves h(x, y) = 0 in a window, as polylines, by gnuplot's contours; nothing where h is not finite.
+template <class Function>
+std::vector<std::vector<PicturePoint>> zero_contour(Function h, const StateWindow& window) {
+  const double step_x = (window.high_x - window.low_x) / cells, step_y = (window.high_y - window.low_y) / cells;
+  std::string script = "$h << END\n";
+  for (int row = 0; row <= cells; ++row)
+    for (int column = 0; column <= cells; ++column)
+      script += fmt::format("{:.17g}{}", h(window.low_x + column * step_x, window.low_y + row * step_y),
+                            column < cells ? " " : "\n");
+  script += fmt::format(
+      "END\nset contour base\nunset surface\nset cntrparam levels discrete 0\nset format '%.15g'\nset table $zeros\n"
+      "splot $h matrix using ({:.17g}+{:.17g}*$1):({:.17g}+{:.17g}*$2):3\nunset table\nset print '-'\nprint $zeros\n",
+      window.low_x, step_x, window.low_y, step_y);
+  std::vector<std::vector<PicturePoint>> lines;
+  bool continues = false;
+  std::istringstream output(gnuplot_output(script));
+  for (std::string text; std::getline(output, text);) {
+    std::istringstream words(text);
+    PicturePoint point;
+    const bool is_vertex = static_cast<bool>(words >> point.x >> point.y);
+    if (is_vertex && !continues) lines.emplace_back();
+    if (is_vertex) lines.back().push_back(point);
+    continues = is_vertex;
+  }
+  return lines;
 }
 
 }  // namespace
@@ -125,27 +153,34 @@ bool EventSurfaces::same_zeros(int event, int other, int a, int b, const StateWi
   return true;
 }
 
+/// Those that depend on these one or two states alone; events with the same zeros share an entry.
+std::vector<NamedEvent> EventSurfaces::distinct_events(const std::vector<int>& states,
+                                                       const StateWindow& window) const {
+  const int second = states.size() > 1 ? states[1] : -1;
+  std::vector<NamedEvent> distinct;
+  for (const int event : events_) {
+    if (!depends_only_on(event, states)) continue;
+    const std::string& name = system_.function_name(FunctionKind::event, event);
+    const auto same = std::find_if(distinct.begin(), distinct.end(), [&](const NamedEvent& other) {
+      return same_zeros(other.number, event, states[0], second, window);
+    });
+    if (same != distinct.end())
+      same->name += ", " + name;
+    else
+      distinct.push_back({event, name});
+  }
+  return distinct;
+}
+
 std::vector<EventSurfaces::Line> EventSurfaces::in_plane(int a, int b, const StateWindow& window) const {
   std::vector<Line> lines;
-  for (const int event : events_) {
-    if (!depends_only_on(event, {a, b})) continue;
-    const auto same = std::find_if(lines.begin(), lines.end(),
-                                   [&](const Line& other) { return same_zeros(other.event, event, a, b, window); });
-    if (same != lines.end()) {
-      same->name += ", " + system_.function_name(FunctionKind::event, event);
-      continue;
-    }
-    Line line{event, system_.function_name(FunctionKind::event, event), {}};
+  for (const NamedEvent& event : distinct_events({a, b}, window)) {
+    Line line{event, {}};
     for (const OrbitTrace& orbit : orbits_)
-      for (auto& piece : zero_contour([&](double x, double y) { return value(event, orbit, a, x, b, y); },
-                                      {window.low_x, window.low_y}, {window.high_x, window.high_y}, cells)) {
-        const bool known = std::any_of(line.pieces.begin(), line.pieces.end(), [&piece](const auto& other) {
-          return other.size() == piece.size() && other.front().x == piece.front().x &&
-                 other.front().y == piece.front().y && other.back().x == piece.back().x &&
-                 other.back().y == piece.back().y;
-        });
-        if (!known) line.pieces.push_back(std::move(piece));
-      }
+      for (auto& piece :
+           zero_contour([&](double x, double y) { return value(event.number, orbit, a, x, b, y); }, window))
+        if (std::find(line.pieces.begin(), line.pieces.end(), piece) == line.pieces.end())
+          line.pieces.push_back(std::move(piece));
     if (!line.pieces.empty()) lines.push_back(std::move(line));
   }
   return lines;
@@ -154,18 +189,10 @@ std::vector<EventSurfaces::Line> EventSurfaces::in_plane(int a, int b, const Sta
 std::vector<EventSurfaces::Level> EventSurfaces::of_state(int a, double low, double high) const {
   constexpr int steps = 400;
   std::vector<Level> levels;
-  for (const int event : events_) {
-    if (!depends_only_on(event, {a})) continue;
-    const auto same = std::find_if(levels.begin(), levels.end(), [&](const Level& other) {
-      return same_zeros(other.event, event, a, -1, {low, high, 0.0, 1.0});
-    });
-    if (same != levels.end()) {
-      same->name += ", " + system_.function_name(FunctionKind::event, event);
-      continue;
-    }
-    Level level{event, system_.function_name(FunctionKind::event, event), {}};
+  for (const NamedEvent& event : distinct_events({a}, {low, high, 0.0, 1.0})) {
+    Level level{event, {}};
     for (const OrbitTrace& orbit : orbits_) {
-      const auto h = [&](double x) { return value(event, orbit, a, x, -1, 0.0); };
+      const auto h = [&](double x) { return value(event.number, orbit, a, x, -1, 0.0); };
       for (int k = 0; k < steps; ++k) {
         const double left = low + (high - low) * k / steps, right = low + (high - low) * (k + 1) / steps;
         if ((h(left) < 0.0) == (h(right) < 0.0)) continue;

@@ -22,22 +22,26 @@ struct StateWindow {
   double low_y = 0.0, high_y = 1.0;
 };
 
+/// Event functions that have the same zeros.
+struct NamedEvent {
+  int number = 0;    ///< of the first one
+  std::string name;  ///< "wall", or "forward, back"
+};
+
 class EventSurfaces {
  public:
   /// `events`: indices from 1; empty: all that are no sections. The system outlives this object.
   EventSurfaces(const HybridSystem& system, const std::vector<OrbitTrace>& orbits, const std::vector<int>& events);
 
   struct Line {
-    int event = 0;                                  ///< the first of those with these zeros
-    std::string name;                               ///< "wall", or "forward, back"
+    NamedEvent event;
     std::vector<std::vector<PicturePoint>> pieces;  ///< polylines
   };
   /// h_j = 0 in the plane of states a and b (from 0), for every orbit's own parameters.
   std::vector<Line> in_plane(int a, int b, const StateWindow& window) const;
 
   struct Level {
-    int event = 0;
-    std::string name;
+    NamedEvent event;
     std::vector<double> values;
   };
   /// h_j = 0 for state a alone, between low and high.
@@ -46,6 +50,7 @@ class EventSurfaces {
  private:
   bool depends_only_on(int event, const std::vector<int>& states) const;
   bool is_section(int event) const;
+  std::vector<NamedEvent> distinct_events(const std::vector<int>& states, const StateWindow& window) const;
   bool same_zeros(int event, int other, int a, int b, const StateWindow& window) const;
   double value(int event, const OrbitTrace& orbit, int a, double x, int b, double y) const;
 

@@ -19,6 +19,8 @@ struct PicturePoint {
   double x = 0.0;
   double y = 0.0;
   double z = 0.0;  ///< of panels in space
+
+  bool operator==(const PicturePoint&) const = default;
 };
 
 inline bool is_finite(const PicturePoint& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }

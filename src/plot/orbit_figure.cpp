@@ -251,21 +251,16 @@ class SectionView {
   /// False where no point of the line is near.
   bool takes_in(const std::vector<std::vector<PicturePoint>>& pieces) {
     constexpr double near = 0.4;  // of the curves' size
-    constexpr int parts = 200;    // of a straight piece
     PicturePoint best;
     double least = near;
     bool found = false;
     for (const auto& piece : pieces)
-      for (std::size_t k = 0; k + 1 < piece.size(); ++k)
-        for (int part = 0; part <= parts; ++part) {
-          const double t = static_cast<double>(part) / parts;
-          const PicturePoint point{(1.0 - t) * piece[k].x + t * piece[k + 1].x,
-                                   (1.0 - t) * piece[k].y + t * piece[k + 1].y};
-          if (!(distance(point) < least)) continue;
-          least = distance(point);
-          best = point;
-          found = true;
-        }
+      for (const PicturePoint& point : piece) {
+        if (!(distance(point) < least)) continue;
+        least = distance(point);
+        best = point;
+        found = true;
+      }
     if (!found) return false;
     low_ = {std::min(low_.x, best.x), std::min(low_.y, best.y)};
     high_ = {std::max(high_.x, best.x), std::max(high_.y, best.y)};
@@ -296,7 +291,7 @@ void add_lines_of_events(Figure& figure, Panel& panel, const EventSurfaces& surf
   std::size_t number = 0;
   for (auto& line : surfaces.in_plane(states[0], states[1], window)) {
     if (is_section && !view.takes_in(line.pieces)) continue;
-    const KeyEntry entry = surface_entry(line.name, number++);
+    const KeyEntry entry = surface_entry(line.event.name, number++);
     for (auto& piece : line.pieces) panel.curves.push_back({std::move(piece), *entry.stroke, true});
     figure.key.push_back(entry);
   }
@@ -328,7 +323,7 @@ void add_planes_of_events(Figure& figure, Panel& panel, const EventSurfaces& sur
     const std::size_t second = (axis + 1) % 3, third = (axis + 2) % 3;
     const StateRange one = range_along(orbits, states[second]), other = range_along(orbits, states[third]);
     for (const EventSurfaces::Level& level : surfaces.of_state(states[axis], own.low - more, own.high + more)) {
-      const KeyEntry entry = surface_entry(level.name, number++);
+      const KeyEntry entry = surface_entry(level.event.name, number++);
       for (const double value : level.values) {
         Curve edge;
         edge.stroke = *entry.stroke;

@@ -50,10 +50,10 @@ void add_levels(Figure& figure, Panel& panel, const EventSurfaces& surfaces, con
   for (const EventSurfaces::Level& level : surfaces.of_state(state, low, high)) {
     std::size_t number = 0;
     auto known = std::find_if(figure.key.begin(), figure.key.end(),
-                              [&level](const KeyEntry& entry) { return entry.text.text == level.name; });
+                              [&level](const KeyEntry& entry) { return entry.text.text == level.event.name; });
     if (known == figure.key.end()) {
       for (const KeyEntry& entry : figure.key) number += entry.stroke->colour == surface_entry("", 0).stroke->colour;
-      figure.key.push_back(surface_entry(level.name, number));
+      figure.key.push_back(surface_entry(level.event.name, number));
       known = figure.key.end() - 1;
     }
     for (const double value : level.values)

@@ -3,6 +3,9 @@
 
 #include <catch2/catch.hpp>
 
+#include <cmath>
+#include <set>
+
 #include "support/linear_oscillator.hpp"
 #include "text/user_error.hpp"
 
@@ -71,9 +74,10 @@ TEST_CASE("the wall is a line, sections through turning points are left out unle
   const StateWindow window{-2.0, 2.0, -3.0, 3.0};
   const auto lines = surfaces.in_plane(0, 1, window);
   REQUIRE(lines.size() == 1);
-  CHECK(lines[0].event == 1);
-  REQUIRE(lines[0].pieces.size() == 1);
-  for (const PicturePoint& p : lines[0].pieces[0]) CHECK(p.x == Approx(1.0));
+  CHECK(lines[0].event.number == 1);
+  REQUIRE(!lines[0].pieces.empty());
+  for (const auto& piece : lines[0].pieces)
+    for (const PicturePoint& p : piece) CHECK(p.x == Approx(1.0));
   CHECK(surfaces.in_plane(2, 3, window).empty());
   CHECK(surfaces.of_state(1, -3.0, 3.0).empty());
   const auto levels = surfaces.of_state(0, -2.0, 2.0);
@@ -95,13 +99,14 @@ TEST_CASE("event functions with the same zeros are one line with both names") {
   const EventSurfaces surfaces(test::system_of<Belt>(), orbits, {1, 2, 3});
   const auto lines = surfaces.in_plane(0, 1, {-2.0, 2.0, -2.0, 2.0});
   REQUIRE(lines.size() == 2);
-  CHECK(lines[0].name == "forward, back");
-  REQUIRE(lines[0].pieces.size() == 1);
-  for (const PicturePoint& p : lines[0].pieces[0]) CHECK(p.y == Approx(1.0));
-  CHECK(lines[1].name == "wall");
+  CHECK(lines[0].event.name == "forward, back");
+  REQUIRE(!lines[0].pieces.empty());
+  for (const auto& piece : lines[0].pieces)
+    for (const PicturePoint& p : piece) CHECK(p.y == Approx(1.0));
+  CHECK(lines[1].event.name == "wall");
   const auto levels = surfaces.of_state(1, -2.0, 2.0);
   REQUIRE(levels.size() == 1);
-  CHECK(levels[0].name == "forward, back");
+  CHECK(levels[0].event.name == "forward, back");
   CHECK(levels[0].values.size() == 1);
 }
 
@@ -115,8 +120,15 @@ TEST_CASE("every orbit has its own parameters, functions of a third state are no
   const EventSurfaces surfaces(test::system_of<Ring>(), orbits, {1, 2, 3});
   const auto lines = surfaces.in_plane(0, 1, {-3.0, 3.0, -3.0, 3.0});
   REQUIRE(lines.size() == 1);
-  CHECK(lines[0].name == "ring");
-  CHECK(lines[0].pieces.size() == 2);
+  CHECK(lines[0].event.name == "ring");
+  for (const double radius : {1.0, 2.0}) {
+    std::set<int> eighths;
+    for (const auto& piece : lines[0].pieces)
+      for (const PicturePoint& p : piece)
+        if (std::hypot(p.x, p.y) == Approx(radius).margin(1e-3))
+          eighths.insert(static_cast<int>(std::floor(std::atan2(p.y, p.x) / (test::pi / 4.0))));
+    CHECK(eighths.size() >= 8);
+  }
   CHECK(surfaces.in_plane(0, 2, {-3.0, 3.0, -5.0, 5.0}).size() == 2);  // tilted and level
   const auto levels = surfaces.of_state(2, -1.0, 5.0);
   REQUIRE(levels.size() == 1);
