@@ -87,7 +87,7 @@ class BranchFigureBuilder {
     Figure figure;
     figure.panels.push_back(std::move(panel_));
     figure.key = std::move(key_);
-    figure.colour_bar = options_.underlay.colour_bar;
+    figure.palette = options_.underlay.palette;
     return figure;
   }
 

@@ -10,62 +10,62 @@ namespace tchat {
 
 namespace {
 
-using Colour = std::array<double, 3>;  // red, green, blue from 0 to 255
-
-/// Between fixed colours at equal distances.
 template <std::size_t N>
-std::vector<std::string> between(const std::array<Colour, N>& fixed, std::size_t count) {
-  std::vector<std::string> colours;
-  for (std::size_t k = 0; k < count; ++k) {
-    const double place = static_cast<double>(k) * static_cast<double>(N - 1) / static_cast<double>(count - 1);
-    const std::size_t left = std::min(static_cast<std::size_t>(place), N - 2);
-    const double part = place - static_cast<double>(left);
-    std::string colour = "#";
-    for (std::size_t c = 0; c < 3; ++c)
-      colour += fmt::format("{:02x}", std::lround((1.0 - part) * fixed[left][c] + part * fixed[left + 1][c]));
-    colours.push_back(std::move(colour));
+Palette equally_spaced(const std::array<const char*, N>& colours, double low, double high) {
+  Palette palette;
+  for (std::size_t k = 0; k < N; ++k)
+    palette.stops.emplace_back(low + (high - low) * static_cast<double>(k) / (N - 1), colours[k]);
+  return palette;
+}
+
+std::string mixed(const std::string& first, const std::string& second, double part) {
+  std::string result = "#";
+  for (std::size_t k = 1; k + 1 < first.size(); k += 2) {
+    const int a = std::stoi(first.substr(k, 2), nullptr, 16), b = std::stoi(second.substr(k, 2), nullptr, 16);
+    result += fmt::format("{:02x}", std::lround((1.0 - part) * a + part * b));
   }
-  return colours;
+  return result;
+}
+
+/// The part of a palette from low to high.
+Palette cut(const Palette& palette, double low, double high) {
+  Palette result{{{low, colour_at(palette, low)}}};
+  for (const auto& stop : palette.stops)
+    if (stop.first > low && stop.first < high) result.stops.push_back(stop);
+  result.stops.emplace_back(high, colour_at(palette, high));
+  return result;
 }
 
 }  // namespace
 
-std::vector<std::string> rising_colours(std::size_t count) {
-  constexpr std::array<Colour, 6> fixed = {{{68.0, 1.0, 84.0},
-                                            {65.0, 68.0, 135.0},
-                                            {42.0, 120.0, 142.0},
-                                            {34.0, 168.0, 132.0},
-                                            {122.0, 209.0, 81.0},
-                                            {253.0, 231.0, 37.0}}};
-  return between(fixed, count);
+Palette scale_palette(double low, double high) {
+  constexpr std::array rising = {"#440154", "#414487", "#2a788e", "#22a884", "#7ad151", "#fde725"};
+  constexpr std::array both_signs = {"#2150a0", "#78aad2", "#eeeeee", "#eb966e", "#aa1428"};
+  const double size = std::max(std::abs(low), std::abs(high));
+  const bool has_both_signs = low < 0.0 && high > 0.0 && std::min(-low, high) > 0.02 * size;
+  return has_both_signs ? cut(equally_spaced(both_signs, -size, size), low, high) : equally_spaced(rising, low, high);
 }
 
-/// Hues of the plane (a, b) of Oklab [Ottosson 2020] at one lightness and chroma, all within sRGB.
-std::vector<std::string> cyclic_colours(std::size_t count) {
-  constexpr double lightness = 0.64, chroma = 0.115, turn = 6.283185307179586;
-  const auto encoded = [](double linear) {
-    const double v = std::clamp(linear, 0.0, 1.0);
-    return std::lround(255.0 * (v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1.0 / 2.4) - 0.055));
-  };
-  std::vector<std::string> colours;
-  for (std::size_t k = 0; k < count; ++k) {
-    const double hue = turn * (static_cast<double>(k) / static_cast<double>(count) + 0.7);
-    const double a = chroma * std::cos(hue), b = chroma * std::sin(hue);
-    const double l = std::pow(lightness + 0.3963377774 * a + 0.2158037573 * b, 3);
-    const double m = std::pow(lightness - 0.1055613458 * a - 0.0638541728 * b, 3);
-    const double s = std::pow(lightness - 0.0894841775 * a - 1.2914855480 * b, 3);
-    colours.push_back(fmt::format("#{:02x}{:02x}{:02x}",
-                                  encoded(4.0767416621 * l - 3.3077115913 * m + 0.2309699292 * s),
-                                  encoded(-1.2684380046 * l + 2.6097574011 * m - 0.3413193965 * s),
-                                  encoded(-0.0041960863 * l - 0.7034186147 * m + 1.7076147010 * s)));
-  }
-  return colours;
+Palette cyclic_palette() {
+  // Hues of the plane (a, b) of Oklab [Ottosson 2020] at lightness 0.64 and chroma 0.115.
+  constexpr std::array hues = {"#5590d0", "#8183d0", "#a477bf", "#bb6fa0", "#c76d79", "#c67352", "#b77f31",
+                               "#9a8e2f", "#729b4e", "#3ca276", "#00a29e", "#139bbe", "#5590d0"};
+  return equally_spaced(hues, 0.0, 1.0);
 }
 
-std::vector<std::string> signed_colours(std::size_t count) {
-  constexpr std::array<Colour, 5> fixed = {
-      {{33.0, 80.0, 160.0}, {120.0, 170.0, 210.0}, {238.0, 238.0, 238.0}, {235.0, 150.0, 110.0}, {170.0, 20.0, 40.0}}};
-  return between(fixed, count);
+Palette category_palette(const std::vector<std::string>& colours) {
+  Palette palette;
+  palette.has_bar = false;
+  for (std::size_t k = 0; k < colours.size(); ++k)
+    for (const double edge : {-0.5, 0.5}) palette.stops.emplace_back(static_cast<double>(k) + edge, colours[k]);
+  return palette;
+}
+
+std::string colour_at(const Palette& palette, double number) {
+  const auto next = std::find_if(palette.stops.begin() + 1, palette.stops.end() - 1,
+                                 [number](const auto& stop) { return stop.first >= number; });
+  const auto& [begin, colour] = *(next - 1);
+  return mixed(colour, next->second, (number - begin) / (next->first - begin));
 }
 
 }  // namespace tchat

@@ -5,15 +5,21 @@
 #include <string>
 #include <vector>
 
+#include "plot/figure.hpp"
+
 namespace tchat {
 
-/// `count` colours (2 or more) from dark to light, in equal steps for the eye, also for the colour-blind and in grey.
-std::vector<std::string> rising_colours(std::size_t count);
+/// From dark to light, in equal steps for the eye, also for the colour-blind and in grey; where there are numbers of
+/// both signs, blue over a pale grey at zero to red.
+Palette scale_palette(double low, double high);
 
-/// From blue over a pale grey to red, for numbers of both signs: the middle is zero.
-std::vector<std::string> signed_colours(std::size_t count);
+/// Round a circle of hues, all of them equally light: for angles from 0 to 1, which have the same colour.
+Palette cyclic_palette();
 
-/// Round a circle of hues, all of them equally light: for angles, the last colour goes over into the first.
-std::vector<std::string> cyclic_colours(std::size_t count);
+/// Colour k for the number k.
+Palette category_palette(const std::vector<std::string>& colours);
+
+/// #rrggbb of a number from the palette's low end to its high one.
+std::string colour_at(const Palette& palette, double number);
 
 }  // namespace tchat

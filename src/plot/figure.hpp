@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "plot/label_text.hpp"
@@ -60,16 +61,15 @@ struct Curve {
 /// Dots beneath everything else.
 struct Cloud {
   std::vector<PicturePoint> points;
-  std::string colour = "#000000";
-  double size = 0.5;  ///< as a marker's
+  std::string colour = "#000000";  ///< or "palette": z is each dot's number there
+  double size = 0.5;               ///< as a marker's
 };
 
 /// A map of equal rectangles, each in one colour, beneath the dots.
 struct ColourField {
   std::size_t columns = 0, rows = 0;
-  PicturePoint first, last;          ///< centres of the cells at the beginning and at the end of `cells`
-  std::vector<int> cells;            ///< numbers of colours, row by row; -1: nothing is drawn
-  std::vector<std::string> colours;  ///< #rrggbb
+  PicturePoint first, last;   ///< centres of the cells at the beginning and at the end of `cells`
+  std::vector<double> cells;  ///< numbers in the figure's palette, row by row; NaN: nothing is drawn
 
   /// Half of a cell's width, and height.
   PicturePoint half_cell() const;
@@ -111,16 +111,20 @@ struct KeyEntry {
   std::optional<Marker> marker;
 };
 
-/// What colours mean that stand for a number: a strip at the right edge, from the low end to the high one.
-struct ColourBar {
-  std::vector<std::string> colours;  ///< of equal parts of the range
-  AxisSettings axis;                 ///< both ends given
+/// Colours that stand for numbers, linear between stops: a bar at the right edge shows what they mean.
+struct Palette {
+  std::vector<std::pair<double, std::string>> stops;  ///< rising numbers and their colours, #rrggbb
+  LabelText label = {};                               ///< of the bar
+  bool has_bar = true;
+
+  double low() const { return stops.front().first; }
+  double high() const { return stops.back().first; }
 };
 
 struct Figure {
   std::vector<Panel> panels;  ///< stacked, one below the other, with one x-axis
   std::vector<KeyEntry> key;
-  std::optional<ColourBar> colour_bar = {};
+  std::optional<Palette> palette = {};
   LabelText title;
   LabelText note;  ///< a line below the title: what the picture leaves out
   int width = 1200;

@@ -36,6 +36,10 @@ std::string dash_pattern(Dash dash, double scale) {
   }
 }
 
+std::string colour_of(const std::string& colour) {
+  return colour.starts_with('#') ? fmt::format("rgb '{}'", colour) : colour;
+}
+
 /// gnuplot's number of a filled symbol, of the open one beneath it.
 int point_type(Symbol symbol, bool filled) {
   const int open = [symbol] {
@@ -99,7 +103,7 @@ class FigureWriter {
   void write_panels() {
     texts_of_figure();
     key();
-    colour_bar();
+    colours();
     for (std::size_t k = 0; k < figure_.panels.size(); ++k) figure_.panels[k].z ? panel_in_space() : panel(k);
   }
 
@@ -116,8 +120,8 @@ class FigureWriter {
   }
 
   std::string points(const Marker& marker, bool filled, const std::string& colour) const {
-    return fmt::format("pt {} ps {:.3g} lw {:.3g} lc rgb '{}'", point_type(marker.symbol, filled), point_size(marker),
-                       2.0 * units_.line_width, colour);
+    return fmt::format("pt {} ps {:.3g} lw {:.3g} lc {}", point_type(marker.symbol, filled), point_size(marker),
+                       2.0 * units_.line_width, colour_of(colour));
   }
 
   /// White beneath a symbol: an open one hides the curve, a filled one stays apart from its neighbours.
@@ -145,7 +149,7 @@ class FigureWriter {
       line(fmt::format("$cloud{}_{} << END", number_of(number), ++count));
       const double side = 0.6 * cloud.size * marker_radius * layout_.font;  // two dots in it look like one
       for (const PicturePoint& p : thinned_points(cloud.points, layout_.panels[number], side))
-        line(fmt::format("{:.10g} {:.10g}", p.x, p.y));
+        line(fmt::format("{:.10g} {:.10g} {:.10g}", p.x, p.y, p.z));
       line("END");
     }
     count = 0;
@@ -163,17 +167,12 @@ class FigureWriter {
     line("");
   }
 
-  /// Numbers of colours row by row; the one behind the last colour is that of the paper.
+  /// Numbers in the palette row by row.
   void field(const ColourField& field, std::size_t number) {
     line(fmt::format("$field{} << END", number_of(number)));
     for (std::size_t row = 0; row < field.rows; ++row) {
-      std::string numbers;
-      for (std::size_t column = 0; column < field.columns; ++column) {
-        const int colour = field.cells[row * field.columns + column];
-        numbers +=
-            fmt::format("{}{}", column > 0 ? " " : "", colour < 0 ? static_cast<int>(field.colours.size()) : colour);
-      }
-      line(numbers);
+      const auto begin = field.cells.begin() + static_cast<std::ptrdiff_t>(row * field.columns);
+      line(fmt::format("{:.10g}", fmt::join(begin, begin + static_cast<std::ptrdiff_t>(field.columns), " ")));
     }
     line("END");
   }
@@ -233,31 +232,25 @@ class FigureWriter {
     }
   }
 
-  /// Drawn by hand too, so that it is a picture's part like the others: rectangles, tics, numbers and a text.
-  void colour_bar() {
+  /// The palette and, unless it explains itself, its bar.
+  void colours() {
+    line("unset colorbox");
+    if (!figure_.palette) return;
+    std::string stops;
+    for (const auto& [number, colour] : figure_.palette->stops)
+      stops += fmt::format("{}{:.10g} '{}'", stops.empty() ? "" : ", ", number, colour);
+    line(fmt::format("set palette defined ({})", stops));
+    line(fmt::format("set cbrange [{:.10g}:{:.10g}]", figure_.palette->low(), figure_.palette->high()));
     if (!layout_.colour_bar) return;
-    const ColourBar& bar = *figure_.colour_bar;
     const auto& [box, scale] = *layout_.colour_bar;
-    const double step = box.height() / static_cast<double>(bar.colours.size());
-    for (std::size_t k = 0; k < bar.colours.size(); ++k)
-      line(fmt::format("set object rectangle from {} to {} front fillstyle solid noborder fillcolor rgb '{}'",
-                       screen(box.left, box.bottom + static_cast<double>(k) * step),
-                       screen(box.right, box.bottom + static_cast<double>(k + 1) * step), bar.colours[k]));
-    line(fmt::format("set object rectangle from {} to {} front fillstyle empty border rgb '#000000' lw {:.3g}",
-                     screen(box.left, box.bottom), screen(box.right, box.top), 1.5 * units_.line_width));
-    const auto tics = static_cast<int>(std::floor((scale.high - scale.first_tic) / scale.tic_step + 1e-9));
-    for (int k = 0; k <= tics; ++k) {
-      const double value = scale.first_tic + k * scale.tic_step;
-      const double y = box.bottom + scale.fraction(value) * box.height();
-      line(fmt::format("set arrow from {} to {} nohead front lw {:.3g}", screen(box.right, y),
-                       screen(box.right + 0.3 * layout_.font, y), 1.5 * units_.line_width));
-      std::string number = fmt::sprintf(scale.format, value);
-      if (number.starts_with('-')) number.replace(0, 1, "−");
-      line(fmt::format("set label '{}' at {} left front", number, screen(box.right + 0.6 * layout_.font, y)));
-    }
-    if (!bar.axis.label.empty())
-      line(fmt::format("set label {} at {} center rotate by 90 front", quoted(bar.axis.label),
-                       screen(box.right + (1.6 + scale.widest_number) * layout_.font, box.centre().y)));
+    line(fmt::format(
+        "set colorbox vertical user origin {} size {}", screen(box.left, box.bottom),
+        fmt::format("screen {:.5f}, screen {:.5f}", box.width() / page_.width, box.height() / page_.height)));
+    line(fmt::format("set cbtics {:.10g},{:.10g} scale 0.5\nset format cb '{}'", scale.first_tic, scale.tic_step,
+                     scale.format));
+    if (!figure_.palette->label.empty())  // gnuplot's own would lie on long numbers
+      line(fmt::format("set label {} at {} center rotate by 90 front", quoted(figure_.palette->label),
+                       screen(box.right + (2.1 + scale.widest_number) * layout_.font, box.centre().y)));
   }
 
   // Panels -------------------------------------------------------------------------------------------------------
@@ -318,13 +311,7 @@ class FigureWriter {
     }
   }
 
-  /// The palette, and the map as an image of it.
-  std::string image(const ColourField& field, std::size_t number) {
-    std::string palette;
-    for (std::size_t k = 0; k < field.colours.size(); ++k) palette += fmt::format("{} '{}', ", k, field.colours[k]);
-    const std::size_t paper = field.colours.size();
-    line(fmt::format("set palette maxcolors {} defined ({}{} '#ffffff')", paper + 1, palette, paper));
-    line(fmt::format("set cbrange [-0.5:{}.5]\nunset colorbox", paper));
+  std::string image(const ColourField& field, std::size_t number) const {
     const auto axis = [](const char* index, double first, double last, std::size_t count) {
       const double step = count > 1 ? (last - first) / static_cast<double>(count - 1) : 1.0;
       return fmt::format("({:.12g}+({:.12g})*{})", first, step, index);
@@ -337,7 +324,7 @@ class FigureWriter {
   /// The smallest dots of an SVG are gnuplot's own: half a pixel in radius, and a shorter text.
   std::string dots(const Cloud& cloud) const {
     constexpr double smallest = 0.2;
-    if (format_ == PictureFormat::svg && cloud.size <= smallest) return fmt::format("dots lc rgb '{}'", cloud.colour);
+    if (format_ == PictureFormat::svg && cloud.size <= smallest) return "dots lc " + colour_of(cloud.colour);
     Marker dot = cloud_marker("");
     dot.size = cloud.size;
     return "points " + points(dot, true, cloud.colour);
@@ -358,6 +345,8 @@ class FigureWriter {
       elements.push_back(fmt::format("{} with points {} notitle", block, background(marker)));
       elements.push_back(fmt::format("{} with points {} notitle", block, points(marker, marker.filled, marker.colour)));
     }
+    if (layout_.colour_bar)
+      elements.emplace_back("NaN with points palette notitle");  // gnuplot draws a bar that is used
     if (elements.empty()) elements.emplace_back("NaN notitle");
     line(fmt::format("{} {}", panel.z ? "splot" : "plot", fmt::join(elements, ", \\\n     ")));
   }

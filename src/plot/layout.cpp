@@ -65,16 +65,9 @@ AxisSettings fitting(AxisSettings axis, const std::optional<ColourField>& field,
 /// In units of the font's size: the strip, and what is left of it.
 constexpr double bar_width = 1.0, bar_gap = 0.9;
 
-/// The strip of colours, as high as the frames.
-ColourBarPlace bar_place(const ColourBar& bar) {
-  ColourBarPlace place;
-  place.scale = choose_scale(bar.axis, {}, 4);
-  return place;
-}
-
 /// With its numbers and its text.
-double bar_margin(const ColourBarPlace& place, const ColourBar& bar, double font) {
-  return (bar_gap + bar_width + 0.8 + place.scale.widest_number + (bar.axis.label.empty() ? 0.0 : 1.6)) * font;
+double bar_margin(const ColourBarPlace& place, const Palette& palette, double font) {
+  return (bar_gap + bar_width + 0.8 + place.scale.widest_number + (palette.label.empty() ? 0.0 : 1.6)) * font;
 }
 
 /// Widens one axis so that a unit is as long on both.
@@ -213,9 +206,9 @@ FigureLayout lay_out(const Figure& figure) {
   }
 
   double right_margin = std::max(1.5, 0.5 * widest_below + 0.3) * font;  // the last number may stand at the edge
-  if (figure.colour_bar) {
-    layout.colour_bar = bar_place(*figure.colour_bar);
-    right_margin += bar_margin(*layout.colour_bar, *figure.colour_bar, font);
+  if (figure.palette && figure.palette->has_bar) {
+    layout.colour_bar = {{}, choose_scale({{}, figure.palette->low(), figure.palette->high()}, {}, 4)};
+    right_margin += bar_margin(*layout.colour_bar, *figure.palette, font);
   }
   Box inner{std::max((widest + 3.0) * font, figure.least_left), figure.width - right_margin, 3.7 * font,
             figure.height - std::max(height_of_texts(figure, font), figure.least_above)};

@@ -158,7 +158,6 @@ PicturePoint shown(const Eigen::VectorXd& x, const std::vector<int>& states) {
 }
 
 constexpr double bundle_width = 1.2;
-constexpr std::size_t colours_of_phase = 64;
 
 /// Of one torus the colours are those of the angle, of several each has its own.
 bool shows_phase(const std::vector<OrbitTrace>& orbits) {
@@ -182,13 +181,13 @@ void add_section_points(Panel& panel, const OrbitTrace& torus, const std::string
 /// Returns of a torus as thin lines.
 void add_torus(Panel& panel, const std::vector<OrbitTrace>& orbits, std::size_t k, const std::vector<int>& states) {
   const OrbitTrace& torus = orbits[k];
-  const std::vector<std::string> colours = cyclic_colours(colours_of_phase);
   const std::size_t count = torus.segments.size();
   for (std::size_t s = 0; s < count; ++s) {
     Curve curve;
     curve.stroke = orbit_stroke(orbits, k);
     curve.stroke.width = bundle_width;
-    if (shows_phase(orbits)) curve.stroke.colour = colours[s * colours_of_phase / count];
+    if (shows_phase(orbits))
+      curve.stroke.colour = colour_at(cyclic_palette(), static_cast<double>(s) / static_cast<double>(count));
     const Eigen::MatrixXd& points = torus.segments[s].states;
     for (Eigen::Index i = 0; i < points.cols(); ++i) curve.points.push_back(shown(points.col(i), states));
     panel.curves.push_back(std::move(curve));
@@ -213,7 +212,8 @@ void explain_tori(Figure& figure, const std::vector<OrbitTrace>& orbits) {
                                  : fmt::format("{} computed points on the section", torus->section_points.cols());
   figure.key.push_back({plain_text(points), std::nullopt, dot});
   if (!shows_phase(orbits)) return;
-  figure.colour_bar = ColourBar{cyclic_colours(colours_of_phase), {mathematical_name("phi"), 0.0, 1.0, false}};
+  figure.palette = cyclic_palette();
+  figure.palette->label = mathematical_name("phi");
 }
 
 void add_orbit(Panel& panel, const std::vector<OrbitTrace>& orbits, std::size_t k, const std::vector<int>& states,
@@ -360,10 +360,10 @@ Figure phase_portrait(const std::vector<OrbitTrace>& orbits, const OrbitFigureOp
   if (states.size() > 2) panel.z = AxisSettings{name(2), {}, {}, false};
   for (std::size_t k = 0; k < orbits.size(); ++k)
     if (is_in_key(orbits, options)) figure.key.push_back(orbit_entry(orbits, k, options));
-  if (shows_phase(orbits) && !figure.key.empty()) figure.key.front().stroke->colour = cyclic_colours(1).front();
+  if (shows_phase(orbits) && !figure.key.empty()) figure.key.front().stroke->colour = colour_at(cyclic_palette(), 0.0);
   explain_tori(figure, orbits);
   if (panel.z && shows_phase(orbits)) {
-    figure.colour_bar.reset();
+    figure.palette.reset();
     figure.note = plain_text("coloured by the angle at which a return begins");
   }
   if (options.system != nullptr && options.surfaces) {

@@ -17,7 +17,7 @@ namespace tchat {
 namespace {
 
 constexpr std::size_t most_categories = 11;  // black is left for what is none of them
-constexpr std::size_t colours_of_scale = 64;
+constexpr double no_colour = std::numeric_limits<double>::quiet_NaN();
 constexpr const char* others_colour = "#909090";
 constexpr const char* nothing_colour = "#e4e4e4";
 
@@ -109,19 +109,20 @@ RowColours category_colours(const SweepTable& table, const std::string& column, 
       ++counts[values[row]];
   }
   RowColours result;
-  std::map<double, int> number;
+  std::map<double, double> number;
   for (const double value : categories.shown(counts)) {
-    number[value] = static_cast<int>(result.colours.size());
+    number[value] = static_cast<double>(result.colours.size());
     result.colours.push_back(categories.colour(value, result.colours.size()));
     result.names.push_back(plain_text(categories.name(value)));
   }
   const auto add = [&result](const char* colour, const std::string& name) {
     result.colours.emplace_back(colour);
     result.names.push_back(plain_text(name));
-    return static_cast<int>(result.colours.size()) - 1;
+    return static_cast<double>(result.colours.size()) - 1.0;
   };
-  const int others = number.size() < counts.size() ? add(others_colour, "others") : -1;
-  const int nothing = has_nothing ? add(nothing_colour, categories.name_of_nothing()) : -1;
+  const double others = number.size() < counts.size() ? add(others_colour, "others") : no_colour;
+  const double nothing = has_nothing ? add(nothing_colour, categories.name_of_nothing()) : no_colour;
+  result.palette = category_palette(result.colours);
   for (const std::size_t row : rows) {
     const auto found = number.find(values[row]);
     result.numbers.push_back(categories.is_nothing(values[row]) ? nothing
@@ -135,22 +136,6 @@ struct NumberRange {
   double low = std::numeric_limits<double>::infinity();
   double high = -std::numeric_limits<double>::infinity();
 };
-
-/// Zero is the middle of the colours where numbers of both signs are there in earnest.
-std::vector<std::string> scale_colours(const NumberRange& range) {
-  const double size = std::max(std::abs(range.low), std::abs(range.high));
-  if (!(range.low < 0.0 && range.high > 0.0 && std::min(-range.low, range.high) > 0.02 * size))
-    return rising_colours(colours_of_scale);
-  constexpr std::size_t fine = 257;
-  const std::vector<std::string> signed_ones = signed_colours(fine);
-  std::vector<std::string> colours;
-  for (std::size_t k = 0; k < colours_of_scale; ++k) {
-    const double part = (static_cast<double>(k) + 0.5) / static_cast<double>(colours_of_scale);
-    const double value = range.low + part * (range.high - range.low);
-    colours.push_back(signed_ones[static_cast<std::size_t>(std::lround((0.5 + 0.5 * value / size) * (fine - 1)))]);
-  }
-  return colours;
-}
 
 RowColours scale_of_colours(const std::string& path, const ColourWish& wish, const SweepQuantity& quantity,
                             const std::vector<std::size_t>& rows) {
@@ -166,15 +151,9 @@ RowColours scale_of_colours(const std::string& path, const ColourWish& wish, con
     range = {range.low - half, range.low + half};
   }
   RowColours result;
-  result.colours = scale_colours(range);
-  const auto last = static_cast<double>(colours_of_scale - 1);
-  for (const std::size_t row : rows) {
-    const double part = (quantity.values[row] - range.low) / (range.high - range.low);
-    result.numbers.push_back(
-        std::isfinite(part) ? static_cast<int>(std::clamp(std::floor(part * (last + 1.0)), 0.0, last)) : -1);
-  }
-  result.bar =
-      ColourBar{result.colours, {wish.label.empty() ? quantity.label : wish.label, range.low, range.high, false}};
+  result.palette = scale_palette(range.low, range.high);
+  result.palette.label = wish.label.empty() ? quantity.label : wish.label;
+  for (const std::size_t row : rows) result.numbers.push_back(quantity.values[row]);
   return result;
 }
 

@@ -15,10 +15,10 @@ namespace tchat {
 
 /// The colours of rows.
 struct RowColours {
-  std::vector<std::string> colours;  ///< #rrggbb
-  std::vector<int> numbers;          ///< of each row's colour, one for each of `rows`; -1: none
-  std::vector<LabelText> names;      ///< of each colour; empty: a scale
-  std::optional<ColourBar> bar;      ///< of a scale
+  std::vector<std::string> colours;  ///< #rrggbb, of categories; empty: a scale
+  std::vector<LabelText> names;      ///< of each colour
+  Palette palette;
+  std::vector<double> numbers;  ///< in the palette, one for each of `rows`; NaN: no colour
 };
 
 struct ColourWish {

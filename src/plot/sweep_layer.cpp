@@ -50,8 +50,9 @@ const SweptQuantity* swept(const SweepTable& table, const std::string& column) {
 struct Group {
   LabelText name;
   std::string colour;
-  std::vector<bool> member;  // by place among the chosen rows
-  double size = 1.0;         // of its dots, beside the usual one
+  std::vector<bool> member;          // by place among the chosen rows
+  double size = 1.0;                 // of its dots, beside the usual one
+  std::vector<double> numbers = {};  // of the dots in the palette, likewise, where that is the colour
 };
 
 class SweepLayerBuilder {
@@ -160,11 +161,14 @@ class SweepLayerBuilder {
   std::vector<Group> coloured_groups(const std::string& column) {
     const RowColours colours =
         row_colours(table_, file_.path, {column, look_.z_low, look_.z_high, look_.z_label}, rows_);
-    result_.colour_bar = colours.bar;
+    if (colours.colours.empty()) {
+      result_.palette = colours.palette;
+      return {{LabelText{}, "palette", std::vector<bool>(rows_.size(), true), 1.0, colours.numbers}};
+    }
     std::vector<Group> groups;
     for (std::size_t c = 0; c < colours.colours.size(); ++c) {
-      Group group{colours.names.empty() ? LabelText{} : colours.names[c], colours.colours[c], {}};
-      for (const int number : colours.numbers) group.member.push_back(number == static_cast<int>(c));
+      Group group{colours.names[c], colours.colours[c], {}};
+      for (const double number : colours.numbers) group.member.push_back(number == static_cast<double>(c));
       groups.push_back(std::move(group));
     }
     return groups;
@@ -175,12 +179,13 @@ class SweepLayerBuilder {
                        const LabelText& name) {
     Cloud cloud;
     cloud.colour = colour;
-    Curve bars{{}, {Dash::solid, 1.2, colour}};
+    const bool has_palette = colour == "palette";
+    Curve bars{{}, {Dash::solid, 1.2, has_palette ? "#909090" : colour}};
     for (std::size_t k = 0; k < rows_.size(); ++k) {
-      const PicturePoint at{x.values[rows_[k]], y.values[rows_[k]]};
+      const PicturePoint at{x.values[rows_[k]], y.values[rows_[k]], has_palette ? group.numbers[k] : 0.0};
       if (!group.member[k] || !is_finite(at)) continue;
       // Quantities of a value stand in each of its rows.
-      if (!cloud.points.empty() && cloud.points.back().x == at.x && cloud.points.back().y == at.y) continue;
+      if (!cloud.points.empty() && cloud.points.back() == at) continue;
       cloud.points.push_back(at);
       if (!y.errors.empty()) add_bar(bars, at, y.errors[rows_[k]]);
     }
@@ -229,8 +234,7 @@ class SweepLayerBuilder {
     field.rows = static_cast<std::size_t>(up.count);
     field.first = {across.value(0), up.value(0)};
     field.last = {across.value(across.count - 1), up.value(up.count - 1)};
-    field.cells.assign(field.columns * field.rows, -1);
-    field.colours = colours.colours;
+    field.cells.assign(field.columns * field.rows, std::numeric_limits<double>::quiet_NaN());
     const auto count = static_cast<std::size_t>(table_.over.front().count);
     const bool turned = &across != &table_.over.front();
     for (std::size_t k = 0; k < rows_.size(); ++k) {
@@ -247,7 +251,7 @@ class SweepLayerBuilder {
       result_.key.push_back({colours.names[c], std::nullopt, square});
     }
     result_.field = std::move(field);
-    result_.colour_bar = colours.bar;
+    result_.palette = colours.palette;
     result_.x = read_sweep_quantity(table_, file_.path, x_, "-x").label;
     result_.y = read_sweep_quantity(table_, file_.path, y_, "-y").label;
   }
@@ -291,10 +295,10 @@ SweepFile read_sweep(const std::string& path) {
 
 void Underlay::add(Underlay other) {
   if (field && other.field) throw UserError("one panel shows one map: give the other sweep after --panel");
-  if (colour_bar && other.colour_bar)
+  if (palette && other.palette)
     throw UserError("one panel has one scale of colours: give the other sweep after --panel");
   if (other.field) field = std::move(other.field);
-  if (other.colour_bar) colour_bar = std::move(other.colour_bar);
+  if (other.palette) palette = std::move(other.palette);
   clouds.insert(clouds.end(), other.clouds.begin(), other.clouds.end());
   curves.insert(curves.end(), other.curves.begin(), other.curves.end());
   key.insert(key.end(), other.key.begin(), other.key.end());

@@ -10,13 +10,13 @@ namespace tchat {
 
 struct Underlay {
   std::optional<ColourField> field;
-  std::optional<ColourBar> colour_bar;
+  std::optional<Palette> palette;
   std::vector<Cloud> clouds;
   std::vector<Curve> curves;  ///< error bars, and the line where an exponent is zero
   std::vector<KeyEntry> key;
   LabelText x, y;  ///< of the axes when there are no branches
 
-  /// Puts another one on top. Throws UserError when both have a map, or both a bar of colours.
+  /// Puts another one on top. Throws UserError when both have a map, or both a palette.
   void add(Underlay other);
 };
 

@@ -28,10 +28,9 @@ Figure coloured() {
   ColourField field;
   field.columns = 3, field.rows = 2;
   field.first = {0.0, 10.0}, field.last = {2.0, 20.0};
-  field.cells = {0, 1, -1, 1, 1, 0};
-  field.colours = {"#112233", "#445566"};
+  field.cells = {-2, 1, std::nan(""), 1, 1, 0};
   figure.panels[0].field = field;
-  figure.colour_bar = ColourBar{field.colours, {plain_text("depth"), -2.0, 6.0, false}};
+  figure.palette = Palette{{{-2.0, "#112233"}, {6.0, "#445566"}}, plain_text("depth")};
   return figure;
 }
 
@@ -124,13 +123,12 @@ TEST_CASE("a map fills its frame, its cells and colours are in the script, and t
   CHECK(layout.colour_bar->box.left > layout.panels[0].frame.right);
   CHECK(layout.colour_bar->box.bottom == Approx(layout.panels[0].frame.bottom));
   const std::string script = gnuplot_script(figure, layout, {PictureFormat::png, "a.png", ""});
-  CHECK(contains(script, "$field1 << END\n0 1 2\n1 1 0\nEND\n"));  // 2: paper
-  CHECK(contains(script, "maxcolors 3 defined (0 '#112233', 1 '#445566', 2 '#ffffff')"));
-  CHECK(contains(script, "set cbrange [-0.5:2.5]"));
+  CHECK(contains(script, "$field1 << END\n-2 1 nan\n1 1 0\nEND\n"));
+  CHECK(contains(script, "set palette defined (-2 '#112233', 6 '#445566')"));
+  CHECK(contains(script, "set cbrange [-2:6]"));
   CHECK(contains(script, "$field1 matrix using (0+(1)*$1):(10+(10)*$2):3 with image"));
   CHECK(contains(script, "set label 'depth'"));
-  CHECK(contains(script, "set label '−2'"));
-  CHECK(contains(script, "fillcolor rgb '#445566'"));
+  CHECK(contains(script, "set colorbox vertical user"));
 }
 
 TEST_CASE("of a large cloud one dot stays in each small square, and none outside") {

@@ -143,13 +143,15 @@ TEST_CASE("colours tell attractors and kinds apart, numbers have a scale") {
   CHECK(kinds.key[0].text.text == "periodic");
   CHECK(kinds.key[1].text.text == "chaotic");
   const Underlay scale = layer(dots(), with("", "", "x1"));
-  REQUIRE(scale.colour_bar);
+  REQUIRE(scale.palette);
   CHECK(scale.key.empty());
-  CHECK(scale.colour_bar->axis.low == 10.0);
-  CHECK(scale.colour_bar->axis.high == 31.0);
-  CHECK(scale.clouds.size() == 6);
-  CHECK(scale.clouds.front().colour == scale.colour_bar->colours.front());
-  CHECK(scale.clouds.back().colour == scale.colour_bar->colours.back());
+  CHECK(scale.palette->low() == 10.0);
+  CHECK(scale.palette->high() == 31.0);
+  REQUIRE(scale.clouds.size() == 1);
+  CHECK(scale.clouds[0].colour == "palette");
+  CHECK(scale.clouds[0].points.size() == 6);
+  CHECK(scale.clouds[0].points.front().z == 10.0);
+  CHECK(scale.clouds[0].points.back().z == 31.0);
 }
 
 TEST_CASE("sweeps up and down have a colour each, the first with larger dots beneath") {
@@ -176,8 +178,8 @@ TEST_CASE("a map over two quantities: a cell for each value, in the colour of it
   CHECK(field.last.y == 0.75);
   CHECK(field.low().x == -1.5);
   CHECK(field.high().y == 1.0);
-  const int none = 2;
-  CHECK(field.cells == std::vector<int>{0, 0, none, 1, 1, 0});
+  const double none = 2;
+  CHECK(field.cells == std::vector<double>{0, 0, none, 1, 1, 0});
   REQUIRE(picture.key.size() == 3);
   CHECK(picture.key[0].text.text == "1: 1 impact, period 6.25");
   CHECK(picture.key[1].text.text == "2: 3 impacts, period 12.5");
@@ -190,7 +192,7 @@ TEST_CASE("a map turned: the second swept quantity along x") {
   const ColourField field = *layer(map(), with("m", "")).field;
   CHECK(field.columns == 2);
   CHECK(field.rows == 3);
-  CHECK(field.cells == std::vector<int>{0, 1, 0, 1, 2, 0});
+  CHECK(field.cells == std::vector<double>{0, 1, 0, 1, 2, 0});
 }
 
 TEST_CASE("maps of periods and of a number") {
@@ -200,15 +202,13 @@ TEST_CASE("maps of periods and of a number") {
   CHECK(periods.key[1].text.text == "period 5");
   CHECK(periods.key[2].text.text == "not periodic");
   const Underlay depth = layer(map(), with("", "", "penetration"));
-  REQUIRE(depth.colour_bar);
-  const auto last = static_cast<int>(depth.colour_bar->colours.size()) - 1;
-  CHECK(depth.field->cells.front() == 0);
-  CHECK(depth.field->cells[4] == last);
-  CHECK(depth.field->cells[5] == -1);  // nothing is known there
+  REQUIRE(depth.palette);
+  CHECK(depth.field->cells.front() == depth.palette->low());
+  CHECK(depth.field->cells[4] == depth.palette->high());
+  CHECK(std::isnan(depth.field->cells[5]));  // nothing is known there
   SweepLook look = with("", "", "penetration");
   look.z_low = 0.0, look.z_high = 1.0;
-  CHECK(layer(map(), look).field->cells[4] == last);
-  CHECK(*layer(map(), look).colour_bar->axis.high == 1.0);
+  CHECK(layer(map(), look).palette->high() == 1.0);
   CHECK_THROWS_WITH(layer(map(), with("", "", "nosuch")), Contains("-z 'nosuch'"));
 }
 
@@ -251,7 +251,7 @@ TEST_CASE("of several starts a map shows one, and says so") {
   CHECK_THAT(warnings[0], Contains("start 1") && Contains("--at start=N"));
   SweepLook look;
   look.choices = {read_sweep_choice("start=2")};
-  CHECK(sweep_layer(file, look, warnings).field->cells == std::vector<int>(6, 0));
+  CHECK(sweep_layer(file, look, warnings).field->cells == std::vector<double>(6, 0));
 }
 
 TEST_CASE("more attractors than colours: the most frequent ones, then the others") {
@@ -279,9 +279,13 @@ TEST_CASE("two maps in one panel are refused") {
 }
 
 TEST_CASE("scales of colours: the ends, and grey in the middle of signed ones") {
-  const auto rising = rising_colours(11);
-  CHECK(rising.front() == "#440154");
-  CHECK(rising.back() == "#fde725");
-  const auto of_both_signs = signed_colours(5);
-  CHECK(of_both_signs[2] == "#eeeeee");
+  const Palette rising = scale_palette(1.0, 2.0);
+  CHECK(colour_at(rising, 1.0) == "#440154");
+  CHECK(colour_at(rising, 2.0) == "#fde725");
+  const Palette of_both_signs = scale_palette(-1.0, 3.0);
+  CHECK(of_both_signs.low() == -1.0);
+  CHECK(of_both_signs.high() == 3.0);
+  CHECK(colour_at(of_both_signs, 0.0) == "#eeeeee");
+  CHECK(colour_at(of_both_signs, -1.0) == "#9fc1db");
+  CHECK(colour_at(cyclic_palette(), 0.0) == colour_at(cyclic_palette(), 1.0));
 }
