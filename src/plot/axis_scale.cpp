@@ -61,45 +61,23 @@ void refuse_range(const AxisSettings& settings) {
                     *settings.low, *settings.high, narrowest));
 }
 
-struct RoundStep {
-  double leading = 1.0;
-  double step = 1.0;
-};
-
-/// The largest of 1, 2, 5 times a power of ten that has that many multiples between low and high.
-RoundStep round_step(double low, double high, int tics) {
-  double power = std::pow(10.0, std::floor(std::log10(high - low)));
-  for (int trial = 0; trial < 20; ++trial) {
-    for (const double leading : {5.0, 2.0, 1.0}) {
-      const double step = leading * power;
-      if (std::floor(high / step + 1e-9) - std::ceil(low / step - 1e-9) + 1.0 >= tics) return {leading, step};
-    }
-    power /= 10.0;
-  }
-  return {1.0, high - low};  // a range at rounding level
+/// The smallest of 1, 2, 5 times a power of ten that goes into the range at most so many times.
+double round_step(double span, int most) {
+  const double power = std::pow(10.0, std::floor(std::log10(span / most)));
+  for (const double leading : {1.0, 2.0, 5.0})
+    if (span <= leading * power * most) return leading * power;
+  return 10.0 * power;
 }
 
-std::string tic_format(double step, double largest) {
-  if (largest >= 1e6 || largest < 1e-4) return "%g";
-  const int decimals = std::max(0, static_cast<int>(-std::floor(std::log10(step) + 1e-9)));
-  return fmt::format("%.{}f", decimals);
-}
-
-void set_linear_tics(AxisScale& scale, int tics) {
-  const double low = std::min(scale.low, scale.high);
-  const double high = std::max(scale.low, scale.high);
-  const RoundStep step = round_step(low, high, tics);
-  scale.tic_step = step.step;
-  scale.minor_tics = step.leading == 5.0 ? 5 : 2;
-  scale.first_tic = std::ceil(low / scale.tic_step - 1e-9) * scale.tic_step;
-  if (std::abs(scale.first_tic) < 1e-9 * scale.tic_step) scale.first_tic = 0.0;
-  scale.format = tic_format(scale.tic_step, std::max(std::abs(low), std::abs(high)));
+void set_linear_tics(AxisScale& scale, int most) {
+  const double largest = std::max(std::abs(scale.low), std::abs(scale.high));
+  scale.tic_step = round_step(scale.high - scale.low, most);
+  const int decimals = std::max(0, static_cast<int>(-std::floor(std::log10(scale.tic_step) + 1e-9)));
+  scale.format = largest >= 1e6 || largest < 1e-4 ? "%g" : fmt::format("%.{}f", decimals);
   scale.widest_number = 0.0;
-  const int steps = static_cast<int>(std::floor((high - scale.first_tic) / scale.tic_step + 1e-9));
-  for (int k = 0; k <= steps; ++k) {
-    const std::string number = fmt::sprintf(scale.format, scale.first_tic + k * scale.tic_step);
-    scale.widest_number = std::max(scale.widest_number, text_width({number, false}));
-  }
+  for (const double tic : {std::ceil(scale.low / scale.tic_step), std::floor(scale.high / scale.tic_step)})
+    scale.widest_number =
+        std::max(scale.widest_number, text_width(plain_text(fmt::sprintf(scale.format, tic * scale.tic_step))));
 }
 
 }  // namespace
@@ -112,7 +90,7 @@ double AxisScale::fraction(double value) const {
   return (value - low) / (high - low);
 }
 
-AxisScale choose_scale(const AxisSettings& settings, const std::vector<double>& values, int tics) {
+AxisScale choose_scale(const AxisSettings& settings, const std::vector<double>& values, int most_steps) {
   AxisScale scale;
   scale.logarithmic = settings.logarithmic;
   Range range = range_of(values, settings.logarithmic);
@@ -140,7 +118,7 @@ AxisScale choose_scale(const AxisSettings& settings, const std::vector<double>& 
     scale.format = "10^{%L}";
     scale.widest_number = 2.5;
   } else {
-    set_linear_tics(scale, tics);
+    set_linear_tics(scale, most_steps);
   }
   return scale;
 }

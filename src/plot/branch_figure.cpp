@@ -168,7 +168,7 @@ class BranchFigureBuilder {
     std::vector<double> x, y;
     for (const Piece& piece : pieces)
       for (const PicturePoint& p : piece.points) x.push_back(p.x), y.push_back(p.y);
-    const AxisScale along_x = choose_scale({}, x, 5), along_y = choose_scale({}, y, 5);
+    const AxisScale along_x = choose_scale({}, x, 8), along_y = choose_scale({}, y, 8);
     return {along_x.high - along_x.low, along_y.high - along_y.low};
   }
 

@@ -246,8 +246,7 @@ class FigureWriter {
     line(fmt::format(
         "set colorbox vertical user origin {} size {}", screen(box.left, box.bottom),
         fmt::format("screen {:.5f}, screen {:.5f}", box.width() / page_.width, box.height() / page_.height)));
-    line(fmt::format("set cbtics {:.10g},{:.10g} scale 0.5\nset format cb '{}'", scale.first_tic, scale.tic_step,
-                     scale.format));
+    line(fmt::format("set cbtics {:.10g} scale 0.5\nset format cb '{}'", scale.tic_step, scale.format));
     if (!figure_.palette->label.empty())  // gnuplot's own would lie on long numbers
       line(fmt::format("set label {} at {} center rotate by 90 front", quoted(figure_.palette->label),
                        screen(box.right + (2.1 + scale.widest_number) * layout_.font, box.centre().y)));
@@ -279,11 +278,8 @@ class FigureWriter {
     if (scale.logarithmic) line(fmt::format("set logscale {}", name));
     line(numbered && !label.empty() ? fmt::format("set {}label {}", name, quoted(label))
                                     : fmt::format("unset {}label", name));
-    if (scale.logarithmic)
-      line(fmt::format("set {}tics in scale 1,0.5", name));
-    else
-      line(fmt::format("set {0}tics {1:.10g},{2:.10g}\nset {0}tics in scale 1,0.5\nset m{0}tics {3}", name,
-                       scale.first_tic, scale.tic_step, scale.minor_tics));
+    line(fmt::format("set {0}tics {1} scale 1,0.5\nset m{0}tics", name,
+                     scale.logarithmic ? "autofreq" : fmt::format("{:.10g}", scale.tic_step)));
     line(fmt::format("set format {} '{}'", name, numbered ? scale.format : ""));
   }
 
@@ -425,8 +421,7 @@ std::string gnuplot_script(const SheetLayout& sheet, const PictureTarget& target
   }
   for (std::size_t k = 0; k < figures.size(); ++k) {
     // What the figure before has left behind.
-    if (k > 0)
-      text += "unset label\nunset arrow\nunset object\nunset logscale\nset mxtics default\nset mytics default\n\n";
+    if (k > 0) text += "unset label\nunset arrow\nunset object\nunset logscale\n\n";
     figures[k].write_panels();
   }
   if (panels > 1) text += "unset multiplot\n";

@@ -80,7 +80,7 @@ void equalise(PanelLayout& panel) {
   AxisSettings wider;
   wider.low = middle + factor * (scale.low - middle);
   wider.high = middle + factor * (scale.high - middle);
-  scale = choose_scale(wider, {}, 4);
+  scale = choose_scale(wider, {}, 8);
 }
 
 Obstacles obstacles_of(const Panel& panel, const PanelLayout& layout, const std::optional<KeyPlace>& key, double font) {
@@ -144,16 +144,16 @@ double height_of_texts(const Figure& figure, double font) {
 
 /// gnuplot projects the box and writes at its edges: only ranges, tics and what is above it are decided here.
 FigureLayout lay_out_in_space(const Figure& figure) {
-  constexpr int tics = 3;
+  constexpr int most_steps = 6;
   FigureLayout layout;
   layout.font = font_of(figure);
   const Panel& panel = figure.panels.front();
   Values values;
   add_values(panel, values);
   PanelLayout place;
-  place.x = choose_scale(panel.x, visible(values, &PicturePoint::x, &PicturePoint::y, panel.x, {}), tics);
-  place.y = choose_scale(panel.y, visible(values, &PicturePoint::y, &PicturePoint::x, panel.y, {}), tics);
-  place.z = choose_scale(*panel.z, visible(values, &PicturePoint::z, &PicturePoint::x, *panel.z, {}), tics);
+  place.x = choose_scale(panel.x, visible(values, &PicturePoint::x, &PicturePoint::y, panel.x, {}), most_steps);
+  place.y = choose_scale(panel.y, visible(values, &PicturePoint::y, &PicturePoint::x, panel.y, {}), most_steps);
+  place.z = choose_scale(*panel.z, visible(values, &PicturePoint::z, &PicturePoint::x, *panel.z, {}), most_steps);
   place.frame = {0.0, static_cast<double>(figure.width), 0.0, figure.height - height_of_texts(figure, layout.font)};
   const KeyGrid rows(figure.key, layout.font, figure.width - layout.font, 0.35 * place.frame.height());
   if (!rows.empty()) {
@@ -197,9 +197,9 @@ FigureLayout lay_out(const Figure& figure) {
     PanelLayout place;
     place.x = choose_scale(
         fitting(panel.x, panel.field, &PicturePoint::x),
-        visible(shared, &PicturePoint::x, &PicturePoint::y, panel.x, panels == 1 ? panel.y : AxisSettings{}), 4);
+        visible(shared, &PicturePoint::x, &PicturePoint::y, panel.x, panels == 1 ? panel.y : AxisSettings{}), 8);
     place.y = choose_scale(fitting(panel.y, panel.field, &PicturePoint::y),
-                           visible(own, &PicturePoint::y, &PicturePoint::x, panel.y, panel.x), panels > 1 ? 3 : 4);
+                           visible(own, &PicturePoint::y, &PicturePoint::x, panel.y, panel.x), panels > 1 ? 6 : 8);
     widest = std::max(widest, place.y.widest_number);
     widest_below = std::max(widest_below, place.x.widest_number);
     layout.panels.push_back(place);
@@ -207,7 +207,7 @@ FigureLayout lay_out(const Figure& figure) {
 
   double right_margin = std::max(1.5, 0.5 * widest_below + 0.3) * font;  // the last number may stand at the edge
   if (figure.palette && figure.palette->has_bar) {
-    layout.colour_bar = {{}, choose_scale({{}, figure.palette->low(), figure.palette->high()}, {}, 4)};
+    layout.colour_bar = {{}, choose_scale({{}, figure.palette->low(), figure.palette->high()}, {}, 8)};
     right_margin += bar_margin(*layout.colour_bar, *figure.palette, font);
   }
   Box inner{std::max((widest + 3.0) * font, figure.least_left), figure.width - right_margin, 3.7 * font,
