@@ -221,11 +221,7 @@ class BranchFigureBuilder {
       if (line == LineKind::inadmissible) kinds_.insert(line);
       return line_stroke(line, kind.colour, 0.85 * line_width);
     });
-    Marker symbol;
-    symbol.symbol = kind.symbol;
-    symbol.filled = kind.filled;
-    symbol.size = 0.6;
-    symbol.colour = kind.colour;
+    const Marker symbol{{}, kind.symbol, kind.filled, 0.6, kind.colour};
     for (std::size_t k = first; k < panel_.curves.size(); ++k)
       if (curves_.size() > 1 && !panel_.curves[k].minor) panel_.curves[k].symbol = symbol;
     const std::string& name = kind.name;

@@ -44,7 +44,7 @@ struct Marker {
   bool filled = true;
   double size = 1.0;
   std::string colour = "#000000";
-  LabelText label;           ///< empty: none
+  LabelText label = {};      ///< empty: none
   bool one_of_many = false;  ///< where they are crowded some go without label
   bool minor = false;        ///< as that of a curve
 };

@@ -10,7 +10,6 @@
 #include <map>
 #include <tuple>
 
-#include "plot/picture_styles.hpp"
 #include "plot/thinned_points.hpp"
 
 namespace tchat {
@@ -40,38 +39,28 @@ std::string colour_of(const std::string& colour) {
   return colour.starts_with('#') ? fmt::format("rgb '{}'", colour) : colour;
 }
 
-/// gnuplot's number of a filled symbol, of the open one beneath it.
-int point_type(Symbol symbol, bool filled) {
-  const int open = [symbol] {
-    switch (symbol) {
-      case Symbol::square:
-        return 4;
-      case Symbol::triangle:
-        return 8;
-      case Symbol::reversed_triangle:
-        return 10;
-      case Symbol::diamond:
-        return 12;
-      case Symbol::pentagon:
-        return 14;
-      default:
-        return 6;
-    }
-  }();
-  return filled || symbol == Symbol::dot ? open + 1 : open;
-}
-
 /// Triangles and diamonds look smaller than squares and circles of the same nominal size.
-double shape_factor(Symbol symbol) {
+struct GnuplotSymbol {
+  int open;  // number of the open symbol, the filled one follows
+  double size;
+};
+
+GnuplotSymbol gnuplot_symbol(Symbol symbol) {
   switch (symbol) {
+    case Symbol::square:
+      return {4, 1.0};
     case Symbol::triangle:
+      return {8, 1.2};
     case Symbol::reversed_triangle:
+      return {10, 1.2};
     case Symbol::diamond:
-      return 1.2;
+      return {12, 1.2};
+    case Symbol::pentagon:
+      return {14, 1.0};
     case Symbol::dot:
-      return 0.5;
+      return {6, 0.5};
     default:
-      return 1.0;
+      return {6, 1.0};
   }
 }
 
@@ -115,13 +104,12 @@ class FigureWriter {
                        s.colour);
   }
 
-  double point_size(const Marker& marker) const {
-    return marker.size * marker_radius * layout_.font * units_.point_size * shape_factor(marker.symbol);
-  }
-
   std::string points(const Marker& marker, bool filled, const std::string& colour) const {
-    return fmt::format("pt {} ps {:.3g} lw {:.3g} lc {}", point_type(marker.symbol, filled), point_size(marker),
-                       2.0 * units_.line_width, colour_of(colour));
+    const GnuplotSymbol symbol = gnuplot_symbol(marker.symbol);
+    const double size = marker.size * marker_radius * layout_.font * units_.point_size * symbol.size;
+    return fmt::format("pt {} ps {:.3g} lw {:.3g} lc {}",
+                       symbol.open + (filled || marker.symbol == Symbol::dot ? 1 : 0), size, 2.0 * units_.line_width,
+                       colour_of(colour));
   }
 
   /// White beneath a symbol: an open one hides the curve, a filled one stays apart from its neighbours.
@@ -321,9 +309,7 @@ class FigureWriter {
   std::string dots(const Cloud& cloud) const {
     constexpr double smallest = 0.2;
     if (format_ == PictureFormat::svg && cloud.size <= smallest) return "dots lc " + colour_of(cloud.colour);
-    Marker dot = cloud_marker("");
-    dot.size = cloud.size;
-    return "points " + points(dot, true, cloud.colour);
+    return "points " + points({{}, Symbol::dot, true, cloud.size}, true, cloud.colour);
   }
 
   void plot(const Panel& panel, std::size_t number) {

@@ -93,16 +93,11 @@ Obstacles obstacles_of(const Panel& panel, const PanelLayout& layout, const std:
   }
   for (const Cloud& cloud : panel.clouds)
     for (const PicturePoint& p : cloud.points) obstacles.dots.push_back(layout.on_paper(p));
-  for (const Marker& marker : panel.markers) {
-    const PicturePoint at = layout.on_paper(marker.at);
-    const double radius = marker.size * marker_radius * font;
-    obstacles.markers.push_back({at.x - radius, at.x + radius, at.y - radius, at.y + radius});
-  }
-  for (const Marker& symbol : layout.symbols) {
-    const PicturePoint at = layout.on_paper(symbol.at);
-    const double radius = symbol.size * marker_radius * font;
-    obstacles.markers.push_back({at.x - radius, at.x + radius, at.y - radius, at.y + radius});
-  }
+  for (const auto* markers : {&panel.markers, &layout.symbols})
+    for (const Marker& marker : *markers) {
+      const PicturePoint at = layout.on_paper(marker.at);
+      obstacles.markers.push_back(Box{at.x, at.x, at.y, at.y}.grown(marker.size * marker_radius * font));
+    }
   if (key && key->inside) obstacles.forbidden.push_back(key->box);
   return obstacles;
 }

@@ -37,11 +37,7 @@ std::string shade(double part) {
 }
 
 KeyEntry dot(const std::string& text, const std::string& colour, bool filled) {
-  Marker sample;
-  sample.colour = colour;
-  sample.filled = filled;
-  sample.size = 0.8;
-  return {plain_text(text), std::nullopt, sample};
+  return {plain_text(text), std::nullopt, Marker{{}, Symbol::circle, filled, 0.8, colour}};
 }
 
 /// What filled and open circles mean, and, where shades tell it, which way the branch goes.

@@ -28,13 +28,7 @@ std::string cloud_colour(std::size_t k) {
   return pale[k % pale.size()];
 }
 
-Marker cloud_marker(const std::string& colour) {
-  Marker marker;
-  marker.symbol = Symbol::dot;
-  marker.size = 0.5;
-  marker.colour = colour;
-  return marker;
-}
+Marker cloud_marker(const std::string& colour) { return {{}, Symbol::dot, true, 0.5, colour}; }
 
 std::string series_colour(std::size_t k) { return colours[k % colours.size()]; }
 

@@ -22,22 +22,12 @@ constexpr const char* others_colour = "#909090";
 constexpr const char* nothing_colour = "#e4e4e4";
 
 std::string kind_colour(AttractorKind kind) {
-  switch (kind) {
-    case AttractorKind::periodic:
-      return "#0060a8";
-    case AttractorKind::quasi_periodic:
-      return "#3a9a4a";
-    case AttractorKind::chaotic:
-      return "#c04000";
-    case AttractorKind::rest:
-      return "#9a5aa0";
-    case AttractorKind::chattering:
-      return "#d09a00";
-    case AttractorKind::escape:
-      return "#000000";
-    default:
-      return nothing_colour;
-  }
+  static const std::map<AttractorKind, const char*> colours = {
+      {AttractorKind::periodic, "#0060a8"},   {AttractorKind::quasi_periodic, "#3a9a4a"},
+      {AttractorKind::chaotic, "#c04000"},    {AttractorKind::rest, "#9a5aa0"},
+      {AttractorKind::chattering, "#d09a00"}, {AttractorKind::escape, "#000000"}};
+  const auto found = colours.find(kind);
+  return found != colours.end() ? found->second : nothing_colour;
 }
 
 std::string attractor_name(const SweepTable& table, int number) {
