@@ -23,21 +23,10 @@ namespace {
 
 constexpr double orbit_width = 2.5;
 
-/// Rectangle around all orbits, half as large again on each side, and what the user's ranges may ask for is cut there.
+/// Rectangle around all orbits, half as large again on each side; what the user's ranges may ask for is cut there.
 StateWindow window_of(const std::vector<OrbitTrace>& orbits, int a, int b) {
-  const auto range = [&orbits](int i) {
-    double low = std::numeric_limits<double>::infinity(), high = -low;
-    for (const OrbitTrace& orbit : orbits)
-      for (const TraceSegment& segment : orbit.segments) {
-        low = std::min(low, segment.states.row(i).minCoeff());
-        high = std::max(high, segment.states.row(i).maxCoeff());
-      }
-    const double more = high > low ? 0.5 * (high - low) : std::max(1.0, std::abs(high));
-    return std::pair(low - more, high + more);
-  };
-  const auto [low_x, high_x] = range(a);
-  const auto [low_y, high_y] = range(b);
-  return {low_x, high_x, low_y, high_y};
+  const StateRange x = range_along(orbits, a, 0.5), y = range_along(orbits, b, 0.5);
+  return {x.low, x.high, y.low, y.high};
 }
 
 /// In the middle of a segment's way in the picture, unless that way is short.
@@ -111,13 +100,36 @@ Stroke orbit_stroke(const std::vector<OrbitTrace>& orbits, std::size_t k) {
 }
 
 Marker jump_marker(std::size_t k, const PicturePoint& at, bool before) {
-  Marker marker;
-  marker.at = at;
-  marker.symbol = series_symbol(k);
-  marker.filled = before;
-  marker.size = 0.8;
-  marker.colour = series_colour(k);
-  return marker;
+  return {at, series_symbol(k), before, 0.8, series_colour(k)};
+}
+
+StateRange range_along(const std::vector<OrbitTrace>& orbits, int state, double margin) {
+  StateRange range{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+  for (const OrbitTrace& orbit : orbits)
+    for (const TraceSegment& segment : orbit.segments) {
+      range.low = std::min(range.low, segment.states.row(state).minCoeff());
+      range.high = std::max(range.high, segment.states.row(state).maxCoeff());
+    }
+  const double size = range.high > range.low ? range.high - range.low : 2.0 * std::max(1.0, std::abs(range.high));
+  return {range.low - margin * size, range.high + margin * size};
+}
+
+Curve segment_curve(const TraceSegment& segment, const StatePlace& place, const Stroke& stroke) {
+  Curve curve{{}, stroke};
+  for (std::size_t k = 0; k < segment.times.size(); ++k)
+    curve.points.push_back(place(segment.times[k], segment.states.col(static_cast<Eigen::Index>(k))));
+  return curve;
+}
+
+void add_jump(Panel& panel, const OrbitTrace& orbit, std::size_t s, const StatePlace& place, Marker marker) {
+  const double time = orbit.segments[s].times.back();
+  const PicturePoint before = place(time, orbit.end_of(s)), after = place(time, orbit.start_after(s));
+  panel.curves.push_back({{before, after}, jump_stroke(marker.colour), false});
+  for (const bool filled : {false, true}) {
+    marker.at = filled ? before : after;
+    marker.filled = filled;
+    panel.markers.push_back(marker);
+  }
 }
 
 KeyEntry orbit_entry(const std::vector<OrbitTrace>& orbits, std::size_t k, const OrbitFigureOptions& options) {
@@ -153,8 +165,10 @@ std::vector<int> states_along(const std::vector<OrbitTrace>& orbits, const Orbit
   return {a, b, find_state(options.z, n, options, "-z")};
 }
 
-PicturePoint shown(const Eigen::VectorXd& x, const std::vector<int>& states) {
-  return {x(states[0]), x(states[1]), states.size() > 2 ? x(states[2]) : 0.0};
+StatePlace place_of(const std::vector<int>& states) {
+  return [states](double, const Eigen::VectorXd& x) {
+    return PicturePoint{x(states[0]), x(states[1]), states.size() > 2 ? x(states[2]) : 0.0};
+  };
 }
 
 constexpr double bundle_width = 1.2;
@@ -165,38 +179,27 @@ bool shows_phase(const std::vector<OrbitTrace>& orbits) {
 }
 
 /// The points where returns begin, as dots.
-void add_section_points(Panel& panel, const OrbitTrace& torus, const std::string& colour,
-                        const std::vector<int>& states) {
-  for (Eigen::Index i = 0; i < torus.section_points.cols(); ++i) {
-    Marker marker;
-    marker.at = shown(torus.section_points.col(i), states);
-    marker.symbol = Symbol::circle;
-    marker.filled = true;
-    marker.size = 0.45;
-    marker.colour = colour;
-    panel.markers.push_back(marker);
-  }
+void add_section_points(Panel& panel, const OrbitTrace& torus, const std::string& colour, const StatePlace& place) {
+  for (Eigen::Index i = 0; i < torus.section_points.cols(); ++i)
+    panel.markers.push_back({place(0.0, torus.section_points.col(i)), Symbol::circle, true, 0.45, colour});
 }
 
 /// Returns of a torus as thin lines.
-void add_torus(Panel& panel, const std::vector<OrbitTrace>& orbits, std::size_t k, const std::vector<int>& states) {
+void add_torus(Panel& panel, const std::vector<OrbitTrace>& orbits, std::size_t k, const StatePlace& place) {
   const OrbitTrace& torus = orbits[k];
   const std::size_t count = torus.segments.size();
   for (std::size_t s = 0; s < count; ++s) {
-    Curve curve;
-    curve.stroke = orbit_stroke(orbits, k);
-    curve.stroke.width = bundle_width;
+    Stroke stroke = orbit_stroke(orbits, k);
+    stroke.width = bundle_width;
     if (shows_phase(orbits))
-      curve.stroke.colour = colour_at(cyclic_palette(), static_cast<double>(s) / static_cast<double>(count));
-    const Eigen::MatrixXd& points = torus.segments[s].states;
-    for (Eigen::Index i = 0; i < points.cols(); ++i) curve.points.push_back(shown(points.col(i), states));
-    panel.curves.push_back(std::move(curve));
+      stroke.colour = colour_at(cyclic_palette(), static_cast<double>(s) / static_cast<double>(count));
+    panel.curves.push_back(segment_curve(torus.segments[s], place, stroke));
     if (!torus.jumps_after(s)) continue;
     Stroke jump = jump_stroke(series_colour(k));
     jump.width *= 0.5;
-    panel.curves.push_back({{shown(torus.end_of(s), states), shown(torus.start_after(s), states)}, jump, false});
+    panel.curves.push_back({{place(0.0, torus.end_of(s)), place(0.0, torus.start_after(s))}, jump, false});
   }
-  add_section_points(panel, torus, shows_phase(orbits) ? "#000000" : series_colour(k), states);
+  add_section_points(panel, torus, shows_phase(orbits) ? "#000000" : series_colour(k), place);
 }
 
 /// What the dots are, and the colours.
@@ -204,9 +207,7 @@ void explain_tori(Figure& figure, const std::vector<OrbitTrace>& orbits) {
   const auto torus = std::find_if(orbits.begin(), orbits.end(),
                                   [](const OrbitTrace& orbit) { return orbit.section_points.cols() > 0; });
   if (torus == orbits.end()) return;
-  Marker dot;
-  dot.symbol = Symbol::circle;
-  dot.size = 0.45;
+  const Marker dot{{}, Symbol::circle, true, 0.45};
   const std::string points = orbits.size() > 1
                                  ? std::string("computed points on the section")
                                  : fmt::format("{} computed points on the section", torus->section_points.cols());
@@ -216,24 +217,17 @@ void explain_tori(Figure& figure, const std::vector<OrbitTrace>& orbits) {
   figure.palette->label = mathematical_name("phi");
 }
 
-void add_orbit(Panel& panel, const std::vector<OrbitTrace>& orbits, std::size_t k, const std::vector<int>& states,
+void add_orbit(Panel& panel, const std::vector<OrbitTrace>& orbits, std::size_t k, const StatePlace& place,
                const StateWindow& window) {
   const OrbitTrace& orbit = orbits[k];
-  if (orbit.segments_per_return > 0) return add_torus(panel, orbits, k, states);
+  if (orbit.segments_per_return > 0) return add_torus(panel, orbits, k, place);
   for (std::size_t s = 0; s < orbit.segments.size(); ++s) {
-    Curve curve;
-    curve.stroke = orbit_stroke(orbits, k);
-    const Eigen::MatrixXd& points = orbit.segments[s].states;
-    for (Eigen::Index i = 0; i < points.cols(); ++i) curve.points.push_back(shown(points.col(i), states));
+    Curve curve = segment_curve(orbit.segments[s], place, orbit_stroke(orbits, k));
     if (!orbit.is_section) add_arrow(panel, curve, window);
     panel.curves.push_back(std::move(curve));
-    if (!orbit.jumps_after(s)) continue;
-    const PicturePoint before = shown(orbit.end_of(s), states), after = shown(orbit.start_after(s), states);
-    panel.curves.push_back({{before, after}, jump_stroke(series_colour(k)), false});
-    panel.markers.push_back(jump_marker(k, after, false));
-    panel.markers.push_back(jump_marker(k, before, true));
+    if (orbit.jumps_after(s)) add_jump(panel, orbit, s, place, jump_marker(k, {}, true));
   }
-  if (orbit.is_section) add_section_points(panel, orbit, series_colour(k), states);
+  if (orbit.is_section) add_section_points(panel, orbit, series_colour(k), place);
 }
 
 /// The rectangle that a picture of curves on a section shows: the curves, and of each line of an event function the
@@ -298,31 +292,15 @@ void add_lines_of_events(Figure& figure, Panel& panel, const EventSurfaces& surf
   if (is_section && number > 0) view.set(panel);
 }
 
-struct StateRange {
-  double low = std::numeric_limits<double>::infinity();
-  double high = -std::numeric_limits<double>::infinity();
-};
-
-StateRange range_along(const std::vector<OrbitTrace>& orbits, int state) {
-  StateRange range;
-  for (const OrbitTrace& orbit : orbits)
-    for (const TraceSegment& segment : orbit.segments) {
-      range.low = std::min(range.low, segment.states.row(state).minCoeff());
-      range.high = std::max(range.high, segment.states.row(state).maxCoeff());
-    }
-  return range;
-}
-
 /// In space: where an event function depends on one of the states alone, the edges of its plane around the orbits.
 void add_planes_of_events(Figure& figure, Panel& panel, const EventSurfaces& surfaces, const std::vector<int>& states,
                           const std::vector<OrbitTrace>& orbits) {
   std::size_t number = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const StateRange own = range_along(orbits, states[axis]);
-    const double more = 0.1 * (own.high - own.low);
     const std::size_t second = (axis + 1) % 3, third = (axis + 2) % 3;
     const StateRange one = range_along(orbits, states[second]), other = range_along(orbits, states[third]);
-    for (const EventSurfaces::Level& level : surfaces.of_state(states[axis], own.low - more, own.high + more)) {
+    const StateRange own = range_along(orbits, states[axis], 0.1);
+    for (const EventSurfaces::Level& level : surfaces.of_state(states[axis], own.low, own.high)) {
       const KeyEntry entry = surface_entry(level.event.name, number++);
       for (const double value : level.values) {
         Curve edge;
@@ -374,7 +352,7 @@ Figure phase_portrait(const std::vector<OrbitTrace>& orbits, const OrbitFigureOp
       add_lines_of_events(figure, panel, surfaces, states, window, orbits);
   }
   if (!options.legend.empty()) explain_dashes(figure, orbits);
-  for (std::size_t k = 0; k < orbits.size(); ++k) add_orbit(panel, orbits, k, states, window);
+  for (std::size_t k = 0; k < orbits.size(); ++k) add_orbit(panel, orbits, k, place_of(states), window);
   figure.panels.push_back(std::move(panel));
   return figure;
 }

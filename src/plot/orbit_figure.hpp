@@ -6,6 +6,7 @@
 /// the direction of time. Event surfaces are grey lines.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -48,6 +49,21 @@ Stroke orbit_stroke(const std::vector<OrbitTrace>& orbits, std::size_t k);
 
 /// The symbol of the k-th orbit at the ends of its jumps, filled before them.
 Marker jump_marker(std::size_t k, const PicturePoint& at, bool before);
+
+struct StateRange {
+  double low = 0.0, high = 0.0;
+};
+
+/// Of one state along all orbits, and this part of its size more at both ends.
+StateRange range_along(const std::vector<OrbitTrace>& orbits, int state, double margin = 0.0);
+
+/// Where a picture shows a state at a time.
+using StatePlace = std::function<PicturePoint(double time, const Eigen::VectorXd& state)>;
+
+Curve segment_curve(const TraceSegment& segment, const StatePlace& place, const Stroke& stroke);
+
+/// The jump behind segment s (from 0), in the marker's colour.
+void add_jump(Panel& panel, const OrbitTrace& orbit, std::size_t s, const StatePlace& place, Marker marker);
 
 /// The orbit's line and, if it jumps, its symbol with its name.
 KeyEntry orbit_entry(const std::vector<OrbitTrace>& orbits, std::size_t k, const OrbitFigureOptions& options);

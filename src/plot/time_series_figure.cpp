@@ -1,6 +1,4 @@
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
 #include "plot/event_surface.hpp"
 #include "plot/orbit_figure.hpp"
@@ -12,41 +10,16 @@ namespace {
 
 /// One state of one orbit over a period.
 void add_series(Panel& panel, const OrbitTrace& orbit, int state, const Stroke& stroke, const Marker& jump) {
+  const StatePlace place = [state](double time, const Eigen::VectorXd& x) { return PicturePoint{time, x(state)}; };
   for (std::size_t s = 0; s < orbit.segments.size(); ++s) {
-    const TraceSegment& segment = orbit.segments[s];
-    Curve curve;
-    curve.stroke = stroke;
-    for (std::size_t k = 0; k < segment.times.size(); ++k)
-      curve.points.push_back({segment.times[k], segment.states(state, static_cast<Eigen::Index>(k))});
-    panel.curves.push_back(std::move(curve));
-    if (!orbit.jumps_after(s, state)) continue;
-    const PicturePoint before{segment.times.back(), orbit.end_of(s)(state)};
-    const PicturePoint after{segment.times.back(), orbit.start_after(s)(state)};
-    panel.curves.push_back({{before, after}, jump_stroke(jump.colour), false});
-    for (const bool filled : {false, true}) {
-      Marker marker = jump;
-      marker.at = filled ? before : after;
-      marker.filled = filled;
-      panel.markers.push_back(marker);
-    }
+    panel.curves.push_back(segment_curve(orbit.segments[s], place, stroke));
+    if (orbit.jumps_after(s, state)) add_jump(panel, orbit, s, place, jump);
   }
-}
-
-/// A little more than what the orbits cover.
-std::pair<double, double> range_of(const std::vector<OrbitTrace>& orbits, int state) {
-  double low = std::numeric_limits<double>::infinity(), high = -low;
-  for (const OrbitTrace& orbit : orbits)
-    for (const TraceSegment& segment : orbit.segments) {
-      low = std::min(low, segment.states.row(state).minCoeff());
-      high = std::max(high, segment.states.row(state).maxCoeff());
-    }
-  const double more = high > low ? 0.5 * (high - low) : std::max(1.0, std::abs(high));
-  return {low - more, high + more};
 }
 
 void add_levels(Figure& figure, Panel& panel, const EventSurfaces& surfaces, const std::vector<OrbitTrace>& orbits,
                 int state, double duration) {
-  const auto [low, high] = range_of(orbits, state);
+  const auto [low, high] = range_along(orbits, state, 0.5);
   for (const EventSurfaces::Level& level : surfaces.of_state(state, low, high)) {
     std::size_t number = 0;
     auto known = std::find_if(figure.key.begin(), figure.key.end(),
