@@ -7,6 +7,7 @@
 #include <cctype>
 
 #include "constants/constant_value.hpp"
+#include "plot/column_expression.hpp"
 #include "text/number.hpp"
 #include "text/user_error.hpp"
 #include "text/words.hpp"
@@ -15,12 +16,6 @@ namespace tchat {
 
 namespace {
 
-std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
-
 /// One blank between words.
 std::string normal(std::string_view text) { return fmt::format("{}", fmt::join(split_words(text), " ")); }
 
@@ -28,7 +23,7 @@ std::optional<std::size_t> column_of_heading(const PointSection& section, const 
   for (std::size_t k = 0; k < section.columns.size(); ++k)
     if (normal(section.columns[k]) == wanted) return k;
   for (std::size_t k = 0; k < section.columns.size(); ++k)
-    if (lower(normal(section.columns[k])) == lower(wanted)) return k;
+    if (same_letters(normal(section.columns[k]), wanted)) return k;
   return std::nullopt;
 }
 
@@ -47,7 +42,8 @@ std::optional<IndexedName> indexed_name(const std::string& text) {
   if (digits.size() > most_digits || digits.find_first_not_of("0123456789") != std::string::npos) return std::nullopt;
   const auto index = parse_integer(digits);
   for (const std::string symbol : {"par", "u"}) {
-    if (!index || open < symbol.size() || lower(text.substr(open - symbol.size(), symbol.size())) != symbol) continue;
+    if (!index || open < symbol.size() || !same_letters(text.substr(open - symbol.size(), symbol.size()), symbol))
+      continue;
     const std::string before = text.substr(0, open - symbol.size());
     const bool word =
         before.empty() || (std::isalnum(static_cast<unsigned char>(before.back())) == 0 && before.back() != '_');
@@ -65,8 +61,11 @@ std::string with_names(const PointSection& section, const std::string& wanted) {
 }
 
 std::optional<std::size_t> column_of_last_word(const PointSection& section, const std::string& wanted) {
-  for (std::size_t k = 0; k < section.columns.size(); ++k)
-    if (lower(normal(section.columns[k])).ends_with(" " + lower(wanted))) return k;
+  const std::string end = " " + wanted;
+  for (std::size_t k = 0; k < section.columns.size(); ++k) {
+    const std::string heading = normal(section.columns[k]);
+    if (heading.size() >= end.size() && same_letters(heading.substr(heading.size() - end.size()), end)) return k;
+  }
   return std::nullopt;
 }
 

@@ -22,18 +22,7 @@ namespace {
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 constexpr std::string_view behind = "after:";
 
-bool same_letters(std::string_view a, std::string_view b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                    [](unsigned char c, unsigned char d) { return std::tolower(c) == std::tolower(d); });
-}
-
 bool is_in_name(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }
-
-/// The text begins with that name, and the name ends there.
-bool begins_with(std::string_view text, std::string_view name) {
-  if (name.empty() || !same_letters(text.substr(0, name.size()), name)) return false;
-  return name.size() == text.size() || !is_in_name(name.back()) || !is_in_name(text[name.size()]);
-}
 
 std::size_t length_of_digits(std::string_view text) {
   return std::min(text.find_first_not_of("0123456789"), text.size());
@@ -94,10 +83,7 @@ class SectionNames {
 
   /// Of the longest name at the beginning of the text; 0: none.
   std::size_t length(std::string_view text) const {
-    std::size_t longest = 0;
-    for (const std::string& name : names_)
-      if (begins_with(text, name)) longest = std::max(longest, name.size());
-    return std::max(longest, length_of_state_at(text));
+    return std::max(length_of_name(text, names_), length_of_state_at(text));
   }
 
   std::optional<StateAt> state_at(std::string_view text) const {
@@ -123,9 +109,7 @@ class SectionNames {
     std::size_t begin = at + 1;
     if (text.substr(begin).starts_with(behind)) begin += behind.size();
     const std::string_view rest = text.substr(begin);
-    std::size_t longest = length_of_digits(rest);
-    for (const std::string& name : places(section_))
-      if (begins_with(rest, name)) longest = std::max(longest, name.size());
+    std::size_t longest = std::max(length_of_digits(rest), length_of_name(rest, places(section_)));
     if (longest == 0)  // a word that is no place, for the message
       while (longest < rest.size() && (is_in_name(rest[longest]))) ++longest;
     return longest == 0 ? 0 : begin + longest;

@@ -140,6 +140,21 @@ std::string complaint(const std::string& output) {
 
 }  // namespace
 
+bool same_letters(std::string_view a, std::string_view b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](unsigned char c, unsigned char d) { return std::tolower(c) == std::tolower(d); });
+}
+
+std::size_t length_of_name(std::string_view text, const std::vector<std::string>& names) {
+  std::size_t longest = 0;
+  for (const std::string& name : names) {
+    if (name.empty() || !same_letters(text.substr(0, name.size()), name)) continue;
+    const bool ends = name.size() == text.size() || !continues_word(name.back()) || !continues_word(text[name.size()]);
+    if (ends) longest = std::max(longest, name.size());
+  }
+  return longest;
+}
+
 bool looks_like_expression(std::string_view text) {
   return std::any_of(text.begin(), text.end(),
                      [](char c) { return std::ispunct(static_cast<unsigned char>(c)) != 0 && c != '_' && c != '.'; });

@@ -24,6 +24,12 @@ struct KnownNames {
   std::string list;                                     ///< for messages
 };
 
+/// Equal but for capitals.
+bool same_letters(std::string_view a, std::string_view b);
+
+/// Length of the longest of these names that the text begins with and that ends there, in any case; 0: none does.
+std::size_t length_of_name(std::string_view text, const std::vector<std::string>& names);
+
 /// Is there anything in it that a name would not have?
 bool looks_like_expression(std::string_view text);
 

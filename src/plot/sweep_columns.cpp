@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -22,13 +21,6 @@ namespace tchat {
 namespace {
 
 constexpr std::string_view later = "@+";
-
-bool equal_but_for_case(std::string_view a, std::string_view b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                    [](unsigned char c, unsigned char d) { return std::tolower(c) == std::tolower(d); });
-}
-
-bool belongs_to_name(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }
 
 /// Length of "@+K" at the beginning of the text; 0: there is none.
 std::size_t length_of_shift(std::string_view text) {
@@ -69,13 +61,7 @@ class SweepNames {
  private:
   /// Of the longest name that the text begins with, a shift behind it included.
   std::size_t length(std::string_view text) const {
-    std::size_t longest = 0;
-    for (const std::string& name : names_) {
-      if (name.empty() || !equal_but_for_case(text.substr(0, name.size()), name)) continue;
-      const bool ends =
-          name.size() == text.size() || !belongs_to_name(name.back()) || !belongs_to_name(text[name.size()]);
-      if (ends) longest = std::max(longest, name.size());
-    }
+    const std::size_t longest = length_of_name(text, names_);
     return longest > 0 ? longest + length_of_shift(text.substr(longest)) : 0;
   }
 
@@ -92,13 +78,13 @@ class SweepNames {
           quantity.label = joined(mathematical_name(swept.name), plain_text("(0)"));
       return quantity;
     }
-    if (equal_but_for_case(wanted, "kind")) {
+    if (same_letters(wanted, "kind")) {
       for (const AttractorKind kind : table_.kinds) quantity.values.push_back(static_cast<double>(kind));
       quantity.label = plain_text("kind");
       return quantity;
     }
     for (const auto& [parameter, value] : table_.parameters)
-      if (equal_but_for_case(parameter, wanted)) {
+      if (same_letters(parameter, wanted)) {
         quantity.values.assign(table_.rows(), value);
         quantity.label = mathematical_name(parameter);
         return quantity;
@@ -122,12 +108,6 @@ class SweepNames {
   std::string where_;
   std::vector<std::string> names_;
 };
-
-const SweptQuantity* swept_quantity(const SweepTable& table, const std::string& column) {
-  for (const SweptQuantity& swept : table.over)
-    if (swept.column() == column) return &swept;
-  return nullptr;
-}
 
 /// The swept value nearest to the one asked for.
 double nearest(const SweptQuantity& swept, const SweepChoice& choice, const std::string& path,
@@ -169,8 +149,14 @@ std::string sweep_column(const SweepTable& table, const std::string& wanted) {
   for (const std::string& name : table.names)
     if (name == wanted) return name;
   for (const std::string& name : table.names)
-    if (equal_but_for_case(name, wanted)) return name;
+    if (same_letters(name, wanted)) return name;
   return "";
+}
+
+const SweptQuantity* swept_quantity(const SweepTable& table, const std::string& column) {
+  for (const SweptQuantity& swept : table.over)
+    if (swept.column() == column) return &swept;
+  return nullptr;
 }
 
 std::vector<std::string> sweep_states(const SweepTable& table) {

@@ -26,6 +26,9 @@ SweepQuantity read_sweep_quantity(const SweepTable& table, const std::string& pa
 /// The column of that name in any case, "" when there is none.
 std::string sweep_column(const SweepTable& table, const std::string& wanted);
 
+/// The swept quantity of that column; nullptr for other columns.
+const SweptQuantity* swept_quantity(const SweepTable& table, const std::string& column);
+
 /// The columns of states: all behind the scalars that `names` begins with.
 std::vector<std::string> sweep_states(const SweepTable& table);
 

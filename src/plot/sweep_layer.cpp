@@ -40,12 +40,6 @@ constexpr double larger_beneath = 1.7;
 /// Few dots that lie beneath a line are seen at both sides of it, a handful from afar.
 double larger_beneath_lines(std::size_t dots) { return dots > 1000 ? 1.0 : dots > 30 ? 1.8 : 3.0; }
 
-const SweptQuantity* swept(const SweepTable& table, const std::string& column) {
-  for (const SweptQuantity& quantity : table.over)
-    if (quantity.column() == column) return &quantity;
-  return nullptr;
-}
-
 /// Dots that share a colour.
 struct Group {
   LabelText name;
@@ -67,8 +61,8 @@ class SweepLayerBuilder {
   }
 
   Underlay build() {
-    const SweptQuantity* across = swept(table_, sweep_column(table_, x_));
-    const SweptQuantity* up = swept(table_, sweep_column(table_, y_));
+    const SweptQuantity* across = swept_quantity(table_, sweep_column(table_, x_));
+    const SweptQuantity* up = swept_quantity(table_, sweep_column(table_, y_));
     if (across != nullptr && up != nullptr && across != up)
       map(*across, *up);
     else
@@ -94,7 +88,8 @@ class SweepLayerBuilder {
   std::string default_y() const {
     const std::string x = sweep_column(table_, x_);
     for (const SweptQuantity& quantity : table_.over)
-      if (swept(table_, x) != nullptr && quantity.column() != x && !is_chosen(quantity)) return quantity.column();
+      if (swept_quantity(table_, x) != nullptr && quantity.column() != x && !is_chosen(quantity))
+        return quantity.column();
     return default_sweep_y(table_, x);
   }
 
@@ -194,15 +189,9 @@ class SweepLayerBuilder {
     cloud.size = group.size * dot_size(count);
     if (look_.beneath_branches) cloud.size *= larger_beneath_lines(count);
     if (!bars.points.empty()) result_.curves.push_back(std::move(bars));
-    if (!name.empty()) result_.key.push_back({name, std::nullopt, key_dot(colour)});
+    if (!name.empty()) result_.key.push_back({name, std::nullopt, Marker{{}, Symbol::dot, true, 0.9, colour}});
     result_.clouds.push_back(std::move(cloud));
     return count;
-  }
-
-  static Marker key_dot(const std::string& colour) {
-    Marker marker = cloud_marker(colour);
-    marker.size = 0.9;
-    return marker;
   }
 
   static void add_bar(Curve& bars, const PicturePoint& at, double error) {
@@ -244,10 +233,7 @@ class SweepLayerBuilder {
       if (cell < field.cells.size()) field.cells[cell] = colours.numbers[k];
     }
     for (std::size_t c = 0; c < colours.names.size(); ++c) {
-      Marker square;
-      square.symbol = Symbol::square;
-      square.size = 1.4;
-      square.colour = colours.colours[c];
+      const Marker square{{}, Symbol::square, true, 1.4, colours.colours[c]};
       result_.key.push_back({colours.names[c], std::nullopt, square});
     }
     result_.field = std::move(field);
