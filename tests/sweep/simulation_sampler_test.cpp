@@ -46,7 +46,8 @@ TEST_CASE("swept values are written into the state and PAR, and a state of its o
   CHECK(start.par(1) == 0.5);
   CHECK(start.side.given == StartSide::Given::nothing);
   // Where a neighbour's final state is gone on from, it is the start.
-  const SampleStart further = sample_start(setup, {0, Eigen::Vector2d(0.5, 7.0), 1, MotionState{VectorXd::Ones(2), {}}});
+  const SampleStart further =
+      sample_start(setup, {0, Eigen::Vector2d(0.5, 7.0), 1, MotionState{VectorXd::Ones(2), {}}});
   CHECK(further.state == VectorXd::Ones(2));
   CHECK(further.par(1) == 0.5);
 }

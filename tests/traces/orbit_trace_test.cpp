@@ -20,8 +20,8 @@ LabelledSolution ball() {
   label.tau = {0.0, 0.5, 1.0};
   label.states.resize(4, 3);
   label.states << 0.0, 0.5, 0.0,  //
-      1.0, 0.0, -1.0,              //
-      0.0, 0.0, 0.0,               //
+      1.0, 0.0, -1.0,             //
+      0.0, 0.0, 0.0,              //
       0.0, 0.0, 0.0;
   label.parameters.assign(100, 0.0);
   label.parameters[0] = 1.0;
