@@ -219,11 +219,11 @@ class Direction {
   BranchSummary follow(BranchWriter& writer, std::vector<NewtonIteration> correction,
                        const std::vector<std::string>& notes) {
     continuation_.stop_at = make_stop_rule(setup_.settings);
-    writer.begin_section({branch_, continuation_.step.initial, std::move(correction)});
+    writer.begin_section(branch_, continuation_.step.initial, std::move(correction));
     for (const std::string& note : notes) writer.note(1, note);
     BranchSummary summary = follow_on(setup_, setup_.start.point, writer);
     summary.without_contact = setup_.type->facts().stability == StabilityMeaning::without_contact;
-    writer.clear_progress();
+    writer.end_section();
     return summary;
   }
 
@@ -309,8 +309,8 @@ int run_problem(const RunRequest& request, std::ostream& screen, std::ostream& w
                    << direction_text(setup, selected, continuation.principal_name);
   const int last_label = request.append ? std::max(files.last_label(), 0) : selected.last_label;
   BranchWriter writer(system, setup.follower->condensed().rule(),
-                      {constants, active_parameters(constants), setup.type->facts().curve, selected.branch, last_label},
-                      files, reports.table, reports.table != nullptr ? progress : nullptr);
+                      {constants, active_parameters(constants), setup.type->facts().curve, last_label}, files,
+                      reports.table, reports.table != nullptr ? progress : nullptr);
 
   int status = 0;
   bool closed = false;

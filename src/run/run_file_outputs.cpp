@@ -1,0 +1,171 @@
+#include "run/run_file_outputs.hpp"
+
+#include <fmt/format.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "constants/settings_type.hpp"
+#include "files/diagnostics_file.hpp"
+#include "files/labelled_solution.hpp"
+#include "files/number_format.hpp"
+#include "files/solution_file.hpp"
+#include "problem_type/family.hpp"
+#include "start/orbit_start.hpp"
+
+namespace tchat {
+
+namespace {
+
+/// The header of a section is written with its first point, for AUTO's reader refuses a header without points.
+class PointFileOutput final : public BranchOutput {
+ public:
+  PointFileOutput(const BranchSection& section, RunFiles& files) : section_(section), files_(files) {}
+
+  void begin_section() override {
+    header_ = format_point_header(
+        {section_.settings, section_.active_parameters, section_.names, section_.curve_type}, section_.columns);
+  }
+  void point(const RecordedPoint& point) override {
+    files_.add_points(std::exchange(header_, "") + format_point(point.line));
+  }
+
+ private:
+  const BranchSection& section_;
+  RunFiles& files_;
+  std::string header_;  // until it is written
+};
+
+class SolutionFileOutput final : public BranchOutput {
+ public:
+  SolutionFileOutput(const BranchSection& section, RunFiles& files) : section_(section), files_(files) {}
+
+  /// With the direction in which the run goes: a restart with DS > 0 continues it whatever the sign of DS is here.
+  void point(const RecordedPoint& point) override {
+    if (!point.of_branch.labelled()) return;
+    const Orbit& x = point.of_branch.path.orbit;
+    std::vector<int> active = section_.active_parameters;
+    for (int s = segment_count(section_.settings); s < x.shape.segments; ++s)  // the further orbits of a torus
+      active.push_back(first_duration + s);
+    std::vector<int> free_parameters;
+    for (const int k : active)
+      if (!is_duration(k, x.shape.segments)) free_parameters.push_back(k);
+    OrbitVector direction = point.of_branch.path.tangent;
+    if (section_.settings.step < 0.0) direction.scale(-1.0);  // the branch goes against its tangents
+    LabelledSolution solution = labelled_solution(x, direction, free_parameters, active);
+    solution.branch = point.line.branch;
+    solution.point = point.line.point;
+    solution.type = point.line.type;
+    solution.label = point.line.label;
+    solution.branch_mode = section_.settings.branch_mode;
+    solution.problem_type = section_.settings.problem_type;
+    solution.kind = point.line.kind;
+    solution.further = point.of_branch.special.further;
+    files_.add_solution(format_solution(solution));
+  }
+
+ private:
+  const BranchSection& section_;
+  RunFiles& files_;
+};
+
+class DiagnosticsFileOutput final : public BranchOutput {
+ public:
+  DiagnosticsFileOutput(const BranchSection& section, RunFiles& files) : section_(section), files_(files) {}
+
+  void begin_section() override {
+    if (has_points_) files_.add_diagnostics(format_bar());  // the last point of a section has no next step and no bar
+    has_points_ = false;
+  }
+  void point(const RecordedPoint& point) override {
+    has_points_ = true;
+    if (level() > 0 || point.of_branch.labelled())
+      files_.add_diagnostics(newton_history(point) + notes(point) + multipliers(point) + details(point));
+  }
+  void next_step(int point_number, double ds) override {
+    if (level() <= 0) return;
+    files_.add_diagnostics(
+        fmt::format("{:4}{:6}  Next Step    : {:.5e}\n", section_.branch, wrapped_point(point_number), ds) +
+        format_bar());
+  }
+  void note(int point_number, const std::string& text) override {
+    files_.add_diagnostics(format_note(section_.branch, point_number, text));
+  }
+
+ private:
+  int level() const { return section_.settings.diagnostics_level; }
+  const std::vector<NewtonIteration>& iterations(const BranchPoint& point) const {
+    return point.number > 1 ? point.newton : section_.start_correction;
+  }
+
+  std::string newton_history(const RecordedPoint& point) const {
+    if (level() < 2 || iterations(point.of_branch).empty()) return "";
+    std::vector<NewtonLine> lines;
+    for (const NewtonIteration& it : iterations(point.of_branch))
+      lines.push_back({it.number, it.parameter, it.residual, it.parameter_change, it.state_change});
+    return format_newton_history(point.line.branch, point.line.point, lines);
+  }
+
+  std::string notes(const RecordedPoint& recorded) const {
+    const BranchPoint& point = recorded.of_branch;
+    std::vector<std::string> texts;
+    if (!point.special.description.empty()) texts.push_back(point.special.description);
+    if (!point.remark.empty()) texts.push_back(point.remark);
+    texts.insert(texts.end(), point.details.begin(), point.details.end());
+    for (const Violation& violation : point.violations)
+      texts.push_back("Inadmissible: " + describe(violation, section_.system));
+    std::string text = format_diagnostics_point(recorded.line, section_.columns);
+    for (const std::string& note : texts) text += format_note(recorded.line.branch, recorded.line.point, note);
+    return text;
+  }
+
+  static std::string multipliers(const RecordedPoint& point) {
+    const FloquetMultipliers& known = point.of_branch.multipliers;
+    std::string text;
+    if (known.valid)
+      text = known.are_eigenvalues ? format_eigenvalues(known.values, known.stable_count())
+                                   : format_multipliers(known.values);
+    if (!point.unknown_multipliers.empty())
+      text += format_note(point.line.branch, point.line.point, point.unknown_multipliers);
+    return text;
+  }
+
+  std::string details(const RecordedPoint& recorded) const {
+    const BranchPoint& point = recorded.of_branch;
+    const int count = point.number > 1 ? point.newton_iterations : static_cast<int>(iterations(point).size());
+    std::string text;
+    if (level() >= 2) {
+      std::vector<TestFunctionLine> tests;
+      for (const NamedTestValue& test : point.tests)
+        tests.push_back({test.name, test.value.value_or(0.0), test.value.has_value()});
+      text = format_test_functions(tests);
+      if (family_of(section_.settings).facts().headings.has_mesh)
+        text += fmt::format("{:4}{:6}  Structural multiplier {:.3e}   estimated error between mesh points {:.3e}\n",
+                            recorded.line.branch, wrapped_point(recorded.line.point), point.multipliers.structural,
+                            point.estimated_error);
+    }
+    return text + fmt::format("{:4}{:6}  Iterations   : {}\n", recorded.line.branch,
+                              wrapped_point(recorded.line.point), count);
+  }
+
+  const BranchSection& section_;
+  RunFiles& files_;
+  bool has_points_ = false;  // the section
+};
+
+}  // namespace
+
+std::unique_ptr<BranchOutput> point_file_output(const BranchSection& section, RunFiles& files) {
+  return std::make_unique<PointFileOutput>(section, files);
+}
+
+std::unique_ptr<BranchOutput> solution_file_output(const BranchSection& section, RunFiles& files) {
+  return std::make_unique<SolutionFileOutput>(section, files);
+}
+
+std::unique_ptr<BranchOutput> diagnostics_file_output(const BranchSection& section, RunFiles& files) {
+  return std::make_unique<DiagnosticsFileOutput>(section, files);
+}
+
+}  // namespace tchat
