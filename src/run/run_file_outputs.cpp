@@ -24,8 +24,8 @@ class PointFileOutput final : public BranchOutput {
   PointFileOutput(const BranchSection& section, RunFiles& files) : section_(section), files_(files) {}
 
   void begin_section() override {
-    header_ = format_point_header(
-        {section_.settings, section_.active_parameters, section_.names, section_.curve_type}, section_.columns);
+    header_ = format_point_header({section_.settings, section_.active_parameters, section_.names, section_.curve_type},
+                                  section_.columns);
   }
   void point(const RecordedPoint& point) override {
     files_.add_points(std::exchange(header_, "") + format_point(point.line));
@@ -145,8 +145,8 @@ class DiagnosticsFileOutput final : public BranchOutput {
                             recorded.line.branch, wrapped_point(recorded.line.point), point.multipliers.structural,
                             point.estimated_error);
     }
-    return text + fmt::format("{:4}{:6}  Iterations   : {}\n", recorded.line.branch,
-                              wrapped_point(recorded.line.point), count);
+    return text + fmt::format("{:4}{:6}  Iterations   : {}\n", recorded.line.branch, wrapped_point(recorded.line.point),
+                              count);
   }
 
   const BranchSection& section_;
