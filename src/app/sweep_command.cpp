@@ -186,7 +186,7 @@ void add_sweep_command(CLI::App& app, std::function<int()>& chosen) {
       "O.sweep is a table: index, values, start, attractor (its number), kind, period (events), time, impacts, what "
       "was\n"
       "asked for, and the recorded states, one a row. Its heading has a state of each attractor for tchat simulate.\n"
-      "Killed or interrupted, the same command goes on where it stopped (O.sweep.journal).\n"
+      "Killed or interrupted, the same command continues where it stopped (O.sweep.journal).\n"
       "Examples:\n"
       "  tchat sweep linosc --over alpha=2.9:3.1:201 'PAR(omega)=2.0072' -j 4          # a brute-force diagram\n"
       "  tchat sweep linosc --over alpha=1.9:2.7:401 'PAR(omega)=1.8901' --follow both --section 1   # hysteresis\n"

@@ -241,7 +241,7 @@ CorrectedOrbit correct_orbit(const OrbitCandidate& candidate) {
     return orbit;
   }
   if (is_at_rest(candidate, orbit.turn)) {
-    orbit.fault = "the motion comes to rest";
+    orbit.fault = "the trajectory converges to an equilibrium";
     return orbit;
   }
   const double last_change = std::abs(largest_modulus(orbit.multipliers) - last_modulus);

@@ -155,7 +155,7 @@ void analyse_state(const GrazingRequest& request, std::ostream& screen, std::ost
   if (request.correct) screen << fmt::format("Corrected by {:.3e} onto h_D = h_P = 0.\n", (x - start.state).norm());
   screen << point_report(system, point) << '\n';
   print_maps(system, request, DiscontinuityMap(system, point), section, screen);
-  screen << "A state alone tells nothing of what returns: no A, xi_n, verdict.\n";
+  screen << "A state alone has no return map: A, xi_n and the verdict need the label of an orbit.\n";
 }
 
 void check_request(const GrazingRequest& request) {

@@ -56,8 +56,9 @@ std::string meaning(const LyapunovSpectrum& spectrum, int section, bool orbit_at
   if (signs.negative > 0 && (has_flow || section != 0))
     return fmt::format("{}: a stable periodic orbit, of a longer period than looked for or not reached yet.", others);
   if (signs.negative > 0) return "All exponents are negative: the trajectory converges to an equilibrium.";
-  return "The largest exponent is zero: not chaotic; with one more (--lyapunov 2) periodic and quasi-periodic motion "
-         "are told apart.";
+  return "The largest exponent is zero: not chaotic; one more (--lyapunov 2) distinguishes periodic from "
+         "quasi-periodic "
+         "motion.";
 }
 
 /// The first of them is that along the flow; there is none on a section.
@@ -71,11 +72,11 @@ std::string losses(const LyapunovSpectrum& spectrum) {
   const auto lost = (spectrum.exponents.array() == -std::numeric_limits<double>::infinity()).count();
   if (lost > 0)
     text +=
-        fmt::format("  -infinity: {} direction{} lost altogether, where sliding begins or a jump forgets a state.\n",
+        fmt::format("  -infinity: {} direction{} contracted to zero, where sliding begins or a jump forgets a state.\n",
                     lost, lost == 1 ? " is" : "s are");
   if (spectrum.tangential > 0)
     text += fmt::format(
-        "  {} event(s) were met almost without velocity: what they do to neighbours is known to fewer digits.\n",
+        "  {} event(s) had almost no velocity: their effect on neighbouring trajectories is known to fewer digits.\n",
         spectrum.tangential);
   return text;
 }
@@ -83,9 +84,9 @@ std::string losses(const LyapunovSpectrum& spectrum) {
 std::string ended_text(const SimulationResult& result) {
   if (result.accumulation) return "No Lyapunov exponents: the motion ends where events accumulate.\n";
   if (result.dies_out)
-    return "No Lyapunov exponents of a motion that dies out; those of a part of it are told with --events or --time.\n";
+    return "No Lyapunov exponents: the motion dies out; --events or --time computes those of a part of it.\n";
   if (result.last.ended_by == SegmentEnd::interrupted) return "No Lyapunov exponents yet.\n";
-  return "No Lyapunov exponents: the motion has ended; those of a part of it are told with --events or --time.\n";
+  return "No Lyapunov exponents: the motion has ended; --events or --time computes those of a part of it.\n";
 }
 
 /// Goes on until the bars are small enough; false when it was ended otherwise than by an event.

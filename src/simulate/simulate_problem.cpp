@@ -224,7 +224,8 @@ int simulate_problem(const SimulationRequest& request, std::ostream& screen, std
   }
   const bool is_attracting = orbit.converged && orbit.stability() == OrbitStability::stable;
   if (exponents && search.equilibrium() && !has_wanted_length(request.plan)) {
-    say("No Lyapunov exponents: the motion comes to rest; those of a part of it are told with --events or --time.\n");
+    say("No Lyapunov exponents: the trajectory converges to an equilibrium; --events or --time computes those of a "
+        "part of it.\n");
   } else if (exponents) {
     // Those of the orbit itself, not of the way to it.
     HybridSimulation measured =

@@ -51,7 +51,7 @@ std::string place_text(const SweepJob& job, std::size_t index) {
 std::string outcome_text(const SweepJob& job, const SweepOutcome& outcome) {
   std::string text;
   if (!outcome.is_complete)
-    return fmt::format("Interrupted: {} of {} values are kept in {}; the same command goes on.\n",
+    return fmt::format("Interrupted: {} of {} values are kept in {}; the same command continues.\n",
                        outcome.kept + outcome.computed, outcome.values, outcome.written);
   text = fmt::format("{} values, {} computed now\n", outcome.values, outcome.computed);
   constexpr std::size_t most_told = 20;

@@ -68,7 +68,7 @@ def orbit_in(text):
 def kind_in_words(text):
     """Of sentences on exponents, or on a simulation that ended."""
     for pattern, kind in (
-            (r"undecided|too large to tell|cannot be told|are told apart", "undecided"),
+            (r"undecided|too large to tell|cannot be told|distinguishes periodic from", "undecided"),
             (r"motion is chaotic", "chaotic"),
             (r"quasi-periodic motion|motion is quasi-periodic", "quasi-periodic"),
             (r"stable periodic orbit", "periodic"),

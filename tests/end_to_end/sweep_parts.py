@@ -62,7 +62,7 @@ def kill_when(name, grown_by, sent):
         process.send_signal(sent)
     out = process.communicate()[0]
     if is_running and sent == signal.SIGINT and process.returncode == 130:
-        check("the same command goes on" in out, "an interrupted sweep does not say how it goes on")
+        check("the same command continues" in out, "an interrupted sweep does not say how to continue it")
     return is_running
 
 

@@ -102,8 +102,7 @@ TEST_CASE("a state of --state is named or in order, and has priority over the ze
   CHECK(start.state == Eigen::Vector2d(3.0, 4.0));
   CHECK(start.par(0) == 9.81);
   CHECK(state_index(ball(), "velocity", "--state") == 2);
-  CHECK_THROWS_WITH(state_index(ball(), "depth", "--state"),
-                    Catch::StartsWith("--state") && Catch::Contains("height"));
+  CHECK_THROWS_WITH(state_index(ball(), "depth", "--state"), Catch::StartsWith("--state") && Catch::Contains("height"));
   request.state = "1,2,3";
   CHECK_THROWS_AS(simulation_start(request, constants, ball()), UserError);
 }

@@ -1,5 +1,5 @@
-// A torus in closed form: a harmonic oscillator of frequency omega that is looked at once a unit of time. Its return map
-// is the rotation by omega, its invariant curves are circles, rho = omega / (2 pi).
+// A torus in closed form: a harmonic oscillator of frequency omega that is looked at once a unit of time. Its return
+// map is the rotation by omega, its invariant curves are circles, rho = omega / (2 pi).
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
