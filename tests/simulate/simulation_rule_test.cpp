@@ -55,7 +55,7 @@ TEST_CASE("modes are index vectors, each once") {
   CHECK(parse_modes(modes_text({{1, 2, 1}, {1, 3, 2}})) == std::vector<IndexVector>{{1, 2, 1}, {1, 3, 2}});
 }
 
-TEST_CASE("--signature replaces the file's, and keeps what known segments monitor") {
+TEST_CASE("a given signature replaces the file's, and keeps what known segments monitor") {
   SimulationRequest request;
   const SimulationConstants file = with_segments({rise, fall});
   CHECK(with_signature(request, file).settings.segments.size() == 2);
