@@ -136,7 +136,7 @@ TEST_CASE("grazing: a point given by hand, with another section") {
   check_row(outcome.out, "x*", {1.0, 0.0, std::sin(phi), std::cos(phi)});
   CHECK(contains(outcome.out, "Discontinuity map on P (h_P = 0)"));
   CHECK(contains(outcome.out, "Discontinuity map on P' (constant y1)"));
-  CHECK(contains(outcome.out, "no A, xi_n, verdict"));
+  CHECK(contains(outcome.out, "A, xi_n and the verdict need the label of an orbit"));
 
   const std::vector<std::string> rough{"grazing", "linosc", parameter, "--state", "1.001,0.002,0.066,-0.998",
                                        "--mode",  "1,1,1"};

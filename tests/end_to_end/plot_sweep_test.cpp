@@ -53,20 +53,20 @@ TEST_CASE("dots of a sweep over its parameter, by the name of the run or of the 
   const Workspace& workspace = prepared();
   for (const std::string name : {"brute.sweep", "brute"}) {
     const std::string script = script_of(workspace, name);
-    CHECK(contains(script, "$cloud1_1 << END\n2.9 1\n3.1 1\n3.3 1\nEND\n"));
+    CHECK(contains(script, "$cloud1_1 << END\n2.9 1 0\n3.1 1 0\n3.3 1 0\nEND\n"));
     CHECK(contains(script, "set xlabel 'α'"));
     CHECK(contains(script, "set ylabel 'x_{1}'"));
   }
   CHECK(contains(script_of(workspace, "brute -y x2"),
-                 "$cloud1_1 << END\n2.9 -0.5\n3.1 -0.75\n3.3 -0.25\n3.3 -0.875\nEND\n"));
-  CHECK(contains(script_of(workspace, "brute -x alpha/omega -y 2*x2"), fmt::format("{:.10g} -1\n", 2.9 / 2.0072)));
+                 "$cloud1_1 << END\n2.9 -0.5 0\n3.1 -0.75 0\n3.3 -0.25 0\n3.3 -0.875 0\nEND\n"));
+  CHECK(contains(script_of(workspace, "brute -x alpha/omega -y 2*x2"), fmt::format("{:.10g} -1 0\n", 2.9 / 2.0072)));
 }
 
 TEST_CASE("a sweep lies beneath the branches of a run") {
   const Workspace& workspace = prepared();
   const std::string script =
       script_of(workspace, "p.branch brute -y x2@wall --dots x2 --legend branch --legend simulation");
-  CHECK(contains(script, "3.3 -0.875\n"));
+  CHECK(contains(script, "3.3 -0.875 0\n"));
   CHECK(script.find("plot $cloud1_1 with points") < script.find("$curve1_1 with lines"));
   CHECK(contains(script, "set label 'branch'"));
   CHECK(contains(script, "set label 'simulation'"));
@@ -91,7 +91,7 @@ TEST_CASE("branches that show another quantity than the dots of a sweep are told
 
 TEST_CASE("exponents have bars of their errors") {
   const std::string script = script_of(prepared(), "brute -y lambda1");
-  CHECK(contains(script, "$cloud1_1 << END\n2.9 -0.25\n3.1 -0.125\n3.3 0.5\nEND\n"));
+  CHECK(contains(script, "$cloud1_1 << END\n2.9 -0.25 0\n3.1 -0.125 0\n3.3 0.5 0\nEND\n"));
   CHECK(contains(script, "2.9 -0.26\n2.9 -0.24\n\n3.1 -0.145\n3.1 -0.105\n"));
   CHECK(contains(script, "set ylabel 'λ_{1}'"));
 }
@@ -104,10 +104,10 @@ TEST_CASE("a basin in the colours of its attractors, and in a scale of a number"
   CHECK(contains(basin, "set label 'no attractor'"));
   CHECK(contains(script_of(prepared(), "basin --legend trapped --legend gone"), "set label 'gone'"));
   const std::string depth = script_of(prepared(), "basin -z penetration --zlabel depth");
-  CHECK(contains(depth, "$field1 << END\n21 64\n42 63\n0 64\nEND\n"));  // of 64 colours from 0 to 0.75; 64: paper
+  CHECK(contains(depth, "$field1 << END\n0.25 nan\n0.5 0.75\n0 nan\nEND\n"));  // nan: the paper shows
   CHECK(contains(depth, "set label 'depth'"));
   CHECK(contains(script_of(prepared(), "basin --at alpha=2 -y penetration"),
-                 "$cloud1_1 << END\n-1 0.25\n0 0.5\n1 0\nEND\n"));
+                 "$cloud1_1 << END\n-1 0.25 0\n0 0.5 0\n1 0 0\nEND\n"));
 }
 
 TEST_CASE("panels side by side: each with its files, quantities, texts and title") {
@@ -115,8 +115,8 @@ TEST_CASE("panels side by side: each with its files, quantities, texts and title
   const std::string script =
       script_of(workspace, "brute -y x2 -y lambda1 --title left --title right --legend a --legend b --panel brute");
   CHECK(contains(script, "size 1600,650"));
-  CHECK(contains(script, "$cloud1_1 << END\n2.9 -0.5\n"));
-  CHECK(contains(script, "$cloud2_1 << END\n2.9 -0.25\n"));
+  CHECK(contains(script, "$cloud1_1 << END\n2.9 -0.5 0\n"));
+  CHECK(contains(script, "$cloud2_1 << END\n2.9 -0.25 0\n"));
   CHECK(script.find("set label 'left'") < script.find("set label 'right'"));
   CHECK(contains(script, "set ylabel 'x_{2}'"));
   CHECK(contains(script, "set ylabel 'λ_{1}'"));

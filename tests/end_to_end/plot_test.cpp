@@ -233,7 +233,7 @@ TEST_CASE("a table of numbers lies as dots beneath a branch") {
   REQUIRE(outcome.status == 0);
   CHECK(workspace.has("d.png"));
   const std::string script = workspace.read("s.gp");
-  CHECK(contains(script, "$cloud1_1 << END\n2.9 0.125\n3.25 0.5\nEND\n"));
+  CHECK(contains(script, "$cloud1_1 << END\n2.9 0.125 0\n3.25 0.5 0\nEND\n"));
   CHECK(contains(script, "plot $cloud1_1 with points "));
   CHECK(contains(script, "dots"));
 }
