@@ -27,6 +27,8 @@ class RunFiles final : private LastAct {
   explicit RunFiles(std::string name, Mode mode = Mode::replace);
   /// Writes what was gathered.
   ~RunFiles() override;
+  RunFiles(const RunFiles&) = delete;
+  RunFiles& operator=(const RunFiles&) = delete;
 
   const std::string& name() const { return name_; }
   bool is_open() const { return points_.file.is_open(); }

@@ -56,10 +56,8 @@ class LastAct {
   LastAct();
   LastAct(const LastAct&) = delete;
   LastAct& operator=(const LastAct&) = delete;
-  virtual void act() noexcept = 0;
-
- protected:
   virtual ~LastAct();
+  virtual void act() noexcept = 0;
 
  private:
   LastAct* before_;

@@ -69,9 +69,11 @@ double difference_from(const AutoSolution& theirs, const OrbitShape& shape, int 
 Comparison compare(const AutoSize& size, bool quick) {
   const OrbitShape shape = walk_shape(size.segments, size.intervals, size.dimension);
   BranchWalk walk(shape);
-  const AutoProgram program(size.segments, walk.point().orbit);
+  const AutoProgram program(walk.point().orbit);
   const auto [steps, rounds] = effort(size, quick);
-  const AutoRun checked = program.run(short_run + steps, true);
+  AutoRequest request{short_run + steps, step_length(size.segments), 0, 2};
+  const AutoRun checked = program.run(request);
+  request.diagnostics = 0;
 
   Comparison result;
   result.difference = difference_from(checked.last, shape, short_run + steps);
@@ -80,8 +82,10 @@ Comparison compare(const AutoSize& size, bool quick) {
   std::vector<double> ours;
   std::vector<double> both;
   for (int round = 0; round < rounds; ++round) {
-    const double brief = program.run(short_run, false).processor_seconds;
-    const double full = program.run(short_run + steps, false).processor_seconds;
+    request.points = short_run;
+    const double brief = program.run(request).processor_seconds;
+    request.points = short_run + steps;
+    const double full = program.run(request).processor_seconds;
     theirs.push_back((full - brief) / steps);
     for (int again = 0; again < 3; ++again) {
       const StepCost cost = cost_there_and_back(walk);

@@ -272,21 +272,19 @@ std::string auto_source(int segments) {
          constant("phase2", data.y2) + "end module orbit\n" + functions + unused_functions;
 }
 
-std::string auto_constants(const AutoSettings& settings) {
-  const int k = settings.segments;
+std::string auto_constants(const OrbitShape& shape, const AutoRequest& request) {
+  const int k = shape.segments;
   std::string free_parameters = "1";
   for (int s = 0; s < k; ++s) free_parameters += fmt::format(", {}", auto_first_duration + s);
-  const double ds = step_length(k);
-  return fmt::format("NDIM = {}, IPS = 4, IRS = 0, ILP = 0\nICP = [{}]\n", settings.dimension * k, free_parameters) +
-         fmt::format("NTST = {}, NCOL = {}, IAD = 0, ISP = 0, ISW = 1, IPLT = 0, NBC = {}, NINT = 0\n",
-                     settings.intervals, collocation_points, (settings.dimension + 1) * k) +
-         fmt::format("NMX = {}, NPR = 0, MXBF = 0, IID = {}, ITMX = 9, ITNW = {}, NWTN = {}, JAC = 1\n",
-                     settings.points, settings.details ? 2 : 0, newton_settings.max_iterations,
-                     newton_settings.full_iterations) +
+  return fmt::format("NDIM = {}, IPS = 4, IRS = 0, ILP = 0\nICP = [{}]\n", shape.dimension * k, free_parameters) +
+         fmt::format("NTST = {}, NCOL = {}, IAD = {}, ISP = 0, ISW = 1, IPLT = 0, NBC = {}, NINT = 0\n",
+                     shape.intervals, shape.collocation, request.adapt_every, (shape.dimension + 1) * k) +
+         fmt::format("NMX = {}, NPR = 0, MXBF = 0, IID = {}, ITMX = 9, ITNW = {}, NWTN = {}, JAC = 1\n", request.points,
+                     request.diagnostics, newton_settings.max_iterations, newton_settings.full_iterations) +
          fmt::format("RL0 = -1e6, RL1 = 1e6, A0 = -1e6, A1 = 1e6\nEPSL = {}, EPSU = {}, EPSS = 1e-5\n",
                      newton_settings.tolerance_parameters, newton_settings.tolerance_states) +
-         fmt::format("DS = {}, DSMIN = {}, DSMAX = {}, IADS = 0\nNPAR = {}\n", ds, ds / 2, 2 * ds,
-                     std::max(36, auto_first_duration + k));
+         fmt::format("DS = {}, DSMIN = {}, DSMAX = {}, IADS = 0\nNPAR = {}\n", request.step, request.step / 2,
+                     2 * request.step, std::max(36, auto_first_duration + k));
 }
 
 }  // namespace tchat::benchmark

@@ -24,15 +24,15 @@ std::string auto_chain_source(int n, int intervals);
 /// The file `start` of the chain: alpha and T, then the states at all nodes.
 std::string auto_chain_start(const Orbit& x);
 
-struct AutoSettings {
-  int dimension = 4;
-  int segments = 1;
-  int intervals = 50;    ///< NTST
-  int points = 10;       ///< NMX
-  bool details = false;  ///< write the Newton history to the diagnostics file
+/// What of AUTO's run is not the problem's.
+struct AutoRequest {
+  int points = 10;      ///< NMX
+  double step = 0.02;   ///< DS, fixed
+  int adapt_every = 0;  ///< IAD
+  int diagnostics = 0;  ///< IID: 0 nothing, 2 what AUTO writes unless told otherwise, Newton's iterations too
 };
 
-/// The constants file: the same mesh, tolerances, weights and fixed step as BranchWalk uses.
-std::string auto_constants(const AutoSettings& settings);
+/// The constants file for orbits of this shape: the tolerances and weights that BranchWalk uses.
+std::string auto_constants(const OrbitShape& shape, const AutoRequest& request);
 
 }  // namespace tchat::benchmark

@@ -87,14 +87,11 @@ fs::path auto_objects() {
   return found;
 }
 
-AutoProgram::AutoProgram(int segments, const Orbit& start) {
-  settings_.dimension = start.shape.dimension;
-  settings_.segments = segments;
-  settings_.intervals = start.shape.intervals;
-  const bool chain = settings_.dimension > 4;
+AutoProgram::AutoProgram(const Orbit& start) : shape_(start.shape) {
+  const bool chain = shape_.dimension > 4;
   const fs::path& folder = folder_.path();
-  std::ofstream(folder / "problem.f90") << (chain ? auto_chain_source(settings_.dimension, settings_.intervals)
-                                                  : auto_source(segments));
+  std::ofstream(folder / "problem.f90") << (chain ? auto_chain_source(shape_.dimension, shape_.intervals)
+                                                  : auto_source(shape_.segments));
   if (chain) std::ofstream(folder / "start") << auto_chain_start(start);
   std::vector<std::string> command{"gfortran", "-O2", "-fopenmp", "problem.f90", "-o", "program"};
   for (const auto& entry : fs::directory_iterator(auto_objects()))
@@ -102,19 +99,17 @@ AutoProgram::AutoProgram(int segments, const Orbit& start) {
   run_child(command, folder);
 }
 
-AutoRun AutoProgram::run(int points, bool details) const {
-  AutoSettings settings = settings_;
-  settings.points = points;
-  settings.details = details;
+AutoRun AutoProgram::run(const AutoRequest& request) const {
   const fs::path& folder = folder_.path();
-  std::ofstream(folder / "fort.2") << auto_constants(settings);
+  std::ofstream(folder / "fort.2") << auto_constants(shape_, request);
   for (const char* file : {"fort.7", "fort.8", "fort.9"}) fs::remove(folder / file);
   AutoRun result;
   result.processor_seconds = run_child({(folder / "program").string()}, folder).processor;
-  const int reached = count_points(folder / "fort.7");
-  if (reached != points) throw std::runtime_error(fmt::format("AUTO stopped at point {} of {}", reached, points));
-  result.last = last_solution(folder / "fort.8", settings.dimension * settings.segments);
-  if (details) result.iterations = count_iterations(folder / "fort.9");
+  const int reached = count_points(point_file());
+  if (reached != request.points)
+    throw std::runtime_error(fmt::format("AUTO stopped at point {} of {}", reached, request.points));
+  result.last = last_solution(folder / "fort.8", shape_.dimension * shape_.segments);
+  if (request.diagnostics > 0) result.iterations = count_iterations(folder / "fort.9");
   return result;
 }
 

@@ -21,7 +21,7 @@ struct AutoSolution {
 
 struct AutoRun {
   double processor_seconds = 0.0;
-  int iterations = 0;  ///< of Newton, in all steps; 0 unless details were asked for
+  int iterations = 0;  ///< of Newton, in all steps; 0 unless diagnostics were asked for
   AutoSolution last;
 };
 
@@ -29,14 +29,16 @@ class AutoProgram {
  public:
   /// Writes the problem to a new folder and compiles it with gfortran. Throws std::runtime_error when that fails.
   /// `start` is that of the chain, where there are more than 4 states.
-  AutoProgram(int segments, const Orbit& start);
+  explicit AutoProgram(const Orbit& start);
 
-  /// Continuation to point number `points`. Throws std::runtime_error when AUTO fails or stops before.
-  AutoRun run(int points, bool details) const;
+  /// Throws std::runtime_error when AUTO fails or stops before the last point.
+  AutoRun run(const AutoRequest& request) const;
+  /// The point file of the last run.
+  std::filesystem::path point_file() const { return folder_.path() / "fort.7"; }
 
  private:
   ScratchFolder folder_;
-  AutoSettings settings_;
+  OrbitShape shape_;
 };
 
 }  // namespace tchat::benchmark

@@ -12,6 +12,7 @@
 #include "benchmark/elimination_times.hpp"
 #include "benchmark/matrix_times.hpp"
 #include "benchmark/memory_sizes.hpp"
+#include "benchmark/program_times.hpp"
 #include "benchmark/start_times.hpp"
 #include "benchmark/step_times.hpp"
 #include "benchmark/thread_times.hpp"
@@ -33,7 +34,8 @@ constexpr const char* purpose =
     "  (f) with --auto, time per step of AUTO-07p on the same k-segment problem, divided by ours;\n"
     "  (g) the peak resident size of the program;\n"
     "  (h) start-up: what a run that computes nothing takes;\n"
-    "  (i) one Newton matrix by two threads, compared with one.";
+    "  (i) one Newton matrix by two threads, compared with one;\n"
+    "  (j) a further step of `tchat run` as users run it; with --auto, beside one of AUTO's executable.";
 
 constexpr const char* how_to_read =
     "How to read it. The machine's speed drops out of exponents, units and ratios; microseconds only tell where the\n"
@@ -68,6 +70,11 @@ std::vector<AutoSize> auto_sizes(const Choice& choice) {
           {1, 200, 4, 5}, {1, 800, 4, 5}, {1, 50, 10},    {1, 50, 20},    {1, 50, 50}};
 }
 
+std::vector<tchat::benchmark::ProgramSize> program_sizes(bool quick) {
+  if (quick) return {{1, 50, 4, 20}};
+  return {{1, 50, 4, 2000, 8}, {8, 50, 4, 300, 80}, {1, 200, 4, 500, 8}, {1, 50, 20, 200, 12}};
+}
+
 std::vector<OrbitShape> thread_shapes(bool quick) {
   if (quick) return {walk_shape(1, 10), walk_shape(10, 50)};
   return {walk_shape(1, 50, 50), walk_shape(1, 100, 50), walk_shape(1, 50, 20), walk_shape(1, 40, 20),
@@ -97,6 +104,7 @@ void print_tables(const Choice& choice) {
   }
   if (choice.has('h')) print_start_times(quick ? 2 : 40, quick);
   if (choice.has('i')) print_thread_times(thread_shapes(quick), quick ? 1 : 9);
+  if (choice.has('j')) print_program_times(program_sizes(quick), quick ? 1 : 5, choice.with_auto);
 }
 
 int run(const Choice& choice) {

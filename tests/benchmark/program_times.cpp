@@ -1,0 +1,128 @@
+#include "benchmark/program_times.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <memory>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+
+#include "benchmark/auto_program.hpp"
+#include "benchmark/branch_walk.hpp"
+#include "benchmark/chain_files.hpp"
+#include "benchmark/child_process.hpp"
+#include "benchmark/timing.hpp"
+
+namespace tchat::benchmark {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int first_points = 20;
+
+/// So small that both programs need few iterations, and pass thousands of points on the way to the next special one.
+double small_step(int segments) { return 0.1 * step_length(segments); }
+
+/// alpha at the last point of a p-file or fort.7: the fifth column.
+double alpha_at_end(const fs::path& file) {
+  std::ifstream in(file);
+  double alpha = NAN;
+  for (std::string line; std::getline(in, line);) {
+    std::istringstream words(line);
+    double branch = 0.0;
+    double point = 0.0;
+    double type = 0.0;
+    double label = 0.0;
+    double value = 0.0;
+    if (words >> branch >> point >> type >> label >> value && branch != 0.0) alpha = value;
+  }
+  return alpha;
+}
+
+class TchatProgram {
+ public:
+  explicit TchatProgram(const Orbit& start) {
+    write_chain_files(folder_.path(), start, first_points);
+    step_ = small_step(start.shape.segments);
+    run(1);  // compiles the plugin
+  }
+  double run(int points) const {
+    std::vector<std::string> command{tchat_executable(), "run", "chain", "-q", "NPR=0", "IADS=0"};
+    for (const auto& [name, value] : {std::pair{"DS", step_}, {"DSMAX", 2.0 * step_}, {"DSMIN", 0.5 * step_},
+                                      {"EPSL", newton_settings.tolerance_parameters},
+                                      {"EPSU", newton_settings.tolerance_states}})
+      command.push_back(fmt::format("{}={}", name, value));
+    command.push_back(fmt::format("NMX={}", points));
+    return run_child(command, folder_.path()).processor;
+  }
+  double alpha() const { return alpha_at_end(folder_.path() / "p.chain"); }
+
+ private:
+  ScratchFolder folder_;
+  double step_;
+};
+
+struct Times {
+  double tchat = 0.0;  // seconds, of a further step
+  double autos = 0.0;
+  double ratio = 0.0;
+  double alpha = NAN;
+  double alpha_of_auto = NAN;
+};
+
+Times measure(const ProgramSize& size, int rounds, bool with_auto) {
+  const Orbit start = BranchWalk(walk_shape(size.segments, size.intervals, size.dimension)).point().orbit;
+  const TchatProgram ours(start);
+  std::unique_ptr<AutoProgram> theirs;
+  if (with_auto) theirs = std::make_unique<AutoProgram>(start);
+  AutoRequest request{first_points, small_step(size.segments), 3, 2};
+  std::vector<double> ours_times;
+  std::vector<double> their_times;
+  std::vector<double> ratios;
+  Times result;
+  for (int round = 0; round < rounds; ++round) {
+    const int points = first_points + size.further;
+    const double of_start = ours.run(first_points);
+    ours_times.push_back((ours.run(points) - of_start) / size.further);
+    result.alpha = ours.alpha();
+    if (!theirs) continue;
+    request.points = first_points;
+    const double of_their_start = theirs->run(request).processor_seconds;
+    request.points = points;
+    their_times.push_back((theirs->run(request).processor_seconds - of_their_start) / size.further);
+    result.alpha_of_auto = alpha_at_end(theirs->point_file());
+    ratios.push_back(their_times.back() / ours_times.back());
+  }
+  result.tchat = median(ours_times);
+  result.autos = median(their_times);
+  result.ratio = median(ratios);
+  return result;
+}
+
+}  // namespace
+
+void print_program_times(const std::vector<ProgramSize>& sizes, int rounds, bool with_auto) {
+  fmt::print(
+      "(j) Whole programs as users run them: processor time of a further step, median of {} alternating runs\n\n",
+      rounds);
+  fmt::print("{:>4}{:>6}{:>6}{:>8}{:>14}{:>14}{:>10}{:>10}{:>18}{:>18}\n", "n", "k", "NTST", "steps", "tchat [us]",
+             "AUTO [us]", "ratio", "wanted", "last alpha", "AUTO's");
+  for (const ProgramSize& size : sizes) {
+    const Times t = measure(size, rounds, with_auto);
+    const std::string wanted = size.wanted > 0 ? fmt::format("{}", size.wanted) : "";
+    fmt::print("{:>4}{:>6}{:>6}{:>8}{:>14.1f}", size.dimension, size.segments, size.intervals, size.further,
+               1e6 * t.tchat);
+    if (with_auto)
+      fmt::print("{:>14.1f}{:>10.2f}{:>10}{:>18.9f}{:>18.9f}", 1e6 * t.autos, t.ratio, wanted, t.alpha,
+                 t.alpha_of_auto);
+    fmt::print("\n");
+    std::fflush(stdout);
+  }
+  fmt::print("\n");
+}
+
+}  // namespace tchat::benchmark
