@@ -67,8 +67,9 @@ CutList with_signature(CutList cut, const Signature& signature, bool may_add) {
         fmt::format("--signature has {} index vectors, but the orbit cut at {} has {} segments{}", signature.size(),
                     cut.contacts.size() == 1 ? "the contact" : fmt::format("its {} contacts", cut.contacts.size()),
                     pieces, may_add ? "; further ones are segments of zero duration, as many after each contact" : ""));
-  for (std::size_t k = 0; k < cut.contacts.size(); ++k)
-    cut = with_empty_segments(std::move(cut), k, static_cast<int>(added / cut.contacts.size()));
+  const std::size_t contacts = cut.contacts.size();
+  for (std::size_t k = 0; k < contacts; ++k)
+    cut = with_empty_segments(std::move(cut), k, static_cast<int>(added / contacts));
   for (std::size_t s = 0; s < signature.size(); ++s) {
     NewSegment& segment = cut.segments[s];
     if (!segment.piece.empty() && segment.index.field != signature[s].field)

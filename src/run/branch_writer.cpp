@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "constants/settings_type.hpp"
 #include "continuation/solution_measure.hpp"
 #include "files/labelled_solution.hpp"
 #include "files/number_format.hpp"
@@ -26,10 +27,10 @@ ProblemNames names_of_run(const HybridSystem& system, const RunSettings& setting
   return names;
 }
 
-BranchSection first_section(const HybridSystem& system, BranchWriter::Setup setup) {
+BranchSection first_section(const HybridSystem& system, const BranchWriter::Setup& setup) {
   const ProblemNames names = names_of_run(system, setup.settings);
   const std::vector<PointColumn> columns = point_columns(setup.settings, names);
-  return {system, std::move(setup.settings), std::move(setup.active_parameters), setup.curve_type, 1, names, columns};
+  return {system, setup.settings, setup.active_parameters, setup.curve_type, 1, names, columns};
 }
 
 /// "" when all multipliers are known.
@@ -49,7 +50,7 @@ std::string description_of(const RecordedPoint& point) {
 
 }  // namespace
 
-BranchWriter::BranchWriter(const HybridSystem& system, const CollocationRule& rule, Setup setup, RunFiles& files,
+BranchWriter::BranchWriter(const HybridSystem& system, const CollocationRule& rule, const Setup& setup, RunFiles& files,
                            std::ostream* screen, std::ostream* terminal)
     : rule_(rule),
       files_(files),

@@ -23,10 +23,11 @@ class BranchWriter final : public BranchSink {
   };
 
   /// Arguments: see branch_outputs().
-  BranchWriter(const HybridSystem& system, const CollocationRule& rule, Setup setup, RunFiles& files,
+  BranchWriter(const HybridSystem& system, const CollocationRule& rule, const Setup& setup, RunFiles& files,
                std::ostream* screen, std::ostream* terminal = nullptr);
   BranchWriter(const BranchWriter&) = delete;
   BranchWriter& operator=(const BranchWriter&) = delete;
+  ~BranchWriter() override = default;
 
   /// Points that follow belong to a section of their own, number `branch`, in the direction of `step` (DS).
   /// `correction` are the iterations that led to its first point.

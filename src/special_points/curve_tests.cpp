@@ -16,16 +16,16 @@ bool has_double_multiplier(const CriticalPair& pair) { return std::abs(std::abs(
 
 /// A resonance 1:n of the critical pair.
 struct StrongResonance {
-  PointType type;
   const char* name;
   double cosine;
+  PointType type;
   bool ends_curve;  ///< the multipliers are real beyond it
 };
 
-constexpr StrongResonance resonances[] = {{PointType::resonance_1, "1:1 resonance", 1.0, true},
-                                          {PointType::resonance_2, "1:2 resonance", -1.0, true},
-                                          {PointType::resonance_3, "1:3 resonance", -0.5, false},
-                                          {PointType::resonance_4, "1:4 resonance", 0.0, false}};
+constexpr StrongResonance resonances[] = {{"1:1 resonance", 1.0, PointType::resonance_1, true},
+                                          {"1:2 resonance", -1.0, PointType::resonance_2, true},
+                                          {"1:3 resonance", -0.5, PointType::resonance_3, false},
+                                          {"1:4 resonance", 0.0, PointType::resonance_4, false}};
 
 const StrongResonance& double_resonance(const CriticalPair& pair) { return resonances[pair.cosine() > 0.0 ? 0 : 1]; }
 

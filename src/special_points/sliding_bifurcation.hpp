@@ -13,9 +13,12 @@
 /// of contacts, of h_x f at the ends of segments, and of SlidingOnsetTest.
 #pragma once
 
+#include <tchat/problem.h>
+
 #include <string>
 #include <vector>
 
+#include "bvp/defining_system.hpp"
 #include "special_points/test_function.hpp"
 
 namespace tchat {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "bvp/mesh_adaptation.hpp"
+#include "problem_type/problem_type.hpp"
 #include "text/user_error.hpp"
 
 namespace tchat {

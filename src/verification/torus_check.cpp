@@ -43,7 +43,8 @@ MatrixXd following_states(const TorusSystem& torus, const Orbit& x, const Orbit&
       states.col(s) = Eigen::Map<const VectorXd>(returns.start(s + 1), n);
       continue;
     }
-    const double phi = offset + static_cast<double>(s / m) / torus.orbits() + TorusSystem::rotation(x);
+    const int orbit = s / m;
+    const double phi = offset + static_cast<double>(orbit) / torus.orbits() + TorusSystem::rotation(x);
     states.col(s) = return_at(torus, x, phi).states.col(0) + torus.winding().returns;
   }
   return states;

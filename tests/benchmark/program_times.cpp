@@ -52,7 +52,9 @@ class TchatProgram {
   }
   double run(int points) const {
     std::vector<std::string> command{tchat_executable(), "run", "chain", "-q", "NPR=0", "IADS=0"};
-    for (const auto& [name, value] : {std::pair{"DS", step_}, {"DSMAX", 2.0 * step_}, {"DSMIN", 0.5 * step_},
+    for (const auto& [name, value] : {std::pair{"DS", step_},
+                                      {"DSMAX", 2.0 * step_},
+                                      {"DSMIN", 0.5 * step_},
                                       {"EPSL", newton_settings.tolerance_parameters},
                                       {"EPSU", newton_settings.tolerance_states}})
       command.push_back(fmt::format("{}={}", name, value));

@@ -12,10 +12,10 @@ namespace tchat::benchmark {
 
 struct ProgramSize {
   int segments;
-  int intervals;     ///< NTST
-  int dimension;     ///< n; above 4 with one segment
-  int further;       ///< how many steps the long run makes more than the short one
-  double wanted = 0; ///< how many times AUTO's step is to take ours; 0: nothing is
+  int intervals;      ///< NTST
+  int dimension;      ///< n; above 4 with one segment
+  int further;        ///< how many steps the long run makes more than the short one
+  double wanted = 0;  ///< how many times AUTO's step is to take ours; 0: nothing is
 };
 
 /// With AUTO, or of this program alone.
