@@ -105,7 +105,7 @@ AutoRun AutoProgram::run(const AutoRequest& request) const {
   for (const char* file : {"fort.7", "fort.8", "fort.9"}) fs::remove(folder / file);
   AutoRun result;
   result.processor_seconds = run_child({(folder / "program").string()}, folder).processor;
-  const int reached = count_points(point_file());
+  const int reached = count_points(folder / "fort.7");
   if (reached != request.points)
     throw std::runtime_error(fmt::format("AUTO stopped at point {} of {}", reached, request.points));
   result.last = last_solution(folder / "fort.8", shape_.dimension * shape_.segments);

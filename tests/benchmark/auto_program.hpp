@@ -33,8 +33,6 @@ class AutoProgram {
 
   /// Throws std::runtime_error when AUTO fails or stops before the last point.
   AutoRun run(const AutoRequest& request) const;
-  /// The point file of the last run.
-  std::filesystem::path point_file() const { return folder_.path() / "fort.7"; }
 
  private:
   ScratchFolder folder_;

@@ -35,7 +35,7 @@ constexpr const char* purpose =
     "  (g) the peak resident size of the program;\n"
     "  (h) start-up: what a run that computes nothing takes;\n"
     "  (i) one Newton matrix by two threads, compared with one;\n"
-    "  (j) a further step of `tchat run` as users run it; with --auto, beside one of AUTO's executable.";
+    "  (j) a further step of `tchat run`, files and all; with --auto, beside one of AUTO's executable.";
 
 constexpr const char* how_to_read =
     "How to read it. The machine's speed drops out of exponents, units and ratios; microseconds only tell where the\n"
@@ -51,7 +51,9 @@ constexpr const char* how_to_read =
     "branches at the same alpha; AUTO's file has ten digits. (e) Rates count multiplications and additions; dgemm is\n"
     "that of the BLAS that is installed. (g) Read when the program ends, its libraries included. (i) Wall-clock "
     "times,\n"
-    "for a machine with two processors that do nothing else. Compare only numbers of an optimised build.";
+    "for a machine with two processors that do nothing else. (j) AUTO looks for no special points here, tchat for all "
+    "that\nit knows; the last alphas show that both followed the same branch. Compare only numbers of an optimised "
+    "build.";
 
 struct Choice {
   bool quick = false;

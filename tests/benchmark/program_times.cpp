@@ -4,10 +4,7 @@
 
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <memory>
-#include <sstream>
-#include <stdexcept>
 #include <string>
 
 #include "benchmark/auto_program.hpp"
@@ -15,33 +12,16 @@
 #include "benchmark/chain_files.hpp"
 #include "benchmark/child_process.hpp"
 #include "benchmark/timing.hpp"
+#include "files/point_file_reader.hpp"
 
 namespace tchat::benchmark {
 
 namespace {
 
-namespace fs = std::filesystem;
-
 constexpr int first_points = 20;
 
 /// So small that both programs need few iterations, and pass thousands of points on the way to the next special one.
 double small_step(int segments) { return 0.1 * step_length(segments); }
-
-/// alpha at the last point of a p-file or fort.7: the fifth column.
-double alpha_at_end(const fs::path& file) {
-  std::ifstream in(file);
-  double alpha = NAN;
-  for (std::string line; std::getline(in, line);) {
-    std::istringstream words(line);
-    double branch = 0.0;
-    double point = 0.0;
-    double type = 0.0;
-    double label = 0.0;
-    double value = 0.0;
-    if (words >> branch >> point >> type >> label >> value && branch != 0.0) alpha = value;
-  }
-  return alpha;
-}
 
 class TchatProgram {
  public:
@@ -61,7 +41,9 @@ class TchatProgram {
     command.push_back(fmt::format("NMX={}", points));
     return run_child(command, folder_.path()).processor;
   }
-  double alpha() const { return alpha_at_end(folder_.path() / "p.chain"); }
+  double alpha() const {
+    return read_point_file((folder_.path() / "p.chain").string()).sections.back().rows.back().values.front();
+  }
 
  private:
   ScratchFolder folder_;
@@ -95,8 +77,9 @@ Times measure(const ProgramSize& size, int rounds, bool with_auto) {
     request.points = first_points;
     const double of_their_start = theirs->run(request).processor_seconds;
     request.points = points;
-    their_times.push_back((theirs->run(request).processor_seconds - of_their_start) / size.further);
-    result.alpha_of_auto = alpha_at_end(theirs->point_file());
+    const AutoRun run = theirs->run(request);
+    their_times.push_back((run.processor_seconds - of_their_start) / size.further);
+    result.alpha_of_auto = run.last.alpha;
     ratios.push_back(their_times.back() / ours_times.back());
   }
   result.tchat = median(ours_times);
@@ -108,9 +91,7 @@ Times measure(const ProgramSize& size, int rounds, bool with_auto) {
 }  // namespace
 
 void print_program_times(const std::vector<ProgramSize>& sizes, int rounds, bool with_auto) {
-  fmt::print(
-      "(j) Whole programs as users run them: processor time of a further step, median of {} alternating runs\n\n",
-      rounds);
+  fmt::print("(j) Whole programs: processor time of a further step, median of {} alternating runs\n\n", rounds);
   fmt::print("{:>4}{:>6}{:>6}{:>8}{:>14}{:>14}{:>10}{:>10}{:>18}{:>18}\n", "n", "k", "NTST", "steps", "tchat [us]",
              "AUTO [us]", "ratio", "wanted", "last alpha", "AUTO's");
   for (const ProgramSize& size : sizes) {

@@ -1,6 +1,6 @@
-/// Table (j): whole programs as users run them. `tchat run -q` on a plugin and its files, and AUTO-07p's executable on
-/// the same orbit, mesh, tolerances and fixed step: each looks for the special points that it looks for unless told
-/// otherwise, adapts its mesh every third step and writes what it writes.
+/// Table (j): whole programs. `tchat run -q` as users run it, on a plugin and its files, looks for all special points
+/// that it knows; AUTO-07p's executable on the same orbit, mesh, tolerances and fixed step has its easiest work: no
+/// special points (ILP = ISP = 0), derivatives by hand (JAC = 1). Both adapt the mesh every third step and write files.
 ///
 /// The time of a further step is the difference of two lengths of a run, so that the start of the programs drops out.
 /// Runs alternate; the middle one of all rounds counts.
