@@ -12,6 +12,8 @@
 namespace tchat {
 
 /// Type numbers of AUTO (src/docs/files.md); on two-parameter curves the file adds a tens digit.
+/// A new type of points on curves of one kind takes a number that has the curve's digit already, as -32 has, and ends
+/// in no number of another type of these curves: readers know it by that alone.
 enum class PointType {
   ordinary = 0,
   equilibrium_branch_point = 1,
