@@ -35,14 +35,13 @@ std::vector<Violation> inadmissibilities(const HybridSystem& system, const Signa
 
     for (const int event : monitored[index]) {
       Violation worst{Violation::event_crossed, x.shape.stored_nodes() == 1 ? 0 : s + 1, event, 0.0, 0.0};
-      const int first = is_pinned_start(system, signature, x, s, event) ? 1 : 0;
-      const int last = event == v.event ? end_node - 1 : end_node;
       const double scale = event_scale(system, x, event);
-      for (int k = first; k <= last; ++k) {
-        const double h = system.event(event, x.node(s, k), par);
-        if (h < worst.value) worst.value = h, worst.tau = x.tau(k);
-      }
-      for (const EventMinimum& dip : interior_minima(system, signature, rule, x, s, event, -surely_negative * scale)) {
+      const EventCourse course = event_course(system, signature, rule, x, s, event, -surely_negative * scale);
+      const bool leaves_out_start = course.at_nodes(0) < 0.0 && is_pinned_start(system, signature, x, s, event);
+      const int last = event == v.event ? end_node - 1 : end_node;
+      for (int k = leaves_out_start ? 1 : 0; k <= last; ++k)
+        if (const double h = course.at_nodes(k); h < worst.value) worst.value = h, worst.tau = x.tau(k);
+      for (const EventMinimum& dip : course.minima) {
         const double uncertainty =
             2.0 * error_of_states * event_at(system, event, dip.state.data(), par).gradient.lpNorm<1>();
         if (dip.value < std::min(worst.value, -std::max(surely_negative * scale, uncertainty)))

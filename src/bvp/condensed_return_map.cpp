@@ -126,7 +126,7 @@ void CondensedReturnMap::put_points(const CondensedSystem& condensed, const Orbi
 }
 
 IntervalBasis CondensedReturnMap::basis(const CondensedSystem& condensed, int first, int last) const {
-  return {condensed.rule().value.data(), shape_.collocation, n_, last - first};
+  return {condensed.rule().value.data(), shape_.collocation, shape_.collocation, n_, last - first};
 }
 
 /// Collocation rows: slope v - h T (f_x v + f_p q) - h sigma f, with the weights w; minus their derivative is that of

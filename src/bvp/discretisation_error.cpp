@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "linear_algebra/array_kernel.hpp"
+
 namespace tchat {
 
 namespace {
@@ -12,9 +14,12 @@ using Eigen::VectorXd;
 
 /// The largest component of the residual at the ends of the intervals of segment s.
 double largest_residual(const HybridSystem& system, int field, const Orbit& x, const CollocationRule& rule, int s) {
+  const int n = x.shape.dimension;
   const int c = x.shape.collocation;
-  VectorXd f(x.shape.dimension);
-  VectorXd slope(x.shape.dimension);
+  const Eigen::MatrixXd of_basis = rule.end_slope.transpose();  // at the two ends
+  Eigen::MatrixXd slopes(n, 2 * x.shape.intervals);
+  array_functions().interpolate({of_basis.data(), 2, c, n, x.shape.intervals}, x.node(s, 0), slopes.data(), n);
+  VectorXd f(n);
   double largest = 0.0;
   for (int j = 0; j <= x.shape.intervals; ++j) {
     system.value(FunctionKind::field, field, x.node(s, j * c), x.par.data(), f.data());
@@ -25,9 +30,8 @@ double largest_residual(const HybridSystem& system, int field, const Orbit& x, c
       if (interval < 0 || interval >= x.shape.intervals) continue;
       const auto at = static_cast<std::size_t>(interval);
       const double time = (x.mesh[at + 1] - x.mesh[at]) * x.duration(s);
-      const auto nodes = x.states.middleCols(s * x.shape.nodes() + interval * c, c + 1);
-      slope.noalias() = nodes.lazyProduct(rule.end_slope.col(side));
-      largest = std::max(largest, (slope - time * f).cwiseAbs().maxCoeff());
+      const double* slope = slopes.col(2 * interval + side).data();
+      for (int a = 0; a < n; ++a) largest = std::max(largest, std::abs(slope[a] - time * f(a)));
     }
   }
   return largest;

@@ -6,7 +6,9 @@
 #include <cmath>
 
 #include "bvp/orbit_accuracy.hpp"
+#include "bvp/with_dimension.hpp"
 #include "hybrid/event_at.hpp"
+#include "linear_algebra/array_kernel.hpp"
 
 namespace tchat {
 
@@ -29,12 +31,8 @@ class EventAlongSegment {
         s_(s),
         event_(event),
         values_(Vector::Constant(x.shape.nodes(), NAN)),
-        gradients_(Eigen::MatrixXd::Constant(x.shape.dimension, x.shape.nodes(), NAN)),
-        rate_(x.shape.dimension),
-        slopes_at_nodes_(x.shape.collocation + 1, x.shape.collocation + 1) {
-    for (int i = 0; i <= x.shape.collocation; ++i)
-      slopes_at_nodes_.col(i) = basis_at(static_cast<double>(i) / x.shape.collocation).slopes;
-    find_gradients();
+        slopes_(x.shape.collocation + 1, x.shape.intervals) {
+    find_slopes(find_gradients());
   }
 
   double length(int j) const { return x_.mesh[static_cast<std::size_t>(j + 1)] - x_.mesh[static_cast<std::size_t>(j)]; }
@@ -46,10 +44,10 @@ class EventAlongSegment {
   }
 
   /// The same at node i of the interval.
-  double slope_at_node(int j, int i) {
-    rate_.noalias() = nodes(j).lazyProduct(slopes_at_nodes_.col(i));
-    return gradients_.col(j * x_.shape.collocation + i).dot(rate_) / length(j);
-  }
+  double slope_at_node(int j, int i) const { return slopes_(i, j); }
+
+  /// h at all nodes.
+  const Vector& values() const { return values_; }
 
   /// h at sigma of interval j, from the polynomial.
   double value(int j, double sigma) const {
@@ -80,15 +78,38 @@ class EventAlongSegment {
   }
 
  private:
-  /// All in one call; where one point spoils it for others (an exception makes all of them unknown), each on its own.
-  void find_gradients() {
+  /// Those of h at the nodes, one a column, and its values. All in one call; where one point spoils it for others (an
+  /// exception makes all of them unknown), each on its own.
+  Eigen::MatrixXd find_gradients() {
     const int nodes = x_.shape.nodes();
+    Eigen::MatrixXd gradients = Eigen::MatrixXd::Constant(x_.shape.dimension, nodes, NAN);
     system_.first_at_points(FunctionKind::event, event_, nodes, x_.node(s_, 0), par(), {}, values_.data(),
-                            gradients_.data(), nullptr);
+                            gradients.data(), nullptr);
+    if (values_.allFinite() && gradients.allFinite()) return gradients;
     for (int k = 0; k < nodes; ++k)
-      if (!std::isfinite(values_(k)) || !gradients_.col(k).allFinite())
-        system_.first(FunctionKind::event, event_, x_.node(s_, k), par(), {}, &values_(k), gradients_.col(k).data(),
+      if (!std::isfinite(values_(k)) || !gradients.col(k).allFinite())
+        system_.first(FunctionKind::event, event_, x_.node(s_, k), par(), {}, &values_(k), gradients.col(k).data(),
                       nullptr);
+    return gradients;
+  }
+
+  void find_slopes(const Eigen::MatrixXd& gradients) {
+    const int n = x_.shape.dimension;
+    const int c = x_.shape.collocation;
+    Eigen::MatrixXd of_basis(c + 1, c + 1);
+    for (int i = 0; i <= c; ++i) of_basis.row(i) = basis_at(static_cast<double>(i) / c).slopes;
+    Eigen::MatrixXd rates(n, (c + 1) * x_.shape.intervals);
+    array_functions().interpolate({of_basis.data(), c + 1, c, n, x_.shape.intervals}, x_.node(s_, 0), rates.data(), n);
+    with_dimension(n, [&](auto entries) {
+      const double* rate = rates.data();
+      for (int j = 0; j < x_.shape.intervals; ++j)
+        for (int i = 0; i <= c; ++i, rate += entries) {
+          const double* gradient = gradients.col(j * c + i).data();
+          double slope = 0.0;
+          for (int a = 0; a < entries; ++a) slope += gradient[a] * rate[a];
+          slopes_(i, j) = slope / length(j);
+        }
+    });
   }
 
   const double* par() const { return x_.par.data(); }
@@ -147,10 +168,8 @@ class EventAlongSegment {
   const Orbit& x_;
   int s_;
   int event_;
-  Vector values_;              // of h at the nodes
-  Eigen::MatrixXd gradients_;  // a column for each node
-  Vector rate_;
-  Eigen::MatrixXd slopes_at_nodes_;  // of the basis, a column for each node
+  Vector values_;           // of h at the nodes
+  Eigen::MatrixXd slopes_;  // d h / d tau at the nodes of each interval, which is a column
 };
 
 /// A place where h turns from falling to rising: inside interval j at sigma.
@@ -167,7 +186,7 @@ struct Minima {
   bool last_hangs_on_end = false;
 };
 
-Minima find_minima(EventAlongSegment& along, int intervals, int c) {
+Minima find_minima(const EventAlongSegment& along, int intervals, int c) {
   Minima result;
   bool risen = false;
   double before = 0.0;
@@ -213,34 +232,33 @@ bool is_pinned_start(const HybridSystem& system, const Signature& signature, con
   return sizes > 0.0 && std::abs(std::abs(composed.dot(terminal)) / sizes - 1.0) < structural_tolerance;
 }
 
-std::vector<EventMinimum> interior_minima(const HybridSystem& system, const Signature& signature,
-                                          const CollocationRule& rule, const Orbit& x, int s, int event, double below) {
-  std::vector<EventMinimum> result;
-  if (!(x.duration(s) > 0.0)) return result;
+EventCourse event_course(const HybridSystem& system, const Signature& signature, const CollocationRule& rule,
+                         const Orbit& x, int s, int event, double below) {
   const IndexVector& v = signature[static_cast<std::size_t>(s)];
-  EventAlongSegment along(system, v.field, rule, x, s, event);
+  const EventAlongSegment along(system, v.field, rule, x, s, event);
+  EventCourse course{along.values(), {}};
+  if (!(x.duration(s) > 0.0)) return course;
   const Minima minima = find_minima(along, x.shape.intervals, x.shape.collocation);
   for (std::size_t i = 0; i < minima.list.size(); ++i) {
     const Minimum& at = minima.list[i];
     if (along.value(at.interval, at.sigma) >= below) continue;
     if (i == 0 && minima.first_hangs_on_start && is_pinned_start(system, signature, x, s, event)) continue;
     if (i + 1 == minima.list.size() && minima.last_hangs_on_end && v.event == event) continue;
-    result.push_back(along.polished(at.interval, at.sigma));
+    course.minima.push_back(along.polished(at.interval, at.sigma));
   }
-  return result;
+  return course;
 }
 
 std::vector<EventMinimum> least_candidates(const DefiningSystem& system, const CollocationRule& rule, const Orbit& x,
                                            int s, int event) {
   std::vector<EventMinimum> candidates;
+  const EventCourse course = event_course(system.system(), system.signature(), rule, x, s, event);
   const auto add_node = [&](int k) {
-    const Vector state = Vector::Map(x.node(s, k), x.shape.dimension);
-    candidates.push_back({x.tau(k), system.system().event(event, x.node(s, k), x.par.data()), state});
+    candidates.push_back({x.tau(k), course.at_nodes(k), Vector::Map(x.node(s, k), x.shape.dimension)});
   };
   if (!is_pinned_start(system.system(), system.signature(), x, s, event)) add_node(0);
   if (system.signature()[static_cast<std::size_t>(s)].event != event) add_node(x.shape.nodes() - 1);
-  const std::vector<EventMinimum> inside = interior_minima(system.system(), system.signature(), rule, x, s, event);
-  candidates.insert(candidates.end(), inside.begin(), inside.end());
+  candidates.insert(candidates.end(), course.minima.begin(), course.minima.end());
   return candidates;
 }
 

@@ -31,11 +31,16 @@ struct EventMinimum {
 /// by structure (h = 0 there, gradient of h o g parallel to that of the previous terminal event)?
 bool is_pinned_start(const HybridSystem& system, const Signature& signature, const Orbit& x, int s, int event);
 
-/// The minima of event function `event` inside segment s (from 0), in order, where h is less than `below` on the
-/// polynomial; none where the segment lasts no positive time.
-std::vector<EventMinimum> interior_minima(const HybridSystem& system, const Signature& signature,
-                                          const CollocationRule& rule, const Orbit& x, int s, int event,
-                                          double below = std::numeric_limits<double>::infinity());
+/// An event function along a segment.
+struct EventCourse {
+  Eigen::VectorXd at_nodes;          ///< h at every node
+  std::vector<EventMinimum> minima;  ///< inside the segment, in order
+};
+
+/// Of event function `event` along segment s (from 0), with the minima where h is less than `below` on the polynomial;
+/// none where the segment lasts no positive time.
+EventCourse event_course(const HybridSystem& system, const Signature& signature, const CollocationRule& rule,
+                         const Orbit& x, int s, int event, double below = std::numeric_limits<double>::infinity());
 
 /// The ends that are not pinned, then the interior minima in order.
 std::vector<EventMinimum> least_candidates(const DefiningSystem& system, const CollocationRule& rule, const Orbit& x,

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "bvp/with_dimension.hpp"
+#include "linear_algebra/array_kernel.hpp"
 
 namespace tchat {
 
@@ -24,22 +24,26 @@ constexpr double least_share = 1e-3;
 /// Estimates of |u^(c+1)| of every component of segment s on every interval: n x N. On a single interval the jump of
 /// the c-th derivative is unknown; it is estimated as if the derivative fell to zero over the interval.
 Eigen::MatrixXd highest_derivatives(const Orbit& x, const CollocationRule& rule, int s) {
-  const OrbitShape& shape = x.shape;
-  const int c = shape.collocation;
-  const int intervals = shape.intervals;
-  Eigen::MatrixXd level(shape.dimension, intervals);  // c-th derivatives, constant on each interval
+  const int n = x.shape.dimension;
+  const int c = x.shape.collocation;
+  const int intervals = x.shape.intervals;
+  Eigen::MatrixXd level(n, intervals);  // c-th derivatives, constant on each interval
+  array_functions().interpolate({rule.highest.data(), 1, c, n, intervals}, x.node(s, 0), level.data(), n);
   for (int j = 0; j < intervals; ++j) {
-    const auto nodes = x.states.middleCols(s * shape.nodes() + j * c, c + 1);
-    level.col(j) = nodes * rule.highest / std::pow(length(x.mesh, j), c);
+    const double power = std::pow(length(x.mesh, j), c);
+    for (int a = 0; a < n; ++a) level(a, j) /= power;
   }
   if (intervals == 1) return level.cwiseAbs() / length(x.mesh, 0);
-  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(shape.dimension, intervals);
-  Eigen::MatrixXd jump(shape.dimension, intervals - 1);  // at interior mesh points
-  for (int j = 0; j + 1 < intervals; ++j)
-    jump.col(j) = (level.col(j + 1) - level.col(j)).cwiseAbs() / (0.5 * (length(x.mesh, j) + length(x.mesh, j + 1)));
-  result.col(0) = jump.col(0);
-  result.col(intervals - 1) = jump.col(intervals - 2);
-  for (int j = 1; j + 1 < intervals; ++j) result.col(j) = 0.5 * (jump.col(j - 1) + jump.col(j));
+  // Of the jumps at the mesh points at the two ends of an interval the mean; where there is one, that one.
+  Eigen::MatrixXd result(n, intervals);
+  for (int j = 0; j + 1 < intervals; ++j) {
+    const double distance = 0.5 * (length(x.mesh, j) + length(x.mesh, j + 1));
+    for (int a = 0; a < n; ++a) {
+      const double jump = std::abs(level(a, j + 1) - level(a, j)) / distance;
+      result(a, j) = j == 0 ? jump : 0.5 * (result(a, j) + jump);
+      result(a, j + 1) = jump;
+    }
+  }
   return result;
 }
 
@@ -170,20 +174,17 @@ MeshTransfer::MeshTransfer(const OrbitShape& from, const std::vector<double>& fr
   }
 }
 
+void MeshTransfer::operator()(const Eigen::MatrixXd& states, Eigen::MatrixXd& result) const {
+  result.resize(to_.dimension, to_.columns());
+  const NodeCombinations combinations{weights_.data(), first_.data(), to_.nodes(), from_.collocation, to_.dimension};
+  for (int s = 0; s < to_.segments; ++s)
+    array_functions().combine_nodes(combinations, states.col(s * from_.nodes()).data(),
+                                    result.col(s * to_.nodes()).data());
+}
+
 Eigen::MatrixXd MeshTransfer::operator()(const Eigen::MatrixXd& states) const {
-  Eigen::MatrixXd result(to_.dimension, to_.columns());
-  with_dimension(to_.dimension, [&](auto n) {
-    const int last = from_.collocation;
-    double* value = result.data();
-    for (int s = 0; s < to_.segments; ++s)
-      for (int k = 0; k < to_.nodes(); ++k, value += n) {
-        const double* nodes = states.col(s * from_.nodes() + first_[index(k)]).data();
-        const double* weights = weights_.col(k).data();
-        for (int a = 0; a < n; ++a) value[a] = weights[0] * nodes[a];
-        for (int i = 1; i <= last; ++i)
-          for (int a = 0; a < n; ++a) value[a] += weights[i] * nodes[i * n + a];
-      }
-  });
+  Eigen::MatrixXd result;
+  (*this)(states, result);
   return result;
 }
 

@@ -28,6 +28,8 @@ class MeshTransfer {
   MeshTransfer(const OrbitShape& from, const std::vector<double>& from_mesh, const OrbitShape& to,
                const std::vector<double>& to_mesh, const CollocationRule& rule);
   Eigen::MatrixXd operator()(const Eigen::MatrixXd& states) const;
+  /// Into a matrix of its own, whose space is used again.
+  void operator()(const Eigen::MatrixXd& states, Eigen::MatrixXd& result) const;
 
  private:
   OrbitShape from_;

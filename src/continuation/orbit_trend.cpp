@@ -1,6 +1,9 @@
 #include "continuation/orbit_trend.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <type_traits>
 
 namespace tchat {
 
@@ -12,53 +15,142 @@ constexpr double growth = 1.5;
 /// A state whose range is a smaller share of it does not move.
 constexpr double rounding = 1e-10;
 
-Eigen::MatrixXd deviation(const Eigen::MatrixXd& states, int orbits) {
-  if (orbits == 1) return states.colwise() - states.rowwise().mean();
-  const Eigen::Map<const Eigen::MatrixXd> returns(states.data(), states.size() / orbits, orbits);
-  Eigen::MatrixXd result(states.rows(), states.cols());
-  Eigen::Map<Eigen::MatrixXd>(result.data(), returns.rows(), orbits) = returns.colwise() - returns.rowwise().mean();
-  return result;
+/// What deviates from its mean along each row: a state over the orbit, or a node's state over the returns of a torus.
+Eigen::Map<const Eigen::MatrixXd> rows_of(const Eigen::MatrixXd& states, int orbits) {
+  const Eigen::Index rows = orbits == 1 ? states.rows() : states.size() / orbits;
+  return {states.data(), rows, states.size() / rows};
+}
+
+/// Work on rows first .. first + count - 1: four at a time, which lie side by side, the rest one by one.
+template <class Work>
+void for_rows(Eigen::Index rows, Work&& work) {
+  Eigen::Index first = 0;
+  for (; first + 4 <= rows; first += 4) work(std::integral_constant<std::size_t, 4>{}, first);
+  for (; first < rows; ++first) work(std::integral_constant<std::size_t, 1>{}, first);
+}
+
+/// sum (x - mean x) (y - mean y), and those of the squares.
+struct Products {
+  double both = 0.0, x = 0.0, y = 0.0;
+};
+
+Products products_of_deviations(const Eigen::MatrixXd& x, const Eigen::MatrixXd& y, int orbits) {
+  const auto of_x = rows_of(x, orbits);
+  const auto of_y = rows_of(y, orbits);
+  const Eigen::Index rows = of_x.rows();
+  const Eigen::Index columns = of_x.cols();
+  Products sums;
+  for_rows(rows, [&](auto count, Eigen::Index first) {
+    std::array<double, count> mean_x{}, mean_y{}, both{}, square_x{}, square_y{};
+    const double* u = of_x.data() + first;
+    const double* v = of_y.data() + first;
+    for (Eigen::Index k = 0; k < columns; ++k)
+      for (std::size_t a = 0; a < count; ++a) {
+        mean_x[a] += u[k * rows + static_cast<Eigen::Index>(a)];
+        mean_y[a] += v[k * rows + static_cast<Eigen::Index>(a)];
+      }
+    for (std::size_t a = 0; a < count; ++a) {
+      mean_x[a] /= static_cast<double>(columns);
+      mean_y[a] /= static_cast<double>(columns);
+    }
+    for (Eigen::Index k = 0; k < columns; ++k)
+      for (std::size_t a = 0; a < count; ++a) {
+        const double of_u = u[k * rows + static_cast<Eigen::Index>(a)] - mean_x[a];
+        const double of_v = v[k * rows + static_cast<Eigen::Index>(a)] - mean_y[a];
+        both[a] += of_u * of_v;
+        square_x[a] += of_u * of_u;
+        square_y[a] += of_v * of_v;
+      }
+    for (std::size_t a = 0; a < count; ++a) {
+      sums.both += both[a];
+      sums.x += square_x[a];
+      sums.y += square_y[a];
+    }
+  });
+  return sums;
+}
+
+struct Range {
+  double low, high;
+  double size() const { return high - low; }
+};
+
+Range range_of_state(const Orbit& x, int k) {
+  const auto values = x.states.row(k);
+  Range range{values(0), values(0)};
+  for (Eigen::Index i = 1; i < values.size(); ++i) {
+    range.low = std::min(range.low, values(i));
+    range.high = std::max(range.high, values(i));
+  }
+  return range;
+}
+
+/// Of the deviations of state k.
+double deviation_range(const Orbit& x, int k, int orbits) {
+  if (orbits == 1) return range_of_state(x, k).size();
+  const auto returns = rows_of(x.states, orbits);
+  Range range{INFINITY, -INFINITY};
+  for (Eigen::Index row = k; row < returns.rows(); row += x.shape.dimension) {
+    const double mean = returns.row(row).mean();
+    range.low = std::min(range.low, returns.row(row).minCoeff() - mean);
+    range.high = std::max(range.high, returns.row(row).maxCoeff() - mean);
+  }
+  return range.size();
 }
 
 }  // namespace
 
-Eigen::VectorXd state_ranges(const Orbit& x) { return x.states.rowwise().maxCoeff() - x.states.rowwise().minCoeff(); }
-
-Eigen::VectorXd deviation_ranges(const Orbit& x, int orbits) {
-  const Eigen::MatrixXd d = deviation(x.states, orbits);
-  return d.rowwise().maxCoeff() - d.rowwise().minCoeff();
+Eigen::VectorXd state_ranges(const Orbit& x) {
+  return Eigen::VectorXd::NullaryExpr(x.shape.dimension,
+                                      [&](Eigen::Index k) { return deviation_range(x, static_cast<int>(k), 1); });
 }
 
 double deviation_cosine(const Orbit& x, const Orbit& y, int orbits) {
-  const Eigen::MatrixXd a = deviation(x.states, orbits);
-  const Eigen::MatrixXd b = deviation(y.states, orbits);
-  const double sizes = a.norm() * b.norm();
-  return sizes > 0.0 ? a.cwiseProduct(b).sum() / sizes : 0.0;
+  const Products sums = products_of_deviations(x.states, y.states, orbits);
+  const double sizes = std::sqrt(sums.x) * std::sqrt(sums.y);
+  return sizes > 0.0 ? sums.both / sizes : 0.0;
 }
 
 double deviation_growth(const Orbit& x, const Eigen::MatrixXd& direction, int orbits) {
-  const Eigen::MatrixXd a = deviation(x.states, orbits);
-  return a.cwiseProduct(deviation(direction, orbits)).sum() / a.squaredNorm();
+  const Products sums = products_of_deviations(x.states, direction, orbits);
+  return sums.both / sums.x;
 }
 
 void OrbitTrend::add(const Orbit& x, double parameter) {
   const bool first = largest_.size() == 0;
-  const Eigen::VectorXd ranges = deviation_ranges(x, orbits_);
-  const Eigen::VectorXd sizes = x.states.cwiseAbs().rowwise().maxCoeff();
-  largest_ = first ? ranges : Eigen::VectorXd(largest_.cwiseMax(ranges));
-  sizes_ = first ? sizes : Eigen::VectorXd(sizes_.cwiseMax(sizes));
+  if (first) {
+    largest_.setZero(x.shape.dimension);
+    sizes_.setZero(x.shape.dimension);
+  }
+  const Eigen::Index rows = x.states.rows();
+  for_rows(rows, [&](auto count, Eigen::Index begin) {
+    std::array<double, count> low, high;
+    low.fill(INFINITY);
+    high.fill(-INFINITY);
+    const double* u = x.states.data() + begin;
+    for (Eigen::Index k = 0; k < x.states.cols(); ++k)
+      for (std::size_t a = 0; a < count; ++a) {
+        low[a] = std::min(low[a], u[k * rows + static_cast<Eigen::Index>(a)]);
+        high[a] = std::max(high[a], u[k * rows + static_cast<Eigen::Index>(a)]);
+      }
+    for (std::size_t a = 0; a < count; ++a) {
+      const Eigen::Index k = begin + static_cast<Eigen::Index>(a);
+      const double range = orbits_ == 1 ? high[a] - low[a] : deviation_range(x, static_cast<int>(k), orbits_);
+      largest_(k) = std::max(largest_(k), range);
+      sizes_(k) = std::max({sizes_(k), std::abs(low[a]), std::abs(high[a])});
+    }
+  });
   if (first || !(std::abs(parameter - still_.parameter) <= standstill * (1.0 + std::abs(parameter))))
     still_ = {parameter, x.period()};
   last_ = {parameter, x.period()};
 }
 
 bool OrbitTrend::has_shrunk(const Orbit& x, double share) const {
-  const Eigen::VectorXd ranges = deviation_ranges(x, orbits_);
   bool moves = false;
-  for (Eigen::Index i = 0; i < largest_.size(); ++i) {
-    if (largest_(i) <= rounding * (1.0 + sizes_(i))) continue;
+  for (int k = 0; k < largest_.size(); ++k) {
+    if (largest_(k) <= rounding * (1.0 + sizes_(k))) continue;
     moves = true;
-    if (ranges(i) > share * largest_(i)) return false;
+    if (deviation_range(x, k, orbits_) > share * largest_(k)) return false;
   }
   return moves;
 }

@@ -14,9 +14,6 @@ namespace tchat {
 /// Largest minus least value of each state over the orbit, n entries.
 Eigen::VectorXd state_ranges(const Orbit& x);
 
-/// The same of the states' deviations.
-Eigen::VectorXd deviation_ranges(const Orbit& x, int orbits);
-
 /// Cosine of the angle between the states' deviations from their means, nodes being equal; both orbits on one mesh.
 /// About -1 where a step has led through an equilibrium: beyond it the branch consists of the same orbits, begun half a
 /// turn later.
@@ -39,7 +36,7 @@ class OrbitTrend {
   /// An accepted point of the branch; `parameter` is the principal one.
   void add(const Orbit& x, double parameter);
 
-  /// Is every state's range at most this share of its largest one so far?
+  /// Is every state's range of deviations at most this share of its largest one so far?
   bool has_shrunk(const Orbit& x, double share) const;
 
   /// Nothing unless the period is positive and has grown by more than half since the parameter stands still.

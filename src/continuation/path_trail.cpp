@@ -79,10 +79,15 @@ void PathTrail::add(const PathPoint& point, const std::vector<int>& free_paramet
 
 void PathTrail::change_mesh(const std::vector<double>& mesh, const MeshTransfer& transfer) {
   for (int k = 0; k < count_; ++k) {
-    auto moved = std::make_shared<Mark>(mark(k));
-    moved->place.states = transfer(moved->place.states);
-    moved->tangent.states = transfer(moved->tangent.states);
-    marks_[index(k)] = std::move(moved);
+    const std::shared_ptr<Mark> moved = unused_mark();
+    const Mark& old = mark(k);
+    transfer(old.place.states, moved->place.states);
+    transfer(old.tangent.states, moved->tangent.states);
+    moved->place.durations = old.place.durations;
+    moved->place.globals = old.place.globals;
+    moved->tangent.durations = old.tangent.durations;
+    moved->tangent.globals = old.tangent.globals;
+    marks_[index(k)] = moved;
   }
   mesh_ = mesh;
 }

@@ -4,8 +4,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "bvp/critical_multiplier.hpp"
 #include "bvp/defining_system.hpp"
@@ -175,8 +177,13 @@ void SpecialPointSearch::remember(const PointData& data, double ds) {
     evidence_[i].points += data.tests[i].value.has_value();
     evidence_[i].has_sign = evidence_[i].has_sign || labelled_[i] || data.tests[i].sign != 0;
   }
-  if (history_.size() == history_length) history_.erase(history_.begin());
-  history_.push_back({arclength, data.tests});
+  if (history_.size() < history_length) {
+    history_.push_back({arclength, data.tests});
+    return;
+  }
+  std::rotate(history_.begin(), history_.begin() + 1, history_.end());  // the oldest one's space is used again
+  history_.back().arclength = arclength;
+  history_.back().tests = data.tests;
 }
 
 bool SpecialPointSearch::resolved(const PathPoint& here, const Candidate& next) const {
@@ -184,9 +191,11 @@ bool SpecialPointSearch::resolved(const PathPoint& here, const Candidate& next) 
   const double at = history_.back().arclength + std::abs(next.ds);
   for (std::size_t i = 0; i < tests_.size(); ++i) {
     if (!next.data.tests[i].value) continue;
-    std::vector<TrendValue> past;
+    std::array<TrendValue, history_length> values;
+    std::size_t count = 0;
     for (const Past& point : history_)
-      if (point.tests[i].value) past.push_back({point.arclength, beyond_level(point.tests[i])});
+      if (point.tests[i].value) values[count++] = {point.arclength, beyond_level(point.tests[i])};
+    const std::span<const TrendValue> past(values.data(), count);
     const TrendValue last{at, beyond_level(next.data.tests[i])};
     const Resolution resolution = tests_[i]->resolution();
     if (resolution == Resolution::direction && turns && is_near_zero(i, next.data.tests[i])) return false;

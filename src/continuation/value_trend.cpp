@@ -1,6 +1,7 @@
 #include "continuation/value_trend.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace tchat {
@@ -16,57 +17,83 @@ constexpr int looks = 16;  // for a dip
 constexpr double apart_enough = 0.2;
 constexpr std::size_t most_past = 3;
 
+/// Some of the values, and the next one: those of a cubic.
+struct ChosenValues {
+  std::array<TrendValue, most_past + 1> list{};
+  std::size_t count = 0;
+  void add(const TrendValue& one) { list[count++] = one; }
+  std::span<const TrendValue> all() const { return {list.data(), count}; }
+};
+
 /// The last value, the last one before it that is at least `spacing` away, and so on.
-std::vector<TrendValue> last_ones(const std::vector<TrendValue>& values, double spacing) {
-  std::vector<TrendValue> chosen;
-  for (auto one = values.rbegin(); one != values.rend() && chosen.size() < most_past; ++one)
-    if (chosen.empty() || std::abs(one->at - chosen.back().at) >= spacing) chosen.push_back(*one);
+ChosenValues last_ones(std::span<const TrendValue> values, double spacing) {
+  ChosenValues chosen;
+  for (auto one = values.rbegin(); one != values.rend() && chosen.count < most_past; ++one)
+    if (chosen.count == 0 || std::abs(one->at - chosen.list[chosen.count - 1].at) >= spacing) chosen.add(*one);
   return chosen;
 }
 
-/// Of the polynomial through all values.
-double interpolate(const std::vector<TrendValue>& values, double at) {
-  double result = 0.0;
-  for (const TrendValue& one : values) {
-    double term = one.value;
-    for (const TrendValue& other : values)
-      if (other.at != one.at) term *= (at - other.at) / (one.at - other.at);
-    result += term;
+/// The polynomial through some values, by divided differences.
+class Interpolation {
+ public:
+  explicit Interpolation(std::span<const TrendValue> values) : count_(values.size()) {
+    for (std::size_t i = 0; i < count_; ++i) {
+      places_[i] = values[i].at;
+      differences_[i] = values[i].value;
+    }
+    for (std::size_t level = 1; level < count_; ++level)
+      for (std::size_t i = count_; i-- > level;) {
+        const double width = places_[i] - places_[i - level];
+        differences_[i] = width != 0.0 ? (differences_[i] - differences_[i - 1]) / width : 0.0;
+      }
   }
-  return result;
-}
+
+  double operator()(double at) const {
+    double result = 0.0;
+    for (std::size_t i = count_; i-- > 0;) result = result * (at - places_[i]) + differences_[i];
+    return result;
+  }
+
+ private:
+  std::size_t count_;
+  std::array<double, most_past + 1> places_{};
+  std::array<double, most_past + 1> differences_{};
+};
 
 /// Between two values of one sign, does the polynomial through `values` fall below this share of the smaller one?
-bool falls_below(double share, const std::vector<TrendValue>& values, const TrendValue& last, const TrendValue& next) {
+bool falls_below(double share, std::span<const TrendValue> values, const TrendValue& last, const TrendValue& next) {
   if (!(last.value * next.value > 0.0)) return false;
+  const Interpolation polynomial(values);
   const double sign = next.value > 0.0 ? 1.0 : -1.0;
   const double least = share * std::min(std::abs(last.value), std::abs(next.value));
   for (int k = 1; k < looks; ++k)
-    if (sign * interpolate(values, last.at + (next.at - last.at) * k / looks) < least) return true;
+    if (sign * polynomial(last.at + (next.at - last.at) * k / looks) < least) return true;
   return false;
 }
 
 }  // namespace
 
-bool follows_trend(const std::vector<TrendValue>& past, const TrendValue& next) {
+bool follows_trend(std::span<const TrendValue> past, const TrendValue& next) {
   if (past.empty()) return true;
-  std::vector<TrendValue> values = last_ones(past, apart_enough * std::abs(next.at - past.back().at));
-  if (values.size() < 2) return true;
+  ChosenValues values = last_ones(past, apart_enough * std::abs(next.at - past.back().at));
+  if (values.count < 2) return true;
   double size = std::abs(next.value);
   for (const TrendValue& one : past) size = std::max(size, std::abs(one.value));
-  if (std::abs(interpolate(values, next.at) - next.value) > unexpected * size) return false;
-  values.push_back(next);
-  return !falls_below(dip, values, past.back(), next);
+  if (std::abs(Interpolation(values.all())(next.at) - next.value) > unexpected * size) return false;
+  values.add(next);
+  return !falls_below(dip, values.all(), past.back(), next);
 }
 
-bool has_two_zeros(const std::vector<TrendValue>& past, const TrendValue& next) {
+bool has_two_zeros(std::span<const TrendValue> past, const TrendValue& next) {
   if (past.empty()) return false;
-  std::vector<TrendValue> values = last_ones(past, apart_enough * std::abs(next.at - past.back().at));
-  if (values.size() < most_past) return false;
-  values.push_back(next);
-  std::vector<TrendValue> parabola(values.begin(), values.begin() + most_past - 1);  // the newest come first
-  parabola.push_back(next);
-  return falls_below(0.0, values, past.back(), next) && falls_below(0.0, parabola, past.back(), next);
+  ChosenValues values = last_ones(past, apart_enough * std::abs(next.at - past.back().at));
+  if (values.count < most_past) return false;
+  values.add(next);
+  if (!falls_below(0.0, values.all(), past.back(), next)) return false;
+  ChosenValues parabola;  // the newest come first
+  for (std::size_t i = 0; i + 1 < most_past; ++i) parabola.add(values.list[i]);
+  parabola.add(next);
+  return falls_below(0.0, parabola.all(), past.back(), next);
 }
 
 }  // namespace tchat

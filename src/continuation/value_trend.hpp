@@ -5,7 +5,7 @@
 /// was expected, is reason enough to look closer.
 #pragma once
 
-#include <vector>
+#include <span>
 
 namespace tchat {
 
@@ -16,10 +16,10 @@ struct TrendValue {
 
 /// `past` in the order of the branch, `next` beyond its last one. With fewer than two values there is no trend, and any
 /// next one follows it.
-bool follows_trend(const std::vector<TrendValue>& past, const TrendValue& next);
+bool follows_trend(std::span<const TrendValue> past, const TrendValue& next);
 
 /// Have the cubic through the last three values and the next one, and the parabola through the last two, two zeros
 /// between the last one and the next? With fewer than three values there is no cubic.
-bool has_two_zeros(const std::vector<TrendValue>& past, const TrendValue& next);
+bool has_two_zeros(std::span<const TrendValue> past, const TrendValue& next);
 
 }  // namespace tchat

@@ -19,10 +19,21 @@ struct ArrayRange {
 /// Polynomials of n entries through c + 1 nodes on each of some intervals one behind the other, whose last node is the
 /// first of the next one.
 struct IntervalBasis {
-  const double* value;  ///< of the basis at c points: that of node i at point g is value[i c + g]
+  const double* value;  ///< of the basis: that of node i at point g of an interval is value[i points + g]
+  int points;           ///< on each interval
   int c;
   int n;
   int intervals;
+};
+
+/// Combinations of c + 1 nodes of n entries that follow each other: number k begins at node first[k] and has the
+/// weights in column k.
+struct NodeCombinations {
+  const double* weights;
+  const int* first;
+  int count;
+  int c;
+  int n;
 };
 
 /// Functions of several pairs of arrays take this many at a time at most.
@@ -53,7 +64,9 @@ struct ArrayFunctions {
   void (*add_mass)(double h, const double* mass, int nodes, const double* weights, int n, const double* v, double* y);
   /// The polynomials through `nodes` at the points of the intervals: n entries each, `stride` from one to the next.
   void (*interpolate)(const IntervalBasis& basis, const double* nodes, double* points, int stride);
-  /// And its transpose: nodes += what weights of the values at the points make of them.
+  /// The combinations one after the other: values of n entries.
+  void (*combine_nodes)(const NodeCombinations& combinations, const double* nodes, double* values);
+  /// The transpose of interpolate(): nodes += what weights of the values at the points make of them.
   void (*add_interpolated)(const IntervalBasis& basis, const double* points, int stride, double* nodes);
 };
 

@@ -20,48 +20,52 @@ namespace {
 
 using SparseMatrix = Eigen::SparseMatrix<double, Eigen::ColMajor, int>;
 
-/// D_r A D_c with rows and columns whose largest entries are about 1.
+/// D_r A D_c with rows and columns whose largest entries are about 1, and space for vectors.
 struct Equilibrated {
   SparseMatrix matrix;
   Eigen::VectorXd row_scale;     // diagonal of D_r
   Eigen::VectorXd column_scale;  // diagonal of D_c
+  Eigen::VectorXd row_size;      // while it is made
+  Eigen::VectorXd v, left, right;
+
+  void equilibrate(const SparseMatrix& of);
+  /// By power iteration.
+  double largest_singular_value(int iterations);
 };
 
-Equilibrated equilibrate(const SparseMatrix& matrix) {
+void Equilibrated::equilibrate(const SparseMatrix& of) {
   constexpr int sweeps = 4;
-  Equilibrated result{matrix, Eigen::VectorXd::Ones(matrix.rows()), Eigen::VectorXd::Ones(matrix.cols())};
-  SparseMatrix& scaled = result.matrix;
+  matrix = of;
+  row_scale.setOnes(of.rows());
+  column_scale.setOnes(of.cols());
   for (int sweep = 0; sweep < sweeps; ++sweep) {
-    Eigen::VectorXd row_size = Eigen::VectorXd::Zero(matrix.rows());
-    for (int c = 0; c < scaled.cols(); ++c)
-      for (SparseMatrix::InnerIterator it(scaled, c); it; ++it)
+    row_size.setZero(of.rows());
+    for (int c = 0; c < matrix.cols(); ++c)
+      for (SparseMatrix::InnerIterator it(matrix, c); it; ++it)
         row_size(it.row()) = std::max(row_size(it.row()), std::abs(it.value()));
     for (Eigen::Index r = 0; r < row_size.size(); ++r)
-      if (row_size(r) > 0.0) result.row_scale(r) /= row_size(r);
-    for (int c = 0; c < scaled.cols(); ++c) {
+      if (row_size(r) > 0.0) row_scale(r) /= row_size(r);
+    for (int c = 0; c < matrix.cols(); ++c) {
       double column_size = 0.0;
-      for (SparseMatrix::InnerIterator it(scaled, c); it; ++it) {
+      for (SparseMatrix::InnerIterator it(matrix, c); it; ++it) {
         if (row_size(it.row()) > 0.0) it.valueRef() /= row_size(it.row());
         column_size = std::max(column_size, std::abs(it.value()));
       }
       if (column_size == 0.0) continue;
-      for (SparseMatrix::InnerIterator it(scaled, c); it; ++it) it.valueRef() /= column_size;
-      result.column_scale(c) /= column_size;
+      for (SparseMatrix::InnerIterator it(matrix, c); it; ++it) it.valueRef() /= column_size;
+      column_scale(c) /= column_size;
     }
   }
-  return result;
 }
 
-/// By power iteration.
-double largest_singular_value(const SparseMatrix& matrix, int iterations) {
-  Eigen::VectorXd v(matrix.cols());
+double Equilibrated::largest_singular_value(int iterations) {
+  v.resize(matrix.cols());
   for (Eigen::Index i = 0; i < v.size(); ++i) v(i) = std::sin(1.0 + static_cast<double>(i));
-  Eigen::VectorXd w(matrix.rows());
   double largest = 0.0;
   for (int iteration = 0; iteration < iterations; ++iteration) {
     v.normalize();
-    w = matrix * v;
-    v = matrix.transpose() * w;
+    left.noalias() = matrix * v;
+    v.noalias() = matrix.transpose() * left;
     largest = std::sqrt(v.norm());
   }
   return largest;
@@ -96,6 +100,7 @@ struct SparseLu::State {
   std::optional<FrontalLu> frontal;
   bool frontal_is_factored = false;
   std::vector<double> rest, change;  // of a solution by frontal matrices
+  Equilibrated scaled;               // for singular_distance()
   void* symbolic = nullptr;
   void* numeric = nullptr;
   double control[UMFPACK_CONTROL];
@@ -249,12 +254,14 @@ SparseLu::Determinant SparseLu::determinant() const {
 double SparseLu::singular_distance() const {
   if (!state_->is_factored()) return 0.0;
   constexpr int iterations = 4;
-  const Equilibrated scaled = equilibrate(state_->matrix);
-  const int n = size();
-  Eigen::VectorXd v(n);
-  for (int i = 0; i < n; ++i) v(i) = std::cos(1.0 + 2.0 * i);
-  Eigen::VectorXd right(n);
-  Eigen::VectorXd left(n);
+  Equilibrated& scaled = state_->scaled;
+  scaled.equilibrate(state_->matrix);
+  Eigen::VectorXd& v = scaled.v;
+  Eigen::VectorXd& left = scaled.left;
+  Eigen::VectorXd& right = scaled.right;
+  v.resize(size());
+  left.resize(size());
+  for (Eigen::Index i = 0; i < v.size(); ++i) v(i) = std::cos(1.0 + 2.0 * static_cast<double>(i));
   double growth = 0.0;
   // (D_r A D_c)^-1 = D_c^-1 A^-1 D_r^-1
   for (int iteration = 0; iteration < iterations; ++iteration) {
@@ -267,7 +274,7 @@ double SparseLu::singular_distance() const {
     growth = v.norm();
     if (!std::isfinite(growth) || growth == 0.0) return 0.0;
   }
-  const double largest = largest_singular_value(scaled.matrix, iterations);
+  const double largest = scaled.largest_singular_value(iterations);
   return largest > 0.0 ? 1.0 / (std::sqrt(growth) * largest) : 0.0;
 }
 
@@ -275,7 +282,8 @@ SparseLu::Condition SparseLu::condition() const {
   // Equilibrate a copy, then find the smallest singular value by inverse iteration on (D_r A D_c)^T (D_r A D_c) with a
   // factorisation of the scaled copy.
   const int n = size();
-  const Equilibrated equilibrated = equilibrate(state_->matrix);
+  Equilibrated equilibrated;
+  equilibrated.equilibrate(state_->matrix);
   const SparseMatrix& scaled = equilibrated.matrix;
 
   Condition result;
@@ -304,7 +312,7 @@ SparseLu::Condition SparseLu::condition() const {
   Eigen::VectorXd v(n);
   Eigen::VectorXd u(n);
   Eigen::VectorXd w(n);
-  const double largest = largest_singular_value(scaled, 20);
+  const double largest = equilibrated.largest_singular_value(20);
   double smallest = 0.0;
   for (int i = 0; i < n; ++i) v(i) = std::cos(1.0 + 2.0 * i);
   for (int iteration = 0; iteration < 6; ++iteration) {

@@ -165,21 +165,21 @@ TEST_CASE("array kernel: a number that is not finite is found in the sums that i
 TEST_CASE("array kernel: polynomials on intervals, and the transpose of their interpolation") {
   for (const VectorSet set : available_vector_sets())
     for (const int n : {1, 2, 3, 4, 5, 6, 7, 9})
-      for (const int c : {2, 4, 7}) {
-        CAPTURE(static_cast<int>(set), n, c);
+      for (const auto& [c, at] : {std::pair{2, 2}, {4, 4}, {4, 5}, {4, 2}, {7, 7}}) {
+        CAPTURE(static_cast<int>(set), n, c, at);
         constexpr int intervals = 3;
         const int stride = n + 2;
-        const MatrixXd value = MatrixXd::Random(c, c + 1), nodes = MatrixXd::Random(n, intervals * c + 1);
-        const MatrixXd weights = MatrixXd::Random(stride, intervals * c);
-        const IntervalBasis basis{value.data(), c, n, intervals};
+        const MatrixXd value = MatrixXd::Random(at, c + 1), nodes = MatrixXd::Random(n, intervals * c + 1);
+        const MatrixXd weights = MatrixXd::Random(stride, intervals * at);
+        const IntervalBasis basis{value.data(), at, c, n, intervals};
         MatrixXd points = weights;
         array_functions(set).interpolate(basis, nodes.data(), points.data(), stride);
         MatrixXd sums = nodes;
         array_functions(set).add_interpolated(basis, weights.data(), stride, sums.data());
         MatrixXd wanted_points = weights, wanted_sums = nodes;
         for (int j = 0; j < intervals; ++j) {
-          wanted_points.block(0, j * c, n, c) = nodes.middleCols(j * c, c + 1) * value.transpose();
-          wanted_sums.middleCols(j * c, c + 1) += weights.block(0, j * c, n, c) * value;
+          wanted_points.block(0, j * at, n, at) = nodes.middleCols(j * c, c + 1) * value.transpose();
+          wanted_sums.middleCols(j * c, c + 1) += weights.block(0, j * at, n, at) * value;
         }
         CHECK((points - wanted_points).cwiseAbs().maxCoeff() < rounding);
         CHECK((sums - wanted_sums).cwiseAbs().maxCoeff() < rounding);
@@ -191,6 +191,25 @@ TEST_CASE("array kernel: polynomials on intervals, and the transpose of their in
         CHECK(points == same_points);
         CHECK(sums == same_sums);
       }
+}
+
+TEST_CASE("array kernel: combinations of nodes that follow each other") {
+  constexpr int c = 4;
+  const std::vector<int> first{0, 0, 8, 4, 3};
+  const auto count = static_cast<int>(first.size());
+  for (const VectorSet set : available_vector_sets())
+    for (const int n : {1, 2, 3, 4, 5, 6, 7, 9}) {
+      CAPTURE(static_cast<int>(set), n);
+      const MatrixXd weights = MatrixXd::Random(c + 1, count), nodes = MatrixXd::Random(n, 13);
+      const NodeCombinations combinations{weights.data(), first.data(), count, c, n};
+      MatrixXd values(n, count), wanted(n, count), same(n, count);
+      array_functions(set).combine_nodes(combinations, nodes.data(), values.data());
+      for (int k = 0; k < count; ++k)
+        wanted.col(k) = nodes.middleCols(first[static_cast<std::size_t>(k)], c + 1) * weights.col(k);
+      CHECK((values - wanted).cwiseAbs().maxCoeff() < rounding);
+      array_functions(VectorSet::baseline).combine_nodes(combinations, nodes.data(), same.data());
+      CHECK(values == same);
+    }
 }
 
 TEST_CASE("array kernel: the mass matrix of nodes of any dimension") {
@@ -222,7 +241,9 @@ TEST_CASE("array kernel: no function leaves anything in the upper halves of regi
   std::array<const double*, row> arrays{};
   arrays.fill(a);
   std::array<ArrayRange, row> ranges{};
-  const IntervalBasis basis{a, c, n, intervals};
+  const IntervalBasis basis{a, c, c, n, intervals};
+  const std::array<int, 3> first{0, 0, c};
+  const NodeCombinations combinations{a, first.data(), 3, c, n};
   for (const VectorSet set : available_vector_sets()) {
     const ArrayFunctions& f = array_functions(set);
     const auto check = [&](const char* name, const auto& call) {
@@ -244,6 +265,7 @@ TEST_CASE("array kernel: no function leaves anything in the upper halves of regi
     }
     check("add_mass", [&] { f.add_mass(0.1, a, c, a, n, a, y); });
     check("interpolate", [&] { f.interpolate(basis, a, y, n); });
+    check("combine_nodes", [&] { f.combine_nodes(combinations, a, y); });
     check("add_interpolated", [&] { f.add_interpolated(basis, a, n, y); });
   }
 }
