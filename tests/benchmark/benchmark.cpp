@@ -74,7 +74,7 @@ std::vector<AutoSize> auto_sizes(const Choice& choice) {
 
 std::vector<tchat::benchmark::ProgramSize> program_sizes(bool quick) {
   if (quick) return {{1, 50, 4, 20}};
-  return {{1, 50, 4, 2000, 8}, {8, 50, 4, 300, 80}, {1, 200, 4, 500, 8}, {1, 50, 20, 200, 12}};
+  return {{1, 50, 4, 600, 8}, {8, 50, 4, 100, 80}, {1, 200, 4, 300, 8}, {1, 50, 20, 150, 12}};
 }
 
 std::vector<OrbitShape> thread_shapes(bool quick) {

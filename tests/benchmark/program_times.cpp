@@ -20,14 +20,11 @@ namespace {
 
 constexpr int first_points = 20;
 
-/// So small that both programs need few iterations, and pass thousands of points on the way to the next special one.
-double small_step(int segments) { return 0.1 * step_length(segments); }
-
 class TchatProgram {
  public:
   explicit TchatProgram(const Orbit& start) {
     write_chain_files(folder_.path(), start, first_points);
-    step_ = small_step(start.shape.segments);
+    step_ = step_length(start.shape.segments);
     run(1);  // compiles the plugin
   }
   double run(int points) const {
@@ -63,7 +60,7 @@ Times measure(const ProgramSize& size, int rounds, bool with_auto) {
   const TchatProgram ours(start);
   std::unique_ptr<AutoProgram> theirs;
   if (with_auto) theirs = std::make_unique<AutoProgram>(start);
-  AutoRequest request{first_points, small_step(size.segments), 3, 2};
+  AutoRequest request{first_points, step_length(size.segments), 3, 2};
   std::vector<double> ours_times;
   std::vector<double> their_times;
   std::vector<double> ratios;
