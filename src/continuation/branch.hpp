@@ -31,10 +31,10 @@ struct BranchPoint {
   double measure = 0.0;                      ///< by IPLT, where it is bounded
   double estimated_error = 0.0;              ///< of the states between mesh points, relative
   int newton_iterations = 0;
-  std::vector<NewtonIteration> newton;  ///< of the step that reached it
-  double step = 0.0;                    ///< ds of that step, 0 at the start
-  std::vector<NamedTestValue> tests;
-  std::vector<std::string> details;  ///< of a labelled point: what else its test functions know
+  const std::vector<NewtonIteration>& newton;  ///< of the step that reached it
+  double step = 0.0;                           ///< ds of that step, 0 at the start
+  const std::vector<NamedTestValue>& tests;
+  const std::vector<std::string>& details;  ///< of a labelled point: what else its test functions know
   std::string remark = {};           ///< what its problem type has to say of it, one line or none
   bool labelled() const { return special.type != PointType::ordinary; }
 };

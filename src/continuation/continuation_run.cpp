@@ -75,6 +75,7 @@ ContinuationRun::ContinuationRun(PathFollower& follower, const DefiningSystem& s
       trend_(settings_.trend.value_or(OrbitTrend(system.orbits()))),
       closed_(follower, system, analysis_->has_fixed_phase()) {
   summary_.family = &analysis_->facts();
+  for (const auto& test : search_.tests()) test_values_.push_back({test->name(), std::nullopt});
 }
 
 BranchSummary ContinuationRun::run(PathPoint start) {
@@ -396,6 +397,7 @@ void ContinuationRun::record(const SpecialPoint& special, const PointData& data)
   const std::vector<Violation> violations =
       inadmissibilities(system_.system(), system_.signature(), settings_.monitored, here_.orbit,
                         follower_.condensed().rule(), data.estimated_error, leaving);
+  for (std::size_t i = 0; i < test_values_.size(); ++i) test_values_[i].value = data.tests[i].value;
   BranchPoint point{number_,
                     special,
                     here_,
@@ -406,11 +408,8 @@ void ContinuationRun::record(const SpecialPoint& special, const PointData& data)
                     newton_.iterations,
                     follower_.newton().history(),
                     number_ > 1 ? next_.ds : 0.0,
-                    {},
-                    {}};
-  for (std::size_t i = 0; i < search_.tests().size(); ++i)
-    point.tests.push_back({search_.tests()[i]->name(), data.tests[i].value});
-  point.details = data.details;
+                    test_values_,
+                    data.details};
   if (settings_.remark) point.remark = settings_.remark(here_.orbit);
   summary_.points = number_;
   summary_.inadmissible_points += !violations.empty();

@@ -123,6 +123,7 @@ class ContinuationRun {
   double first_period_ = 0.0;
   std::string passed_;  // why a longer trial of the step was no orbit
   StabilityWatch stability_;
+  std::vector<NamedTestValue> test_values_;  // of the point that is handed over
   std::size_t lost_before_ = 0;  // reports at the last accepted point
   double measure_ = 0.0;         // at here_
   int number_ = 1;               // of here_

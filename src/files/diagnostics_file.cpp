@@ -16,8 +16,12 @@ constexpr std::string_view end_of_run = "end of run";
 constexpr std::string_view auto_end_of_run = "Total Time";
 constexpr double stable_modulus = 1.0 + 1e-5;
 
+constexpr std::string_view bar = "===============================================\n";  // 47
+
 std::string prefix(int branch, int point) {
-  return fmt::format("{:>4}", branch) + integer_field(wrapped_point(point), 6);
+  std::string text;
+  append_branch_and_point(text, branch, point);
+  return text;
 }
 
 double capped(double value) { return std::clamp(finite(value), -capped_value, capped_value); }
@@ -33,7 +37,7 @@ std::string harmless(std::string_view text) {
 
 }  // namespace
 
-std::string format_bar() { return fmt::format("{:=<47}\n", ""); }
+std::string format_bar() { return std::string(bar); }
 
 std::string format_newton_history(int branch, int point, const std::vector<NewtonLine>& iterations) {
   std::string text = "  BR    PT  IT     PARAMETER      RESIDUAL      PAR. STEP     STATE STEP\n";
@@ -49,6 +53,68 @@ std::string format_newton_history(int branch, int point, const std::vector<Newto
 
 std::string format_diagnostics_point(const PointLine& point, const std::vector<PointColumn>& columns) {
   return format_table_heading(columns) + format_table_line(point, columns);
+}
+
+std::string format_short_heading(const std::vector<PointColumn>& columns) {
+  return format_table_heading({columns.front()});
+}
+
+void append_short_point(std::string& text, const PointLine& point, std::string_view heading) {
+  text += heading;
+  append_branch_and_point(text, point.branch, point.point, point.stable ? -1 : 1);
+  text.append(4, ' ');
+  append_integer_field(text, point.label, 5);
+  text.append(2, ' ');
+  append_scientific(text, point.values.front(), 5);
+  if (!point.admissible) text += "  inadmissible";
+  text += '\n';
+}
+
+void append_short_multipliers(std::string& text, std::span<const std::complex<double>> multipliers,
+                              bool are_eigenvalues) {
+  constexpr int decimals = 10;
+  int index = 0;
+  for (const std::complex<double>& value : multipliers) {
+    text += are_eigenvalues ? "Eigenvalue" : "Multiplier";
+    append_integer_field(text, ++index, 0);
+    text += are_eigenvalues ? ": " : " ";
+    append_scientific(text, capped(value.real()), decimals);
+    text += ' ';
+    if (value.imag() == 0.0)
+      text += '0';
+    else
+      append_scientific(text, capped(value.imag()), decimals);
+    text += '\n';
+  }
+}
+
+void append_short_tests(std::string& text, std::span<const double> values) {
+  if (values.empty()) return;
+  constexpr int digits = 5;
+  text += "tests:";
+  for (const double value : values) {
+    text += ' ';
+    if (std::isnan(value))
+      text += '-';
+    else
+      append_short(text, value, digits);
+  }
+  text += '\n';
+}
+
+void append_iterations(std::string& text, int branch, int point, int iterations) {
+  append_branch_and_point(text, branch, point);
+  text += "  Iterations   :";
+  append_integer_field(text, iterations, 0);
+  text += '\n';
+}
+
+void append_next_step(std::string& text, int branch, int point, double step) {
+  append_branch_and_point(text, branch, point);
+  text += "  Next Step    : ";
+  append_scientific(text, step, 5);
+  text += '\n';
+  text += bar;
 }
 
 std::string format_multipliers(std::span<const std::complex<double>> multipliers) {

@@ -2,6 +2,9 @@
 ///
 /// A block belongs to one point and ends with a bar of 47 '='. Texts never hold times of day, durations of the
 /// computation or paths: files of two equal runs are equal.
+///
+/// A branch has thousands of ordinary points and some labels. A label's block has everything under its name; that of
+/// an ordinary point is short and written without an allocation.
 #pragma once
 
 #include <complex>
@@ -39,6 +42,21 @@ std::string format_newton_history(int branch, int point, const std::vector<Newto
 
 /// The `BR PT TY LAB` headings and the line of the point.
 std::string format_diagnostics_point(const PointLine& point, const std::vector<PointColumn>& columns);
+
+/// An ordinary point in short. `heading` is that of its first column: `BR PT TY LAB` and its name.
+std::string format_short_heading(const std::vector<PointColumn>& columns);
+void append_short_point(std::string& text, const PointLine& point, std::string_view heading);
+
+/// `Multiplier 1 6.7454951082E-01 1.1387608377E-01`, or `Eigenvalue 1: ...`, a line for each; a real one ends in 0.
+void append_short_multipliers(std::string& text, std::span<const std::complex<double>> multipliers,
+                              bool are_eigenvalues);
+
+/// In the order in which the blocks of labels name the functions; NaN: undefined. Without values no line.
+void append_short_tests(std::string& text, std::span<const double> values);
+
+/// How many iterations of Newton's method it took to come to a point, and the step that is tried from it next.
+void append_iterations(std::string& text, int branch, int point, int iterations);
+void append_next_step(std::string& text, int branch, int point, double step);
 
 /// `Multipliers:` with the number of stable ones (|mu| <= 1 + 1e-5), then one line for each in the order given: index,
 /// real and imaginary part, modulus. Sizes that are not finite or exceed 1e99 are written as 1e99.

@@ -66,7 +66,38 @@ std::string es(double value, int width, int decimals) {
   return fmt::format("{:>{}}", text, width);
 }
 
-std::string integer_field(int value, int width) { return fmt::format(" {:>{}}", value, width - 1); }
+void append_short(std::string& line, double value, int digits) {
+  std::array<char, longest_number> text;
+  const auto [end, error] =
+      std::to_chars(text.data(), text.data() + text.size(), finite(value), std::chars_format::general, digits);
+  line.append(text.data(), end);
+}
+
+void append_scientific(std::string& line, double value, int decimals) {
+  std::array<char, longest_number> digits;
+  line.append(scientific(finite(value), decimals, digits));
+}
+
+std::string integer_field(int value, int width) {
+  std::string text;
+  append_integer_field(text, value, width);
+  return text;
+}
+
+void append_integer_field(std::string& line, int value, int width) {
+  std::array<char, longest_number> digits;
+  const auto [end, error] = std::to_chars(digits.data(), digits.data() + digits.size(), value);
+  const std::ptrdiff_t length = end - digits.data();
+  line.append(static_cast<std::size_t>(std::max<std::ptrdiff_t>(width - length, 1)), ' ');
+  line.append(digits.data(), end);
+}
+
+void append_branch_and_point(std::string& line, int branch, int point, int sign) {
+  const std::size_t begin = line.size();
+  append_integer_field(line, branch, 5);
+  line.erase(begin, 1);  // no column stands before it
+  append_integer_field(line, sign * wrapped_point(point), 6);
+}
 
 int wrapped_point(int point) { return point < 1 ? point : (point - 1) % largest_point + 1; }
 

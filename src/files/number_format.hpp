@@ -23,8 +23,18 @@ void append_e26(std::string& line, double value);
 /// `width` columns with four or more decimals as Fortran's ESw.d prints them: `  1.0000E-01`, `-1.7976+308`.
 std::string es(double value, int width, int decimals);
 
+/// With so many significant digits at most, as C prints it with %.*g: `-5.0022`, `1.3e-07`.
+void append_short(std::string& line, double value, int digits);
+
+/// As C prints it with %.*E: `-1.2345E-07`.
+void append_scientific(std::string& line, double value, int decimals);
+
 /// Right-justified in `width` columns with at least one blank before it, so that neighbours never touch.
 std::string integer_field(int value, int width);
+void append_integer_field(std::string& line, int value, int width);
+
+/// What lines of p- and d-files begin with: the branch in 4 columns, the point as files show it, `sign` times, in 6.
+void append_branch_and_point(std::string& line, int branch, int point, int sign = 1);
 
 /// The point number that files show: 1, ..., 9999, 1, ...
 int wrapped_point(int point);

@@ -191,12 +191,18 @@ std::string format_point_header(const PointFileHeader& header, const std::vector
   return text + '\n';
 }
 
+void append_point(std::string& text, const PointLine& point) {
+  append_branch_and_point(text, point.branch, point.point, point.stable ? -1 : 1);
+  append_integer_field(text, point.type, 4);
+  append_integer_field(text, point.label, 5);
+  for (const double value : point.values) append_e19(text, value);
+  text += '\n';
+}
+
 std::string format_point(const PointLine& point) {
-  const int number = wrapped_point(point.point);
-  std::string line = fmt::format("{:>4}", point.branch) + integer_field(point.stable ? -number : number, 6) +
-                     integer_field(point.type, 4) + integer_field(point.label, 5);
-  for (const double value : point.values) append_e19(line, value);
-  return line + '\n';
+  std::string text;
+  append_point(text, point);
+  return text;
 }
 
 }  // namespace tchat

@@ -39,6 +39,7 @@ struct PointFileHeader {
 std::string format_point_header(const PointFileHeader& header, const std::vector<PointColumn>& columns);
 
 /// The line of one point. Values that are not finite are written as 1e99.
+void append_point(std::string& text, const PointLine& point);
 std::string format_point(const PointLine& point);
 
 }  // namespace tchat

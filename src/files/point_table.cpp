@@ -52,11 +52,11 @@ std::string format_table_heading(const std::vector<PointColumn>& columns) {
 }
 
 std::string format_table_line(const PointLine& point, const std::vector<PointColumn>& columns) {
-  const int number = wrapped_point(point.point);
   const bool shows_type = basic_type(point.type) != static_cast<int>(PointType::regular);
-  std::string line = fmt::format("{:>4}", point.branch) + integer_field(point.stable ? -number : number, 6) +
-                     fmt::format("{:>4}", shows_type ? type_name(point.type, point.kind) : "") +
-                     integer_field(point.label, 5);
+  std::string line;
+  append_branch_and_point(line, point.branch, point.point, point.stable ? -1 : 1);
+  line += fmt::format("{:>4}", shows_type ? type_name(point.type, point.kind) : "");
+  append_integer_field(line, point.label, 5);
   for (const std::size_t k : shown(columns))
     line += fmt::format(" {:>{}.5E}", finite(point.values[k]), column_width - 1);
   if (!point.admissible) line += "  inadmissible";

@@ -156,13 +156,12 @@ void RunFiles::write_if_due() {
 void RunFiles::write_gathered() {
   // After a failure nothing is tried again: the other files would name points of which that file has nothing.
   changing_ = 1;
-  const std::string solutions = std::exchange(solutions_.gathered, "");
-  const std::string points = std::exchange(points_.gathered, "");
-  const std::string diagnostics = std::exchange(diagnostics_.gathered, "");
+  for (Growing* growing : {&solutions_, &points_, &diagnostics_}) {
+    growing->being_written.swap(growing->gathered);
+    growing->gathered.clear();
+  }
   changing_ = 0;
-  solutions_.file.write(solutions);
-  points_.file.write(points);
-  diagnostics_.file.write(diagnostics);
+  for (Growing* growing : {&solutions_, &points_, &diagnostics_}) growing->file.write(growing->being_written);
   last_written_ = std::chrono::steady_clock::now();
 }
 

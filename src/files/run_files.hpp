@@ -65,6 +65,7 @@ class RunFiles final : private LastAct {
   struct Growing {
     BlockFile file;
     std::string gathered;
+    std::string being_written;
   };
 
   std::string path(char letter) const { return output_path(letter, name_); }

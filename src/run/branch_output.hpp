@@ -31,7 +31,7 @@ struct BranchSection {
 /// A point of the branch and what all formats show of it.
 struct RecordedPoint {
   const BranchPoint& of_branch;
-  PointLine line;
+  const PointLine& line;
   std::string unknown_multipliers;  ///< "" when all multipliers are known
 };
 

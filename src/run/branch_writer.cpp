@@ -70,75 +70,72 @@ void BranchWriter::end_section() {
   for (const auto& output : outputs_) output->end_section();
 }
 
-/// PAR with the entries that the problem sets for output.
+/// PAR with the entries that the problem, which has some, sets for output.
 ParameterVector BranchWriter::output_parameters(const Orbit& x) const {
   ParameterVector par = x.par;
   const tchat_problem& table = section_.system.table();
-  for (int s = 0; table.output_parameters != nullptr && s < x.shape.segments; ++s)
+  for (int s = 0; s < x.shape.segments; ++s)
     table.output_parameters(table.self, s + 1, x.end(s), par.data());
   for (const int k : section_.active_parameters) par(k - 1) = x.par(k - 1);  // these belong to the computation
   return par;
 }
 
-std::vector<double> BranchWriter::column_values(const BranchPoint& point) const {
+/// Those of `line_`.
+void BranchWriter::find_column_values(const BranchPoint& point) {
+  const Orbit& x = point.path.orbit;
+  const tchat_problem& table = section_.system.table();
+  user_values_.resize(static_cast<std::size_t>(table.user_values));
+  if (!user_values_.empty()) table.user_value(table.self, x.start(0), x.par.data(), user_values_.data());
+  line_.values.clear();
+  for (const PointColumn& column : section_.columns) line_.values.push_back(column_value(column, point));
+  if (table.output_parameters == nullptr) return;
+  const ParameterVector par = output_parameters(x);
+  for (std::size_t k = 0; k < section_.columns.size(); ++k)
+    if (section_.columns[k].kind == PointColumn::Kind::parameter) line_.values[k] = par(section_.columns[k].index - 1);
+}
+
+double BranchWriter::column_value(const PointColumn& column, const BranchPoint& point) const {
   const Orbit& x = point.path.orbit;
   const int n = x.shape.dimension;
-  std::vector<double> user(static_cast<std::size_t>(section_.system.table().user_values));
-  if (!user.empty())
-    section_.system.table().user_value(section_.system.table().self, x.start(0), x.par.data(), user.data());
-  const ParameterVector par = output_parameters(x);
-  std::vector<double> values;
-  for (const PointColumn& column : section_.columns) {
-    using Kind = PointColumn::Kind;
-    switch (column.kind) {
-      case Kind::parameter:
-        values.push_back(par(column.index - 1));
-        break;
-      case Kind::l2_norm:
-        values.push_back(l2_norm(x, rule_, weights_));
-        break;
-      case Kind::maximum:
-        values.push_back(maximum_of(x, column.index));
-        break;
-      case Kind::minimum:
-        values.push_back(minimum_of(x, column.index));
-        break;
-      case Kind::integral:
-        values.push_back(solution_measure(x, rule_, weights_, n + column.index));
-        break;
-      case Kind::component_l2_norm:
-        values.push_back(solution_measure(x, rule_, weights_, 2 * n + column.index));
-        break;
-      case Kind::user_function:
-        values.push_back(user[static_cast<std::size_t>(column.index - 1)]);
-        break;
-      case Kind::period:
-        values.push_back(x.period());
-        break;
-    }
+  using Kind = PointColumn::Kind;
+  switch (column.kind) {
+    case Kind::parameter:
+      return x.par(column.index - 1);
+    case Kind::l2_norm:
+      return l2_norm(x, rule_, weights_);
+    case Kind::maximum:
+      return maximum_of(x, column.index);
+    case Kind::minimum:
+      return minimum_of(x, column.index);
+    case Kind::integral:
+      return solution_measure(x, rule_, weights_, n + column.index);
+    case Kind::component_l2_norm:
+      return solution_measure(x, rule_, weights_, 2 * n + column.index);
+    case Kind::user_function:
+      return user_values_[static_cast<std::size_t>(column.index - 1)];
+    case Kind::period:
+      return x.period();
   }
-  return values;
+  return NAN;
 }
 
 void BranchWriter::point(const BranchPoint& point) {
-  PointLine line;
-  line.branch = section_.branch;
-  line.point = point.number;
-  line.stable = shown_stable(point);
-  line.type = file_type(point.special.type, section_.curve_type);
-  line.kind = point.special.kind;
-  line.admissible = point.violations.empty();
-  line.values = column_values(point);
-  if (point.labelled()) line.label = ++last_label_;
-  const RecordedPoint recorded{point, std::move(line), undetermined_text(point.multipliers)};
+  line_.branch = section_.branch;
+  line_.point = point.number;
+  line_.stable = shown_stable(point);
+  line_.type = file_type(point.special.type, section_.curve_type);
+  line_.kind = point.special.kind;
+  line_.admissible = point.violations.empty();
+  line_.label = point.labelled() ? ++last_label_ : 0;
+  find_column_values(point);
+  const RecordedPoint recorded{point, line_, undetermined_text(point.multipliers)};
   for (const auto& output : outputs_) output->point(recorded);
-  report_unknown_user_values(recorded.line);
+  report_unknown_user_values(line_);
   files_.write_if_due();
   if (point.labelled())
     labels_.push_back(
-        {recorded.line.label,
-         fmt::format("{}", fmt::join(type_names(recorded.line.type, recorded.line.kind, point.special.further), " ")),
-         place(recorded.line), description_of(recorded)});
+        {line_.label, fmt::format("{}", fmt::join(type_names(line_.type, line_.kind, point.special.further), " ")),
+         place(line_), description_of(recorded)});
 }
 
 /// User functions are for output only: one that is not finite stops nothing, so it is reported, once.

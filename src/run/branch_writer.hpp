@@ -53,7 +53,8 @@ class BranchWriter final : public BranchSink {
 
  private:
   ParameterVector output_parameters(const Orbit& x) const;
-  std::vector<double> column_values(const BranchPoint& point) const;
+  void find_column_values(const BranchPoint& point);
+  double column_value(const PointColumn& column, const BranchPoint& point) const;
   std::string place(const PointLine& line) const;
   bool shown_stable(const BranchPoint& point);
   void report_unknown_user_values(const PointLine& line);
@@ -61,6 +62,8 @@ class BranchWriter final : public BranchSink {
   const std::string& principal_name() const { return section_.columns.front().name; }
 
   const CollocationRule& rule_;
+  PointLine line_;                   // of the last point
+  std::vector<double> user_values_;  // its user functions
   RunFiles& files_;
   BranchSection section_;
   std::vector<std::unique_ptr<BranchOutput>> outputs_;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
@@ -28,13 +29,18 @@ class PointFileOutput final : public BranchOutput {
                                   section_.columns);
   }
   void point(const RecordedPoint& point) override {
-    files_.add_points(std::exchange(header_, "") + format_point(point.line));
+    text_.swap(header_);
+    header_.clear();
+    append_point(text_, point.line);
+    files_.add_points(text_);
+    text_.clear();
   }
 
  private:
   const BranchSection& section_;
   RunFiles& files_;
   std::string header_;  // until it is written
+  std::string text_;    // of a point; empty between two
 };
 
 class SolutionFileOutput final : public BranchOutput {
@@ -70,9 +76,17 @@ class SolutionFileOutput final : public BranchOutput {
   RunFiles& files_;
 };
 
+/// What is told of a point depends on IID and on whether it has a label:
+///
+///     IID         ordinary point                 label
+///      0          nothing                        its line, multipliers, what it is
+///      1          its line and multipliers       the same
+///      2          test values too                Newton's iterations and test functions by name too
+///      3          as a label                     the same
 class DiagnosticsFileOutput final : public BranchOutput {
  public:
-  DiagnosticsFileOutput(const BranchSection& section, RunFiles& files) : section_(section), files_(files) {}
+  DiagnosticsFileOutput(const BranchSection& section, RunFiles& files)
+      : section_(section), files_(files), short_heading_(format_short_heading(section.columns)) {}
 
   void begin_section() override {
     if (has_points_) files_.add_diagnostics(format_bar());  // the last point of a section has no next step and no bar
@@ -80,14 +94,17 @@ class DiagnosticsFileOutput final : public BranchOutput {
   }
   void point(const RecordedPoint& point) override {
     has_points_ = true;
-    if (level() > 0 || point.of_branch.labelled())
-      files_.add_diagnostics(newton_history(point) + notes(point) + multipliers(point) + details(point));
+    if (point.of_branch.labelled() || level() > 2)
+      files_.add_diagnostics(newton_history(point) + format_diagnostics_point(point.line, section_.columns) +
+                             notes(point) + multipliers(point) + details(point));
+    else if (level() > 0)
+      add_short(point);
   }
   void next_step(int point_number, double ds) override {
     if (level() <= 0) return;
-    files_.add_diagnostics(
-        fmt::format("{:4}{:6}  Next Step    : {:.5e}\n", section_.branch, wrapped_point(point_number), ds) +
-        format_bar());
+    text_.clear();
+    append_next_step(text_, section_.branch, point_number, ds);
+    files_.add_diagnostics(text_);
   }
   void note(int point_number, const std::string& text) override {
     files_.add_diagnostics(format_note(section_.branch, point_number, text));
@@ -97,6 +114,26 @@ class DiagnosticsFileOutput final : public BranchOutput {
   int level() const { return section_.settings.diagnostics_level; }
   const std::vector<NewtonIteration>& iterations(const BranchPoint& point) const {
     return point.number > 1 ? point.newton : section_.start_correction;
+  }
+
+  void add_short(const RecordedPoint& recorded) {
+    const BranchPoint& point = recorded.of_branch;
+    text_.clear();
+    append_short_point(text_, recorded.line, short_heading_);
+    text_ += notes(recorded);
+    if (point.multipliers.valid)
+      append_short_multipliers(text_, point.multipliers.values, point.multipliers.are_eigenvalues);
+    if (!recorded.unknown_multipliers.empty())
+      text_ += format_note(recorded.line.branch, recorded.line.point, recorded.unknown_multipliers);
+    test_values_.clear();
+    for (const NamedTestValue& test : point.tests) test_values_.push_back(test.value.value_or(NAN));
+    if (level() > 1) append_short_tests(text_, test_values_);
+    append_iterations(text_, recorded.line.branch, recorded.line.point, iterations_of(point));
+    files_.add_diagnostics(text_);
+  }
+
+  int iterations_of(const BranchPoint& point) const {
+    return point.number > 1 ? point.newton_iterations : static_cast<int>(iterations(point).size());
   }
 
   std::string newton_history(const RecordedPoint& point) const {
@@ -115,7 +152,7 @@ class DiagnosticsFileOutput final : public BranchOutput {
     texts.insert(texts.end(), point.details.begin(), point.details.end());
     for (const Violation& violation : point.violations)
       texts.push_back("Inadmissible: " + describe(violation, section_.system));
-    std::string text = format_diagnostics_point(recorded.line, section_.columns);
+    std::string text;
     for (const std::string& note : texts) text += format_note(recorded.line.branch, recorded.line.point, note);
     return text;
   }
@@ -133,7 +170,6 @@ class DiagnosticsFileOutput final : public BranchOutput {
 
   std::string details(const RecordedPoint& recorded) const {
     const BranchPoint& point = recorded.of_branch;
-    const int count = point.number > 1 ? point.newton_iterations : static_cast<int>(iterations(point).size());
     std::string text;
     if (level() >= 2) {
       std::vector<TestFunctionLine> tests;
@@ -145,13 +181,16 @@ class DiagnosticsFileOutput final : public BranchOutput {
                             recorded.line.branch, wrapped_point(recorded.line.point), point.multipliers.structural,
                             point.estimated_error);
     }
-    return text + fmt::format("{:4}{:6}  Iterations   : {}\n", recorded.line.branch, wrapped_point(recorded.line.point),
-                              count);
+    append_iterations(text, recorded.line.branch, recorded.line.point, iterations_of(point));
+    return text;
   }
 
   const BranchSection& section_;
   RunFiles& files_;
+  std::string short_heading_;
   bool has_points_ = false;  // the section
+  std::string text_;         // of an ordinary point
+  std::vector<double> test_values_;
 };
 
 }  // namespace
