@@ -9,6 +9,7 @@
 #include "bvp/sliding_violations.hpp"
 #include "bvp/transversality.hpp"
 #include "hybrid/event_at.hpp"
+#include "linear_algebra/array_kernel.hpp"
 
 namespace tchat {
 
@@ -21,12 +22,14 @@ constexpr double surely_negative = 1e-6;
 
 std::vector<Violation> inadmissibilities(const HybridSystem& system, const Signature& signature,
                                          const std::vector<std::vector<int>>& monitored, const Orbit& x,
-                                         const CollocationRule& rule, double error, double leaving) {
+                                         const std::vector<EventCourse>& courses, const CollocationRule& rule,
+                                         double error, double leaving) {
   std::vector<Violation> result;
   const int m = x.shape.segments;
   const int end_node = x.shape.nodes() - 1;
   const double* par = x.par.data();
-  const double error_of_states = error * (1.0 + x.states.cwiseAbs().maxCoeff());
+  const double error_of_states = error * (1.0 + array_functions().range(x.states.data(), x.states.size()).largest);
+  auto course_of_event = courses.begin();
   for (int s = 0; s < m; ++s) {
     const auto index = static_cast<std::size_t>(s);
     const IndexVector& v = signature[index];
@@ -36,12 +39,13 @@ std::vector<Violation> inadmissibilities(const HybridSystem& system, const Signa
     for (const int event : monitored[index]) {
       Violation worst{Violation::event_crossed, x.shape.stored_nodes() == 1 ? 0 : s + 1, event, 0.0, 0.0};
       const double scale = event_scale(system, x, event);
-      const EventCourse course = event_course(system, signature, rule, x, s, event, -surely_negative * scale);
+      const EventCourse& course = *course_of_event++;
       const bool leaves_out_start = course.at_nodes(0) < 0.0 && is_pinned_start(system, signature, x, s, event);
       const int last = event == v.event ? end_node - 1 : end_node;
       for (int k = leaves_out_start ? 1 : 0; k <= last; ++k)
         if (const double h = course.at_nodes(k); h < worst.value) worst.value = h, worst.tau = x.tau(k);
-      for (const EventMinimum& dip : course.minima) {
+      for (const EventMinimum& dip :
+           polished_minima(system, signature, rule, x, course, -surely_negative * scale)) {
         const double uncertainty =
             2.0 * error_of_states * event_at(system, event, dip.state.data(), par).gradient.lpNorm<1>();
         if (dip.value < std::min(worst.value, -std::max(surely_negative * scale, uncertainty)))
@@ -58,6 +62,13 @@ std::vector<Violation> inadmissibilities(const HybridSystem& system, const Signa
       result.push_back({Violation::leaving_terminal_surface, s + 1, v.event, 1.0, end.rate()});
   }
   return result;
+}
+
+std::vector<Violation> inadmissibilities(const HybridSystem& system, const Signature& signature,
+                                         const std::vector<std::vector<int>>& monitored, const Orbit& x,
+                                         const CollocationRule& rule, double error, double leaving) {
+  return inadmissibilities(system, signature, monitored, x, event_courses(system, signature, monitored, rule, x), rule,
+                           error, leaving);
 }
 
 std::string describe(const Violation& violation, const HybridSystem& system) {

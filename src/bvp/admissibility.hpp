@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "bvp/collocation_rule.hpp"
+#include "bvp/event_minima.hpp"
 #include "bvp/orbit.hpp"
 #include "bvp/transversality.hpp"
 #include "hybrid/hybrid_system.hpp"
@@ -33,10 +34,15 @@ struct Violation {
   double value = 0.0;  ///< T_s, h, or h_x f; of the last two kinds h_x f in the direction that it must not have
 };
 
-/// `monitored[s]` lists the event functions monitored on segment s. `error` is the estimated relative error of the
+/// `monitored[s]` lists the event functions monitored on segment s, whose courses are `courses` (event_courses).
+/// `error` is the estimated relative error of the
 /// states between mesh points (discretisation_error.hpp). A segment leaves its terminal surface when h_x f is more than
 /// `leaving` of |h_x| |f|: at a located special point, where two segments may meet their surfaces tangentially at once,
 /// that is known to the accuracy of the location.
+std::vector<Violation> inadmissibilities(const HybridSystem& system, const Signature& signature,
+                                         const std::vector<std::vector<int>>& monitored, const Orbit& x,
+                                         const std::vector<EventCourse>& courses, const CollocationRule& rule,
+                                         double error, double leaving = no_transversality);
 std::vector<Violation> inadmissibilities(const HybridSystem& system, const Signature& signature,
                                          const std::vector<std::vector<int>>& monitored, const Orbit& x,
                                          const CollocationRule& rule, double error, double leaving = no_transversality);

@@ -108,7 +108,23 @@ CollocationRule::CollocationRule(int points)
   }
 }
 
+/// l_i = b_i prod_(k < i) (sigma - node_k) prod_(k > i) (sigma - node_k)
+void CollocationRule::basis_values(double sigma, double* values) const {
+  const int nodes = points_ + 1;
+  double before = 1.0;
+  for (int i = 0; i < nodes; ++i) {
+    values[i] = barycentric_(i) * before;
+    before *= sigma - nodes_(i);
+  }
+  double after = 1.0;
+  for (int i = nodes - 1; i >= 0; --i) {
+    values[i] *= after;
+    after *= sigma - nodes_(i);
+  }
+}
+
 void CollocationRule::basis(double sigma, double* values, double* slopes) const {
+  if (slopes == nullptr) return basis_values(sigma, values);
   const int nodes = points_ + 1;
   for (int i = 0; i < nodes; ++i) {
     double product = barycentric_(i);
@@ -120,7 +136,7 @@ void CollocationRule::basis(double sigma, double* values, double* slopes) const 
       product *= factor;
     }
     if (values != nullptr) values[i] = product;
-    if (slopes != nullptr) slopes[i] = sum;
+    slopes[i] = sum;
   }
 }
 

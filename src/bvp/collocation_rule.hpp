@@ -31,6 +31,8 @@ class CollocationRule {
   void basis(double sigma, double* values, double* slopes) const;
 
  private:
+  void basis_values(double sigma, double* values) const;
+
   int points_;
   Eigen::VectorXd nodes_;
   Eigen::VectorXd barycentric_;  // weights 1 / prod_k (node_i - node_k)

@@ -23,7 +23,7 @@ double largest_residual(const HybridSystem& system, int field, const Orbit& x, c
   double largest = 0.0;
   for (int j = 0; j <= x.shape.intervals; ++j) {
     system.value(FunctionKind::field, field, x.node(s, j * c), x.par.data(), f.data());
-    if (!f.allFinite()) continue;
+    if (!std::all_of(f.begin(), f.end(), [](double value) { return std::isfinite(value); })) continue;
     // The end of one interval is the start of the next one.
     for (const int side : {0, 1}) {
       const int interval = j - side;
@@ -41,13 +41,14 @@ double largest_residual(const HybridSystem& system, int field, const Orbit& x, c
 
 double estimated_error(const HybridSystem& system, const Signature& signature, const Orbit& x,
                        const CollocationRule& rule) {
-  if (!x.states.allFinite()) return std::numeric_limits<double>::infinity();
+  const ArrayRange of_states = array_functions().range(x.states.data(), x.states.size());
+  if (!of_states.finite) return std::numeric_limits<double>::infinity();
   double residual = 0.0;
   for (int s = 0; s < x.shape.segments; ++s) {
     const int field = signature[static_cast<std::size_t>(s)].field;
     if (x.duration(s) != 0.0) residual = std::max(residual, largest_residual(system, field, x, rule, s));
   }
-  return rule.residual_integral * residual / (1.0 + x.states.cwiseAbs().maxCoeff());
+  return rule.residual_integral * residual / (1.0 + of_states.largest);
 }
 
 }  // namespace tchat

@@ -1,6 +1,7 @@
 #include "bvp/event_minima.hpp"
 
 #include <algorithm>
+#include <array>
 #include <boost/math/tools/toms748_solve.hpp>
 #include <boost/numeric/odeint.hpp>
 #include <cmath>
@@ -18,22 +19,14 @@ using Vector = Eigen::VectorXd;
 
 /// How close to parallel two gradients of a pinned start must be, and how close to zero h there (of its size).
 constexpr double structural_tolerance = 1e-6;
+constexpr int most_nodes = CollocationRule::most_points + 1;  // of an interval
 
 /// One event function along one segment's collocation polynomials.
 class EventAlongSegment {
  public:
   EventAlongSegment(const HybridSystem& system, int field, const CollocationRule& rule, const Orbit& x, int s,
                     int event)
-      : system_(system),
-        field_(field),
-        rule_(rule),
-        x_(x),
-        s_(s),
-        event_(event),
-        values_(Vector::Constant(x.shape.nodes(), NAN)),
-        slopes_(x.shape.collocation + 1, x.shape.intervals) {
-    find_slopes(find_gradients());
-  }
+      : system_(system), field_(field), rule_(rule), x_(x), s_(s), event_(event) {}
 
   double length(int j) const { return x_.mesh[static_cast<std::size_t>(j + 1)] - x_.mesh[static_cast<std::size_t>(j)]; }
 
@@ -42,12 +35,6 @@ class EventAlongSegment {
     const Basis basis = basis_at(sigma);
     return gradient(nodes(j) * basis.values).dot(nodes(j) * basis.slopes) / length(j);
   }
-
-  /// The same at node i of the interval.
-  double slope_at_node(int j, int i) const { return slopes_(i, j); }
-
-  /// h at all nodes.
-  const Vector& values() const { return values_; }
 
   /// h at sigma of interval j, from the polynomial.
   double value(int j, double sigma) const {
@@ -78,40 +65,6 @@ class EventAlongSegment {
   }
 
  private:
-  /// Those of h at the nodes, one a column, and its values. All in one call; where one point spoils it for others (an
-  /// exception makes all of them unknown), each on its own.
-  Eigen::MatrixXd find_gradients() {
-    const int nodes = x_.shape.nodes();
-    Eigen::MatrixXd gradients = Eigen::MatrixXd::Constant(x_.shape.dimension, nodes, NAN);
-    system_.first_at_points(FunctionKind::event, event_, nodes, x_.node(s_, 0), par(), {}, values_.data(),
-                            gradients.data(), nullptr);
-    if (values_.allFinite() && gradients.allFinite()) return gradients;
-    for (int k = 0; k < nodes; ++k)
-      if (!std::isfinite(values_(k)) || !gradients.col(k).allFinite())
-        system_.first(FunctionKind::event, event_, x_.node(s_, k), par(), {}, &values_(k), gradients.col(k).data(),
-                      nullptr);
-    return gradients;
-  }
-
-  void find_slopes(const Eigen::MatrixXd& gradients) {
-    const int n = x_.shape.dimension;
-    const int c = x_.shape.collocation;
-    Eigen::MatrixXd of_basis(c + 1, c + 1);
-    for (int i = 0; i <= c; ++i) of_basis.row(i) = basis_at(static_cast<double>(i) / c).slopes;
-    Eigen::MatrixXd rates(n, (c + 1) * x_.shape.intervals);
-    array_functions().interpolate({of_basis.data(), c + 1, c, n, x_.shape.intervals}, x_.node(s_, 0), rates.data(), n);
-    with_dimension(n, [&](auto entries) {
-      const double* rate = rates.data();
-      for (int j = 0; j < x_.shape.intervals; ++j)
-        for (int i = 0; i <= c; ++i, rate += entries) {
-          const double* gradient = gradients.col(j * c + i).data();
-          double slope = 0.0;
-          for (int a = 0; a < entries; ++a) slope += gradient[a] * rate[a];
-          slopes_(i, j) = slope / length(j);
-        }
-    });
-  }
-
   const double* par() const { return x_.par.data(); }
 
   /// Rounding may place a minimum slightly inside an end; it is then moved onto the end.
@@ -168,52 +121,12 @@ class EventAlongSegment {
   const Orbit& x_;
   int s_;
   int event_;
-  Vector values_;           // of h at the nodes
-  Eigen::MatrixXd slopes_;  // d h / d tau at the nodes of each interval, which is a column
 };
 
-/// A place where h turns from falling to rising: inside interval j at sigma.
-struct Minimum {
-  int interval;
-  double sigma;
-};
-
-/// All interior minima in order. `rises_before` and `falls_after` tell for the first and the last one whether h rises
-/// anywhere before, falls anywhere after it: if not, the minimum hangs on the segment's end.
-struct Minima {
-  std::vector<Minimum> list;
-  bool first_hangs_on_start = false;
-  bool last_hangs_on_end = false;
-};
-
-Minima find_minima(const EventAlongSegment& along, int intervals, int c) {
-  Minima result;
-  bool risen = false;
-  double before = 0.0;
-  for (int j = 0; j < intervals; ++j) {
-    for (int i = 0; i <= c; ++i) {
-      const double sigma = static_cast<double>(i) / c;
-      const double slope = along.slope_at_node(j, i);
-      const bool turns = before < 0.0 && slope >= 0.0;
-      if (turns) {
-        if (result.list.empty()) result.first_hangs_on_start = !risen;
-        double at = sigma;
-        if (i > 0 && slope > 0.0) {
-          std::uintmax_t iterations = 50;
-          const auto bracket = boost::math::tools::toms748_solve(
-              [&](double t) { return along.slope(j, t); }, static_cast<double>(i - 1) / c, sigma, before, slope,
-              boost::math::tools::eps_tolerance<double>(40), iterations);
-          at = 0.5 * (bracket.first + bracket.second);
-        }
-        result.list.push_back({j, at});
-        result.last_hangs_on_end = true;
-      }
-      if (slope < 0.0) result.last_hangs_on_end = false;
-      risen = risen || slope > 0.0;
-      before = slope;
-    }
-  }
-  return result;
+EventCourse course_of(const DefiningSystem& system, const CollocationRule& rule, const Orbit& x, int s, int event) {
+  EventCourse course{s, event, {}, {}};
+  EventCourseFinder().find(system.system(), system.signature()[static_cast<std::size_t>(s)].field, rule, x, course);
+  return course;
 }
 
 }  // namespace
@@ -232,43 +145,152 @@ bool is_pinned_start(const HybridSystem& system, const Signature& signature, con
   return sizes > 0.0 && std::abs(std::abs(composed.dot(terminal)) / sizes - 1.0) < structural_tolerance;
 }
 
-EventCourse event_course(const HybridSystem& system, const Signature& signature, const CollocationRule& rule,
-                         const Orbit& x, int s, int event, double below) {
-  const IndexVector& v = signature[static_cast<std::size_t>(s)];
-  const EventAlongSegment along(system, v.field, rule, x, s, event);
-  EventCourse course{along.values(), {}};
-  if (!(x.duration(s) > 0.0)) return course;
-  const Minima minima = find_minima(along, x.shape.intervals, x.shape.collocation);
-  for (std::size_t i = 0; i < minima.list.size(); ++i) {
-    const Minimum& at = minima.list[i];
-    if (along.value(at.interval, at.sigma) >= below) continue;
-    if (i == 0 && minima.first_hangs_on_start && is_pinned_start(system, signature, x, s, event)) continue;
-    if (i + 1 == minima.list.size() && minima.last_hangs_on_end && v.event == event) continue;
-    course.minima.push_back(along.polished(at.interval, at.sigma));
+/// All in one call; where one point spoils it for others (an exception makes all of them unknown), each on its own.
+void EventCourseFinder::find_gradients(const HybridSystem& system, const Orbit& x, EventCourse& course) {
+  const int nodes = x.shape.nodes();
+  const int n = x.shape.dimension;
+  const double* par = x.par.data();
+  course.at_nodes.setConstant(nodes, NAN);
+  gradients_.setConstant(n, nodes, NAN);
+  system.first_at_points(FunctionKind::event, course.event, nodes, x.node(course.segment, 0), par, {},
+                         course.at_nodes.data(), gradients_.data(), nullptr);
+  const auto is_finite = [](const double* values, Eigen::Index count) {
+    return array_functions().range(values, count).finite;
+  };
+  if (is_finite(course.at_nodes.data(), nodes) && is_finite(gradients_.data(), gradients_.size())) return;
+  for (int k = 0; k < nodes; ++k)
+    if (!std::isfinite(course.at_nodes(k)) || !gradients_.col(k).allFinite())
+      system.first(FunctionKind::event, course.event, x.node(course.segment, k), par, {}, &course.at_nodes(k),
+                   gradients_.col(k).data(), nullptr);
+}
+
+void EventCourseFinder::find_slopes(const CollocationRule& rule, const Orbit& x, int s) {
+  const int n = x.shape.dimension;
+  const int c = x.shape.collocation;
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, most_nodes, most_nodes> of_basis(c + 1, c + 1);
+  for (int i = 0; i <= c; ++i) {
+    std::array<double, most_nodes> slopes{};
+    rule.basis(static_cast<double>(i) / c, nullptr, slopes.data());
+    for (int k = 0; k <= c; ++k) of_basis(i, k) = slopes[static_cast<std::size_t>(k)];
   }
-  return course;
+  rates_.resize(n, static_cast<Eigen::Index>(c + 1) * x.shape.intervals);
+  slopes_.resize(c + 1, x.shape.intervals);
+  array_functions().interpolate({of_basis.data(), c + 1, c, n, x.shape.intervals}, x.node(s, 0), rates_.data(), n);
+  with_dimension(n, [&](auto entries) {
+    const double* rate = rates_.data();
+    for (int j = 0; j < x.shape.intervals; ++j) {
+      const double length = x.mesh[static_cast<std::size_t>(j + 1)] - x.mesh[static_cast<std::size_t>(j)];
+      for (int i = 0; i <= c; ++i, rate += entries) {
+        const double* gradient = gradients_.col(j * c + i).data();
+        double slope = 0.0;
+        for (int a = 0; a < entries; ++a) slope += gradient[a] * rate[a];
+        slopes_(i, j) = slope / length;
+      }
+    }
+  });
+}
+
+void EventCourseFinder::find_dips(const HybridSystem& system, int field, const CollocationRule& rule, const Orbit& x,
+                                  EventCourse& course) const {
+  const EventAlongSegment along(system, field, rule, x, course.segment, course.event);
+  const int c = x.shape.collocation;
+  bool risen = false;
+  double before = 0.0;
+  for (int j = 0; j < x.shape.intervals; ++j) {
+    for (int i = 0; i <= c; ++i) {
+      const double sigma = static_cast<double>(i) / c;
+      const double slope = slopes_(i, j);
+      if (before < 0.0 && slope >= 0.0) {
+        if (course.dips.empty()) course.first_hangs_on_start = !risen;
+        double at = sigma;
+        if (i > 0 && slope > 0.0) {
+          std::uintmax_t iterations = 50;
+          const auto bracket = boost::math::tools::toms748_solve(
+              [&](double t) { return along.slope(j, t); }, static_cast<double>(i - 1) / c, sigma, before, slope,
+              boost::math::tools::eps_tolerance<double>(40), iterations);
+          at = 0.5 * (bracket.first + bracket.second);
+        }
+        course.dips.push_back({j, at, along.value(j, at)});
+        course.last_hangs_on_end = true;
+      }
+      if (slope < 0.0) course.last_hangs_on_end = false;
+      risen = risen || slope > 0.0;
+      before = slope;
+    }
+  }
+}
+
+void EventCourseFinder::find(const HybridSystem& system, int field, const CollocationRule& rule, const Orbit& x,
+                             EventCourse& course) {
+  course.dips.clear();
+  course.first_hangs_on_start = course.last_hangs_on_end = false;
+  find_gradients(system, x, course);
+  if (!(x.duration(course.segment) > 0.0)) return;
+  find_slopes(rule, x, course.segment);
+  find_dips(system, field, rule, x, course);
+}
+
+std::vector<EventCourse> event_courses(const HybridSystem& system, const Signature& signature,
+                                       const std::vector<std::vector<int>>& monitored, const CollocationRule& rule,
+                                       const Orbit& x) {
+  EventCourseFinder finder;
+  std::vector<EventCourse> courses;
+  for (int s = 0; s < x.shape.segments; ++s)
+    for (const int event : monitored[static_cast<std::size_t>(s)]) {
+      courses.push_back({s, event, {}, {}});
+      finder.find(system, signature[static_cast<std::size_t>(s)].field, rule, x, courses.back());
+    }
+  return courses;
+}
+
+std::vector<EventMinimum> polished_minima(const HybridSystem& system, const Signature& signature,
+                                          const CollocationRule& rule, const Orbit& x, const EventCourse& course,
+                                          double below) {
+  const int s = course.segment;
+  const IndexVector& v = signature[static_cast<std::size_t>(s)];
+  const EventAlongSegment along(system, v.field, rule, x, s, course.event);
+  std::vector<EventMinimum> minima;
+  for (std::size_t i = 0; i < course.dips.size(); ++i) {
+    const EventDip& dip = course.dips[i];
+    if (dip.value >= below) continue;
+    if (i == 0 && course.first_hangs_on_start && is_pinned_start(system, signature, x, s, course.event)) continue;
+    if (i + 1 == course.dips.size() && course.last_hangs_on_end && v.event == course.event) continue;
+    minima.push_back(along.polished(dip.interval, dip.sigma));
+  }
+  return minima;
+}
+
+std::vector<EventMinimum> least_candidates(const DefiningSystem& system, const CollocationRule& rule, const Orbit& x,
+                                           const EventCourse& course) {
+  const int s = course.segment;
+  std::vector<EventMinimum> candidates;
+  const auto add_node = [&](int k) {
+    candidates.push_back({x.tau(k), course.at_nodes(k), Vector::Map(x.node(s, k), x.shape.dimension)});
+  };
+  if (!is_pinned_start(system.system(), system.signature(), x, s, course.event)) add_node(0);
+  if (system.signature()[static_cast<std::size_t>(s)].event != course.event) add_node(x.shape.nodes() - 1);
+  for (EventMinimum& minimum : polished_minima(system.system(), system.signature(), rule, x, course))
+    candidates.push_back(std::move(minimum));
+  return candidates;
 }
 
 std::vector<EventMinimum> least_candidates(const DefiningSystem& system, const CollocationRule& rule, const Orbit& x,
                                            int s, int event) {
-  std::vector<EventMinimum> candidates;
-  const EventCourse course = event_course(system.system(), system.signature(), rule, x, s, event);
-  const auto add_node = [&](int k) {
-    candidates.push_back({x.tau(k), course.at_nodes(k), Vector::Map(x.node(s, k), x.shape.dimension)});
-  };
-  if (!is_pinned_start(system.system(), system.signature(), x, s, event)) add_node(0);
-  if (system.signature()[static_cast<std::size_t>(s)].event != event) add_node(x.shape.nodes() - 1);
-  candidates.insert(candidates.end(), course.minima.begin(), course.minima.end());
-  return candidates;
+  return least_candidates(system, rule, x, course_of(system, rule, x, s, event));
 }
 
 std::optional<EventMinimum> least_value(const DefiningSystem& system, const CollocationRule& rule, const Orbit& x,
-                                        int s, int event) {
-  const std::vector<EventMinimum> candidates = least_candidates(system, rule, x, s, event);
+                                        const EventCourse& course) {
+  const std::vector<EventMinimum> candidates = least_candidates(system, rule, x, course);
   const auto least = std::min_element(candidates.begin(), candidates.end(),
                                       [](const EventMinimum& a, const EventMinimum& b) { return a.value < b.value; });
   if (least == candidates.end()) return std::nullopt;
   return *least;
+}
+
+std::optional<EventMinimum> least_value(const DefiningSystem& system, const CollocationRule& rule, const Orbit& x,
+                                        int s, int event) {
+  return least_value(system, rule, x, course_of(system, rule, x, s, event));
 }
 
 }  // namespace tchat

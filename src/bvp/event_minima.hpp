@@ -31,22 +31,59 @@ struct EventMinimum {
 /// by structure (h = 0 there, gradient of h o g parallel to that of the previous terminal event)?
 bool is_pinned_start(const HybridSystem& system, const Signature& signature, const Orbit& x, int s, int event);
 
-/// An event function along a segment.
-struct EventCourse {
-  Eigen::VectorXd at_nodes;          ///< h at every node
-  std::vector<EventMinimum> minima;  ///< inside the segment, in order
+/// A place where h turns from falling to rising: at sigma in [0, 1] of a mesh interval.
+struct EventDip {
+  int interval = 0;
+  double sigma = 0.0;
+  double value = 0.0;  ///< h on the polynomial
 };
 
-/// Of event function `event` along segment s (from 0), with the minima where h is less than `below` on the polynomial;
-/// none where the segment lasts no positive time.
-EventCourse event_course(const HybridSystem& system, const Signature& signature, const CollocationRule& rule,
-                         const Orbit& x, int s, int event, double below = std::numeric_limits<double>::infinity());
+/// Event function `event` along segment s (from 0).
+struct EventCourse {
+  int segment = 0;
+  int event = 0;
+  Eigen::VectorXd at_nodes;    ///< h at every node
+  std::vector<EventDip> dips;  ///< inside the segment, in order; none where it lasts no positive time
+  bool first_hangs_on_start = false;  ///< h rises nowhere before the first dip
+  bool last_hangs_on_end = false;     ///< h falls nowhere after the last one
+};
+
+/// Finds courses; one orbit after the other of the same shape without allocations, but for dips.
+class EventCourseFinder {
+ public:
+  /// Segment `course.segment` has the field `field`.
+  void find(const HybridSystem& system, int field, const CollocationRule& rule, const Orbit& x, EventCourse& course);
+
+ private:
+  void find_gradients(const HybridSystem& system, const Orbit& x, EventCourse& course);
+  void find_slopes(const CollocationRule& rule, const Orbit& x, int s);
+  void find_dips(const HybridSystem& system, int field, const CollocationRule& rule, const Orbit& x,
+                 EventCourse& course) const;
+
+  Eigen::MatrixXd gradients_;  // of h at the nodes, one a column
+  Eigen::MatrixXd rates_;      // d u / d tau times the interval's length at the nodes of each interval
+  Eigen::MatrixXd slopes_;     // d h / d tau at the nodes of each interval, which is a column
+};
+
+/// Of every event function monitored on a segment, one segment after the other.
+std::vector<EventCourse> event_courses(const HybridSystem& system, const Signature& signature,
+                                       const std::vector<std::vector<int>>& monitored, const CollocationRule& rule,
+                                       const Orbit& x);
+
+/// The dips of a course where h is less than `below` on the polynomial, polished.
+std::vector<EventMinimum> polished_minima(const HybridSystem& system, const Signature& signature,
+                                          const CollocationRule& rule, const Orbit& x, const EventCourse& course,
+                                          double below = std::numeric_limits<double>::infinity());
 
 /// The ends that are not pinned, then the interior minima in order.
+std::vector<EventMinimum> least_candidates(const DefiningSystem& system, const CollocationRule& rule, const Orbit& x,
+                                           const EventCourse& course);
 std::vector<EventMinimum> least_candidates(const DefiningSystem& system, const CollocationRule& rule, const Orbit& x,
                                            int s, int event);
 
 /// The candidate with the least value; nothing without candidates.
+std::optional<EventMinimum> least_value(const DefiningSystem& system, const CollocationRule& rule, const Orbit& x,
+                                        const EventCourse& course);
 std::optional<EventMinimum> least_value(const DefiningSystem& system, const CollocationRule& rule, const Orbit& x,
                                         int s, int event);
 

@@ -10,13 +10,13 @@
 
 #include "bvp/collocation_rule.hpp"
 #include "bvp/orbit.hpp"
+#include "linear_algebra/array_kernel.hpp"
 
 namespace tchat {
 
-/// row += M v for states v of one segment (n x nodes) on the mesh of x: a . M v is the integral of sum_i weights_i a_i
-/// v_i over its scaled time.
-void add_mass(const Orbit& x, const CollocationRule& rule, const Eigen::VectorXd& weights, const double* v,
-              double* row);
+/// M of add_mass() and mass_product() for states of one segment (n x nodes) on the mesh of x: a . M v is the integral
+/// of sum_i weights_i a_i v_i over its scaled time. The arguments must outlive it.
+MassIntervals mass_intervals(const Orbit& x, const CollocationRule& rule, const Eigen::VectorXd& weights);
 
 class WeightedNorm {
  public:

@@ -37,9 +37,13 @@ constexpr double shrunk = 1e-6;
 /// Special points that are so many tolerances of their location away from a point are at that point.
 constexpr double same_place = 10.0;
 
+/// On arclength.
+double location_accuracy(const ContinuationSettings& settings) {
+  return settings.location_tolerance * (1.0 + std::sqrt(std::abs(settings.step.initial * settings.step.maximum)));
+}
+
 LocationSettings location_settings(const ContinuationSettings& settings) {
-  const double scale = 1.0 + std::sqrt(std::abs(settings.step.initial * settings.step.maximum));
-  return {settings.multipliers, settings.location_tolerance * scale, std::max(settings.max_location, 2)};
+  return {settings.multipliers, location_accuracy(settings), std::max(settings.max_location, 2), settings.monitored};
 }
 
 /// After all others: what else vanishes on a bound gives the point its type.
@@ -59,7 +63,7 @@ bool bounds_measure(const ContinuationSettings& settings) {
 }  // namespace
 
 bool is_beyond(const ContinuationSettings& settings, double value, double least, double most) {
-  const double accuracy = location_settings(settings).tolerance * (1.0 + std::abs(value));
+  const double accuracy = location_accuracy(settings) * (1.0 + std::abs(value));
   return value < least - accuracy || value > most + accuracy;
 }
 
@@ -103,7 +107,7 @@ BranchSummary ContinuationRun::run(PathPoint start) {
     }
     if (!may_go_to_next()) break;
     const std::optional<double> to_first = move_to_first_point();
-    const bool is_there = to_first && std::abs(*to_first) <= same_place * location_settings(settings_).tolerance;
+    const bool is_there = to_first && std::abs(*to_first) <= same_place * location_accuracy(settings_);
     special = is_there ? SpecialPoint{} : advance();
     if (to_first) special = end_at_first_point(special, *to_first);
     if (const std::string zero = passed_zero_duration(); !ended_ && !zero.empty()) {
@@ -140,7 +144,7 @@ std::optional<double> ContinuationRun::move_to_first_point() {
   if (!settings_.stop_when_closed) return std::nullopt;
   const std::optional<ClosedBranch::Return> way = closed_.on_step(here_, next_.point, next_.ds);
   if (!way) return std::nullopt;
-  const double beyond = std::copysign(same_place * location_settings(settings_).tolerance, next_.ds);
+  const double beyond = std::copysign(same_place * location_accuracy(settings_), next_.ds);
   Candidate past{next_.point, way->length + beyond, {}};
   const NewtonResult newton = follower_.step(way->from, past.ds, past.point);
   if (!newton.converged()) {
@@ -160,7 +164,7 @@ SpecialPoint ContinuationRun::end_at_first_point(SpecialPoint special, double le
   if (ended_) return special;
   const double rest = std::abs(length) - std::abs(next_.ds);
   const bool is_special = special.type != PointType::ordinary;
-  if (is_special && rest > same_place * location_settings(settings_).tolerance) return special;
+  if (is_special && rest > same_place * location_accuracy(settings_)) return special;
   if (!is_special) {
     newton_ = follower_.step(here_, length, next_.point);
     next_.ds = length;
@@ -395,7 +399,7 @@ void ContinuationRun::record(const SpecialPoint& special, const PointData& data)
   const double leaving =
       is_located ? std::max(no_transversality, errors_of_location * settings_.location_tolerance) : no_transversality;
   const std::vector<Violation> violations =
-      inadmissibilities(system_.system(), system_.signature(), settings_.monitored, here_.orbit,
+      inadmissibilities(system_.system(), system_.signature(), settings_.monitored, here_.orbit, data.courses,
                         follower_.condensed().rule(), data.estimated_error, leaving);
   for (std::size_t i = 0; i < test_values_.size(); ++i) test_values_[i].value = data.tests[i].value;
   BranchPoint point{number_,

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "bvp/event_minima.hpp"
 #include "continuation/path_point.hpp"
 #include "special_points/test_function.hpp"
 #include "stability/multipliers.hpp"
@@ -15,6 +16,7 @@ struct PointData {
   std::vector<double> transversalities;  ///< h_x f / (|h_x| |f|) at the end of each segment
   double singular_distance = 1.0;        ///< as in TestedPoint
   double estimated_error = 0.0;          ///< of the states between mesh points, relative
+  std::vector<EventCourse> courses;      ///< of the monitored event functions
   std::vector<TestValue> tests;          ///< one for each test function
   std::vector<std::string> details;      ///< of a labelled point
 };

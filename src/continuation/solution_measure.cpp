@@ -35,13 +35,10 @@ double time_mean(const Orbit& x, const Integrand& integrand) {
 }  // namespace
 
 double l2_norm(const Orbit& x, const CollocationRule& rule, const Eigen::VectorXd& state_weights) {
-  Eigen::MatrixXd product(x.shape.dimension, x.shape.nodes());
+  const MassIntervals mass = mass_intervals(x, rule, state_weights);
   double mean = 0.0;
-  for (int s = 0; s < x.shape.segments; ++s) {
-    product.setZero();
-    add_mass(x, rule, state_weights, x.node(s, 0), product.data());
-    mean += time_share(x, s) * array_functions().dot(product.data(), x.node(s, 0), product.size());
-  }
+  for (int s = 0; s < x.shape.segments; ++s)
+    mean += time_share(x, s) * array_functions().mass_product(mass, x.node(s, 0));
   return std::sqrt(mean);
 }
 

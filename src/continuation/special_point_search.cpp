@@ -111,7 +111,8 @@ TestedPoint SpecialPointSearch::tested(const PathPoint& at, const PointData& dat
           data.singular_distance,
           follower_.condition(),
           follower_.principal_direction(at),
-          is_one_parameter_family_};
+          is_one_parameter_family_,
+          data.courses};
 }
 
 std::vector<std::string> SpecialPointSearch::details(const PathPoint& at, const PointData& data) const {
@@ -150,9 +151,22 @@ PointData SpecialPointSearch::evaluate(PathPoint& at) {
     data.transversalities.push_back(crossing_at_end(system_, at.orbit, s).transversality());
   data.singular_distance = signed_distance(at);
   data.estimated_error = estimated_error(system_.system(), system_.signature(), at.orbit, follower_.condensed().rule());
+  find_event_courses(at.orbit, data);
   const TestedPoint point = tested(at, data);
   for (const auto& test : tests_) data.tests.push_back(test->evaluate(point));
   return data;
+}
+
+void SpecialPointSearch::find_event_courses(const Orbit& x, PointData& data) {
+  std::size_t count = 0;
+  for (std::size_t s = 0; s < std::min(settings_.monitored.size(), system_.signature().size()); ++s)
+    for (const int event : settings_.monitored[s]) {
+      if (count == data.courses.size()) data.courses.emplace_back();
+      EventCourse& course = data.courses[count++];
+      course.segment = static_cast<int>(s);
+      course.event = event;
+      course_finder_.find(system_.system(), system_.signature()[s].field, follower_.condensed().rule(), x, course);
+    }
 }
 
 PointData SpecialPointSearch::evaluate_again(PathPoint& at) {

@@ -21,6 +21,7 @@ struct LocationSettings {
   bool multipliers = true;   ///< compute them (ISP > 0)
   double tolerance = 1e-7;   ///< on arclength
   int max_evaluations = 10;  ///< ITMX
+  std::vector<std::vector<int>> monitored = {};  ///< event functions of each segment, as in inadmissibilities()
 };
 
 class SpecialPointSearch {
@@ -87,6 +88,7 @@ class SpecialPointSearch {
   };
 
   double signed_distance(const PathPoint& at) const;
+  void find_event_courses(const Orbit& x, PointData& data);
   bool is_near_zero(std::size_t test, const TestValue& end) const;
   PointData evaluate_again(PathPoint& at);  // with a new linearisation
   std::vector<std::size_t> changed(const PointData& end) const;
@@ -118,6 +120,7 @@ class SpecialPointSearch {
   std::vector<std::unique_ptr<TestFunction>> tests_;
   LocationSettings settings_;
   BranchAnalysis& analysis_;
+  EventCourseFinder course_finder_;
   /// At how many points a function was defined, and whether its value exceeded its uncertainty at one of them.
   struct Evidence {
     int points = 0;

@@ -26,6 +26,17 @@ struct IntervalBasis {
   int intervals;
 };
 
+/// Integrals of products of such polynomials: node i of an interval of length h and the others, times weights[a] for
+/// entry a: h sum_k mass[i nodes + k] v_k.
+struct MassIntervals {
+  const double* mesh;  ///< intervals + 1
+  int intervals;
+  const double* mass;
+  int nodes;  ///< of an interval, 8 at most
+  const double* weights;
+  int n;
+};
+
 /// Combinations of c + 1 nodes of n entries that follow each other: number k begins at node first[k] and has the
 /// weights in column k.
 struct NodeCombinations {
@@ -60,8 +71,10 @@ struct ArrayFunctions {
                          const double* weights_of_y, double* y, long count);
   /// y = sum of weights[k] arrays[k], one after the other; y is none of them.
   void (*combine)(const double* const* arrays, const double* weights, int arrays_count, double* y, long count);
-  /// y_i += h sum_k mass[i nodes + k] v_k for nodes of n entries, one after the other, times weights[a] for entry a.
-  void (*add_mass)(double h, const double* mass, int nodes, const double* weights, int n, const double* v, double* y);
+  /// y += M v with the mass matrix M of all intervals
+  void (*add_mass)(const MassIntervals& on, const double* v, double* y);
+  /// v M v
+  double (*mass_product)(const MassIntervals& on, const double* v);
   /// The polynomials through `nodes` at the points of the intervals: n entries each, `stride` from one to the next.
   void (*interpolate)(const IntervalBasis& basis, const double* nodes, double* points, int stride);
   /// The combinations one after the other: values of n entries.

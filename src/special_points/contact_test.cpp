@@ -18,8 +18,15 @@ ContactTest::ContactTest(const DefiningSystem& system, int segment, int event, b
 
 std::string ContactTest::name() const { return fmt::format("least h{} on segment {}", event_, segment_ + 1); }
 
+std::optional<EventMinimum> ContactTest::least(const TestedPoint& point) const {
+  const CollocationRule& rule = point.condensed.rule();
+  for (const EventCourse& course : point.courses)
+    if (course.segment == segment_ && course.event == event_) return least_value(system_, rule, point.orbit, course);
+  return least_value(system_, rule, point.orbit, segment_, event_);
+}
+
 TestValue ContactTest::evaluate(const TestedPoint& point) const {
-  const auto contact = least_value(system_, point.condensed.rule(), point.orbit, segment_, event_);
+  const auto contact = least(point);
   if (!contact) return TestValue::undefined(sign_without_minimum(point.orbit));
   return TestValue::of(contact->value, orbit_accuracy * event_scale(system_.system(), point.orbit, event_));
 }
@@ -53,8 +60,7 @@ SpecialPoint ContactTest::vanishing_segment(bool ends_branch) const {
 }
 
 SpecialPoint ContactTest::classify(const TestedPoint& point, bool rising) const {
-  const std::optional<EventMinimum> contact =
-      least_value(system_, point.condensed.rule(), point.orbit, segment_, event_);
+  const std::optional<EventMinimum> contact = least(point);
   const bool ends_branch = stop_ && !rising;
   // Where the segment lasts no time every point of it is the contact.
   if (lasts_no_time(point.orbit, segment_)) return vanishing_segment(ends_branch);

@@ -16,6 +16,7 @@ class ContactTest final : public TestFunction {
   SpecialPoint classify(const TestedPoint& point, bool rising) const override;
 
  private:
+  std::optional<EventMinimum> least(const TestedPoint& point) const;
   int sign_without_minimum(const Orbit& x) const;
   SpecialPoint vanishing_segment(bool ends_branch) const;
   bool crosses(const TestedPoint& point, const EventMinimum& contact) const;

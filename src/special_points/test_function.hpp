@@ -9,9 +9,11 @@
 #include <cmath>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "bvp/event_minima.hpp"
 #include "bvp/orbit.hpp"
 #include "problem_type/point_type.hpp"
 #include "stability/multipliers.hpp"
@@ -33,6 +35,7 @@ struct TestedPoint {
   double principal_rate = 0.0;                ///< by which the principal parameter grows along the tangent
   /// Periodic orbits in one free parameter, nothing held: where the problem is singular a multiplier is +1.
   bool one_parameter_family = false;
+  std::span<const EventCourse> courses = {};  ///< of the monitored event functions, as far as they are known
 };
 
 /// What a test function says of a point.

@@ -212,22 +212,33 @@ TEST_CASE("array kernel: combinations of nodes that follow each other") {
     }
 }
 
-TEST_CASE("array kernel: the mass matrix of nodes of any dimension") {
+TEST_CASE("array kernel: the mass matrices of intervals with nodes of any dimension") {
   for (const VectorSet set : available_vector_sets())
-    for (const int n : {1, 2, 3, 4, 5, 8, 11}) {
-      constexpr int nodes = 5;
-      CAPTURE(static_cast<int>(set), n);
-      const MatrixXd half = MatrixXd::Random(nodes, nodes), mass = half + half.transpose();
-      const MatrixXd v = MatrixXd::Random(n, nodes), before = MatrixXd::Random(n, nodes);
-      const VectorXd weights = VectorXd::Random(n);
-      MatrixXd y = before;
-      array_functions(set).add_mass(0.02, mass.data(), nodes, weights.data(), n, v.data(), y.data());
-      const MatrixXd wanted = before + 0.02 * weights.asDiagonal() * v * mass;
-      CHECK((y - wanted).cwiseAbs().maxCoeff() < rounding);
-      MatrixXd same = before;
-      array_functions(VectorSet::baseline).add_mass(0.02, mass.data(), nodes, weights.data(), n, v.data(), same.data());
-      CHECK(y == same);
-    }
+    for (const int nodes : {3, 5, 8})
+      for (const int n : {1, 2, 3, 4, 5, 8, 11}) {
+        constexpr int intervals = 3;
+        CAPTURE(static_cast<int>(set), n, nodes);
+        const MatrixXd half = MatrixXd::Random(nodes, nodes), mass = half + half.transpose();
+        const int count = intervals * (nodes - 1) + 1;
+        const MatrixXd v = MatrixXd::Random(n, count), before = MatrixXd::Random(n, count);
+        const VectorXd weights = VectorXd::Random(n);
+        const std::array<double, intervals + 1> mesh{0.0, 0.02, 0.5, 1.0};
+        const MassIntervals on{mesh.data(), intervals, mass.data(), nodes, weights.data(), n};
+        MatrixXd y = before, wanted = before;
+        array_functions(set).add_mass(on, v.data(), y.data());
+        for (std::size_t j = 0; j < intervals; ++j) {
+          const int first = static_cast<int>(j) * (nodes - 1);
+          wanted.middleCols(first, nodes) +=
+              (mesh[j + 1] - mesh[j]) * weights.asDiagonal() * v.middleCols(first, nodes) * mass;
+        }
+        CHECK((y - wanted).cwiseAbs().maxCoeff() < rounding);
+        const double product = array_functions(set).mass_product(on, v.data());
+        CHECK(product == Approx((wanted - before).cwiseProduct(v).sum()).margin(rounding));
+        MatrixXd same = before;
+        array_functions(VectorSet::baseline).add_mass(on, v.data(), same.data());
+        CHECK(y == same);
+        CHECK(array_functions(VectorSet::baseline).mass_product(on, v.data()) == product);
+      }
 }
 
 #ifdef NDEBUG  // an optimised build: below -O2, as sanitized copies are compiled, no compiler sees to it
@@ -263,7 +274,9 @@ TEST_CASE("array kernel: no function leaves anything in the upper halves of regi
         check("ranges_of_sums", [&] { f.ranges_of_sums(arrays.data(), a, pairs, ranges.data(), a, y, count); });
       }
     }
-    check("add_mass", [&] { f.add_mass(0.1, a, c, a, n, a, y); });
+    const MassIntervals on{a, intervals, a, c + 1, a, n};
+    check("add_mass", [&] { f.add_mass(on, a, y); });
+    check("mass_product", [&] { f.mass_product(on, a); });
     check("interpolate", [&] { f.interpolate(basis, a, y, n); });
     check("combine_nodes", [&] { f.combine_nodes(combinations, a, y); });
     check("add_interpolated", [&] { f.add_interpolated(basis, a, n, y); });
