@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cassert>
 #include <cmath>
+#include <cstdint>
 
 #include "bvp/lane_entries.hpp"
 #include "linear_algebra/partial_lu.hpp"
@@ -295,9 +297,13 @@ void SegmentElimination::divide_by_determinant(LargeProduct& product) const {
 }
 
 int SegmentElimination::determinant_sign() const {
-  bool negative = false;
-  for_pivots([&](double reciprocal, bool exchanged) { negative ^= std::signbit(reciprocal) != exchanged; });
-  return negative ? -1 : 1;
+  std::uint64_t signs = 0;  // in the highest bit
+  unsigned exchanges = 0;
+  for_pivots([&](double reciprocal, bool exchanged) {
+    signs ^= std::bit_cast<std::uint64_t>(reciprocal);
+    exchanges ^= exchanged ? 1U : 0U;
+  });
+  return (signs >> 63U) == exchanges ? 1 : -1;
 }
 
 }  // namespace tchat

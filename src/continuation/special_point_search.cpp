@@ -247,30 +247,32 @@ std::optional<SpecialPoint> SpecialPointSearch::advance(const PathPoint& here, C
                                                         const Reports& reports) {
   searches_.assign(tests_.size(), Search::none);
   objections_.assign(tests_.size(), "");
-  const Candidate step = searched_step(here, next);
+  const std::optional<Candidate> farther = farther_step(here, next);
+  const PointData& at_end = farther ? farther->data : next.data;
   std::optional<SpecialPoint> special;
   rest_ = std::max(rest_ - std::abs(next.ds), 0.0);
-  report_start(step.data, reports);
-  if (!changed(step.data).empty()) special = advance_to_first_zero(here, next, newton, step);
+  report_start(at_end, reports);
+  if (!changed(at_end).empty()) {
+    const Candidate whole = farther ? *farther : next;
+    special = advance_to_first_zero(here, next, newton, whole);
+    if (special) keep_rest(whole, next.point);
+  }
   report_lost(next.data, reports);
   for (std::size_t i = 0; i < tests_.size(); ++i)
     if (next.data.tests[i].sign != 0) signs_[i] = next.data.tests[i].sign;
-  if (special)
-    keep_rest(step, next.point);
-  else
-    labelled_.assign(tests_.size(), false);
+  if (!special) labelled_.assign(tests_.size(), false);
   remember(next.data, next.ds);
   return special;
 }
 
-/// The step to `next`. A function that ends it within its zero level has not changed sign yet: whether it does is seen
-/// a little farther on; `next` is then linearised and evaluated again.
-Candidate SpecialPointSearch::searched_step(const PathPoint& here, Candidate& next) {
+/// A function that ends the step to `next` within its zero level has not changed sign yet: whether it does is seen a
+/// little farther on. Nothing where none does; `next` is then linearised and evaluated again, if that was looked at.
+std::optional<Candidate> SpecialPointSearch::farther_step(const PathPoint& here, Candidate& next) {
   constexpr double beyond = 1.1;
   std::vector<std::size_t> undecided;
   for (std::size_t i = 0; i < tests_.size(); ++i)
     if (signs_[i] != 0 && next.data.tests[i].value && next.data.tests[i].sign == 0) undecided.push_back(i);
-  if (undecided.empty()) return next;
+  if (undecided.empty()) return std::nullopt;
   Candidate farther{next.point, beyond * next.ds, {}};
   if (follower_.step(here, farther.ds, farther.point).converged() && same_branch(here, farther.point)) {
     farther.data = evaluate(farther.point);
@@ -278,9 +280,8 @@ Candidate SpecialPointSearch::searched_step(const PathPoint& here, Candidate& ne
                     [&](std::size_t i) { return farther.data.tests[i].sign == -signs_[i]; }))
       return farther;
   }
-  Candidate step = next;
   next.data = evaluate_again(next.point);
-  return step;
+  return std::nullopt;
 }
 
 /// `next` becomes the first zero, or stays the end of the step when there is none; the follower holds its

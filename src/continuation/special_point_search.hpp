@@ -92,7 +92,7 @@ class SpecialPointSearch {
   bool is_near_zero(std::size_t test, const TestValue& end) const;
   PointData evaluate_again(PathPoint& at);  // with a new linearisation
   std::vector<std::size_t> changed(const PointData& end) const;
-  Candidate searched_step(const PathPoint& here, Candidate& next);
+  std::optional<Candidate> farther_step(const PathPoint& here, Candidate& next);
   std::optional<SpecialPoint> advance_to_first_zero(const PathPoint& from, Candidate& next, NewtonResult& newton,
                                                     const Candidate& whole);
   std::optional<Cut> first_in(const PathPoint& here, PathPoint& trial, const Candidate& step);

@@ -49,9 +49,18 @@ void SmallLu::apply_inverse_transposed(const double* b, double* x) const {
   for (int k = size_ - 1; k >= 0; --k) std::swap(x[k], x[swaps_[at(k)]]);
 }
 
-void SmallLu::solve(const double* b, double* x) {
+void SmallLu::solve_unrefined(const double* b, double* x) {
   for (int i = 0; i < size_; ++i) right_[at(i)] = b[i] / row_sums_[at(i)];
   apply_inverse(right_.data(), x);
+}
+
+void SmallLu::solve_transposed_unrefined(const double* b, double* x) {
+  apply_inverse_transposed(b, x);
+  for (int i = 0; i < size_; ++i) x[i] /= row_sums_[at(i)];
+}
+
+void SmallLu::solve(const double* b, double* x) {
+  solve_unrefined(b, x);
   const double* entry = scaled_.data();
   for (int i = 0; i < size_; ++i, entry += size_) {
     double rest = b[i] / row_sums_[at(i)];

@@ -22,6 +22,9 @@ class SmallLu {
   /// rounding. x and b are different arrays.
   void solve(const double* b, double* x);
   void solve_transposed(const double* b, double* x);
+  /// The same as the factors give it, for iterations that need no more.
+  void solve_unrefined(const double* b, double* x);
+  void solve_transposed_unrefined(const double* b, double* x);
 
   /// Pivot k, which is never zero, and the number that its row of A was divided by: their product over all k is the
   /// determinant, but for the sign that parity() is.

@@ -118,6 +118,12 @@ struct SparseLu::State {
   bool is_factored() const { return small ? small_is_factored : frontal_is_factored || numeric != nullptr; }
   bool factorize_small();
   void solve_by_fronts(int system, const double* b, double* x);
+  void solve_unrefined(int system, const double* b, double* x) {
+    const bool transposed = system != UMFPACK_A;
+    if (small) return transposed ? small->solve_transposed_unrefined(b, x) : small->solve_unrefined(b, x);
+    if (frontal_is_factored) return transposed ? frontal->solve_transposed(b, x) : frontal->solve(b, x);
+    solve(system, b, x);
+  }
   void solve(int system, const double* b, double* x) {
     if (small) return system == UMFPACK_A ? small->solve(b, x) : small->solve_transposed(b, x);
     if (frontal_is_factored) return solve_by_fronts(system, b, x);
@@ -267,9 +273,9 @@ double SparseLu::singular_distance() const {
   for (int iteration = 0; iteration < iterations; ++iteration) {
     v.normalize();
     right = v.cwiseQuotient(scaled.column_scale);
-    state_->solve(UMFPACK_At, right.data(), left.data());
+    state_->solve_unrefined(UMFPACK_At, right.data(), left.data());
     left = left.cwiseQuotient(scaled.row_scale).cwiseQuotient(scaled.row_scale);
-    state_->solve(UMFPACK_A, left.data(), right.data());
+    state_->solve_unrefined(UMFPACK_A, left.data(), right.data());
     v = right.cwiseQuotient(scaled.column_scale);
     growth = v.norm();
     if (!std::isfinite(growth) || growth == 0.0) return 0.0;
