@@ -57,9 +57,9 @@ std::vector<Violation> inadmissibilities(const HybridSystem& system, const Signa
     add_sliding_violations(result, system, signature, monitored[index], x, s, leaving);
 
     if (v.event == no_function) continue;
-    const EventAt end = event_at(system, v.event, v.field, x.end(s), par);
-    if (end.rate() > leaving * end.sizes())
-      result.push_back({Violation::leaving_terminal_surface, s + 1, v.event, 1.0, end.rate()});
+    const Crossing end = crossing_of_event(system, v.event, v.field, x.end(s), par);
+    if (end.rate > leaving * end.sizes)
+      result.push_back({Violation::leaving_terminal_surface, s + 1, v.event, 1.0, end.rate});
   }
   return result;
 }

@@ -64,7 +64,7 @@ CollocationRule::CollocationRule(int points)
       integral(Eigen::VectorXd::Zero(points + 1)),
       highest(points + 1),
       interpolation(interpolation_constant(points)),
-      end_slope(points + 1, 2),
+      end_slope(2, points + 1),
       points_(points),
       nodes_(points + 1),
       barycentric_(points + 1) {
@@ -96,8 +96,10 @@ CollocationRule::CollocationRule(int points)
   value = order * value;
   slope = order * slope;
 
-  basis(0.0, nullptr, end_slope.col(0).data());
-  basis(1.0, nullptr, end_slope.col(1).data());
+  for (const int end : {0, 1}) {
+    basis(end, values.data(), slopes.data());
+    end_slope.row(end) = slopes.transpose();
+  }
   residual_integral = residual_integral_of(gauss);
 
   const GaussRule exact = gauss_rule(nodes);  // exact to degree 2c + 1, the products have 2c

@@ -24,7 +24,7 @@ class CollocationRule {
   Eigen::VectorXd integral;   ///< c+1: integral of l_i
   Eigen::VectorXd highest;    ///< c+1: the c-th derivative of sum u_i l_i is sum highest_i u_i
   double interpolation;       ///< largest |prod (sigma - node_i)| / (c+1)!: of the error between mesh points
-  Eigen::MatrixXd end_slope;  ///< (c+1) x 2: l_i'(0), l_i'(1)
+  Eigen::MatrixXd end_slope;  ///< 2 x (c+1): l_i'(0), l_i'(1)
   double residual_integral;   ///< max |integral of Pi from 0 to sigma| / |Pi(0)|, Pi = prod (sigma - gauss_j)
 
   /// l_i(sigma) and l_i'(sigma) for i = 0..c; either may be null.

@@ -5,21 +5,20 @@
 #include <limits>
 
 #include "linear_algebra/array_kernel.hpp"
+#include "linear_algebra/stack_array.hpp"
 
 namespace tchat {
 
 namespace {
 
-using Eigen::VectorXd;
-
 /// The largest component of the residual at the ends of the intervals of segment s.
 double largest_residual(const HybridSystem& system, int field, const Orbit& x, const CollocationRule& rule, int s) {
   const int n = x.shape.dimension;
   const int c = x.shape.collocation;
-  const Eigen::MatrixXd of_basis = rule.end_slope.transpose();  // at the two ends
-  Eigen::MatrixXd slopes(n, 2 * x.shape.intervals);
-  array_functions().interpolate({of_basis.data(), 2, c, n, x.shape.intervals}, x.node(s, 0), slopes.data(), n);
-  VectorXd f(n);
+  constexpr std::size_t usual_entries = 2048;
+  StackMatrix<usual_entries> slopes(n, 2 * static_cast<Eigen::Index>(x.shape.intervals));
+  array_functions().interpolate({rule.end_slope.data(), 2, c, n, x.shape.intervals}, x.node(s, 0), slopes.data(), n);
+  StackVector f(n);
   double largest = 0.0;
   for (int j = 0; j <= x.shape.intervals; ++j) {
     system.value(FunctionKind::field, field, x.node(s, j * c), x.par.data(), f.data());

@@ -10,6 +10,7 @@
 #include "bvp/with_dimension.hpp"
 #include "hybrid/event_at.hpp"
 #include "linear_algebra/array_kernel.hpp"
+#include "linear_algebra/stack_array.hpp"
 
 namespace tchat {
 
@@ -138,9 +139,14 @@ bool is_pinned_start(const HybridSystem& system, const Signature& signature, con
   if (v.event == no_function) return false;
   if (std::abs(system.event(event, x.start(s), par)) > structural_tolerance * event_scale(system, x, event))
     return false;
-  const Eigen::MatrixXd gx = jump_at(system, v.jump, x.end(before), par).derivative;
-  const Vector composed = gx.transpose() * event_at(system, event, x.start(s), par).gradient;
-  const Vector terminal = event_at(system, v.event, x.end(before), par).gradient;
+  const int n = x.shape.dimension;
+  double h = 0.0;
+  StackVector image(n), gradient(n), terminal(n), composed(n);
+  StackMatrix gx(n, n);
+  system.first(FunctionKind::jump, v.jump, x.end(before), par, {}, image.data(), gx.data(), nullptr);
+  system.first(FunctionKind::event, event, x.start(s), par, {}, &h, gradient.data(), nullptr);
+  system.first(FunctionKind::event, v.event, x.end(before), par, {}, &h, terminal.data(), nullptr);
+  composed.noalias() = gx.transpose() * gradient;
   const double sizes = composed.norm() * terminal.norm();
   return sizes > 0.0 && std::abs(std::abs(composed.dot(terminal)) / sizes - 1.0) < structural_tolerance;
 }

@@ -21,21 +21,32 @@ constexpr double roundings_of_a_node = 4.0;
 /// of the largest.
 constexpr double least_share = 1e-3;
 
+double power(double base, int exponent) {
+  double result = base;
+  for (int k = 1; k < exponent; ++k) result *= base;
+  return result;
+}
+
 /// Estimates of |u^(c+1)| of every component of segment s on every interval: n x N. On a single interval the jump of
-/// the c-th derivative is unknown; it is estimated as if the derivative fell to zero over the interval.
-Eigen::MatrixXd highest_derivatives(const Orbit& x, const CollocationRule& rule, int s) {
+/// the c-th derivative is unknown; it is estimated as if the derivative fell to zero over the interval. `level` is
+/// scratch.
+void find_highest_derivatives(const Orbit& x, const CollocationRule& rule, int s, Eigen::MatrixXd& level,
+                              Eigen::MatrixXd& result) {
   const int n = x.shape.dimension;
   const int c = x.shape.collocation;
   const int intervals = x.shape.intervals;
-  Eigen::MatrixXd level(n, intervals);  // c-th derivatives, constant on each interval
+  level.resize(n, intervals);  // c-th derivatives, constant on each interval
+  result.resize(n, intervals);
   array_functions().interpolate({rule.highest.data(), 1, c, n, intervals}, x.node(s, 0), level.data(), n);
   for (int j = 0; j < intervals; ++j) {
-    const double power = std::pow(length(x.mesh, j), c);
-    for (int a = 0; a < n; ++a) level(a, j) /= power;
+    const double scale = power(length(x.mesh, j), c);
+    for (int a = 0; a < n; ++a) level(a, j) /= scale;
   }
-  if (intervals == 1) return level.cwiseAbs() / length(x.mesh, 0);
+  if (intervals == 1) {
+    result = level.cwiseAbs() / length(x.mesh, 0);
+    return;
+  }
   // Of the jumps at the mesh points at the two ends of an interval the mean; where there is one, that one.
-  Eigen::MatrixXd result(n, intervals);
   for (int j = 0; j + 1 < intervals; ++j) {
     const double distance = 0.5 * (length(x.mesh, j) + length(x.mesh, j + 1));
     for (int a = 0; a < n; ++a) {
@@ -44,13 +55,16 @@ Eigen::MatrixXd highest_derivatives(const Orbit& x, const CollocationRule& rule,
       result(a, j + 1) = jump;
     }
   }
-  return result;
 }
 
 /// The size of every component on the whole orbit.
-Eigen::VectorXd component_sizes(const Orbit& x) {
-  const Eigen::VectorXd sizes = x.states.cwiseAbs().rowwise().maxCoeff();
-  return sizes.cwiseMax(least_share * sizes.maxCoeff());
+void find_component_sizes(const Orbit& x, Eigen::VectorXd& sizes) {
+  const int n = x.shape.dimension;
+  sizes.setZero(n);
+  for (Eigen::Index k = 0; k < x.states.cols(); ++k)
+    for (int a = 0; a < n; ++a) sizes(a) = std::max(sizes(a), std::abs(x.states(a, k)));
+  const double least = least_share * sizes.maxCoeff();
+  for (double& size : sizes) size = std::max(size, least);
 }
 
 /// What rounding alone makes of these estimates, n x N. Rounding of size delta at the nodes changes the c-th derivative
@@ -58,42 +72,12 @@ Eigen::VectorXd component_sizes(const Orbit& x) {
 /// intervals by twice that, and the jump is divided by h once more:
 ///
 ///     2 delta (2 c)^c / h^(c+1),   delta = a few units in the last place of the component.
-Eigen::MatrixXd rounding_of_derivatives(const Orbit& x, const CollocationRule& rule, const Eigen::VectorXd& sizes) {
+void find_rounding(const Orbit& x, const CollocationRule& rule, const Eigen::VectorXd& sizes, Eigen::MatrixXd& result) {
   const double of_a_node = roundings_of_a_node * std::numeric_limits<double>::epsilon();
   const double factor = 2.0 * rule.highest.cwiseAbs().sum();
-  Eigen::MatrixXd result(x.shape.dimension, x.shape.intervals);
+  result.resize(x.shape.dimension, x.shape.intervals);
   for (int j = 0; j < x.shape.intervals; ++j)
-    result.col(j) = of_a_node * factor / std::pow(length(x.mesh, j), x.shape.collocation + 1) * sizes;
-  return result;
-}
-
-/// |u^(c+1)| of all components of all segments that last, one a row, on every interval. Where the estimates of a
-/// component are rounding on every interval of a segment (a polynomial of degree c, or one resolved to rounding), it
-/// has no row. An estimate of another one counts for at least its rounding, whose (c+1)-th root is proportional to 1 /
-/// h: where an error is too small to be seen, the mesh stays.
-struct KnownDerivatives {
-  Eigen::MatrixXd rows;
-  Eigen::VectorXd sizes;  // of the component of each row
-};
-
-KnownDerivatives known_derivatives(const Orbit& x, const CollocationRule& rule) {
-  const Eigen::VectorXd sizes = component_sizes(x);
-  const Eigen::MatrixXd rounding = rounding_of_derivatives(x, rule, sizes);
-  const Eigen::Index most = static_cast<Eigen::Index>(x.shape.segments) * x.shape.dimension;
-  KnownDerivatives known{Eigen::MatrixXd(most, x.shape.intervals), Eigen::VectorXd(most)};
-  Eigen::Index count = 0;
-  for (int s = 0; s < x.shape.segments; ++s) {
-    if (x.duration(s) == 0.0) continue;
-    const Eigen::MatrixXd derivatives = highest_derivatives(x, rule, s);
-    for (int k = 0; k < x.shape.dimension; ++k) {
-      if ((derivatives.row(k).array() <= rounding.row(k).array()).all()) continue;
-      known.rows.row(count) = derivatives.row(k).cwiseMax(rounding.row(k));
-      known.sizes(count++) = sizes(k);
-    }
-  }
-  known.rows.conservativeResize(count, Eigen::NoChange);
-  known.sizes.conservativeResize(count);
-  return known;
+    result.col(j) = of_a_node * factor / power(length(x.mesh, j), x.shape.collocation + 1) * sizes;
 }
 
 /// The largest integral of a density, constant on each interval of `old`, over an interval of `mesh`.
@@ -113,13 +97,13 @@ double largest_share(const Eigen::VectorXd& density, const std::vector<double>& 
   return largest;
 }
 
-}  // namespace
-
-std::vector<double> equal_parts(const std::vector<double>& mesh, const Eigen::VectorXd& density, int parts) {
+/// equal_parts() into `result`; `cumulative` is scratch.
+void split(const std::vector<double>& mesh, const Eigen::VectorXd& density, int parts,
+           std::vector<double>& cumulative, std::vector<double>& result) {
   const int intervals = static_cast<int>(mesh.size()) - 1;
-  std::vector<double> cumulative(mesh.size(), 0.0);
+  cumulative.assign(mesh.size(), 0.0);
   for (int j = 0; j < intervals; ++j) cumulative[index(j + 1)] = cumulative[index(j)] + density(j) * length(mesh, j);
-  std::vector<double> result(index(parts + 1));
+  result.resize(index(parts + 1));
   int j = 0;
   for (int k = 1; k < parts; ++k) {
     const double wanted = cumulative.back() * k / parts;
@@ -129,26 +113,75 @@ std::vector<double> equal_parts(const std::vector<double>& mesh, const Eigen::Ve
   }
   result.front() = 0.0;
   result.back() = 1.0;
+}
+
+}  // namespace
+
+std::vector<double> equal_parts(const std::vector<double>& mesh, const Eigen::VectorXd& density, int parts) {
+  std::vector<double> cumulative, result;
+  split(mesh, density, parts, cumulative, result);
   return result;
 }
 
-std::vector<double> equidistributed_mesh(const Orbit& x, const CollocationRule& rule, int intervals) {
-  const double power = 1.0 / (x.shape.collocation + 1);
-  const KnownDerivatives known = known_derivatives(x, rule);
-  if (known.rows.rows() == 0 || !known.rows.allFinite()) return resampled_mesh(x.mesh, intervals);
-  Eigen::VectorXd monitor = known.rows.array().pow(power).matrix().colwise().sum().transpose();
-  // Two sweeps of smoothing keep neighbouring intervals comparable; a floor keeps every interval finite.
-  for (int sweep = 0; sweep < 2; ++sweep) {
-    const Eigen::VectorXd old = monitor;
-    for (Eigen::Index j = 1; j + 1 < old.size(); ++j) monitor(j) = 0.25 * (old(j - 1) + 2.0 * old(j) + old(j + 1));
+/// |u^(c+1)| of all components of all segments that last. Where the estimates of a component are rounding on every
+/// interval of a segment (a polynomial of degree c, or one resolved to rounding), it does not count. An estimate of
+/// another one counts for at least its rounding, whose (c+1)-th root is proportional to 1 / h: where an error is too
+/// small to be seen, the mesh stays.
+void MeshEquidistribution::add_segment(const Orbit& x) {
+  const double root = 1.0 / (x.shape.collocation + 1);
+  for (int k = 0; k < x.shape.dimension; ++k) {
+    if ((derivatives_.row(k).array() <= rounding_.row(k).array()).all()) continue;
+    ++known_;
+    for (int j = 0; j < x.shape.intervals; ++j) {
+      const double derivative = std::max(derivatives_(k, j), rounding_(k, j));
+      monitor_(j) += std::pow(derivative, root);
+      largest_(j) = std::max(largest_(j), derivative / sizes_(k));
+    }
   }
-  const std::vector<double> adapted = equal_parts(x.mesh, monitor.cwiseMax(1e-3 * monitor.maxCoeff()), intervals);
+}
+
+/// False where no derivative is known.
+bool MeshEquidistribution::find_monitor(const Orbit& x, const CollocationRule& rule) {
+  find_component_sizes(x, sizes_);
+  find_rounding(x, rule, sizes_, rounding_);
+  monitor_.setZero(x.shape.intervals);
+  largest_.setZero(x.shape.intervals);
+  known_ = 0;
+  for (int s = 0; s < x.shape.segments; ++s) {
+    if (x.duration(s) == 0.0) continue;
+    find_highest_derivatives(x, rule, s, level_, derivatives_);
+    add_segment(x);
+  }
+  return known_ > 0 && array_functions().range(monitor_.data(), monitor_.size()).finite;
+}
+
+/// Two sweeps keep neighbouring intervals comparable; a floor keeps every interval finite.
+void MeshEquidistribution::smooth_monitor() {
+  for (int sweep = 0; sweep < 2; ++sweep) {
+    smoothed_ = monitor_;
+    for (Eigen::Index j = 1; j + 1 < monitor_.size(); ++j)
+      smoothed_(j) = 0.25 * (monitor_(j - 1) + 2.0 * monitor_(j) + monitor_(j + 1));
+    monitor_.swap(smoothed_);
+  }
+  const double least = 1e-3 * monitor_.maxCoeff();
+  for (double& value : monitor_) value = std::max(value, least);
+}
+
+const std::vector<double>& MeshEquidistribution::mesh(const Orbit& x, const CollocationRule& rule, int intervals) {
+  if (!find_monitor(x, rule)) return adapted_ = resampled_mesh(x.mesh, intervals);
+  smooth_monitor();
+  split(x.mesh, monitor_, intervals, cumulative_, adapted_);
   // The sum over components equidistributes none of them by itself. The local error on an interval is the (c+1)-th
   // power of the integral of |u^(c+1)|^(1/(c+1)).
-  const std::vector<double> uniform = uniform_mesh(intervals);
-  const auto relative = known.sizes.cwiseInverse().asDiagonal() * known.rows;
-  const Eigen::VectorXd largest = relative.eval().colwise().maxCoeff().array().pow(power).transpose();
-  return largest_share(largest, x.mesh, adapted) <= largest_share(largest, x.mesh, uniform) ? adapted : uniform;
+  for (double& value : largest_) value = std::pow(value, 1.0 / (x.shape.collocation + 1));
+  uniform_.resize(index(intervals + 1));
+  for (int j = 0; j <= intervals; ++j) uniform_[index(j)] = static_cast<double>(j) / intervals;
+  const bool is_better = largest_share(largest_, x.mesh, adapted_) <= largest_share(largest_, x.mesh, uniform_);
+  return is_better ? adapted_ : uniform_;
+}
+
+std::vector<double> equidistributed_mesh(const Orbit& x, const CollocationRule& rule, int intervals) {
+  return MeshEquidistribution().mesh(x, rule, intervals);
 }
 
 std::vector<double> resampled_mesh(const std::vector<double>& mesh, int intervals) {
@@ -160,9 +193,17 @@ std::vector<double> resampled_mesh(const std::vector<double>& mesh, int interval
 }
 
 MeshTransfer::MeshTransfer(const OrbitShape& from, const std::vector<double>& from_mesh, const OrbitShape& to,
-                           const std::vector<double>& to_mesh, const CollocationRule& rule)
-    : from_(from), to_(to), first_(index(to.nodes())), weights_(from.collocation + 1, to.nodes()) {
+                           const std::vector<double>& to_mesh, const CollocationRule& rule) {
+  set(from, from_mesh, to, to_mesh, rule);
+}
+
+void MeshTransfer::set(const OrbitShape& from, const std::vector<double>& from_mesh, const OrbitShape& to,
+                       const std::vector<double>& to_mesh, const CollocationRule& rule) {
   assert(rule.points() == from.collocation);
+  from_ = from;
+  to_ = to;
+  first_.resize(index(to.nodes()));
+  weights_.resize(from.collocation + 1, to.nodes());
   int j = 0;
   for (int k = 0; k < to.nodes(); ++k) {
     const int interval = std::min(k / to.collocation, to.intervals - 1);
@@ -197,11 +238,12 @@ Eigen::MatrixXd interpolate_states(const Eigen::MatrixXd& states, const OrbitSha
 double estimated_interpolation_error(const Orbit& x, const CollocationRule& rule) {
   const int c = x.shape.collocation;
   double worst = 0.0;
+  Eigen::MatrixXd level, derivatives;
   for (int s = 0; s < x.shape.segments; ++s) {
     if (x.duration(s) == 0.0) continue;
-    const Eigen::MatrixXd derivatives = highest_derivatives(x, rule, s);
+    find_highest_derivatives(x, rule, s, level, derivatives);
     for (int j = 0; j < x.shape.intervals; ++j)
-      worst = std::max(worst, derivatives.col(j).maxCoeff() * std::pow(length(x.mesh, j), c + 1));
+      worst = std::max(worst, derivatives.col(j).maxCoeff() * power(length(x.mesh, j), c + 1));
   }
   return rule.interpolation * worst / (1.0 + x.states.cwiseAbs().maxCoeff());
 }

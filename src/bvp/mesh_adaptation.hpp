@@ -15,6 +15,27 @@ namespace tchat {
 /// old mesh is kept where all derivatives vanish to rounding: no mesh is better.
 std::vector<double> equidistributed_mesh(const Orbit& x, const CollocationRule& rule, int intervals);
 
+/// Makes such meshes for the orbits of a branch, without allocations after the first of a shape.
+class MeshEquidistribution {
+ public:
+  /// Valid until the next call.
+  const std::vector<double>& mesh(const Orbit& x, const CollocationRule& rule, int intervals);
+
+ private:
+  bool find_monitor(const Orbit& x, const CollocationRule& rule);
+  void add_segment(const Orbit& x);
+  void smooth_monitor();
+
+  Eigen::MatrixXd level_;        // c-th derivatives on each interval, n x N
+  Eigen::MatrixXd derivatives_;  // |u^(c+1)| of one segment, n x N
+  Eigen::MatrixXd rounding_;     // what rounding makes of them
+  Eigen::VectorXd sizes_;        // of the components
+  Eigen::VectorXd monitor_, smoothed_;
+  Eigen::VectorXd largest_;  // root of the largest derivative relative to its component's size, on each interval
+  int known_ = 0;            // components whose derivatives are not rounding
+  std::vector<double> adapted_, uniform_, cumulative_;
+};
+
 /// The old mesh's density at another number of intervals.
 std::vector<double> resampled_mesh(const std::vector<double>& mesh, int intervals);
 
@@ -25,15 +46,19 @@ std::vector<double> equal_parts(const std::vector<double>& mesh, const Eigen::Ve
 /// many matrices of states as there are. `rule` is that of `from`.
 class MeshTransfer {
  public:
+  MeshTransfer() = default;
   MeshTransfer(const OrbitShape& from, const std::vector<double>& from_mesh, const OrbitShape& to,
                const std::vector<double>& to_mesh, const CollocationRule& rule);
+  /// Between other meshes.
+  void set(const OrbitShape& from, const std::vector<double>& from_mesh, const OrbitShape& to,
+           const std::vector<double>& to_mesh, const CollocationRule& rule);
   Eigen::MatrixXd operator()(const Eigen::MatrixXd& states) const;
   /// Into a matrix of its own, whose space is used again.
   void operator()(const Eigen::MatrixXd& states, Eigen::MatrixXd& result) const;
 
  private:
-  OrbitShape from_;
-  OrbitShape to_;
+  OrbitShape from_ = {};
+  OrbitShape to_ = {};
   std::vector<int> first_;   // of the nodes that node k of a segment is made of
   Eigen::MatrixXd weights_;  // of these, a column for each k
 };

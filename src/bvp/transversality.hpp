@@ -28,5 +28,7 @@ struct Crossing {
 /// At the end of segment s (from 0), with the gradient of the section there. Where no event ends it, nothing is
 /// touched: the flow crosses at a right angle.
 Crossing crossing_at_end(const DefiningSystem& system, const Orbit& x, int s);
+/// Of an event's own surface.
+Crossing crossing_of_event(const HybridSystem& system, int event, int field, const double* x, const double* par);
 
 }  // namespace tchat

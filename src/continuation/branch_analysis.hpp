@@ -20,7 +20,7 @@ class BranchAnalysis {
 
   virtual const FamilyFacts& facts() const = 0;
   /// Multipliers, or what takes their place. `condensed` holds the linearisation at x.
-  virtual FloquetMultipliers multipliers(const CondensedSystem& condensed, const Orbit& x) = 0;
+  virtual void find_multipliers(const CondensedSystem& condensed, const Orbit& x, FloquetMultipliers& result) = 0;
 
   /// Have equal solutions equal states at equal tau? No where nothing fixes the phase.
   virtual bool has_fixed_phase() const { return true; }

@@ -8,6 +8,7 @@
 #include "bvp/no_duration.hpp"
 #include "continuation/newton_chord.hpp"
 #include "linear_algebra/dense_matrix.hpp"
+#include "linear_algebra/stack_array.hpp"
 #include "special_points/label_evidence.hpp"
 
 namespace tchat {
@@ -44,8 +45,8 @@ double rate_at(const Eigen::VectorXd& f, const Eigen::MatrixXd& fx, double time,
 double largest_growth(const DefiningSystem& system, const Orbit& x, int first, Rate rate, double least) {
   const int n = x.shape.dimension;
   const int c = x.shape.collocation;
-  Eigen::VectorXd f(n);
-  Eigen::MatrixXd fx(n, n);
+  StackVector f(n);
+  StackMatrix fx(n, n);
   double largest = 0.0;
   for (int s = 0; s < x.shape.segments; ++s) {
     const int field = system.signature()[static_cast<std::size_t>(s)].field;
@@ -107,7 +108,7 @@ double growth_exponent(const DefiningSystem& system, const Orbit& x) {
 
 std::string undetermined_duration(const DefiningSystem& system, const Orbit& x) {
   constexpr double rounding = 1e-12;
-  Eigen::VectorXd f(x.shape.dimension);
+  StackVector f(x.shape.dimension);
   const double sizes = 1.0 + largest_state(x);
   for (int s = 0; s < x.shape.segments; ++s) {
     if (lasts_no_time(x, s)) continue;

@@ -308,7 +308,7 @@ bool ContinuationRun::take_step() {
       trouble = passed_ = std::move(passed);
     else if (!step_.is_short() && !search_.same_branch(here_, next_.point))
       trouble = "it may have come to another branch";
-    else if (next_.data = search_.evaluate(next_.point); !step_.is_short() && !search_.resolved(here_, next_))
+    else if (search_.evaluate(next_.point, next_.data); !step_.is_short() && !search_.resolved(here_, next_))
       trouble = "a test function may have changed sign twice";
     else
       return true;
@@ -452,8 +452,8 @@ void ContinuationRun::report_start(const std::string& test_name) {
 /// A new mesh where it is due, and the step length for the d-file.
 void ContinuationRun::prepare_next_step() {
   if (settings_.adapt_mesh_every > 0 && here_.orbit.shape.intervals > 1 && number_ % settings_.adapt_mesh_every == 0)
-    follower_.change_mesh(here_,
-                          equidistributed_mesh(here_.orbit, follower_.condensed().rule(), here_.orbit.shape.intervals));
+    follower_.change_mesh(here_, equidistribution_.mesh(here_.orbit, follower_.condensed().rule(),
+                                                        here_.orbit.shape.intervals));
   sink_.next_step(number_, step_.value());
 }
 

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 
+#include "bvp/mesh_adaptation.hpp"
 #include "continuation/branch.hpp"
 #include "continuation/branch_analysis.hpp"
 #include "continuation/closed_branch.hpp"
@@ -123,6 +124,7 @@ class ContinuationRun {
   double first_period_ = 0.0;
   std::string passed_;  // why a longer trial of the step was no orbit
   StabilityWatch stability_;
+  MeshEquidistribution equidistribution_;
   std::vector<NamedTestValue> test_values_;  // of the point that is handed over
   std::size_t lost_before_ = 0;  // reports at the last accepted point
   double measure_ = 0.0;         // at here_

@@ -361,12 +361,14 @@ NewtonResult PathFollower::start_by_minimum_norm(PathPoint& point) {
   return result;
 }
 
-void PathFollower::change_mesh(PathPoint& point, const std::vector<double>& mesh) const {
+void PathFollower::change_mesh(PathPoint& point, const std::vector<double>& mesh) {
   const OrbitShape& shape = point.orbit.shape;
-  const MeshTransfer transfer(shape, point.orbit.mesh, shape, mesh, condensed().rule());
-  point.orbit.states = transfer(point.orbit.states);
-  point.tangent.states = transfer(point.tangent.states);
-  if (point.trail.mesh() == point.orbit.mesh) point.trail.change_mesh(mesh, transfer);
+  transfer_.set(shape, point.orbit.mesh, shape, mesh, condensed().rule());
+  for (Eigen::MatrixXd* states : {&point.orbit.states, &point.tangent.states}) {
+    transfer_(*states, moved_);
+    states->swap(moved_);
+  }
+  if (point.trail.mesh() == point.orbit.mesh) point.trail.change_mesh(mesh, transfer_);
   point.orbit.mesh = mesh;
   normalise(point.orbit, point.tangent, point.dual);
 }

@@ -11,6 +11,7 @@
 
 #include <memory>
 
+#include "bvp/mesh_adaptation.hpp"
 #include "bvp/weighted_norm.hpp"
 #include "continuation/monitor_set.hpp"
 #include "continuation/newton_chord.hpp"
@@ -70,7 +71,7 @@ class PathFollower {
   double relative_residual(const Orbit& x);
 
   /// Moves the point to a new mesh of the same size: states and tangent are interpolated, the tangent renormalised.
-  void change_mesh(PathPoint& point, const std::vector<double>& mesh) const;
+  void change_mesh(PathPoint& point, const std::vector<double>& mesh);
   void reverse(PathPoint& point) const;
   /// Makes the tangent one of unit length and the dual its own.
   void renormalise(PathPoint& point) const { normalise(point.orbit, point.tangent, point.dual); }
@@ -133,6 +134,8 @@ class PathFollower {
   NewtonSettings settings_;
   ConditionMemory unused_;  // the condition's before anything was evaluated
   OrbitVector dx_;          // of chord iterations
+  MeshTransfer transfer_;   // of change_mesh()
+  Eigen::MatrixXd moved_;
   Orbit on_tangent_;
   bool factors_known_ = false;  // those of condensed()
 };

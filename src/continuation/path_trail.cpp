@@ -26,14 +26,11 @@ void copy(const PathPoint& point, const std::vector<int>& free, PathTrail::Mark&
 
 PathTrail::PathTrail(const OrbitShape& shape, int global_count) : mesh_(index(shape.intervals + 1)) {
   const OrbitVector zero(shape, global_count);
-  for (std::shared_ptr<Mark>& mark : own_) mark = std::make_shared<Mark>(Mark{zero, zero});
+  for (const std::size_t k : {0U, 1U}) own_[k] = std::make_shared<Mark>(Mark{zero, zero});
 }
 
 /// Space is not shared.
-PathTrail::PathTrail(const PathTrail& other) : marks_(other.marks_), count_(other.count_), mesh_(other.mesh_) {
-  for (std::size_t k = 0; k < own_.size(); ++k)
-    if (other.own_[k]) own_[k] = std::make_shared<Mark>(*other.own_[k]);
-}
+PathTrail::PathTrail(const PathTrail& other) : marks_(other.marks_), count_(other.count_), mesh_(other.mesh_) {}
 
 PathTrail& PathTrail::operator=(const PathTrail& other) {
   if (this == &other) return *this;

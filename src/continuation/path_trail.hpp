@@ -53,9 +53,10 @@ class PathTrail {
   std::shared_ptr<Mark> unused_mark();
 
   std::array<std::shared_ptr<const Mark>, most> marks_;  // shared with the trails of other points
-  // Space for the points that this trail adds: two take turns where two points follow each other by turns. The first
-  // to be in no trail is the next to be used.
-  std::array<std::shared_ptr<Mark>, 2> own_;
+  // Space for the points that this trail adds or moves to another mesh, made when it is needed: the first to be in no
+  // trail is the next to be used. Two take turns where two points follow each other by turns; a point that is kept on
+  // its old mesh has the moved one's marks twice.
+  std::array<std::shared_ptr<Mark>, static_cast<std::size_t>(2 * most + 2)> own_;
   int count_ = 0;
   std::vector<double> mesh_;
 };

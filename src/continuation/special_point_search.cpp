@@ -140,21 +140,28 @@ double SpecialPointSearch::signed_distance(const PathPoint& at) const {
 
 PointData SpecialPointSearch::evaluate(PathPoint& at) {
   PointData data;
+  evaluate(at, data);
+  return data;
+}
+
+void SpecialPointSearch::evaluate(PathPoint& at, PointData& data) {
   if (settings_.multipliers) {
-    data.multipliers = analysis_.multipliers(follower_.condensed(), at.orbit);
+    analysis_.find_multipliers(follower_.condensed(), at.orbit, data.multipliers);
     const OrbitCondition* condition = follower_.condition();
     const std::optional<int> kept = condition != nullptr ? condition->kept_multiplier() : std::nullopt;
     if (kept) put_critical(data.multipliers, *kept);
     follower_.monitors().store(at.orbit, data.multipliers);
   }
+  data.transversalities.clear();
   for (int s = 0; s < system_.segments(); ++s)
     data.transversalities.push_back(crossing_at_end(system_, at.orbit, s).transversality());
   data.singular_distance = signed_distance(at);
   data.estimated_error = estimated_error(system_.system(), system_.signature(), at.orbit, follower_.condensed().rule());
   find_event_courses(at.orbit, data);
   const TestedPoint point = tested(at, data);
+  data.tests.clear();
   for (const auto& test : tests_) data.tests.push_back(test->evaluate(point));
-  return data;
+  data.details.clear();
 }
 
 void SpecialPointSearch::find_event_courses(const Orbit& x, PointData& data) {

@@ -44,6 +44,8 @@ class SpecialPointSearch {
 
   /// At a converged point, whose linearisation the follower holds.
   PointData evaluate(PathPoint& at);
+  /// Over the data of another point: no allocation where functions need none.
+  void evaluate(PathPoint& at, PointData& data);
 
   /// Do the points of the branch follow each other as closely as the test functions ask for (Resolution)? Else one of
   /// them may have changed sign twice on the step from `here` to `next`, and a shorter one will tell.

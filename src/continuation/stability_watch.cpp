@@ -16,7 +16,14 @@ bool explains_change(const SpecialPoint& special) {
 
 void StabilityWatch::begin(const Point& point) {
   known_.reset();
-  if (point.multipliers.determined()) known_ = {point.parameter, point.multipliers};
+  if (point.multipliers.determined()) remember(point);
+}
+
+/// In the place of what is known.
+void StabilityWatch::remember(const Point& point) {
+  if (!known_) known_.emplace();
+  known_->parameter = point.parameter;
+  known_->multipliers = point.multipliers;
 }
 
 std::optional<LostPoint> StabilityWatch::add(const Point& point, bool is_reported) {
@@ -34,7 +41,7 @@ std::optional<LostPoint> StabilityWatch::add(const Point& point, bool is_reporte
                        point.parameter};
   // A multiplier that takes several points to cross is compared with the last point at which its side was known.
   if (result || count_unstable(point.multipliers).undecided <= count_unstable(known_->multipliers).undecided)
-    known_ = {point.parameter, point.multipliers};
+    remember(point);
   return result;
 }
 

@@ -25,6 +25,8 @@ class StabilityWatch {
   std::optional<LostPoint> add(const Point& point, bool is_reported);
 
  private:
+  void remember(const Point& point);
+
   struct Known {
     double parameter;
     FloquetMultipliers multipliers;

@@ -45,7 +45,7 @@ class BoundaryValueFamily final : public SegmentFamily {
 class BoundaryValueAnalysis final : public BranchAnalysis {
  public:
   const FamilyFacts& facts() const override { return boundary_value_family().facts(); }
-  FloquetMultipliers multipliers(const CondensedSystem&, const Orbit&) override { return {}; }
+  void find_multipliers(const CondensedSystem&, const Orbit&, FloquetMultipliers& result) override { result = {}; }
 };
 
 }  // namespace

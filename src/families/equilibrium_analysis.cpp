@@ -14,8 +14,8 @@ class EquilibriumAnalysis final : public BranchAnalysis {
   explicit EquilibriumAnalysis(const EquilibriumSystem& system) : system_(system) {}
 
   const FamilyFacts& facts() const override { return equilibrium_family().facts(); }
-  FloquetMultipliers multipliers(const CondensedSystem&, const Orbit& x) override {
-    return equilibrium_eigenvalues(system_, x);
+  void find_multipliers(const CondensedSystem&, const Orbit& x, FloquetMultipliers& result) override {
+    result = equilibrium_eigenvalues(system_, x);
   }
   std::string start_advice(const Orbit&) const override {
     return "There may be no equilibrium near the start with these parameters; a better start or a larger ITNW may "

@@ -12,8 +12,8 @@ class RingAnalysis : public BranchAnalysis {
   RingAnalysis(const DefiningSystem& system, const OrbitShape& shape) : system_(system), floquet_(shape) {}
 
   const FamilyFacts& facts() const override;
-  FloquetMultipliers multipliers(const CondensedSystem& condensed, const Orbit& x) override {
-    return floquet_.compute(condensed, x);
+  void find_multipliers(const CondensedSystem& condensed, const Orbit& x, FloquetMultipliers& result) override {
+    floquet_.compute(condensed, x, result);
   }
   /// Events fix it.
   bool has_fixed_phase() const override;

@@ -17,8 +17,8 @@ class TorusAnalysis final : public RingAnalysis {
 
   const FamilyFacts& facts() const override { return torus_family().facts(); }
   /// Those along the rotation, by their moduli.
-  FloquetMultipliers multipliers(const CondensedSystem& condensed, const Orbit& x) override {
-    return torus_multipliers(system_, condensed, x);
+  void find_multipliers(const CondensedSystem& condensed, const Orbit& x, FloquetMultipliers& result) override {
+    result = torus_multipliers(system_, condensed, x);
   }
   SpecialPoint shrunk(const Orbit& x) const override {
     return {PointType::torus,

@@ -56,24 +56,26 @@ ScaledReal determinant_in_place(Eigen::MatrixXd& matrix) {
 
 /// With W^T [e; -A_s] = [R; 0], W orthogonal, the lower rows of W^T are free of c_{s-1}: what is left of e c_{s-1} =
 /// a c_0 and E_s c_s = A_s c_{s-1} there is a relation of c_s and c_0 like the first one.
-CyclicDeterminant::CyclicDeterminant(const std::vector<Eigen::MatrixXd>& e, const std::vector<Eigen::MatrixXd>& a)
-    : e_(e.front()), a_(a.front()) {
+void CyclicDeterminant::eliminate(const std::vector<Eigen::MatrixXd>& e, const std::vector<Eigen::MatrixXd>& a) {
+  eliminated_ = {};
+  e_ = e.front();
+  a_ = a.front();
   const Eigen::Index n = e_.rows();
-  if (n == 0) return;
-  Eigen::MatrixXd both(2 * n, 3 * n);  // of c_{s-1}, c_0, c_s
+  if (n == 0 || e.size() == 1) return;
+  both_.resize(2 * n, 3 * n);  // of c_{s-1}, c_0, c_s
   for (std::size_t s = 1; s < e.size(); ++s) {
-    both.topRows(n) << e_, a_, Eigen::MatrixXd::Zero(n, n);
-    both.bottomRows(n) << -a[s], Eigen::MatrixXd::Zero(n, n), e[s];
-    const int reflections = triangularise(both, n);
-    multiply_by_diagonal(eliminated_, reflections, both, n);
-    a_ = both.block(n, n, n, n);
-    e_ = both.bottomRightCorner(n, n);
+    both_.topRows(n) << e_, a_, Eigen::MatrixXd::Zero(n, n);
+    both_.bottomRows(n) << -a[s], Eigen::MatrixXd::Zero(n, n), e[s];
+    const int reflections = triangularise(both_, n);
+    multiply_by_diagonal(eliminated_, reflections, both_, n);
+    a_ = both_.block(n, n, n, n);
+    e_ = both_.bottomRightCorner(n, n);
   }
 }
 
-ScaledReal CyclicDeterminant::at(double t) const {
-  Eigen::MatrixXd matrix = e_ - t * a_;
-  ScaledReal result = determinant_in_place(matrix);
+ScaledReal CyclicDeterminant::at(double t) {
+  difference_ = e_ - t * a_;
+  ScaledReal result = determinant_in_place(difference_);
   result *= eliminated_;
   return result;
 }

@@ -30,16 +30,20 @@ class ScaledReal {
 /// Overwrites the square matrix.
 ScaledReal determinant_in_place(Eigen::MatrixXd& matrix);
 
+/// Of one system after the other; no allocations after the first of a size.
 class CyclicDeterminant {
  public:
+  CyclicDeterminant() = default;
+  CyclicDeterminant(const std::vector<Eigen::MatrixXd>& e, const std::vector<Eigen::MatrixXd>& a) { eliminate(e, a); }
   /// Entries s = 0..m-1, m >= 1, all square and of one size n >= 0.
-  CyclicDeterminant(const std::vector<Eigen::MatrixXd>& e, const std::vector<Eigen::MatrixXd>& a);
-  ScaledReal at(double t) const;
+  void eliminate(const std::vector<Eigen::MatrixXd>& e, const std::vector<Eigen::MatrixXd>& a);
+  ScaledReal at(double t);
 
  private:
   ScaledReal eliminated_;  // what c_1, ..., c_(m-1) contribute
   Eigen::MatrixXd e_;      // what is left: e c_m = a c_0
   Eigen::MatrixXd a_;
+  Eigen::MatrixXd both_, difference_;  // scratch
 };
 
 }  // namespace tchat

@@ -72,9 +72,12 @@ double trivial_multiplier(const RowMajorBlock& first, const Vector& f0, const Ve
 void sort_by_interest(std::vector<std::complex<double>>& values) {
   const auto nearest_one = [](const auto& a, const auto& b) { return std::abs(a - 1.0) < std::abs(b - 1.0); };
   std::iter_swap(values.begin(), std::min_element(values.begin(), values.end(), nearest_one));
-  std::stable_sort(values.begin() + 1, values.end(), [](const auto& a, const auto& b) {
+  const auto nearer = [](const auto& a, const auto& b) {
     return std::abs(std::abs(a) - 1.0) < std::abs(std::abs(b) - 1.0);
-  });
+  };
+  // Stable; std::stable_sort allocates.
+  for (auto next = values.begin() + 1; next != values.end(); ++next)
+    std::rotate(std::upper_bound(values.begin() + 1, next, *next, nearer), next, next + 1);
 }
 
 /// Does contact segment s last no time, in a field that is continuous where it begins? Perturbations then pass it as if
@@ -205,7 +208,7 @@ FloquetSolver::Blocks FloquetSolver::disturbed(double disturbance, int way) cons
 }
 
 /// Of the product of E_s^-1 A'_s; none when the iteration fails.
-std::vector<std::complex<double>> FloquetSolver::eigenvalues(const Blocks& blocks) {
+void FloquetSolver::find_eigenvalues(const Blocks& blocks, std::vector<std::complex<double>>& values) {
   const int n = shape_.dimension - 1;
   for (int s = 0; s < shape_.segments; ++s) {
     const Matrix& a = blocks.a[static_cast<std::size_t>(s)];
@@ -216,12 +219,11 @@ std::vector<std::complex<double>> FloquetSolver::eigenvalues(const Blocks& block
         qz_.e(s, i, j) = e(i, j);
       }
   }
-  std::vector<std::complex<double>> values;
-  if (!qz_.compute()) return values;
+  values.clear();
+  if (!qz_.compute()) return;
   values.reserve(static_cast<std::size_t>(shape_.dimension) + 1);
   for (const ScaledComplex& mu : qz_.eigenvalues()) values.push_back(mu.value(infinite_multiplier));
   conjugate_pairs(values);
-  return values;
 }
 
 /// Those that are elsewhere when everything is known a little less well, in any of several ways: what is noise may come
@@ -230,7 +232,8 @@ void FloquetSolver::leave_out_undetermined(FloquetMultipliers& result) {
   constexpr int ways = 5;
   const std::size_t all = result.values.size();
   for (int way = 1; way <= ways; ++way) {
-    std::vector<std::complex<double>> others = eigenvalues(disturbed(no_transversality, way));
+    std::vector<std::complex<double>> others;
+    find_eigenvalues(disturbed(no_transversality, way), others);
     std::vector<std::complex<double>> known;
     for (const auto& mu : result.values) {
       const auto nearer = [&mu](const auto& a, const auto& b) { return chord(a, mu) < chord(b, mu); };
@@ -244,25 +247,31 @@ void FloquetSolver::leave_out_undetermined(FloquetMultipliers& result) {
   result.undetermined = static_cast<int>(all - result.values.size());
 }
 
-void FloquetSolver::form_products(bool touches, FloquetMultipliers& result) const {
+void FloquetSolver::form_products(bool touches, FloquetMultipliers& result) {
   ScaledReal regular;  // det E_1 ... det E_m / (a_1 ... a_m)
   for (const SegmentEnd& end : ends_) regular *= end.determinant_share;
-  const CyclicDeterminant exact(blocks_.e, blocks_.a);
-  const auto value = [&regular](const CyclicDeterminant& determinant, double t) {
-    ScaledReal product = determinant.at(t);
+  determinant_.eliminate(blocks_.e, blocks_.a);
+  const auto value = [this, &regular](double t) {
+    ScaledReal product = determinant_.at(t);
     product /= regular;
     return product.value(infinite_multiplier);
   };
-  result.with_one.value = value(exact, 1.0);
-  result.with_minus_one.value = value(exact, -1.0);
+  result.with_one = {value(1.0), 0.0};
+  result.with_minus_one = {value(-1.0), 0.0};
   if (!touches) return;
   const Blocks blocks = disturbed(no_transversality, 1);
-  const CyclicDeterminant nearby(blocks.e, blocks.a);
-  result.with_one.uncertainty = std::abs(value(nearby, 1.0) - result.with_one.value);
-  result.with_minus_one.uncertainty = std::abs(value(nearby, -1.0) - result.with_minus_one.value);
+  determinant_.eliminate(blocks.e, blocks.a);
+  result.with_one.uncertainty = std::abs(value(1.0) - result.with_one.value);
+  result.with_minus_one.uncertainty = std::abs(value(-1.0) - result.with_minus_one.value);
 }
 
 FloquetMultipliers FloquetSolver::compute(const CondensedSystem& condensed, const Orbit& x) {
+  FloquetMultipliers result;
+  compute(condensed, x, result);
+  return result;
+}
+
+void FloquetSolver::compute(const CondensedSystem& condensed, const Orbit& x, FloquetMultipliers& result) {
   for (int s = 0; s < shape_.segments; ++s) measure_end(condensed, x, s);
   for (int s = 0; s < shape_.segments; ++s) project_blocks(condensed, s);
   double structural = 0.0;
@@ -272,11 +281,13 @@ FloquetMultipliers FloquetSolver::compute(const CondensedSystem& condensed, cons
     least_transversality = std::min(least_transversality, std::abs(end.transversality));
   }
 
-  FloquetMultipliers result;
+  result.has_trivial = false;
+  result.undetermined = 0;
+  result.with_one = result.with_minus_one = {};
   result.structural = std::isfinite(structural) ? std::min(structural, infinite_multiplier) : infinite_multiplier;
-  result.values = eigenvalues(blocks_);
+  find_eigenvalues(blocks_, result.values);
   result.valid = shape_.dimension == 1 || !result.values.empty();
-  if (!result.valid) return result;
+  if (!result.valid) return;
   const bool touches = least_transversality < near_grazing;
   form_products(touches, result);
   if (touches) leave_out_undetermined(result);
@@ -293,11 +304,10 @@ FloquetMultipliers FloquetSolver::compute(const CondensedSystem& condensed, cons
     result.has_trivial = true;
     result.structural = std::abs(trivial - 1.0);
     result.values.insert(result.values.begin(), trivial);
-    return result;
+    return;
   }
   result.values.emplace_back(result.structural);
   sort_by_interest(result.values);
-  return result;
 }
 
 }  // namespace tchat

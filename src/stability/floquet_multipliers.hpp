@@ -53,6 +53,8 @@ class FloquetSolver {
 
   /// `condensed` holds the linearisation at x.
   FloquetMultipliers compute(const CondensedSystem& condensed, const Orbit& x);
+  /// Into a result of another point: no allocation after the first.
+  void compute(const CondensedSystem& condensed, const Orbit& x, FloquetMultipliers& result);
 
  private:
   /// What the end of one segment contributes. Z_s and F_s are all columns but the first of reflections, which take h_x
@@ -72,9 +74,9 @@ class FloquetSolver {
   void measure_end(const CondensedSystem& condensed, const Orbit& x, int s);
   void project_blocks(const CondensedSystem& condensed, int s);
   Blocks disturbed(double disturbance, int way) const;
-  std::vector<std::complex<double>> eigenvalues(const Blocks& blocks);
+  void find_eigenvalues(const Blocks& blocks, std::vector<std::complex<double>>& values);
   void leave_out_undetermined(FloquetMultipliers& result);
-  void form_products(bool touches, FloquetMultipliers& result) const;
+  void form_products(bool touches, FloquetMultipliers& result);
 
   OrbitShape shape_;
   std::vector<SegmentEnd> ends_;
@@ -82,6 +84,7 @@ class FloquetSolver {
   std::vector<double> a_sizes_;  // of the blocks before their projection
   std::vector<double> e_sizes_;
   PeriodicQz qz_;
+  CyclicDeterminant determinant_;
   // scratch of one segment
   Eigen::VectorXd f0_, f1_, image_;  // the field at both ends, C_s f
   Eigen::MatrixXd square_;           // n x n

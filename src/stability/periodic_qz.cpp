@@ -1,6 +1,7 @@
 #include "stability/periodic_qz.hpp"
 
 #include <algorithm>
+#include <boost/container/small_vector.hpp>
 #include <cmath>
 #include <limits>
 
@@ -408,7 +409,7 @@ bool PeriodicQz::iterate() {
 }
 
 void conjugate_pairs(std::vector<std::complex<double>>& values) {
-  std::vector<bool> done(values.size(), false);
+  boost::container::small_vector<bool, 32> done(values.size(), false);
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (done[i]) continue;
     std::size_t partner = i;

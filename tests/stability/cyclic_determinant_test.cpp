@@ -47,7 +47,7 @@ TEST_CASE("cyclic determinant: that of the whole matrix, also with singular bloc
       for (const bool singular : {false, true}) {
         Blocks blocks = random_blocks(n, m, numbers);
         if (singular) blocks.e.back().col(0).setZero();
-        const CyclicDeterminant determinant(blocks.e, blocks.a);
+        CyclicDeterminant determinant(blocks.e, blocks.a);
         for (const double t : {1.0, -1.0}) {
           CAPTURE(n, m, singular, t);
           const double expected = whole_determinant(blocks, t);
