@@ -124,6 +124,14 @@ class EventAlongSegment {
   int event_;
 };
 
+/// The nodes at the ends of a course's segment, -1 for one that is pinned.
+std::array<int, 2> free_ends(const DefiningSystem& system, const Orbit& x, const EventCourse& course) {
+  const int s = course.segment;
+  const bool is_pinned = is_pinned_start(system.system(), system.signature(), x, s, course.event);
+  const bool is_terminal = system.signature()[static_cast<std::size_t>(s)].event == course.event;
+  return {is_pinned ? -1 : 0, is_terminal ? -1 : x.shape.nodes() - 1};
+}
+
 EventCourse course_of(const DefiningSystem& system, const CollocationRule& rule, const Orbit& x, int s, int event) {
   EventCourse course{s, event, {}, {}};
   EventCourseFinder().find(system.system(), system.signature()[static_cast<std::size_t>(s)].field, rule, x, course);
@@ -268,13 +276,11 @@ std::vector<EventMinimum> polished_minima(const HybridSystem& system, const Sign
 
 std::vector<EventMinimum> least_candidates(const DefiningSystem& system, const CollocationRule& rule, const Orbit& x,
                                            const EventCourse& course) {
-  const int s = course.segment;
   std::vector<EventMinimum> candidates;
-  const auto add_node = [&](int k) {
-    candidates.push_back({x.tau(k), course.at_nodes(k), Vector::Map(x.node(s, k), x.shape.dimension)});
-  };
-  if (!is_pinned_start(system.system(), system.signature(), x, s, course.event)) add_node(0);
-  if (system.signature()[static_cast<std::size_t>(s)].event != course.event) add_node(x.shape.nodes() - 1);
+  for (const int node : free_ends(system, x, course))
+    if (node >= 0)
+      candidates.push_back(
+          {x.tau(node), course.at_nodes(node), Vector::Map(x.node(course.segment, node), x.shape.dimension)});
   for (EventMinimum& minimum : polished_minima(system.system(), system.signature(), rule, x, course))
     candidates.push_back(std::move(minimum));
   return candidates;
@@ -292,6 +298,18 @@ std::optional<EventMinimum> least_value(const DefiningSystem& system, const Coll
                                       [](const EventMinimum& a, const EventMinimum& b) { return a.value < b.value; });
   if (least == candidates.end()) return std::nullopt;
   return *least;
+}
+
+std::optional<double> least_h(const DefiningSystem& system, const CollocationRule& rule, const Orbit& x,
+                              const EventCourse& course) {
+  std::optional<double> least;
+  const auto add = [&least](double h) { least = least && !(h < *least) ? *least : h; };
+  for (const int node : free_ends(system, x, course))
+    if (node >= 0) add(course.at_nodes(node));
+  if (!course.dips.empty())
+    for (const EventMinimum& minimum : polished_minima(system.system(), system.signature(), rule, x, course))
+      add(minimum.value);
+  return least;
 }
 
 std::optional<EventMinimum> least_value(const DefiningSystem& system, const CollocationRule& rule, const Orbit& x,

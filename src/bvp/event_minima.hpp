@@ -86,5 +86,8 @@ std::optional<EventMinimum> least_value(const DefiningSystem& system, const Coll
                                         const EventCourse& course);
 std::optional<EventMinimum> least_value(const DefiningSystem& system, const CollocationRule& rule, const Orbit& x,
                                         int s, int event);
+/// Its value alone: no allocation where there is no dip.
+std::optional<double> least_h(const DefiningSystem& system, const CollocationRule& rule, const Orbit& x,
+                              const EventCourse& course);
 
 }  // namespace tchat

@@ -60,7 +60,8 @@ std::optional<double> ClosedBranch::place(const PathPoint& here, double ds) {
   if (here.orbit.mesh != moved_.mesh) {
     const Orbit& first = first_.orbit;
     const CollocationRule& rule = follower_.condensed().rule();
-    moved_.states = MeshTransfer(first.shape, first.mesh, first.shape, here.orbit.mesh, rule)(first.states);
+    transfer_.set(first.shape, first.mesh, first.shape, here.orbit.mesh, rule);
+    transfer_(first.states, moved_.states);
     moved_.mesh = here.orbit.mesh;
   }
   const double length = dot_difference(here.dual, moved_, here.orbit, system_.free_parameters());

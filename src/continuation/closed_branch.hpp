@@ -51,6 +51,7 @@ class ClosedBranch {
   const DefiningSystem& system_;
   bool phase_is_fixed_;
   PathPoint first_;
+  MeshTransfer transfer_;          // from the mesh of the first point
   Orbit moved_;                    // that of the first point on the mesh of the last one looked at
   Eigen::VectorXd measure_sizes_;  // empty before they are known
   Eigen::VectorXd first_measures_;

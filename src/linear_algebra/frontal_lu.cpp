@@ -157,6 +157,7 @@ std::optional<FrontalLu> FrontalLu::make(int size, std::span<const int> rows, st
   lu.blocks_.resize(at(block));
   lu.rights_.resize(at(right));
   lu.swaps_.resize(at(swaps));
+  lu.parity_without_exchanges_ = lu.find_parity_without_exchanges();
   lu.local_.resize(at(widest));
   lu.column_sizes_.resize(at(widest));
   lu.known_.resize(at(size));
@@ -288,8 +289,16 @@ std::pair<int, double> FrontalLu::determinant() const {
   return {sign, log2_size};
 }
 
-/// That of the order in which columns are eliminated, times that of the rows that were chosen.
+/// Every exchange of rows swaps two of them in the order in which they are chosen.
 int FrontalLu::parity() const {
+  int sign = parity_without_exchanges_;
+  for (const Front& front : fronts_)
+    for (int k = 0; k < front.pivots; ++k) sign = swaps_[at(front.swaps + k)] == k ? sign : -sign;
+  return sign;
+}
+
+/// That of the order in which columns are eliminated, times that of the rows where each front takes its first ones.
+int FrontalLu::find_parity_without_exchanges() const {
   std::vector<int> columns, chosen;
   std::vector<std::vector<int>> left(fronts_.size());
   for (std::size_t f = 0; f < fronts_.size(); ++f) {
@@ -298,7 +307,6 @@ int FrontalLu::parity() const {
     for (const Child& child : front.children)
       rows.insert(rows.end(), left[at(child.front)].begin(), left[at(child.front)].end());
     rows.insert(rows.end(), front.own_rows.begin(), front.own_rows.end());
-    for (int k = 0; k < front.pivots; ++k) std::swap(rows[at(k)], rows[at(swaps_[at(front.swaps + k)])]);
     columns.insert(columns.end(), front.columns.begin(), front.columns.begin() + front.pivots);
     chosen.insert(chosen.end(), rows.begin(), rows.begin() + front.pivots);
     left[f].assign(rows.begin() + front.pivots, rows.end());

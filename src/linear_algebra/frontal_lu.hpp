@@ -60,6 +60,7 @@ class FrontalLu {
 
   FrontalLu() = default;
   int parity() const;
+  int find_parity_without_exchanges() const;
   class Plan;
   void put_children(const Front& front, double* block) const;
   bool eliminate_pivots(const Front& front, double* block);
@@ -72,6 +73,7 @@ class FrontalLu {
   std::vector<double> scales_;  // of rows
   std::vector<double> blocks_, rights_, local_, known_, column_sizes_;
   std::vector<int> swaps_;
+  int parity_without_exchanges_ = 1;
 };
 
 }  // namespace tchat

@@ -19,16 +19,21 @@ ContactTest::ContactTest(const DefiningSystem& system, int segment, int event, b
 std::string ContactTest::name() const { return fmt::format("least h{} on segment {}", event_, segment_ + 1); }
 
 std::optional<EventMinimum> ContactTest::least(const TestedPoint& point) const {
-  const CollocationRule& rule = point.condensed.rule();
+  return least_value(system_, point.condensed.rule(), point.orbit, segment_, event_);
+}
+
+std::optional<double> ContactTest::least_h(const TestedPoint& point) const {
   for (const EventCourse& course : point.courses)
-    if (course.segment == segment_ && course.event == event_) return least_value(system_, rule, point.orbit, course);
-  return least_value(system_, rule, point.orbit, segment_, event_);
+    if (course.segment == segment_ && course.event == event_)
+      return tchat::least_h(system_, point.condensed.rule(), point.orbit, course);
+  const auto contact = least(point);
+  return contact ? std::optional(contact->value) : std::nullopt;
 }
 
 TestValue ContactTest::evaluate(const TestedPoint& point) const {
-  const auto contact = least(point);
+  const std::optional<double> contact = least_h(point);
   if (!contact) return TestValue::undefined(sign_without_minimum(point.orbit));
-  return TestValue::of(contact->value, orbit_accuracy * event_scale(system_.system(), point.orbit, event_));
+  return TestValue::of(*contact, orbit_accuracy * event_scale(system_.system(), point.orbit, event_));
 }
 
 /// Between pinned ends h may rise and fall without a minimum in between: no contact, positive.
