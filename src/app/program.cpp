@@ -5,6 +5,7 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
+#include <array>
 #include <csignal>
 #include <cstdio>
 #include <functional>
@@ -67,6 +68,38 @@ int run_command(const std::function<int()>& command) {
   }
 }
 
+using AddCommand = void (*)(CLI::App&, std::function<int()>&);
+
+struct Command {
+  std::string_view name;
+  AddCommand add;
+};
+
+/// In the order of the help.
+constexpr std::array<Command, 14> commands = {{{"run", add_run_command},
+                                               {"resegment", add_resegment_command},
+                                               {"simulate", add_simulate_command},
+                                               {"sweep", add_sweep_command},
+                                               {"labels", add_labels_command},
+                                               {"orbit", add_orbit_command},
+                                               {"table", add_table_command},
+                                               {"verify", add_verify_command},
+                                               {"grazing", add_grazing_command},
+                                               {"plot", add_plot_command},
+                                               {"check", add_check_command},
+                                               {"dat", add_dat_command},
+                                               {"constants", add_constants_command},
+                                               {"new", add_new_command}}};
+
+/// The one that was asked for, for their options take longer to set up than most commands need for their work; else
+/// all, and what tells of all.
+void add_commands(CLI::App& app, std::function<int()>& chosen, std::string_view asked) {
+  for (const Command& command : commands)
+    if (command.name == asked) return command.add(app, chosen);
+  for (const Command& command : commands) command.add(app, chosen);
+  add_manual_command(app, chosen);
+}
+
 int parse_and_run(int argc, char** argv) {
   occupy_standard_descriptors();
   std::signal(SIGXFSZ, SIG_IGN);  // a file size limit is then an error of the write, reported like a full disk
@@ -76,21 +109,7 @@ int parse_and_run(int argc, char** argv) {
   app.require_subcommand(1);
   app.footer("tchat COMMAND --help explains a command.");
   std::function<int()> chosen;
-  add_run_command(app, chosen);
-  add_resegment_command(app, chosen);
-  add_simulate_command(app, chosen);
-  add_sweep_command(app, chosen);
-  add_labels_command(app, chosen);
-  add_orbit_command(app, chosen);
-  add_table_command(app, chosen);
-  add_verify_command(app, chosen);
-  add_grazing_command(app, chosen);
-  add_plot_command(app, chosen);
-  add_check_command(app, chosen);
-  add_dat_command(app, chosen);
-  add_constants_command(app, chosen);
-  add_new_command(app, chosen);
-  add_manual_command(app, chosen);
+  add_commands(app, chosen, argc > 1 ? argv[1] : "");
   if (argc > 1 && std::string_view(argv[1]) == "complete")
     return run_command([&] { return print_completions(app, {argv + 2, argv + argc}); });
   try {

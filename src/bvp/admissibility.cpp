@@ -44,8 +44,7 @@ std::vector<Violation> inadmissibilities(const HybridSystem& system, const Signa
       const int last = event == v.event ? end_node - 1 : end_node;
       for (int k = leaves_out_start ? 1 : 0; k <= last; ++k)
         if (const double h = course.at_nodes(k); h < worst.value) worst.value = h, worst.tau = x.tau(k);
-      for (const EventMinimum& dip :
-           polished_minima(system, signature, rule, x, course, -surely_negative * scale)) {
+      for (const EventMinimum& dip : polished_minima(system, signature, rule, x, course, -surely_negative * scale)) {
         const double uncertainty =
             2.0 * error_of_states * event_at(system, event, dip.state.data(), par).gradient.lpNorm<1>();
         if (dip.value < std::min(worst.value, -std::max(surely_negative * scale, uncertainty)))

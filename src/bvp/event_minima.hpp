@@ -42,8 +42,8 @@ struct EventDip {
 struct EventCourse {
   int segment = 0;
   int event = 0;
-  Eigen::VectorXd at_nodes;    ///< h at every node
-  std::vector<EventDip> dips;  ///< inside the segment, in order; none where it lasts no positive time
+  Eigen::VectorXd at_nodes;           ///< h at every node
+  std::vector<EventDip> dips;         ///< inside the segment, in order; none where it lasts no positive time
   bool first_hangs_on_start = false;  ///< h rises nowhere before the first dip
   bool last_hangs_on_end = false;     ///< h falls nowhere after the last one
 };

@@ -98,8 +98,8 @@ double largest_share(const Eigen::VectorXd& density, const std::vector<double>& 
 }
 
 /// equal_parts() into `result`; `cumulative` is scratch.
-void split(const std::vector<double>& mesh, const Eigen::VectorXd& density, int parts,
-           std::vector<double>& cumulative, std::vector<double>& result) {
+void split(const std::vector<double>& mesh, const Eigen::VectorXd& density, int parts, std::vector<double>& cumulative,
+           std::vector<double>& result) {
   const int intervals = static_cast<int>(mesh.size()) - 1;
   cumulative.assign(mesh.size(), 0.0);
   for (int j = 0; j < intervals; ++j) cumulative[index(j + 1)] = cumulative[index(j)] + density(j) * length(mesh, j);

@@ -10,8 +10,8 @@ WeightedNorm WeightedNorm::unit(int dimension) {
 }
 
 MassIntervals mass_intervals(const Orbit& x, const CollocationRule& rule, const Eigen::VectorXd& weights) {
-  return {x.mesh.data(),  x.shape.intervals, rule.mass.data(), x.shape.collocation + 1,
-          weights.data(), x.shape.dimension};
+  return {x.mesh.data(),           x.shape.intervals, rule.mass.data(),
+          x.shape.collocation + 1, weights.data(),    x.shape.dimension};
 }
 
 void WeightedNorm::dual(const Orbit& x, const CollocationRule& rule, const std::vector<int>& free_parameters,

@@ -81,7 +81,10 @@ std::vector<Constant> make_table() {
       {"NPR", "label every NPR-th point, 0: none", 5, &R::print_every, at_least(0), "", "10", ""},
       {"MXBF", "number of bifurcating branches to follow", 5, &R::max_bifurcations, any(), "", "0",
        "read and kept, no effect: it concerns equilibria"},
-      {"IID", "detail of the d-file", 5, &R::diagnostics_level, at_least(0), "", "2", ""},
+      {"IID",
+       "what the d-file has of ordinary points: 0 nothing, 1 multipliers, 2 test values too, 3 all that it has of "
+       "labels",
+       5, &R::diagnostics_level, at_least(0), "", "2", ""},
       {"ITMX", "largest number of iterations to locate a special point", 5, &R::max_location_iterations, at_least(0),
        "", "9", ""},
       {"ITNW", "largest number of Newton and chord iterations", 5, &R::max_newton, at_least(1), "", "8", ""},

@@ -35,7 +35,7 @@ struct BranchPoint {
   double step = 0.0;                           ///< ds of that step, 0 at the start
   const std::vector<NamedTestValue>& tests;
   const std::vector<std::string>& details;  ///< of a labelled point: what else its test functions know
-  std::string remark = {};           ///< what its problem type has to say of it, one line or none
+  std::string remark = {};                  ///< what its problem type has to say of it, one line or none
   bool labelled() const { return special.type != PointType::ordinary; }
 };
 

@@ -126,9 +126,9 @@ class ContinuationRun {
   StabilityWatch stability_;
   MeshEquidistribution equidistribution_;
   std::vector<NamedTestValue> test_values_;  // of the point that is handed over
-  std::size_t lost_before_ = 0;  // reports at the last accepted point
-  double measure_ = 0.0;         // at here_
-  int number_ = 1;               // of here_
+  std::size_t lost_before_ = 0;              // reports at the last accepted point
+  double measure_ = 0.0;                     // at here_
+  int number_ = 1;                           // of here_
   bool ended_ = false;
   BranchSummary summary_;
 };

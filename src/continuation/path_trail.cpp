@@ -30,7 +30,10 @@ PathTrail::PathTrail(const OrbitShape& shape, int global_count) : mesh_(index(sh
 }
 
 /// Space is not shared.
-PathTrail::PathTrail(const PathTrail& other) : marks_(other.marks_), count_(other.count_), mesh_(other.mesh_) {}
+PathTrail::PathTrail(const PathTrail& other) : marks_(other.marks_), count_(other.count_), mesh_(other.mesh_) {
+  for (const std::size_t k : {0U, 1U})
+    if (other.own_[k]) own_[k] = std::make_shared<Mark>(*other.own_[k]);
+}
 
 PathTrail& PathTrail::operator=(const PathTrail& other) {
   if (this == &other) return *this;

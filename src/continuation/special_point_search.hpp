@@ -18,9 +18,9 @@ class DefiningSystem;
 class PathFollower;
 
 struct LocationSettings {
-  bool multipliers = true;   ///< compute them (ISP > 0)
-  double tolerance = 1e-7;   ///< on arclength
-  int max_evaluations = 10;  ///< ITMX
+  bool multipliers = true;                       ///< compute them (ISP > 0)
+  double tolerance = 1e-7;                       ///< on arclength
+  int max_evaluations = 10;                      ///< ITMX
   std::vector<std::vector<int>> monitored = {};  ///< event functions of each segment, as in inadmissibilities()
 };
 

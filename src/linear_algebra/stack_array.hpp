@@ -12,8 +12,7 @@ namespace stack_array {
 /// Comes before the Map, which needs the address.
 template <std::size_t Most>
 struct Entries {
-  explicit Entries(Eigen::Index count)
-      : entries(static_cast<std::size_t>(count), boost::container::default_init_t()) {}
+  explicit Entries(Eigen::Index count) : entries(static_cast<std::size_t>(count), boost::container::default_init_t()) {}
   boost::container::small_vector<double, Most> entries;
 };
 

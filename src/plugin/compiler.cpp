@@ -1,22 +1,21 @@
 #include "plugin/compiler.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
-#include <cerrno>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <future>
 #include <sstream>
 
 #include "plugin/compiler_errors.hpp"
+#include "plugin/compiler_process.hpp"
 #include "plugin/instruction_set.hpp"
+#include "plugin/precompiled_header.hpp"
 #include "text/user_error.hpp"
 #include "text/words.hpp"
 
@@ -41,70 +40,6 @@ std::string find_program(const std::string& word) {
     if (fs::is_regular_file(path, failed) && access(path.c_str(), X_OK) == 0) return path;
   }
   return "";
-}
-
-struct ProcessResult {
-  int spawn_error = 0;  // errno of starting the program
-  int status = 0;       // as waitpid gives it
-  std::string output;   // standard output and standard error together
-};
-
-std::string read_all(int descriptor) {
-  std::string text;
-  std::array<char, 4096> buffer;
-  while (true) {
-    const ssize_t count = read(descriptor, buffer.data(), buffer.size());
-    if (count < 0 && errno == EINTR) continue;
-    if (count <= 0) return text;
-    text.append(buffer.data(), static_cast<std::size_t>(count));
-  }
-}
-
-/// This process's environment with the compiler's words in English, which is what is read in them.
-std::vector<std::string> english_environment() {
-  std::vector<std::string> variables;
-  for (char** variable = environ; *variable != nullptr; ++variable)
-    if (const std::string text = *variable;
-        !text.starts_with("LC_ALL=") && !text.starts_with("LC_MESSAGES=") && !text.starts_with("LANGUAGE="))
-      variables.push_back(text);
-  variables.emplace_back("LC_ALL=C.UTF-8");
-  return variables;
-}
-
-std::vector<char*> pointers(const std::vector<std::string>& words) {
-  std::vector<char*> result;
-  for (const std::string& word : words) result.push_back(const_cast<char*>(word.c_str()));
-  result.push_back(nullptr);
-  return result;
-}
-
-ProcessResult run_process(const std::vector<std::string>& words) {
-  ProcessResult result;
-  int ends[2];
-  if (pipe2(ends, O_CLOEXEC) != 0) {
-    result.spawn_error = errno;
-    return result;
-  }
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_adddup2(&actions, ends[1], STDOUT_FILENO);
-  posix_spawn_file_actions_adddup2(&actions, ends[1], STDERR_FILENO);
-  const std::vector<std::string> variables = english_environment();
-  const std::vector<char*> arguments = pointers(words);
-
-  pid_t child = 0;
-  result.spawn_error =
-      posix_spawnp(&child, arguments[0], &actions, nullptr, arguments.data(), pointers(variables).data());
-  posix_spawn_file_actions_destroy(&actions);
-  close(ends[1]);
-  if (result.spawn_error == 0) {
-    result.output = read_all(ends[0]);
-    while (waitpid(child, &result.status, 0) < 0 && errno == EINTR) {
-    }
-  }
-  close(ends[0]);
-  return result;
 }
 
 /// The first lines of a compiler's output: one mistake in a template can give hundreds.
@@ -204,32 +139,49 @@ std::string Compiler::instructions() const {
   return said || language_ == Language::fortran ? "" : std::string(instruction_option());
 }
 
-std::vector<std::string> Compiler::flags(const Compilation& what) const {
+/// What decides what comes out, for a plugin and for the header read before.
+std::vector<std::string> Compiler::options(const Compilation& what) const {
+  std::vector<std::string> words = command_;
+  for (const char* word : {"-O2", "-fPIC"}) words.emplace_back(word);
   // Lines of fixed form may be longer than 72 columns: cutting them there would be a silent mistake.
-  if (language_ == Language::fortran)
-    return {"-std=legacy", "-ffixed-line-length-none", "-J" + what.scratch_folder,
-            "-I" + what.include_folder + "/tchat", "-I" + what.scratch_folder};
-  std::vector<std::string> flags = {"-O3",  "-std=c++20", "-fvisibility=hidden", "-I" + what.include_folder,
-                                    "-MMD", "-MF",        what.dependencies};
+  if (language_ == Language::fortran) {
+    for (const std::string& word :
+         {std::string("-std=legacy"), std::string("-ffixed-line-length-none"), "-J" + what.scratch_folder,
+          "-I" + what.include_folder + "/tchat", "-I" + what.scratch_folder})
+      words.push_back(word);
+    return words;
+  }
   // Loops over derivatives take a third of the time that they take with -O2.
-  if (!is_clang(command_)) flags.insert(flags.end(), {"-fno-gnu-unique", "-mtune=native"});
-  return flags;
+  for (const std::string& word :
+       {std::string("-O3"), std::string("-std=c++20"), std::string("-fvisibility=hidden"), "-I" + what.include_folder})
+    words.push_back(word);
+  if (!is_clang(command_)) words.insert(words.end(), {"-fno-gnu-unique", "-mtune=native"});
+  return words;
+}
+
+ProcessResult Compiler::compile_with(std::vector<std::string> words, const Compilation& what,
+                                     const std::string& precompiled) const {
+  if (!precompiled.empty())
+    words.insert(words.begin() + static_cast<std::ptrdiff_t>(command_.size()), {"-I" + precompiled, "-fpch-deps"});
+  if (language_ != Language::fortran) words.insert(words.end(), {"-MMD", "-MF", what.dependencies});
+  words.insert(words.end(), {"-shared", "-o", what.library, what.source});
+  return run_process(words);
 }
 
 void Compiler::compile(const Compilation& what) const {
-  std::vector<std::string> words = command_;
-  for (const char* flag : {"-O2", "-fPIC", "-shared"}) words.emplace_back(flag);
-  for (const std::string& flag : flags(what)) words.push_back(flag);
-  for (const std::string& word : {std::string("-o"), what.library, what.source}) words.push_back(word);
+  const std::vector<std::string> words = options(what);
   // Four numbers in a register; products and sums are still rounded one by one. A problem that cannot be compiled so
   // (its own functions may be for numbers one by one) is compiled without.
-  if (const std::string option = instructions(); !option.empty()) {
-    std::vector<std::string> with_option = words;
-    with_option.insert(with_option.end() - 1, option);
-    const ProcessResult result = run_process(with_option);
-    if (result.spawn_error == 0 && result.status == 0) return;
-  }
-  const ProcessResult result = run_process(words);
+  std::vector<std::string> with_instructions = words;
+  if (const std::string option = instructions(); !option.empty()) with_instructions.push_back(option);
+  const bool may_precompile = language_ != Language::fortran && !is_clang(command_);
+  const PrecompiledHeader header(may_precompile ? identity() : "", with_instructions, what.include_folder);
+  const std::string precompiled = header.folder();
+  std::future<void> for_later;
+  if (precompiled.empty()) for_later = std::async(std::launch::async, [&header] { header.make(); });
+  ProcessResult result = compile_with(with_instructions, what, precompiled);
+  const bool failed = result.spawn_error != 0 || result.status != 0;
+  if (failed && with_instructions.size() > words.size()) result = compile_with(words, what, "");
   if (result.spawn_error != 0) refuse_missing_compiler(language_, command_[0], what.source, result.spawn_error);
   require_success(result, command_, what, language_);
 }

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "plugin/compiler_process.hpp"
+
 namespace tchat {
 
 struct PluginBuildOptions {
@@ -39,7 +41,9 @@ class Compiler {
   void compile(const Compilation& what) const;
 
  private:
-  std::vector<std::string> flags(const Compilation& what) const;
+  std::vector<std::string> options(const Compilation& what) const;
+  ProcessResult compile_with(std::vector<std::string> words, const Compilation& what,
+                             const std::string& precompiled) const;
   std::string instructions() const;
 
   Language language_;

@@ -20,6 +20,7 @@
 #include "plugin/build_stamp.hpp"
 #include "plugin/file_lock.hpp"
 #include "plugin/fortran_source.hpp"
+#include "plugin/precompiled_header.hpp"
 #include "text/text_file.hpp"
 #include "text/user_error.hpp"
 
@@ -231,17 +232,15 @@ struct Build {
   }
 };
 
-/// $XDG_CACHE_HOME/tchat or ~/.cache/tchat, created; file names carry the source's path so that equal names differ.
+/// In the cache folder, created; file names carry the source's path so that equal names differ.
 fs::path cached_library(const fs::path& source) {
-  const char* const xdg = std::getenv("XDG_CACHE_HOME");
-  const char* const home = std::getenv("HOME");
-  const bool has_xdg = xdg != nullptr && xdg[0] == '/';
-  if (!has_xdg && (home == nullptr || home[0] != '/'))
+  const std::optional<fs::path> cache = cache_folder();
+  if (!cache)
     throw UserError(
         fmt::format("{} must be compiled, but its folder cannot be written and there is no cache folder.\n"
                     "  Copy the source to a folder of your own, or set XDG_CACHE_HOME or HOME.",
                     source.string()));
-  const fs::path folder = (has_xdg ? fs::path(xdg) : fs::path(home) / ".cache") / "tchat";
+  const fs::path& folder = *cache;
   std::error_code failed;
   fs::create_directories(folder, failed);
   if (failed)

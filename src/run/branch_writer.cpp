@@ -74,8 +74,7 @@ void BranchWriter::end_section() {
 ParameterVector BranchWriter::output_parameters(const Orbit& x) const {
   ParameterVector par = x.par;
   const tchat_problem& table = section_.system.table();
-  for (int s = 0; s < x.shape.segments; ++s)
-    table.output_parameters(table.self, s + 1, x.end(s), par.data());
+  for (int s = 0; s < x.shape.segments; ++s) table.output_parameters(table.self, s + 1, x.end(s), par.data());
   for (const int k : section_.active_parameters) par(k - 1) = x.par(k - 1);  // these belong to the computation
   return par;
 }
@@ -133,9 +132,9 @@ void BranchWriter::point(const BranchPoint& point) {
   report_unknown_user_values(line_);
   files_.write_if_due();
   if (point.labelled())
-    labels_.push_back(
-        {line_.label, fmt::format("{}", fmt::join(type_names(line_.type, line_.kind, point.special.further), " ")),
-         place(line_), description_of(recorded)});
+    labels_.push_back({line_.label,
+                       fmt::format("{}", fmt::join(type_names(line_.type, line_.kind, point.special.further), " ")),
+                       place(line_), description_of(recorded)});
 }
 
 /// User functions are for output only: one that is not finite stops nothing, so it is reported, once.

@@ -12,12 +12,17 @@
 #include "bvp/critical_multiplier.hpp"
 #include "bvp/critical_pair.hpp"
 #include "bvp/grazing_orbit_system.hpp"
+#include "continuation/continuation_run.hpp"
 #include "continuation/planar_torus.hpp"
+#include "files/run_files.hpp"
+#include "run/branch_writer.hpp"
+#include "run/test_lists.hpp"
 #include "special_points/impacting_orbits.hpp"
 #include "special_points/langford.hpp"
 #include "special_points/torus_contact_condition.hpp"
 #include "support/branch_fixture.hpp"
 #include "support/linear_oscillator.hpp"
+#include "support/temporary_folder.hpp"
 #include "support/three_modes.hpp"
 
 extern "C" void* __libc_malloc(std::size_t);
@@ -163,6 +168,71 @@ TEST_CASE("no allocation of our own in continuation steps after the first") {
   CHECK(counts.ours == 0);
   // What is left of 16 segments are frontal matrices, of fewer it is a small dense one: nothing is left for UMFPACK.
   CHECK(counts.solver == 0);
+}
+
+/// Counts from one point of the branch to another, both written.
+class CountingSink final : public BranchSink {
+ public:
+  CountingSink(BranchWriter& writer, int from, int to) : writer_(writer), from_(from), to_(to) {}
+  void point(const BranchPoint& point) override {
+    writer_.point(point);
+    if (point.number == from_) ours = 0, solver = 0, counting = true;
+    if (point.number == to_) counting = false;
+    labels_ += counting && point.labelled();
+  }
+  void next_step(int point_number, double ds) override { writer_.next_step(point_number, ds); }
+  void note(int point_number, const std::string& text) override { writer_.note(point_number, text); }
+  int labels() const { return labels_; }
+
+ private:
+  BranchWriter& writer_;
+  int from_, to_, labels_ = 0;
+};
+
+TEST_CASE("no allocation from the hundredth point of a branch on, files, tests and new meshes included") {
+  give_solver_its_own_allocator();
+  const int copies = GENERATE(1, 8);
+  CAPTURE(copies);
+  const OscillatorOrbit orbit = one_impact_orbit(2.0072, 0.5);
+  const std::vector<Piece> pieces(static_cast<std::size_t>(copies), orbit.piece(0, orbit.constants.period()));
+  const Orbit start = sampled_orbit(pieces, 4, 50, 4, orbit.par());
+  PeriodicOrbits orbits(linosc(), Signature(static_cast<std::size_t>(copies), {1, 1, 1}), 1, start.shape,
+                        {8, 2, 1e-9, 1e-9});
+  RunSettings settings;
+  settings.problem_type = 180;
+  settings.dimension = 4;
+  settings.free_parameters = {1, 61};
+  settings.mesh_intervals = 50;
+  settings.collocation_points = 4;
+  settings.detect_bifurcations = 2;
+  settings.detect_folds = 1;
+  settings.test_functions = {1};
+  SegmentSettings segment;
+  segment.index = {1, 1, 1};
+  segment.monitor = {1};
+  settings.segments.assign(static_cast<std::size_t>(copies), segment);
+  const test_support::TemporaryFolder folder;
+  RunFiles files(folder.file("branch"));
+  files.open("");
+  BranchWriter writer(linosc(), orbits.follower.condensed().rule(), {settings, settings.free_parameters}, files,
+                      nullptr);
+  writer.begin_section(1, 1e-4, {});
+
+  constexpr int from = 100, to = 400;
+  ContinuationSettings of_branch = branch_settings(start.shape, 1, 1e-4, 1e-4, to);
+  of_branch.adapt_mesh_every = 3;
+  for (std::vector<int>& events : of_branch.monitored) events = {1};
+  TestList tests = contact_tests(orbits.system, settings);
+  add_bifurcations(tests, orbits.system, settings);
+  REQUIRE(tests.size() == static_cast<std::size_t>(5 + copies));
+  CountingSink sink(writer, from, to - 1);
+  ContinuationRun run(orbits.follower, orbits.system, of_branch, std::move(tests), sink);
+  const BranchSummary summary = run.run(orbits.corrected(start));
+  REQUIRE(summary.points == to);
+  CHECK(sink.labels() == 0);
+  // Until they are written the texts for two files grow, by doubling, to four times their length.
+  CHECK(ours <= 4);
+  CHECK(solver == 0);
 }
 
 TEST_CASE("no allocation with kernels of run-time size, several fields and jumps") {

@@ -1,10 +1,13 @@
 #include "files/diagnostics_file.hpp"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <limits>
 #include <sstream>
 #include <string>
 #include <vector>
+
+#include "files/diagnostics_file_reader.hpp"
 
 using namespace tchat;
 using Catch::Matchers::Contains;
@@ -56,6 +59,52 @@ TEST_CASE("Multipliers as the parser of fort.9 takes them apart", "[output]") {
 TEST_CASE("A multiplier at the rim of AUTO's rule counts as stable", "[output]") {
   const std::vector<std::complex<double>> mu = {{1.0000099, 0.0}, {1.00002, 0.0}};
   CHECK_THAT(format_multipliers(mu), Contains("Stable:   1"));
+}
+
+TEST_CASE("An ordinary point in short, as readers find it", "[output]") {
+  PointLine point;
+  point.branch = 2;
+  point.point = 10017;
+  point.stable = true;
+  point.values = {3.25, 1.0};
+  const std::string heading = format_short_heading({{PointColumn::Kind::parameter, 1, "alpha"}, {}});
+  const std::vector<std::complex<double>> mu = {{-0.6, 0.8}, {-0.6, -0.8}, {0.25, 0.0}, {-1e-15, 0.0}};
+  const std::vector<double> tests = {-5.00217, 0.126612345, NAN, -1.3e-7, 0.0};
+  std::string text;
+  append_short_point(text, point, heading);
+  append_short_multipliers(text, mu, false);
+  append_short_tests(text, tests);
+  append_iterations(text, 2, 10017, 2);
+  append_next_step(text, 2, 10017, -0.02);
+  CHECK(text ==
+        "  BR    PT  TY  LAB      alpha\n"
+        "   2   -18        0  3.25000E+00\n"
+        "Multiplier 1 -6.0000000000E-01 8.0000000000E-01\n"
+        "Multiplier 2 -6.0000000000E-01 -8.0000000000E-01\n"
+        "Multiplier 3 2.5000000000E-01 0\n"
+        "Multiplier 4 -1.0000000000E-15 0\n"
+        "tests: -5.0022 0.12661 - -1.3e-07 0\n"
+        "   2    18  Iterations   : 2\n"
+        "   2    18  Next Step    : -2.00000E-02\n" +
+            format_bar());
+  CHECK(text.size() <= 400);
+  const std::vector<DiagnosticPoint> read = parse_diagnostics(text);
+  REQUIRE(read.size() == 1);
+  CHECK(read[0].branch == 2);
+  CHECK(read[0].point == -18);
+  CHECK(read[0].parameter == 3.25);
+  CHECK(read[0].multipliers == mu);
+  CHECK(read[0].iterations == 2);
+
+  text.clear();
+  point.admissible = false;
+  append_short_point(text, point, heading);
+  append_short_multipliers(text, std::vector<std::complex<double>>{{-1.0, 2.0}}, true);
+  append_short_tests(text, {});
+  CHECK(text ==
+        "  BR    PT  TY  LAB      alpha\n"
+        "   2   -18        0  3.25000E+00  inadmissible\n"
+        "Eigenvalue 1: -1.0000000000E+00 2.0000000000E+00\n");
 }
 
 TEST_CASE("Test functions and those that are undefined", "[output]") {

@@ -71,6 +71,24 @@ std::vector<Sample> samples(std::size_t columns, int first_label, int first_type
   return all;
 }
 
+std::string label_block(const Sample& sample, const std::vector<PointColumn>& columns) {
+  std::string block = format_newton_history(sample.line.branch, sample.line.point, {{0, 1.0, 2.0, 0.0, 0.0}});
+  block += format_diagnostics_point(sample.line, columns) + format_multipliers(sample.multipliers);
+  block += format_test_functions({{"period doubling", -1.0, true}});
+  block += format_note(sample.line.branch, sample.line.point, "Multiplier 0 is a figure of accuracy");
+  return block + format_bar();
+}
+
+std::string ordinary_block(const Sample& sample, const std::vector<PointColumn>& columns) {
+  std::string block;
+  append_short_point(block, sample.line, format_short_heading(columns));
+  append_short_multipliers(block, sample.multipliers, false);
+  append_short_tests(block, std::vector<double>{-1.0});
+  append_iterations(block, sample.line.branch, sample.line.point, 2);
+  append_next_step(block, sample.line.branch, sample.line.point, 0.01);
+  return block;
+}
+
 std::string joined(const std::vector<double>& values) { return fmt::format("{}", fmt::join(values, " ")); }
 
 void write_expected(std::FILE* expected, const Sample& sample) {
@@ -102,11 +120,7 @@ void write_section(RunFiles& files, std::FILE* expected, const PointFileHeader& 
   for (const Sample& sample : samples(columns.size(), first_label, first_type)) {
     files.add_points(format_point(sample.line));
     if (sample.line.label > 0) files.add_solution(format_solution(sample.orbit));
-    std::string block = format_newton_history(sample.line.branch, sample.line.point, {{0, 1.0, 2.0, 0.0, 0.0}});
-    block += format_diagnostics_point(sample.line, columns) + format_multipliers(sample.multipliers);
-    block += format_test_functions({{"period doubling", -1.0, true}});
-    block += format_note(sample.line.branch, sample.line.point, "Multiplier 0 is a figure of accuracy");
-    files.add_diagnostics(block + format_bar());
+    files.add_diagnostics(sample.line.label > 0 ? label_block(sample, columns) : ordinary_block(sample, columns));
     write_expected(expected, sample);
   }
 }

@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <sstream>
+#include <utility>
 
 namespace test_support {
 
@@ -14,20 +15,38 @@ bool is_number(const std::string& word) { return !word.empty() && std::isdigit(s
 /// "   2    -3  PD   46   3.0E+00 ..." with or without the type.
 DiagnosticPoint read_point(const std::string& line) {
   const std::vector<std::string> words = words_of(line);
-  REQUIRE(words.size() > 4);
+  REQUIRE(words.size() > 3);
   const std::size_t typed = is_number(words[2]) ? 0 : 1;
   return {
       std::stoi(words[0]), std::stoi(words[1]), std::stoi(words[2 + typed]), typed == 1 ? words[2] : "", {}, {}, {}};
 }
 
-/// "   h_x f at the end of segment 1:    -7.5E-003"; undefined values are no numbers and left out.
-void read_test(const std::string& line, DiagnosticPoint& point) {
-  const auto colon = line.find(": ");
-  if (line.compare(0, 3, "   ") != 0 || colon == std::string::npos) return;
-  const std::vector<std::string> value = words_of(line.substr(colon + 1));
-  if (value.size() == 1 && value[0].find("E") != std::string::npos)
-    point.tests[line.substr(3, colon - 3)] = std::stod(value[0]);
-}
+/// "   h_x f at the end of segment 1:    -7.5E-003" of a label, or "tests: -7.5e-3 ..." of another point in the order
+/// of the last label's; undefined values are no numbers and left out.
+class TestReader {
+ public:
+  void begin_point() { names_are_new_ = true; }
+  void read(const std::string& line, DiagnosticPoint& point) {
+    if (line.compare(0, 6, "tests:") == 0) return read_short(words_of(line.substr(6)), point);
+    const auto colon = line.find(": ");
+    if (line.compare(0, 3, "   ") != 0 || colon == std::string::npos) return;
+    const std::vector<std::string> value = words_of(line.substr(colon + 1));
+    if (value.size() != 1 || (value[0] != "undefined" && value[0].find('E') == std::string::npos)) return;
+    if (std::exchange(names_are_new_, false)) names_.clear();
+    names_.push_back(line.substr(3, colon - 3));
+    if (value[0] != "undefined") point.tests[names_.back()] = std::stod(value[0]);
+  }
+
+ private:
+  void read_short(const std::vector<std::string>& values, DiagnosticPoint& point) const {
+    REQUIRE(values.size() == names_.size());
+    for (std::size_t k = 0; k < values.size(); ++k)
+      if (values[k] != "-") point.tests[names_[k]] = std::stod(values[k]);
+  }
+
+  std::vector<std::string> names_;
+  bool names_are_new_ = true;
+};
 
 }  // namespace
 
@@ -43,18 +62,20 @@ void run_impacting(const Workspace& workspace, const std::string& omega) {
 
 std::vector<DiagnosticPoint> read_diagnostics(const std::string& text) {
   std::vector<DiagnosticPoint> points;
+  TestReader tests;
   std::istringstream in(text);
   for (std::string line; std::getline(in, line);) {
-    if (line.compare(0, 20, "  BR    PT  TY  LAB ") == 0 && std::getline(in, line))
+    if (line.compare(0, 20, "  BR    PT  TY  LAB ") == 0 && std::getline(in, line)) {
       points.push_back(read_point(line));
-    else if (points.empty())
+      tests.begin_point();
+    } else if (points.empty())
       continue;
-    else if (line.compare(0, 13, "   Multiplier") == 0)
+    else if (line.find("Multiplier ") != std::string::npos && line.find("NOTE: ") == std::string::npos)
       points.back().multipliers.emplace_back(std::stod(words_of(line).at(2)), std::stod(words_of(line).at(3)));
     else if (const auto note = line.find("NOTE: "); note != std::string::npos)
       points.back().notes.push_back(line.substr(note + 6));
     else
-      read_test(line, points.back());
+      tests.read(line, points.back());
   }
   return points;
 }

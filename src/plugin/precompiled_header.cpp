@@ -1,0 +1,93 @@
+#include "plugin/precompiled_header.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <system_error>
+#include <utility>
+
+#include "plugin/build_stamp.hpp"
+#include "plugin/compiler_process.hpp"
+#include "plugin/file_lock.hpp"
+
+namespace tchat {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* folder_prefix = "header-";
+constexpr std::size_t most_kept = 3;  // some ten megabytes each
+
+/// Of the cache: the folders of other compilers and versions but for the newest ones.
+void remove_old(const fs::path& cache) {
+  std::error_code error;
+  std::vector<std::pair<fs::file_time_type, fs::path>> found;
+  for (fs::directory_iterator at(cache, error), end; !error && at != end; at.increment(error))
+    if (at->path().filename().string().starts_with(folder_prefix) && at->is_directory(error))
+      found.emplace_back(at->last_write_time(error), at->path());
+  std::sort(found.rbegin(), found.rend());
+  for (std::size_t k = most_kept; k < found.size(); ++k) fs::remove_all(found[k].second, error);
+}
+
+std::string hash_of_headers(const std::string& include_folder) {
+  const BuildPlaces places{"", include_folder};
+  std::vector<BuildInput> headers;
+  std::error_code error;
+  for (fs::directory_iterator at(include_folder + "/tchat", error), end; !error && at != end; at.increment(error))
+    headers.push_back({BuildInput::Root::interface, "tchat/" + at->path().filename().string()});
+  std::sort(headers.begin(), headers.end(),
+            [](const BuildInput& a, const BuildInput& b) { return a.path < b.path; });
+  return hash_files(headers, places);
+}
+
+}  // namespace
+
+std::optional<fs::path> cache_folder() {
+  const char* const xdg = std::getenv("XDG_CACHE_HOME");
+  if (xdg != nullptr && xdg[0] == '/') return fs::path(xdg) / "tchat";
+  const char* const home = std::getenv("HOME");
+  if (home != nullptr && home[0] == '/') return fs::path(home) / ".cache" / "tchat";
+  return std::nullopt;
+}
+
+PrecompiledHeader::PrecompiledHeader(const std::string& identity, std::vector<std::string> command,
+                                     std::string include_folder)
+    : command_(std::move(command)), include_folder_(fs::absolute(include_folder).string()) {
+  const std::optional<fs::path> cache = cache_folder();
+  if (!cache || identity.empty()) return;
+  const std::string key = fmt::format("{}\n{}\n{}\n{}", identity, fmt::join(command_, "\n"), include_folder_,
+                                      hash_of_headers(include_folder_));
+  folder_ = *cache / (folder_prefix + hash_text(key));
+}
+
+std::string PrecompiledHeader::folder() const {
+  std::error_code error;
+  return !folder_.empty() && fs::exists(made(), error) ? folder_.string() : "";
+}
+
+void PrecompiledHeader::make() const noexcept {
+  try {
+    if (folder_.empty() || !folder().empty()) return;
+    std::error_code error;
+    fs::create_directories(made().parent_path(), error);
+    if (error) return;
+    const FileLock lock(folder_.string() + "/lock");
+    if (lock.error() != 0 || !folder().empty()) return;
+    const std::string unfinished = (folder_ / fmt::format("unfinished.{}", ::getpid())).string();
+    std::vector<std::string> words = command_;
+    // With rules for make it keeps the names of the headers, for those of the plugins.
+    words.insert(words.end(), {"-w", "-MMD", "-MF", "/dev/null", "-x", "c++-header", header(), "-o", unfinished});
+    const ProcessResult result = run_process(words);
+    const bool is_made = result.spawn_error == 0 && result.status == 0;
+    if (is_made) fs::rename(unfinished, made(), error);
+    if (!is_made || error) fs::remove(unfinished, error);
+    remove_old(folder_.parent_path());
+  } catch (const std::exception&) {  // as promised
+  }
+}
+
+}  // namespace tchat
