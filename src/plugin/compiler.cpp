@@ -180,6 +180,10 @@ void Compiler::compile(const Compilation& what) const {
   std::future<void> for_later;
   if (precompiled.empty()) for_later = std::async(std::launch::async, [&header] { header.make(); });
   ProcessResult result = compile_with(with_instructions, what, precompiled);
+  if (!precompiled.empty() && result.output.find("internal compiler error") != std::string::npos) {
+    header.remove();
+    result = compile_with(with_instructions, what, "");
+  }
   const bool failed = result.spawn_error != 0 || result.status != 0;
   if (failed && with_instructions.size() > words.size()) result = compile_with(words, what, "");
   if (result.spawn_error != 0) refuse_missing_compiler(language_, command_[0], what.source, result.spawn_error);

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <fstream>
 #include <system_error>
 #include <utility>
 
@@ -20,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* folder_prefix = "header-";
-constexpr std::size_t most_kept = 3;  // some ten megabytes each
+constexpr std::size_t most_kept = 4;  // some ten megabytes each
 
 /// Of the cache: the folders of other compilers and versions but for the newest ones.
 void remove_old(const fs::path& cache) {
@@ -39,8 +40,7 @@ std::string hash_of_headers(const std::string& include_folder) {
   std::error_code error;
   for (fs::directory_iterator at(include_folder + "/tchat", error), end; !error && at != end; at.increment(error))
     headers.push_back({BuildInput::Root::interface, "tchat/" + at->path().filename().string()});
-  std::sort(headers.begin(), headers.end(),
-            [](const BuildInput& a, const BuildInput& b) { return a.path < b.path; });
+  std::sort(headers.begin(), headers.end(), [](const BuildInput& a, const BuildInput& b) { return a.path < b.path; });
   return hash_files(headers, places);
 }
 
@@ -69,6 +69,15 @@ std::string PrecompiledHeader::folder() const {
   return !folder_.empty() && fs::exists(made(), error) ? folder_.string() : "";
 }
 
+/// Leaves a mark: a header that is asked for once is not worth its time.
+bool PrecompiledHeader::is_first_time() const {
+  const fs::path mark = folder_ / "asked";
+  std::error_code error;
+  if (fs::exists(mark, error)) return false;
+  const std::ofstream made(mark);
+  return true;
+}
+
 void PrecompiledHeader::make() const noexcept {
   try {
     if (folder_.empty() || !folder().empty()) return;
@@ -76,7 +85,7 @@ void PrecompiledHeader::make() const noexcept {
     fs::create_directories(made().parent_path(), error);
     if (error) return;
     const FileLock lock(folder_.string() + "/lock");
-    if (lock.error() != 0 || !folder().empty()) return;
+    if (lock.error() != 0 || !folder().empty() || is_first_time()) return;
     const std::string unfinished = (folder_ / fmt::format("unfinished.{}", ::getpid())).string();
     std::vector<std::string> words = command_;
     // With rules for make it keeps the names of the headers, for those of the plugins.
@@ -88,6 +97,11 @@ void PrecompiledHeader::make() const noexcept {
     remove_old(folder_.parent_path());
   } catch (const std::exception&) {  // as promised
   }
+}
+
+void PrecompiledHeader::remove() const noexcept {
+  std::error_code error;
+  fs::remove_all(folder_, error);
 }
 
 }  // namespace tchat

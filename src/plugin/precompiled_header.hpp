@@ -23,10 +23,14 @@ class PrecompiledHeader {
 
   /// To be put before the folder of the headers with -I: "" where there is none yet.
   std::string folder() const;
-  /// Makes it where it is missing. Whatever is in the way of that is no fault: plugins are then compiled without.
+  /// Makes it where it is missing, the second time that it is asked for. Whatever is in the way of that is no fault:
+  /// plugins are then compiled without.
   void make() const noexcept;
+  /// One that the compiler cannot read.
+  void remove() const noexcept;
 
  private:
+  bool is_first_time() const;
   std::string header() const { return include_folder_ + "/tchat/problem.hpp"; }
   std::filesystem::path made() const { return folder_ / "tchat" / "problem.hpp.gch"; }
 

@@ -71,6 +71,48 @@ void become_nobody() {
 
 }  // namespace
 
+TEST_CASE("tchat's header is read once for the plugins of a compiler") {
+  const PluginFolder folder;
+  const Environment cache("XDG_CACHE_HOME", folder / "cache");
+  fs::copy(TCHAT_TEST_INCLUDE, folder / "include", fs::copy_options::recursive);
+  PluginBuildOptions options = folder.counting_compiler();
+  options.include_folder = folder / "include";
+  const auto made = [&]() -> std::string {
+    for (const auto& one : fs::directory_iterator(folder / "cache/tchat"))
+      if (fs::exists(one.path() / "tchat/problem.hpp.gch")) return one.path() / "tchat/problem.hpp.gch";
+    return "";
+  };
+  const auto dimension = [&](const std::string& name) {
+    folder.write(name + ".cpp", R"(#include <tchat/problem.hpp>
+struct Oscillator {
+  static constexpr int dimension = 2, parameters = 1, fields = 1;
+  template <class T> void field(int, const T* x, const T* par, T* f) const { f[0] = x[1]; f[1] = -par[0] * x[0]; }
+};
+TCHAT_PROBLEM(Oscillator)
+)");
+    return dimension_of(resolve_plugin(folder / name, options));
+  };
+  CHECK(dimension("first") == 2);
+  CHECK(made().empty());  // a header that is asked for once is not worth its time
+  CHECK(dimension("second") == 2);
+  REQUIRE_FALSE(made().empty());
+  CHECK(dimension("third") == 2);
+  CHECK(folder.compilations() == 3);
+
+  // The headers behind it decide whether a plugin is up to date.
+  resolve_plugin(folder / "third", options);
+  CHECK(folder.compilations() == 3);
+  folder.write("include/tchat/sliding.hpp", folder.read("include/tchat/sliding.hpp") + "// changed\n");
+  resolve_plugin(folder / "third", options);
+  CHECK(folder.compilations() == 4);
+  CHECK(dimension("fourth") == 2);
+
+  // One that was not written to its end does no harm.
+  for (const auto& one : fs::directory_iterator(folder / "cache/tchat"))
+    if (fs::exists(one.path() / "tchat/problem.hpp.gch")) fs::resize_file(one.path() / "tchat/problem.hpp.gch", 100000);
+  CHECK(dimension("fifth") == 2);
+}
+
 TEST_CASE("every way to name a plugin") {
   const PluginFolder folder;
   const PluginBuildOptions options = folder.counting_compiler();
@@ -398,7 +440,7 @@ TEST_CASE("a source in a folder that cannot be written is compiled to the cache 
           resolves_to_cache("dir/small", 2);
           resolves_to_cache("again/small", 9);
         })) == 0);
-  CHECK(folder.entries("cache/tchat") == 2);
+  CHECK(folder.entries("cache/tchat") == 3);  // two libraries and the folder of the header read before
   CHECK(folder.entries("dir") == 1);
   CHECK(wait_for(start_process([&] {
           become_nobody();

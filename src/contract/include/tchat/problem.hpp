@@ -47,13 +47,10 @@
 ///     void jump_derivatives (int k, const double* x, const double* par, double* dgdx, double* dgdp) const;
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <iterator>
-#include <stdexcept>
 #include <type_traits>
 #include <vector>
 
@@ -78,7 +75,7 @@ class Ends {
 
  private:
   int place(int s) const {
-    if (s < 1 || s > segments_) throw std::out_of_range("the orbit has no such segment");
+    if (s < 1 || s > segments_) throw NoValue("the orbit has no such segment");
     return s - 1;
   }
 
@@ -271,14 +268,19 @@ class ProblemTable {
             problem.integrand(index, x, par, out);
         }
     } catch (...) {
-      std::fill(out, out + rows(kind), T(NAN));
+      fill(out, rows(kind), T(NAN));
     }
   }
 
   static void value(const void* self, std::int32_t kind, std::int32_t index, const double* x, const double* par,
                     double* out) {
-    std::fill(out, out + rows(kind), NAN);
+    fill(out, rows(kind), static_cast<double>(NAN));
     evaluate<double>(self, kind, index, x, par, par + durations_begin, out);
+  }
+
+  template <class T>
+  static void fill(T* out, std::ptrdiff_t count, const T& value) {
+    for (std::ptrdiff_t i = 0; i < count; ++i) out[i] = value;
   }
 
   /// Column c of the derivative belongs to state c, or to parameter active[c - n].
@@ -357,7 +359,7 @@ class ProblemTable {
     bool& disagreed = parted();
     int alone = 0;  // so many points are still to be worked on one by one
     for (std::ptrdiff_t first = 0; first < points;) {
-      const int held = alone > 0 ? 1 : static_cast<int>(std::min<std::ptrdiff_t>(points - first, together));
+      const int held = alone > 0 ? 1 : points - first < together ? static_cast<int>(points - first) : together;
       disagreed = false;
       if (work(PointSet{first, held, held > 1 ? &disagreed : nullptr})) {
         first += held;
@@ -462,7 +464,7 @@ class ProblemTable {
                                double* out, double* gradient) {
     const WeightedPoints at{self,   kind,         index, points, directions, x,   par,
                             active, active_count, v,     q,      weights,    out, gradient};
-    if (directions <= 0) std::fill_n(gradient, static_cast<std::ptrdiff_t>(points) * (n + active_count), 0.0);
+    if (directions <= 0) fill(gradient, static_cast<std::ptrdiff_t>(points) * (n + active_count), 0.0);
     for (int k = 0; k < directions; ++k) add_direction(at, k);
   }
   // NOLINTEND(readability-non-const-parameter)
@@ -567,7 +569,7 @@ class ProblemTable {
     const Problem& problem = object(self);
     bool given = false;
     if (mode_of(kind, index) != nullptr) return false;
-    std::fill(dx, dx + rows(kind) * n, 0.0);
+    fill(dx, rows(kind) * n, 0.0);
     if constexpr (requires { problem.field_derivatives(index, x, par, dx, dp); })
       if (kind == TCHAT_FIELD) problem.field_derivatives(index, x, par, dx, all.data()), given = true;
     if constexpr (requires { problem.event_derivatives(index, x, par, dx, dp); })
@@ -601,11 +603,11 @@ class ProblemTable {
   template <class T>
   static void evaluate_boundary(const void* self, int segments, const std::vector<T>& starts,
                                 const std::vector<T>& ends, const std::vector<T>& durations, const T* par, T* out) {
-    std::fill(out, out + boundary_count(), T(NAN));
+    fill(out, boundary_count(), T(NAN));
     if constexpr (boundary_count() > 0) try {
         object(self).boundary(Ends<T>(segments, n, starts.data(), ends.data(), durations.data()), par, out);
       } catch (...) {
-        std::fill(out, out + boundary_count(), T(NAN));
+        fill(out, boundary_count(), T(NAN));
       }
   }
 

@@ -27,13 +27,24 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <stdexcept>
+#include <exception>
 #include <type_traits>
 
 #include "tchat/dual.hpp"
 #include "tchat/problem.h"
 
 namespace tchat {
+
+/// Thrown where a function has no value: the state then counts as one at which nothing can be evaluated. (The standard
+/// exceptions with texts come with std::string, which takes as long to compile as all else here.)
+class NoValue : public std::exception {
+ public:
+  explicit NoValue(const char* why) : why_(why) {}
+  const char* what() const noexcept override { return why_; }
+
+ private:
+  const char* why_;
+};
 
 /// Which functions a sliding mode is made of and which it adds: `field` between the fields `minus` and `plus` on the
 /// surface of event function `surface`; the event function `to_minus` ends it at lambda = 0, `to_plus` at lambda = 1.
@@ -168,7 +179,7 @@ bool is_surface_event(const Problem& problem, const Sliding& mode, int index, co
 /// For `successors`: the field that is followed from the state x on, after the segment `from` (all zero at a start).
 /// After an event that ends sliding it is the field that this event leads to. After an event of the surface (h, or a
 /// multiple of it such as -h) that a side's segment ended in, or on the surface to rounding: the sliding field where
-/// both sides point at it, else the field that leads away. Elsewhere the field of the side. Throws std::domain_error
+/// both sides point at it, else the field that leads away. Elsewhere the field of the side. Throws NoValue
 /// where both lead away, as there Filippov's solution is not unique.
 template <class Problem>
 int next_field(const Problem& problem, const Sliding& mode, std::array<int, 3> from, const double* x,
@@ -190,7 +201,7 @@ int next_field(const Problem& problem, const Sliding& mode, std::array<int, 3> f
   // A side that the orbit comes from points at the surface.
   if (meets && from[0] == mode.plus) return down ? mode.minus : mode.field;
   if (meets) return up ? mode.plus : mode.field;
-  if (up && down) throw std::domain_error("both fields lead away from the surface");
+  if (up && down) throw NoValue("both fields lead away from the surface");
   return up ? mode.plus : down ? mode.minus : mode.field;
 }
 
