@@ -272,23 +272,32 @@ bool SegmentElimination::join_lanes(int s) {
 /// work(reciprocal pivot, is its row exchanged with another one?) for all pivots of all segments.
 template <class Work>
 void SegmentElimination::for_pivots(const Work& work) const {
-  const auto of_block = [&](int pivots, int stride, int step, const double* block, const int* swaps) {
-    for (int k = 0; k < pivots; ++k)  // the blocks hold reciprocal pivots
-      work(block[static_cast<std::ptrdiff_t>(k * stride + k) * step], swaps[k * step] != k);
+  // The blocks hold reciprocal pivots.
+  const auto of_lanes = [&](const LaneKernel& kernel, const double* block, const int* swaps,
+                            const std::array<bool, static_cast<std::size_t>(lanes)>& counts) {
+    for (int k = 0; k < kernel.pivots(); ++k) {
+      const double* pivots = block + static_cast<std::ptrdiff_t>(k * kernel.stride() + k) * lanes;
+      for (int l = 0; l < lanes; ++l)
+        if (counts[static_cast<std::size_t>(l)]) work(pivots[l], swaps[k * lanes + l] != k);
+    }
   };
-  const auto of_lane = [&](const LaneKernel& kernel, const double* block, const int* swaps, int lane) {
-    of_block(kernel.pivots(), kernel.stride(), lanes, block + lane, swaps + lane);
+  const auto lanes_where = [](const auto& holds) {
+    std::array<bool, static_cast<std::size_t>(lanes)> result{};
+    for (int l = 0; l < lanes; ++l) result[static_cast<std::size_t>(l)] = holds(l);
+    return result;
   };
   for (int s = 0; s < shape_.segments; ++s) {
     for (int group = 0; group < groups_; ++group)
-      for (int l = 0; l < lanes; ++l)
-        if (schedule_.holds(group, l))
-          of_lane(interval_, interval_blocks_[block(s, group)], interval_swaps_[block(s, group)], l);
+      of_lanes(interval_, interval_blocks_[block(s, group)], interval_swaps_[block(s, group)],
+               lanes_where([&](int l) { return schedule_.holds(group, l); }));
     for (const Join& at : joins_)
-      for (int l = 0; l < lanes; ++l)
-        if (!passes(at, l)) of_lane(join_, join_blocks_[block(s, at)], join_swaps_[block(s, at)], l);
-    for (const Join& at : top_joins_)
-      of_block(n_, top_join_.width(), 1, top_blocks_[top_block(s, at.middle)], top_swaps_[top_block(s, at.middle)]);
+      of_lanes(join_, join_blocks_[block(s, at)], join_swaps_[block(s, at)],
+               lanes_where([&](int l) { return !passes(at, l); }));
+    for (const Join& at : top_joins_) {
+      const double* block = top_blocks_[top_block(s, at.middle)];
+      const int* swaps = top_swaps_[top_block(s, at.middle)];
+      for (int k = 0; k < n_; ++k) work(block[std::ptrdiff_t{k} * top_join_.width() + k], swaps[k] != k);
+    }
   }
 }
 

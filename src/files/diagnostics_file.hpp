@@ -3,8 +3,8 @@
 /// A block belongs to one point and ends with a bar of 47 '='. Texts never hold times of day, durations of the
 /// computation or paths: files of two equal runs are equal.
 ///
-/// A branch has thousands of ordinary points and some labels. A label's block has everything under its name; that of
-/// an ordinary point is short and written without an allocation.
+/// A branch has thousands of ordinary points and some labels. The block of a label, and of the first point, has
+/// everything under its name; that of an ordinary point is short and written without an allocation.
 #pragma once
 
 #include <complex>
@@ -51,7 +51,7 @@ void append_short_point(std::string& text, const PointLine& point, std::string_v
 void append_short_multipliers(std::string& text, std::span<const std::complex<double>> multipliers,
                               bool are_eigenvalues);
 
-/// In the order in which the blocks of labels name the functions; NaN: undefined. Without values no line.
+/// In the order in which the block of the first point names the functions; NaN: undefined. Without values no line.
 void append_short_tests(std::string& text, std::span<const double> values);
 
 /// How many iterations of Newton's method it took to come to a point, and the step that is tried from it next.

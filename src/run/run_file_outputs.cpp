@@ -76,10 +76,10 @@ class SolutionFileOutput final : public BranchOutput {
   RunFiles& files_;
 };
 
-/// What is told of a point depends on IID and on whether it has a label:
+/// What is told of a point depends on IID and on whether it has a label, or is the first one:
 ///
-///     IID         ordinary point                 label
-///      0          nothing                        its line, multipliers, what it is
+///     IID         ordinary point                 label, first point
+///      0          nothing                        its line, multipliers, what it is (labels alone)
 ///      1          its line and multipliers       the same
 ///      2          test values too                Newton's iterations and test functions by name too
 ///      3          as a label                     the same
@@ -93,8 +93,9 @@ class DiagnosticsFileOutput final : public BranchOutput {
     has_points_ = false;
   }
   void point(const RecordedPoint& point) override {
-    has_points_ = true;
-    if (point.of_branch.labelled() || level() > 2)
+    const bool is_first = !std::exchange(has_points_, true);
+    const bool is_full = point.of_branch.labelled() || (is_first && level() > 0) || level() > 2;
+    if (is_full)
       files_.add_diagnostics(newton_history(point) + format_diagnostics_point(point.line, section_.columns) +
                              notes(point) + multipliers(point) + details(point));
     else if (level() > 0)

@@ -71,7 +71,7 @@ void become_nobody() {
 
 }  // namespace
 
-TEST_CASE("tchat's header is read once for the plugins of a compiler") {
+TEST_CASE("tchat's header is read once for the plugins of a compiler", "[slow]") {
   const PluginFolder folder;
   const Environment cache("XDG_CACHE_HOME", folder / "cache");
   fs::copy(TCHAT_TEST_INCLUDE, folder / "include", fs::copy_options::recursive);
@@ -213,7 +213,7 @@ TEST_CASE("a plugin is compiled when something changed, and only then") {
   }
 }
 
-TEST_CASE("a copy of a folder has sources of its own") {
+TEST_CASE("a copy of a folder has sources of its own", "[slow]") {
   const PluginFolder folder;
   const PluginBuildOptions options = folder.counting_compiler();
   folder.write("work/first/own.h", "enum { more = 0 };\n");
@@ -271,7 +271,7 @@ TEST_CASE("a copy of a folder has sources of its own") {
   fs::current_path(before);
 }
 
-TEST_CASE("a copy of a folder whose library is a link to the original's") {
+TEST_CASE("a copy of a folder whose library is a link to the original's", "[slow]") {
   const PluginFolder folder;
   const PluginBuildOptions options = folder.counting_compiler();
   folder.write("first/small.cpp", small_plugin());
@@ -283,7 +283,7 @@ TEST_CASE("a copy of a folder whose library is a link to the original's") {
   CHECK(folder.compilations() == 2);
 }
 
-TEST_CASE("a library of another tchat, or stamped by one, is compiled again") {
+TEST_CASE("a library of another tchat, or stamped by one, is compiled again", "[slow]") {
   const PluginFolder folder;
   const PluginBuildOptions options = folder.counting_compiler();
   folder.write("small.cpp", small_plugin());
@@ -352,7 +352,7 @@ TCHAT_PROBLEM(Forgot)
   CHECK_THROWS_WITH(resolve_plugin(folder / "forgot", options), Contains("fields"));
 }
 
-TEST_CASE("a local variable of type double that depends on the state: the message says what to do") {
+TEST_CASE("a local variable of type double that depends on the state: the message says what to do", "[slow]") {
   const PluginFolder folder;
   folder.write("narrow.cpp", R"(#include <tchat/problem.hpp>
 struct Narrow {
@@ -369,7 +369,7 @@ TCHAT_PROBLEM(Narrow)
   CHECK_THROWS_WITH(resolve_plugin(folder / "narrow", {"", TCHAT_TEST_INCLUDE}), Contains("of type T"));
 }
 
-TEST_CASE("a long list of errors is cut") {
+TEST_CASE("a long list of errors is cut", "[slow]") {
   const PluginFolder folder;
   std::string source;
   for (int k = 0; k < 500; ++k) source += "int f" + std::to_string(k) + "() { return nothing; }\n";
@@ -410,7 +410,7 @@ TEST_CASE("the folder of the interface") {
   CHECK(find_include_folder({}) == folder / ".");
 }
 
-TEST_CASE("a source in a folder that cannot be written is compiled to the cache folder") {
+TEST_CASE("a source in a folder that cannot be written is compiled to the cache folder", "[slow]") {
   const PluginFolder folder;
   const PluginBuildOptions options = {"c++", TCHAT_TEST_INCLUDE};
   folder.write("dir/small.cpp", small_plugin());

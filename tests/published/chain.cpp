@@ -21,8 +21,8 @@ DiagnosticPoint read_point(const std::string& line) {
       std::stoi(words[0]), std::stoi(words[1]), std::stoi(words[2 + typed]), typed == 1 ? words[2] : "", {}, {}, {}};
 }
 
-/// "   h_x f at the end of segment 1:    -7.5E-003" of a label, or "tests: -7.5e-3 ..." of another point in the order
-/// of the last label's; undefined values are no numbers and left out.
+/// "   h_x f at the end of segment 1:    -7.5E-003" of a label or the first point, or "tests: -7.5e-3 ..." of another
+/// point in their order; undefined values are no numbers and left out.
 class TestReader {
  public:
   void begin_point() { names_are_new_ = true; }
