@@ -13,6 +13,7 @@
 #include "bvp/defining_system.hpp"
 #include "bvp/discretisation_error.hpp"
 #include "bvp/equilibrium_system.hpp"
+#include "bvp/no_duration.hpp"
 #include "bvp/transversality.hpp"
 #include "continuation/path_follower.hpp"
 #include "continuation/value_trend.hpp"
@@ -47,6 +48,27 @@ bool is_the_same(const SpecialPoint& special, const SpecialPoint& other) {
   if (special.kind.kind == velocity && other.kind.kind == velocity) return special.kind.segment == other.kind.segment;
   return special.type == PointType::branch_point && other.kind.kind == UserPointKind::grazing_codimension_two &&
          other.kind.index == 1;
+}
+
+/// Do the segments behind the end of segment `from` last no time up to the end of segment `to` (from 0)?
+bool nothing_between(const Orbit& x, int from, int to) {
+  const int m = x.shape.segments;
+  for (int s = from; s != to; s = (s + 1) % m)
+    if (!lasts_no_time(x, (s + 1) % m)) return false;
+  return true;
+}
+
+/// Is a contact at an end of a segment, where segments around last no time, the impact that the label is?
+bool is_that_impact(const Orbit& x, const Signature& signature, const SpecialPoint& special,
+                    const SpecialPoint& other) {
+  const UserPointKind& contact = other.kind;
+  if (special.kind.kind != UserPointKind::impact_velocity || contact.kind != UserPointKind::contact) return false;
+  if (contact.tau > 0.0 && contact.tau < 1.0) return false;
+  const int m = x.shape.segments;
+  const int impact = special.kind.segment - 1;
+  const int end = contact.tau > 0.0 ? contact.segment - 1 : (contact.segment - 2 + m) % m;
+  const bool same_event = signature[static_cast<std::size_t>(impact)].event == contact.index;
+  return same_event && (nothing_between(x, impact, end) || nothing_between(x, end, impact));
 }
 
 /// On a curve of folds or period doublings one multiplier is known by the curve's own condition, also where the curve
@@ -569,7 +591,8 @@ SpecialPoint SpecialPointSearch::classify(const std::vector<std::size_t>& group,
     const SpecialPoint found = tests_[i]->classify(tested(at.point, at.data), signs_[i] < 0);
     if (i == group.front()) {
       special = found;
-    } else if (!is_the_same(special, found)) {
+    } else if (!is_the_same(special, found) &&
+               !is_that_impact(at.point.orbit, system_.signature(), special, found)) {
       special.further.push_back(kind_of(found));
       special.description += joined(special.description, found.description);
       special.ends_branch = special.ends_branch || found.ends_branch;
