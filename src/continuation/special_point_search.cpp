@@ -591,8 +591,7 @@ SpecialPoint SpecialPointSearch::classify(const std::vector<std::size_t>& group,
     const SpecialPoint found = tests_[i]->classify(tested(at.point, at.data), signs_[i] < 0);
     if (i == group.front()) {
       special = found;
-    } else if (!is_the_same(special, found) &&
-               !is_that_impact(at.point.orbit, system_.signature(), special, found)) {
+    } else if (!is_the_same(special, found) && !is_that_impact(at.point.orbit, system_.signature(), special, found)) {
       special.further.push_back(kind_of(found));
       special.description += joined(special.description, found.description);
       special.ends_branch = special.ends_branch || found.ends_branch;

@@ -112,7 +112,9 @@ void append_iterations(std::string& text, int branch, int point, int iterations)
 void append_next_step(std::string& text, int branch, int point, double step) {
   append_branch_and_point(text, branch, point);
   text += "  Next Step    : ";
+  const std::size_t number = text.size();
   append_scientific(text, step, 5);
+  text[text.find('E', number)] = 'e';  // no value of a test function: those have E
   text += '\n';
   text += bar;
 }

@@ -85,7 +85,7 @@ TEST_CASE("An ordinary point in short, as readers find it", "[output]") {
         "Multiplier 4 -1.0000000000E-15 0\n"
         "tests: -5.0022 0.12661 - -1.3e-07 0\n"
         "   2    18  Iterations   : 2\n"
-        "   2    18  Next Step    : -2.00000E-02\n" +
+        "   2    18  Next Step    : -2.00000e-02\n" +
             format_bar());
   CHECK(text.size() <= 400);
   const std::vector<DiagnosticPoint> read = parse_diagnostics(text);
