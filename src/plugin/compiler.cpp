@@ -180,8 +180,9 @@ void Compiler::compile(const Compilation& what) const {
   std::future<void> for_later;
   if (precompiled.empty()) for_later = std::async(std::launch::async, [&header] { header.make(); });
   ProcessResult result = compile_with(with_instructions, what, precompiled);
-  if (!precompiled.empty() && result.output.find("internal compiler error") != std::string::npos) {
-    header.remove();
+  // Where the header is included a second time, g++ looks for it beside what it has read before.
+  if (!precompiled.empty() && result.status != 0) {
+    if (result.output.find("internal compiler error") != std::string::npos) header.remove();
     result = compile_with(with_instructions, what, "");
   }
   const bool failed = result.spawn_error != 0 || result.status != 0;

@@ -107,6 +107,18 @@ TCHAT_PROBLEM(Oscillator)
   CHECK(folder.compilations() == 4);
   CHECK(dimension("fourth") == 2);
 
+  // A second include beside it, in a header of the user's.
+  folder.write("own.hpp", "#include <tchat/problem.hpp>\nconstexpr double stiffness = 2.0;\n");
+  folder.write("sixth.cpp", R"(#include <tchat/problem.hpp>
+#include "own.hpp"
+struct Oscillator {
+  static constexpr int dimension = 2, parameters = 1, fields = 1;
+  template <class T> void field(int, const T* x, const T*, T* f) const { f[0] = x[1]; f[1] = -stiffness * x[0]; }
+};
+TCHAT_PROBLEM(Oscillator)
+)");
+  CHECK(dimension_of(resolve_plugin(folder / "sixth", options)) == 2);
+
   // One that was not written to its end does no harm.
   for (const auto& one : fs::directory_iterator(folder / "cache/tchat"))
     if (fs::exists(one.path() / "tchat/problem.hpp.gch")) fs::resize_file(one.path() / "tchat/problem.hpp.gch", 100000);
