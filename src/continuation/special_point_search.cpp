@@ -279,17 +279,20 @@ std::optional<SpecialPoint> SpecialPointSearch::advance(const PathPoint& here, C
   const std::optional<Candidate> farther = farther_step(here, next);
   const PointData& at_end = farther ? farther->data : next.data;
   std::optional<SpecialPoint> special;
+  std::optional<Candidate> whole;  // the step, where a zero is looked for on it
   rest_ = std::max(rest_ - std::abs(next.ds), 0.0);
   report_start(at_end, reports);
   if (!changed(at_end).empty()) {
-    const Candidate whole = farther ? *farther : next;
-    special = advance_to_first_zero(here, next, newton, whole);
-    if (special) keep_rest(whole, next.point);
+    whole = farther ? *farther : next;
+    special = advance_to_first_zero(here, next, newton, *whole);
   }
   report_lost(next.data, reports);
   for (std::size_t i = 0; i < tests_.size(); ++i)
     if (next.data.tests[i].sign != 0) signs_[i] = next.data.tests[i].sign;
-  if (!special) labelled_.assign(tests_.size(), false);
+  if (special)
+    keep_rest(*whole, next.point);
+  else
+    labelled_.assign(tests_.size(), false);
   remember(next.data, next.ds);
   return special;
 }
