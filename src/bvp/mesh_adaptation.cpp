@@ -174,8 +174,7 @@ const std::vector<double>& MeshEquidistribution::mesh(const Orbit& x, const Coll
   // The sum over components equidistributes none of them by itself. The local error on an interval is the (c+1)-th
   // power of the integral of |u^(c+1)|^(1/(c+1)).
   for (double& value : largest_) value = std::pow(value, 1.0 / (x.shape.collocation + 1));
-  uniform_.resize(index(intervals + 1));
-  for (int j = 0; j <= intervals; ++j) uniform_[index(j)] = static_cast<double>(j) / intervals;
+  if (uniform_.size() != index(intervals + 1)) uniform_ = uniform_mesh(intervals);
   const bool is_better = largest_share(largest_, x.mesh, adapted_) <= largest_share(largest_, x.mesh, uniform_);
   return is_better ? adapted_ : uniform_;
 }
