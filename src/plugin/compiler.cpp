@@ -139,8 +139,8 @@ std::string Compiler::instructions() const {
   return said || language_ == Language::fortran ? "" : std::string(instruction_option());
 }
 
-/// What decides what comes out, for a plugin and for the header read before.
-std::vector<std::string> Compiler::options(const Compilation& what) const {
+/// The options that a plugin and the precompiled header must have in common.
+std::vector<std::string> Compiler::options(const Compilation& what, bool is_gnu) const {
   std::vector<std::string> words = command_;
   for (const char* word : {"-O2", "-fPIC"}) words.emplace_back(word);
   // Lines of fixed form may be longer than 72 columns: cutting them there would be a silent mistake.
@@ -155,7 +155,7 @@ std::vector<std::string> Compiler::options(const Compilation& what) const {
   for (const std::string& word :
        {std::string("-O3"), std::string("-std=c++20"), std::string("-fvisibility=hidden"), "-I" + what.include_folder})
     words.push_back(word);
-  if (!is_clang(command_)) words.insert(words.end(), {"-fno-gnu-unique", "-mtune=native"});
+  if (is_gnu) words.insert(words.end(), {"-fno-gnu-unique", "-mtune=native"});
   return words;
 }
 
@@ -169,13 +169,13 @@ ProcessResult Compiler::compile_with(std::vector<std::string> words, const Compi
 }
 
 void Compiler::compile(const Compilation& what) const {
-  const std::vector<std::string> words = options(what);
+  const bool is_gnu = language_ != Language::fortran && !is_clang(command_);
+  const std::vector<std::string> words = options(what, is_gnu);
   // Four numbers in a register; products and sums are still rounded one by one. A problem that cannot be compiled so
   // (its own functions may be for numbers one by one) is compiled without.
   std::vector<std::string> with_instructions = words;
   if (const std::string option = instructions(); !option.empty()) with_instructions.push_back(option);
-  const bool may_precompile = language_ != Language::fortran && !is_clang(command_);
-  const PrecompiledHeader header(may_precompile ? identity() : "", with_instructions, what.include_folder);
+  const PrecompiledHeader header(is_gnu ? identity() : "", with_instructions, what.include_folder);
   const std::string precompiled = header.folder();
   std::future<void> for_later;
   if (precompiled.empty()) for_later = std::async(std::launch::async, [&header] { header.make(); });

@@ -41,7 +41,7 @@ class Compiler {
   void compile(const Compilation& what) const;
 
  private:
-  std::vector<std::string> options(const Compilation& what) const;
+  std::vector<std::string> options(const Compilation& what, bool is_gnu) const;
   ProcessResult compile_with(std::vector<std::string> words, const Compilation& what,
                              const std::string& precompiled) const;
   std::string instructions() const;
