@@ -168,6 +168,9 @@ void check_tangency(const MakefileRun& chain) {
     check_near(end.parameter(2), start);
     check_near(end.parameter(1), 0.581634329907);
     CHECK(end.internal.front() == 4);  // impact velocity zero
+    // The contact segment has no duration where the impact grazes: that is one event, and named once.
+    for (const DiagnosticPoint& point : of_type(chain.diagnostics(name), "GR"))
+      for (const std::string& note : point.notes) CHECK(note.find("contact with") == std::string::npos);
     // The other way along the curve of folds comes back below this omega, far from here.
     for (const PointSection& section : chain.points(name))
       for (const PointRow& row : section.rows)
