@@ -91,8 +91,8 @@ constexpr std::array<Command, 14> commands = {{{"run", add_run_command},
                                                {"constants", add_constants_command},
                                                {"new", add_new_command}}};
 
-/// The one that was asked for, for their options take longer to set up than most commands need for their work; else
-/// all, and what tells of all.
+/// Adds the command that was asked for alone, as setting up the options of all takes longer than many commands run.
+/// When none was, adds all of them and the manual page.
 void add_commands(CLI::App& app, std::function<int()>& chosen, std::string_view asked) {
   for (const Command& command : commands)
     if (command.name == asked) return command.add(app, chosen);

@@ -48,7 +48,7 @@ struct EventCourse {
   bool last_hangs_on_end = false;     ///< h falls nowhere after the last one
 };
 
-/// Finds courses; one orbit after the other of the same shape without allocations, but for dips.
+/// Finds the courses along orbits of one shape. After the first orbit nothing is allocated except for dips.
 class EventCourseFinder {
  public:
   /// Segment `course.segment` has the field `field`.

@@ -82,8 +82,7 @@ std::vector<Constant> make_table() {
       {"MXBF", "number of bifurcating branches to follow", 5, &R::max_bifurcations, any(), "", "0",
        "read and kept, no effect: it concerns equilibria"},
       {"IID",
-       "what the d-file has of ordinary points: 0 nothing, 1 multipliers, 2 test values too, 3 all that it has of "
-       "labels",
+       "what the d-file says of ordinary points: 0 nothing, 1 multipliers, 2 test values too, 3 as much as of labels",
        5, &R::diagnostics_level, at_least(0), "", "2", ""},
       {"ITMX", "largest number of iterations to locate a special point", 5, &R::max_location_iterations, at_least(0),
        "", "9", ""},

@@ -44,7 +44,7 @@ class SpecialPointSearch {
 
   /// At a converged point, whose linearisation the follower holds.
   PointData evaluate(PathPoint& at);
-  /// Over the data of another point: no allocation where functions need none.
+  /// Overwrites the data of another point, whose space is used again.
   void evaluate(PathPoint& at, PointData& data);
 
   /// Do the points of the branch follow each other as closely as the test functions ask for (Resolution)? Else one of

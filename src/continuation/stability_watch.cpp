@@ -19,7 +19,7 @@ void StabilityWatch::begin(const Point& point) {
   if (point.multipliers.determined()) remember(point);
 }
 
-/// In the place of what is known.
+/// Overwrites what is known.
 void StabilityWatch::remember(const Point& point) {
   if (!known_) known_.emplace();
   known_->parameter = point.parameter;

@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 constexpr const char* folder_prefix = "header-";
 constexpr std::size_t most_kept = 4;  // some ten megabytes each
 
-/// Of the cache: the folders of other compilers and versions but for the newest ones.
+/// Keeps the newest header folders of the cache; the others belong to other compilers or versions.
 void remove_old(const fs::path& cache) {
   std::error_code error;
   std::vector<std::pair<fs::file_time_type, fs::path>> found;

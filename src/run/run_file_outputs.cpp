@@ -76,7 +76,7 @@ class SolutionFileOutput final : public BranchOutput {
   RunFiles& files_;
 };
 
-/// What is told of a point depends on IID and on whether it has a label, or is the first one:
+/// How much the d-file says of a point depends on IID and on whether the point is labelled or the first of its branch:
 ///
 ///     IID         ordinary point                 label, first point
 ///      0          nothing                        its line, multipliers, what it is (labels alone)
