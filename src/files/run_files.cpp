@@ -25,6 +25,9 @@ namespace fs = std::filesystem;
 
 constexpr std::array<char, 4> letters{'p', 'q', 'd', 'r'};
 
+/// So much of points and diagnostics is not kept in memory any longer, in bytes.
+constexpr std::size_t much = 1 << 17;
+
 std::string read_to_append(const std::string& path) {
   return read_text_file(path, "an output to add to", "run without --append");
 }
@@ -114,6 +117,9 @@ void RunFiles::open(std::string_view constants) {
   else
     go_on_with_set();
   used_constants.put_in_place();
+  // Room for all that is gathered between two writes, so that no point of a long branch allocates.
+  for (Growing* growing : {&points_, &diagnostics_})
+    for (std::string* text : {&growing->gathered, &growing->being_written}) text->reserve(much + much / 4);
 }
 
 void RunFiles::begin_new_set() {
@@ -147,7 +153,6 @@ void RunFiles::add(Growing& growing, std::string_view block) {
 
 void RunFiles::write_if_due() {
   constexpr auto longest_wait = std::chrono::milliseconds(250);
-  constexpr std::size_t much = 1 << 18;
   const std::size_t gathered = points_.gathered.size() + diagnostics_.gathered.size();
   const bool is_late = std::chrono::steady_clock::now() - last_written_ >= longest_wait;
   if (is_late || gathered > much || !solutions_.gathered.empty()) write_gathered();
