@@ -16,12 +16,6 @@ namespace tchat {
 
 namespace {
 
-std::string_view trimmed(std::string_view text) {
-  const auto first = text.find_first_not_of(" \t\r");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
-}
-
 /// Reads the file line by line; `rows` holds the numbers of all data rows, one after the other.
 class DatReader {
  public:

@@ -191,9 +191,7 @@ std::vector<std::string> column_names(std::string_view line, const std::vector<s
   for (std::size_t k = prefix_words; k < words.size(); ++k) {
     const std::size_t begin = end_of(words[k - 1]) + 1;
     const std::size_t end = k + 1 == words.size() ? std::string::npos : end_of(words[k]) + 1;
-    std::string name = there && begin < headings.size() ? headings.substr(begin, end - begin) : "";
-    name.erase(0, std::min(name.find_first_not_of(" \r"), name.size()));
-    name.erase(name.find_last_not_of(" \r") + 1);
+    const std::string name(trimmed(there && begin < headings.size() ? headings.substr(begin, end - begin) : ""));
     names.push_back(name.empty() ? fmt::format("COLUMN({})", k - prefix_words + 1) : name);
   }
   for (const auto& [k, name] : header.long_names())

@@ -160,9 +160,8 @@ std::vector<std::string> Compiler::options(const Compilation& what, bool is_gnu)
 }
 
 ProcessResult Compiler::compile_with(std::vector<std::string> words, const Compilation& what,
-                                     const std::string& precompiled) const {
-  if (!precompiled.empty())
-    words.insert(words.begin() + static_cast<std::ptrdiff_t>(command_.size()), {"-I" + precompiled, "-fpch-deps"});
+                                     const std::vector<std::string>& precompiled) const {
+  words.insert(words.end(), precompiled.begin(), precompiled.end());
   if (language_ != Language::fortran) words.insert(words.end(), {"-MMD", "-MF", what.dependencies});
   words.insert(words.end(), {"-shared", "-o", what.library, what.source});
   return run_process(words);
@@ -176,17 +175,17 @@ void Compiler::compile(const Compilation& what) const {
   std::vector<std::string> with_instructions = words;
   if (const std::string option = instructions(); !option.empty()) with_instructions.push_back(option);
   const PrecompiledHeader header(is_gnu ? identity() : "", with_instructions, what.include_folder);
-  const std::string precompiled = header.folder();
+  const std::vector<std::string> precompiled = header.options_for(what.source);
   std::future<void> for_later;
   if (precompiled.empty()) for_later = std::async(std::launch::async, [&header] { header.make(); });
   ProcessResult result = compile_with(with_instructions, what, precompiled);
-  // Where the header is included a second time, g++ looks for it beside what it has read before.
+  // Without it once more: a mistake is told as if there were none, and a broken one is in nobody's way.
   if (!precompiled.empty() && result.status != 0) {
     if (result.output.find("internal compiler error") != std::string::npos) header.remove();
-    result = compile_with(with_instructions, what, "");
+    result = compile_with(with_instructions, what, {});
   }
   const bool failed = result.spawn_error != 0 || result.status != 0;
-  if (failed && with_instructions.size() > words.size()) result = compile_with(words, what, "");
+  if (failed && with_instructions.size() > words.size()) result = compile_with(words, what, {});
   if (result.spawn_error != 0) refuse_missing_compiler(language_, command_[0], what.source, result.spawn_error);
   require_success(result, command_, what, language_);
 }

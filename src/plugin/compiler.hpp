@@ -43,7 +43,7 @@ class Compiler {
  private:
   std::vector<std::string> options(const Compilation& what, bool is_gnu) const;
   ProcessResult compile_with(std::vector<std::string> words, const Compilation& what,
-                             const std::string& precompiled) const;
+                             const std::vector<std::string>& precompiled) const;
   std::string instructions() const;
 
   Language language_;

@@ -13,6 +13,7 @@
 #include "plugin/build_stamp.hpp"
 #include "plugin/compiler_process.hpp"
 #include "plugin/file_lock.hpp"
+#include "text/words.hpp"
 
 namespace tchat {
 
@@ -54,6 +55,26 @@ std::optional<fs::path> cache_folder() {
   return std::nullopt;
 }
 
+bool can_come_first(const std::string& source) {
+  std::ifstream in(source);
+  bool in_comment = false;
+  for (std::string line; std::getline(in, line);) {
+    const std::string_view text = trimmed(line);
+    if (!in_comment && text.starts_with("#include")) {
+      const std::string_view name = trimmed(text.substr(8));
+      if (name.starts_with("<tchat/problem.hpp>") || name.starts_with("\"tchat/problem.hpp\"")) return true;
+      if (!name.starts_with('<')) return false;
+      continue;
+    }
+    const bool is_comment = in_comment || text.empty() || text.starts_with("//") || text.starts_with("/*");
+    if (!is_comment) return false;
+    const auto end = text.starts_with("//") && !in_comment ? std::string_view::npos : text.find("*/");
+    if (end != std::string_view::npos && end + 2 < text.size()) return false;
+    in_comment = (in_comment || text.starts_with("/*")) && end == std::string_view::npos;
+  }
+  return false;
+}
+
 PrecompiledHeader::PrecompiledHeader(const std::string& identity, std::vector<std::string> command,
                                      std::string include_folder)
     : command_(std::move(command)), include_folder_(fs::absolute(include_folder).string()) {
@@ -64,9 +85,14 @@ PrecompiledHeader::PrecompiledHeader(const std::string& identity, std::vector<st
   folder_ = *cache / (folder_prefix + hash_text(key));
 }
 
-std::string PrecompiledHeader::folder() const {
+bool PrecompiledHeader::is_made() const {
   std::error_code error;
-  return !folder_.empty() && fs::exists(made(), error) ? folder_.string() : "";
+  return !folder_.empty() && fs::exists(made(), error);
+}
+
+std::vector<std::string> PrecompiledHeader::options_for(const std::string& source) const {
+  if (!is_made() || !can_come_first(source)) return {};
+  return {"-include", (folder_ / "tchat" / "problem.hpp").string(), "-fpch-deps"};
 }
 
 /// Leaves a mark: a header that is asked for once is not worth its time.
@@ -80,20 +106,20 @@ bool PrecompiledHeader::is_first_time() const {
 
 void PrecompiledHeader::make() const noexcept {
   try {
-    if (folder_.empty() || !folder().empty()) return;
+    if (folder_.empty() || is_made()) return;
     std::error_code error;
     fs::create_directories(made().parent_path(), error);
     if (error) return;
     const FileLock lock(folder_.string() + "/lock");
-    if (lock.error() != 0 || !folder().empty() || is_first_time()) return;
+    if (lock.error() != 0 || is_made() || is_first_time()) return;
     const std::string unfinished = (folder_ / fmt::format("unfinished.{}", ::getpid())).string();
     std::vector<std::string> words = command_;
     // With rules for make it keeps the names of the headers, for those of the plugins.
     words.insert(words.end(), {"-w", "-MMD", "-MF", "/dev/null", "-x", "c++-header", header(), "-o", unfinished});
     const ProcessResult result = run_process(words);
-    const bool is_made = result.spawn_error == 0 && result.status == 0;
-    if (is_made) fs::rename(unfinished, made(), error);
-    if (!is_made || error) fs::remove(unfinished, error);
+    const bool succeeded = result.spawn_error == 0 && result.status == 0;
+    if (succeeded) fs::rename(unfinished, made(), error);
+    if (!succeeded || error) fs::remove(unfinished, error);
     remove_old(folder_.parent_path());
   } catch (const std::exception&) {  // as promised
   }

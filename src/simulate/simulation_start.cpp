@@ -17,6 +17,7 @@
 #include "simulate/simulation_rule.hpp"
 #include "text/number.hpp"
 #include "text/user_error.hpp"
+#include "text/words.hpp"
 
 namespace tchat {
 
@@ -31,10 +32,7 @@ std::vector<std::string> split(const std::string& text, char separator) {
   std::size_t begin = 0;
   while (true) {
     const std::size_t end = text.find(separator, begin);
-    std::string part = text.substr(begin, end - begin);
-    part.erase(0, part.find_first_not_of(" \t"));
-    part.erase(part.find_last_not_of(" \t") + 1);
-    parts.push_back(part);
+    parts.emplace_back(trimmed(std::string_view(text).substr(begin, end - begin)));
     if (end == std::string::npos) return parts;
     begin = end + 1;
   }

@@ -13,6 +13,9 @@ std::string in_quotes(std::string_view text);
 /// The blank-separated words of a line.
 std::vector<std::string_view> split_words(std::string_view line);
 
+/// `text` without the blanks, tabs and carriage returns around it.
+std::string_view trimmed(std::string_view text);
+
 /// `line` without a carriage return at its end.
 std::string_view without_carriage_return(std::string_view line);
 

@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <vector>
 
+#include "plugin/precompiled_header.hpp"
 #include "plugin/problem_library.hpp"
 #include "plugin_folder.hpp"
 #include "text/user_error.hpp"
@@ -107,6 +108,12 @@ TCHAT_PROBLEM(Oscillator)
   CHECK(folder.compilations() == 4);
   CHECK(dimension("fourth") == 2);
 
+  // Another header before it.
+  folder.write("seventh.cpp", "#include <cmath>\n" + folder.read("third.cpp"));
+  CHECK(dimension_of(resolve_plugin(folder / "seventh", options)) == 2);
+  const std::string log = folder.read("log");
+  CHECK_THAT(log.substr(log.rfind('\n', log.size() - 2)), Contains("-include") && Contains("seventh.cpp"));
+
   // A second include beside it, in a header of the user's.
   folder.write("own.hpp", "#include <tchat/problem.hpp>\nconstexpr double stiffness = 2.0;\n");
   folder.write("sixth.cpp", R"(#include <tchat/problem.hpp>
@@ -123,6 +130,23 @@ TCHAT_PROBLEM(Oscillator)
   for (const auto& one : fs::directory_iterator(folder / "cache/tchat"))
     if (fs::exists(one.path() / "tchat/problem.hpp.gch")) fs::resize_file(one.path() / "tchat/problem.hpp.gch", 100000);
   CHECK(dimension("fifth") == 2);
+}
+
+TEST_CASE("a precompiled header comes before comments and system headers, not before what may change its meaning") {
+  const PluginFolder folder;
+  const auto comes_first = [&](const std::string& begin) {
+    return can_come_first(folder.write("source.cpp", begin + "\n#include \"tchat/problem.hpp\"  // a comment\n"));
+  };
+  CHECK(comes_first(""));
+  CHECK(comes_first("// one\n/* two\n#define THREE\n*/\r\n#include <cmath>\n/* four */\n  #include <array>"));
+  CHECK(can_come_first(folder.write("source.cpp", "#include <tchat/problem.hpp>")));
+  CHECK_FALSE(comes_first("#define THREE"));
+  CHECK_FALSE(comes_first("#include \"own.hpp\""));
+  CHECK_FALSE(comes_first("/* one */ int two();"));
+  CHECK_FALSE(comes_first("/* one\n two */ int three();"));
+  CHECK_FALSE(comes_first("#if 0"));
+  CHECK_FALSE(can_come_first(folder.write("source.cpp", "// #include <tchat/problem.hpp>\n")));
+  CHECK_FALSE(can_come_first(folder / "nothing.cpp"));
 }
 
 TEST_CASE("every way to name a plugin") {

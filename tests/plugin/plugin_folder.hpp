@@ -43,16 +43,16 @@ class PluginFolder {
     return std::distance(std::filesystem::directory_iterator(path_ / name), {});
   }
 
-  /// A compiler script that notes each compilation in the file `log`, then is c++.
+  /// A compiler script that notes the options of each compilation in the file `log`, then is c++.
   tchat::PluginBuildOptions counting_compiler(const std::string& script = "counting-c++") const {
-    const std::string file = write(
-        script, "#!/bin/sh\ncase \"$*\" in *-shared*) echo x >> '" + *this / "log" + "';; esac\nexec c++ \"$@\"\n");
+    const std::string file = write(script, "#!/bin/sh\ncase \"$*\" in *-shared*) echo \"$*\" >> '" + *this / "log" +
+                                               "';; esac\nexec c++ \"$@\"\n");
     chmod(file.c_str(), 0755);
     return {file, TCHAT_TEST_INCLUDE};
   }
   long compilations() const {
     const std::string text = read("log");
-    return std::count(text.begin(), text.end(), 'x');
+    return std::count(text.begin(), text.end(), '\n');
   }
 
  private:

@@ -29,6 +29,13 @@ TEST_CASE("What is no finite number is refused", "[start]") {
   CHECK_FALSE(parse_fortran_real(std::string(100000, '9')).has_value());
 }
 
+TEST_CASE("What is around a text is taken away") {
+  CHECK(tchat::trimmed("\t two words \r") == "two words");
+  CHECK(tchat::trimmed("none") == "none");
+  CHECK(tchat::trimmed(" \t\r").empty());
+  CHECK(tchat::trimmed("").empty());
+}
+
 TEST_CASE("Words of a line", "[start]") {
   const auto words = tchat::split_words(" \t1.0  -2\t x\r");
   REQUIRE(words.size() == 3);
