@@ -8,9 +8,11 @@
 #include <string>
 #include <vector>
 
+#include "app/table_format_options.hpp"
 #include "files/branch_file.hpp"
 #include "files/run_file_kind.hpp"
 #include "files/run_file_names.hpp"
+#include "plot/quantity_table.hpp"
 #include "setup/warnings.hpp"
 #include "tables/branch_table.hpp"
 #include "tables/point_type_table.hpp"
@@ -22,8 +24,9 @@ namespace {
 
 struct TableArguments {
   std::vector<std::string> files;
+  std::vector<std::string> quantities;
   bool types = false;
-  std::size_t format = 0;  // in the list of formats
+  ChosenFormat format;
 };
 
 /// The files of one run, "" for those that are not named.
@@ -58,7 +61,7 @@ RunPaths read_paths(const std::vector<std::string>& words) {
 }
 
 int print_table(const TableArguments& arguments) {
-  const std::unique_ptr<TableWriter> writer = table_formats()[arguments.format].make(std::cout);
+  const std::unique_ptr<TableWriter> writer = table_formats()[arguments.format->value_or(0)].make(std::cout);
   if (arguments.types) {
     write_point_types(*writer);
     return 0;
@@ -67,7 +70,10 @@ int print_table(const TableArguments& arguments) {
   const RunPaths paths = read_paths(arguments.files);
   const BranchFile file = read_branch_file(paths.points, paths.solutions, paths.diagnostics);
   print_warnings(std::cerr, file.warnings);
-  write_branch_table(*writer, file);
+  if (arguments.quantities.empty())
+    write_branch_table(*writer, file);
+  else
+    write_quantity_table(*writer, file, arguments.quantities, "--column");
   return 0;
 }
 
@@ -77,24 +83,24 @@ void add_table_command(CLI::App& app, std::function<int()>& chosen) {
   CLI::App* command =
       app.add_subcommand("table", "the points of a run with all that its files know of them, as CSV or JSON");
   command->footer(
-      "One line a point: section, branch, point, type, name (as in IRS: GR1), label, kind (what a UZ label\n"
+      "CSV unless --json is given. One line a point: section, branch, point, type, name (as in IRS: GR1), label, kind "
+      "(what a UZ label\n"
       "is), stable and admissible (1 or 0), the columns of the p-file by their full names, parameters that\n"
       "are fixed, durations, multipliers (real and imaginary parts), Newton iterations. Names, kinds and fixed\n"
       "parameters come from q.NAME, multipliers, admissibility and iterations from d.NAME. What is not known\n"
-      "is empty (null in JSON), infinite multipliers are inf (null in JSON).\n"
+      "is empty (null in JSON), infinite multipliers are inf (null in JSON). With --column: section, point and\n"
+      "these; what has several values in a period has a column for each, x2@wall, x2@wall (2).\n"
       "Example: tchat table p.mems > mems.csv");
   const auto arguments = std::make_shared<TableArguments>();
   command->add_option("FILES", arguments->files,
                       "p-file (`mems` is taken for p.mems); q- and d-file where they are not beside it");
+  command
+      ->add_option("--column", arguments->quantities,
+                   "these columns alone, as -x and -y of `tchat plot` take them: x2@wall, 1/omega; again for more")
+      ->expected(1)
+      ->take_all();
   command->add_flag("--types", arguments->types, "the types of points instead: letters, numbers in files, meaning");
-  std::vector<CLI::Option*> before;
-  for (std::size_t k = 0; k < table_formats().size(); ++k) {
-    CLI::Option* format = command->add_flag_callback(
-        fmt::format("--{}", table_formats()[k].option), [arguments, k] { arguments->format = k; },
-        table_formats()[k].what);
-    for (CLI::Option* other : before) format->excludes(other);
-    before.push_back(format);
-  }
+  arguments->format = add_table_formats(*command);
   command->callback([&chosen, arguments] { chosen = [arguments] { return print_table(*arguments); }; });
 }
 

@@ -12,6 +12,7 @@
 
 #include <optional>
 
+#include "bvp/mesh_adaptation.hpp"
 #include "continuation/path_point.hpp"
 
 namespace tchat {

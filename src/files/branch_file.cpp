@@ -220,7 +220,10 @@ const LabelledSolution* BranchFile::solution_of(std::size_t section, std::size_t
 }
 
 const SegmentEnds* BranchFile::ends_of(std::size_t section, std::size_t row) const {
-  return element(ends, solution[section][row]);
+  // The other direction of a run begins at the same point, which has its label in the first one.
+  const bool is_other_begin = row == 0 && section > 0 && solution[section][row] < 0 &&
+                              sections[section].rows[0].values == sections[section - 1].rows[0].values;
+  return element(ends, solution[is_other_begin ? section - 1 : section][row]);
 }
 
 const DiagnosticPoint* BranchFile::diagnostic_of(std::size_t section, std::size_t row) const {

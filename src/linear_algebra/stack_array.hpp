@@ -22,7 +22,9 @@ struct Entries {
 class StackVector : private stack_array::Entries<32>, public Eigen::Map<Eigen::VectorXd> {
  public:
   explicit StackVector(Eigen::Index size) : Entries(size), Map(entries.data(), size) {}
+  ~StackVector() = default;
   StackVector(const StackVector&) = delete;
+  StackVector& operator=(const StackVector&) = delete;
   using Map::operator=;
 };
 
@@ -32,7 +34,9 @@ class StackMatrix : private stack_array::Entries<Most>, public Eigen::Map<Eigen:
  public:
   StackMatrix(Eigen::Index rows, Eigen::Index columns)
       : stack_array::Entries<Most>(rows * columns), Map(this->entries.data(), rows, columns) {}
+  ~StackMatrix() = default;
   StackMatrix(const StackMatrix&) = delete;
+  StackMatrix& operator=(const StackMatrix&) = delete;
   using Map::operator=;
 };
 

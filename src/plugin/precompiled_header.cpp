@@ -76,7 +76,7 @@ bool can_come_first(const std::string& source) {
 }
 
 PrecompiledHeader::PrecompiledHeader(const std::string& identity, std::vector<std::string> command,
-                                     std::string include_folder)
+                                     const std::string& include_folder)
     : command_(std::move(command)), include_folder_(fs::absolute(include_folder).string()) {
   const std::optional<fs::path> cache = cache_folder();
   if (!cache || identity.empty()) return;

@@ -61,7 +61,7 @@ struct UserPointKind {
 enum class PointSymbol { square, circle, triangle, diamond, pentagon, reversed_triangle, dot };
 
 /// A type of points. All that depends on the type alone is in one table: constants, readers, pictures, `tchat table
-/// --types`, tchat.py and the pages are made from it.
+/// --types` and the pages are made from it.
 struct PointTypeFacts {
   const char* name;     ///< the letters, which several numbers may share
   int number;           ///< in files, without the tens digit of a curve

@@ -91,7 +91,7 @@ std::unique_ptr<TableWriter> make(std::ostream& out) {
 
 std::span<const TableFormatName> table_formats() {
   static constexpr std::array formats{
-      TableFormatName{"csv", "CSV (this is the default)", make<CsvWriter>},
+      TableFormatName{"csv", "CSV", make<CsvWriter>},
       TableFormatName{"json", "JSON: an array of objects, one a row", make<JsonWriter>}};
   return formats;
 }

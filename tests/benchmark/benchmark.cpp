@@ -15,6 +15,7 @@
 #include "benchmark/program_times.hpp"
 #include "benchmark/start_times.hpp"
 #include "benchmark/step_times.hpp"
+#include "benchmark/sweep_times.hpp"
 #include "benchmark/thread_times.hpp"
 #include "benchmark/torus_times.hpp"
 #include "benchmark/two_parameter_times.hpp"
@@ -35,7 +36,8 @@ constexpr const char* purpose =
     "  (g) the peak resident size of the program;\n"
     "  (h) start-up: what a run that computes nothing takes;\n"
     "  (i) one Newton matrix by two threads, compared with one;\n"
-    "  (j) a further step of `tchat run`, files and all; with --auto, beside one of AUTO's executable.";
+    "  (j) a further step of `tchat run`, files and all; with --auto, beside one of AUTO's executable;\n"
+    "  (k) a value of `tchat sweep`, beside a loop of Boost's odeint by hand.";
 
 constexpr const char* how_to_read =
     "How to read it. The machine's speed drops out of exponents, units and ratios; microseconds only tell where the\n"
@@ -107,6 +109,7 @@ void print_tables(const Choice& choice) {
   if (choice.has('h')) print_start_times(quick ? 2 : 40, quick);
   if (choice.has('i')) print_thread_times(thread_shapes(quick), quick ? 1 : 9);
   if (choice.has('j')) print_program_times(program_sizes(quick), quick ? 1 : 5, choice.with_auto);
+  if (choice.has('k')) print_sweep_times(quick ? 3 : 21, quick ? 1 : 5);
 }
 
 int run(const Choice& choice) {

@@ -7,6 +7,8 @@ which labels and columns are compared, how closely, and why that closely. Later 
 ones, tchat from AUTO's files too and AUTO from tchat's. Exit status 77 (skipped) without AUTO-07p.
 """
 
+import csv
+import io
 import math
 import os
 import re
@@ -414,20 +416,15 @@ class Comparison:
 
 
 def check_readers(comparison, source):
-    """`tchat labels` and tchat.py know AUTO's files too: durations 1, user values as what they are. The module is left
-    out where there is no numpy."""
+    """`tchat labels` knows AUTO's files too: durations 1, user values as what they are."""
     listing = run([comparison.tchat, "labels", "q.arod"], comparison.folder, env=comparison.environment)
     if "UZ" not in listing:
         sys.exit("tchat labels q.arod:\n" + listing)
-    sys.path.insert(0, os.path.join(source, "src", "python"))
-    try:
-        import tchat
-    except ImportError:
-        return
     for name, own in (("rod", True), ("arod", False)):
-        for solution in tchat.read_solutions(comparison.path("q." + name)):
-            if solution.period != 1.0 or (solution.type_name == "UZ" and bool(solution.kinds) != own):
-                sys.exit(f"tchat.py, q.{name}: period {solution.period}, kinds {solution.kinds}")
+        table = run([comparison.tchat, "labels", "q." + name, "--csv"], comparison.folder, env=comparison.environment)
+        for label in csv.DictReader(io.StringIO(table)):
+            if float(label["period"]) != 1.0 or (label["type"] == "UZ" and bool(label["kind"]) != own):
+                sys.exit(f"tchat labels q.{name} --csv: period {label['period']}, kind {label['kind']}")
 
 
 def main():

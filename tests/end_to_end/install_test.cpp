@@ -60,8 +60,9 @@ TEST_CASE("installed, and moved elsewhere: everything works outside the source t
        {"bin/tchat", "libexec/tchat/@gc", "libexec/tchat/@sv", "libexec/tchat/tc-hat", "share/man/man1/tchat.1",
         "share/man/man1/tchat-run.1", "share/bash-completion/completions/tchat", "include/tchat/problem.hpp",
         "include/tchat/problem.h", "include/tchat/gccont.h", "share/tchat/problems/mems/mems.cpp",
-        "share/tchat/constants/linosc/gc.impacting", "share/doc/tchat/README.md", "share/tchat/python/tchat.py",
-        "share/doc/tchat/src/docs/tutorial.md", "share/doc/tchat/problems/linosc/README.md"}) {
+        "share/tchat/constants/linosc/gc.impacting", "share/doc/tchat/README.md",
+        "share/tchat/python/tchat/__init__.py", "share/doc/tchat/src/docs/tutorial.md",
+        "share/doc/tchat/problems/linosc/README.md"}) {
     INFO(file);
     CHECK(workspace.has(std::string("prefix/") + file));
   }

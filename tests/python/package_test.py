@@ -1,15 +1,17 @@
-"""tchat.py against `tchat table`, AUTO-07p's own readers, closed forms of the linear oscillator, and files by hand.
+"""The Python package against `tchat table`, AUTO-07p's own readers, closed forms of the linear oscillator.
 
-usage: tchat_py_test.py TCHAT PLUGIN FOLDER WRITE_SAMPLE_RUN     plugin library of linosc, folder of its constants
+usage: package_test.py TCHAT PLUGIN FOLDER WRITE_SAMPLE_RUN     plugin library of linosc, folder of its constants
 
 Exit status 77 (skipped) without numpy.
 """
 
 import csv
+import gc
 import io
 import json
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -74,27 +76,27 @@ def read(name):
 
 
 class Tables(unittest.TestCase):
-    """Two readers, written apart, find the same in the same files."""
-
-    def compare(self, name):
-        lines = list(csv.reader(io.StringIO(table(name))))
-        run = tchat.load(name)
-        columns = run.table()
-        self.assertEqual(list(columns), lines[0], name)
-        self.assertEqual(len(run), len(lines) - 1, name)
-        for k, heading in enumerate(lines[0]):
-            words = [line[k] for line in lines[1:]]
-            if columns[heading].dtype == object:
-                self.assertEqual(words, list(columns[heading]), (name, heading))
-            else:
-                values = [float(word) if word else np.nan for word in words]
-                np.testing.assert_array_equal(values, columns[heading].astype(float), "%s: %s" % (name, heading))
-
-    def test_same_as_tchat_table(self):
+    def test_columns_are_those_of_tchat_table(self):
         for name in list(RUNS) + ["sample"]:
-            with warnings.catch_warnings():
-                warnings.simplefilter("ignore")
-                self.compare(name)
+            lines = list(csv.DictReader(io.StringIO(table(name))))
+            branch = tchat.load(name)
+            self.assertEqual(len(branch), len(lines), name)
+            for heading in branch.headings():
+                words = [line[heading] for line in lines]
+                if branch[heading].dtype == object:
+                    self.assertEqual(words, list(branch[heading]), (name, heading))
+                else:
+                    values = [float(word) if word else np.nan for word in words]
+                    np.testing.assert_array_equal(values, branch[heading].astype(float), "%s: %s" % (name, heading))
+
+    def test_what_plot_draws_is_a_column(self):
+        branch = tchat.load("impacting")
+        np.testing.assert_allclose(branch["1/omega"] * branch["omega"], 1.0, rtol=1e-15)
+        row, = (k for k in range(len(branch)) if branch["name"][k] == "PD1")
+        self.assertAlmostEqual(branch["x2@impact"][row], branch.orbit("PD1")["x2"][0, -1], places=9)
+        self.assertEqual(branch["x2@after:impact"].shape, (len(branch),))
+        with self.assertRaisesRegex(tchat.Error, "no segment ends at 'nowhere'"):
+            branch["x2@nowhere"]
 
     def test_json_is_the_csv(self):
         for name in ("both", "curve"):
@@ -140,11 +142,11 @@ class Tables(unittest.TestCase):
         text = subprocess.run([TCHAT, "orbit", "sample", "4", "--csv"], check=True, stdout=subprocess.PIPE,
                               universal_newlines=True).stdout
         rows = list(csv.DictReader(io.StringIO(text)))
-        orbit = tchat.read_solutions("sample").find(4)
+        orbit = tchat.load("sample").orbit(4)
         self.assertEqual(list(rows[0]), ["segment", "tau", "t", "x1", "x2", "y1", "y2"])
         np.testing.assert_array_equal([float(row["x2"]) for row in rows], orbit["x2"].ravel())
         np.testing.assert_allclose([float(row["t"]) for row in rows], orbit.t.ravel(), rtol=1e-15)
-        self.assertEqual([int(row["segment"]) for row in rows], [1] * len(orbit.tau) + [2] * len(orbit.tau))
+        self.assertEqual([int(row["segment"]) for row in rows], [1] * orbit.tau.shape[1] + [2] * orbit.tau.shape[1])
 
 
 class ClosedForms(unittest.TestCase):
@@ -163,7 +165,6 @@ class ClosedForms(unittest.TestCase):
         orbit = tchat.load("alpha").orbit("UZ1")
         omega = orbit.parameter("omega")
         self.assertAlmostEqual(orbit.period, 2.0 * np.pi / omega, places=11)
-        self.assertEqual(orbit.parameter(1), orbit.parameter("PAR(1)"))
         self.assertEqual(orbit.parameter("zeta"), 0.05)
         x1, t = orbit["x1"][0], orbit.t[0]
         phase = np.arctan2(orbit["y1"][0, 0], orbit["y2"][0, 0])
@@ -181,9 +182,16 @@ class ClosedForms(unittest.TestCase):
         self.assertEqual(sum(len(rows) for rows in segments), len(simulation.trajectory))
         for k, rows in enumerate(segments[:-1]):
             np.testing.assert_allclose(simulation.trajectory.t[rows[-1]], events.t[k], rtol=1e-14)
-        swept = list(tchat.sweep("linosc", "alpha", [2.0, 3.0], "--transient-events", 2, "--events", 3))
-        self.assertEqual([value for value, _ in swept], [2.0, 3.0])
-        self.assertEqual(swept[1][1].parameters["alpha"], 3.0)
+
+    def test_sweep(self):
+        sweep = tchat.sweep("linosc", over={"alpha": (2, 3, 3)}, jobs=2, omega=2.0072)
+        self.assertEqual(sweep.over, ["alpha"])
+        self.assertEqual(sorted(set(sweep["alpha"])), [2.0, 2.5, 3.0])
+        self.assertEqual(set(sweep["kind"]), {"periodic"})
+        first = sweep.attractors[0]
+        self.assertEqual((first["number"], first["kind"], len(first["state"])), (1, "periodic", 4))
+        self.assertAlmostEqual(first["period"], 2 * np.pi / 2.0072, places=6)
+        self.assertEqual(len(sweep.frame()), len(sweep))
 
 
 class Auto(unittest.TestCase):
@@ -201,14 +209,14 @@ class Auto(unittest.TestCase):
                 theirs = np.concatenate([branch[column] for branch in branches])
                 np.testing.assert_array_equal(theirs, run[column.strip()])
             labels = parseS.parseS("q." + name)
-            self.assertEqual(labels.getLabels(), [solution.label for solution in run.solutions])
-            for solution in run.solutions:
-                theirs = labels.getLabel(solution.label)
-                np.testing.assert_array_equal(theirs.indepvararray, solution.tau)
-                np.testing.assert_array_equal(theirs.coordarray, solution.states[0])
-                np.testing.assert_array_equal(theirs.PAR.toarray()[:len(solution.parameters)], solution.parameters)
-                np.testing.assert_array_equal(theirs["rldot"], solution.direction)
-                self.assertEqual(list(theirs["Active ICP"]), solution.free)
+            self.assertEqual(labels.getLabels(), [label.label for label in run.labels])
+            for label in run.labels:
+                theirs, orbit = labels.getLabel(label.label), label.orbit
+                np.testing.assert_array_equal(theirs.indepvararray, orbit.tau[0])
+                np.testing.assert_array_equal(theirs.coordarray, orbit.states[0])
+                names = ["alpha", "omega", "zeta", "r"]
+                np.testing.assert_array_equal(theirs.PAR.toarray()[:4], [orbit.parameter(name) for name in names])
+                self.assertEqual(len(theirs["Active ICP"]), len(label["free"].split(",")))
             blocks = parseD.parseD("d." + name)
             blocks = [block for block in (blocks[k] for k in range(len(blocks.data))) if block["Multipliers"]]
             ours = [np.nan_to_num(row[~np.isnan(row)], posinf=1e99, neginf=-1e99) for row in run.multipliers]
@@ -221,7 +229,7 @@ class Running(unittest.TestCase):
         write("p.new", read("p.alpha"))  # what another run has left is not its own
         points = []
         run = tchat.run("linosc", *RUNS["alpha"], "-o", "new", progress=points.append)
-        self.assertEqual([point["alpha"] for point in points], list(run["alpha"]))
+        self.assertEqual([point.value for point in points], list(run["alpha"]))
         self.assertEqual([point.label for point in points], list(run["label"]))
         self.assertIn("points,", run.screen)
 
@@ -233,7 +241,7 @@ class Running(unittest.TestCase):
 
     def test_stopped_from_the_callback(self):
         words = ["-c", "impacting", "-d", "impacting", "-o", "long", "NMX=9000", "DSMAX=1e-5", "DS=1e-5", "NTST=100"]
-        run = tchat.run("linosc", *words, progress=lambda point: point.point < 3)
+        run = tchat.run("linosc", *words, progress=lambda point: point.number < 3)
         self.assertTrue(3 <= len(run) < 5000)
 
         def fail(point):
@@ -253,10 +261,7 @@ class Running(unittest.TestCase):
         write("p.long", "   0   unames = {1: '%s'}\n   0   columns = {2: 'MAX %s'}\n"
                         "   0    PT  TY  LAB                 a  MAX displacement \n"
                         "   1    -1   9    1  1.0000000000E+000  2.0000000000E+000\n" % (name, name))
-        section, = tchat.read_points("long")
-        self.assertEqual(section.columns, ["a", "MAX " + name])
-        self.assertEqual(list(section["MAX U(1)"]), [2.0])
-        self.assertEqual(table("long").split("\n")[0].split(",")[9:11], ["a", "MAX " + name])
+        self.assertEqual(list(tchat.load("long")["MAX " + name]), [2.0])
 
     def test_messages_are_those_of_tchat(self):
         error = self.refused("linosc", "-c", "impacting", "-d", "impacting", NTST="x")
@@ -277,26 +282,19 @@ class Refused(unittest.TestCase):
         return str(caught.exception)
 
     def test_wrong_kinds(self):
-        self.assertIn("this is no p-file", self.message(tchat.read_points, "q.alpha"))
-        self.assertIn("this is no q-file", self.message(tchat.read_solutions, "p.alpha"))
-        self.assertIn("no point in it", self.message(tchat.read_diagnostics, "q.alpha"))
         self.assertIn("#segment", self.message(tchat.read_trajectory, "p.alpha"))
-        self.assertIn("No such file", self.message(tchat.load, "nothing"))
-        self.assertIn("no column 'beta'; there are section", self.message(tchat.load("alpha").__getitem__, "beta"))
+        shutil.copy("p.alpha", "points.sweep")
+        self.assertIn("# tchat sweep", self.message(tchat.read_sweep, "points"))
+        self.assertIn("there is no such file", self.message(tchat.load, "nothing"))
+        self.assertIn("no such file", self.message(tchat.Problem, "nothing.tch"))
+        self.assertIn("'beta'", self.message(tchat.load("alpha").__getitem__, "beta"))
         self.assertIn("no label GR7; there are 1 (EP1)", self.message(tchat.load("alpha").orbit, "GR7"))
 
-    def test_what_is_no_name_of_a_file(self):
-        for read in (tchat.load, tchat.read_points, tchat.read_solutions, tchat.read_diagnostics, tchat.read_trajectory,
-                     tchat.read_events):
-            for name, what in (("\0", "a zero byte"), ("alpha\0", "a zero byte"), ("", "empty"), (None, "None")):
-                message = self.message(read, name)
-                self.assertIn("no name of a file", message)
-                self.assertIn(what, message)
+    def test_names_of_files(self):
         self.assertEqual(len(tchat.load(b"alpha")), len(tchat.load("alpha")))
-        self.assertEqual(len(tchat.load(pathlib.Path("alpha"))), len(tchat.load("alpha")))
-        with self.assertRaises(tchat.Error) as caught:
-            tchat.run("linosc\0")
-        self.assertIn("zero byte", str(caught.exception))
+        self.assertEqual(len(tchat.load(pathlib.Path("p.alpha"))), len(tchat.load("alpha")))
+        self.assertIn("zero byte", self.message(tchat.load, "alpha\0"))
+        self.assertIn("zero byte", self.message(tchat.run, "linosc\0"))
 
     def test_table_refuses_in_one_sentence(self):
         cases = [(["p.alpha", "d.impacting"], "it is of another run, the one needed is d.alpha"),
@@ -323,16 +321,15 @@ class Refused(unittest.TestCase):
         self.assertNotIn("multiplier1_re", done.stdout)
 
     def test_cut_files_lose_only_their_end(self):
-        points, solutions = read("p.alpha"), read("q.alpha")
-        labels = [solution.label for solution in tchat.read_solutions("alpha")]
-        write("p.cut", points[:-7])
-        write("q.cut", solutions[:-20])
+        labels = [label.label for label in tchat.load("alpha").labels]
+        write("p.cut", read("p.alpha")[:-7])
+        write("q.cut", read("q.alpha")[:-20])
         with warnings.catch_warnings(record=True) as told:
             warnings.simplefilter("always")
-            run = tchat.load("cut")
-        self.assertEqual(len(run), len(tchat.load("alpha")) - 1)
-        self.assertEqual([solution.label for solution in run.solutions], labels[:-1])
-        self.assertEqual(sum("not complete" in str(warning.message) for warning in told), 2)
+            branch = tchat.load("cut")
+            self.assertEqual([label.label for label in branch.labels], labels[:-1])
+        self.assertEqual(len(branch), len(tchat.load("alpha")) - 1)
+        self.assertTrue(any("q.cut" in str(warning.message) for warning in told))
 
     def test_files_of_another_run_are_left_out(self):
         for letter in "qd":
@@ -340,26 +337,8 @@ class Refused(unittest.TestCase):
             shutil.copy("p.alpha", "p." + name)
             shutil.copy(letter + ".impacting", letter + "." + name)
             with self.assertWarnsRegex(tchat.TchatWarning, "of another run"):
-                run = tchat.load(name)
-            self.assertIsNone(run.solutions)
-            self.assertIsNone(run.diagnostics)
-
-    def test_numbers_as_fortran_writes_them(self):
-        write("p.odd", "   0    PT  TY  LAB       a            b\n   1    -1   9    1   1.5D-03   1.25-101\n"
-                       "   1     2   0    0   ********   -Infinity\n")
-        section, = tchat.read_points("odd")
-        self.assertEqual(list(section.data[0]), [1.5e-3, 1.25e-101])
-        self.assertTrue(np.isnan(section.data[1]).all())
-        self.assertEqual(list(section.stable), [True, False])
-
-    def test_further_branches_of_auto(self):
-        write("b.three", "   0   IPS =   1\n   0   parnames = {1: 'rho'}\n   0    PT  TY  LAB               rho\n"
-                         "   1     1   9    1  1.0000000000E+000\n   0\n   0    PT  TY  LAB               rho\n"
-                         "   2     1   9    2  1.0000000000E+000\n   0   IPS =   2\n"
-                         "   0    PT  TY  LAB               rho\n   3     1   9    3  1.0000000000E+000\n")
-        sections = tchat.read_points("b.three")
-        self.assertEqual([section.parameters for section in sections], [{1: "rho"}, {1: "rho"}, {}])
-        self.assertEqual([section.ips for section in sections], [1, 1, 2])
+                branch = tchat.load(name)
+            self.assertEqual(len(branch), len(tchat.load("alpha")))
 
     def test_parts_of_a_branch(self):
         header = "   0   IPS = 180   ISP =   2   NSEG=   1\n   0    PT  TY  LAB                 a\n"
@@ -368,6 +347,86 @@ class Refused(unittest.TestCase):
         parts = tchat.load("parts").parts()
         self.assertEqual([(list(part["a"]), bool(part.stable)) for part in parts],
                          [([1.0, 2.0], True), ([2.0, 3.0, 4.0], False), ([4.0, 5.0], True)])
+
+
+WALKER = """
+par gamma=0.009
+init th=0.2, w=-0.2, ph=0.4, p=-0.0157
+a = sin(th - gamma)
+th' = w
+w' = a
+ph' = p
+p' = a + w^2*sin(ph) - cos(th - gamma)*sin(ph)
+event upright = th
+event strike = 2*th - ph
+jump step: th -> -th, w -> cos(2*th)*w, ph -> -2*th, p -> cos(2*th)*(1 - cos(2*th))*w
+after upright: strike -> step
+after any: upright -> identity
+"""
+
+
+class Problems(unittest.TestCase):
+    """Everything by objects, from formulas in a text; the same files as the command line writes."""
+
+    def test_walker_doubles(self):
+        walker = tchat.Problem(WALKER)
+        orbit = walker.simulate(state=dict(th=0.20031, w=-0.19983, ph=0.40062, p=-0.015754)).orbit
+        self.assertEqual(orbit.signature, [(1, 1, 2), (1, 2, 1)])
+        branch = orbit.continue_(gamma=(0.005, 0.018), progress=False)
+        self.assertTrue(0.005 < branch["gamma"].max() <= 0.02)
+        doubling, = branch.PD
+        self.assertTrue(min(abs(branch.multipliers[list(branch["name"]).index("PD1")] + 1.0)) < 1e-6)
+        twice = doubling.switch(name="twice")
+        self.assertEqual(len(twice.labels[0].signature), 4)
+        self.assertAlmostEqual(twice["PERIOD"][0], 2 * doubling.period, delta=1e-3)
+        self.assertTrue(doubling.verify().passed)
+        words = ["problem", "-p", walker.source, "-q", "-c", "r.branch1", "-s", "branch1", "IRS=%d" % doubling.label,
+                 "ISW=-1"]
+        subprocess.run([TCHAT, "run", *words, "-o", "by_hand"], cwd=walker.folder, check=True)
+        for letter in "pqd":
+            self.assertEqual(read(walker.path(letter + ".by_hand")), read(walker.path(letter + ".twice")))
+        self.assertIn("<table>", branch._repr_html_())
+        self.assertTrue(branch._repr_png_().startswith(b"\x89PNG"))
+        folder = walker.folder
+        self.assertEqual(twice["th@strike"].shape, (len(twice), 2))
+        del walker, orbit, branch, doubling, twice
+        gc.collect()
+        self.assertFalse(os.path.exists(folder))
+
+    def test_grazing_and_its_curve(self):
+        oscillator = tchat.Problem(PLUGIN, name="linosc", folder="oscillator")
+        smooth = oscillator.simulate(alpha=2, omega=2.0072).orbit.continue_(alpha=(1, 4), name="smooth")
+        contact, = smooth.GR
+        self.assertAlmostEqual(contact["alpha"], 3.0354953, places=6)
+        self.assertIn("verdict", contact.grazing().lower())
+        born = contact.resegment("impacting").continue_(alpha=(2.9, 3.2), NMX=100)
+        self.assertAlmostEqual(born.PD[0]["alpha"], 3.0361936, places=6)
+        curve = contact.curve(("omega", "alpha"), NMX=10)
+        omega, zeta = curve["omega"], 0.05
+        np.testing.assert_allclose(curve["alpha"], np.hypot(1 - omega ** 2, 2 * zeta * omega), rtol=1e-7)
+        self.assertTrue(os.path.exists("oscillator/p.smooth"))
+
+    def test_parameters_and_constants(self):
+        oscillator = tchat.Problem(PLUGIN, name="linosc")
+        simulation = oscillator.simulate(alpha=2, par={"omega": 2.0072}, NTST=20)
+        self.assertEqual(simulation.trajectory.parameters["omega"], 2.0072)
+        branch = simulation.orbit.continue_(NTST=30, NMX=4, DS=0.01)
+        self.assertEqual(branch.labels[0]["mesh_intervals"], 30)
+        with self.assertRaisesRegex(tchat.Error, "beta"):
+            oscillator.simulate(beta=1)
+        self.assertIsNone(oscillator.simulate(alpha=2, time=1).orbit)
+
+    def test_pictures_with_matplotlib(self):
+        try:
+            import matplotlib
+        except ImportError:
+            self.skipTest("no matplotlib")
+        matplotlib.use("Agg")
+        axes = tchat.load("impacting").plot(y="MAX x2")
+        self.assertEqual((axes.get_xlabel(), axes.get_ylabel()), ("alpha", "MAX x2"))
+        styles = [line.get_linestyle() for line in axes.get_lines()]
+        self.assertTrue({"-", "--"} <= set(styles))
+        self.assertIn("PD1", [text.get_text() for text in axes.texts])
 
 
 if __name__ == "__main__":

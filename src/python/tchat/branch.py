@@ -1,0 +1,304 @@
+"""Branches: the points of a run with all that its files know of them, and where their labels lead."""
+
+import base64
+import os
+import re
+import tempfile
+
+import numpy as np
+
+from .orbit import _axes, read_labels, read_orbit, read_signature
+from .program import Error, GrowingPoints, ProgressBar, execute
+from .tables import as_frame, read_table
+
+_PLACES = {"grazing": "grazing-curve"}  # what resegment(to=) calls shorter
+
+
+class Part:
+    """Consecutive points of one branch that are alike in stability and admissibility: part["alpha"], part.stable,
+    part.admissible. The last point of the part before is repeated, so that lines meet."""
+
+    def __init__(self, branch, rows, stable, admissible):
+        self._branch, self.rows, self.stable, self.admissible = branch, rows, stable, admissible
+
+    def __getitem__(self, name):
+        return self._branch[name][self.rows]
+
+
+class Branch:
+    """The points of a run.
+
+    branch["alpha"]     a column by its heading in `tchat table`, one value a point: section, branch, point, type, name,
+                        label, kind, stable, admissible (1, 0, NaN where it is not known), the columns of the p-file,
+                        fixed parameters, newton_iterations; and whatever `tchat plot` takes for an axis: "x2@wall"
+                        (points x values in a period where there are several), "1/omega"
+    branch.multipliers  complex, points x most multipliers, NaN beyond a point's own
+    branch.labels       the labelled points (Label); branch.PD those of a type, branch.label("PD1") one of them
+    branch.screen       what tchat printed, where it was run from here
+    """
+
+    def __init__(self, path, problem=None, screen="", program=None):
+        self.path, self.problem, self.screen = path, problem, screen
+        self._program = problem.program if problem else program
+        columns = read_table(execute(["table", path, "--csv"], program=self._program))
+        parts = [name for name in columns if re.fullmatch(r"multiplier[0-9]+_(re|im)", name)]
+        self.multipliers = np.array([columns[name] for name in parts[::2]] or np.empty((0, len(columns["point"]))),
+                                    dtype=complex).T
+        if parts:
+            self.multipliers += 1j * np.array([columns[name] for name in parts[1::2]]).T
+        self._table, self._columns = columns, {k: v for k, v in columns.items() if k not in parts}
+        self._labels = None
+
+    def __len__(self):
+        return len(self._columns["point"])
+
+    def __getitem__(self, name):
+        if name not in self._columns:
+            self._columns[name] = self._quantity(name)
+        return self._columns[name]
+
+    def _quantity(self, name):
+        columns = read_table(execute(["table", self.path, "--csv", "--column", name], program=self._program))
+        values = [column for heading, column in columns.items() if heading not in ("section", "point")]
+        return values[0] if len(values) == 1 else np.array(values).T
+
+    def headings(self):
+        return [name for name in self._table if name in self._columns]
+
+    def frame(self):
+        """The table of the points as a pandas.DataFrame."""
+        return as_frame(self._table)
+
+    @property
+    def labels(self):
+        if self._labels is None:
+            path = _beside(self.path, "q")
+            self._labels = [Label(self, path, row) for row in read_labels(path, self._program)]
+        return self._labels
+
+    def label(self, name):
+        """The label with a number or a name: 4, "PD1"."""
+        for label in self.labels:
+            if label.label == name or name in label.name.split():
+                return label
+        raise Error("%s: no label %s; there are %s" %
+                    (self.path, name, ", ".join("%d (%s)" % (one.label, one.name) for one in self.labels) or "none"))
+
+    def orbit(self, name):
+        """The orbit of a label."""
+        return self.label(name).orbit
+
+    def __getattr__(self, name):
+        if re.fullmatch(r"[A-Z][A-Z0-9]{1,2}", name):
+            return [label for label in self.labels if name in re.sub(r"[0-9]+( |$)", r"\1", label.name).split()]
+        raise AttributeError("%r has no %r" % (type(self).__name__, name))
+
+    def parts(self):
+        """The branch cut where it, its stability or admissibility change: the line from a point to the next belongs to
+        the next point."""
+        branch = list(zip(self["section"], self["branch"]))
+        state = list(zip(branch, self["stable"] != 0, self["admissible"] != 0))  # not known: as if it were
+        parts, begin, size = [], 0, len(self)
+        for row in range(1, size + 1):
+            if row < size and state[row] == state[row - 1]:
+                continue
+            goes_on = begin > 0 and branch[begin - 1] == branch[begin]
+            before_all = not goes_on and row - begin == 1 and row < size and branch[row] == branch[begin]
+            if not before_all:  # the first point of a branch alone has no line
+                parts.append(Part(self, np.arange(begin - goes_on, row), *state[begin][1:]))
+            begin = row
+        return parts
+
+    def plot(self, ax=None, x=None, y=None, labels=("LP", "PD", "TR", "BP", "GR", "HB", "CP"), **style):
+        """Draws the branch with matplotlib: stable parts solid, unstable ones dashed, inadmissible ones dotted."""
+        ax = ax if ax is not None else _axes()
+        numbers = [name for name in self.headings() if name not in ("section", "branch", "point", "label", "type",
+                                                                    "name", "kind", "stable", "admissible")]
+        x, y = x or numbers[0], y or numbers[1]
+        style.setdefault("color", "black")
+        for part in self.parts():
+            ax.plot(part[x], part[y], linestyle=":" if not part.admissible else "-" if part.stable else "--", **style)
+        names = self["name"]
+        for row in np.flatnonzero([kind in labels for kind in self["type"]]) if labels else []:
+            value = np.atleast_1d(self[y][row])[0]
+            ax.plot(self[x][row], value, "o", color=style["color"], markersize=3)
+            ax.annotate(names[row], (self[x][row], value), xytext=(4, 4), textcoords="offset points", fontsize="small")
+        ax.set_xlabel(x)
+        ax.set_ylabel(y)
+        return ax
+
+    def picture(self, *words):
+        """The bytes of the PNG that `tchat plot` draws of the branch; words are its options, as "-y", "MAX x"."""
+        with tempfile.TemporaryDirectory() as folder:
+            file = os.path.join(folder, "branch.png")
+            execute(["plot", self.path, "-o", file] + list(words), program=self._program)
+            with open(file, "rb") as picture:
+                return picture.read()
+
+    def verify(self, *names, tolerance=None):
+        """`tchat verify`: labelled orbits against forward integration. A Report, whose `passed` is the verdict."""
+        words = ["verify", _beside(self.path, "q")] + list(names) + _plugin(self.problem)
+        return execute(words + (["--tolerance", tolerance] if tolerance else []), program=self._program, accepted=(0, 1))
+
+    def _repr_png_(self):
+        return self.picture()
+
+    def _repr_html_(self):
+        first = [name for name in self.headings() if name not in ("section", "branch", "point", "label", "type", "name",
+                                                                  "kind", "stable", "admissible")][0]
+        rows = "".join("<tr><td>%s</td><td>%.10g</td><td>%s</td></tr>" %
+                       (self["name"][row] or self["label"][row], self[first][row], self["kind"][row])
+                       for row in np.flatnonzero(self["label"] > 0))
+        return ("<p>%s</p><img src='data:image/png;base64,%s' width='600'><table><tr><th>label</th><th>%s</th>"
+                "<th></th></tr>%s</table>" % (_escaped(repr(self)), base64.b64encode(self.picture()).decode(),
+                                              _escaped(first), rows))
+
+    def __repr__(self):
+        return "%s: %d points, %d of them with labels" % (self.path, len(self), np.count_nonzero(self["label"] > 0))
+
+
+class Label:
+    """A labelled point of a branch, and what it leads to.
+
+    label.name, label.type, label.label, label.point     "PD1", "PD", 4, and the number of the point
+    label["omega"]       a parameter, or a column of the table of labels (`tchat labels --csv`)
+    label.orbit          its states; label.signature, label.period
+    """
+
+    def __init__(self, branch, path, row):
+        self.branch, self._path, self._row = branch, path, row
+        self.name, self.type, self.label, self.point = row["name"], row["type"], int(row["label"]), int(row["point"])
+        self.period, self.signature, self.kind = row["period"], read_signature(row["signature"]), row["kind"]
+        self._orbit = None
+
+    def __getitem__(self, name):
+        if name not in self._row:
+            raise Error("%s, %s: no %r; there are %s" % (self._path, self.name, name, ", ".join(self._row)))
+        return self._row[name]
+
+    @property
+    def orbit(self):
+        if self._orbit is None:
+            self._orbit = read_orbit(self._path, self._row, self.branch._program)
+        return self._orbit
+
+    def _problem(self):
+        if self.branch.problem is None:
+            raise Error("%s: the problem is not known; load it with problem= (a tchat.Problem)" % self.branch.path)
+        return self.branch.problem
+
+    def continue_(self, *words, **values):
+        """A run from this label, with the constants of the run that wrote it: Problem.continue_from."""
+        start = ["-s", self._path, "-c", _beside(self._path, "r")]
+        return self._problem().continue_from(start + list(words), {"IRS": self.label, **values})
+
+    def switch(self, *words, **values):
+        """The branch that is born here: at a branch point, a period doubling, a Hopf bifurcation."""
+        switching = {"ISW": -1}
+        if self.type == "HB":
+            switching.update(IPS=180, GCHIND=[0], GCGIND=[0])
+        return self.continue_(*words, **{**switching, **values})
+
+    def resegment(self, to="impacting", *words, **values):
+        """A start with another signature (`tchat resegment`): to="impacting", "grazing", "double", "rotate",
+        "signature"."""
+        return self._problem().resegment(self._path, self.label, _PLACES.get(to, to), words, values)
+
+    def curve(self, free, *words, **values):
+        """The curve of such points in two parameters, free=("omega", "alpha"); of grazing orbits at a GR."""
+        if self.type == "GR":
+            return self.resegment("grazing").continue_(*words, **{"ICP": list(free), **values})
+        return self.continue_(*words, **{"ISW": 2, "ICP": list(free), **values})
+
+    def verify(self, tolerance=None):
+        """`tchat verify` of this label: a Report, whose `passed` is the verdict."""
+        return self.branch.verify(self.label, tolerance=tolerance)
+
+    def grazing(self, *words):
+        """`tchat grazing`: what follows from this contact, as a Report."""
+        return execute(["grazing", self._path, self.label] + list(words) + _plugin(self.branch.problem),
+                       program=self.branch._program)
+
+    def __repr__(self):
+        free = [name for name in (self._row["free"] or "").split(",")
+                if name in self._row and not name.startswith("PAR(6")]  # durations
+        return "%s: %s%s" % (self.name, ", ".join("%s = %.10g" % (name, self._row[name]) for name in free[:2]),
+                             " (%s)" % self.kind if self.kind else "")
+
+
+def _plugin(problem):
+    return ["-p", problem.source] if problem else []
+
+
+def _escaped(text):
+    return text.replace("&", "&amp;").replace("<", "&lt;")
+
+
+_LETTERS = {"p.": {}, "b.": {"q": "s", "r": "c"}}  # of AUTO: others
+_FORTS = {"p": "fort.7", "q": "fort.8", "d": "fort.9"}
+
+
+def _beside(path, letter):
+    """The file of the same run with another letter: p.mems -> q.mems, b.mems -> s.mems, fort.7 -> fort.8."""
+    folder, name = os.path.split(path)
+    if name in _FORTS.values():
+        return os.path.join(folder, _FORTS[letter])
+    return os.path.join(folder, _LETTERS.get(name[:2], {}).get(letter, letter) + name[1:])
+
+
+def load(name, problem=None, program=None):
+    """The branch whose files are p.NAME, with q.NAME and d.NAME beside it; `name` may be p.NAME, with a folder."""
+    path = os.fsdecode(name)
+    folder, last = os.path.split(path)
+    of_name = os.path.join(folder, "p." + last)
+    is_points = last[:2] in ("p.", "b.") or last == _FORTS["p"]
+    return Branch(path if is_points or "\0" in path or not os.path.exists(of_name) else of_name, problem,
+                  program=program)
+
+
+def run_words(words, output, cwd=None, program=None, progress=None, append=False, problem=None):
+    """`tchat run` with these words, which writes p.OUTPUT: its Branch."""
+    path = os.path.join(cwd or "", _output(output))
+    watch = progress if callable(progress) else ProgressBar(os.path.basename(output)) if progress is not False else None
+    growing = GrowingPoints(path, append)
+
+    def poll():
+        return all([watch(point) is not False for point in growing.new_points()]) if watch else True
+
+    try:
+        screen = execute(["run"] + list(words), cwd, program, poll)
+    finally:
+        if isinstance(watch, ProgressBar):
+            watch.close()
+    return Branch(path, problem, screen, program)
+
+
+def _output(name):
+    folder, last = os.path.split(name)
+    return os.path.join(folder, "p." + last)
+
+
+def output_of(name, words):
+    """What -o says, else the name of the problem."""
+    for k, word in enumerate(words):
+        if word in ("-o", "--output") and k + 1 < len(words):
+            return words[k + 1]
+        if isinstance(word, str) and re.match(r"-o.", word):
+            return word[2:]
+        if isinstance(word, str) and word.startswith("--output="):
+            return word[len("--output="):]
+    return os.path.basename(name)
+
+
+def run(name, *words, progress=None, cwd=None, program=None, **constants):
+    """`tchat run NAME words KEY=VALUE...`, and the Branch that it has written.
+
+        tchat.run("linosc", "-c", "impacting", "-d", "impacting", "-o", "x", DS=-0.02, UZR={1: 3.2})
+
+    progress(point) is called for every point (a Progress) while the run goes on; when it returns False the run ends as
+    after Ctrl-C and what there is comes back. cwd: the folder to run in. program: the path of tchat, else the
+    environment variable TCHAT, else tchat on PATH. Raises Error with tchat's message, its exit status and screen.
+    """
+    from .program import constant_word
+    words = [name] + list(words) + [constant_word(key, value) for key, value in constants.items()]
+    return run_words(words, output_of(name, words[1:]), cwd, program, progress or False, "--append" in words)

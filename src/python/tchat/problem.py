@@ -1,0 +1,130 @@
+"""A problem: formulas or a plugin, and the folder that its files are in."""
+
+import os
+import shutil
+import tempfile
+import weakref
+
+from .branch import run_words
+from .program import Error, execute
+from .simulation import Simulation
+from .start import Start
+from .sweep import over_words, read_sweep
+from .words import option_words, split_bounds, state_word, value_words
+
+
+class Problem:
+    """A problem, from formulas or a plugin.
+
+        tchat.Problem("par A=1\\nx' = v\\n...")       formulas (src/docs/formulas.md), a text of several lines
+        tchat.Problem("walker.tch")                   a file of formulas, a plugin's source in C++ or Fortran, a library
+
+    folder    where its files go; without one they go to a scratch folder, which is removed when Python ends
+    program   the path of tchat, else the environment variable TCHAT, else tchat on PATH
+
+    In all methods keywords in the names of constants are constants (NMX=200, UZR={"A": 1.5}), others are parameters
+    (A=1.2); par={"DS": 1} is a parameter in any case. `name` names the files that are written.
+    """
+
+    def __init__(self, source, name=None, folder=None, program=None):
+        self.program = program
+        self._scratch = None
+        if folder is None:
+            folder = tempfile.mkdtemp(prefix="tchat-")
+            self._scratch = weakref.finalize(self, shutil.rmtree, folder, ignore_errors=True)
+        os.makedirs(folder, exist_ok=True)
+        self.folder = os.path.abspath(folder)
+        self._counts = {}
+        if "\n" in source:
+            self.name = name or "problem"
+            self.source = self.path(self.name + ".tch")
+            with open(self.source, "w", encoding="utf-8") as file:
+                file.write(source if source.endswith("\n") else source + "\n")
+        else:
+            self.source = os.path.abspath(source)
+            self.name = name or os.path.splitext(os.path.basename(source))[0]
+            if not os.path.isfile(self.source):
+                raise Error("%s: there is no such file; give formulas of several lines, a file NAME.tch, a plugin's "
+                            "source or its library NAME.so" % source)
+
+    def path(self, name):
+        return os.path.join(self.folder, name)
+
+    def _new_name(self, kind, name):
+        if name:
+            return name
+        while True:
+            self._counts[kind] = self._counts.get(kind, 0) + 1
+            name = "%s%d" % (kind, self._counts[kind])
+            if not any(os.path.exists(self.path(file % name)) for file in
+                       ("p.%s", "q.%s", "%s.dat", "%s.trajectory", "%s.sweep")):
+                return name
+
+    def _execute(self, command, words, accepted=(0,)):
+        return execute([command] + words, self.folder, self.program, accepted=accepted)
+
+    def check(self):
+        """`tchat check`: derivatives against finite differences. A Report, whose `passed` is the verdict."""
+        return self._execute("check", [self.source], accepted=(0, 1))
+
+    def simulate(self, *words, name=None, state=None, free=None, time=None, events=None, transient_time=None,
+                 transient_events=None, signature=None, without_sections=None, lyapunov=None, tolerance=None, stiff=None,
+                 **values):
+        """Integrates from `state` (a list, a dictionary by name, else the problem's own) until the motion repeats
+        itself, or as long as time= or events= say: a Simulation, whose orbit= is the periodic orbit, None without one.
+        `free` is the parameter that the orbit is followed in unless continue_ says another. Other keywords are
+        parameters and constants; words are further options of `tchat simulate`."""
+        name = self._new_name("simulation", name)
+        options = option_words(dict(
+            state=state_word(state), free=free, time=time, events=events, transient_time=transient_time,
+            transient_events=transient_events, signature=signature, without_sections=without_sections,
+            lyapunov=lyapunov, tolerance=tolerance, stiff=stiff, dat=None if lyapunov else name))
+        words = [self.name, "-p", self.source, "-o", name] + options + list(words) + value_words(values, self.program)
+        screen = self._execute("simulate", words, accepted=(0, 1))
+        found = screen.passed and os.path.exists(self.path(name + ".dat"))
+        return Simulation(self.path(name), screen, Start(self, name, True) if found else None)
+
+    def continue_from(self, words, values):
+        """`tchat run` with these words, in this folder: its Branch.
+
+        A parameter with a pair of bounds, A=(0.5, 2), is the one that is free (several: the first is ICP(1), whose
+        bounds count), and the branch is followed both ways; both=False: one way, by the sign of DS. name= names its
+        files, progress= is a function that is called for every point, or False for no progress bar.
+        """
+        values = dict(values)
+        name = self._new_name("branch", values.pop("name", None))
+        progress = values.pop("progress", None)
+        bounds, values = split_bounds(values, self.program)
+        both = values.pop("both", bool(bounds))
+        if bounds:
+            (_, (low, high)), *_ = bounds.items()
+            values.setdefault("ICP", list(bounds))
+            values.setdefault("RL0", min(low, high))
+            values.setdefault("RL1", max(low, high))
+        words = [self.name, "-p", self.source, "-o", name] + list(words) + (["--both"] if both else [])
+        words += value_words(values, self.program)
+        return run_words(words, name, self.folder, self.program, progress, problem=self)
+
+    def resegment(self, path, label, to, words=(), values=None):
+        """`tchat resegment`: a Start with another signature. Label.resegment names what it can lead to."""
+        values = dict(values or {})
+        name = self._new_name("start", values.pop("name", None))
+        words = [path, label, "--to", to, "-p", self.source, "-o", name] + list(words)
+        self._execute("resegment", words + value_words(values, self.program))
+        return Start(self, name, False)
+
+    def sweep(self, *words, over, jobs=1, name=None, section=None, follow=None, state=None, lyapunov=None,
+              penetration=None, **values):
+        """`tchat sweep`: what attracts, over={"A": (0.5, 2, 200)} or two of them; section= the event whose passages are
+        recorded, follow="up", "down" or "both". A Sweep."""
+        name = self._new_name("sweep", name)
+        options = option_words(dict(section=section, follow=follow, state=state_word(state), lyapunov=lyapunov,
+                                    penetration=penetration))
+        words = [self.name, "-p", self.source, "-o", name, "-j", jobs] + over_words(over) + options + list(words)
+        screen = self._execute("sweep", words + value_words(values, self.program))
+        result = read_sweep(self.path(name))
+        result.screen = screen
+        return result
+
+    def __repr__(self):
+        return "problem %s in %s" % (self.name, self.folder)
