@@ -23,7 +23,7 @@ bool can_come_first(const std::string& source);
 class PrecompiledHeader {
  public:
   /// For a compiler of this identity, called with `command`: its words and options, without files.
-  PrecompiledHeader(const std::string& identity, std::vector<std::string> command, std::string include_folder);
+  PrecompiledHeader(const std::string& identity, std::vector<std::string> command, const std::string& include_folder);
 
   /// Options for the compilation of this source: none where there is no header yet or the source cannot take it.
   std::vector<std::string> options_for(const std::string& source) const;

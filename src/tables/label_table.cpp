@@ -14,10 +14,22 @@ namespace tchat {
 
 namespace {
 
-constexpr const char* label_headings[] = {"label",          "type",      "name",      "branch",
-                                          "point",          "problem_type", "branch_mode", "segments",
-                                          "dimension",      "mesh_intervals", "collocation_points", "stable",
-                                          "admissible",     "period",    "signature", "free",
+constexpr const char* label_headings[] = {"label",
+                                          "type",
+                                          "name",
+                                          "branch",
+                                          "point",
+                                          "problem_type",
+                                          "branch_mode",
+                                          "segments",
+                                          "dimension",
+                                          "mesh_intervals",
+                                          "collocation_points",
+                                          "stable",
+                                          "admissible",
+                                          "period",
+                                          "signature",
+                                          "free",
                                           "kind"};
 
 TableCell known(int number) { return number > 0 ? TableCell(number) : TableCell(); }

@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "benchmark/child_process.hpp"
 #include "benchmark/chain_files.hpp"
+#include "benchmark/child_process.hpp"
 #include "benchmark/timing.hpp"
 
 namespace tchat::benchmark {
@@ -84,17 +84,15 @@ int next_event(Stepper& stepper, const Oscillator& oscillator, State& x) {
   }
 }
 
-double swept(const Range& range, int k, int values) {
-  return range.from + (range.to - range.from) * k / (values - 1);
-}
+double swept(const Range& range, int k, int values) { return range.from + (range.to - range.from) * k / (values - 1); }
 
 /// The velocities of the impacts among the last events, of the last value.
 std::vector<double> loop_by_hand(const Range& range, int values) {
   std::vector<double> velocities;
   for (int k = 0; k < values; ++k) {
     const double value = swept(range, k, values);
-    const Oscillator oscillator = range.name == std::string("alpha") ? Oscillator{value, range.other}
-                                                                     : Oscillator{range.other, value};
+    const Oscillator oscillator =
+        range.name == std::string("alpha") ? Oscillator{value, range.other} : Oscillator{range.other, value};
     auto stepper = odeint::make_dense_output(0.1 * tolerance, tolerance, odeint::runge_kutta_dopri5<State>());
     State x{0.0, 0.0, 0.0, 1.0};
     velocities.clear();
@@ -111,9 +109,20 @@ class TchatSweep {
  public:
   TchatSweep(const Range& range, int values, bool with_exponents) {
     const std::string other = range.name == std::string("alpha") ? "omega" : "alpha";
-    command_ = {tchat_executable(), "sweep", std::string(PROBLEMS_FOLDER) + "/linosc/linosc", "-q", "--fresh", "-o",
-                "timed", "--over", fmt::format("{}={}:{}:{}", range.name, range.from, range.to, values), "--section",
-                "wall", fmt::format("PAR({})={}", other, range.other), "--state", "0,0,0,1"};
+    command_ = {tchat_executable(),
+                "sweep",
+                std::string(PROBLEMS_FOLDER) + "/linosc/linosc",
+                "-q",
+                "--fresh",
+                "-o",
+                "timed",
+                "--over",
+                fmt::format("{}={}:{}:{}", range.name, range.from, range.to, values),
+                "--section",
+                "wall",
+                fmt::format("PAR({})={}", other, range.other),
+                "--state",
+                "0,0,0,1"};
     if (with_exponents)
       command_.emplace_back("--lyapunov");
     else
