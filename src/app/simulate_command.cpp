@@ -99,6 +99,12 @@ void add_simulate_command(CLI::App& app, std::function<int()>& chosen) {
       ->type_name("[NAME2]")
       ->group("Periodic orbit");
   command
+      ->add_flag("--refine", request->refine,
+                 "the start is a guess of an orbit, stable or not: Newton's method from one period, of --events N "
+                 "events or, without, up to the nearest return within --max-period")
+      ->excludes("--lyapunov")
+      ->group("Periodic orbit");
+  command
       ->add_flag(
           "--without-sections", request->without_sections,
           "Poincare sections (identity jump, the same field after it) end no segments of the orbit, unless nothing "
@@ -112,6 +118,7 @@ void add_simulate_command(CLI::App& app, std::function<int()>& chosen) {
           "and gc.NAME2 for tchat run [O]")
       ->expected(0, 1)
       ->type_name("[NAME2]")
+      ->excludes("--refine")
       ->group("Torus");
   command->add_option("--free", request->parameter, "continuation parameter in gc.NAME2 [ICP(1) of gc.C, else PAR(1)]")
       ->group("Periodic orbit");

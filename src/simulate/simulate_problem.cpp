@@ -17,6 +17,7 @@
 #include "simulate/exponent_measurement.hpp"
 #include "simulate/loaded_problem.hpp"
 #include "simulate/orbit_hand_over.hpp"
+#include "simulate/recorded_period.hpp"
 #include "simulate/simulation_start.hpp"
 #include "simulate/simulation_summary.hpp"
 #include "simulate/start_notice.hpp"
@@ -127,7 +128,7 @@ std::string hand_over(const SimulationRequest& request, const SimulationConstant
 
 /// "" when the orbit can be continued; otherwise why not.
 std::string obstacle(const HybridSystem& system, const SimulationResult& result, const FoundOrbit& orbit) {
-  if (!result.is_periodic()) return "no periodic orbit was recognised";
+  if (!result.is_periodic()) return "no periodic orbit was found";
   if (!orbit.converged) return "the orbit could not be refined";
   for (Eigen::Index i = 0; i < orbit.advance.size(); ++i)
     if (std::abs(orbit.advance(i)) > 1e-9 * (1.0 + std::abs(orbit.start(i))))
@@ -190,21 +191,31 @@ int simulate_problem(const SimulationRequest& request, std::ostream& screen, std
   SimulationFiles files(system, output, problem_text(system, start.par), start.par,
                         has_length(request.plan) ? SimulationFiles::everything : kept_size);
   SimulationResult result;
+  SimulationPlan plan = request.plan;
+  if (request.refine) plan.events = plan.events.value_or(plan.max_period) + 1;  // up to the first one is no segment
+  std::vector<SimulatedSegment> recorded;                                       // of a guess
   const bool measures_on_the_way = exponents && has_wanted_length(request.plan);
   AttractorSearch search(request.plan.max_period, request.plan.recognition, simulation_settings(request, interrupted));
   {
     ProgressLine line(progress);
     const auto keep = [&](const SimulatedSegment& segment) {
       files.write(segment);
+      if (request.refine) recorded.push_back(segment);
       if (measures_on_the_way) exponents->pass(segment);
-      if (has_wanted_length(request.plan) && segment.ended_by == SegmentEnd::event) search.add(simulation, segment);
+      if (has_wanted_length(plan) && segment.ended_by == SegmentEnd::event) search.add(simulation, segment);
       if (line.is_due()) line.show(fmt::format("{} events, t = {:.6g} ", segment.number, segment.end_time()));
     };
-    result = run_simulation(simulation, request.plan, keep,
+    result = run_simulation(simulation, plan, keep,
                             [&](const SimulatedSegment& segment) { return search.has_settled(simulation, segment); });
   }
   files.finish();
-  take_orbit(search, simulation, result);
+  RecordedPeriod period;
+  if (request.refine) {
+    period = recorded_period(recorded, request.plan.events, result.ignorable);
+    result.turn = period.segments;
+  } else {
+    take_orbit(search, simulation, result);
+  }
   say(course_text(system, result, result.last.end_time(), request.contact));
 
   FoundOrbit orbit;
@@ -212,11 +223,16 @@ int simulate_problem(const SimulationRequest& request, std::ostream& screen, std
     const IndexVector first =
         constants.has_signature ? constants.settings.segments.front().index : IndexVector{0, 0, 0};
     if (request.without_sections) result.turn = without_sections(system, std::move(result.turn));
-    orbit = refine(system, result, start.par, first);
-    say(orbit.converged
-            ? orbit_text(system, orbit)
-            : fmt::format("The motion repeats itself after {} event(s), but shooting does not find the orbit: {}\n",
-                          result.turn.size(), orbit.message));
+    if (request.refine) {
+      orbit = refine(system, result, start.par, first, true);
+      say(refined_text(orbit, static_cast<long>(result.turn.size()), period.range));
+    } else {
+      orbit = refine(system, result, start.par, first);
+      if (!orbit.converged) say(not_refined_text(orbit, static_cast<long>(result.turn.size())));
+    }
+    if (orbit.converged) say(orbit_text(system, orbit));
+  } else if (request.refine) {
+    say(nothing_recorded_text(request.plan));
   } else if (const std::optional<VectorXd> rest = equilibrium_of(search, simulation, result.last)) {
     say(rest_text(*rest));
   } else {

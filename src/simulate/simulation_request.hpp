@@ -37,6 +37,7 @@ struct SimulationRequest {
   int section = 0;              ///< --section: event function of a return map; 0: exponents of the flow
   double accuracy = 1e-3;       ///< of the exponents, where no length is given
 
+  bool refine = false;                   ///< --refine: the motion recorded begins with about one period of an orbit
   bool hand_over = false;                ///< --dat: write the orbit for `tchat run`
   bool without_sections = false;         ///< Poincare sections end no segments of the orbit
   std::string orbit_name;                ///< its NAME2; empty: that of the output

@@ -152,9 +152,31 @@ std::string stability_text(OrbitStability stability, double uncertainty) {
     case OrbitStability::neutral:
       return fmt::format("neutral, the largest modulus is 1 within {:.1g}: the orbit is no attractor", uncertainty);
     default:
-      return "not stable, so the orbit is no attractor: the simulation will leave it; look again after a longer "
-             "transient";
+      return "not stable, so the orbit is no attractor: a simulation leaves it";
   }
+}
+
+std::string refined_text(const FoundOrbit& orbit, long events, const Eigen::VectorXd& range) {
+  const std::string from = fmt::format("Newton's method from {} of the recorded motion", counted(events, "event"));
+  if (!orbit.converged) return fmt::format("{} finds no periodic orbit: {}\n", from, orbit.message);
+  return fmt::format("{}: {}, its start moved by {:.2g} of the motion's range.\n", from,
+                     counted(long{orbit.iterations}, "iteration"),
+                     orbit.moved.cwiseQuotient(range).lpNorm<Eigen::Infinity>());
+}
+
+std::string not_refined_text(const FoundOrbit& orbit, long events) {
+  return fmt::format("The motion repeats itself after {}, but shooting does not find the orbit: {}\n",
+                     counted(events, "event"), orbit.message);
+}
+
+std::string nothing_recorded_text(const SimulationPlan& plan) {
+  if (plan.events)
+    return fmt::format(
+        "Nothing to refine: the first event is not met again {} events later; --events says how many "
+        "a period has, and without it the nearest return is taken.\n",
+        *plan.events);
+  return fmt::format("Nothing to refine: the first event is not met again within {} events (--max-period).\n",
+                     plan.max_period);
 }
 
 std::string no_orbit_text(const SimulationResult& result, const SimulationPlan& plan, const std::string& doubt) {

@@ -153,7 +153,7 @@ std::vector<SimulatedSegment> without_sections(const HybridSystem& system, std::
 }
 
 FoundOrbit refine(const HybridSystem& system, const SimulationResult& result, const VectorXd& par,
-                  const IndexVector& first) {
+                  const IndexVector& first, bool is_guess) {
   const std::vector<SimulatedSegment> turn = in_standard_order(result.turn, first);
   FoundOrbit found;
   for (const SimulatedSegment& segment : turn) {
@@ -176,9 +176,9 @@ FoundOrbit refine(const HybridSystem& system, const SimulationResult& result, co
     found.message = orbit.message;
     return found;
   }
-  const VectorXd moved = orbit.start - turn.front().start;
-  const double share = moved.cwiseQuotient(range).lpNorm<Eigen::Infinity>();
-  if (!(share < same_orbit)) {
+  found.moved = orbit.start - turn.front().start;
+  const double share = found.moved.cwiseQuotient(range).lpNorm<Eigen::Infinity>();
+  if (!is_guess && !(share < same_orbit)) {
     found.message = fmt::format("shooting went {:.2g} of its range away, to another orbit", share);
     return found;
   }

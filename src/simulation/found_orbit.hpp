@@ -36,6 +36,7 @@ struct FoundOrbit {
   int iterations = 0;                                   ///< Newton steps of shooting
   IntegrationMethod method = IntegrationMethod::adams;  ///< by which it was found
 
+  Eigen::VectorXd moved;     ///< of x_1(0), by the correction
   double uncertainty = 0.0;  ///< of the moduli of multipliers: what integration leaves
 
   OrbitStability stability() const { return stability_of(multipliers, uncertainty); }
@@ -51,8 +52,8 @@ std::vector<SimulatedSegment> in_standard_order(std::vector<SimulatedSegment> tu
 
 /// Refines the recognised turn of `result`, whose segments are rotated so that the smallest index vector, or `first` if
 /// the orbit has it, comes first. What fails is a value: no convergence, or convergence to another orbit than the one
-/// simulated.
+/// simulated, unless that was a guess.
 FoundOrbit refine(const HybridSystem& system, const SimulationResult& result, const Eigen::VectorXd& par,
-                  const IndexVector& first);
+                  const IndexVector& first, bool is_guess = false);
 
 }  // namespace tchat

@@ -284,12 +284,47 @@ TEST_CASE(
   CHECK(contains(all.out, "Written: logistic.trajectory (" + std::to_string(megabytes) + " MB), logistic.events\n"));
 }
 
+TEST_CASE("simulate: --refine finds orbits that attract nothing, beside the logistic map's closed forms") {
+  const Workspace workspace;
+  workspace.write("logistic.cpp", logistic_clock);
+  constexpr double a = 3.9;
+  const auto start_of = [](const Outcome& outcome) { return number_after(outcome.out, "U(2) = "); };
+  const auto multiplier_of = [](const Outcome& outcome) { return number_after(outcome.out, "multipliers "); };
+
+  // x = 1 - 1 / a, with the multiplier 2 - a.
+  const Outcome fixed = simulate(workspace, "logistic PAR(a)=3.9 --state 0,0.74 --refine --dat fixed");
+  CHECK(contains(fixed.out, "signature {(1,1,1)}, period 1\n"));
+  CHECK(start_of(fixed) == Approx(1.0 - 1.0 / a).epsilon(1e-12));
+  CHECK(multiplier_of(fixed) == Approx(2.0 - a).epsilon(1e-9));
+  CHECK(contains(fixed.out, "not stable"));
+
+  // a^2 x^2 - a (a + 1) x + a + 1 = 0, with the multiplier 4 + 2 a - a^2.
+  const Outcome two = simulate(workspace, "logistic PAR(a)=3.9 --state 0,0.9 --refine --events 2 --dat two");
+  const double x = start_of(two);
+  CHECK(std::abs(a * a * x * x - a * (a + 1.0) * x + a + 1.0) < 1e-11);
+  CHECK(multiplier_of(two) == Approx(4.0 + 2.0 * a - a * a).epsilon(1e-8));
+  // Both are what a run starts from.
+  for (const std::string name : {"fixed", "two"}) {
+    const Outcome run = workspace.tchat("run logistic -c " + name + " -d " + name + " -o " + name + " NMX=5");
+    CHECK(run.status == 0);
+    CHECK(contains(run.out, "0 stable"));
+  }
+  // What the first row of a file says, and what is no period.
+  workspace.write("table.dat", "# PAR(a) = 3.9\n0 0 0.74\n0.5 0.5 0.74\n1 1 0.74\n");
+  CHECK(start_of(simulate(workspace, "logistic -d table --refine")) == Approx(1.0 - 1.0 / a).epsilon(1e-12));
+  workspace.write("driven.cpp", driven);
+  const Outcome none = simulate(workspace, "driven --refine --max-period 1 --dat none", 1);
+  CHECK(contains(none.out, "Nothing to refine: the first event is not met again within 1 event (--max-period)."));
+  CHECK_FALSE(workspace.has("none.dat"));
+  CHECK(contains(simulate(workspace, "logistic --refine --lyapunov", 2).err, "excludes"));
+}
+
 TEST_CASE("simulate: chattering is told with its limit in time, no orbit is written") {
   const Workspace workspace;
   workspace.write("ball.cpp", ball);
   const Outcome outcome = simulate(workspace, "ball --dat", 1);
   CHECK(contains(outcome.out, "Events accumulate (chattering)"));
-  CHECK(contains(outcome.err, "no periodic orbit was recognised"));
+  CHECK(contains(outcome.err, "no periodic orbit was found"));
   const double first = std::sqrt(2.0 * 2.0 / 9.81);
   CHECK(number_after(outcome.out, "The limit is at t = ") == Approx(3.0 * first).epsilon(1e-9));
   CHECK_FALSE(workspace.has("ball.dat"));

@@ -68,16 +68,16 @@ class Problem:
         return self._execute("check", [self.source], accepted=(0, 1))
 
     def simulate(self, *words, name=None, state=None, free=None, time=None, events=None, transient_time=None,
-                 transient_events=None, signature=None, without_sections=None, lyapunov=None, tolerance=None, stiff=None,
+                 transient_events=None, refine=None, signature=None, without_sections=None, lyapunov=None, tolerance=None, stiff=None,
                  **values):
         """Integrates from `state` (a list, a dictionary by name, else the problem's own) until the motion repeats
         itself, or as long as time= or events= say: a Simulation, whose orbit= is the periodic orbit, None without one.
-        `free` is the parameter that the orbit is followed in unless continue_ says another. Other keywords are
+        refine=True: `state` is a guess of an orbit, stable or not, which Newton's method finds. `free` is the parameter that the orbit is followed in unless continue_ says another. Other keywords are
         parameters and constants; words are further options of `tchat simulate`."""
         name = self._new_name("simulation", name)
         options = option_words(dict(
             state=state_word(state), free=free, time=time, events=events, transient_time=transient_time,
-            transient_events=transient_events, signature=signature, without_sections=without_sections,
+            transient_events=transient_events, refine=refine, signature=signature, without_sections=without_sections,
             lyapunov=lyapunov, tolerance=tolerance, stiff=stiff, dat=None if lyapunov else name))
         words = [self.name, "-p", self.source, "-o", name] + options + list(words) + value_words(values, self.program)
         screen = self._execute("simulate", words, accepted=(0, 1))
