@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace tchat {
 
@@ -21,10 +22,18 @@ VectorXd ranges(const std::vector<SimulatedSegment>& segments, const std::vector
   return range;
 }
 
+VectorXd sizes(const std::vector<SimulatedSegment>& segments, const std::vector<Eigen::Index>& ignorable) {
+  VectorXd size = VectorXd::Constant(segments.front().low.size(), std::numeric_limits<double>::min());
+  for (const SimulatedSegment& segment : segments)
+    size = size.cwiseMax(segment.low.cwiseAbs()).cwiseMax(segment.high.cwiseAbs());
+  for (const Eigen::Index k : ignorable) size(k) = std::numeric_limits<double>::infinity();
+  return size;
+}
+
 }  // namespace
 
 RecordedPeriod recorded_period(const std::vector<SimulatedSegment>& segments, std::optional<long> events,
-                                              const std::vector<Eigen::Index>& ignorable) {
+                               const std::vector<Eigen::Index>& ignorable) {
   const auto whole = static_cast<std::size_t>(
       std::find_if(segments.begin(), segments.end(),
                    [](const SimulatedSegment& segment) { return segment.ended_by != SegmentEnd::event; }) -
@@ -36,15 +45,16 @@ RecordedPeriod recorded_period(const std::vector<SimulatedSegment>& segments, st
   for (std::size_t q = 1; q < whole; ++q) {
     if (segments[q].index != segments[0].index) continue;
     if (events && static_cast<long>(q) != *events) continue;
-    const double distance =
-        (segments[q].after - segments[0].after).cwiseQuotient(range).lpNorm<Eigen::Infinity>();
+    const double distance = (segments[q].after - segments[0].after).cwiseQuotient(range).lpNorm<Eigen::Infinity>();
     if (!(distance < 0.5 * least)) continue;
     least = distance;
     period = q;
   }
-  if (period == 0) return {{}, range};
+  if (period == 0) return {};
   const auto begin = segments.begin() + 1;
-  return {{begin, begin + static_cast<std::ptrdiff_t>(period)}, range};
+  std::vector<SimulatedSegment> part(begin, begin + static_cast<std::ptrdiff_t>(period));
+  VectorXd size = sizes(part, ignorable);
+  return {std::move(part), std::move(size)};
 }
 
 }  // namespace tchat

@@ -12,7 +12,7 @@ namespace tchat {
 
 struct RecordedPeriod {
   std::vector<SimulatedSegment> segments;  ///< empty: none
-  Eigen::VectorXd range;                   ///< of each state over the whole motion, n
+  Eigen::VectorXd size;                    ///< largest |x_i| up to its end, n; infinite for those in `ignorable`
 };
 
 /// The segments between two equal events, the first one that is met and the one after which the state is nearest to
@@ -20,6 +20,6 @@ struct RecordedPeriod {
 /// `events` the segments between the first event and so many later. States in `ignorable`, from 0, are not compared.
 /// None when no event comes again, or that many later is not the same.
 RecordedPeriod recorded_period(const std::vector<SimulatedSegment>& segments, std::optional<long> events,
-                                              const std::vector<Eigen::Index>& ignorable);
+                               const std::vector<Eigen::Index>& ignorable);
 
 }  // namespace tchat

@@ -225,7 +225,7 @@ int simulate_problem(const SimulationRequest& request, std::ostream& screen, std
     if (request.without_sections) result.turn = without_sections(system, std::move(result.turn));
     if (request.refine) {
       orbit = refine(system, result, start.par, first, true);
-      say(refined_text(orbit, static_cast<long>(result.turn.size()), period.range));
+      say(refined_text(orbit, static_cast<long>(result.turn.size()), period.size));
     } else {
       orbit = refine(system, result, start.par, first);
       if (!orbit.converged) say(not_refined_text(orbit, static_cast<long>(result.turn.size())));

@@ -156,12 +156,12 @@ std::string stability_text(OrbitStability stability, double uncertainty) {
   }
 }
 
-std::string refined_text(const FoundOrbit& orbit, long events, const Eigen::VectorXd& range) {
+std::string refined_text(const FoundOrbit& orbit, long events, const Eigen::VectorXd& size) {
   const std::string from = fmt::format("Newton's method from {} of the recorded motion", counted(events, "event"));
   if (!orbit.converged) return fmt::format("{} finds no periodic orbit: {}\n", from, orbit.message);
-  return fmt::format("{}: {}, its start moved by {:.2g} of the motion's range.\n", from,
+  return fmt::format("{}: {}, its start moved by {:.2g} of the states' size.\n", from,
                      counted(long{orbit.iterations}, "iteration"),
-                     orbit.moved.cwiseQuotient(range).lpNorm<Eigen::Infinity>());
+                     orbit.moved.cwiseQuotient(size).lpNorm<Eigen::Infinity>());
 }
 
 std::string not_refined_text(const FoundOrbit& orbit, long events) {
@@ -172,11 +172,11 @@ std::string not_refined_text(const FoundOrbit& orbit, long events) {
 std::string nothing_recorded_text(const SimulationPlan& plan) {
   if (plan.events)
     return fmt::format(
-        "Nothing to refine: the first event is not met again {} events later; --events says how many "
-        "a period has, and without it the nearest return is taken.\n",
-        *plan.events);
-  return fmt::format("Nothing to refine: the first event is not met again within {} events (--max-period).\n",
-                     plan.max_period);
+        "Nothing to refine: the first event is not met again {} later; --events says how many a period has, and "
+        "without it the nearest return is taken.\n",
+        counted(*plan.events, "event"));
+  return fmt::format("Nothing to refine: the first event is not met again within {} (--max-period).\n",
+                     counted(long{plan.max_period}, "event"));
 }
 
 std::string no_orbit_text(const SimulationResult& result, const SimulationPlan& plan, const std::string& doubt) {

@@ -26,9 +26,9 @@ std::string orbit_text(const HybridSystem& system, const FoundOrbit& orbit);
 /// "stable", or what else the multipliers say.
 std::string stability_text(OrbitStability stability, double uncertainty);
 
-/// What Newton's method has made of so many recorded events (--refine) of a motion whose states have this range, and of
+/// What Newton's method has made of so many recorded events (--refine) of a motion whose states have this size, and of
 /// those of a motion that repeats itself where it has not converged.
-std::string refined_text(const FoundOrbit& orbit, long events, const Eigen::VectorXd& range);
+std::string refined_text(const FoundOrbit& orbit, long events, const Eigen::VectorXd& size);
 std::string not_refined_text(const FoundOrbit& orbit, long events);
 /// Why there is no period to refine.
 std::string nothing_recorded_text(const SimulationPlan& plan);
