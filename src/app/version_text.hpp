@@ -5,7 +5,7 @@
 
 namespace tchat {
 
-/// "tchat 1.0.0", then lines for the commit, the compiler and the libraries with their versions.
+/// "tchat 1.1.0", then lines for the commit, the compiler and the libraries with their versions.
 std::string version_text();
 
 }  // namespace tchat
