@@ -54,7 +54,8 @@ void add_run_command(CLI::App& app, std::function<int()>& chosen) {
       "constants and parameters for this run, e.g. DS=-0.01 NMX=50 IRS=PD1 'PAR(2)=0.8' 'PAR(omega)=0.8' "
       "'UZR={1: [2.5, 3.0]}'");
   command->footer(
-      "The table shows the first point, labelled points and inadmissible ones; p.O has every point.\n"
+      "The table shows the first point, special points, and where orbits become inadmissible; labels that NPR asks\n"
+      "for are in the files alone, and p.O has every point.\n"
       "Exit status: 0 the branch was computed (also when it ended by MX), 1 no convergence at the first point or of "
       "the\n"
       "first step, 2 bad usage or bad input, 3 ended by MX with --strict, 130 or 143 interrupted (files are "

@@ -12,7 +12,8 @@ namespace {
 
 constexpr const char* indent = "       ";
 
-/// Labelled points, the first one, and where orbits become inadmissible (with what is violated) or admissible again.
+/// The first point, labels but for those that NPR asks for, and where orbits become inadmissible (with what is
+/// violated) or admissible again.
 class ScreenOutput final : public BranchOutput {
  public:
   ScreenOutput(const BranchSection& section, std::ostream& screen, std::ostream* terminal)
@@ -24,7 +25,8 @@ class ScreenOutput final : public BranchOutput {
     const BranchPoint& point = recorded.of_branch;
     const PointLine& line = recorded.line;
     const bool change = point.number > 1 && line.admissible != last_admissible_;
-    if (point.labelled() || point.number == 1 || change) {
+    const bool is_shown = point.labelled() && point.special.type != PointType::regular;
+    if (is_shown || point.number == 1 || change) {
       progress_.clear();
       screen_ << format_table_line(line, section_.columns);
     } else if (progress_.is_due()) {
@@ -34,8 +36,8 @@ class ScreenOutput final : public BranchOutput {
     if (!line.admissible && (change || point.number == 1))
       for (const Violation& violation : point.violations)
         screen_ << indent << describe(violation, section_.system) << '\n';
-    if (point.labelled() && !point.remark.empty()) screen_ << indent << point.remark << '\n';
-    if (point.labelled() && point.special.type != PointType::regular && !point.details.empty()) show_contact(point);
+    if (is_shown && !point.remark.empty()) screen_ << indent << point.remark << '\n';
+    if (is_shown && !point.details.empty()) show_contact(point);
     last_admissible_ = line.admissible;
     screen_ << std::flush;
   }

@@ -265,6 +265,10 @@ TEST_CASE("NPR labels every NPR-th point") {
       CHECK(row.type == type);
     }
   }
+  const Outcome outcome = workspace.tchat("run linosc " + impacting + "NMX=10 UZR={} NPR=1");
+  CHECK(contains(outcome.out, "EP    1"));
+  CHECK(contains(outcome.out, "EP   10"));
+  CHECK_FALSE(contains(outcome.out, "RG"));  // they go to the files
 }
 
 TEST_CASE("IADS = 0 keeps the step, IADS = n changes it every n-th point") {
