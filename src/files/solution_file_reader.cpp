@@ -13,6 +13,7 @@
 #include "files/run_file_names.hpp"
 #include "files/solution_identifier.hpp"
 #include "hybrid/parameter_vector.hpp"
+#include "problem_type/problem_type.hpp"
 #include "text/number.hpp"
 #include "text/text_file.hpp"
 #include "text/user_error.hpp"
@@ -484,11 +485,25 @@ int segment_count(const LabelledSolution& solution) {
   return durations > 0 && rows % durations == 0 ? durations : 0;
 }
 
+double stored_parameter(const LabelledSolution& solution, int k) {
+  const auto index = static_cast<std::size_t>(k - 1);
+  return index < solution.parameters.size() ? solution.parameters[index] : 0.0;
+}
+
+double duration(const LabelledSolution& solution, int s) {
+  const bool old_file = !records_problem_type(solution.problem_type);
+  const double own = stored_parameter(solution, first_duration + s);
+  const bool of_auto = is_shared_problem_type(solution.problem_type) && own == 0.0;
+  if ((is_own_problem_type(solution.problem_type) && !of_auto) || (old_file && own != 0.0)) return own;
+  const std::optional<int> k = auto_period(solution.problem_type);
+  const double period = k ? stored_parameter(solution, *k) : 0.0;
+  return period > 0.0 ? period : 1.0;
+}
+
 double period(const LabelledSolution& solution) {
-  const auto first = static_cast<std::size_t>(first_duration - 1);
-  const auto last = first + static_cast<std::size_t>(segment_count(solution));
+  if (solution.tau.size() < 2) return 0.0;
   double sum = 0.0;
-  for (std::size_t k = first; k < std::min(last, solution.parameters.size()); ++k) sum += solution.parameters[k];
+  for (int s = 0; s < segment_count(solution); ++s) sum += duration(solution, s);
   return sum;
 }
 

@@ -56,7 +56,14 @@ StartLabel read_label(const std::string& word);
 /// 0 when neither tells.
 int segment_count(const LabelledSolution& solution);
 
-/// Sum of the durations PAR(61..60+m); 0 when the number of segments is not known.
+/// PAR(k); 0 where the solution has none.
+double stored_parameter(const LabelledSolution& solution, int k);
+
+/// Of segment s, from 0: PAR(61+s). Orbits of AUTO itself have their period in PAR(11), and its boundary value problems
+/// are on the interval from 0 to 1.
+double duration(const LabelledSolution& solution, int s);
+
+/// Sum of the durations; 0 for an equilibrium, and when the number of segments is not known.
 double period(const LabelledSolution& solution);
 
 }  // namespace tchat

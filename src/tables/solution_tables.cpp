@@ -13,11 +13,6 @@ namespace tchat {
 
 namespace {
 
-double parameter(const LabelledSolution& solution, int k) {
-  const auto index = static_cast<std::size_t>(k - 1);
-  return index < solution.parameters.size() ? solution.parameters[index] : 0.0;
-}
-
 std::string number_or_dash(int number) { return number > 0 ? fmt::format("{}", number) : "-"; }
 
 /// A start that was made by `tchat resegment` has no direction, and which parameters are free is for its constants.
@@ -26,7 +21,7 @@ std::string free_parameters(const LabelledSolution& solution, int segments, cons
   std::string list;
   for (const int k : solution.free_parameters)
     if (!is_duration(k, segments))
-      list += fmt::format("{}{} = {:.9g}", list.empty() ? "" : ", ", names.parameter(k), parameter(solution, k));
+      list += fmt::format("{}{} = {:.9g}", list.empty() ? "" : ", ", names.parameter(k), stored_parameter(solution, k));
   return list;
 }
 
@@ -90,13 +85,13 @@ std::string heading(const LabelledSolution& solution, const std::string& name, c
                     const ProblemNames& names) {
   const std::string type = type_name(solution);
   double period = 0.0;
-  for (int s = 0; s < sizes.segments; ++s) period += parameter(solution, first_duration + s);
+  for (int s = 0; s < sizes.segments; ++s) period += duration(solution, s);
   std::string text =
       fmt::format("# {}: label {}{}, {} segment{}, period {:.10g}\n", name, solution.label,
                   type.empty() ? "" : " (" + type + ")", sizes.segments, sizes.segments == 1 ? "" : "s", period);
   for (const int k : solution.free_parameters)
     if (!is_duration(k, sizes.segments))
-      text += fmt::format("# {} = {:.10g}\n", names.parameter(k), parameter(solution, k));
+      text += fmt::format("# {} = {:.10g}\n", names.parameter(k), stored_parameter(solution, k));
   text += fmt::format("#{:>3}{:>19}{:>19}", "seg", "tau", "t");
   for (int k = 1; k <= sizes.dimension; ++k) text += fmt::format(" {:>18}", names.state(k));
   return text + '\n';
@@ -115,13 +110,13 @@ template <class Use>
 void for_each_point(const LabelledSolution& solution, const OrbitSizes& sizes, const Use& use) {
   double start = 0.0;
   for (int s = 0; s < sizes.segments; ++s) {
-    const double duration = parameter(solution, first_duration + s);
+    const double length = duration(solution, s);
     for (std::size_t k = 0; k < solution.tau.size(); ++k) {
       const double tau = solution.tau[k];
       const auto states = solution.states.col(static_cast<Eigen::Index>(k));
-      use(OrbitPoint{s + 1, tau, start + tau * duration, states.segment(s * sizes.dimension, sizes.dimension)});
+      use(OrbitPoint{s + 1, tau, start + tau * length, states.segment(s * sizes.dimension, sizes.dimension)});
     }
-    start += duration;
+    start += length;
   }
 }
 

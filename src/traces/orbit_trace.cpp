@@ -7,7 +7,6 @@
 
 #include "files/solution_file_reader.hpp"
 #include "hybrid/parameter_vector.hpp"
-#include "problem_type/problem_type.hpp"
 #include "text/user_error.hpp"
 
 namespace tchat {
@@ -25,22 +24,6 @@ int segments_of(const LabelledSolution& solution, int dimension, const std::stri
                     "file; give the dimension of the problem, as in --dimension 4",
                     path, solution.label, rows));
   return segments;
-}
-
-double stored_parameter(const LabelledSolution& solution, int k) {
-  const auto index = static_cast<std::size_t>(k - 1);
-  return index < solution.parameters.size() ? solution.parameters[index] : 0.0;
-}
-
-/// Orbits of AUTO itself have their period in PAR(11).
-double duration(const LabelledSolution& solution, int s) {
-  const bool old_file = !records_problem_type(solution.problem_type);
-  const double own = stored_parameter(solution, first_duration + s);
-  const bool of_auto = is_shared_problem_type(solution.problem_type) && own == 0.0;
-  if ((is_own_problem_type(solution.problem_type) && !of_auto) || (old_file && own != 0.0)) return own;
-  const std::optional<int> k = auto_period(solution.problem_type);
-  const double period = k ? stored_parameter(solution, *k) : 0.0;
-  return period > 0.0 ? period : 1.0;
 }
 
 }  // namespace
