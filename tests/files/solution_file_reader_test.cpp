@@ -272,6 +272,7 @@ TEST_CASE("A label that does not exist is answered with those that do", "[start]
 TEST_CASE("Segments of older files follow from the free durations", "[start]") {
   LabelledSolution s = labelled(1, 9);
   s.states.resize(10, 3);
+  s.tau = {0.0, 0.5, 1.0};
   s.free_parameters = {1, 61, 62};
   s.parameters.assign(100, 0.0);
   s.parameters[60] = 1.5;
