@@ -394,12 +394,12 @@ class Problems(unittest.TestCase):
         self.assertFalse(os.path.exists(folder))
 
     def test_unstable_gait_from_a_guess(self):
-        """The short gait of Garcia, Chatterjee, Ruina and Coleman (1998), Table 1, to its printed digits."""
+        """The short gait of Garcia, Chatterjee, Ruina and Coleman (1998) at the slope 0.009."""
         orbit = tchat.Problem(WALKER).simulate(state=[0.194, -0.204, 0.388, -0.0151], refine=True).orbit
         branch = orbit.continue_(gamma=(0.008, 0.012), progress=False)
         self.assertFalse(branch["stable"].any())
         self.assertTrue(branch.verify().passed)
-        self.assertAlmostEqual(orbit.orbit["th"][0, 0], 0.19393736981, places=9)
+        self.assertAlmostEqual(orbit.orbit["U(1)"][0, 0], 0.19393736981, places=9)
 
     def test_grazing_and_its_curve(self):
         oscillator = tchat.Problem(PLUGIN, name="linosc", folder="oscillator")
