@@ -24,14 +24,15 @@ struct IndexVector {
 /// The index vectors of the segments of one period, in order.
 using Signature = std::vector<IndexVector>;
 
-/// "{(1,3,2), (1,1,1)}"
+/// "{(1,3,2), (1,1,1)}". Repetitions are powers: "{(1,1,2), (1,2,1)}^16" has 32 segments, "{(1,1,1)^3, (2,2,2)}" four.
 std::string to_string(const Signature& signature);
 
-/// "1,1,1;2,2,2", blanks, parentheses and braces as wanted. Throws UserError that begins with `option` when it is no
-/// list of triples of whole numbers; whether they exist is for the problem to say.
+/// Reads "1,1,1;2,2,2" and what to_string writes; blanks, parentheses, braces and powers are optional. Does not check
+/// that the problem has these functions. Throws UserError that starts with `option` when the text is no list of triples
+/// of whole numbers.
 std::vector<IndexVector> parse_index_vectors(std::string_view text, const std::string& option);
 
-/// The same, where all count from 1 and there are no more of them than an orbit has segments.
+/// The same for numbers that all count from 1 and at most max_segments vectors.
 Signature parse_signature(std::string_view text, const std::string& option = "--signature");
 
 }  // namespace tchat

@@ -71,9 +71,15 @@ def _axes():
     return plt.gca()
 
 
+_POWER = re.compile(r"(\{[^{}]*\}|\([^()]*\))\^(\d+)")
+
+
 def read_signature(text):
-    """[(1, 2, 2), (1, 1, 1)] of "{(1,2,2), (1,1,1)}"; None of nothing."""
-    triples = re.findall(r"\((\d+),(\d+),(\d+)\)", text or "")
+    """[(1, 2, 2), (1, 1, 1)] of "{(1,2,2), (1,1,1)}"; a power repeats what is in front of it. None of nothing."""
+    text = text or ""
+    while power := _POWER.search(text):
+        text = text[:power.start()] + power[1] * int(power[2]) + text[power.end():]
+    triples = re.findall(r"\((\d+),(\d+),(\d+)\)", text)
     return [tuple(map(int, triple)) for triple in triples] or None
 
 
