@@ -15,7 +15,7 @@
 #include "problem_type/family.hpp"
 #include "problem_type/problem_type.hpp"
 #include "resegment/empty_segments.hpp"
-#include "resegment/section_needed.hpp"
+#include "resegment/smooth_contact.hpp"
 #include "setup/named_parameters.hpp"
 #include "setup/problem_setup.hpp"
 #include "setup/run_request.hpp"
@@ -76,17 +76,15 @@ void analyse_label(const GrazingRequest& request, std::ostream& screen, std::ost
   const SolutionFile file = read_solution_file(path);
   const std::string constants = constants_of_run(request.constants, path);
   RunSettings settings = read_constants_file(constants);
-  const LabelledSolution& solution = chosen(request, file, settings, path, constants);
+  LabelledSolution solution = chosen(request, file, settings, path, constants);
   const ProblemLibrary library(resolve_plugin_of_run(request.problem, run_path(path), warnings),
                                [&] { return problem_sizes(settings); });
   const HybridSystem& system = library.system();
   resolve_names(settings, system);
   check_settings_against(system, settings, {constants});
   print_warnings(warnings, file.warnings);
-  require_section(solution, settings, system, "the local analysis of grazing", request.problem.value_or(run_path(path)),
-                  path);
-
   const std::string source = fmt::format("label {} of {}", solution.label, path);
+  if (!has_section(settings)) solution = cut_at_contact(solution, settings, system, source);
   const std::optional<int> jump = request.jump ? std::optional(checked_jump(system, *request.jump)) : std::nullopt;
   const std::optional<CrossSection> named =
       request.section ? std::optional(cross_section(system, *request.section)) : std::nullopt;

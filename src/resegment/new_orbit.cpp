@@ -23,6 +23,11 @@ namespace {
 int checked_jump(const HybridSystem& system, int jump, const char* what) {
   const int count = system.count(FunctionKind::jump);
   if (jump >= 1 && jump <= count) return jump;
+  if (count == 0)
+    throw UserError(fmt::format(
+        "problem {} has no jump functions, so contact changes nothing: give it the jump that contact brings, or the "
+        "field that holds beyond the surface",
+        system.name()));
   throw UserError(fmt::format("{} is jump {}, but problem {} has {} jumps; allowed: 1..{}", what, jump, system.name(),
                               count, count));
 }
@@ -193,7 +198,9 @@ NewOrbit to_grazing_curve(const ResegmentRequest& request, const LabelledOrbit& 
   const int own = source.settings.segments[at].index.jump;
   const int jump = request.jump ? *request.jump : contact.where == ContactPoint::section ? own : identity_jump(system);
   const std::vector<ContactPoint> contacts = simultaneous_contacts(contact, x, system, source.settings);
-  CutList cut = cut_at({segments_of(source.settings), {}}, contact, checked_jump(system, jump, "--jump"));
+  const bool keeps_identity = !request.jump && jump == no_function;
+  CutList cut = cut_at({segments_of(source.settings), {}}, contact,
+                       keeps_identity ? no_function : checked_jump(system, jump, "--jump"));
   if (contact.where == ContactPoint::impact) {
     cut = without_empty_segments(std::move(cut), 0, x);
     cut = without_other_impacts(std::move(cut), contacts, contact, source, system);

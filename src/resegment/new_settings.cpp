@@ -89,6 +89,7 @@ RunSettings new_settings(const RunSettings& old, const SegmentList& segments, co
   settings.parameter_weights = new_weights(old, segments);
   settings.test_functions = new_test_functions(segments, problem, system);
   std::erase_if(settings.user_values, [&](const UserValue& value) { return is_duration(value.parameter, m); });
+  std::erase_if(settings.bounds, [&](const BoundedValue& value) { return is_duration(value.parameter, m); });
   settings.stop_rules.clear();
   return settings;
 }

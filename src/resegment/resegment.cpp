@@ -30,8 +30,8 @@
 #include "resegment/lost_contacts.hpp"
 #include "resegment/new_orbit.hpp"
 #include "resegment/new_settings.hpp"
-#include "resegment/section_needed.hpp"
 #include "resegment/segment_list.hpp"
+#include "resegment/smooth_contact.hpp"
 #include "run/branch_setup.hpp"
 #include "setup/named_parameters.hpp"
 #include "setup/problem_setup.hpp"
@@ -42,6 +42,14 @@
 namespace tchat {
 
 namespace {
+
+OrbitStart start_of(const LabelledOrbit& source, const std::string& path) {
+  const LabelledSolution& solution = source.solution;
+  const auto segments = static_cast<int>(source.settings.segments.size());
+  return orbit_from_solution(
+      solution, {source.settings.dimension, segments, solution.mesh_intervals, solution.collocation_points},
+      source.free_parameters, path);
+}
 
 LabelledOrbit read_source(const ResegmentRequest& request, const std::string& path, const std::string& constants,
                           const SolutionFile& file, std::vector<std::string>& warnings) {
@@ -63,9 +71,7 @@ LabelledOrbit read_source(const ResegmentRequest& request, const std::string& pa
         fmt::format("{} is {} (IPS = {}){}", source.name, family.facts().solution, source.settings.problem_type, why));
   for (const int k : solution.free_parameters)
     if (!is_duration(k, m)) source.free_parameters.push_back(k);
-  source.start = orbit_from_solution(
-      solution, {source.settings.dimension, m, solution.mesh_intervals, solution.collocation_points},
-      source.free_parameters, path);
+  source.start = start_of(source, path);
   return source;
 }
 
@@ -233,6 +239,19 @@ LabelledOrbit without_contacts(ResegmentRequest& request, LabelledOrbit source, 
   return std::move(found->orbit);
 }
 
+/// The orbit with a section: one that has none is cut at its contact.
+LabelledOrbit with_section(const ResegmentRequest& request, LabelledOrbit labelled, const HybridSystem& system,
+                           const std::string& path) {
+  if (has_section(labelled.settings)) return labelled;
+  const bool is_cut = request.kind == ResegmentKind::grazing_curve || request.kind == ResegmentKind::impacting;
+  if (!is_cut)
+    require_section(labelled.solution, labelled.settings, system, "the new signature",
+                    problem_arguments(request.problem.value_or(run_path(path))), path);
+  labelled.solution = cut_at_contact(labelled.solution, labelled.settings, system, labelled.name);
+  labelled.start = start_of(labelled, path);
+  return labelled;
+}
+
 /// In the segments that these pieces have become.
 void add_lost_contacts(const std::vector<Birth::InnerContact>& lost, NewOrbit& target) {
   for (const Birth::InnerContact& contact : lost)
@@ -320,11 +339,8 @@ std::vector<std::string> resegment(const ResegmentRequest& asked, std::ostream& 
   const HybridSystem& system = library.system();
   resolve_names(labelled.settings, system);
   check_settings_against(system, labelled.settings, {constants});
-  require_section(labelled.solution, labelled.settings, system, "resegmentation",
-                  problem_arguments(request.problem.value_or(run_path(path))), path);
-
   std::vector<Birth::InnerContact> lost;
-  const LabelledOrbit source = without_contacts(request, labelled, system, lost);
+  const LabelledOrbit source = without_contacts(request, with_section(request, labelled, system, path), system, lost);
   NewOrbit target = new_orbit(request, source, system);
   add_lost_contacts(lost, target);
   target.problem.names_parameters = is_overridden(request.overrides, "ICP");

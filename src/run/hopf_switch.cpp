@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <optional>
 
 #include "bvp/equilibrium_system.hpp"
@@ -13,6 +14,7 @@
 #include "linear_algebra/dense_matrix.hpp"
 #include "problem_type/family.hpp"
 #include "problem_type/problem_type.hpp"
+#include "run/unwatched_events.hpp"
 #include "setup/problem_setup.hpp"
 #include "stability/equilibrium_eigenvalues.hpp"
 #include "text/user_error.hpp"
@@ -47,6 +49,17 @@ RunSettings of_equilibrium(RunSettings settings) {
 RunSettings of_periodic_orbit(RunSettings settings) {
   settings.branch_mode = periodic_orbit.branch_mode;
   settings.step = std::abs(settings.step);
+  return settings;
+}
+
+/// All monitored events have test functions, as on the branch of equilibria; where the user monitors none, those are
+/// monitored that may come next.
+RunSettings with_watched_events(const HybridSystem& system, RunSettings settings, const Orbit& equilibrium) {
+  const std::vector<int>& monitored = settings.segments.front().monitor;
+  if (monitored.empty()) watch_possible_events(system, settings, equilibrium);
+  if (!settings.test_functions.empty()) return settings;
+  settings.test_functions.resize(monitored.size());
+  std::iota(settings.test_functions.begin(), settings.test_functions.end(), 1);
   return settings;
 }
 
@@ -144,7 +157,7 @@ BranchSetup begin_periodic_orbits(const HybridSystem& system, const RunSettings&
   const int event = settings.segments.front().index.event;
   if (event != no_function) begin_on_section(system, event, x, selected, oscillation.vector);
 
-  const RunSettings of_orbit = of_periodic_orbit(settings);
+  const RunSettings of_orbit = with_watched_events(system, of_periodic_orbit(settings), x);
   const OrbitShape shape = family_of(of_orbit).shape(of_orbit);
   Orbit still{shape, uniform_mesh(shape.intervals), x.states.col(0).replicate(1, shape.columns()), x.par};
   still.duration(0) = 2.0 * std::numbers::pi / oscillation.omega;

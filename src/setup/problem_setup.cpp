@@ -94,6 +94,11 @@ void check_contact_jump(const HybridSystem& system, const RunSettings& settings,
                         std::vector<std::string>& warnings) {
   const int jumps = system.count(FunctionKind::jump);
   const bool is_default = settings.grazing_jump == RunSettings{}.grazing_jump;
+  if (jumps == 0 && keeps_contact(settings.problem_type))
+    throw UserError(fmt::format(
+        "{}: IPS = {} needs the jump that contact would bring, but problem {} has no jump functions; add one "
+        "to the problem (the identity where contact brings none)",
+        source.of("GRJUMP"), settings.problem_type, system.name()));
   if (settings.grazing_jump > jumps && (keeps_contact(settings.problem_type) || !is_default))
     throw UserError(fmt::format("{}: GRJUMP is {}, but problem {} has {} jump functions; allowed: 1..{}",
                                 source.of("GRJUMP"), settings.grazing_jump, system.name(), jumps, jumps));

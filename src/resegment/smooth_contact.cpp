@@ -1,0 +1,88 @@
+#include "resegment/smooth_contact.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "bvp/orbit.hpp"
+#include "hybrid/identity_jump.hpp"
+#include "hybrid/index_vector.hpp"
+#include "resegment/contact_point.hpp"
+#include "resegment/orbit_pieces.hpp"
+#include "start/orbit_start.hpp"
+#include "text/user_error.hpp"
+
+namespace tchat {
+
+namespace {
+
+/// NAME of q.NAME, with its folder.
+std::string name_of(const std::string& path) {
+  std::filesystem::path name(path);
+  const std::string file = name.filename().string();
+  if (file.starts_with("q.")) name.replace_filename(file.substr(2));
+  return name.string();
+}
+
+/// The first identity jump; the next new one if there is none.
+int first_identity_jump(const HybridSystem& system) {
+  const int count = system.count(FunctionKind::jump);
+  for (int k = 1; k <= count; ++k)
+    if (is_identity_jump(system, k)) return k;
+  return count + 1;
+}
+
+/// Where a point of the segment is once the segment starts at `cut`.
+double place_after_cut(double tau, double cut) { return tau > cut ? tau - cut : tau - cut + 1.0; }
+
+}  // namespace
+
+bool has_section(const RunSettings& settings) {
+  return settings.segments.size() != 1 || settings.segments.front().index.event != no_function;
+}
+
+LabelledSolution cut_at_contact(const LabelledSolution& solution, RunSettings& settings, const HybridSystem& system,
+                                const std::string& source) {
+  const OrbitShape shape{settings.dimension, 1, solution.mesh_intervals, solution.collocation_points};
+  const Orbit x = orbit_from_solution(solution, shape, {}, source).orbit;
+  const ContactPoint contact = contact_point(solution, x, system, settings, source);
+  const double tau = contact.where == ContactPoint::inside ? contact.tau : 1.0;
+  const Orbit cut = tau < 1.0 ? joined_orbit(x, {{{0, tau, 1.0}, {0, 0.0, tau}}}) : x;
+
+  IndexVector& index = settings.segments.front().index;
+  index.event = contact.event;
+  index.jump = no_function;
+  LabelledSolution result = labelled_solution(cut, {}, solution.free_parameters, {});
+  result.branch = solution.branch;
+  result.point = solution.point;
+  result.type = solution.type;
+  result.label = solution.label;
+  result.branch_mode = solution.branch_mode;
+  result.problem_type = solution.problem_type;
+  result.kind = solution.kind;
+  result.further = solution.further;
+  const auto move = [tau](UserPointKind& kind) {
+    if (kind.kind == UserPointKind::contact) kind.tau = place_after_cut(kind.tau, tau);
+  };
+  move(result.kind);
+  for (UserPointKind& kind : result.further) move(kind);
+  return result;
+}
+
+void require_section(const LabelledSolution& solution, const RunSettings& settings, const HybridSystem& system,
+                     const std::string& what, const std::string& problem, const std::string& path) {
+  if (has_section(settings)) return;
+  const std::string name = name_of(path);
+  const double middle = 0.5 * (solution.states.row(0).minCoeff() + solution.states.row(0).maxCoeff());
+  throw UserError(fmt::format(
+      "label {} of {}: the orbit has no section, but {} needs one\n"
+      "  Give the problem one more event function, which falls through zero once in each period, as {} - {:.4g}, and "
+      "an identity jump unless it has one; then the branch with that section is\n"
+      "    tchat simulate {} -s {} IRS=1 --signature {},{},{} --dat {}_cut\n"
+      "    tchat run {} -c {}_cut -d {}_cut -o {}_cut\n"
+      "  and its labels are of orbits with a section.",
+      solution.label, path, what, system.state_name(1), middle, problem, name, settings.segments.front().index.field,
+      system.count(FunctionKind::event) + 1, first_identity_jump(system), name, problem, name, name, name));
+}
+
+}  // namespace tchat
