@@ -6,6 +6,8 @@
 #include <numeric>
 #include <vector>
 
+#include "hybrid/undefined_value.hpp"
+
 namespace tchat {
 
 namespace {
@@ -35,12 +37,9 @@ std::string two_fold(const HybridSystem& system, FunctionKind kind, int index) {
 
 std::string place(const HybridSystem& system, FunctionKind kind, int index, int s, double tau, const double* x) {
   const char* kinds[] = {"vector field", "event function", "jump function", "integrand"};
-  std::string state;
-  for (int k = 1; k <= system.dimension(); ++k)
-    state += fmt::format("{}{} = {:.6g}", k > 1 ? ", " : "", system.state_name(k), x[k - 1]);
   return fmt::format("{} {} ({}) or a derivative of it is not finite on segment {} at tau = {:.6g}, {}{}",
-                     kinds[static_cast<int>(kind)], index, system.function_name(kind, index), s + 1, tau, state,
-                     two_fold(system, kind, index));
+                     kinds[static_cast<int>(kind)], index, system.function_name(kind, index), s + 1, tau,
+                     named_state(system, x), two_fold(system, kind, index));
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "bvp/evaluation_failure.hpp"
 #include "bvp/mesh_adaptation.hpp"
 #include "continuation/branch_analysis.hpp"
+#include "hybrid/undefined_value.hpp"
 #include "setup/run_monitors.hpp"
 #include "text/user_error.hpp"
 
@@ -167,8 +168,8 @@ bool solves_but_for_condition(PathFollower& follower, const DefiningSystem& syst
   const Orbit& start = selected.start.orbit;
   const std::string failure = evaluation_failure(system, follower.condensed().rule(), start);
   if (!failure.empty())
-    throw ComputationError(
-        fmt::format("the starting solution from {} cannot be evaluated: {}", selected.source, failure));
+    throw ComputationError(fmt::format("the starting solution from {} cannot be evaluated: {}; {}", selected.source,
+                                       failure, undefined_value_advice));
   const std::string advice =
       solves_but_for_condition(follower, system, start)
           ? "The start satisfies all of these: what fails is the curve's own condition. With these parameters free it "

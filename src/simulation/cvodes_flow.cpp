@@ -17,6 +17,7 @@
 
 #include "hybrid/finite_derivatives.hpp"
 #include "hybrid/parameter_vector.hpp"
+#include "hybrid/undefined_value.hpp"
 
 namespace tchat {
 
@@ -167,9 +168,7 @@ struct CvodesFlow::Implementation {
   }
 
   void remember_trouble(FunctionKind kind, int index, N_Vector at) {
-    const double* const state = N_VGetArrayPointer(at);
-    not_evaluated = fmt::format("{} has no finite value at x = ({:.6g})", system.function_name(kind, index),
-                                fmt::join(state, state + n, ", "));
+    not_evaluated = undefined_value(system, kind, index, N_VGetArrayPointer(at));
   }
 
   int remember_no_derivatives(N_Vector at) {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "hybrid/event_at.hpp"
+#include "hybrid/undefined_value.hpp"
 #include "simulation/watched_flow.hpp"
 #include "text/user_error.hpp"
 
@@ -260,8 +261,7 @@ void HybridSimulation::end_by(SimulatedSegment& segment, const std::vector<int>&
   segment.event_velocity = surface(mode_.field(), ended, segment.end).rate;
   if (!segment.after.allFinite())
     return stop(segment, SegmentEnd::failed,
-                fmt::format("{} has no finite value at x = {}",
-                            system_.function_name(FunctionKind::jump, segment.index.jump), state_text(segment.end)));
+                undefined_value(system_, FunctionKind::jump, segment.index.jump, segment.end.data()));
   if (segment.event_velocity < 0.0 && surface(mode_.field(), ended, segment.after).rate > 0.0) walls_.insert(ended);
   pending_.clear();
   for (const IndexVector& other : segment.simultaneous) pending_.push_back(other.event);

@@ -1,4 +1,5 @@
 #include "simulation/runge_kutta_flow.hpp"
+#include "hybrid/undefined_value.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -69,9 +70,11 @@ struct RungeKuttaFlow::Implementation {
     };
   }
 
+  /// States that follow from a refused value say nothing.
   void remember_trouble(FunctionKind kind, int index, const DopriState& x) {
-    not_evaluated =
-        fmt::format("{} has no finite value at x = ({:.6g})", system.function_name(kind, index), fmt::join(x, ", "));
+    const bool is_reached =
+        std::all_of(x.begin(), x.end(), [](double value) { return std::abs(value) < no_value / 2; });
+    if (is_reached) not_evaluated = undefined_value(system, kind, index, x.data());
   }
 
   /// The first step is tried with a length that moves x by one part in a hundred; the error control does the rest.
