@@ -143,6 +143,9 @@ std::vector<Constant> make_table() {
       {"HOLD", "quantities that keep their values, one more parameter of ICP free for each", extension_record, &R::held,
        any(), "names of monitors or durations with a value, or a list of names for the values of the start",
        "{period: 36}", ""},
+      {"BOUNDS", "bounds of further quantities, outside of which the branch ends", extension_record, &R::bounds, any(),
+       "pairs of a parameter, duration or monitor and its least and largest value", "{T1: [0, 10], max(x): [-1, 2]}",
+       ""},
       {"ICPMOVE", "let ICP(1) move where no orbit is found at its first value", extension_record, &R::start_may_move,
        one_of({0, 1}), "0 (refuse such a start) or 1 (take an orbit near it, with another value)", "1", ""},
       {"CLSTOP", "end the branch where it comes back to its first point", extension_record, &R::stop_when_closed,
@@ -151,7 +154,8 @@ std::vector<Constant> make_table() {
        range(0, max_orbit_segments), "", "10", "of IPS = 182 and 152"},
       {"HARMTOL", "size of the last harmonics of a torus, by which their number adapts; 0: it stays", extension_record,
        &R::harmonic_tolerance, at_least(0), "", "1e-8", "of IPS = 182 and 152"},
-      {"ERRMAX", "estimated error or structural multiplier beyond which NTST is doubled, or the branch ends; 0: any",
+      {"ERRMAX",
+       "error between mesh points, or of a known multiplier, beyond which NTST is doubled, or the branch ends; 0: any",
        extension_record, &R::error_bound, at_least(0), "", "1e-2", ""},
       {"PAR", "values of parameters", command_line_record, &R::parameter_values, any(),
        "a finite number for PAR(index) or PAR(name)", "{2: 0.8}", ""},
@@ -222,6 +226,7 @@ bool has_real_values(const Constant& constant) {
   return std::holds_alternative<double R::*>(m) || std::holds_alternative<std::vector<IndexedValue> R::*>(m) ||
          std::holds_alternative<std::vector<UserValue> R::*>(m) ||
          std::holds_alternative<std::vector<HeldValue> R::*>(m) ||
+         std::holds_alternative<std::vector<BoundedValue> R::*>(m) ||
          std::holds_alternative<std::vector<R::ParameterValue> R::*>(m);
 }
 

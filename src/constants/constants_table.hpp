@@ -37,8 +37,9 @@ using ConstantMember =
     std::variant<int RunSettings::*, double RunSettings::*, bool RunSettings::*, StartLabel RunSettings::*,
                  std::vector<int> RunSettings::*, std::vector<IndexedValue> RunSettings::*,
                  std::vector<UserValue> RunSettings::*, std::vector<StopRule> RunSettings::*,
-                 std::vector<HeldValue> RunSettings::*, std::vector<RunSettings::ParameterValue> RunSettings::*,
-                 ListCount, SegmentCount, SegmentInteger, MonitorCounts, MonitorLists>;
+                 std::vector<HeldValue> RunSettings::*, std::vector<BoundedValue> RunSettings::*,
+                 std::vector<RunSettings::ParameterValue> RunSettings::*, ListCount, SegmentCount, SegmentInteger,
+                 MonitorCounts, MonitorLists>;
 
 /// Limits of one number; `choices`, if any, are the only values.
 struct Limits {

@@ -81,6 +81,13 @@ struct KeywordValue {
       items.push_back(index_text(settings, held.parameter) + (pairs ? fmt::format(": {}", *held.value) : ""));
     return pairs ? fmt::format("{{{}}}", fmt::join(items, ", ")) : list_text(items);
   }
+  std::string operator()(std::vector<BoundedValue> RunSettings::*m) const {
+    std::vector<std::string> items;
+    for (const BoundedValue& bounded : settings.*m)
+      items.push_back(
+          fmt::format("{}: [{}, {}]", index_text(settings, bounded.parameter), bounded.least, bounded.most));
+    return fmt::format("{{{}}}", fmt::join(items, ", "));
+  }
   std::string operator()(std::vector<StopRule> RunSettings::*m) const {
     std::vector<std::string> items;
     for (const StopRule& rule : settings.*m) items.push_back(fmt::format("{}{}", rule.type, rule.count));

@@ -34,6 +34,12 @@ struct UserValue {
   bool stop = false;
 };
 
+/// A parameter, duration or monitor outside of whose bounds the branch ends (BOUNDS).
+struct BoundedValue {
+  int parameter = 0;
+  double least = 0.0, most = 0.0;
+};
+
 /// A monitor or duration that keeps a value along the branch (HOLD); without one that of the start.
 struct HeldValue {
   int parameter = 0;
@@ -46,7 +52,7 @@ struct StopRule {
   int count = 1;
 };
 
-/// A name in ICP, UZR, THL or HOLD, and where it was found first.
+/// A name in ICP, UZR, THL, HOLD or BOUNDS, and where it was found first.
 struct GivenName {
   std::string text;
   std::string keyword;
@@ -101,7 +107,7 @@ struct RunSettings {
   std::vector<SegmentSettings> segments;
 
   double harmonic_tolerance = 1e-7;  ///< HARMTOL, of the last harmonics of a torus; 0: their number stays
-  double error_bound = 1e-2;         ///< ERRMAX, of estimated error and structural multiplier; 0: none
+  double error_bound = 1e-2;         ///< ERRMAX, of the error between mesh points and of a known multiplier; 0: none
   int harmonics = 0;                 ///< NHARM, of a torus; 0: as the start has
   int grazing_jump = 1;              ///< GRJUMP
   bool stop_at_grazing = true;       ///< GRSTOP
@@ -110,10 +116,10 @@ struct RunSettings {
   int threads = 1;                   ///< -j of the command line: no constant, results do not depend on it
   std::vector<StopRule> stop_rules;  ///< STOP
   std::vector<HeldValue> held;       ///< HOLD
-  /// Names of monitors in ICP, UZR, THL and HOLD: PAR(first_monitor), ... stand for them in this order.
+  std::vector<BoundedValue> bounds;  ///< BOUNDS
+  /// Names of monitors in ICP, UZR, THL, HOLD and BOUNDS: PAR(first_monitor), ... stand for them in this order.
   std::vector<std::string> monitors;
-  /// All names in ICP, UZR, THL and HOLD, until resolve_names() has replaced them: PAR(name_index(k)) stands for name
-  /// k.
+  /// All names in these constants, until resolve_names() has replaced them: PAR(name_index(k)) stands for name k.
   std::vector<GivenName> names;
 
   /// PAR(k) = v given on the command line, by index or by the problem's own name.

@@ -150,6 +150,15 @@ class SettingsCheck {
       parameter_index("UZR", "IUZR", value.parameter, segments_of_run());
   }
 
+  void bounded_values() const {
+    std::vector<int> indices;
+    for (const BoundedValue& bounded : settings_.bounds) {
+      parameter_index("BOUNDS", "BOUNDS", bounded.parameter, segments_of_run());
+      indices.push_back(bounded.parameter);
+    }
+    each_once("BOUNDS", indices);
+  }
+
   void test_functions() const {
     if (keeps_contact(settings_.problem_type)) return;
     std::size_t monitored = 0;
@@ -251,6 +260,7 @@ void check_parameter_indices(const RunSettings& settings, const PlaceOf& place) 
   check.parameter_weights();
   check.user_values();
   check.held_values();
+  check.bounded_values();
 }
 
 void check_settings(const RunSettings& settings, const PlaceOf& place) {

@@ -55,7 +55,7 @@ const std::vector<RawPair>& pairs_of(const Constant& constant, const RawValue& v
 
 bool has_parameter_indices(const Constant& constant) {
   return constant.keyword == "ICP" || constant.keyword == "THL" || constant.keyword == "UZR" ||
-         constant.keyword == "HOLD";
+         constant.keyword == "HOLD" || constant.keyword == "BOUNDS";
 }
 
 int pair_index(const Constant& constant, const Token& key) {
@@ -143,6 +143,23 @@ struct SettingsDraft::Assigner {
       for (const auto& [key, number] : value.pairs) add(key, real_value(constant, name(), number, constant.limits));
     } else {
       for (const RawValue& item : items_of(constant, value)) add(item.token, std::nullopt);
+    }
+    settings().*member = std::move(result);
+  }
+  void operator()(std::vector<BoundedValue> RunSettings::*member) const {
+    std::vector<BoundedValue> result;
+    for (const auto& [key, range] : pairs_of(constant, value)) {
+      const Token token = draft.index_token(constant, name(), key);
+      const int index = integer_value(constant, name(), RawValue::scalar(token), constant.index_limits);
+      const std::vector<RawValue> ends = items_of(constant, range);
+      if (ends.size() != 2)
+        refuse(constant, name(), key.place, fmt::format("{} value(s) for {}", ends.size(), in_quotes(key.text)),
+               "the least and the largest value, as in {T1: [0, 10]}");
+      const auto number = [&](const RawValue& end) { return real_value(constant, name(), end, constant.limits); };
+      result.push_back({index, number(ends[0]), number(ends[1])});
+      if (result.back().least >= result.back().most)
+        refuse(constant, name(), ends[1].token.place, in_quotes(ends[1].token.text),
+               fmt::format("a number greater than {}", result.back().least));
     }
     settings().*member = std::move(result);
   }

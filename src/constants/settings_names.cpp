@@ -47,6 +47,7 @@ void resolve_names(RunSettings& settings, const ParameterNames& names) {
   for (IndexedValue& weight : settings.parameter_weights) resolve(weight.index);
   for (UserValue& value : settings.user_values) resolve(value.parameter);
   for (HeldValue& held : settings.held) resolve(held.parameter);
+  for (BoundedValue& bounded : settings.bounds) resolve(bounded.parameter);
   const std::vector<GivenName> given = std::exchange(settings.names, {});
   check_parameter_indices(settings, [&given](std::string_view keyword) {
     const auto found =

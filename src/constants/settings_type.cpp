@@ -104,6 +104,7 @@ bool leave_out_monitors(RunSettings& settings) {
   std::erase_if(settings.free_parameters, [](int k) { return k >= first_monitor; });
   std::erase_if(settings.user_values, [](const UserValue& value) { return value.parameter >= first_monitor; });
   std::erase_if(settings.parameter_weights, [](const IndexedValue& weight) { return weight.index >= first_monitor; });
+  std::erase_if(settings.bounds, [](const BoundedValue& value) { return value.parameter >= first_monitor; });
   settings.held.clear();
   settings.monitors.clear();
   return true;

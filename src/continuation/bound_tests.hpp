@@ -10,9 +10,7 @@
 
 namespace tchat {
 
-/// One for each finite bound among RL0, RL1, A0, A1: the value minus the bound. Their zeros are end points.
-/// `parameter` is the name of the principal parameter.
-std::vector<std::unique_ptr<TestFunction>> bound_tests(const ContinuationSettings& settings,
-                                                       const std::string& parameter);
+/// One for each finite bound among RL0, RL1, A0, A1 and BOUNDS: the value minus the bound. Their zeros are end points.
+std::vector<std::unique_ptr<TestFunction>> bound_tests(const ContinuationSettings& settings);
 
 }  // namespace tchat

@@ -28,7 +28,6 @@ struct BranchPoint {
   const PathPoint& path;
   const FloquetMultipliers& multipliers;
   const std::vector<Violation>& violations;  ///< empty: admissible
-  double measure = 0.0;                      ///< by IPLT, where it is bounded
   double estimated_error = 0.0;              ///< of the states between mesh points, relative
   int newton_iterations = 0;
   const std::vector<NewtonIteration>& newton;  ///< of the step that reached it
@@ -71,9 +70,8 @@ enum class EndReason {
   unresolved,  ///< no discretisation within the limits resolves what follows
   no_orbit,    ///< the period has passed infinity or zero
   max_points,
-  parameter_bound,
-  measure_bound,
-  on_bound,  ///< of RL0, RL1, A0, A1, where the branch was to end
+  beyond_bound,  ///< of RL0, RL1, A0, A1 or BOUNDS
+  on_bound,      ///< of RL0, RL1, A0, A1 or BOUNDS, where the branch was to end
   special_point,
   curve_end,    ///< of a two-parameter curve, passed
   equilibrium,  ///< the orbit has shrunk to a point

@@ -50,21 +50,41 @@ LocationSettings location_settings(const ContinuationSettings& settings) {
 std::vector<std::unique_ptr<TestFunction>> with_bounds(std::vector<std::unique_ptr<TestFunction>> tests,
                                                        const ContinuationSettings& settings) {
   if (settings.clip)
-    for (auto& test : bound_tests(settings, settings.principal_name)) tests.push_back(std::move(test));
+    for (auto& test : bound_tests(settings)) tests.push_back(std::move(test));
   return tests;
-}
-
-/// Is there a finite bound of the solution measure?
-bool bounds_measure(const ContinuationSettings& settings) {
-  constexpr double none = 1e300;
-  return settings.measure_min > -none || settings.measure_max < none;
 }
 
 }  // namespace
 
-bool is_beyond(const ContinuationSettings& settings, double value, double least, double most) {
+std::string BranchBounds::keywords() const {
+  return least_keyword == most_keyword ? least_keyword : least_keyword + ", " + most_keyword;
+}
+
+bool BranchBounds::is_finite() const {
+  constexpr double none = 1e300;
+  return least > -none || most < none;
+}
+
+std::vector<BranchBounds> branch_bounds(const ContinuationSettings& settings) {
+  std::vector<BranchBounds> all;
+  all.push_back(
+      {settings.principal, settings.principal_name, "RL0", "RL1", settings.parameter_min, settings.parameter_max});
+  all.push_back(
+      {BranchBounds::solution_measure, "the solution measure", "A0", "A1", settings.measure_min, settings.measure_max});
+  all.insert(all.end(), settings.further_bounds.begin(), settings.further_bounds.end());
+  std::erase_if(all, [](const BranchBounds& bounds) { return !bounds.is_finite(); });
+  return all;
+}
+
+double bounded_value(const BranchBounds& bounds, const ContinuationSettings& settings, const Orbit& orbit,
+                     const CollocationRule& rule) {
+  if (bounds.parameter != BranchBounds::solution_measure) return orbit.par(bounds.parameter - 1);
+  return solution_measure(orbit, rule, settings.state_weights, settings.measure);
+}
+
+bool is_beyond(const ContinuationSettings& settings, const BranchBounds& bounds, double value) {
   const double accuracy = location_accuracy(settings) * (1.0 + std::abs(value));
-  return value < least - accuracy || value > most + accuracy;
+  return value < bounds.least - accuracy || value > bounds.most + accuracy;
 }
 
 ContinuationRun::ContinuationRun(PathFollower& follower, const DefiningSystem& system, ContinuationSettings settings,
@@ -77,7 +97,8 @@ ContinuationRun::ContinuationRun(PathFollower& follower, const DefiningSystem& s
       search_(follower, system, *analysis_, with_bounds(std::move(tests), settings_), location_settings(settings_)),
       step_(settings_.step),
       trend_(settings_.trend.value_or(OrbitTrend(system.orbits()))),
-      closed_(follower, system, analysis_->has_fixed_phase()) {
+      closed_(follower, system, analysis_->has_fixed_phase()),
+      bounds_(branch_bounds(settings_)) {
   summary_.family = &analysis_->facts();
   for (const auto& test : search_.tests()) test_values_.push_back({test->name(), std::nullopt});
 }
@@ -324,12 +345,15 @@ bool ContinuationRun::take_step() {
 
 /// What the point here_ is after all: special already, the end of the branch, a regular output point, or nothing.
 SpecialPoint ContinuationRun::end_conditions(SpecialPoint special) {
-  const double principal = here_.orbit.par(settings_.principal - 1);
-  if (bounds_measure(settings_))
-    measure_ = solution_measure(here_.orbit, follower_.condensed().rule(), settings_.state_weights, settings_.measure);
-  if (is_beyond(settings_, principal, settings_.parameter_min, settings_.parameter_max) ||
-      is_beyond(settings_, measure_, settings_.measure_min, settings_.measure_max))
-    special = {};  // what lies beyond the bound was not asked for: the branch ends there with an ordinary end point
+  const BranchBounds* exceeded = nullptr;
+  double value = 0.0;
+  for (const BranchBounds& bounds : bounds_) {
+    const double here = bounded_value(bounds, settings_, here_.orbit, follower_.condensed().rule());
+    if (is_beyond(settings_, bounds, here)) special = {};  // special points outside of the bounds are not wanted
+    if (exceeded != nullptr || (here >= bounds.least && here <= bounds.most)) continue;
+    exceeded = &bounds;
+    value = here;
+  }
   if (ended_) return special;
   const bool is_special = special.type != PointType::ordinary && special.type != PointType::end;
   summary_.stopped_at_grazing = special.ends_branch && (special.kind.kind == UserPointKind::contact ||
@@ -339,12 +363,10 @@ SpecialPoint ContinuationRun::end_conditions(SpecialPoint special) {
     end(EndReason::special_point, special.description);
   else if (special.ends_branch)
     end(EndReason::on_bound, special.description);
-  else if (principal < settings_.parameter_min || principal > settings_.parameter_max)
-    end(EndReason::parameter_bound, fmt::format("it is {:.10g}, allowed are {:.10g} to {:.10g}", principal,
-                                                settings_.parameter_min, settings_.parameter_max));
-  else if (measure_ < settings_.measure_min || measure_ > settings_.measure_max)
-    end(EndReason::measure_bound, fmt::format("it is {:.10g}, allowed are {:.10g} to {:.10g}", measure_,
-                                              settings_.measure_min, settings_.measure_max));
+  else if (exceeded != nullptr)
+    end(EndReason::beyond_bound, fmt::format("{} {} the bounds {}: it is {:.10g}, allowed are {:.10g} to {:.10g}",
+                                             exceeded->quantity, number_ > 1 ? "left" : "starts outside",
+                                             exceeded->keywords(), value, exceeded->least, exceeded->most));
   else if (number_ >= settings_.max_points)
     end(EndReason::max_points, fmt::format("NMX = {}", settings_.max_points));
   else if (settings_.interrupted && settings_.interrupted())
@@ -407,7 +429,6 @@ void ContinuationRun::record(const SpecialPoint& special, const PointData& data)
                     here_,
                     data.multipliers,
                     violations,
-                    measure_,
                     data.estimated_error,
                     newton_.iterations,
                     follower_.newton().history(),

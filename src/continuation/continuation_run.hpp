@@ -17,6 +17,19 @@
 
 namespace tchat {
 
+/// The range of a quantity outside of which a branch ends.
+struct BranchBounds {
+  static constexpr int solution_measure = 0;
+  int parameter = solution_measure;  ///< index in PAR of a parameter, duration or monitor; or the solution measure
+  std::string quantity;              ///< its name
+  std::string least_keyword, most_keyword;  ///< constants that set them: RL0 and RL1, A0 and A1, BOUNDS
+  double least = -1e300, most = 1e300;
+
+  /// "RL0, RL1"
+  std::string keywords() const;
+  bool is_finite() const;
+};
+
 struct ContinuationSettings {
   StepSettings step;
   int max_points = 100;  ///< NMX; the start counts
@@ -25,6 +38,7 @@ struct ContinuationSettings {
   double parameter_min = -1e300, parameter_max = 1e300;  ///< RL0, RL1
   double measure_min = -1e300, measure_max = 1e300;      ///< A0, A1
   int measure = 0;                                       ///< IPLT
+  std::vector<BranchBounds> further_bounds;              ///< BOUNDS
   Eigen::VectorXd state_weights;                         ///< THU, n entries
   int print_every = 0;                                   ///< NPR
   int adapt_mesh_every = 0;                              ///< IAD
@@ -54,8 +68,15 @@ struct ContinuationSettings {
   int first_number = 1;  ///< of the start; one that goes on with another discretisation was recorded before
 };
 
+/// All finite bounds: of the principal parameter, the solution measure, then further ones.
+std::vector<BranchBounds> branch_bounds(const ContinuationSettings& settings);
+
+/// The value that is bounded.
+double bounded_value(const BranchBounds& bounds, const ContinuationSettings& settings, const Orbit& orbit,
+                     const CollocationRule& rule);
+
 /// Outside of the bounds, and not just by the accuracy of a located point (a user value may be a bound).
-bool is_beyond(const ContinuationSettings& settings, double value, double least, double most);
+bool is_beyond(const ContinuationSettings& settings, const BranchBounds& bounds, double value);
 
 class ContinuationRun {
  public:
@@ -110,8 +131,9 @@ class ContinuationRun {
   StepSize step_;
   OrbitTrend trend_;
   ClosedBranch closed_;
-  PathPoint here_;      // the last accepted point, moved to a new mesh where one was due
-  PathPoint accepted_;  // the same as it was accepted
+  std::vector<BranchBounds> bounds_;  // all that are finite
+  PathPoint here_;                    // the last accepted point, moved to a new mesh where one was due
+  PathPoint accepted_;                // the same as it was accepted
   PointData accepted_data_;
   Candidate next_;            // the point being computed; once accepted its step and data, the point is here_
   NewtonResult newton_;       // of the step to it
@@ -127,7 +149,6 @@ class ContinuationRun {
   MeshEquidistribution equidistribution_;
   std::vector<NamedTestValue> test_values_;  // of the point that is handed over
   std::size_t lost_before_ = 0;              // reports at the last accepted point
-  double measure_ = 0.0;                     // at here_
   int number_ = 1;                           // of here_
   bool ended_ = false;
   BranchSummary summary_;

@@ -13,7 +13,6 @@
 #include "constants/constants_writer.hpp"
 #include "constants/settings_type.hpp"
 #include "continuation/continuation_run.hpp"
-#include "continuation/solution_measure.hpp"
 #include "files/labelled_solution.hpp"
 #include "plugin/plugin_build.hpp"
 #include "plugin/problem_library.hpp"
@@ -22,6 +21,7 @@
 #include "problem_type/problem_type.hpp"
 #include "run/branch_setup.hpp"
 #include "run/branch_writer.hpp"
+#include "run/next_command.hpp"
 #include "run/parameter_remarks.hpp"
 #include "run/run_summary.hpp"
 #include "run/unwatched_events.hpp"
@@ -66,17 +66,15 @@ void refuse_to_replace_start(const RunRequest& request, const SelectedStart& sta
 /// A start beyond the bounds leaves nothing to compute. A label may lie there, where an earlier run ended: its branch
 /// of one point says so.
 void refuse_start_outside(const Orbit& start, const CollocationRule& rule, const ContinuationSettings& settings,
-                          const std::string& parameter, const std::string& source) {
-  const auto refuse = [&](const std::string& what, double value, double least, double most, const char* bounds) {
-    if (!is_beyond(settings, value, least, most)) return;
+                          const std::string& source) {
+  for (const BranchBounds& bounds : branch_bounds(settings)) {
+    const double value = bounded_value(bounds, settings, start, rule);
+    if (!is_beyond(settings, bounds, value)) continue;
     throw UserError(
-        fmt::format("the start from {} lies outside of the bounds: {} is {:.10g}, and {} allow {:.10g} to {:.10g}; "
-                    "widen them, or start elsewhere",
-                    source, what, value, bounds, least, most));
-  };
-  refuse(parameter, start.par(settings.principal - 1), settings.parameter_min, settings.parameter_max, "RL0, RL1");
-  refuse("the solution measure", solution_measure(start, rule, settings.state_weights, settings.measure),
-         settings.measure_min, settings.measure_max, "A0, A1");
+        fmt::format("the start from {} is outside of the bounds: {} is {:.10g}, and {} allow {:.10g} to {:.10g}; "
+                    "widen them, or use another start",
+                    source, bounds.quantity, value, bounds.keywords(), bounds.least, bounds.most));
+  }
 }
 
 /// A line where the start is a special point, which this run neither switches at nor follows in two parameters, nor
@@ -181,11 +179,13 @@ ContinuationSettings continuation_of(const RunRequest& request, const BranchSetu
   ContinuationSettings continuation = continuation_settings(setup.settings);
   continuation.clip = request.clip;
   continuation.principal_name = parameter_name(system, setup.settings, continuation.principal);
+  for (const BoundedValue& bounded : setup.settings.bounds)
+    continuation.further_bounds.push_back({bounded.parameter, parameter_name(system, setup.settings, bounded.parameter),
+                                           "BOUNDS", "BOUNDS", bounded.least, bounded.most});
   continuation.label_start = selected.label_start;
   continuation.interrupted = interrupted;
   if (!selected.from_solution || selected.parameters_changed)
-    refuse_start_outside(setup.start.point.orbit, setup.follower->condensed().rule(), continuation,
-                         continuation.principal_name, selected.source);
+    refuse_start_outside(setup.start.point.orbit, setup.follower->condensed().rule(), continuation, selected.source);
   return continuation;
 }
 
@@ -312,6 +312,9 @@ int run_problem(const RunRequest& request, std::ostream& screen, std::ostream& w
                       {constants, active_parameters(constants), setup.type->facts().curve, last_label}, files,
                       reports.table, reports.table != nullptr ? progress : nullptr);
 
+  const NextCommand next = [&](const BranchWriter::Labelled& label) {
+    return next_command({label.label, label.number, label.kind}, constants, system, request, output);
+  };
   int status = 0;
   bool closed = false;
   const auto report = [&](const BranchSummary& summary, std::size_t labels_before) {
@@ -319,7 +322,7 @@ int run_problem(const RunRequest& request, std::ostream& screen, std::ostream& w
     const std::vector<BranchWriter::Labelled> labels(
         writer.labels().begin() + static_cast<std::ptrdiff_t>(labels_before), writer.labels().end());
     if (reports.table != nullptr)
-      *reports.table << summary_text(summary, labels, continuation.principal_name, output) << std::flush;
+      *reports.table << summary_text(summary, labels, continuation.principal_name, output, next) << std::flush;
     const int of_branch = status_of(summary, request.strict, warnings);
     status = of_branch == 1 || status == 0 ? of_branch : status;
   };

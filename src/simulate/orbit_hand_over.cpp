@@ -168,6 +168,9 @@ RunSettings orbit_settings(const HybridSystem& system, const RunSettings& base, 
   if (!same_parameter || value > settings.parameter_max) settings.parameter_max = no_bound;
   std::erase_if(settings.user_values,
                 [&](const UserValue& u) { return !is_free(settings.free_parameters, std::abs(u.parameter)); });
+  std::erase_if(settings.bounds, [&](const BoundedValue& b) {
+    return is_duration(b.parameter, static_cast<int>(base.segments.size()));
+  });
 
   settings.segments.clear();
   settings.test_functions.clear();
