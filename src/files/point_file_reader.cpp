@@ -327,7 +327,10 @@ std::string name_in(const std::map<int, std::string>& names, int k, const char* 
 
 }  // namespace
 
-std::string PointSection::parameter_name(int k) const { return name_in(parameters, k, "PAR"); }
+std::string PointSection::parameter_name(int k) const {
+  if (is_own_problem_type(problem_type) && is_duration(k, max_orbit_segments)) return duration_name(k);
+  return name_in(parameters, k, "PAR");
+}
 std::string PointSection::state_name(int k) const { return name_in(states, k, "U"); }
 
 std::vector<int> PointSection::free_problem_parameters() const {

@@ -20,12 +20,12 @@ constexpr int column_width = 13;
 /// What the screen shows first: 0 always, then in this order as far as there is room.
 int rank(const PointColumn& column, std::size_t place) {
   using Kind = PointColumn::Kind;
-  const bool is_duration =
-      column.kind == Kind::parameter && column.index >= first_duration && column.index < first_monitor;
-  if (place == 0 || column.kind == Kind::period || (column.kind == Kind::parameter && !is_duration)) return 0;
+  const bool is_parameter = column.kind == Kind::parameter;
+  const bool is_of_duration = is_parameter && is_duration(column.index, max_orbit_segments);
+  if (place == 0 || column.kind == Kind::period || (is_parameter && !is_of_duration)) return 0;
   if (place == 1) return 1;  // the solution measure
   if (column.kind == Kind::user_function) return 2;
-  return is_duration ? 4 : 3;
+  return is_of_duration ? 4 : 3;
 }
 
 /// The columns shown, in the file's order.
@@ -41,10 +41,16 @@ std::vector<std::size_t> shown(const std::vector<PointColumn>& columns) {
 
 }  // namespace
 
+std::string shown_name(const PointColumn& column) {
+  const bool is_of_duration =
+      column.kind == PointColumn::Kind::parameter && is_duration(column.index, max_orbit_segments);
+  return is_of_duration ? duration_name(column.index) : column.name;
+}
+
 std::string format_table_heading(const std::vector<PointColumn>& columns) {
   std::string line = "  BR    PT  TY  LAB";
   for (const std::size_t k : shown(columns)) {
-    const std::string heading = heading_field(columns[k].name, column_width);
+    const std::string heading = heading_field(shown_name(columns[k]), column_width);
     const bool touches = line.back() != ' ' && heading.front() != ' ';  // a long name in the first column
     line += touches ? " " + heading.substr(0, heading.size() - 1) : heading;
   }

@@ -15,6 +15,9 @@
 
 namespace tchat {
 
+/// The name of a column on the screen: "T1" for PAR(61), else its heading.
+std::string shown_name(const PointColumn& column);
+
 /// The headings, one line with its newline.
 std::string format_table_heading(const std::vector<PointColumn>& columns);
 

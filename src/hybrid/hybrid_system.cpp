@@ -111,6 +111,7 @@ std::string HybridSystem::state_name(int k) const { return name_or(table_->state
 
 std::string HybridSystem::parameter_name(int k) const {
   if (k == rotation_parameter && parameters() < k) return rotation_name;
+  if (is_duration(k, max_orbit_segments)) return duration_name(k);
   return name_or(table_->parameter_names, parameters(), k, "PAR({})");
 }
 

@@ -2,6 +2,11 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "text/number.hpp"
 
 namespace tchat {
 
@@ -27,5 +32,16 @@ constexpr bool is_duration(int k, int segments) { return k >= first_duration && 
 
 /// The segment (0-based) whose duration PAR(k) is.
 constexpr int duration_segment(int k) { return k - first_duration; }
+
+/// "T2" of PAR(62): what users read. Files of runs have PAR(62), as TC-HAT's do.
+inline std::string duration_name(int k) { return "T" + std::to_string(duration_segment(k) + 1); }
+
+/// 62 of "T2"; nothing for what names no duration.
+inline std::optional<int> duration_of_name(std::string_view name) {
+  if (name.size() < 2 || name.size() > 4 || name.front() != 'T') return std::nullopt;
+  const std::optional<int> segment = parse_integer(name.substr(1));
+  if (!segment || *segment < 1 || *segment > max_orbit_segments) return std::nullopt;
+  return first_duration + *segment - 1;
+}
 
 }  // namespace tchat

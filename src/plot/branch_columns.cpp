@@ -52,8 +52,9 @@ std::optional<IndexedName> indexed_name(const std::string& text) {
   return std::nullopt;
 }
 
-/// "PAR(2)" -> "omega", "MAX U(1)" -> "MAX x1".
+/// "PAR(2)" -> "omega", "MAX U(1)" -> "MAX x1", "T1" -> "PAR(61)", which is its heading.
 std::string with_names(const PointSection& section, const std::string& wanted) {
+  if (const auto duration = duration_of_name(wanted)) return fmt::format("PAR({})", *duration);
   const auto found = indexed_name(wanted);
   if (!found) return wanted;
   return found->before +
@@ -69,9 +70,16 @@ std::optional<std::size_t> column_of_last_word(const PointSection& section, cons
   return std::nullopt;
 }
 
+/// The heading, with the names of durations.
+std::string shown_name(const PointSection& section, std::size_t column) {
+  const std::optional<int> k = section.parameter_of_column(column);
+  return k ? section.parameter_name(*k) : section.columns[column];
+}
+
 std::optional<int> parameter_index(const PointSection& section, const std::string& wanted) {
   for (const auto& [k, name] : section.parameters)
     if (name == wanted) return k;
+  if (const auto duration = duration_of_name(wanted)) return duration;
   const auto found = indexed_name(wanted);
   if (found && found->symbol == "par" && found->before.empty()) return found->index;
   return std::nullopt;
@@ -115,7 +123,7 @@ std::optional<ColumnSource> column_source(const BranchFile& file, std::size_t se
   ColumnSource source;
   if (const auto column = column_index(s, name)) {
     source.column = *column;
-    source.name = s.columns[*column];
+    source.name = shown_name(s, *column);
     return source;
   }
   if (const auto k = parameter_index(s, name)) {

@@ -43,6 +43,8 @@ struct ProblemFacts {
   bool switches_branch = false;  ///< goes on as the type that ISW = 1 names, on either side of its start
   const char* starts_at = "a branch point (BP)";  ///< the labels at which such a switch starts
   const char* start_example = "BP";
+  /// Further words of a command line that starts there, after IRS, IPS and ISW; {} stands for the name of ICP(1).
+  const char* start_words = "";
 };
 
 class ProblemType {

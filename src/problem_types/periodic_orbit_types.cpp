@@ -166,8 +166,9 @@ std::vector<const ProblemType*> periodic_orbit_types() {
                                   {PointType::user}, ring, double_event);
   static const SwitchRow switches(switch_facts("the branch that bifurcates at a PD or BP label", true),
                                   branch_switch_labels(), switch_branch);
-  static const SwitchRow births(switch_facts("the periodic orbits that are born at an HB label of equilibria", false),
-                                {PointType::hopf}, begin_periodic_orbits);
+  ProblemFacts births_at_hopf = switch_facts("the periodic orbits that are born at an HB label of equilibria", false);
+  births_at_hopf.start_words = "GCHIND=[0] GCGIND=[0]";
+  static const SwitchRow births(births_at_hopf, {PointType::hopf}, begin_periodic_orbits);
   return {&orbits, &folds,         &doublings,     &tori,     &persistent_branch_points,
           &angles, &branch_points, &double_events, &switches, &births};
 }

@@ -28,9 +28,10 @@ std::vector<const ProblemType*> torus_types() {
   static const TorusProblem tori(torus_facts(invariant_torus, "invariant tori",
                                              "invariant tori, rho and one parameter free, or two with rho fixed", 2),
                                  free_torus);
-  static const SwitchRow births(
-      torus_facts(torus_birth, "invariant tori", "the torus that is born at a TR label of periodic orbits", 2),
-      {PointType::torus}, begin_torus);
+  ProblemFacts births_at_torus =
+      torus_facts(torus_birth, "invariant tori", "the torus that is born at a TR label of periodic orbits", 2);
+  births_at_torus.start_words = "'ICP=[{},rho]'";
+  static const SwitchRow births(births_at_torus, {PointType::torus}, begin_torus);
   ProblemFacts grazing =
       torus_facts(grazing_torus, "invariant tori in grazing contact",
                   "invariant tori in grazing contact, rho and two parameters free, or three with rho fixed", 3);

@@ -134,7 +134,7 @@ void BranchWriter::point(const BranchPoint& point) {
   if (point.labelled())
     labels_.push_back({line_.label,
                        fmt::format("{}", fmt::join(type_names(line_.type, line_.kind, point.special.further), " ")),
-                       place(line_), description_of(recorded)});
+                       place(line_), description_of(recorded), basic_type(line_.type), line_.kind});
 }
 
 /// User functions are for output only: one that is not finite stops nothing, so it is reported, once.
@@ -156,7 +156,7 @@ std::string BranchWriter::place(const PointLine& line) const {
   for (std::size_t k = 0; k < section_.columns.size(); ++k)
     if (const PointColumn& column = section_.columns[k];
         column.kind == PointColumn::Kind::parameter && (k == 0 || column.index < first_duration))
-      text += fmt::format("{}{} = {:.10g}", text.empty() ? "" : ", ", column.name,
+      text += fmt::format("{}{} = {:.10g}", text.empty() ? "" : ", ", shown_name(column),
                           std::abs(line.values[k]) < std::numeric_limits<double>::min() ? 0.0 : line.values[k]);
   return text;
 }

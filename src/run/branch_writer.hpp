@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "continuation/branch.hpp"
+#include "files/point_table.hpp"
 #include "files/run_files.hpp"
 #include "run/branch_output.hpp"
 
@@ -47,6 +48,8 @@ class BranchWriter final : public BranchSink {
     std::string type;
     std::string place;  ///< "alpha = 3.1", with the other free parameters that are no durations
     std::string description;
+    int number = 0;  ///< of the type, without the tens digit of a curve
+    UserPointKind kind = {};
   };
   /// The labels written so far, in order.
   const std::vector<Labelled>& labels() const { return labels_; }
@@ -59,7 +62,7 @@ class BranchWriter final : public BranchSink {
   bool shown_stable(const BranchPoint& point);
   void report_unknown_user_values(const PointLine& line);
   void show_message(const std::string& text);
-  const std::string& principal_name() const { return section_.columns.front().name; }
+  std::string principal_name() const { return shown_name(section_.columns.front()); }
 
   const CollocationRule& rule_;
   PointLine line_;                   // of the last point

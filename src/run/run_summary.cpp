@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <set>
 
 namespace tchat {
 
@@ -14,15 +15,11 @@ namespace {
 constexpr double inaccurate = 1e-3;
 
 /// `told`: the line of the label MX says it all.
-std::string reason_text(const BranchSummary& summary, const std::string& parameter, bool told) {
-  const char* left = summary.points > 1 ? "left" : "starts outside";
+std::string reason_text(const BranchSummary& summary, bool told) {
   switch (summary.reason) {
     case EndReason::max_points:
       return fmt::format("{} points computed", summary.detail);
-    case EndReason::parameter_bound:
-      return fmt::format("{} {} the bounds RL0, RL1: {}", parameter, left, summary.detail);
-    case EndReason::measure_bound:
-      return fmt::format("the solution measure {} the bounds A0, A1: {}", left, summary.detail);
+    case EndReason::beyond_bound:
     case EndReason::on_bound:
     case EndReason::equilibrium:
     case EndReason::curve_end:
@@ -125,26 +122,45 @@ bool is_special(const BranchWriter::Labelled& label) {
   return label.type != "EP" && label.type != "RG" && !label.type.empty();
 }
 
+/// Which labels there are, and how many of them the screen did not show.
+std::string labels_text(const std::vector<BranchWriter::Labelled>& labels, const std::string& output) {
+  if (labels.empty()) return "";
+  if (labels.size() == 1) return fmt::format("; label {} in q.{}", labels.front().label, output);
+  std::string text = fmt::format("; labels {} to {} in q.{}", labels.front().label, labels.back().label, output);
+  const auto regular = std::count_if(labels.begin(), labels.end(), [](const BranchWriter::Labelled& label) {
+    return label.number == static_cast<int>(PointType::regular);
+  });
+  if (regular > 0) text += fmt::format(", {} of them by NPR and not shown", regular);
+  return text;
+}
+
+/// A line for each special point, and the next command below the first one of each type.
+std::string special_points(const std::vector<BranchWriter::Labelled>& labels, const NextCommand& next) {
+  std::string text;
+  std::set<std::string> seen;
+  for (const BranchWriter::Labelled& label : labels) {
+    if (!is_special(label)) continue;
+    text += folded(fmt::format("  {} label {} at {}{}{}", label.type, label.label, label.place,
+                               label.description.empty() ? "" : ": ", label.description));
+    if (!seen.insert(label.type).second) continue;
+    if (const std::string command = next(label); !command.empty()) text += "    next: " + command + '\n';
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string summary_text(const BranchSummary& summary, const std::vector<BranchWriter::Labelled>& labels,
-                         const std::string& parameter, const std::string& output) {
+                         const std::string& parameter, const std::string& output, const NextCommand& next) {
   std::string text = fmt::format("\n{} points", summary.points);
   if (summary.multipliers_computed && !summary.critical_curve)
     text += fmt::format(", {} stable and {} unstable{}", summary.points - summary.unstable_points,
                         summary.unstable_points, summary.without_contact ? " but for the contact" : "");
-  if (labels.size() == 1) text += fmt::format("; label {} in q.{}", labels.front().label, output);
-  if (labels.size() > 1)
-    text += fmt::format("; labels {} to {} in q.{}", labels.front().label, labels.back().label, output);
-  text += ".\n";
-  for (const BranchWriter::Labelled& label : labels)
-    if (is_special(label))
-      text += folded(fmt::format("  {} label {} at {}{}{}", label.type, label.label, label.place,
-                                 label.description.empty() ? "" : ": ", label.description));
+  text += labels_text(labels, output) + ".\n" + special_points(labels, next);
   const bool told = std::any_of(labels.begin(), labels.end(), [&summary](const BranchWriter::Labelled& label) {
     return label.type == "MX" && label.description == summary.detail;
   });
-  text += folded(fmt::format("  stopped: {}", reason_text(summary, parameter, told)));
+  text += folded(fmt::format("  stopped: {}", reason_text(summary, told)));
   if (!summary.remark.empty()) text += folded("  " + summary.remark);
   return text + vanishing_functions(summary.vanishing) + advice(summary) + lost_points(summary, parameter) +
          accuracy(summary) + inadmissible(summary);

@@ -30,8 +30,8 @@ class ScreenOutput final : public BranchOutput {
       progress_.clear();
       screen_ << format_table_line(line, section_.columns);
     } else if (progress_.is_due()) {
-      progress_.show(fmt::format("point {}, {} = {:.8g}, step {:.2g} ", point.number, section_.columns.front().name,
-                                 line.values.front(), point.step));
+      progress_.show(fmt::format("point {}, {} = {:.8g}, step {:.2g} ", point.number,
+                                 shown_name(section_.columns.front()), line.values.front(), point.step));
     }
     if (!line.admissible && (change || point.number == 1))
       for (const Violation& violation : point.violations)

@@ -37,7 +37,7 @@ TEST_CASE("names of states, parameters and functions") {
   CHECK(linosc.count(FunctionKind::jump) == 2);
   CHECK(linosc.state_name(3) == "y1");
   CHECK(linosc.parameter_name(2) == "omega");
-  CHECK(linosc.parameter_name(61) == "PAR(61)");
+  CHECK(linosc.parameter_name(61) == "T1");
   CHECK(linosc.function_name(FunctionKind::event, 2) == "maximum of x1");
   CHECK(linosc.function_name(FunctionKind::jump, 1) == "impact");
   CHECK(linosc.parameter_index("omega") == 2);

@@ -1,0 +1,26 @@
+/// The command that most users give next at a labelled solution of a branch in one parameter.
+#pragma once
+
+#include <string>
+
+#include "constants/run_settings.hpp"
+#include "hybrid/hybrid_system.hpp"
+#include "problem_type/point_type.hpp"
+#include "setup/run_request.hpp"
+
+namespace tchat {
+
+/// A label that a run has written.
+struct NextStart {
+  int label = 0;
+  int type = 0;  ///< type number without the tens digit of a curve
+  UserPointKind kind;
+};
+
+/// A line for the shell: at a bifurcation a run on the branch that is born there, at a fold the curve of folds in two
+/// parameters, at a contact resegmentation and a run with the new signature. "" where no command suits most users, and
+/// on curves in two parameters. `settings` are those of the run that wrote the label to q.`output`.
+std::string next_command(const NextStart& start, const RunSettings& settings, const HybridSystem& system,
+                         const RunRequest& request, const std::string& output);
+
+}  // namespace tchat
