@@ -116,24 +116,22 @@ int check_problem(const CheckArguments& arguments) {
 
 void add_check_command(CLI::App& app, std::function<int()>& chosen) {
   const auto arguments = std::make_shared<CheckArguments>();
-  CLI::App* const command =
-      app.add_subcommand("check", "compare a problem's derivatives with finite differences; exit status 1 on a fault");
-  command->add_option("NAME", arguments->name, "problem: NAME.cpp, NAME.f, NAME.tch or NAME.so")->required();
+  CLI::App* const command = app.add_subcommand("check", "compare a problem's derivatives with finite differences");
+  command->add_option("NAME", arguments->name, "problem NAME.cpp, NAME.tch, NAME.f or NAME.so")->required();
   command->add_option("values", arguments->parameters, "parameter values, as 'PAR(2)=0.8'");
-  command->add_option("-p,--problem", arguments->plugin, "plugin, when it is not NAME: P.so, P.cpp, P.f, P.tch or P")
-      ->type_name("P");
+  command->add_option("-p,--problem", arguments->plugin, "problem P.cpp, P.tch, P.f or P.so [NAME]")->type_name("P");
   command
       ->add_option("-c,--constants", arguments->constants,
-                   "gc.C of a Fortran plugin, which does not say its sizes itself, or of a boundary value problem, "
-                   "for its number of segments (default: gc.NAME)")
+                   "sizes of a Fortran problem, segments of a boundary value problem from gc.C [gc.NAME]")
       ->type_name("C");
-  command
-      ->add_option("--state", arguments->states,
-                   "a state to check at, as 1,0.5,0,1 (may be repeated); also random states near it")
+  command->add_option("--state", arguments->states, "state to check at, as 1,0.5,0,1; may be repeated")
       ->allow_extra_args(false);
   command->add_option("--random", arguments->random_states, "number of random states near each given one")
       ->check(CLI::Range(0, 10000))
       ->capture_default_str();
+  command->footer(
+      "Example: tchat check linosc 'PAR(alpha)=3' --state 0.5,0.1,0,1\n"
+      "Exit status: 0 no fault found, 1 a fault, 2 bad usage or input.");
   command->callback([arguments, &chosen] { chosen = [arguments] { return check_problem(*arguments); }; });
 }
 

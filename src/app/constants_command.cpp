@@ -48,18 +48,18 @@ int print_constants(const ConstantsArguments& arguments) {
 }  // namespace
 
 void add_constants_command(CLI::App& app, std::function<int()>& chosen) {
-  CLI::App* command = app.add_subcommand("constants", "a constants file in the other form, or explained");
+  CLI::App* command = app.add_subcommand("constants", "print a constants file in the other form, or explained");
   const auto arguments = std::make_shared<ConstantsArguments>();
-  command->add_option("NAME", arguments->name, "reads gc.NAME (a path is also accepted); without it, all constants");
-  command->add_option("KEY=VALUE", arguments->overrides, "changes before it is printed, as for tchat run");
-  CLI::Option* explain = command->add_flag("-e,--explain", arguments->explain, "what the file asks for, in words");
+  command->add_option("NAME", arguments->name, "constants gc.NAME, or a path [explain all constants]");
+  command->add_option("KEY=VALUE", arguments->overrides, "changes, as for tchat run");
+  CLI::Option* explain = command->add_flag("-e,--explain", arguments->explain, "explain the file in words");
   CLI::Option* keyword = command->add_flag("-k,--keyword", arguments->keyword, "print the form KEY = value");
   CLI::Option* positional = command->add_flag("-p,--positional", arguments->positional, "print the positional form");
   keyword->excludes(explain)->excludes(positional);
   positional->excludes(explain);
   command->footer(
-      "Prints on the screen: tchat constants mems > gc.other, tchat constants mems NTST=80 DS=-0.01 -p > gc.mems2\n"
-      "Comments of the original are not kept.");
+      "Comments of the file are not kept.\n"
+      "Example: tchat constants mems NTST=80 DS=-0.01 -p > gc.mems2");
   command->callback([&chosen, arguments] { chosen = [arguments] { return print_constants(*arguments); }; });
 }
 

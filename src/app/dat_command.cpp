@@ -11,16 +11,17 @@
 namespace tchat {
 
 void add_dat_command(CLI::App& app, std::function<int()>& chosen) {
-  CLI::App* command = app.add_subcommand("dat", "starting data NAME.dat as label 1 of q.NAME");
+  CLI::App* command = app.add_subcommand("dat", "convert NAME.dat to label 1 of q.NAME");
   const auto request = std::make_shared<RunRequest>();
-  command->add_option("NAME", request->name, "reads NAME.dat, gc.NAME and the plugin NAME; writes q.NAME")->required();
-  command->add_option("-c,--constants", request->constants, "take dimension, signature and mesh from gc.C")
+  command->add_option("NAME", request->name, "problem NAME.cpp or NAME.tch; reads NAME.dat, gc.NAME; writes q.NAME")
+      ->required();
+  command->add_option("-c,--constants", request->constants, "dimension, signature and mesh from gc.C [gc.NAME]")
       ->type_name("C");
-  command->add_option("-p,--problem", request->problem, "plugin P.so, or P.cpp, P.tch to compile if newer")
-      ->type_name("P");
-  command->add_option("-d,--data", request->data, "read D.dat")->type_name("D");
-  command->add_option("-o,--output", request->output, "write q.O")->type_name("O");
+  command->add_option("-p,--problem", request->problem, "problem P.cpp, P.tch, P.f or P.so [NAME]")->type_name("P");
+  command->add_option("-d,--data", request->data, "read D.dat [NAME.dat]")->type_name("D");
+  command->add_option("-o,--output", request->output, "write q.O [q.NAME]")->type_name("O");
   command->add_option("KEY=VALUE", request->overrides, "constants and parameters, as for tchat run");
+  command->footer("Example: tchat dat linosc -c impacting -d impacting -o start");
   command->callback([&chosen, request] {
     chosen = [request] {
       take_source_as_problem(request->name, request->problem);

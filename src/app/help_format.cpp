@@ -33,6 +33,11 @@ class HelpFormat final : public CLI::Formatter {
     for (const CLI::Option* option : options) text += make_option(option, is_positional);
     return text;
   }
+  /// Without the options that exclude this one: an error names them when both are given.
+  std::string make_option_opts(const CLI::Option* option) const override {
+    const std::string text = CLI::Formatter::make_option_opts(option);
+    return text.substr(0, text.find(" Excludes:"));
+  }
   std::string make_option_desc(const CLI::Option* option) const override {
     return broken(option->get_description(), help_width - get_column_width());
   }

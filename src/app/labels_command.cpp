@@ -56,17 +56,14 @@ int print_labels(const LabelsArguments& arguments) {
 }  // namespace
 
 void add_labels_command(CLI::App& app, std::function<int()>& chosen) {
-  CLI::App* command = app.add_subcommand("labels", "table of the labelled solutions of a q-file, with what each is");
+  CLI::App* command = app.add_subcommand("labels", "list the labelled solutions of a q-file");
   command->footer(
-      "SEG is the number of segments. Names of parameters and STABLE are from p.NAME beside q.NAME, the run's own\n"
-      "words and what is inadmissible from d.NAME.\n"
-      "A UZ label is a user value; contacts and zero impact velocities are\n"
-      "called GR, zeros of xi_n XI: IRS, STOP and `tchat orbit` know them by these names (UZ1, GR1, XI1).\n"
-      "As CSV or JSON there is also all that a q-file says of a label, its parameters, and the signature of the run.\n"
+      "SEG is the number of segments. Parameter names and STABLE are read from p.NAME, inadmissible points\n"
+      "from d.NAME. IRS, STOP and `tchat orbit` accept the names of the table (PD1, GR1, UZ1). CSV and JSON\n"
+      "also have the parameters and the signature.\n"
       "Example: tchat labels q.mems");
   const auto arguments = std::make_shared<LabelsArguments>();
-  command->add_option("FILE", arguments->path, "q-file; `mems` is taken for q.mems when there is no file mems")
-      ->required();
+  command->add_option("FILE", arguments->path, "q-file; `mems` means q.mems")->required();
   arguments->format = add_table_formats(*command);
   command->callback([&chosen, arguments] { chosen = [arguments] { return print_labels(*arguments); }; });
 }

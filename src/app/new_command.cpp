@@ -37,13 +37,12 @@ int create(const std::string& path) {
 }  // namespace
 
 void add_new_command(CLI::App& app, std::function<int()>& chosen) {
-  CLI::App* command = app.add_subcommand("new", "a problem to start from: plugin, constants, data, Makefile that run");
+  CLI::App* command = app.add_subcommand("new", "create a problem: plugin, constants, data, Makefile");
   const auto path = std::make_shared<std::string>();
-  command->add_option("NAME", *path, "the new folder NAME gets NAME.cpp, NAME.dat, gc.NAME and a Makefile")->required();
+  command->add_option("NAME", *path, "new folder, with NAME.cpp, NAME.dat, gc.NAME and a Makefile")->required();
   command->footer("Example: tchat new two_walls && make -C two_walls");
   const auto formulas = std::make_shared<std::string>();
-  command->add_option("--from", *formulas, "translate the problem in this file of formulas to NAME.cpp")
-      ->type_name("FILE.tch");
+  command->add_option("--from", *formulas, "translate this file of formulas to NAME.cpp")->type_name("FILE.tch");
   command->callback([&chosen, path, formulas] {
     chosen = [path, formulas] { return formulas->empty() ? create(*path) : translate(*path, *formulas); };
   });

@@ -44,22 +44,16 @@ int print_orbit(const OrbitArguments& arguments) {
 }  // namespace
 
 void add_orbit_command(CLI::App& app, std::function<int()>& chosen) {
-  CLI::App* command = app.add_subcommand("orbit", "one orbit of a q-file in physical time, all segments, as a table");
+  CLI::App* command = app.add_subcommand("orbit", "print an orbit of a q-file as a table over time");
   command->footer(
-      "Lines: number of the segment, tau in [0,1], time t since the start of segment 1, states (named\n"
-      "when p.NAME is beside q.NAME).\n"
-      "A # begins the heading, an empty line separates segments. With --csv: CSV for other programs, one\n"
-      "line of headings, numbers with all the digits of the file.\n"
+      "Columns: segment, tau in [0,1], time t since the start of segment 1, states (names from p.NAME).\n"
+      "The heading starts with #, an empty line separates segments.\n"
       "Example: tchat orbit q.mems PD1 > orbit.txt");
   const auto arguments = std::make_shared<OrbitArguments>();
-  command->add_option("FILE", arguments->path, "q-file; `mems` is taken for q.mems when there is no file mems")
-      ->required();
-  command->add_option("LABEL", arguments->label, "label number, or a type with its count: PD1, LP2, GR1, UZ1")
-      ->required();
-  command->add_flag("--csv", arguments->csv, "as CSV: segment,tau,t and the states");
-  command
-      ->add_option("--dimension", arguments->dimension,
-                   "number of states of one segment, for older files that do not say it")
+  command->add_option("FILE", arguments->path, "q-file; `mems` means q.mems")->required();
+  command->add_option("LABEL", arguments->label, "label, as 5, GR1 or PD1")->required();
+  command->add_flag("--csv", arguments->csv, "CSV with a line of headings, and all digits of the file");
+  command->add_option("--dimension", arguments->dimension, "number of states, for older files that lack it")
       ->check(CLI::PositiveNumber);
   command->callback([&chosen, arguments] { chosen = [arguments] { return print_orbit(*arguments); }; });
 }

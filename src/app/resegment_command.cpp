@@ -40,59 +40,42 @@ int do_resegment(ResegmentRequest request, const std::string& kind, bool quiet) 
 }  // namespace
 
 void add_resegment_command(CLI::App& app, std::function<int()>& chosen) {
-  CLI::App* command = app.add_subcommand(
-      "resegment", "starting data and constants where the signature changes: at grazing, rotated, doubled");
+  CLI::App* command =
+      app.add_subcommand("resegment", "start a run with another signature: at grazing, rotated, doubled");
   const auto request = std::make_shared<ResegmentRequest>();
   const auto kind = std::make_shared<std::string>();
   const auto quiet = std::make_shared<bool>(false);
-  command->add_option("FILE", request->solutions, "q-file; `mems` is taken for q.mems when there is no file mems")
-      ->required();
-  command->add_option("LABEL", request->label, "label number, or a type with its count: GR1, UZ2, PD1")->required();
-  command
-      ->add_option("--to", *kind,
-                   "what the new run is to continue: grazing-curve, impacting, signature, rotate or double")
-      ->required();
+  command->add_option("FILE", request->solutions, "q-file; `mems` means q.mems")->required();
+  command->add_option("LABEL", request->label, "label, as 5, GR1 or PD1")->required();
+  command->add_option("--to", *kind, "grazing-curve, impacting, signature, rotate or double, see below")->required();
   command->add_option("-o,--output", request->output, "write q.O and gc.O")->type_name("O")->required();
-  command->add_option("-p,--problem", request->problem, "plugin P.so, P.cpp or P.tch (default: the name of the q-file)")
+  command->add_option("-p,--problem", request->problem, "problem P.cpp, P.tch, P.f or P.so [the name of the q-file]")
       ->type_name("P");
-  command
-      ->add_option("-c,--constants", request->constants,
-                   "constants of the run that wrote the label (default: its r-file)")
+  command->add_option("-c,--constants", request->constants, "constants of the run that wrote the label [its r-file]")
       ->type_name("C");
   command->add_option("--signature", request->signature,
-                      "index vectors of the new orbit, as \"1,1,1;2,2,2\"; those beyond the segments that there are "
-                      "are segments of zero duration after the contact");
+                      "index vectors of the new orbit, as '1,1,1;2,2,2'; additional ones are segments of zero duration "
+                      "after the contact");
   command->add_option("--jump", request->jump,
-                      "jump at the contact (default: the identity on a grazing curve, else what the problem says of "
-                      "that event, or GRJUMP)");
+                      "jump at the contact [identity on a grazing curve, else the problem's, or GRJUMP]");
   command->add_option("--contact", request->contact,
-                      "--to impacting: the index vector beyond a surface where another field holds, as 2,2,1 (default: "
-                      "what the problem's index jump function says)");
-  command
-      ->add_option("--repeat", request->repeats,
-                   "--to impacting: the orbit N times over, with an impact in the first period only")
+                      "impacting: index vector beyond a surface where the field changes, as 2,2,1 [the problem's]");
+  command->add_option("--repeat", request->repeats, "impacting: so many periods, with an impact in the first only")
       ->check(CLI::Range(1, 64))
       ->capture_default_str();
-  command->add_option("--by", request->rotation, "segments that --to rotate moves from the beginning to the end")
+  command->add_option("--by", request->rotation, "rotate: number of segments to move from the start to the end")
       ->capture_default_str();
-  command->add_flag("-q,--quiet", *quiet, "no summary on the screen");
+  command->add_flag("-q,--quiet", *quiet, "print no summary");
   command->add_flag("--dat", request->data, "write O.dat instead of q.O");
-  command->add_option("KEY=VALUE", request->overrides, "constants for gc.O, e.g. ICP=[1,61,62] DS=0.01 NMX=50");
+  command->add_option("KEY=VALUE", request->overrides, "constants for gc.O, as ICP=[1,61,62] NMX=50");
   command->footer(
       "From a grazing point (label GR, or any label of a grazing curve):\n"
-      "  --to grazing-curve   the segment is cut at the contact and ends there (IPS 150)\n"
-      "  --to impacting       it ends there in the event's own jump; what must follow an impact at once becomes "
-      "segments\n"
-      "                       of zero duration (--signature, or the problem's index jump function); with --repeat N\n"
-      "                       in the first of N periods only\n"
-      "A Poincare section that the contact lies on is replaced. From any label:\n"
-      "  --to signature       the same orbit with --signature: where two events come at once they change places, "
-      "segments\n"
-      "                       of zero duration vanish or appear; where a contact that another field holds in is lost, "
-      "the\n"
-      "                       segments before and after it are joined (--signature may be left out)\n"
-      "  --to rotate          the cyclic order of segments: another one first\n"
-      "  --to double          the signature twice; from a PD label the run switches to the doubled orbit\n"
+      "  --to grazing-curve  the segment ends at the contact, with the identity jump (IPS 150)\n"
+      "  --to impacting      the segment ends at the contact, with the event's jump\n"
+      "From any label:\n"
+      "  --to signature      the same orbit with the index vectors of --signature\n"
+      "  --to rotate         another segment first\n"
+      "  --to double         the signature twice; from PD, the run switches to the doubled orbit\n"
       "Example: tchat resegment q.to_grazing GR1 --to impacting -o born -p mems ICP=[1,61,62]\n"
       "         tchat run mems -c born -s born -o impacting");
   command->callback([&chosen, request, kind, quiet] {

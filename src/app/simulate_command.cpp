@@ -32,27 +32,21 @@ int do_simulate_torus(const SimulationRequest& request, const std::string& torus
 }
 
 constexpr const char* length_group =
-    "Length [until a periodic orbit is recognised, at most 10000 events; "
-    "of a longer motion O.trajectory then holds the last 10 MB]";
+    "Length [until a periodic orbit is recognised, at most 10000 events; O.trajectory has the last 10 MB]";
 
 void add_exponent_options(CLI::App& command, SimulationRequest& request, std::string& exponents) {
   const char* const group = "Lyapunov exponents";
-  add_exponent_count(
-      command, exponents,
-      "the K largest Lyapunov exponents with their error bars, per unit of time, natural logarithm [all]", group);
+  add_exponent_count(command, exponents, "the K largest Lyapunov exponents and their error bars [all]", group);
   command
       .add_option("--section", request.section,
-                  "those of the return map instead, per fall of event function J through zero, which need not end "
-                  "segments")
+                  "exponents of the return map: per fall of event function J through zero")
       ->type_name("J")
       ->check(whole_number(1, 1000))
       ->needs("--lyapunov")
       ->group(group);
   command
-      .add_option(
-          "--accuracy", request.accuracy,
-          "without --time and --events: go on from where the motion repeats itself, or does not, until the bars "
-          "are below this, at most 100000 events")
+      .add_option("--accuracy", request.accuracy,
+                  "without --time and --events: continue until error bars are below E, at most 100000 events")
       ->type_name("E")
       ->check(number_within(1e-12, 1e300, "a number from 1e-12"))
       ->capture_default_str()
@@ -64,12 +58,12 @@ void add_noted_options(CLI::App& command, SimulationRequest& request) {
   const char* const group = "Details";
   command
       .add_option("--contact", request.contact,
-                  "a least value of h below this share of its largest value is a near-grazing contact")
+                  "a minimum of h below this share of its largest value is a near-grazing contact")
       ->type_name("E")
       ->check(number_within(0.0, 1.0, "a number from 0 to 1"))
       ->capture_default_str()
       ->group(group);
-  command.add_option("--rows", request.rows, "at most so many rows of each segment in O.trajectory; 0 none")
+  command.add_option("--rows", request.rows, "largest number of rows of a segment in O.trajectory")
       ->type_name("N")
       ->check(whole_number(0, 1000000))
       ->capture_default_str()
@@ -79,12 +73,13 @@ void add_noted_options(CLI::App& command, SimulationRequest& request) {
 }  // namespace
 
 void add_simulate_command(CLI::App& app, std::function<int()>& chosen) {
-  CLI::App* command = app.add_subcommand("simulate", "integrate forward with events, from a state to the attractor");
+  CLI::App* command = app.add_subcommand("simulate", "integrate forward to an attractor, with events");
   const auto request = std::make_shared<SimulationRequest>();
   add_problem_options(*command, *request);
   command->add_option("-o,--output", request->output, "write O.trajectory and O.events [NAME]")->type_name("O");
-  command->add_flag("-q,--quiet", request->quiet, "no summary on the screen");
-  command->add_option("--state", request->state, "all states, as 0,0.1,-2, or some by name, as x1=0.1,x2=3")
+  command->add_flag("-q,--quiet", request->quiet, "print no summary");
+  command
+      ->add_option("--state", request->state, "initial state: all states, as 0,0.1,-2, or some by name, as x1=0.1,x2=3")
       ->group("Start");
   add_start_options(*command, *request);
   add_length_options(*command, *request, length_group);
@@ -93,29 +88,25 @@ void add_simulate_command(CLI::App& app, std::function<int()>& chosen) {
   add_detail_options(*command, *request);
   add_noted_options(*command, *request);
   command
-      ->add_option("--dat", request->orbit_name,
-                   "write the periodic orbit found as NAME2.dat and gc.NAME2 for tchat run [O]; exit status 1 if none")
+      ->add_option("--dat", request->orbit_name, "write the periodic orbit as NAME2.dat and gc.NAME2 for tchat run [O]")
       ->expected(0, 1)
       ->type_name("[NAME2]")
       ->group("Periodic orbit");
   command
       ->add_flag("--refine", request->refine,
-                 "the start is a guess of an orbit, stable or not: Newton's method from one period, of --events N "
-                 "events or, without, up to the nearest return within --max-period")
+                 "Newton's method from a guess of an orbit, stable or not: from --events N events, else up to the "
+                 "nearest return within --max-period")
       ->excludes("--lyapunov")
       ->group("Periodic orbit");
   command
-      ->add_flag(
-          "--without-sections", request->without_sections,
-          "Poincare sections (identity jump, the same field after it) end no segments of the orbit, unless nothing "
-          "else does")
+      ->add_flag("--without-sections", request->without_sections,
+                 "sections (identity jump, same field after it) end no segments of the orbit, if something else does")
       ->group("Periodic orbit");
   const auto torus_name = std::make_shared<std::string>();
   command
       ->add_option(
           "--torus", *torus_name,
-          "fit a closed curve to the points where returns of the signature begin, and write the torus as q.NAME2 "
-          "and gc.NAME2 for tchat run [O]")
+          "fit a closed curve to the returns of the signature, and write the torus as q.NAME2 and gc.NAME2 [O]")
       ->expected(0, 1)
       ->type_name("[NAME2]")
       ->excludes("--refine")
@@ -123,21 +114,13 @@ void add_simulate_command(CLI::App& app, std::function<int()>& chosen) {
   command->add_option("--free", request->parameter, "continuation parameter in gc.NAME2 [ICP(1) of gc.C, else PAR(1)]")
       ->group("Periodic orbit");
   command->add_option("KEY=VALUE", request->overrides,
-                      "parameters and constants, e.g. 'PAR(omega)=0.8' 'PAR(1)=0.5' NTST=100 IRS=PD1");
+                      "parameters and constants, as 'PAR(omega)=0.8' NTST=100 IRS=PD1");
   command->footer(
-      "After each event the problem's index jump function (successors) says which index vectors are watched next;\n"
-      "the first event function that falls to zero decides. Without one a signature is followed: --signature, gc.C.\n"
-      "O.events lists every event with the states before and after the jump and h_x f, and near-grazing contacts.\n"
-      "Nothing depends on some states, as a position on an endless floor: those may advance in a periodic orbit.\n"
-      "Examples:\n"
-      "  tchat simulate linosc                                         # from the problem's own start\n"
-      "  tchat simulate linosc 'PAR(alpha)=3' --dat found && tchat run linosc -c found -d found\n"
-      "  tchat simulate linosc --state x1=0.5 --time 100 --transient-time 50 -o trial\n"
-      "  tchat simulate linosc 'PAR(alpha)=3' --lyapunov               # Lyapunov exponents of where it settles\n"
-      "  tchat simulate mine --signature '1,1,1;2,2,2' --state 0,0.3   # a problem without successors\n"
-      "  tchat simulate linosc -c impacting -s impacting IRS=PD1 'PAR(alpha)=3.0361' --dat doubled\n"
-      "Exit status: 0 simulated (also when events accumulate), 1 a function cannot be evaluated, or --dat without a\n"
-      "periodic orbit, 2 bad usage or bad input, 130 or 143 interrupted (files are complete).");
+      "After each event, the problem's index jump function (successors) returns the index vectors to watch\n"
+      "next. Without it, simulations follow --signature or that of gc.C. O.events lists events and contacts.\n"
+      "Example: tchat simulate linosc 'PAR(alpha)=3' --dat found && tchat run linosc -c found -d found\n"
+      "Exit status: 0 simulated, even if events accumulate; 1 a function cannot be evaluated, or --dat\n"
+      "without a periodic orbit; 2 bad usage or input; 130 or 143 interrupted (complete files).");
   command->callback([&chosen, request, exponents, torus_name, command] {
     request->lyapunov = exponent_count(*command, *exponents, request->overrides);
     request->hand_over = command->count("--dat") > 0;

@@ -33,11 +33,10 @@ CLI::Validator whole_number(long least, long most) {
 CLI::Validator positive_time() { return number_within(1e-300, 1e300, "a finite number > 0"); }
 
 void add_problem_options(CLI::App& command, SimulationRequest& request) {
-  command.add_option("NAME", request.name, "reads NAME.cpp or NAME.tch, and gc.NAME if there is one")->required();
-  command.add_option("-c,--constants", request.constants, "signature, monitored events and constants from gc.C")
+  command.add_option("NAME", request.name, "problem NAME.cpp or NAME.tch; reads gc.NAME if it exists")->required();
+  command.add_option("-c,--constants", request.constants, "signature, monitored events and other constants from gc.C")
       ->type_name("C");
-  command.add_option("-p,--problem", request.problem, "plugin P.so, or P.cpp, P.tch to compile if newer")
-      ->type_name("P");
+  command.add_option("-p,--problem", request.problem, "problem P.cpp, P.tch, P.f or P.so")->type_name("P");
 }
 
 void add_exponent_count(CLI::App& command, std::string& text, const std::string& help, const char* group) {
@@ -72,52 +71,49 @@ CLI::Option* add_side_option(CLI::App& command, SimulationRequest& request, cons
 
 void add_start_options(CLI::App& command, SimulationRequest& request) {
   const char* const group = "Start";
-  command.add_option("-d,--data", request.data, "start in the first row of D.dat, with its parameters")
+  command.add_option("-d,--data", request.data, "start from the first row of D.dat, with its parameters")
       ->type_name("D")
       ->group(group);
-  command.add_option("-s,--start", request.start, "start in the orbit that IRS names in q.S, with its parameters")
+  command.add_option("-s,--start", request.start, "start from the label IRS of q.S, with its parameters")
       ->type_name("S")
       ->group(group);
   CLI::Option* const after =
       add_side_option(command, request, "--after-event", StartSide::Given::after,
-                      "a start on the surface of an event is a state after that event [what its jump suggests]", group);
+                      "a start on an event surface is after the event [as its jump suggests]", group);
   add_side_option(command, request, "--before-event", StartSide::Given::before,
-                  "a start on the surface of an event is a state before that event, which happens at once", group)
+                  "a start on an event surface is before the event", group)
       ->excludes(after);
   command
       .add_option("--mode", request.modes,
-                  "index vectors to watch first, as 1,2,1 or '1,2,1;1,3,2' [what the problem says of a start, else the "
-                  "first of gc.C]")
+                  "index vectors watched first, as 1,2,1 or '1,2,1;1,3,2' [the problem's, else the first of gc.C]")
       ->group(group);
-  command
-      .add_option("--signature", request.signature,
-                  "follow these index vectors one after the other, as '1,1,1;2,2,2', whatever else the problem says")
+  command.add_option("--signature", request.signature, "follow these index vectors in turn, as '1,1,1;2,2,2'")
       ->group(group);
   command
       .add_flag("--follow-signature", request.follow_signature,
-                "the index vectors of gc.C one after the other, even where the problem has an index jump function")
+                "follow the signature of gc.C, even if the problem has an index jump function")
       ->group(group);
 }
 
 void add_length_options(CLI::App& command, SimulationRequest& request, const char* group) {
   SimulationPlan& plan = request.plan;
-  command.add_option("--time", plan.time, "so long after the transient")
+  command.add_option("--time", plan.time, "time to simulate after the transient")
       ->type_name("T")
       ->check(positive_time())
       ->group(group);
-  command.add_option("--events", plan.events, "so many events after the transient")
+  command.add_option("--events", plan.events, "number of events after the transient")
       ->type_name("N")
       ->check(whole_number(1, 1000000000))
       ->group(group);
-  command.add_option("--transient-time", plan.transient_time, "drop what begins before this time")
+  command.add_option("--transient-time", plan.transient_time, "discard what starts before this time")
       ->type_name("T")
       ->check(number_within(0.0, 1e300, "a finite number >= 0"))
       ->group(group);
-  command.add_option("--transient-events", plan.transient_events, "drop so many first segments")
+  command.add_option("--transient-events", plan.transient_events, "number of segments to discard first")
       ->type_name("N")
       ->check(whole_number(0, 1000000000))
       ->group(group);
-  command.add_option("--wait", request.wait, "give up after so long without an event")
+  command.add_option("--wait", request.wait, "stop after this time without an event")
       ->type_name("T")
       ->check(positive_time())
       ->capture_default_str()
@@ -126,12 +122,12 @@ void add_length_options(CLI::App& command, SimulationRequest& request, const cha
 
 void add_detail_options(CLI::App& command, SimulationRequest& request) {
   const char* const group = "Details";
-  command.add_option("--tolerance", request.tolerance, "relative error of one integration step")
+  command.add_option("--tolerance", request.tolerance, "relative error of an integration step")
       ->type_name("E")
       ->check(number_within(1e-15, 1e-2, "a number from 1e-15 to 0.01"))
       ->capture_default_str()
       ->group(group);
-  command.add_flag("--stiff", request.stiff, "backward differentiation instead of Adams' formulas")->group(group);
+  command.add_flag("--stiff", request.stiff, "backward differentiation formulas, for stiff problems")->group(group);
   command.add_option("--max-period", request.plan.max_period, "longest periodic orbit, in events")
       ->type_name("N")
       ->check(whole_number(1, 1000))
@@ -139,7 +135,7 @@ void add_detail_options(CLI::App& command, SimulationRequest& request) {
       ->group(group);
   command
       .add_option("--recognition", request.plan.recognition,
-                  "difference, relative to the orbit's range, below which states are the same")
+                  "difference of equal states, relative to the orbit's range")
       ->type_name("E")
       ->check(number_within(1e-12, 1e-1, "a number from 1e-12 to 0.1"))
       ->capture_default_str()

@@ -21,7 +21,7 @@ namespace tchat {
 namespace {
 
 constexpr const char* sweep_length_group =
-    "Length [until a periodic orbit is recognised; otherwise 1000 events are dropped and 100 recorded]";
+    "Length [until a periodic orbit is recognised, else 100 events after a transient of 1000]";
 
 /// A word as a shell takes it.
 std::string quoted_for_shell(const std::string& word) {
@@ -63,51 +63,44 @@ void add_recording_options(CLI::App& command, SweepRequest& request, std::string
   const char* const group = "What is recorded";
   command
       .add_option("--section", request.section,
-                  "states where event function J (number or name) falls through zero, before the jump, also where it "
-                  "ends no segment; all: where any event ends a segment; none [all over one parameter, else none]")
+                  "states where event function J (number or name) falls through zero, even if it ends no segment; all: "
+                  "where any event ends a segment; none [all over one parameter, else none]")
       ->type_name("J")
       ->group(group);
   command
       .add_option("--penetration", request.penetration,
-                  "minus the least value of event function J on the smooth flow, an impact there taken account of only "
-                  "afterwards; without --section the states there are recorded, each with its own")
+                  "minus the minima of event function J, measured without the impact")
       ->type_name("J")
       ->group(group);
-  add_exponent_count(command, exponents, "the K largest Lyapunov exponents, with errors [all]", group);
+  add_exponent_count(command, exponents, "the K largest Lyapunov exponents and their errors [all]", group);
 }
 
 void add_map_options(CLI::App& command, MapRequest& map) {
   const char* const group = "Composite map, instead of simulations";
   command
-      .add_option(
-          "--map", map.source,
-          "iterate the smooth return map after the discontinuity map: of the grazing orbit or of the "
-          "torus LABEL in q.NAME, or of the torus whose section points are in FILE (O.events of a simulation without "
-          "contact, or O.sweep)")
+      .add_option("--map", map.source,
+                  "iterate the map of the grazing orbit or torus LABEL in q.NAME, or of the torus with section points "
+                  "in FILE (O.events or O.sweep of a simulation without contact)")
       ->type_name("q.NAME:LABEL|FILE")
       ->group(group);
-  command.add_option("--order", map.order, "of the discontinuity map: 1/2, 1, 3/2 or exact")
+  command.add_option("--order", map.order, "order of the discontinuity map: 1/2, 1, 3/2 or exact")
       ->capture_default_str()
       ->group(group);
-  command.add_option("--smooth-order", map.smooth_order, "of the smooth return map, in state and parameter: 1 or 2")
+  command.add_option("--smooth-order", map.smooth_order, "order of the smooth return map: 1 or 2")
       ->type_name("N")
       ->check(whole_number(1, 2))
       ->capture_default_str()
       ->group(group);
   command
-      .add_option(
-          "--reduced", map.reduced,
-          "tori: the phase alone, as if all came back to the curve at once (map); with what contact does to it to "
-          "lowest order (ellipse) [map]")
+      .add_option("--reduced", map.reduced,
+                  "tori: phase only; project to the curve (map), or lowest-order effect of contact (ellipse) [map]")
       ->expected(0, 1)
       ->type_name("[KIND]")
       ->default_str("map")
       ->group(group);
   command
-      .add_option(
-          "--phase", map.phase,
-          "tori: a state that is an angle, or two that go round as y1,y2, by which points have theirs on the curve "
-          "[an angle, if there is one, else the nearest point]")
+      .add_option("--phase", map.phase,
+                  "tori: angle, or two states y1,y2, by which states are projected [an angle, else the nearest point]")
       ->type_name("STATE")
       ->group(group);
   command
@@ -116,8 +109,7 @@ void add_map_options(CLI::App& command, MapRequest& map) {
       ->group(group);
   command
       .add_option("--neighbourhood", map.neighbourhood,
-                  "contact is accounted for within so many extents of the motion from the grazing point [orbits: "
-                  "everywhere, tori: 0.25]")
+                  "largest distance of contact from x*, in sizes of the motion [orbits: any, tori: 0.25]")
       ->type_name("R")
       ->check(CLI::PositiveNumber)
       ->group(group);
@@ -125,19 +117,17 @@ void add_map_options(CLI::App& command, MapRequest& map) {
 
 void add_work_options(CLI::App& command, SweepRequest& request) {
   const char* const group = "Workers and parts";
-  command.add_option("-j,--jobs", request.workers, "so many threads; the file is the same for any number")
+  command.add_option("-j,--jobs", request.workers, "threads; they do not change the file")
       ->type_name("N")
       ->check(whole_number(1, 1024))
       ->capture_default_str()
       ->group(group);
-  command.add_option("--part", request.part, "only part I of N, written as O.sweep.I")->type_name("I/N")->group(group);
+  command.add_option("--part", request.part, "compute part I of N only, as O.sweep.I")->type_name("I/N")->group(group);
   command.add_flag("--gather", request.gather, "join O.sweep.1 to O.sweep.N to O.sweep")->group(group);
-  command.add_flag("--fresh", request.fresh, "throw away what an interrupted sweep of this name has left")
-      ->group(group);
+  command.add_flag("--fresh", request.fresh, "discard the journal of an interrupted sweep")->group(group);
   command
       .add_flag("--to-the-end", request.to_the_end,
-                "basins: simulate every start until its motion repeats itself, instead of until a known attractor has "
-                "captured it")
+                "basins: simulate until the motion repeats itself, without capture regions")
       ->group(group);
 }
 
@@ -145,7 +135,7 @@ void add_work_options(CLI::App& command, SweepRequest& request) {
 
 void add_sweep_command(CLI::App& app, std::function<int()>& chosen) {
   CLI::App* command =
-      app.add_subcommand("sweep", "attractors over one or two parameters or initial states: diagrams, maps, basins");
+      app.add_subcommand("sweep", "attractors over parameters or initial states: diagrams, maps, basins");
   const auto request = std::make_shared<SweepRequest>();
   const auto map = std::make_shared<MapRequest>();
   SimulationRequest& simulation = request->simulation;
@@ -154,22 +144,18 @@ void add_sweep_command(CLI::App& app, std::function<int()>& chosen) {
   simulation.tolerance = 1e-8;  // of a method whose steps are better than their estimate
   add_problem_options(*command, simulation);
   command->add_option("-o,--output", simulation.output, "write O.sweep [NAME]")->type_name("O");
-  command->add_flag("-q,--quiet", simulation.quiet, "no summary on the screen");
-  command
-      ->add_option("--over", request->over,
-                   "COUNT values of a parameter or an initial state, FROM and TO among them; once or twice")
+  command->add_flag("-q,--quiet", simulation.quiet, "print no summary");
+  command->add_option("--over", request->over, "COUNT values of a parameter or initial state, FROM to TO; up to twice")
       ->type_name("NAME=FROM:TO:COUNT")
       ->allow_extra_args(false)
       ->take_all()
       ->group("Start");
   command
       ->add_option("--follow", request->follow,
-                   "each value starts from the attractor of its neighbour: up, down or both, along the first --over")
+                   "start from the attractor of the neighbouring value of the first --over: up, down or both")
       ->type_name("DIRECTION")
       ->group("Start");
-  command
-      ->add_option("--state", request->states,
-                   "all states, as 0,0.1,-2, or some by name, as x1=0.1,x2=3; several times: several starts")
+  command->add_option("--state", request->states, "initial state, as 0,0.1,-2 or x1=0.1,x2=3; may be repeated")
       ->allow_extra_args(false)
       ->take_all()
       ->group("Start");
@@ -180,22 +166,12 @@ void add_sweep_command(CLI::App& app, std::function<int()>& chosen) {
   add_map_options(*command, *map);
   add_work_options(*command, *request);
   add_detail_options(*command, simulation);
-  command->add_option("KEY=VALUE", simulation.overrides,
-                      "parameters and constants, e.g. 'PAR(omega)=0.8' 'PAR(1)=0.5'");
+  command->add_option("KEY=VALUE", simulation.overrides, "parameters and constants, as 'PAR(omega)=0.8'");
   command->footer(
-      "O.sweep is a table: index, values, start, attractor (its number), kind, period (events), time, impacts, what "
-      "was\n"
-      "asked for, and the recorded states, one a row. Its heading has a state of each attractor for tchat simulate.\n"
-      "Killed or interrupted, the same command continues where it stopped (O.sweep.journal).\n"
-      "Examples:\n"
-      "  tchat sweep linosc --over alpha=2.9:3.1:201 'PAR(omega)=2.0072' -j 4          # a brute-force diagram\n"
-      "  tchat sweep linosc --over alpha=1.9:2.7:401 'PAR(omega)=1.8901' --follow both --section 1   # hysteresis\n"
-      "  tchat sweep rand3d --over mu=-0.81:-0.79:201 --penetration 1 --follow both    # penetrations\n"
-      "  tchat sweep linosc --over alpha=2:3:60 --over omega=1.7:2:60                  # kinds over two parameters\n"
-      "  tchat sweep linosc --over x1=-1:1:200 --over x2=-5:5:200 'PAR(alpha)=2.2' 'PAR(omega)=1.8901'   # a basin\n"
-      "  for i in 1 2 3; do tchat sweep linosc --over alpha=2.9:3.1:201 --part $i/3; done     # or on three machines\n"
-      "  tchat sweep linosc --over alpha=2.9:3.1:201 --gather\n"
-      "Exit status: 0 done, 1 files cannot be written, 2 bad usage or bad input, 130 or 143 interrupted.");
+      "O.sweep is a table of values, attractors, kinds, periods and recorded states, one a row.\n"
+      "After an interruption, the same command continues (O.sweep.journal).\n"
+      "Example: tchat sweep linosc --over alpha=2.9:3.1:201 'PAR(omega)=2.0072' -j 4\n"
+      "Exit status: 0 done, 1 files cannot be written, 2 bad usage or input, 130 or 143 interrupted.");
   command->callback([&chosen, request, exponents, map, command] {
     request->exponents = exponent_count(*command, *exponents, request->simulation.overrides);
     if (command->count("--time") > 0 && command->count("--events") == 0) request->simulation.plan.events.reset();

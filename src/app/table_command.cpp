@@ -80,26 +80,21 @@ int print_table(const TableArguments& arguments) {
 }  // namespace
 
 void add_table_command(CLI::App& app, std::function<int()>& chosen) {
-  CLI::App* command =
-      app.add_subcommand("table", "the points of a run with all that its files know of them, as CSV or JSON");
+  CLI::App* command = app.add_subcommand("table", "print the points of a run as CSV or JSON");
   command->footer(
-      "CSV unless --json is given. One line a point: section, branch, point, type, name (as in IRS: GR1), label, kind "
-      "(what a UZ label\n"
-      "is), stable and admissible (1 or 0), the columns of the p-file by their full names, parameters that\n"
-      "are fixed, durations, multipliers (real and imaginary parts), Newton iterations. Names, kinds and fixed\n"
-      "parameters come from q.NAME, multipliers, admissibility and iterations from d.NAME. What is not known\n"
-      "is empty (null in JSON), infinite multipliers are inf (null in JSON). With --column: section, point and\n"
-      "these; what has several values in a period has a column for each, x2@wall, x2@wall (2).\n"
+      "One line a point: section, branch, point, type, name (as in IRS: GR1), label, kind, stable and\n"
+      "admissible (1 or 0), all columns of the p-file, fixed parameters, durations, multipliers, Newton\n"
+      "iterations. Unknown values are empty (null in JSON). With --column: section, point and these\n"
+      "columns, x2@wall (2) for the second value in a period.\n"
       "Example: tchat table p.mems > mems.csv");
   const auto arguments = std::make_shared<TableArguments>();
-  command->add_option("FILES", arguments->files,
-                      "p-file (`mems` is taken for p.mems); q- and d-file where they are not beside it");
+  command->add_option("FILES", arguments->files, "p-file (`mems` means p.mems); q- and d-file if they are elsewhere");
   command
       ->add_option("--column", arguments->quantities,
-                   "these columns alone, as -x and -y of `tchat plot` take them: x2@wall, 1/omega; again for more")
+                   "print this column, as -x of `tchat plot`: x2@wall, 1/omega; may be repeated")
       ->expected(1)
       ->take_all();
-  command->add_flag("--types", arguments->types, "the types of points instead: letters, numbers in files, meaning");
+  command->add_flag("--types", arguments->types, "print the types of points: letters, numbers in files, meaning");
   arguments->format = add_table_formats(*command);
   command->callback([&chosen, arguments] { chosen = [arguments] { return print_table(*arguments); }; });
 }
