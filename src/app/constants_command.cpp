@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "app/run_command.hpp"
 #include "constants/constants_file.hpp"
 #include "constants/constants_guide.hpp"
 #include "constants/constants_writer.hpp"
@@ -19,22 +20,24 @@ namespace tchat {
 namespace {
 
 struct ConstantsArguments {
-  std::string name;
-  std::vector<std::string> overrides;
+  RunRequest request;  ///< the words of `tchat run`, of which only those about constants count
   bool explain = false;
   bool keyword = false;
   bool positional = false;
 };
 
 int print_constants(const ConstantsArguments& arguments) {
-  if (arguments.name.empty()) {
+  const RunRequest& request = arguments.request;
+  if (request.name.empty() && !request.constants) {
     fmt::print("{}", constants_guide());
     return 0;
   }
   Warnings warnings;
-  const std::string path = constants_path(arguments.name);
+  const std::string path = constants_path(request.constants.value_or(request.name));
   RunSettings settings = read_constants_file(path, &warnings);
-  apply_overrides(settings, arguments.overrides, &warnings);
+  apply_overrides(settings, request.overrides, &warnings);
+  if (!settings.parameter_values.empty())
+    warnings.push_back("a constants file has no values of parameters: give them to tchat run");
   print_warnings(std::cerr, warnings);
   const bool to_keyword =
       arguments.keyword || (!arguments.positional && constants_form(path) == ConstantsForm::positional);
@@ -50,16 +53,17 @@ int print_constants(const ConstantsArguments& arguments) {
 void add_constants_command(CLI::App& app, std::function<int()>& chosen) {
   CLI::App* command = app.add_subcommand("constants", "print a constants file in the other form, or explained");
   const auto arguments = std::make_shared<ConstantsArguments>();
-  command->add_option("NAME", arguments->name, "constants gc.NAME, or a path [explain all constants]");
-  command->add_option("KEY=VALUE", arguments->overrides, "changes, as for tchat run");
+  command->add_option("NAME", arguments->request.name, "constants gc.NAME, or a path [explain all constants]");
+  add_run_options(*command, arguments->request);
   CLI::Option* explain = command->add_flag("-e,--explain", arguments->explain, "explain the file in words");
   CLI::Option* keyword = command->add_flag("-k,--keyword", arguments->keyword, "print the form KEY = value");
-  CLI::Option* positional = command->add_flag("-p,--positional", arguments->positional, "print the positional form");
+  CLI::Option* positional = command->add_flag("--positional", arguments->positional, "print the positional form");
   keyword->excludes(explain)->excludes(positional);
   positional->excludes(explain);
   command->footer(
-      "Comments of the file are not kept.\n"
-      "Example: tchat constants mems NTST=80 DS=-0.01 -p > gc.mems2");
+      "The other words of tchat run are accepted, so that the constants of a run can be seen before it. Comments of\n"
+      "the file are not kept.\n"
+      "Example: tchat constants mems NTST=80 DS=-0.01 --positional > gc.mems2");
   command->callback([&chosen, arguments] { chosen = [arguments] { return print_constants(*arguments); }; });
 }
 

@@ -10,6 +10,7 @@
 
 #include "constants/constant_value.hpp"
 #include "files/run_file_kind.hpp"
+#include "files/trajectory_rows.hpp"
 #include "plot/data_file.hpp"
 #include "plot/label_text.hpp"
 #include "plot/picture_styles.hpp"

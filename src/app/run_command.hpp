@@ -4,7 +4,12 @@
 #include <CLI/App.hpp>
 #include <functional>
 
+#include "setup/run_request.hpp"
+
 namespace tchat {
+
+/// Adds all words of the command but NAME, stored in `request`, which outlives the command.
+void add_run_options(CLI::App& command, RunRequest& request);
 
 /// Adds the subcommand. When the user chooses it, `chosen` becomes the call that does the run and returns the exit
 /// status (0, 1, or 128 + the signal after Ctrl-C or SIGTERM).

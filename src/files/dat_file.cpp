@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "constants/constant_value.hpp"
+#include "files/orbit_parts.hpp"
 #include "hybrid/parameter_vector.hpp"
 #include "text/number.hpp"
 #include "text/text_file.hpp"
@@ -75,6 +76,7 @@ class DatReader {
     if (!std::isfinite(file.span))
       throw UserError(
           fmt::format("{}: t runs from {} to {}, which is too far", path_, rows_[0], rows_[(count - 1) * columns_]));
+    if (is_cut()) return data_of_segments();
     file.states.resize(static_cast<Eigen::Index>(columns_ - 1), static_cast<Eigen::Index>(count));
     for (std::size_t row = 0; row < count; ++row) {
       const double* numbers = rows_.data() + row * columns_;
@@ -87,6 +89,53 @@ class DatReader {
   }
 
  private:
+  /// Do the segments follow one another in the rows, as in the table of another program?
+  bool is_cut() const { return columns_ == row_of_one_segment() && (segments_ > 1 || !cuts_.empty()); }
+  std::size_t row_of_one_segment() const { return 1 + std::size_t(dimension_); }
+
+  /// Are the states of the row that begins there others than those of the row before?
+  bool jumps(std::size_t begin) const {
+    return !std::equal(rows_.begin() + static_cast<std::ptrdiff_t>(begin) + 1, rows_.end(),
+                       rows_.begin() + static_cast<std::ptrdiff_t>(begin - columns_) + 1);
+  }
+
+  /// The rows between repeated times, segment after segment. Where the period starts within a segment, its two parts
+  /// are joined.
+  DatFile data_of_segments() const {
+    std::vector<OrbitPart> parts = rows_between_cuts();
+    if (parts.size() == std::size_t(segments_) + 1) {
+      parts.front() = joined(parts.back(), parts.front());
+      parts.pop_back();
+    }
+    if (parts.size() != std::size_t(segments_))
+      throw UserError(
+          fmt::format("{}: t repeats {} times, which makes {} segments, but the constants have {}; repeat t where an "
+                      "event ends a segment, with the states before and after it, and nowhere else",
+                      path_, cuts_.size(), parts.size(), segments_));
+    DatFile file = data_of_parts(parts);
+    file.parameters.insert(file.parameters.end(), parameters_.begin(), parameters_.end());
+    file.named_parameters = named_parameters_;
+    return file;
+  }
+
+  std::vector<OrbitPart> rows_between_cuts() const {
+    std::vector<std::size_t> ends = cuts_;
+    ends.push_back(rows_.size() / columns_);
+    std::vector<OrbitPart> parts;
+    std::size_t row = 0;
+    for (const std::size_t end : ends) {
+      OrbitPart part{{}, Eigen::MatrixXd(dimension_, static_cast<Eigen::Index>(end - row))};
+      for (; row < end; ++row) {
+        const double* numbers = rows_.data() + row * columns_;
+        part.states.col(static_cast<Eigen::Index>(part.times.size())) =
+            Eigen::Map<const Eigen::VectorXd>(numbers + 1, dimension_);
+        part.times.push_back(numbers[0]);
+      }
+      parts.push_back(std::move(part));
+    }
+    return parts;
+  }
+
   [[noreturn]] void refuse(const std::string& message) const {
     throw UserError(fmt::format("{}:{}: {}", path_, line_, message));
   }
@@ -95,8 +144,13 @@ class DatReader {
     if (segments_ == one_state) return read_state(words);
     const std::size_t begin = rows_.size();
     for (const std::string_view word : words) rows_.push_back(number(word));
+    if (begin == 0 && words.size() == row_of_one_segment()) columns_ = words.size();
     if (words.size() != columns_) refuse_columns(words.size());
-    if (begin > 0 && !(rows_[begin] > rows_[begin - columns_])) refuse_time(rows_[begin], rows_[begin - columns_]);
+    const bool repeats = begin > 0 && rows_[begin] == rows_[begin - columns_];
+    if (repeats && columns_ == row_of_one_segment() && (segments_ > 1 || jumps(begin)))
+      cuts_.push_back(begin / columns_);
+    else if (begin > 0 && !(rows_[begin] > rows_[begin - columns_]))
+      refuse_time(rows_[begin], rows_[begin - columns_]);
     last_row_line_ = line_;
   }
 
@@ -184,6 +238,7 @@ class DatReader {
   int last_row_line_ = 0;
   bool header_possible_ = true;
   std::vector<double> rows_;
+  std::vector<std::size_t> cuts_;  ///< rows at which t repeats
   std::vector<std::pair<int, double>> parameters_;
   std::vector<std::pair<std::string, double>> named_parameters_;
 };

@@ -2,9 +2,10 @@
 ///
 ///     t  x_1 .. x_n  [x_{n+1} .. x_{2n}  ...  x_{n m}]      segment 1's states first
 ///
-/// with t rising over any positive span. '#' starts a comment, blank lines and one header line are skipped; blanks,
-/// tabs and commas separate; exponents may be e, E, d, D. Comment lines `# PAR(k) = v` and `# PAR(name) = v` give
-/// parameter values.
+/// with t rising over any positive span. A row of t x_1 .. x_n serves too where several segments follow one another:
+/// where t repeats, a segment ends before and the next one starts after the event. '#' starts a comment, blank lines
+/// and one header line are skipped; blanks, tabs and commas separate; exponents may be e, E, d, D. Comment lines `#
+/// PAR(k) = v` and `# PAR(name) = v` give parameter values.
 #pragma once
 
 #include <Eigen/Core>
@@ -24,8 +25,8 @@ struct DatFile {
 };
 
 /// Reads the file for `segments` segments of `dimension` states each. Throws UserError with path, line, what was found
-/// and the cure: missing or empty file, tokens that are no finite numbers, wrong number of columns, t repeated or
-/// falling, fewer than two rows, PAR index out of range.
+/// and the cure: missing or empty file, tokens that are no finite numbers, wrong number of columns, t falling, t
+/// repeated in rows of several segments or not once an event, fewer than two rows, PAR index out of range.
 DatFile read_dat_file(const std::string& path, int dimension, int segments);
 
 /// An equilibrium: one row of its states, with or without t before them, which is not read. tau is 0, span 1.

@@ -1,122 +1,24 @@
 #include "plot/trajectory_file.hpp"
 
-#include <fmt/format.h>
-
 #include <filesystem>
-#include <optional>
-#include <sstream>
 
-#include "constants/constant_value.hpp"
-#include "text/number.hpp"
-#include "text/text_file.hpp"
-#include "text/user_error.hpp"
-#include "text/words.hpp"
+#include "files/trajectory_rows.hpp"
 
 namespace tchat {
 
-namespace {
-
-/// The line that names the columns.
-struct Heading {
-  std::vector<std::string> states;
-  std::size_t before_states;  ///< columns; the last one is t
-};
-
-/// "#segment i j k t x1 ..." of `tchat simulate`, or "#seg tau t x1 ..." of `tchat orbit`; nothing for other lines.
-std::optional<Heading> heading_in(const std::string& line) {
-  const auto names = split_words(line);
-  if (names.empty()) return std::nullopt;
-  const std::size_t before = names.front() == "#segment" ? 5 : names.front() == "#seg" ? 3 : 0;
-  if (before == 0 || names.back() == "what") return std::nullopt;
-  Heading heading{{}, before};
-  for (std::size_t k = before; k < names.size(); ++k) heading.states.emplace_back(names[k]);
-  return heading;
-}
-
-/// "# LinearOscillator with alpha = 3, omega = 2": the values, PAR(1) first.
-std::vector<double> parameters_of(const std::string& heading) {
-  std::vector<double> values;
-  constexpr std::string_view equals = " = ";
-  for (std::size_t at = heading.find(equals); at != std::string::npos; at = heading.find(equals, at + 1)) {
-    const std::size_t begin = at + equals.size();
-    const auto value = parse_real(heading.substr(begin, heading.find(',', begin) - begin));
-    values.push_back(value.value_or(0.0));
-  }
-  return values;
-}
-
-[[noreturn]] void refuse(const std::string& path, int line, const std::string& what) {
-  throw UserError(
-      fmt::format("{}:{}: {}; give a NAME.trajectory that tchat simulate has written, or what tchat orbit prints", path,
-                  line, what));
-}
-
-struct Rows {
-  std::vector<double> times;
-  std::vector<std::vector<double>> states;
-};
-
-TraceSegment segment_of(const Rows& rows, Eigen::Index n) {
-  TraceSegment segment;
-  segment.times = rows.times;
-  segment.states.resize(n, static_cast<Eigen::Index>(rows.times.size()));
-  for (std::size_t k = 0; k < rows.times.size(); ++k)
-    segment.states.col(static_cast<Eigen::Index>(k)) = Eigen::Map<const Eigen::VectorXd>(rows.states[k].data(), n);
-  return segment;
-}
-
-}  // namespace
-
-bool looks_like_trajectory(const std::string& path) {
-  TextLines file(path, "something to draw");
-  for (std::string line; file.next(line) && line.starts_with('#');)
-    if (heading_in(line)) return true;
-  return false;
-}
-
 TrajectoryFile read_trajectory_file(const std::string& path) {
-  std::istringstream in(read_text_file(path, "a trajectory", "tchat simulate writes it"));
+  const TrajectoryRows rows = read_trajectory_rows(path);
   TrajectoryFile file;
   file.trace.name = std::filesystem::path(path).stem().string();
   file.trace.is_closed = false;
-  std::string line;
-  std::optional<Heading> heading;
-  int number = 1;
-  for (; !heading && std::getline(in, line) && line.starts_with('#'); ++number) {
-    if (number == 1) file.trace.parameters = parameters_of(line);
-    heading = heading_in(line);
+  for (const auto& [name, value] : rows.parameters) file.trace.parameters.push_back(value);
+  file.states = rows.states;
+  for (const RecordedRows& recorded : rows.segments) {
+    TraceSegment segment;
+    segment.times = recorded.times;
+    segment.states = recorded.states;
+    file.trace.segments.push_back(std::move(segment));
   }
-  if (!heading) refuse(path, number, "no heading #segment or #seg");
-  if (heading->states.empty()) refuse(path, number - 1, "no states in the heading");
-  file.states = heading->states;
-
-  const std::size_t n = file.states.size();
-  const std::size_t columns = heading->before_states + n;
-  Rows rows;
-  const auto end_segment = [&] {
-    if (!rows.times.empty()) file.trace.segments.push_back(segment_of(rows, static_cast<Eigen::Index>(n)));
-    rows = {};
-  };
-  std::string segment;
-  for (; std::getline(in, line); ++number) {
-    const auto words = split_words(line);
-    if (words.empty() || words.front() != segment) end_segment();
-    if (words.empty()) continue;
-    segment = words.front();
-    if (words.size() != columns)
-      refuse(path, number, fmt::format("found {} numbers, expected {}", words.size(), columns));
-    std::vector<double> values;
-    for (std::size_t k = heading->before_states - 1; k < words.size(); ++k) {
-      const auto value = parse_real(words[k]);
-      if (!value) refuse(path, number, fmt::format("found '{}', expected a number", words[k]));
-      values.push_back(*value);
-    }
-    rows.times.push_back(values.front());
-    rows.states.emplace_back(values.begin() + 1, values.end());
-  }
-  end_segment();
-  if (file.trace.segments.empty())
-    throw UserError(fmt::format("{}: there are no rows in it; simulate with --rows 200", path));
   return file;
 }
 

@@ -13,9 +13,6 @@ struct TrajectoryFile {
   std::vector<std::string> states;  ///< from the heading, blanks as underscores
 };
 
-/// Judged by the heading.
-bool looks_like_trajectory(const std::string& path);
-
 /// Throws UserError with the line for what is no trajectory, or holds no rows.
 TrajectoryFile read_trajectory_file(const std::string& path);
 

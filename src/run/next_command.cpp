@@ -17,7 +17,8 @@ namespace {
 /// A word as the shell takes it.
 std::string shell_word(const std::string& text) {
   const auto is_plain = [](char c) {
-    return std::isalnum(static_cast<unsigned char>(c)) != 0 || std::string_view("_-+=./:,").find(c) != std::string_view::npos;
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 ||
+           std::string_view("_-+=./:,").find(c) != std::string_view::npos;
   };
   if (!text.empty() && std::all_of(text.begin(), text.end(), is_plain)) return text;
   std::string quoted = "'";
@@ -66,7 +67,8 @@ std::string run_words(const NextStart& start, const RunSettings& settings, const
   if (const ProblemType* type = born_branch(start.type, settings.problem_type)) {
     const ProblemFacts& facts = type->facts();
     const std::string number = facts.number == settings.problem_type ? "" : fmt::format(" IPS={}", facts.number);
-    const std::string further = *facts.start_words == '\0' ? "" : " " + fmt::format(fmt::runtime(facts.start_words), first);
+    const std::string further =
+        *facts.start_words == '\0' ? "" : " " + fmt::format(fmt::runtime(facts.start_words), first);
     return fmt::format("{} ISW={}{}", number, facts.branch_mode, further);
   }
   const int second = second_parameter(settings, system);
@@ -85,9 +87,9 @@ std::string next_command(const NextStart& start, const RunSettings& settings, co
   const std::string solutions = shell_word(output_path('q', output));
   if (start.kind.kind == UserPointKind::contact) {
     if (!type.family().why_not(Analysis::resegmentation, "").empty()) return "";
-    return fmt::format("tchat resegment {} {} --to impacting -o {} -p {} && tchat run {}{} -c {} -s {} -o {}_branch", solutions,
-                       start.label, name, shell_word(request.problem.value_or(request.name)), shell_word(request.name),
-                       problem, name, name, name);
+    return fmt::format("tchat resegment {} {} --to impacting -o {} -p {} && tchat run {}{} -c {} -s {} -o {}_branch",
+                       solutions, start.label, name, shell_word(request.problem.value_or(request.name)),
+                       shell_word(request.name), problem, name, name, name);
   }
   if (start.kind.kind != UserPointKind::none) return "";
   const std::string words = run_words(start, settings, system);

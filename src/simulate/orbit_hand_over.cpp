@@ -95,6 +95,20 @@ std::vector<IndexedValue> parameter_weights(const RunSettings& base, int segment
   return weights;
 }
 
+/// `base` for a start from data with this parameter free, and no bounds that exclude the start.
+RunSettings with_free_parameter(const RunSettings& base, const Eigen::VectorXd& par, int parameter) {
+  RunSettings settings = base;
+  settings.start = {};
+  settings.parameter_values.clear();
+  leave_out_monitors(settings);
+  settings.free_parameters = {parameter};
+  const bool same_parameter = !base.free_parameters.empty() && base.free_parameters.front() == parameter;
+  const double value = par(parameter - 1);
+  if (!same_parameter || value < settings.parameter_min) settings.parameter_min = -no_bound;
+  if (!same_parameter || value > settings.parameter_max) settings.parameter_max = no_bound;
+  return settings;
+}
+
 }  // namespace
 
 std::string unmonitored_events(const HybridSystem& system, const FoundOrbit& orbit, const OrbitSamples& samples,
@@ -150,22 +164,13 @@ RunSettings orbit_settings(const HybridSystem& system, const RunSettings& base, 
                            const OrbitSamples& samples, const Eigen::VectorXd& par, int parameter) {
   const int m = static_cast<int>(orbit.signature.size());
   const Eigen::Index n = system.dimension();
-  RunSettings settings = base;
+  RunSettings settings = with_free_parameter(base, par, parameter);
   settings.dimension = static_cast<int>(n);
   settings.mesh_intervals = samples.intervals;
   settings.problem_type = periodic_orbit.number;
   settings.branch_mode = periodic_orbit.branch_mode;
-  settings.start = {};
-  settings.parameter_values.clear();
-  leave_out_monitors(settings);
-
-  settings.free_parameters = {parameter};
   for (int s = 0; s < m; ++s) settings.free_parameters.push_back(first_duration + s);
   settings.parameter_weights = parameter_weights(base, m);
-  const bool same_parameter = !base.free_parameters.empty() && base.free_parameters.front() == parameter;
-  const double value = par(parameter - 1);
-  if (!same_parameter || value < settings.parameter_min) settings.parameter_min = -no_bound;
-  if (!same_parameter || value > settings.parameter_max) settings.parameter_max = no_bound;
   std::erase_if(settings.user_values,
                 [&](const UserValue& u) { return !is_free(settings.free_parameters, std::abs(u.parameter)); });
   std::erase_if(settings.bounds, [&](const BoundedValue& b) {
@@ -186,6 +191,29 @@ RunSettings orbit_settings(const HybridSystem& system, const RunSettings& base, 
   }
   if (base.grazing_jump == RunSettings{}.grazing_jump)
     settings.grazing_jump = jump_of_contact(system, orbit, settings.segments).value_or(base.grazing_jump);
+  return settings;
+}
+
+std::string equilibrium_data_text(const HybridSystem& system, const Eigen::VectorXd& x, const Eigen::VectorXd& par) {
+  return fmt::format("# Equilibrium of {}, found by simulation.\n{}{:.17g}\n", system.name(),
+                     parameter_lines(system, par), fmt::join(x.begin(), x.end(), " "));
+}
+
+RunSettings equilibrium_settings(const HybridSystem& system, const RunSettings& base, int field,
+                                 const std::vector<int>& events, const Eigen::VectorXd& x, const Eigen::VectorXd& par,
+                                 int parameter) {
+  RunSettings settings = with_free_parameter(base, par, parameter);
+  settings.dimension = system.dimension();
+  settings.problem_type = equilibrium.number;
+  settings.branch_mode = equilibrium.branch_mode;
+  settings.test_functions.clear();
+  settings.parameter_weights.clear();
+  SegmentSettings segment;
+  segment.index = {field, no_function, no_function};
+  segment.type = 0;
+  for (const int event : events)
+    if (system.event(event, x.data(), par.data()) > 0.0) segment.monitor.push_back(event);
+  settings.segments = {segment};
   return settings;
 }
 

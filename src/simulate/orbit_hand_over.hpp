@@ -1,7 +1,9 @@
-/// A periodic orbit found by simulation as the start of a continuation: NAME2.dat and the constants file gc.NAME2.
+/// A periodic orbit or an equilibrium found by simulation as the start of a continuation: NAME2.dat and the constants
+/// file gc.NAME2.
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "constants/run_settings.hpp"
 #include "hybrid/hybrid_system.hpp"
@@ -24,6 +26,13 @@ RunSettings orbit_settings(const HybridSystem& system, const RunSettings& base, 
 /// What `orbit_settings` starts from where there is no constants file: the command line's constants in `given`, and
 /// sensible ones where it left the defaults.
 RunSettings default_orbit_settings(const RunSettings& given);
+
+/// An equilibrium in a field: the .dat file, and constants with `parameter` free that monitor those of `events` whose
+/// functions are positive at x.
+std::string equilibrium_data_text(const HybridSystem& system, const Eigen::VectorXd& x, const Eigen::VectorXd& par);
+RunSettings equilibrium_settings(const HybridSystem& system, const RunSettings& base, int field,
+                                 const std::vector<int>& events, const Eigen::VectorXd& x, const Eigen::VectorXd& par,
+                                 int parameter);
 
 /// What to say of events of an orbit's modes that the constants do not monitor, for they are negative on their segment:
 /// a switch of the wrong sign shows so. "" when there are none.

@@ -105,6 +105,28 @@ int continuation_parameter(const SimulationRequest& request, const SimulationCon
   return 1;
 }
 
+/// What to say of data and constants that have been written.
+std::string next_run_text(const SimulationRequest& request, const OrbitPaths& paths, const std::string& name) {
+  const std::string plugin = request.problem ? fmt::format(" -p {}", *request.problem) : "";
+  return fmt::format("Written: {} and {}. Go on with\n  tchat run {}{} -c {} -d {} -o {}\n", paths.data,
+                     paths.constants, request.name, plugin, name, name, name);
+}
+
+/// Writes the equilibrium for `tchat run`; what to say about it.
+std::string hand_over_equilibrium(const SimulationRequest& request, const SimulationConstants& constants,
+                                  const HybridSimulation& simulation, const VectorXd& x, const std::string& name) {
+  const HybridSystem& system = simulation.system();
+  const VectorXd& par = simulation.parameters();
+  const RunSettings base = constants.is_given() ? constants.settings : default_orbit_settings(constants.settings);
+  const Mode& mode = simulation.mode();
+  const RunSettings settings = equilibrium_settings(system, base, mode.field(), mode.all_events(), x, par,
+                                                    continuation_parameter(request, constants, system));
+  const OrbitPaths paths = orbit_paths(name);
+  write_whole_file(paths.data, equilibrium_data_text(system, x, par));
+  write_whole_file(paths.constants, keyword_text(settings));
+  return next_run_text(request, paths, name);
+}
+
 /// Writes the orbit for `tchat run`; what to say about it.
 std::string hand_over(const SimulationRequest& request, const SimulationConstants& constants,
                       const HybridSystem& system, const FoundOrbit& orbit, const VectorXd& par,
@@ -116,14 +138,11 @@ std::string hand_over(const SimulationRequest& request, const SimulationConstant
   const OrbitPaths paths = orbit_paths(name);
   write_whole_file(paths.data, orbit_data_text(system, orbit, samples, par));
   write_whole_file(paths.constants, keyword_text(settings));
-  const std::string plugin = request.problem ? fmt::format(" -p {}", *request.problem) : "";
   const std::string finer = samples.intervals == base.mesh_intervals
                                 ? ""
                                 : fmt::format("The orbit is sharp: NTST = {} instead of {}, for an error of {:.1e}.\n",
                                               samples.intervals, base.mesh_intervals, samples.error);
-  return fmt::format("{}{}Written: {} and {}. Go on with\n  tchat run {}{} -c {} -d {} -o {}\n", finer,
-                     unmonitored_events(system, orbit, samples, par), paths.data, paths.constants, request.name, plugin,
-                     name, name, name);
+  return finer + unmonitored_events(system, orbit, samples, par) + next_run_text(request, paths, name);
 }
 
 /// "" when the orbit can be continued; otherwise why not.
@@ -219,6 +238,7 @@ int simulate_problem(const SimulationRequest& request, std::ostream& screen, std
   say(course_text(system, result, result.last.end_time(), request.contact));
 
   FoundOrbit orbit;
+  std::optional<VectorXd> rest;
   if (result.is_periodic()) {
     const IndexVector first =
         constants.has_signature ? constants.settings.segments.front().index : IndexVector{0, 0, 0};
@@ -233,7 +253,7 @@ int simulate_problem(const SimulationRequest& request, std::ostream& screen, std
     if (orbit.converged) say(orbit_text(system, orbit));
   } else if (request.refine) {
     say(nothing_recorded_text(request.plan));
-  } else if (const std::optional<VectorXd> rest = equilibrium_of(search, simulation, result.last)) {
+  } else if (rest = equilibrium_of(search, simulation, result.last); rest) {
     say(rest_text(*rest));
   } else {
     say(no_orbit_text(result, request.plan, search.doubt()));
@@ -254,6 +274,10 @@ int simulate_problem(const SimulationRequest& request, std::ostream& screen, std
     return 1;
   }
   if (!request.hand_over) return 0;
+  if (rest) {
+    say(hand_over_equilibrium(request, constants, simulation, *rest, orbit_name));
+    return 0;
+  }
   if (const std::string why = obstacle(system, result, orbit); !why.empty()) {
     warnings << fmt::format("tchat: --dat: nothing written, {}\n", why);
     return 1;

@@ -117,6 +117,7 @@ std::string rest_text(const VectorXd& equilibrium) {
 }
 
 std::string orbit_text(const HybridSystem& system, const FoundOrbit& orbit) {
+  constexpr std::size_t most_shown = 12;  // states, and multipliers, of a large problem
   std::string text =
       fmt::format("Periodic orbit, signature {}, period {:.13g}\n", to_string(orbit.signature), orbit.map.period);
   for (std::size_t s = 0; s < orbit.signature.size(); ++s) {
@@ -130,12 +131,16 @@ std::string orbit_text(const HybridSystem& system, const FoundOrbit& orbit) {
   text += "  start";
   // Of the largest state 13 digits are shown; what is smaller than the last of them is rounding.
   const double rounding = 1e-13 * orbit.start.cwiseAbs().maxCoeff();
-  for (Eigen::Index i = 0; i < orbit.start.size(); ++i)
+  const Eigen::Index shown_states = std::min(orbit.start.size(), static_cast<Eigen::Index>(most_shown));
+  for (Eigen::Index i = 0; i < shown_states; ++i)
     text += fmt::format("{} {} = {:.13g}", i > 0 ? "," : "", system.state_name(static_cast<int>(i) + 1),
                         std::abs(orbit.start(i)) > rounding ? orbit.start(i) : 0.0);
+  if (orbit.start.size() > shown_states) text += fmt::format(", and {} more", orbit.start.size() - shown_states);
   text += "\n  multipliers";
-  for (std::size_t i = 0; i < orbit.multipliers.size(); ++i)
+  const std::size_t shown = std::min(orbit.multipliers.size(), most_shown);
+  for (std::size_t i = 0; i < shown; ++i)
     text += fmt::format("{} {}", i > 0 ? "," : "", multiplier_text(orbit.multipliers[i]));
+  if (orbit.multipliers.size() > shown) text += fmt::format(", and {} smaller ones", orbit.multipliers.size() - shown);
   text += ": " + stability_text(orbit.stability(), orbit.uncertainty) + "\n";
   for (Eigen::Index i = 0; i < orbit.advance.size(); ++i)
     if (orbit.advance(i) != 0.0)

@@ -22,7 +22,12 @@ std::string one(const IndexVector& v) { return fmt::format("({},{},{})", v.field
 
 }  // namespace
 
-std::string state_text(const VectorXd& x) { return fmt::format("({:.6g})", fmt::join(x.begin(), x.end(), ", ")); }
+std::string state_text(const VectorXd& x) {
+  constexpr Eigen::Index most_shown = 12;
+  const Eigen::Index shown = std::min(x.size(), most_shown);
+  const std::string more = x.size() > shown ? fmt::format(", and {} more", x.size() - shown) : "";
+  return fmt::format("({:.6g}{})", fmt::join(x.begin(), x.begin() + shown, ", "), more);
+}
 
 std::vector<int> Mode::terminal_events() const {
   std::vector<int> events;

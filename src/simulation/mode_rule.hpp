@@ -71,7 +71,7 @@ class ModeRule {
 /// "" when the index vectors exist in the problem and have one field; otherwise what is wrong with them.
 std::string fault_of(const HybridSystem& system, const std::vector<IndexVector>& index_vectors);
 
-/// "(0.1, 2)", the digits that tell states apart for people.
+/// "(0.1, 2)", with the digits that people need to see a difference; the first twelve entries of a large state.
 std::string state_text(const Eigen::VectorXd& x);
 
 }  // namespace tchat

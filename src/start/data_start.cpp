@@ -6,8 +6,10 @@
 #include <cmath>
 
 #include "constants/settings_type.hpp"
+#include "files/trajectory_rows.hpp"
 #include "setup/parameter_values.hpp"
 #include "setup/problem_setup.hpp"
+#include "start/trajectory_start.hpp"
 #include "text/user_error.hpp"
 
 namespace tchat {
@@ -48,7 +50,8 @@ SelectedStart start_from_state(const std::string& path, const RunSettings& setti
 
 SelectedStart start_from_orbit(const std::string& path, const RunSettings& settings, const HybridSystem& system) {
   const int m = segment_count(settings);
-  const DatFile data = read_dat_file(path, settings.dimension, m);
+  const DatFile data =
+      looks_like_trajectory(path) ? data_of_trajectory(path, settings) : read_dat_file(path, settings.dimension, m);
   ParameterVector par = initial_parameters(system);
   std::vector<bool> given(static_cast<std::size_t>(m), false);
   const auto set = [&](int k, double value) {

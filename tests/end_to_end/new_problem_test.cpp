@@ -85,7 +85,7 @@ TEST_CASE("constants: the other form says the same, also of itself, explained in
   CHECK(positional.out.compare(0, 9, "4 180 0 1") == 0);
   workspace.write("gc.positional", positional.out);
   CHECK(workspace.tchat("constants positional").out == keyword.out);
-  CHECK(workspace.tchat("constants positional -p").out == positional.out);
+  CHECK(workspace.tchat("constants positional --positional").out == positional.out);
   CHECK(workspace.tchat("constants positional NTST=77 -k").out.find("NTST = 77") != std::string::npos);
 
   const Outcome explained = workspace.tchat("constants impacting --explain");
@@ -100,7 +100,7 @@ TEST_CASE("constants: the other form says the same, also of itself, explained in
 
   check_refused(workspace.tchat("constants nosuch"), {"gc.nosuch"});
   check_refused(workspace.tchat("constants impacting NTST=0"), {"NTST", "5000"});
-  check_refused(workspace.tchat("constants impacting -k -p"), {"--help"});
+  check_refused(workspace.tchat("constants impacting -k --positional"), {"--help"});
 }
 
 namespace {
