@@ -127,6 +127,7 @@ NamedFigure branches(const std::vector<PlotItem>& items, const PlotArguments& ar
                     "-y STATE@EVENT --dots STATE branches show that too (of a run with NPR=1)",
                     is_norm ? "the L2 norm" : "the largest value of a state"));
   if (!files.empty()) result.name = files.front().name;
+  result.branches = std::move(files);
   return result;
 }
 

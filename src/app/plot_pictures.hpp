@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "app/plot_arguments.hpp"
+#include "files/branch_file.hpp"
 #include "plot/figure.hpp"
 
 namespace tchat {
@@ -13,6 +14,7 @@ struct NamedFigure {
   Figure figure;
   std::string name;  ///< for a file that the user did not name
   std::vector<std::string> warnings;
+  std::vector<BranchFile> branches = {};  ///< the files of its computed points
 };
 
 /// Throws UserError for files and labels that do not fit the kind of picture.

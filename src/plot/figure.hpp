@@ -44,9 +44,16 @@ struct Marker {
   bool filled = true;
   double size = 1.0;
   std::string colour = "#000000";
-  LabelText label = {};      ///< empty: none
-  bool one_of_many = false;  ///< where they are crowded some go without label
-  bool minor = false;        ///< as that of a curve
+  LabelText label = {};                      ///< empty: none
+  bool one_of_many = false;                  ///< where they are crowded some go without label
+  bool minor = false;                        ///< as that of a curve
+  std::optional<std::size_t> computed = {};  ///< the point of a branch that it marks, in the panel's list
+};
+
+/// A point of a branch where it is drawn: what a page shows of it is in the file.
+struct ComputedPoint {
+  PicturePoint at;
+  std::size_t file = 0, section = 0, row = 0;  ///< the file counts among those of the figure
 };
 
 /// A polyline; a point that is not finite interrupts it.
@@ -101,6 +108,7 @@ struct Panel {
   std::vector<Curve> curves;
   std::vector<Marker> markers;
   std::vector<Arrow> arrows;
+  std::vector<ComputedPoint> computed = {};
   bool equal_scales = false;  ///< circles are round
 };
 

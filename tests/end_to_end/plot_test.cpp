@@ -339,7 +339,7 @@ TEST_CASE("bad usage of plot is refused with what there is") {
                          Bad{"--time p.branch", {"q-file"}},
                          Bad{"d.branch", {"--multipliers"}},
                          Bad{"--multipliers d.branch 99", {"99", "(PD)"}},
-                         Bad{"p.branch -o x.jpg", {".png, .svg or .pdf"}},
+                         Bad{"p.branch -o x.jpg", {".png, .svg, .pdf or .html"}},
                          Bad{"p.branch -o nowhere/x.png", {"nowhere/x.png"}},
                          Bad{"p.branch --xrange 3", {"--xrange", "colon"}},
                          Bad{"p.branch --xrange 3:x", {"'x'"}},
