@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <map>
+
 #include "plot/page_figure.hpp"
 #include "plot/page_files.hpp"
 #include "plot/page_json.hpp"
@@ -26,10 +28,15 @@ std::string html_text(const std::string& text) {
 
 std::string data_json(const SheetLayout& sheet, const PageContents& contents) {
   std::vector<std::string> figures, branches;
+  std::map<std::string, std::size_t> places;  // by path: a file of several figures is written once
   for (std::size_t k = 0; k < sheet.figures.size(); ++k) {
-    figures.push_back(figure_json(sheet.figures[k], branches.size()));
-    if (k >= contents.branches.size()) continue;
-    for (const BranchFile& file : contents.branches[k]) branches.push_back(branch_json(file, contents.options));
+    std::vector<std::size_t> places_in_figure;
+    for (const BranchFile& file : contents.branches.at(k)) {
+      const auto [place, is_new] = places.emplace(file.path, branches.size());
+      if (is_new) branches.push_back(branch_json(file, contents.options));
+      places_in_figure.push_back(place->second);
+    }
+    figures.push_back(figure_json(sheet.figures[k], places_in_figure));
   }
   return page_object({{"title", page_label(sheet.title)},
                       {"figures", page_list(figures)},

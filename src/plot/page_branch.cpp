@@ -70,7 +70,8 @@ class PageBranchWriter {
     std::vector<std::string> columns, states, multipliers;
     for (std::size_t c = 0; c < section.columns.size(); ++c) columns.push_back(column(section, c));
     for (int k = 1; k <= section.dimension; ++k) states.push_back(page_text(section.state_name(k)));
-    for (std::size_t k = 0; k < section.rows.size(); ++k) multipliers.push_back(multipliers_of(file_.diagnostic_of(s, k)));
+    for (std::size_t k = 0; k < section.rows.size(); ++k)
+      multipliers.push_back(multipliers_of(file_.diagnostic_of(s, k)));
     const bool has_return_map = family_of(section.problem_type).facts().has_return_map;
     return page_object(
         {{"columns", page_list(section.columns, [](const std::string& name) { return page_text(name); })},
@@ -132,12 +133,13 @@ class PageBranchWriter {
     const auto orbit = orbits_.place.find(number);
     const auto& names = names_[static_cast<std::size_t>(std::max(file_.solution[s][k], 0))];
     const bool is_named = solution != nullptr && !names.empty();
-    return page_object({{"label", integer(number)},
-                        {"type", page_text(file_.types[s][k])},
-                        {"name", is_named ? page_text(names.front()) : "null"},
-                        {"kind", page_text(solution == nullptr ? "" : kind(s, *solution))},
-                        {"orbit", orbit == orbits_.place.end() ? "null" : integer(static_cast<long long>(orbit->second))},
-                        {"restarts", solution == nullptr || !restart_.exists() ? "0" : "1"}});
+    return page_object(
+        {{"label", integer(number)},
+         {"type", page_text(file_.types[s][k])},
+         {"name", is_named ? page_text(names.front()) : "null"},
+         {"kind", page_text(solution == nullptr ? "" : kind(s, *solution))},
+         {"orbit", orbit == orbits_.place.end() ? "null" : integer(static_cast<long long>(orbit->second))},
+         {"restarts", solution == nullptr || !restart_.exists() ? "0" : "1"}});
   }
 
   std::string kind(std::size_t s, const LabelledSolution& solution) const {
@@ -175,7 +177,9 @@ std::string point_meanings_json() {
   std::vector<std::string> pairs;
   for (const PointTypeFacts& facts : point_types())
     if (known.insert(facts.name).second)
-      pairs.push_back(fmt::format("{}:{}", page_text(facts.name), page_text(find_point_type(facts.name)->meaning)));
+      pairs.push_back(
+          fmt::format("{}:{}", page_text(facts.name),
+                      page_object({{"text", page_text(facts.meaning)}, {"border", facts.is_bifurcation ? "1" : "0"}})));
   return fmt::format("{{{}}}", fmt::join(pairs, ","));
 }
 

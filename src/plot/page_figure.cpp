@@ -13,8 +13,8 @@ namespace tchat {
 
 namespace {
 
-constexpr int drawn_digits = 10;                    // of what is drawn: enough to zoom far into it
-constexpr std::size_t most_dots = 200'000;    // of a cloud that is embedded whole
+constexpr int drawn_digits = 10;            // of what is drawn: enough to zoom far into it
+constexpr std::size_t most_dots = 200'000;  // of a cloud that is embedded whole
 
 std::string drawn_number(double value) { return page_number(value, drawn_digits); }
 
@@ -86,8 +86,7 @@ std::string cloud_json(const Cloud& cloud, const PanelLayout& layout, double fon
   const double side = 0.6 * cloud.size * marker_radius * font;
   const auto points = thinned_points(cloud.points, layout, side, most_dots);
   std::string levels = "null";
-  if (cloud.colour == "palette")
-    levels = page_list(points, [](const PicturePoint& p) { return page_number(p.z, 6); });
+  if (cloud.colour == "palette") levels = page_list(points, [](const PicturePoint& p) { return page_number(p.z, 6); });
   return page_object({{"points", flat_points(points)},
                       {"colour", page_text(cloud.colour)},
                       {"size", page_number(cloud.size, 4)},
@@ -137,17 +136,17 @@ std::string markers_json(const Panel& panel, const PanelLayout& layout, double f
 }
 
 /// The computed points of branches: where they are and what they are, in one list for each quantity.
-std::string computed_json(const std::vector<ComputedPoint>& points, std::size_t first_branch) {
+std::string computed_json(const std::vector<ComputedPoint>& points, const std::vector<std::size_t>& branches) {
   const auto index = [](std::size_t k) { return fmt::format("{}", k); };
-  return page_object(
-      {{"x", page_list(points, [](const ComputedPoint& p) { return page_number(p.at.x); })},
-       {"y", page_list(points, [](const ComputedPoint& p) { return page_number(p.at.y); })},
-       {"branch", page_list(points, [&](const ComputedPoint& p) { return index(first_branch + p.file); })},
-       {"section", page_list(points, [&](const ComputedPoint& p) { return index(p.section); })},
-       {"row", page_list(points, [&](const ComputedPoint& p) { return index(p.row); })}});
+  return page_object({{"x", page_list(points, [](const ComputedPoint& p) { return page_number(p.at.x); })},
+                      {"y", page_list(points, [](const ComputedPoint& p) { return page_number(p.at.y); })},
+                      {"branch", page_list(points, [&](const ComputedPoint& p) { return index(branches[p.file]); })},
+                      {"section", page_list(points, [&](const ComputedPoint& p) { return index(p.section); })},
+                      {"row", page_list(points, [&](const ComputedPoint& p) { return index(p.row); })}});
 }
 
-std::string panel_json(const Panel& panel, const PanelLayout& layout, double font, std::size_t first_branch) {
+std::string panel_json(const Panel& panel, const PanelLayout& layout, double font,
+                       const std::vector<std::size_t>& branches) {
   if (panel.z)
     throw UserError(
         "-o FILE.html: a page draws in the plane; leave -z out (the page lets you choose two states), or write "
@@ -169,7 +168,7 @@ std::string panel_json(const Panel& panel, const PanelLayout& layout, double fon
                       {"symbols", page_list(layout.symbols, symbol)},
                       {"arrows", page_list(panel.arrows, arrow)},
                       {"markers", markers_json(panel, layout, font)},
-                      {"computed", computed_json(panel.computed, first_branch)}});
+                      {"computed", computed_json(panel.computed, branches)}});
 }
 
 std::string key_entry_json(const KeyEntry& entry) {
@@ -189,11 +188,11 @@ std::string palette_json(const Palette& palette) {
 
 }  // namespace
 
-std::string figure_json(const PlacedFigure& placed, std::size_t first_branch) {
+std::string figure_json(const PlacedFigure& placed, const std::vector<std::size_t>& branches) {
   const Figure& figure = placed.figure;
   std::vector<std::string> panels;
   for (std::size_t k = 0; k < figure.panels.size(); ++k)
-    panels.push_back(panel_json(figure.panels[k], placed.layout.panels[k], placed.layout.font, first_branch));
+    panels.push_back(panel_json(figure.panels[k], placed.layout.panels[k], placed.layout.font, branches));
   return page_object({{"width", fmt::format("{}", figure.width)},
                       {"height", fmt::format("{}", figure.height)},
                       {"title", page_label(figure.title)},

@@ -3,13 +3,14 @@
 
 #include <cstddef>
 #include <string>
+#include <vector>
 
 #include "plot/picture_sheet.hpp"
 
 namespace tchat {
 
-/// Texts, key, palette and panels. `first_branch` is the place of the figure's first file in the page's list of
+/// Texts, key, palette and panels. `branches` are the places of the figure's files in the page's list of
 /// branches. Throws UserError for a figure in space.
-std::string figure_json(const PlacedFigure& placed, std::size_t first_branch);
+std::string figure_json(const PlacedFigure& placed, const std::vector<std::size_t>& branches);
 
 }  // namespace tchat

@@ -21,7 +21,10 @@ unsigned char byte_at(std::string_view text, std::size_t k) { return static_cast
 std::size_t character_length(std::string_view text, std::size_t k) {
   const unsigned char first = byte_at(text, k);
   if (first < 0x80) return 1;
-  const std::size_t length = first >= 0xC2 && first < 0xE0 ? 2 : (first & 0xF0) == 0xE0 ? 3 : first >= 0xF0 && first < 0xF5 ? 4 : 0;
+  const std::size_t length = first >= 0xC2 && first < 0xE0   ? 2
+                             : (first & 0xF0) == 0xE0        ? 3
+                             : first >= 0xF0 && first < 0xF5 ? 4
+                                                             : 0;
   if (length == 0 || k + length > text.size()) return 0;
   for (std::size_t j = 1; j < length; ++j)
     if ((byte_at(text, k + j) & 0xC0) != 0x80) return 0;

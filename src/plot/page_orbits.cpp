@@ -19,8 +19,8 @@ namespace tchat {
 namespace {
 
 constexpr int orbit_digits = 7;
-constexpr std::size_t most_orbits = 400;          // of regular points
-constexpr std::size_t most_numbers = 300'000;     // of all orbits: 3 MB
+constexpr std::size_t most_orbits = 400;                    // of regular points
+constexpr std::size_t most_numbers = 300'000;               // of all orbits: 3 MB
 constexpr std::size_t fewest_times = 16, most_times = 400;  // of one segment
 
 std::string orbit_number(double value) { return page_number(value, orbit_digits); }
@@ -126,8 +126,8 @@ class OrbitWriter {
     const TraceSegment& segment = trace_.segments[static_cast<std::size_t>(kind.segment) - 1];
     const double wanted = segment.times.front() + kind.tau * (segment.times.back() - segment.times.front());
     const auto after = std::lower_bound(segment.times.begin(), segment.times.end(), wanted);
-    const auto k = std::min<std::ptrdiff_t>(after - segment.times.begin(),
-                                            static_cast<std::ptrdiff_t>(segment.times.size()) - 1);
+    const auto k =
+        std::min<std::ptrdiff_t>(after - segment.times.begin(), static_cast<std::ptrdiff_t>(segment.times.size()) - 1);
     std::vector<std::string> states;
     for (Eigen::Index i = 0; i < segment.states.rows(); ++i) states.push_back(orbit_number(segment.states(i, k)));
     return page_object({{"t", orbit_number(segment.times[static_cast<std::size_t>(k)])},

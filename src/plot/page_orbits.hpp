@@ -9,9 +9,9 @@
 namespace tchat {
 
 struct PageOrbits {
-  std::string json;                 ///< a list, one entry for each solution that is embedded
-  std::map<int, std::size_t> place; ///< by label: where in the list
-  std::string missing;              ///< why there are none, or not all of them; "" where all are there
+  std::string json;                  ///< a list, one entry for each solution that is embedded
+  std::map<int, std::size_t> place;  ///< by label: where in the list
+  std::string missing;               ///< why there are none, or not all of them; "" where all are there
 };
 
 /// Of the q-file beside the branch. Long orbits are thinned, and of many labels all special points and an even choice

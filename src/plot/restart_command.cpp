@@ -53,9 +53,9 @@ RestartCommand restart_command(const BranchFile& file, const std::string& plugin
   const std::string run = run_path(file.path);
   const bool has_usual_name = default_solution_path(run) == solutions;
   RestartCommand command;
-  command.to_output = fmt::format("tchat run {} -c {} -s {} -o {}_", problem.value_or("PROBLEM"),
-                                  quoted_for_shell(constants), quoted_for_shell(has_usual_name ? run : solutions),
-                                  quoted_for_shell(run));
+  command.to_output =
+      fmt::format("tchat run {} -c {} -s {} -o {}_", problem.value_or("PROBLEM"), quoted_for_shell(constants),
+                  quoted_for_shell(has_usual_name ? run : solutions), quoted_for_shell(run));
   command.to_label = " IRS=";
   if (!problem)
     command.remark =

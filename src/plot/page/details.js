@@ -27,7 +27,8 @@ function nearestOrbit(section, row) {
 
 function wordsOfStability(facts) {
   const words = [];
-  if (facts.stability) words.push(facts.stability);
+  const isBorder = facts.label && data.meanings[facts.label.type] && data.meanings[facts.label.type].border;
+  if (facts.stability) words.push(facts.stability + (isBorder ? " before this point" : ""));
   if (facts.violation !== undefined) words.push("inadmissible");
   return words.join(", ");
 }
@@ -64,7 +65,7 @@ function showOverview(data, host, open, places) {
     host.appendChild(element("p", "", "Point at a curve or a dot for its values; a click keeps them here."));
     return;
   }
-  host.appendChild(element("h2", "", "Labels"));
+  host.appendChild(element("h2", "", places.length ? "Labels" : "Points"));
   host.appendChild(element("p", "", "Choose a label, or click a point of the branch, for its orbit, its multipliers and " +
                                     "the command that restarts there."));
   data.branches.forEach(function (branch) {
@@ -91,7 +92,7 @@ function showPoint(data, host, place, close) {
   closing.title = "Close (Esc)";
   top.appendChild(closing);
   if (facts.label && data.meanings[facts.label.type])
-    host.appendChild(element("p", "meaning", facts.label.type + ": " + data.meanings[facts.label.type] + "."));
+    host.appendChild(element("p", "meaning", facts.label.type + ": " + data.meanings[facts.label.type].text + "."));
   if (facts.label && facts.label.kind) host.appendChild(element("p", "kind", facts.label.kind));
   if (facts.violation !== undefined)
     addWarning(host, "The orbit violates the model" + (facts.violation ? ": " + facts.violation : "") + ".");

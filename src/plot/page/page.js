@@ -43,7 +43,7 @@ function tipContent(panel, found) {
   const place = placeOf(panel, found.point), facts = factsOf(data, place);
   if (data.branches.length > 1) host.appendChild(element("div", "", facts.branch.name));
   if (facts.label && facts.label.type) {
-    const meaning = data.meanings[facts.label.type] || "";
+    const meaning = data.meanings[facts.label.type] ? data.meanings[facts.label.type].text : "";
     const strong = host.appendChild(element("strong", "", facts.title));
     strong.className = "tip-title";
     if (meaning) host.appendChild(element("div", "", meaning.split(/[:;]/)[0]));
@@ -238,6 +238,8 @@ function start() {
       open: openPoint, pin: pinPlace, tip: showTip, hideTip: hideTip, describe: describeMarker
     }));
   });
+  document.querySelector("main").classList.toggle("alone", !data.branches.length);
+  resizeAll();
   showOverview(data, details, openPlace, labelledPlaces());
   document.getElementById("zoom-in").addEventListener("click", keyActions["+"]);
   document.getElementById("zoom-out").addEventListener("click", keyActions["-"]);
@@ -247,7 +249,9 @@ function start() {
   window.addEventListener("resize", resizeAll);
   if (document.fonts && document.fonts.ready) document.fonts.ready.then(resizeAll);
   window.tchat = { pictures: pictures };  // for tests, and for whoever looks at the numbers in the console
-  document.documentElement.dataset.drawn = performance.now().toFixed(1);
+  requestAnimationFrame(function () {  // of the next frame: what has been drawn is on the screen behind it
+    setTimeout(function () { document.documentElement.dataset.drawn = performance.now().toFixed(1); }, 0);
+  });
 }
 
 function appendTitle() {

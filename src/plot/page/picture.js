@@ -149,7 +149,7 @@ function makePicture(figure, host, actions) {
     const width = Math.max(plot.clientWidth, 200);
     const isNarrow = width < 520;
     const ratio = isNarrow ? Math.max(figure.height / figure.width, 0.95) : figure.height / figure.width;
-    const tallest = isNarrow ? 1e9 : Math.max(320, window.innerHeight - host.getBoundingClientRect().top - 130);
+    const tallest = isNarrow ? 1e9 : Math.max(320, window.innerHeight - 170);
     const height = Math.round(Math.min(width * ratio, tallest));
     picture.unit = Math.min(1, Math.max(0.5, width / paperWidth));
     picture.font = Math.max(14, paperFont * picture.unit);
@@ -341,23 +341,32 @@ function makePicture(figure, host, actions) {
     const isRepeated = labels.some(function (label) {
       return label.name === name && Math.abs(label.x - item.x) < 1.2 * width && Math.abs(label.y - item.y) < 1.2 * height;
     });
-    const places = isRepeated ? [] : candidates(item, width, height);
-    const found = places.find(function (place) {
+    let best = null;
+    (isRepeated ? [] : candidates(item, width, height)).forEach(function (place, k) {
       const area = { left: item.x + place[0] - width / 2, right: item.x + place[0] + width / 2,
                      top: item.y + place[1] - height / 2 + 3, bottom: item.y + place[1] + height / 2 - 3 };
       if (area.left < panel.box.left || area.right > panel.box.left + panel.box.width || area.top < panel.box.top ||
           area.bottom > panel.box.top + panel.box.height)
-        return false;
-      const isFree = taken.every(function (other) {
-        return other.right < area.left || other.left > area.right || other.bottom < area.top || other.top > area.bottom;
-      });
-      if (isFree) taken.push(area);
-      return isFree;
+        return;
+      const room = clearance(area, taken, item.marker);
+      const cost = k - Math.min(room, 12);
+      if (room > 0 && (!best || cost < best.cost)) best = { place: place, area: area, cost: cost };
     });
-    item.text.style("display", found ? null : "none");
-    if (!found) return;
-    item.text.attr("x", found[0]).attr("y", found[1] + 0.35 * 14);
+    item.text.style("display", best ? null : "none");
+    if (!best) return;
+    taken.push(best.area);
+    item.text.attr("x", best.place[0]).attr("y", best.place[1] + 0.35 * 14);
     labels.push({ name: name, x: item.x, y: item.y });
+  }
+
+  /** The distance from a label to what is nearest of the others; 0 when it covers something. */
+  function clearance(area, taken, own) {
+    return taken.reduce(function (least, other) {
+      const dx = Math.max(0, other.left - area.right, area.left - other.right);
+      const dy = Math.max(0, other.top - area.bottom, area.top - other.bottom);
+      const isTouched = dx === 0 && dy === 0;
+      return other.of === own && !isTouched ? least : Math.min(least, Math.sqrt(dx * dx + dy * dy));
+    }, Infinity);
   }
 
   function candidates(item, width, height) {
