@@ -256,8 +256,9 @@ function start() {
 
 function appendTitle() {
   const title = document.getElementById("title");
-  const label = data.title.t ? data.title : { t: document.title };
-  appendLabel(title, label);
+  const names = data.branches.map(function (branch) { return branch.name; });
+  const isNamed = data.title.t || data.figures.some(function (figure) { return figure.title.t; }) || names.length < 2;
+  appendLabel(title, data.title.t ? data.title : { t: isNamed ? document.title : names.join(", ") });
 }
 
 start();

@@ -345,8 +345,8 @@ function makePicture(figure, host, actions) {
     (isRepeated ? [] : candidates(item, width, height)).forEach(function (place, k) {
       const area = { left: item.x + place[0] - width / 2, right: item.x + place[0] + width / 2,
                      top: item.y + place[1] - height / 2 + 3, bottom: item.y + place[1] + height / 2 - 3 };
-      if (area.left < panel.box.left || area.right > panel.box.left + panel.box.width || area.top < panel.box.top ||
-          area.bottom > panel.box.top + panel.box.height)
+      if (area.left < panel.box.left + 2 || area.right > panel.box.left + panel.box.width - 2 ||
+          area.top < panel.box.top || area.bottom > panel.box.top + panel.box.height)
         return;
       const room = clearance(area, taken, item.marker);
       const cost = k - Math.min(room, 12);
