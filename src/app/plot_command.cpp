@@ -68,7 +68,7 @@ int make_picture(const PlotCommand& command) {
     print_warnings(std::cerr, picture.warnings);
     apply_taste(arguments, picture.figure);
     figures.push_back(std::move(picture.figure));
-    page.branches.push_back(std::move(picture.branches));
+    page.files.push_back(std::move(picture.files));
     if (name.empty()) name = picture.name;
   }
   page.name = name;

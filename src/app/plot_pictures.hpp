@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "app/plot_arguments.hpp"
-#include "files/branch_file.hpp"
 #include "plot/figure.hpp"
+#include "plot/page.hpp"
 
 namespace tchat {
 
@@ -14,7 +14,7 @@ struct NamedFigure {
   Figure figure;
   std::string name;  ///< for a file that the user did not name
   std::vector<std::string> warnings;
-  std::vector<BranchFile> branches = {};  ///< the files of its computed points
+  FigureFiles files = {};  ///< of its computed points and of its dots
 };
 
 /// Throws UserError for files and labels that do not fit the kind of picture.

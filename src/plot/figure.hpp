@@ -65,11 +65,18 @@ struct Curve {
   std::optional<Marker> symbol = {};  ///< repeated along it
 };
 
+/// Where dots and cells are from: rows of the figure's `sweep`-th sweep. Empty for what is from elsewhere.
+struct SweepRows {
+  std::size_t sweep = 0;
+  std::vector<std::optional<std::size_t>> rows = {};
+};
+
 /// Dots beneath everything else.
 struct Cloud {
   std::vector<PicturePoint> points;
   std::string colour = "#000000";  ///< or "palette": z is each dot's number there
   double size = 0.5;               ///< as a marker's
+  SweepRows rows = {};             ///< of each point
 };
 
 /// A map of equal rectangles, each in one colour, beneath the dots.
@@ -77,6 +84,7 @@ struct ColourField {
   std::size_t columns = 0, rows = 0;
   PicturePoint first, last;   ///< centres of the cells at the beginning and at the end of `cells`
   std::vector<double> cells;  ///< numbers in the figure's palette, row by row; NaN: nothing is drawn
+  SweepRows sweep_rows = {};  ///< of each cell
 
   /// Half of a cell's width, and height.
   PicturePoint half_cell() const;

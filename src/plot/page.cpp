@@ -7,6 +7,7 @@
 #include "plot/page_figure.hpp"
 #include "plot/page_files.hpp"
 #include "plot/page_json.hpp"
+#include "plot/page_sweep.hpp"
 
 namespace tchat {
 
@@ -26,21 +27,39 @@ std::string html_text(const std::string& text) {
   return result;
 }
 
+/// A file that several figures show is written once.
+class WrittenFiles {
+ public:
+  /// Where the file is in the list; `make` writes it where it is not there yet.
+  template <class File, class Make>
+  std::size_t add(const File& file, const Make& make) {
+    const auto [place, is_new] = places_.emplace(file.path, json_.size());
+    if (is_new) json_.push_back(make());
+    return place->second;
+  }
+
+  const std::vector<std::string>& json() const { return json_; }
+
+ private:
+  std::map<std::string, std::size_t> places_;  // by path
+  std::vector<std::string> json_;
+};
+
 std::string data_json(const SheetLayout& sheet, const PageContents& contents) {
-  std::vector<std::string> figures, branches;
-  std::map<std::string, std::size_t> places;  // by path: a file of several figures is written once
+  std::vector<std::string> figures;
+  WrittenFiles branches, sweeps;
   for (std::size_t k = 0; k < sheet.figures.size(); ++k) {
-    std::vector<std::size_t> places_in_figure;
-    for (const BranchFile& file : contents.branches.at(k)) {
-      const auto [place, is_new] = places.emplace(file.path, branches.size());
-      if (is_new) branches.push_back(branch_json(file, contents.options));
-      places_in_figure.push_back(place->second);
-    }
-    figures.push_back(figure_json(sheet.figures[k], places_in_figure));
+    FilePlaces places;
+    for (const BranchFile& file : contents.files.at(k).branches)
+      places.branches.push_back(branches.add(file, [&] { return branch_json(file, contents.options); }));
+    for (const SweepFile& file : contents.files[k].sweeps)
+      places.sweeps.push_back(sweeps.add(file, [&] { return sweep_json(file); }));
+    figures.push_back(figure_json(sheet.figures[k], places));
   }
   return page_object({{"title", page_label(sheet.title)},
                       {"figures", page_list(figures)},
-                      {"branches", page_list(branches)},
+                      {"branches", page_list(branches.json())},
+                      {"sweeps", page_list(sweeps.json())},
                       {"meanings", point_meanings_json()}});
 }
 

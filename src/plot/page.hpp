@@ -9,12 +9,19 @@
 #include "files/branch_file.hpp"
 #include "plot/page_branch.hpp"
 #include "plot/picture_sheet.hpp"
+#include "plot/sweep_layer.hpp"
 
 namespace tchat {
 
+/// What the points of a figure are from, as its computed points and dots count them.
+struct FigureFiles {
+  std::vector<BranchFile> branches;
+  std::vector<SweepFile> sweeps;
+};
+
 /// What a page shows besides the sheet.
 struct PageContents {
-  std::vector<std::vector<BranchFile>> branches;  ///< of each figure, as its computed points count them
+  std::vector<FigureFiles> files;  ///< of each figure
   PageBranchOptions options;
   std::string name;  ///< title of the window where the sheet has none
 };

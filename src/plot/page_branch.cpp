@@ -33,6 +33,12 @@ std::string stability(const PointSection& section) {
   return letters;
 }
 
+/// What numbers the d-file has of a point: a boundary value problem has none.
+const char* spectrum_of(const PointSection& section) {
+  const FamilyFacts& facts = family_of(section.problem_type).facts();
+  return facts.has_return_map ? "multipliers" : facts.headings.has_period ? "" : "eigenvalues";
+}
+
 std::string multipliers_of(const DiagnosticPoint* point) {
   if (point == nullptr || point->multipliers.empty()) return "0";
   std::vector<std::string> parts;
@@ -72,7 +78,6 @@ class PageBranchWriter {
     for (int k = 1; k <= section.dimension; ++k) states.push_back(page_text(section.state_name(k)));
     for (std::size_t k = 0; k < section.rows.size(); ++k)
       multipliers.push_back(multipliers_of(file_.diagnostic_of(s, k)));
-    const bool has_return_map = family_of(section.problem_type).facts().has_return_map;
     return page_object(
         {{"columns", page_list(section.columns, [](const std::string& name) { return page_text(name); })},
          {"values", page_list(columns)},
@@ -83,7 +88,7 @@ class PageBranchWriter {
          {"fixed", fixed_parameters(s)},
          {"states", page_list(states)},
          {"multipliers", page_list(multipliers)},
-         {"eigenvalues", has_return_map ? "0" : "1"},
+         {"spectrum", page_text(spectrum_of(section))},
          {"labels", labels(s)}});
   }
 

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <numeric>
+#include <optional>
 #include <vector>
 
 #include "plot/page_json.hpp"
@@ -82,24 +84,38 @@ std::string curve_json(const Curve& curve, double dash_scale) {
                       {"background", truth(curve.background)}});
 }
 
-std::string cloud_json(const Cloud& cloud, const PanelLayout& layout, double font) {
+std::string row_json(const std::optional<std::size_t>& row) { return row ? fmt::format("{}", *row) : "null"; }
+
+/// The rows of the page's sweep that these points or cells are from; null where they are from elsewhere.
+std::string rows_json(const SweepRows& rows, const std::vector<std::size_t>& indices, const FilePlaces& places) {
+  if (rows.rows.empty()) return "null";
+  return page_object({{"sweep", fmt::format("{}", places.sweeps[rows.sweep])},
+                      {"rows", page_list(indices, [&](std::size_t k) { return row_json(rows.rows[k]); })}});
+}
+
+std::string cloud_json(const Cloud& cloud, const PanelLayout& layout, double font, const FilePlaces& places) {
   const double side = 0.6 * cloud.size * marker_radius * font;
-  const auto points = thinned_points(cloud.points, layout, side, most_dots);
-  std::string levels = "null";
-  if (cloud.colour == "palette") levels = page_list(points, [](const PicturePoint& p) { return page_number(p.z, 6); });
+  const std::vector<std::size_t> indices = thinned_indices(cloud.points, layout, side, most_dots);
+  std::vector<PicturePoint> points;
+  for (const std::size_t k : indices) points.push_back(cloud.points[k]);
+  const auto level = [](const PicturePoint& p) { return page_number(p.z, 6); };
   return page_object({{"points", flat_points(points)},
                       {"colour", page_text(cloud.colour)},
                       {"size", page_number(cloud.size, 4)},
-                      {"levels", levels}});
+                      {"levels", cloud.colour == "palette" ? page_list(points, level) : "null"},
+                      {"from", rows_json(cloud.rows, indices, places)}});
 }
 
-std::string field_json(const ColourField& field) {
+std::string field_json(const ColourField& field, const FilePlaces& places) {
+  std::vector<std::size_t> indices(field.cells.size());
+  std::iota(indices.begin(), indices.end(), std::size_t{0});
   const auto corner = [](const PicturePoint& p) { return page_list({page_number(p.x), page_number(p.y)}); };
   return page_object({{"columns", fmt::format("{}", field.columns)},
                       {"rows", fmt::format("{}", field.rows)},
                       {"first", corner(field.first)},
                       {"last", corner(field.last)},
-                      {"cells", page_list(field.cells, [](double cell) { return drawn_number(cell); })}});
+                      {"cells", page_list(field.cells, [](double cell) { return drawn_number(cell); })},
+                      {"from", rows_json(field.sweep_rows, indices, places)}});
 }
 
 std::string axis_json(const AxisScale& scale, const LabelText& label) {
@@ -136,17 +152,17 @@ std::string markers_json(const Panel& panel, const PanelLayout& layout, double f
 }
 
 /// The computed points of branches: where they are and what they are, in one list for each quantity.
-std::string computed_json(const std::vector<ComputedPoint>& points, const std::vector<std::size_t>& branches) {
+std::string computed_json(const std::vector<ComputedPoint>& points, const FilePlaces& places) {
   const auto index = [](std::size_t k) { return fmt::format("{}", k); };
-  return page_object({{"x", page_list(points, [](const ComputedPoint& p) { return page_number(p.at.x); })},
-                      {"y", page_list(points, [](const ComputedPoint& p) { return page_number(p.at.y); })},
-                      {"branch", page_list(points, [&](const ComputedPoint& p) { return index(branches[p.file]); })},
-                      {"section", page_list(points, [&](const ComputedPoint& p) { return index(p.section); })},
-                      {"row", page_list(points, [&](const ComputedPoint& p) { return index(p.row); })}});
+  return page_object(
+      {{"x", page_list(points, [](const ComputedPoint& p) { return page_number(p.at.x); })},
+       {"y", page_list(points, [](const ComputedPoint& p) { return page_number(p.at.y); })},
+       {"branch", page_list(points, [&](const ComputedPoint& p) { return index(places.branches[p.file]); })},
+       {"section", page_list(points, [&](const ComputedPoint& p) { return index(p.section); })},
+       {"row", page_list(points, [&](const ComputedPoint& p) { return index(p.row); })}});
 }
 
-std::string panel_json(const Panel& panel, const PanelLayout& layout, double font,
-                       const std::vector<std::size_t>& branches) {
+std::string panel_json(const Panel& panel, const PanelLayout& layout, double font, const FilePlaces& places) {
   if (panel.z)
     throw UserError(
         "-o FILE.html: a page draws in the plane; leave -z out (the page lets you choose two states), or write "
@@ -155,20 +171,20 @@ std::string panel_json(const Panel& panel, const PanelLayout& layout, double fon
   for (std::size_t k = 0; k < panel.curves.size(); ++k)
     curves.push_back(curve_json(panel.curves[k], layout.dash_scales[k]));
   const auto symbol = [](const Marker& marker) { return marker_json(marker, 1.0, "null"); };
-  const auto cloud = [&](const Cloud& one) { return cloud_json(one, layout, font); };
+  const auto cloud = [&](const Cloud& one) { return cloud_json(one, layout, font, places); };
   const auto arrow = [](const Arrow& one) {
     return page_object({{"points", flat_points({one.from, one.to})}, {"colour", page_text(one.colour)}});
   };
   return page_object({{"x", axis_json(layout.x, panel.x.label)},
                       {"y", axis_json(layout.y, panel.y.label)},
                       {"equal", truth(panel.equal_scales)},
-                      {"field", panel.field ? field_json(*panel.field) : "null"},
+                      {"field", panel.field ? field_json(*panel.field, places) : "null"},
                       {"clouds", page_list(panel.clouds, cloud)},
                       {"curves", page_list(curves)},
                       {"symbols", page_list(layout.symbols, symbol)},
                       {"arrows", page_list(panel.arrows, arrow)},
                       {"markers", markers_json(panel, layout, font)},
-                      {"computed", computed_json(panel.computed, branches)}});
+                      {"computed", computed_json(panel.computed, places)}});
 }
 
 std::string key_entry_json(const KeyEntry& entry) {
@@ -188,11 +204,11 @@ std::string palette_json(const Palette& palette) {
 
 }  // namespace
 
-std::string figure_json(const PlacedFigure& placed, const std::vector<std::size_t>& branches) {
+std::string figure_json(const PlacedFigure& placed, const FilePlaces& places) {
   const Figure& figure = placed.figure;
   std::vector<std::string> panels;
   for (std::size_t k = 0; k < figure.panels.size(); ++k)
-    panels.push_back(panel_json(figure.panels[k], placed.layout.panels[k], placed.layout.font, branches));
+    panels.push_back(panel_json(figure.panels[k], placed.layout.panels[k], placed.layout.font, places));
   return page_object({{"width", fmt::format("{}", figure.width)},
                       {"height", fmt::format("{}", figure.height)},
                       {"title", page_label(figure.title)},

@@ -9,8 +9,12 @@
 
 namespace tchat {
 
-/// Texts, key, palette and panels. `branches` are the places of the figure's files in the page's list of
-/// branches. Throws UserError for a figure in space.
-std::string figure_json(const PlacedFigure& placed, const std::vector<std::size_t>& branches);
+/// Places of the figure's files in the page's lists of branches and sweeps.
+struct FilePlaces {
+  std::vector<std::size_t> branches, sweeps;
+};
+
+/// Texts, key, palette and panels. Throws UserError for a figure in space.
+std::string figure_json(const PlacedFigure& placed, const FilePlaces& places);
 
 }  // namespace tchat

@@ -322,6 +322,8 @@ class Sweeps(PageTest):
         self.assertIn(repr(dot["x"]).rstrip("0").rstrip("."), page.text("#tip"))
         page.click(*dot["at"])
         self.assertIn("Values", page.text("#details h2"))
+        self.assertIn("periodic", page.text(".sweep-row"))
+        self.assertIn("omega (fixed)\t2.0072", page.text(".sweep-row"))
         self.keep(page, "sweep_clicked")
         narrow = self.open("sweep.html", NARROW)
         self.assertLessEqual(narrow.value("document.documentElement.scrollWidth"), NARROW[0])
@@ -337,6 +339,9 @@ class Sweeps(PageTest):
         page.move(*at)
         self.keep(page, "basin")
         self.assertIn("colour", page.text("#tip"))
+        page.click(*at)
+        self.assertIn("attractor\t", page.text(".sweep-row"))
+        self.keep(page, "basin_clicked")
 
 
 class ManyPoints(PageTest):

@@ -34,7 +34,7 @@ std::string points_of_run(const std::string& name_of_state = "x") {
 
 std::string page_of(const BranchFile& file, const PageBranchOptions& options = {}) {
   const Sheet sheet{{branch_figure({file}, {})}, 1, 1200, 900, {}, false};
-  return page_html(lay_out(sheet), {{{file}}, options, "run"});
+  return page_html(lay_out(sheet), {{{{file}, {}}}, options, "run"});
 }
 
 std::string data_of(const std::string& page) {
@@ -55,8 +55,8 @@ TEST_CASE("letters of any script stay, bytes that are no UTF-8 do not") {
   CHECK(page_text("ξ₁ … 🙂") == "\"ξ₁ … 🙂\"");
   const std::string unknown = "\xEF\xBF\xBD";
   CHECK(page_text("a\xFF") == "\"a" + unknown + "\"");
-  CHECK(page_text("\xC3") == "\"" + unknown + "\"");                            // cut off
-  CHECK(page_text("\xC0\xBC") == "\"" + unknown + unknown + "\"");              // an overlong '<'
+  CHECK(page_text("\xC3") == "\"" + unknown + "\"");                              // cut off
+  CHECK(page_text("\xC0\xBC") == "\"" + unknown + unknown + "\"");                // an overlong '<'
   CHECK(page_text("\xED\xA0\x80") == "\"" + unknown + unknown + unknown + "\"");  // a surrogate
 }
 
@@ -109,7 +109,7 @@ TEST_CASE("a figure in space is no page") {
   figure.panels[0].z = AxisSettings{};
   figure.panels[0].curves.push_back({{{0.0, 0.0, 0.0}, {1.0, 1.0, 1.0}}, {}});
   const Sheet sheet{{figure}, 1, 1200, 900, {}, false};
-  CHECK_THROWS_AS(page_html(lay_out(sheet), {{{}}, {}, "space"}), UserError);
+  CHECK_THROWS_AS(page_html(lay_out(sheet), {{FigureFiles{}}, {}, "space"}), UserError);
 }
 
 TEST_CASE("the restart command names the problem of -p, of the run, or the only one in the folder") {

@@ -82,6 +82,21 @@ function showOverview(data, host, open, places) {
   host.appendChild(list);
 }
 
+/** All that a sweep says of one of its rows. */
+function showSweepRow(sweep, host, row) {
+  host.appendChild(element("h3", "", "Row " + (row + 1) + " of the sweep " + sweep.name));
+  if (!sweep.values) {
+    addWarning(host, "The sweep is too large for a page: its rows are in the file alone.");
+    return;
+  }
+  const rows = sweep.columns.map(function (name, k) {
+    const value = sweep.values[k][row];
+    return [name, typeof value === "string" ? value : value === null ? "none" : fullNumber(value)];
+  });
+  sweep.fixed.forEach(function (pair) { rows.push([pair[0] + " (fixed)", fullNumber(pair[1])]); });
+  host.appendChild(valueTable(rows, "values sweep-row"));
+}
+
 /** Fills `host` with all that is known of the point. */
 function showPoint(data, host, place, close) {
   const facts = factsOf(data, place);
@@ -119,7 +134,7 @@ function showOrbitPart(host, facts) {
                      " away.");
   }
   if (orbit.equilibrium) showEquilibrium(host, orbit, facts.section);
-  else showOrbit(host, orbit, facts.section.states);
+  else showOrbit(host, withReturnsFromZero(orbit), facts.section.states);
 }
 
 function showEquilibrium(host, orbit, section) {
@@ -127,6 +142,18 @@ function showEquilibrium(host, orbit, section) {
   host.appendChild(valueTable(orbit.equilibrium.map(function (value, k) {
     return [section.states[k] || "U(" + (k + 1) + ")", fullNumber(value)];
   })));
+}
+
+/** The returns of a torus do not follow each other: each begins at t = 0. Other orbits stay as they are. */
+function withReturnsFromZero(orbit) {
+  if (!orbit.segments.some(function (segment) { return segment.endsReturn; })) return orbit;
+  let begin = 0;
+  const segments = orbit.segments.map(function (segment) {
+    const moved = Object.assign({}, segment, { t: segment.t.map(function (t) { return t - begin; }) });
+    if (segment.endsReturn) begin = segment.t[segment.t.length - 1];
+    return moved;
+  });
+  return Object.assign({}, orbit, { segments: segments, isTorus: true });
 }
 
 /** Choices that are kept from one orbit to the next. */
@@ -140,6 +167,8 @@ function showOrbit(host, orbit, states) {
   const count = orbit.segments[0].u.length;
   if (orbitView.x >= count) orbitView.x = 0;
   if (orbitView.y >= count) orbitView.y = count > 1 ? 1 : 0;
+  const returns = orbit.segments.filter(function (segment) { return segment.endsReturn; }).length;
+  if (orbit.isTorus) host.appendChild(element("p", "", "A torus: " + returns + " returns, each from t = 0."));
   const ends = describeEnds(orbit);
   if (ends) host.appendChild(element("p", "ends", ends));
   if (count > 1) showPortrait(host, orbit, states, count);
@@ -194,11 +223,16 @@ function drawPortrait(host, orbit, states) {
     x: { label: { t: nameOfState(states, a) }, range: paddedRange(valuesOfState(orbit, a), 0.06) },
     y: { label: { t: nameOfState(states, b) }, range: paddedRange(valuesOfState(orbit, b), 0.06) }
   });
-  orbit.segments.forEach(function (segment) { drawLine(plot, segment.u[a], segment.u[b], "line"); });
+  orbit.segments.forEach(function (segment) { drawLine(plot, segment.u[a], segment.u[b], lineClass(orbit)); });
   drawEnds(plot, orbit, function (segment, k) { return [segment.u[a][k], segment.u[b][k]]; });
   orbit.contacts.forEach(function (contact) {
     drawDot(plot, contact.u[a], contact.u[b], 5, "contact", contact.text + " at t = " + contact.t);
   });
+}
+
+/** The many lines of a torus are thin. */
+function lineClass(orbit) {
+  return orbit.isTorus ? "line thin" : "line";
 }
 
 /** Events as dots; jumps as dotted lines from a filled to an open one. `place` says where value k of a segment is. */
@@ -253,7 +287,7 @@ function drawSeries(host, orbit, states, k, isLast) {
     y: { label: { t: name }, range: paddedRange(valuesOfState(orbit, k), 0.08) }
   });
   segments.forEach(function (segment, s) {
-    drawLine(plot, segment.t, segment.u[k], "line");
+    drawLine(plot, segment.t, segment.u[k], lineClass(orbit));
     const last = segment.t.length - 1, next = segments[s + 1] || (orbit.closed ? segments[0] : null);
     if (!next || segment.endsReturn) return;
     const t = segment.t[last], event = segment.event || "section";
@@ -274,7 +308,8 @@ const farthest = 2.5;  // of multipliers in the picture
 
 function showMultipliers(host, facts) {
   const flat = facts.section.multipliers[facts.row];
-  const isMap = !facts.section.eigenvalues;
+  const isMap = facts.section.spectrum === "multipliers";
+  if (!facts.section.spectrum) return;
   host.appendChild(element("h3", "", isMap ? "Multipliers" : "Eigenvalues"));
   if (!flat) {
     addWarning(host, (isMap ? "Multipliers" : "Eigenvalues") + " are not available" +

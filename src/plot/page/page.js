@@ -103,6 +103,7 @@ function pinPlace(picture, panel, found) {
   top.appendChild(element("h2", "", "Values"));
   top.appendChild(button("Close", closePoint));
   details.appendChild(valueTable(rowsOfPlace(panel, found), "values point-values"));
+  if (found.origin) showSweepRow(data.sweeps[found.origin.sweep], details, found.origin.row);
 }
 
 function closePoint() {

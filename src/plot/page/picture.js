@@ -429,7 +429,8 @@ function makePicture(figure, host, actions) {
         if (distance >= best) continue;
         best = distance;
         found = { x: points[k], y: points[k + 1], cloud: owner.cloud,
-                  level: owner.cloud && owner.cloud.levels ? owner.cloud.levels[k / 2] : null };
+                  level: owner.cloud && owner.cloud.levels ? owner.cloud.levels[k / 2] : null,
+                  origin: owner.cloud ? originOf(owner.cloud.from, k / 2) : null };
       }
     }
     return found || (panel.data.field ? cellAt(panel, at) : null);
@@ -445,7 +446,8 @@ function makePicture(figure, host, actions) {
     if (i < 0 || j < 0 || i >= field.columns || j >= field.rows) return null;
     const centre = function (k, first, last, count) { return count > 1 ? first + (last - first) * k / (count - 1) : first; };
     return { x: rounded(centre(i, field.first[0], field.last[0], field.columns)),
-             y: rounded(centre(j, field.first[1], field.last[1], field.rows)), level: field.cells[j * field.columns + i] };
+             y: rounded(centre(j, field.first[1], field.last[1], field.rows)), level: field.cells[j * field.columns + i],
+             origin: originOf(field.from, j * field.columns + i) };
   }
 
   // What others ask of a picture ------------------------------------------------------------------------------------
@@ -497,6 +499,11 @@ makePicture.count = 0;
 /** Canvas coordinates far outside cost time and, with dashes, memory. */
 function limited(pixel) {
   return Math.max(-5000, Math.min(10000, pixel));
+}
+
+/** The row of a sweep that a dot or a cell is from; null for what is from elsewhere. */
+function originOf(from, k) {
+  return from && from.rows[k] !== null ? { sweep: from.sweep, row: from.rows[k] } : null;
 }
 
 function rounded(value) {
