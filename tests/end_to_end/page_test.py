@@ -236,6 +236,13 @@ class LinearOscillator(PageTest):
         page.drawn_again()
         self.keep(page, "linosc_narrow")
 
+    def test_a_finger_opens_a_label_of_a_phone(self):
+        page = self.open("branch.html", NARROW)
+        page.resize(*NARROW, is_phone=True)
+        page.drawn_again()
+        page.tap(*page.middle('.marker[aria-label^="PD1,"] .symbol'))
+        page.wait_for("document.querySelector('#details h2').innerText.startsWith('PD1')")
+
     def test_without_orbits_and_multipliers_the_page_says_why(self):
         for name in ("p.branch", "r.branch"):
             shutil.copy(name, name.replace("branch", "alone"))

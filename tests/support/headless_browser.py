@@ -119,8 +119,9 @@ class Page:
         self.send("Page.navigate", url=pathlib.Path(path).absolute().as_uri())
         self.wait_for("document.readyState === 'complete' && document.documentElement.dataset.drawn !== undefined")
 
-    def resize(self, width, height):
-        self.send("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=False)
+    def resize(self, width, height, is_phone=False):
+        self.send("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=is_phone)
+        self.send("Emulation.setTouchEmulationEnabled", enabled=is_phone)
 
     def value(self, expression):
         answer = self.send("Runtime.evaluate", expression=expression, returnByValue=True, awaitPromise=True)
@@ -158,6 +159,12 @@ class Page:
         self.move(x, y)
         for kind in ("mousePressed", "mouseReleased"):
             self.send("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", clickCount=1)
+
+    def tap(self, x, y):
+        """A finger's short touch."""
+        self.send("Input.dispatchTouchEvent", type="touchStart", touchPoints=[{"x": x, "y": y}])
+        self.send("Input.dispatchTouchEvent", type="touchEnd", touchPoints=[])
+        self.drawn_again()
 
     def drag(self, start, end):
         self.move(*start)

@@ -61,12 +61,11 @@ function rowsOfPlace(panel, found) {
   const figure = pictures.length ? pictureOf(panel).figure : data.figures[0];
   const rows = [[panel.data.x.label, fullNumber(found.x)], [panel.data.y.label, fullNumber(found.y)]];
   if (found.level === undefined || found.level === null) {
-    const name = found.cloud && nameOfColour(figure, found.cloud.colour);
+    const name = found.colour && nameOfColour(figure, found.colour);
     if (name) rows.push(["of", name]);
     return rows;
   }
-  const colour = figure.palette ? d3.rgb(paletteColour(figure.palette)(found.level)).toString() : "";
-  const name = nameOfColour(figure, colour);
+  const name = figure.palette ? nameOfColour(figure, d3.rgb(paletteColour(figure.palette)(found.level)).toString()) : "";
   if (name) rows.push(["colour", name]);
   else rows.push([figure.palette.label.t ? figure.palette.label : "value", fullNumber(found.level)]);
   return rows;
@@ -239,7 +238,7 @@ function start() {
       open: openPoint, pin: pinPlace, tip: showTip, hideTip: hideTip, describe: describeMarker
     }));
   });
-  document.querySelector("main").classList.toggle("alone", !data.branches.length);
+  document.querySelector("main").classList.toggle("alone", !data.branches.length && !data.sweeps.length);
   resizeAll();
   showOverview(data, details, openPlace, labelledPlaces());
   document.getElementById("zoom-in").addEventListener("click", keyActions["+"]);

@@ -4,6 +4,8 @@ const dashLengths = { solid: [], dashed: [14, 8], dotted: [3, 5] };
 const markerRadius = 0.25;  // of a marker of size 1, in units of the font's size
 const paperWidth = 1200;    // that widths of lines are for
 const paperFont = 27;       // of a picture of that width
+const labelFont = 14;       // pixels, as in the style sheet
+const labelFontRatio = 0.85;  // of labels on paper, beside the axes' font
 const reach = 30;           // pixels from the pointer to what it means
 
 /** Corners of symbols on a circle of radius 1, y downwards; nothing for round ones. */
@@ -229,7 +231,7 @@ function makePicture(figure, host, actions) {
   }
 
   function drawCloud(context, panel, cloud) {
-    const points = cloud.points, radius = Math.max(0.7, cloud.size * markerRadius * picture.font * 0.55);
+    const points = cloud.points, radius = Math.max(0.7, cloud.size * markerRadius * picture.font * 0.8);
     const box = panel.box, x = panel.x, y = panel.y;
     context.fillStyle = cloud.levels ? "#000" : cloud.colour;
     for (let k = 0; k < points.length; k += 2) {
@@ -355,7 +357,7 @@ function makePicture(figure, host, actions) {
     item.text.style("display", best ? null : "none");
     if (!best) return;
     taken.push(best.area);
-    item.text.attr("x", best.place[0]).attr("y", best.place[1] + 0.35 * 14);
+    item.text.attr("x", best.place[0]).attr("y", best.place[1] + 0.35 * labelFont);
     labels.push({ name: name, x: item.x, y: item.y });
   }
 
@@ -374,7 +376,7 @@ function makePicture(figure, host, actions) {
     const around = [[dx, -0.6 * dy], [-dx, -0.6 * dy], [0, -dy], [0, dy], [dx, 0.6 * dy], [-dx, 0.6 * dy], [dx, 0], [-dx, 0],
                     [dx, -1.6 * dy], [-dx, -1.6 * dy], [dx, 1.6 * dy], [-dx, 1.6 * dy]];
     if (!item.marker.offset) return around;
-    const size = picture.font * (item.radius > 0 ? 1 : 0.9);
+    const size = Math.max(picture.font, labelFont / labelFontRatio);
     return [[item.marker.offset[0] * size, -item.marker.offset[1] * size]].concat(around);
   }
 
@@ -407,33 +409,35 @@ function makePicture(figure, host, actions) {
     });
   });
 
-  /** What is nearest to a place in pixels: {point} of a branch, {x, y} of a dot or a curve, {cell}; null: nothing near. */
+  /** What is nearest to a place in pixels: {point} of a branch, {x, y} of a dot or a curve, or a cell; null: nothing. */
   function nearest(panel, at) {
-    const computed = panel.data.computed;
-    let best = reach * reach, found = null;
-    const look = function (x, y, make) {
+    const data = panel.data, hasBranch = data.computed.x.length > 0;
+    const search = { best: reach * reach, owner: null, k: 0 };
+    const look = function (x, y, owner, k) {
+      if (x === null || y === null) return;
       const dx = panel.x(x) - at[0], dy = panel.y(y) - at[1], distance = dx * dx + dy * dy;
-      if (distance < best) { best = distance; found = make; }
+      if (!(distance < search.best)) return;
+      search.best = distance;
+      search.owner = owner;
+      search.k = k;
     };
-    for (let k = 0; k < computed.x.length; ++k)
-      if (computed.x[k] !== null && computed.y[k] !== null) look(computed.x[k], computed.y[k], { k: k });
-    if (found) return { point: found.k };
-    panel.data.clouds.forEach(function (cloud) { lookAlong(cloud.points, { cloud: cloud }); });
-    if (!computed.x.length)
-      panel.data.curves.forEach(function (curve) { if (!curve.background) lookAlong(curve.points, { curve: curve }); });
-    panel.data.markers.forEach(function (marker) { look(marker.x, marker.y, { x: marker.x, y: marker.y }); });
-    function lookAlong(points, owner) {
-      for (let k = 0; k < points.length; k += 2) {
-        if (points[k] === null) continue;
-        const dx = panel.x(points[k]) - at[0], dy = panel.y(points[k + 1]) - at[1], distance = dx * dx + dy * dy;
-        if (distance >= best) continue;
-        best = distance;
-        found = { x: points[k], y: points[k + 1], cloud: owner.cloud,
-                  level: owner.cloud && owner.cloud.levels ? owner.cloud.levels[k / 2] : null,
-                  origin: owner.cloud ? originOf(owner.cloud.from, k / 2) : null };
-      }
+    const lookAlong = function (owner) {
+      for (let k = 0; k < owner.points.length / 2; ++k) look(owner.points[2 * k], owner.points[2 * k + 1], owner, k);
+    };
+    data.computed.x.forEach(function (x, k) { look(x, data.computed.y[k], data.computed, k); });
+    data.clouds.forEach(lookAlong);
+    if (!hasBranch) {
+      data.curves.filter(function (curve) { return !curve.background; }).forEach(lookAlong);
+      data.markers.forEach(function (marker) { look(marker.x, marker.y, { points: [marker.x, marker.y] }, 0); });
     }
-    return found || (panel.data.field ? cellAt(panel, at) : null);
+    if (search.owner) return search.owner === data.computed ? { point: search.k } : placeIn(search.owner, search.k);
+    return data.field ? cellAt(panel, at) : null;
+  }
+
+  /** Point k of a cloud, a curve or a marker. */
+  function placeIn(owner, k) {
+    return { x: owner.points[2 * k], y: owner.points[2 * k + 1], colour: owner.levels === null ? owner.colour : "",
+             level: owner.levels ? owner.levels[k] : null, origin: originOf(owner.from, k) };
   }
 
   function cellAt(panel, at) {
