@@ -142,7 +142,7 @@ function makePicture(figure, host, actions) {
 
   /** Zooming by D3 starts at the domains that the scales have now. */
   function rebind(panel) {
-    panel.zoom.x(panel.x).y(panel.y);
+    panel.zoom.x(panel.x).y(panel.y).scaleExtent(zoomLimits(panel));
   }
 
   // Places ----------------------------------------------------------------------------------------------------------
@@ -260,16 +260,29 @@ function makePicture(figure, host, actions) {
     context.setLineDash(dashLengths[stroke.dash].map(function (length) { return length * dashScale; }));
     context.lineJoin = "round";
     context.beginPath();
-    let isDown = false;
-    for (let k = 0; k < points.length; k += 2) {
-      const px = points[k] === null ? NaN : panel.x(points[k]), py = points[k] === null ? NaN : panel.y(points[k + 1]);
-      if (!isFinite(px) || !isFinite(py)) { isDown = false; continue; }
-      if (isDown) context.lineTo(limited(px), limited(py));
-      else context.moveTo(limited(px), limited(py));
-      isDown = true;
-    }
+    tracePieces(context, panel, points);
     context.stroke();
     context.setLineDash([]);
+  }
+
+  /** The lines from each point to the next; what is far outside the frame costs time and, with dashes, memory. */
+  function tracePieces(context, panel, points) {
+    const box = panel.box, margin = 1000;
+    const area = { left: box.left - margin, right: box.left + box.width + margin, top: box.top - margin,
+                   bottom: box.top + box.height + margin };
+    let x0 = NaN, y0 = NaN, endX = NaN, endY = NaN;
+    for (let k = 0; k < points.length; k += 2) {
+      const x1 = points[k] === null ? NaN : panel.x(points[k]), y1 = points[k] === null ? NaN : panel.y(points[k + 1]);
+      const part = isFinite(x0 + y0 + x1 + y1) ? partInside(x0, y0, x1, y1, area) : null;
+      if (part) {
+        if (part[0] !== endX || part[1] !== endY) context.moveTo(part[0], part[1]);
+        context.lineTo(part[2], part[3]);
+        endX = part[2];
+        endY = part[3];
+      }
+      x0 = x1;
+      y0 = y1;
+    }
   }
 
   function drawArrow(context, panel, arrow) {
@@ -471,6 +484,10 @@ function makePicture(figure, host, actions) {
   picture.nearest = nearest;
   picture.resize = function () { layOut(); redraw(); };
   picture.zoomBy = function (factor) {
+    picture.panels.forEach(function (panel) {
+      const limits = zoomLimits(panel);
+      factor = Math.max(limits[0], Math.min(limits[1], factor));
+    });
     changeDomains(function (scale, from, to) {
       const middle = (from + to) / 2;
       return [scale.invert(middle + (from - middle) / factor), scale.invert(middle + (to - middle) / factor)];
@@ -500,9 +517,39 @@ function makePicture(figure, host, actions) {
 }
 makePicture.count = 0;
 
-/** Canvas coordinates far outside cost time and, with dashes, memory. */
-function limited(pixel) {
-  return Math.max(-5000, Math.min(10000, pixel));
+/**
+ * The least and the largest factor by which a panel may still be enlarged: numbers have 16 digits, and nothing is to be
+ * seen far outside.
+ */
+function zoomLimits(panel) {
+  const finest = 1e-10, widest = 100;
+  const size = function (domain, isLogarithmic) {
+    return Math.abs(isLogarithmic ? Math.log(domain[1] / domain[0]) : domain[1] - domain[0]);
+  };
+  const axes = [[panel.x, panel.data.x], [panel.y, panel.data.y]].map(function (pair) {
+    const domain = pair[0].domain(), now = size(domain, pair[1].log);
+    const values = pair[1].log ? 1 : Math.max(Math.abs(domain[0]), Math.abs(domain[1]));
+    const whole = size([pair[1].low, pair[1].high], pair[1].log);
+    return { out: now / ((pair[1].log ? 3 : widest) * whole), into: now / (finest * Math.max(values, 1e-3 * whole)) };
+  });
+  return [Math.min(1, Math.max(axes[0].out, axes[1].out)), Math.max(1, Math.min(axes[0].into, axes[1].into))];
+}
+
+/** The part of a line that is inside an area, [x0, y0, x1, y1] (after Liang and Barsky); null when none is. */
+function partInside(x0, y0, x1, y1, area) {
+  const dx = x1 - x0, dy = y1 - y0;
+  let from = 0, to = 1;
+  const isOutside = [[-dx, x0 - area.left], [dx, area.right - x0], [-dy, y0 - area.top], [dy, area.bottom - y0]]
+      .some(function (edge) {
+        const speed = edge[0], room = edge[1];
+        if (speed === 0) return room < 0;
+        if (speed < 0) from = Math.max(from, room / speed);
+        else to = Math.min(to, room / speed);
+        return from > to;
+      });
+  if (isOutside) return null;
+  return [from > 0 ? x0 + from * dx : x0, from > 0 ? y0 + from * dy : y0,
+          to < 1 ? x0 + to * dx : x1, to < 1 ? y0 + to * dy : y1];
 }
 
 /** The row of a sweep that a dot or a cell is from; null for what is from elsewhere. */
