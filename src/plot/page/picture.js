@@ -160,7 +160,7 @@ function makePicture(figure, host, actions) {
       const tics = ticsOf(panel.y, panel.data.y.log, Math.max(2, height / figure.panels.length / 50));
       return d3.max(tics.values, function (v) { return tics.text(v).length; }) || 1;
     });
-    const left = 38 + 8 * numberWidth, right = hasBar ? 92 : 22, top = 10, bottom = 48, gap = 12;
+    const left = 38 + 8 * numberWidth, right = hasBar ? 92 : 28, top = 10, bottom = 48, gap = 12;
     const frameHeight = (height - top - bottom - gap * (picture.panels.length - 1)) / picture.panels.length;
     picture.width = width;
     picture.height = height;
