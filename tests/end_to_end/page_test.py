@@ -295,8 +295,7 @@ class LinearOscillator(PageTest):
 
 class Mems(PageTest):
     def test_an_orbit_of_two_segments(self):
-        for name in ("mems.cpp",):
-            shutil.copy(os.path.join(SOURCE, "problems", "mems", name), ".")
+        shutil.copy(os.path.join(SOURCE, "problems", "mems", "mems.cpp"), ".")
         shutil.copy(os.path.join(SOURCE, "constants", "mems", "gc.nonimpacting"), "gc.nonimpacting")
         tchat("simulate", "mems", "-q", "PAR(V)=0.3", "--dat", "found", "-o", "found")
         tchat("run", "mems", "-q", "-c", "nonimpacting", "-d", "found", "-o", "free")
@@ -323,7 +322,8 @@ class Mems(PageTest):
 
 class Sweeps(PageTest):
     def test_dots_beneath_a_branch(self):
-        tchat("sweep", "linosc", "-q", "--over", "alpha=3:3.3:31", "PAR(omega)=2.0072", "--section", "wall", "-o", "dots")
+        tchat("sweep", "linosc", "-q", "--over", "alpha=3:3.3:31", "PAR(omega)=2.0072", "--section", "wall",
+              "-o", "dots")
         tchat("plot", "dots.sweep", "-o", "sweep.html")
         page = self.open("sweep.html")
         self.keep(page, "sweep")

@@ -17,7 +17,8 @@ import tempfile
 import time
 
 PROGRAMS = ("chromium-headless-shell", "chromium")
-KEYS = {"Enter": 13, "Tab": 9, "Escape": 27, "Home": 36, "ArrowLeft": 37, "ArrowUp": 38, "ArrowRight": 39, "ArrowDown": 40}
+KEYS = {"Enter": 13, "Tab": 9, "Escape": 27, "Home": 36, "ArrowLeft": 37, "ArrowUp": 38, "ArrowRight": 39,
+        "ArrowDown": 40}
 SHIFT = 8
 PATIENCE = 60  # seconds for an answer
 
@@ -120,7 +121,8 @@ class Page:
         self.wait_for("document.readyState === 'complete' && document.documentElement.dataset.drawn !== undefined")
 
     def resize(self, width, height, is_phone=False):
-        self.send("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=is_phone)
+        self.send("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1,
+                  mobile=is_phone)
         self.send("Emulation.setTouchEmulationEnabled", enabled=is_phone)
 
     def value(self, expression):
@@ -180,8 +182,9 @@ class Page:
     def press(self, key, modifiers=0):
         code = KEYS.get(key, ord(key[0]))
         text = {} if key in KEYS and key != "Enter" else {"text": "\r" if key == "Enter" else key}
-        self.send("Input.dispatchKeyEvent", type="keyDown", key=key, windowsVirtualKeyCode=code, modifiers=modifiers, **text)
-        self.send("Input.dispatchKeyEvent", type="keyUp", key=key, windowsVirtualKeyCode=code, modifiers=modifiers)
+        event = {"key": key, "windowsVirtualKeyCode": code, "modifiers": modifiers}
+        self.send("Input.dispatchKeyEvent", type="keyDown", **event, **text)
+        self.send("Input.dispatchKeyEvent", type="keyUp", **event)
         self.drawn_again()
 
     def screenshot(self, path):

@@ -66,8 +66,8 @@ function showOverview(data, host, open, places) {
     return;
   }
   host.appendChild(element("h2", "", places.length ? "Labels" : "Points"));
-  host.appendChild(element("p", "", "Choose a label, or click a point of the branch, for its orbit, its multipliers and " +
-                                    "the command that restarts there."));
+  host.appendChild(element("p", "", "Choose a label, or click a point of the branch, for its orbit, its multipliers " +
+                                    "and the command that restarts there."));
   data.branches.forEach(function (branch) {
     if (branch.noOrbits) addWarning(host, "Orbits: " + branch.noOrbits + ".");
     if (branch.noMultipliers) addWarning(host, "Multipliers are not available: " + branch.noMultipliers + ".");
@@ -360,13 +360,12 @@ function multiplierTable(list, isMap) {
   });
   list.forEach(function (mu, k) {
     const line = table.insertRow();
-    const size = modulus(mu);
-    [String(k + 1), fullNumber(mu.re), fullNumber(mu.im)].concat(isMap ? [isFinite(size) ? shortNumber(size, 7) : "\u221e"] : [])
-        .forEach(function (text) {
-          const cell = line.insertCell();
-          cell.className = "number";
-          cell.textContent = text;
-        });
+    const size = isFinite(modulus(mu)) ? shortNumber(modulus(mu), 7) : "\u221e";
+    [String(k + 1), fullNumber(mu.re), fullNumber(mu.im)].concat(isMap ? [size] : []).forEach(function (text) {
+      const cell = line.insertCell();
+      cell.className = "number";
+      cell.textContent = text;
+    });
   });
   const host = element("div", "scroll");
   host.appendChild(table);

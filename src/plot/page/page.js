@@ -65,7 +65,8 @@ function rowsOfPlace(panel, found) {
     if (name) rows.push(["of", name]);
     return rows;
   }
-  const name = figure.palette ? nameOfColour(figure, d3.rgb(paletteColour(figure.palette)(found.level)).toString()) : "";
+  const colour = figure.palette ? d3.rgb(paletteColour(figure.palette)(found.level)).toString() : "";
+  const name = nameOfColour(figure, colour);
   if (name) rows.push(["colour", name]);
   else rows.push([figure.palette.label.t ? figure.palette.label : "value", fullNumber(found.level)]);
   return rows;
@@ -139,9 +140,7 @@ function labelledPlaces() {
 }
 
 function openPlace(place) {
-  const found = markedPoints().find(function (marked) {
-    return marked.place.branch === place.branch && marked.place.section === place.section && marked.place.row === place.row;
-  });
+  const found = markedPoints().find(function (marked) { return samePlace(marked.place, place); });
   openPoint(found.picture, found.panel, found.point);
   document.querySelector("#details h2").scrollIntoView({ block: "nearest" });
 }
@@ -216,7 +215,8 @@ function pressKey(event) {
   const isChoice = /^(INPUT|SELECT|TEXTAREA)$/.test(event.target.tagName);
   if (isChoice && event.key !== "Escape" && event.key !== "?") return;
   const arrow = event.shiftKey && arrows[event.key];
-  const action = arrow ? function () { activePicture().moveBy(0.15 * arrow[0], 0.15 * arrow[1]); } : keyActions[event.key];
+  const move = function () { activePicture().moveBy(0.15 * arrow[0], 0.15 * arrow[1]); };
+  const action = arrow ? move : keyActions[event.key];
   if (!action || (details.contains(event.target) && /^(Arrow(Up|Down)|Home)$/.test(event.key))) return;
   event.preventDefault();
   action();
