@@ -355,7 +355,7 @@ function drawMultipliers(host, list, isMap) {
 function multiplierTable(list, isMap) {
   const table = element("table", "values multipliers");
   const head = table.insertRow();
-  ["", "real part", "imaginary part"].concat(isMap ? ["modulus"] : []).forEach(function (text) {
+  ["", "real", "imaginary"].concat(isMap ? ["modulus"] : []).forEach(function (text) {
     head.appendChild(element("th", "", text));
   });
   list.forEach(function (mu, k) {
