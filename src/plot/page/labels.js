@@ -12,7 +12,8 @@ function placeMarkers(picture, panel) {
     group.select(".symbol").attr("d", symbolPath(marker.look, radius)).attr("stroke-width", 1.5)
         .attr("fill", isFilled(marker.look) ? marker.look.colour : "#fff").attr("stroke", marker.look.colour);
     taken.push({ left: x - radius, right: x + radius, top: y - radius, bottom: y + radius, of: marker });
-    shown.push({ marker: marker, x: x, y: y, radius: radius, text: group.select("text") });
+    shown.push({ marker: marker, x: x, y: y, radius: radius, text: group.select("text"),
+                 leader: group.select(".leader") });
   });
   const labels = [];
   shown.forEach(function (item) { placeLabel(picture, panel, item, taken, labels); });
@@ -28,10 +29,20 @@ function placeLabel(picture, panel, item, taken, labels) {
   });
   const best = isRepeated ? null : freePlace(picture, panel, item, size, taken);
   item.text.style("display", best ? null : "none");
+  showLeader(item, best);
   if (!best) return;
   taken.push(best.area);
   item.text.attr("x", best.place[0]).attr("y", best.place[1] + 0.35 * labelFont);
   labels.push({ name: name, x: item.x, y: item.y });
+}
+
+/** A thin line from the marker to a label that is not beside it. */
+function showLeader(item, best) {
+  const nearest = function (low, high) { return Math.max(low, Math.min(high, 0)); };
+  const x = best ? nearest(best.area.left - item.x, best.area.right - item.x) : 0;
+  const y = best ? nearest(best.area.top - item.y, best.area.bottom - item.y) : 0;
+  const isFar = Math.sqrt(x * x + y * y) > item.radius + 12;
+  item.leader.style("display", isFar ? null : "none").attr("x2", x).attr("y2", y);
 }
 
 /** Measured once: the browser takes long for it. */

@@ -123,6 +123,7 @@ function makePicture(figure, host, actions) {
       if (isLabel)
         group.attr("tabindex", 0).attr("role", "button").attr("aria-label", actions.describe(panel, marker));
       group.append("circle").attr("class", "focus").attr("r", 11);
+      group.append("line").attr("class", "leader").style("display", "none");
       group.append("path").attr("class", "symbol");
       if (marker.label.t) setSvgLabel(group.append("text").attr("text-anchor", "middle").node(), marker.label);
       if (!isLabel) return;
