@@ -61,15 +61,19 @@ int make_picture(const PlotCommand& command) {
   if (!command.output.empty()) picture_format(command.output);
   std::vector<Figure> figures;
   std::string name;
+  PageContents page;
+  page.options = {command.common.plugin, command.common.dimension};
   for (const PlotArguments& arguments : panel_arguments(command)) {
     NamedFigure picture = make_figure(read_plot_items(arguments.words), arguments);
     print_warnings(std::cerr, picture.warnings);
     apply_taste(arguments, picture.figure);
     figures.push_back(std::move(picture.figure));
+    page.files.push_back(std::move(picture.files));
     if (name.empty()) name = picture.name;
   }
+  page.name = name;
   const std::string made =
-      output_picture(sheet_of(std::move(figures), command), {command.output, command.script, name});
+      output_picture(sheet_of(std::move(figures), command), {command.output, command.script, name, std::move(page)});
   if (!made.empty()) fmt::print("{}\n", made);
   return 0;
 }
@@ -117,13 +121,15 @@ constexpr const char* footer =
     "  tchat plot p.impacting brute.sweep -y x2@wall --dots x2  branches through the dots of a sweep\n"
     "  tchat plot basin.sweep -o basin.png                     a map in colours\n"
     "  tchat plot simulated.sweep --panel mapped.sweep --same-ranges -o both.png\n"
-    "  tchat plot --multipliers q.impacting -o multipliers.png";
+    "  tchat plot --multipliers q.impacting -o multipliers.png\n"
+    "  tchat plot p.impacting -o diagram.html                  a page for a browser: a click on a point shows its "
+    "orbit";
 
 }  // namespace
 
 void add_plot_command(CLI::App& app, std::function<int()>& chosen) {
-  CLI::App* command =
-      app.add_subcommand("plot", "bifurcation diagrams, orbits and multipliers to PNG, SVG, PDF or a window");
+  CLI::App* command = app.add_subcommand(
+      "plot", "bifurcation diagrams, orbits and multipliers to PNG, SVG, PDF, a page (HTML) or a window");
   command->footer(footer);
   const auto command_line = std::make_shared<PlotCommand>();
   PlotArguments* const a = &command_line->common;
@@ -136,7 +142,10 @@ void add_plot_command(CLI::App& app, std::function<int()>& chosen) {
   command->add_flag("--section", a->section, "tori as closed curves on the section where their returns begin");
   command->add_flag("--time", a->time, "orbits as time series");
   command->add_flag("--one-panel", a->one_panel, "time series of several states in one panel");
-  command->add_option("-o,--output", c->output, "picture FILE.png, FILE.svg or FILE.pdf")->type_name("FILE");
+  command
+      ->add_option("-o,--output", c->output,
+                   "picture FILE.png, .svg or .pdf, or FILE.html: a page with zoom, values and the orbits of labels")
+      ->type_name("FILE");
   // Once for all panels, or once for each.
   const auto each = [command](const char* name, std::vector<std::string>& texts, const char* help, const char* type) {
     command->add_option(name, texts, help)->type_name(type)->allow_extra_args(false);
@@ -175,7 +184,8 @@ void add_plot_command(CLI::App& app, std::function<int()>& chosen) {
   command->add_flag("--numbers", a->numbers, "labels with their numbers");
   command
       ->add_option("-p,--problem", a->plugin,
-                   "plugin P.so, P.cpp or P.tch, which draws event surfaces; without it no plugin is loaded")
+                   "plugin P.so, P.cpp or P.tch, which draws event surfaces; without it no plugin is loaded. A page of "
+                   "branches names it in its commands")
       ->type_name("P");
   command->add_option("--surfaces", a->surfaces, "event functions to draw, as 1,3; none")->type_name("LIST");
   command

@@ -1,4 +1,4 @@
-/// `tchat plot`: bifurcation diagrams, orbits and multipliers as PNG, SVG or PDF files or in a window.
+/// `tchat plot`: bifurcation diagrams, orbits and multipliers as PNG, SVG, PDF or HTML files or in a window.
 #pragma once
 
 #include <CLI/App.hpp>

@@ -70,6 +70,7 @@ class SweepLayers {
   /// How many lines it has in the key.
   std::size_t add(const SweepFile& file, std::size_t legend, std::vector<std::string>& warnings) {
     look_.clouds_before = underlay_.clouds.size();
+    look_.sweep = sweeps_++;
     Underlay layer = sweep_layer(file, look_, warnings);
     for (std::size_t k = 0; k < layer.key.size() && legend + k < arguments_.legend.size(); ++k)
       layer.key[k].text = plain_text(arguments_.legend[legend + k]);
@@ -83,6 +84,7 @@ class SweepLayers {
  private:
   const PlotArguments& arguments_;
   SweepLook look_;
+  std::size_t sweeps_ = 0;
   Underlay underlay_;
 };
 
@@ -96,10 +98,11 @@ NamedFigure branches(const std::vector<PlotItem>& items, const PlotArguments& ar
     const std::size_t k = lines;
     const bool has_legend = k < arguments.legend.size();
     if (item.kind == PlotItem::Kind::sweep) {
-      const SweepFile file = read_sweep(item.path);
+      SweepFile file = read_sweep(item.path);
       refuse_labels(item);
       lines += sweeps.add(file, k, result.warnings);
       if (result.name.empty()) result.name = file.name;
+      result.files.sweeps.push_back(std::move(file));
       continue;
     }
     ++lines;
@@ -127,6 +130,7 @@ NamedFigure branches(const std::vector<PlotItem>& items, const PlotArguments& ar
                     "-y STATE@EVENT --dots STATE branches show that too (of a run with NPR=1)",
                     is_norm ? "the L2 norm" : "the largest value of a state"));
   if (!files.empty()) result.name = files.front().name;
+  result.files.branches = std::move(files);
   return result;
 }
 

@@ -6,6 +6,7 @@
 
 #include "app/plot_arguments.hpp"
 #include "plot/figure.hpp"
+#include "plot/page.hpp"
 
 namespace tchat {
 
@@ -13,6 +14,7 @@ struct NamedFigure {
   Figure figure;
   std::string name;  ///< for a file that the user did not name
   std::vector<std::string> warnings;
+  FigureFiles files = {};  ///< of its computed points and of its dots
 };
 
 /// Throws UserError for files and labels that do not fit the kind of picture.

@@ -15,6 +15,7 @@
 #include "app/simulation_options.hpp"
 #include "map_sweep/map_sweep_problem.hpp"
 #include "sweep/sweep_problem.hpp"
+#include "text/words.hpp"
 
 namespace tchat {
 
@@ -22,15 +23,6 @@ namespace {
 
 constexpr const char* sweep_length_group =
     "Length [until a periodic orbit is recognised, else 100 events after a transient of 1000]";
-
-/// A word as a shell takes it.
-std::string quoted_for_shell(const std::string& word) {
-  const char* const plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+./:,=@%";
-  if (!word.empty() && word.find_first_not_of(plain) == std::string::npos) return word;
-  std::string quoted = "'";
-  for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return quoted + "'";
-}
 
 /// This process's command line without what says which part it does.
 std::string command_without_part() {

@@ -234,6 +234,9 @@ class BranchFigureBuilder {
 
   void add_markers(const Piece& piece) {
     const BranchFile& file = files_[piece.file];
+    const std::size_t first = panel_.computed.size();
+    for (std::size_t k = 0; k < piece.points.size(); ++k)
+      panel_.computed.push_back({piece.points[k], piece.file, piece.section, piece.rows[k]});
     for (std::size_t k = 0; k < piece.points.size(); ++k) {
       const std::size_t row = piece.rows[k];
       const std::string& type = file.types[piece.section][row];
@@ -241,6 +244,7 @@ class BranchFigureBuilder {
       if (label == 0 || type.empty() || !options_.labels.includes(type)) continue;
       Marker marker = special_point_marker(type, piece.points[k]);
       marker.minor = !file.admissible[piece.section][row];
+      marker.computed = first + k;
       const auto zeros = file.xi_zeros.find(label);
       if (options_.labels.numbers)
         marker.label = plain_text(fmt::format("{} {}", type, label));

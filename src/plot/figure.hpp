@@ -44,9 +44,16 @@ struct Marker {
   bool filled = true;
   double size = 1.0;
   std::string colour = "#000000";
-  LabelText label = {};      ///< empty: none
-  bool one_of_many = false;  ///< where they are crowded some go without label
-  bool minor = false;        ///< as that of a curve
+  LabelText label = {};                      ///< empty: none
+  bool one_of_many = false;                  ///< where they are crowded some go without label
+  bool minor = false;                        ///< as that of a curve
+  std::optional<std::size_t> computed = {};  ///< the point of a branch that it marks, in the panel's list
+};
+
+/// A point of a branch where it is drawn: what a page shows of it is in the file.
+struct ComputedPoint {
+  PicturePoint at;
+  std::size_t file = 0, section = 0, row = 0;  ///< the file counts among those of the figure
 };
 
 /// A polyline; a point that is not finite interrupts it.
@@ -58,11 +65,18 @@ struct Curve {
   std::optional<Marker> symbol = {};  ///< repeated along it
 };
 
+/// Where dots and cells are from: rows of the figure's `sweep`-th sweep. Empty for what is from elsewhere.
+struct SweepRows {
+  std::size_t sweep = 0;
+  std::vector<std::optional<std::size_t>> rows = {};
+};
+
 /// Dots beneath everything else.
 struct Cloud {
   std::vector<PicturePoint> points;
   std::string colour = "#000000";  ///< or "palette": z is each dot's number there
   double size = 0.5;               ///< as a marker's
+  SweepRows rows = {};             ///< of each point
 };
 
 /// A map of equal rectangles, each in one colour, beneath the dots.
@@ -70,6 +84,7 @@ struct ColourField {
   std::size_t columns = 0, rows = 0;
   PicturePoint first, last;   ///< centres of the cells at the beginning and at the end of `cells`
   std::vector<double> cells;  ///< numbers in the figure's palette, row by row; NaN: nothing is drawn
+  SweepRows sweep_rows = {};  ///< of each cell
 
   /// Half of a cell's width, and height.
   PicturePoint half_cell() const;
@@ -101,6 +116,7 @@ struct Panel {
   std::vector<Curve> curves;
   std::vector<Marker> markers;
   std::vector<Arrow> arrows;
+  std::vector<ComputedPoint> computed = {};
   bool equal_scales = false;  ///< circles are round
 };
 

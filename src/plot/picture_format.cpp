@@ -25,7 +25,8 @@ PictureFormat picture_format(const std::string& path) {
   if (extension == ".png") return PictureFormat::png;
   if (extension == ".svg") return PictureFormat::svg;
   if (extension == ".pdf") return PictureFormat::pdf;
-  throw UserError(fmt::format("-o {}: {}; pictures are .png, .svg or .pdf files, as in -o branch.png", path,
+  if (extension == ".html") return PictureFormat::html;
+  throw UserError(fmt::format("-o {}: {}; pictures are .png, .svg, .pdf or .html files, as in -o branch.png", path,
                               extension.empty() ? "the name has no extension" : "no such form of picture"));
 }
 

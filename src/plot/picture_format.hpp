@@ -1,4 +1,5 @@
-/// The forms a picture can take: PNG, SVG and PDF files, or a window.
+/// The forms a picture can take: PNG, SVG and PDF files that gnuplot draws, a page (HTML) that a browser draws, or a
+/// window.
 #pragma once
 
 #include <string>
@@ -7,7 +8,7 @@
 
 namespace tchat {
 
-enum class PictureFormat { png, svg, pdf, window };
+enum class PictureFormat { png, svg, pdf, html, window };
 
 /// By the extension of the file's name, in any case. Throws UserError for other extensions and for none.
 PictureFormat picture_format(const std::string& path);

@@ -68,6 +68,13 @@ std::string output_picture(const Sheet& sheet, const PictureWish& wish) {
   const auto keep_script = [&](const PictureTarget& target) {
     if (!wish.script.empty()) write_text(wish.script, gnuplot_script(layout, target));
   };
+  if (!wish.output.empty() && picture_format(wish.output) == PictureFormat::html) {
+    if (!wish.script.empty())
+      throw UserError(
+          "--script: a page is drawn by the browser, not by gnuplot; leave --script out, or give -o FILE.png");
+    write_text(wish.output, page_html(layout, wish.page));
+    return "";
+  }
   if (!wish.output.empty()) {
     keep_script({picture_format(wish.output), wish.output, ""});
     draw_to_file(layout, wish.output);

@@ -174,6 +174,7 @@ class SweepLayerBuilder {
                        const LabelText& name) {
     Cloud cloud;
     cloud.colour = colour;
+    cloud.rows.sweep = look_.sweep;
     const bool has_palette = colour == "palette";
     Curve bars{{}, {Dash::solid, 1.2, has_palette ? "#909090" : colour}};
     for (std::size_t k = 0; k < rows_.size(); ++k) {
@@ -182,6 +183,7 @@ class SweepLayerBuilder {
       // Quantities of a value stand in each of its rows.
       if (!cloud.points.empty() && cloud.points.back() == at) continue;
       cloud.points.push_back(at);
+      cloud.rows.rows.emplace_back(rows_[k]);
       if (!y.errors.empty()) add_bar(bars, at, y.errors[rows_[k]]);
     }
     const std::size_t count = cloud.points.size();
@@ -224,13 +226,17 @@ class SweepLayerBuilder {
     field.first = {across.value(0), up.value(0)};
     field.last = {across.value(across.count - 1), up.value(up.count - 1)};
     field.cells.assign(field.columns * field.rows, std::numeric_limits<double>::quiet_NaN());
+    field.sweep_rows.sweep = look_.sweep;
+    field.sweep_rows.rows.assign(field.cells.size(), std::nullopt);
     const auto count = static_cast<std::size_t>(table_.over.front().count);
     const bool turned = &across != &table_.over.front();
     for (std::size_t k = 0; k < rows_.size(); ++k) {
       const auto number = static_cast<std::size_t>((*index)[rows_[k]]);
       const std::size_t first = number % count, second = number / count;
       const std::size_t cell = turned ? first * field.columns + second : second * field.columns + first;
-      if (cell < field.cells.size()) field.cells[cell] = colours.numbers[k];
+      if (cell >= field.cells.size()) continue;
+      field.cells[cell] = colours.numbers[k];
+      field.sweep_rows.rows[cell] = rows_[k];
     }
     for (std::size_t c = 0; c < colours.names.size(); ++c) {
       const Marker square{{}, Symbol::square, true, 1.4, colours.colours[c]};

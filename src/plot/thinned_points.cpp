@@ -6,11 +6,12 @@
 
 namespace tchat {
 
-std::vector<PicturePoint> thinned_points(const std::vector<PicturePoint>& points, const PanelLayout& panel, double side,
+std::vector<std::size_t> thinned_indices(const std::vector<PicturePoint>& points, const PanelLayout& panel, double side,
                                          std::size_t few) {
-  std::vector<PicturePoint> kept;
+  std::vector<std::size_t> kept;
   std::unordered_set<std::uint64_t> taken;
-  for (const PicturePoint& point : points) {
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const PicturePoint& point = points[k];
     if (!std::isfinite(point.x) || !std::isfinite(point.y)) continue;
     if (points.size() > few) {
       const PicturePoint at = panel.on_paper(point);
@@ -19,8 +20,15 @@ std::vector<PicturePoint> thinned_points(const std::vector<PicturePoint>& points
       const auto row = static_cast<std::uint64_t>((at.y + side) / side);
       if (!taken.insert((column << 32U) | row).second) continue;
     }
-    kept.push_back(point);
+    kept.push_back(k);
   }
+  return kept;
+}
+
+std::vector<PicturePoint> thinned_points(const std::vector<PicturePoint>& points, const PanelLayout& panel, double side,
+                                         std::size_t few) {
+  std::vector<PicturePoint> kept;
+  for (const std::size_t k : thinned_indices(points, panel, side, few)) kept.push_back(points[k]);
   return kept;
 }
 

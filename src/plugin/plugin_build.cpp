@@ -23,6 +23,7 @@
 #include "plugin/precompiled_header.hpp"
 #include "text/text_file.hpp"
 #include "text/user_error.hpp"
+#include "text/words.hpp"
 
 namespace tchat {
 
@@ -367,6 +368,12 @@ std::string resolve_plugin_of_run(const std::optional<std::string>& given, const
                            language_of(file) ? "compiled where its library is not up to date, " : "")
             << std::flush;
   return resolve_plugin(run);
+}
+
+std::string problem_arguments(const std::string& plugin) {
+  const std::string name = fs::path(plugin).stem().string();
+  return name == plugin ? quoted_for_shell(name)
+                        : fmt::format("{} -p {}", quoted_for_shell(name), quoted_for_shell(plugin));
 }
 
 }  // namespace tchat

@@ -35,6 +35,9 @@ std::string resolve_plugin_of_run(const std::optional<std::string>& given, const
 /// The source that a name or path stands for, in the searching order above; "" when there is none.
 std::string source_of(const std::string& name_or_path);
 
+/// The words of `tchat run` that name the problem of a plugin: NAME, or NAME -p PATH where NAME alone does not find it.
+std::string problem_arguments(const std::string& plugin);
+
 /// What a problem is called, and its plugin where that is not the one of this name.
 struct NamedProblem {
   std::string name;

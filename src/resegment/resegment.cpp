@@ -219,12 +219,6 @@ void choose_contact_jump(const ResegmentRequest& request, const LabelledOrbit& s
       fmt::format("The run will not begin: {}\nAnother jump at the contact may help: --jump", why));
 }
 
-/// NAME of `tchat run`, with the plugin's path where NAME alone does not find it.
-std::string problem_arguments(const std::string& plugin) {
-  const std::string name = std::filesystem::path(plugin).stem().string();
-  return name == plugin ? name : fmt::format("{} -p {}", name, plugin);
-}
-
 /// The orbit that is to have another signature: where contacts are lost, without them, and then `request` has its
 /// signature.
 LabelledOrbit without_contacts(ResegmentRequest& request, LabelledOrbit source, const HybridSystem& system,

@@ -10,6 +10,9 @@ namespace tchat {
 /// A word for a message: cut when long, unprintable characters replaced, in quotes.
 std::string in_quotes(std::string_view text);
 
+/// A word as a POSIX shell reads it: in single quotes unless it needs none.
+std::string quoted_for_shell(const std::string& word);
+
 /// The blank-separated words of a line.
 std::vector<std::string_view> split_words(std::string_view line);
 

@@ -424,6 +424,13 @@ class Problems(unittest.TestCase):
             oscillator.simulate(beta=1)
         self.assertIsNone(oscillator.simulate(alpha=2, time=1).orbit)
 
+    def test_a_page_for_a_browser(self):
+        page = tchat.load("impacting").html("impacting.html", "-y", "MAX x2")
+        self.assertEqual(page, "impacting.html")
+        text = pathlib.Path(page).read_text(encoding="utf-8")
+        self.assertTrue(text.startswith("<!DOCTYPE html>"))
+        self.assertIn("PD1", text)
+
     def test_pictures_with_matplotlib(self):
         try:
             import matplotlib

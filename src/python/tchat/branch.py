@@ -135,6 +135,12 @@ class Branch:
             with open(file, "rb") as picture:
                 return picture.read()
 
+    def html(self, file, *words):
+        """Writes the page that `tchat plot` makes of the branch, for a browser: zoom, the values of points, and the
+        orbits of labels. file ends in .html; words are options of `tchat plot`, as "-y", "MAX x". Returns file."""
+        execute(["plot", self.path, "-o", file] + _plugin(self.problem) + list(words), program=self._program)
+        return file
+
     def verify(self, *names, tolerance=None):
         """`tchat verify`: labelled orbits against forward integration. A Report, whose `passed` is the verdict."""
         words = ["verify", _beside(self.path, "q")] + list(names) + _plugin(self.problem)

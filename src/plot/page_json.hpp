@@ -1,0 +1,41 @@
+/// JSON for pages: compact, and safe inside a <script> element.
+#pragma once
+
+#include <initializer_list>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "plot/label_text.hpp"
+
+namespace tchat {
+
+/// A quoted string. '<', '>' and '&' become escapes, so that no text of a file can close the element; bytes that are
+/// no UTF-8 become U+FFFD, and control characters blanks.
+std::string page_text(std::string_view text);
+
+/// A text of the picture: {"t": text}, with "m": 1 where it is markup.
+std::string page_label(const LabelText& text);
+
+/// The number with the digits from which it is read back exactly; null when it is not finite or stands for infinity.
+std::string page_number(double value);
+
+/// The number to `digits` significant digits; null likewise.
+std::string page_number(double value, int digits);
+
+/// [a,b,...] of JSON values.
+std::string page_list(const std::vector<std::string>& values);
+
+/// {"name":value,...} of JSON values.
+std::string page_object(std::initializer_list<std::pair<std::string_view, std::string>> members);
+
+/// [a,b,...] with the JSON value that `make` returns for each element.
+template <class List, class Make>
+std::string page_list(const List& list, const Make& make) {
+  std::vector<std::string> values;
+  for (const auto& element : list) values.push_back(make(element));
+  return page_list(values);
+}
+
+}  // namespace tchat
