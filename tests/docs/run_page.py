@@ -9,6 +9,12 @@ usage: run_page.py PAGE TCHAT SOURCE [CACHE]   page, executable, root of the rep
                  error together. A line `...` stands for any lines, `...` in a line for any text; blanks count as one.
     ```console   cannot run in a test (it installs, or needs root or the network): counted, and what is said of it
 Other blocks are not run. Links to files and to headings must lead somewhere.
+
+A picture FOLDER/NAME.png below an ```sh block that writes `-o NAME.png` is compared with what the block has written:
+the same size, and at most UNLIKE of the drawn pixels of either picture without one of about the same colour within
+REACH pixels in the other. Equality would be too strict: versions of gnuplot and fonts shift texts and tics, a shown
+picture may have fewer colours, and rounding moves the dots of chaotic motion. A missing curve exceeds the tolerance, a
+missing letter does not. A picture in a folder with the name of the page must be compared.
 """
 
 import contextlib
@@ -20,6 +26,7 @@ import tempfile
 import traceback
 
 PYTHONS = [sys.executable, "/usr/bin/python3"]
+REACH, CONTRAST, UNLIKE = 4, 0.3, 0.05
 COMMAND = re.compile(r"(    |\t)\s*(\$ |tchat |make |cd |cp |sudo |scripts/|\./)")
 
 
@@ -92,6 +99,58 @@ def check_links(path, prose):
                 raise PageError(number, f"the link {target} leads to no file")
             if anchor and anchor not in anchors(file):
                 raise PageError(number, f"the link {target} leads to no heading")
+
+
+def pictures_below(block, blocks, prose):
+    """The pictures shown between a block and the next one that runs: number of the line, file as the page names it."""
+    later = [other.line for other in blocks if other.line > block.line and other.kind in ("sh", "python")]
+    end = min(later, default=float("inf"))
+    return [(number, name) for number, line in prose if block.line < number < end
+            for name in re.findall(r"!\[[^\]]*\]\(([^)\s]+\.png)\)", line)]
+
+
+def written_pictures(block):
+    return set(re.findall(r"(?<!\S)(?:-o|--output)[ =]?(\S+\.png)", block.text)) if block.kind == "sh" else set()
+
+
+def share_unlike(picture, other):
+    """The share of the drawn pixels of a picture that have no pixel of about their colour within REACH in the other."""
+    import numpy
+    drawn = (1 - picture).max(axis=2) > CONTRAST
+    rows, columns = numpy.nonzero(drawn & (abs(picture - other).max(axis=2) > CONTRAST))
+    padded = numpy.pad(other, ((REACH, REACH), (REACH, REACH), (0, 0)), mode="edge")
+    unlike = numpy.ones(len(rows), dtype=bool)
+    for down in range(2 * REACH + 1):
+        for right in range(2 * REACH + 1):
+            near = padded[rows + down, columns + right]
+            unlike &= abs(picture[rows, columns] - near).max(axis=1) > CONTRAST
+    return unlike.sum() / max(drawn.sum(), 1)
+
+
+def compare_pictures(block, blocks, prose, page):
+    """Compares what a block has written with the pictures of the same names below it; returns how many there are."""
+    own_folder = os.path.splitext(os.path.basename(page))[0]
+    compared = 0
+    for number, name in pictures_below(block, blocks, prose):
+        made = os.path.basename(name)
+        if made not in written_pictures(block):
+            if os.path.dirname(name) == own_folder:
+                raise PageError(number, f"the block above does not write -o {made}")
+            continue
+        if not os.path.exists(made):
+            raise PageError(number, f"the block above has left no {made}")
+        import numpy
+        from matplotlib.image import imread
+        shown = os.path.join(os.path.dirname(page), name)
+        pictures = [numpy.atleast_3d(imread(file))[..., :3] for file in (made, shown)]
+        sizes = [f"{picture.shape[1]}x{picture.shape[0]}" for picture in pictures]
+        if sizes[0] != sizes[1]:
+            raise PageError(number, f"{made} has the size {sizes[0]} when it is made, {sizes[1]} on the page")
+        unlike = max(share_unlike(*pictures), share_unlike(*reversed(pictures)))
+        if unlike > UNLIKE:
+            raise PageError(number, f"{100 * unlike:.1f} % of {made} differs from what the page shows")
+        compared += 1
+    return compared
 
 
 def line_pattern(line):
@@ -177,8 +236,9 @@ def run_python(block, page, names, scratch):
         return file.read(), good
 
 
-def run_blocks(blocks, page, scratch, shell):
-    names, shown_by, output = {"__name__": "__main__"}, None, ""
+def run_blocks(blocks, prose, page, scratch, shell):
+    """Runs the page; returns how many pictures it has compared."""
+    names, shown_by, output, compared = {"__name__": "__main__"}, None, "", 0
     for block in blocks:
         if block.kind in ("sh", "python"):
             if block.kind == "sh":
@@ -191,6 +251,7 @@ def run_blocks(blocks, page, scratch, shell):
             if not good:
                 raise PageError(block.line, f"this block failed. It is\n{block.text}and says\n{output}")
             shown_by = block
+            compared += compare_pictures(block, blocks, prose, page)
         elif block.kind == "console":
             shown_by = block
         elif block.kind == "text":
@@ -200,11 +261,13 @@ def run_blocks(blocks, page, scratch, shell):
             if missing is not None:
                 raise PageError(block.line, f"the output of the block at line {shown_by.line} does not go on with\n"
                                             f"{missing}\nIt is\n{output}")
+    return compared
 
 
 def with_numpy():
-    """Starts anew by an interpreter that has numpy, unless this one has it."""
+    """Starts again with an interpreter that has numpy and matplotlib, unless this one has them."""
     try:
+        import matplotlib  # noqa: F401
         import numpy  # noqa: F401
     except ImportError:
         for python in PYTHONS[1:]:
@@ -217,7 +280,8 @@ def main():
     blocks, prose = read_page(page)
     check_prose(blocks, prose)
     check_links(page, prose)
-    if any("python" in block.kind or block.kind == "sh" and "python" in block.text for block in blocks):
+    if any("python" in block.kind or block.kind == "sh" and ("python" in block.text or written_pictures(block))
+           for block in blocks):
         with_numpy()
     with tempfile.TemporaryDirectory(prefix="tchat_page_") as scratch:
         for folder in ("bin", "page"):
@@ -234,12 +298,13 @@ def main():
         os.chdir(os.path.join(scratch, "page"))
         try:
             with contextlib.closing(Shell(scratch)) as shell:
-                run_blocks(blocks, page, scratch, shell)
+                compared = run_blocks(blocks, prose, page, scratch, shell)
         finally:
             os.chdir("/")
     count = {kind: sum(block.kind == kind for block in blocks) for kind in ("sh", "python", "text", "console")}
     print(f"{os.path.relpath(page, source)}: {count['sh']} shell and {count['python']} Python blocks run, "
-          f"{count['text']} outputs compared, {count['console']} blocks that cannot run in a test")
+          f"{count['text']} outputs and {compared} pictures compared, "
+          f"{count['console']} blocks that cannot run in a test")
 
 
 if __name__ == "__main__":
