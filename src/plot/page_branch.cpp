@@ -143,8 +143,17 @@ class PageBranchWriter {
          {"type", page_text(file_.types[s][k])},
          {"name", is_named ? page_text(names.front()) : "null"},
          {"kind", page_text(solution == nullptr ? "" : kind(s, *solution))},
+         {"birth", page_text(birth(s, k))},
          {"orbit", orbit == orbits_.place.end() ? "null" : integer(static_cast<long long>(orbit->second))},
          {"restarts", solution == nullptr || !restart_.exists() ? "0" : "1"}});
+  }
+
+  /// Words of a run on the branch that is born at the label, or "".
+  std::string birth(std::size_t s, std::size_t k) const {
+    const PointSection& section = file_.sections[s];
+    const std::optional<int> principal = section.parameter_of_column(0);
+    if (section.curve_type != 0 || !principal) return "";
+    return birth_words(basic_type(section.rows[k].type), section.problem_type, section.parameter_name(*principal));
   }
 
   std::string kind(std::size_t s, const LabelledSolution& solution) const {

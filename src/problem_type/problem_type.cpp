@@ -110,6 +110,20 @@ bool is_two_parameter_curve(int number, int branch_mode) {
 
 bool has_two_parameter_curves(int number) { return !problem_types_of(number, in_two_parameters).empty(); }
 
+std::string birth_words(int label_type, int number, const std::string& principal) {
+  const ProblemType* born = nullptr;
+  for (const ProblemType* type : problem_types())
+    if (type->facts().switches_branch && type->begins_at(label_type) &&
+        (born == nullptr || (born->facts().number != number && type->facts().number == number)))
+      born = type;
+  if (born == nullptr) return "";
+  const ProblemFacts& facts = born->facts();
+  std::string words = facts.number == number ? "" : fmt::format(" IPS={}", facts.number);
+  words += fmt::format(" ISW={}", facts.branch_mode);
+  if (*facts.start_words != '\0') words += " " + fmt::format(fmt::runtime(facts.start_words), principal);
+  return words;
+}
+
 bool has_multipliers(int number) {
   const ProblemType* type = nearest_problem_type(number, 1);
   return type == nullptr || type->facts().stability != StabilityMeaning::none;

@@ -107,6 +107,10 @@ bool keeps_contact(int number);
 bool is_two_parameter_curve(int number, int branch_mode);
 /// Is there a type that follows folds and the like of this one in two parameters?
 bool has_two_parameter_curves(int number);
+/// Words of `tchat run` that follow the branch born at a label, after IRS: " IPS=182 ISW=-1 'ICP=[a,rho]'"; "" where
+/// none is. `label_type`: its number without the tens digit of a curve; `number`: IPS of the label's branch, whose own
+/// switch is preferred; `principal`: the name of ICP(1).
+std::string birth_words(int label_type, int number, const std::string& principal);
 /// AUTO's own boundary value problems have no multipliers.
 bool has_multipliers(int number);
 /// One multiplier is critical all along, so that stability is none.

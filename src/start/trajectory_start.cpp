@@ -43,8 +43,7 @@ std::optional<std::size_t> best_period(const std::vector<RecordedRows>& segments
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t first = 0; first + signature.size() < segments.size(); ++first) {
     if (!follows(segments, first, signature)) continue;
-    const Eigen::VectorXd miss =
-        segments[first + signature.size()].states.col(0) - segments[first].states.col(0);
+    const Eigen::VectorXd miss = segments[first + signature.size()].states.col(0) - segments[first].states.col(0);
     const double distance = miss.cwiseQuotient(range).lpNorm<Eigen::Infinity>();
     if (distance > least) continue;
     least = distance;
@@ -59,7 +58,8 @@ struct NearestPoint {
   double distance = std::numeric_limits<double>::infinity();
 };
 
-NearestPoint nearest_point(const RecordedRows& rows, Eigen::Index k, const Eigen::VectorXd& state, const Eigen::VectorXd& range) {
+NearestPoint nearest_point(const RecordedRows& rows, Eigen::Index k, const Eigen::VectorXd& state,
+                           const Eigen::VectorXd& range) {
   const Eigen::VectorXd from = (rows.states.col(k) - state).cwiseQuotient(range);
   const Eigen::VectorXd step = (rows.states.col(k + 1) - rows.states.col(k)).cwiseQuotient(range);
   const double length = step.squaredNorm();
@@ -101,9 +101,10 @@ std::vector<OrbitPart> parts_of(const std::vector<RecordedRows>& segments, const
   if (is_smooth && !is_table) {
     const std::optional<OrbitPart> period = last_return(segments.back());
     if (!period)
-      throw UserError(fmt::format("{}: the motion does not return to its last state; simulate longer, or with smaller "
-                                  "steps between rows (--rows)",
-                                  path));
+      throw UserError(
+          fmt::format("{}: the motion does not return to its last state; simulate longer, or with smaller "
+                      "steps between rows (--rows)",
+                      path));
     return {*period};
   }
   if (is_table && segments.size() != m)

@@ -385,18 +385,11 @@ function showRestart(host, facts) {
   const where = facts.label === source ? "from this point" : "from label " + source.label + " (" + name + ")";
   host.appendChild(element("p", "", "Continue " + where + ":"));
   addCommand(host, "restart", parts[0] + name + parts[1] + name);
-  const switching = wordsToSwitch(source.type, facts.section.spectrum === "eigenvalues");
-  if (switching) {
+  if (source.birth) {
     host.appendChild(element("p", "", "Switch to the branch that is born there:"));
-    addCommand(host, "switch", parts[0] + name + "_born" + parts[1] + name + switching);
+    addCommand(host, "switch", parts[0] + name + "_born" + parts[1] + name + source.birth);
   }
   if (facts.branch.restartRemark) addWarning(host, facts.branch.restartRemark);
-}
-
-/** The constants that start the other branch at a point of this type; "" where none begins. */
-function wordsToSwitch(type, isEquilibrium) {
-  if (type === "HB" && isEquilibrium) return " ISW=-1 IPS=180 'GCHIND=[0]' 'GCGIND=[0]'";
-  return type === "PD" || type === "BP" ? " ISW=-1" : "";
 }
 
 function addCommand(host, id, text) {
