@@ -1,6 +1,7 @@
 // How branches end, and which points are labelled.
 #include <catch2/catch.hpp>
 
+#include "continuation/solution_measure.hpp"
 #include "problem_type/family.hpp"
 #include "special_points/normal_forms.hpp"
 #include "special_points/user_value_test.hpp"
@@ -97,7 +98,7 @@ TEST_CASE("a restart does not label its first point again") {
 TEST_CASE("bounds on the parameter and on the measure end a branch at the first point beyond") {
   Branch by_parameter;
   by_parameter.settings.parameter_max = 3.06;
-  CHECK(by_parameter.run().reason == EndReason::parameter_bound);
+  CHECK(by_parameter.run().reason == EndReason::beyond_bound);
   const std::vector<KeptPoint>& points = by_parameter.sink.points;
   CHECK(points.back().orbit.par(0) > 3.06);
   CHECK(points[points.size() - 2].orbit.par(0) <= 3.06);
@@ -106,8 +107,8 @@ TEST_CASE("bounds on the parameter and on the measure end a branch at the first 
   by_measure.settings.measure = 2;  // max x2
   by_measure.settings.measure_max = 2.2;
   by_measure.settings.max_points = 60;
-  CHECK(by_measure.run().reason == EndReason::measure_bound);
-  CHECK(by_measure.sink.points.back().measure > 2.2);
+  CHECK(by_measure.run().reason == EndReason::beyond_bound);
+  CHECK(maximum_of(by_measure.sink.points.back().orbit, 2) > 2.2);
 }
 
 TEST_CASE("a special point counts up to the bound, also in the last step, beyond it the branch ends with EP") {
@@ -128,7 +129,7 @@ TEST_CASE("a special point counts up to the bound, also in the last step, beyond
   CHECK(at == EndReason::special_point);
   CHECK(on_bound.back().special.type == PointType::user);
   const auto [beyond, ended] = last_points({3.0527}, 3.0526);
-  CHECK(beyond == EndReason::parameter_bound);
+  CHECK(beyond == EndReason::beyond_bound);
   CHECK(ended.back().special.type == PointType::end);
   CHECK(ended.back().orbit.par(0) > 3.0526);
   for (const KeptPoint& p : ended) CHECK(p.special.type != PointType::user);
@@ -237,7 +238,7 @@ TEST_CASE("with clip a branch ends on its bounds") {
     s.measure_max = 2.4;
   });
   CHECK(measure.reason == EndReason::on_bound);
-  CHECK(at_measure.measure == Approx(2.4).epsilon(1e-8));
+  CHECK(maximum_of(at_measure.orbit, 2) == Approx(2.4).epsilon(1e-8));
   // A user value on the bound keeps its name, and the branch ends there.
   std::vector<std::unique_ptr<TestFunction>> tests;
   tests.push_back(std::make_unique<UserValueTest>(1, 3.06, false, "alpha"));

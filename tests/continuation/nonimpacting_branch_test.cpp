@@ -29,7 +29,7 @@ std::vector<KeptPoint> continued(const Branch& branch) {
   settings.adapt_mesh_every = branch.adapt_mesh_every;
   KeepingSink sink;
   ContinuationRun run(orbits.follower, orbits.system, settings, {}, sink);
-  CHECK(run.run(point).reason == EndReason::parameter_bound);
+  CHECK(run.run(point).reason == EndReason::beyond_bound);
   return sink.points;
 }
 

@@ -118,3 +118,27 @@ TEST_CASE("simulate: a full disk is told, and what was there stays") {
   CHECK(workspace.read("o.trajectory") == old);
   CHECK_FALSE(workspace.has_unfinished());
 }
+
+TEST_CASE("a function without a value: the last state that it was asked for, and what to do") {
+  const Workspace workspace;
+  workspace.write(
+      "root.tch",
+      "par a=1\ninit x=1, v=-1\nx' = v\nv' = -a*sqrt(x)\nevent top = v\njump same: x -> x\nafter any: top -> same\n");
+  for (const char* method : {"", " --stiff"}) {
+    const Outcome outcome = workspace.tchat("simulate root" + std::string(method));
+    INFO(outcome.text());
+    CHECK(outcome.status == 1);
+    const std::size_t at = outcome.err.find("no finite value at x = ");
+    REQUIRE(at != std::string::npos);
+    CHECK(std::stod(outcome.err.substr(at + 23)) < 0.0);  // the root of a negative number
+    CHECK(contains(outcome.err, "v = -"));
+    CHECK(contains(outcome.err, "event"));
+  }
+  workspace.write("gc.root", "NDIM = 2, IPS = 180, ICP = [a]\nGCFIND = [1], GCHIND = [1], GCGIND = [1]\n");
+  workspace.write("root.dat", "# PAR(61) = 1\n0 -1 1\n1 -1 1\n");
+  const Outcome run = workspace.tchat("run root");
+  INFO(run.text());
+  CHECK(run.status == 1);
+  CHECK(contains(run.err, "x = -1"));
+  CHECK(contains(run.err, "give the function a value there"));
+}

@@ -1,4 +1,6 @@
 // Labels have their evidence, and a branch ends where there are no orbits any more, or none that a mesh resolves.
+#include <fmt/format.h>
+
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
@@ -15,6 +17,13 @@ bool has_label(const std::vector<PointRow>& rows, int type) {
   for (const PointRow& row : rows)
     if (row.label != 0 && std::abs(row.type) == type) return true;
   return false;
+}
+
+/// Number of the first label of this type.
+int with_type(const std::vector<PointSection>& sections, int type) {
+  for (const PointRow& row : rows_of(sections))
+    if (row.label != 0 && std::abs(row.type) == type) return row.label;
+  return 0;
 }
 
 constexpr int fold = 5, branch_point = 6, torus = 8;
@@ -115,4 +124,65 @@ after any: turn -> back
   CHECK(contains(outcome.out, "the stability changes without a special point: one multiplier goes from"));
   CHECK(contains(outcome.out, "through +1"));
   CHECK(contains(workspace.read("d.still"), "the stability changes without a special point"));
+}
+
+TEST_CASE("BOUNDS ends a branch where a parameter, a duration or a monitor leaves its range") {
+  const Workspace workspace;
+  // The velocity of the impact is -MAX x2 of the forced motion's end: the monitor is a column of its own.
+  const std::vector<std::string> words{"-c", "impacting", "-d", "impacting", "ICP=[alpha,velocity(1)]", "NMX=60"};
+  const auto run = [&](const std::vector<std::string>& further) {
+    std::vector<std::string> all = words;
+    all.insert(all.end(), further.begin(), further.end());
+    return workspace.run(all);
+  };
+  run({"-o", "free"});
+  const std::vector<PointRow> free = rows_of(workspace.points("free"));
+  const std::size_t column = workspace.points("free").front().column("velocity(1)");
+  const double middle = 0.5 * (free.front().values[column] + free.back().values[column]);
+
+  const Outcome beyond = run({fmt::format("BOUNDS={{velocity(1): [{}, 0]}}", middle), "-o", "beyond"});
+  CHECK(contains(beyond.out, "velocity(1) left the bounds BOUNDS"));
+  const std::vector<PointRow> rows = rows_of(workspace.points("beyond"));
+  REQUIRE(rows.size() >= 2);
+  CHECK(rows.back().values[column] < middle);
+  CHECK(rows[rows.size() - 2].values[column] > middle);
+
+  run({fmt::format("BOUNDS={{velocity(1): [{}, 0]}}", middle), "--clip", "-o", "clipped"});
+  CHECK(rows_of(workspace.points("clipped")).back().values[column] == Approx(middle).epsilon(1e-8));
+  CHECK(contains(workspace.read("r.clipped"), "BOUNDS = {velocity(1): ["));
+
+  const auto refused = [&](const std::string& bounds, const std::vector<std::string>& parts) {
+    std::vector<std::string> all{"run", "linosc", "-c", "impacting", "-d", "impacting", "-o", "none", bounds};
+    const Outcome outcome = workspace.tchat(all);
+    INFO(outcome.text());
+    CHECK(outcome.status == 2);
+    for (const std::string& part : parts) CHECK(contains(outcome.err, part));
+    CHECK_FALSE(workspace.has("p.none"));
+  };
+  refused("BOUNDS={T1: [0, 0.1]}", {"outside of the bounds", "T1 is", "0 to 0.1"});
+  refused("BOUNDS={T1: 3}", {"BOUNDS", "'T1'", "[0, 10]"});
+  refused("BOUNDS={T1: [3, 2]}", {"BOUNDS", "'2'", "greater than 3"});
+  refused("BOUNDS={nothing: [3, 4]}", {"BOUNDS", "nothing"});
+  refused("BOUNDS={1: [0, 9], alpha: [0, 9]}", {"BOUNDS", "twice"});
+  refused("BOUNDS={77: [0, 9]}", {"BOUNDS", "'77'"});
+}
+
+TEST_CASE("the first label of each type is followed by a command that starts there") {
+  const Workspace workspace(Workspace::Plugin::source);
+  const auto follow = [&](const Outcome& outcome, const std::string& type, const std::string& made) {
+    const std::size_t label = outcome.out.find("  " + type + " label ");
+    REQUIRE(label != std::string::npos);
+    const std::size_t next = outcome.out.find("next: ", label);
+    REQUIRE(next != std::string::npos);
+    const std::string command = outcome.out.substr(next + 6, outcome.out.find('\n', next) - next - 6);
+    INFO(command);
+    const Outcome done = workspace.shell(command + " NMX=3");
+    INFO(done.text());
+    CHECK(done.status == 0);
+    CHECK(workspace.has("p." + made));
+  };
+  const Outcome back = workspace.run("-c impacting -d impacting DS=-0.02 -o back");
+  follow(back, "PD", "back_PD" + std::to_string(with_type(workspace.points("back"), 7)));
+  const Outcome smooth = workspace.run("-c nonimpacting_alpha -d nonimpacting -o smooth RL1=4");
+  follow(smooth, "GR", "smooth_GR" + std::to_string(with_type(workspace.points("smooth"), 4)) + "_branch");
 }

@@ -98,6 +98,14 @@ TEST_CASE("constants: the other form says the same, also of itself, explained in
   for (const char* part : {"NDIM", "GCHGRZIND", "GRSTOP", "default", "allowed", "example"})
     CHECK(all.out.find(part) != std::string::npos);
 
+  // The words of a run show its constants; what is no constant is left out, values of parameters with a warning.
+  const Outcome of_run = workspace.tchat(
+      {"constants", "linosc", "-c", "impacting", "-d", "impacting", "-o", "x", "--both", "NTST=77", "PAR(alpha)=2"});
+  CHECK(of_run.status == 0);
+  CHECK(of_run.out.find("NTST = 77") != std::string::npos);
+  CHECK(of_run.err.find("values of parameters") != std::string::npos);
+  CHECK_FALSE(workspace.has("p.x"));
+
   check_refused(workspace.tchat("constants nosuch"), {"gc.nosuch"});
   check_refused(workspace.tchat("constants impacting NTST=0"), {"NTST", "5000"});
   check_refused(workspace.tchat("constants impacting -k --positional"), {"--help"});
@@ -105,8 +113,7 @@ TEST_CASE("constants: the other form says the same, also of itself, explained in
 
 namespace {
 
-// The way of src/docs/forcing.md to hold the period: the parameter that is to be free is a state, a clock measures the
-// period.
+// A period that is held without HOLD: the parameter that is to be free is a state, a clock measures the period.
 constexpr const char* held_period = R"(#include <tchat/problem.hpp>
 struct VanDerPol {
   static constexpr int dimension = 4, parameters = 2, fields = 1, events = 1, jumps = 1;

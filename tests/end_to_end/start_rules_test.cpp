@@ -1,4 +1,7 @@
 // What a run starts from: IRS, -d, -s and their defaults; what it may replace; where it ends.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <catch2/catch.hpp>
 
 #include "end_to_end/workspace.hpp"
@@ -180,4 +183,50 @@ TEST_CASE("the jump that contact brings must be there, and no identity where xi_
   CHECK(contains(identity.err, "GRJUMP = 2 (identity) is the identity"));
   CHECK_FALSE(contains(identity.out, "xi_1"));
   CHECK(workspace.tchat(run).err.empty());
+}
+
+TEST_CASE("a run starts from the trajectory of a simulation, and from the table of another program") {
+  const Workspace workspace;
+  workspace.run("-c impacting -d impacting -o branch NTST=20 NMX=1");
+  const SolutionEntry orbit = workspace.solutions("branch").front();
+  const std::string parameters = fmt::format("PAR(alpha)={:.17g}", orbit.parameter(1));
+  REQUIRE(workspace.tchat("simulate linosc -q --transient-time 300 -o motion PAR(omega)=2.0072 " + parameters).status ==
+          0);
+  const auto check = [&](const std::string& data) {
+    const Outcome outcome = workspace.tchat("run linosc -c impacting -o from NTST=20 NMX=1 IRS=0 -d " + data);
+    INFO(outcome.text());
+    REQUIRE(outcome.status == 0);
+    const SolutionEntry found = workspace.solutions("from").front();
+    CHECK(found.parameter(1) == Approx(orbit.parameter(1)).epsilon(1e-12));
+    CHECK(found.parameter(61) == Approx(orbit.parameter(61)).epsilon(1e-9));
+    for (std::size_t k = 0; k < 4; ++k) CHECK(found.states.front()[k] == Approx(orbit.states.front()[k]).margin(1e-8));
+  };
+  check("motion.trajectory");
+  REQUIRE(workspace.tchat_redirected("orbit q.branch 1", "> table").status == 0);
+  check("table");
+
+  // The period starts in mid-flight; t repeats at the impact.
+  std::string rows = fmt::format("# PAR(omega) = 2.0072\n# PAR(alpha) = {:.17g}\nt x1 x2 y1 y2\n", orbit.parameter(1));
+  const std::size_t nodes = orbit.t.size();
+  const auto add = [&](std::size_t k, double shift) {
+    rows +=
+        fmt::format("{:.17g} {:.17g}\n", (orbit.t[k] + shift) * orbit.parameter(61), fmt::join(orbit.states[k], " "));
+  };
+  for (std::size_t k = nodes / 2; k < nodes; ++k) add(k, 0.0);
+  for (std::size_t k = 0; k <= nodes / 2; ++k) add(k, 1.0);
+  workspace.write("other.dat", rows);
+  check("other");
+}
+
+TEST_CASE("tables that do not fit the signature are refused") {
+  const Workspace workspace;
+  const std::string start = "# PAR(omega) = 2.0072\n";
+  workspace.write("twice.dat", start + "0 1 -1 0 1\n1 0 0 1 0\n1 0.5 0 1 0\n2 1 1 0 1\n2 1 -1 0 1\n3 0 0 1 0\n");
+  check_refusal(workspace.tchat("run linosc -c impacting -d twice -o none IRS=0"),
+                {"twice.dat", "repeats 2 times", "1"});
+  workspace.write("same.dat", start + "0 1 -1 0 1\n1 0 0 1 0\n1 0 0 1 0\n2 1 1 0 1\n");
+  check_refusal(workspace.tchat("run linosc -c impacting -d same -o none IRS=0"), {"same.dat:4", "repeats"});
+  REQUIRE(workspace.tchat("simulate linosc -q --time 5 -o short --signature 1,1,1").status == 0);
+  check_refusal(workspace.tchat("run linosc -c impacting -d short.trajectory -o none IRS=0 GCHIND=[2]"),
+                {"short.trajectory", "{(1,2,1)}"});
 }

@@ -73,6 +73,11 @@ Outcome Workspace::tchat_preloaded(const std::string& library, const std::string
   return Process({"/bin/sh", "-c", script}, file(""), logs_.file(std::to_string(++runs_))).wait(time_limit);
 }
 
+Outcome Workspace::shell(const std::string& line) const {
+  const std::string script = "tchat() { '" + executable() + "' \"$@\"; }; " + line;
+  return Process({"/bin/sh", "-c", script}, file(""), logs_.file(std::to_string(++runs_))).wait(time_limit);
+}
+
 Outcome Workspace::make(const std::string& folder, const std::string& targets) const {
   std::vector<std::string> words{"/usr/bin/env", "make", "-C", folder, "TCHAT=" + executable()};
   for (const std::string& target : words_of(targets)) words.push_back(target);

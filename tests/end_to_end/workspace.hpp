@@ -31,6 +31,9 @@ class Workspace {
   /// As tchat(), with a library in it that writes to the file `record`, whose name it finds in RECORDED_CALLS.
   Outcome tchat_preloaded(const std::string& library, const std::string& record, const std::string& arguments) const;
 
+  /// A line for the shell, in which `tchat` is this one.
+  Outcome shell(const std::string& line) const;
+
   /// make -C FOLDER TARGETS, with this tchat.
   Outcome make(const std::string& folder, const std::string& targets) const;
 

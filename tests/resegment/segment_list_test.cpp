@@ -127,6 +127,19 @@ TEST_CASE("signatures as users write them") {
   const Signature expected{{1, 1, 1}, {2, 2, 2}};
   for (const char* text : {"1,1,1;2,2,2", "1,1,1; 2,2,2;", "(1,1,1),(2,2,2)", "{(1,1,1), (2,2,2)}", "(1,1,1)(2,2,2)"})
     CHECK(parse_signature(text) == expected);
+  const Signature cascade{{1, 1, 2}, {1, 2, 1}, {1, 1, 2}, {1, 2, 1}},
+      uneven{{1, 1, 1}, {1, 1, 1}, {1, 1, 1}, {2, 2, 2}};
+  CHECK(to_string(cascade) == "{(1,1,2), (1,2,1)}^2");
+  CHECK(to_string(uneven) == "{(1,1,1)^3, (2,2,2)}");
+  CHECK(to_string(Signature(32, {1, 1, 1})) == "{(1,1,1)}^32");
+  CHECK(to_string(expected) == "{(1,1,1), (2,2,2)}");
+  for (const Signature& signature : {cascade, uneven, expected, Signature(32, {1, 1, 1})})
+    CHECK(parse_signature(to_string(signature)) == signature);
+  CHECK(parse_signature("1,1,1^3;2,2,2") == uneven);
+  CHECK(parse_signature("{(1,1,2)(1,2,1)}^2") == cascade);
+  for (const char* text :
+       {"(1,1,1)^", "(1,1,1)^0", "(1,1,1)^-2", "^2", "(1,1,1)^65", "{(1,1,1)^8}^9", "(1,1,1)^99999999999"})
+    CHECK_THROWS_AS(parse_signature(text), UserError);
   for (const char* text :
        {"", ";", "1,1", "1,1,1,2,2,2", "1,a,1", "0,1,1", "1,,1", "1.5,1,1", "-1,1,1", "99999999999,1,1"})
     CHECK_THROWS_AS(parse_signature(text), UserError);

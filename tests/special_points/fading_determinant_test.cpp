@@ -27,7 +27,7 @@ RecordedBranch follow(PeriodicOrbits& orbits, const Orbit& start, int parameter,
   tests.push_back(std::make_unique<BranchPointTest>(false));
   RecordedBranch branch = record(orbits.follower, orbits.system, point, settings, std::move(tests));
   CAPTURE(branch.notes);
-  CHECK(branch.summary.reason == EndReason::parameter_bound);
+  CHECK(branch.summary.reason == EndReason::beyond_bound);
   return branch;
 }
 

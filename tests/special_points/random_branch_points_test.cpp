@@ -38,7 +38,7 @@ void follow(const HybridSystem& hybrid, const RandomForm& form, int number, int 
   tests.push_back(std::make_unique<BranchPointTest>(false));
   const RecordedBranch branch = record(follower, system, point, settings, std::move(tests));
   CAPTURE(branch.notes);
-  CHECK(branch.summary.reason == EndReason::parameter_bound);
+  CHECK(branch.summary.reason == EndReason::beyond_bound);
 
   std::vector<double> expected = form.branch_points;
   if (direction < 0.0) std::reverse(expected.begin(), expected.end());

@@ -49,7 +49,6 @@ struct KeptPoint {
   Orbit orbit;
   FloquetMultipliers multipliers;
   std::vector<Violation> violations;
-  double measure;
   double estimated_error;
   int newton_iterations;
   double step;
@@ -59,7 +58,7 @@ struct KeptPoint {
 class KeepingSink final : public BranchSink {
  public:
   void point(const BranchPoint& p) override {
-    points.push_back({p.number, p.special, p.path.orbit, p.multipliers, p.violations, p.measure, p.estimated_error,
+    points.push_back({p.number, p.special, p.path.orbit, p.multipliers, p.violations, p.estimated_error,
                       p.newton_iterations, p.step, p.tests});
   }
   void next_step(int, double) override {}
