@@ -103,6 +103,51 @@ class DatReader {
   /// are joined.
   DatFile data_of_segments() const {
     std::vector<OrbitPart> parts = rows_between_cuts();
+    const bool starts_within = parts.size() == std::size_t(segments_) + 1 && closes(parts);
+    if (starts_within) {
+      parts.front() = joined(parts.back(), parts.front());
+      parts.pop_back();
+    }
+    if (parts.size() != std::size_t(segments_)) refuse_cuts(parts.size());
+    DatFile file = data_of_parts(parts);
+    file.parameters.insert(file.parameters.end(), parameters_.begin(), parameters_.end());
+    file.named_parameters = named_parameters_;
+    return file;
+  }
+
+  /// Is the last state nearer to the first one than a tenth of the range of states?
+  bool closes(const std::vector<OrbitPart>& parts) const {
+    constexpr double near = 0.1;
+    Eigen::VectorXd low = parts.front().states.col(0), high = low;
+    for (const OrbitPart& part : parts) {
+      low = low.cwiseMin(part.states.rowwise().minCoeff());
+      high = high.cwiseMax(part.states.rowwise().maxCoeff());
+    }
+    const Eigen::VectorXd miss = parts.back().states.rightCols(1) - parts.front().states.col(0);
+    return (miss.cwiseAbs() - near * (high - low)).maxCoeff() <= 0.0;
+  }
+
+  [[noreturn]] void refuse_cuts(std::size_t parts) const {
+    if (cuts_.empty()) refuse_columns(columns_);
+    const Cut& first = cuts_.front();
+    const double t = rows_[first.row * columns_];
+    throw UserError(fmt::format(
+        "{}:{}: t = {} repeats t = {} of line {}; t is repeated {} time{}, which makes {} segments of an orbit that "
+        "{}; remove one of the two rows, or repeat t at each event of one period and nowhere else",
+        path_, first.line, t, t, first.line_before, cuts_.size(), cuts_.size() == 1 ? "" : "s", parts,
+        parts == std::size_t(segments_) + 1 ? "does not close" : fmt::format("has {} in the constants", segments_)));
+  }
+
+  /// Are the states of the row that begins there others than those of the row before?
+  bool jumps(std::size_t begin) const {
+    return !std::equal(rows_.begin() + static_cast<std::ptrdiff_t>(begin) + 1, rows_.end(),
+                       rows_.begin() + static_cast<std::ptrdiff_t>(begin - columns_) + 1);
+  }
+
+  /// The rows between repeated times, segment after segment. Where the period starts within a segment, its two parts
+  /// are joined.
+  DatFile data_of_segments() const {
+    std::vector<OrbitPart> parts = rows_between_cuts();
     if (parts.size() == std::size_t(segments_) + 1) {
       parts.front() = joined(parts.back(), parts.front());
       parts.pop_back();
@@ -119,7 +164,8 @@ class DatReader {
   }
 
   std::vector<OrbitPart> rows_between_cuts() const {
-    std::vector<std::size_t> ends = cuts_;
+    std::vector<std::size_t> ends;
+    for (const Cut& cut : cuts_) ends.push_back(cut.row);
     ends.push_back(rows_.size() / columns_);
     std::vector<OrbitPart> parts;
     std::size_t row = 0;
@@ -148,7 +194,7 @@ class DatReader {
     if (words.size() != columns_) refuse_columns(words.size());
     const bool repeats = begin > 0 && rows_[begin] == rows_[begin - columns_];
     if (repeats && columns_ == row_of_one_segment() && (segments_ > 1 || jumps(begin)))
-      cuts_.push_back(begin / columns_);
+      cuts_.push_back({begin / columns_, line_, last_row_line_});
     else if (begin > 0 && !(rows_[begin] > rows_[begin - columns_]))
       refuse_time(rows_[begin], rows_[begin - columns_]);
     last_row_line_ = line_;
@@ -186,8 +232,8 @@ class DatReader {
                           (found - 1) / n, (found - 1) / n == 1 ? "" : "s")
             : "; the dimension, the number of segments or the file is wrong";
     refuse(fmt::format("found {} number{}, expected 1 + n m = {}: t and {} state{} of {} segment{} (n = {}, m = {}){}",
-                       found, found == 1 ? "" : "s", columns_, dimension_, dimension_ == 1 ? "" : "s", segments_,
-                       segments_ == 1 ? "" : "s", dimension_, segments_, guess));
+                       found, found == 1 ? "" : "s", 1 + n * std::size_t(segments_), dimension_,
+                       dimension_ == 1 ? "" : "s", segments_, segments_ == 1 ? "" : "s", dimension_, segments_, guess));
   }
 
   void refuse_time(double t, double before) const {
@@ -230,6 +276,12 @@ class DatReader {
     parameters_.emplace_back(*index, value);
   }
 
+  /// A row at which t repeats.
+  struct Cut {
+    std::size_t row = 0;
+    int line = 0, line_before = 0;
+  };
+
   std::string path_;
   int dimension_;
   int segments_;
@@ -238,7 +290,7 @@ class DatReader {
   int last_row_line_ = 0;
   bool header_possible_ = true;
   std::vector<double> rows_;
-  std::vector<std::size_t> cuts_;  ///< rows at which t repeats
+  std::vector<Cut> cuts_;
   std::vector<std::pair<int, double>> parameters_;
   std::vector<std::pair<std::string, double>> named_parameters_;
 };

@@ -164,7 +164,18 @@ struct CvodesFlow::Implementation {
 
   static int root_functions(double, N_Vector at, double* out, void* user_data) {
     Implementation& flow = self(user_data);
-    return flow.watch->roots(N_VGetArrayPointer(at), out) ? 0 : not_evaluable;
+    if (flow.watch->roots(N_VGetArrayPointer(at), out)) return 0;
+    flow.remember_trouble_of_roots(at);
+    return not_evaluable;
+  }
+
+  /// The field where it has no value, else the event function that has none.
+  void remember_trouble_of_roots(N_Vector at) {
+    const double* const state = N_VGetArrayPointer(at);
+    system.value(FunctionKind::field, field, state, par.data(), f.data());
+    if (!all_finite(f.data(), n)) return remember_trouble(FunctionKind::field, field, at);
+    for (const int event : events)
+      if (!std::isfinite(watch->value(event, state))) return remember_trouble(FunctionKind::event, event, at);
   }
 
   void remember_trouble(FunctionKind kind, int index, N_Vector at) {

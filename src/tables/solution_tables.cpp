@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -81,6 +82,19 @@ OrbitSizes sizes_of(const LabelledSolution& solution, const std::string& name, i
   return {rows / segments, segments};
 }
 
+/// Parameters of the problem, from PAR(1) on: free ones, those with a name, and those that are not zero.
+std::vector<int> known_parameters(const LabelledSolution& solution, const ProblemNames& names) {
+  std::vector<int> known;
+  const auto stored = static_cast<int>(solution.parameters.size());
+  for (int k = 1; k < std::min(first_duration, stored + 1); ++k) {
+    const auto& free = solution.free_parameters;
+    const bool is_free = std::find(free.begin(), free.end(), k) != free.end();
+    const bool is_named = names.parameter(k) != fmt::format("PAR({})", k);
+    if (is_free || is_named || stored_parameter(solution, k) != 0.0) known.push_back(k);
+  }
+  return known;
+}
+
 std::string heading(const LabelledSolution& solution, const std::string& name, const OrbitSizes& sizes,
                     const ProblemNames& names) {
   const std::string type = type_name(solution);
@@ -89,9 +103,8 @@ std::string heading(const LabelledSolution& solution, const std::string& name, c
   std::string text =
       fmt::format("# {}: label {}{}, {} segment{}, period {:.10g}\n", name, solution.label,
                   type.empty() ? "" : " (" + type + ")", sizes.segments, sizes.segments == 1 ? "" : "s", period);
-  for (const int k : solution.free_parameters)
-    if (!is_duration(k, sizes.segments))
-      text += fmt::format("# {} = {:.10g}\n", names.parameter(k), stored_parameter(solution, k));
+  for (const int k : known_parameters(solution, names))
+    text += fmt::format("# {} = {:.10g}\n", names.parameter(k), stored_parameter(solution, k));
   text += fmt::format("#{:>3}{:>19}{:>19}", "seg", "tau", "t");
   for (int k = 1; k <= sizes.dimension; ++k) text += fmt::format(" {:>18}", names.state(k));
   return text + '\n';

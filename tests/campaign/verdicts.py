@@ -54,14 +54,21 @@ def number_with_i(text):
     return value
 
 
+def count_events(signature):
+    """Index vectors of a signature with powers, as {(1,1,2), (1,2,1)^3}^2."""
+    while power := re.search(r"(\{[^{}]*\}|\([^()]*\))\^(\d+)", signature):
+        signature = signature[:power.start()] + power[1] * int(power[2]) + signature[power.end():]
+    return signature.count("(")
+
+
 def orbit_in(text):
     """The orbit that `simulate` prints: events, period, multiplier, whether it is called stable."""
-    orbit = re.search(r"Periodic orbit, signature \{(.*?)\}, period (\S+)", text)
+    orbit = re.search(r"Periodic orbit, signature (\{.*?\}(?:\^\d+)?), period (\S+)", text)
     if not orbit:
         return None
     multipliers = re.search(r"multipliers (.*?): (not stable|\w+)", text)
     sizes = [abs(number_with_i(part)) for part in multipliers.group(1).split(",")] if multipliers else []
-    return {"events": orbit.group(1).count("("), "period": float(orbit.group(2)),
+    return {"events": count_events(orbit.group(1)), "period": float(orbit.group(2)),
             "multiplier": max(sizes, default=None), "stable": bool(multipliers) and multipliers.group(2) == "stable"}
 
 

@@ -181,8 +181,8 @@ TEST_CASE("the first label of each type is followed by a command that starts the
     CHECK(done.status == 0);
     CHECK(workspace.has("p." + made));
   };
-  const Outcome back = workspace.run("-c impacting -d impacting DS=-0.02 -o back");
+  const Outcome back = workspace.run("-c impacting_20072 -d impacting IRS=0 DS=-0.02 -o back");
   follow(back, "PD", "back_PD" + std::to_string(with_type(workspace.points("back"), 7)));
-  const Outcome smooth = workspace.run("-c nonimpacting_alpha -d nonimpacting -o smooth RL1=4");
+  const Outcome smooth = workspace.run("-c nonimpacting_alpha -d nonimpacting IRS=0 DS=0.1 -o smooth RL1=4 UZR={}");
   follow(smooth, "GR", "smooth_GR" + std::to_string(with_type(workspace.points("smooth"), 4)) + "_branch");
 }

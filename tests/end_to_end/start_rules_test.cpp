@@ -223,7 +223,7 @@ TEST_CASE("tables that do not fit the signature are refused") {
   const std::string start = "# PAR(omega) = 2.0072\n";
   workspace.write("twice.dat", start + "0 1 -1 0 1\n1 0 0 1 0\n1 0.5 0 1 0\n2 1 1 0 1\n2 1 -1 0 1\n3 0 0 1 0\n");
   check_refusal(workspace.tchat("run linosc -c impacting -d twice -o none IRS=0"),
-                {"twice.dat", "repeats 2 times", "1"});
+                {"twice.dat:4", "repeated 2 times", "3 segments"});
   workspace.write("same.dat", start + "0 1 -1 0 1\n1 0 0 1 0\n1 0 0 1 0\n2 1 1 0 1\n");
   check_refusal(workspace.tchat("run linosc -c impacting -d same -o none IRS=0"), {"same.dat:4", "repeats"});
   REQUIRE(workspace.tchat("simulate linosc -q --time 5 -o short --signature 1,1,1").status == 0);

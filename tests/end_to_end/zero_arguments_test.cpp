@@ -58,7 +58,7 @@ TEST_CASE("simulate and check name a function without derivatives, and the state
   CHECK_FALSE(contains(workspace.tchat("check term").out, "no finite derivatives"));
 }
 
-TEST_CASE("resegment and grazing say what an orbit without a section needs, and that helps") {
+TEST_CASE("an orbit without a section is cut at its contact; else resegment says what it needs, and that helps") {
   const Workspace workspace;
   workspace.write("bru.tch", std::string(brusselator) + jumps);
   workspace.write("gc.bru", smooth_constants);
@@ -69,14 +69,18 @@ TEST_CASE("resegment and grazing say what an orbit without a section needs, and 
   REQUIRE(workspace.tchat("run bru").status == 0);
   const std::string simulation = "tchat simulate bru -s bru IRS=1 --signature 1,2,2 --dat bru_cut";
   const std::string run = "tchat run bru -c bru_cut -d bru_cut -o bru_cut";
-  for (const char* const command : {"grazing q.bru GR1", "resegment q.bru GR1 --to grazing-curve -o none",
-                                    "resegment q.bru GR1 --to impacting -o none",
-                                    "resegment q.bru 1 --to double -o none", "resegment q.bru 1 --to rotate -o none"}) {
+  for (const char* const command : {"resegment q.bru 1 --to double -o none", "resegment q.bru 1 --to rotate -o none"}) {
     INFO(command);
     const Outcome refused = workspace.tchat(command);
     check_refused(refused, {"the orbit has no section", simulation, run});
     CHECK_FALSE(contains(refused.err, "GCHIND(2)"));
   }
+  // What grazes is cut there: both local analyses are of the same contact, with a section and without.
+  const Outcome smooth = workspace.tchat("grazing q.bru GR1");
+  INFO(smooth.text());
+  CHECK(smooth.status == 0);
+  for (const char* const target : {"grazing-curve", "impacting"})
+    CHECK(workspace.tchat(std::string("resegment q.bru GR1 -o cut --to ") + target).status == 0);
   // With the event function that the message asks for, its commands run.
   workspace.write("bru.tch", std::string(brusselator) + more_events + jumps);
   for (const std::string& command : {simulation, run + " ICP=[B] RL1=4 DS=0.05 NMX=30 DSMAX=0.1"}) {
@@ -87,4 +91,10 @@ TEST_CASE("resegment and grazing say what an orbit without a section needs, and 
   const Outcome grazing = workspace.tchat("grazing q.bru_cut GR1 -p bru");
   INFO(grazing.text());
   CHECK(grazing.status == 0);
+  const auto multipliers = [](const Outcome& report) {
+    const std::size_t at = report.out.find("multipliers");
+    REQUIRE(at != std::string::npos);
+    return report.out.substr(at, report.out.find('\n', at) - at);
+  };
+  CHECK(multipliers(smooth) == multipliers(grazing));
 }

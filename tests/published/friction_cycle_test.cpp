@@ -1,8 +1,9 @@
 // A mass on a belt with friction that falls with the sliding velocity, then rises: the smooth cycle from its Hopf
-// bifurcation to the contact with the belt's velocity, and the stick-slip motion beyond, with no constants by hand. Model
-// and first approximations: J. J. Thomsen, A. Fidlin, Analytical approximations for stick-slip vibration amplitudes, Int.
-// J. Non-Linear Mechanics 38 (2003) 389-403: the cycle is born at V_H = sqrt((mu1 - 2 zeta) / (3 mu3)), and for weak
-// friction it touches at sqrt(4/5) V_H. Else the references are motions integrated by a method of order 8.
+// bifurcation to the contact with the belt's velocity, and the stick-slip motion beyond, with no constants by hand.
+// Model and first approximations: J. J. Thomsen, A. Fidlin, Analytical approximations for stick-slip vibration
+// amplitudes, Int. J. Non-Linear Mechanics 38 (2003) 389-403: the cycle is born at V_H = sqrt((mu1 - 2 zeta) / (3
+// mu3)), and for weak friction it touches at sqrt(4/5) V_H. Else the references are motions integrated by a method of
+// order 8.
 #include <fmt/format.h>
 
 #include <boost/math/tools/toms748_solve.hpp>
@@ -110,7 +111,8 @@ TEST_CASE("the cycle of a mass on a belt touches the belt's velocity, and sticks
     succeed(workspace, "verify stick_slip -p belt");
   }
   SECTION("the curve of contacts in two parameters") {
-    succeed(workspace, "resegment q.cycle GR1 --to grazing-curve -o on -p belt -q ICP=[mu1,V,61] UZR={-mu1:0.35} RL0=0 RL1=1");
+    succeed(workspace,
+            "resegment q.cycle GR1 --to grazing-curve -o on -p belt -q ICP=[mu1,V,61] UZR={-mu1:0.35} RL0=0 RL1=1");
     succeed(workspace, "run belt -q -c on -s on -o curve");
     const SolutionEntry at = workspace.solutions("curve").back();
     // mu1 alone differs: the same motion with friction of another slope.

@@ -400,6 +400,8 @@ class Problems(unittest.TestCase):
         self.assertFalse(branch["stable"].any())
         self.assertTrue(branch.verify().passed)
         self.assertAlmostEqual(orbit.orbit["U(1)"][0, 0], 0.19393736981, places=9)
+        self.assertEqual(orbit.orbit.state_names, orbit.problem.state_names)
+        self.assertAlmostEqual(orbit.orbit[orbit.problem.state_names[0]][0, 0], 0.19393736981, places=9)
 
     def test_grazing_and_its_curve(self):
         oscillator = tchat.Problem(PLUGIN, name="linosc", folder="oscillator")

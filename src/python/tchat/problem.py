@@ -35,6 +35,7 @@ class Problem:
         os.makedirs(folder, exist_ok=True)
         self.folder = os.path.abspath(folder)
         self._counts = {}
+        self._state_names = None
         if "\n" in source:
             self.name = name or "problem"
             self.source = self.path(self.name + ".tch")
@@ -66,6 +67,15 @@ class Problem:
     def check(self):
         """`tchat check`: derivatives against finite differences. A Report, whose `passed` is the verdict."""
         return self._execute("check", [self.source], accepted=(0, 1))
+
+    @property
+    def state_names(self):
+        """The names of its states, as `tchat check` has them; U(1), ... where they have none."""
+        if self._state_names is None:
+            report = str(self.check())
+            line = next((line for line in report.splitlines() if line.startswith("  states ")), "")
+            self._state_names = line.split()[1:]
+        return self._state_names
 
     def simulate(self, *words, name=None, state=None, free=None, time=None, events=None, transient_time=None,
                  transient_events=None, refine=None, signature=None, without_sections=None, lyapunov=None, tolerance=None, stiff=None,

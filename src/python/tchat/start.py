@@ -22,6 +22,9 @@ class Start:
             path = self._solutions()
             rows = read_labels(path, self.problem.program)
             self._orbit = read_orbit(path, rows[0], self.problem.program)
+            names = self.problem.state_names  # a start has no p-file beside it, which would hold them
+            if len(names) == len(self._orbit.state_names):
+                self._orbit.state_names = list(names)
         return self._orbit
 
     def _solutions(self):
