@@ -79,51 +79,27 @@ int make_picture(const PlotCommand& command) {
 }
 
 constexpr const char* footer =
-    "Five kinds of picture, by the files given:\n"
-    "  tchat plot p.A [p.B ...]           branches: by default the first free parameter and the solution measure;\n"
-    "                                     the two free parameters when all files are two-parameter curves\n"
-    "  tchat plot p.A [p.B ...] TABLE     with the first two columns of a table of your own as dots beneath\n"
-    "  tchat plot A.sweep [B.sweep ...]   sweeps: dots over one quantity (beneath branches, if there are p-files), a "
-    "map in\n"
-    "                                     colours over two, attractors or what -z says\n"
-    "  tchat plot q.A LABEL [LABEL ...]   orbits: phase portrait of the first two states, or with --time time series;\n"
-    "                                     labels are numbers or types with a count (5, PD1, GR1), or all\n"
-    "  tchat plot --section q.A LABEL     tori: the closed curves on their section (without --section the returns, "
-    "coloured\n"
-    "                                     by their angle)\n"
+    "Kinds of picture, by the files given:\n"
+    "  tchat plot p.A [p.B ...]           branches, or curves in two parameters\n"
+    "  tchat plot p.A [p.B ...] TABLE     dots beneath: the first two columns of a table of your own\n"
+    "  tchat plot A.sweep [B.sweep ...]   dots over one quantity, also beneath branches; a map over two\n"
+    "  tchat plot q.A LABEL [LABEL ...]   orbits: phase portraits or time series; labels as 5, PD1, or all\n"
+    "  tchat plot --section q.A LABEL     tori (without --section: the returns, coloured by their angle)\n"
     "  tchat plot A.trajectory            a simulation: time series, or with -x a phase portrait\n"
     "  tchat plot --multipliers q.A ...   Floquet multipliers (from d.A) along the branch, or at labels\n"
-    "What is stable is solid, what is unstable dashed, what is inadmissible (by d.A) dotted; this sets no range of "
-    "the\n"
-    "axes where there is more (--xrange, --yrange show it). A branch is drawn up to the bounds RL0, RL1, A0, A1 of its "
-    "run.\n"
-    "Columns are named by their heading (alpha, 'MAX x1', L2-NORM), as PAR(k), or by number; a parameter that is fixed "
-    "has\n"
-    "its value from q.A. x2@wall is the state x2 at the end of each segment that ends in the event or jump of that "
-    "name\n"
-    "(x2@1: of segment 1), x2@after:wall that behind the jump: an arm for each in a period, of the orbits in q.A "
-    "(NPR=1:\n"
-    "of every point). Expressions of all of these are gnuplot's: 1/omega, 'sqrt(x2@wall**2)', 'MAX x1 - alpha'.\n"
-    "Of a sweep x1@+2 is x1 two rows later (a return map). Panels: -x, -y, -z, --dots, ranges and texts once for all, "
-    "or "
-    "once\n"
-    "for each.\n"
-    "Without -o the picture is shown in a window; without a display it goes to A.png.\n"
+    "Solid: stable; dashed: unstable; dotted: inadmissible (by d.A), which may be outside the axes.\n"
+    "Branches are drawn up to the bounds RL0, RL1, A0, A1 of their runs.\n"
+    "Columns: a heading (alpha, 'MAX x1', L2-NORM), PAR(k), or a number. x2@wall is the state x2 at the\n"
+    "end of segments that end in the event or jump wall (x2@1: of segment 1), x2@after:wall after the\n"
+    "jump, of the orbits in q.A (all with NPR=1). Of a sweep, x1@+2 is x1 two rows later. Expressions\n"
+    "are gnuplot's, as 'sqrt(x2@wall**2)'. Axes, ranges and texts: once for all panels, or once for each.\n"
+    "Without -o the picture opens in a window; without a display it goes to A.png.\n"
     "Examples:\n"
-    "  tchat plot p.impacting                                  to impacting.png, or a window\n"
-    "  tchat plot p.impacting -y 'MAX x2' -o impacting.pdf\n"
     "  tchat plot p.impacting p.doubled -x 1/omega -y x2@wall -o arms.png\n"
-    "  tchat plot p.grazing_curve p.fold_curve p.period_doubling_curve -o diagram.png\n"
-    "  tchat plot q.impacting GR1 PD1 -p linosc -o orbits.png\n"
-    "  tchat plot q.impacting PD1 -x x1 -y x2 -z y1 -o space.png\n"
-    "  tchat plot --time q.impacting PD1 -y x1,x2,y1 -o series.svg\n"
-    "  tchat plot linosc.trajectory -y x1,x2 --xrange 0:50     what tchat simulate linosc has written\n"
-    "  tchat plot p.impacting brute.sweep -y x2@wall --dots x2  branches through the dots of a sweep\n"
-    "  tchat plot basin.sweep -o basin.png                     a map in colours\n"
+    "  tchat plot p.impacting brute.sweep -y x2@wall --dots x2\n"
+    "  tchat plot q.impacting GR1 PD1 -p linosc -o orbits.pdf\n"
     "  tchat plot simulated.sweep --panel mapped.sweep --same-ranges -o both.png\n"
-    "  tchat plot --multipliers q.impacting -o multipliers.png\n"
-    "  tchat plot p.impacting -o diagram.html                  a page for a browser: a click on a point shows its "
-    "orbit";
+    "  tchat plot p.impacting -o diagram.html";
 
 }  // namespace
 
@@ -136,47 +112,42 @@ void add_plot_command(CLI::App& app, std::function<int()>& chosen) {
   PlotCommand* const c = command_line.get();
   command
       ->add_option("FILES", a->words,
-                   "p-files; a q-file with labels; trajectories; tables; A is taken for p.A, before labels for q.A")
+                   "p-files, sweeps, trajectories, tables, or a q-file with labels; A means p.A, before labels q.A")
       ->required();
   command->add_flag("--multipliers", a->multipliers, "Floquet multipliers with the unit circle");
-  command->add_flag("--section", a->section, "tori as closed curves on the section where their returns begin");
+  command->add_flag("--section", a->section, "tori as closed curves on their section");
   command->add_flag("--time", a->time, "orbits as time series");
-  command->add_flag("--one-panel", a->one_panel, "time series of several states in one panel");
-  command
-      ->add_option("-o,--output", c->output,
-                   "picture FILE.png, .svg or .pdf, or FILE.html: a page with zoom, values and the orbits of labels")
+  command->add_flag("--one-panel", a->one_panel, "time series of all states in one panel");
+  command->add_option("-o,--output", c->output, "FILE.png, .svg, .pdf, or .html (a page for a browser)")
       ->type_name("FILE");
   // Once for all panels, or once for each.
   const auto each = [command](const char* name, std::vector<std::string>& texts, const char* help, const char* type) {
     command->add_option(name, texts, help)->type_name(type)->allow_extra_args(false);
   };
-  each("-x", c->x, "along x: a column, STATE@EVENT, an expression such as omega/2; a state of an orbit", "COLUMN");
-  each("-y", c->y, "along y; time series and sweeps take several, as x1,x2", "COLUMN");
-  each("-z", c->z, "orbits: a third state, drawn in space; sweeps: what colours mean (kind, period, lambda1)",
-       "COLUMN");
-  each("--dots", c->dots, "along y for sweeps beneath branches, where it is not -y", "COLUMN");
-  command->add_option("--at", a->at, "only this value of a sweep, as mu=-0.8; start=2; several")
+  each("-x", c->x, "x-axis: a column or expression, see below; orbits: a state", "COLUMN");
+  each("-y", c->y, "y-axis; time series and sweeps take several, as x1,x2", "COLUMN");
+  each("-z", c->z, "orbits: third state, in space; sweeps: colours (kind, period, lambda1)", "COLUMN");
+  each("--dots", c->dots, "y-axis of sweeps beneath branches, if it is not -y", "COLUMN");
+  command->add_option("--at", a->at, "only this value of a sweep, as mu=-0.8 or start=2; may be repeated")
       ->type_name("NAME=VALUE")
       ->allow_extra_args(false);
-  command->add_option("--panel", c->panels, "files of a further panel at the right side; again for one more")
+  command->add_option("--panel", c->panels, "files of a further panel; may be repeated")
       ->type_name("FILES")
       ->expected(1, -1)
       ->inject_separator();
-  command->add_flag("--same-ranges", c->same_ranges, "panels have the same ranges of x, and of y");
+  command->add_flag("--same-ranges", c->same_ranges, "the same ranges in all panels");
   each("--xrange", c->x_range, "range of x, as 0.5:2 or 0.5:", "A:B");
   each("--yrange", c->y_range, "range of y", "A:B");
-  each("--zrange", c->z_range, "range of z, and of a scale of colours", "A:B");
-  command->add_option("--view", a->view, "of -z: tilt from the z-axis and turn around it in degrees (default: 65,35)")
+  each("--zrange", c->z_range, "range of z or colours", "A:B");
+  command->add_option("--view", a->view, "tilt from the z-axis and turn around it, in degrees [65,35]")
       ->type_name("TILT,TURN");
   command->add_flag("--logx", a->log_x, "logarithmic x-axis");
   command->add_flag("--logy", a->log_y, "logarithmic y-axis");
-  each("--title", c->title, "text above the picture; once for each panel: above the panels", "TEXT");
+  each("--title", c->title, "text above the picture, or above each panel", "TEXT");
   each("--xlabel", c->x_label, "text of the x-axis", "TEXT");
   each("--ylabel", c->y_label, "text of the y-axis", "TEXT");
-  each("--zlabel", c->z_label, "text of the z-axis, and of a scale of colours", "TEXT");
-  command
-      ->add_option("--legend", a->legend,
-                   "text in the key for a file, an orbit or a line of --one-panel; once for each, in order")
+  each("--zlabel", c->z_label, "text of the z-axis or colours", "TEXT");
+  command->add_option("--legend", a->legend, "text in the key; once for each file, orbit or line")
       ->type_name("TEXT")
       ->allow_extra_args(false);
   command->add_option("--labels", a->labels, "types of points to label, as LP,PD,EP; all; none")->type_name("TYPES");
@@ -184,18 +155,14 @@ void add_plot_command(CLI::App& app, std::function<int()>& chosen) {
   command->add_flag("--numbers", a->numbers, "labels with their numbers");
   command
       ->add_option("-p,--problem", a->plugin,
-                   "plugin P.so, P.cpp or P.tch, which draws event surfaces; without it no plugin is loaded. A page of "
-                   "branches names it in its commands")
+                   "problem P.so, P.cpp or P.tch: for event surfaces, and for the commands on a page")
       ->type_name("P");
   command->add_option("--surfaces", a->surfaces, "event functions to draw, as 1,3; none")->type_name("LIST");
-  command
-      ->add_option("--dimension", a->dimension, "number of states of one segment, for older files that do not say it")
+  command->add_option("--dimension", a->dimension, "number of states of one segment, for older files")
       ->check(CLI::PositiveNumber);
-  command
-      ->add_option("--size", c->size,
-                   "size in pixels (default: 1200x900, 800x650 a panel); 150 pixels are an inch of a PDF")
+  command->add_option("--size", c->size, "size in pixels [1200x900; 800x650 a panel]; 150 are an inch of a PDF")
       ->type_name("WxH");
-  command->add_option("--script", c->script, "keep the gnuplot script, data inline, in FILE")->type_name("FILE");
+  command->add_option("--script", c->script, "write the gnuplot script with its data to FILE")->type_name("FILE");
   command->callback([&chosen, command_line] { chosen = [command_line] { return make_picture(*command_line); }; });
 }
 
