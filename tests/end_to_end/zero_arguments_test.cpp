@@ -58,7 +58,7 @@ TEST_CASE("simulate and check name a function without derivatives, and the state
   CHECK_FALSE(contains(workspace.tchat("check term").out, "no finite derivatives"));
 }
 
-TEST_CASE("an orbit without a section is cut at its contact; else resegment says what it needs, and that helps") {
+TEST_CASE("an orbit without a section is cut at its contact, and for other targets resegment says what it needs") {
   const Workspace workspace;
   workspace.write("bru.tch", std::string(brusselator) + jumps);
   workspace.write("gc.bru", smooth_constants);
