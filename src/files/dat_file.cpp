@@ -138,31 +138,6 @@ class DatReader {
         parts == std::size_t(segments_) + 1 ? "does not close" : fmt::format("has {} in the constants", segments_)));
   }
 
-  /// Are the states of the row that begins there others than those of the row before?
-  bool jumps(std::size_t begin) const {
-    return !std::equal(rows_.begin() + static_cast<std::ptrdiff_t>(begin) + 1, rows_.end(),
-                       rows_.begin() + static_cast<std::ptrdiff_t>(begin - columns_) + 1);
-  }
-
-  /// The rows between repeated times, segment after segment. Where the period starts within a segment, its two parts
-  /// are joined.
-  DatFile data_of_segments() const {
-    std::vector<OrbitPart> parts = rows_between_cuts();
-    if (parts.size() == std::size_t(segments_) + 1) {
-      parts.front() = joined(parts.back(), parts.front());
-      parts.pop_back();
-    }
-    if (parts.size() != std::size_t(segments_))
-      throw UserError(
-          fmt::format("{}: t repeats {} times, which makes {} segments, but the constants have {}; repeat t where an "
-                      "event ends a segment, with the states before and after it, and nowhere else",
-                      path_, cuts_.size(), parts.size(), segments_));
-    DatFile file = data_of_parts(parts);
-    file.parameters.insert(file.parameters.end(), parameters_.begin(), parameters_.end());
-    file.named_parameters = named_parameters_;
-    return file;
-  }
-
   std::vector<OrbitPart> rows_between_cuts() const {
     std::vector<std::size_t> ends;
     for (const Cut& cut : cuts_) ends.push_back(cut.row);
