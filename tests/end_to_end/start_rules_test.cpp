@@ -197,7 +197,7 @@ TEST_CASE("a run starts from the trajectory of a simulation, and from the table 
     INFO(outcome.text());
     REQUIRE(outcome.status == 0);
     const SolutionEntry found = workspace.solutions("from").front();
-    CHECK(found.parameter(1) == Approx(orbit.parameter(1)).epsilon(1e-12));
+    CHECK(found.parameter(1) == Approx(orbit.parameter(1)).epsilon(1e-9));  // tables have ten digits
     CHECK(found.parameter(61) == Approx(orbit.parameter(61)).epsilon(1e-9));
     for (std::size_t k = 0; k < 4; ++k) CHECK(found.states.front()[k] == Approx(orbit.states.front()[k]).margin(1e-8));
   };
