@@ -36,11 +36,17 @@ void add_sliding_onsets(TestList& tests, const DefiningSystem& system, const Run
     }
 }
 
+/// Does a parameter of the problem keep its value along the branch? Its user values are passed nowhere.
+bool is_fixed(const RunSettings& settings, int parameter) {
+  const std::vector<int> free = free_problem_parameters(settings);
+  return parameter < first_duration && std::find(free.begin(), free.end(), parameter) == free.end();
+}
+
 }  // namespace
 
 void add_user_values(TestList& tests, const HybridSystem& system, const RunSettings& settings) {
   for (const UserValue& u : settings.user_values)
-    tests.push_back(
+    if (!is_fixed(settings, u.parameter)) tests.push_back(
         std::make_unique<UserValueTest>(u.parameter, u.value, u.stop, parameter_name(system, settings, u.parameter)));
 }
 

@@ -84,8 +84,8 @@ std::string unwatched_events(const HybridSystem& system, const RunSettings& sett
     list += fmt::format("{}event {} ({}) on segment {}", list.empty() ? "" : ", ", event,
                         system.function_name(FunctionKind::event, event), fmt::join(segments, ", "));
   return fmt::format(
-      "{} may come next by the problem's successors, but is watched nowhere: an orbit that it would end goes on "
-      "through it, and counts as admissible; {} watches it (GCIPSI numbers the events of these lists)",
+      "{} may come next by the problem's successors, but is not monitored: orbits that it would end count as "
+      "admissible; {} monitors it (GCIPSI numbers the events of these lists)",
       list, monitor_lists(settings, missing));
 }
 

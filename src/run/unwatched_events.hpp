@@ -9,10 +9,9 @@
 
 namespace tchat {
 
-/// What a user has to know of them, with the cure: an orbit that such an event would end goes on through it, and
-/// nothing else tells. Not of those that are negative on their segment. "" when there is none, or the problem has no
-/// successors. A start in which a segment follows another than the successors allow says nothing of that segment.
-/// Starts of tori hold many returns of the signature, each of which counts.
+/// A warning with the cure, for no other message reports an orbit that continues through such an event. Events that are
+/// negative on their segment are left out, and segments that follow others than the successors allow. "" when there is
+/// no such event, or the problem has no successors. Starts of tori hold many returns of the signature, and each counts.
 std::string unwatched_events(const HybridSystem& system, const RunSettings& settings, const Orbit& start);
 
 /// Adds those events to the monitored ones of their segments (GCHGRZIND).

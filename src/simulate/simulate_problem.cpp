@@ -108,7 +108,7 @@ int continuation_parameter(const SimulationRequest& request, const SimulationCon
 /// What to say of data and constants that have been written.
 std::string next_run_text(const SimulationRequest& request, const OrbitPaths& paths, const std::string& name) {
   const std::string plugin = request.problem ? fmt::format(" -p {}", *request.problem) : "";
-  return fmt::format("Written: {} and {}. Go on with\n  tchat run {}{} -c {} -d {} -o {}\n", paths.data,
+  return fmt::format("Written: {} and {}\n  next: tchat run {}{} -c {} -d {} -o {}\n", paths.data,
                      paths.constants, request.name, plugin, name, name, name);
 }
 

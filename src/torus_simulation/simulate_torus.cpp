@@ -170,7 +170,7 @@ int simulate_torus(const SimulationRequest& request, const std::string& torus_na
       points.cols(), fitted.curve.harmonics(), fitted.error, fitted.curve.rotation(), fitted.rotation_error,
       orbit.period() / (2 * harmonics + 1)));
   const std::string plugin = request.problem ? fmt::format(" -p {}", *request.problem) : "";
-  say(fmt::format("Written: {} and {}, {} orbits of one return. Go on with\n  tchat run {}{} -c {} -s {} -o {}_run\n",
+  say(fmt::format("Written: {} and {}, {} orbits of one return\n  next: tchat run {}{} -c {} -s {} -o {}_run\n",
                   solutions, constants_file, 2 * harmonics + 1, request.name, plugin, name, name, name));
   return 0;
 }

@@ -141,7 +141,7 @@ TEST_CASE("parameters by name or by index: the same run") {
   CHECK(workspace.read("gc.double").find("ICP = [2, 61") != std::string::npos);
 }
 
-TEST_CASE("events that may come next but are watched nowhere are told, with the cure") {
+TEST_CASE("events that may come next but are not monitored cause a warning with the cure") {
   const Workspace workspace;
   const std::string run = "run linosc -c nonimpacting_alpha -d nonimpacting -o branch" + quick;
   CHECK(workspace.tchat(run).err.empty());
