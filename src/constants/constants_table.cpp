@@ -157,6 +157,8 @@ std::vector<Constant> make_table() {
       {"ERRMAX",
        "error between mesh points, or of a known multiplier, beyond which NTST is doubled, or the branch ends; 0: any",
        extension_record, &R::error_bound, at_least(0), "", "1e-2", ""},
+      {"PROBLEM", "problem of the run, where the command line names none", extension_record, &R::problem, any(),
+       "a name or path for -p, from the folder of the constants file", "linosc", ""},
       {"PAR", "values of parameters", command_line_record, &R::parameter_values, any(),
        "a finite number for PAR(index) or PAR(name)", "{2: 0.8}", ""},
   };

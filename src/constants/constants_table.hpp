@@ -35,7 +35,7 @@ struct MonitorLists {};
 /// Where a constant's value lives. Its alternative also tells the shape of the value.
 using ConstantMember =
     std::variant<int RunSettings::*, double RunSettings::*, bool RunSettings::*, StartLabel RunSettings::*,
-                 std::vector<int> RunSettings::*, std::vector<IndexedValue> RunSettings::*,
+                 std::string RunSettings::*, std::vector<int> RunSettings::*, std::vector<IndexedValue> RunSettings::*,
                  std::vector<UserValue> RunSettings::*, std::vector<StopRule> RunSettings::*,
                  std::vector<HeldValue> RunSettings::*, std::vector<BoundedValue> RunSettings::*,
                  std::vector<RunSettings::ParameterValue> RunSettings::*, ListCount, SegmentCount, SegmentInteger,

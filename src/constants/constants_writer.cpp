@@ -26,12 +26,16 @@ std::vector<int> segment_values(const RunSettings& settings, const SegmentIntege
 
 std::string list_text(const std::vector<std::string>& items) { return fmt::format("[{}]", fmt::join(items, ", ")); }
 
+std::string quoted_if_needed(const std::string& text) {
+  return text.find_first_of(" \t:#=[]{},/") == std::string::npos ? text : "\"" + text + "\"";
+}
+
 /// The number, or a name, in quotes where it has blanks or commas.
 std::string index_text(const RunSettings& settings, int k) {
   if (!is_monitor(settings, k) && !is_name(settings, k)) return std::to_string(k);
   const std::string& name = is_name(settings, k) ? settings.names[static_cast<std::size_t>(parameter_length - k)].text
                                                  : settings.monitors[static_cast<std::size_t>(k - first_monitor)];
-  return name.find_first_of(" \t:#=[]{}") == std::string::npos ? name : "\"" + name + "\"";
+  return quoted_if_needed(name);
 }
 
 std::string written_index(const RunSettings& settings, const UserValue& value) {
@@ -59,6 +63,7 @@ struct KeywordValue {
   std::string operator()(int RunSettings::*m) const { return fmt::format("{}", settings.*m); }
   std::string operator()(double RunSettings::*m) const { return fmt::format("{}", settings.*m); }
   std::string operator()(bool RunSettings::*m) const { return settings.*m ? "1" : "0"; }
+  std::string operator()(std::string RunSettings::*m) const { return quoted_if_needed(settings.*m); }
   std::string operator()(StartLabel RunSettings::*m) const { return label_text(settings.*m); }
   std::string operator()(std::vector<int> RunSettings::*m) const {
     if (m != &RunSettings::free_parameters) return fmt::format("[{}]", fmt::join(settings.*m, ", "));
@@ -117,7 +122,8 @@ class PositionalWriter {
     const auto records = positional_records();
     for (std::size_t r = 0; r < records.size(); ++r) write_record(static_cast<int>(r + 1), records[r].layout);
     for (const Constant* constant : constants_of_record(extension_record))
-      text_ += fmt::format("{} = {}\n", constant->keyword, value_text(*constant, settings_));
+      if (const std::string value = value_text(*constant, settings_); !value.empty())
+        text_ += fmt::format("{} = {}\n", constant->keyword, value);
     return text_;
   }
 

@@ -117,6 +117,7 @@ struct RunSettings {
   std::vector<StopRule> stop_rules;  ///< STOP
   std::vector<HeldValue> held;       ///< HOLD
   std::vector<BoundedValue> bounds;  ///< BOUNDS
+  std::string problem;               ///< PROBLEM, from the folder of the constants file; empty: none is named
   /// Names of monitors in ICP, UZR, THL, HOLD and BOUNDS: PAR(first_monitor), ... stand for them in this order.
   std::vector<std::string> monitors;
   /// All names in these constants, until resolve_names() has replaced them: PAR(name_index(k)) stands for name k.

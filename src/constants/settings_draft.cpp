@@ -84,6 +84,10 @@ struct SettingsDraft::Assigner {
   void operator()(bool RunSettings::*member) const {
     settings().*member = integer_value(constant, name(), value, constant.limits) != 0;
   }
+  void operator()(std::string RunSettings::*member) const {
+    if (value.shape != Shape::scalar) refuse(constant, name(), value.token.place, in_quotes(value.token.text));
+    settings().*member = value.token.text;
+  }
   void operator()(StartLabel RunSettings::*member) const {
     const auto typed = parse_typed_label(value.token.text);
     if (value.shape == Shape::scalar && typed)

@@ -18,6 +18,7 @@
 #include "resegment/smooth_contact.hpp"
 #include "setup/named_parameters.hpp"
 #include "setup/problem_setup.hpp"
+#include "setup/recorded_problem.hpp"
 #include "setup/run_request.hpp"
 #include "setup/warnings.hpp"
 #include "simulate/simulation_constants.hpp"
@@ -77,8 +78,9 @@ void analyse_label(const GrazingRequest& request, std::ostream& screen, std::ost
   const std::string constants = constants_of_run(request.constants, path);
   RunSettings settings = read_constants_file(constants);
   LabelledSolution solution = chosen(request, file, settings, path, constants);
-  const ProblemLibrary library(resolve_plugin_of_run(request.problem, run_path(path), warnings),
-                               [&] { return problem_sizes(settings); });
+  const ProblemLibrary library(
+      resolve_plugin_of_run(request.problem, run_path(path), recorded_problem(settings, constants), warnings),
+      [&] { return problem_sizes(settings); });
   const HybridSystem& system = library.system();
   resolve_names(settings, system);
   check_settings_against(system, settings, {constants});
@@ -130,7 +132,7 @@ IndexVector checked_mode(const HybridSystem& system, const GrazingRequest& reque
 void analyse_state(const GrazingRequest& request, std::ostream& screen, std::ostream& warnings) {
   mode_of(request);  // before a plugin is compiled
   const SimulationRequest start_of = start_request(request);
-  const std::string plugin = resolve_plugin_of_run(request.problem, request.name, warnings);
+  const std::string plugin = resolve_plugin_of_run(request.problem, request.name, std::nullopt, warnings);
   SimulationConstants constants = read_simulation_constants(start_of);
   const ProblemLibrary library(plugin, [&] { return sizes_of(start_of, with_signature(start_of, constants)); });
   const HybridSystem& system = library.system();

@@ -7,8 +7,10 @@
 #include <set>
 #include <system_error>
 
+#include "constants/constants_file.hpp"
 #include "files/run_file_names.hpp"
 #include "plugin/plugin_build.hpp"
+#include "setup/recorded_problem.hpp"
 #include "setup/run_request.hpp"
 #include "text/user_error.hpp"
 #include "text/words.hpp"
@@ -31,10 +33,13 @@ std::optional<std::string> only_problem(const fs::path& folder) {
   return names.size() == 1 ? std::optional(*names.begin()) : std::nullopt;
 }
 
-std::optional<std::string> problem_words(const BranchFile& file, const std::string& plugin) {
+std::optional<std::string> problem_words(const BranchFile& file, const std::string& plugin,
+                                         const std::string& constants) {
   if (!plugin.empty()) return problem_arguments(plugin);
   const std::string run = run_path(file.path);
   if (!source_of(run).empty()) return problem_arguments(run);
+  if (const auto recorded = recorded_problem(read_constants_file(constants), constants))
+    return problem_arguments(*recorded);
   const auto only = only_problem(fs::path(file.path).parent_path());
   return only ? std::optional(problem_arguments(*only)) : std::nullopt;
 }
@@ -49,7 +54,7 @@ RestartCommand restart_command(const BranchFile& file, const std::string& plugin
   } catch (const UserError&) {
     return {"", "", fmt::format("There is no {} with the constants of the run.", sibling_path(file.path, 'r'))};
   }
-  const auto problem = problem_words(file, plugin);
+  const auto problem = problem_words(file, plugin, constants);
   const std::string run = run_path(file.path);
   const bool has_usual_name = default_solution_path(run) == solutions;
   RestartCommand command;

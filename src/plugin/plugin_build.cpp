@@ -360,14 +360,20 @@ std::string resolve_plugin(const std::string& name_or_path, const PluginBuildOpt
   return language_of(file) ? build_source(file, options) : file;
 }
 
+std::string problem_of_run(const std::optional<std::string>& given, const std::string& run,
+                           const std::optional<std::string>& recorded) {
+  if (given) return *given;
+  return recorded && plugin_file(run).empty() ? *recorded : run;
+}
+
 std::string resolve_plugin_of_run(const std::optional<std::string>& given, const std::string& run,
-                                  std::ostream& notices) {
-  if (given) return resolve_plugin(*given);
-  if (const std::string file = plugin_file(run); fs::path(run).has_parent_path() && !file.empty())
+                                  const std::optional<std::string>& recorded, std::ostream& notices) {
+  const std::string problem = problem_of_run(given, run, recorded);
+  if (const std::string file = plugin_file(problem); !given && fs::path(problem).has_parent_path() && !file.empty())
     notices << fmt::format("plugin: {} is {}loaded, and its code is run; -p names another one\n", file,
                            language_of(file) ? "compiled where its library is not up to date, " : "")
             << std::flush;
-  return resolve_plugin(run);
+  return resolve_plugin(problem);
 }
 
 std::string problem_arguments(const std::string& plugin) {

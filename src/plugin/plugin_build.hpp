@@ -26,11 +26,15 @@ namespace tchat {
 /// compiler's own message, no folder to write to.
 std::string resolve_plugin(const std::string& name_or_path, const PluginBuildOptions& options = {});
 
-/// The plugin `given` with -p, or that of the name in the place of the q-file `run` (its path without q.). Where nobody
-/// has named a plugin and that one is in another folder, whose code is then compiled and run, `notices` is told which
-/// it is before that happens. Throws like resolve_plugin.
+/// The name or path of the problem: `given` with -p, else that of a run (its path without q.), where such a plugin
+/// exists, else the one that the run's constants name (`recorded`).
+std::string problem_of_run(const std::optional<std::string>& given, const std::string& run,
+                           const std::optional<std::string>& recorded);
+
+/// The plugin of that problem. Where the user has not named it and it is in another folder, a notice says which code is
+/// compiled and run, before that happens. Throws like resolve_plugin.
 std::string resolve_plugin_of_run(const std::optional<std::string>& given, const std::string& run,
-                                  std::ostream& notices);
+                                  const std::optional<std::string>& recorded, std::ostream& notices);
 
 /// The source that a name or path stands for, in the searching order above; "" when there is none.
 std::string source_of(const std::string& name_or_path);

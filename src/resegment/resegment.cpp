@@ -35,6 +35,7 @@
 #include "run/branch_setup.hpp"
 #include "setup/named_parameters.hpp"
 #include "setup/problem_setup.hpp"
+#include "setup/recorded_problem.hpp"
 #include "setup/run_request.hpp"
 #include "start/orbit_start.hpp"
 #include "text/user_error.hpp"
@@ -235,12 +236,12 @@ LabelledOrbit without_contacts(ResegmentRequest& request, LabelledOrbit source, 
 
 /// The orbit with a section: one that has none is cut at its contact.
 LabelledOrbit with_section(const ResegmentRequest& request, LabelledOrbit labelled, const HybridSystem& system,
-                           const std::string& path) {
+                           const std::string& problem, const std::string& path) {
   if (has_section(labelled.settings)) return labelled;
   const bool is_cut = request.kind == ResegmentKind::grazing_curve || request.kind == ResegmentKind::impacting;
   if (!is_cut)
-    require_section(labelled.solution, labelled.settings, system, "the new signature",
-                    problem_arguments(request.problem.value_or(run_path(path))), path);
+    require_section(labelled.solution, labelled.settings, system, "the new signature", problem_arguments(problem),
+                    path);
   labelled.solution = cut_at_contact(labelled.solution, labelled.settings, system, labelled.name);
   labelled.start = start_of(labelled, path);
   return labelled;
@@ -293,7 +294,9 @@ std::vector<std::string> begin_grazing_tori(const ResegmentRequest& request, con
                     name));
   if (request.data)
     throw UserError(fmt::format("{} is a torus, which a .dat file does not hold; leave --dat out", name));
-  const ProblemLibrary library(resolve_plugin_of_run(request.problem, run_path(path), notices),
+  const std::optional<std::string> recorded = recorded_problem(given, constants);
+  const std::string problem = problem_of_run(request.problem, run_path(path), recorded);
+  const ProblemLibrary library(resolve_plugin_of_run(request.problem, run_path(path), recorded, notices),
                                [&] { return problem_sizes(given); });
   const HybridSystem& system = library.system();
   resolve_names(given, system);
@@ -303,6 +306,7 @@ std::vector<std::string> begin_grazing_tori(const ResegmentRequest& request, con
   const auto further = check_settings_against(system, settings, {"the new constants", request.overrides});
   warnings.insert(warnings.end(), further.begin(), further.end());
   const Outputs outputs = outputs_of(request.output);
+  settings.problem = problem_to_record(problem, outputs.constants);
   refuse_same_file(outputs.solutions, path, "q-file");
   refuse_same_file(outputs.constants, constants, "constants file");
   replace_solution_file(request.output, format_solution(grazing_torus_start(solution)));
@@ -310,8 +314,8 @@ std::vector<std::string> begin_grazing_tori(const ResegmentRequest& request, con
   screen << fmt::format(
       "{}: a torus in grazing contact, IPS = {} from it on.\n{} and {} written; next: tchat run {} -c {} "
       "-s {} -o {}_branch\n",
-      name, settings.problem_type, outputs.solutions, outputs.constants,
-      problem_arguments(request.problem.value_or(run_path(path))), request.output, request.output, request.output);
+      name, settings.problem_type, outputs.solutions, outputs.constants, problem_arguments(problem), request.output,
+      request.output, request.output);
   return warnings;
 }
 
@@ -328,13 +332,16 @@ std::vector<std::string> resegment(const ResegmentRequest& asked, std::ostream& 
     return begin_grazing_tori(request, path, file, constants, screen, notices);
   LabelledOrbit labelled = read_source(request, path, constants, file, warnings);
 
-  const std::string plugin = resolve_plugin_of_run(request.problem, run_path(path), notices);
+  const std::optional<std::string> recorded = recorded_problem(labelled.settings, constants);
+  const std::string problem = problem_of_run(request.problem, run_path(path), recorded);
+  const std::string plugin = resolve_plugin_of_run(request.problem, run_path(path), recorded, notices);
   const ProblemLibrary library(plugin, [&] { return sizes_for(request, labelled.settings); });
   const HybridSystem& system = library.system();
   resolve_names(labelled.settings, system);
   check_settings_against(system, labelled.settings, {constants});
   std::vector<Birth::InnerContact> lost;
-  const LabelledOrbit source = without_contacts(request, with_section(request, labelled, system, path), system, lost);
+  const LabelledOrbit source =
+      without_contacts(request, with_section(request, labelled, system, problem, path), system, lost);
   NewOrbit target = new_orbit(request, source, system);
   add_lost_contacts(lost, target);
   target.problem.names_parameters = is_overridden(request.overrides, "ICP");
@@ -360,6 +367,7 @@ std::vector<std::string> resegment(const ResegmentRequest& asked, std::ostream& 
   const std::string side = target.birth.is_any() ? choose_side(request, system, target, start, settings) : "";
 
   const auto [solutions_out, constants_out] = outputs_of(request.output);
+  settings.problem = problem_to_record(problem, constants_out);
   refuse_same_file(solutions_out, path, "q-file");
   refuse_same_file(constants_out, constants, "constants file");
   const std::string start_out = request.data ? request.output + ".dat" : solutions_out;
@@ -371,8 +379,8 @@ std::vector<std::string> resegment(const ResegmentRequest& asked, std::ostream& 
 
   screen << summary(labelled, settings, start.orbit, system)
          << fmt::format("{} and {} written; next: tchat run {} -c {} {} {} -o {}_branch\n", start_out, constants_out,
-                        problem_arguments(request.problem.value_or(run_path(path))), request.output,
-                        request.data ? "-d" : "-s", request.output, request.output)
+                        problem_arguments(problem), request.output, request.data ? "-d" : "-s", request.output,
+                        request.output)
          << side;
   for (const std::string& remark : target.remarks) screen << remark << '\n';
   return warnings;

@@ -53,24 +53,22 @@ std::string run_words(const NextStart& start, const RunSettings& settings, const
 }  // namespace
 
 std::string next_command(const NextStart& start, const RunSettings& settings, const HybridSystem& system,
-                         const RunRequest& request, const std::string& output) {
+                         const std::string& problem, const std::string& output) {
   const ProblemType& type = problem_type(settings);
   if (type.facts().in_two_parameters || type.facts().curve != 0) return "";
-  const std::string plugin = request.problem.value_or(request.name);
-  const std::string problem = request.problem ? problem_arguments(plugin) : quoted_for_shell(plugin);
   const std::string name =
       quoted_for_shell(fmt::format("{}_{}{}", output, type_name(start.type, start.kind), start.label));
   const std::string solutions = quoted_for_shell(output_path('q', output));
   if (start.kind.kind == UserPointKind::contact) {
     if (!type.family().why_not(Analysis::resegmentation, "").empty()) return "";
-    return fmt::format("tchat resegment {} {} --to impacting -o {} -p {} && tchat run {} -c {} -s {} -o {}_branch",
-                       solutions, start.label, name, quoted_for_shell(plugin), problem, name, name, name);
+    return fmt::format("tchat resegment {} {} --to impacting -o {} && tchat run {} -c {} -s {} -o {}_branch", solutions,
+                       start.label, name, problem_arguments(problem), name, name, name);
   }
   if (start.kind.kind != UserPointKind::none) return "";
   const std::string words = run_words(start, settings, system);
   if (words.empty()) return "";
-  return fmt::format("tchat run {} -c {} -s {} IRS={}{} -o {}", problem, quoted_for_shell(output_path('r', output)),
-                     quoted_for_shell(output), start.label, words, name);
+  return fmt::format("tchat run {} -c {} -s {} IRS={}{} -o {}", problem_arguments(problem),
+                     quoted_for_shell(output_path('r', output)), quoted_for_shell(output), start.label, words, name);
 }
 
 }  // namespace tchat

@@ -27,6 +27,7 @@
 #include "run/unwatched_events.hpp"
 #include "setup/named_parameters.hpp"
 #include "setup/problem_setup.hpp"
+#include "setup/recorded_problem.hpp"
 #include "setup/run_monitors.hpp"
 #include "setup/warnings.hpp"
 #include "start/start_selection.hpp"
@@ -134,6 +135,7 @@ ReadSettings read_settings(const RunRequest& request, const std::string& constan
 struct Problem {
   std::unique_ptr<ProblemLibrary> library;
   RunSettings settings;
+  std::string name;  ///< what -p takes
 
   const HybridSystem& system() const { return library->system(); }
 };
@@ -146,7 +148,8 @@ Problem load_problem(const RunRequest& request, const Reports& reports) {
   reports.warn(constant_warnings);
   free_problem_parameters(read.used);  // refuses what no plugin can cure
 
-  const std::string plugin = resolve_plugin(request.problem.value_or(request.name), {.progress = reports.progress});
+  const std::string name = problem_of_run(request.problem, request.name, recorded_problem(read.in_file, constants));
+  const std::string plugin = resolve_plugin(name, {.progress = reports.progress});
   auto library = std::make_unique<ProblemLibrary>(plugin, [&read] { return problem_sizes(read.used); });
   const HybridSystem& system = library->system();
   resolve_names(read.in_file, system);
@@ -154,7 +157,7 @@ Problem load_problem(const RunRequest& request, const Reports& reports) {
   reports.warn(check_settings_against(system, read.used, {constants, request.overrides}));
   reports.warn_of(inherited_bounds(system, read.in_file, read.used, request.overrides, constants));
   read.used.threads = request.threads;
-  return {std::move(library), read.used};
+  return {std::move(library), read.used, name};
 }
 
 SelectedStart start_of(const RunRequest& request, const Problem& problem, const Reports& reports) {
@@ -302,7 +305,8 @@ int run_problem(const RunRequest& request, std::ostream& screen, std::ostream& w
   const BranchSetup setup = first_branch(problem, selected, reports);
   const ContinuationSettings continuation = continuation_of(request, setup, selected, system, interrupted);
 
-  const RunSettings constants = setup.constants.value_or(setup.settings);
+  RunSettings constants = setup.constants.value_or(setup.settings);
+  constants.problem = problem_to_record(problem.name, output_path('r', output));
   files.open(positional_text(constants));  // only now are files touched
   if (reports.table != nullptr)
     *reports.table << special_start_text(problem_type(problem.settings), selected)
@@ -313,7 +317,7 @@ int run_problem(const RunRequest& request, std::ostream& screen, std::ostream& w
                       reports.table, reports.table != nullptr ? progress : nullptr);
 
   const NextCommand next = [&](const BranchWriter::Labelled& label) {
-    return next_command({label.label, label.number, label.kind}, constants, system, request, output);
+    return next_command({label.label, label.number, label.kind}, constants, system, problem.name, output);
   };
   int status = 0;
   bool closed = false;

@@ -46,8 +46,9 @@ bool is_fixed(const RunSettings& settings, int parameter) {
 
 void add_user_values(TestList& tests, const HybridSystem& system, const RunSettings& settings) {
   for (const UserValue& u : settings.user_values)
-    if (!is_fixed(settings, u.parameter)) tests.push_back(
-        std::make_unique<UserValueTest>(u.parameter, u.value, u.stop, parameter_name(system, settings, u.parameter)));
+    if (!is_fixed(settings, u.parameter))
+      tests.push_back(
+          std::make_unique<UserValueTest>(u.parameter, u.value, u.stop, parameter_name(system, settings, u.parameter)));
 }
 
 void add_bifurcations(TestList& tests, const DefiningSystem& system, const RunSettings& settings) {

@@ -13,6 +13,7 @@
 #include "setup/parameter_values.hpp"
 #include "setup/problem_setup.hpp"
 #include "setup/progress_line.hpp"
+#include "setup/recorded_problem.hpp"
 #include "setup/run_request.hpp"
 #include "simulate/exponent_measurement.hpp"
 #include "simulate/loaded_problem.hpp"
@@ -108,8 +109,8 @@ int continuation_parameter(const SimulationRequest& request, const SimulationCon
 /// What to say of data and constants that have been written.
 std::string next_run_text(const SimulationRequest& request, const OrbitPaths& paths, const std::string& name) {
   const std::string plugin = request.problem ? fmt::format(" -p {}", *request.problem) : "";
-  return fmt::format("Written: {} and {}\n  next: tchat run {}{} -c {} -d {} -o {}\n", paths.data,
-                     paths.constants, request.name, plugin, name, name, name);
+  return fmt::format("Written: {} and {}\n  next: tchat run {}{} -c {} -d {} -o {}\n", paths.data, paths.constants,
+                     request.name, plugin, name, name, name);
 }
 
 /// Writes the equilibrium for `tchat run`; what to say about it.
@@ -119,9 +120,10 @@ std::string hand_over_equilibrium(const SimulationRequest& request, const Simula
   const VectorXd& par = simulation.parameters();
   const RunSettings base = constants.is_given() ? constants.settings : default_orbit_settings(constants.settings);
   const Mode& mode = simulation.mode();
-  const RunSettings settings = equilibrium_settings(system, base, mode.field(), mode.all_events(), x, par,
-                                                    continuation_parameter(request, constants, system));
+  RunSettings settings = equilibrium_settings(system, base, mode.field(), mode.all_events(), x, par,
+                                              continuation_parameter(request, constants, system));
   const OrbitPaths paths = orbit_paths(name);
+  settings.problem = problem_to_record(request.problem.value_or(request.name), paths.constants);
   write_whole_file(paths.data, equilibrium_data_text(system, x, par));
   write_whole_file(paths.constants, keyword_text(settings));
   return next_run_text(request, paths, name);
@@ -133,9 +135,10 @@ std::string hand_over(const SimulationRequest& request, const SimulationConstant
                       const std::string& name) {
   const RunSettings base = constants.is_given() ? constants.settings : default_orbit_settings(constants.settings);
   const OrbitSamples samples = sample_orbit(system, orbit, par, base.mesh_intervals, base.collocation_points);
-  const RunSettings settings =
+  RunSettings settings =
       orbit_settings(system, base, orbit, samples, par, continuation_parameter(request, constants, system));
   const OrbitPaths paths = orbit_paths(name);
+  settings.problem = problem_to_record(request.problem.value_or(request.name), paths.constants);
   write_whole_file(paths.data, orbit_data_text(system, orbit, samples, par));
   write_whole_file(paths.constants, keyword_text(settings));
   const std::string finer = samples.intervals == base.mesh_intervals

@@ -8,6 +8,7 @@
 #include "plugin/problem_library.hpp"
 #include "setup/named_parameters.hpp"
 #include "setup/problem_setup.hpp"
+#include "setup/recorded_problem.hpp"
 #include "start/start_selection.hpp"
 #include "text/user_error.hpp"
 
@@ -18,7 +19,8 @@ std::string convert_data(const RunRequest& request, std::ostream& notices) {
   RunSettings settings = read_constants_file(constants);
   apply_overrides(settings, request.overrides);
   settings.start = {};
-  const std::string plugin = resolve_plugin_of_run(request.problem, request.name, notices);
+  const std::string plugin =
+      resolve_plugin_of_run(request.problem, request.name, recorded_problem(settings, constants), notices);
   const ProblemLibrary library(plugin, [&settings] { return problem_sizes(settings); });
   resolve_names(settings, library.system());
   check_settings_against(library.system(), settings, {constants, request.overrides});

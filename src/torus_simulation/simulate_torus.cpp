@@ -16,6 +16,7 @@
 #include "setup/parameter_values.hpp"
 #include "setup/problem_setup.hpp"
 #include "setup/progress_line.hpp"
+#include "setup/recorded_problem.hpp"
 #include "setup/run_request.hpp"
 #include "simulate/loaded_problem.hpp"
 #include "simulate/orbit_hand_over.hpp"
@@ -162,6 +163,7 @@ int simulate_torus(const SimulationRequest& request, const std::string& torus_na
   solution.problem_type = settings.problem_type;
   solution.branch_mode = settings.branch_mode;
   write_whole_file(solutions, format_solution(solution));
+  settings.problem = problem_to_record(request.problem.value_or(request.name), constants_file);
   write_whole_file(constants_file, keyword_text(settings));
 
   say(fmt::format(

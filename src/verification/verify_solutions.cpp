@@ -24,6 +24,7 @@
 #include "problem_type/problem_type.hpp"
 #include "setup/named_parameters.hpp"
 #include "setup/problem_setup.hpp"
+#include "setup/recorded_problem.hpp"
 #include "setup/run_request.hpp"
 #include "start/orbit_start.hpp"
 #include "text/user_error.hpp"
@@ -253,7 +254,8 @@ bool verify_solutions(const VerifyRequest& request, std::ostream& screen, std::o
   if (const std::string why = family_of(settings.problem_type).why_unverifiable(settings); !why.empty())
     throw UserError(fmt::format("{}: {}", path, why));
 
-  const std::string plugin = resolve_plugin_of_run(request.problem, run_path(path), warnings);
+  const std::string plugin =
+      resolve_plugin_of_run(request.problem, run_path(path), recorded_problem(settings, constants), warnings);
   const ExitGuard guard(plugin);
   const ProblemLibrary library(plugin, [&] { return problem_sizes(settings); });
   const HybridSystem& system = library.system();

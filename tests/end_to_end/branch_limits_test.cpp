@@ -186,3 +186,31 @@ TEST_CASE("the first label of each type is followed by a command that starts the
   const Outcome smooth = workspace.run("-c nonimpacting_alpha -d nonimpacting IRS=0 DS=0.1 -o smooth RL1=4 UZR={}");
   follow(smooth, "GR", "smooth_GR" + std::to_string(with_type(workspace.points("smooth"), 4)) + "_branch");
 }
+
+TEST_CASE("constants name their problem: no command on the files of a run needs -p") {
+  const Workspace workspace(Workspace::Plugin::source);
+  REQUIRE(workspace.shell("mkdir out other && tchat simulate linosc -q 'PAR(alpha)=2' 'PAR(omega)=2.0072' --dat start")
+              .status == 0);
+  CHECK(contains(workspace.read("gc.start"), "PROBLEM = linosc "));
+  const auto succeed = [&](const std::string& line) {
+    const Outcome outcome = workspace.shell(line);
+    INFO(line << '\n' << outcome.text());
+    CHECK(outcome.status == 0);
+    return outcome;
+  };
+  succeed("tchat run start -q DS=0.05 RL0=1 RL1=4 -o smooth");
+  succeed("tchat resegment -q q.smooth GR1 --to impacting -o out/born NMX=40 RL1=3.2");
+  CHECK(contains(workspace.read("out/gc.born"), "PROBLEM = \"../linosc\""));
+  succeed("tchat run out/born -q -o out/impacting");
+  CHECK(contains(workspace.read("out/r.impacting"), "PROBLEM = \"../linosc\""));
+  succeed("tchat verify smooth");
+  succeed("tchat grazing q.smooth GR1");
+  succeed("cd out && tchat verify impacting");
+  const Outcome elsewhere = succeed("cd other && tchat verify ../out/impacting");
+  CHECK(contains(elsewhere.err, "plugin: ../linosc.cpp is compiled"));
+  // What a user names comes first, then a plugin with the run's own name.
+  workspace.write("none.tch", "par a=1\nx' = a\n");
+  CHECK(workspace.shell("tchat verify smooth -p none").status == 2);
+  workspace.write("smooth.tch", "par a=1\nx' = a\n");
+  CHECK(workspace.shell("tchat verify smooth").status == 2);
+}
