@@ -157,7 +157,9 @@ struct SettingsDraft::Assigner {
       const int index = integer_value(constant, name(), RawValue::scalar(token), constant.index_limits);
       const std::vector<RawValue> ends = items_of(constant, range);
       if (ends.size() != 2)
-        refuse(constant, name(), key.place, fmt::format("{} value(s) for {}", ends.size(), in_quotes(key.text)),
+        refuse(constant, name(), key.place,
+               fmt::format("{} for {}", ends.size() == 1 ? "one value" : fmt::format("{} values", ends.size()),
+                           in_quotes(key.text)),
                "the least and the largest value, as in {T1: [0, 10]}");
       const auto number = [&](const RawValue& end) { return real_value(constant, name(), end, constant.limits); };
       result.push_back({index, number(ends[0]), number(ends[1])});

@@ -19,7 +19,11 @@ class BoundTest final : public TestFunction {
   BoundTest(const BranchBounds& bounds, std::string keyword, double bound, const ContinuationSettings& settings)
       : bounds_(bounds), keyword_(std::move(keyword)), bound_(bound), settings_(settings) {}
 
-  std::string name() const override { return fmt::format("{} - {}", bounds_.quantity, keyword_); }
+  /// Both bounds of a quantity have the keyword BOUNDS, so the value distinguishes them.
+  std::string name() const override {
+    return bounds_.least_keyword == bounds_.most_keyword ? fmt::format("{} - {:g}", bounds_.quantity, bound_)
+                                                         : fmt::format("{} - {}", bounds_.quantity, keyword_);
+  }
   TestValue evaluate(const TestedPoint& point) const override {
     const double here = bounded_value(bounds_, settings_, point.orbit, point.condensed.rule());
     return TestValue::of(here - bound_, orbit_accuracy * std::max(std::abs(bound_), std::abs(here)));

@@ -65,6 +65,15 @@ bool BranchBounds::is_finite() const {
   return least > -none || most < none;
 }
 
+namespace {
+
+/// "the bounds RL0, RL1", or BOUNDS, which says it.
+std::string bounds_text(const BranchBounds& bounds) {
+  return (bounds.least_keyword == bounds.most_keyword ? "" : "the bounds ") + bounds.keywords();
+}
+
+}  // namespace
+
 std::vector<BranchBounds> branch_bounds(const ContinuationSettings& settings) {
   std::vector<BranchBounds> all;
   all.push_back(
@@ -345,13 +354,13 @@ bool ContinuationRun::take_step() {
 
 /// What the point here_ is after all: special already, the end of the branch, a regular output point, or nothing.
 SpecialPoint ContinuationRun::end_conditions(SpecialPoint special) {
-  const BranchBounds* exceeded = nullptr;
+  const BranchBounds* left = nullptr;
   double value = 0.0;
   for (const BranchBounds& bounds : bounds_) {
     const double here = bounded_value(bounds, settings_, here_.orbit, follower_.condensed().rule());
     if (is_beyond(settings_, bounds, here)) special = {};  // special points outside of the bounds are not wanted
-    if (exceeded != nullptr || (here >= bounds.least && here <= bounds.most)) continue;
-    exceeded = &bounds;
+    if (left != nullptr || !(here < bounds.least || here > bounds.most)) continue;
+    left = &bounds;
     value = here;
   }
   if (ended_) return special;
@@ -363,10 +372,10 @@ SpecialPoint ContinuationRun::end_conditions(SpecialPoint special) {
     end(EndReason::special_point, special.description);
   else if (special.ends_branch)
     end(EndReason::on_bound, special.description);
-  else if (exceeded != nullptr)
-    end(EndReason::beyond_bound, fmt::format("{} {} the bounds {}: it is {:.10g}, allowed are {:.10g} to {:.10g}",
-                                             exceeded->quantity, number_ > 1 ? "left" : "starts outside",
-                                             exceeded->keywords(), value, exceeded->least, exceeded->most));
+  else if (left != nullptr)
+    end(EndReason::beyond_bound,
+        fmt::format("{} {} {}: it is {:.10g}, allowed are {:.10g} to {:.10g}", left->quantity,
+                    number_ > 1 ? "left" : "starts outside", bounds_text(*left), value, left->least, left->most));
   else if (number_ >= settings_.max_points)
     end(EndReason::max_points, fmt::format("NMX = {}", settings_.max_points));
   else if (settings_.interrupted && settings_.interrupted())

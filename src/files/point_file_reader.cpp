@@ -327,9 +327,10 @@ std::string name_in(const std::map<int, std::string>& names, int k, const char* 
 
 }  // namespace
 
-std::string PointSection::parameter_name(int k) const {
-  if (is_own_problem_type(problem_type) && is_duration(k, max_orbit_segments)) return duration_name(k);
-  return name_in(parameters, k, "PAR");
+std::string PointSection::parameter_name(int k) const { return name_in(parameters, k, "PAR"); }
+std::string PointSection::shown_parameter(int k) const {
+  const bool is_of_duration = segments > 0 && is_own_problem_type(problem_type) && is_duration(k, segments);
+  return is_of_duration && parameters.count(k) == 0 ? duration_name(k) : parameter_name(k);
 }
 std::string PointSection::state_name(int k) const { return name_in(states, k, "U"); }
 

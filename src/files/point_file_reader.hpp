@@ -49,6 +49,8 @@ struct PointSection {
 
   /// PAR(k) by its name or as "PAR(k)".
   std::string parameter_name(int k) const;
+  /// The same with "T2" for PAR(62), a duration: what screens and axes show.
+  std::string shown_parameter(int k) const;
   std::string state_name(int k) const;
   /// The free parameters that are no durations (PAR(61), ...) and no period (PAR(11) of AUTO's periodic orbits).
   std::vector<int> free_problem_parameters() const;

@@ -33,15 +33,19 @@ std::optional<Heading> heading_in(const std::string& line) {
   return heading;
 }
 
-/// "alpha = 3" at each place of "# LinearOscillator with alpha = 3, omega = 2", or of "# alpha = 3".
+/// The values of "# LinearOscillator with alpha = 3, omega = 2", or of "# alpha = 3", by their names.
 std::vector<std::pair<std::string, double>> parameters_of(const std::string& heading) {
+  constexpr std::string_view with = " with ", equals = " = ";
+  const std::size_t begin = heading.find(with);
+  std::string_view rest = std::string_view(heading).substr(begin == std::string::npos ? 1 : begin + with.size());
   std::vector<std::pair<std::string, double>> values;
-  constexpr std::string_view equals = " = ";
-  for (std::size_t at = heading.find(equals); at != std::string::npos; at = heading.find(equals, at + 1)) {
-    const std::size_t name = heading.rfind(' ', at - 1) + 1;
-    const std::size_t value = at + equals.size();
-    const auto number = parse_real(heading.substr(value, heading.find(',', value) - value));
-    values.emplace_back(heading.substr(name, at - name), number.value_or(0.0));
+  while (!rest.empty()) {
+    const std::size_t end = std::min(rest.find(','), rest.size());
+    const std::string_view item = trimmed(rest.substr(0, end));
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+    const std::size_t at = item.find(equals);
+    const auto value = at == std::string_view::npos ? std::nullopt : parse_real(item.substr(at + equals.size()));
+    if (value) values.emplace_back(std::string(item.substr(0, at)), *value);
   }
   return values;
 }
@@ -67,6 +71,11 @@ RecordedRows recorded(const Rows& rows, Eigen::Index n) {
 }
 
 }  // namespace
+
+std::optional<int> unnamed_parameter(const std::string& name) {
+  if (!name.starts_with("PAR(") || !name.ends_with(')')) return std::nullopt;
+  return parse_integer(name.substr(4, name.size() - 5));
+}
 
 bool looks_like_trajectory(const std::string& path) {
   TextLines file(path, "something to draw");

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -23,7 +24,10 @@ struct TrajectoryRows {
   std::vector<RecordedRows> segments;
 };
 
-/// Judged by the heading.
+/// k of "PAR(k)", the name of a parameter that has none.
+std::optional<int> unnamed_parameter(const std::string& name);
+
+/// Does the heading of the file name such columns?
 bool looks_like_trajectory(const std::string& path);
 
 /// Throws UserError with the line for what is no trajectory, or holds no rows.

@@ -79,8 +79,8 @@ void cut(const Orbit& x, const RunSettings& settings, const ContactPoint& contac
 void require_jump(const HybridSystem& system, const ContactTurn& turn, const std::string& source) {
   if (turn.contact.jump > system.count(FunctionKind::jump))
     throw UserError(
-        fmt::format("{}: contact with event {} ({}) brings jump {}, but problem {} has {} jumps; name the "
-                    "jump of an impact with --jump, or GRJUMP in the constants",
+        fmt::format("{}: contact with event {} ({}) brings jump {}, but problem {} has {} jumps: give it the jump "
+                    "of an impact, and name it with --jump or GRJUMP",
                     source, turn.contact.event, system.function_name(FunctionKind::event, turn.contact.event),
                     turn.contact.jump, system.name(), system.count(FunctionKind::jump)));
   if (!is_identity_jump(system, turn.contact.jump)) return;

@@ -60,11 +60,20 @@ class SignatureReader {
   void take(char c) {
     const bool separates_vectors = c == ',' && vector_.empty();
     if (c == ' ' || c == '(' || separates_vectors) return;
-    if (c == '{') group_ = vectors_.size();
+    if (c == '{') open_group();
     if (c == ')' || c == ';' || c == '}' || c == '^') finish_vector();
-    if (c == '}') repeated_ = group_;
+    if (c == '}') {
+      repeated_ = group_;
+      is_in_group_ = false;
+    }
     if (c == '^') repeat();
     if (std::string_view("{});^").find(c) == std::string_view::npos) vector_ += c;
+  }
+
+  void open_group() {
+    if (is_in_group_) refuse(text_, option_, "found '{' within braces");
+    is_in_group_ = true;
+    group_ = vectors_.size();
   }
 
   void finish_vector() {
@@ -99,8 +108,9 @@ class SignatureReader {
   std::string_view text_;
   const std::string& option_;
   std::size_t next_ = 0;
-  std::string vector_;        ///< numbers of the vector that is being read
-  std::size_t group_ = 0;     ///< first vector after the last opening brace
+  std::string vector_;     ///< numbers of the vector that is being read
+  std::size_t group_ = 0;  ///< first vector after the last opening brace
+  bool is_in_group_ = false;
   std::size_t repeated_ = 0;  ///< first vector that a power would repeat
   std::vector<IndexVector> vectors_;
 };

@@ -54,7 +54,9 @@ std::optional<IndexedName> indexed_name(const std::string& text) {
 
 /// "PAR(2)" -> "omega", "MAX U(1)" -> "MAX x1", "T1" -> "PAR(61)", which is its heading.
 std::string with_names(const PointSection& section, const std::string& wanted) {
-  if (const auto duration = duration_of_name(wanted)) return fmt::format("PAR({})", *duration);
+  const auto is_wanted = [&](const auto& parameter) { return parameter.second == wanted; };
+  const bool is_own = std::any_of(section.parameters.begin(), section.parameters.end(), is_wanted);
+  if (const auto duration = duration_of_name(wanted); duration && !is_own) return fmt::format("PAR({})", *duration);
   const auto found = indexed_name(wanted);
   if (!found) return wanted;
   return found->before +
@@ -73,7 +75,7 @@ std::optional<std::size_t> column_of_last_word(const PointSection& section, cons
 /// The heading, with the names of durations.
 std::string shown_name(const PointSection& section, std::size_t column) {
   const std::optional<int> k = section.parameter_of_column(column);
-  return k ? section.parameter_name(*k) : section.columns[column];
+  return k ? section.shown_parameter(*k) : section.columns[column];
 }
 
 std::optional<int> parameter_index(const PointSection& section, const std::string& wanted) {
@@ -130,7 +132,7 @@ std::optional<ColumnSource> column_source(const BranchFile& file, std::size_t se
     const auto& values = file.parameters[section];
     if (const auto found = values.find(*k); found != values.end()) {
       source.constant = found->second;
-      source.name = s.parameter_name(*k);
+      source.name = s.shown_parameter(*k);
       return source;
     }
   }

@@ -157,7 +157,7 @@ class PageBranchWriter {
   }
 
   std::string kind(std::size_t s, const LabelledSolution& solution) const {
-    return description(solution, [&](int k) { return file_.sections[s].parameter_name(k); });
+    return description(solution, [&](int k) { return file_.sections[s].shown_parameter(k); });
   }
 
   /// "" where some point has multipliers.

@@ -11,7 +11,11 @@ TrajectoryFile read_trajectory_file(const std::string& path) {
   TrajectoryFile file;
   file.trace.name = std::filesystem::path(path).stem().string();
   file.trace.is_closed = false;
-  for (const auto& [name, value] : rows.parameters) file.trace.parameters.push_back(value);
+  for (const auto& [name, value] : rows.parameters) {
+    const std::optional<int> k = unnamed_parameter(name);
+    if (k && *k > static_cast<int>(file.trace.parameters.size())) file.trace.parameters.resize(*k - 1, 0.0);
+    file.trace.parameters.push_back(value);
+  }
   file.states = rows.states;
   for (const RecordedRows& recorded : rows.segments) {
     TraceSegment segment;

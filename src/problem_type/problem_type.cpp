@@ -111,13 +111,15 @@ bool is_two_parameter_curve(int number, int branch_mode) {
 bool has_two_parameter_curves(int number) { return !problem_types_of(number, in_two_parameters).empty(); }
 
 std::string birth_words(int label_type, int number, const std::string& principal) {
-  const ProblemType* born = nullptr;
-  for (const ProblemType* type : problem_types())
-    if (type->facts().switches_branch && type->begins_at(label_type) &&
-        (born == nullptr || (born->facts().number != number && type->facts().number == number)))
-      born = type;
-  if (born == nullptr) return "";
-  const ProblemFacts& facts = born->facts();
+  const auto is_born = [&](const ProblemType* type) {
+    const ProblemFacts& facts = type->facts();
+    return facts.switches_branch && type->begins_at(label_type) &&
+           number == (facts.starts_from == 0 ? facts.number : facts.starts_from);
+  };
+  const auto all = problem_types();
+  const auto found = std::find_if(all.begin(), all.end(), is_born);
+  if (found == all.end()) return "";
+  const ProblemFacts& facts = (*found)->facts();
   std::string words = facts.number == number ? "" : fmt::format(" IPS={}", facts.number);
   words += fmt::format(" ISW={}", facts.branch_mode);
   if (*facts.start_words != '\0') words += " " + fmt::format(fmt::runtime(facts.start_words), principal);

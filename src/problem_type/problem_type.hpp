@@ -43,6 +43,7 @@ struct ProblemFacts {
   bool switches_branch = false;  ///< goes on as the type that ISW = 1 names, on either side of its start
   const char* starts_at = "a branch point (BP)";  ///< the labels at which such a switch starts
   const char* start_example = "BP";
+  int starts_from = 0;  ///< IPS of those labels; 0: its own
   /// Further words of a command line that starts there, after IRS, IPS and ISW; {} stands for the name of ICP(1).
   const char* start_words = "";
 };
@@ -108,8 +109,8 @@ bool is_two_parameter_curve(int number, int branch_mode);
 /// Is there a type that follows folds and the like of this one in two parameters?
 bool has_two_parameter_curves(int number);
 /// Words of `tchat run` that follow the branch born at a label, after IRS: " IPS=182 ISW=-1 'ICP=[a,rho]'"; "" where
-/// none is. `label_type`: its number without the tens digit of a curve; `number`: IPS of the label's branch, whose own
-/// switch is preferred; `principal`: the name of ICP(1).
+/// none is. `label_type`: its number without the tens digit of a curve; `number`: IPS of the label's branch;
+/// `principal`: the name of ICP(1).
 std::string birth_words(int label_type, int number, const std::string& principal);
 /// AUTO's own boundary value problems have no multipliers.
 bool has_multipliers(int number);

@@ -167,7 +167,7 @@ std::vector<const ProblemType*> periodic_orbit_types() {
   static const SwitchRow switches(switch_facts("the branch that bifurcates at a PD or BP label", true),
                                   branch_switch_labels(), switch_branch);
   ProblemFacts births_at_hopf = switch_facts("the periodic orbits that are born at an HB label of equilibria", false);
-  births_at_hopf.start_words = "GCHIND=[0] GCGIND=[0]";
+  births_at_hopf.starts_from = equilibrium.number;
   static const SwitchRow births(births_at_hopf, {PointType::hopf}, begin_periodic_orbits);
   return {&orbits, &folds,         &doublings,     &tori,     &persistent_branch_points,
           &angles, &branch_points, &double_events, &switches, &births};

@@ -52,8 +52,8 @@ RunSettings of_periodic_orbit(RunSettings settings) {
   return settings;
 }
 
-/// All monitored events have test functions, as on the branch of equilibria; where the user monitors none, those are
-/// monitored that may come next.
+/// All monitored events have test functions, as on the branch of equilibria. If GCHGRZIND is empty, the events that may
+/// come next are monitored.
 RunSettings with_watched_events(const HybridSystem& system, RunSettings settings, const Orbit& equilibrium) {
   const std::vector<int>& monitored = settings.segments.front().monitor;
   if (monitored.empty()) watch_possible_events(system, settings, equilibrium);

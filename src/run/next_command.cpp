@@ -6,6 +6,7 @@
 
 #include "constants/settings_type.hpp"
 #include "files/run_files.hpp"
+#include "hybrid/identity_jump.hpp"
 #include "hybrid/parameter_vector.hpp"
 #include "plugin/plugin_build.hpp"
 #include "problem_type/family.hpp"
@@ -50,6 +51,17 @@ std::string run_words(const NextStart& start, const RunSettings& settings, const
   return fmt::format(" ISW=2 {}", quoted_for_shell(fmt::format("ICP=[{},{}]", first, system.parameter_name(second))));
 }
 
+/// Is a contact at the end of a segment alone there? It is where that end changes neither the state nor the field.
+bool is_free_of_other_events(const UserPointKind& contact, const RunSettings& settings, const HybridSystem& system) {
+  constexpr double at_the_end = 1e-6;
+  if (contact.tau > at_the_end && contact.tau < 1.0 - at_the_end) return true;
+  const std::size_t m = settings.segments.size();
+  const auto segment = static_cast<std::size_t>(contact.segment - 1);
+  const std::size_t before = contact.tau <= at_the_end ? (segment + m - 1) % m : segment;
+  const IndexVector& end = settings.segments[before].index;
+  return is_identity_jump(system, end.jump) && settings.segments[(before + 1) % m].index.field == end.field;
+}
+
 }  // namespace
 
 std::string next_command(const NextStart& start, const RunSettings& settings, const HybridSystem& system,
@@ -60,11 +72,15 @@ std::string next_command(const NextStart& start, const RunSettings& settings, co
       quoted_for_shell(fmt::format("{}_{}{}", output, type_name(start.type, start.kind), start.label));
   const std::string solutions = quoted_for_shell(output_path('q', output));
   if (start.kind.kind == UserPointKind::contact) {
-    if (!type.family().why_not(Analysis::resegmentation, "").empty()) return "";
+    const SolutionFamily& family = type.family();
+    const bool is_cut = family.why_not(Analysis::resegmentation, "").empty() && !family.facts().has_several_returns;
+    if (!is_cut || !is_free_of_other_events(start.kind, settings, system)) return "";
     return fmt::format("tchat resegment {} {} --to impacting -o {} && tchat run {} -c {} -s {} -o {}_branch", solutions,
                        start.label, name, problem_arguments(problem), name, name, name);
   }
-  if (start.kind.kind != UserPointKind::none) return "";
+  if (start.kind.kind != UserPointKind::none || !settings.held.empty()) return "";
+  const bool has_torus = start.type == static_cast<int>(PointType::torus);
+  if (has_torus && settings.segments.front().index.event == no_function) return "";  // a torus needs a section
   const std::string words = run_words(start, settings, system);
   if (words.empty()) return "";
   return fmt::format("tchat run {} -c {} -s {} IRS={}{} -o {}", problem_arguments(problem),

@@ -62,7 +62,9 @@ SegmentsByEvent missing_events(const HybridSystem& system, const RunSettings& se
   const std::size_t m = signature.size();
   for (std::size_t s = 0; s < m; ++s) {
     const double* x = start.start(static_cast<int>(s));
-    const auto following = system.successors(signature[(s + m - 1) % m], x, start.par.data());
+    const IndexVector& before = signature[(s + m - 1) % m];
+    const bool is_start = before.event == no_function;  // no event precedes an orbit without a section
+    const auto following = system.successors(is_start ? IndexVector{0, 0, 0} : before, x, start.par.data());
     const int field = signature[s].field;
     if (!following ||
         std::none_of(following->begin(), following->end(), [field](const IndexVector& v) { return v.field == field; }))

@@ -148,6 +148,9 @@ void check_parameters(const HybridSystem& system, const RunSettings& settings, c
   for (const UserValue& value : settings.user_values)
     if (!is_monitor(settings, value.parameter) && !is_parameter_here(value.parameter))
       throw UserError(no_parameter("UZR", value.parameter));
+  for (const BoundedValue& bounded : settings.bounds)
+    if (!is_monitor(settings, bounded.parameter) && !is_parameter_here(bounded.parameter))
+      throw UserError(no_parameter("BOUNDS", bounded.parameter));
   for (const IndexedValue& weight : settings.parameter_weights)
     if (is_monitor(settings, weight.index))
       warnings.push_back(fmt::format("{}: THL: {} has no weight of its own; states, durations and parameters have",

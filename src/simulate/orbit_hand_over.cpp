@@ -106,6 +106,10 @@ RunSettings with_free_parameter(const RunSettings& base, const Eigen::VectorXd& 
   const double value = par(parameter - 1);
   if (!same_parameter || value < settings.parameter_min) settings.parameter_min = -no_bound;
   if (!same_parameter || value > settings.parameter_max) settings.parameter_max = no_bound;
+  std::erase_if(settings.bounds, [&par](const BoundedValue& bounded) {
+    const int k = bounded.parameter;
+    return k >= first_duration || par(k - 1) < bounded.least || par(k - 1) > bounded.most;
+  });
   return settings;
 }
 
@@ -173,9 +177,6 @@ RunSettings orbit_settings(const HybridSystem& system, const RunSettings& base, 
   settings.parameter_weights = parameter_weights(base, m);
   std::erase_if(settings.user_values,
                 [&](const UserValue& u) { return !is_free(settings.free_parameters, std::abs(u.parameter)); });
-  std::erase_if(settings.bounds, [&](const BoundedValue& b) {
-    return is_duration(b.parameter, static_cast<int>(base.segments.size()));
-  });
 
   settings.segments.clear();
   settings.test_functions.clear();
@@ -208,6 +209,7 @@ RunSettings equilibrium_settings(const HybridSystem& system, const RunSettings& 
   settings.branch_mode = equilibrium.branch_mode;
   settings.test_functions.clear();
   settings.parameter_weights.clear();
+  std::erase_if(settings.user_values, [](const UserValue& value) { return value.parameter >= first_duration; });
   SegmentSettings segment;
   segment.index = {field, no_function, no_function};
   segment.type = 0;

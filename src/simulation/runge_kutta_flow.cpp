@@ -70,7 +70,7 @@ struct RungeKuttaFlow::Implementation {
     };
   }
 
-  /// States that follow from a refused value say nothing.
+  /// Ignores stages that were computed from the substitute value no_value.
   void remember_trouble(FunctionKind kind, int index, const DopriState& x) {
     const bool is_reached =
         std::all_of(x.begin(), x.end(), [](double value) { return std::abs(value) < no_value / 2; });
@@ -123,8 +123,7 @@ struct RungeKuttaFlow::Implementation {
     for (const int event : events) {
       const double h = watch->value(event, x.data());
       if (all_finite(&h, 1)) continue;
-      remember_trouble(FunctionKind::event, event, x);
-      return not_evaluated;
+      return undefined_value(system, FunctionKind::event, event, x.data());
     }
     return "";
   }

@@ -89,9 +89,6 @@ std::optional<OrbitPart> last_return(const RecordedRows& rows) {
   return part;
 }
 
-/// Durations are those of the rows.
-bool is_duration_heading(const std::string& name) { return name.starts_with("PAR(6") || duration_of_name(name); }
-
 std::vector<OrbitPart> parts_of(const std::vector<RecordedRows>& segments, const Signature& signature,
                                 const std::string& path) {
   const std::size_t m = signature.size();
@@ -128,7 +125,10 @@ DatFile data_of_trajectory(const std::string& path, const RunSettings& settings)
     throw UserError(fmt::format("{}: it has {} states, NDIM is {}", path, rows.states.size(), settings.dimension));
   DatFile data = data_of_parts(parts_of(rows.segments, settings.signature(), path));
   for (const auto& [name, value] : rows.parameters)
-    if (!is_duration_heading(name)) data.named_parameters.emplace_back(name, value);
+    if (const std::optional<int> k = unnamed_parameter(name))
+      data.parameters.emplace_back(*k, value);
+    else
+      data.named_parameters.emplace_back(name, value);
   return data;
 }
 

@@ -125,7 +125,10 @@ class SweepReader {
     const std::optional<AttractorKind> kind = attractor_kind(std::string(needed(line, ": ", ", ")));
     if (!kind) fault("the kind of an attractor is unknown");
     attractor.kind = *kind;
-    if (const auto signature = after(line, "signature {", "}")) attractor.signature = fmt::format("{{{}}}", *signature);
+    if (const auto signature = after(line, "signature ", ", index ")) {
+      const std::size_t end = std::min(signature->find(", impacts "), signature->find(", period "));
+      attractor.signature = signature->substr(0, end);
+    }
     if (const auto impacts = after(line, ", impacts ", ", "))
       attractor.impacts =
           static_cast<int>(whole(*impacts, "the number of impacts", 0, std::numeric_limits<int>::max()));

@@ -180,7 +180,7 @@ class BranchTable {
   }
 
   TableCell kind(std::size_t section, const LabelledSolution& solution) const {
-    return text_cell(description(solution, [&](int k) { return file_.sections[section].parameter_name(k); }));
+    return text_cell(description(solution, [&](int k) { return file_.sections[section].shown_parameter(k); }));
   }
 
   /// Not along curves of folds, period doublings and torus bifurcations.

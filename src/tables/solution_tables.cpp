@@ -106,7 +106,11 @@ std::string heading(const LabelledSolution& solution, const std::string& name, c
   for (const int k : known_parameters(solution, names))
     text += fmt::format("# {} = {:.10g}\n", names.parameter(k), stored_parameter(solution, k));
   text += fmt::format("#{:>3}{:>19}{:>19}", "seg", "tau", "t");
-  for (int k = 1; k <= sizes.dimension; ++k) text += fmt::format(" {:>18}", names.state(k));
+  for (int k = 1; k <= sizes.dimension; ++k) {
+    std::string column = names.state(k);
+    std::replace(column.begin(), column.end(), ' ', '_');  // a blank would make two columns of it
+    text += fmt::format(" {:>18}", column);
+  }
   return text + '\n';
 }
 

@@ -141,7 +141,7 @@ TEST_CASE("BOUNDS ends a branch where a parameter, a duration or a monitor leave
   const double middle = 0.5 * (free.front().values[column] + free.back().values[column]);
 
   const Outcome beyond = run({fmt::format("BOUNDS={{velocity(1): [{}, 0]}}", middle), "-o", "beyond"});
-  CHECK(contains(beyond.out, "velocity(1) left the bounds BOUNDS"));
+  CHECK(contains(beyond.out, "velocity(1) left BOUNDS"));
   const std::vector<PointRow> rows = rows_of(workspace.points("beyond"));
   REQUIRE(rows.size() >= 2);
   CHECK(rows.back().values[column] < middle);

@@ -137,8 +137,8 @@ TEST_CASE("signatures as users write them") {
     CHECK(parse_signature(to_string(signature)) == signature);
   CHECK(parse_signature("1,1,1^3;2,2,2") == uneven);
   CHECK(parse_signature("{(1,1,2)(1,2,1)}^2") == cascade);
-  for (const char* text :
-       {"(1,1,1)^", "(1,1,1)^0", "(1,1,1)^-2", "^2", "(1,1,1)^65", "{(1,1,1)^8}^9", "(1,1,1)^99999999999"})
+  for (const char* text : {"(1,1,1)^", "(1,1,1)^0", "(1,1,1)^-2", "^2", "(1,1,1)^65", "{(1,1,1)^8}^9",
+                           "{(1,1,1), {(2,2,2)}^2}^3", "(1,1,1)^99999999999"})
     CHECK_THROWS_AS(parse_signature(text), UserError);
   for (const char* text :
        {"", ";", "1,1", "1,1,1,2,2,2", "1,a,1", "0,1,1", "1,,1", "1.5,1,1", "-1,1,1", "99999999999,1,1"})

@@ -19,7 +19,8 @@ const char* const good =
     "# over x1 from 0 to 1, 2 values, initial state\n"
     "# PAR r = 0.8\n"
     "# start 1: x = (0, 1)\n"
-    "# attractor 1: periodic, signature {(1,2,2), (1,1,1)}, impacts 1, period 6.5, index 0, mode 1,1,1;1,2,2, state "
+    "# attractor 1: periodic, signature {(1,2,2), (1,1,1)^3}^2, impacts 1, period 6.5, index 0, mode 1,1,1;1,2,2, "
+    "state "
     "0.25,-3\n"
     "# attractor 2: chaotic, index 4, state 1,2\n"
     "index mu x1(0) start attractor kind period time impacts x1 x2\n"
@@ -57,7 +58,7 @@ TEST_CASE("a sweep written by hand is read") {
   CHECK(table.parameters[0].second == 0.8);
   REQUIRE(table.starts.size() == 1);
   REQUIRE(table.attractors.size() == 2);
-  CHECK(table.attractors[0].signature == "{(1,2,2), (1,1,1)}");
+  CHECK(table.attractors[0].signature == "{(1,2,2), (1,1,1)^3}^2");
   CHECK(table.attractors[0].period == 6.5);
   CHECK(table.attractors[0].mode == "1,1,1;1,2,2");
   CHECK(table.attractors[0].state(1) == -3.0);

@@ -47,7 +47,7 @@ class Sweep:
     def _attractor(match):
         rest = match[3]
         found = {"number": int(match[1]), "kind": match[2]}
-        signature = read_signature(rest[:rest.find("}") + 1])
+        signature = read_signature(re.split(", (?:impacts|period|index) ", rest)[0])
         if signature:
             found["signature"] = signature
         for name, value in re.findall(r"(impacts|period|index|mode|state) ([^ ]+?)(?:, |$)", rest):

@@ -1,0 +1,21 @@
+// The words that start a born branch, which a run and a page for browsers print.
+#include <catch2/catch.hpp>
+
+#include "problem_type/point_type.hpp"
+#include "problem_type/problem_type.hpp"
+
+using namespace tchat;
+
+TEST_CASE("what is born at a label, by its type and the branch that it is on") {
+  const auto words = [](PointType type, int number) { return birth_words(static_cast<int>(type), number, "a"); };
+  CHECK(words(PointType::period_doubling, 180) == " ISW=-1");
+  CHECK(words(PointType::branch_point, 180) == " ISW=-1");
+  CHECK(words(PointType::equilibrium_branch_point, 1) == " ISW=-1");
+  CHECK(words(PointType::hopf, 1) == " IPS=180 ISW=-1");
+  CHECK(words(PointType::torus, 180) == " IPS=182 ISW=-1 'ICP=[a,rho]'");
+  // An orbit that has shrunk to a point, and a torus that has shrunk to an orbit, are where branches end.
+  CHECK(words(PointType::hopf, 180).empty());
+  CHECK(words(PointType::torus, 182).empty());
+  CHECK(words(PointType::fold, 180).empty());
+  CHECK(words(PointType::regular, 180).empty());
+}
