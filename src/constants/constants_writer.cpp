@@ -26,8 +26,9 @@ std::vector<int> segment_values(const RunSettings& settings, const SegmentIntege
 
 std::string list_text(const std::vector<std::string>& items) { return fmt::format("[{}]", fmt::join(items, ", ")); }
 
-std::string quoted_if_needed(const std::string& text) {
-  return text.find_first_of(" \t:#=[]{},/") == std::string::npos ? text : "\"" + text + "\"";
+/// In quotes where it has one of these characters.
+std::string quoted(const std::string& text, const char* characters) {
+  return text.find_first_of(characters) == std::string::npos ? text : "\"" + text + "\"";
 }
 
 /// The number, or a name, in quotes where it has blanks or commas.
@@ -35,7 +36,7 @@ std::string index_text(const RunSettings& settings, int k) {
   if (!is_monitor(settings, k) && !is_name(settings, k)) return std::to_string(k);
   const std::string& name = is_name(settings, k) ? settings.names[static_cast<std::size_t>(parameter_length - k)].text
                                                  : settings.monitors[static_cast<std::size_t>(k - first_monitor)];
-  return quoted_if_needed(name);
+  return quoted(name, " \t:#=[]{}");
 }
 
 std::string written_index(const RunSettings& settings, const UserValue& value) {
@@ -63,7 +64,7 @@ struct KeywordValue {
   std::string operator()(int RunSettings::*m) const { return fmt::format("{}", settings.*m); }
   std::string operator()(double RunSettings::*m) const { return fmt::format("{}", settings.*m); }
   std::string operator()(bool RunSettings::*m) const { return settings.*m ? "1" : "0"; }
-  std::string operator()(std::string RunSettings::*m) const { return quoted_if_needed(settings.*m); }
+  std::string operator()(std::string RunSettings::*m) const { return quoted(settings.*m, " \t:#=[]{},/"); }
   std::string operator()(StartLabel RunSettings::*m) const { return label_text(settings.*m); }
   std::string operator()(std::vector<int> RunSettings::*m) const {
     if (m != &RunSettings::free_parameters) return fmt::format("[{}]", fmt::join(settings.*m, ", "));

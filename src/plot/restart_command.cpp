@@ -33,13 +33,21 @@ std::optional<std::string> only_problem(const fs::path& folder) {
   return names.size() == 1 ? std::optional(*names.begin()) : std::nullopt;
 }
 
+/// The problem that the constants name; nothing where they cannot be read.
+std::optional<std::string> problem_in(const std::string& constants) {
+  try {
+    return recorded_problem(read_constants_file(constants), constants);
+  } catch (const UserError&) {
+    return std::nullopt;
+  }
+}
+
 std::optional<std::string> problem_words(const BranchFile& file, const std::string& plugin,
                                          const std::string& constants) {
   if (!plugin.empty()) return problem_arguments(plugin);
   const std::string run = run_path(file.path);
   if (!source_of(run).empty()) return problem_arguments(run);
-  if (const auto recorded = recorded_problem(read_constants_file(constants), constants))
-    return problem_arguments(*recorded);
+  if (const auto recorded = problem_in(constants)) return problem_arguments(*recorded);
   const auto only = only_problem(fs::path(file.path).parent_path());
   return only ? std::optional(problem_arguments(*only)) : std::nullopt;
 }
