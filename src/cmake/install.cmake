@@ -11,7 +11,7 @@ install(FILES scripts/tc-hat DESTINATION "${CMAKE_INSTALL_LIBEXECDIR}/tchat")
 install(FILES README.md LICENSE TYPE DOC)
 # The pages lie as in the source tree, with a link to the problems, so that their links and those of the README hold.
 install(DIRECTORY src/docs DESTINATION "${CMAKE_INSTALL_DOCDIR}/src" FILES_MATCHING PATTERN "*.md" PATTERN "library/*"
-        PATTERN "gallery/*")
+        PATTERN "gallery/*" PATTERN "notebooks/*.ipynb")
 install(CODE "file(CREATE_LINK \"../../tchat/problems\"
   \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DOCDIR}/problems\" SYMBOLIC)")
 install(TARGETS tchat_plugin EXPORT tchatPlugin FILE_SET HEADERS)
