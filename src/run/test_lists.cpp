@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "constants/settings_type.hpp"
 #include "hybrid/identity_jump.hpp"
 #include "problem_type/problem_type.hpp"
 #include "setup/run_monitors.hpp"
