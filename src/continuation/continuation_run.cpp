@@ -10,9 +10,7 @@
 #include "bvp/evaluation_failure.hpp"
 #include "bvp/mesh_adaptation.hpp"
 #include "bvp/orbit_accuracy.hpp"
-#include "continuation/bound_tests.hpp"
 #include "continuation/branch_limits.hpp"
-#include "continuation/solution_measure.hpp"
 #include "problem_type/family.hpp"
 #include "special_points/bifurcation_tests.hpp"
 
@@ -50,22 +48,9 @@ LocationSettings location_settings(const ContinuationSettings& settings) {
 std::vector<std::unique_ptr<TestFunction>> with_bounds(std::vector<std::unique_ptr<TestFunction>> tests,
                                                        const ContinuationSettings& settings) {
   if (settings.clip)
-    for (auto& test : bound_tests(settings)) tests.push_back(std::move(test));
+    for (auto& test : bound_tests(branch_bounds(settings))) tests.push_back(std::move(test));
   return tests;
 }
-
-}  // namespace
-
-std::string BranchBounds::keywords() const {
-  return least_keyword == most_keyword ? least_keyword : least_keyword + ", " + most_keyword;
-}
-
-bool BranchBounds::is_finite() const {
-  constexpr double none = 1e300;
-  return least > -none || most < none;
-}
-
-namespace {
 
 /// "the bounds RL0, RL1", or BOUNDS, which says it.
 std::string bounds_text(const BranchBounds& bounds) {
@@ -78,17 +63,11 @@ std::vector<BranchBounds> branch_bounds(const ContinuationSettings& settings) {
   std::vector<BranchBounds> all;
   all.push_back(
       {settings.principal, settings.principal_name, "RL0", "RL1", settings.parameter_min, settings.parameter_max});
-  all.push_back(
-      {BranchBounds::solution_measure, "the solution measure", "A0", "A1", settings.measure_min, settings.measure_max});
+  all.push_back({BranchBounds::solution_measure, "the solution measure", "A0", "A1", settings.measure_min,
+                 settings.measure_max, settings.measure, settings.state_weights});
   all.insert(all.end(), settings.further_bounds.begin(), settings.further_bounds.end());
   std::erase_if(all, [](const BranchBounds& bounds) { return !bounds.is_finite(); });
   return all;
-}
-
-double bounded_value(const BranchBounds& bounds, const ContinuationSettings& settings, const Orbit& orbit,
-                     const CollocationRule& rule) {
-  if (bounds.parameter != BranchBounds::solution_measure) return orbit.par(bounds.parameter - 1);
-  return solution_measure(orbit, rule, settings.state_weights, settings.measure);
 }
 
 bool is_beyond(const ContinuationSettings& settings, const BranchBounds& bounds, double value) {
@@ -357,7 +336,7 @@ SpecialPoint ContinuationRun::end_conditions(SpecialPoint special) {
   const BranchBounds* left = nullptr;
   double value = 0.0;
   for (const BranchBounds& bounds : bounds_) {
-    const double here = bounded_value(bounds, settings_, here_.orbit, follower_.condensed().rule());
+    const double here = bounds.value(here_.orbit, follower_.condensed().rule());
     if (is_beyond(settings_, bounds, here)) special = {};  // special points outside of the bounds are not wanted
     if (left != nullptr || !(here < bounds.least || here > bounds.most)) continue;
     left = &bounds;

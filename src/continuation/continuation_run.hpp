@@ -8,6 +8,7 @@
 #include "bvp/mesh_adaptation.hpp"
 #include "continuation/branch.hpp"
 #include "continuation/branch_analysis.hpp"
+#include "continuation/branch_bounds.hpp"
 #include "continuation/closed_branch.hpp"
 #include "continuation/orbit_trend.hpp"
 #include "continuation/path_follower.hpp"
@@ -16,19 +17,6 @@
 #include "continuation/step_size.hpp"
 
 namespace tchat {
-
-/// The range of a quantity outside of which a branch ends.
-struct BranchBounds {
-  static constexpr int solution_measure = 0;
-  int parameter = solution_measure;  ///< index in PAR of a parameter, duration or monitor; or the solution measure
-  std::string quantity;              ///< its name
-  std::string least_keyword, most_keyword;  ///< constants that set them: RL0 and RL1, A0 and A1, BOUNDS
-  double least = -1e300, most = 1e300;
-
-  /// "RL0, RL1"
-  std::string keywords() const;
-  bool is_finite() const;
-};
 
 struct ContinuationSettings {
   StepSettings step;
@@ -70,10 +58,6 @@ struct ContinuationSettings {
 
 /// All finite bounds: of the principal parameter, the solution measure, then further ones.
 std::vector<BranchBounds> branch_bounds(const ContinuationSettings& settings);
-
-/// The value that is bounded.
-double bounded_value(const BranchBounds& bounds, const ContinuationSettings& settings, const Orbit& orbit,
-                     const CollocationRule& rule);
 
 /// Outside of the bounds, and not just by the accuracy of a located point (a user value may be a bound).
 bool is_beyond(const ContinuationSettings& settings, const BranchBounds& bounds, double value);

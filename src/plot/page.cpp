@@ -30,7 +30,7 @@ std::string html_text(const std::string& text) {
 /// A file that several figures show is written once.
 class WrittenFiles {
  public:
-  /// Where the file is in the list; `make` writes it where it is not there yet.
+  /// The place of the file in the list. If it is new, make() writes its JSON.
   template <class File, class Make>
   std::size_t add(const File& file, const Make& make) {
     const auto [place, is_new] = places_.emplace(file.path, json_.size());

@@ -24,12 +24,12 @@ namespace {
 
 std::string integer(long long value) { return fmt::format("{}", value); }
 
-/// One character a point: s stable, u unstable, - where the sign of PT tells no stability.
+/// One character for each point: s stable, u unstable, - if stability is unknown.
 std::string stability(const PointSection& section) {
-  const bool tells = section.has_stability() && section.curve_type == 0 &&
-                     !has_critical_multiplier(section.problem_type, section.branch_mode);
+  const bool is_known = section.has_stability() && section.curve_type == 0 &&
+                        !has_critical_multiplier(section.problem_type, section.branch_mode);
   std::string letters;
-  for (const PointRow& row : section.rows) letters += !tells ? '-' : row.point < 0 ? 's' : 'u';
+  for (const PointRow& row : section.rows) letters += !is_known ? '-' : row.point < 0 ? 's' : 'u';
   return letters;
 }
 

@@ -8,9 +8,9 @@
 
 namespace tchat {
 
-/// Which points of a cloud are drawn. Of a cloud with more than `few` points one in each square of the paper with that
-/// side, the first, in their order; and none outside the frame. A small cloud is left as it is, but for points that
-/// cannot be shown.
+/// Indices of the points of a cloud that are drawn. If the cloud has more than `few` points, only the first point in
+/// each square of the paper with this side is drawn, and none outside the frame. Points that cannot be shown are left
+/// out.
 std::vector<std::size_t> thinned_indices(const std::vector<PicturePoint>& points, const PanelLayout& panel, double side,
                                          std::size_t few = 5000);
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <utility>
 
 #include "bvp/orbit.hpp"
 #include "hybrid/identity_jump.hpp"
@@ -52,15 +53,13 @@ LabelledSolution cut_at_contact(const LabelledSolution& solution, RunSettings& s
   IndexVector& index = settings.segments.front().index;
   index.event = contact.event;
   index.jump = no_function;
-  LabelledSolution result = labelled_solution(cut, {}, solution.free_parameters, {});
-  result.branch = solution.branch;
-  result.point = solution.point;
-  result.type = solution.type;
-  result.label = solution.label;
-  result.branch_mode = solution.branch_mode;
-  result.problem_type = solution.problem_type;
-  result.kind = solution.kind;
-  result.further = solution.further;
+  LabelledSolution result = solution;
+  LabelledSolution orbit = labelled_solution(cut, {}, solution.free_parameters, {});
+  result.tau = std::move(orbit.tau);
+  result.states = std::move(orbit.states);
+  result.parameters = std::move(orbit.parameters);
+  result.parameter_direction.clear();
+  result.state_direction.resize(0, 0);
   const auto move = [tau](UserPointKind& kind) {
     if (kind.kind == UserPointKind::contact) kind.tau = place_after_cut(kind.tau, tau);
   };

@@ -70,7 +70,7 @@ void refuse_start_outside(const Orbit& start, const CollocationRule& rule, const
                           const std::string& source) {
   for (const BranchBounds& bounds : branch_bounds(settings)) {
     if (bounds.parameter >= first_monitor) continue;  // its value comes with the first point's multipliers
-    const double value = bounded_value(bounds, settings, start, rule);
+    const double value = bounds.value(start, rule);
     if (!is_beyond(settings, bounds, value)) continue;
     throw UserError(
         fmt::format("the start from {} is outside of the bounds: {} is {:.10g}, and {} allow {:.10g} to {:.10g}; "

@@ -1,7 +1,7 @@
 """Chromium without a window, driven through a pipe by its DevTools protocol: pages of tests as users see them.
 
     with Browser() as browser:
-        page = browser.open("/tmp/diagram.html", 1280, 900)
+        page = browser.open(os.path.abspath("diagram.html"), 1280, 900)
         page.click(*page.middle(".marker"))
         assert page.value("document.title") == "..."
 
