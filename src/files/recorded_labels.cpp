@@ -45,17 +45,19 @@ void take_words(const std::string& path, const std::map<int, int>& points, std::
     RecordedLabel& label = labels[point.label];
     label.admissible = point.admissible;
     const bool is_special = !point.type.empty() && point.type != "EP" && point.type != "RG";
-    for (const std::string& note : point.notes) {
-      if (note.starts_with(violation_begin)) {
-        if (label.violation.empty()) label.violation = note.substr(violation_begin.size());
-      } else if (is_special && &note == &point.notes.front()) {
-        label.words = note;
-      }
-    }
+    label.violation = violation_in(point.notes);
+    const bool has_words = is_special && !point.notes.empty() && !point.notes.front().starts_with(violation_begin);
+    if (has_words) label.words = point.notes.front();
   }
 }
 
 }  // namespace
+
+std::string violation_in(const std::vector<std::string>& notes) {
+  for (const std::string& note : notes)
+    if (note.starts_with(violation_begin)) return note.substr(violation_begin.size());
+  return "";
+}
 
 std::map<int, RecordedLabel> recorded_labels(const std::string& solution_path, const SolutionFile& solutions) {
   const std::map<int, int> points = points_of(solutions);

@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "files/solution_file_reader.hpp"
 
@@ -15,6 +16,9 @@ struct RecordedLabel {
   std::string words;      ///< what the point is; "" when the d-file does not tell
   std::string violation;  ///< of the model, at an inadmissible point
 };
+
+/// What the first of a point's notes in the d-file that reports a violation of the model says; "" without one.
+std::string violation_in(const std::vector<std::string>& notes);
 
 /// By label; without those that the files do not have, or have for another point. Files that cannot be read count as
 /// missing.

@@ -59,8 +59,7 @@ std::string data_json(const SheetLayout& sheet, const PageContents& contents) {
   return page_object({{"title", page_label(sheet.title)},
                       {"figures", page_list(figures)},
                       {"branches", page_list(branches.json())},
-                      {"sweeps", page_list(sweeps.json())},
-                      {"meanings", point_meanings_json()}});
+                      {"sweeps", page_list(sweeps.json())}});
 }
 
 /// Nothing may be loaded: what the page needs is in it.

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
-#include <set>
 #include <vector>
 
+#include "files/recorded_labels.hpp"
 #include "files/run_file_names.hpp"
 #include "files/solution_file_reader.hpp"
 #include "plot/label_text.hpp"
@@ -66,8 +66,7 @@ class PageBranchWriter {
                         {"orbits", orbits_.json},
                         {"noOrbits", page_text(orbits_.missing)},
                         {"noMultipliers", page_text(why_no_multipliers())},
-                        {"restart", page_list({page_text(restart_.to_output), page_text(restart_.to_label)})},
-                        {"restartRemark", page_text(restart_.remark)}});
+                        {"restart", page_list({page_text(restart_.to_output), page_text(restart_.to_label)})}});
   }
 
  private:
@@ -89,6 +88,7 @@ class PageBranchWriter {
          {"states", page_list(states)},
          {"multipliers", page_list(multipliers)},
          {"spectrum", page_text(spectrum_of(section))},
+         {"restartRemark", page_text(why_no_restart(section))},
          {"labels", labels(s)}});
   }
 
@@ -104,7 +104,7 @@ class PageBranchWriter {
     for (std::size_t k = 0; k < file_.admissible[s].size(); ++k) {
       if (file_.admissible[s][k]) continue;
       const DiagnosticPoint* point = file_.diagnostic_of(s, k);
-      const std::string why = point == nullptr || point->notes.empty() ? "" : point->notes.front();
+      const std::string why = point == nullptr ? "" : violation_in(point->notes);
       rows.push_back(fmt::format("\"{}\":{}", k, page_text(why)));
     }
     return fmt::format("{{{}}}", fmt::join(rows, ","));
@@ -124,7 +124,7 @@ class PageBranchWriter {
     return page_list(pairs);
   }
 
-  /// {"row": {...}, ...} of the points with a label or a type.
+  /// {"row": {...}, ...} of the points with a label.
   std::string labels(std::size_t s) const {
     std::vector<std::string> rows;
     for (std::size_t k = 0; k < file_.sections[s].rows.size(); ++k)
@@ -136,16 +136,40 @@ class PageBranchWriter {
     const int number = file_.sections[s].rows[k].label;
     const LabelledSolution* solution = file_.solution_of(s, k);
     const auto orbit = orbits_.place.find(number);
-    const auto& names = names_[static_cast<std::size_t>(std::max(file_.solution[s][k], 0))];
-    const bool is_named = solution != nullptr && !names.empty();
+    const PointTypeFacts* type =
+        find_point_type(file_.sections[s].rows[k].type, solution ? solution->kind : UserPointKind{});
+    const bool restarts = solution != nullptr && restart_.exists() && has_constants_of_last(file_.sections[s]);
     return page_object(
         {{"label", integer(number)},
          {"type", page_text(file_.types[s][k])},
-         {"name", is_named ? page_text(names.front()) : "null"},
+         {"name", name(s, k)},
+         {"meaning", page_text(type == nullptr ? "" : type->meaning)},
+         {"border", type != nullptr && type->is_bifurcation ? "1" : "0"},
          {"kind", page_text(solution == nullptr ? "" : kind(s, *solution))},
          {"birth", page_text(birth(s, k))},
          {"orbit", orbit == orbits_.place.end() ? "null" : integer(static_cast<long long>(orbit->second))},
-         {"restarts", solution == nullptr || !restart_.exists() ? "0" : "1"}});
+         {"restarts", restarts ? "1" : "0"}});
+  }
+
+  /// "PD1", or null.
+  std::string name(std::size_t s, std::size_t k) const {
+    if (file_.solution_of(s, k) == nullptr) return "null";
+    const std::vector<std::string>& names = names_[static_cast<std::size_t>(file_.solution[s][k])];
+    return names.empty() ? "null" : page_text(names.front());
+  }
+
+  /// The r-file has the constants of the last run, which --append may have added to sections of other runs.
+  bool has_constants_of_last(const PointSection& section) const {
+    const PointSection& last = file_.sections.back();
+    return section.problem_type == last.problem_type && section.curve_type == last.curve_type &&
+           section.signature == last.signature && section.active_parameters == last.active_parameters;
+  }
+
+  /// Why labels of the section have no command; "" where they have one.
+  std::string why_no_restart(const PointSection& section) const {
+    if (!restart_.exists() || has_constants_of_last(section)) return restart_.remark;
+    return fmt::format("{} has the constants of another run, which was appended: give those of this one with -c",
+                       sibling_path(file_.path, 'r'));
   }
 
   /// Words of a run on the branch that is born at the label, or "".
@@ -160,14 +184,22 @@ class PageBranchWriter {
     return description(solution, [&](int k) { return file_.sections[s].shown_parameter(k); });
   }
 
-  /// "" where some point has multipliers.
+  bool has_multipliers_somewhere() const {
+    for (std::size_t s = 0; s < file_.sections.size(); ++s)
+      for (std::size_t k = 0; k < file_.sections[s].rows.size(); ++k)
+        if (const DiagnosticPoint* point = file_.diagnostic_of(s, k); point != nullptr && !point->multipliers.empty())
+          return true;
+    return false;
+  }
+
+  /// "" where some point has multipliers, and for solutions that have none.
   std::string why_no_multipliers() const {
-    const bool some = std::any_of(file_.diagnostics.begin(), file_.diagnostics.end(),
-                                  [](const DiagnosticPoint& point) { return !point.multipliers.empty(); });
-    if (some) return "";
+    const auto has_none = [](const PointSection& section) { return *spectrum_of(section) == '\0'; };
+    const auto& sections = file_.sections;
+    if (std::all_of(sections.begin(), sections.end(), has_none) || has_multipliers_somewhere()) return "";
     const std::string path = sibling_path(file_.path, 'd');
     std::error_code error;
-    if (path.empty()) return fmt::format("the name {} does not tell which file holds them", file_.path);
+    if (path.empty()) return fmt::format("no d-file belongs to the name {}", file_.path);
     if (!std::filesystem::is_regular_file(path, error)) return fmt::format("{} is missing", path);
     for (const std::string& warning : file_.warnings)
       if (warning.starts_with(path)) return warning;
@@ -184,17 +216,6 @@ class PageBranchWriter {
 
 std::string branch_json(const BranchFile& file, const PageBranchOptions& options) {
   return PageBranchWriter(file, options).json();
-}
-
-std::string point_meanings_json() {
-  std::set<std::string> known;
-  std::vector<std::string> pairs;
-  for (const PointTypeFacts& facts : point_types())
-    if (known.insert(facts.name).second)
-      pairs.push_back(
-          fmt::format("{}:{}", page_text(facts.name),
-                      page_object({{"text", page_text(facts.meaning)}, {"border", facts.is_bifurcation ? "1" : "0"}})));
-  return fmt::format("{{{}}}", fmt::join(pairs, ","));
 }
 
 }  // namespace tchat

@@ -16,8 +16,4 @@ struct PageBranchOptions {
 /// Numbers have the digits of the files. What is missing is explained under "noOrbits", "noMultipliers".
 std::string branch_json(const BranchFile& file, const PageBranchOptions& options);
 
-/// {"PD": {"text": "period doubling: ...", "border": 1}, ...}: what the types of points mean, and whether stability
-/// changes there, so that the sign of PT is that of the point before.
-std::string point_meanings_json();
-
 }  // namespace tchat

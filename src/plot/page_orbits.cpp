@@ -110,10 +110,13 @@ class OrbitWriter {
     return event > 0 ? named(section_.events, event, "event") : "";
   }
 
+  /// "jump impact", or "jump 2" without a name; "" where the file has no signature.
   std::string jump_after(std::size_t s) const {
     if (section_.signature.empty()) return "";
     const int jump = section_.signature[s % section_.signature.size()][2];
-    return jump > 0 ? named(section_.jumps, jump, "jump") : "";
+    if (jump <= 0) return "";
+    const auto name = section_.jumps.find(jump);
+    return name != section_.jumps.end() ? "jump " + name->second : fmt::format("jump {}", jump);
   }
 
   bool is_inside(const UserPointKind& kind) const {
@@ -163,7 +166,7 @@ std::string orbit_json(const LabelledSolution& solution, const PointSection& sec
 /// Why the branch has no solutions, by its own files.
 std::string why_missing(const BranchFile& file, const std::string& path) {
   std::error_code error;
-  if (path.empty()) return fmt::format("the name {} does not tell which file holds the orbits", file.path);
+  if (path.empty()) return fmt::format("no q-file belongs to the name {}", file.path);
   if (!std::filesystem::is_regular_file(path, error)) return fmt::format("{} is missing", path);
   for (const std::string& warning : file.warnings)
     if (warning.starts_with(path)) return warning;

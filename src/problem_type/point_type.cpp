@@ -87,8 +87,16 @@ constexpr auto table = std::to_array<PointTypeFacts>({
      true, false, true},
 });
 
-/// The row of a number in files; null for unknown numbers. A UZ point whose kind is unknown has the row of kind none.
-const PointTypeFacts* find_number(int type, const UserPointKind& kind) {
+}  // namespace
+
+std::span<const PointTypeFacts> point_types() { return table; }
+
+const PointTypeFacts* find_point_type(std::string_view name) {
+  const auto found = std::find_if(table.begin(), table.end(), [=](const auto& row) { return row.name == name; });
+  return found != table.end() ? found : nullptr;
+}
+
+const PointTypeFacts* find_point_type(int type, const UserPointKind& kind) {
   const auto is_whole = [type](const PointTypeFacts& row) { return row.is_whole && row.number == type; };
   if (const auto whole = std::find_if(table.begin(), table.end(), is_whole); whole != table.end()) return whole;
   const int wanted = basic_type(type);
@@ -100,15 +108,6 @@ const PointTypeFacts* find_number(int type, const UserPointKind& kind) {
     for (const PointTypeFacts& row : table)
       if (fits(row, of_kind)) return &row;
   return nullptr;
-}
-
-}  // namespace
-
-std::span<const PointTypeFacts> point_types() { return table; }
-
-const PointTypeFacts* find_point_type(std::string_view name) {
-  const auto found = std::find_if(table.begin(), table.end(), [=](const auto& row) { return row.name == name; });
-  return found != table.end() ? found : nullptr;
 }
 
 bool is_among(const std::vector<PointType>& types, int type) {
@@ -126,12 +125,12 @@ int file_type(PointType type, int curve) {
 bool is_fold(PointType type) { return type == PointType::fold || type == PointType::equilibrium_fold; }
 
 bool is_bifurcation(PointType type) {
-  const PointTypeFacts* found = find_number(static_cast<int>(type), {});
+  const PointTypeFacts* found = find_point_type(static_cast<int>(type), {});
   return found != nullptr && found->is_bifurcation;
 }
 
 std::string type_name(int type, const UserPointKind& kind) {
-  const PointTypeFacts* found = find_number(type, kind);
+  const PointTypeFacts* found = find_point_type(type, kind);
   return found != nullptr ? found->name : "";
 }
 

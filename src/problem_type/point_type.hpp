@@ -78,6 +78,8 @@ struct PointTypeFacts {
 std::span<const PointTypeFacts> point_types();
 /// The first of these letters; null for others.
 const PointTypeFacts* find_point_type(std::string_view name);
+/// Of a number in files; null for unknown numbers. A UZ point whose kind is unknown has the row of kind none.
+const PointTypeFacts* find_point_type(int type, const UserPointKind& kind);
 
 /// Is the basic type number one of these?
 bool is_among(const std::vector<PointType>& types, int type);

@@ -14,11 +14,12 @@ function factsOf(data, place) {
   };
 }
 
-/** The labelled point with an orbit that is fewest points away; null when the section has none. */
+/** The labelled point of the same branch whose embedded orbit is fewest points away; null when there is none. */
 function nearestOrbit(section, row) {
   let best = null;
   Object.keys(section.labels).forEach(function (key) {
     const distance = Math.abs(Number(key) - row);
+    if (section.branch[key] !== section.branch[row]) return;
     if (section.labels[key].orbit === null || (best && distance >= best.distance)) return;
     best = { row: Number(key), label: section.labels[key], distance: distance };
   });
@@ -27,8 +28,7 @@ function nearestOrbit(section, row) {
 
 function wordsOfStability(facts) {
   const words = [];
-  const isBorder = facts.label && data.meanings[facts.label.type] && data.meanings[facts.label.type].border;
-  if (facts.stability) words.push(facts.stability + (isBorder ? " before this point" : ""));
+  if (facts.stability) words.push(facts.stability + (facts.label && facts.label.border ? " before this point" : ""));
   if (facts.violation !== undefined) words.push("inadmissible");
   return words.join(", ");
 }
@@ -70,7 +70,8 @@ function showOverview(data, host, open, places) {
                                     "and the command that restarts there."));
   data.branches.forEach(function (branch) {
     if (branch.noOrbits) addWarning(host, "Orbits: " + branch.noOrbits + ".");
-    if (branch.noMultipliers) addWarning(host, "Multipliers are not available: " + branch.noMultipliers + ".");
+    if (branch.noMultipliers)
+      addWarning(host, nounOfSpectrum(branch.sections[0]) + " are not available: " + branch.noMultipliers + ".");
   });
   const list = element("ul", "labels");
   places.forEach(function (place) {
@@ -106,8 +107,8 @@ function showPoint(data, host, place, close) {
   const closing = button("Close", close);
   closing.title = "Close (Esc)";
   top.appendChild(closing);
-  if (facts.label && data.meanings[facts.label.type])
-    host.appendChild(element("p", "meaning", facts.label.type + ": " + data.meanings[facts.label.type].text + "."));
+  if (facts.label && facts.label.type && facts.label.meaning)
+    host.appendChild(element("p", "meaning", facts.label.type + ": " + facts.label.meaning + "."));
   if (facts.label && facts.label.kind) host.appendChild(element("p", "kind", facts.label.kind));
   if (facts.violation !== undefined)
     addWarning(host, "The orbit violates the model" + (facts.violation ? ": " + facts.violation : "") + ".");
@@ -129,7 +130,9 @@ function showOrbitPart(host, facts) {
   const orbit = facts.branch.orbits[facts.source.label.orbit];
   if (facts.source.row !== facts.row) {
     const away = Math.abs(facts.source.row - facts.row);
-    addWarning(host, "This point has no stored orbit. Shown is the orbit of the nearest label, " +
+    const why = facts.label && facts.label.restarts ? "The orbit of this label is not embedded in the page."
+                                                    : "This point has no stored orbit.";
+    addWarning(host, why + " Shown is the orbit of the nearest label, " +
                      lineOfLabel(facts.section, facts.source.row) + ", " + away + (away === 1 ? " point" : " points") +
                      " away.");
   }
@@ -175,13 +178,17 @@ function showOrbit(host, orbit, states) {
   showSeries(host, orbit, states, count);
 }
 
+/** What ends a segment: an event; without one the phase condition. */
+function endOf(segment) {
+  return segment.event || "the phase condition";
+}
+
 /** How the segments end, in a sentence. */
 function describeEnds(orbit) {
   const known = orbit.segments.filter(function (segment) { return segment.event || segment.jump; });
   if (!known.length || orbit.segments.length > 8) return "";
   return "Segments end in: " + orbit.segments.map(function (segment) {
-    const event = segment.event || "the phase condition";
-    return segment.jumps ? event + " (jump " + segment.jump + ")" : event;
+    return segment.jumps ? endOf(segment) + " (" + (segment.jump || "a jump") + ")" : endOf(segment);
   }).join("; ") + ".";
 }
 
@@ -242,12 +249,12 @@ function drawEnds(plot, orbit, place) {
     if (segment.endsReturn || (isLast && !orbit.closed)) return;
     const last = segment.t.length - 1, next = orbit.segments[(s + 1) % orbit.segments.length];
     const end = place(segment, last), start = place(next, 0);
-    const title = (segment.event || "section") + " at t = " + shortNumber(segment.t[last], 7);
+    const title = endOf(segment) + " at t = " + shortNumber(segment.t[last], 7);
     if (segment.jumps) {
       drawLine(plot, [end[0], start[0]], [end[1], start[1]], "jump");
-      drawDot(plot, start[0], start[1], 3.5, "event after", "after the jump " + segment.jump);
+      drawDot(plot, start[0], start[1], 3.5, "event after", "after " + (segment.jump || "the jump"));
     }
-    drawDot(plot, end[0], end[1], 3.5, "event before", title + (segment.jump ? ", jump " + segment.jump : ""));
+    drawDot(plot, end[0], end[1], 3.5, "event before", title + (segment.jump ? ", " + segment.jump : ""));
   });
 }
 
@@ -290,12 +297,12 @@ function drawSeries(host, orbit, states, k, isLast) {
     drawLine(plot, segment.t, segment.u[k], lineClass(orbit));
     const last = segment.t.length - 1, next = segments[s + 1] || (orbit.closed ? segments[0] : null);
     if (!next || segment.endsReturn) return;
-    const t = segment.t[last], event = segment.event || "section";
+    const t = segment.t[last];
     if (segment.jumps) {
       drawLine(plot, [t, t], [segment.u[k][last], next.u[k][0]], "jump");
-      drawDot(plot, t, next.u[k][0], 3.5, "event after", "after the jump " + segment.jump);
+      drawDot(plot, t, next.u[k][0], 3.5, "event after", "after " + (segment.jump || "the jump"));
     }
-    drawDot(plot, t, segment.u[k][last], 3.5, "event before", event + " at t = " + shortNumber(t, 7));
+    drawDot(plot, t, segment.u[k][last], 3.5, "event before", endOf(segment) + " at t = " + shortNumber(t, 7));
   });
   orbit.contacts.forEach(function (contact) {
     drawDot(plot, contact.t, contact.u[k], 5, "contact", contact.text + " at t = " + contact.t);
@@ -306,13 +313,17 @@ function drawSeries(host, orbit, states, k, isLast) {
 
 const farthest = 2.5;  // of multipliers in the picture
 
+function nounOfSpectrum(section) {
+  return section.spectrum === "eigenvalues" ? "Eigenvalues" : "Multipliers";
+}
+
 function showMultipliers(host, facts) {
   const flat = facts.section.multipliers[facts.row];
   const isMap = facts.section.spectrum === "multipliers";
   if (!facts.section.spectrum) return;
-  host.appendChild(element("h3", "", isMap ? "Multipliers" : "Eigenvalues"));
+  host.appendChild(element("h3", "", nounOfSpectrum(facts.section)));
   if (!flat) {
-    addWarning(host, (isMap ? "Multipliers" : "Eigenvalues") + " are not available" +
+    addWarning(host, nounOfSpectrum(facts.section) + " are not available" +
                      (facts.branch.noMultipliers ? ": " + facts.branch.noMultipliers : " at this point") + ".");
     return;
   }
@@ -378,7 +389,7 @@ function showRestart(host, facts) {
   const source = facts.label && facts.label.restarts ? facts.label : facts.source && facts.source.label;
   host.appendChild(element("h3", "", "Restart"));
   if (!source || !source.restarts) {
-    addWarning(host, facts.branch.restartRemark || "Nothing to restart from: this branch has no stored orbit.");
+    addWarning(host, facts.section.restartRemark || "Nothing to restart from: this branch has no stored orbit.");
     return;
   }
   const name = source.name || String(source.label), parts = facts.branch.restart;
@@ -389,7 +400,7 @@ function showRestart(host, facts) {
     host.appendChild(element("p", "", "Switch to the branch that is born there:"));
     addCommand(host, "switch", parts[0] + name + "_born" + parts[1] + name + source.birth);
   }
-  if (facts.branch.restartRemark) addWarning(host, facts.branch.restartRemark);
+  if (facts.section.restartRemark) addWarning(host, facts.section.restartRemark);
 }
 
 function addCommand(host, id, text) {

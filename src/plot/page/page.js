@@ -43,7 +43,7 @@ function tipContent(panel, found) {
   const place = placeOf(panel, found.point), facts = factsOf(data, place);
   if (data.branches.length > 1) host.appendChild(element("div", "", facts.branch.name));
   if (facts.label && facts.label.type) {
-    const meaning = data.meanings[facts.label.type] ? data.meanings[facts.label.type].text : "";
+    const meaning = facts.label.type ? facts.label.meaning : "";
     const strong = host.appendChild(element("strong", "", facts.title));
     strong.className = "tip-title";
     if (meaning) host.appendChild(element("div", "", meaning.split(/[:;]/)[0]));
@@ -89,21 +89,27 @@ function openPoint(picture, panel, point) {
   pictures.forEach(function (other) { if (other !== picture) other.choose(null); });
   picture.choose(panel, point);
   current = { picture: picture, panel: panel, point: point };
+  const hadFocus = details.contains(document.activeElement);
   const facts = showPoint(data, details, placeOf(panel, point), closePoint);
+  if (hadFocus) details.focus({ preventScroll: true });
   details.scrollTop = 0;
-  document.getElementById("spoken").textContent = facts.title + (facts.stability ? ", " + facts.stability : "");
+  document.getElementById("spoken").textContent = [facts.title, wordsOfStability(facts)].filter(Boolean).join(", ");
   if (isStacked()) details.scrollIntoView({ block: "start" });
 }
 
 /** The values of a dot or a curve, kept beside the diagram. */
 function pinPlace(picture, panel, found) {
   hideTip();
+  current = null;
+  pictures.forEach(function (other) { other.choose(null); });
   details.textContent = "";
   const top = details.appendChild(element("div", "top"));
   top.appendChild(element("h2", "", "Values"));
   top.appendChild(button("Close", closePoint));
   details.appendChild(valueTable(rowsOfPlace(panel, found), "values point-values"));
   if (found.origin) showSweepRow(data.sweeps[found.origin.sweep], details, found.origin.row);
+  document.getElementById("spoken").textContent = "Values of the chosen place";
+  if (isStacked()) details.scrollIntoView({ block: "start" });
 }
 
 function closePoint() {
@@ -135,8 +141,12 @@ function markedPoints() {
   return marked;
 }
 
+/** Each once, though several panels may mark it. */
 function labelledPlaces() {
-  return markedPoints().map(function (marked) { return marked.place; });
+  const places = markedPoints().map(function (marked) { return marked.place; });
+  return places.filter(function (place, k) {
+    return places.findIndex(function (other) { return samePlace(place, other); }) === k;
+  });
 }
 
 function openPlace(place) {

@@ -362,7 +362,9 @@ function makeBar(svg, palette) {
 
 function describe(figure) {
   const panel = figure.panels[0];
-  const labels = d3.sum(figure.panels, function (one) { return one.markers.length; });
+  const labels = d3.sum(figure.panels, function (one) {
+    return one.markers.filter(function (marker) { return marker.point !== null; }).length;
+  });
   return "Diagram: " + plainLabel(panel.y.label) + " over " + plainLabel(panel.x.label) + ", with " + labels +
-         " labels. Press ? for the keys.";
+         (labels === 1 ? " label" : " labels") + ". Press ? for the keys.";
 }
