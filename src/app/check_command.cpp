@@ -21,6 +21,7 @@
 #include "setup/run_request.hpp"
 #include "text/number.hpp"
 #include "text/user_error.hpp"
+#include "verification/conservation_check.hpp"
 
 namespace tchat {
 
@@ -89,6 +90,20 @@ Eigen::VectorXd read_parameters(const HybridSystem& system, const std::vector<st
   return par;
 }
 
+/// Of the function that CONSERVED names; nothing without one.
+std::optional<ConservationCheck> conservation(const HybridSystem& system, const RunSettings& settings,
+                                              const DerivativeCheckOptions& options) {
+  if (settings.conserved.empty()) return std::nullopt;
+  const std::optional<Quantity> conserved = find_quantity(system, settings.conserved);
+  if (!conserved)
+    throw UserError(fmt::format("CONSERVED = {}: problem {} has no function of that name; it has {}",
+                                settings.conserved, system.name(), quantity_list(system)));
+  Eigen::VectorXd par = Eigen::VectorXd::Zero(parameter_length);
+  par.head(options.parameters.size()) = options.parameters;
+  return check_conservation(system, *conserved, settings.conserved, settings.signature(),
+                            checked_states(system, options), par);
+}
+
 int check_problem(const CheckArguments& arguments) {
   const std::string& plugin = arguments.plugin.empty() ? arguments.name : arguments.plugin;
   const std::string path = resolve_plugin(plugin);
@@ -102,14 +117,17 @@ int check_problem(const CheckArguments& arguments) {
   for (const std::string& state : arguments.states) options.states.push_back(read_state(state));
   options.parameters = read_parameters(library.system(), arguments.parameters);
   options.random_states = arguments.random_states;
-  const bool are_given = !arguments.constants.empty() || exists("gc." + arguments.name);
-  if (library.system().boundary_conditions() > 0 && are_given)
-    options.segments = segment_count(read_constants_file(constants_path(constants)));
+  std::optional<RunSettings> settings;
+  if (!arguments.constants.empty() || exists("gc." + arguments.name))
+    settings = read_constants_file(constants_path(constants));
+  if (library.system().boundary_conditions() > 0 && settings) options.segments = segment_count(*settings);
   const DerivativeCheck check = check_derivatives(library.system(), options);
   fmt::print("{}", to_text(library.system(), check));
+  const auto conserved = settings ? conservation(library.system(), *settings, options) : std::nullopt;
+  if (conserved) fmt::print("{}", conserved->text);
   if (const std::optional<std::string> formulas = formulas_of(plugin))
     for (const std::string& remark : translate_formula_file(*formulas).remarks) fmt::print("Note: {}\n", remark);
-  return check.fine() ? 0 : 1;
+  return check.fine() && (!conserved || conserved->is_conserved) ? 0 : 1;
 }
 
 }  // namespace
@@ -121,8 +139,9 @@ void add_check_command(CLI::App& app, std::function<int()>& chosen) {
   command->add_option("values", arguments->parameters, "parameter values, as 'PAR(2)=0.8'");
   command->add_option("-p,--problem", arguments->plugin, "problem P.cpp, P.tch, P.f or P.so [NAME]")->type_name("P");
   command
-      ->add_option("-c,--constants", arguments->constants,
-                   "sizes of a Fortran problem, segments of a boundary value problem from gc.C [gc.NAME]")
+      ->add_option(
+          "-c,--constants", arguments->constants,
+          "sizes of a Fortran problem, segments of a boundary value problem, and CONSERVED from gc.C [gc.NAME]")
       ->type_name("C");
   command->add_option("--state", arguments->states, "state to check at, as 1,0.5,0,1; may be repeated")
       ->allow_extra_args(false);

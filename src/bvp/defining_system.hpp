@@ -83,6 +83,13 @@ class DefiningSystem {
   /// terminal event, unless the problem type says otherwise; zero where there is no section.
   virtual void section_gradient(int s, const double* x, const double* par, double* gradient) const;
 
+  /// How many functions of the state orbits keep: as many multipliers are 1 on every orbit, beside those of all orbits.
+  virtual int conserved_quantities() const { return 0; }
+  /// A free parameter that is zero at every solution, for it unfolds equations that depend on each other.
+  virtual std::optional<double> unfolding(const Orbit& /*x*/) const { return std::nullopt; }
+  /// Why a solution of the equations is none of the problem, as a sentence with a cure; "" if it is one.
+  virtual std::string why_no_solution(const Orbit& /*x*/) const { return {}; }
+
   /// A function of the points of a branch in one parameter whose sign is that of the bordered determinant and that
   /// vanishes where it does, `tangent` at x given; nothing where that of Newton's own matrix will do.
   virtual std::optional<double> singular_distance(const Orbit& /*x*/, const OrbitVector& /*tangent*/) const {

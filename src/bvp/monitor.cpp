@@ -78,19 +78,6 @@ std::string symbol_of(const Quantity& quantity) {
   return fmt::format(fmt::runtime(symbols[static_cast<int>(quantity.kind)]), quantity.index);
 }
 
-std::string quantity_list(const HybridSystem& system) {
-  std::string list;
-  for (int k = 1; k <= system.dimension(); ++k) list += (k > 1 ? ", " : "") + system.state_name(k);
-  for (int k = 1; k <= system.table().user_values; ++k)
-    list += fmt::format(", {}", system.table().user_value_names != nullptr ? system.table().user_value_names[k - 1]
-                                                                           : fmt::format("PVLS({})", k));
-  if (system.count(FunctionKind::event) > 0)
-    list += fmt::format(", h1{}", system.count(FunctionKind::event) > 1
-                                      ? fmt::format(" to h{}", system.count(FunctionKind::event))
-                                      : "");
-  return list;
-}
-
 // ---- the monitors ---------------------------------------------------------------------------------------------------
 
 class PeriodMonitor final : public Monitor {
@@ -374,6 +361,8 @@ MonitorName parse_monitor(const HybridSystem& system, const std::string& text, c
   const auto refuse = [&](const std::string& why) {
     throw UserError(fmt::format("{}: {} is no monitor: {}", where, in_quotes(text), why));
   };
+  const std::optional<Quantity> bare = call.arguments.empty() ? find_quantity(system, call.word) : std::nullopt;
+  if (form == forms.end() && bare && bare->kind == Quantity::Kind::user_function) return {Kind::start, *bare, 0};
   if (form == forms.end())
     refuse(fmt::format("there are {}, with X a state, an event function or a user function: {}", monitor_list(),
                        quantity_list(system)));

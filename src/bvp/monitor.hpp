@@ -3,6 +3,7 @@
 ///     period              the sum of the durations
 ///     velocity(s)         h_x f at the end of segment s, h its event function
 ///     start(X, s)         X at the start of segment s, of the first one without s
+///     X                   the same, of a user function
 ///     end(X, s)           X at the end of segment s, of the last one without s
 ///     max(X), min(X)      the largest, least value of X over the orbit, or segment s: max(X, s)
 ///     mean(X)             the mean of X in time, over the orbit or segment s

@@ -31,6 +31,17 @@ std::optional<Quantity> find_quantity(const HybridSystem& system, const std::str
   return std::nullopt;
 }
 
+std::string quantity_list(const HybridSystem& system) {
+  std::string list;
+  for (int k = 1; k <= system.dimension(); ++k) list += (k > 1 ? ", " : "") + system.state_name(k);
+  for (int k = 1; k <= system.table().user_values; ++k) list += ", " + user_function_name(system, k);
+  if (system.count(FunctionKind::event) > 0)
+    list += fmt::format(", h1{}", system.count(FunctionKind::event) > 1
+                                      ? fmt::format(" to h{}", system.count(FunctionKind::event))
+                                      : "");
+  return list;
+}
+
 QuantityFunction::QuantityFunction(const HybridSystem& system, Quantity quantity, std::vector<int> active)
     : system_(&system), quantity_(quantity), active_(std::move(active)) {
   if (quantity_.kind != Quantity::Kind::user_function) return;

@@ -31,6 +31,7 @@ class UnfoldedSystem final : public DefiningSystem {
   const std::vector<double>& direction() const { return direction_; }
 
   std::unique_ptr<BranchAnalysis> make_analysis(const OrbitShape& shape) const override;
+  std::optional<double> unfolding(const Orbit& x) const override { return x.par(unfolding_parameter - 1); }
   int coupling_rows(int s) const override { return ring_->coupling_rows(s); }
   void coupling_pattern(int s, CouplingPattern& pattern) const override;
   void coupling_values(int s, const Orbit& x, double* values) const override;

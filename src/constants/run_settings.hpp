@@ -117,6 +117,8 @@ struct RunSettings {
   std::vector<StopRule> stop_rules;  ///< STOP
   std::vector<HeldValue> held;       ///< HOLD
   std::vector<BoundedValue> bounds;  ///< BOUNDS
+  std::string conserved;             ///< CONSERVED, a function of the state that orbits keep; empty: none
+  int mode = 1;                      ///< MODE, of the oscillations about an equilibrium, from the slowest
   std::string problem;               ///< PROBLEM, from the folder of the constants file; empty: none is named
   /// Names of monitors in ICP, UZR, THL, HOLD and BOUNDS: PAR(first_monitor), ... stand for them in this order.
   std::vector<std::string> monitors;

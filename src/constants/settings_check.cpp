@@ -35,7 +35,7 @@ class SettingsCheck {
     }
     if (rules().counts_conditions) return conditions();
     const auto held = static_cast<int>(settings_.held.size());
-    const int needed = free_parameter_count(settings_.problem_type, settings_.branch_mode) + held;
+    const int needed = free_parameter_count(settings_);
     const auto of_problem = std::count_if(list.begin(), list.end(), [this](int k) {
       return k < first_duration || (k > last_index && !is_monitor(settings_, k));
     });
@@ -44,6 +44,12 @@ class SettingsCheck {
           "ICP", "ICP", fmt::format("{} parameters that are not durations", of_problem),
           fmt::format("at least {} with IPS = {}, ISW = {}{}; {}", needed, settings_.problem_type,
                       settings_.branch_mode, held == 0 ? "" : fmt::format(", HOLD of {}", held), rules().parameters));
+    if (needed == 0 && list.front() < first_duration)
+      refuse_constant("ICP", "ICP(1)", in_quotes(std::to_string(list.front())),
+                      fmt::format("what changes along the family: CONSERVED leaves no parameter of the problem free; "
+                                  "name {} (its value), period or another monitor, or a duration; with HOLD of one of "
+                                  "them a parameter is free",
+                                  settings_.conserved));
   }
 
   /// The count of unknowns and conditions of a boundary value problem.
@@ -179,6 +185,16 @@ class SettingsCheck {
                       "one segment of type 2 with IPS = 150");
   }
 
+  void conserved() const {
+    if (settings_.conserved.empty()) return;
+    const ProblemType* type = nearest_problem_type(settings_.problem_type, settings_.branch_mode);
+    if (type != nullptr && type->facts().may_conserve) return;
+    refuse_constant("CONSERVED", "CONSERVED", in_quotes(settings_.conserved),
+                    fmt::format("nothing with IPS = {}, ISW = {}: it is for families of periodic orbits (IPS = 180) "
+                                "with ISW = 1, and for switches to them (ISW = -1); take it away with CONSERVED=",
+                                settings_.problem_type, settings_.branch_mode));
+  }
+
   void held_values() const {
     std::vector<int> indices;
     for (const HeldValue& held : settings_.held) indices.push_back(held.parameter);
@@ -266,6 +282,7 @@ void check_parameter_indices(const RunSettings& settings, const PlaceOf& place) 
 void check_settings(const RunSettings& settings, const PlaceOf& place) {
   const SettingsCheck check(settings, place);
   check.signature();
+  check.conserved();
   check_parameter_indices(settings, place);
   check.bounds("RL0", settings.parameter_min, "RL1", settings.parameter_max);
   check.bounds("A0", settings.measure_min, "A1", settings.measure_max);

@@ -26,15 +26,15 @@ const SolutionFamily& family_of(const RunSettings& settings) { return family_of(
 const SignatureRules& signature_rules(const RunSettings& settings) { return family_of(settings).facts().signature; }
 
 int ProblemType::free_entries(const RunSettings& settings) const {
-  const auto held = static_cast<int>(settings.held.size());
-  if (!family().facts().signature.counts_conditions) return facts_.free_parameters + held;
+  if (!family().facts().signature.counts_conditions) return free_parameter_count(settings);
   return settings.boundary_conditions + settings.integral_conditions - settings.dimension * segment_count(settings) +
-         1 + held;
+         1 + static_cast<int>(settings.held.size());
 }
 
-int free_parameter_count(int number, int branch_mode) {
-  const ProblemType* type = nearest_problem_type(number, branch_mode);
-  return type != nullptr ? type->facts().free_parameters : 1;
+int free_parameter_count(const RunSettings& settings) {
+  const ProblemType* type = nearest_problem_type(settings.problem_type, settings.branch_mode);
+  const int own = type != nullptr ? type->facts().free_parameters : 1;
+  return own + static_cast<int>(settings.held.size()) - (settings.conserved.empty() ? 0 : 1);
 }
 
 std::vector<int> free_entries(const RunSettings& settings) {
@@ -100,14 +100,29 @@ std::optional<int> contact_segment(const RunSettings& settings) {
 }
 
 bool leave_out_monitors(RunSettings& settings) {
-  if (settings.monitors.empty() && settings.held.empty()) return false;
-  std::erase_if(settings.free_parameters, [](int k) { return k >= first_monitor; });
-  std::erase_if(settings.user_values, [](const UserValue& value) { return value.parameter >= first_monitor; });
-  std::erase_if(settings.parameter_weights, [](const IndexedValue& weight) { return weight.index >= first_monitor; });
-  std::erase_if(settings.bounds, [](const BoundedValue& value) { return value.parameter >= first_monitor; });
-  settings.held.clear();
-  settings.monitors.clear();
-  return true;
+  std::vector<std::string> kept;
+  std::vector<int> new_index;  // 0: left out
+  for (const std::string& name : settings.monitors) {
+    const bool of_whole_orbit = name.find('(') == std::string::npos;
+    new_index.push_back(of_whole_orbit ? first_monitor + static_cast<int>(kept.size()) : 0);
+    if (of_whole_orbit) kept.push_back(name);
+  }
+  // Gives a parameter its new index; true where it is left out.
+  const auto leaves = [&](int& k) {
+    if (!is_monitor(settings, k)) return k >= first_monitor;
+    k = new_index[static_cast<std::size_t>(k - first_monitor)];
+    return k == 0;
+  };
+  const std::size_t held = settings.held.size();
+  std::erase_if(settings.free_parameters, leaves);
+  std::erase_if(settings.user_values, [&](UserValue& value) { return leaves(value.parameter); });
+  std::erase_if(settings.parameter_weights, [&](IndexedValue& weight) { return leaves(weight.index); });
+  std::erase_if(settings.bounds, [&](BoundedValue& value) { return leaves(value.parameter); });
+  std::erase_if(settings.held,
+                [&](HeldValue& value) { return value.parameter < first_monitor || leaves(value.parameter); });
+  const bool some = kept.size() < settings.monitors.size() || settings.held.size() < held;
+  settings.monitors = std::move(kept);
+  return some;
 }
 
 }  // namespace tchat

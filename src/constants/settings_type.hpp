@@ -21,9 +21,10 @@ const ProblemType& problem_type(const RunSettings& settings);
 const SolutionFamily& family_of(const RunSettings& settings);
 const SignatureRules& signature_rules(const RunSettings& settings);
 
-/// How many problem parameters a type frees whose segments end in events; that of the nearest type where there is none
-/// of this IPS and ISW.
-int free_parameter_count(int number, int branch_mode);
+/// How many problem parameters a run frees whose segments end in events: those of its type, or of the nearest type
+/// where there is none of this IPS and ISW; one more for each monitor that is held, one less where a function is
+/// conserved, for its orbits are a family as they are.
+int free_parameter_count(const RunSettings& settings);
 
 /// The first entries of ICP that the type frees: where conditions are counted durations too, else problem parameters
 /// only. Throws UserError when ICP names too few.
@@ -42,7 +43,8 @@ int marked_segment(const RunSettings& settings);
 /// The segment that ends in the contact which the type keeps; nothing for types that keep none.
 std::optional<int> contact_segment(const RunSettings& settings);
 
-/// Takes monitors out of ICP, UZR, THL and HOLD, as where segments get other numbers. True when there were some.
+/// Takes monitors that name segments, or may, and held durations out of ICP, UZR, THL, BOUNDS and HOLD, as where
+/// segments get other numbers. True when there were some.
 bool leave_out_monitors(RunSettings& settings);
 
 }  // namespace tchat

@@ -97,8 +97,9 @@ struct BranchSummary {
   double worst_structural = 0.0;        ///< largest structural multiplier, or distance of the trivial one from 1
   bool has_trivial = false;             ///< orbits without a section have this one instead
   double worst_estimated_error = 0.0;
-  std::vector<LostPoint> lost;               ///< special points that may be missing
-  std::vector<VanishingFunction> vanishing;  ///< test functions without zeros to look for
+  std::optional<double> worst_unfolding = {};  ///< largest lambda of orbits that conserve a function
+  std::vector<LostPoint> lost;                 ///< special points that may be missing
+  std::vector<VanishingFunction> vanishing;    ///< test functions without zeros to look for
 };
 
 }  // namespace tchat

@@ -156,6 +156,7 @@ void BranchPointBracket::put(double at, PathPoint& point) const {
   point.tangent.durations = across.durations + by_low * low_.slope.durations + by_high * high_.slope.durations;
   point.tangent.globals = across.globals + by_low * low_.slope.globals + by_high * high_.slope.globals;
   follower_.renormalise(point);
+  follower_.monitors().store(point.orbit, follower_.condensed().rule());
 }
 
 }  // namespace tchat

@@ -359,6 +359,8 @@ SpecialPoint ContinuationRun::end_conditions(SpecialPoint special) {
     end(EndReason::max_points, fmt::format("NMX = {}", settings_.max_points));
   else if (settings_.interrupted && settings_.interrupted())
     end(EndReason::interrupted, "");
+  else if (const std::string none = system_.why_no_solution(here_.orbit); !none.empty())
+    end(EndReason::no_orbit, none);
   else if (const std::string why = settings_.unresolved ? settings_.unresolved(here_.orbit) : ""; !why.empty())
     end(EndReason::unresolved, why);
   if (is_special) return special;
@@ -431,6 +433,8 @@ void ContinuationRun::record(const SpecialPoint& special, const PointData& data)
   summary_.unstable_points += settings_.multipliers && !data.multipliers.stable();
   summary_.worst_structural = std::max(summary_.worst_structural, data.multipliers.structural);
   summary_.has_trivial = data.multipliers.has_trivial;
+  if (const std::optional<double> lambda = system_.unfolding(here_.orbit); lambda && system_.conserved_quantities() > 0)
+    summary_.worst_unfolding = std::max(summary_.worst_unfolding.value_or(0.0), std::abs(*lambda));
   summary_.worst_estimated_error = std::max(summary_.worst_estimated_error, point.estimated_error);
   sink_.point(point);
 }

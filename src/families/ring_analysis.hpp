@@ -14,6 +14,7 @@ class RingAnalysis : public BranchAnalysis {
   const FamilyFacts& facts() const override;
   void find_multipliers(const CondensedSystem& condensed, const Orbit& x, FloquetMultipliers& result) override {
     floquet_.compute(condensed, x, result);
+    result.of_conserved = system_.conserved_quantities();
   }
   /// Events fix it.
   bool has_fixed_phase() const override;

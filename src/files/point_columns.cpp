@@ -85,8 +85,13 @@ std::vector<PointColumn> point_columns(const RunSettings& settings, const Proble
   for (int k = 1; k <= maxima; ++k)
     columns.push_back({PointColumn::Kind::maximum, k, headings.maximum + names.state(k)});
   for (std::size_t i = 1; i < free.size(); ++i) columns.push_back(parameter_column(free[i], names));
+  const auto is_listed = [&](const std::string& name) {
+    return std::any_of(free.begin(), free.end(),
+                       [&](int k) { return is_monitor(settings, k) && names.parameter(k) == name; });
+  };
   for (std::size_t i = 0; i < names.user_functions.size(); ++i)
-    columns.push_back({PointColumn::Kind::user_function, static_cast<int>(i) + 1, names.user_functions[i]});
+    if (!is_listed(names.user_functions[i]))
+      columns.push_back({PointColumn::Kind::user_function, static_cast<int>(i) + 1, names.user_functions[i]});
   if (headings.has_period) columns.push_back({PointColumn::Kind::period, 0, "PERIOD"});
   return columns;
 }

@@ -50,7 +50,8 @@ struct PointColumn {
 PointColumn measure_column(int selector, int dimension, const ProblemNames& names);
 
 /// All columns of a run. `free_parameters` as in the settings, durations and output-only ones included; the number of
-/// maxima is min(n, 7 - free parameters that are not durations), none when that is negative. Equilibria have no period.
+/// maxima is min(n, 7 - free parameters that are not durations), none when that is negative. A user function that is
+/// listed as a monitor has one column. Equilibria have no period.
 std::vector<PointColumn> point_columns(const RunSettings& settings, const ProblemNames& names);
 
 }  // namespace tchat

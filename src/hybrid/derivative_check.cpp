@@ -326,6 +326,12 @@ bool DerivativeCheck::fine() const {
          std::all_of(functions.begin(), functions.end(), is_fine);
 }
 
+std::vector<VectorXd> checked_states(const HybridSystem& system, const DerivativeCheckOptions& options) {
+  std::vector<VectorXd> states;
+  for (const TestPoint& point : test_points(system, options)) states.push_back(point.x);
+  return states;
+}
+
 DerivativeCheck check_derivatives(const HybridSystem& system, const DerivativeCheckOptions& options) {
   const std::vector<TestPoint> points = test_points(system, options);
   DerivativeCheck check;

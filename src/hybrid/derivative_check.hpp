@@ -50,6 +50,9 @@ struct DerivativeCheck {
   bool fine() const;
 };
 
+/// Where functions are looked at: the given states and random ones near them. Throws UserError as below.
+std::vector<Eigen::VectorXd> checked_states(const HybridSystem& system, const DerivativeCheckOptions& options);
+
 /// Throws UserError when a state or parameter given has the wrong length or is not finite.
 DerivativeCheck check_derivatives(const HybridSystem& system, const DerivativeCheckOptions& options = {});
 

@@ -40,6 +40,7 @@ struct ProblemFacts {
   StabilityMeaning stability = StabilityMeaning::orbit;
   bool keeps_contact = false;    ///< a segment ends in grazing contact (GCSEGTYP = 2); GCIPSI lists n of xi_n
   bool may_double = false;       ///< the branch may have twice as many segments as its start
+  bool may_conserve = false;     ///< CONSERVED has a meaning
   bool switches_branch = false;  ///< goes on as the type that ISW = 1 names, on either side of its start
   const char* starts_at = "a branch point (BP)";  ///< the labels at which such a switch starts
   const char* start_example = "BP";

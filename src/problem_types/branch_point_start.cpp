@@ -47,11 +47,6 @@ void refuse_persistent(const HybridSystem& system, const RunSettings& settings, 
 
 void start_persistent_branch_points(const HybridSystem& system, const RunSettings& settings, SelectedStart& start) {
   refuse_broken(system, settings, start);
-  start.start.orbit.par(unfolding_parameter - 1) = 0.0;
-  if (std::optional<OrbitVector>& direction = start.start.direction) {
-    direction->globals.conservativeResize(direction->globals.size() + 1);
-    direction->globals(direction->globals.size() - 1) = 0.0;
-  }
 }
 
 void start_generic_branch_points(const HybridSystem& system, const RunSettings& settings, SelectedStart& start) {

@@ -7,8 +7,8 @@ class HybridSystem;
 struct RunSettings;
 struct SelectedStart;
 
-/// Branch points that persist in two parameters, as the symmetry breaking of a symmetric system does: adds the
-/// unfolding parameter to the start. Throws UserError where the second parameter breaks the branch point.
+/// Branch points that persist in two parameters, as the symmetry breaking of a symmetric system does. Throws UserError
+/// where the second parameter breaks the branch point.
 void start_persistent_branch_points(const HybridSystem& system, const RunSettings& settings, SelectedStart& start);
 
 /// Generic branch points in three parameters. Throws UserError where neither further parameter breaks the branch point,

@@ -1,5 +1,8 @@
 /// The problem types of periodic orbits (IPS = 180): branches in one parameter (5.1-5.7), curves in two or three with
 /// one or two conditions more (5.11-5.22), and switches to other branches.
+#include <fmt/format.h>
+
+#include "bvp/conservative_orbit_system.hpp"
 #include "bvp/critical_branch_point.hpp"
 #include "bvp/critical_multiplier.hpp"
 #include "bvp/critical_pair.hpp"
@@ -14,6 +17,7 @@
 #include "run/problem_row.hpp"
 #include "special_points/bifurcation_tests.hpp"
 #include "special_points/curve_tests.hpp"
+#include "text/user_error.hpp"
 
 namespace tchat {
 
@@ -41,13 +45,24 @@ ProblemFacts switch_facts(const char* title, bool may_double) {
           .title = title,
           .free_parameters = 1,
           .may_double = may_double,
+          .may_conserve = true,
           .switches_branch = true,
           .starts_at = "a period doubling (PD), a branch point (BP) or a Hopf bifurcation of equilibria (HB)",
           .start_example = "PD"};
 }
 
+/// The function that CONSERVED names. Throws UserError where the problem has none of that name.
+Quantity conserved_quantity(const HybridSystem& system, const RunSettings& settings) {
+  if (const std::optional<Quantity> quantity = find_quantity(system, settings.conserved)) return *quantity;
+  throw UserError(fmt::format("CONSERVED = {}: problem {} has no function of that name; it has {}", settings.conserved,
+                              system.name(), quantity_list(system)));
+}
+
 std::unique_ptr<PeriodicOrbitSystem> ring(const HybridSystem& system, const RunSettings& settings,
                                           std::vector<int> free) {
+  if (!settings.conserved.empty())
+    return std::make_unique<ConservativeOrbitSystem>(system, settings.signature(), std::move(free),
+                                                     conserved_quantity(system, settings), settings.conserved);
   return std::make_unique<PeriodicOrbitSystem>(system, settings.signature(), std::move(free));
 }
 
@@ -128,6 +143,13 @@ BranchCurve double_event(const PeriodicOrbitSystem& system, const RunSettings&, 
           }};
 }
 
+/// An equilibrium of a conservative system has families of orbits about it, whatever its label.
+BranchSetup leave_branch(const HybridSystem& system, const RunSettings& settings, const SelectedStart& start) {
+  const bool is_equilibrium = start.from_solution && start.start.orbit.shape.stored_nodes() == 1;
+  if (is_equilibrium && !settings.conserved.empty()) return begin_periodic_orbits(system, settings, start);
+  return switch_branch(system, settings, start);
+}
+
 }  // namespace
 
 std::vector<const ProblemType*> periodic_orbit_types() {
@@ -138,7 +160,8 @@ std::vector<const ProblemType*> periodic_orbit_types() {
                             .family = periodic_orbit_family,
                             .solutions = "periodic orbits",
                             .title = "periodic orbits in one parameter",
-                            .free_parameters = 1},
+                            .free_parameters = 1,
+                            .may_conserve = true},
                            {}, ring, branch);
   static const Ring folds(curve_facts(PointType::fold, 2, "folds of periodic orbits in two parameters"),
                           {PointType::fold}, ring, fold);
@@ -165,7 +188,7 @@ std::vector<const ProblemType*> periodic_orbit_types() {
                                    .in_two_parameters = true},
                                   {PointType::user}, ring, double_event);
   static const SwitchRow switches(switch_facts("the branch that bifurcates at a PD or BP label", true),
-                                  branch_switch_labels(), switch_branch);
+                                  branch_switch_labels(), leave_branch);
   ProblemFacts births_at_hopf = switch_facts("the periodic orbits that are born at an HB label of equilibria", false);
   births_at_hopf.starts_from = equilibrium.number;
   static const SwitchRow births(births_at_hopf, {PointType::hopf}, begin_periodic_orbits);

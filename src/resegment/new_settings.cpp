@@ -20,14 +20,15 @@ int segment_type(const HybridSystem& system, const NewSegment& segment) {
   return is_identity_jump(system, segment.index.jump) ? 0 : 1;
 }
 
-/// `listed`: the old ICP without monitors.
-std::vector<int> new_free_parameters(const std::vector<int>& listed, const RunSettings& old, std::size_t segments,
+/// `now` has the monitors and the problem type of the new constants, and the old ICP but for monitors left out. Further
+/// monitors are columns of files, so that they stand behind the parameters unless they come first.
+std::vector<int> new_free_parameters(const RunSettings& now, const RunSettings& old, std::size_t segments,
                                      const NewProblem& problem, const HybridSystem& system) {
-  std::vector<int> list;
-  for (const int k : listed)
-    if (!is_duration(k, static_cast<int>(old.segments.size()))) list.push_back(k);
-  const auto had = static_cast<std::size_t>(free_parameter_count(old.problem_type, old.branch_mode)) + old.held.size();
-  const auto needed = static_cast<std::size_t>(free_parameter_count(problem.problem_type, problem.branch_mode));
+  std::vector<int> list, monitors;
+  for (const int k : now.free_parameters)
+    if (!is_duration(k, static_cast<int>(old.segments.size()))) (is_monitor(now, k) ? monitors : list).push_back(k);
+  const auto had = static_cast<std::size_t>(free_parameter_count(old));
+  const auto needed = static_cast<std::size_t>(free_parameter_count(now));
   for (std::size_t k = needed; k < had && list.size() > needed; ++k)
     list.erase(list.begin() + static_cast<std::ptrdiff_t>(needed));  // free no longer; those printed only stay
   for (int k = 1; k <= system.parameters() && list.size() < needed; ++k)
@@ -37,6 +38,8 @@ std::vector<int> new_free_parameters(const std::vector<int>& listed, const RunSe
         fmt::format("a grazing curve has two free parameters, but of problem {} only one is known; name both, as in "
                     "ICP=[1,2,61]",
                     system.name()));
+  const bool first = !monitors.empty() && now.free_parameters.front() == monitors.front();
+  list.insert(first ? list.begin() : list.end(), monitors.begin(), monitors.end());
   for (std::size_t s = 0; s < segments; ++s) list.push_back(first_duration + static_cast<int>(s));
   return list;
 }
@@ -85,7 +88,8 @@ RunSettings new_settings(const RunSettings& old, const SegmentList& segments, co
     for (const WatchedEvent& watched : segment.watched) next.monitor.push_back(watched.event);
     settings.segments.push_back(next);
   }
-  settings.free_parameters = new_free_parameters(settings.free_parameters, old, segments.size(), problem, system);
+  if (!problem_type(settings).facts().may_conserve) settings.conserved.clear();
+  settings.free_parameters = new_free_parameters(settings, old, segments.size(), problem, system);
   settings.parameter_weights = new_weights(old, segments);
   settings.test_functions = new_test_functions(segments, problem, system);
   std::erase_if(settings.user_values, [&](const UserValue& value) { return is_duration(value.parameter, m); });

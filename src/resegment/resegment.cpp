@@ -348,7 +348,7 @@ std::vector<std::string> resegment(const ResegmentRequest& asked, std::ostream& 
   choose_contact_jump(request, source, system, target);
   OrbitStart start = assemble(source.start, pieces_of(target));
   RunSettings settings = new_settings(source.settings, target.segments, target.problem, system);
-  if (!labelled.settings.monitors.empty() || !labelled.settings.held.empty())
+  if (RunSettings kept = labelled.settings; leave_out_monitors(kept))
     warnings.push_back(fmt::format(
         "{}: its monitors and HOLD are left out of the new constants, for segments have other numbers; name them again",
         constants));

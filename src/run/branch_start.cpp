@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bvp/unfolded_system.hpp"
 #include "continuation/branch_analysis.hpp"
 #include "continuation/path_follower.hpp"
 #include "files/labelled_solution.hpp"
@@ -80,6 +81,17 @@ bool solves_without_correction(PathFollower& follower, const Orbit& stored, cons
   return attempt.front().residual <= std::max(newton_settings(settings).tolerance_states, interpolated);
 }
 
+/// Files do not have the parameter that unfolds equations, which is zero at every solution.
+OrbitStart with_unfolding(OrbitStart start, const DefiningSystem& system) {
+  if (!system.unfolding(start.orbit)) return start;
+  start.orbit.par(unfolding_parameter - 1) = 0.0;
+  if (start.direction && start.direction->globals.size() < system.free_count()) {
+    start.direction->globals.conservativeResize(system.free_count());
+    start.direction->globals(system.free_count() - 1) = 0.0;
+  }
+  return start;
+}
+
 /// A branch point has two tangents, and the computed one is any mixture of them: the stored one belongs to the branch.
 void use_direction(PathFollower& follower, const OrbitVector& direction, PathPoint& point) {
   point.tangent = direction;
@@ -90,7 +102,7 @@ void use_direction(PathFollower& follower, const OrbitVector& direction, PathPoi
 
 FirstPoint first_point(PathFollower& follower, const DefiningSystem& system, const SelectedStart& selected,
                        const RunSettings& settings) {
-  const OrbitStart& start = selected.start;
+  const OrbitStart start = with_unfolding(selected.start, system);
   PathPoint point = follower.make_point(start.orbit);
   NewtonResult result;
   const bool fitting_direction = start.direction && is_same_problem_type(selected.problem_type, settings.problem_type);
@@ -125,8 +137,9 @@ FirstPoint first_point(PathFollower& follower, const DefiningSystem& system, con
   } else if (!as_stored) {
     first.correction = follower.newton().history();
   }
-  const std::string why_none =
+  std::string why_none =
       system.make_analysis(start.orbit.shape)->why_no_solution(first.point.orbit, start.orbit, selected.source);
+  if (why_none.empty()) why_none = system.why_no_solution(first.point.orbit);
   if (!why_none.empty()) throw ComputationError(why_none);
   // A branch point is where the matrix is singular.
   if (!start_is_branch_point(selected)) refuse_singular(follower, system, first.point);

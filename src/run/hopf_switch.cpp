@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <numeric>
@@ -38,7 +39,13 @@ struct Oscillation {
   Eigen::VectorXcd vector;
 };
 
+/// Of a conservative family, which frees no parameter, the equilibrium is found with the first one of the problem.
 RunSettings of_equilibrium(RunSettings settings) {
+  if (!settings.conserved.empty()) {
+    settings.conserved.clear();
+    settings.held.clear();
+    settings.free_parameters = {1};
+  }
   settings.problem_type = equilibrium.number;
   settings.branch_mode = equilibrium.branch_mode;
   settings.segments.front().index.event = no_function;
@@ -77,23 +84,51 @@ void check_signature(const HybridSystem& system, const RunSettings& settings, co
         selected.source, index.jump, system.function_name(FunctionKind::jump, index.jump)));
 }
 
+std::string eigenvalue_list(const std::vector<Complex>& values) {
+  std::string list;
+  for (const Complex& value : values)
+    list += fmt::format(
+        "{}{:.6g}{}", list.empty() ? "" : ", ", value.real(),
+        value.imag() == 0.0 ? "" : fmt::format(" {} {:.6g} i", value.imag() < 0.0 ? "-" : "+", std::abs(value.imag())));
+  return list;
+}
+
+Oscillation oscillation_of(const DefiningSystem& equilibria, const Orbit& x, double omega) {
+  return {omega, eigenvector(equilibrium_jacobian(equilibria, x), {0.0, omega})};
+}
+
 Oscillation oscillation_at(const DefiningSystem& equilibria, const Orbit& x, const SelectedStart& selected) {
   const FloquetMultipliers eigenvalues = equilibrium_eigenvalues(equilibria, x);
   const EigenvaluePair pair = hopf_pairs(eigenvalues.values).nearest;
-  if (!pair.is_oscillation() || pair.distance > on_axis) {
-    std::string list;
-    for (const Complex& value : eigenvalues.values)
-      list += fmt::format("{}{:.6g}{}", list.empty() ? "" : ", ", value.real(),
-                          value.imag() == 0.0
-                              ? ""
-                              : fmt::format(" {} {:.6g} i", value.imag() < 0.0 ? "-" : "+", std::abs(value.imag())));
+  if (!pair.is_oscillation() || pair.distance > on_axis)
     throw UserError(
         fmt::format("{}: label {} is a Hopf point that is none: no pair of eigenvalues of f_x is on the imaginary axis "
                     "there ({}); a parameter or the problem is another one than that of the label",
-                    selected.source, selected.label, list));
-  }
-  return {std::abs(pair.first.imag()),
-          eigenvector(equilibrium_jacobian(equilibria, x), {0.0, std::abs(pair.first.imag())})};
+                    selected.source, selected.label, eigenvalue_list(eigenvalues.values)));
+  return oscillation_of(equilibria, x, std::abs(pair.first.imag()));
+}
+
+/// Where a function is conserved pairs are on the imaginary axis for all values of the parameters (Lyapunov's
+/// families): MODE chooses one.
+Oscillation chosen_oscillation(const DefiningSystem& equilibria, const Orbit& x, const SelectedStart& selected,
+                               int mode) {
+  const std::vector<Complex> eigenvalues = equilibrium_eigenvalues(equilibria, x).values;
+  double largest = 0.0;
+  for (const Complex& value : eigenvalues) largest = std::max(largest, std::abs(value));
+  std::vector<double> omegas;
+  for (const Complex& value : eigenvalues)
+    if (value.imag() > on_axis * largest && std::abs(value.real()) <= on_axis * value.imag())
+      omegas.push_back(value.imag());
+  std::sort(omegas.begin(), omegas.end());
+  if (static_cast<std::size_t>(mode) > omegas.size())
+    throw UserError(fmt::format(
+        "{}: MODE = {}, but {} of the eigenvalues of f_x at label {} are on the imaginary axis "
+        "({}); {}",
+        selected.source, mode,
+        omegas.empty() ? "none" : fmt::format("{} pair{}", omegas.size(), omegas.size() == 1 ? "" : "s"),
+        selected.label, eigenvalue_list(eigenvalues),
+        omegas.empty() ? "no family of orbits begins there" : fmt::format("allowed: 1 to {}", omegas.size())));
+  return oscillation_of(equilibria, x, omegas[static_cast<std::size_t>(mode - 1)]);
 }
 
 /// Turns the phase so that h_x v is a positive multiple of i: h is zero at the ends of the period, and falls there.
@@ -153,7 +188,8 @@ BranchSetup begin_periodic_orbits(const HybridSystem& system, const RunSettings&
   PathFollower along(equilibria, selected.start.orbit.shape, weighted_norm(before), newton_settings(before),
                      before.free_parameters.front());
   const Orbit x = first_point(along, equilibria, selected, before).point.orbit;
-  Oscillation oscillation = oscillation_at(equilibria, x, selected);
+  Oscillation oscillation = settings.conserved.empty() ? oscillation_at(equilibria, x, selected)
+                                                       : chosen_oscillation(equilibria, x, selected, settings.mode);
   const int event = settings.segments.front().index.event;
   if (event != no_function) begin_on_section(system, event, x, selected, oscillation.vector);
 

@@ -269,6 +269,8 @@ class Direction {
     after.multipliers_computed = before.multipliers_computed;
     after.has_trivial = before.has_trivial;
     after.worst_structural = std::max(before.worst_structural, after.worst_structural);
+    if (before.worst_unfolding)
+      after.worst_unfolding = std::max(*before.worst_unfolding, after.worst_unfolding.value_or(0.0));
     after.worst_estimated_error = std::max(before.worst_estimated_error, after.worst_estimated_error);
     std::erase_if(after.vanishing, [&](const VanishingFunction& function) {
       return std::none_of(before.vanishing.begin(), before.vanishing.end(),

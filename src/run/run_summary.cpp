@@ -70,6 +70,7 @@ std::string accuracy(const BranchSummary& summary) {
         fmt::format("; {}: {:.1e}",
                     summary.has_trivial ? "error of the multiplier that should be 1" : "multiplier that should be 0",
                     summary.worst_structural);
+  if (summary.worst_unfolding) text += fmt::format("; lambda, which should be 0: {:.1e}", *summary.worst_unfolding);
   text += "\n";
   const SummaryWords& words = summary.family->summary;
   const std::string structural = summary.worst_structural > inaccurate ? words.structural_advice : "";

@@ -101,6 +101,8 @@ RunSettings with_free_parameter(const RunSettings& base, const Eigen::VectorXd& 
   settings.start = {};
   settings.parameter_values.clear();
   leave_out_monitors(settings);
+  settings.held.clear();
+  settings.conserved.clear();
   settings.free_parameters = {parameter};
   const bool same_parameter = !base.free_parameters.empty() && base.free_parameters.front() == parameter;
   const double value = par(parameter - 1);

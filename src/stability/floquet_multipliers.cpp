@@ -119,7 +119,7 @@ int FloquetMultipliers::stable_count() const {
   const auto stable = std::count_if(list.begin(), list.end(), [&](const auto& mu) {
     return are_eigenvalues ? mu.real() <= eigenvalue_rounding * largest : std::abs(mu) <= 1.0 + stability_tolerance;
   });
-  return static_cast<int>(stable) + (has_trivial ? 1 : 0);
+  return static_cast<int>(stable + static_cast<std::ptrdiff_t>(values.size() - list.size()));
 }
 
 FloquetSolver::FloquetSolver(const OrbitShape& shape)

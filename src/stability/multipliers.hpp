@@ -1,6 +1,7 @@
 /// The multipliers of a point of a branch, however they are computed.
 #pragma once
 
+#include <algorithm>
 #include <complex>
 #include <span>
 #include <vector>
@@ -22,6 +23,7 @@ struct FloquetMultipliers {
   /// without a section the trivial one stands before these, in place of the zero.
   std::vector<std::complex<double>> values;
   bool has_trivial = false;
+  int of_conserved = 0;     ///< how many more are 1 on every orbit; they come first, but for the trivial one
   double structural = 0.0;  ///< size of the structural zero, or distance of the trivial one from 1
   bool valid = false;       ///< false: not computed, or the eigenvalue iteration failed
   /// They are the eigenvalues of f_x at an equilibrium (equilibrium_eigenvalues.hpp): stable on the left of the
@@ -33,8 +35,12 @@ struct FloquetMultipliers {
   MultiplierProduct with_one = {};        ///< t = 1: vanishes with a multiplier +1
   MultiplierProduct with_minus_one = {};  ///< t = -1: vanishes with a multiplier -1
 
-  /// All but the trivial one, which is the same for every orbit; the structural zero is among them.
-  std::span<const std::complex<double>> nontrivial() const { return std::span(values).subspan(has_trivial ? 1 : 0); }
+  /// How many are the same for every orbit, but for the structural zero.
+  int known() const { return (has_trivial ? 1 : 0) + of_conserved; }
+  /// All but those; the structural zero is among them.
+  std::span<const std::complex<double>> nontrivial() const {
+    return std::span(values).subspan(std::min(values.size(), static_cast<std::size_t>(known())));
+  }
   bool determined() const { return valid && undetermined == 0; }
 
   /// All |mu| <= 1 + 1e-5 of those that are known; of eigenvalues all real parts <= 0 but for rounding.

@@ -88,6 +88,8 @@ int free_parameter(const SimulationRequest& request, const SimulationConstants& 
 RunSettings torus_settings(const SimulationConstants& constants, int parameter) {
   RunSettings settings = constants.is_given() ? constants.settings : default_orbit_settings(constants.settings);
   leave_out_monitors(settings);
+  settings.held.clear();
+  settings.conserved.clear();
   settings.problem_type = invariant_torus.number;
   settings.branch_mode = invariant_torus.branch_mode;
   settings.free_parameters = {parameter, rotation_parameter};

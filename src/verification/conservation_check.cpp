@@ -1,0 +1,130 @@
+#include "verification/conservation_check.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <set>
+#include <utility>
+
+namespace tchat {
+
+namespace {
+
+using Eigen::VectorXd;
+
+constexpr double rounding = 1e-7;
+
+/// The largest relative change, and where it was found.
+struct LargestChange {
+  double relative = 0.0;
+  double change = 0.0;
+  VectorXd state;
+  int states = 0;
+
+  void add(double new_change, double scale, const VectorXd& x) {
+    if (!std::isfinite(new_change)) return;
+    ++states;
+    if (std::abs(new_change) <= relative * scale && states > 1) return;
+    relative = std::abs(new_change) / scale;
+    change = new_change;
+    state = x;
+  }
+};
+
+class Conservation {
+ public:
+  Conservation(const HybridSystem& system, const Quantity& conserved, const VectorXd& par)
+      : system_(system), function_(system, conserved, {}), par_(par), n_(system.dimension()) {}
+
+  LargestChange of_field(int field, const std::vector<VectorXd>& states) const {
+    LargestChange largest;
+    VectorXd f(n_), gradient(n_);
+    std::vector<double> none;
+    for (const VectorXd& x : states) {
+      system_.value(FunctionKind::field, field, x.data(), par_.data(), f.data());
+      function_.first(x.data(), par_.data(), gradient.data(), none.data());
+      const double scale = gradient.norm() * f.norm();
+      largest.add(gradient.dot(f), scale > 0.0 ? scale : 1.0, x);
+    }
+    return largest;
+  }
+
+  LargestChange of_jump(int event, int jump, const std::vector<VectorXd>& states) const {
+    LargestChange largest;
+    VectorXd after(n_);
+    for (const VectorXd& near : states) {
+      const std::optional<VectorXd> x = on_surface(event, near);
+      if (!x) continue;
+      system_.value(FunctionKind::jump, jump, x->data(), par_.data(), after.data());
+      const double before = function_.value(x->data(), par_.data());
+      largest.add(function_.value(after.data(), par_.data()) - before, 1.0 + std::abs(before), *x);
+    }
+    return largest;
+  }
+
+  std::string text(const VectorXd& x) const {
+    std::string list;
+    for (int k = 1; k <= n_; ++k)
+      list += fmt::format("{}{} = {:.4g}", k > 1 ? ", " : "", system_.state_name(k), x(k - 1));
+    return list;
+  }
+
+ private:
+  /// The point where the event function is zero, by Newton's method along its gradient.
+  std::optional<VectorXd> on_surface(int event, VectorXd x) const {
+    constexpr int most = 20;
+    VectorXd gradient(n_);
+    for (int k = 0; k < most && event != no_function; ++k) {
+      double h = 0.0;
+      system_.first(FunctionKind::event, event, x.data(), par_.data(), {}, &h, gradient.data(), nullptr);
+      const double step = h / gradient.squaredNorm();
+      if (!std::isfinite(step)) return std::nullopt;
+      x -= step * gradient;
+      if (std::abs(step) * gradient.norm() <= 1e-14 * (1.0 + x.norm())) return x;
+    }
+    return event == no_function ? std::optional(x) : std::nullopt;
+  }
+
+  const HybridSystem& system_;
+  QuantityFunction function_;
+  const VectorXd& par_;
+  int n_;
+};
+
+}  // namespace
+
+ConservationCheck check_conservation(const HybridSystem& system, const Quantity& conserved, const std::string& name,
+                                     const Signature& signature, const std::vector<VectorXd>& states,
+                                     const VectorXd& par) {
+  const Conservation conservation(system, conserved, par);
+  ConservationCheck check;
+  const auto report = [&](const LargestChange& largest, const std::string& what, const char* measure) {
+    if (largest.states == 0) {
+      check.text += fmt::format("{}: {} was evaluated nowhere\n", name, what);
+    } else if (largest.relative <= rounding) {
+      check.text += fmt::format("{}: conserved by {}, {} <= {:.1e} at {} states\n", name, what, measure,
+                                largest.relative, largest.states);
+    } else {
+      check.is_conserved = false;
+      check.text += fmt::format("{}: NOT conserved by {}: {} = {:.4g} at {}\n", name, what, measure, largest.change,
+                                conservation.text(largest.state));
+    }
+  };
+  std::set<int> fields;
+  std::set<std::pair<int, int>> jumps;
+  for (const IndexVector& index : signature) {
+    fields.insert(index.field);
+    if (index.jump != no_function) jumps.insert({index.event, index.jump});
+  }
+  for (const int field : fields)
+    report(conservation.of_field(field, states),
+           fmt::format("field {} ({})", field, system.function_name(FunctionKind::field, field)), "its rate of change");
+  for (const auto& [event, jump] : jumps)
+    report(conservation.of_jump(event, jump, states),
+           fmt::format("jump {} ({})", jump, system.function_name(FunctionKind::jump, jump)), "its change");
+  return check;
+}
+
+}  // namespace tchat
