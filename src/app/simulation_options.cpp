@@ -130,7 +130,7 @@ void add_detail_options(CLI::App& command, SimulationRequest& request) {
   command.add_flag("--stiff", request.stiff, "backward differentiation formulas, for stiff problems")->group(group);
   command.add_option("--max-period", request.plan.max_period, "longest periodic orbit, in events")
       ->type_name("N")
-      ->check(whole_number(1, 1000))
+      ->check(whole_number(1, 10000))
       ->capture_default_str()
       ->group(group);
   command

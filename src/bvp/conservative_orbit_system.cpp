@@ -11,16 +11,16 @@ namespace tchat {
 
 namespace {
 
-std::vector<int> with_unfolding(std::vector<int> free) {
-  free.push_back(unfolding_parameter);
+std::vector<int> with_unfolding(std::vector<int> free, std::size_t segments) {
+  free.push_back(unfolding_parameter(static_cast<int>(segments)));
   return free;
 }
 
 }  // namespace
 
-ConservativeOrbitSystem::ConservativeOrbitSystem(const HybridSystem& system, Signature signature,
+ConservativeOrbitSystem::ConservativeOrbitSystem(const HybridSystem& system, const Signature& signature,
                                                  std::vector<int> free_parameters, Quantity conserved, std::string name)
-    : PeriodicOrbitSystem(system, std::move(signature), with_unfolding(std::move(free_parameters))),
+    : PeriodicOrbitSystem(system, signature, with_unfolding(std::move(free_parameters), signature.size())),
       conserved_(system, conserved, {}),
       name_(std::move(name)),
       gradient_(static_cast<std::size_t>(dimension())) {}
@@ -38,7 +38,7 @@ void ConservativeOrbitSystem::target_value(int s, const Orbit& x, double* target
   PeriodicOrbitSystem::target_value(s, x, target);
   if (!closes(s)) return;
   find_gradient(x);
-  const double lambda = x.par(unfolding_parameter - 1);
+  const double lambda = x.par(unfolding_parameter(segments()) - 1);
   for (int a = 0; a < dimension(); ++a) target[a] += lambda * gradient_[static_cast<std::size_t>(a)];
 }
 
@@ -52,7 +52,7 @@ double* ConservativeOrbitSystem::target_derivatives(int s, const Orbit& x, doubl
 std::string ConservativeOrbitSystem::why_no_solution(const Orbit& x) const {
   constexpr double gap = 1e-6;  // of the states where the ring closes
   find_gradient(x);
-  const double lambda = x.par(unfolding_parameter - 1);
+  const double lambda = x.par(unfolding_parameter(segments()) - 1);
   const double slope = Eigen::Map<const Eigen::VectorXd>(gradient_.data(), dimension()).norm();
   if (std::abs(lambda) * slope <= gap * (1.0 + x.states.cwiseAbs().maxCoeff())) return "";
   std::string places;
@@ -66,17 +66,17 @@ std::string ConservativeOrbitSystem::why_no_solution(const Orbit& x) const {
   for (int s = 0; s < segments(); ++s) {
     const IndexVector& index = signature()[static_cast<std::size_t>(s)];
     const double end = value(x.end(s), x);
-    look(end - value(x.start(s), x), fmt::format("on segment {} (field {})", s + 1,
-                                                 system().function_name(FunctionKind::field, index.field)));
+    look(end - value(x.start(s), x),
+         fmt::format("on segment {} (field {})", s + 1, system().function_name(FunctionKind::field, index.field)));
     system().value(FunctionKind::jump, index.jump, x.end(s), x.par.data(), after.data());
-    look(value(after.data(), x) - end,
-         fmt::format("in jump {} ({}) at the end of segment {}", index.jump,
-                     system().function_name(FunctionKind::jump, index.jump), s + 1));
+    look(value(after.data(), x) - end, fmt::format("in jump {} ({}) at the end of segment {}", index.jump,
+                                                   system().function_name(FunctionKind::jump, index.jump), s + 1));
   }
-  return fmt::format("CONSERVED = {0} is not conserved: the orbit closes only with lambda = {1:.3g}, which is zero where "
-                     "it is, and {0} changes {2}; take CONSERVED away (CONSERVED=) and free a parameter, or set "
-                     "parameters so that nothing is lost or gained",
-                     name_, lambda, places);
+  return fmt::format(
+      "CONSERVED = {0} is not conserved: the orbit closes only with lambda = {1:.3g}, which is zero where "
+      "it is, and {0} changes {2}; take CONSERVED away (CONSERVED=) and free a parameter, or set "
+      "parameters so that nothing is lost or gained",
+      name_, lambda, places);
 }
 
 }  // namespace tchat

@@ -25,11 +25,11 @@ namespace tchat {
 class ConservativeOrbitSystem final : public PeriodicOrbitSystem {
  public:
   /// `free_parameters` without the unfolding parameter, which becomes the last of them. `name`: of H, for messages.
-  ConservativeOrbitSystem(const HybridSystem& system, Signature signature, std::vector<int> free_parameters,
+  ConservativeOrbitSystem(const HybridSystem& system, const Signature& signature, std::vector<int> free_parameters,
                           Quantity conserved, std::string name);
 
   int conserved_quantities() const override { return 1; }
-  std::optional<double> unfolding(const Orbit& x) const override { return x.par(unfolding_parameter - 1); }
+  std::optional<double> unfolding(const Orbit& x) const override { return x.par(unfolding_parameter(segments()) - 1); }
   /// Where lambda is not zero: H changes along the orbit.
   std::string why_no_solution(const Orbit& x) const override;
 

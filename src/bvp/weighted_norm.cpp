@@ -5,8 +5,8 @@ namespace tchat {
 WeightedNorm::WeightedNorm(Eigen::VectorXd state_weights, Eigen::VectorXd parameter_weights)
     : state_weights_(std::move(state_weights)), parameter_weights_(std::move(parameter_weights)) {}
 
-WeightedNorm WeightedNorm::unit(int dimension) {
-  return {Eigen::VectorXd::Ones(dimension), Eigen::VectorXd::Ones(parameter_length)};
+WeightedNorm WeightedNorm::unit(int dimension, int segments) {
+  return {Eigen::VectorXd::Ones(dimension), Eigen::VectorXd::Ones(parameter_room(segments))};
 }
 
 MassIntervals mass_intervals(const Orbit& x, const CollocationRule& rule, const Eigen::VectorXd& weights) {

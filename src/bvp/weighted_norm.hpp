@@ -23,7 +23,7 @@ class WeightedNorm {
   /// `state_weights` has n entries, `parameter_weights` those of PAR(1..parameter_length), all >= 0.
   WeightedNorm(Eigen::VectorXd state_weights, Eigen::VectorXd parameter_weights);
   /// All weights 1.
-  static WeightedNorm unit(int dimension);
+  static WeightedNorm unit(int dimension, int segments = 1);
 
   /// The dual vector <v, .> on the mesh of x, written to `row`.
   void dual(const Orbit& x, const CollocationRule& rule, const std::vector<int>& free_parameters, const OrbitVector& v,

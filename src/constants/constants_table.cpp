@@ -8,6 +8,7 @@
 #include <cctype>
 #include <cmath>
 
+#include "hybrid/hybrid_system.hpp"
 #include "problem_type/problem_type.hpp"
 #include "text/near_words.hpp"
 
@@ -25,7 +26,8 @@ Limits one_of(std::vector<int> choices) { return {.choices = std::move(choices)}
 Limits any() { return {}; }
 
 constexpr double largest_weight = 1e15;  // beyond it rounding of one entry hides the step of all others
-constexpr double max_list = 1000;        // length of lists that nothing else bounds
+constexpr double last_parameter = first_name + max_names;  // names stand there
+constexpr double max_list = 1000;                          // length of lists that nothing else bounds
 constexpr std::string_view kept = "read and kept, no effect";
 constexpr std::string_view type_with_count =
     "a type with a count (BP, LP, HB, PD, TR, UZ, GR, BE, XI, GC, CP, R1, ..., R4, BT, ZH, GH, EP, MX or RG) and a "
@@ -43,15 +45,15 @@ std::vector<Constant> make_table() {
   const SegmentInteger event{nullptr, &IndexVector::event, true};
   const SegmentInteger jump{nullptr, &IndexVector::jump, true};
   return {
-      {"NDIM", "number of states of one segment", 1, &R::dimension, range(1, 1000), "", "5", ""},
+      {"NDIM", "number of states of one segment", 1, &R::dimension, range(1, most_states), "", "5", ""},
       {"IPS", "problem type", 1, &R::problem_type, one_of(problem_type_numbers()), families, "180", ""},
       {"IRS", "label to start from, 0: from data", 1, &R::start, at_least(0),
        "a label number >= 0, or a type with a count (PD1: BP, LP, HB, PD, TR, UZ, GR, BE, XI, GC, CP, R1, ..., R4, BT, "
        "ZH, GH, EP, MX or RG and a number)",
        "PD1", ""},
       {"ILP", "detect folds; negative: and stop there", 1, &R::detect_folds, range(-1, 1), "", "1", ""},
-      {"NICP", "number of free parameters listed", 2, ListCount{"ICP"}, range(1, 256), "", "3", ""},
-      {"ICP", "free parameters, durations included", 2, &R::free_parameters, range(1, parameter_length),
+      {"NICP", "number of free parameters listed", 2, ListCount{"ICP"}, range(1, last_parameter), "", "3", ""},
+      {"ICP", "free parameters, durations included", 2, &R::free_parameters, range(1, last_parameter),
        "PAR indices: 1 to 60 of the problem (or its names), 61, 62, ... the durations of the segments; names of "
        "monitors",
        "[1, 61, 62]", ""},
@@ -69,9 +71,9 @@ std::vector<Constant> make_table() {
        "an integer from -n to 3n; with n = NDIM, k = 1..n: 0 L2-norm, k or -k maximum or minimum, n+k integral, 2n+k "
        "L2-norm of U(k)",
        "0", ""},
-      {"NBC", "number of boundary conditions", 3, &R::boundary_conditions, range(0, 1000), "", "0",
+      {"NBC", "number of boundary conditions", 3, &R::boundary_conditions, range(0, most_states), "", "0",
        "of IPS = 4; else read and kept, no effect: follows from the signature"},
-      {"NINT", "number of integral conditions", 3, &R::integral_conditions, range(0, 1000), "", "0",
+      {"NINT", "number of integral conditions", 3, &R::integral_conditions, range(0, most_states), "", "0",
        "of IPS = 4; else read and kept, no effect: follows from the problem type"},
       {"NMX", "largest number of points", 4, &R::max_points, at_least(0), "", "100", ""},
       {"RL0", "lower bound of the first free parameter", 4, &R::parameter_min, any(), "", "0.0", ""},
@@ -99,12 +101,12 @@ std::vector<Constant> make_table() {
       {"DSMAX", "largest step", 7, &R::step_max, at_least(0), "", "0.1", ""},
       {"IADS", "points between step size adaptations, 0: fixed step", 7, &R::adapt_step_every, at_least(0), "", "1",
        ""},
-      {"NTHL", "number of parameter weights", 8, ListCount{"THL"}, range(0, 256), "", "0", ""},
+      {"NTHL", "number of parameter weights", 8, ListCount{"THL"}, range(0, last_parameter), "", "0", ""},
       {"THL", "weights of parameters in the step length", 8, &R::parameter_weights, range(0, largest_weight), "",
-       "{61: 0.0}", "", range(1, parameter_length)},
-      {"NTHU", "number of state weights", 9, ListCount{"THU"}, range(0, 1000), "", "0", ""},
+       "{61: 0.0}", "", range(1, last_parameter)},
+      {"NTHU", "number of state weights", 9, ListCount{"THU"}, range(0, most_states), "", "0", ""},
       {"THU", "weights of states in the step length and norm", 9, &R::state_weights, range(0, largest_weight), "",
-       "{1: 0.5}", "", range(1, 1000)},
+       "{1: 0.5}", "", range(1, most_states)},
       {"NUZR", "number of user values", 10, ListCount{"UZR"}, range(0, max_list), "", "0", ""},
       {"UZR",
        "values of parameters to locate; index negative: and stop there",
@@ -114,7 +116,7 @@ std::vector<Constant> make_table() {
        "",
        "{1: [2.5, 3.0], -2: 4.0}",
        "",
-       {-parameter_length, parameter_length, false, true, {}}},
+       {-last_parameter, last_parameter, false, true, {}}},
       {"GCISTART", "kind of starting data", 11, &R::grazing_start, any(), "", "0", kept},
       {"GCIDIFF", "order of the derivatives that a hand-coded problem supplies", 11, &R::derivative_order, range(0, 2),
        "", "1", ""},
@@ -122,7 +124,7 @@ std::vector<Constant> make_table() {
       {"GCIPSI", "test functions to locate", 12, &R::test_functions, range(1, 100000), "", "[1, 2]", ""},
       {"GCNFIXED", "number of fixed quantities", 13, ListCount{"GCIFIXED"}, range(0, max_list), "", "0", kept},
       {"GCIFIXED", "fixed quantities", 13, &R::fixed, any(), "", "[]", kept},
-      {"GCNOSEG", "number of segments", 14, SegmentCount{}, range(1, 64), "", "2", ""},
+      {"GCNOSEG", "number of segments", 14, SegmentCount{}, range(1, max_segments), "", "2", ""},
       {"GCSEGTYP", "type of each segment", 14, segment_type, one_of({0, 1, 2}),
        "0 (ends in the identity jump), 1 (ends in another jump) or 2 (ends in grazing contact)", "[1, 0]", ""},
       {"GCFIND", "vector field of each segment", 15, field, at_least(1), "", "[1, 2]", ""},
@@ -130,7 +132,7 @@ std::vector<Constant> make_table() {
        "an integer >= 1; 0 on the one segment of an orbit without a section; none, or 0, with IPS = 4", "[1, 2]", ""},
       {"GCGIND", "jump function of each segment", 17, jump, at_least(0),
        "an integer >= 1, or 0 for the identity; none, or 0, with IPS = 4", "[1, 2]", ""},
-      {"GCHNO", "number of event functions monitored on each segment", 18, MonitorCounts{}, range(0, 1000), "",
+      {"GCHNO", "number of event functions monitored on each segment", 18, MonitorCounts{}, range(0, max_list), "",
        "[1, 2]", ""},
       {"GCHGRZIND", "event functions monitored on each segment", 18, MonitorLists{}, at_least(1), "", "[[1], [2, 1]]",
        ""},
@@ -156,7 +158,7 @@ std::vector<Constant> make_table() {
       {"CLSTOP", "end the branch where it comes back to its first point", extension_record, &R::stop_when_closed,
        one_of({0, 1}), "0 (go on, round again) or 1 (end the branch)", "0", ""},
       {"NHARM", "harmonics that a torus begins with, 0: as the start has, or 7", extension_record, &R::harmonics,
-       range(0, max_orbit_segments), "", "10", "of IPS = 182 and 152"},
+       range(0, max_torus_segments), "", "10", "of IPS = 182 and 152"},
       {"HARMTOL", "size of the last harmonics of a torus, by which their number adapts; 0: it stays", extension_record,
        &R::harmonic_tolerance, at_least(0), "", "1e-8", "of IPS = 182 and 152"},
       {"ERRMAX",

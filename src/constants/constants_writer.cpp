@@ -34,8 +34,9 @@ std::string quoted(const std::string& text, const char* characters) {
 /// The number, or a name, in quotes where it has blanks or commas.
 std::string index_text(const RunSettings& settings, int k) {
   if (!is_monitor(settings, k) && !is_name(settings, k)) return std::to_string(k);
-  const std::string& name = is_name(settings, k) ? settings.names[static_cast<std::size_t>(parameter_length - k)].text
-                                                 : settings.monitors[static_cast<std::size_t>(k - first_monitor)];
+  const std::string& name = is_name(settings, k)
+                                ? settings.names[static_cast<std::size_t>(k - first_name)].text
+                                : settings.monitors[static_cast<std::size_t>(k - first_monitor(settings))];
   return quoted(name, " \t:#=[]{}");
 }
 

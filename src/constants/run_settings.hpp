@@ -120,7 +120,8 @@ struct RunSettings {
   std::string conserved;             ///< CONSERVED, a function of the state that orbits keep; empty: none
   int mode = 1;                      ///< MODE, of the oscillations about an equilibrium, from the slowest
   std::string problem;               ///< PROBLEM, from the folder of the constants file; empty: none is named
-  /// Names of monitors in ICP, UZR, THL, HOLD and BOUNDS: PAR(first_monitor), ... stand for them in this order.
+  /// Names of monitors in ICP, UZR, THL, HOLD and BOUNDS: PAR(first_monitor(segments)), ... stand for them in this
+  /// order.
   std::vector<std::string> monitors;
   /// All names in these constants, until resolve_names() has replaced them: PAR(name_index(k)) stands for name k.
   std::vector<GivenName> names;
@@ -139,19 +140,23 @@ struct RunSettings {
   }
 };
 
-/// Does PAR(k) stand for a monitor of this run?
-inline bool is_monitor(const RunSettings& settings, int k) {
-  return k >= first_monitor && k < first_monitor + static_cast<int>(settings.monitors.size());
+inline int first_monitor(const RunSettings& settings) {
+  return first_monitor(static_cast<int>(settings.segments.size()));
 }
 
-/// The index that stands for the k-th name (from 0) of the settings: from the end of PAR down, where neither parameters
-/// nor durations nor monitors are.
-constexpr int name_index(std::size_t k) { return parameter_length - static_cast<int>(k); }
-inline constexpr std::size_t max_names = parameter_length - first_monitor - max_monitors;
+/// Does PAR(k) stand for a monitor of this run?
+inline bool is_monitor(const RunSettings& settings, int k) {
+  return k >= first_monitor(settings) && k < first_monitor(settings) + static_cast<int>(settings.monitors.size());
+}
+
+/// The index that stands for the k-th name (from 0) of the settings, beyond all that PAR has.
+inline constexpr int first_name = 10'000'000;
+constexpr int name_index(std::size_t k) { return first_name + static_cast<int>(k); }
+inline constexpr std::size_t max_names = 1000;
 
 /// Does PAR(k) stand for a name that has not been resolved?
 inline bool is_name(const RunSettings& settings, int k) {
-  return k <= parameter_length && k > name_index(settings.names.size());
+  return k >= first_name && k < name_index(settings.names.size());
 }
 
 }  // namespace tchat

@@ -36,9 +36,8 @@ class SettingsCheck {
     if (rules().counts_conditions) return conditions();
     const auto held = static_cast<int>(settings_.held.size());
     const int needed = free_parameter_count(settings_);
-    const auto of_problem = std::count_if(list.begin(), list.end(), [this](int k) {
-      return k < first_duration || (k > last_index && !is_monitor(settings_, k));
-    });
+    const auto of_problem =
+        std::count_if(list.begin(), list.end(), [this](int k) { return k < first_duration || is_name(settings_, k); });
     if (of_problem < needed)
       refuse_constant(
           "ICP", "ICP", fmt::format("{} parameters that are not durations", of_problem),
@@ -200,7 +199,7 @@ class SettingsCheck {
     for (const HeldValue& held : settings_.held) indices.push_back(held.parameter);
     each_once("HOLD", indices);
     for (const HeldValue& held : settings_.held)
-      if (!is_duration(held.parameter, segments_of_run()) && held.parameter <= last_index)
+      if (!is_duration(held.parameter, segments_of_run()) && !stands_in(held.parameter))
         refuse_constant("HOLD", "HOLD", in_quotes(std::to_string(held.parameter)),
                         "names of monitors, or durations (T1, T2, ...); a parameter of the problem keeps its value "
                         "unless ICP frees it");
@@ -216,12 +215,14 @@ class SettingsCheck {
   const SignatureRules& rules() const { return signature_rules(settings_); }
   int segments() const { return static_cast<int>(settings_.segments.size()); }
 
+  /// For a name or a monitor.
+  bool stands_in(int k) const { return is_name(settings_, k) || is_monitor(settings_, k); }
+
   /// A switch to a period-doubled orbit doubles the segments.
   int segments_of_run() const { return may_double_segments(settings_.branch_mode) ? 2 * segments() : segments(); }
 
   void parameter_index(std::string_view keyword, const std::string& name, int k, int segment_count) const {
-    const bool stands_in = k > last_index && keyword != "PAR";
-    if ((k >= 1 && k < first_duration + segment_count) || stands_in) return;
+    if ((k >= 1 && k < first_duration + segment_count) || (stands_in(k) && keyword != "PAR")) return;
     const std::string durations = segment_count == 1
                                       ? fmt::format("{} (the duration of the segment)", first_duration)
                                       : fmt::format("{} to {} (durations of the {} segments)", first_duration,

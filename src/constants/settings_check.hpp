@@ -12,16 +12,12 @@
 
 namespace tchat {
 
-/// The largest index of a duration (of the doubled orbit of a switch). Nothing beyond it may be written in constants:
-/// larger indices stand for names and monitors.
-inline constexpr int last_index = first_duration - 1 + 2 * max_segments;
-
 /// Checks: ICP not empty, without repetition, with the free parameters that problem type and branch mode need; indices
 /// of ICP, THL, UZR, PAR either 1..60 or a duration 61..60+m (THL and UZR up to 60+2m for the doubled orbit of a branch
 /// switch); THU <= NDIM; RL0 < RL1; A0 < A1; DSMIN <= DSMAX > 0 unless IADS = 0; IPLT from -NDIM to
 /// 3 NDIM; GCIPSI within the GCHGRZIND lists (IPS 180);
-/// one grazing segment (IPS 150). Indices of ICP, THL and UZR beyond last_index are stand-ins for names. Throws
-/// UserError; `place` tells where a constant was given.
+/// one grazing segment (IPS 150). Indices that stand for names and monitors may be among those of ICP, THL and UZR.
+/// Throws UserError; `place` tells where a constant was given.
 void check_settings(const RunSettings& settings, const std::function<Place(std::string_view keyword)>& place);
 
 /// The part of check_settings() that concerns ICP, THL, UZR and HOLD.

@@ -205,7 +205,7 @@ Token SettingsDraft::index_token(const Constant& constant, const std::string& sh
   const std::string name = token.text.substr(negative ? 1 : 0);
   if (!has_parameter_indices(constant)) return token;
   if (!starts_like_name(name)) {
-    if (parse_integer(name).value_or(0) > last_index)
+    if (parse_integer(name).value_or(0) >= first_duration + 2 * max_segments)
       refuse(constant, shown, token.place, in_quotes(token.text),
              fmt::format("1 to {} (parameters of the problem) or {}, ... (durations of the segments)",
                          first_duration - 1, first_duration));

@@ -21,10 +21,10 @@ int monitor_index(RunSettings& settings, std::string name, const std::string& wh
   std::vector<std::string>& list = settings.monitors;
   const auto known = std::find(list.begin(), list.end(), name);
   const auto index = static_cast<int>(known - list.begin());
-  if (known != list.end()) return first_monitor + index;
+  if (known != list.end()) return first_monitor(settings) + index;
   if (index == max_monitors) throw UserError(fmt::format("{}: more than {} monitors are named", where, max_monitors));
   list.push_back(name);
-  return first_monitor + index;
+  return first_monitor(settings) + index;
 }
 
 int index_of(RunSettings& settings, const GivenName& name, const ParameterNames& names) {
@@ -41,7 +41,7 @@ void resolve_names(RunSettings& settings, const ParameterNames& names) {
   std::vector<int> indices;
   for (const GivenName& name : settings.names) indices.push_back(index_of(settings, name, names));
   const auto resolve = [&](int& k) {
-    if (is_name(settings, k)) k = indices[static_cast<std::size_t>(parameter_length - k)];
+    if (is_name(settings, k)) k = indices[static_cast<std::size_t>(k - first_name)];
   };
   for (int& k : settings.free_parameters) resolve(k);
   for (IndexedValue& weight : settings.parameter_weights) resolve(weight.index);

@@ -99,27 +99,46 @@ std::optional<int> contact_segment(const RunSettings& settings) {
   return keeps_contact(settings.problem_type) ? std::optional(marked_segment(settings)) : std::nullopt;
 }
 
+namespace {
+
+/// change(k) of every index of a parameter, duration or monitor that the settings list; those are left out for which it
+/// is true.
+template <class Change>
+void change_indices(RunSettings& settings, const Change& change) {
+  std::erase_if(settings.free_parameters, change);
+  std::erase_if(settings.user_values, [&](UserValue& value) { return change(value.parameter); });
+  std::erase_if(settings.parameter_weights, [&](IndexedValue& weight) { return change(weight.index); });
+  std::erase_if(settings.bounds, [&](BoundedValue& value) { return change(value.parameter); });
+  std::erase_if(settings.held, [&](HeldValue& value) { return change(value.parameter); });
+}
+
+}  // namespace
+
+void renumber_monitors(RunSettings& settings, int old_segments) {
+  const int before = first_monitor(old_segments), now = first_monitor(settings);
+  change_indices(settings, [&](int& k) {
+    if (k >= before && k < before + static_cast<int>(settings.monitors.size())) k += now - before;
+    return false;
+  });
+}
+
 bool leave_out_monitors(RunSettings& settings) {
   std::vector<std::string> kept;
   std::vector<int> new_index;  // 0: left out
   for (const std::string& name : settings.monitors) {
     const bool of_whole_orbit = name.find('(') == std::string::npos;
-    new_index.push_back(of_whole_orbit ? first_monitor + static_cast<int>(kept.size()) : 0);
+    new_index.push_back(of_whole_orbit ? first_monitor(settings) + static_cast<int>(kept.size()) : 0);
     if (of_whole_orbit) kept.push_back(name);
   }
   // Gives a parameter its new index; true where it is left out.
   const auto leaves = [&](int& k) {
-    if (!is_monitor(settings, k)) return k >= first_monitor;
-    k = new_index[static_cast<std::size_t>(k - first_monitor)];
+    if (!is_monitor(settings, k)) return false;
+    k = new_index[static_cast<std::size_t>(k - first_monitor(settings))];
     return k == 0;
   };
   const std::size_t held = settings.held.size();
-  std::erase_if(settings.free_parameters, leaves);
-  std::erase_if(settings.user_values, [&](UserValue& value) { return leaves(value.parameter); });
-  std::erase_if(settings.parameter_weights, [&](IndexedValue& weight) { return leaves(weight.index); });
-  std::erase_if(settings.bounds, [&](BoundedValue& value) { return leaves(value.parameter); });
-  std::erase_if(settings.held,
-                [&](HeldValue& value) { return value.parameter < first_monitor || leaves(value.parameter); });
+  std::erase_if(settings.held, [&](const HeldValue& value) { return !is_monitor(settings, value.parameter); });
+  change_indices(settings, leaves);
   const bool some = kept.size() < settings.monitors.size() || settings.held.size() < held;
   settings.monitors = std::move(kept);
   return some;

@@ -13,7 +13,7 @@ namespace tchat {
 class MonitorSet {
  public:
   MonitorSet() = default;
-  /// `names`: those of PAR(first_monitor), PAR(first_monitor + 1), ...; `system` outlives the set.
+  /// `names`: those of PAR(first_monitor(segments)), ...; `system` outlives the set.
   MonitorSet(const std::vector<MonitorName>& names, const DefiningSystem& system);
 
   /// Is PAR(k) one whose gradient is known?
@@ -27,12 +27,13 @@ class MonitorSet {
   void store(Orbit& x, const FloquetMultipliers& multipliers) const;
 
  private:
-  const Monitor& of(int k) const { return *list_[static_cast<std::size_t>(k - first_monitor)].monitor; }
+  const Monitor& of(int k) const { return *list_[static_cast<std::size_t>(k - first_)].monitor; }
 
   struct Entry {
     std::unique_ptr<Monitor> monitor;  // null: the modulus of a multiplier
     int rank = 0;                      // of that one, from 1
   };
+  int first_ = 0;
   std::vector<Entry> list_;
 };
 

@@ -33,7 +33,8 @@ PathFollower::PathFollower(const DefiningSystem& system, const OrbitShape& shape
       predictor_(make_predictor(system.free_parameters())),
       settings_(settings),
       dx_(condensed().make_vector()),
-      on_tangent_{shape, uniform_mesh(shape.intervals), dx_.states, ParameterVector::Zero(parameter_length)} {
+      on_tangent_{shape, uniform_mesh(shape.intervals), dx_.states,
+                  ParameterVector::Zero(parameter_room(shape.segments))} {
   problem_.remember(unused_);
 }
 

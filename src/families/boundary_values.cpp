@@ -15,7 +15,9 @@ class BoundaryValueFamily final : public SegmentFamily {
  public:
   BoundaryValueFamily()
       : SegmentFamily({.solution = "a solution of a boundary value problem",
-                       .signature = {.ends_in_events = false,
+                       .signature = {.most_segments = 64,
+                                     .why_most = "conditions and integrands know 64 durations",
+                                     .ends_in_events = false,
                                      .why_no_events = "the problem's boundary conditions tie the segments",
                                      .counts_conditions = true},
                        .summary = {.contact = "grazing point",

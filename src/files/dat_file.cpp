@@ -245,9 +245,9 @@ class DatReader {
       return;
     }
     const auto index = parse_integer(name);
-    if (!index || *index < 1 || *index > parameter_length)
+    if (!index || *index < 1 || *index >= first_duration + std::max(segments_, parameter_length - first_duration + 1))
       refuse(fmt::format("PAR({}): an index from 1 to {} or a parameter's name is needed, as in `# PAR(2) = 0.8`", name,
-                         parameter_length));
+                         first_duration - 1 + segments_));
     parameters_.emplace_back(*index, value);
   }
 

@@ -41,12 +41,12 @@ ProblemNames ProblemNames::of(const HybridSystem& system) {
   return names;
 }
 
-ProblemNames ProblemNames::of(const HybridSystem& system, const std::vector<std::string>& monitors) {
+ProblemNames ProblemNames::of(const HybridSystem& system, const RunSettings& settings) {
   ProblemNames names = of(system);
-  if (monitors.empty()) return names;
-  while (names.parameters.size() + 1 < static_cast<std::size_t>(first_monitor))
+  if (settings.monitors.empty()) return names;
+  while (names.parameters.size() + 1 < static_cast<std::size_t>(first_monitor(settings)))
     names.parameters.push_back(fmt::format("PAR({})", names.parameters.size() + 1));
-  names.parameters.insert(names.parameters.end(), monitors.begin(), monitors.end());
+  names.parameters.insert(names.parameters.end(), settings.monitors.begin(), settings.monitors.end());
   return names;
 }
 

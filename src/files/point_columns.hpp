@@ -19,8 +19,8 @@ struct ProblemNames {
   std::vector<std::string> jumps = {};
 
   static ProblemNames of(const HybridSystem& system);
-  /// With the monitors of a run at PAR(first_monitor), ...
-  static ProblemNames of(const HybridSystem& system, const std::vector<std::string>& monitors);
+  /// With the monitors of a run.
+  static ProblemNames of(const HybridSystem& system, const RunSettings& settings);
   /// Of a parameter that is not the problem's own.
   void set_parameter(int k, const std::string& name);
   /// The name, or U(k), PAR(k) beyond the problem's own.

@@ -17,15 +17,20 @@ namespace {
 constexpr std::size_t most_columns = 5;
 constexpr int column_width = 13;
 
+bool is_of_duration(const PointColumn& column) {
+  // Monitors have names.
+  return column.kind == PointColumn::Kind::parameter && column.index >= first_duration &&
+         column.name == fmt::format("PAR({})", column.index);
+}
+
 /// What the screen shows first: 0 always, then in this order as far as there is room.
 int rank(const PointColumn& column, std::size_t place) {
   using Kind = PointColumn::Kind;
   const bool is_parameter = column.kind == Kind::parameter;
-  const bool is_of_duration = is_parameter && is_duration(column.index, max_orbit_segments);
-  if (place == 0 || column.kind == Kind::period || (is_parameter && !is_of_duration)) return 0;
+  if (place == 0 || column.kind == Kind::period || (is_parameter && !is_of_duration(column))) return 0;
   if (place == 1) return 1;  // the solution measure
   if (column.kind == Kind::user_function) return 2;
-  return is_of_duration ? 4 : 3;
+  return is_of_duration(column) ? 4 : 3;
 }
 
 /// The columns shown, in the file's order.
@@ -42,9 +47,7 @@ std::vector<std::size_t> shown(const std::vector<PointColumn>& columns) {
 }  // namespace
 
 std::string shown_name(const PointColumn& column) {
-  const bool is_of_duration =
-      column.kind == PointColumn::Kind::parameter && is_duration(column.index, max_orbit_segments);
-  return is_of_duration ? duration_name(column.index) : column.name;
+  return is_of_duration(column) ? duration_name(column.index) : column.name;
 }
 
 std::string format_table_heading(const std::vector<PointColumn>& columns) {

@@ -25,9 +25,8 @@ void check_segments(const SolutionIdentifier& id, const Requirement& need) {
        fmt::format("{} states (integer 8 less 1) are not a whole number of segments of dimension {} (integer 14)",
                    id.states(), id.dimension()));
   const std::int64_t segments = id.states() / id.dimension();
-  need(
-      segments <= max_orbit_segments,
-      fmt::format("{} segments (integer 8 less 1, over integer 14), at most {} allowed", segments, max_orbit_segments));
+  need(segments <= max_segments,
+       fmt::format("{} segments (integer 8 less 1, over integer 14), at most {} allowed", segments, max_segments));
   need(id.parameters() - id.internal_parameters() >= first_duration - 1 + segments,
        fmt::format("NPAR = {} parameters (integer 12) have no room for the durations PAR({}..{})", id.parameters(),
                    first_duration, first_duration - 1 + segments));

@@ -106,7 +106,7 @@ ContactTurn contact_turn(const LabelledSolution& solution, const RunSettings& se
                                                               : jump_at_contact(system, settings, x, contact);
   turn.contact = {own.field, contact.event, brought};
   turn.par = x.par;
-  turn.par.segment(first_duration - 1, max_segments).setZero();
+  turn.par.tail(turn.par.size() - first_duration + 1).setZero();
   turn.x = state_at(x, CollocationRule(x.shape.collocation), contact.segment,
                     contact.where == ContactPoint::inside ? contact.tau : 1.0);
   if (contact.where == ContactPoint::section || contact.where == ContactPoint::grazing_curve)

@@ -12,8 +12,28 @@ namespace tchat {
 
 namespace {
 
-constexpr std::size_t max_dimension = 1000;
-using Column = std::array<double, max_dimension>;
+/// Numbers on the stack, of many states not.
+class Column {
+ public:
+  /// Not set.
+  explicit Column(int size) : size_(static_cast<std::size_t>(size)) {
+    if (size_ > few_.size()) many_.resize(size_);
+    begin_ = size_ > few_.size() ? many_.data() : few_.data();
+  }
+  Column(const Column& other) : Column(static_cast<int>(other.size_)) { std::copy_n(other.begin_, size_, begin_); }
+  Column& operator=(const Column&) = delete;
+
+  double* data() { return begin_; }
+  const double* data() const { return begin_; }
+  double& operator[](std::size_t k) { return begin_[k]; }
+  void set_zero() { std::fill_n(begin_, size_, 0.0); }
+
+ private:
+  std::array<double, 1000> few_;
+  std::vector<double> many_;
+  std::size_t size_;
+  double* begin_;
+};
 
 constexpr double first_step = 2e-3;  // truncation (h^6) and rounding (1/h) are then of a size
 constexpr double reduction = 1.0 / 16.0;
@@ -28,22 +48,25 @@ struct MovablePoint {
   Column x;
   std::array<double, parameter_length> par;
 
-  MovablePoint(const double* x0, int n, const double* par0) {
-    std::copy(x0, x0 + n, x.begin());
+  MovablePoint(const double* x0, int n, const double* par0) : x(n) {
+    std::copy(x0, x0 + n, x.data());
     std::copy(par0, par0 + parameter_length, par.begin());
   }
   double& variable(int c, int n, std::span<const int> active) {
-    return c < n ? x[static_cast<std::size_t>(c)]
-                 : par[static_cast<std::size_t>(active[static_cast<std::size_t>(c - n)] - 1)];
+    // No function depends on what is beyond, nor on PAR(512).
+    return c < n
+               ? x[static_cast<std::size_t>(c)]
+               : par[static_cast<std::size_t>(std::min(active[static_cast<std::size_t>(c - n)], parameter_length) - 1)];
   }
 };
 
 /// phi'(0) of sixth order from phi(+-h), phi(+-2h), phi(+-3h). True when the fourth-order value agrees.
 template <class Function>
 bool difference_with_step(const Function& phi, double error, double h, int rows, double* derivative) {
-  std::array<Column, 3> odd;  // phi(kh) - phi(-kh)
-  Column size{};
-  Column value;
+  std::array<Column, 3> odd{Column(rows), Column(rows), Column(rows)};  // phi(kh) - phi(-kh)
+  Column size(rows);
+  size.set_zero();
+  Column value(rows);
   for (std::size_t k = 0; k < 3; ++k) {
     const double t = h * static_cast<double>(k + 1);
     phi(t, odd[k].data());

@@ -61,18 +61,18 @@ HybridSystem::HybridSystem(const tchat_problem& table) : table_(&table) {
   require(table.struct_size == sizeof(tchat_problem),
           fmt::format("its table has {} bytes, this tchat expects {}", table.struct_size, sizeof(tchat_problem)));
   require(table.name != nullptr, "its table has no name");
-  require(table.dimension >= 1 && table.dimension <= 1000,
-          fmt::format("its dimension is {}, allowed are 1..1000", table.dimension));
+  require(table.dimension >= 1 && table.dimension <= most_states,
+          fmt::format("its dimension is {}, allowed are 1..{}", table.dimension, most_states));
   require(table.parameters >= 0 && table.parameters <= 60,
           fmt::format("it has {} parameters, allowed are 0..60", table.parameters));
   // Smooth problems and boundary value problems need no events and jumps.
   require(table.fields >= 1 && table.events >= 0 && table.jumps >= 0,
           fmt::format("it has {} fields, {} events and {} jumps, at least one field is needed", table.fields,
                       table.events, table.jumps));
-  require(table.boundary_conditions >= 0 && table.boundary_conditions <= 1000 && table.integral_conditions >= 0 &&
-              table.integral_conditions <= 1000,
-          fmt::format("it has {} boundary and {} integral conditions, allowed are 0..1000 of each",
-                      table.boundary_conditions, table.integral_conditions));
+  require(table.boundary_conditions >= 0 && table.boundary_conditions <= most_states &&
+              table.integral_conditions >= 0 && table.integral_conditions <= most_states,
+          fmt::format("it has {} boundary and {} integral conditions, allowed are 0..{} of each",
+                      table.boundary_conditions, table.integral_conditions, most_states));
   require(table.boundary_conditions == 0 || table.boundary != nullptr, "its table has no function `boundary`");
   require(table.value != nullptr, "its table has no function `value`");
   require(table.derivative_order < 1 || table.first != nullptr, "its table has no function `first`");
@@ -111,7 +111,7 @@ std::string HybridSystem::state_name(int k) const { return name_or(table_->state
 
 std::string HybridSystem::parameter_name(int k) const {
   if (k == rotation_parameter && parameters() < k) return rotation_name;
-  if (is_duration(k, max_orbit_segments)) return duration_name(k);
+  if (is_duration(k, max_segments)) return duration_name(k);
   return name_or(table_->parameter_names, parameters(), k, "PAR({})");
 }
 

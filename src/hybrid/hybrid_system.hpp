@@ -20,6 +20,9 @@ namespace tchat {
 
 enum class FunctionKind { field = TCHAT_FIELD, event = TCHAT_EVENT, jump = TCHAT_JUMP, integrand = TCHAT_INTEGRAND };
 
+/// What is larger is no number of states, or conditions, but a slip: memory ends before.
+inline constexpr int most_states = 100'000;
+
 /// The ends of the segments of an orbit, n x m each, and PAR with the durations, for the boundary conditions.
 struct OrbitEnds {
   int segments;

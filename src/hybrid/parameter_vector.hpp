@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -12,20 +13,34 @@ namespace tchat {
 
 /// PAR(1..60) belong to the user; the duration of segment s (s = 1..) is PAR(60 + s).
 inline constexpr int first_duration = 61;
+/// At least so many entries has a ParameterVector, which problems rely on.
 inline constexpr int parameter_length = 512;
-inline constexpr int max_segments = 64;
-/// The orbits of a torus may have as many in all; other orbits have twice max_segments at most, after a period
-/// doubling.
-inline constexpr int max_orbit_segments = 4 * max_segments;
+/// What is larger is no number of segments, but a slip: memory ends before.
+inline constexpr int max_segments = 100'000;
+/// The orbits of a torus may have as many in all, for their returns are coupled densely.
+inline constexpr int max_torus_segments = 256;
 /// The rotation number of a torus (bvp/torus_system.hpp), for problems with fewer parameters of their own.
 inline constexpr int rotation_parameter = 60;
 inline constexpr const char* rotation_name = "rho";
 /// Values of monitors (bvp/monitor.hpp) stand behind the durations while a run lasts; no file has them as PAR.
-inline constexpr int first_monitor = first_duration + max_orbit_segments;
+constexpr int first_monitor(int segments) { return first_duration + std::max(max_torus_segments, segments); }
 inline constexpr int max_monitors = 32;
+/// The parameter that unfolds equations (bvp/unfolded_system.hpp) behind these.
+constexpr int unfolding_parameter(int segments) { return first_monitor(segments) + max_monitors; }
 
-/// PAR(k) is par(k - 1); always parameter_length entries, unused ones zero.
+/// PAR(k) is par(k - 1); unused ones zero. That of an orbit has room for its durations and for monitors, any other one
+/// parameter_length entries.
 using ParameterVector = Eigen::VectorXd;
+
+/// How many entries the vector of an orbit has.
+constexpr int parameter_room(int segments) { return std::max(parameter_length, unfolding_parameter(segments)); }
+/// Gives the vector of an orbit as many, new ones zero.
+inline void make_room(ParameterVector& par, int segments) {
+  const Eigen::Index before = par.size();
+  if (before == parameter_room(segments)) return;
+  par.conservativeResize(parameter_room(segments));
+  if (par.size() > before) par.tail(par.size() - before).setZero();
+}
 
 /// True when PAR(k) is a duration of an orbit of `segments` segments.
 constexpr bool is_duration(int k, int segments) { return k >= first_duration && k < first_duration + segments; }
@@ -38,9 +53,9 @@ inline std::string duration_name(int k) { return "T" + std::to_string(duration_s
 
 /// 62 of "T2"; nothing for what names no duration.
 inline std::optional<int> duration_of_name(std::string_view name) {
-  if (name.size() < 2 || name.size() > 4 || name.front() != 'T') return std::nullopt;
+  if (name.size() < 2 || name.size() > 7 || name.front() != 'T') return std::nullopt;
   const std::optional<int> segment = parse_integer(name.substr(1));
-  if (!segment || *segment < 1 || *segment > max_orbit_segments) return std::nullopt;
+  if (!segment || *segment < 1 || *segment > max_segments) return std::nullopt;
   return first_duration + *segment - 1;
 }
 

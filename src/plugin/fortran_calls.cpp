@@ -116,10 +116,10 @@ void FortranCalls::load(const double* x, const double* par) {
 void FortranCalls::clear_derivatives(int order, std::span<const int> active) {
   const std::ptrdiff_t n = n_;
   std::fill(dx_, dx_ + rows_ * n, 0.0);
-  for (const int k : active) std::fill(dp_ + rows_ * (k - 1), dp_ + rows_ * k, 0.0);
+  for (const int k : active) std::fill_n(dp_ + rows_ * column(k - 1), rows_, 0.0);
   if (order < 2) return;
   std::fill(dxx_, dxx_ + rows_ * n * n, 0.0);
-  for (const int k : active) std::fill(dxp_ + rows_ * n * (k - 1), dxp_ + rows_ * n * k, 0.0);
+  for (const int k : active) std::fill_n(dxp_ + rows_ * n * column(k - 1), rows_ * n, 0.0);
 }
 
 void FortranCalls::evaluate(FunctionKind kind, int index, const double* x, const double* par, int order,

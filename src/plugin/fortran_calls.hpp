@@ -5,6 +5,7 @@
 /// can be told. See fortran_problem.hpp for the argument lists.
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <span>
 #include <string>
@@ -27,10 +28,10 @@ class FortranCalls {
 
   // Results of the last evaluate(); rows, states and PAR indices count from 0.
   const double* value() const { return value_; }
-  const double* by_state() const { return dx_; }                       // rows x n
-  const double* by_parameter(int k) const { return dp_ + k * rows_; }  // rows
+  const double* by_state() const { return dx_; }                               // rows x n
+  const double* by_parameter(int k) const { return dp_ + column(k) * rows_; }  // rows
   double by_states(int i, int j, int k) const { return dxx_[i + rows_ * (j + n_ * k)]; }
-  double by_state_and_parameter(int i, int j, int k) const { return dxp_[i + rows_ * (j + n_ * k)]; }
+  double by_state_and_parameter(int i, int j, int k) const { return dxp_[i + rows_ * (j + n_ * column(k))]; }
   /// GCBCND at the ends of all segments: the conditions and, with `order` 1, their derivatives.
   void boundary(const OrbitEnds& at, int order);
   // Results of the last boundary(): one for each condition, and columns of as many.
@@ -57,6 +58,9 @@ class FortranCalls {
   static bool is_unset(double value);
 
  private:
+  /// The subroutines know parameter_length entries of PAR, of which they set nothing at the last.
+  static std::ptrdiff_t column(int k) { return std::min(k, parameter_length - 1); }
+
   using Integer = int;
   using Derivatives = void (*)(Integer*, double*, double*, Integer*, double*, double*, double*, double*, double*,
                                Integer*);

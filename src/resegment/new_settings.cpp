@@ -89,6 +89,7 @@ RunSettings new_settings(const RunSettings& old, const SegmentList& segments, co
     settings.segments.push_back(next);
   }
   if (!problem_type(settings).facts().may_conserve) settings.conserved.clear();
+  renumber_monitors(settings, m);
   settings.free_parameters = new_free_parameters(settings, old, segments.size(), problem, system);
   settings.parameter_weights = new_weights(old, segments);
   settings.test_functions = new_test_functions(segments, problem, system);

@@ -62,7 +62,8 @@ Eigen::MatrixXd resample(const Orbit& x, const std::vector<OrbitPiece>& pieces, 
 
 /// PAR(61..) of the new orbit; what the old one had beyond is zero.
 void set_durations(const Orbit& x, const std::vector<OrbitPiece>& pieces, Orbit& target) {
-  target.par.tail(parameter_length - first_duration + 1).setZero();
+  make_room(target.par, target.shape.segments);
+  target.par.tail(target.par.size() - first_duration + 1).setZero();
   for (std::size_t p = 0; p < pieces.size(); ++p)
     target.duration(static_cast<int>(p)) = (pieces[p].to - pieces[p].from) * x.duration(pieces[p].segment);
 }
@@ -104,7 +105,8 @@ Orbit joined_orbit(const Orbit& old, const std::vector<std::vector<OrbitPiece>>&
   result.shape = old.shape;
   result.shape.segments = static_cast<int>(groups.size());
   result.par = old.par;
-  result.par.tail(parameter_length - first_duration + 1).setZero();
+  make_room(result.par, result.shape.segments);
+  result.par.tail(result.par.size() - first_duration + 1).setZero();
   const int fine = 8 * old.shape.intervals;
   const std::vector<double> grid = uniform_mesh(fine);
   Eigen::VectorXd density = Eigen::VectorXd::Constant(fine, 1e-3);

@@ -84,7 +84,7 @@ bool solves_without_correction(PathFollower& follower, const Orbit& stored, cons
 /// Files do not have the parameter that unfolds equations, which is zero at every solution.
 OrbitStart with_unfolding(OrbitStart start, const DefiningSystem& system) {
   if (!system.unfolding(start.orbit)) return start;
-  start.orbit.par(unfolding_parameter - 1) = 0.0;
+  start.orbit.par(unfolding_parameter(start.orbit.shape.segments) - 1) = 0.0;
   if (start.direction && start.direction->globals.size() < system.free_count()) {
     start.direction->globals.conservativeResize(system.free_count());
     start.direction->globals(system.free_count() - 1) = 0.0;

@@ -49,10 +49,9 @@ RunSettings doubled(RunSettings settings) {
     return settings;
   }
   const std::size_t m = settings.segments.size();
-  if (2 * m > static_cast<std::size_t>(max_segments))
-    throw UserError(fmt::format("the doubled orbit has {} segments, at most {} are allowed", 2 * m, max_segments));
   const std::vector<SegmentSettings> segments = settings.segments;
   settings.segments.insert(settings.segments.end(), segments.begin(), segments.end());
+  renumber_monitors(settings, static_cast<int>(m));
   // The k-th monitored event of the first half is watched in the second half too.
   int monitored = 0;
   for (const SegmentSettings& segment : segments) monitored += static_cast<int>(segment.monitor.size());
@@ -125,6 +124,7 @@ Bifurcation double_at(PathFollower& follower, const DefiningSystem& defining, co
                      OrbitVector(shape, defining.free_count()),
                      OrbitVector(shape, defining.free_count())};
   const int m = x.shape.segments;
+  make_room(result.orbit.par, shape.segments);
   result.orbit.states << x.states, x.states;
   result.direction.states << v.states, -v.states;
   result.direction.durations << v.durations, -v.durations;

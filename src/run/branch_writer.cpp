@@ -21,7 +21,7 @@ namespace tchat {
 namespace {
 
 ProblemNames names_of_run(const HybridSystem& system, const RunSettings& settings) {
-  ProblemNames names = ProblemNames::of(system, settings.monitors);
+  ProblemNames names = ProblemNames::of(system, settings);
   const FamilyFacts& family = family_of(settings).facts();
   if (family.own_parameter) names.set_parameter(*family.own_parameter, family.own_parameter_name);
   return names;

@@ -67,7 +67,7 @@ WeightedNorm mean_norm(const RunSettings& settings, int orbits) {
   Eigen::VectorXd states = state_weights(settings) / orbits;
   Eigen::VectorXd parameters = Eigen::VectorXd::Ones(parameter_length);
   for (const IndexedValue& w : settings.parameter_weights) parameters(w.index - 1) = w.value;
-  parameters.segment(first_duration - 1, max_orbit_segments) /= orbits;
+  parameters.segment(first_duration - 1, max_torus_segments) /= orbits;
   return {std::move(states), std::move(parameters)};
 }
 

@@ -30,7 +30,7 @@ constexpr int fewest_harmonics = 3;
 constexpr double on_unit_circle = 1e-3;
 
 int most_harmonics(const RunSettings& one_return) {
-  return (max_orbit_segments / std::max(segment_count(one_return), 1) - 1) / 2;
+  return (max_torus_segments / std::max(segment_count(one_return), 1) - 1) / 2;
 }
 
 void check_signature(const RunSettings& settings, const std::string& source) {
@@ -44,7 +44,7 @@ void check_signature(const RunSettings& settings, const std::string& source) {
     throw UserError(
         fmt::format("{}: a return of {} segments leaves no room for {} orbits of it: at most {} segments in "
                     "all; take a shorter return",
-                    source, segment_count(settings), 2 * fewest_harmonics + 1, max_orbit_segments));
+                    source, segment_count(settings), 2 * fewest_harmonics + 1, max_torus_segments));
 }
 
 /// The nearest fraction of small numbers, in words; "" where rho is near none.
@@ -210,8 +210,8 @@ BranchSetup continue_torus(const ProblemType& type, const HybridSystem& system, 
     if (selected.start.direction)
       start.start.direction = resampled_torus(*selected.start.direction, shape, stored, orbits);
     // Durations are found anew.
-    start.known_parameters.tail(parameter_length - first_duration + 1) =
-        start.start.orbit.par.tail(parameter_length - first_duration + 1);
+    const Eigen::Index beyond = parameter_length - first_duration + 1;
+    start.known_parameters.tail(beyond) = start.start.orbit.par.tail(beyond);
   }
   BranchSetup setup = type.prepare(system, settings, start);
   setup.start = first_point(*setup.follower, *setup.defining, start, setup.settings);

@@ -201,7 +201,7 @@ std::vector<std::string> check_settings_against(const HybridSystem& system, cons
 
 int parameter_index(const HybridSystem& system, const std::string& name, const std::string& where) {
   if (const std::optional<int> k = parse_integer(name)) {
-    if (*k <= parameter_length && is_parameter(system, *k)) return *k;
+    if (is_parameter(system, *k)) return *k;
   } else if (const int named = system.parameter_index(name); named > 0) {
     return named;
   }
@@ -216,7 +216,7 @@ Eigen::VectorXd state_weights(const RunSettings& settings) {
 }
 
 WeightedNorm weighted_norm(const RunSettings& settings) {
-  Eigen::VectorXd weights = Eigen::VectorXd::Ones(parameter_length);
+  Eigen::VectorXd weights = Eigen::VectorXd::Ones(parameter_room(segment_count(settings)));
   for (const IndexedValue& w : settings.parameter_weights) weights(w.index - 1) = w.value;
   return {state_weights(settings), weights};
 }

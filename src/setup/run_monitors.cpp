@@ -16,7 +16,7 @@ namespace {
 void check_monitor(const RunSettings& settings, int index, const MonitorName& monitor, const SettingsSource& source) {
   const auto refuse = [&](const char* keyword, const std::string& why) {
     throw UserError(fmt::format("{}: {}: {}", source.of(keyword),
-                                settings.monitors[static_cast<std::size_t>(index - first_monitor)], why));
+                                settings.monitors[static_cast<std::size_t>(index - first_monitor(settings))], why));
   };
   const bool has_multipliers = family_of(settings).facts().has_return_map;
   const bool of_segment = monitor.kind != MonitorName::Kind::multiplier && monitor.number > 0;
@@ -51,7 +51,7 @@ std::vector<MonitorName> monitor_names(const HybridSystem& system, const RunSett
 }  // namespace
 
 std::string parameter_name(const HybridSystem& system, const RunSettings& settings, int k) {
-  return is_monitor(settings, k) ? settings.monitors[static_cast<std::size_t>(k - first_monitor)]
+  return is_monitor(settings, k) ? settings.monitors[static_cast<std::size_t>(k - first_monitor(settings))]
                                  : system.parameter_name(k);
 }
 
@@ -65,7 +65,7 @@ std::string held_text(const HybridSystem& system, const RunSettings& settings) {
 void check_monitors(const HybridSystem& system, const RunSettings& settings, const SettingsSource& source) {
   const std::vector<MonitorName> list = monitor_names(system, settings);
   for (std::size_t i = 0; i < list.size(); ++i)
-    check_monitor(settings, first_monitor + static_cast<int>(i), list[i], source);
+    check_monitor(settings, first_monitor(settings) + static_cast<int>(i), list[i], source);
 }
 
 BranchMonitors branch_monitors(const DefiningSystem& system, const RunSettings& settings, const Orbit& start) {
@@ -75,7 +75,7 @@ BranchMonitors branch_monitors(const DefiningSystem& system, const RunSettings& 
   for (const HeldValue& held : settings.held) {
     std::shared_ptr<const Monitor> monitor =
         is_monitor(settings, held.parameter)
-            ? make_monitor(names[static_cast<std::size_t>(held.parameter - first_monitor)], system)
+            ? make_monitor(names[static_cast<std::size_t>(held.parameter - first_monitor(settings))], system)
             : make_duration_monitor(duration_segment(held.parameter));
     const double value = held.value ? *held.value : monitor->value(start, rule);
     monitors.held.push_back({std::move(monitor), value, parameter_name(system.system(), settings, held.parameter)});

@@ -156,8 +156,6 @@ std::string obstacle(const HybridSystem& system, const SimulationResult& result,
     if (std::abs(orbit.advance(i)) > 1e-9 * (1.0 + std::abs(orbit.start(i))))
       return fmt::format("{} does not return; `tchat run` needs a problem without that state",
                          system.state_name(static_cast<int>(i) + 1));
-  if (static_cast<int>(orbit.signature.size()) > max_segments)
-    return fmt::format("it has {} segments, at most {} can be continued", orbit.signature.size(), max_segments);
   return "";
 }
 

@@ -51,11 +51,10 @@ SegmentFlow result_at(const CvodesFlow& flow, FlowStatus status) {
 }  // namespace
 
 VectorXd full_parameters(const HybridSystem& system, const VectorXd& par) {
-  require(par.size() >= system.parameters() && par.size() <= parameter_length,
-          fmt::format("{} parameter values given, {} needs {} (at most {}).", par.size(), system.name(),
-                      system.parameters(), parameter_length));
+  require(par.size() >= system.parameters(),
+          fmt::format("{} parameter values given, {} needs {}.", par.size(), system.name(), system.parameters()));
   require(par.allFinite(), "a parameter value is not finite.");
-  VectorXd full = VectorXd::Zero(parameter_length);
+  VectorXd full = VectorXd::Zero(std::max<Eigen::Index>(par.size(), parameter_length));
   full.head(par.size()) = par;
   return full;
 }

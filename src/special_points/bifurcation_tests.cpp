@@ -79,7 +79,7 @@ bool is_multiplier_at(const TestedPoint& point, int target) {
 FoldTest::FoldTest(int parameter, const std::vector<int>& free_parameters, int segments, bool stop, PointType type,
                    std::string held)
     : is_duration_(is_duration(parameter, segments)),
-      is_monitor_(parameter >= first_monitor),
+      is_monitor_(parameter >= first_monitor(segments)),
       stop_(stop),
       type_(type),
       held_(std::move(held)) {

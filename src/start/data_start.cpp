@@ -53,6 +53,7 @@ SelectedStart start_from_orbit(const std::string& path, const RunSettings& setti
   const DatFile data =
       looks_like_trajectory(path) ? data_of_trajectory(path, settings) : read_dat_file(path, settings.dimension, m);
   ParameterVector par = initial_parameters(system);
+  make_room(par, m);
   std::vector<bool> given(static_cast<std::size_t>(m), false);
   const auto set = [&](int k, double value) {
     par(k - 1) = value;

@@ -128,9 +128,9 @@ std::optional<OrbitVector> stored_direction(const LabelledSolution& solution, co
   return direction;
 }
 
-ParameterVector stored_parameters(const LabelledSolution& solution) {
-  ParameterVector par = ParameterVector::Zero(parameter_length);
-  for (std::size_t k = 0; k < solution.parameters.size() && k < static_cast<std::size_t>(parameter_length); ++k)
+ParameterVector stored_parameters(const LabelledSolution& solution, const OrbitShape& shape) {
+  ParameterVector par = ParameterVector::Zero(parameter_room(shape.segments));
+  for (std::size_t k = 0; k < std::min(solution.parameters.size(), static_cast<std::size_t>(par.size())); ++k)
     par(static_cast<Eigen::Index>(k)) = solution.parameters[k];
   return par;
 }
@@ -139,7 +139,7 @@ OrbitStart point_start(const LabelledSolution& solution, const OrbitShape& shape
                        const std::vector<int>& free_parameters) {
   OrbitStart start;
   start.direction = stored_direction(solution, shape, free_parameters);
-  start.orbit = {shape, uniform_mesh(1), at_nodes(solution.states, shape), stored_parameters(solution)};
+  start.orbit = {shape, uniform_mesh(1), at_nodes(solution.states, shape), stored_parameters(solution, shape)};
   start.orbit.duration(0) = 0.0;
   return start;
 }
@@ -221,7 +221,7 @@ OrbitStart orbit_from_solution(const LabelledSolution& solution, const OrbitShap
   OrbitStart start;
   start.direction = stored_direction(solution, stored, free_parameters);
   start.orbit = {stored, mesh, unstack(solution.states, shape.dimension), {}};
-  start.orbit.par = stored_parameters(solution);
+  start.orbit.par = stored_parameters(solution, stored);
   // A boundary value problem of AUTO itself is one on the interval from 0 to 1.
   if (is_shared_problem_type(solution.problem_type) &&
       solution.parameters.size() < static_cast<std::size_t>(first_duration))

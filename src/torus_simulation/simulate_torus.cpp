@@ -44,7 +44,7 @@ Signature signature_of(const SimulationConstants& constants, const SimulationReq
         "'FIELD,EVENT,JUMP;...'",
         request.name));
   Signature signature = constants.settings.signature();
-  const auto room = static_cast<std::size_t>(max_orbit_segments / (2 * fewest_harmonics + 1));
+  const auto room = static_cast<std::size_t>(max_torus_segments / (2 * fewest_harmonics + 1));
   if (signature.size() > room)
     throw UserError(
         fmt::format("{}: a return of {} segments is too long for a torus, at most {} are allowed; choose a "
@@ -154,7 +154,7 @@ int simulate_torus(const SimulationRequest& request, const std::string& torus_na
       fit_invariant_curve(points, {.angles = angles, .max_harmonics = 200, .tolerance = fit_tolerance}, request.name);
 
   RunSettings settings = torus_settings(constants, free_parameter(request, constants, system));
-  const int most = (max_orbit_segments / static_cast<int>(one_return.size()) - 1) / 2;
+  const int most = (max_torus_segments / static_cast<int>(one_return.size()) - 1) / 2;
   const int harmonics = std::clamp(settings.harmonics > 0 ? settings.harmonics : fitted.curve.harmonics(),
                                    std::min(fewest_harmonics, most), most);
   const Orbit orbit = orbits_from_curve(system, one_return, fitted.curve, start.par, 2 * harmonics + 1,

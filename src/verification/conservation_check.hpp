@@ -14,8 +14,8 @@ struct ConservationCheck {
   std::string text;  ///< a line for each function of the problem that was looked at
 };
 
-/// H_x f of the fields of a signature at `states`, and H(g(x)) - H(x) of its jumps where the event of the segment is zero
-/// near them. `par`: a ParameterVector. `name`: of H. H_x by central differences, so that what is below 1e-7 of
+/// H_x f of the fields of a signature at `states`, and H(g(x)) - H(x) of its jumps where the event of the segment is
+/// zero near them. `par`: a ParameterVector. `name`: of H. H_x by central differences, so that what is below 1e-7 of
 /// |H_x| |f|, or of 1 + |H|, counts as zero.
 ConservationCheck check_conservation(const HybridSystem& system, const Quantity& conserved, const std::string& name,
                                      const Signature& signature, const std::vector<Eigen::VectorXd>& states,
