@@ -57,10 +57,13 @@ double least_along_tangent(const HybridSystem& system, const DefiningSystem& def
   return by_state.dot(state_at(tangent, rule, at.segment, at.tau)) + by_parameter.dot(point.tangent.globals);
 }
 
-/// PAR holds parameters and durations.
+/// Of parameters and durations. The monitors behind them in PAR are evaluated by the run, not stored in its start.
 bool has_moved(const Orbit& found, const Orbit& start) {
+  const auto before = start.par.head(first_monitor - 1).array();
   const double scale = 1.0 + std::abs(start.period());
-  return ((found.par - start.par).array().abs() > correction_moves_at_most * (scale + start.par.array().abs())).any();
+  return ((found.par.head(first_monitor - 1).array() - before).abs() >
+          correction_moves_at_most * (scale + before.abs()))
+      .any();
 }
 
 int sign_of(double rate) { return std::abs(rate) > no_change ? (rate > 0.0 ? 1 : -1) : 0; }

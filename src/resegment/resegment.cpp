@@ -36,6 +36,7 @@
 #include "setup/named_parameters.hpp"
 #include "setup/problem_setup.hpp"
 #include "setup/recorded_problem.hpp"
+#include "setup/run_monitors.hpp"
 #include "setup/run_request.hpp"
 #include "start/orbit_start.hpp"
 #include "text/user_error.hpp"
@@ -138,7 +139,7 @@ std::string summary(const LabelledOrbit& source, const RunSettings& settings, co
   }
   std::string free;
   for (const int k : settings.free_parameters)
-    free += fmt::format("{}{}", free.empty() ? "" : ", ", system.parameter_name(k));
+    free += fmt::format("{}{}", free.empty() ? "" : ", ", parameter_name(system, settings, k));
   return text + fmt::format("  free: {}\n", free);
 }
 
