@@ -101,13 +101,21 @@ class AssignmentParser {
     position_ = end + 1;
   }
 
+  /// An empty value removes a name.
+  static bool may_be_empty(const Token& key) {
+    const Constant* constant = find_constant(key.text);
+    return constant != nullptr && std::holds_alternative<std::string RunSettings::*>(constant->member);
+  }
+
   /// One item, or several without brackets up to the end of the line or the next assignment.
   RawValue value_of(const Token& key) {
     skip_blanks();
     const std::size_t begin = position_;
     const Place place = place_;
-    if (at_end() || peek() == '\n' || peek() == '#' || peek() == ',')
+    if (at_end() || peek() == '\n' || peek() == '#' || peek() == ',') {
+      if (may_be_empty(key)) return RawValue::scalar({"", place});
       fail(fmt::format("nothing after '{} ='", key.text), "a value");
+    }
     std::vector<RawValue> items{item(0)};
     std::size_t end = position_;
     while (another_item_follows()) {

@@ -72,3 +72,10 @@ TEST_CASE("The start and the stop rules take quotes", "[constants]") {
   REQUIRE(s.stop_rules.size() == 1);
   CHECK(s.stop_rules[0].type == "LP");
 }
+
+TEST_CASE("An empty value removes a name", "[constants]") {
+  CHECK(read("ICP = period\nCONSERVED = energy").conserved == "energy");
+  const RunSettings s = read("ICP = 1\nCONSERVED =   # none\nNTST = 7");
+  CHECK(s.conserved.empty());
+  CHECK(s.mesh_intervals == 7);
+}
