@@ -100,8 +100,8 @@ std::optional<ConservationCheck> conservation(const HybridSystem& system, const 
                                 settings.conserved, system.name(), quantity_list(system)));
   Eigen::VectorXd par = Eigen::VectorXd::Zero(parameter_length);
   par.head(options.parameters.size()) = options.parameters;
-  return check_conservation(system, *conserved, settings.conserved, settings.signature(),
-                            checked_states(system, options), par);
+  return check_conservation(system, *conserved, settings.conserved, settings.segments, checked_states(system, options),
+                            par);
 }
 
 int check_problem(const CheckArguments& arguments) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 #include <set>
 #include <utility>
@@ -38,11 +39,14 @@ class Conservation {
   Conservation(const HybridSystem& system, const Quantity& conserved, const VectorXd& par)
       : system_(system), function_(system, conserved, {}), par_(par), n_(system.dimension()) {}
 
-  LargestChange of_field(int field, const std::vector<VectorXd>& states) const {
+  LargestChange of_field(int field, const std::set<int>& events, const std::vector<VectorXd>& states) const {
     LargestChange largest;
     VectorXd f(n_), gradient(n_);
     std::vector<double> none;
-    for (const VectorXd& x : states) {
+    for (const VectorXd& near : states) {
+      const std::optional<VectorXd> admissible = on_admissible_side(events, near);
+      if (!admissible) continue;
+      const VectorXd& x = *admissible;
       system_.value(FunctionKind::field, field, x.data(), par_.data(), f.data());
       function_.first(x.data(), par_.data(), gradient.data(), none.data());
       const double scale = gradient.norm() * f.norm();
@@ -72,6 +76,25 @@ class Conservation {
   }
 
  private:
+  double event_value(int event, const VectorXd& x) const {
+    double h = 0.0;
+    system_.value(FunctionKind::event, event, x.data(), par_.data(), &h);
+    return h;
+  }
+
+  /// A state where none of the event functions is negative: x, mirrored at the surfaces behind which it lies.
+  std::optional<VectorXd> on_admissible_side(const std::set<int>& events, VectorXd x) const {
+    for (const int event : events) {
+      if (event_value(event, x) >= 0.0) continue;
+      const std::optional<VectorXd> surface = on_surface(event, x);
+      if (!surface) return std::nullopt;
+      x = 2.0 * *surface - x;
+    }
+    for (const int event : events)
+      if (!(event_value(event, x) >= 0.0)) return std::nullopt;
+    return x;
+  }
+
   /// The point where the event function is zero, by Newton's method along its gradient.
   std::optional<VectorXd> on_surface(int event, VectorXd x) const {
     constexpr int most = 20;
@@ -96,7 +119,7 @@ class Conservation {
 }  // namespace
 
 ConservationCheck check_conservation(const HybridSystem& system, const Quantity& conserved, const std::string& name,
-                                     const Signature& signature, const std::vector<VectorXd>& states,
+                                     const std::vector<SegmentSettings>& segments, const std::vector<VectorXd>& states,
                                      const VectorXd& par) {
   const Conservation conservation(system, conserved, par);
   ConservationCheck check;
@@ -112,14 +135,18 @@ ConservationCheck check_conservation(const HybridSystem& system, const Quantity&
                                 conservation.text(largest.state));
     }
   };
-  std::set<int> fields;
+  std::map<int, std::set<int>> fields;  // with the event functions that are not negative on all their segments
   std::set<std::pair<int, int>> jumps;
-  for (const IndexVector& index : signature) {
-    fields.insert(index.field);
+  for (const SegmentSettings& segment : segments) {
+    const IndexVector& index = segment.index;
+    std::set<int> events(segment.monitor.begin(), segment.monitor.end());
+    if (index.event != no_function) events.insert(index.event);
+    const auto [known, is_new] = fields.insert({index.field, events});
+    if (!is_new) std::erase_if(known->second, [&](int event) { return !events.contains(event); });
     if (index.jump != no_function) jumps.insert({index.event, index.jump});
   }
-  for (const int field : fields)
-    report(conservation.of_field(field, states),
+  for (const auto& [field, events] : fields)
+    report(conservation.of_field(field, events, states),
            fmt::format("field {} ({})", field, system.function_name(FunctionKind::field, field)), "its rate of change");
   for (const auto& [event, jump] : jumps)
     report(conservation.of_jump(event, jump, states),

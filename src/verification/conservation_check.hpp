@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "bvp/quantity.hpp"
+#include "constants/run_settings.hpp"
 
 namespace tchat {
 
@@ -14,11 +15,13 @@ struct ConservationCheck {
   std::string text;  ///< a line for each function of the problem that was looked at
 };
 
-/// H_x f of the fields of a signature at `states`, and H(g(x)) - H(x) of its jumps where the event of the segment is
-/// zero near them. `par`: a ParameterVector. `name`: of H. H_x by central differences, so that what is below 1e-7 of
-/// |H_x| |f|, or of 1 + |H|, counts as zero.
+/// H_x f of the fields of the segments at `states`, and H(g(x)) - H(x) of their jumps where the event of the segment is
+/// zero near them. A state where an event function of every segment with that field, terminal or monitored, is negative
+/// is mirrored at that surface: H may be another function behind it, as the energy of a spring is without contact.
+/// `par`: a ParameterVector. `name`: of H. H_x by central differences, so that what is below 1e-7 of |H_x| |f|, or of 1
+/// + |H|, counts as zero.
 ConservationCheck check_conservation(const HybridSystem& system, const Quantity& conserved, const std::string& name,
-                                     const Signature& signature, const std::vector<Eigen::VectorXd>& states,
-                                     const Eigen::VectorXd& par);
+                                     const std::vector<SegmentSettings>& segments,
+                                     const std::vector<Eigen::VectorXd>& states, const Eigen::VectorXd& par);
 
 }  // namespace tchat
