@@ -67,6 +67,7 @@ void CondensedReturnMap::values(const CondensedSystem& condensed, const Orbit& x
     system_.section_gradient(s, x.end(s), par, hx_.data());
     values.insert(values.end(), hx_.begin(), hx_.end());
     hybrid.first(FunctionKind::jump, v.jump, x.end(s), par, {}, f_.data(), fx_.data(), nullptr);
+    system_.clear_absent(s, fx_.data(), n_);
     values.insert(values.end(), static_cast<std::size_t>(n_), s + 1 == shape_.segments ? mu : 1.0);
     for (int a = 0; a < n_; ++a)
       for (int b = 0; b < n_; ++b) values.push_back(-fx_(a, b));
@@ -84,6 +85,7 @@ void CondensedReturnMap::parameter_column(const CondensedSystem& condensed, cons
     if (system_.has_event(s))
       hybrid.first(FunctionKind::event, v.event, x.end(s), x.par.data(), parameter, &h, hx_.data(), column + n_);
     hybrid.first(FunctionKind::jump, v.jump, x.end(s), x.par.data(), parameter, f_.data(), fx_.data(), d_.data());
+    system_.clear_absent(s, d_.data(), 1);
     for (int a = 0; a < n_; ++a) column[n_ + 1 + a] = -d_(a);
   }
 }

@@ -40,6 +40,15 @@ class DefiningSystem {
   /// (src/families), which alone knows the classes of analyses.
   virtual std::unique_ptr<BranchAnalysis> make_analysis(const OrbitShape& shape) const = 0;
   int segments() const { return static_cast<int>(signature_.size()); }
+  /// The states of the mode of segment s (from 0); those beyond are zero.
+  int dimension_of(int s) const { return system_.dimension_of(signature_[static_cast<std::size_t>(s)].field); }
+  /// Sets rows of a jump (dimension() each, column by column) at the end of segment s to zero for states that the mode
+  /// after it has not. Jumps do so of their own, but for the identity.
+  void clear_absent(int s, double* rows, int columns) const {
+    if (!system_.has_modes()) return;
+    for (int c = 0; c < columns; ++c)
+      for (int a = dimension_of((s + 1) % segments()); a < dimension(); ++a) rows[c * dimension() + a] = 0.0;
+  }
   /// Does an event end segment s?
   bool has_event(int s) const { return signature_[static_cast<std::size_t>(s)].event != no_function; }
   /// Does segment s begin and end on one surface (hybrid/contact_segment.hpp)?

@@ -64,6 +64,7 @@ void RingSystem::coupling_values(int s, const Orbit& x, double* values) const {
   double* connection = values + end_conditions(s);
   value_.resize(static_cast<std::size_t>(std::max(end_conditions(s), dimension())));
   system().value(FunctionKind::jump, v.jump, x.end(s), par, value_.data());
+  clear_absent(s, value_.data(), 1);
   target_value(s, x, connection);
   for (int a = 0; a < dimension(); ++a) connection[a] -= value_[static_cast<std::size_t>(a)];
 }
@@ -99,6 +100,9 @@ double* RingSystem::coupling_derivatives(int s, const Orbit& x, double* values, 
 
   system().first(FunctionKind::jump, signature()[static_cast<std::size_t>(s)].jump, x.end(s), x.par.data(),
                  free_parameters(), value_.data(), by_state_.data(), by_parameter_.data());
+  clear_absent(s, value_.data(), 1);
+  clear_absent(s, by_state_.data(), n);
+  clear_absent(s, by_parameter_.data(), q);
   target_value(s, x, values + conditions);
   for (int a = 0; a < n; ++a) values[conditions + a] -= value_[static_cast<std::size_t>(a)];
   entries = target_derivatives(s, x, entries);

@@ -43,12 +43,6 @@ class SettingsCheck {
           "ICP", "ICP", fmt::format("{} parameters that are not durations", of_problem),
           fmt::format("at least {} with IPS = {}, ISW = {}{}; {}", needed, settings_.problem_type,
                       settings_.branch_mode, held == 0 ? "" : fmt::format(", HOLD of {}", held), rules().parameters));
-    if (needed == 0 && list.front() < first_duration)
-      refuse_constant("ICP", "ICP(1)", in_quotes(std::to_string(list.front())),
-                      fmt::format("what changes along the family: CONSERVED leaves no parameter of the problem free; "
-                                  "name {} (its value), period or another monitor, or a duration; with HOLD of one of "
-                                  "them a parameter is free",
-                                  settings_.conserved));
   }
 
   /// The count of unknowns and conditions of a boundary value problem.

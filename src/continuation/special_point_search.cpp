@@ -506,8 +506,8 @@ std::vector<SpecialPointSearch::Zero> SpecialPointSearch::find_zeros(const PathP
 }
 
 /// Between the start of the step, evaluated again with the border and the mesh of the trial steps, and its end. At a
-/// zero located before, or where it is undefined, the function lacks the sign that the branch had there: the point
-/// where it has it is found by bisection.
+/// zero located before, or where it is undefined, the function lacks the sign that the branch had there, or has it by
+/// rounding: the point where it has it is found by bisection.
 SpecialPointSearch::Zero SpecialPointSearch::locate(std::size_t test, const PathPoint& here, PathPoint& trial,
                                                     double ds, double end_value) {
   TestValue found;
@@ -522,20 +522,22 @@ SpecialPointSearch::Zero SpecialPointSearch::locate(std::size_t test, const Path
     genuine = tests_[test]->is_genuine(tested(there, data));
     return true;
   };
-  const auto has_sign = [&] { return found.value && found.sign == signs_[test]; };
+  const auto has_wanted_sign = [&] { return found.value && found.sign == signs_[test]; };
   SignChange bracket{0.0, ds, 0.0, end_value};
   bool arrived = evaluate_at(bracket.low);
   const bool genuine_at_start = arrived && genuine;
-  while (arrived && !has_sign() && bracket.length() > settings_.tolerance) {
+  bool has_sign = arrived && has_wanted_sign() && !labelled_[test];
+  while (arrived && !has_sign && bracket.length() > settings_.tolerance) {
     const double middle = 0.5 * (bracket.low + bracket.high);
     arrived = evaluate_at(middle);
+    has_sign = arrived && has_wanted_sign();
     if (found.value && found.sign == -signs_[test])
       bracket.high = middle, bracket.high_value = *found.value;
     else
       bracket.low = middle;
   }
   if (!arrived) return {test, 0.0, Search::failed};
-  if (!has_sign()) return {test, bracket.high, genuine_at_start ? zero_at_start(test) : Search::no_special_point};
+  if (!has_sign) return {test, bracket.high, genuine_at_start ? zero_at_start(test) : Search::no_special_point};
   bracket.low_value = *found.value;
   const auto at = [&](double length) { return evaluate_at(length) ? found.value : std::optional<double>(); };
   // No level of rounding: where a function is flat, it is small far from its zero.

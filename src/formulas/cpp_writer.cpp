@@ -73,9 +73,24 @@ class CppWriter {
     };
     return fmt::format(
         "  static constexpr int dimension = {}, parameters = {};\n"
-        "  static constexpr int fields = {}{}{};\n",
+        "  static constexpr int fields = {}{}{};\n{}",
         model_.names.states().size(), model_.parameter_values.size(), model_.fields.size() + model_.slides.size(),
-        count("events", model_.events.size() + 2 * model_.slides.size()), count("jumps", model_.jumps.size()));
+        count("events", model_.events.size() + 2 * model_.slides.size()), count("jumps", model_.jumps.size()),
+        model_.file.modes.empty() ? "" : dimensions());
+  }
+
+  /// Of modes that differ.
+  std::string dimensions() const {
+    std::vector<std::size_t> fields, jumps;
+    for (const ProblemModel::Field& field : model_.fields) fields.push_back(field.rates.size());
+    fields.resize(model_.fields.size() + model_.slides.size(), model_.names.states().size());
+    for (const ProblemModel::Jump& jump : model_.jumps) jumps.push_back(jump.states);
+    return fmt::format(
+        "  static constexpr int dimension_of(int field) {{\n    constexpr int states[] = {{{}}};\n"
+        "    return states[field - 1];\n  }}\n"
+        "  static constexpr int dimension_after(int jump) {{\n    constexpr int states[] = {{{}}};\n"
+        "    return states[jump - 1];\n  }}\n",
+        fmt::join(fields, ", "), fmt::join(jumps, ", "));
   }
 
   static constexpr const char* slides_member = "sliding";

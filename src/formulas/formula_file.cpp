@@ -12,8 +12,8 @@ namespace tchat::formulas {
 namespace {
 
 const std::vector<std::string>& statement_words() {
-  static const std::vector<std::string> words = {"par",   "init", "number", "aux",   "field",
-                                                 "event", "jump", "slide",  "after", "done"};
+  static const std::vector<std::string> words = {"par",  "init",  "number", "aux",  "field", "event",
+                                                 "jump", "slide", "after",  "mode", "done"};
   return words;
 }
 
@@ -60,6 +60,7 @@ class StatementReader {
       return in_.next(), list(file_.events, "an event", "events are written event wall = 1 - x"), true;
     if (word.is("field")) return in_.next(), field(), true;
     if (word.is("jump")) return in_.next(), jump(), true;
+    if (word.is("mode") && in_.peek(2).is(":")) return in_.next(), mode(), true;
     if (word.is("slide")) return in_.next(), slide(), true;
     if (word.is("after")) return in_.next(), successor(word.at), true;
     refuse_unknown(word);
@@ -71,7 +72,7 @@ class StatementReader {
     throw FormulaError{
         word.at, fmt::format("a statement cannot begin with '{}' before {}{}; it is NAME = EXPRESSION, "
                              "STATE' = EXPRESSION, or begins with par, init, number, aux, field, event, "
-                             "jump, slide or after",
+                             "jump, mode, slide or after",
                              word.text.substr(0, 40), shown(in_.peek(1)), did_you_mean(word.text, statement_words()))};
   }
 
@@ -97,6 +98,7 @@ class StatementReader {
 
   void jump() {
     Block made{in_.expect_name("a jump"), {}};
+    if (in_.accept("to")) made.target = in_.expect_name("a field");
     if (opens_lines("jump NAME: STATE -> EXPRESSION")) {
       do made.lines.push_back(new_value());
       while (in_.accept(",") || in_.accept(";"));
@@ -182,6 +184,17 @@ class StatementReader {
     in_.expect("=", "a function is written f(a, b) = EXPRESSION");
     made.body = parse_expression(in_);
     file_.functions.push_back(std::move(made));
+  }
+
+  void mode() {
+    const std::string form = "it is written 'mode FIELD: states a, b, c'";
+    ModeStatement made{in_.expect_name("a field"), {}};
+    in_.expect(":", form);
+    in_.expect("states", form);
+    do made.states.push_back(in_.expect_name("a state"));
+    while (in_.accept(","));
+    in_.expect_end();
+    file_.modes.push_back(std::move(made));
   }
 
   void slide() {

@@ -29,6 +29,13 @@ struct FunctionDefinition {
 struct Block {
   Token name;
   std::vector<Assignment> lines;
+  std::optional<Token> target = {};  ///< jump NAME to FIELD
+};
+
+/// mode FIELD: states a, b, c: the states that the field has, of all the first ones.
+struct ModeStatement {
+  Token field;
+  std::vector<Token> states;
 };
 
 /// slide NAME on SURFACE: EVENT -> FIELD, EVENT -> FIELD: the field NAME slides where the event SURFACE is 0, until one
@@ -55,6 +62,7 @@ struct FormulaFile {
   std::vector<FunctionDefinition> functions;
   std::vector<Assignment> shared_equations;  ///< those before the first field
   std::vector<Block> fields;
+  std::vector<ModeStatement> modes;
   std::vector<Assignment> events;
   std::vector<Block> jumps;
   std::vector<SlideStatement> slides;

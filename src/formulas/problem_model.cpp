@@ -211,8 +211,38 @@ class ModelCheck {
         Equations own = equations_of(block.lines);
         for (std::size_t k = 0; k < own.size(); ++k)
           if (own[k] == nullptr) own[k] = shared[k];
+        own.resize(states_of(block));
         field(block.name, own);
       });
+    for (const ModeStatement& mode : file().modes) collect([&] { field_names_.required(mode.field); });
+  }
+
+  /// How many states a field has: all, or those of its mode, which are the first ones.
+  std::size_t states_of(const Block& field) const {
+    const std::vector<std::string>& all = model_.names.states();
+    const ModeStatement* const mode = mode_of(field.name);
+    if (mode == nullptr) return all.size();
+    for (std::size_t k = 0; k < mode->states.size(); ++k)
+      if (state_of(mode->states[k]) != k)
+        throw FormulaError{
+            mode->states[k].at,
+            fmt::format("the states of a mode are the first ones of all, in their order, which is that of "
+                        "the equations: {}; write the equations of the largest field first",
+                        fmt::join(all, ", "))};
+    for (const Assignment& line : field.lines)
+      if (state_of(line.name) >= mode->states.size())
+        throw FormulaError{line.name.at, fmt::format("{} is no state of the mode {}", line.name.text, field.name.text)};
+    return mode->states.size();
+  }
+
+  const ModeStatement* mode_of(const Token& field) const {
+    const ModeStatement* found = nullptr;
+    for (const ModeStatement& mode : file().modes) {
+      if (mode.field.text != field.text) continue;
+      if (found != nullptr) throw FormulaError{mode.field.at, fmt::format("there are two lines 'mode {}'", field.text)};
+      found = &mode;
+    }
+    return found;
   }
 
   void field(const Token& name, const Equations& equations) {
@@ -278,7 +308,7 @@ class ModelCheck {
     for (const Block& block : file().jumps) collect([&] { jump(block); });
     if (jump_names_.number("identity") != 0) return;
     jump_names_.add({Token::Kind::name, "identity", 0.0, {}});
-    model_.jumps.push_back({"identity", {}});
+    model_.jumps.push_back({"identity", {}, model_.names.states().size()});
   }
 
   void jump(const Block& block) {
@@ -288,11 +318,19 @@ class ModelCheck {
                          fmt::format("'{}' is an event already; a jump needs another name, for 'after {}' "
                                      "would mean both",
                                      block.name.text, block.name.text)};
-    ProblemModel::Jump made{block.name.text, {}};
+    ProblemModel::Jump made{block.name.text, {}, model_.names.states().size()};
+    if (block.target) {
+      const int field = field_names_.required(*block.target);
+      if (static_cast<std::size_t>(field) <= model_.fields.size())
+        made.states = model_.fields[static_cast<std::size_t>(field) - 1].rates.size();
+    }
     std::set<std::size_t> seen;
     for (const Assignment& line : block.lines)
       collect([&] {
         made.values.emplace_back(state_of(line.name), line.value);
+        if (made.values.back().first >= made.states)
+          throw FormulaError{line.name.at, fmt::format("{} is no state of the mode {}, to which the jump {} leads",
+                                                       line.name.text, block.target->text, block.name.text)};
         if (!seen.insert(made.values.back().first).second)
           throw FormulaError{line.name.at,
                              fmt::format("the jump {} gives {} two values", block.name.text, line.name.text)};

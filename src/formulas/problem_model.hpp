@@ -14,7 +14,7 @@ namespace tchat::formulas {
 struct ProblemModel {
   struct Field {
     std::string name;
-    std::vector<Expression> rates;  ///< one for each state
+    std::vector<Expression> rates;  ///< one for each state that it has
   };
   struct Function {
     std::string name;
@@ -23,6 +23,7 @@ struct ProblemModel {
   struct Jump {
     std::string name;
     std::vector<std::pair<std::size_t, Expression>> values;  ///< of the states that change
+    std::size_t states = 0;                                  ///< of the mode that it leads to
   };
   /// A sliding mode (tchat_sliding), numbers from 1: `field` and the events at its ends count behind `fields`,
   /// `events`.

@@ -82,6 +82,14 @@ HybridSystem::HybridSystem(const tchat_problem& table) : table_(&table) {
   require(
       table.sliding_modes >= 0 && table.sliding_modes <= 1000 && (table.sliding_modes == 0 || table.sliding != nullptr),
       fmt::format("it has {} sliding modes, but its table does not list them", table.sliding_modes));
+  const auto is_dimension = [&](std::int32_t k) { return k >= 1 && k <= table.dimension; };
+  require((table.field_dimensions == nullptr) == (table.jump_dimensions == nullptr) || table.jumps == 0,
+          "its table gives the dimensions of fields or of jumps, but not both");
+  if (has_modes())
+    require(
+        std::all_of(table.field_dimensions, table.field_dimensions + table.fields, is_dimension) &&
+            (table.jumps == 0 || std::all_of(table.jump_dimensions, table.jump_dimensions + table.jumps, is_dimension)),
+        fmt::format("the dimension of a field or of what a jump leads to is not in 1..{}", table.dimension));
   for (const tchat_sliding& mode : sliding_modes()) {
     const std::string fault = fault_of(table, mode);
     require(fault.empty(), "a sliding mode of it " + fault);
@@ -198,6 +206,12 @@ void HybridSystem::boundary_first(const OrbitEnds& at, std::span<const int> acti
                            static_cast<int>(active.size()), out, dstarts, dends, dp);
   else
     difference_boundary(*this, at, active, out, dstarts, dends, dp);
+}
+
+int least_dimension(const HybridSystem& system, const Signature& signature) {
+  int least = system.dimension();
+  for (const IndexVector& v : signature) least = std::min(least, system.dimension_of(v.field));
+  return least;
 }
 
 bool all_finite(const double* values, int count) {

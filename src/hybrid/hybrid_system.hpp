@@ -38,6 +38,10 @@ class HybridSystem {
   explicit HybridSystem(const tchat_problem& table);
 
   int dimension() const { return table_->dimension; }
+  /// May modes have fewer states? The others of those are zero there.
+  bool has_modes() const { return table_->field_dimensions != nullptr; }
+  /// The states of the mode of a field.
+  int dimension_of(int field) const { return has_modes() ? table_->field_dimensions[field - 1] : dimension(); }
   int parameters() const { return table_->parameters; }
   /// How many functions of a kind there are; integrands are one for each segment, whatever their number.
   int count(FunctionKind kind) const;
@@ -121,6 +125,10 @@ class HybridSystem {
 
   const tchat_problem* table_;
 };
+
+/// The least number of states that a mode of the signature has: so many multipliers has an orbit, for the others are
+/// zero.
+int least_dimension(const HybridSystem& system, const Signature& signature);
 
 /// True when no entry is NaN or infinite.
 bool all_finite(const double* values, int count);

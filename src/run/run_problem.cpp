@@ -104,7 +104,9 @@ std::string direction_text(const BranchSetup& setup, const SelectedStart& start,
                                                 "that had DS < 0 with DS < 0)\n",
                                                 -step));
   const double rate = step * setup.follower->principal_direction(setup.start.point);
-  if (!start.from_solution || setup.type->facts().switches_branch || rate == 0.0) return "";
+  constexpr double rounding = 1e-7;  // of a unit tangent: the parameter has an extremum
+  const bool is_known = std::abs(rate) > rounding * std::abs(step);
+  if (!start.from_solution || setup.type->facts().switches_branch || !is_known) return "";
   return fmt::format("DS {} 0: {} {} first (label {} of {} stores no direction for these free parameters)\n", sign,
                      parameter, rate > 0.0 ? "increases" : "decreases", start.label, start.source);
 }

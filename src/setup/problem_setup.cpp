@@ -136,6 +136,13 @@ void check_parameters(const HybridSystem& system, const RunSettings& settings, c
                        system.name(), parameter_list(system));
   };
   const std::vector<int> free = free_problem_parameters(settings);
+  if (free.empty() && !settings.conserved.empty() && settings.free_parameters.front() < first_duration)
+    throw UserError(fmt::format(
+        "{}: ICP(1) is {}, but CONSERVED = {} leaves no parameter of the problem free: name what changes along the "
+        "family, {} (its value), period or another monitor, or a duration; with HOLD of one of them a parameter is "
+        "free",
+        source.of("ICP"), system.parameter_name(settings.free_parameters.front()), settings.conserved,
+        settings.conserved));
   check_rotation(system, settings, source, free);
   const auto is_parameter_here = [&](int k) {
     return is_own_parameter(system, k) || k == family_of(settings).facts().own_parameter;

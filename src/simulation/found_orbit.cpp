@@ -184,6 +184,8 @@ FoundOrbit refine(const HybridSystem& system, const SimulationResult& result, co
   }
   found.converged = true;
   found.multipliers = multipliers_without(orbit.map.derivative, result.ignorable);
+  const auto states = static_cast<std::size_t>(least_dimension(system, found.signature));
+  if (found.multipliers.size() > states) found.multipliers.resize(states);  // the others are zero
   found.advance = VectorXd::Zero(found.start.size());
   for (const Eigen::Index k : result.ignorable) found.advance(k) = orbit.map.end(k) - orbit.start(k);
   return found;

@@ -20,7 +20,9 @@ Eigen::MatrixXd equilibrium_jacobian(const DefiningSystem& system, const Orbit& 
 FloquetMultipliers equilibrium_eigenvalues(const DefiningSystem& system, const Orbit& x) {
   FloquetMultipliers result;
   result.are_eigenvalues = true;
-  const Eigen::VectorXcd values = eigenvalues(equilibrium_jacobian(system, x));
+  const int states = system.dimension_of(0);
+  const Eigen::MatrixXd jacobian = equilibrium_jacobian(system, x).topLeftCorner(states, states);
+  const Eigen::VectorXcd values = eigenvalues(jacobian);
   result.valid = values.allFinite();
   if (!result.valid) return result;
   result.values.assign(values.begin(), values.end());

@@ -9,8 +9,8 @@ namespace tchat {
 /// The n x n matrix f_x of the field of the one segment at the equilibrium x.
 Eigen::MatrixXd equilibrium_jacobian(const DefiningSystem& system, const Orbit& x);
 
-/// Those with the largest real part first; of a conjugate pair the one in the upper half plane first. Not valid where
-/// f_x is not finite.
+/// Of the states that the mode has. Those with the largest real part first; of a conjugate pair the one in the upper
+/// half plane first. Not valid where f_x is not finite.
 FloquetMultipliers equilibrium_eigenvalues(const DefiningSystem& system, const Orbit& x);
 
 /// Two eigenvalues and how far they are from a sum of zero.

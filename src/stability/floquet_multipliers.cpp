@@ -165,6 +165,7 @@ void FloquetSolver::measure_end(const CondensedSystem& condensed, const Orbit& x
   end.determinant_share = determinant_share(square_, speed, section_image, flow_image);
 
   system.first(FunctionKind::jump, v.jump, x.end(s), x.par.data(), {}, image_.data(), end.jump.data(), nullptr);
+  defining.clear_absent(s, end.jump.data(), n);
   reflect(end.section, end.jump.transpose());
 }
 
@@ -247,6 +248,15 @@ void FloquetSolver::leave_out_undetermined(FloquetMultipliers& result) {
   result.undetermined = static_cast<int>(all - result.values.size());
 }
 
+/// Zeros of states that a mode on the way has not.
+void FloquetSolver::leave_out_absent(const DefiningSystem& defining, std::vector<std::complex<double>>& values) const {
+  const std::ptrdiff_t absent = shape_.dimension - least_dimension(defining.system(), defining.signature());
+  const auto larger = [](const auto& a, const auto& b) { return std::abs(a) > std::abs(b); };
+  if (absent == 0 || static_cast<std::ptrdiff_t>(values.size()) < absent) return;
+  std::nth_element(values.begin(), values.end() - absent, values.end(), larger);
+  values.resize(values.size() - static_cast<std::size_t>(absent));
+}
+
 void FloquetSolver::form_products(bool touches, FloquetMultipliers& result) {
   ScaledReal regular;  // det E_1 ... det E_m / (a_1 ... a_m)
   for (const SegmentEnd& end : ends_) regular *= end.determinant_share;
@@ -288,6 +298,7 @@ void FloquetSolver::compute(const CondensedSystem& condensed, const Orbit& x, Fl
   find_eigenvalues(blocks_, result.values);
   result.valid = shape_.dimension == 1 || !result.values.empty();
   if (!result.valid) return;
+  leave_out_absent(condensed.system(), result.values);
   const bool touches = least_transversality < near_grazing;
   form_products(touches, result);
   if (touches) leave_out_undetermined(result);

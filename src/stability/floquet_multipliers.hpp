@@ -75,6 +75,7 @@ class FloquetSolver {
   void project_blocks(const CondensedSystem& condensed, int s);
   Blocks disturbed(double disturbance, int way) const;
   void find_eigenvalues(const Blocks& blocks, std::vector<std::complex<double>>& values);
+  void leave_out_absent(const DefiningSystem& defining, std::vector<std::complex<double>>& values) const;
   void leave_out_undetermined(FloquetMultipliers& result);
   void form_products(bool touches, FloquetMultipliers& result);
 

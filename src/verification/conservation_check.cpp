@@ -150,7 +150,9 @@ ConservationCheck check_conservation(const HybridSystem& system, const Quantity&
            fmt::format("field {} ({})", field, system.function_name(FunctionKind::field, field)), "its rate of change");
   for (const auto& [event, jump] : jumps)
     report(conservation.of_jump(event, jump, states),
-           fmt::format("jump {} ({})", jump, system.function_name(FunctionKind::jump, jump)), "its change");
+           fmt::format("jump {} ({}) at event {} ({})", jump, system.function_name(FunctionKind::jump, jump), event,
+                       system.function_name(FunctionKind::event, event)),
+           "its change");
   return check;
 }
 

@@ -185,7 +185,11 @@ std::vector<SegmentLink> links_of(const HybridSystem& system, const RunSettings&
   for (int s = 0; s < x.shape.segments; ++s) {
     const SegmentCheck& segment = segments[static_cast<std::size_t>(s)];
     if (!segment.message.empty()) return {};
-    links.push_back(link_at(system, stored_segment(system, settings, x, s), segment, x.par, scale));
+    SegmentLink link = link_at(system, stored_segment(system, settings, x, s), segment, x.par, scale);
+    const auto next = static_cast<std::size_t>((s + 1) % x.shape.segments);
+    const int states = system.dimension_of(settings.segments[next].index.field);
+    link.gx.bottomRows(system.dimension() - states).setZero();  // the identity leaves them
+    links.push_back(std::move(link));
   }
   return links;
 }
@@ -226,6 +230,8 @@ OrbitCheck check_orbit(const HybridSystem& system, const RunSettings& settings, 
   const ReturnPencil pencil(links);
   if (!pencil.determines_multipliers(tolerance)) return check;
   check.multipliers = pencil.multipliers();
+  const auto states = static_cast<std::size_t>(least_dimension(system, settings.signature()));
+  if (check.multipliers.size() > states) check.multipliers.resize(states);  // the others are zero
   if (critical) compare_critical(critical(check.multipliers), pencil, check);
   const bool has_trivial = settings.segments.front().index.event == no_function;
   if (stored.size() == check.multipliers.size()) compare_multipliers(stored, has_trivial, pencil, check);

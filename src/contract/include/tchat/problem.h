@@ -148,6 +148,13 @@ typedef struct tchat_problem {
   void (*first_in_lanes)(const void* self, int32_t kind, int32_t index, int32_t sets, const double* x,
                          const double* par, const int32_t* active, int32_t active_count, double* out, double* dx,
                          double* dp);
+
+  /* Modes of different dimension: field i has the states 1..field_dimensions[i - 1], at most `dimension`; jump k leads
+   * to a mode of jump_dimensions[k - 1] states. What x, out and direction have beyond is zero in other modes; a field
+   * gives -x[a] there, a jump 0, and neither fields nor event functions depend on it. Both NULL: all have `dimension`.
+   */
+  const int32_t* field_dimensions;
+  const int32_t* jump_dimensions;
 } tchat_problem;
 
 /* Size of the table before the conditions of boundary value problems were added: such a table has none. */
@@ -160,6 +167,8 @@ typedef struct tchat_problem {
 #define TCHAT_PROBLEM_FOURTH_SIZE offsetof(tchat_problem, second_at_points)
 /* And before four points could be side by side. */
 #define TCHAT_PROBLEM_FIFTH_SIZE offsetof(tchat_problem, first_in_lanes)
+/* And before modes could differ in dimension. */
+#define TCHAT_PROBLEM_SIXTH_SIZE offsetof(tchat_problem, field_dimensions)
 
 typedef const tchat_problem* (*tchat_problem_entry)(void);
 #define TCHAT_PROBLEM_ENTRY "tchat_problem_table"

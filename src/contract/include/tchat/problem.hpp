@@ -41,6 +41,10 @@
 ///     // event functions 3 and 4, where it ends, are made by tchat (tchat/sliding.hpp)
 ///     static constexpr tchat::Sliding sliding{.field = 3, .minus = 2, .plus = 1, .surface = 1, .to_minus = 3,
 ///                                             .to_plus = 4};
+///     // modes of different dimension: field i has the states x[0] .. x[dimension_of(i) - 1] and sets as many, jump k
+///     // leads to a mode of dimension_after(k) states and sets these. `dimension` is the largest:
+///     static constexpr int dimension_of(int i) { return i == 1 ? 4 : 5; }
+///     static constexpr int dimension_after(int k) { return k == 1 ? 5 : 4; }
 ///     // hand-written first derivatives instead of automatic ones, column-major, zero before the call:
 ///     void field_derivatives(int i, const double* x, const double* par, double* dfdx, double* dfdp) const;
 ///     void event_derivatives(int j, const double* x, const double* par, double* dhdx, double* dhdp) const;
@@ -187,6 +191,38 @@ class ProblemTable {
   static constexpr int n = Problem::dimension;
   static constexpr int q = Problem::parameters;
 
+  static constexpr bool has_dimensions = requires { Problem::dimension_of(1); };
+  static_assert(
+      has_dimensions == requires { Problem::dimension_after(1); } || jump_count() == 0,
+      "tchat: `dimension_of` and `dimension_after` belong together: static constexpr int dimension_of(int field), "
+      "and static constexpr int dimension_after(int jump)");
+
+  /// How many states a function sets; the others are not there.
+  static constexpr int states_of([[maybe_unused]] std::int32_t kind, [[maybe_unused]] int index) {
+    if constexpr (has_dimensions) {
+      if (kind == TCHAT_FIELD) return Problem::dimension_of(index);
+      if constexpr (jump_count() > 0)
+        if (kind == TCHAT_JUMP) return Problem::dimension_after(index);
+    }
+    return n;
+  }
+  template <std::int32_t kind, int count>
+  static constexpr auto dimensions_of_functions() {
+    std::array<std::int32_t, static_cast<std::size_t>(count > 0 ? count : 1)> dimensions{};
+    for (int i = 1; i <= count; ++i) dimensions[static_cast<std::size_t>(i - 1)] = states_of(kind, i);
+    return dimensions;
+  }
+  static constexpr auto field_dimensions = dimensions_of_functions<TCHAT_FIELD, Problem::fields>();
+  static constexpr auto jump_dimensions = dimensions_of_functions<TCHAT_JUMP, jump_count()>();
+  static constexpr bool are_dimensions(const auto& dimensions, int count) {
+    for (int i = 0; i < count; ++i)
+      if (dimensions[static_cast<std::size_t>(i)] < 1 || dimensions[static_cast<std::size_t>(i)] > Problem::dimension)
+        return false;
+    return true;
+  }
+  static_assert(are_dimensions(field_dimensions, Problem::fields) && are_dimensions(jump_dimensions, jump_count()),
+                "tchat: `dimension_of` and `dimension_after` must be between 1 and `dimension`, the largest");
+
   static constexpr auto modes = sliding_modes_of<Problem>();
   static_assert(sliding_fault(modes, Problem::fields, event_count()) != SlidingFault::field_range,
                 "tchat: `sliding`: field, minus and plus must be numbers from 1 to `fields`");
@@ -270,6 +306,9 @@ class ProblemTable {
     } catch (...) {
       fill(out, rows(kind), T(NAN));
     }
+    if constexpr (has_dimensions)
+      if (kind == TCHAT_FIELD || kind == TCHAT_JUMP)
+        for (int a = states_of(kind, index); a < n; ++a) out[a] = kind == TCHAT_FIELD ? T(-x[a]) : T(0.0);
   }
 
   static void value(const void* self, std::int32_t kind, std::int32_t index, const double* x, const double* par,
@@ -730,6 +769,10 @@ class ProblemTable {
       table.boundary = &boundary;
       table.boundary_first = &boundary_first;
       table.integral_conditions = integral_count();
+    }
+    if constexpr (has_dimensions) {
+      table.field_dimensions = field_dimensions.data();
+      table.jump_dimensions = jump_dimensions.data();
     }
     table.sliding_modes = static_cast<std::int32_t>(modes.size());
     if constexpr (!modes.empty()) table.sliding = modes.data();

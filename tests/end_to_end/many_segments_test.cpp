@@ -1,0 +1,82 @@
+// Orbits of hundreds of segments: a ball that is thrown up again when its impacts have become slow. The n-th flight after
+// a throw lasts 2 r^n, so that an orbit of two throws and m - 1 flights after the second one has the period
+// 2 + 2 (1 - r^(m-1)) / (1 - r).
+#include <fmt/format.h>
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "end_to_end/workspace.hpp"
+
+using namespace test_support;
+
+namespace {
+
+constexpr const char* thrown_ball = R"(par r=0.99, V=1, vc=0.05
+init x=0.1, v=0
+x' = v
+v' = -1
+event wall = x
+jump bounce: v -> -r*v
+jump launch: v -> V
+aux energy = v^2/2+x
+after start: flow until wall -> launch
+after any if -v > vc: flow until wall -> bounce
+after any: flow until wall -> launch
+)";
+
+Outcome succeed(const Workspace& workspace, const std::string& arguments) {
+  const Outcome outcome = workspace.tchat(arguments);
+  INFO(arguments << '\n' << outcome.text());
+  REQUIRE(outcome.status == 0);
+  return outcome;
+}
+
+/// The orbit whose slowest impact is below `slowest`, as ball.dat and gc.ball.
+int simulate(const Workspace& workspace, double slowest) {
+  workspace.write("ball.tch", thrown_ball);
+  succeed(workspace, fmt::format("simulate ball -q --dat ball --events 3000 --max-period 1000 PAR(vc)={}", slowest));
+  const std::string constants = workspace.read("gc.ball");
+  return std::stoi(constants.substr(constants.find("GCNOSEG = ") + 10));
+}
+
+double period(double r, int segments) { return 2.0 + 2.0 * (1.0 - std::pow(r, segments - 1)) / (1.0 - r); }
+
+}  // namespace
+
+TEST_CASE("an orbit of 302 impacts is run, written, read, verified and resegmented") {
+  const Workspace workspace;
+  const int segments = simulate(workspace, 0.05);
+  REQUIRE(segments == 302);
+  succeed(workspace, "run ball -q -c ball -d ball -o branch NTST=2 ICP=[r,period,energy] NMX=10 DS=1e-4 UZR={r:0.9902}");
+  // Parabolas are exact on any mesh, and 302 sums leave 1e-12.
+  for (const SolutionEntry& label : workspace.solutions("branch")) {
+    double sum = 0.0;
+    for (int s = 1; s <= segments; ++s) sum += label.parameter(60 + s);
+    CHECK(sum == Approx(period(label.parameter(1), segments)).epsilon(1e-11));
+  }
+  const Outcome checked = succeed(workspace, "verify branch -p ball");
+  CHECK(checked.out.find("agree with forward integration") != std::string::npos);
+  CHECK(succeed(workspace, "labels branch").out.find("302") != std::string::npos);
+  succeed(workspace, "run ball -q -c r.branch -s branch IRS=UZ1 -o again DS=-1e-4 NMX=3");
+  CHECK(workspace.solutions("again").back().parameter(1) < 0.9902);
+  succeed(workspace, "resegment q.branch UZ1 -p ball --to signature --signature {(1,1,2)^2,(1,1,1)^300} -o turned");
+}
+
+TEST_CASE("durations beyond the 256th and monitors keep apart") {
+  const Workspace workspace;
+  const int segments = simulate(workspace, 0.0067);
+  REQUIRE(segments > 460);  // durations beyond PAR(512)
+  succeed(workspace,
+          "run ball -q -c ball -d ball -o held NTST=2 ICP=[r,V,T400] HOLD=[period] NMX=4 DS=1e-4 BOUNDS={T480:[0,1]}");
+  const auto labels = workspace.solutions("held");
+  const auto total = [&](const SolutionEntry& label) {
+    double sum = 0.0;
+    for (int s = 1; s <= segments; ++s) sum += label.parameter(60 + s);
+    return sum;
+  };
+  CHECK(labels.back().parameter(1) > labels.front().parameter(1));
+  CHECK(total(labels.back()) == Approx(total(labels.front())).epsilon(1e-10));
+  CHECK(labels.back().parameter(2) ==
+        Approx(total(labels.back()) / period(labels.back().parameter(1), segments)).epsilon(1e-10));
+}

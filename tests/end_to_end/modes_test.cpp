@@ -1,0 +1,196 @@
+// Modes of dimension 5, 3 and 2: flight of a ball beside a pendulum, a spring with a force that lags, rest with a clock.
+// The references are integrations of each mode with the states that it has.
+#include <array>
+#include <boost/math/tools/toms748_solve.hpp>
+#include <boost/numeric/odeint.hpp>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "end_to_end/workspace.hpp"
+
+using namespace test_support;
+
+namespace {
+
+constexpr const char* modes_source = R"(#include <tchat/problem.hpp>
+
+struct Modes {
+  static constexpr int dimension = 5, parameters = 3;
+  static constexpr int fields = 3, events = 4, jumps = 4;
+  static constexpr const char* state_names[] = {"x", "v", "lag", "theta", "rate"};
+  static constexpr const char* parameter_names[] = {"k", "d", "V"};
+  static constexpr const char* field_names[] = {"flight", "spring", "rest"};
+  static constexpr const char* event_names[] = {"floor", "lowest", "alarm", "top"};
+  static constexpr const char* jump_names[] = {"catch", "stop", "throw", "cut"};
+  static constexpr double initial_parameters[] = {10.0, 0.3, 1.0};
+  static constexpr double initial_state[] = {0.0, 1.0, 0.0, 0.0, 0.5};
+  static constexpr int dimension_of(int i) { return i == 1 ? 5 : i == 2 ? 3 : 2; }
+  static constexpr int dimension_after(int k) { return k == 1 ? 3 : k == 2 ? 2 : 5; }
+
+  template <class T>
+  void field(int i, const T* x, const T* par, T* f) const {
+    if (i == 1)
+      f[0] = x[1], f[1] = T(-1.0), f[2] = x[0] - x[2], f[3] = x[4], f[4] = -par[1] * x[4] - sin(x[3]);
+    else if (i == 2)
+      f[0] = x[1], f[1] = -1.0 - par[0] * x[0] - par[1] * x[2], f[2] = 3.0 * (x[1] - x[2]);
+    else
+      f[0] = -0.2 * x[0], f[1] = T(1.0);
+  }
+  template <class T>
+  T event(int j, const T* x, const T*) const {
+    return j == 1 ? x[0] : j == 2 ? T(-x[1]) : j == 3 ? T(0.7 - x[1]) : x[1];
+  }
+  template <class T>
+  void jump(int k, const T* x, const T* par, T* g) const {
+    if (k == 1) g[0] = x[0], g[1] = x[1], g[2] = x[2] + 0.1 * x[4];
+    if (k == 2) g[0] = x[0], g[1] = 0.1 * x[2];
+    if (k == 3) g[0] = T(0.0), g[1] = par[2] - 0.5 * x[0], g[2] = 0.2 * x[0], g[3] = 0.1 * x[0], g[4] = T(0.5);
+    if (k == 4) for (int a = 0; a < 5; ++a) g[a] = x[a];
+  }
+  std::vector<std::array<int, 3>> successors(std::array<int, 3> from) const {
+    if (from[2] == 1) return {{2, 2, 2}};
+    if (from[2] == 2) return {{3, 3, 3}};
+    return {{1, 1, 1}};
+  }
+};
+TCHAT_PROBLEM(Modes)
+)";
+
+constexpr const char* formulas = R"(par k=10, d=0.3, V=1
+init x=0, v=1, rate=0.5
+field flight: x' = v, v' = -1, lag' = x - lag, theta' = rate, rate' = -d*rate - sin(theta)
+mode spring: states x, v, lag
+field spring: x' = v, v' = -1 - k*x - d*lag, lag' = 3*(v - lag)
+mode rest: states x, v
+field rest: x' = -0.2*x, v' = 1
+event floor = x
+event lowest = -v
+event alarm = 0.7 - v
+event top = v
+jump catch to spring: lag -> lag + 0.1*rate
+jump stop to rest: v -> 0.1*lag
+jump throw: x -> 0, v -> V - 0.5*x, lag -> 0.2*x, theta -> 0.1*x, rate -> 0.5
+jump cut:
+after catch: spring until lowest -> stop
+after stop: rest until alarm -> throw
+after any: flight until floor -> catch
+)";
+
+Outcome succeed(const Workspace& workspace, const std::string& arguments) {
+  const Outcome outcome = workspace.tchat(arguments);
+  INFO(arguments << '\n' << outcome.text());
+  REQUIRE(outcome.status == 0);
+  return outcome;
+}
+
+/// The state and the time where `event` falls to zero.
+template <class State, class Field, class Event>
+double integrate_to(State& x, const Field& field, const Event& event) {
+  namespace odeint = boost::numeric::odeint;
+  odeint::runge_kutta_fehlberg78<State> stepper;
+  constexpr double h = 1e-3;
+  const auto moved = [&](double step) {
+    State y = x;
+    stepper.do_step(field, y, 0.0, step);
+    return y;
+  };
+  double time = 0.0;
+  for (;;) {
+    const State next = moved(h);
+    if (event(x) > 0.0 && event(next) <= 0.0) break;
+    x = next;
+    time += h;
+  }
+  std::uintmax_t iterations = 60;
+  const auto root = boost::math::tools::toms748_solve([&](double step) { return event(moved(step)); }, 0.0, h,
+                                                      boost::math::tools::eps_tolerance<double>(50), iterations);
+  x = moved(root.second);
+  return time + root.second;
+}
+
+/// Durations and the end of one turn from a start of flight (5 states), each mode with its own states.
+struct Turn {
+  std::array<double, 3> durations;
+  std::array<double, 5> end;
+};
+Turn turn(std::array<double, 5> x, double k, double d, double V) {
+  Turn result{};
+  result.durations[0] = integrate_to(
+      x,
+      [&](const auto& u, auto& f, double) {
+        f = {u[1], -1.0, u[0] - u[2], u[4], -d * u[4] - std::sin(u[3])};
+      },
+      [](const auto& u) { return u[0]; });
+  std::array<double, 3> y{x[0], x[1], x[2] + 0.1 * x[4]};
+  result.durations[1] = integrate_to(
+      y,
+      [&](const auto& u, auto& f, double) {
+        f = {u[1], -1.0 - k * u[0] - d * u[2], 3.0 * (u[1] - u[2])};
+      },
+      [](const auto& u) { return -u[1]; });
+  std::array<double, 2> z{y[0], 0.1 * y[2]};
+  result.durations[2] = integrate_to(
+      z, [](const auto& u, auto& f, double) { f = {-0.2 * u[0], 1.0}; }, [](const auto& u) { return 0.7 - u[1]; });
+  result.end = {0.0, V - 0.5 * z[0], 0.2 * z[0], 0.1 * z[0], 0.5};
+  return result;
+}
+
+}  // namespace
+
+TEST_CASE("modes of dimension 5, 3 and 2 in every command") {
+  const Workspace workspace;
+  SECTION("a class") { workspace.write("modes.cpp", modes_source); }
+  SECTION("formulas") { workspace.write("modes.tch", formulas); }
+  succeed(workspace, "check modes");
+  const Outcome simulated = succeed(workspace, "simulate modes --dat start");
+  CHECK(simulated.out.find("{(1,1,1), (2,2,2), (3,3,3)}") != std::string::npos);
+  succeed(workspace, "run modes -q -c start -d start -o branch NTST=20 ICP=[V] NMX=40 DS=0.02 DSMAX=0.1 UZR={V:1.3}");
+  for (const SolutionEntry& label : workspace.solutions("branch")) {
+    std::array<double, 5> start{};
+    for (std::size_t a = 0; a < 5; ++a) start[a] = label.states.front().at(a);
+    const Turn at = turn(start, label.parameter(1), label.parameter(2), label.parameter(3));
+    // Newton ends at 1e-10, the mesh's error is 1e-9.
+    for (int s = 0; s < 3; ++s)
+      CHECK(label.parameter(61 + s) == Approx(at.durations[static_cast<std::size_t>(s)]).epsilon(1e-8));
+    for (std::size_t a = 0; a < 5; ++a) CHECK(at.end[a] == Approx(start[a]).margin(1e-8));
+    // What a mode has not is zero.
+    for (const auto& row : label.states)
+      for (const std::size_t absent : {8U, 9U, 12U, 13U, 14U}) CHECK(row.at(absent) == 0.0);
+  }
+  const std::string diagnostics = workspace.read("d.branch");
+  CHECK(diagnostics.find("Multiplier   2") != std::string::npos);
+  CHECK(diagnostics.find("Multiplier   3") == std::string::npos);
+  succeed(workspace, "verify branch -p modes");
+  succeed(workspace, "resegment q.branch UZ1 -p modes --to signature --signature {(1,4,4),(1,1,1),(2,2,2),(3,3,3)} -o cut");
+  succeed(workspace, "run modes -q -c cut -s cut -o again NMX=4");
+  succeed(workspace, "verify again -p modes");
+  succeed(workspace, "sweep modes -q --over V=1:1.2:3 -o values");
+  succeed(workspace, "simulate modes -q --lyapunov");
+  succeed(workspace, "orbit q.branch UZ1");
+  succeed(workspace, "labels branch");
+  succeed(workspace, "table branch");
+}
+
+TEST_CASE("an orbit and an equilibrium of the small mode alone") {
+  const Workspace workspace;
+  workspace.write("small.tch", R"(par a=-0.1
+field large: x' = 1, y' = 0, z' = x
+mode circle: states x, y
+field circle: x' = a*x - y - x*(x^2+y^2), y' = x + a*y - y*(x^2+y^2)
+event cut = y
+jump away: z -> 1
+)");
+  workspace.write("gc.small",
+                  "NDIM=3 IPS=1 ICP=[a] NMX=30 RL1=0.5 DS=0.02 DSMAX=0.05\nGCFIND=[2] GCHIND=[0] GCGIND=[0]\n");
+  workspace.write("small.dat", "0 0 0 0\n");
+  succeed(workspace, "run small -q -o rest");
+  CHECK(workspace.read("d.rest").find("Eigenvalue   3") == std::string::npos);
+  succeed(workspace, "run small -q -s rest IRS=HB1 IPS=180 ISW=-1 UZR={-a:0.25} RL1=0.4 -o cycles");
+  // The circle of radius sqrt(a), once round in 2 pi, with the multiplier exp(-4 pi a).
+  const SolutionEntry label = workspace.solutions("cycles").back();
+  CHECK(label.parameter(1) == Approx(0.25).epsilon(1e-9));
+  CHECK(std::hypot(label.states.front().at(0), label.states.front().at(1)) == Approx(0.5).epsilon(1e-7));
+  CHECK(label.parameter(61) == Approx(2.0 * std::acos(-1.0)).epsilon(1e-8));
+  CHECK(workspace.read("d.cycles").find("Multiplier   3") == std::string::npos);
+  succeed(workspace, "verify cycles -p small");
+}
