@@ -73,9 +73,8 @@ std::string ConservativeOrbitSystem::why_no_solution(const Orbit& x) const {
                                                    system().function_name(FunctionKind::jump, index.jump), s + 1));
   }
   return fmt::format(
-      "CONSERVED = {0} is not conserved: the orbit closes only with lambda = {1:.3g}, which is zero where "
-      "it is, and {0} changes {2}; take CONSERVED away (CONSERVED=) and free a parameter, or set "
-      "parameters so that nothing is lost or gained",
+      "CONSERVED = {0} is not conserved: the orbit closes only with lambda = {1:.3g} instead of 0, and {0} changes "
+      "{2}; remove CONSERVED (CONSERVED=) and free a parameter, or set the parameters so that {0} is conserved",
       name_, lambda, places);
 }
 

@@ -184,7 +184,7 @@ class SettingsCheck {
     if (type != nullptr && type->facts().may_conserve) return;
     refuse_constant("CONSERVED", "CONSERVED", in_quotes(settings_.conserved),
                     fmt::format("nothing with IPS = {}, ISW = {}: it is for families of periodic orbits (IPS = 180) "
-                                "with ISW = 1, and for switches to them (ISW = -1); take it away with CONSERVED=",
+                                "with ISW = 1, and for switches to them (ISW = -1); remove it with CONSERVED=",
                                 settings_.problem_type, settings_.branch_mode));
   }
 

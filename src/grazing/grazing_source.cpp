@@ -51,6 +51,12 @@ void require_one_contact(const ContactPoint& contact, const Orbit& x, const Hybr
 
 int named_parameter(const RunSettings& settings, const HybridSystem& system, int given, const std::string& source) {
   if (given > 0) return given;
+  if (!settings.conserved.empty())
+    throw UserError(
+        fmt::format("{}: the orbit belongs to a family of CONSERVED = {}, along which no parameter changes, and the "
+                    "expansion near grazing needs one; `tchat resegment --to impacting` continues the family, "
+                    "--parameter names a parameter all the same",
+                    source, settings.conserved));
   for (const int k : settings.free_parameters)
     if (k >= 1 && k <= system.parameters()) return k;
   if (system.parameters() > 0) return 1;

@@ -145,8 +145,8 @@ BranchCurve double_event(const PeriodicOrbitSystem& system, const RunSettings&, 
 
 /// An equilibrium of a conservative system has families of orbits about it, whatever its label.
 BranchSetup leave_branch(const HybridSystem& system, const RunSettings& settings, const SelectedStart& start) {
-  const bool is_equilibrium = start.from_solution && start.start.orbit.shape.stored_nodes() == 1;
-  if (is_equilibrium && !settings.conserved.empty()) return begin_periodic_orbits(system, settings, start);
+  const bool starts_at_rest = start.from_solution && start.start.orbit.shape.stored_nodes() == 1;
+  if (starts_at_rest && !settings.conserved.empty()) return begin_periodic_orbits(system, settings, start);
   return switch_branch(system, settings, start);
 }
 

@@ -1,6 +1,7 @@
 #include "run/hopf_switch.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -120,14 +121,16 @@ Oscillation chosen_oscillation(const DefiningSystem& equilibria, const Orbit& x,
     if (value.imag() > on_axis * largest && std::abs(value.real()) <= on_axis * value.imag())
       omegas.push_back(value.imag());
   std::sort(omegas.begin(), omegas.end());
+  if (omegas.empty())
+    throw UserError(
+        fmt::format("{}: label {} has no oscillation for a family of orbits to start with: no eigenvalue of f_x is on "
+                    "the imaginary axis there ({})",
+                    selected.source, selected.label, eigenvalue_list(eigenvalues)));
   if (static_cast<std::size_t>(mode) > omegas.size())
-    throw UserError(fmt::format(
-        "{}: MODE = {}, but {} of the eigenvalues of f_x at label {} are on the imaginary axis "
-        "({}); {}",
-        selected.source, mode,
-        omegas.empty() ? "none" : fmt::format("{} pair{}", omegas.size(), omegas.size() == 1 ? "" : "s"),
-        selected.label, eigenvalue_list(eigenvalues),
-        omegas.empty() ? "no family of orbits begins there" : fmt::format("allowed: 1 to {}", omegas.size())));
+    throw UserError(fmt::format("{}: MODE = {}, but label {} has {} oscillation{} (omega = {:.6g}); allowed: {}",
+                                selected.source, mode, selected.label, omegas.size(), omegas.size() == 1 ? "" : "s",
+                                fmt::join(omegas, ", "),
+                                omegas.size() == 1 ? "1" : fmt::format("1 to {}", omegas.size())));
   return oscillation_of(equilibria, x, omegas[static_cast<std::size_t>(mode - 1)]);
 }
 

@@ -11,6 +11,7 @@
 #include "problem_type/family.hpp"
 #include "problem_type/point_type.hpp"
 #include "problem_type/problem_type.hpp"
+#include "setup/run_monitors.hpp"
 
 namespace tchat {
 
@@ -29,7 +30,7 @@ std::string inherited_bounds(const HybridSystem& system, const RunSettings& in_f
   add("RL1", used.parameter_max, standard.parameter_max);
   if (list.empty()) return "";
   return fmt::format("{} of {} was given for {} and now bounds {}, the new ICP(1); give RL0 and RL1 with it", list,
-                     file, system.parameter_name(before), system.parameter_name(now));
+                     file, parameter_name(system, in_file, before), parameter_name(system, used, now));
 }
 
 std::string idle_parameters(const HybridSystem& system, const RunSettings& settings, const SelectedStart& start,
