@@ -90,17 +90,29 @@ Eigen::VectorXd read_parameters(const HybridSystem& system, const std::vector<st
   return par;
 }
 
+/// Throws UserError where the signature names functions that the problem has not.
+void require_functions(const HybridSystem& system, const RunSettings& settings) {
+  const auto lacks = [&](FunctionKind kind, int index) { return index > system.count(kind); };
+  for (const SegmentSettings& segment : settings.segments)
+    if (lacks(FunctionKind::field, segment.index.field) || lacks(FunctionKind::event, segment.index.event) ||
+        lacks(FunctionKind::jump, segment.index.jump) ||
+        std::any_of(segment.monitor.begin(), segment.monitor.end(),
+                    [&](int event) { return lacks(FunctionKind::event, event); }))
+      throw UserError(fmt::format(
+          "the signature in the constants names functions that {} has not: it has {} fields, {} events and {} jumps",
+          system.name(), system.count(FunctionKind::field), system.count(FunctionKind::event),
+          system.count(FunctionKind::jump)));
+}
+
 /// Of the function that CONSERVED names; nothing without one.
 std::optional<ConservationCheck> conservation(const HybridSystem& system, const RunSettings& settings,
                                               const DerivativeCheckOptions& options) {
   if (settings.conserved.empty()) return std::nullopt;
-  const std::optional<Quantity> conserved = find_quantity(system, settings.conserved);
-  if (!conserved)
-    throw UserError(fmt::format("CONSERVED = {}: problem {} has no function of that name; it has {}",
-                                settings.conserved, system.name(), quantity_list(system)));
+  require_functions(system, settings);
+  const Quantity conserved = conserved_quantity(system, settings.conserved);
   Eigen::VectorXd par = Eigen::VectorXd::Zero(parameter_length);
   par.head(options.parameters.size()) = options.parameters;
-  return check_conservation(system, *conserved, settings.conserved, settings.segments, checked_states(system, options),
+  return check_conservation(system, conserved, settings.conserved, settings.segments, checked_states(system, options),
                             par);
 }
 
@@ -122,9 +134,9 @@ int check_problem(const CheckArguments& arguments) {
     settings = read_constants_file(constants_path(constants));
   if (library.system().boundary_conditions() > 0 && settings) options.segments = segment_count(*settings);
   const DerivativeCheck check = check_derivatives(library.system(), options);
-  fmt::print("{}", to_text(library.system(), check));
   const auto conserved = settings ? conservation(library.system(), *settings, options) : std::nullopt;
-  if (conserved) fmt::print("{}", conserved->text);
+  fmt::print("{}",
+             to_text(library.system(), check, conserved ? conserved->text : "", !conserved || conserved->is_conserved));
   if (const std::optional<std::string> formulas = formulas_of(plugin))
     for (const std::string& remark : translate_formula_file(*formulas).remarks) fmt::print("Note: {}\n", remark);
   return check.fine() && (!conserved || conserved->is_conserved) ? 0 : 1;

@@ -54,7 +54,7 @@ std::string ConservativeOrbitSystem::why_no_solution(const Orbit& x) const {
   find_gradient(x);
   const double lambda = x.par(unfolding_parameter(segments()) - 1);
   const double slope = Eigen::Map<const Eigen::VectorXd>(gradient_.data(), dimension()).norm();
-  if (std::abs(lambda) * slope <= gap * (1.0 + x.states.cwiseAbs().maxCoeff())) return "";
+  if (std::abs(lambda) * slope <= gap * x.states.cwiseAbs().maxCoeff()) return "";
   std::string places;
   double largest = 0.0;
   std::vector<double> after(static_cast<std::size_t>(dimension()));

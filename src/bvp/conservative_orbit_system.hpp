@@ -9,8 +9,8 @@
 ///
 /// Unknowns: n m functions, m durations, lambda, and as many parameters as monitors are held. Conditions: n m + m
 /// boundary conditions, held monitors, pseudo-arclength. For a solution, to first order H(x_1(0)) = H(g) - lambda
-/// |H_x|^2, and H(x_1(0)) = H(g) where H is conserved: lambda = 0. What is left of it is an error figure, and where it
-/// is none H is not conserved.
+/// |H_x|^2, and H(x_1(0)) = H(g) where H is conserved: lambda = 0. The computed lambda measures the error; a large one
+/// means that H is not conserved.
 ///
 /// The derivative by x_1(0) leaves lambda H_xx out, which is zero at solutions: Newton's method still converges
 /// quadratically.

@@ -43,7 +43,7 @@ class DefiningSystem {
   /// The states of the mode of segment s (from 0); those beyond are zero.
   int dimension_of(int s) const { return system_.dimension_of(signature_[static_cast<std::size_t>(s)].field); }
   /// Sets rows of a jump (dimension() each, column by column) at the end of segment s to zero for states that the mode
-  /// after it has not. Jumps do so of their own, but for the identity.
+  /// after it has not. The identity does not do this itself.
   void clear_absent(int s, double* rows, int columns) const {
     if (!system_.has_modes()) return;
     for (int c = 0; c < columns; ++c)

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "hybrid/parameter_vector.hpp"
+#include "text/user_error.hpp"
 
 namespace tchat {
 
@@ -40,6 +41,12 @@ std::string quantity_list(const HybridSystem& system) {
                                       ? fmt::format(" to h{}", system.count(FunctionKind::event))
                                       : "");
   return list;
+}
+
+Quantity conserved_quantity(const HybridSystem& system, const std::string& name) {
+  if (const std::optional<Quantity> quantity = find_quantity(system, name)) return *quantity;
+  throw UserError(fmt::format("CONSERVED = {}: problem {} has no function of that name; it has {}", name, system.name(),
+                              quantity_list(system)));
 }
 
 QuantityFunction::QuantityFunction(const HybridSystem& system, Quantity quantity, std::vector<int> active)
@@ -80,7 +87,9 @@ double QuantityFunction::first(const double* x, const double* par, double* by_st
   for (int a = 0; a < n; ++a)
     by_state[a] = by_difference(state_[static_cast<std::size_t>(a)], state_.data(), par_.data());
   for (std::size_t k = 0; k < active_.size(); ++k)
-    by_parameter[k] = by_difference(par_[static_cast<std::size_t>(active_[k] - 1)], state_.data(), par_.data());
+    by_parameter[k] = active_[k] > parameter_length  // none that a function of the problem reads
+                          ? 0.0
+                          : by_difference(par_[static_cast<std::size_t>(active_[k] - 1)], state_.data(), par_.data());
   return value(x, par);
 }
 

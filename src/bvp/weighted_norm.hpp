@@ -20,7 +20,7 @@ MassIntervals mass_intervals(const Orbit& x, const CollocationRule& rule, const 
 
 class WeightedNorm {
  public:
-  /// `state_weights` has n entries, `parameter_weights` those of PAR(1..parameter_length), all >= 0.
+  /// `state_weights` has n entries, `parameter_weights` those of the orbit's PAR, all >= 0.
   WeightedNorm(Eigen::VectorXd state_weights, Eigen::VectorXd parameter_weights);
   /// All weights 1.
   static WeightedNorm unit(int dimension, int segments = 1);

@@ -52,7 +52,7 @@ std::vector<Constant> make_table() {
        "ZH, GH, EP, MX or RG and a number)",
        "PD1", ""},
       {"ILP", "detect folds; negative: and stop there", 1, &R::detect_folds, range(-1, 1), "", "1", ""},
-      {"NICP", "number of free parameters listed", 2, ListCount{"ICP"}, range(1, last_parameter), "", "3", ""},
+      {"NICP", "number of free parameters listed", 2, ListCount{"ICP"}, range(1, max_segments), "", "3", ""},
       {"ICP", "free parameters, durations included", 2, &R::free_parameters, range(1, last_parameter),
        "PAR indices: 1 to 60 of the problem (or its names), 61, 62, ... the durations of the segments; names of "
        "monitors",
@@ -101,7 +101,7 @@ std::vector<Constant> make_table() {
       {"DSMAX", "largest step", 7, &R::step_max, at_least(0), "", "0.1", ""},
       {"IADS", "points between step size adaptations, 0: fixed step", 7, &R::adapt_step_every, at_least(0), "", "1",
        ""},
-      {"NTHL", "number of parameter weights", 8, ListCount{"THL"}, range(0, last_parameter), "", "0", ""},
+      {"NTHL", "number of parameter weights", 8, ListCount{"THL"}, range(0, max_segments), "", "0", ""},
       {"THL", "weights of parameters in the step length", 8, &R::parameter_weights, range(0, largest_weight), "",
        "{61: 0.0}", "", range(1, last_parameter)},
       {"NTHU", "number of state weights", 9, ListCount{"THU"}, range(0, most_states), "", "0", ""},

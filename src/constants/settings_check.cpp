@@ -212,8 +212,12 @@ class SettingsCheck {
   /// For a name or a monitor.
   bool stands_in(int k) const { return is_name(settings_, k) || is_monitor(settings_, k); }
 
-  /// A switch to a period-doubled orbit doubles the segments.
-  int segments_of_run() const { return may_double_segments(settings_.branch_mode) ? 2 * segments() : segments(); }
+  /// A switch to a period-doubled orbit doubles the segments. The durations of its second half have indices as far as
+  /// no monitor has them.
+  int segments_of_run() const {
+    const int m = segments();
+    return may_double_segments(settings_.branch_mode) ? std::min(2 * m, std::max(m, max_torus_segments)) : m;
+  }
 
   void parameter_index(std::string_view keyword, const std::string& name, int k, int segment_count) const {
     if ((k >= 1 && k < first_duration + segment_count) || (stands_in(k) && keyword != "PAR")) return;

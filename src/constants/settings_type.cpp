@@ -124,22 +124,20 @@ void renumber_monitors(RunSettings& settings, int old_segments) {
 
 bool leave_out_monitors(RunSettings& settings) {
   std::vector<std::string> kept;
-  std::vector<int> new_index;  // 0: left out
-  for (const std::string& name : settings.monitors) {
-    const bool of_whole_orbit = name.find('(') == std::string::npos;
-    new_index.push_back(of_whole_orbit ? first_monitor(settings) + static_cast<int>(kept.size()) : 0);
-    if (of_whole_orbit) kept.push_back(name);
+  std::vector<int> columns;
+  for (const int k : settings.free_parameters) {
+    const bool is_column = is_monitor(settings, k);
+    const std::string name =
+        is_column ? settings.monitors[static_cast<std::size_t>(k - first_monitor(settings))] : std::string();
+    if (is_column && name.find('(') != std::string::npos) continue;  // of a segment, perhaps
+    columns.push_back(is_column ? first_monitor(settings) + static_cast<int>(kept.size()) : k);
+    if (is_column) kept.push_back(name);
   }
-  // Gives a parameter its new index; true where it is left out.
-  const auto leaves = [&](int& k) {
-    if (!is_monitor(settings, k)) return false;
-    k = new_index[static_cast<std::size_t>(k - first_monitor(settings))];
-    return k == 0;
-  };
-  const std::size_t held = settings.held.size();
-  std::erase_if(settings.held, [&](const HeldValue& value) { return !is_monitor(settings, value.parameter); });
+  const bool some = kept.size() < settings.monitors.size() || !settings.held.empty();
+  const auto leaves = [&](int& k) { return is_monitor(settings, k); };
   change_indices(settings, leaves);
-  const bool some = kept.size() < settings.monitors.size() || settings.held.size() < held;
+  settings.held.clear();
+  settings.free_parameters = std::move(columns);
   settings.monitors = std::move(kept);
   return some;
 }

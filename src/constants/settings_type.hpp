@@ -46,8 +46,8 @@ std::optional<int> contact_segment(const RunSettings& settings);
 /// The indices that stand for monitors, after the number of segments has changed.
 void renumber_monitors(RunSettings& settings, int old_segments);
 
-/// Takes monitors that name segments, or may, and held durations out of ICP, UZR, THL, BOUNDS and HOLD, as where
-/// segments get other numbers. True when there were some.
+/// Takes monitors out of UZR, THL, BOUNDS and HOLD, and those that may name a segment out of ICP, as where segments get
+/// other numbers. True when there were some.
 bool leave_out_monitors(RunSettings& settings);
 
 }  // namespace tchat

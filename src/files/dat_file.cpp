@@ -245,9 +245,10 @@ class DatReader {
       return;
     }
     const auto index = parse_integer(name);
-    if (!index || *index < 1 || *index >= first_duration + std::max(segments_, parameter_length - first_duration + 1))
+    const int last = std::max(parameter_length, first_duration - 1 + segments_);
+    if (!index || *index < 1 || *index > last)
       refuse(fmt::format("PAR({}): an index from 1 to {} or a parameter's name is needed, as in `# PAR(2) = 0.8`", name,
-                         first_duration - 1 + segments_));
+                         last));
     parameters_.emplace_back(*index, value);
   }
 

@@ -18,9 +18,9 @@ constexpr std::size_t most_columns = 5;
 constexpr int column_width = 13;
 
 bool is_of_duration(const PointColumn& column) {
-  // Monitors have names.
+  // Monitors have other names.
   return column.kind == PointColumn::Kind::parameter && column.index >= first_duration &&
-         column.name == fmt::format("PAR({})", column.index);
+         (column.name == fmt::format("PAR({})", column.index) || column.name == duration_name(column.index));
 }
 
 /// What the screen shows first: 0 always, then in this order as far as there is room.

@@ -60,7 +60,7 @@ class StatementReader {
       return in_.next(), list(file_.events, "an event", "events are written event wall = 1 - x"), true;
     if (word.is("field")) return in_.next(), field(), true;
     if (word.is("jump")) return in_.next(), jump(), true;
-    if (word.is("mode") && in_.peek(2).is(":")) return in_.next(), mode(), true;
+    if (word.is("mode") && in_.peek(1).is_name()) return in_.next(), mode(), true;
     if (word.is("slide")) return in_.next(), slide(), true;
     if (word.is("after")) return in_.next(), successor(word.at), true;
     refuse_unknown(word);

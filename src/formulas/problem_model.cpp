@@ -11,13 +11,13 @@
 #include "formulas/evaluation_cost.hpp"
 #include "formulas/expression_check.hpp"
 #include "formulas/expression_value.hpp"
+#include "hybrid/hybrid_system.hpp"
 
 namespace tchat::formulas {
 
 namespace {
 
 constexpr std::size_t most_parameters = 60;
-constexpr std::size_t most_states = 1000;
 constexpr std::size_t most_definitions = 1000;
 
 /// Names of fields, events or jumps, with their numbers.
@@ -95,7 +95,7 @@ class ModelCheck {
     const Position file_as_a_whole{0, 0};
     if (model_.names.states().empty())
       errors_.add(file_as_a_whole, "there is no equation; write one for each state, as x' = v");
-    if (model_.names.states().size() > most_states)
+    if (model_.names.states().size() > static_cast<std::size_t>(most_states))
       errors_.add(file_as_a_whole, fmt::format("there are {} states, at most {} are allowed",
                                                model_.names.states().size(), most_states));
     if (file().parameters.size() > most_parameters)
@@ -245,8 +245,25 @@ class ModelCheck {
     return found;
   }
 
+  /// A state that an expression needs, itself or in a definition, of those behind the first ones; null: none.
+  const std::string* absent_state(const Expression& expression, std::size_t states) const {
+    for (const Node& node : expression.nodes) {
+      const Symbol* const symbol = node.kind == Node::Kind::name ? model_.names.find(node.text) : nullptr;
+      if (symbol == nullptr) continue;
+      if (symbol->kind == Symbol::Kind::state && symbol->index >= states) return &model_.names.states()[symbol->index];
+      if (symbol->kind != Symbol::Kind::definition || !errors_.empty()) continue;
+      if (const std::string* const inner = absent_state(file().definitions[symbol->index].value, states)) return inner;
+    }
+    return nullptr;
+  }
+
   void field(const Token& name, const Equations& equations) {
     ProblemModel::Field made{name.text, {}};
+    for (const Assignment* equation : equations)
+      if (const std::string* const absent = equation ? absent_state(equation->value, equations.size()) : nullptr)
+        errors_.add(equation->name.at,
+                    fmt::format("the equation for {} needs {}, which the mode {} has not; add it to 'mode {}'",
+                                equation->name.text, *absent, name.text, name.text));
     for (std::size_t k = 0; k < equations.size(); ++k)
       if (equations[k] != nullptr)
         made.rates.push_back(equations[k]->value);
@@ -278,7 +295,9 @@ class ModelCheck {
         const int surface = own_part(event_names_.required(slide.surface), own_events, slide.surface);
         std::array<int, 2> sides{};
         for (std::size_t k = 0; k < 2; ++k)
-          sides[k] = own_part(field_names_.required(slide.ends[k].second), own_fields, slide.ends[k].second);
+          sides[k] =
+              with_all_states(own_part(field_names_.required(slide.ends[k].second), own_fields, slide.ends[k].second),
+                              slide.ends[k].second);
         if (sides[0] == sides[1])
           throw FormulaError{slide.ends[1].second.at,
                              fmt::format("on both sides of {} is the field {}; a surface to slide on has two fields",
@@ -292,6 +311,15 @@ class ModelCheck {
                                  event_names_.number(slide.ends[0].first.text),
                                  event_names_.number(slide.ends[1].first.text)});
       });
+  }
+
+  int with_all_states(int field, const Token& name) const {
+    if (model_.fields[static_cast<std::size_t>(field) - 1].rates.size() < model_.names.states().size())
+      throw FormulaError{name.at,
+                         fmt::format("the field {} has a mode of fewer states; fields beside a surface to slide "
+                                     "on need all states",
+                                     name.text)};
+    return field;
   }
 
   /// What a sliding mode is made of is not made by one itself.

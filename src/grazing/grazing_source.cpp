@@ -55,7 +55,7 @@ int named_parameter(const RunSettings& settings, const HybridSystem& system, int
     throw UserError(
         fmt::format("{}: the orbit belongs to a family of CONSERVED = {}, along which no parameter changes, and the "
                     "expansion near grazing needs one; `tchat resegment --to impacting` continues the family, "
-                    "--parameter names a parameter all the same",
+                    "or choose a parameter with --parameter",
                     source, settings.conserved));
   for (const int k : settings.free_parameters)
     if (k >= 1 && k <= system.parameters()) return k;

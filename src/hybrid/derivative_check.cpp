@@ -349,7 +349,8 @@ DerivativeCheck check_derivatives(const HybridSystem& system, const DerivativeCh
   return check;
 }
 
-std::string to_text(const HybridSystem& system, const DerivativeCheck& check) {
+std::string to_text(const HybridSystem& system, const DerivativeCheck& check, const std::string& further,
+                    bool further_fine) {
   const int order = system.table().derivative_order;
   std::string text = fmt::format("{}: dimension {}, parameters {}, fields {}, events {}, jumps {}\n", system.name(),
                                  system.dimension(), system.parameters(), system.count(FunctionKind::field),
@@ -367,7 +368,7 @@ std::string to_text(const HybridSystem& system, const DerivativeCheck& check) {
     for (const std::string& fault : function.faults) text += fmt::format("fault: {}\n", fault);
   if (check.boundary)
     for (const std::string& fault : check.boundary->faults) text += fmt::format("fault: {}\n", fault);
-  return text + (check.fine() ? "No fault found.\n" : "");
+  return text + further + (check.fine() && further_fine ? "No fault found.\n" : "");
 }
 
 }  // namespace tchat

@@ -57,6 +57,8 @@ std::vector<Eigen::VectorXd> checked_states(const HybridSystem& system, const De
 DerivativeCheck check_derivatives(const HybridSystem& system, const DerivativeCheckOptions& options = {});
 
 /// The report that `tchat check` prints: dimension, names, a line for each function, the faults.
-std::string to_text(const HybridSystem& system, const DerivativeCheck& check);
+/// `further`: lines of other checks, which found a fault unless they are `further_fine`.
+std::string to_text(const HybridSystem& system, const DerivativeCheck& check, const std::string& further = "",
+                    bool further_fine = true);
 
 }  // namespace tchat

@@ -213,7 +213,7 @@ void difference_first(const HybridSystem& system, FunctionKind kind, int index, 
 void difference_by_parameter(const HybridSystem& system, FunctionKind kind, int index, const double* x,
                              const double* par, int k, double* column) {
   MovablePoint point(x, system.dimension(), par);
-  double& variable = point.par[static_cast<std::size_t>(k - 1)];
+  double& variable = point.variable(system.dimension(), system.dimension(), std::span(&k, 1));
   difference_column(Value(system, kind, index), point, variable, system.rows(kind), column);
 }
 

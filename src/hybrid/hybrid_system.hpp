@@ -20,7 +20,7 @@ namespace tchat {
 
 enum class FunctionKind { field = TCHAT_FIELD, event = TCHAT_EVENT, jump = TCHAT_JUMP, integrand = TCHAT_INTEGRAND };
 
-/// What is larger is no number of states, or conditions, but a slip: memory ends before.
+/// A larger number of states or conditions is an input error: memory would not suffice.
 inline constexpr int most_states = 100'000;
 
 /// The ends of the segments of an orbit, n x m each, and PAR with the durations, for the boundary conditions.
@@ -126,7 +126,7 @@ class HybridSystem {
   const tchat_problem* table_;
 };
 
-/// The least number of states that a mode of the signature has: so many multipliers has an orbit, for the others are
+/// The least number of states that a mode of the signature has: an orbit has this many multipliers; the others are
 /// zero.
 int least_dimension(const HybridSystem& system, const Signature& signature);
 

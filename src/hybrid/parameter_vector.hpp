@@ -13,9 +13,9 @@ namespace tchat {
 
 /// PAR(1..60) belong to the user; the duration of segment s (s = 1..) is PAR(60 + s).
 inline constexpr int first_duration = 61;
-/// At least so many entries has a ParameterVector, which problems rely on.
+/// A ParameterVector has at least this many entries, on which problems rely.
 inline constexpr int parameter_length = 512;
-/// What is larger is no number of segments, but a slip: memory ends before.
+/// A larger number is an input error: memory would not suffice.
 inline constexpr int max_segments = 100'000;
 /// The orbits of a torus may have as many in all, for their returns are coupled densely.
 inline constexpr int max_torus_segments = 256;

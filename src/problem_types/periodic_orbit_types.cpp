@@ -1,7 +1,5 @@
 /// The problem types of periodic orbits (IPS = 180): branches in one parameter (5.1-5.7), curves in two or three with
 /// one or two conditions more (5.11-5.22), and switches to other branches.
-#include <fmt/format.h>
-
 #include "bvp/conservative_orbit_system.hpp"
 #include "bvp/critical_branch_point.hpp"
 #include "bvp/critical_multiplier.hpp"
@@ -17,7 +15,6 @@
 #include "run/problem_row.hpp"
 #include "special_points/bifurcation_tests.hpp"
 #include "special_points/curve_tests.hpp"
-#include "text/user_error.hpp"
 
 namespace tchat {
 
@@ -51,18 +48,12 @@ ProblemFacts switch_facts(const char* title, bool may_double) {
           .start_example = "PD"};
 }
 
-/// The function that CONSERVED names. Throws UserError where the problem has none of that name.
-Quantity conserved_quantity(const HybridSystem& system, const RunSettings& settings) {
-  if (const std::optional<Quantity> quantity = find_quantity(system, settings.conserved)) return *quantity;
-  throw UserError(fmt::format("CONSERVED = {}: problem {} has no function of that name; it has {}", settings.conserved,
-                              system.name(), quantity_list(system)));
-}
-
 std::unique_ptr<PeriodicOrbitSystem> ring(const HybridSystem& system, const RunSettings& settings,
                                           std::vector<int> free) {
   if (!settings.conserved.empty())
     return std::make_unique<ConservativeOrbitSystem>(system, settings.signature(), std::move(free),
-                                                     conserved_quantity(system, settings), settings.conserved);
+                                                     conserved_quantity(system, settings.conserved),
+                                                     settings.conserved);
   return std::make_unique<PeriodicOrbitSystem>(system, settings.signature(), std::move(free));
 }
 

@@ -20,13 +20,12 @@ int segment_type(const HybridSystem& system, const NewSegment& segment) {
   return is_identity_jump(system, segment.index.jump) ? 0 : 1;
 }
 
-/// `now` has the monitors and the problem type of the new constants, and the old ICP but for monitors left out. Further
+/// `now` has the monitors and the problem type of the new constants, and the old ICP without durations. Further
 /// monitors are columns of files, so that they stand behind the parameters unless they come first.
 std::vector<int> new_free_parameters(const RunSettings& now, const RunSettings& old, std::size_t segments,
                                      const NewProblem& problem, const HybridSystem& system) {
   std::vector<int> list, monitors;
-  for (const int k : now.free_parameters)
-    if (!is_duration(k, static_cast<int>(old.segments.size()))) (is_monitor(now, k) ? monitors : list).push_back(k);
+  for (const int k : now.free_parameters) (is_monitor(now, k) ? monitors : list).push_back(k);
   const auto had = static_cast<std::size_t>(free_parameter_count(old));
   const auto needed = static_cast<std::size_t>(free_parameter_count(now));
   for (std::size_t k = needed; k < had && list.size() > needed; ++k)
@@ -78,6 +77,7 @@ RunSettings new_settings(const RunSettings& old, const SegmentList& segments, co
   const int m = static_cast<int>(old.segments.size());
   RunSettings settings = old;
   leave_out_monitors(settings);
+  std::erase_if(settings.free_parameters, [m](int k) { return is_duration(k, m); });
   settings.problem_type = problem.problem_type;
   settings.branch_mode = problem.branch_mode;
   settings.grazing_jump = problem.grazing_jump;
@@ -93,8 +93,8 @@ RunSettings new_settings(const RunSettings& old, const SegmentList& segments, co
   settings.free_parameters = new_free_parameters(settings, old, segments.size(), problem, system);
   settings.parameter_weights = new_weights(old, segments);
   settings.test_functions = new_test_functions(segments, problem, system);
-  std::erase_if(settings.user_values, [&](const UserValue& value) { return is_duration(value.parameter, m); });
-  std::erase_if(settings.bounds, [&](const BoundedValue& value) { return is_duration(value.parameter, m); });
+  std::erase_if(settings.user_values, [](const UserValue& value) { return value.parameter >= first_duration; });
+  std::erase_if(settings.bounds, [](const BoundedValue& value) { return value.parameter >= first_duration; });
   settings.stop_rules.clear();
   return settings;
 }

@@ -351,7 +351,8 @@ std::vector<std::string> resegment(const ResegmentRequest& asked, std::ostream& 
   RunSettings settings = new_settings(source.settings, target.segments, target.problem, system);
   if (RunSettings kept = labelled.settings; leave_out_monitors(kept))
     warnings.push_back(fmt::format(
-        "{}: its monitors and HOLD are left out of the new constants, for segments have other numbers; name them again",
+        "{}: HOLD, monitors of segments, and UZR and BOUNDS of monitors are left out of the new constants, because "
+        "segments have other numbers; name them again",
         constants));
   if (request.data) settings.start = {};
   apply_overrides(settings, request.overrides, &warnings);

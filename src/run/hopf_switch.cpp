@@ -74,13 +74,13 @@ RunSettings with_watched_events(const HybridSystem& system, RunSettings settings
 void check_signature(const HybridSystem& system, const RunSettings& settings, const SelectedStart& selected) {
   const IndexVector& index = settings.segments.front().index;
   if (settings.segments.size() > 1)
-    throw UserError(
-        fmt::format("{}: a smooth orbit is born at a Hopf bifurcation, and the signature has {} segments; give one, "
-                    "such as GCFIND = [{}], GCHIND = [0], GCGIND = [0] (no section)",
-                    selected.source, settings.segments.size(), index.field));
+    throw UserError(fmt::format(
+        "{}: the orbits that begin at an equilibrium are smooth, and the signature has {} segments; give one, "
+        "such as GCFIND = [{}], GCHIND = [0], GCGIND = [0] (no section)",
+        selected.source, settings.segments.size(), index.field));
   if (index.jump != no_function && !is_identity_jump(system, index.jump))
     throw UserError(fmt::format(
-        "{}: a smooth orbit is born at a Hopf bifurcation, and jump {} ({}) at the end of the segment is not "
+        "{}: the orbits that begin at an equilibrium are smooth, and jump {} ({}) at the end of the segment is not "
         "the identity; give GCGIND = [0]",
         selected.source, index.jump, system.function_name(FunctionKind::jump, index.jump)));
 }
@@ -116,9 +116,10 @@ Oscillation chosen_oscillation(const DefiningSystem& equilibria, const Orbit& x,
   const std::vector<Complex> eigenvalues = equilibrium_eigenvalues(equilibria, x).values;
   double largest = 0.0;
   for (const Complex& value : eigenvalues) largest = std::max(largest, std::abs(value));
+  constexpr double zero = 1e-7;  // of the largest: a double zero is computed to the root of rounding
   std::vector<double> omegas;
   for (const Complex& value : eigenvalues)
-    if (value.imag() > on_axis * largest && std::abs(value.real()) <= on_axis * value.imag())
+    if (value.imag() > zero * largest && std::abs(value.real()) <= on_axis * value.imag())
       omegas.push_back(value.imag());
   std::sort(omegas.begin(), omegas.end());
   if (omegas.empty())
@@ -212,7 +213,7 @@ BranchSetup begin_periodic_orbits(const HybridSystem& system, const RunSettings&
       first_orbit(*setup.follower, still, from.tangent, continuation_settings(of_orbit).step, trouble);
   if (!first)
     throw ComputationError(
-        fmt::format("no periodic orbit beside the Hopf bifurcation of label {} of {} for an amplitude "
+        fmt::format("no periodic orbit beside the equilibrium of label {} of {} for an amplitude "
                     "of {:.3g} or less: {}; try another DS",
                     selected.label, selected.source, std::abs(settings.step), describe(trouble)));
   setup.start = std::move(*first);

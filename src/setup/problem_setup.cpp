@@ -9,6 +9,7 @@
 
 #include "constants/constants_file.hpp"
 #include "constants/settings_type.hpp"
+#include "hybrid/mode_dimensions.hpp"
 #include "problem_type/family.hpp"
 #include "problem_type/problem_type.hpp"
 #include "setup/run_monitors.hpp"
@@ -65,6 +66,15 @@ std::string parameter_list(const HybridSystem& system) {
   if (names.empty()) return "none";
   return system.parameters() == 1 ? "PAR(1): " + names
                                   : fmt::format("PAR(1) to PAR({}): {}", system.parameters(), names);
+}
+
+/// In a ring, modes have the states that jumps set.
+void check_modes(const HybridSystem& system, const RunSettings& settings, const SettingsSource& source) {
+  const Signature signature = settings.signature();
+  for (std::size_t s = 0; s < signature.size(); ++s)
+    if (const std::string fault = mode_fault(system, signature[s], signature[(s + 1) % signature.size()].field);
+        !fault.empty())
+      throw UserError(fmt::format("{}: segment {}: {}", source.of("GCGIND"), s + 1, fault));
 }
 
 /// The conditions are the problem's; the constants say how many there are, for the count of free parameters.
@@ -139,7 +149,7 @@ void check_parameters(const HybridSystem& system, const RunSettings& settings, c
   if (free.empty() && !settings.conserved.empty() && settings.free_parameters.front() < first_duration)
     throw UserError(fmt::format(
         "{}: ICP(1) is {}, but CONSERVED = {} leaves no parameter of the problem free: name what changes along the "
-        "family, {} (its value), period or another monitor, or a duration; with HOLD of one of them a parameter is "
+        "family, start({}), period or another monitor, or a duration; with HOLD of one of them a parameter is "
         "free",
         source.of("ICP"), system.parameter_name(settings.free_parameters.front()), settings.conserved,
         settings.conserved));
@@ -200,6 +210,7 @@ std::vector<std::string> check_settings_against(const HybridSystem& system, cons
           source.of("GCSEGTYP"), s, segment.type, segment.type == 0 ? "identity" : "another", segment.index.jump,
           system.function_name(FunctionKind::jump, segment.index.jump), identity ? "" : "not "));
   }
+  if (rules.ends_in_events) check_modes(system, settings, source);
   check_contact_jump(system, settings, source, warnings);
   check_monitors(system, settings, source);
   check_parameters(system, settings, source, warnings);

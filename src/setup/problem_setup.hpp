@@ -33,7 +33,7 @@ std::vector<std::string> check_settings_against(const HybridSystem& system, cons
 /// `where` and lists the names.
 int parameter_index(const HybridSystem& system, const std::string& name, const std::string& where);
 
-/// THU as a vector of n weights, THL as one of parameter_length weights.
+/// THU as a vector of n weights, THL as one weight for each entry of PAR.
 Eigen::VectorXd state_weights(const RunSettings& settings);
 WeightedNorm weighted_norm(const RunSettings& settings);
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "hybrid/event_at.hpp"
+#include "hybrid/mode_dimensions.hpp"
 #include "hybrid/undefined_value.hpp"
 #include "simulation/watched_flow.hpp"
 #include "text/user_error.hpp"
@@ -113,7 +114,10 @@ SimulatedSegment HybridSimulation::begin_segment() {
   if (last_.field != 0 && !is_cut_) mode_ = rule_.next(last_, std::exchange(before_jump_, {}), par_);
   is_cut_ = true;
   segment.mode = mode_;
-  if (mode_.index_vectors.empty()) stop(segment, SegmentEnd::failed, rule_.fault());
+  if (mode_.index_vectors.empty())
+    stop(segment, SegmentEnd::failed, rule_.fault());
+  else if (const std::string fault = last_.field != 0 ? mode_fault(system_, last_, mode_.field()) : ""; !fault.empty())
+    stop(segment, SegmentEnd::failed, fault);
   if (settings_.samples > 0) segment.samples.push_back({time_, x_});
   return segment;
 }

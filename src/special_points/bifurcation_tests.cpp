@@ -100,7 +100,10 @@ SpecialPoint FoldTest::classify(const TestedPoint& point, bool) const {
   const DefiningSystem& system = point.condensed.system();
   const int s = touching_segment(point);
   if (!held_.empty()) return {type_, {}, stop_, "fold of the curve with " + held_ + " held"};
-  if (s < 0 || has_multiplier_one(point.multipliers)) return {type_, {}, stop_, "fold"};
+  const bool is_fold = has_multiplier_one(point.multipliers);
+  if (is_monitor_ && point.multipliers.valid && !is_fold)
+    return {type_, {}, stop_, "extremum of ICP(1) along the branch"};
+  if (s < 0 || is_fold) return {type_, {}, stop_, "fold"};
   return {PointType::user,
           {UserPointKind::impact_velocity, s + 1, system.signature()[static_cast<std::size_t>(s)].event, 1.0},
           stop_,

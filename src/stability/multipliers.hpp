@@ -23,7 +23,7 @@ struct FloquetMultipliers {
   /// without a section the trivial one stands before these, in place of the zero.
   std::vector<std::complex<double>> values;
   bool has_trivial = false;
-  int of_conserved = 0;     ///< how many more are 1 on every orbit; they come first, but for the trivial one
+  int of_conserved = 0;     ///< how many more are 1 on every orbit; they come after the trivial one
   double structural = 0.0;  ///< size of the structural zero, or distance of the trivial one from 1
   bool valid = false;       ///< false: not computed, or the eigenvalue iteration failed
   /// They are the eigenvalues of f_x at an equilibrium (equilibrium_eigenvalues.hpp): stable on the left of the
@@ -35,7 +35,7 @@ struct FloquetMultipliers {
   MultiplierProduct with_one = {};        ///< t = 1: vanishes with a multiplier +1
   MultiplierProduct with_minus_one = {};  ///< t = -1: vanishes with a multiplier -1
 
-  /// How many are the same for every orbit, but for the structural zero.
+  /// How many are the same for every orbit, besides the structural zero.
   int known() const { return (has_trivial ? 1 : 0) + of_conserved; }
   /// All but those; the structural zero is among them.
   std::span<const std::complex<double>> nontrivial() const {

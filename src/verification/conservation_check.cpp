@@ -44,7 +44,7 @@ class Conservation {
     VectorXd f(n_), gradient(n_);
     std::vector<double> none;
     for (const VectorXd& near : states) {
-      const std::optional<VectorXd> admissible = on_admissible_side(events, near);
+      const std::optional<VectorXd> admissible = on_admissible_side(events, in_mode(field, near));
       if (!admissible) continue;
       const VectorXd& x = *admissible;
       system_.value(FunctionKind::field, field, x.data(), par_.data(), f.data());
@@ -55,13 +55,13 @@ class Conservation {
     return largest;
   }
 
-  LargestChange of_jump(int event, int jump, const std::vector<VectorXd>& states) const {
+  LargestChange of_jump(const IndexVector& index, const std::vector<VectorXd>& states) const {
     LargestChange largest;
     VectorXd after(n_);
     for (const VectorXd& near : states) {
-      const std::optional<VectorXd> x = on_surface(event, near);
+      const std::optional<VectorXd> x = on_surface(index.event, in_mode(index.field, near));
       if (!x) continue;
-      system_.value(FunctionKind::jump, jump, x->data(), par_.data(), after.data());
+      system_.value(FunctionKind::jump, index.jump, x->data(), par_.data(), after.data());
       const double before = function_.value(x->data(), par_.data());
       largest.add(function_.value(after.data(), par_.data()) - before, 1.0 + std::abs(before), *x);
     }
@@ -76,6 +76,12 @@ class Conservation {
   }
 
  private:
+  /// Without what the mode of the field has not.
+  VectorXd in_mode(int field, VectorXd x) const {
+    x.tail(n_ - system_.dimension_of(field)).setZero();
+    return x;
+  }
+
   double event_value(int event, const VectorXd& x) const {
     double h = 0.0;
     system_.value(FunctionKind::event, event, x.data(), par_.data(), &h);
@@ -125,7 +131,7 @@ ConservationCheck check_conservation(const HybridSystem& system, const Quantity&
   ConservationCheck check;
   const auto report = [&](const LargestChange& largest, const std::string& what, const char* measure) {
     if (largest.states == 0) {
-      check.text += fmt::format("{}: {} was evaluated nowhere\n", name, what);
+      check.text += fmt::format("{}: {} could not be evaluated at any state\n", name, what);
     } else if (largest.relative <= rounding) {
       check.text += fmt::format("{}: conserved by {}, {} <= {:.1e} at {} states\n", name, what, measure,
                                 largest.relative, largest.states);
@@ -136,23 +142,24 @@ ConservationCheck check_conservation(const HybridSystem& system, const Quantity&
     }
   };
   std::map<int, std::set<int>> fields;  // with the event functions that are not negative on all their segments
-  std::set<std::pair<int, int>> jumps;
+  std::map<std::pair<int, int>, IndexVector> jumps;
   for (const SegmentSettings& segment : segments) {
     const IndexVector& index = segment.index;
     std::set<int> events(segment.monitor.begin(), segment.monitor.end());
     if (index.event != no_function) events.insert(index.event);
     const auto [known, is_new] = fields.insert({index.field, events});
     if (!is_new) std::erase_if(known->second, [&](int event) { return !events.contains(event); });
-    if (index.jump != no_function) jumps.insert({index.event, index.jump});
+    if (index.jump != no_function) jumps.insert({{index.event, index.jump}, index});
   }
   for (const auto& [field, events] : fields)
     report(conservation.of_field(field, events, states),
            fmt::format("field {} ({})", field, system.function_name(FunctionKind::field, field)), "its rate of change");
-  for (const auto& [event, jump] : jumps)
-    report(conservation.of_jump(event, jump, states),
-           fmt::format("jump {} ({}) at event {} ({})", jump, system.function_name(FunctionKind::jump, jump), event,
-                       system.function_name(FunctionKind::event, event)),
-           "its change");
+  for (const auto& [numbers, index] : jumps)
+    report(
+        conservation.of_jump(index, states),
+        fmt::format("jump {} ({}) at event {} ({})", index.jump, system.function_name(FunctionKind::jump, index.jump),
+                    index.event, system.function_name(FunctionKind::event, index.event)),
+        "its change");
   return check;
 }
 

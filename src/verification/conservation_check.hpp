@@ -1,4 +1,4 @@
-/// Is a function of the state conserved? Looked at where a problem is evaluated, not along orbits.
+/// Is a function of the state conserved? Checked at given states, not along orbits.
 #pragma once
 
 #include <Eigen/Core>

@@ -49,9 +49,10 @@ void check_all(const std::vector<Malformed>& files) {
 
 TEST_CASE("Malformed positional files", "[constants]") {
   const std::vector<Malformed> files{
-      {appendix_b_with(1, "0 180 1 1"), {"gc.bad:1: NDIM (", "found '0'", "from 1 to 1000", "for example: 5 180 1 1"}},
+      {appendix_b_with(1, "0 180 1 1"),
+       {"gc.bad:1: NDIM (", "found '0'", "from 1 to 100000", "for example: 5 180 1 1"}},
       {appendix_b_with(1, "5.0 180 1 1"), {"gc.bad:1: NDIM (", "found '5.0'", "an integer"}},
-      {appendix_b_with(1, "1001 180 1 1"), {"gc.bad:1: NDIM (", "'1001'"}},
+      {appendix_b_with(1, "100001 180 1 1"), {"gc.bad:1: NDIM (", "'100001'"}},
       {appendix_b_with(1, "99999999999 180 1 1"), {"gc.bad:1: NDIM (", "'99999999999'"}},
       {appendix_b_with(1, "5 2 1 1"), {"gc.bad:1: IPS (", "found '2'", "180 (", "150 ("}},
       {appendix_b_with(1, "5 180 -1 1"), {"gc.bad:1: IRS (", "found '-1'", "label number"}},
@@ -66,7 +67,7 @@ TEST_CASE("Malformed positional files", "[constants]") {
       {appendix_b_with(1, "5/180 1 1"), {"gc.bad:1: IPS (", "'/'"}},
       {appendix_b_with(2, "0 NICP"), {"gc.bad:2: NICP (", "found '0'"}},
       {appendix_b_with(2, "-3 1 61 62"), {"gc.bad:2: NICP (", "found '-3'"}},
-      {appendix_b_with(2, "1000000000 1 61 62"), {"gc.bad:2: NICP (", "'1000000000'", "256"}},
+      {appendix_b_with(2, "1000000000 1 61 62"), {"gc.bad:2: NICP (", "'1000000000'", "100000"}},
       {appendix_b_with(2, "3 1 0 62"), {"gc.bad:2: ICP(2) (", "found '0'"}},
       {appendix_b_with(2, "3 1 61 300"), {"gc.bad:2: ICP(3) (", "found '300'"}},
       {appendix_b_with(2, "3 1 61 63"), {"gc.bad:2: ICP(3) (", "found '63'", "61 to 62"}},
@@ -117,8 +118,8 @@ TEST_CASE("Malformed positional files", "[constants]") {
       {appendix_b_with(14, "3 1 2 0"), {"gc.bad:14: GCIPSI(3) (", "found '0'"}},
       {appendix_b_with(14, "3 1 2 4"), {"gc.bad:14: GCIPSI(3) (", "found '4'", "1 to 3"}},
       {appendix_b_with(15, "-1"), {"gc.bad:15: GCNFIXED (", "found '-1'"}},
-      {appendix_b_with(16, "0"), {"gc.bad:16: GCNOSEG (", "found '0'", "from 1 to 64"}},
-      {appendix_b_with(16, "65 65*1"), {"gc.bad:16: GCNOSEG (", "found '65'"}},
+      {appendix_b_with(16, "0"), {"gc.bad:16: GCNOSEG (", "found '0'", "from 1 to 100000"}},
+      {appendix_b_with(16, "100001 100001*1"), {"gc.bad:16: GCNOSEG (", "found '100001'"}},
       {appendix_b_with(16, "2 1 3"), {"gc.bad:16: GCSEGTYP(2) (", "found '3'", "grazing contact"}},
       {appendix_b_with(17, "0 2"), {"gc.bad:17: GCFIND(1) (", "found '0'", ">= 1"}},
       {appendix_b_with(18, "1 -2"), {"gc.bad:18: GCHIND(2) (", "found '-2'"}},

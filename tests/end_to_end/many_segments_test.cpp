@@ -1,6 +1,6 @@
-// Orbits of hundreds of segments: a ball that is thrown up again when its impacts have become slow. The n-th flight after
-// a throw lasts 2 r^n, so that an orbit of two throws and m - 1 flights after the second one has the period
-// 2 + 2 (1 - r^(m-1)) / (1 - r).
+// Orbits of hundreds of segments: a ball that is thrown up again when its impacts have become slow. The n-th flight
+// after a throw lasts 2 r^n, so that an orbit of two throws and m - 1 flights after the second one has the period 2 + 2
+// (1 - r^(m-1)) / (1 - r).
 #include <fmt/format.h>
 
 #include <catch2/catch.hpp>
@@ -48,7 +48,8 @@ TEST_CASE("an orbit of 302 impacts is run, written, read, verified and resegment
   const Workspace workspace;
   const int segments = simulate(workspace, 0.05);
   REQUIRE(segments == 302);
-  succeed(workspace, "run ball -q -c ball -d ball -o branch NTST=2 ICP=[r,period,energy] NMX=10 DS=1e-4 UZR={r:0.9902}");
+  succeed(workspace,
+          "run ball -q -c ball -d ball -o branch NTST=2 ICP=[r,period,energy] NMX=10 DS=1e-4 UZR={r:0.9902}");
   // Parabolas are exact on any mesh, and 302 sums leave 1e-12.
   for (const SolutionEntry& label : workspace.solutions("branch")) {
     double sum = 0.0;
@@ -79,4 +80,30 @@ TEST_CASE("durations beyond the 256th and monitors keep apart") {
   CHECK(total(labels.back()) == Approx(total(labels.front())).epsilon(1e-10));
   CHECK(labels.back().parameter(2) ==
         Approx(total(labels.back()) / period(labels.back().parameter(1), segments)).epsilon(1e-10));
+}
+
+TEST_CASE("a conservative family of 430 segments") {
+  const Workspace workspace;
+  constexpr int segments = 430;
+  workspace.write("ball.tch", "x' = v\nv' = -1\nevent wall = x\njump bounce: v -> -v\naux energy = v^2/2+x\n");
+  std::string data, constants = "NDIM=2 IPS=180 CONSERVED=energy ICP=[energy,period] NTST=1 NMX=6 DS=0.1 IAD=0\n";
+  for (int s = 1; s <= segments; ++s) data += fmt::format("# PAR({}) = 2\n", 60 + s);
+  for (const double tau : {0.0, 0.25, 0.5, 0.75, 1.0}) {
+    data += fmt::format("{}", tau);
+    for (int s = 0; s < segments; ++s) data += fmt::format(" {} {}", 2.0 * tau * (1.0 - tau), 1.0 - 2.0 * tau);
+    data += '\n';
+  }
+  std::string ones;
+  for (int s = 0; s < segments; ++s) ones += s > 0 ? ",1" : "1";
+  constants += fmt::format("GCFIND=[{0}]\nGCHIND=[{0}]\nGCGIND=[{0}]\n", ones);
+  workspace.write("ball.dat", data);
+  workspace.write("gc.ball", constants);
+  succeed(workspace, "run ball -q");
+  const PointSection section = workspace.points("ball").front();
+  const std::size_t energy = section.column("energy"), period = section.column("period");
+  CHECK(section.rows.back().values[energy] != Approx(section.rows.front().values[energy]));
+  for (const PointRow& row : section.rows) {
+    const double flight = row.values[period] / segments;
+    CHECK(row.values[energy] == Approx(flight * flight / 8.0).epsilon(1e-9));  // eleven digits are in the file
+  }
 }

@@ -1,10 +1,13 @@
-// Modes of dimension 5, 3 and 2: flight of a ball beside a pendulum, a spring with a force that lags, rest with a clock.
-// The references are integrations of each mode with the states that it has.
+// Modes of dimension 5, 3 and 2: flight of a ball beside a pendulum, a spring with a force that lags, rest with a
+// clock. The references are integrations of each mode with the states that it has.
 #include <array>
 #include <boost/math/tools/toms748_solve.hpp>
 #include <boost/numeric/odeint.hpp>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "end_to_end/workspace.hpp"
 
@@ -130,7 +133,11 @@ Turn turn(std::array<double, 5> x, double k, double d, double V) {
       [](const auto& u) { return -u[1]; });
   std::array<double, 2> z{y[0], 0.1 * y[2]};
   result.durations[2] = integrate_to(
-      z, [](const auto& u, auto& f, double) { f = {-0.2 * u[0], 1.0}; }, [](const auto& u) { return 0.7 - u[1]; });
+      z,
+      [](const auto& u, auto& f, double) {
+        f = {-0.2 * u[0], 1.0};
+      },
+      [](const auto& u) { return 0.7 - u[1]; });
   result.end = {0.0, V - 0.5 * z[0], 0.2 * z[0], 0.1 * z[0], 0.5};
   return result;
 }
@@ -161,7 +168,8 @@ TEST_CASE("modes of dimension 5, 3 and 2 in every command") {
   CHECK(diagnostics.find("Multiplier   2") != std::string::npos);
   CHECK(diagnostics.find("Multiplier   3") == std::string::npos);
   succeed(workspace, "verify branch -p modes");
-  succeed(workspace, "resegment q.branch UZ1 -p modes --to signature --signature {(1,4,4),(1,1,1),(2,2,2),(3,3,3)} -o cut");
+  succeed(workspace,
+          "resegment q.branch UZ1 -p modes --to signature --signature {(1,4,4),(1,1,1),(2,2,2),(3,3,3)} -o cut");
   succeed(workspace, "run modes -q -c cut -s cut -o again NMX=4");
   succeed(workspace, "verify again -p modes");
   succeed(workspace, "sweep modes -q --over V=1:1.2:3 -o values");
@@ -193,4 +201,66 @@ jump away: z -> 1
   CHECK(label.parameter(61) == Approx(2.0 * std::acos(-1.0)).epsilon(1e-8));
   CHECK(workspace.read("d.cycles").find("Multiplier   3") == std::string::npos);
   succeed(workspace, "verify cycles -p small");
+}
+
+TEST_CASE("modes that cannot follow each other, and lines that are no modes") {
+  const Workspace workspace;
+  const auto refused = [&](const std::string& arguments, const std::string& words) {
+    const Outcome outcome = workspace.tchat(arguments);
+    INFO(arguments << '\n' << outcome.text());
+    CHECK(outcome.status == 2);
+    CHECK(outcome.err.find(words) != std::string::npos);
+  };
+  workspace.write("modes.tch", formulas);
+  workspace.write("modes.dat", "# PAR(61) = 1\n# PAR(62) = 1\n0 0 0 0 0 0 0 0 0 0 0\n1 0 0 0 0 0 0 0 0 0 0\n");
+  workspace.write("gc.modes", "NDIM=5 ICP=[V]\nGCFIND=[1,3]\nGCHIND=[1,3]\nGCGIND=[0,3]\n");
+  refused("run modes", "the identity cannot lead from field 1 (flight) with 5 states to field 3 (rest) with 2");
+  refused("run modes GCGIND=[1,3]", "jump 1 (catch) sets 3 states, and field 3 (rest) after it has 2");
+  const std::string start = "field large: x' = y, y' = z, z' = x\nevent cut = y\n";
+  const std::vector<std::pair<std::string, std::string>> mistakes = {
+      {"mode low: states y, x\nfield low: x' = 1, y' = 0\n", "the states of a mode are the first ones of all"},
+      {"mode low: states x, y\nfield low: x' = 1, y' = z\n", "the equation for y needs z, which the mode low has not"},
+      {"mode low: states x, y\nfield low: x' = 1, y' = 0, z' = 1\n", "z is no state of the mode low"},
+      {"mode low: states x, y\nfield low: x' = 1, y' = 0\njump down to low: z -> 1\n", "z is no state of the mode low"},
+      {"mode low: states x, y\nmode low: states x\nfield low: x' = 1, y' = 0\n", "there are two lines 'mode low'"},
+      {"mode lower: states x, y\nfield low: x' = 1, y' = 0, z' = 0\n", "there is no field 'lower'"},
+      {"mode low states x, y\nfield low: x' = 1, y' = 0\n", "it is written 'mode FIELD: states a, b, c'"}};
+  for (const auto& [lines, words] : mistakes) {
+    workspace.write("wrong.tch", start + lines);
+    refused("check wrong", words);
+  }
+}
+
+TEST_CASE("energy is checked with the states that a mode has") {
+  const Workspace workspace;
+  workspace.write("hopper.tch", R"(init x=0.5
+field stance: x' = v, v' = -x, s' = v*(1 - s^2)
+mode flight: states x, v
+field flight: x' = v, v' = -1
+event ground = x
+event leave = -x
+jump land: s -> 0
+jump lift to flight: v -> v
+aux energy = v^2/2 + x + 7*s
+)");
+  workspace.write("gc.hopper", "NDIM=3 CONSERVED=energy ICP=[energy]\nGCFIND=[2] GCHIND=[1] GCGIND=[2]\n");
+  const Outcome outcome = succeed(workspace, "check hopper");
+  CHECK(outcome.out.find("conserved by field 2 (flight)") != std::string::npos);
+}
+
+TEST_CASE("derivatives by hand of a small mode") {
+  const Workspace workspace;
+  std::string source = modes_source;
+  const std::string member =
+      R"(  void field_derivatives(int i, const double* x, const double* par, double* dx, double* dp) const {
+    if (i == 1) dx[0 + 5 * 1] = 1, dx[2 + 5 * 0] = 1, dx[2 + 5 * 2] = -1, dx[3 + 5 * 4] = 1, dx[4 + 5 * 3] = -cos(x[3]),
+        dx[4 + 5 * 4] = -par[1], dp[4 + 5 * 1] = -x[4];
+    if (i == 2) dx[0 + 5 * 1] = 1, dx[1 + 5 * 0] = -par[0], dx[1 + 5 * 2] = -par[1], dx[2 + 5 * 1] = 3, dx[2 + 5 * 2] = -3,
+        dp[1 + 5 * 0] = -x[0], dp[1 + 5 * 1] = -x[2];
+    if (i == 3) dx[0 + 5 * 0] = -0.2;
+  }
+)";
+  source.insert(source.find("  template <class T>\n  T event"), member);
+  workspace.write("modes.cpp", source);
+  succeed(workspace, "check modes");
 }

@@ -72,7 +72,7 @@ std::vector<Malformed> corpus() {
       {"NAR negative", with_integer(good, 8, "-3"), {"NAR = -3"}},
       {"NAR no whole segments", with_integer(good, 8, "4"), {"3 states", "dimension 2"}},
       {"NAR wrong", with_integer(good, 8, "5"), {"133 numbers"}},
-      {"NAR huge", with_integer(good, 8, "2147483647"), {"1073741823 segments", "at most 256"}},
+      {"NAR huge", with_integer(good, 8, "2147483647"), {"1073741823 segments", "at most 100000"}},
       {"NROWPR negative", with_integer(good, 9, "-1"), {"NROWPR = -1"}},
       {"NROWPR too small", with_integer(good, 9, "20"), {"q.x:1", "integer 9"}},
       {"NROWPR too small for PAR only", with_integer(good, 9, "5") + good, {"q.x:1", "numbers"}},

@@ -71,7 +71,7 @@ TEST_CASE("an unusable table is refused") {
       {"no name", [](tchat_problem& t) { t.name = nullptr; }},
       {"dimension is 0", [](tchat_problem& t) { t.dimension = 0; }},
       {"dimension is -3", [](tchat_problem& t) { t.dimension = -3; }},
-      {"dimension is 1001", [](tchat_problem& t) { t.dimension = 1001; }},
+      {"dimension is 100001", [](tchat_problem& t) { t.dimension = 100001; }},
       {"61 parameters", [](tchat_problem& t) { t.parameters = 61; }},
       {"-1 parameters", [](tchat_problem& t) { t.parameters = -1; }},
       {"0 fields", [](tchat_problem& t) { t.fields = 0; }},

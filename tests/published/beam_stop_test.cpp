@@ -153,6 +153,12 @@ TEST_CASE("beam_stop: fold, period doublings and the second touch of contact mod
   for (const double near : {21.4175, 21.3182, 21.1927, 21.1068, 20.4187})
     check_near(chain.solution("contact1", "PD", ++n).parameter(61), root(near - 2e-3, near + 2e-3, doubling), 1e-7);
   CHECK(of_type(chain.diagnostics("contact1"), "PD").size() == n);
+  // Steps that go from one doubling beyond the next find the same ones.
+  chain.run("-c touch1 -s touch1 -o coarse DSMAX=0.3");
+  REQUIRE(of_type(chain.diagnostics("coarse"), "PD").size() == n);
+  for (std::size_t k = 1; k <= n; ++k)
+    check_near(chain.solution("coarse", "PD", k).parameter(61), chain.solution("contact1", "PD", k).parameter(61),
+               1e-6);
   check_near(chain.only("contact2", "PD").parameter(61), root(7.49, 7.4925, doubling), 1e-7);
   // The doubled orbit has two equal impacts, at a zero of G' that leaves half its period: there G'' is zero too.
   check_near(chain.only("contact2", "PD").parameter(61),

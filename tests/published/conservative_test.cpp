@@ -67,9 +67,10 @@ Outcome run_ball(const Workspace& workspace, const std::string& data, const std:
                                           "event top = v\njump bounce: v -> -r*v\naux energy = v^2/2 + g*x\n",
                                           g));
   workspace.write("ball.dat", data);
-  workspace.write("gc.ball", "NDIM=2, IPS=180, CONSERVED=energy, ICP=[energy, period]\nNTST=4, NCOL=4, NMX=30\n"
-                             "DS=0.1, DSMAX=1\n" +
-                                 signature);
+  workspace.write("gc.ball",
+                  "NDIM=2, IPS=180, CONSERVED=energy, ICP=[energy, period]\nNTST=4, NCOL=4, NMX=30\n"
+                  "DS=0.1, DSMAX=1\n" +
+                      signature);
   return succeed(workspace, "run ball");
 }
 
@@ -209,9 +210,10 @@ void run_oscillators(const Workspace& workspace, int mode, const std::vector<std
   workspace.write("duo.dat", "0 0 0 0\n");
   workspace.write("gc.duo", "NDIM=4, IPS=1, ICP=[k], NMX=1\n");
   succeed(workspace, "run duo -o rest");
-  std::vector<std::string> words = words_of("run duo -c r.rest -s rest -o family IRS=1 IPS=180 ISW=-1 CONSERVED=energy "
-                                            "ICP=[energy,period] NTST=30 NCOL=5 NMX=30 DS=0.05 DSMAX=0.3 EPSL=1e-10 "
-                                            "EPSU=1e-10");
+  std::vector<std::string> words = words_of(
+      "run duo -c r.rest -s rest -o family IRS=1 IPS=180 ISW=-1 CONSERVED=energy "
+      "ICP=[energy,period] NTST=30 NCOL=5 NMX=30 DS=0.05 DSMAX=0.3 EPSL=1e-10 "
+      "EPSU=1e-10");
   words.push_back(fmt::format("MODE={}", mode));
   words.insert(words.end(), further.begin(), further.end());
   CHECK(printed_lambda(succeed(workspace, words)) < rounding);
@@ -231,8 +233,9 @@ void check_periods(const Workspace& workspace, const DuffingMotion& motion) {
 
 /// x'' + x + x^3 = -d x' + f x' (1 - x^2): q.family of d = f = 0, cut at its velocity zero, to energy 1 (UZ1).
 void run_family(const Workspace& workspace) {
-  workspace.write("osc.tch", "par d=0, f=0\nx' = v\nv' = -x - x^3 - d*v + f*v*(1-x^2)\nevent section = v\n"
-                             "aux energy = v^2/2 + x^2/2 + x^4/4\n");
+  workspace.write("osc.tch",
+                  "par d=0, f=0\nx' = v\nv' = -x - x^3 - d*v + f*v*(1-x^2)\nevent section = v\n"
+                  "aux energy = v^2/2 + x^2/2 + x^4/4\n");
   workspace.write("osc.dat", "0 0\n");
   workspace.write("gc.osc", "NDIM=2, IPS=1, ICP=[d], NMX=1\n");
   succeed(workspace, "run osc -o rest");
@@ -283,8 +286,8 @@ void check_refused(const Workspace& workspace, const std::string& arguments, int
 TEST_CASE("elastic ball: the energy is g^2 T^2 / 8 along the family") {
   const Workspace workspace;
   const bool in_two = GENERATE(false, true);
-  const Outcome outcome = in_two ? run_ball(workspace, rise_and_fall_data, rise_and_fall)
-                                 : run_ball(workspace, flight_data, one_flight);
+  const Outcome outcome =
+      in_two ? run_ball(workspace, rise_and_fall_data, rise_and_fall) : run_ball(workspace, flight_data, one_flight);
   // Polynomials of degree 4 contain the flight: only rounding of the files' digits is left.
   for (const auto& [energy, period] : pairs_of(workspace, "ball", "energy", "period"))
     CHECK(energy == Approx(g * g * period * period / 8.0).epsilon(1e-10));
@@ -305,8 +308,9 @@ TEST_CASE("a chain of two masses: from rest to its first touch, and along the co
 
   CHECK(contains(succeed(workspace, "resegment q.family GR1 --to impacting -o contact -p chain").out,
                  "free: energy, period, T1"));
-  const Outcome outcome = succeed(workspace, {"run", "chain", "-c", "contact", "-s", "contact", "-o", "modes", "NMX=100",
-                                              "DS=-0.05", "EPSL=1e-10", "EPSU=1e-10", "UZR={period: [10,9,8]}"});
+  const Outcome outcome =
+      succeed(workspace, {"run", "chain", "-c", "contact", "-s", "contact", "-o", "modes", "NMX=100", "DS=-0.05",
+                          "EPSL=1e-10", "EPSU=1e-10", "UZR={period: [10,9,8]}"});
   CHECK(printed_lambda(outcome) < rounding);
   int located = 0;
   for (const SolutionEntry& solution : workspace.solutions("modes")) {
@@ -368,8 +372,9 @@ TEST_CASE("coupled Duffing oscillators out of phase lose stability at a Lame ban
   for (const PointRow& point : section.rows)
     if (point.label != edge.label) CHECK((point.point < 0) == (point.values[section.column("energy")] < energy));
 
-  succeed(workspace, "run duo -c r.family -s family -o local IRS=BP1 ISW=-1 ICP=[energy,max(x1),max(x2)] DS=0.05 "
-                     "DSMAX=0.3 NMX=12");
+  succeed(workspace,
+          "run duo -c r.family -s family -o local IRS=BP1 ISW=-1 ICP=[energy,max(x1),max(x2)] DS=0.05 "
+          "DSMAX=0.3 NMX=12");
   const PointSection local = workspace.points("local").front();
   for (const PointRow& point : local.rows) {
     CHECK(point.point < 0);  // stable
@@ -385,8 +390,9 @@ TEST_CASE("coupled Duffing oscillators in phase, and out of phase with the energ
   run_oscillators(workspace, 1, {});
   check_periods(workspace, DuffingMotion{0.0});
   run_oscillators(workspace, 2, {"UZR={-energy: 0.5}"});
-  succeed(workspace, "run duo -c r.family -s family -o held IRS=UZ1 ICP=[k,energy,period] HOLD=[energy] UZR={} DS=0.02 "
-                     "DSMAX=0.3 NMX=20");
+  succeed(workspace,
+          "run duo -c r.family -s family -o held IRS=UZ1 ICP=[k,energy,period] HOLD=[energy] UZR={} DS=0.02 "
+          "DSMAX=0.3 NMX=20");
   for (const auto& [k, period] : pairs_of(workspace, "held", "k", "period"))
     CHECK(period == Approx(DuffingMotion{2.0 * k}.period(0.5)).epsilon(mesh_error));
   for (const auto& [k, energy] : pairs_of(workspace, "held", "k", "energy")) check_near(energy, 0.5);
@@ -413,15 +419,14 @@ TEST_CASE("what a conservative family refuses") {
   check_refused(workspace, from_label + "PAR(d)=0.1", 1, "energy changes by -0.");
   check_refused(workspace, from_label + "PAR(d)=0.1", 1, "on segment 1 (field flow)");
   check_refused(workspace, from_label + "CONSERVED=enrgy", 2, "no function of that name; it has x, v, energy");
-  check_refused(workspace, from_label + "ICP=[d,energy]", 2, "CONSERVED leaves no parameter of the problem free");
+  check_refused(workspace, from_label + "ICP=[d,energy]", 2,
+                "CONSERVED = energy leaves no parameter of the problem free");
   check_refused(workspace, from_label + "ICP=[energy,d] ISW=2", 2, "IPS = 180, ISW = 2");
+  check_refused(workspace, "run osc -c r.rest -s rest -o new IRS=1 IPS=180 ISW=-1 CONSERVED=energy ICP=[energy] MODE=2",
+                2, "MODE = 2, but label 1 has 1 oscillation (omega = 1); allowed: 1");
   check_refused(workspace,
-                "run osc -c r.rest -s rest -o new IRS=1 IPS=180 ISW=-1 CONSERVED=energy ICP=[energy] MODE=2", 2,
-                "MODE = 2, but label 1 has 1 oscillation (omega = 1); allowed: 1");
-  check_refused(
-      workspace,
-      "run osc -c r.rest -s rest -o new IRS=1 IPS=180 ISW=-1 CONSERVED=energy ICP=[energy] PAR(d)=0.1", 2,
-      "no eigenvalue of f_x is on the imaginary axis");
+                "run osc -c r.rest -s rest -o new IRS=1 IPS=180 ISW=-1 CONSERVED=energy ICP=[energy] PAR(d)=0.1", 2,
+                "no eigenvalue of f_x is on the imaginary axis");
 }
 
 TEST_CASE("a loss in an impact is found in the segment that ends with it") {
@@ -433,8 +438,9 @@ TEST_CASE("a loss in an impact is found in the segment that ends with it") {
 TEST_CASE("a run in the damping that keeps CONSERVED ends with the reason") {
   const Workspace workspace;
   run_family(workspace);
-  const Outcome outcome = succeed(workspace, "run osc -c r.family -s family -o kept IRS=UZ1 ICP=[d,energy] "
-                                             "HOLD=[energy] NMX=12 DS=0.01 UZR={}");
+  const Outcome outcome = succeed(workspace,
+                                  "run osc -c r.family -s family -o kept IRS=UZ1 ICP=[d,energy] "
+                                  "HOLD=[energy] NMX=12 DS=0.01 UZR={}");
   CHECK(contains(outcome.out, "stopped: CONSERVED = energy is not conserved"));
   CHECK(printed_lambda(outcome) > 1e-4);
 }

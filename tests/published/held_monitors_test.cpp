@@ -129,6 +129,6 @@ TEST_CASE("resegment leaves monitors out of its constants, and says so") {
                                           workspace.file("linosc"));
   INFO(outcome.text());
   REQUIRE(outcome.status == 0);
-  CHECK(outcome.err.find("monitors and HOLD are left out") != std::string::npos);
+  CHECK(outcome.err.find("are left out of the new constants") != std::string::npos);
   CHECK(workspace.read("gc.born").find("max(") == std::string::npos);
 }

@@ -81,7 +81,7 @@ TEST_CASE("rotation and repetition") {
   CHECK(signature(rotated(segments, -1)) == Signature{{2, 2, 2}, {1, 1, 1}});
   CHECK(signature(rotated(segments, 4)) == mems_orbits::impacting);
   CHECK(signature(repeated(segments)) == Signature{{1, 1, 1}, {2, 2, 2}, {1, 1, 1}, {2, 2, 2}});
-  CHECK_THROWS_WITH(repeated(SegmentList(33, segments[0])), Contains("66 segments, at most 64"));
+  CHECK(repeated(SegmentList(300, segments[0])).size() == 600);
 }
 
 TEST_CASE("constants follow the pieces: weights, test functions, free parameters") {
@@ -137,7 +137,7 @@ TEST_CASE("signatures as users write them") {
     CHECK(parse_signature(to_string(signature)) == signature);
   CHECK(parse_signature("1,1,1^3;2,2,2") == uneven);
   CHECK(parse_signature("{(1,1,2)(1,2,1)}^2") == cascade);
-  for (const char* text : {"(1,1,1)^", "(1,1,1)^0", "(1,1,1)^-2", "^2", "(1,1,1)^65", "{(1,1,1)^8}^9",
+  for (const char* text : {"(1,1,1)^", "(1,1,1)^0", "(1,1,1)^-2", "^2", "(1,1,1)^100001", "{(1,1,1)^800}^900",
                            "{(1,1,1), {(2,2,2)}^2}^3", "(1,1,1)^99999999999"})
     CHECK_THROWS_AS(parse_signature(text), UserError);
   for (const char* text :

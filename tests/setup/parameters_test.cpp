@@ -79,7 +79,7 @@ TEST_CASE("names in ICP become indices of parameters, durations and monitors") {
   settings.names = {{"r", "ICP", {}}, {"T1", "ICP", {}}, {"max(U(1))", "ICP", {}}};
   settings.free_parameters = {name_index(0), name_index(1), name_index(2)};
   resolve_names(settings, ball());
-  CHECK(settings.free_parameters == std::vector<int>{2, first_duration, first_monitor});
+  CHECK(settings.free_parameters == std::vector<int>{2, first_duration, first_monitor(settings)});
   CHECK(settings.monitors == std::vector<std::string>{"max(U(1))"});
 
   settings.names = {{"mass", "ICP", {}}};

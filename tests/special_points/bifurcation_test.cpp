@@ -243,7 +243,7 @@ TEST_CASE("torus: Langford's system, value and place in closed form") {
 }
 
 TEST_CASE("period doubling and torus are not looked for with untrusted multipliers") {
-  FloquetMultipliers multipliers{{{0.3, 0.9}, {0.3, -0.9}, {0.0, 0.0}}, false, 0.01, true};
+  FloquetMultipliers multipliers{{{0.3, 0.9}, {0.3, -0.9}, {0.0, 0.0}}, false, 0, 0.01, true};
   const std::vector<double> transversalities{-0.5};
   const PeriodicOrbitSystem system(system_of<NormalForms>(), {{1, 1, 1}}, {1});
   const CondensedSystem condensed(system, {3, 1, 2, 2}, {1});
@@ -256,7 +256,7 @@ TEST_CASE("period doubling and torus are not looked for with untrusted multiplie
   multipliers.structural = 0.06;
   CHECK_FALSE(PeriodDoublingTest(false).value(point));
   CHECK_FALSE(TorusTest(false).value(point));
-  multipliers = {{}, false, 0.0, false};
+  multipliers = {{}, false, 0, 0.0, false};
   CHECK_FALSE(PeriodDoublingTest(false).value(point));
   CHECK_FALSE(TorusTest(false).value(point));
 }
@@ -269,7 +269,7 @@ TEST_CASE("torus: a pair that crosses is seen beside another one that stays outs
   const OrbitVector tangent;
   const auto value = [&](double crossing, double outside) {
     const auto a = std::polar(crossing, 1.0), b = std::polar(outside, 2.0);
-    const FloquetMultipliers multipliers{{a, std::conj(a), b, std::conj(b), 0.0}, false, 0.0, true};
+    const FloquetMultipliers multipliers{{a, std::conj(a), b, std::conj(b), 0.0}, false, 0, 0.0, true};
     return *TorusTest(false).value({x, tangent, condensed, multipliers, transversalities, 1.0});
   };
   CHECK(value(0.9, 1.05) * value(1.02, 1.05) < 0.0);

@@ -235,6 +235,14 @@ class ProblemTable {
   static_assert(sliding_fault(modes, Problem::fields, event_count()) != SlidingFault::made_twice,
                 "tchat: `sliding`: a field or an event function that one mode makes is also made by another, or is "
                 "what another is made of");
+  static constexpr bool slide_with_all_states() {
+    for (const Sliding& mode : modes)
+      for (const int field : {mode.field, mode.minus, mode.plus})
+        if (states_of(TCHAT_FIELD, field) != n) return false;
+    return true;
+  }
+  static_assert(slide_with_all_states(),
+                "tchat: `sliding`: field, minus and plus must have all states: `dimension_of`");
   static_assert(n >= 1, "tchat: `dimension` must be at least 1");
   static_assert(q >= 0 && q <= 60, "tchat: `parameters` must be between 0 and 60");
   static_assert(Problem::fields >= 1, "tchat: `fields`, the number of vector fields, must be at least 1");
@@ -620,6 +628,12 @@ class ProblemTable {
     for (int a = 0; a < active_count; ++a)
       for (int i = 0; i < r; ++i)
         dp[a * r + i] = is_problem_parameter(active[a]) ? all[static_cast<std::size_t>((active[a] - 1) * r + i)] : 0.0;
+    if constexpr (has_dimensions)
+      if (kind == TCHAT_FIELD || kind == TCHAT_JUMP)
+        for (int i = states_of(kind, index); i < n; ++i) {
+          for (int c = 0; c < n; ++c) dx[c * n + i] = kind == TCHAT_FIELD && c == i ? -1.0 : 0.0;
+          for (int a = 0; a < active_count; ++a) dp[a * n + i] = 0.0;
+        }
     return true;
   }
 
