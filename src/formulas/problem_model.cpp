@@ -245,25 +245,29 @@ class ModelCheck {
     return found;
   }
 
-  /// A state that an expression needs, itself or in a definition, of those behind the first ones; null: none.
-  const std::string* absent_state(const Expression& expression, std::size_t states) const {
+  /// A state that an expression needs, itself or in a definition, of those behind the first ones; null: none. `seen`:
+  /// definitions that have been looked at.
+  const std::string* absent_state(const Expression& expression, std::size_t states, std::set<std::size_t>& seen) const {
     for (const Node& node : expression.nodes) {
       const Symbol* const symbol = node.kind == Node::Kind::name ? model_.names.find(node.text) : nullptr;
       if (symbol == nullptr) continue;
       if (symbol->kind == Symbol::Kind::state && symbol->index >= states) return &model_.names.states()[symbol->index];
-      if (symbol->kind != Symbol::Kind::definition || !errors_.empty()) continue;
-      if (const std::string* const inner = absent_state(file().definitions[symbol->index].value, states)) return inner;
+      if (symbol->kind != Symbol::Kind::definition || !seen.insert(symbol->index).second) continue;
+      const Expression& definition = file().definitions[symbol->index].value;
+      if (const std::string* const inner = absent_state(definition, states, seen)) return inner;
     }
     return nullptr;
   }
 
   void field(const Token& name, const Equations& equations) {
     ProblemModel::Field made{name.text, {}};
-    for (const Assignment* equation : equations)
-      if (const std::string* const absent = equation ? absent_state(equation->value, equations.size()) : nullptr)
+    for (const Assignment* equation : equations) {
+      std::set<std::size_t> seen;
+      if (const std::string* const absent = equation ? absent_state(equation->value, equations.size(), seen) : nullptr)
         errors_.add(equation->name.at,
                     fmt::format("the equation for {} needs {}, which the mode {} has not; add it to 'mode {}'",
                                 equation->name.text, *absent, name.text, name.text));
+    }
     for (std::size_t k = 0; k < equations.size(); ++k)
       if (equations[k] != nullptr)
         made.rates.push_back(equations[k]->value);

@@ -12,17 +12,18 @@ std::string mode_fault(const HybridSystem& system, const IndexVector& segment, i
   const std::string name = system.function_name(FunctionKind::field, next);
   if (segment.jump == no_function || is_identity_jump(system, segment.jump)) {
     if (system.dimension_of(segment.field) <= states) return "";
-    return fmt::format("the identity cannot lead from field {} ({}) with {} states to field {} ({}) with {}; use a jump "
-                       "that sets {} states (dimension_after, or `jump NAME to {}`)",
-                       segment.field, system.function_name(FunctionKind::field, segment.field),
-                       system.dimension_of(segment.field), next, name, states, states, name);
+    return fmt::format(
+        "the identity cannot lead from field {} ({}) with {} states to field {} ({}) with {}; use a jump "
+        "that sets {} states (dimension_after, or `jump NAME to {}`)",
+        segment.field, system.function_name(FunctionKind::field, segment.field), system.dimension_of(segment.field),
+        next, name, states, states, name);
   }
   const int set = system.table().jump_dimensions[segment.jump - 1];
   if (set == states) return "";
-  return fmt::format("jump {} ({}) sets {} states, and field {} ({}) after it has {}; use a jump that sets {} "
-                     "(dimension_after, or `jump NAME to {}`)",
-                     segment.jump, system.function_name(FunctionKind::jump, segment.jump), set, next, name, states,
-                     states, name);
+  return fmt::format(
+      "jump {} ({}) sets {} states, and field {} ({}) after it has {}; use a jump that sets {} "
+      "(dimension_after, or `jump NAME to {}`)",
+      segment.jump, system.function_name(FunctionKind::jump, segment.jump), set, next, name, states, states, name);
 }
 
 }  // namespace tchat

@@ -168,8 +168,7 @@ TEST_CASE("modes of dimension 5, 3 and 2 in every command") {
   CHECK(diagnostics.find("Multiplier   2") != std::string::npos);
   CHECK(diagnostics.find("Multiplier   3") == std::string::npos);
   succeed(workspace, "verify branch -p modes");
-  succeed(workspace,
-          "resegment q.branch UZ1 -p modes --to signature --signature {(1,4,4),(1,1,1),(2,2,2),(3,3,3)} -o cut");
+  succeed(workspace, "resegment q.branch UZ1 -p modes --to rotate --by 1 -o cut");
   succeed(workspace, "run modes -q -c cut -s cut -o again NMX=4");
   succeed(workspace, "verify again -p modes");
   succeed(workspace, "sweep modes -q --over V=1:1.2:3 -o values");
