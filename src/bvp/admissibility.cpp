@@ -38,9 +38,9 @@ std::vector<Violation> inadmissibilities(const HybridSystem& system, const Signa
 
     for (const int event : monitored[index]) {
       Violation worst{Violation::event_crossed, x.shape.stored_nodes() == 1 ? 0 : s + 1, event, 0.0, 0.0};
-      const double scale = event_scale(system, x, event);
       const EventCourse& course = *course_of_event++;
-      const bool leaves_out_start = course.at_nodes(0) < 0.0 && is_pinned_start(system, signature, x, s, event);
+      const double scale = scale_of(system, x, course);
+      const bool leaves_out_start = course.at_nodes(0) < 0.0 && is_pinned_start(system, signature, x, s, event, scale);
       const int last = event == v.event ? end_node - 1 : end_node;
       for (int k = leaves_out_start ? 1 : 0; k <= last; ++k)
         if (const double h = course.at_nodes(k); h < worst.value) worst.value = h, worst.tau = x.tau(k);

@@ -127,7 +127,8 @@ class EventAlongSegment {
 /// The nodes at the ends of a course's segment, -1 for one that is pinned.
 std::array<int, 2> free_ends(const DefiningSystem& system, const Orbit& x, const EventCourse& course) {
   const int s = course.segment;
-  const bool is_pinned = is_pinned_start(system.system(), system.signature(), x, s, course.event);
+  const bool is_pinned =
+      is_pinned_start(system.system(), system.signature(), x, s, course.event, scale_of(system.system(), x, course));
   const bool is_terminal = system.signature()[static_cast<std::size_t>(s)].event == course.event;
   return {is_pinned ? -1 : 0, is_terminal ? -1 : x.shape.nodes() - 1};
 }
@@ -140,13 +141,31 @@ EventCourse course_of(const DefiningSystem& system, const CollocationRule& rule,
 
 }  // namespace
 
+double scale_of(const HybridSystem& system, const Orbit& x, const EventCourse& course) {
+  return course.scale ? *course.scale : event_scale(system, x, course.event);
+}
+
+void EventScales::begin(const HybridSystem& system) {
+  known_.assign(static_cast<std::size_t>(system.count(FunctionKind::event)), std::nullopt);
+}
+
+double EventScales::of(const HybridSystem& system, const Orbit& x, int event) {
+  std::optional<double>& scale = known_[static_cast<std::size_t>(event - 1)];
+  if (!scale) scale = event_scale(system, x, event);
+  return *scale;
+}
+
 bool is_pinned_start(const HybridSystem& system, const Signature& signature, const Orbit& x, int s, int event) {
+  return is_pinned_start(system, signature, x, s, event, event_scale(system, x, event));
+}
+
+bool is_pinned_start(const HybridSystem& system, const Signature& signature, const Orbit& x, int s, int event,
+                     double scale) {
   const int before = (s + x.shape.segments - 1) % x.shape.segments;
   const IndexVector& v = signature[static_cast<std::size_t>(before)];
   const double* par = x.par.data();
   if (v.event == no_function) return false;
-  if (std::abs(system.event(event, x.start(s), par)) > structural_tolerance * event_scale(system, x, event))
-    return false;
+  if (std::abs(system.event(event, x.start(s), par)) > structural_tolerance * scale) return false;
   const int n = x.shape.dimension;
   double h = 0.0;
   StackVector image(n), gradient(n), terminal(n), composed(n);
@@ -248,11 +267,14 @@ std::vector<EventCourse> event_courses(const HybridSystem& system, const Signatu
                                        const std::vector<std::vector<int>>& monitored, const CollocationRule& rule,
                                        const Orbit& x) {
   EventCourseFinder finder;
+  EventScales scales;
+  scales.begin(system);
   std::vector<EventCourse> courses;
   for (int s = 0; s < x.shape.segments; ++s)
     for (const int event : monitored[static_cast<std::size_t>(s)]) {
       courses.push_back({s, event, {}, {}});
       finder.find(system, signature[static_cast<std::size_t>(s)].field, rule, x, courses.back());
+      courses.back().scale = scales.of(system, x, event);
     }
   return courses;
 }
@@ -267,7 +289,9 @@ std::vector<EventMinimum> polished_minima(const HybridSystem& system, const Sign
   for (std::size_t i = 0; i < course.dips.size(); ++i) {
     const EventDip& dip = course.dips[i];
     if (dip.value >= below) continue;
-    if (i == 0 && course.first_hangs_on_start && is_pinned_start(system, signature, x, s, course.event)) continue;
+    if (i == 0 && course.first_hangs_on_start &&
+        is_pinned_start(system, signature, x, s, course.event, scale_of(system, x, course)))
+      continue;
     if (i + 1 == course.dips.size() && course.last_hangs_on_end && v.event == course.event) continue;
     minima.push_back(along.polished(dip.interval, dip.sigma));
   }

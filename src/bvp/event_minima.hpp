@@ -30,6 +30,9 @@ struct EventMinimum {
 /// Is the start of segment s (from 0) pinned for an event function: does the jump before it land on the surface h = 0
 /// by structure (h = 0 there, gradient of h o g parallel to that of the previous terminal event)?
 bool is_pinned_start(const HybridSystem& system, const Signature& signature, const Orbit& x, int s, int event);
+/// The same where the scale of the event function (orbit_accuracy.hpp) is known.
+bool is_pinned_start(const HybridSystem& system, const Signature& signature, const Orbit& x, int s, int event,
+                     double scale);
 
 /// A place where h turns from falling to rising: at sigma in [0, 1] of a mesh interval.
 struct EventDip {
@@ -46,6 +49,22 @@ struct EventCourse {
   std::vector<EventDip> dips;         ///< inside the segment, in order; none where it lasts no positive time
   bool first_hangs_on_start = false;  ///< h rises nowhere before the first dip
   bool last_hangs_on_end = false;     ///< h falls nowhere after the last one
+  /// event_scale() of the orbit (orbit_accuracy.hpp), which takes a look at all segments; nothing where nobody has.
+  std::optional<double> scale = {};
+};
+
+/// course.scale, or what it would be.
+double scale_of(const HybridSystem& system, const Orbit& x, const EventCourse& course);
+
+/// Scales of the event functions of one orbit, each computed once.
+class EventScales {
+ public:
+  /// For another orbit. Allocates at the first call at most.
+  void begin(const HybridSystem& system);
+  double of(const HybridSystem& system, const Orbit& x, int event);
+
+ private:
+  std::vector<std::optional<double>> known_;
 };
 
 /// Finds the courses along orbits of one shape. After the first orbit nothing is allocated except for dips.

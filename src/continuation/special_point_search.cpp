@@ -187,6 +187,7 @@ void SpecialPointSearch::evaluate(PathPoint& at, PointData& data) {
 }
 
 void SpecialPointSearch::find_event_courses(const Orbit& x, PointData& data) {
+  event_scales_.begin(system_.system());
   std::size_t count = 0;
   for (std::size_t s = 0; s < std::min(settings_.monitored.size(), system_.signature().size()); ++s)
     for (const int event : settings_.monitored[s]) {
@@ -195,6 +196,7 @@ void SpecialPointSearch::find_event_courses(const Orbit& x, PointData& data) {
       course.segment = static_cast<int>(s);
       course.event = event;
       course_finder_.find(system_.system(), system_.signature()[s].field, follower_.condensed().rule(), x, course);
+      course.scale = event_scales_.of(system_.system(), x, event);
     }
 }
 

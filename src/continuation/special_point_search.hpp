@@ -123,6 +123,7 @@ class SpecialPointSearch {
   LocationSettings settings_;
   BranchAnalysis& analysis_;
   EventCourseFinder course_finder_;
+  EventScales event_scales_;
   /// At how many points a function was defined, and whether its value exceeded its uncertainty at one of them.
   struct Evidence {
     int points = 0;

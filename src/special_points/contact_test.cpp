@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include <cmath>
 
 #include "bvp/condensed_system.hpp"
@@ -22,10 +24,18 @@ std::optional<EventMinimum> ContactTest::least(const TestedPoint& point) const {
   return least_value(system_, point.condensed.rule(), point.orbit, segment_, event_);
 }
 
+/// Courses are in the order of segments.
+const EventCourse* ContactTest::known_course(const TestedPoint& point) const {
+  auto course = std::lower_bound(point.courses.begin(), point.courses.end(), segment_,
+                                 [](const EventCourse& one, int segment) { return one.segment < segment; });
+  for (; course != point.courses.end() && course->segment == segment_; ++course)
+    if (course->event == event_) return &*course;
+  return nullptr;
+}
+
 std::optional<double> ContactTest::least_h(const TestedPoint& point) const {
-  for (const EventCourse& course : point.courses)
-    if (course.segment == segment_ && course.event == event_)
-      return tchat::least_h(system_, point.condensed.rule(), point.orbit, course);
+  if (const EventCourse* const course = known_course(point))
+    return tchat::least_h(system_, point.condensed.rule(), point.orbit, *course);
   const auto contact = least(point);
   return contact ? std::optional(contact->value) : std::nullopt;
 }
@@ -33,7 +43,10 @@ std::optional<double> ContactTest::least_h(const TestedPoint& point) const {
 TestValue ContactTest::evaluate(const TestedPoint& point) const {
   const std::optional<double> contact = least_h(point);
   if (!contact) return TestValue::undefined(sign_without_minimum(point.orbit));
-  return TestValue::of(*contact, orbit_accuracy * event_scale(system_.system(), point.orbit, event_));
+  const EventCourse* const course = known_course(point);
+  const double scale = course != nullptr ? scale_of(system_.system(), point.orbit, *course)
+                                         : event_scale(system_.system(), point.orbit, event_);
+  return TestValue::of(*contact, orbit_accuracy * scale);
 }
 
 /// Between pinned ends h may rise and fall without a minimum in between: no contact, positive.

@@ -17,6 +17,7 @@ class ContactTest final : public TestFunction {
 
  private:
   std::optional<EventMinimum> least(const TestedPoint& point) const;
+  const EventCourse* known_course(const TestedPoint& point) const;
   std::optional<double> least_h(const TestedPoint& point) const;
   int sign_without_minimum(const Orbit& x) const;
   SpecialPoint vanishing_segment(bool ends_branch) const;
