@@ -29,11 +29,12 @@ std::vector<Violation> inadmissibilities(const HybridSystem& system, const Signa
   const int end_node = x.shape.nodes() - 1;
   const double* par = x.par.data();
   const double error_of_states = error * (1.0 + array_functions().range(x.states.data(), x.states.size()).largest);
+  const double period = std::abs(x.period());
   auto course_of_event = courses.begin();
   for (int s = 0; s < m; ++s) {
     const auto index = static_cast<std::size_t>(s);
     const IndexVector& v = signature[index];
-    if (x.duration(s) < -orbit_accuracy * std::abs(x.period()))
+    if (x.duration(s) < -orbit_accuracy * period)
       result.push_back({Violation::negative_duration, s + 1, 0, 0.0, x.duration(s)});
 
     for (const int event : monitored[index]) {

@@ -12,9 +12,11 @@ namespace tchat {
 inline constexpr double no_duration = 1e-6;
 
 /// Does segment s (from 0) last no time, but for the accuracy of a located point?
-inline bool lasts_no_time(const Orbit& x, int s) {
-  return std::abs(x.duration(s)) <= no_duration * std::abs(x.period());
+inline bool lasts_no_time(const Orbit& x, int s, double period) {
+  return std::abs(x.duration(s)) <= no_duration * std::abs(period);
 }
+/// The same where the period is not at hand, which is a sum over all segments.
+inline bool lasts_no_time(const Orbit& x, int s) { return lasts_no_time(x, s, x.period()); }
 
 /// A contact segment (hybrid/contact_segment.hpp) that shrinks to nothing passes zero in proportion to the arclength,
 /// so that a located point knows its duration to EPSS, which may be coarse. At a tangency a shorter one is zero.

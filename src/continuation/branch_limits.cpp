@@ -110,8 +110,9 @@ std::string undetermined_duration(const DefiningSystem& system, const Orbit& x) 
   constexpr double rounding = 1e-12;
   StackVector f(x.shape.dimension);
   const double sizes = 1.0 + largest_state(x);
+  const double period = x.period();
   for (int s = 0; s < x.shape.segments; ++s) {
-    if (lasts_no_time(x, s)) continue;
+    if (lasts_no_time(x, s, period)) continue;
     system.system().value(FunctionKind::field, system.signature()[static_cast<std::size_t>(s)].field, x.end(s),
                           x.par.data(), f.data());
     const double moved = f.cwiseAbs().maxCoeff() * std::abs(x.duration(s));
@@ -134,8 +135,9 @@ std::string passed_infinity(const PathPoint& from, const PathPoint& to, double d
     return fmt::format("{} passes infinity (from {:.6g} to {:.6g})", what, before, after);
   };
   if (passes(x.period(), from.tangent.durations.sum(), y.period())) return text("the period", x.period(), y.period());
+  const double period = x.period();
   for (int s = 0; s < x.shape.segments; ++s)
-    if (!lasts_no_time(x, s) && passes(x.duration(s), from.tangent.durations(s), y.duration(s)))
+    if (!lasts_no_time(x, s, period) && passes(x.duration(s), from.tangent.durations(s), y.duration(s)))
       return text(fmt::format("the duration of segment {}", s + 1), x.duration(s), y.duration(s));
   return "";
 }
@@ -148,8 +150,9 @@ std::string passed_zero(const Orbit& from, const Orbit& to) {
 }
 
 std::string passed_zero_segment(const Orbit& from, const Orbit& to) {
+  const double before = -no_contact * from.period(), after = -no_contact * to.period();
   for (int s = 0; s < from.shape.segments; ++s)
-    if (from.duration(s) >= -no_contact * from.period() && to.duration(s) < -no_contact * to.period())
+    if (from.duration(s) >= before && to.duration(s) < after)
       return fmt::format("the duration of segment {} passes zero (from {:.6g} to {:.6g})", s + 1,
                          contact_lasts_no_time(from, s) ? 0.0 : from.duration(s), to.duration(s));
   return "";

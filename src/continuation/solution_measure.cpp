@@ -9,17 +9,24 @@ namespace tchat {
 
 namespace {
 
-/// The share of segment s in the period.
-double time_share(const Orbit& x, int s) {
-  double total = 0.0;
-  for (int r = 0; r < x.shape.segments; ++r) total += std::abs(x.duration(r));
-  return total > 0.0 ? std::abs(x.duration(s)) / total : 1.0 / x.shape.segments;
-}
+/// What segments have of the time of the orbit.
+class TimeShares {
+ public:
+  explicit TimeShares(const Orbit& x) : x_(x) {
+    for (int r = 0; r < x.shape.segments; ++r) total_ += std::abs(x.duration(r));
+  }
+  double of(int s) const { return total_ > 0.0 ? std::abs(x_.duration(s)) / total_ : 1.0 / x_.shape.segments; }
+
+ private:
+  const Orbit& x_;
+  double total_ = 0.0;
+};
 
 /// Time mean over the period of what `integrand` gives for the nodes (n x (c+1)) of one interval scaled to length 1.
 template <class Integrand>
 double time_mean(const Orbit& x, const Integrand& integrand) {
   const int c = x.shape.collocation;
+  const TimeShares shares(x);
   double mean = 0.0;
   for (int s = 0; s < x.shape.segments; ++s) {
     double segment = 0.0;
@@ -27,7 +34,7 @@ double time_mean(const Orbit& x, const Integrand& integrand) {
       const double h = x.mesh[static_cast<std::size_t>(j + 1)] - x.mesh[static_cast<std::size_t>(j)];
       segment += h * integrand(x.states.middleCols(s * x.shape.nodes() + j * c, c + 1));
     }
-    mean += time_share(x, s) * segment;
+    mean += shares.of(s) * segment;
   }
   return mean;
 }
@@ -36,9 +43,9 @@ double time_mean(const Orbit& x, const Integrand& integrand) {
 
 double l2_norm(const Orbit& x, const CollocationRule& rule, const Eigen::VectorXd& state_weights) {
   const MassIntervals mass = mass_intervals(x, rule, state_weights);
+  const TimeShares shares(x);
   double mean = 0.0;
-  for (int s = 0; s < x.shape.segments; ++s)
-    mean += time_share(x, s) * array_functions().mass_product(mass, x.node(s, 0));
+  for (int s = 0; s < x.shape.segments; ++s) mean += shares.of(s) * array_functions().mass_product(mass, x.node(s, 0));
   return std::sqrt(mean);
 }
 
