@@ -22,6 +22,7 @@ class Column {
   }
   Column(const Column& other) : Column(static_cast<int>(other.size_)) { std::copy_n(other.begin_, size_, begin_); }
   Column& operator=(const Column&) = delete;
+  ~Column() = default;
 
   double* data() { return begin_; }
   const double* data() const { return begin_; }
