@@ -135,11 +135,11 @@ int check_problem(const CheckArguments& arguments) {
   if (library.system().boundary_conditions() > 0 && settings) options.segments = segment_count(*settings);
   const DerivativeCheck check = check_derivatives(library.system(), options);
   const auto conserved = settings ? conservation(library.system(), *settings, options) : std::nullopt;
-  fmt::print("{}",
-             to_text(library.system(), check, conserved ? conserved->text : "", !conserved || conserved->is_conserved));
+  const bool is_conserved = !conserved || conserved->is_conserved;
+  fmt::print("{}", to_text(library.system(), check, conserved ? conserved->text : "", is_conserved));
   if (const std::optional<std::string> formulas = formulas_of(plugin))
     for (const std::string& remark : translate_formula_file(*formulas).remarks) fmt::print("Note: {}\n", remark);
-  return check.fine() && (!conserved || conserved->is_conserved) ? 0 : 1;
+  return check.fine() && is_conserved ? 0 : 1;
 }
 
 }  // namespace

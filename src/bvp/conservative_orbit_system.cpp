@@ -45,7 +45,6 @@ void ConservativeOrbitSystem::target_value(int s, const Orbit& x, double* target
 double* ConservativeOrbitSystem::target_derivatives(int s, const Orbit& x, double* entries) const {
   entries = PeriodicOrbitSystem::target_derivatives(s, x, entries);
   if (!closes(s)) return entries;
-  find_gradient(x);
   return std::copy(gradient_.begin(), gradient_.end(), entries);
 }
 

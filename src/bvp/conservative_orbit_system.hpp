@@ -7,8 +7,8 @@
 ///
 ///     x_1(0) + lambda H_x(x_1(0), p) = g_{k_m}(x_m(1), p).
 ///
-/// Unknowns: n m functions, m durations, lambda, and as many parameters as monitors are held. Conditions: n m + m
-/// boundary conditions, held monitors, pseudo-arclength. For a solution, to first order H(x_1(0)) = H(g) - lambda
+/// Unknowns: n m functions, m durations, lambda, and one parameter for each held monitor. Conditions: n m + m boundary
+/// conditions, the held monitors, pseudo-arclength. For a solution, to first order H(x_1(0)) = H(g) - lambda
 /// |H_x|^2, and H(x_1(0)) = H(g) where H is conserved: lambda = 0. The computed lambda measures the error; a large one
 /// means that H is not conserved.
 ///

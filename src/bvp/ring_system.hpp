@@ -48,7 +48,8 @@ class RingSystem : public DefiningSystem {
 
   virtual void target_pattern(int s, int row, CouplingPattern& pattern) const;
   virtual void target_value(int s, const Orbit& x, double* target) const;
-  /// Derivatives in the order of the pattern; returns the place behind the last one.
+  /// Derivatives in the order of the pattern, asked for after target_value() at the same x; returns the place behind
+  /// the last one.
   virtual double* target_derivatives(int s, const Orbit& x, double* entries) const;
   virtual std::string target_name(int s) const;
 

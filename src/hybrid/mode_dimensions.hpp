@@ -7,8 +7,8 @@
 
 namespace tchat {
 
-/// Why the field `next` cannot follow a segment, as a sentence with a cure; "" where it can. A jump leads to modes of
-/// as many states as it sets; the identity leads to modes that have all states of the segment's own.
+/// Why the field `next` cannot follow a segment, as a sentence with a cure; "" where it can. After a jump the mode must
+/// have exactly the states that the jump sets; after the identity it must have at least the states of the segment.
 std::string mode_fault(const HybridSystem& system, const IndexVector& segment, int next);
 
 }  // namespace tchat
