@@ -1,6 +1,7 @@
 #include "bvp/bordered_problem.hpp"
 
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <Eigen/SVD>
 #include <algorithm>
 #include <array>
@@ -36,8 +37,14 @@ auto vector_product(const Rows& rows) {
     result << 1.0;
   else if (rows.rows() == 1)
     result << rows(0, 1), -rows(0, 0);
-  else
+  else if (rows.rows() == 2)
     result = Eigen::Vector3d(rows.row(0).transpose()).cross(Eigen::Vector3d(rows.row(1).transpose()));
+  else
+    for (Eigen::Index j = 0; j < rows.cols(); ++j) {
+      Eigen::MatrixXd others(rows.rows(), rows.rows());
+      others << rows.leftCols(j), rows.rightCols(rows.cols() - 1 - j);
+      result(j) = (j % 2 == 0 ? 1.0 : -1.0) * others.determinant();
+    }
   return result;
 }
 
@@ -226,9 +233,14 @@ BorderedProblem::Numbers BorderedProblem::across(const OrbitVector& dx) const {
   return shares;
 }
 
-/// |a|^2 times the vector that row k of grad G . Z has the value one on, and the other row, and a, zero.
+/// |a|^2 times the vector that row k of grad G . Z has the value one on, and the other rows, and a, zero.
 BorderedProblem::Numbers BorderedProblem::dual_slope(int k) const {
   if (conditions() == 1) return slopes_.row(0).transpose();
+  if (conditions() > 2) {
+    Eigen::MatrixXd all(conditions() + 1, conditions() + 1);
+    all << slopes_, along_.transpose();
+    return along_.squaredNorm() * all.partialPivLu().solve(Eigen::VectorXd::Unit(conditions() + 1, k));
+  }
   const Eigen::Vector3d a = along_;
   const Eigen::Vector3d other = slopes_.row(1 - k).transpose();
   return k == 0 ? Numbers(other.cross(a)) : Numbers(a.cross(other));

@@ -1,5 +1,5 @@
 /// The square problem that Newton's method solves for a point of a branch: the defining system, its integral conditions
-/// and the monitors that are held among the border rows, a condition of one or two numbers on the whole orbit (a
+/// and the monitors that are held among the border rows, a condition of a few numbers on the whole orbit (a
 /// critical multiplier) or none, and one row of the branch (pseudo-arclength, or a fixed parameter).
 ///
 ///     J dx = -F,    grad I . dx = -I,    grad G . dx = -G,    row . dx = target       (n m N c + ... + m + q
@@ -12,8 +12,8 @@
 ///
 ///     dx = y + Z b,    (grad G . Z) b = -G - grad G . y    and    row . Z b = target - row . y
 ///
-/// What G leaves of Z is the tangent t = Z a, a the vector product of the rows of grad G . Z; row . t is then the
-/// determinant of all rows on Z.
+/// What G leaves of Z is the tangent t = Z a, a the vector product of the rows of grad G . Z (its entries are the
+/// determinants without one column, with alternating signs); row . t is then the determinant of all rows on Z.
 ///
 /// A condition is found by iteration from where it was last: which multiplier it means, and the border of its own
 /// problem. A trial of Newton's method that fails leaves these anywhere. They belong to the point of the branch that

@@ -16,6 +16,7 @@ constexpr int intervals_at_once = 8;
 CondensedReturnMap::CondensedReturnMap(const DefiningSystem& system, const OrbitShape& shape, int vectors)
     : system_(system),
       shape_(shape),
+      rule_(shape.collocation),
       n_(shape.dimension),
       size_(shape.segments * (2 * shape.dimension + 1)),
       condensed_weights_(static_cast<std::size_t>(shape.segments * shape.dimension)),
@@ -99,25 +100,42 @@ void CondensedReturnMap::subtract_derivative(CondensedSystem& condensed, const O
       std::copy_n(weights + s * block, n_, condensed_weights_.begin() + static_cast<std::ptrdiff_t>(s) * n_);
     condensed.extend_adjoint(condensed_weights_.data(), collocation_weights_[static_cast<std::size_t>(k)]);
     const OrbitVector& v = extended[static_cast<std::size_t>(k)];
-    std::copy_n(v.globals.data(), v.globals.size(), curvature_.parameter_direction(k));
-    direction_.tail(system_.free_count()) = v.globals;
-    for (int s = 0; s < shape_.segments; ++s) add_ends(x, s, weights + s * block, v, gradient);
+    put_parameters(k, v);
+    for (int s = 0; s < shape_.segments; ++s) add_ends(x, s, weights + s * block + n_, v, gradient);
   }
+  add_segments(x, extended, gradient);
+}
+
+void CondensedReturnMap::subtract_derivative(const Orbit& x, const RowWeights& weights, const OrbitVector& v,
+                                             OrbitVector& gradient) {
+  collocation_weights_.front() = weights.collocation;
+  put_parameters(0, v);
+  for (int s = 0; s < shape_.segments; ++s) add_ends(x, s, weights.ends.data() + s * (1 + n_), v, gradient);
+  add_segments(x, std::span(&v, 1), gradient);
+}
+
+/// Those of direction number k.
+void CondensedReturnMap::put_parameters(int k, const OrbitVector& v) {
+  std::copy_n(v.globals.data(), v.globals.size(), curvature_.parameter_direction(k));
+  direction_.tail(system_.free_count()) = v.globals;
+}
+
+/// What the fields of all segments say.
+void CondensedReturnMap::add_segments(const Orbit& x, std::span<const OrbitVector> extended, OrbitVector& gradient) {
   for (int s = 0; s < shape_.segments; ++s)
     for (int first = 0; first < shape_.intervals; first += intervals_at_once) {
       const int last = std::min(first + intervals_at_once, shape_.intervals);
-      put_points(condensed, x, s, first, last, extended);
+      put_points(x, s, first, last, extended);
       put_weights(x, s, first, last, extended);
       curvature_.compute(system_.signature()[static_cast<std::size_t>(s)].field, (last - first) * shape_.collocation,
                          x.par.data());
-      add_intervals(condensed, x, s, first, last, gradient);
+      add_intervals(x, s, first, last, gradient);
     }
 }
 
 /// States and null vectors at the Gauss points of intervals first..last - 1.
-void CondensedReturnMap::put_points(const CondensedSystem& condensed, const Orbit& x, int s, int first, int last,
-                                    std::span<const OrbitVector> extended) {
-  const IntervalBasis basis = this->basis(condensed, first, last);
+void CondensedReturnMap::put_points(const Orbit& x, int s, int first, int last, std::span<const OrbitVector> extended) {
+  const IntervalBasis basis = this->basis(first, last);
   const int node = first * shape_.collocation;
   const int directions = curvature_.directions();
   array_functions().interpolate(basis, x.node(s, node), curvature_.point(0), n_);
@@ -127,8 +145,8 @@ void CondensedReturnMap::put_points(const CondensedSystem& condensed, const Orbi
                                   curvature_.direction(0, k), directions * n_);
 }
 
-IntervalBasis CondensedReturnMap::basis(const CondensedSystem& condensed, int first, int last) const {
-  return {condensed.rule().value.data(), shape_.collocation, shape_.collocation, n_, last - first};
+IntervalBasis CondensedReturnMap::basis(int first, int last) const {
+  return {rule_.value.data(), shape_.collocation, shape_.collocation, n_, last - first};
 }
 
 /// Collocation rows: slope v - h T (f_x v + f_p q) - h sigma f, with the weights w; minus their derivative is that of
@@ -170,12 +188,11 @@ double CondensedReturnMap::along(Dimension n, int s, int gauss_point, int point,
 }
 
 /// What the field says at the Gauss points of intervals first..last - 1.
-void CondensedReturnMap::add_intervals(const CondensedSystem& condensed, const Orbit& x, int s, int first, int last,
-                                       OrbitVector& gradient) {
+void CondensedReturnMap::add_intervals(const Orbit& x, int s, int first, int last, OrbitVector& gradient) {
   const int c = shape_.collocation;
   const int points = (last - first) * c;
   const auto free = static_cast<int>(gradient.globals.size());
-  array_functions().add_interpolated(basis(condensed, first, last), curvature_.gradient(0), n_ + free,
+  array_functions().add_interpolated(basis(first, last), curvature_.gradient(0), n_ + free,
                                      gradient.states.col(s * shape_.nodes() + first * c).data());
   for (int k = 0; k < free; ++k) {
     double sum = 0.0;
@@ -211,7 +228,7 @@ void CondensedReturnMap::section_change(const Orbit& x, int s, const Eigen::Ref<
   hp_.noalias() = fp_.transpose() * v;
 }
 
-/// Event row h_x v and connectivity rows mu v_next - g_x v of segment s; `weights` are those of its rows of S.
+/// Event row h_x v and connectivity rows mu v_next - g_x v of segment s; `weights` are those of these rows.
 void CondensedReturnMap::add_ends(const Orbit& x, int s, const double* weights, const OrbitVector& v,
                                   OrbitVector& gradient) {
   const HybridSystem& hybrid = system_.system();
@@ -221,10 +238,10 @@ void CondensedReturnMap::add_ends(const Orbit& x, int s, const double* weights, 
   direction_.head(n_) = v.states.col(end);
 
   section_change(x, s, v.states.col(end));
-  gradient.states.col(end) -= weights[n_] * hx_;
-  gradient.globals -= weights[n_] * hp_;
+  gradient.states.col(end) -= weights[0] * hx_;
+  gradient.globals -= weights[0] * hp_;
 
-  const Eigen::Map<const Eigen::VectorXd> w(weights + n_ + 1, n_);
+  const Eigen::Map<const Eigen::VectorXd> w(weights + 1, n_);
   hybrid.second(FunctionKind::jump, index.jump, x.end(s), x.par.data(), free, direction_.data(), d_.data(), dx_.data(),
                 dp_.data());
   for (int b = 0; b < n_; ++b) gradient.states(b, end) += dx_.col(b).dot(w);

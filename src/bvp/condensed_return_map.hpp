@@ -19,6 +19,12 @@
 
 namespace tchat {
 
+/// A weight for each of the rows that S(1) is condensed from.
+struct RowWeights {
+  std::vector<double> collocation;  ///< m N c n: segment, interval, Gauss point, component
+  std::vector<double> ends;         ///< m (1 + n): of each segment the event row and the n rows of connectivity
+};
+
 class CondensedReturnMap {
  public:
   /// `vectors`: of how many null vectors derivatives are asked for at a time.
@@ -45,14 +51,16 @@ class CondensedReturnMap {
   /// zero, S stands for S(1) with its parameters' columns, v_k for v_k with these globals.
   void subtract_derivative(CondensedSystem& condensed, const Orbit& x, const double* w,
                            std::span<const OrbitVector> extended, OrbitVector& gradient);
+  /// The same for a single v, with weights of all rows that S is condensed from.
+  void subtract_derivative(const Orbit& x, const RowWeights& weights, const OrbitVector& v, OrbitVector& gradient);
 
  private:
-  void put_points(const CondensedSystem& condensed, const Orbit& x, int s, int first, int last,
-                  std::span<const OrbitVector> extended);
+  void put_parameters(int k, const OrbitVector& v);
+  void add_segments(const Orbit& x, std::span<const OrbitVector> extended, OrbitVector& gradient);
+  void put_points(const Orbit& x, int s, int first, int last, std::span<const OrbitVector> extended);
   void put_weights(const Orbit& x, int s, int first, int last, std::span<const OrbitVector> extended);
-  IntervalBasis basis(const CondensedSystem& condensed, int first, int last) const;
-  void add_intervals(const CondensedSystem& condensed, const Orbit& x, int s, int first, int last,
-                     OrbitVector& gradient);
+  IntervalBasis basis(int first, int last) const;
+  void add_intervals(const Orbit& x, int s, int first, int last, OrbitVector& gradient);
   template <class Dimension>
   double along(Dimension n, int s, int gauss_point, int point, int k) const;
   void section_change(const Orbit& x, int s, const Eigen::Ref<const Eigen::VectorXd>& v);
@@ -60,6 +68,7 @@ class CondensedReturnMap {
 
   const DefiningSystem& system_;
   OrbitShape shape_;
+  CollocationRule rule_;
   int n_;
   int size_;
   std::vector<int> rows_;

@@ -29,13 +29,15 @@ void CondensedSystem::solve_with_null_vectors(const OrbitResidual& linearized, s
                                               OrbitVector& dx, std::span<OrbitVector> v) {
   solve_ends(own_rhs_, linearized, border);
   if (closing_ == 0) find_null_vectors();
+  const std::size_t together = std::min(v.size(), SegmentElimination::most_together - 1);
   segment_work_.each_in_reverse(shape_.segments, [&](int s, int thread) {  // as in expand()
     std::array<SegmentSolution, SegmentElimination::most_together> solutions;
     solutions[0] = in_segment(s, solution_, RightHandSide::own, dx);
-    for (std::size_t z = 0; z < v.size(); ++z)
+    for (std::size_t z = 0; z < together; ++z)
       solutions[1 + z] = in_segment(s, null_ends_[z], RightHandSide::zero, v[z]);
-    elimination_.expand_together(s, std::span(solutions).first(1 + v.size()), thread);
+    elimination_.expand_together(s, std::span(solutions).first(1 + together), thread);
   });
+  for (std::size_t z = together; z < v.size(); ++z) null_vector(v[z], static_cast<int>(z));
   put_globals(solution_, dx);
   for (std::size_t z = 0; z < v.size(); ++z) put_globals(null_ends_[z], v[z]);
 }

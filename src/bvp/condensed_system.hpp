@@ -93,7 +93,7 @@ class CondensedSystem {
   /// The solution for F = 0 and a one in the first border row, or in another closing row.
   void null_vector(OrbitVector& v, int closing_row = 0);
   /// Both at once, which takes little more than one: dx for the residual that linearize() found and `border`, and the
-  /// null vectors of the first closing rows, at most three.
+  /// null vectors of the first closing rows.
   void solve_with_null_vectors(const OrbitResidual& linearized, std::span<const double> border, OrbitVector& dx,
                                std::span<OrbitVector> v);
 

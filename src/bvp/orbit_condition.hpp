@@ -11,10 +11,10 @@ namespace tchat {
 
 class CondensedSystem;
 
-/// A function G of the orbit, durations and free parameters, of one number or two, with its gradients.
+/// A function G of the orbit, durations and free parameters, of a few numbers, with its gradients.
 class OrbitCondition {
  public:
-  static constexpr int most = 2;
+  static constexpr int most = 5;
 
   virtual ~OrbitCondition() = default;
   /// How many numbers; constant.

@@ -43,6 +43,7 @@ struct ContinuationSettings {
   std::function<bool()> interrupted;        ///< asked after every point
   /// A line about a point that its problem type has to say, or "".
   std::function<std::string(const Orbit&)> remark = {};
+  std::function<std::string(const Orbit&)> label_remark = {};  ///< the same of labelled points alone
   /// Asked after every point: true ends the run there, for it is to go on with another discretisation.
   std::function<bool(const Orbit&)> outgrown = {};
   /// Asked after every point: why the branch ends there, or "".

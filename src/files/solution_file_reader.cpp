@@ -383,7 +383,7 @@ class SolutionReader {
       return static_cast<int>(value);
     };
     UserPointKind kind;
-    kind.kind = whole(0.0, UserPointKind::boundary_equilibrium, "kind");
+    kind.kind = whole(0.0, UserPointKind::extremum, "kind");
     kind.segment = whole(0.0, max_segments, "segment");
     kind.index = whole(kind.kind == UserPointKind::other_type ? -32.0 : -1.0, 1e6, "index");
     kind.tau = numbers.real();

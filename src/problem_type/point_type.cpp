@@ -48,6 +48,9 @@ constexpr auto table = std::to_array<PointTypeFacts>({
     {"GC", -4, UserPointKind::grazing_codimension_two,
      "grazing-fold or grazing-flip: the orbit without the contact has the multiplier +1 or -1; or a* = 0",
      PointSymbol::diamond, false, true, false, false},
+    {"EX", -4, UserPointKind::extremum,
+     "extremum: ICP(1), a monitor, is stationary along the branch, with ISW = 2, 3, ... in one parameter more",
+     PointSymbol::reversed_triangle, false, true, false, false},
     {"CP", -2, UserPointKind::none, "cusp on a curve of folds", PointSymbol::square, false, true, false, false},
     {"BT", -1, UserPointKind::none, "Bogdanov-Takens point on a curve of equilibria: a double eigenvalue 0",
      PointSymbol::reversed_triangle, false, true, false, false},
@@ -166,6 +169,8 @@ std::string description(const UserPointKind& kind, const std::string& parameter)
                             : "grazing-fold: multiplier +1 of the orbit that grazes, without the contact";
     case UserPointKind::boundary_equilibrium:
       return fmt::format("boundary equilibrium, event function {}", kind.index);
+    case UserPointKind::extremum:
+      return "extremum of ICP(1)";
     case UserPointKind::other_type:
       return type_name(kind.index);
     default:

@@ -48,7 +48,8 @@ struct UserPointKind {
     impact_velocity = 4,
     grazing_codimension_two = 5,
     other_type = 6,  ///< a point that has a type number of its own, beside the label's
-    boundary_equilibrium = 7
+    boundary_equilibrium = 7,
+    extremum = 8
   };
   int kind = none;
   int segment = 0;  ///< from 1
@@ -93,8 +94,8 @@ bool is_fold(PointType type);
 bool is_bifurcation(PointType type);
 
 /// "EP", "LP", "BP", "PD", "TR", "RG", "MX", "R1", "CP", ...; of type UZ by kind: "UZ" (user value or not known),
-/// "GR" (contact, impact velocity), "XI", "GC" (grazing-fold or -flip), "BE" (boundary equilibrium). "" for an ordinary
-/// point and unknown numbers.
+/// "GR" (contact, impact velocity), "XI", "GC" (grazing-fold or -flip), "BE" (boundary equilibrium), "EX" (extremum).
+/// "" for an ordinary point and unknown numbers.
 std::string type_name(int type, const UserPointKind& kind = {});
 
 /// The name of the points that a two-parameter curve consists of, by its tens digit: "LP", ..., "GR" for 4.

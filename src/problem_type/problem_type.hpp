@@ -43,8 +43,8 @@ struct ProblemFacts {
   bool may_conserve = false;     ///< CONSERVED has a meaning
   bool switches_branch = false;  ///< goes on as the type that ISW = 1 names, on either side of its start
   const char* starts_at = "a branch point (BP)";  ///< the labels at which such a switch starts
-  const char* start_example = "BP";
-  int starts_from = 0;  ///< IPS of those labels; 0: its own
+  const char* start_example = "BP";               ///< of types whose curve has no number, too
+  int starts_from = 0;                            ///< IPS of those labels; 0: its own
   /// Further words of a command line that starts there, after IRS, IPS and ISW; {} stands for the name of ICP(1).
   const char* start_words = "";
 };
@@ -63,6 +63,9 @@ class ProblemType {
   int free_entries(const RunSettings& settings) const;
   /// Can a branch of this type start at a label of this type (type number without its tens digit)?
   virtual bool begins_at(int) const { return true; }
+  /// Does one start at this label, which is of such a type? Types that share IPS, ISW and labels are asked in the order
+  /// of the list.
+  virtual bool accepts(const HybridSystem&, const RunSettings&, const SelectedStart&) const { return true; }
   /// Everything that a branch needs before it is computed. Throws UserError when it cannot start there,
   /// ComputationError when no first point is found.
   virtual BranchSetup set_up(const HybridSystem& system, const RunSettings& settings,

@@ -8,6 +8,7 @@
 #include "families/families.hpp"
 #include "problem_types/branch_point_start.hpp"
 #include "problem_types/double_event.hpp"
+#include "problem_types/extrema.hpp"
 #include "problem_types/problem_types.hpp"
 #include "problem_types/torus_pair.hpp"
 #include "run/branch_switch.hpp"
@@ -31,6 +32,14 @@ ProblemFacts curve_facts(PointType type, int branch_mode, const char* title) {
           .free_parameters = branch_mode,
           .in_two_parameters = true,
           .stability = StabilityMeaning::critical};
+}
+
+/// Their labels are EX or points of such a curve, which have no number in files.
+ProblemFacts extremum_facts(int branch_mode) {
+  ProblemFacts facts = curve_facts(PointType::ordinary, branch_mode, "extrema of ICP(1), a monitor");
+  facts.stability = StabilityMeaning::orbit;
+  facts.start_example = "EX";
+  return facts;
 }
 
 ProblemFacts switch_facts(const char* title, bool may_double) {
@@ -64,25 +73,15 @@ std::unique_ptr<UnfoldedSystem> unfolded(const HybridSystem& system, const RunSe
   return std::make_unique<UnfoldedSystem>(ring(system, settings, std::move(free)));
 }
 
-BranchCurve branch(const PeriodicOrbitSystem& system, const RunSettings&, const SelectedStart&) {
-  return {nullptr, [&system](const RunSettings& settings) {
+BranchCurve branch(const PeriodicOrbitSystem& system, const RunSettings& run, const SelectedStart&) {
+  return {nullptr,
+          [&system](const RunSettings& settings) {
             TestList tests = contact_tests(system, settings);
             add_bifurcations(tests, system, settings);
             add_user_values(tests, system.system(), settings);
             return tests;
-          }};
-}
-
-/// The curve of a condition; `add_codimension_two(tests, condition)` adds the points of codimension two on it.
-template <class Condition, class Add>
-BranchCurve curve_of(const DefiningSystem& system, std::unique_ptr<Condition> condition, Add add_codimension_two) {
-  const Condition& kept = *condition;
-  return {std::move(condition), [&system, &kept, add_codimension_two](const RunSettings& settings) {
-            TestList tests = contact_tests(system, settings);
-            add_codimension_two(tests, kept);
-            add_user_values(tests, system.system(), settings);
-            return tests;
-          }};
+          },
+          gradient_remark(system.system(), run)};
 }
 
 BranchCurve fold(const PeriodicOrbitSystem& system, const RunSettings&, const SelectedStart& start) {
@@ -134,6 +133,10 @@ BranchCurve double_event(const PeriodicOrbitSystem& system, const RunSettings&, 
           }};
 }
 
+bool is_no_extremum(const HybridSystem&, const RunSettings&, const SelectedStart& start) {
+  return start.kind.kind != UserPointKind::extremum;
+}
+
 /// An equilibrium of a conservative system has families of orbits about it, whatever its label.
 BranchSetup leave_branch(const HybridSystem& system, const RunSettings& settings, const SelectedStart& start) {
   const bool starts_at_rest = start.from_solution && start.start.orbit.shape.stored_nodes() == 1;
@@ -163,6 +166,11 @@ std::vector<const ProblemType*> periodic_orbit_types() {
   static const ProblemRow<UnfoldedSystem> persistent_branch_points(
       curve_facts(PointType::branch_point, 2, "branch points that persist (symmetry breaking) in two parameters"),
       {PointType::branch_point}, unfolded, branch_point<UnfoldedSystem>, start_persistent_branch_points);
+  static const Ring extrema_2(extremum_facts(2), {}, ring, extrema, check_extremum, starts_at_extremum);
+  static const Ring extrema_3(extremum_facts(3), {}, ring, extrema, check_extremum, starts_at_extremum);
+  static const Ring extrema_4(extremum_facts(4), {}, ring, extrema, check_extremum, starts_at_extremum);
+  static const Ring extrema_5(extremum_facts(5), {}, ring, extrema, check_extremum, starts_at_extremum);
+  static const Ring extrema_6(extremum_facts(6), {}, ring, extrema, check_extremum, starts_at_extremum);
   static const Ring angles(
       curve_facts(PointType::torus, 3, "torus bifurcations of the start's angle in three parameters"),
       {PointType::torus}, ring, fixed_angle);
@@ -177,14 +185,15 @@ std::vector<const ProblemType*> periodic_orbit_types() {
                                    .title = "two events at once, such as the onset of sliding, in two parameters",
                                    .free_parameters = 2,
                                    .in_two_parameters = true},
-                                  {PointType::user}, ring, double_event);
+                                  {PointType::user}, ring, double_event, nullptr, is_no_extremum);
   static const SwitchRow switches(switch_facts("the branch that bifurcates at a PD or BP label", true),
                                   branch_switch_labels(), leave_branch);
   ProblemFacts births_at_hopf = switch_facts("the periodic orbits that are born at an HB label of equilibria", false);
   births_at_hopf.starts_from = equilibrium.number;
   static const SwitchRow births(births_at_hopf, {PointType::hopf}, begin_periodic_orbits);
-  return {&orbits, &folds,         &doublings,     &tori,     &persistent_branch_points,
-          &angles, &branch_points, &double_events, &switches, &births};
+  return {&orbits,    &folds,     &doublings,     &tori,      &persistent_branch_points,
+          &extrema_2, &angles,    &branch_points, &extrema_3, &extrema_4,
+          &extrema_5, &extrema_6, &double_events, &switches,  &births};
 }
 
 }  // namespace tchat

@@ -21,13 +21,13 @@ namespace tchat {
 namespace {
 
 /// The type that the start chooses, where IPS and ISW leave a choice: by the curve that a label was computed on (tens
-/// digit), else by its own type.
-const ProblemType& type_at(const RunSettings& settings, const SelectedStart& selected) {
+/// digit), else by its own type, and by what its orbit is where types share such labels.
+const ProblemType& type_at(const HybridSystem& system, const RunSettings& settings, const SelectedStart& selected) {
   const ProblemType& first = problem_type(settings.problem_type, settings.branch_mode);
   const int tens = std::abs(selected.type) / 10;
   for (const int label_type : tens > 0 ? std::vector<int>{tens} : selected.types)
     for (const ProblemType* type : problem_types_of(settings.problem_type, settings.branch_mode))
-      if (type->begins_at(label_type)) return *type;
+      if (type->begins_at(label_type) && type->accepts(system, settings, selected)) return *type;
   if (first.facts().curve == 0) return first;
   const std::string name = type_name(selected.type, selected.kind);
   std::string curves;
@@ -35,7 +35,7 @@ const ProblemType& type_at(const RunSettings& settings, const SelectedStart& sel
   for (const ProblemType* type : problem_types_of(settings.problem_type, settings.branch_mode)) {
     const int curve = type->facts().curve;
     const bool of_contacts = curve == -static_cast<int>(PointType::user);
-    const std::string label = of_contacts ? "GR" : type_name(curve);
+    const std::string label = of_contacts ? "GR" : curve != 0 ? type_name(curve) : type->facts().start_example;
     curves += fmt::format("{}{} ({})", curves.empty() ? "" : ", ", type->facts().title, label);
     if (example.empty()) example = label;
   }
@@ -90,7 +90,7 @@ BranchSetup Discretisation::refined(const BranchSetup& setup, const PathPoint& l
 }
 
 BranchSetup set_up_branch(const HybridSystem& system, const RunSettings& settings, const SelectedStart& selected) {
-  return type_at(settings, selected).set_up(system, settings, selected);
+  return type_at(system, settings, selected).set_up(system, settings, selected);
 }
 
 }  // namespace tchat

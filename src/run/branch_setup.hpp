@@ -1,8 +1,8 @@
 /// Everything a branch needs before files are opened: equations, follower, test functions, the first point.
 ///
 /// The branch mode (ISW) decides: 1 continues the orbit of the start; 2 follows the two-parameter curve of the fold,
-/// period doubling, torus bifurcation or branch point at the start, 3 one in three parameters; -1 switches at the start
-/// to the branch that bifurcates there.
+/// period doubling, torus bifurcation or branch point at the start, 3 or more one in so many parameters; -1 switches at
+/// the start to the branch that bifurcates there.
 #pragma once
 
 #include <functional>
@@ -43,6 +43,8 @@ struct BranchSetup {
   /// Makes the test functions of the branch; they refer to the defining system and to the follower's condition.
   std::function<TestList()> make_tests = {};
   std::shared_ptr<const Discretisation> discretisation = std::make_shared<Discretisation>();
+  /// What there is to say of a labelled point, in a line; may be empty.
+  std::function<std::string(const Orbit&)> label_remark = {};
   FirstPoint start = {};
   /// What is written as the constants of the run where these are not its settings: of a torus those of one return.
   std::optional<RunSettings> constants = {};

@@ -11,6 +11,7 @@
 #include "plugin/plugin_build.hpp"
 #include "problem_type/family.hpp"
 #include "problem_type/problem_type.hpp"
+#include "setup/run_monitors.hpp"
 #include "text/words.hpp"
 
 namespace tchat {
@@ -23,9 +24,8 @@ int principal_parameter(const RunSettings& settings) {
   return k < first_duration ? k : 0;
 }
 
-/// A parameter to vary beside ICP(1): one that ICP has, else the first of the problem; 0 where there is no other.
-int second_parameter(const RunSettings& settings, const HybridSystem& system) {
-  const int first = principal_parameter(settings);
+/// A parameter to vary beside `first`: one that ICP has, else the first of the problem; 0 where there is no other.
+int other_parameter(int first, const RunSettings& settings, const HybridSystem& system) {
   for (const int k : settings.free_parameters)
     if (k != first && k <= system.parameters()) return k;
   for (int k = 1; k <= system.parameters(); ++k)
@@ -46,9 +46,19 @@ std::string run_words(const NextStart& start, const RunSettings& settings, const
   if (principal == 0) return "";
   const std::string first = system.parameter_name(principal);
   if (const std::string words = birth_words(start.type, settings.problem_type, first); !words.empty()) return words;
-  const int second = second_parameter(settings, system);
+  const int second = other_parameter(principal, settings, system);
   if (second == 0 || curve_of(start.type, settings.problem_type) == nullptr) return "";
   return fmt::format(" ISW=2 {}", quoted_for_shell(fmt::format("ICP=[{},{}]", first, system.parameter_name(second))));
+}
+
+/// The same that follow an extremum of ICP(1), a monitor, in one more parameter.
+std::string extremum_words(const RunSettings& settings, const HybridSystem& system) {
+  const int first = free_problem_parameters(settings).front();
+  const int second = other_parameter(first, settings, system);
+  if (second == 0) return "";
+  const std::string names = fmt::format("{},{},{}", parameter_name(system, settings, settings.free_parameters.front()),
+                                        system.parameter_name(first), system.parameter_name(second));
+  return " ISW=2 " + quoted_for_shell("ICP=[" + names + "]");
 }
 
 /// Is a contact at the end of a segment alone there? It is where that end changes neither the state nor the field.
@@ -78,10 +88,11 @@ std::string next_command(const NextStart& start, const RunSettings& settings, co
     return fmt::format("tchat resegment {} {} --to impacting -o {} && tchat run {} -c {} -s {} -o {}_branch", solutions,
                        start.label, name, problem_arguments(problem), name, name, name);
   }
-  if (start.kind.kind != UserPointKind::none || !settings.held.empty()) return "";
+  const bool is_extremum = start.kind.kind == UserPointKind::extremum;
+  if ((start.kind.kind != UserPointKind::none && !is_extremum) || !settings.held.empty()) return "";
   const bool has_torus = start.type == static_cast<int>(PointType::torus);
   if (has_torus && settings.segments.front().index.event == no_function) return "";  // a torus needs a section
-  const std::string words = run_words(start, settings, system);
+  const std::string words = is_extremum ? extremum_words(settings, system) : run_words(start, settings, system);
   if (words.empty()) return "";
   return fmt::format("tchat run {} -c {} -s {} IRS={}{} -o {}", problem_arguments(problem),
                      quoted_for_shell(output_path('r', output)), quoted_for_shell(output), start.label, words, name);

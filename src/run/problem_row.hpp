@@ -16,7 +16,20 @@ namespace tchat {
 struct BranchCurve {
   std::unique_ptr<OrbitCondition> condition = nullptr;
   std::function<TestList(const RunSettings&)> tests;
+  std::function<std::string(const Orbit&)> label_remark = {};  ///< BranchSetup::label_remark
 };
+
+/// The curve of a condition; `add_special_points(tests, condition)` adds the special points on it.
+template <class Condition, class Add>
+BranchCurve curve_of(const DefiningSystem& system, std::unique_ptr<Condition> condition, Add add_special_points) {
+  const Condition& kept = *condition;
+  return {std::move(condition), [&system, &kept, add_special_points](const RunSettings& settings) {
+            TestList tests = contact_tests(system, settings);
+            add_special_points(tests, kept);
+            add_user_values(tests, system.system(), settings);
+            return tests;
+          }};
+}
 
 /// A type whose equations are those of a System.
 template <class System>
@@ -28,17 +41,23 @@ class ProblemRow final : public ProblemType {
   using MakeCurve = BranchCurve (*)(const System&, const RunSettings&, const SelectedStart&);
   /// Changes a start so that it fits the equations. Throws UserError where no such branch starts there.
   using Adapt = void (*)(const HybridSystem&, const RunSettings&, SelectedStart&);
+  /// Does the branch start at a label of the types that it may start at?
+  using Accepts = bool (*)(const HybridSystem&, const RunSettings&, const SelectedStart&);
 
   /// `starts_at`: types of labels; empty: any.
   ProblemRow(const ProblemFacts& facts, std::vector<PointType> starts_at, MakeSystem make_system, MakeCurve make_curve,
-             Adapt adapt = nullptr)
+             Adapt adapt = nullptr, Accepts accepts = nullptr)
       : ProblemType(facts),
         starts_at_(std::move(starts_at)),
         make_system_(make_system),
         make_curve_(make_curve),
-        adapt_(adapt) {}
+        adapt_(adapt),
+        accepts_(accepts) {}
 
   bool begins_at(int label_type) const override { return starts_at_.empty() || is_among(starts_at_, label_type); }
+  bool accepts(const HybridSystem& system, const RunSettings& settings, const SelectedStart& start) const override {
+    return accepts_ == nullptr || accepts_(system, settings, start);
+  }
 
   BranchSetup set_up(const HybridSystem& system, const RunSettings& settings,
                      const SelectedStart& start) const override {
@@ -55,6 +74,7 @@ class ProblemRow final : public ProblemType {
     BranchCurve curve = make_curve_(*equations, settings, start);
     BranchSetup setup{this, settings};
     setup.make_tests = [tests = std::move(curve.tests), settings] { return tests(settings); };
+    setup.label_remark = std::move(curve.label_remark);
     setup.defining = std::move(equations);
     attach_follower(setup, std::move(curve.condition), start.start.orbit);
     return setup;
@@ -65,6 +85,7 @@ class ProblemRow final : public ProblemType {
   MakeSystem make_system_;
   MakeCurve make_curve_;
   Adapt adapt_;
+  Accepts accepts_;
 };
 
 /// The labels at which switch_branch (run/branch_switch.hpp) starts.

@@ -242,6 +242,7 @@ class Direction {
     continuation_.monitored = continuation_settings(setup.settings).monitored;
     const Discretisation& discretisation = *setup.discretisation;
     continuation_.remark = [&](const Orbit& x) { return discretisation.remark(x); };
+    continuation_.label_remark = setup.label_remark;
     continuation_.outgrown = [&, patience](const Orbit& x) mutable {
       return --patience < 0 && discretisation.is_outgrown(x);
     };

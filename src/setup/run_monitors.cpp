@@ -68,6 +68,12 @@ void check_monitors(const HybridSystem& system, const RunSettings& settings, con
     check_monitor(settings, first_monitor(settings) + static_cast<int>(i), list[i], source);
 }
 
+std::shared_ptr<const Monitor> principal_monitor(const DefiningSystem& system, const RunSettings& settings) {
+  const int k = settings.free_parameters.front();
+  if (!is_monitor(settings, k)) return nullptr;
+  return make_monitor(parse_monitor(system.system(), parameter_name(system.system(), settings, k), "ICP"), system);
+}
+
 BranchMonitors branch_monitors(const DefiningSystem& system, const RunSettings& settings, const Orbit& start) {
   const std::vector<MonitorName> names = monitor_names(system.system(), settings);
   const CollocationRule rule(start.shape.collocation);

@@ -99,10 +99,10 @@ TestValue FoldTest::evaluate(const TestedPoint& point) const {
 SpecialPoint FoldTest::classify(const TestedPoint& point, bool) const {
   const DefiningSystem& system = point.condensed.system();
   const int s = touching_segment(point);
-  if (!held_.empty()) return {type_, {}, stop_, "fold of the curve with " + held_ + " held"};
   const bool is_fold = has_multiplier_one(point.multipliers);
   if (is_monitor_ && point.multipliers.valid && !is_fold)
-    return {type_, {}, stop_, "extremum of ICP(1) along the branch"};
+    return {PointType::user, {UserPointKind::extremum}, stop_, "extremum of ICP(1) along the branch"};
+  if (!held_.empty()) return {type_, {}, stop_, "fold of the curve with " + held_ + " held"};
   if (s < 0 || is_fold) return {type_, {}, stop_, "fold"};
   return {PointType::user,
           {UserPointKind::impact_velocity, s + 1, system.signature()[static_cast<std::size_t>(s)].event, 1.0},

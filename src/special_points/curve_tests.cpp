@@ -144,6 +144,23 @@ class PassedResonanceTest final : public TestFunction {
   const CriticalPair& pair_;
 };
 
+class ExtremumTest final : public TestFunction {
+ public:
+  ExtremumTest(const StationaryMonitor& condition, std::string names)
+      : condition_(condition), names_(std::move(names)) {}
+  std::string name() const override { return "extremum"; }
+  TestValue evaluate(const TestedPoint&) const override {
+    return TestValue::of(condition_.next_derivative(), orbit_accuracy);
+  }
+  SpecialPoint classify(const TestedPoint&, bool) const override {
+    return {PointType::user, {UserPointKind::extremum}, false, "extremum of ICP(1) in " + names_};
+  }
+
+ private:
+  const StationaryMonitor& condition_;
+  std::string names_;
+};
+
 }  // namespace
 
 std::unique_ptr<TestFunction> cusp_test(const CriticalMultiplier& fold) { return std::make_unique<CuspTest>(fold); }
@@ -158,6 +175,10 @@ TestList torus_curve_tests(const CriticalPair& pair) {
   tests.push_back(std::make_unique<MirroredResonanceTest>(pair));
   tests.push_back(std::make_unique<PassedResonanceTest>(pair));
   return tests;
+}
+
+std::unique_ptr<TestFunction> extremum_test(const StationaryMonitor& condition, std::string names) {
+  return std::make_unique<ExtremumTest>(condition, std::move(names));
 }
 
 }  // namespace tchat

@@ -1,9 +1,11 @@
-/// Codimension-two points on fold, period-doubling, branch-point and torus curves: cusp and resonances. The test
+/// Special points on curves in two or more parameters: cusp and resonances on those of critical multipliers, extrema in
+/// one more parameter. The test
 /// functions read the curve's condition, which must outlive them and is evaluated at the tested point.
 #pragma once
 
 #include "bvp/critical_multiplier.hpp"
 #include "bvp/critical_pair.hpp"
+#include "bvp/stationary_monitor.hpp"
 #include "special_points/test_function.hpp"
 
 namespace tchat {
@@ -16,5 +18,8 @@ std::unique_ptr<TestFunction> double_multiplier_test(PointType type, const RealM
 
 /// 1:1 to 1:4 resonances on a torus curve.
 TestList torus_curve_tests(const CriticalPair& pair);
+
+/// On a curve of extrema: the monitor is stationary in the last parameter too. `names`: of all its parameters.
+std::unique_ptr<TestFunction> extremum_test(const StationaryMonitor& condition, std::string names);
 
 }  // namespace tchat

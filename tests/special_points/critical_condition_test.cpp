@@ -7,7 +7,9 @@
 #include "bvp/critical_branch_point.hpp"
 #include "bvp/critical_multiplier.hpp"
 #include "bvp/critical_pair.hpp"
+#include "bvp/monitor.hpp"
 #include "bvp/periodic_orbit_system.hpp"
+#include "bvp/stationary_monitor.hpp"
 #include "impacting_orbits.hpp"
 #include "langford.hpp"
 
@@ -19,9 +21,12 @@ namespace {
 /// A condition with what it needs: evaluated at any orbit of the shape, an orbit of the model or not.
 class ConditionAt {
  public:
-  ConditionAt(const HybridSystem& hybrid, const Signature& signature, const Orbit& like)
-      : system(hybrid, signature, {1, 2}), condensed(system, like.shape, {2}), residual_(condensed.make_residual()) {
-    for (int r = 0; r < 2; ++r) border_.push_back(random_vector(condensed.make_vector()));
+  ConditionAt(const HybridSystem& hybrid, const Signature& signature, const Orbit& like,
+              const std::vector<int>& free = {1, 2})
+      : system(hybrid, signature, free),
+        condensed(system, like.shape, {static_cast<int>(free.size())}),
+        residual_(condensed.make_residual()) {
+    for (std::size_t r = 0; r < free.size(); ++r) border_.push_back(random_vector(condensed.make_vector()));
   }
   double value(OrbitCondition& condition, const Orbit& x, int number = 0) {
     REQUIRE(condensed.linearize(x, border_, residual_) == Linearization::ready);
@@ -63,8 +68,15 @@ double difference(ConditionAt& at, OrbitCondition& condition, int number, const 
   return (4 * central(step / 2) - central(step)) / 3;
 }
 
+/// Of the differences, and how much of the largest derivative a gradient may be off by.
+struct Accuracy {
+  double step = 2e-4;
+  double share = 1e-9;
+};
+
 /// The gradient against differences in random directions and along single unknowns of every kind.
-void check_gradient_of(ConditionAt& at, OrbitCondition& condition, int number, const Orbit& x) {
+void check_gradient_of(ConditionAt& at, OrbitCondition& condition, int number, const Orbit& x,
+                       const Accuracy& accuracy) {
   at.value(condition, x);
   std::vector<double> memory;
   condition.remember(memory);
@@ -87,14 +99,14 @@ void check_gradient_of(ConditionAt& at, OrbitCondition& condition, int number, c
   REQUIRE(largest > 0.0);
   for (std::size_t i = 0; i < directions.size(); ++i) {
     const double exact = dot(gradient, directions[i]);
-    const double found = difference(at, condition, number, memory, x, directions[i], 2e-4);
+    const double found = difference(at, condition, number, memory, x, directions[i], accuracy.step);
     CAPTURE(i, exact, found);
-    CHECK(std::abs(found - exact) < 1e-6 * std::abs(exact) + 1e-9 * largest);
+    CHECK(std::abs(found - exact) < 1e-6 * std::abs(exact) + accuracy.share * largest);
   }
 }
 
-void check_gradient(ConditionAt& at, OrbitCondition& condition, const Orbit& x) {
-  for (int number = 0; number < condition.count(); ++number) check_gradient_of(at, condition, number, x);
+void check_gradient(ConditionAt& at, OrbitCondition& condition, const Orbit& x, const Accuracy& accuracy = {}) {
+  for (int number = 0; number < condition.count(); ++number) check_gradient_of(at, condition, number, x, accuracy);
 }
 
 Orbit sampled(const CutOrbit& cut, const OscillatorOrbit& orbit, int intervals, int collocation) {
@@ -282,4 +294,26 @@ TEST_CASE("critical branch point: gradients of both conditions") {
   ConditionAt at(system_of<Langford>(), {{1, 1, 1}}, circle);
   CriticalBranchPoint condition(at.system, circle.shape);
   check_gradient(at, condition, circle);
+}
+
+TEST_CASE("stationary monitors: gradients agree with differences, for all kinds of monitors, held ones too") {
+  const OscillatorOrbit orbit = one_impact_orbit(2.0072, 2.5);
+  const CutOrbit pieces = cut_at_minimum(orbit, false);
+  const Orbit x = sampled(pieces, orbit, 20, 4);
+  const auto monitor = [&](const DefiningSystem& system, const std::string& name) {
+    return std::shared_ptr<const Monitor>(make_monitor(parse_monitor(linosc(), name, "test"), system));
+  };
+  const std::string name =
+      GENERATE(as<std::string>{}, "integral(x1, 1)", "start(x2)", "end(y1, 1)", "max(x2)", "velocity(1)");
+  const std::string held = GENERATE(as<std::string>{}, "", "mean(x1)");
+  CAPTURE(name, held);
+  ConditionAt at(linosc(), pieces.signature, x,
+                 held.empty() ? std::vector<int>{1, 3, 4} : std::vector<int>{1, 3, 4, 2});
+  std::vector<HeldMonitor> list;
+  if (!held.empty()) list.push_back({monitor(at.system, held), 0.0, held});
+  StationaryMonitor condition(at.system, x.shape, monitor(at.system, name), list);
+  REQUIRE(condition.count() == 2);
+  // Second derivatives of monitors are differences themselves. Displacements of single nodes move the place of a
+  // maximum far, so that larger ones say little of its derivative.
+  check_gradient(at, condition, x, {name == "max(x2)" ? 1e-5 : 2e-4, 1e-7});
 }
