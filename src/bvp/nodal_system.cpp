@@ -150,6 +150,12 @@ void NodalSystem::solve_adjoint(const OrbitVector& q, Eigen::VectorXd& weights) 
   lu_.solve_transposed(right_.data(), weights.data());
 }
 
+/// M maps the shift, v = the field, to |f|^2 in the row of the plane across the flow, and to zero in all others.
+double NodalSystem::phase_derivative(const Eigen::VectorXd& weights, const Orbit& x, int s) {
+  system_.section_gradient(s, x.end(s), x.par.data(), hx_.data());
+  return weights(end_row(s)) * hx_.squaredNorm();
+}
+
 RowWeights NodalSystem::by_kind(const Eigen::VectorXd& weights) const {
   const auto of_collocation = static_cast<std::ptrdiff_t>(shape_.nodes() - 1) * shape_.dimension;
   const std::ptrdiff_t of_ends = 1 + shape_.dimension;

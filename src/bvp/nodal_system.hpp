@@ -37,6 +37,9 @@ class NodalSystem {
   void solve_adjoint(const OrbitVector& q, Eigen::VectorXd& weights);
   /// A column for each free parameter, with the rows of M.
   const Eigen::MatrixXd& parameter_columns() const { return columns_; }
+  /// What these weights say of a shift of the phase at unit speed on an orbit without an event at the end of segment s:
+  /// the derivative of q in that direction.
+  double phase_derivative(const Eigen::VectorXd& weights, const Orbit& x, int s);
   /// Weights of the rows of M as those of the kinds of rows.
   RowWeights by_kind(const Eigen::VectorXd& weights) const;
 

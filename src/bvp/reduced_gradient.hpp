@@ -35,8 +35,10 @@ class ReducedGradient {
   /// How many independent parameters: the first ones of the system.
   int count() const { return static_cast<int>(values_.size()); }
 
-  /// H at x. False where the orbit is not part of such a family (multiplier 1), or something is not finite.
+  /// H at x. False where there is none: see why_none().
   bool evaluate(const Orbit& x);
+  /// Of the last evaluation: why a monitor has no such derivatives, "" where all have.
+  const char* why_none() const { return why_none_; }
   double value(int k) const { return values_(k); }
   /// The terms that H_k is the sum of, without their signs, and q / (1 + |p_k|): what H_k is small or large against.
   double size(int k) const { return sizes_(k); }
@@ -53,6 +55,7 @@ class ReducedGradient {
   Nature nature(const Orbit& x, const std::vector<int>& parameters);
 
  private:
+  bool depends_on_phase(const Orbit& x, const Eigen::VectorXd& adjoint, double size);
   bool find_multipliers();
   void add_monitor_gradient(const Orbit& x, const OrbitVector& along, double step, double factor, OrbitVector& row);
 
@@ -68,6 +71,7 @@ class ReducedGradient {
   Eigen::VectorXd values_, sizes_;
   RowWeights weights_;
   OrbitVector tangent_, row_;
+  const char* why_none_ = "";
   Orbit displaced_;
 };
 

@@ -50,7 +50,7 @@ std::string gradient_text(const HybridSystem& system, const RunSettings& setting
   std::string text = "Gradient of " + parameter_name(system, settings, settings.free_parameters.front());
   if (!monitors.held.empty()) text += fmt::format(" with {} held", held_text(system, settings));
   ReducedGradient gradient(orbits, x.shape, *objective, held_monitors(monitors.held));
-  if (!gradient.evaluate(x)) return text + ": none, for these orbits are no family in the parameters (multiplier 1)";
+  if (!gradient.evaluate(x)) return fmt::format("{}: none, for {}", text, gradient.why_none());
   std::vector<int> stationary;
   std::string names;
   for (int k = 0; k < gradient.count(); ++k) {
@@ -80,11 +80,12 @@ bool starts_at_extremum(const HybridSystem& system, const RunSettings& settings,
 void check_extremum(const HybridSystem& system, const RunSettings& settings, SelectedStart& start) {
   if (is_stationary_start(system, settings, start.start.orbit)) return;
   const int mode = settings.branch_mode;
-  throw UserError(fmt::format(
-      "{}: {} is not stationary in the first {} of ICP at label {}, where ISW = {} would begin; name an EX label of a run "
-      "with ISW = {}, and its parameters in the same order",
-      start.source, parameter_name(system, settings, settings.free_parameters.front()),
-      mode == 2 ? "parameter" : fmt::format("{} parameters", mode - 1), start.label, mode, mode - 1));
+  throw UserError(
+      fmt::format("{}: {} is not stationary in the first {} of ICP at label {}, where ISW = {} would begin; name an EX "
+                  "label of a run "
+                  "with ISW = {}, and its parameters in the same order",
+                  start.source, parameter_name(system, settings, settings.free_parameters.front()),
+                  mode == 2 ? "parameter" : fmt::format("{} parameters", mode - 1), start.label, mode, mode - 1));
 }
 
 BranchCurve extrema(const PeriodicOrbitSystem& system, const RunSettings& settings, const SelectedStart& start) {
@@ -93,7 +94,8 @@ BranchCurve extrema(const PeriodicOrbitSystem& system, const RunSettings& settin
                                                        branch_monitors(system, settings, x).held);
   std::string names;
   for (int k = 0; k <= condition->count(); ++k)
-    names += (k == 0 ? "" : ", ") + system.system().parameter_name(system.free_parameters()[static_cast<std::size_t>(k)]);
+    names +=
+        (k == 0 ? "" : ", ") + system.system().parameter_name(system.free_parameters()[static_cast<std::size_t>(k)]);
   BranchCurve curve = curve_of(system, std::move(condition), [names](TestList& tests, const StationaryMonitor& kept) {
     tests.push_back(extremum_test(kept, names));
   });

@@ -113,7 +113,7 @@ TEST_CASE("a mean over the orbit is followed from one parameter to six, to the m
   std::string start = "start";
   for (int count = 1; count <= 6; ++count) {
     const std::string name = fmt::format("free{}", count);
-    std::vector<std::string> words{"run",     "osc",      "-c",    "start",   "-o",     name,    "--both",
+    std::vector<std::string> words{"run",     "osc",       "-c",     "start",  "-o",    name,     "--both",
                                    "DS=0.02", "DSMAX=0.1", "NMX=40", "NPR=10", "RL0=0", "RL1=10", "CLSTOP=0"};
     if (count == 1) words.insert(words.end(), {"-d", "start"});
     if (count > 1) words.insert(words.end(), {"-s", start, "IRS=EX1", fmt::format("ISW={}", count)});
@@ -194,8 +194,7 @@ TEST_CASE("impact velocity: gradient and extrema in omega as the closed form has
   };
   run("along_omega", {"-s", "impacting_20072", "IRS=" + start, "ICP=[velocity(1), omega, alpha]", "NMX=120", "--both"});
   check_gradients("along_omega");
-  const std::vector<DiagnosticPoint> extrema =
-      of_type(read_diagnostics(workspace.read("d.along_omega")), "EX");
+  const std::vector<DiagnosticPoint> extrema = of_type(read_diagnostics(workspace.read("d.along_omega")), "EX");
   REQUIRE(!extrema.empty());
   run("curve", {"-s", "along_omega", "IRS=EX1", "ISW=2", "ICP=[velocity(1), omega, alpha]", "NMX=30"});
   const std::vector<SolutionEntry> curve = workspace.solutions("curve");
@@ -203,12 +202,51 @@ TEST_CASE("impact velocity: gradient and extrema in omega as the closed form has
   for (const SolutionEntry& label : curve)
     CHECK(std::abs(by_omega(label.states.back().at(1), label.parameter(2))) < 1e-6);
   // mean(x1) = -(1 + r) v omega / (2 pi) held, v is as 1/omega: d(-v)/d omega = v/omega, alpha follows.
-  run("held", {"-s", "impacting_20072", "IRS=" + start, "ICP=[velocity(1), omega, alpha]", "NMX=20",
-               "HOLD=[mean(x1)]"});
+  run("held",
+      {"-s", "impacting_20072", "IRS=" + start, "ICP=[velocity(1), omega, alpha]", "NMX=20", "HOLD=[mean(x1)]"});
   const std::vector<DiagnosticPoint> held = read_diagnostics(workspace.read("d.held"));
   for (const SolutionEntry& label : workspace.solutions("held")) {
     const std::map<std::string, double> known = gradient(with_label(held, label.label));
     CHECK(known.size() == 1);
     CHECK(known.at("omega") == Approx(label.states.back().at(1) / label.parameter(2)).epsilon(1e-7));
   }
+}
+
+TEST_CASE("orbits without a section: extrema of the period, and none of what depends on the phase") {
+  // x + iy = sqrt(mu) e^{i w t} with w = 1 + (mu - a)^2 + (a - 0.3)^2: the period is stationary in mu at a, in both at
+  // 0.3
+  const Workspace workspace;
+  workspace.write("form.tch", R"(par mu=0.3, a=0.1
+init x=0.5, y=0
+w = 1 + (mu - a)^2 + (a - 0.3)^2
+growth = mu - x^2 - y^2
+x' = growth*x - w*y
+y' = growth*y + w*x
+)");
+  workspace.write("gc.form",
+                  "NDIM=2, IPS=180\nICP=[period, mu, a]\nGCFIND=[1], GCHIND=[0], GCGIND=[0]\n"
+                  "NMX=40, DS=0.02, DSMAX=0.1, RL0=0, RL1=20\n");
+  std::string data = "# PAR(1) = 0.3\n# PAR(2) = 0.1\n";
+  const double frequency = 1.08;
+  for (int k = 0; k <= 100; ++k) {
+    const double angle = 2.0 * M_PI * k / 100.0;
+    data += fmt::format("{} {} {}\n", angle / frequency, std::sqrt(0.3) * std::cos(angle),
+                        std::sqrt(0.3) * std::sin(angle));
+  }
+  workspace.write("form.dat", data);
+  succeed(workspace, {"run", "form", "-o", "one"});
+  const SolutionEntry one = only(workspace, "one", "EX");
+  CHECK(one.parameter(1) == Approx(0.1).epsilon(1e-8));
+  succeed(workspace, {"run", "form", "-s", "one", "IRS=EX1", "ISW=2", "-o", "two"});
+  const SolutionEntry two = only(workspace, "two", "EX");
+  CHECK(two.parameter(1) == Approx(0.3).epsilon(1e-8));
+  CHECK(two.parameter(2) == Approx(0.3).epsilon(1e-8));
+  CHECK(two.parameter(61) == Approx(2.0 * M_PI).epsilon(1e-9));
+  const std::vector<DiagnosticPoint> points = read_diagnostics(workspace.read("d.one"));
+  const std::map<std::string, double> known = gradient(points.front());
+  CHECK(known.at("mu") == Approx(-2.0 * M_PI / std::pow(frequency, 2) * 0.4).epsilon(1e-7));
+  CHECK(known.at("a") == Approx(2.0 * M_PI / std::pow(frequency, 2) * 0.8).epsilon(1e-7));
+  const Outcome start = succeed(workspace, {"run", "form", "-s", "one", "IRS=1", "-o", "phase", "ICP=[start(x),mu,a]",
+                                            "NMX=3", "RL0=-1", "RL1=1"});
+  CHECK(start.text().find("Gradient of start(x): none, for it depends on the phase of the orbit") != std::string::npos);
 }
