@@ -18,6 +18,8 @@ constexpr double most_bend = 0.01;  // of h^3 A'' / 2
 constexpr double most_norm = 4.0;
 constexpr double most_stretched = 4.0;
 constexpr double shortest_share = 1e-12;  // of a piece, that a step is halved to
+// Of one piece, which is a step of the integration. Far from all orbits a state may be so large that it would take years.
+constexpr int most_steps = 100'000;
 
 void commutator(const MatrixXd& a, const MatrixXd& b, MatrixXd& out) {
   out.noalias() = a * b;
@@ -89,7 +91,9 @@ bool TangentFlow::carry(MatrixXd& vectors, int field, const DenseOutput& state, 
                         const Stretched& stretched) {
   const double shortest = shortest_share * (to - from);
   double step = to - from;
+  int steps = 0;
   for (double t = from; t < to;) {
+    if (++steps > most_steps) return false;
     const bool is_last = t + step >= to - shortest;
     if (is_last) step = to - t;
     if (!series(field, state, t, step)) return false;

@@ -28,7 +28,8 @@ class TangentFlow {
   TangentFlow(const HybridSystem& system, const Eigen::VectorXd& par);
 
   /// Carries `frame` from one time to the next, and makes it orthonormal where it may have lost some digits. False when
-  /// f_x has no finite value on the way; the frame is then as far as it came.
+  /// f_x has no finite value on the way, or is so large that it takes too many steps; the frame is then as far as it
+  /// came.
   bool carry(OrthonormalFrame& frame, int field, const DenseOutput& state, double from, double to);
   /// V -> Phi V for n x K vectors, Phi the Jacobian of the flow from one time to the next. False as above.
   bool carry(Eigen::MatrixXd& vectors, int field, const DenseOutput& state, double from, double to);

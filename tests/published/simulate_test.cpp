@@ -154,3 +154,12 @@ TEST_CASE("simulate and run: Langford's smooth limit cycle, without a constants 
   const std::complex<double> mu = std::exp(rate * 2.0 * pi / d);
   simulate_and_run(workspace, "langford", {"cycle", "--state 1,0,1", "{(1,1,1)}", 2.0 * pi / d, {mu, std::conj(mu)}});
 }
+
+TEST_CASE("a sweep ends where Newton's method has left all orbits for states on which the flow is too fast") {
+  const Workspace workspace;
+  copy_problem(workspace, MEMS_LIBRARY);
+  const Outcome sweep = workspace.tchat("sweep mems --over V=0.48:0.651:20 --follow up -o up");
+  INFO(sweep.text());
+  CHECK(sweep.status == 0);
+  CHECK(sweep.text().find("first at V = 0.48") != std::string::npos);
+}
