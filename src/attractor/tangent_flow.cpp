@@ -18,7 +18,8 @@ constexpr double most_bend = 0.01;  // of h^3 A'' / 2
 constexpr double most_norm = 4.0;
 constexpr double most_stretched = 4.0;
 constexpr double shortest_share = 1e-12;  // of a piece, that a step is halved to
-// Of one piece, which is a step of the integration. Far from all orbits a state may be so large that it would take years.
+// Of one piece, which is a step of the integration. Far from all orbits a state may be so large that it would take
+// years.
 constexpr int most_steps = 100'000;
 
 void commutator(const MatrixXd& a, const MatrixXd& b, MatrixXd& out) {

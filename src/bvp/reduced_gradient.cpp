@@ -37,7 +37,6 @@ ReducedGradient::ReducedGradient(const DefiningSystem& system, const OrbitShape&
       row_(shape, system.free_count()) {}
 
 bool ReducedGradient::evaluate(const Orbit& x) {
-  why_none_ = "these orbits are no family in the parameters (multiplier 1)";
   if (!nodal_.factorize(x) || !(nodal_.singular_distance() > least_distance)) return false;
   const Eigen::MatrixXd& columns = nodal_.parameter_columns();
   for (std::size_t i = 0; i < monitors_.size(); ++i) {
@@ -50,22 +49,21 @@ bool ReducedGradient::evaluate(const Orbit& x) {
       terms_(r, k) += std::abs(q) / (1.0 + std::abs(x.par(system_.free_parameters()[static_cast<std::size_t>(k)] - 1)));
   }
   if (!derivatives_.allFinite() || !find_multipliers()) return false;
-  why_none_ = "it depends on the phase of the orbit, which no event fixes";
-  for (std::size_t i = 0; i < monitors_.size(); ++i)
-    if (depends_on_phase(x, adjoint_[i], terms_.row(static_cast<Eigen::Index>(i)).maxCoeff())) return false;
-  why_none_ = "";
+  combined_ = adjoint_.front();
   for (std::size_t i = 1; i < adjoint_.size(); ++i)
-    adjoint_.front() += combination_(static_cast<Eigen::Index>(i)) * adjoint_[i];
-  weights_ = nodal_.by_kind(adjoint_.front());
+    combined_ += combination_(static_cast<Eigen::Index>(i)) * adjoint_[i];
+  weights_ = nodal_.by_kind(combined_);
   return true;
 }
 
-/// Within a period; `size` is that of the monitor's derivatives.
-bool ReducedGradient::depends_on_phase(const Orbit& x, const Eigen::VectorXd& adjoint, double size) {
+/// Within a period.
+bool ReducedGradient::depends_on_phase(const Orbit& x) {
   constexpr double zero = 1e-6;
   for (int s = 0; s < x.shape.segments; ++s)
-    if (!system_.has_event(s) && std::abs(x.period() * nodal_.phase_derivative(adjoint, x, s)) > zero * size)
-      return true;
+    for (std::size_t i = 0; !system_.has_event(s) && i < monitors_.size(); ++i)
+      if (std::abs(x.period() * nodal_.phase_derivative(adjoint_[i], x, s)) >
+          zero * terms_.row(static_cast<Eigen::Index>(i)).maxCoeff())
+        return true;
   return false;
 }
 

@@ -35,10 +35,11 @@ class ReducedGradient {
   /// How many independent parameters: the first ones of the system.
   int count() const { return static_cast<int>(values_.size()); }
 
-  /// H at x. False where there is none: see why_none().
+  /// H at x. False where the orbit is not part of such a family (multiplier 1), or something is not finite.
   bool evaluate(const Orbit& x);
-  /// Of the last evaluation: why a monitor has no such derivatives, "" where all have.
-  const char* why_none() const { return why_none_; }
+  /// Does a monitor depend on the phase of x, an orbit where evaluate() was last, while no event fixes it? Then H says
+  /// nothing.
+  bool depends_on_phase(const Orbit& x);
   double value(int k) const { return values_(k); }
   /// The terms that H_k is the sum of, without their signs, and q / (1 + |p_k|): what H_k is small or large against.
   double size(int k) const { return sizes_(k); }
@@ -55,7 +56,6 @@ class ReducedGradient {
   Nature nature(const Orbit& x, const std::vector<int>& parameters);
 
  private:
-  bool depends_on_phase(const Orbit& x, const Eigen::VectorXd& adjoint, double size);
   bool find_multipliers();
   void add_monitor_gradient(const Orbit& x, const OrbitVector& along, double step, double factor, OrbitVector& row);
 
@@ -65,13 +65,13 @@ class ReducedGradient {
   NodalSystem nodal_;
   CondensedReturnMap map_;
   Eigen::MatrixXd derivatives_, terms_;   // of each monitor by each free parameter, and the sizes of their terms
-  std::vector<Eigen::VectorXd> adjoint_;  // of each monitor; of the first l
+  std::vector<Eigen::VectorXd> adjoint_;  // of each monitor
+  Eigen::VectorXd combined_;              // l
   Eigen::VectorXd combination_;           // 1, -nu
   Eigen::MatrixXd dependent_;             // of the last parameters by the independent ones
   Eigen::VectorXd values_, sizes_;
   RowWeights weights_;
   OrbitVector tangent_, row_;
-  const char* why_none_ = "";
   Orbit displaced_;
 };
 

@@ -37,7 +37,7 @@ bool is_stationary(const DefiningSystem& system, const Orbit& x, const Monitor& 
                    const std::vector<HeldMonitor>& held) {
   constexpr double zero = 1e-3;  // far more than a located point leaves, whatever its tolerances
   ReducedGradient gradient(system, x.shape, objective, held_monitors(held));
-  if (!gradient.evaluate(x)) return false;
+  if (!gradient.evaluate(x) || gradient.depends_on_phase(x)) return false;
   for (int k = 0; k < gradient.count() - 1; ++k)
     if (!(std::abs(gradient.value(k)) <= zero * gradient.size(k))) return false;
   return true;

@@ -50,7 +50,9 @@ std::string gradient_text(const HybridSystem& system, const RunSettings& setting
   std::string text = "Gradient of " + parameter_name(system, settings, settings.free_parameters.front());
   if (!monitors.held.empty()) text += fmt::format(" with {} held", held_text(system, settings));
   ReducedGradient gradient(orbits, x.shape, *objective, held_monitors(monitors.held));
-  if (!gradient.evaluate(x)) return fmt::format("{}: none, for {}", text, gradient.why_none());
+  if (!gradient.evaluate(x)) return text + ": none, for these orbits are no family in the parameters (multiplier 1)";
+  if (gradient.depends_on_phase(x))
+    return text + ": none, for it depends on the phase of the orbit, which no event fixes";
   std::vector<int> stationary;
   std::string names;
   for (int k = 0; k < gradient.count(); ++k) {
