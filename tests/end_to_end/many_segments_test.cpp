@@ -25,17 +25,10 @@ after any if -v > vc: flow until wall -> bounce
 after any: flow until wall -> launch
 )";
 
-Outcome succeed(const Workspace& workspace, const std::string& arguments) {
-  const Outcome outcome = workspace.tchat(arguments);
-  INFO(arguments << '\n' << outcome.text());
-  REQUIRE(outcome.status == 0);
-  return outcome;
-}
-
 /// The orbit whose slowest impact is below `slowest`, as ball.dat and gc.ball.
 int simulate(const Workspace& workspace, double slowest) {
   workspace.write("ball.tch", thrown_ball);
-  succeed(workspace, fmt::format("simulate ball -q --dat ball --events 3000 --max-period 1000 PAR(vc)={}", slowest));
+  workspace.succeed(fmt::format("simulate ball -q --dat ball --events 3000 --max-period 1000 PAR(vc)={}", slowest));
   const std::string constants = workspace.read("gc.ball");
   return std::stoi(constants.substr(constants.find("GCNOSEG = ") + 10));
 }
@@ -48,21 +41,21 @@ TEST_CASE("an orbit of 302 impacts is run, written, read, verified and resegment
   const Workspace workspace;
   const int segments = simulate(workspace, 0.05);
   REQUIRE(segments == 302);
-  succeed(workspace,
-          "run ball -q -c ball -d ball -o branch NTST=2 ICP=[r,period,energy] NMX=10 DS=1e-4 UZR={r:0.99001}");
+  workspace.succeed(
+      "run ball -q -c ball -d ball -o branch NTST=2 ICP=[r,period,energy] NMX=10 DS=1e-4 UZR={r:0.99001}");
   // Parabolas are exact on any mesh, and 302 sums leave 1e-12.
   for (const SolutionEntry& label : workspace.solutions("branch")) {
     double sum = 0.0;
     for (int s = 1; s <= segments; ++s) sum += label.parameter(60 + s);
     CHECK(sum == Approx(period(label.parameter(1), segments)).epsilon(1e-11));
   }
-  const Outcome checked = succeed(workspace, "verify branch -p ball");
+  const Outcome checked = workspace.succeed("verify branch -p ball");
   CHECK(checked.out.find("agree with forward integration") != std::string::npos);
-  CHECK(succeed(workspace, "labels branch").out.find("302") != std::string::npos);
-  succeed(workspace, "run ball -q -c r.branch -s branch IRS=UZ1 -o again DS=-1e-4 NMX=3");
+  CHECK(workspace.succeed("labels branch").out.find("302") != std::string::npos);
+  workspace.succeed("run ball -q -c r.branch -s branch IRS=UZ1 -o again DS=-1e-4 NMX=3");
   CHECK(workspace.solutions("again").back().parameter(1) < 0.99001);
-  succeed(workspace, "resegment q.branch UZ1 -p ball --to rotate --by 5 -o turned");
-  succeed(workspace, "run ball -q -c turned -s turned -o rotated NMX=3");
+  workspace.succeed("resegment q.branch UZ1 -p ball --to rotate --by 5 -o turned");
+  workspace.succeed("run ball -q -c turned -s turned -o rotated NMX=3");
   CHECK(workspace.solutions("rotated").back().parameter(61 + 297) == Approx(2.0).epsilon(1e-9));
 }
 
@@ -70,8 +63,8 @@ TEST_CASE("durations beyond the 256th and monitors keep apart") {
   const Workspace workspace;
   const int segments = simulate(workspace, 0.0067);
   REQUIRE(segments > 460);  // durations beyond PAR(512)
-  succeed(workspace,
-          "run ball -q -c ball -d ball -o held NTST=2 ICP=[r,V,T400] HOLD=[period] NMX=4 DS=1e-4 BOUNDS={T480:[0,1]}");
+  workspace.succeed(
+      "run ball -q -c ball -d ball -o held NTST=2 ICP=[r,V,T400] HOLD=[period] NMX=4 DS=1e-4 BOUNDS={T480:[0,1]}");
   const auto labels = workspace.solutions("held");
   const auto total = [&](const SolutionEntry& label) {
     double sum = 0.0;
@@ -100,7 +93,7 @@ TEST_CASE("a conservative family of 430 segments") {
   constants += fmt::format("GCFIND=[{0}]\nGCHIND=[{0}]\nGCGIND=[{0}]\n", ones);
   workspace.write("ball.dat", data);
   workspace.write("gc.ball", constants);
-  succeed(workspace, "run ball -q");
+  workspace.succeed("run ball -q");
   const PointSection section = workspace.points("ball").front();
   const std::size_t energy = section.column("energy"), period = section.column("period");
   CHECK(section.rows.back().values[energy] != Approx(section.rows.front().values[energy]));

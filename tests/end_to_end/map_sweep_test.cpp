@@ -16,13 +16,6 @@ double run_to_contact(const Workspace& workspace) {
   return workspace.solutions("smooth").back().parameter(1);
 }
 
-Outcome succeed(const Workspace& workspace, const std::string& arguments) {
-  const Outcome outcome = workspace.tchat(arguments);
-  INFO(outcome.text());
-  REQUIRE(outcome.status == 0);
-  return outcome;
-}
-
 }  // namespace
 
 TEST_CASE(
@@ -31,7 +24,7 @@ TEST_CASE(
   const double grazing = run_to_contact(workspace);
   const std::string over =
       "--over alpha=" + std::to_string(grazing - 0.2) + ":" + std::to_string(grazing - 0.001) + ":9";
-  const Outcome outcome = succeed(workspace, "sweep linosc --map q.smooth:GR1 " + over + " --lyapunov -o below");
+  const Outcome outcome = workspace.succeed("sweep linosc --map q.smooth:GR1 " + over + " --lyapunov -o below");
   CHECK(contains(outcome.out, "Composite map of label 2 of q.smooth"));
   const tchat::SweepTable table = tchat::read_sweep_file(workspace.file("below.sweep"));
   REQUIRE(table.rows() == 9);
@@ -47,7 +40,7 @@ TEST_CASE(
   }
   const std::string above =
       "--over alpha=" + std::to_string(grazing + 1e-4) + ":" + std::to_string(grazing + 2e-4) + ":2";
-  succeed(workspace, "sweep linosc --map q.smooth:GR1 " + above + " -o above");
+  workspace.succeed("sweep linosc --map q.smooth:GR1 " + above + " -o above");
   const tchat::SweepTable beyond = tchat::read_sweep_file(workspace.file("above.sweep"));
   // Beyond it some return of each value is in contact.
   for (const double index : {0.0, 1.0}) {
@@ -64,10 +57,10 @@ TEST_CASE("sweep of a map: the same bytes for two workers and in parts") {
   const std::string arguments =
       "sweep linosc --map q.smooth:GR1 --order 1 --over alpha=" + std::to_string(grazing - 0.01) + ":" +
       std::to_string(grazing + 0.002) + ":40 -q";
-  succeed(workspace, arguments + " -o one");
-  succeed(workspace, arguments + " -o two -j 2");
-  for (const char* part : {"1/3", "2/3", "3/3"}) succeed(workspace, arguments + " -o three --part " + part);
-  succeed(workspace, arguments + " -o three --gather");
+  workspace.succeed(arguments + " -o one");
+  workspace.succeed(arguments + " -o two -j 2");
+  for (const char* part : {"1/3", "2/3", "3/3"}) workspace.succeed(arguments + " -o three --part " + part);
+  workspace.succeed(arguments + " -o three --gather");
   CHECK(workspace.read("one.sweep") == workspace.read("two.sweep"));
   CHECK(workspace.read("one.sweep") == workspace.read("three.sweep"));
 }

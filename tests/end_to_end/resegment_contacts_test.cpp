@@ -15,13 +15,6 @@ namespace {
 
 constexpr double zeta = 0.05, restitution = 0.8;
 
-Outcome succeed(const Workspace& workspace, const std::string& arguments) {
-  const Outcome outcome = workspace.tchat(arguments);
-  INFO(arguments << '\n' << outcome.text());
-  REQUIRE(outcome.status == 0);
-  return outcome;
-}
-
 /// A forced oscillator between walls at +1 and -1, symmetric; events: the walls, maximum and minimum of x.
 const char* const between_walls = R"(#include <tchat/problem.hpp>
 
@@ -82,7 +75,7 @@ void enter_between_walls(const Workspace& workspace) {
   workspace.write("walls.cpp", between_walls);
   workspace.write("walls.dat", data);
   workspace.write("gc.walls", between_walls_constants);
-  succeed(workspace, "run walls -o grazing");
+  workspace.succeed("run walls -o grazing");
 }
 
 }  // namespace
@@ -94,9 +87,10 @@ TEST_CASE("resegment: orbits with one impact in n periods, from a grazing point 
   for (const std::string& label : {std::string("grazing GR1"), std::string("curve UZ1")})
     for (const int n : {2, 3, 5}) {
       CAPTURE(label, n);
-      const Outcome made = succeed(workspace, fmt::format("resegment q.{} --to impacting --repeat {} -o born -p linosc "
-                                                          "ICP=[1] NMX=8 NPR=1 RL0=0 RL1=10 DSMAX=0.1 GRSTOP=0",
-                                                          label, n));
+      const Outcome made =
+          workspace.succeed(fmt::format("resegment q.{} --to impacting --repeat {} -o born -p linosc "
+                                        "ICP=[1] NMX=8 NPR=1 RL0=0 RL1=10 DSMAX=0.1 GRSTOP=0",
+                                        label, n));
       CHECK(contains(made.out, "{(1,1,1), (1,2,2)"));
       workspace.run("-c born -s born -o born1");
       const auto solutions = workspace.solutions("born1");
@@ -132,15 +126,15 @@ TEST_CASE("resegment: an orbit that touches two walls at once hits both") {
   const double at_grazing = 1.0 / amplitude(1.0, 2.0, zeta);
   CHECK(std::abs(workspace.solutions("grazing").back().parameter(1) - at_grazing) < 1e-8);
 
-  succeed(workspace, "resegment q.grazing GR1 --to grazing-curve -o curve -p walls ICP=[1,2,61] NMX=4 NPR=1");
-  succeed(workspace, "run walls -c curve -s curve -o curve1");
+  workspace.succeed("resegment q.grazing GR1 --to grazing-curve -o curve -p walls ICP=[1,2,61] NMX=4 NPR=1");
+  workspace.succeed("run walls -c curve -s curve -o curve1");
   for (const std::string& label : {std::string("grazing GR1"), std::string("curve1 EP1")}) {
     CAPTURE(label);
-    const Outcome made = succeed(
-        workspace, "resegment q." + label + " --to impacting -o born -p walls ICP=[1] NMX=8 NPR=1 DSMAX=0.1 RL1=10");
+    const Outcome made = workspace.succeed("resegment q." + label +
+                                           " --to impacting -o born -p walls ICP=[1] NMX=8 NPR=1 DSMAX=0.1 RL1=10");
     CHECK(contains(made.out, "2 contacts at once"));
     CHECK(contains(made.out, "leads to the side with the new event"));
-    succeed(workspace, "run walls -c born -s born -o born1");
+    workspace.succeed("run walls -c born -s born -o born1");
     CHECK_FALSE(contains(workspace.read("d.born1"), "Inadmissible"));
     const auto solutions = workspace.solutions("born1");
     REQUIRE(solutions.size() > 3);
@@ -157,10 +151,10 @@ TEST_CASE("resegment: an orbit that touches two walls at once hits both") {
   }
 
   // Back to where both velocities vanish: one contact is kept, the other impact becomes a section.
-  succeed(workspace, "run walls -c born -s born1 -o back IRS=EP1 --both NMX=60 NPR=0");
-  const Outcome again = succeed(workspace, "resegment q.back GR1 --to grazing-curve -o again -p walls ICP=[1,2] NMX=3");
+  workspace.succeed("run walls -c born -s born1 -o back IRS=EP1 --both NMX=60 NPR=0");
+  const Outcome again = workspace.succeed("resegment q.back GR1 --to grazing-curve -o again -p walls ICP=[1,2] NMX=3");
   CHECK(contains(again.out, "2 contacts at once"));
-  succeed(workspace, "run walls -c again -s again -o again1");
+  workspace.succeed("run walls -c again -s again -o again1");
   const SolutionEntry end = workspace.solutions("again1").back();
   CHECK(std::abs(end.parameter(1) * amplitude(1.0, end.parameter(2), zeta) - 1.0) < 1e-7);
 }
@@ -169,19 +163,19 @@ TEST_CASE("resegment: where stick leaves a state undetermined the contact ends i
   const Workspace workspace;
   std::filesystem::copy_file(MEMS_SOURCE, workspace.file("mems.cpp"));
   std::filesystem::copy_file(MEMS_CONSTANTS "/gc.nonimpacting", workspace.file("gc.nonimpacting"));
-  succeed(workspace, "simulate mems PAR(V)=0.3 --dat orbit -o motion -q");
-  succeed(workspace, "run mems -c nonimpacting -d orbit -o touching");
-  succeed(workspace, "resegment q.touching GR1 --to impacting -o born -p mems NMX=6");
-  succeed(workspace, "run mems -c born -s born -o born1");
-  succeed(workspace, "run mems -c born -s born1 -o back IRS=EP1 NMX=30 --both");
+  workspace.succeed("simulate mems PAR(V)=0.3 --dat orbit -o motion -q");
+  workspace.succeed("run mems -c nonimpacting -d orbit -o touching");
+  workspace.succeed("resegment q.touching GR1 --to impacting -o born -p mems NMX=6");
+  workspace.succeed("run mems -c born -s born -o born1");
+  workspace.succeed("run mems -c born -s born1 -o back IRS=EP1 NMX=30 --both");
   // The impact's velocity vanishes; in stick nothing but a jump determines the frame's velocity.
-  const Outcome made = succeed(workspace, "resegment q.back GR1 --to grazing-curve -o curve -p mems ICP=[2,1] NMX=2");
+  const Outcome made = workspace.succeed("resegment q.back GR1 --to grazing-curve -o curve -p mems ICP=[2,1] NMX=2");
   CHECK(contains(made.out, "{(1,1,3)}, IPS = 150"));
   CHECK(contains(made.out, "ends in jump 3 (stick)"));
-  succeed(workspace, "run mems -c curve -s curve -o curve1");
+  workspace.succeed("run mems -c curve -s curve -o curve1");
   const PointSection section = workspace.points("curve1").front();
   CHECK(std::abs(section.rows.front().values[section.column("V")] - 0.597984349382) < 1e-8);  // at omega = 0.8
-  const Outcome own = succeed(workspace, "resegment q.back GR1 --to grazing-curve --jump 2 -o own -p mems ICP=[2,1]");
+  const Outcome own = workspace.succeed("resegment q.back GR1 --to grazing-curve --jump 2 -o own -p mems ICP=[2,1]");
   CHECK(contains(own.out, "{(1,1,2)}"));
   CHECK(workspace.tchat("run mems -c own -s own -o own1").status == 1);  // singular, and told
 }

@@ -1,5 +1,8 @@
 #include "end_to_end/workspace.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <filesystem>
@@ -84,14 +87,20 @@ Outcome Workspace::make(const std::string& folder, const std::string& targets) c
   return Process(words, file(""), logs_.file(std::to_string(++runs_))).wait(time_limit);
 }
 
-Outcome Workspace::run(const std::vector<std::string>& words) const {
-  std::vector<std::string> all{"run", "linosc"};
-  all.insert(all.end(), words.begin(), words.end());
-  Outcome outcome = tchat(all);
-  INFO(outcome.text());
+Outcome Workspace::succeed(const std::vector<std::string>& words) const {
+  Outcome outcome = tchat(words);
+  INFO(fmt::format("{}\n{}", fmt::join(words, " "), outcome.text()));
   REQUIRE(outcome.signal == 0);
   REQUIRE(outcome.status == 0);
   return outcome;
+}
+
+Outcome Workspace::succeed(const std::string& arguments) const { return succeed(words_of(arguments)); }
+
+Outcome Workspace::run(const std::vector<std::string>& words) const {
+  std::vector<std::string> all{"run", "linosc"};
+  all.insert(all.end(), words.begin(), words.end());
+  return succeed(all);
 }
 
 Outcome Workspace::run(const std::string& arguments) const { return run(words_of(arguments)); }

@@ -20,6 +20,9 @@ class Workspace {
   /// tchat with these arguments (separated by blanks: none of ours contains one, but see `words`), to its end.
   Outcome tchat(const std::string& arguments) const;
   Outcome tchat(const std::vector<std::string>& words) const;
+  /// The same; fails the test unless the exit status is 0.
+  Outcome succeed(const std::string& arguments) const;
+  Outcome succeed(const std::vector<std::string>& words) const;
   std::unique_ptr<Process> start_tchat(const std::string& arguments) const;
   /// As tchat(), with a redirection of the shell, such as ">&-".
   Outcome tchat_redirected(const std::string& arguments, const std::string& redirection) const;

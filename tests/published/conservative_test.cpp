@@ -3,7 +3,6 @@
 // The references are closed forms and a quadrature. Method: F. J. Munoz-Almaraz, E. Freire, J. Galan, E. Doedel, A.
 // Vanderbauwhede, Continuation of periodic orbits in conservative and Hamiltonian systems, Physica D 181 (2003) 1-38.
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -23,17 +22,6 @@ using namespace test_support;
 namespace {
 
 bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
-
-Outcome succeed(const Workspace& workspace, const std::vector<std::string>& words) {
-  const Outcome outcome = workspace.tchat(words);
-  INFO(fmt::format("{}\n{}", fmt::join(words, " "), outcome.text()));
-  REQUIRE(outcome.status == 0);
-  return outcome;
-}
-
-Outcome succeed(const Workspace& workspace, const std::string& arguments) {
-  return succeed(workspace, words_of(arguments));
-}
 
 /// The largest |lambda| of a run as its summary prints it.
 double printed_lambda(const Outcome& outcome) {
@@ -71,7 +59,7 @@ Outcome run_ball(const Workspace& workspace, const std::string& data, const std:
                   "NDIM=2, IPS=180, CONSERVED=energy, ICP=[energy, period]\nNTST=4, NCOL=4, NMX=30\n"
                   "DS=0.1, DSMAX=1\n" +
                       signature);
-  return succeed(workspace, "run ball");
+  return workspace.succeed("run ball");
 }
 
 const char* const one_flight = "GCHIND=[1], GCGIND=[1]\n";
@@ -156,10 +144,10 @@ void run_to_touch(const Workspace& workspace, const ChainOfMasses& chain) {
   workspace.write("chain.tch", chain.formulas());
   workspace.write("chain.dat", "0 0 0 0\n");
   workspace.write("gc.chain", "NDIM=4, IPS=1, ICP=[d], NMX=1, GCHGRZIND=[[1]]\n");
-  succeed(workspace, "run chain -o rest");
-  succeed(workspace,
-          "run chain -c r.rest -s rest -o family IRS=1 IPS=180 ISW=-1 MODE=1 CONSERVED=energy "
-          "ICP=[energy,period] NTST=20 NCOL=5 NMX=50 DS=0.05 DSMAX=0.5");
+  workspace.succeed("run chain -o rest");
+  workspace.succeed(
+      "run chain -c r.rest -s rest -o family IRS=1 IPS=180 ISW=-1 MODE=1 CONSERVED=energy "
+      "ICP=[energy,period] NTST=20 NCOL=5 NMX=50 DS=0.05 DSMAX=0.5");
 }
 
 /// From data near the closed form of period T: q.modes. `mesh`: NTST, NCOL and NMX.
@@ -170,7 +158,7 @@ Outcome run_chain(const Workspace& workspace, const ChainOfMasses& chain, double
                                           "GCHIND=[1], GCGIND=[1], GCHGRZIND=[[1]], GCIPSI=[1]\n"
                                           "DS=-0.02, DSMAX=0.2, EPSL=1e-10, EPSU=1e-10, {}\n",
                                           2 * chain.masses(), chain.masses(), mesh));
-  return succeed(workspace, "run chain -c modes -d chain -o modes");
+  return workspace.succeed("run chain -c modes -d chain -o modes");
 }
 
 /// Velocities after the impact at all points of q.modes, to 1e-9 and the last digit of T in the file.
@@ -209,14 +197,14 @@ void run_oscillators(const Workspace& workspace, int mode, const std::vector<std
                   "aux energy = v1^2/2 + v2^2/2 + x1^2/2 + x2^2/2 + x1^4/4 + x2^4/4 + k*(x1-x2)^2/2\n");
   workspace.write("duo.dat", "0 0 0 0\n");
   workspace.write("gc.duo", "NDIM=4, IPS=1, ICP=[k], NMX=1\n");
-  succeed(workspace, "run duo -o rest");
+  workspace.succeed("run duo -o rest");
   std::vector<std::string> words = words_of(
       "run duo -c r.rest -s rest -o family IRS=1 IPS=180 ISW=-1 CONSERVED=energy "
       "ICP=[energy,period] NTST=30 NCOL=5 NMX=30 DS=0.05 DSMAX=0.3 EPSL=1e-10 "
       "EPSU=1e-10");
   words.push_back(fmt::format("MODE={}", mode));
   words.insert(words.end(), further.begin(), further.end());
-  CHECK(printed_lambda(succeed(workspace, words)) < rounding);
+  CHECK(printed_lambda(workspace.succeed(words)) < rounding);
 }
 
 // The mesh of 30 intervals of degree 5 has an error of 1e-8 between its points, and much less at them.
@@ -238,10 +226,10 @@ void run_family(const Workspace& workspace) {
                   "aux energy = v^2/2 + x^2/2 + x^4/4\n");
   workspace.write("osc.dat", "0 0\n");
   workspace.write("gc.osc", "NDIM=2, IPS=1, ICP=[d], NMX=1\n");
-  succeed(workspace, "run osc -o rest");
-  succeed(workspace,
-          "run osc -c r.rest -s rest -o family IRS=1 IPS=180 ISW=-1 CONSERVED=energy ICP=[energy,period] GCHIND=[1] "
-          "GCGIND=[0] NTST=30 NCOL=5 NMX=60 DS=0.05 DSMAX=0.3 EPSL=1e-10 EPSU=1e-10 UZR={energy:1} RL1=2");
+  workspace.succeed("run osc -o rest");
+  workspace.succeed(
+      "run osc -c r.rest -s rest -o family IRS=1 IPS=180 ISW=-1 CONSERVED=energy ICP=[energy,period] GCHIND=[1] "
+      "GCGIND=[0] NTST=30 NCOL=5 NMX=60 DS=0.05 DSMAX=0.3 EPSL=1e-10 EPSU=1e-10 UZR={energy:1} RL1=2");
 }
 
 /// The limit of f / d at d = 0: the work of both forces over the conservative orbit of energy 1 is zero, that is,
@@ -261,9 +249,9 @@ double melnikov_ratio() {
 
 /// f / d at d = 0.1 and 0.2 of orbits whose energy is 1 where their velocity is zero.
 std::pair<double, double> damped_ratios(const Workspace& workspace) {
-  const Outcome outcome = succeed(workspace,
-                                  "run osc -c r.family -s family -o damped IRS=UZ1 CONSERVED= ICP=[d,f,energy] "
-                                  "HOLD=[energy] NMX=12 DS=0.02 UZR={d:[0.1,0.2]}");
+  const Outcome outcome = workspace.succeed(
+      "run osc -c r.family -s family -o damped IRS=UZ1 CONSERVED= ICP=[d,f,energy] "
+      "HOLD=[energy] NMX=12 DS=0.02 UZR={d:[0.1,0.2]}");
   CHECK(contains(outcome.err, "RL1 = 2 of r.family was given for energy and now bounds d"));
   std::vector<double> ratios;
   for (const SolutionEntry& solution : workspace.solutions("damped"))
@@ -294,7 +282,7 @@ TEST_CASE("elastic ball: the energy is g^2 T^2 / 8 along the family") {
   CHECK(printed_lambda(outcome) < rounding);
   CHECK(!contains(outcome.text(), "homoclinic"));
   CHECK(!contains(workspace.read("d.ball"), "homoclinic"));
-  succeed(workspace, "verify ball");
+  workspace.succeed("verify ball");
 }
 
 TEST_CASE("a chain of two masses: from rest to its first touch, and along the contact modes") {
@@ -306,11 +294,10 @@ TEST_CASE("a chain of two masses: from rest to its first touch, and along the co
   CHECK(pairs_of(workspace, "family", "energy", "period").back().first ==
         Approx(chain.touching_energy(1)).epsilon(1e-8));
 
-  CHECK(contains(succeed(workspace, "resegment q.family GR1 --to impacting -o contact -p chain").out,
+  CHECK(contains(workspace.succeed("resegment q.family GR1 --to impacting -o contact -p chain").out,
                  "free: energy, period, T1"));
-  const Outcome outcome =
-      succeed(workspace, {"run", "chain", "-c", "contact", "-s", "contact", "-o", "modes", "NMX=100", "DS=-0.05",
-                          "EPSL=1e-10", "EPSU=1e-10", "UZR={period: [10,9,8]}"});
+  const Outcome outcome = workspace.succeed({"run", "chain", "-c", "contact", "-s", "contact", "-o", "modes", "NMX=100",
+                                             "DS=-0.05", "EPSL=1e-10", "EPSU=1e-10", "UZR={period: [10,9,8]}"});
   CHECK(printed_lambda(outcome) < rounding);
   int located = 0;
   for (const SolutionEntry& solution : workspace.solutions("modes")) {
@@ -327,7 +314,7 @@ TEST_CASE("a chain of two masses: from rest to its first touch, and along the co
   const auto least = boost::math::tools::brent_find_minima([&](double T) { return chain.energy(T); }, 9.9, 10.16, 40);
   CHECK(chain.energy(fold.parameter(61)) == Approx(least.second).epsilon(1e-9));
   CHECK(fold.parameter(61) == Approx(least.first).epsilon(1e-6));  // the minimum is known to half the digits
-  succeed(workspace, "verify modes -p chain");
+  workspace.succeed("verify modes -p chain");
 }
 
 TEST_CASE("contact modes of a chain of 10 masses") {
@@ -336,7 +323,7 @@ TEST_CASE("contact modes of a chain of 10 masses") {
   // 2 pi / omega_1 is 42.04.
   CHECK(printed_lambda(run_chain(workspace, chain, 41.0, "NTST=60, NCOL=5, NMX=60")) < rounding);
   check_velocities(workspace, chain);
-  succeed(workspace, "verify modes -p chain");
+  workspace.succeed("verify modes -p chain");
 }
 
 TEST_CASE("contact modes of a chain of 50 masses") {
@@ -372,9 +359,9 @@ TEST_CASE("coupled Duffing oscillators out of phase lose stability at a Lame ban
   for (const PointRow& point : section.rows)
     if (point.label != edge.label) CHECK((point.point < 0) == (point.values[section.column("energy")] < energy));
 
-  succeed(workspace,
-          "run duo -c r.family -s family -o local IRS=BP1 ISW=-1 ICP=[energy,max(x1),max(x2)] DS=0.05 "
-          "DSMAX=0.3 NMX=12");
+  workspace.succeed(
+      "run duo -c r.family -s family -o local IRS=BP1 ISW=-1 ICP=[energy,max(x1),max(x2)] DS=0.05 "
+      "DSMAX=0.3 NMX=12");
   const PointSection local = workspace.points("local").front();
   for (const PointRow& point : local.rows) {
     CHECK(point.point < 0);  // stable
@@ -382,7 +369,7 @@ TEST_CASE("coupled Duffing oscillators out of phase lose stability at a Lame ban
   }
   const PointRow& end = local.rows.back();
   CHECK(std::abs(end.values[local.column("max(x1)")] - end.values[local.column("max(x2)")]) > 0.5);
-  succeed(workspace, "verify local -p duo");
+  workspace.succeed("verify local -p duo");
 }
 
 TEST_CASE("coupled Duffing oscillators in phase, and out of phase with the energy held along the coupling") {
@@ -390,13 +377,13 @@ TEST_CASE("coupled Duffing oscillators in phase, and out of phase with the energ
   run_oscillators(workspace, 1, {});
   check_periods(workspace, DuffingMotion{0.0});
   run_oscillators(workspace, 2, {"UZR={-energy: 0.5}"});
-  succeed(workspace,
-          "run duo -c r.family -s family -o held IRS=UZ1 ICP=[k,energy,period] HOLD=[energy] UZR={} DS=0.02 "
-          "DSMAX=0.3 NMX=20");
+  workspace.succeed(
+      "run duo -c r.family -s family -o held IRS=UZ1 ICP=[k,energy,period] HOLD=[energy] UZR={} DS=0.02 "
+      "DSMAX=0.3 NMX=20");
   for (const auto& [k, period] : pairs_of(workspace, "held", "k", "period"))
     CHECK(period == Approx(DuffingMotion{2.0 * k}.period(0.5)).epsilon(mesh_error));
   for (const auto& [k, energy] : pairs_of(workspace, "held", "k", "energy")) check_near(energy, 0.5);
-  succeed(workspace, "verify held -p duo");
+  workspace.succeed("verify held -p duo");
 }
 
 TEST_CASE("damped orbits start from a conservative family where both forces do no work in sum") {
@@ -409,7 +396,7 @@ TEST_CASE("damped orbits start from a conservative family where both forces do n
   CHECK((at_two - limit) / (at_one - limit) == Approx(4.0).epsilon(0.01));
   // Extrapolation leaves terms of fourth order, which these figures put at 1e-8.
   check_near((4.0 * at_one - at_two) / 3.0, limit, 2e-8);
-  succeed(workspace, "verify damped -p osc");
+  workspace.succeed("verify damped -p osc");
 }
 
 TEST_CASE("what a conservative family refuses") {
@@ -438,9 +425,9 @@ TEST_CASE("a loss in an impact is found in the segment that ends with it") {
 TEST_CASE("a run in the damping that keeps CONSERVED ends with the reason") {
   const Workspace workspace;
   run_family(workspace);
-  const Outcome outcome = succeed(workspace,
-                                  "run osc -c r.family -s family -o kept IRS=UZ1 ICP=[d,energy] "
-                                  "HOLD=[energy] NMX=12 DS=0.01 UZR={}");
+  const Outcome outcome = workspace.succeed(
+      "run osc -c r.family -s family -o kept IRS=UZ1 ICP=[d,energy] "
+      "HOLD=[energy] NMX=12 DS=0.01 UZR={}");
   CHECK(contains(outcome.out, "stopped: CONSERVED = energy is not conserved"));
   CHECK(printed_lambda(outcome) > 1e-4);
 }
@@ -448,7 +435,7 @@ TEST_CASE("a run in the damping that keeps CONSERVED ends with the reason") {
 TEST_CASE("tchat check names the functions that do not conserve what CONSERVED names") {
   const Workspace workspace;
   run_ball(workspace, flight_data, one_flight);
-  const Outcome conserved = succeed(workspace, "check ball");
+  const Outcome conserved = workspace.succeed("check ball");
   CHECK(contains(conserved.out, "energy: conserved by field 1 (flow)"));
   CHECK(contains(conserved.out, "energy: conserved by jump 1 (bounce)"));
   const Outcome lost = workspace.tchat("check ball PAR(r)=0.9");

@@ -71,19 +71,12 @@ after any:             slip until catch -> identity
   }
 };
 
-Outcome succeed(const Workspace& workspace, const std::string& arguments) {
-  const Outcome outcome = workspace.tchat(arguments);
-  INFO(arguments << '\n' << outcome.text());
-  REQUIRE(outcome.status == 0);
-  return outcome;
-}
-
 /// The equilibrium from a simulation, its Hopf bifurcation, the cycle to contact: q.cycle, whose GR is the last label.
 void follow_cycle(const Workspace& workspace, const Belt& belt) {
   workspace.write("belt.tch", belt.formulas());
-  succeed(workspace, "simulate belt -q --dat rest");
-  succeed(workspace, "run belt -q -c rest -d rest -o rest DS=-0.02 RL0=0.3 RL1=2");
-  succeed(workspace, "run belt -q -c r.rest -s rest IRS=HB1 IPS=180 ISW=-1 GCHIND=[0] GCGIND=[0] -o cycle");
+  workspace.succeed("simulate belt -q --dat rest");
+  workspace.succeed("run belt -q -c rest -d rest -o rest DS=-0.02 RL0=0.3 RL1=2");
+  workspace.succeed("run belt -q -c r.rest -s rest IRS=HB1 IPS=180 ISW=-1 GCHIND=[0] GCGIND=[0] -o cycle");
 }
 
 }  // namespace
@@ -98,9 +91,9 @@ TEST_CASE("the cycle of a mass on a belt touches the belt's velocity, and sticks
   CHECK(touching.parameter(1) == Approx(belt.contact()).epsilon(1e-8));
 
   SECTION("the stick-slip motion") {
-    const Outcome made = succeed(workspace, "resegment q.cycle GR1 --to impacting -o stick -p belt UZR={-1:0.5}");
+    const Outcome made = workspace.succeed("resegment q.cycle GR1 --to impacting -o stick -p belt UZR={-1:0.5}");
     CHECK(contains(made.out, "{(1,1,1), (3,4,1)}"));
-    succeed(workspace, "run belt -q -c stick -s stick -o stick_slip");
+    workspace.succeed("run belt -q -c stick -s stick -o stick_slip");
     const SolutionEntry at = workspace.solutions("stick_slip").back();
     constexpr double V = 0.5;
     REQUIRE(at.parameter(1) == Approx(V).epsilon(1e-9));
@@ -108,12 +101,12 @@ TEST_CASE("the cycle of a mass on a belt touches the belt's velocity, and sticks
     const MotionState<2> caught = motion.next_fall();
     CHECK(at.parameter(61) == Approx(motion.time_of_fall()).epsilon(1e-8));
     CHECK(at.parameter(62) == Approx((belt.release(V)[0] - caught[0]) / V).epsilon(1e-8));
-    succeed(workspace, "verify stick_slip -p belt");
+    workspace.succeed("verify stick_slip -p belt");
   }
   SECTION("the curve of contacts in two parameters") {
-    succeed(workspace,
-            "resegment q.cycle GR1 --to grazing-curve -o on -p belt -q ICP=[mu1,V,61] UZR={-mu1:0.35} RL0=0 RL1=1");
-    succeed(workspace, "run belt -q -c on -s on -o curve");
+    workspace.succeed(
+        "resegment q.cycle GR1 --to grazing-curve -o on -p belt -q ICP=[mu1,V,61] UZR={-mu1:0.35} RL0=0 RL1=1");
+    workspace.succeed("run belt -q -c on -s on -o curve");
     const SolutionEntry at = workspace.solutions("curve").back();
     // mu1 alone differs: the same motion with friction of another slope.
     const double V = at.parameter(1), mu1 = at.parameter(4);
