@@ -41,10 +41,10 @@ Eigen::MatrixXd return_matrices(const TorusSystem& system, const CondensedSystem
 
 /// That along the curve u first.
 Eigen::VectorXd exponents(const Eigen::MatrixXd& matrices, const Eigen::MatrixXd& curve, const Eigen::VectorXd& w,
-                          double rho) {
+                          double rho, int states) {
   const Eigen::Index n = curve.rows();
   const auto count = static_cast<int>(matrices.cols());
-  const Eigen::Index kept = n - 1;  // the direction of the flow goes to zero at once
+  const Eigen::Index kept = states - 1;  // the direction of the flow goes to zero at once
   Eigen::MatrixXd frame = Eigen::MatrixXd::Identity(n, kept);
   for (Eigen::Index k = 0; k < frame.size(); ++k) frame.data()[k] += 0.3 * std::sin(1.0 + 2.3 * static_cast<double>(k));
   orthonormalise(frame);
@@ -69,16 +69,17 @@ Eigen::VectorXd exponents(const Eigen::MatrixXd& matrices, const Eigen::MatrixXd
 }  // namespace
 
 Eigen::VectorXd moduli_along_rotation(const Eigen::MatrixXd& matrices, const Eigen::MatrixXd& curve,
-                                      const Eigen::VectorXd& w, double rho) {
-  return exponents(matrices, curve, w, rho).array().exp();
+                                      const Eigen::VectorXd& w, double rho, int states) {
+  return exponents(matrices, curve, w, rho, states).array().exp();
 }
 
 FloquetMultipliers torus_multipliers(const TorusSystem& system, const CondensedSystem& condensed, const Orbit& x) {
   FloquetMultipliers result;
   const Eigen::MatrixXd matrices = return_matrices(system, condensed, x);
-  if (!matrices.allFinite() || x.shape.dimension < 2) return result;
+  const int states = least_dimension(system.system(), system.signature());
+  if (!matrices.allFinite() || states < 2) return result;
   Eigen::VectorXd moduli = moduli_along_rotation(matrices, periodic_section_curve(system, x), system.winding().curve,
-                                                 TorusSystem::rotation(x));
+                                                 TorusSystem::rotation(x), states);
   std::sort(moduli.begin() + 1, moduli.end(), [](double a, double b) { return std::abs(a - 1.0) < std::abs(b - 1.0); });
   result.values.assign(moduli.begin(), moduli.end());
   result.values.emplace_back(0.0);

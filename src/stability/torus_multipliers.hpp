@@ -21,11 +21,12 @@ namespace tchat {
 
 class CondensedSystem;
 
-/// exp lambda_k, n - 1 of them, that along the curve first. Column i of `matrices` holds A at the phase i / N, n n
+/// exp lambda_k, that along the curve first, then the largest: `states` - 1 of them, of the mode with the fewest states
+/// (at least 2), for the others are zero. Column i of `matrices` holds A at the phase i / N, n n
 /// entries; `curve`: u(phi) - w phi at these phases, n x N; `w`: what a turn of phi adds to the states. Entries of
 /// `matrices` that are not finite spoil the result.
 Eigen::VectorXd moduli_along_rotation(const Eigen::MatrixXd& matrices, const Eigen::MatrixXd& curve,
-                                      const Eigen::VectorXd& w, double rho);
+                                      const Eigen::VectorXd& w, double rho, int states);
 
 /// Moduli as FloquetMultipliers orders them: that along the curve first, as the trivial one, the structural zero last.
 /// Not valid where a section is touched, h_x f = 0. `condensed` holds the linearisation of `system` at x.

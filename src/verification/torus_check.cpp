@@ -92,11 +92,12 @@ double curve_size(const TorusSystem& torus, const Orbit& x, const VectorXd& scal
 /// Moduli of the multipliers of the integrated returns; empty where there are none.
 std::vector<std::complex<double>> integrated_moduli(const TorusSystem& torus, const Orbit& x,
                                                     const std::vector<SegmentLink>& links) {
-  if (links.empty()) return {};
+  const int states = least_dimension(torus.system(), torus.signature());
+  if (links.empty() || states < 2) return {};
   const MatrixXd matrices = integrated_returns(torus, links, x.shape.dimension);
   if (!matrices.allFinite()) return {};
   const VectorXd moduli = moduli_along_rotation(matrices, periodic_section_curve(torus, x), torus.winding().curve,
-                                                TorusSystem::rotation(x));
+                                                TorusSystem::rotation(x), states);
   std::vector<std::complex<double>> result(moduli.begin(), moduli.end());
   result.emplace_back(0.0);
   return result;
