@@ -58,9 +58,9 @@ VectorXd without_ignorable(const OrbitCandidate& candidate, VectorXd d) {
 /// Onto the surface h = 0 of the event that the motion has met.
 VectorXd on_surface(const OrbitCandidate& candidate, VectorXd y) {
   const HybridSystem& system = candidate.motion.system();
+  const IndexVector& last = candidate.signature.back();
   for (int step = 0; step < 5; ++step) {
-    const EventAt at =
-        event_at(system, candidate.signature.back().event, y.data(), candidate.motion.parameters().data());
+    const EventAt at = event_at(system, last.event, last.field, y.data(), candidate.motion.parameters().data());
     const double square = at.gradient.squaredNorm();
     if (!(square > 0.0)) break;
     y -= at.gradient * (at.h / square);

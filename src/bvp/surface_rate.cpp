@@ -1,5 +1,7 @@
 #include "bvp/surface_rate.hpp"
 
+#include "hybrid/mode_dimensions.hpp"
+
 namespace tchat {
 
 SurfaceRate::SurfaceRate(int dimension, int free_count)
@@ -22,6 +24,8 @@ void SurfaceRate::evaluate(const HybridSystem& system, const IndexVector& v, con
                 rate_p.data());
   for (Eigen::Index b = 0; b < hx.size(); ++b) rate_x(b) += fx_.col(b).dot(hx);
   for (Eigen::Index k = 0; k < hp.size(); ++k) rate_p(k) += fp_.col(k).dot(hx);
+  clear_absent(system, v.field, hx);
+  clear_absent(system, v.field, rate_x);
 }
 
 }  // namespace tchat

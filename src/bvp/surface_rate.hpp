@@ -15,7 +15,7 @@ class SurfaceRate {
   SurfaceRate(int dimension, int free_count);
 
   /// Of event function v.event under field v.field at state x. `free_parameters`: PAR indices that hp and rate_p are
-  /// derivatives by.
+  /// derivatives by. Derivatives by states that the mode of the field has not are zero.
   void evaluate(const HybridSystem& system, const IndexVector& v, const double* x, const double* par,
                 const std::vector<int>& free_parameters);
 

@@ -33,7 +33,7 @@ std::optional<double> hopf_frequency(const DefiningSystem& system, const Orbit& 
   constexpr double accuracy = 1e-2;
   const Signature& signature = system.signature();
   const bool smooth = std::all_of(signature.begin(), signature.end(), [&](const IndexVector& index) {
-    return index.field == signature.front().field && is_identity_jump(system.system(), index.jump);
+    return index.field == signature.front().field && is_identity_jump(system.system(), index);
   });
   if (!smooth) return std::nullopt;
   const FloquetMultipliers eigenvalues = equilibrium_eigenvalues(system, x);

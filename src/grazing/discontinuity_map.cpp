@@ -122,9 +122,9 @@ struct DiscontinuityMap::Implementation {
     expansion.yyy = in_y.columns.col(3);
     expansion.error = std::max(in_y.errors(2), in_y.errors(3));
 
-    expansion.ydx.resize(n(), n());
+    expansion.ydx = MatrixXd::Zero(n(), n());
     const double length = time * point.f.norm();
-    for (Eigen::Index k = 0; k < n(); ++k) {
+    for (Eigen::Index k = 0; k < system.dimension_of(point.field); ++k) {
       const TaylorCoefficients along = taylor_coefficients(
           [&](double e) -> VectorXd { return first_in_y(local, e * VectorXd::Unit(n(), k)).reshaped(); }, length, 2);
       expansion.ydx.col(k) = along.columns.col(1).tail(n());

@@ -6,6 +6,7 @@
 
 #include "bvp/surface_rate.hpp"
 #include "hybrid/event_at.hpp"
+#include "hybrid/mode_dimensions.hpp"
 #include "linear_algebra/dense_matrix.hpp"
 #include "text/user_error.hpp"
 
@@ -28,6 +29,13 @@ std::string named(const HybridSystem& system, FunctionKind kind, int index) {
   return fmt::format("{} {} ({})", word, index, system.function_name(kind, index));
 }
 
+/// The identity on the states of the field's mode.
+MatrixXd identity_of(const HybridSystem& system, int field) {
+  MatrixXd unit = MatrixXd::Zero(system.dimension(), system.dimension());
+  unit.diagonal().head(system.dimension_of(field)).setOnes();
+  return unit;
+}
+
 /// The jump is the identity where h_D = h_P = 0: at x*, and to first order beside it.
 void require_identity_at_contact(const HybridSystem& system, const GrazingPoint& at, const VectorXd& after,
                                  const MatrixXd& gx, const std::string& source) {
@@ -36,7 +44,7 @@ void require_identity_at_contact(const HybridSystem& system, const GrazingPoint&
   MatrixXd rows(2, n);
   rows.row(0) = at.event_gradient.normalized().transpose();
   rows.row(1) = at.section_gradient.normalized().transpose();
-  const MatrixXd change = gx - MatrixXd::Identity(n, n);
+  const MatrixXd change = gx - identity_of(system, at.field);
   // (g_x - Id) t = 0 for t with h_{D,x} t = h_{P,x} t = 0: each row of g_x - Id is a sum of the two gradients.
   const MatrixXd shares = least_squares(rows.transpose(), change.transpose());
   const double beside = (change.transpose() - rows.transpose() * shares).lpNorm<Eigen::Infinity>();
@@ -65,6 +73,16 @@ MatrixXd short_segment(const HybridSystem& system, const IndexVector& v, const G
         source, to_string({v}), system.function_name(FunctionKind::field, v.field),
         is_empty ? "leaves its surface tangentially" : "lasts"));
   return gx * event.project(MatrixXd::Identity(n, n));
+}
+
+/// After contact the flow goes on in the field of the contact, or first in those of the aftermath.
+void require_modes(const HybridSystem& system, const GrazingPoint& at, const std::string& source) {
+  Signature passed{{at.field, at.event, at.jump}};
+  passed.insert(passed.end(), at.aftermath.begin(), at.aftermath.end());
+  for (std::size_t s = 0; s < passed.size(); ++s) {
+    const std::string fault = mode_fault(system, passed[s], passed[(s + 1) % passed.size()].field);
+    if (!fault.empty()) throw UserError(fmt::format("{}: {}", source, fault));
+  }
 }
 
 void require_minimum(const HybridSystem& system, const GrazingPoint& at, const std::string& source) {
@@ -101,10 +119,12 @@ GrazingPoint grazing_point(const HybridSystem& system, int field, int event, int
                            const ParameterVector& par, const std::string& source, const Signature& aftermath) {
   const int n = system.dimension();
   GrazingPoint at{field, event, jump, aftermath, x, par, 0.0, VectorXd(n), {}, {}, {}, {}, {}};
+  require_modes(system, at, source);
   SurfaceRate surface(n, 0);
   surface.evaluate(system, {field, event, jump}, x.data(), par.data(), {});
   system.value(FunctionKind::field, field, x.data(), par.data(), at.f.data());
-  const auto [after, gx] = jump_at(system, jump, x.data(), par.data());
+  auto [after, gx] = jump_at(system, jump, x.data(), par.data());
+  gx *= identity_of(system, field);
   at.event_gradient = surface.hx;
   at.section_gradient = surface.rate_x;
   at.a = at.section_gradient.dot(at.f);
@@ -112,7 +132,7 @@ GrazingPoint grazing_point(const HybridSystem& system, int field, int event, int
     throw UserError(fmt::format("{}: a function has no finite value or derivative at the contact", source));
   require_on_surfaces(system, at, surface.h, surface.rate, source);
   require_minimum(system, at, source);
-  if ((after - x).norm() == 0.0 && (gx - MatrixXd::Identity(n, n)).norm() == 0.0)
+  if ((after - x).norm() == 0.0 && (gx - identity_of(system, field)).norm() == 0.0)
     throw UserError(fmt::format(
         "{}: {} is the identity, contact would have no effect; name the jump that it brings with --jump, or "
         "GRJUMP in the constants",

@@ -23,9 +23,10 @@ std::string entry(double value, double scale) {
   return fmt::format("{:>{}.11g}", std::abs(value) <= rounding * scale ? 0.0 : value, width);
 }
 
-std::string names_row(const HybridSystem& system) {
+/// Of the first `states` states, which the mode in contact has.
+std::string names_row(const HybridSystem& system, int states) {
   std::string text = fmt::format("{:10}", "");
-  for (int k = 1; k <= system.dimension(); ++k) text += fmt::format("{:>{}}", system.state_name(k), width);
+  for (int k = 1; k <= states; ++k) text += fmt::format("{:>{}}", system.state_name(k), width);
   return text + '\n';
 }
 
@@ -74,11 +75,11 @@ std::string section_text(const HybridSystem& system, const DiscontinuityMap& map
 
 std::string expansion_text(const HybridSystem& system, const DiscontinuityMap& map) {
   const DiscontinuityExpansion& x = map.expansion();
-  const Eigen::Index n = x.y.size();
+  const int n = system.dimension_of(map.point().field);
   MatrixXd powers(n, 3);
-  powers << x.y, x.yy, x.yyy;
+  powers << x.y.head(n), x.yy.head(n), x.yyy.head(n);
   std::vector<std::string> states, mixed, parameters, mixed_parameters;
-  for (int k = 1; k <= system.dimension(); ++k) {
+  for (int k = 1; k <= n; ++k) {
     states.push_back("d" + system.state_name(k));
     mixed.push_back("y d" + system.state_name(k));
   }
@@ -86,10 +87,12 @@ std::string expansion_text(const HybridSystem& system, const DiscontinuityMap& m
     parameters.push_back("d" + system.parameter_name(k));
     mixed_parameters.push_back("y d" + system.parameter_name(k));
   }
-  std::string text = columns(system, {"y", "y^2", "y^3"}, powers, x.error) + columns(system, states, x.dx, x.error) +
-                     columns(system, mixed, x.ydx, x.error);
+  std::string text = columns(system, {"y", "y^2", "y^3"}, powers, x.error) +
+                     columns(system, states, x.dx.topLeftCorner(n, n), x.error) +
+                     columns(system, mixed, x.ydx.topLeftCorner(n, n), x.error);
   if (!parameters.empty())
-    text += columns(system, parameters, x.dp, x.error) + columns(system, mixed_parameters, x.ydp, x.error);
+    text += columns(system, parameters, x.dp.topRows(n), x.error) +
+            columns(system, mixed_parameters, x.ydp.topRows(n), x.error);
   return text + fmt::format("Errors of these coefficients are about {:.0e}.\n", x.error);
 }
 
@@ -151,10 +154,13 @@ std::string point_report(const HybridSystem& system, const GrazingPoint& point) 
       function_text(system, FunctionKind::field, point.field), function_text(system, FunctionKind::jump, point.jump));
   if (!point.aftermath.empty()) text += fmt::format(", then {} for a short time", to_string(point.aftermath));
   text += fmt::format(".\n{}\n\n", parameters_text(system, point));
-  text += names_row(system) + row("x*", point.x) + row("h_D,x", point.event_gradient) +
-          row("h_P,x", point.section_gradient) + row("f", point.f);
+  const int n = system.dimension_of(point.field);
+  text += names_row(system, n) + row("x*", point.x.head(n)) + row("h_D,x", point.event_gradient.head(n)) +
+          row("h_P,x", point.section_gradient.head(n)) + row("f", point.f.head(n));
   const double scale = point.f.norm();
-  const auto direction = [&](const VectorXd& v) { return v.norm() <= 1e-12 * scale ? VectorXd::Zero(v.size()) : v; };
+  const auto direction = [&](const VectorXd& v) {
+    return v.norm() <= 1e-12 * scale ? VectorXd::Zero(n) : VectorXd(v.head(n));
+  };
   text += row("beta", direction(point.impact.beta)) + row("B", direction(point.B));
   return text + fmt::format("a* = {:.12g}{}\n", point.a,
                             point.has_square_root() ? "" : "; beta = 0: the map has no square root on P");
@@ -166,18 +172,18 @@ std::string orbit_report(const HybridSystem& system, const GrazingOrbit& orbit, 
       fmt::format("Segments from the contact: {}, period {:.12g}.\n{} = {:.12g} where the orbit touches",
                   to_string(orbit.segments), orbit.period(), parameter, orbit.point.par(orbit.parameter - 1));
   text += fmt::format(" ({:.1e} from the label).\n\n", orbit.moved);
-  text += "A, the derivative of the smooth return map on P:\n" + names_row(system);
+  const int states = system.dimension_of(orbit.point.field);
+  text += "A, the derivative of the smooth return map on P:\n" + names_row(system, states);
   const double rounding = 1e-12 * orbit.A.cwiseAbs().maxCoeff();
-  for (Eigen::Index i = 0; i < orbit.A.rows(); ++i) {
-    VectorXd shown = orbit.A.row(i).transpose();
+  for (Eigen::Index i = 0; i < states; ++i) {
+    VectorXd shown = orbit.A.row(i).head(states).transpose();
     for (double& value : shown)
       if (std::abs(value) <= rounding) value = 0.0;
     text += row(system.state_name(static_cast<int>(i) + 1), shown);
   }
   text += "Eigenvalues: ";
   const double zero = 1e-11 * std::max(1.0, std::abs(orbit.multipliers(0)));  // the structural zero, as computed
-  for (Eigen::Index i = 0; i < orbit.multipliers.size(); ++i)
-    text += (i > 0 ? ", " : "") + complex_text(orbit.multipliers(i), zero);
+  for (Eigen::Index i = 0; i < states; ++i) text += (i > 0 ? ", " : "") + complex_text(orbit.multipliers(i), zero);
   text += '\n';
   if (!orbit.point.has_square_root()) return text;
   for (std::size_t n = 0; n < xi.size(); ++n)

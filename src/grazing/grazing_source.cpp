@@ -89,7 +89,7 @@ void require_jump(const HybridSystem& system, const ContactTurn& turn, const std
                     "of an impact, and name it with --jump or GRJUMP",
                     source, turn.contact.event, system.function_name(FunctionKind::event, turn.contact.event),
                     turn.contact.jump, system.name(), system.count(FunctionKind::jump)));
-  if (!is_identity_jump(system, turn.contact.jump)) return;
+  if (!is_identity_jump(system, turn.contact)) return;
   throw UserError(fmt::format(
       "{}: contact with event {} ({}) brings jump {} ({}), the identity: there is no discontinuity map of an impact "
       "(behind a surface where another field holds contact changes the motion in another way); name the jump of an "
@@ -152,7 +152,7 @@ std::optional<CrossSection> own_section(const RunSettings& settings, const Hybri
   constexpr double parallel = 1e-9;
   for (const SegmentSettings& segment : settings.segments) {
     const int j = segment.index.event;
-    if (j == no_function || j == point.event || !is_identity_jump(system, segment.index.jump)) continue;
+    if (j == no_function || j == point.event || !is_identity_jump(system, segment.index)) continue;
     const EventAt at = event_at(system, j, point.field, point.x.data(), point.par.data());
     if (std::abs(at.h) > on_it * at.scale(point.x.data()) || std::abs(at.rate()) <= on_it * at.sizes()) continue;
     const double cosine =

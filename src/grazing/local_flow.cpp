@@ -76,7 +76,7 @@ LocalFlow::LocalFlow(const HybridSystem& system, const IndexVector& contact, con
 }
 
 VectorXd LocalFlow::height_gradient(const VectorXd& d) {
-  return event_at(system_, contact_.event, state(d).data(), par_.data()).gradient;
+  return event_at(system_, contact_.event, contact_.field, state(d).data(), par_.data()).gradient;
 }
 
 double LocalFlow::height(const VectorXd& d) {
@@ -103,7 +103,7 @@ VectorXd LocalFlow::field(const VectorXd& d) {
 
 VectorXd LocalFlow::section_gradient(const CrossSection& section, const VectorXd& d) {
   if (section.event == 0) return VectorXd::Unit(d.size(), section.state - 1);
-  return event_at(system_, section.event, state(d).data(), par_.data()).gradient;
+  return event_at(system_, section.event, contact_.field, state(d).data(), par_.data()).gradient;
 }
 
 double LocalFlow::section(const CrossSection& section, const VectorXd& d) {

@@ -19,14 +19,14 @@ ParameterVector generic_parameters(const HybridSystem& system) {
   return par;
 }
 
-/// A state with h = 0, by Newton's method along the gradient from a generic one.
-std::optional<Eigen::VectorXd> state_on_surface(const HybridSystem& system, int event, const ParameterVector& par,
-                                                int trial) {
+/// A state of the field's mode with h = 0, by Newton's method along the gradient from a generic one.
+std::optional<Eigen::VectorXd> state_on_surface(const HybridSystem& system, int event, int field,
+                                                const ParameterVector& par, int trial) {
   constexpr int most_iterations = 50;
-  Eigen::VectorXd x(system.dimension());
-  for (int i = 0; i < x.size(); ++i) x(i) = std::sin(1.3 + i + 2.1 * trial);
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(system.dimension());
+  for (int i = 0; i < system.dimension_of(field); ++i) x(i) = std::sin(1.3 + i + 2.1 * trial);
   for (int k = 0; k < most_iterations; ++k) {
-    const EventAt at = event_at(system, event, x.data(), par.data());
+    const EventAt at = event_at(system, event, field, x.data(), par.data());
     const double square = at.gradient.squaredNorm();
     if (!std::isfinite(at.h) || !std::isfinite(square) || square == 0.0) return std::nullopt;
     if (std::abs(at.h) <= 1e-3 * rounding * at.scale(x.data())) return x;
@@ -56,7 +56,7 @@ bool is_contact_segment(const HybridSystem& system, const IndexVector& before, c
   const ParameterVector par = generic_parameters(system);
   bool is_found = false;
   for (int trial = 0; trial < trials; ++trial) {
-    const std::optional<Eigen::VectorXd> x = state_on_surface(system, before.event, par, trial);
+    const std::optional<Eigen::VectorXd> x = state_on_surface(system, before.event, before.field, par, trial);
     const std::optional<bool> returns = x ? returns_at(system, before, own, *x, par) : std::nullopt;
     if (!returns) continue;
     if (!*returns) return false;

@@ -1,5 +1,7 @@
 #include "hybrid/event_at.hpp"
 
+#include "hybrid/mode_dimensions.hpp"
+
 namespace tchat {
 
 Eigen::RowVectorXd change_of_time(const Eigen::VectorXd& f, const Eigen::VectorXd& gradient, const Eigen::MatrixXd& v) {
@@ -23,6 +25,7 @@ EventAt event_at(const HybridSystem& system, int event, const double* x, const d
 
 EventAt event_at(const HybridSystem& system, int event, int field, const double* x, const double* par) {
   EventAt at = event_at(system, event, x, par);
+  clear_absent(system, field, at.gradient);
   at.f.resize(system.dimension());
   system.value(FunctionKind::field, field, x, par, at.f.data());
   return at;
@@ -37,7 +40,9 @@ Eigen::VectorXd rate_gradient(const HybridSystem& system, const EventAt& at, int
   system.first(FunctionKind::field, field, x, par, {}, f.data(), fx.data(), nullptr);
   // h_xx f is the second derivative of h in the direction f.
   system.second(FunctionKind::event, event, x, par, {}, at.f.data(), &rate, gradient.data(), nullptr);
-  return gradient + fx.transpose() * at.gradient;
+  gradient += fx.transpose() * at.gradient;
+  clear_absent(system, field, gradient);
+  return gradient;
 }
 
 JumpAt jump_at(const HybridSystem& system, int jump, const double* x, const double* par) {

@@ -33,7 +33,7 @@ struct EventAt {
 
 /// h_j and h_x alone.
 EventAt event_at(const HybridSystem& system, int event, const double* x, const double* par);
-/// With field i.
+/// With field i; h_x is zero for states that its mode has not.
 EventAt event_at(const HybridSystem& system, int event, int field, const double* x, const double* par);
 /// The gradient of h_x f of field i at the same state: h_xx f + h_x f_x.
 Eigen::VectorXd rate_gradient(const HybridSystem& system, const EventAt& at, int event, int field, const double* x,

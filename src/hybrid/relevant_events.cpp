@@ -16,7 +16,7 @@ std::vector<int> relevant_events(const HybridSystem& system, std::span<const Ind
                                  const double* x, const double* par) {
   std::set<int> events;
   for (const IndexVector& v : following)
-    if (!is_identity_jump(system, v.jump) || !keeps_field(system, v, field, x, par)) events.insert(v.event);
+    if (!is_identity_jump(system, v) || !keeps_field(system, v, field, x, par)) events.insert(v.event);
   return {events.begin(), events.end()};
 }
 

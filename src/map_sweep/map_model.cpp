@@ -65,7 +65,7 @@ IndexVector free_return(const HybridSystem& system, const GrazingPoint& point,
                         const std::optional<CrossSection>& section) {
   const auto follow = system.successors({0, 0, 0}, point.x.data(), point.par.data());
   for (const IndexVector& index : follow.value_or(std::vector<IndexVector>{})) {
-    if (index.field != point.field || index.event == point.event || !is_identity_jump(system, index.jump)) continue;
+    if (index.field != point.field || index.event == point.event || !is_identity_jump(system, index)) continue;
     if (section) {
       if (index.event == section->event) return index;
       continue;
@@ -221,8 +221,7 @@ int wall_of(const MapRequest& request, const HybridSystem& system, const VectorX
     VectorXd g(x.size());
     system.value(FunctionKind::jump, index.jump, x.data(), par.data(), g.data());
     const bool turns = std::abs((g - x).cwiseAbs().maxCoeff() - full_turn) < 1e-9;
-    if (!is_identity_jump(system, index.jump) && !turns &&
-        std::find(walls.begin(), walls.end(), index.event) == walls.end())
+    if (!is_identity_jump(system, index) && !turns && std::find(walls.begin(), walls.end(), index.event) == walls.end())
       walls.push_back(index.event);
   }
   if (walls.size() == 1) return walls.front();
@@ -318,8 +317,22 @@ TorusCurve curve_on_p(const HybridSystem& system, const TorusLabel& torus, int f
   return {fit.curve, settings.angles, 0, field, wall, true, torus.par(), along, text};
 }
 
+/// P_smooth of a torus is the flow of one field.
+void require_one_field(const LabelledRun& run, const HybridSystem& system) {
+  const Signature signature = run.settings.signature();
+  for (const IndexVector& v : signature)
+    if (v.field != signature.front().field)
+      throw UserError(fmt::format(
+          "--map {}: its returns have the fields {} ({}) and {} ({}), and the composite map of a torus is made for "
+          "one; "
+          "sweep by simulation, without --map",
+          run.source, signature.front().field, system.function_name(FunctionKind::field, signature.front().field),
+          v.field, system.function_name(FunctionKind::field, v.field)));
+}
+
 TorusCurve curve_of_label(const MapRequest& request, const MapContext& context, const HybridSystem& system,
                           const LabelledRun& run, int named) {
+  require_one_field(run, system);
   const TorusLabel torus(system, run.solution, run.settings, run.source);
   const std::vector<TorusLabel::Section>& sections = torus.sections();
   const std::optional<int> watched = request.wall ? std::nullopt : watched_wall(run);
@@ -339,7 +352,7 @@ TorusCurve curve_of_label(const MapRequest& request, const MapContext& context, 
         fmt::format("--section {}: no segment of the return of {} ends in event function {}; leave --section out for "
                     "P, where event {} ({}) is least",
                     *context.section, torus.source(), named, wall, system.function_name(FunctionKind::event, wall)));
-  if (!is_identity_jump(system, at->jump))
+  if (!is_identity_jump(system, {at->field, at->event, at->jump}))
     throw UserError(fmt::format(
         "--section {}: segments of {} that end in event function {} are followed by jump {} ({}); a section "
         "is where nothing happens: leave --section out for P, where event {} ({}) is least",

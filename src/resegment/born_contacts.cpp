@@ -49,8 +49,7 @@ IndexVector given_contact(const std::string& text, const HybridSystem& system) {
 void require_change(const CutList& cut, std::size_t k, const LabelledOrbit& source, const HybridSystem& system) {
   const NewSegment& contact = cut.segments[cut.contacts[k]];
   const NewSegment& next = after_contact(cut, k);
-  if (next.piece.empty() || next.index.field != contact.index.field || !is_identity_jump(system, contact.index.jump))
-    return;
+  if (next.piece.empty() || next.index.field != contact.index.field || !is_identity_jump(system, contact.index)) return;
   throw UserError(fmt::format(
       "{}: contact with {} would change nothing: its jump {} ({}) leaves the state as it is, and {} {} after it. Where "
       "another field holds beyond the surface, say which, until which event and with which jump: --contact "

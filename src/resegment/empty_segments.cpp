@@ -76,7 +76,7 @@ std::vector<int> watched_after(const HybridSystem& system, const IndexVector& be
   system.value(FunctionKind::jump, before.jump, at.data(), par.data(), start.data());
   std::vector<int> events = relevant_events(system, following, own.field, start.data(), par.data());
   std::erase(events, own.event);
-  const bool ends_in_section = is_identity_jump(system, own.jump) && next_field == own.field;
+  const bool ends_in_section = is_identity_jump(system, own) && next_field == own.field;
   const bool is_listed = std::find(following.begin(), following.end(), own) != following.end();
   if (is_listed && !ends_in_section) events.push_back(own.event);
   std::sort(events.begin(), events.end());

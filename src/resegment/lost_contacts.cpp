@@ -117,9 +117,8 @@ class LostContacts {
     }
   }
 
-  int identity() const {
-    for (int k = 1; k <= system_.count(FunctionKind::jump); ++k)
-      if (is_identity_jump(system_, k)) return k;
+  int identity(int field) const {
+    if (const int k = first_identity_jump(system_, field); k != no_function) return k;
     throw UserError(fmt::format("problem {} has no identity jump, which a cut without contact needs: add one (g = x)",
                                 system_.name()));
   }
@@ -134,7 +133,7 @@ class LostContacts {
             "{}: without its contact nothing cuts the orbit, and problem {} has no event function that falls through "
             "zero at the contact, as a velocity does; name a section with --signature \"{},EVENT,JUMP\"",
             source_.name, system_.name(), only.index.field));
-      only.index = {only.index.field, *section, identity()};
+      only.index = {only.index.field, *section, identity(only.index.field)};
       return;
     }
     if (wanted->size() != 1)

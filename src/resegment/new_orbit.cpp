@@ -32,21 +32,20 @@ int checked_jump(const HybridSystem& system, int jump, const char* what) {
                               count, count));
 }
 
-int identity_jump(const HybridSystem& system) {
-  for (int k = 1; k <= system.count(FunctionKind::jump); ++k)
-    if (is_identity_jump(system, k)) return k;
+int identity_jump(const HybridSystem& system, int field) {
+  if (const int k = first_identity_jump(system, field); k != no_function) return k;
   throw UserError(fmt::format(
       "problem {} has no identity jump, which the cut at a grazing contact needs: add one (g = x) to the plugin, or "
       "choose the jump with --jump",
       system.name()));
 }
 
-/// Jumps for a contact on segment s (from 0) that brings `own`: the identity, and others that leave every state of the
-/// segment as it is. Where a state is constant (a velocity in stick) the identity may leave it undetermined, and a jump
-/// that sets it does the same to the orbit and determines it.
-std::vector<int> jumps_without_effect(const HybridSystem& system, const Orbit& x, int s, int own) {
+/// Jumps for a contact with this field on segment s (from 0) that brings `own`: the identity, and others that leave
+/// every state of the segment as it is. Where a state is constant (a velocity in stick) the identity may leave it
+/// undetermined, and a jump that sets it does the same to the orbit and determines it.
+std::vector<int> jumps_without_effect(const HybridSystem& system, const Orbit& x, int s, int field, int own) {
   constexpr double unmoved = 1e-6;
-  std::vector<int> jumps{identity_jump(system)};
+  std::vector<int> jumps{identity_jump(system, field)};
   Eigen::VectorXd after(x.shape.dimension);
   const auto moves = [&](int jump) {
     for (int k = 0; k < x.shape.nodes(); ++k) {
@@ -178,8 +177,9 @@ CutList without_other_impacts(CutList cut, const std::vector<ContactPoint>& cont
     const auto at = std::find_if(cut.segments.begin(), cut.segments.end(),
                                  [&](const NewSegment& segment) { return segment.piece.segment == other.segment; });
     CutList alone{cut.segments, {static_cast<std::size_t>(at - cut.segments.begin()), cut.contacts.front()}};
-    end_in_section(alone.segments[alone.contacts[0]], x, system);
-    alone.segments[alone.contacts[0]].index.jump = identity_jump(system);
+    NewSegment& end = alone.segments[alone.contacts[0]];
+    end_in_section(end, x, system);
+    end.index.jump = identity_jump(system, end.index.field);
     alone = without_empty_segments(std::move(alone), 0, x);
     cut = {alone.segments, {alone.contacts[1]}};
   }
@@ -195,8 +195,11 @@ NewOrbit to_grazing_curve(const ResegmentRequest& request, const LabelledOrbit& 
         fmt::format("{} lies on a grazing curve already; `tchat run` goes on along it, and where two events change "
                     "places with the signature of --to signature --signature '...'",
                     source.name));
-  const int own = source.settings.segments[at].index.jump;
-  const int jump = request.jump ? *request.jump : contact.where == ContactPoint::section ? own : identity_jump(system);
+  const IndexVector& index = source.settings.segments[at].index;
+  const int own = index.jump;
+  const int jump = request.jump                             ? *request.jump
+                   : contact.where == ContactPoint::section ? own
+                                                            : identity_jump(system, index.field);
   const std::vector<ContactPoint> contacts = simultaneous_contacts(contact, x, system, source.settings);
   const bool keeps_identity = !request.jump && jump == no_function;
   CutList cut = cut_at({segments_of(source.settings), {}}, contact,
@@ -212,7 +215,7 @@ NewOrbit to_grazing_curve(const ResegmentRequest& request, const LabelledOrbit& 
   NewOrbit target{cut.segments, {150, 1, contact_jump}};
   target.contact = cut.contacts.front();
   if (!request.jump && !request.signature && contact.where != ContactPoint::section)
-    target.contact_jumps = jumps_without_effect(system, x, contact.segment, contact_jump);
+    target.contact_jumps = jumps_without_effect(system, x, contact.segment, index.field, contact_jump);
   if (contacts.size() > 1)
     target.remarks.push_back(fmt::format("The orbit has {} contacts at once ({}); the curve keeps that of its label.",
                                          contacts.size(), list_of(contacts, system)));
@@ -236,7 +239,8 @@ SegmentList turn_without_contact(const LabelledOrbit& source, const std::vector<
 int impact_jump(const ResegmentRequest& request, const LabelledOrbit& source, const ContactPoint& contact,
                 const HybridSystem& system) {
   if (request.jump) return checked_jump(system, *request.jump, "--jump");
-  if (request.contact && !system.has_successors()) return identity_jump(system);
+  const IndexVector& index = source.settings.segments[static_cast<std::size_t>(contact.segment)].index;
+  if (request.contact && !system.has_successors()) return identity_jump(system, index.field);
   return checked_jump(system, jump_at_contact(system, source.settings, source.start.orbit, contact),
                       "GRJUMP, the jump that contact brings,");
 }

@@ -17,7 +17,7 @@ namespace {
 
 int segment_type(const HybridSystem& system, const NewSegment& segment) {
   if (segment.grazes) return 2;
-  return is_identity_jump(system, segment.index.jump) ? 0 : 1;
+  return is_identity_jump(system, segment.index) ? 0 : 1;
 }
 
 /// `now` has the monitors and the problem type of the new constants, and the old ICP without durations. Further

@@ -45,7 +45,7 @@ bool ends_in_section(const HybridSystem& system, const RunSettings& settings, in
   const auto m = settings.segments.size();
   const IndexVector& own = settings.segments[static_cast<std::size_t>(s)].index;
   const IndexVector& next = settings.segments[(static_cast<std::size_t>(s) + 1) % m].index;
-  return is_identity_jump(system, own.jump) && next.field == own.field;
+  return is_identity_jump(system, own) && next.field == own.field;
 }
 
 bool same(const ContactPoint& a, const ContactPoint& b) {
@@ -80,7 +80,7 @@ class Search {
   }
 
   void add_vanishing_impact(int s) {
-    if (is_identity_jump(system_, index(s).jump)) return;
+    if (is_identity_jump(system_, index(s))) return;
     if (slope_at(system_, index(s).field, index(s).event, x_.end(s), x_.par.data()).is_tangent())
       add({ContactPoint::impact, s, index(s).event, 1.0});
   }

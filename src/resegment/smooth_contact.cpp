@@ -25,14 +25,6 @@ std::string name_of(const std::string& path) {
   return name.string();
 }
 
-/// The first identity jump; the next new one if there is none.
-int first_identity_jump(const HybridSystem& system) {
-  const int count = system.count(FunctionKind::jump);
-  for (int k = 1; k <= count; ++k)
-    if (is_identity_jump(system, k)) return k;
-  return count + 1;
-}
-
 /// Where a point of the segment is once the segment starts at `cut`.
 double place_after_cut(double tau, double cut) { return tau > cut ? tau - cut : tau - cut + 1.0; }
 
@@ -72,6 +64,8 @@ void require_section(const LabelledSolution& solution, const RunSettings& settin
                      const std::string& what, const std::string& problem, const std::string& path) {
   if (has_section(settings)) return;
   const std::string name = name_of(path);
+  const int field = settings.segments.front().index.field;
+  const int identity = first_identity_jump(system, field);
   const double middle = 0.5 * (solution.states.row(0).minCoeff() + solution.states.row(0).maxCoeff());
   throw UserError(fmt::format(
       "label {} of {}: the orbit has no section, but {} needs one\n"
@@ -80,8 +74,9 @@ void require_section(const LabelledSolution& solution, const RunSettings& settin
       "    tchat simulate {} -s {} IRS=1 --signature {},{},{} --dat {}_cut\n"
       "    tchat run {} -c {}_cut -d {}_cut -o {}_cut\n"
       "  and its labels are of orbits with a section.",
-      solution.label, path, what, system.state_name(1), middle, problem, name, settings.segments.front().index.field,
-      system.count(FunctionKind::event) + 1, first_identity_jump(system), name, problem, name, name, name));
+      solution.label, path, what, system.state_name(1), middle, problem, name, field,
+      system.count(FunctionKind::event) + 1, identity != no_function ? identity : system.count(FunctionKind::jump) + 1,
+      name, problem, name, name, name));
 }
 
 }  // namespace tchat

@@ -78,7 +78,7 @@ void check_signature(const HybridSystem& system, const RunSettings& settings, co
         "{}: the orbits that begin at an equilibrium are smooth, and the signature has {} segments; give one, "
         "such as GCFIND = [{}], GCHIND = [0], GCGIND = [0] (no section)",
         selected.source, settings.segments.size(), index.field));
-  if (index.jump != no_function && !is_identity_jump(system, index.jump))
+  if (index.jump != no_function && !is_identity_jump(system, index))
     throw UserError(fmt::format(
         "{}: the orbits that begin at an equilibrium are smooth, and jump {} ({}) at the end of the segment is not "
         "the identity; give GCGIND = [0]",

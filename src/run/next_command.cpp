@@ -69,7 +69,7 @@ bool is_free_of_other_events(const UserPointKind& contact, const RunSettings& se
   const auto segment = static_cast<std::size_t>(contact.segment - 1);
   const std::size_t before = contact.tau <= at_the_end ? (segment + m - 1) % m : segment;
   const IndexVector& end = settings.segments[before].index;
-  return is_identity_jump(system, end.jump) && settings.segments[(before + 1) % m].index.field == end.field;
+  return is_identity_jump(system, end) && settings.segments[(before + 1) % m].index.field == end.field;
 }
 
 }  // namespace

@@ -69,14 +69,14 @@ void add_bifurcations(TestList& tests, const DefiningSystem& system, const RunSe
 
 void add_impact_velocities(TestList& tests, const DefiningSystem& system, const RunSettings& settings) {
   for (int s = 0; s < system.segments(); ++s)
-    if (system.has_event(s) && !is_identity_jump(system.system(), system.signature()[static_cast<std::size_t>(s)].jump))
+    if (system.has_event(s) && !is_identity_jump(system.system(), system.signature()[static_cast<std::size_t>(s)]))
       tests.push_back(std::make_unique<ImpactVelocityTest>(system, s, settings.stop_at_grazing));
 }
 
 void add_section_tangencies(TestList& tests, const DefiningSystem& system, const RunSettings& settings, int except) {
   for (int s = 0; s < system.segments(); ++s)
     if (s != except && system.has_event(s) &&
-        is_identity_jump(system.system(), system.signature()[static_cast<std::size_t>(s)].jump))
+        is_identity_jump(system.system(), system.signature()[static_cast<std::size_t>(s)]))
       tests.push_back(std::make_unique<ImpactVelocityTest>(system, s, settings.stop_at_grazing));
 }
 

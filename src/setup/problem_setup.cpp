@@ -202,7 +202,7 @@ std::vector<std::string> check_settings_against(const HybridSystem& system, cons
     if (segment.index.jump != no_function)
       check_index(system, FunctionKind::jump, segment.index.jump, "GCGIND", "jump functions", s, source);
     if (segment.index.jump == no_function) continue;
-    const bool identity = is_identity_jump(system, segment.index.jump);
+    const bool identity = is_identity_jump(system, segment.index);
     if ((segment.type == 0 && !identity) || (segment.type == 1 && identity))
       warnings.push_back(fmt::format(
           "{}: GCSEGTYP of segment {} is {} ({} jump), but jump {} ({}) is {}the identity; "

@@ -71,9 +71,9 @@ std::string losses(const LyapunovSpectrum& spectrum) {
   std::string text;
   const auto lost = (spectrum.exponents.array() == -std::numeric_limits<double>::infinity()).count();
   if (lost > 0)
-    text +=
-        fmt::format("  -infinity: {} direction{} contracted to zero, where sliding begins or a jump forgets a state.\n",
-                    lost, lost == 1 ? " is" : "s are");
+    text += fmt::format(
+        "  -infinity: {} direction{} contracted to zero, where sliding begins, or a jump or a mode drops a state.\n",
+        lost, lost == 1 ? " is" : "s are");
   if (spectrum.tangential > 0)
     text += fmt::format(
         "  {} event(s) had almost no velocity: their effect on neighbouring trajectories is known to fewer digits.\n",

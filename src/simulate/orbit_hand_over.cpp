@@ -43,7 +43,7 @@ bool is_section(const HybridSystem& system, const FoundOrbit& orbit, std::size_t
                 const Eigen::MatrixXd& states, const Eigen::VectorXd& par) {
   const std::vector<IndexVector>& watched = orbit.modes[s].index_vectors;
   const auto v = std::find_if(watched.begin(), watched.end(), [&](const auto& w) { return w.event == event; });
-  if (v == watched.end() || !is_identity_jump(system, v->jump)) return false;
+  if (v == watched.end() || !is_identity_jump(system, *v)) return false;
   if (*v == orbit.signature[s]) return orbit.signature[(s + 1) % orbit.signature.size()].field == v->field;
   const auto columns = states.colwise();
   return std::all_of(columns.begin(), columns.end(), [&](const Eigen::VectorXd& x) {
@@ -74,7 +74,7 @@ std::optional<int> jump_of_contact(const HybridSystem& system, const FoundOrbit&
     for (const IndexVector& v : orbit.modes[s].index_vectors) {
       const std::vector<int>& monitored = segments[s].monitor;
       const bool is_monitored = std::find(monitored.begin(), monitored.end(), v.event) != monitored.end();
-      if (is_monitored && !is_identity_jump(system, v.jump)) jumps.insert(v.jump);
+      if (is_monitored && !is_identity_jump(system, v)) jumps.insert(v.jump);
     }
   if (jumps.size() != 1) return std::nullopt;
   return *jumps.begin();
@@ -186,7 +186,7 @@ RunSettings orbit_settings(const HybridSystem& system, const RunSettings& base, 
     SegmentSettings segment;
     const auto k = static_cast<std::size_t>(s);
     segment.index = orbit.signature[k];
-    segment.type = is_identity_jump(system, segment.index.jump) ? 0 : 1;
+    segment.type = is_identity_jump(system, segment.index) ? 0 : 1;
     segment.monitor = monitored_events(system, orbit, k, samples.states.middleRows(s * n, n), par);
     for (std::size_t i = 0; i < segment.monitor.size(); ++i)
       settings.test_functions.push_back(static_cast<int>(settings.test_functions.size()) + 1);

@@ -11,6 +11,7 @@
 #include "files/dat_file.hpp"
 #include "files/solution_file_reader.hpp"
 #include "hybrid/event_at.hpp"
+#include "hybrid/mode_dimensions.hpp"
 #include "setup/parameter_values.hpp"
 #include "setup/problem_setup.hpp"
 #include "setup/run_request.hpp"
@@ -194,6 +195,7 @@ SimulationStart simulation_start(const SimulationRequest& request, const Simulat
   if (!system.has_successors() || request.follow_signature || request.signature || request.modes) start.watched.clear();
   const ModeRule rule = start.watched.empty() ? simulation_rule(request, constants, system, start.state, start.par)
                                               : ModeRule(system, Mode{start.watched, {}});
+  if (system.has_modes()) clear_absent(system, ModeRule(rule).first(start.state, start.par).field(), start.state);
   return {start.par, start.state, start.source, rule, start.side, start.watched};
 }
 

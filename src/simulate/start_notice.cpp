@@ -35,7 +35,7 @@ std::vector<int> events_that_matter(const HybridSimulation& simulation) {
                            simulation.parameters().data());
   std::vector<int> events;
   for (const IndexVector& v : mode.index_vectors)
-    if (!is_identity_jump(system, v.jump)) events.push_back(v.event);
+    if (!is_identity_jump(system, v)) events.push_back(v.event);
   return events;
 }
 

@@ -19,8 +19,7 @@ constexpr double same_orbit = 0.1;   // largest correction, as a share of the or
 constexpr double same_state = 1e-7;  // of points of the refined orbit, likewise
 
 bool ends_in_section(const HybridSystem& system, const std::vector<SimulatedSegment>& turn, std::size_t s) {
-  return is_identity_jump(system, turn[s].index.jump) &&
-         turn[(s + 1) % turn.size()].mode.field() == turn[s].mode.field();
+  return is_identity_jump(system, turn[s].index) && turn[(s + 1) % turn.size()].mode.field() == turn[s].mode.field();
 }
 
 /// `first` and the segment that follows it without anything between.

@@ -67,7 +67,8 @@ HybridSimulation::HybridSimulation(ModeRule rule, const VectorXd& x0, const Vect
   require_state(system_, x0);
   settings_.flow.variational = false;
   mode_ = rule_.first(x0, par_);
-  surface_starts_ = tchat::surface_starts(rule_, mode_, x0, par_, settings_.side, settings_.flow.surface_tolerance);
+  clear_absent(system_, mode_.field(), x_);
+  surface_starts_ = tchat::surface_starts(rule_, mode_, x_, par_, settings_.side, settings_.flow.surface_tolerance);
 }
 
 HybridSimulation::HybridSimulation(const HybridSimulation& at, const VectorXd& end, SimulationSettings settings)

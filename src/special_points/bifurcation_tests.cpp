@@ -33,7 +33,7 @@ bool is_section(const DefiningSystem& system, int s) {
   const Signature& signature = system.signature();
   const IndexVector& index = signature[static_cast<std::size_t>(s)];
   return index.field == signature[static_cast<std::size_t>((s + 1) % system.segments())].field &&
-         is_identity_jump(system.system(), index.jump);
+         is_identity_jump(system.system(), index);
 }
 
 /// A fold located to EPSS has this multiplier nearer to 1.

@@ -303,7 +303,7 @@ class SampleRun {
     for (const SimulatedSegment& segment : kept_) {
       sample_.signature.push_back(segment.index);
       sample_.period += segment.duration;
-      if (!is_identity_jump(system_, segment.index.jump)) ++sample_.impacts;
+      if (!is_identity_jump(system_, segment.index)) ++sample_.impacts;
     }
   }
 
@@ -497,7 +497,7 @@ class SampleRun {
   double distance_to_walls(const Mode& mode, const VectorXd& x) const {
     double least = never;
     for (const IndexVector& v : mode.index_vectors)
-      if (!is_identity_jump(system_, v.jump)) least = std::min(least, system_.event(v.event, x.data(), par_.data()));
+      if (!is_identity_jump(system_, v)) least = std::min(least, system_.event(v.event, x.data(), par_.data()));
     return least;
   }
 

@@ -99,8 +99,7 @@ RunSettings torus_settings(const SimulationConstants& constants, int parameter) 
 
 /// What constants would have said of the segments: types by the jumps, events that may come next are watched.
 void complete_segments(RunSettings& settings, const HybridSystem& system, const Orbit& orbit) {
-  for (SegmentSettings& segment : settings.segments)
-    segment.type = is_identity_jump(system, segment.index.jump) ? 0 : 1;
+  for (SegmentSettings& segment : settings.segments) segment.type = is_identity_jump(system, segment.index) ? 0 : 1;
   watch_possible_events(system, settings, orbit);
 }
 

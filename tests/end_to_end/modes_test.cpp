@@ -1,14 +1,13 @@
 // Modes of dimension 5, 3 and 2: flight of a ball beside a pendulum, a spring with a force that lags, rest with a
 // clock. The references are integrations of each mode with the states that it has.
 #include <array>
-#include <boost/math/tools/toms748_solve.hpp>
-#include <boost/numeric/odeint.hpp>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "end_to_end/integrate_to.hpp"
 #include "end_to_end/workspace.hpp"
 
 using namespace test_support;
@@ -79,38 +78,6 @@ after stop: rest until alarm -> throw
 after any: flight until floor -> catch
 )";
 
-Outcome succeed(const Workspace& workspace, const std::string& arguments) {
-  const Outcome outcome = workspace.tchat(arguments);
-  INFO(arguments << '\n' << outcome.text());
-  REQUIRE(outcome.status == 0);
-  return outcome;
-}
-
-/// The state and the time where `event` falls to zero.
-template <class State, class Field, class Event>
-double integrate_to(State& x, const Field& field, const Event& event) {
-  namespace odeint = boost::numeric::odeint;
-  odeint::runge_kutta_fehlberg78<State> stepper;
-  constexpr double h = 1e-3;
-  const auto moved = [&](double step) {
-    State y = x;
-    stepper.do_step(field, y, 0.0, step);
-    return y;
-  };
-  double time = 0.0;
-  for (;;) {
-    const State next = moved(h);
-    if (event(x) > 0.0 && event(next) <= 0.0) break;
-    x = next;
-    time += h;
-  }
-  std::uintmax_t iterations = 60;
-  const auto root = boost::math::tools::toms748_solve([&](double step) { return event(moved(step)); }, 0.0, h,
-                                                      boost::math::tools::eps_tolerance<double>(50), iterations);
-  x = moved(root.second);
-  return time + root.second;
-}
-
 /// Durations and the end of one turn from a start of flight (5 states), each mode with its own states.
 struct Turn {
   std::array<double, 3> durations;
@@ -148,10 +115,10 @@ TEST_CASE("modes of dimension 5, 3 and 2 in every command") {
   const Workspace workspace;
   SECTION("a class") { workspace.write("modes.cpp", modes_source); }
   SECTION("formulas") { workspace.write("modes.tch", formulas); }
-  succeed(workspace, "check modes");
-  const Outcome simulated = succeed(workspace, "simulate modes --dat start");
+  workspace.succeed("check modes");
+  const Outcome simulated = workspace.succeed("simulate modes --dat start");
   CHECK(simulated.out.find("{(1,1,1), (2,2,2), (3,3,3)}") != std::string::npos);
-  succeed(workspace, "run modes -q -c start -d start -o branch NTST=20 ICP=[V] NMX=40 DS=0.02 DSMAX=0.1 UZR={V:1.3}");
+  workspace.succeed("run modes -q -c start -d start -o branch NTST=20 ICP=[V] NMX=40 DS=0.02 DSMAX=0.1 UZR={V:1.3}");
   for (const SolutionEntry& label : workspace.solutions("branch")) {
     std::array<double, 5> start{};
     for (std::size_t a = 0; a < 5; ++a) start[a] = label.states.front().at(a);
@@ -167,15 +134,15 @@ TEST_CASE("modes of dimension 5, 3 and 2 in every command") {
   const std::string diagnostics = workspace.read("d.branch");
   CHECK(diagnostics.find("Multiplier   2") != std::string::npos);
   CHECK(diagnostics.find("Multiplier   3") == std::string::npos);
-  succeed(workspace, "verify branch -p modes");
-  succeed(workspace, "resegment q.branch UZ1 -p modes --to rotate --by 1 -o cut");
-  succeed(workspace, "run modes -q -c cut -s cut -o again NMX=4");
-  succeed(workspace, "verify again -p modes");
-  succeed(workspace, "sweep modes -q --over V=1:1.2:3 -o values");
-  succeed(workspace, "simulate modes -q --lyapunov");
-  succeed(workspace, "orbit q.branch UZ1");
-  succeed(workspace, "labels branch");
-  succeed(workspace, "table branch");
+  workspace.succeed("verify branch -p modes");
+  workspace.succeed("resegment q.branch UZ1 -p modes --to rotate --by 1 -o cut");
+  workspace.succeed("run modes -q -c cut -s cut -o again NMX=4");
+  workspace.succeed("verify again -p modes");
+  workspace.succeed("sweep modes -q --over V=1:1.2:3 -o values");
+  workspace.succeed("simulate modes -q --lyapunov");
+  workspace.succeed("orbit q.branch UZ1");
+  workspace.succeed("labels branch");
+  workspace.succeed("table branch");
 }
 
 TEST_CASE("an orbit and an equilibrium of the small mode alone") {
@@ -190,16 +157,72 @@ jump away: z -> 1
   workspace.write("gc.small",
                   "NDIM=3 IPS=1 ICP=[a] NMX=30 RL1=0.5 DS=0.02 DSMAX=0.05\nGCFIND=[2] GCHIND=[0] GCGIND=[0]\n");
   workspace.write("small.dat", "0 0 0 0\n");
-  succeed(workspace, "run small -q -o rest");
+  workspace.succeed("run small -q -o rest");
   CHECK(workspace.read("d.rest").find("Eigenvalue   3") == std::string::npos);
-  succeed(workspace, "run small -q -s rest IRS=HB1 IPS=180 ISW=-1 UZR={-a:0.25} RL1=0.4 -o cycles");
+  workspace.succeed("run small -q -s rest IRS=HB1 IPS=180 ISW=-1 UZR={-a:0.25} RL1=0.4 -o cycles");
   // The circle of radius sqrt(a), once round in 2 pi, with the multiplier exp(-4 pi a).
   const SolutionEntry label = workspace.solutions("cycles").back();
   CHECK(label.parameter(1) == Approx(0.25).epsilon(1e-9));
   CHECK(std::hypot(label.states.front().at(0), label.states.front().at(1)) == Approx(0.5).epsilon(1e-7));
   CHECK(label.parameter(61) == Approx(2.0 * std::acos(-1.0)).epsilon(1e-8));
   CHECK(workspace.read("d.cycles").find("Multiplier   3") == std::string::npos);
-  succeed(workspace, "verify cycles -p small");
+  workspace.succeed("verify cycles -p small");
+}
+
+TEST_CASE("a start in a mode has its states only") {
+  const Workspace workspace;
+  workspace.write("modes.tch", formulas);
+  const Outcome outcome = workspace.succeed("simulate modes --state x=-0.1,v=-0.2,theta=3 --mode 2,2,2 --events 1");
+  CHECK(outcome.out.find("Start: x = (-0.1, -0.2, 0, 0, 0)") != std::string::npos);
+}
+
+TEST_CASE("tori of a system with modes of 5 and 3 states, from their birth on") {
+  // Langford's system (problems/langford) with two states more where y > 0. By its symmetry in closed form: the orbit
+  // of period 2 pi / d, its torus bifurcation at a = b^2 (1 + e b) + e (c - b^3/3), and that angle of its multipliers.
+  constexpr double c = 0.6, d = 3.5, e = 0.25;
+  const auto critical = [](double b) { return b * b * (1.0 + e * b) + e * (c - b * b * b / 3.0); };
+  const auto angle = [](double b, double a) {
+    return 2.0 * M_PI * std::sqrt(2.0 * (c + a * b - b * b * b / 3.0)) / d;  // 2 r^2 (1 + e b)
+  };
+  const Workspace workspace;
+  workspace.write("langford.tch", R"(par a=0.5, b=0.7, c=0.6, d=3.5, e=0.25
+init x=0.9, y=0.01, z=0.7
+field upper: x' = (z-b)*x - d*y, y' = d*x + (z-b)*y, z' = c + a*z - z^3/3 - (x^2+y^2)*(1+e*z), \
+             lag' = x - lag, load' = lag*z - load
+mode lower: states x, y, z
+field lower: x' = (z-b)*x - d*y, y' = d*x + (z-b)*y, z' = c + a*z - z^3/3 - (x^2+y^2)*(1+e*z)
+event fall = y
+event rise = -y
+jump down to lower:
+jump up: lag -> 0.1*x, load -> z
+after down: lower until rise -> up
+after any: upper until fall -> down
+)");
+  workspace.succeed("simulate langford -q --dat start");
+  workspace.succeed("run langford -q -c start -d start -o orbit ICP=[a] DS=0.02 NMX=40 RL1=0.8 NTST=20");
+  const SolutionEntry birth = workspace.solutions("orbit").at(1);
+  CHECK(birth.type == 8);  // TR
+  CHECK(birth.parameter(1) == Approx(critical(0.7)).epsilon(1e-9));
+  workspace.succeed("run langford -q -c r.orbit -s orbit -o curve IRS=TR1 ISW=2 ICP=[b,a] NMX=10 RL1=2").out;
+  for (const PointSection& section : workspace.points("curve"))
+    for (const PointRow& row : section.rows) {
+      const double b = row.values[section.column("b")];
+      CHECK(row.values[section.column("a")] == Approx(critical(b)).epsilon(1e-8));
+    }
+  workspace.succeed("run langford -q -c r.orbit -s orbit -o born IRS=TR1 IPS=182 ISW=-1 ICP=[a,rho] DS=0.05 NMX=8");
+  const PointSection born = workspace.points("born").front();
+  const double turn = angle(0.7, critical(0.7)) / (2.0 * M_PI);
+  CHECK(born.rows.front().values[born.column("rho")] == Approx(turn).epsilon(1e-3));
+  // The return time of the orbit stays that of the torus.
+  const SolutionEntry last = workspace.solutions("born").back();
+  CHECK(last.parameter(61) + last.parameter(62) == Approx(2.0 * M_PI / d).epsilon(1e-9));
+  const std::string diagnostics = workspace.read("d.born");
+  CHECK(diagnostics.find("Multiplier   3") != std::string::npos);
+  CHECK(diagnostics.find("Multiplier   4") == std::string::npos);
+  CHECK(workspace.succeed("verify born -p langford").out.find("multipliers 0.0e+00") == std::string::npos);
+  const Outcome refused = workspace.tchat("sweep langford --map q.born:EP1 --over a=0.7:0.72:2 --wall 1");
+  CHECK(refused.status == 2);
+  CHECK(refused.err.find("its returns have the fields 1 (upper) and 2 (lower)") != std::string::npos);
 }
 
 TEST_CASE("modes that cannot follow each other, and lines that are no modes") {
@@ -243,7 +266,7 @@ jump lift to flight: v -> v
 aux energy = v^2/2 + x + 7*s
 )");
   workspace.write("gc.hopper", "NDIM=3 CONSERVED=energy ICP=[energy]\nGCFIND=[2] GCHIND=[1] GCGIND=[2]\n");
-  const Outcome outcome = succeed(workspace, "check hopper");
+  const Outcome outcome = workspace.succeed("check hopper");
   CHECK(outcome.out.find("conserved by field 2 (flight)") != std::string::npos);
 }
 
@@ -261,5 +284,5 @@ TEST_CASE("derivatives by hand of a small mode") {
 )";
   source.insert(source.find("  template <class T>\n  T event"), member);
   workspace.write("modes.cpp", source);
-  succeed(workspace, "check modes");
+  workspace.succeed("check modes");
 }
