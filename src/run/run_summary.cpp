@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <set>
 
+#include "text/folded.hpp"
+
 namespace tchat {
 
 namespace {
@@ -76,20 +78,6 @@ std::string accuracy(const BranchSummary& summary) {
   const std::string structural = summary.worst_structural > inaccurate ? words.structural_advice : "";
   const std::string mesh = summary.worst_estimated_error > inaccurate ? mesh_advice : "";
   return text + structural + (mesh == structural ? "" : mesh);
-}
-
-/// Lines of at most 120 characters, broken at blanks, the further ones indented.
-std::string folded(std::string line) {
-  constexpr std::size_t width = 120;
-  const std::string indent = "      ";
-  std::string text;
-  while (line.size() > width) {
-    const std::size_t blank = line.rfind(' ', width);
-    if (blank == std::string::npos || blank <= indent.size()) break;
-    text += line.substr(0, blank) + '\n';
-    line = indent + line.substr(blank + 1);
-  }
-  return text + line + '\n';
 }
 
 /// Special points that may be missing, and what a user might change.

@@ -27,6 +27,7 @@
 #include "setup/recorded_problem.hpp"
 #include "setup/run_request.hpp"
 #include "start/orbit_start.hpp"
+#include "text/folded.hpp"
 #include "text/user_error.hpp"
 #include "verification/critical_label.hpp"
 #include "verification/orbit_check.hpp"
@@ -124,9 +125,9 @@ class Table {
     const std::string integral =
         integral_.where == "none" ? ""
                                   : fmt::format(", integral conditions {:.1e} ({})", integral_.value, integral_.where);
-    return fmt::format("Largest defects{}: states {:.1e} ({}), times {:.1e} ({}), multipliers {:.1e} ({}){}{}.\n",
-                       family_.checked_trajectories(), state_.value, state_.where, time_.value, time_.where,
-                       multipliers_.value, multipliers_.where, critical, integral);
+    return folded(fmt::format("Largest defects{}: states {:.1e} ({}), times {:.1e} ({}), multipliers {:.1e} ({}){}{}.",
+                              family_.checked_trajectories(), state_.value, state_.where, time_.value, time_.where,
+                              multipliers_.value, multipliers_.where, critical, integral));
   }
 
  private:
