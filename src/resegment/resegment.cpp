@@ -120,7 +120,8 @@ void refuse_same_file(const std::string& output, const std::string& input, const
 std::string summary(const LabelledOrbit& source, const RunSettings& settings, const Orbit& x,
                     const HybridSystem& system) {
   const std::string type = fmt::format("{}", fmt::join(type_names(source.solution), " "));
-  const std::string meaning = description(source.solution, [&system](int k) { return system.parameter_name(k); });
+  const std::string meaning =
+      description(source.solution, [&](int k) { return parameter_name(system, source.settings, k); });
   std::string text = fmt::format("{}{}{}\n", source.name, type.empty() ? "" : fmt::format(" ({})", type),
                                  meaning.empty() ? "" : ": " + meaning);
   text += fmt::format("  signature {}\n         -> {}, IPS = {}, ISW = {}\n", to_string(source.settings.signature()),
