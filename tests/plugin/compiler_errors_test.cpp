@@ -56,6 +56,13 @@ void check_told(const std::string& source, int line, const std::string& sentence
 
 }  // namespace
 
+TEST_CASE("an output function of another form") {
+  check_told(problem(field("f[1] = -par[0];"),
+                     "  static constexpr int user_values = 1;"
+                     " double user_value(int, const double* x, const double*) const { return x[0]; }"),
+             4, "`user_value` must be: void user_value(const double* x, const double* par, double* out) const");
+}
+
 TEST_CASE("slips in formulas, each with its cure, in the order of their lines") {
   const std::vector<std::string> lines = told(problem(field(
       "f[0] = std::sin(x[0]);\n f[1] = std::max(x[1], 0.0);\n double a = x[0];\n f[1] = x[1] ^ 2;\n f[1] = f(0);")));

@@ -177,6 +177,12 @@ class ProblemTable {
       !has_integrand<double> || requires { Problem::integral_conditions; },
       "tchat: the number of integral conditions is missing, or is not public: write in the "
       "struct static constexpr int `integral_conditions` = ...;");
+  static constexpr bool has_user_value = requires(const Problem& p, const double* x, double* out) {
+    p.user_value(x, x, out);
+  };
+  static_assert(
+      has_user_value || !requires { Problem::user_values; },
+      "tchat: `user_value` must be: void user_value(const double* x, const double* par, double* out) const");
   static_assert(integral_count() == 0 || boundary_count() > 0,
                 "tchat: `integral_conditions` are those of boundary value problems: `boundary_conditions` must be at "
                 "least 1");
@@ -756,7 +762,7 @@ class ProblemTable {
   }
 
   static void user_value(const void* self, const double* x, const double* par, double* out) {
-    if constexpr (requires { Problem::user_values; }) object(self).user_value(x, par, out);
+    if constexpr (has_user_value) object(self).user_value(x, par, out);
   }
 
   static tchat_problem make(const char* name, const Problem& problem) {
