@@ -225,7 +225,8 @@ class SettingsCheck {
                                       ? fmt::format("{} (the duration of the segment)", first_duration)
                                       : fmt::format("{} to {} (durations of the {} segments)", first_duration,
                                                     first_duration + segment_count - 1, segment_count);
-    refuse_constant(keyword, name, in_quotes(std::to_string(k)),
+    const std::string duration = k < first_duration ? "" : fmt::format(" ({})", duration_name(k));
+    refuse_constant(keyword, name, in_quotes(std::to_string(k)) + duration,
                     fmt::format("1 to {} (parameters of the problem) or {}", first_duration - 1, durations));
   }
 

@@ -163,6 +163,7 @@ TEST_CASE("BOUNDS ends a branch where a parameter, a duration or a monitor leave
   refused("BOUNDS={T1: 3}", {"BOUNDS", "'T1'", "[0, 10]"});
   refused("BOUNDS={T1: [3, 2]}", {"BOUNDS", "'2'", "greater than 3"});
   refused("BOUNDS={nothing: [3, 4]}", {"BOUNDS", "nothing"});
+  refused("BOUNDS={T9: [0, 1]}", {"BOUNDS", "(T9)"});
   refused("BOUNDS={1: [0, 9], alpha: [0, 9]}", {"BOUNDS", "twice"});
   refused("BOUNDS={77: [0, 9]}", {"BOUNDS", "'77'"});
 }
