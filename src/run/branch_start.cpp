@@ -62,15 +62,6 @@ void refuse_singular(PathFollower& follower, const DefiningSystem& defining, con
       undetermined(defining.system(), defining, singularity.direction, point.orbit.shape)));
 }
 
-bool start_is_branch_point(const SelectedStart& selected) {
-  constexpr int branch_point = static_cast<int>(PointType::branch_point);
-  constexpr int of_equilibria = static_cast<int>(PointType::equilibrium_branch_point);
-  const auto is_branch_point = [](int type) { return type == branch_point || type == of_equilibria; };
-  const std::vector<int>& types = selected.types;
-  return selected.from_solution &&
-         (is_branch_point(basic_type(selected.type)) || std::any_of(types.begin(), types.end(), is_branch_point));
-}
-
 /// On top of a branch point Newton's matrix is singular and the iteration stalls. A stored orbit that satisfies every
 /// equation to the tolerance, or as well as a branch point can be interpolated, is taken as it is. To be called after
 /// an attempt to correct it.
@@ -99,6 +90,15 @@ void use_direction(PathFollower& follower, const OrbitVector& direction, PathPoi
 }
 
 }  // namespace
+
+bool start_is_branch_point(const SelectedStart& selected) {
+  constexpr int branch_point = static_cast<int>(PointType::branch_point);
+  constexpr int of_equilibria = static_cast<int>(PointType::equilibrium_branch_point);
+  const auto is_branch_point = [](int type) { return type == branch_point || type == of_equilibria; };
+  const std::vector<int>& types = selected.types;
+  return selected.from_solution &&
+         (is_branch_point(basic_type(selected.type)) || std::any_of(types.begin(), types.end(), is_branch_point));
+}
 
 FirstPoint first_point(PathFollower& follower, const DefiningSystem& system, const SelectedStart& selected,
                        const RunSettings& settings) {

@@ -19,6 +19,9 @@ struct FirstPoint {
   bool stored_direction = false;            ///< DS > 0 goes on in the direction that is stored with the start
 };
 
+/// Is the start a label of a branch point, of orbits or equilibria?
+bool start_is_branch_point(const SelectedStart& selected);
+
 /// From data: correct_start(). From a label with its
 /// direction: orthogonally to the direction, unless a parameter was changed or the direction is no tangent of this
 /// problem (another signature); then as from data. DS > 0 goes on in the stored direction, in which the run of the

@@ -106,7 +106,9 @@ std::string direction_text(const BranchSetup& setup, const SelectedStart& start,
   const double rate = step * setup.follower->principal_direction(setup.start.point);
   constexpr double rounding = 1e-7;  // of a unit tangent: the parameter has an extremum
   const bool is_known = std::abs(rate) > rounding * std::abs(step);
-  if (!start.from_solution || setup.type->facts().switches_branch || !is_known) return "";
+  // At a branch point the computed tangent is any mixture of those of both branches.
+  const bool is_single = !start_is_branch_point(start);
+  if (!start.from_solution || setup.type->facts().switches_branch || !is_known || !is_single) return "";
   return fmt::format("DS {} 0: {} {} first (label {} of {} stores no direction for these free parameters)\n", sign,
                      parameter, rate > 0.0 ? "increases" : "decreases", start.label, start.source);
 }

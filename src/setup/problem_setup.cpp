@@ -7,6 +7,7 @@
 #include <cmath>
 #include <fstream>
 
+#include "bvp/quantity.hpp"
 #include "constants/constants_file.hpp"
 #include "constants/settings_type.hpp"
 #include "hybrid/mode_dimensions.hpp"
@@ -145,6 +146,7 @@ void check_parameters(const HybridSystem& system, const RunSettings& settings, c
     return fmt::format("{}: {}: PAR({}) is no parameter of problem {}; it has {}", source.of(keyword), keyword, k,
                        system.name(), parameter_list(system));
   };
+  if (!settings.conserved.empty()) conserved_quantity(system, settings.conserved);
   const std::vector<int> free = free_problem_parameters(settings);
   if (free.empty() && !settings.conserved.empty() && settings.free_parameters.front() < first_duration)
     throw UserError(fmt::format(

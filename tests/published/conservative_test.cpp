@@ -370,6 +370,10 @@ TEST_CASE("coupled Duffing oscillators out of phase lose stability at a Lame ban
   const PointRow& end = local.rows.back();
   CHECK(std::abs(end.values[local.column("max(x1)")] - end.values[local.column("max(x2)")]) > 0.5);
   workspace.succeed("verify local -p duo");
+  // At a branch point the first tangent is no more than a mixture: no direction is announced.
+  const Outcome held =
+      workspace.succeed("run duo -c r.family -s family -o held IRS=BP1 ICP=[k,energy] HOLD=[energy] UZR={} NMX=2");
+  CHECK(!contains(held.out, "first (label"));
 }
 
 TEST_CASE("coupled Duffing oscillators in phase, and out of phase with the energy held along the coupling") {
@@ -405,7 +409,8 @@ TEST_CASE("what a conservative family refuses") {
   const std::string from_label = "run osc -c r.family -s family -o new IRS=UZ1 ";
   check_refused(workspace, from_label + "PAR(d)=0.1", 1, "energy changes by -0.");
   check_refused(workspace, from_label + "PAR(d)=0.1", 1, "on segment 1 (field flow)");
-  check_refused(workspace, from_label + "CONSERVED=enrgy", 2, "no function of that name; it has x, v, energy");
+  for (const char* const icp : {"", " ICP=[d]"})
+    check_refused(workspace, from_label + "CONSERVED=enrgy" + icp, 2, "no function of that name; it has x, v, energy");
   check_refused(workspace, from_label + "ICP=[d,energy]", 2,
                 "CONSERVED = energy leaves no parameter of the problem free");
   check_refused(workspace, from_label + "ICP=[energy,d] ISW=2", 2, "IPS = 180, ISW = 2");
