@@ -72,6 +72,12 @@ bool solves_without_correction(PathFollower& follower, const Orbit& stored, cons
   return attempt.front().residual <= std::max(newton_settings(settings).tolerance_states, interpolated);
 }
 
+/// Newton's method may go far along the branch that crosses, whose orbits solve the equations as well.
+bool has_drifted(const Orbit& stored, const Orbit& corrected) {
+  constexpr double far = 1e-5;  // what the digits of files and the errors of a label move is much smaller
+  return (corrected.states - stored.states).cwiseAbs().maxCoeff() > far * (1.0 + stored.states.cwiseAbs().maxCoeff());
+}
+
 /// Files do not have the parameter that unfolds equations, which is zero at every solution.
 OrbitStart with_unfolding(OrbitStart start, const DefiningSystem& system) {
   if (!system.unfolding(start.orbit)) return start;
@@ -111,7 +117,8 @@ FirstPoint first_point(PathFollower& follower, const DefiningSystem& system, con
   if (fitting_direction && !selected.parameters_changed) {
     result = follower.start_along(point, *start.direction);
     if (start_is_branch_point(selected)) {
-      if (!result.converged() && solves_without_correction(follower, start.orbit, settings)) {
+      const bool is_lost = !result.converged() || has_drifted(start.orbit, point.orbit);
+      if (is_lost && solves_without_correction(follower, start.orbit, settings)) {
         point = follower.make_point(start.orbit);
         result.status = NewtonStatus::converged;
         as_stored = true;

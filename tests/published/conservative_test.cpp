@@ -9,6 +9,7 @@
 #include <boost/math/quadrature/gauss_kronrod.hpp>
 #include <boost/math/special_functions/ellint_1.hpp>
 #include <boost/math/tools/minima.hpp>
+#include <boost/math/tools/toms748_solve.hpp>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <string>
@@ -107,6 +108,26 @@ class ChainOfMasses {
     Eigen::VectorXd x(2 * n_);
     x << modes_ * (A * (w * (t - 0.5 * T)).cos()).matrix(), modes_ * (-A * w * (w * (t - 0.5 * T)).sin()).matrix();
     return x;
+  }
+
+  /// det(M + Id), M the derivative of one turn of period T with the impact: zero where a multiplier is -1.
+  double doubling(double T) const {
+    const Eigen::ArrayXd w = omega_.array();
+    const auto of_modes = [&](const Eigen::ArrayXd& factors) {
+      return Eigen::MatrixXd(modes_ * factors.matrix().asDiagonal() * modes_.transpose());
+    };
+    Eigen::MatrixXd flow(2 * n_, 2 * n_);
+    flow << of_modes((w * T).cos()), of_modes((w * T).sin() / w), of_modes(-w * (w * T).sin()), of_modes((w * T).cos());
+    const auto field = [&](const Eigen::VectorXd& x) {
+      Eigen::VectorXd f(2 * n_);
+      f << x.tail(n_), -of_modes(w.square()) * x.head(n_);
+      return f;
+    };
+    const Eigen::VectorXd before = field(state(T, T)), after = field(state(T, 0.0));
+    Eigen::MatrixXd jump = Eigen::MatrixXd::Identity(2 * n_, 2 * n_);
+    jump(2 * n_ - 1, 2 * n_ - 1) = -1.0;
+    jump.col(n_ - 1) += (after - jump * before) / before(n_ - 1);  // h_x f = -u_n'
+    return (jump * flow + Eigen::MatrixXd::Identity(2 * n_, 2 * n_)).determinant();
   }
 
   std::string formulas() const {
@@ -324,6 +345,53 @@ TEST_CASE("contact modes of a chain of 10 masses") {
   CHECK(printed_lambda(run_chain(workspace, chain, 41.0, "NTST=60, NCOL=5, NMX=60")) < rounding);
   check_velocities(workspace, chain);
   workspace.succeed("verify modes -p chain");
+}
+
+TEST_CASE("contact modes that are run twice cross the families of twice the period at BP") {
+  const auto [masses, T, mesh] = GENERATE(
+      table<int, double, std::string>({{2, 9.98, "NTST=40, NCOL=5, NMX=25"}, {10, 41.0, "NTST=60, NCOL=5, NMX=15"}}));
+  const Workspace workspace;
+  const ChainOfMasses chain(masses);
+  run_chain(workspace, chain, T, mesh);
+  workspace.succeed("resegment q.modes EP1 -q -p chain --to double -o two");
+  workspace.succeed("run chain -q -c two -s two -o two DSMAX=0.4");
+  const auto located = [&](const std::string& name, const std::string& type) {
+    std::vector<std::pair<double, double>> found;
+    const PointSection section = workspace.points(name).front();
+    for (const DiagnosticPoint& point : of_type(read_diagnostics(workspace.read("d." + name)), type)) {
+      const PointRow& row = with_label(workspace.points(name), point.label);
+      found.emplace_back(row.values[section.column("period")], row.values[section.column("energy")]);
+    }
+    return found;
+  };
+  const auto doublings = located("modes", "PD"), crossings = located("two", "BP");
+  REQUIRE(doublings.size() >= 2);
+  REQUIRE(crossings.size() == doublings.size());
+  for (std::size_t k = 0; k < doublings.size(); ++k) {
+    const auto [period, energy] = doublings[k];
+    CAPTURE(masses, period);
+    check_near(crossings[k].first, 2.0 * period, 1e-8 * period);
+    check_near(crossings[k].second, energy, 1e-8 * energy);
+    std::uintmax_t iterations = 60;
+    const auto exact =
+        boost::math::tools::toms748_solve([&](double t) { return chain.doubling(t); }, period - 1e-3, period + 1e-3,
+                                          boost::math::tools::eps_tolerance<double>(48), iterations);
+    check_near(period, exact.first, 1e-8 * period);
+    check_near(energy, chain.energy(exact.first), 1e-8 * energy);
+    // The same branch is found from both, at the same distance.
+    const auto first_energy = [&](const std::string& from, const std::string& label) {
+      workspace.succeed(
+          fmt::format("run chain -q -c r.{0} -s {0} -o new IRS={1}{2} ISW=-1 DS=0.01 NMX=1", from, label, k + 1));
+      workspace.succeed("verify new -p chain");
+      const std::vector<double> x = workspace.solutions("new").front().states.front();
+      const auto n = static_cast<Eigen::Index>(x.size() / 2);
+      const Eigen::Map<const Eigen::VectorXd> turns(x.data(), 2 * n);
+      CHECK((turns.head(n) - turns.tail(n)).lpNorm<Eigen::Infinity>() > 1e-4);
+      return located("new", "EP").front().second;
+    };
+    CHECK(first_energy("two", "BP") - energy ==
+          Approx(first_energy("modes", "PD") - energy).epsilon(1e-3).margin(1e-9));
+  }
 }
 
 TEST_CASE("contact modes of a chain of 50 masses") {
