@@ -27,21 +27,25 @@ std::optional<Complex> angle_of_pair(const Multipliers& multipliers) {
 }
 
 /// Type numbers of what is critical there: the tens digit of a point on a two-parameter curve, or its own number.
-std::vector<int> critical_types(const LabelledSolution& solution) {
+std::vector<int> critical_types(const LabelledSolution& solution, bool is_in_parameter) {
   if (keeps_contact(solution.problem_type)) return {};
   if (std::abs(solution.type) >= 10) return {std::abs(solution.type) / 10};
   std::vector<int> types = {solution.type};
   for (const UserPointKind& kind : solution.further)
     if (kind.kind == UserPointKind::other_type) types.push_back(kind.index);
+  if (!is_in_parameter)
+    std::erase_if(types, [](int type) {
+      return type == static_cast<int>(PointType::fold) || type == static_cast<int>(PointType::branch_point);
+    });
   return types;
 }
 
 }  // namespace
 
 Multipliers critical_multipliers(const LabelledSolution& solution, const Multipliers& stored,
-                                 const Multipliers& computed) {
+                                 const Multipliers& computed, bool is_in_parameter) {
   Multipliers critical;
-  for (const int type : critical_types(solution)) {
+  for (const int type : critical_types(solution, is_in_parameter)) {
     if (type == static_cast<int>(PointType::fold) || type == static_cast<int>(PointType::branch_point))
       critical.push_back(1.0);
     else if (type == static_cast<int>(PointType::period_doubling))

@@ -92,6 +92,12 @@ struct Largest {
   }
 };
 
+/// Do folds of this run have the multiplier 1? Those of a family without a parameter are extrema of what is conserved.
+bool is_in_parameter(const RunSettings& settings) {
+  if (!settings.held.empty()) return false;
+  return !settings.conserved.empty() || !is_monitor(settings, settings.free_parameters.front());
+}
+
 class Table {
  public:
   Table(const HybridSystem& system, const RunSettings& settings, double tolerance, std::ostream& screen)
@@ -111,10 +117,10 @@ class Table {
     }
     const Orbit x = orbit_of(solution);
     const auto stored = recorded != nullptr ? recorded->multipliers : std::vector<std::complex<double>>{};
-    const OrbitCheck check = family_.check(system_, settings_, x, stored, tolerance_,
-                                           [&](const std::vector<std::complex<double>>& computed) {
-                                             return critical_multipliers(solution, stored, computed);
-                                           });
+    const OrbitCheck check = family_.check(
+        system_, settings_, x, stored, tolerance_, [&](const std::vector<std::complex<double>>& computed) {
+          return critical_multipliers(solution, stored, computed, is_in_parameter(settings_));
+        });
     const bool is_inadmissible = recorded != nullptr ? !recorded->admissible : has_inadmissibilities(x);
     return rows(solution, check, is_inadmissible);
   }

@@ -33,6 +33,15 @@ TEST_CASE("labels of a branch and of two-parameter curves have their critical mu
   for (const int other : {0, 4, -4, 9, -9}) CHECK(critical(other).empty());
 }
 
+TEST_CASE("folds along a held quantity are none in a parameter") {
+  LabelledSolution solution;
+  solution.problem_type = 180;
+  for (const int type : {5, 6, 7}) {
+    solution.type = type;
+    CHECK(critical_multipliers(solution, {}, {}, false).size() == (type == 7 ? 1U : 0U));
+  }
+}
+
 TEST_CASE("a contact that is a fold too, grazing-flips, folds of grazing curves") {
   const UserPointKind contact{UserPointKind::contact, 1, 1, 0.5};
   CHECK(critical(-4, 180, {contact, {UserPointKind::other_type, 0, 5, 0.0}}) == Multipliers{1.0});
