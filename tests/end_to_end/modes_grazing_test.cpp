@@ -44,9 +44,7 @@ after any: flight until floor -> catch
 using Spring = std::array<double, 3>;
 constexpr double k = 10.0, d = 0.3, V = 1.0, r = 0.6;
 
-void spring_field(const Spring& u, Spring& f, double) {
-  f = {u[1], -1.0 - k * u[0] - d * u[2], 3.0 * (u[1] - u[2])};
-}
+void spring_field(const Spring& u, Spring& f, double) { f = {u[1], -1.0 - k * u[0] - d * u[2], 3.0 * (u[1] - u[2])}; }
 /// h_D less B, and its rate; theta is 0 in this mode.
 double height(const Spring& u) { return u[0] + 0.3 * u[2]; }
 double rate(const Spring& u) { return 1.9 * u[1] - 0.9 * u[2]; }
@@ -175,7 +173,7 @@ std::vector<std::pair<double, double>> columns_of(const std::string& sweep, cons
   return result;
 }
 
-// ---- a forced oscillator beside a spring whose force lags: contact leads to one state more ----------------------------
+// ---- a forced oscillator beside a spring whose force lags: contact leads to one state more ------------------------
 
 constexpr const char* stop = R"(par A=0.1, omega=0.8, k=15, c=0.1
 init s=0, u=1
@@ -296,9 +294,8 @@ TEST_CASE("a contact segment with a state that the mode before has not") {
       f[3] = u[3] * radial - omega * u[2];
     };
     std::array<double, 4> x{first[0], first[1], first[2], first[3]};
-    const double flight =
-        integrate_to(x, [&](const auto& u, auto& f, double) { oscillate(u, f, 0.0); },
-                     [](const auto& u) { return 1.0 - u[0]; });
+    const double flight = integrate_to(
+        x, [&](const auto& u, auto& f, double) { oscillate(u, f, 0.0); }, [](const auto& u) { return 1.0 - u[0]; });
     std::array<double, 5> y{x[0], x[1], x[2], x[3], 0.0};
     const double contact = integrate_to(
         y,
