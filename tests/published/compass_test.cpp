@@ -83,9 +83,50 @@ Step after_strike(const Step& before) {
   return after;
 }
 
+/// An impulse along the stance leg on its foot, just before heel strike, returns the share `push` of the energy that
+/// heel strike takes. Both feet are free between the two: the masses move with the hip and the angles (swing, stance).
+Step after_push_and_strike(const Step& before, double push) {
+  using Rates = Eigen::Vector4d;
+  using Point = Eigen::Matrix<double, 2, 4>;
+  // Of a point of a leg at this distance from the hip, by the hip's velocity and the rates.
+  const auto derivative = [&](Eigen::Index angle, double distance) {
+    Point J = Point::Zero();
+    J.leftCols<2>().setIdentity();
+    J.col(2 + angle) = -distance * across(before[static_cast<std::size_t>(angle)]);
+    return J;
+  };
+  const Point points[] = {derivative(0, 0.0), derivative(1, half), derivative(0, half)};
+  Eigen::Matrix4d inertia = Eigen::Matrix4d::Zero();
+  for (int k = 0; k < 3; ++k) inertia += masses[k] * points[k].transpose() * points[k];
+  const Eigen::Matrix4d mobility = inertia.inverse();
+  const Point landing = derivative(0, 1.0);
+  Rates rates;
+  rates << before[3] * across(before[1]), before[2], before[3];
+  const auto landed = [&](double impulse) -> Rates {
+    const Rates pushed = rates + mobility * derivative(1, 1.0).transpose() * (impulse * along(before[1]));
+    const Eigen::Matrix2d effect = landing * mobility * landing.transpose();
+    return pushed - mobility * landing.transpose() * effect.inverse() * (landing * pushed);
+  };
+  const auto energy = [&](const Rates& v) { return 0.5 * v.dot(inertia * v); };
+  // energy(landed(p)) = energy(landed(0)) + linear p + square p^2
+  const double plus = energy(landed(1.0)), none = energy(landed(0.0)), minus = energy(landed(-1.0));
+  const double linear = 0.5 * (plus - minus), square = 0.5 * (plus + minus) - none;
+  const double returned = push * (energy(rates) - none);
+  const Rates after = landed((std::sqrt(linear * linear + 4.0 * square * returned) - linear) / (2.0 * square));
+  return {before[1], before[0], after(3), after(2)};
+}
+
+/// Above the stance foot.
+double energy(const Step& x) {
+  double sum = 0.0;
+  for (int k = 0; k < 3; ++k)
+    sum += masses[k] * (0.5 * body[k].velocity(x).squaredNorm() + gravity * body[k].position(x).y());
+  return sum;
+}
+
 /// A step is known by half the angle between the legs after heel strike, and the rates then.
 struct Walk {
-  double phi, c = 0.0;  ///< slope in degrees, damper
+  double phi, c = 0.0, push = 0.0;  ///< slope in degrees, damper, push-off
 
   Step start(const Eigen::Vector3d& z) const { return {-z(0) - phi * degree, z(0) - phi * degree, z(1), z(2)}; }
   auto field() const {
@@ -108,7 +149,8 @@ struct Walk {
     auto swing = motion(start(z), [](const Step& x, double) { return x[1] - x[0]; });
     const Step passing = swing.next_fall();
     auto landing = motion(passing, [this](const Step& x, double) { return x[0] + x[1] + 2.0 * phi * degree; });
-    const Step next = after_strike(landing.next_fall());
+    const Step strike = landing.next_fall();
+    const Step next = push == 0.0 ? after_strike(strike) : after_push_and_strike(strike, push);
     return {{0.5 * (next[1] - next[0]), next[2], next[3]}, swing.time_of_fall() + landing.time_of_fall()};
   }
   Eigen::Vector3d steps(Eigen::Vector3d z, int count) const {
@@ -204,6 +246,49 @@ TEST_CASE("make -j2 in problems/compass: gaits and their bifurcations by shootin
              }));
   const SolutionEntry brief = chain.only("damped", "UZ");
   check_near(period(brief), level.step(gait(level, start_of(brief))).duration);
+}
+
+TEST_CASE("compass: the families of walks that conserve energy, and the slope that replaces the push-off") {
+  const MakefileRun chain("compass", "q.level q.uneven q.passive");
+  const auto energy_at = [&](const std::string& name, const SolutionEntry& orbit) {
+    return with_label(chain.points(name), orbit.label).values[chain.points(name).front().column("energy")];
+  };
+  // The walk with this push-off and energy: unknown are the start and phi, which unfolds the periodicity.
+  const auto walk_with = [](const SolutionEntry& orbit, double push, double given) {
+    Eigen::VectorXd near(4);
+    near << start_of(orbit), rounded(orbit.parameter(1));
+    return newton(near, 1e-9, [&](const Eigen::VectorXd& y) {
+      const Walk walk{y(3), 0.0, push};
+      const Eigen::Vector3d z = y.head(3);
+      Eigen::VectorXd defect(4);
+      defect << walk.step(z).z - z, energy(walk.start(z)) - given;
+      return defect;
+    });
+  };
+  for (const char* name : {"level", "uneven"})
+    for (const SolutionEntry& orbit : chain.solutions(name)) {
+      const double given = energy_at(name, orbit);
+      const bool is_known = std::abs(given - 150.0) < 1.0 || std::abs(given - 160.0) < 1.0;
+      if (!is_known) continue;  // else standing, at 147.15, or BP
+      CAPTURE(name, given);
+      const Eigen::VectorXd y = walk_with(orbit, 1.0, given);
+      CHECK(std::abs(y(3)) < 1e-9);
+      check_near(period(orbit), Walk{0.0, 0.0, 1.0}.step(y.head(3)).duration);
+    }
+  // At BP two multipliers are 1: that of the energy and another. With a third one m the products of two of the numbers
+  // 0, 0, m - 1 vanish.
+  const std::vector<double> x = chain.only("level", "BP").states.front();
+  const Eigen::Vector3d met(0.5 * (x[1] - x[0]), x[2], x[3]);
+  const Walk conservative{0.0, 0.0, 1.0};
+  CHECK((conservative.step(met).z - met).norm() < 1e-8);
+  const Eigen::Matrix3d change = conservative.derivative(met, 1) - Eigen::Matrix3d::Identity();
+  CHECK(std::abs(change.trace() * change.trace() - (change * change).trace()) < 1e-6);
+  CHECK(std::abs(change.trace()) > 0.1);
+  // Without the push-off, at the energy 150.
+  const SolutionEntry passive = chain.only("passive", "UZ");
+  CHECK(std::abs(passive.parameter(5)) < 1e-12);
+  check_near(passive.parameter(1), walk_with(passive, 0.0, 150.0)(3));
+  check_near(energy_at("passive", passive), 150.0);
 }
 
 TEST_CASE("compass: how far the foot is below the ground in mid-stance") {
