@@ -26,7 +26,6 @@ std::vector<Violation> inadmissibilities(const HybridSystem& system, const Signa
                                          double error, double leaving) {
   std::vector<Violation> result;
   const int m = x.shape.segments;
-  const int end_node = x.shape.nodes() - 1;
   const double* par = x.par.data();
   const double error_of_states = error * (1.0 + array_functions().range(x.states.data(), x.states.size()).largest);
   const double period = std::abs(x.period());
@@ -42,9 +41,9 @@ std::vector<Violation> inadmissibilities(const HybridSystem& system, const Signa
       const EventCourse& course = *course_of_event++;
       const double scale = scale_of(system, x, course);
       const bool leaves_out_start = course.at_nodes(0) < 0.0 && is_pinned_start(system, signature, x, s, event, scale);
-      const int last = event == v.event ? end_node - 1 : end_node;
+      const int last = x.shape.nodes_of(s) - (event == v.event ? 2 : 1);
       for (int k = leaves_out_start ? 1 : 0; k <= last; ++k)
-        if (const double h = course.at_nodes(k); h < worst.value) worst.value = h, worst.tau = x.tau(k);
+        if (const double h = course.at_nodes(k); h < worst.value) worst.value = h, worst.tau = x.tau(s, k);
       for (const EventMinimum& dip : polished_minima(system, signature, rule, x, course, -surely_negative * scale)) {
         const double uncertainty =
             2.0 * error_of_states * event_at(system, event, dip.state.data(), par).gradient.lpNorm<1>();

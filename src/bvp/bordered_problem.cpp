@@ -19,9 +19,7 @@ namespace tchat {
 namespace {
 
 /// The columns of the states at both ends of segment s.
-std::array<int, 2> end_columns(const OrbitShape& shape, int s) {
-  return {s * shape.nodes(), (s + 1) * shape.nodes() - 1};
-}
+std::array<int, 2> end_columns(const OrbitShape& shape, int s) { return {shape.first_node(s), shape.last_node(s)}; }
 
 /// The terms that row . v is the sum of, without their signs: its size, whatever the units of the unknowns are.
 double terms(const OrbitVector& row, const OrbitVector& v) {
@@ -106,7 +104,7 @@ Linearization BorderedProblem::linearize(const Orbit& x, const OrbitVector& row,
   outcome_ = Linearization::not_finite;
   null_vectors_known_ = false;
   row_along_.reset();
-  if (!condition_) close(row);
+  if (!condition_) close(x.shape, row);
   const auto integrals = static_cast<std::size_t>(system().integral_conditions());
   system().integral_gradients(x, reference_, condensed_.rule(), residual.integral.data(),
                               std::span(gradients_).first(integrals));
@@ -121,23 +119,21 @@ Linearization BorderedProblem::linearize(const Orbit& x, const OrbitVector& row,
 
 /// A row at the ends of segments, each of which counts as many times as there are nodes, as these share the weight of a
 /// segment.
-void BorderedProblem::close(const OrbitVector& row) {
-  const OrbitShape& shape = condensed_.shape();
+void BorderedProblem::close(const OrbitShape& shape, const OrbitVector& row) {
   double* value = closing_.data();
   for (int s = 0; s < shape.segments; ++s) {
     for (const int column : end_columns(shape, s))
-      for (int a = 0; a < shape.dimension; ++a) *value++ = shape.nodes() * row.states(a, column);
+      for (int a = 0; a < shape.dimension; ++a) *value++ = shape.mean_nodes() * row.states(a, column);
     *value++ = row.durations(s);
   }
   std::copy(row.globals.begin(), row.globals.end(), value);
 }
 
-double BorderedProblem::at_ends(const OrbitVector& row, const OrbitVector& v) const {
-  const OrbitShape& shape = condensed_.shape();
+double BorderedProblem::at_ends(const OrbitShape& shape, const OrbitVector& row, const OrbitVector& v) {
   double sum = 0.0;
   for (int s = 0; s < shape.segments; ++s)
     for (const int column : end_columns(shape, s)) sum += row.states.col(column).dot(v.states.col(column));
-  return shape.nodes() * sum + row.durations.dot(v.durations) + row.globals.dot(v.globals);
+  return shape.mean_nodes() * sum + row.durations.dot(v.durations) + row.globals.dot(v.globals);
 }
 
 /// The determinant with row and gradients is that with the closing rows, whose values on the null vectors are those of

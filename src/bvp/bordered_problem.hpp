@@ -90,8 +90,8 @@ class BorderedProblem {
   double signed_distance(const OrbitVector& row);
   /// CondensedSystem::singularity() with row and gradients in place of the closing rows of a condition.
   CondensedSystem::Singularity singularity(const OrbitVector& row);
-  /// What stands for this row of a branch, on v.
-  double at_ends(const OrbitVector& row, const OrbitVector& v) const;
+  /// What stands for this row of a branch, on v, of orbits of this shape.
+  static double at_ends(const OrbitShape& shape, const OrbitVector& row, const OrbitVector& v);
   /// Largest residual, the condition's included.
   double residual_size(const OrbitResidual& residual) const;
 
@@ -101,7 +101,7 @@ class BorderedProblem {
   static constexpr int most_null_vectors = OrbitCondition::most + 1;
   using Numbers = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, most_null_vectors, 1>;
 
-  void close(const OrbitVector& row);
+  void close(const OrbitShape& shape, const OrbitVector& row);
   Numbers on_null_vectors(const OrbitVector& row) const;
   double size_on_null_vectors(const OrbitVector& row) const;
   void find_null_vectors();

@@ -100,7 +100,7 @@ void BoundaryValueSystem::integral_values(const Orbit& x, const Orbit&, const Co
   std::fill_n(values, integral_conditions(), 0.0);
   if (integral_conditions() == 0) return;
   for (int s = 0; s < segments(); ++s)
-    for_each_gauss_point(x, rule, [&](int j, int g, double weight) {
+    for_each_gauss_point(x, rule, s, [&](int j, int g, double, double weight) {
       interpolate(x, rule, s, j, g, state_.data());
       system().value(FunctionKind::integrand, s + 1, state_.data(), x.par.data(), q_.data());
       for (std::size_t r = 0; r < q_.size(); ++r) values[r] += x.duration(s) * weight * q_[r];
@@ -116,12 +116,12 @@ void BoundaryValueSystem::integral_gradients(const Orbit& x, const Orbit&, const
   std::fill_n(values, count, 0.0);
   for (OrbitVector& row : rows) row.set_zero();
   for (int s = 0; s < segments(); ++s)
-    for_each_gauss_point(x, rule, [&](int j, int g, double weight) {
+    for_each_gauss_point(x, rule, s, [&](int j, int g, double, double weight) {
       interpolate(x, rule, s, j, g, state_.data());
       system().first(FunctionKind::integrand, s + 1, state_.data(), x.par.data(), active_, q_.data(),
                      q_by_state_.data(), q_by_parameter_.data());
       const double scale = x.duration(s) * weight;
-      const int column = s * x.shape.nodes() + j * x.shape.collocation;
+      const int column = x.shape.first_node(s) + j * x.shape.collocation;
       for (std::size_t r = 0; r < count; ++r) {
         values[r] += scale * q_[r];
         rows[r].durations(s) += weight * q_[r];

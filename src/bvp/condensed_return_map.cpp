@@ -20,11 +20,12 @@ CondensedReturnMap::CondensedReturnMap(const DefiningSystem& system, const Orbit
       n_(shape.dimension),
       size_(shape.segments * (2 * shape.dimension + 1)),
       condensed_weights_(static_cast<std::size_t>(shape.segments * shape.dimension)),
-      collocation_weights_(static_cast<std::size_t>(vectors),
-                           std::vector<double>(static_cast<std::size_t>(shape.segments * shape.intervals *
-                                                                        shape.collocation * shape.dimension))),
+      collocation_weights_(
+          static_cast<std::size_t>(vectors),
+          std::vector<double>(static_cast<std::size_t>(shape.total_intervals() * shape.collocation * shape.dimension))),
       curvature_(system.system(), FunctionKind::field, system.free_parameters(),
-                 std::min(intervals_at_once, shape.intervals) * shape.collocation, vectors),
+                 (shape.own ? intervals_at_once : std::min(intervals_at_once, shape.intervals)) * shape.collocation,
+                 vectors),
       f_(n_),
       d_(n_),
       hx_(n_),
@@ -123,8 +124,8 @@ void CondensedReturnMap::put_parameters(int k, const OrbitVector& v) {
 /// What the fields of all segments say.
 void CondensedReturnMap::add_segments(const Orbit& x, std::span<const OrbitVector> extended, OrbitVector& gradient) {
   for (int s = 0; s < shape_.segments; ++s)
-    for (int first = 0; first < shape_.intervals; first += intervals_at_once) {
-      const int last = std::min(first + intervals_at_once, shape_.intervals);
+    for (int first = 0; first < x.shape.intervals_of(s); first += intervals_at_once) {
+      const int last = std::min(first + intervals_at_once, x.shape.intervals_of(s));
       put_points(x, s, first, last, extended);
       put_weights(x, s, first, last, extended);
       curvature_.compute(system_.signature()[static_cast<std::size_t>(s)].field, (last - first) * shape_.collocation,
@@ -136,12 +137,12 @@ void CondensedReturnMap::add_segments(const Orbit& x, std::span<const OrbitVecto
 /// States and null vectors at the Gauss points of intervals first..last - 1.
 void CondensedReturnMap::put_points(const Orbit& x, int s, int first, int last, std::span<const OrbitVector> extended) {
   const IntervalBasis basis = this->basis(first, last);
-  const int node = first * shape_.collocation;
+  const int node = first * x.shape.collocation;
   const int directions = curvature_.directions();
   array_functions().interpolate(basis, x.node(s, node), curvature_.point(0), n_);
   for (int k = 0; k < directions; ++k)
     array_functions().interpolate(basis,
-                                  extended[static_cast<std::size_t>(k)].states.col(s * shape_.nodes() + node).data(),
+                                  extended[static_cast<std::size_t>(k)].states.col(x.shape.first_node(s) + node).data(),
                                   curvature_.direction(0, k), directions * n_);
 }
 
@@ -155,12 +156,14 @@ void CondensedReturnMap::put_weights(const Orbit& x, int s, int first, int last,
                                      std::span<const OrbitVector> extended) {
   const int c = shape_.collocation;
   const double duration = x.duration(s);
+  const double* const mesh = x.mesh_of(s);
   with_dimension(n_, [&](auto n) {
     int point = 0;
     for (int j = first; j < last; ++j) {
-      const double h = x.mesh[static_cast<std::size_t>(j + 1)] - x.mesh[static_cast<std::size_t>(j)];
+      const double h = mesh[j + 1] - mesh[j];
       for (int g = 0; g < c; ++g, ++point) {
-        const auto from = static_cast<std::size_t>(((s * shape_.intervals + j) * c + g) * n_);
+        const auto from =
+            static_cast<std::size_t>((x.shape.first_interval(s) + j) * c + g) * static_cast<std::size_t>(n_);
         double* const u = curvature_.value_weights(point);
         for (int a = 0; a < n; ++a) u[a] = 0.0;
         for (int k = 0; k < curvature_.directions(); ++k) {
@@ -178,8 +181,8 @@ void CondensedReturnMap::put_weights(const Orbit& x, int s, int first, int last,
 
 /// The directional derivative number k at a point, times its weights.
 template <class Dimension>
-double CondensedReturnMap::along(Dimension n, int s, int gauss_point, int point, int k) const {
-  const int from = (s * shape_.intervals * shape_.collocation + gauss_point) * n;
+double CondensedReturnMap::along(Dimension n, int gauss_point, int point, int k) const {
+  const int from = gauss_point * n;
   const double* const w = &collocation_weights_[static_cast<std::size_t>(k)][static_cast<std::size_t>(from)];
   const double* const directional = curvature_.directional(point, k);
   double sum = 0.0;
@@ -192,8 +195,10 @@ void CondensedReturnMap::add_intervals(const Orbit& x, int s, int first, int las
   const int c = shape_.collocation;
   const int points = (last - first) * c;
   const auto free = static_cast<int>(gradient.globals.size());
+  const double* const mesh = x.mesh_of(s);
+  const int first_point = x.shape.first_interval(s) * c;
   array_functions().add_interpolated(basis(first, last), curvature_.gradient(0), n_ + free,
-                                     gradient.states.col(s * shape_.nodes() + first * c).data());
+                                     gradient.states.col(x.shape.first_node(s) + first * c).data());
   for (int k = 0; k < free; ++k) {
     double sum = 0.0;
     for (int point = 0; point < points; ++point) sum += curvature_.gradient(point)[n_ + k];
@@ -202,10 +207,10 @@ void CondensedReturnMap::add_intervals(const Orbit& x, int s, int first, int las
   with_dimension(n_, [&](auto n) {
     int point = 0;
     for (int j = first; j < last; ++j) {
-      const double h = x.mesh[static_cast<std::size_t>(j + 1)] - x.mesh[static_cast<std::size_t>(j)];
+      const double h = mesh[j + 1] - mesh[j];
       double sum = 0.0;
       for (int g = 0; g < c; ++g, ++point)
-        for (int k = 0; k < curvature_.directions(); ++k) sum += along(n, s, j * c + g, point, k);
+        for (int k = 0; k < curvature_.directions(); ++k) sum += along(n, first_point + j * c + g, point, k);
       gradient.durations(s) += h * sum;
     }
   });
@@ -234,7 +239,7 @@ void CondensedReturnMap::add_ends(const Orbit& x, int s, const double* weights, 
   const HybridSystem& hybrid = system_.system();
   const std::vector<int>& free = system_.free_parameters();
   const IndexVector& index = system_.signature()[static_cast<std::size_t>(s)];
-  const int end = (s + 1) * shape_.nodes() - 1;
+  const int end = x.shape.last_node(s);
   direction_.head(n_) = v.states.col(end);
 
   section_change(x, s, v.states.col(end));

@@ -62,7 +62,7 @@ class CondensedReturnMap {
   IntervalBasis basis(int first, int last) const;
   void add_intervals(const Orbit& x, int s, int first, int last, OrbitVector& gradient);
   template <class Dimension>
-  double along(Dimension n, int s, int gauss_point, int point, int k) const;
+  double along(Dimension n, int gauss_point, int point, int k) const;
   void section_change(const Orbit& x, int s, const Eigen::Ref<const Eigen::VectorXd>& v);
   void add_ends(const Orbit& x, int s, const double* weights, const OrbitVector& v, OrbitVector& gradient);
 

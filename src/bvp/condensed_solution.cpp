@@ -135,8 +135,8 @@ CondensedSystem::Singularity CondensedSystem::singularity() const {
   if (condition.null_direction.empty()) return result;
   const double* direction = condition.null_direction.data();
   for (int s = 0; s < shape_.segments; ++s) {
-    std::copy_n(direction + start_unknown(s), n_, result.direction.states.col(s * shape_.nodes()).data());
-    std::copy_n(direction + end_unknown(s), n_, result.direction.states.col((s + 1) * shape_.nodes() - 1).data());
+    std::copy_n(direction + start_unknown(s), n_, result.direction.states.col(shape_.first_node(s)).data());
+    std::copy_n(direction + end_unknown(s), n_, result.direction.states.col(shape_.last_node(s)).data());
     result.direction.durations(s) = direction[duration_unknown(s)];
   }
   for (int g = 0; g < globals_; ++g) result.direction.globals(g) = direction[global_unknown(g)];

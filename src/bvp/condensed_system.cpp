@@ -196,8 +196,9 @@ void CondensedSystem::evaluate(const Orbit& x, OrbitResidual& residual) {
   double* coupling = residual.coupling.data();
   for (int s = 0; s < shape_.segments; ++s) {
     const IndexVector& v = system_.signature()[index(s)];
-    for (int j = 0; j < shape_.intervals; ++j) {
-      const double scale = (x.mesh[index(j + 1)] - x.mesh[index(j)]) * x.duration(s);
+    const double* const mesh = x.mesh_of(s);
+    for (int j = 0; j < x.shape.intervals_of(s); ++j) {
+      const double scale = (mesh[j + 1] - mesh[j]) * x.duration(s);
       for (int g = 0; g < shape_.collocation; ++g, collocation += n_) {
         with_dimension(n_, [&](auto n) { interpolate(n, x, s, j, g); });
         hybrid.value(FunctionKind::field, v.field, x_.data(), par, collocation);
@@ -214,6 +215,7 @@ void CondensedSystem::evaluate(const Orbit& x, OrbitResidual& residual) {
 
 Linearization CondensedSystem::linearize(const Orbit& x, std::span<const EndVector> closing,
                                          std::span<const OrbitVector> general, OrbitResidual& residual) {
+  adopt(x.shape);
   residual.of_collocation = {0.0, false};
   const Linearization condensed =
       threads_.segments > 1 ? condense_together(x, general, residual) : condense_one_by_one(x, general, residual);
@@ -221,6 +223,14 @@ Linearization CondensedSystem::linearize(const Orbit& x, std::span<const EndVect
   residual.of_collocation = {elimination_.largest_residual(), true};
   if (!assemble(x, general, residual)) return Linearization::not_finite;
   return factorize(closing) ? Linearization::ready : Linearization::singular;
+}
+
+/// Orbits of one branch have equally many intervals, which may be dealt out anew.
+void CondensedSystem::adopt(const OrbitShape& shape) {
+  if (shape.own == shape_.own) return;
+  assert(shape.in_common() == shape_.in_common());
+  shape_ = shape;
+  elimination_.deal_out(shape);
 }
 
 /// What the segments and the border leave.

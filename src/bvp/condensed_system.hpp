@@ -3,7 +3,8 @@
 /// At an orbit x the linearisation of the collocation equations (5.29) and of the coupling rows, bordered by b rows,
 /// reads J dx = -F. Each segment is reduced to n rows in its ends, its duration and the free parameters
 /// (segment_elimination.hpp), and SparseLu solves what is left, 2 n m + m + q unknowns that couple only neighbouring
-/// segments. Work and memory are linear in m and N. All arrays are allocated when the object is made.
+/// segments. Work and memory are linear in m and N. All arrays are allocated when the object is made; orbits whose
+/// segments have meshes of their own may have their intervals dealt out otherwise than the one linearised before.
 ///
 /// Border rows are general linear functionals of the unknowns, given as dual vectors. Each takes part in the
 /// elimination of every interval, but for closing rows, which have entries at the ends of segments alone, for durations
@@ -61,6 +62,7 @@ class CondensedSystem {
   CondensedSystem(const DefiningSystem& system, const OrbitShape& shape, BorderRows border, int threads = 1);
 
   const DefiningSystem& system() const { return system_; }
+  /// That of the orbit linearised last.
   const OrbitShape& shape() const { return shape_; }
   const CollocationRule& rule() const { return rule_; }
   int border_rows() const { return border_; }
@@ -147,7 +149,7 @@ class CondensedSystem {
   static std::size_t index(std::ptrdiff_t i) { return static_cast<std::size_t>(i); }
   /// Where the collocation residual of segment s begins; beyond the last one, how long it is.
   std::ptrdiff_t collocation_row(int s) const {
-    return static_cast<std::ptrdiff_t>(s) * shape_.intervals * shape_.collocation * n_;
+    return static_cast<std::ptrdiff_t>(shape_.first_interval(s)) * shape_.collocation * n_;
   }
   EndUnknowns unknowns() const { return {n_, shape_.segments}; }
   int start_unknown(int s) const { return unknowns().start(s); }
@@ -155,6 +157,7 @@ class CondensedSystem {
   int duration_unknown(int s) const { return unknowns().duration(s); }
   int global_unknown(int g) const { return unknowns().global(g); }
 
+  void adopt(const OrbitShape& shape);
   SparseLu make_sparse();
   template <class Dimension>
   void interpolate(Dimension n, const Orbit& x, int s, int j, int gauss_point);

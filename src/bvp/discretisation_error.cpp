@@ -16,19 +16,20 @@ double largest_residual(const HybridSystem& system, int field, const Orbit& x, c
   const int n = x.shape.dimension;
   const int c = x.shape.collocation;
   constexpr std::size_t usual_entries = 2048;
-  StackMatrix<usual_entries> slopes(n, 2 * static_cast<Eigen::Index>(x.shape.intervals));
-  array_functions().interpolate({rule.end_slope.data(), 2, c, n, x.shape.intervals}, x.node(s, 0), slopes.data(), n);
+  const int intervals = x.shape.intervals_of(s);
+  const double* const mesh = x.mesh_of(s);
+  StackMatrix<usual_entries> slopes(n, 2 * static_cast<Eigen::Index>(intervals));
+  array_functions().interpolate({rule.end_slope.data(), 2, c, n, intervals}, x.node(s, 0), slopes.data(), n);
   StackVector f(n);
   double largest = 0.0;
-  for (int j = 0; j <= x.shape.intervals; ++j) {
+  for (int j = 0; j <= intervals; ++j) {
     system.value(FunctionKind::field, field, x.node(s, j * c), x.par.data(), f.data());
     if (!std::all_of(f.begin(), f.end(), [](double value) { return std::isfinite(value); })) continue;
     // The end of one interval is the start of the next one.
     for (const int side : {0, 1}) {
       const int interval = j - side;
-      if (interval < 0 || interval >= x.shape.intervals) continue;
-      const auto at = static_cast<std::size_t>(interval);
-      const double time = (x.mesh[at + 1] - x.mesh[at]) * x.duration(s);
+      if (interval < 0 || interval >= intervals) continue;
+      const double time = (mesh[interval + 1] - mesh[interval]) * x.duration(s);
       const double* slope = slopes.col(2 * interval + side).data();
       for (int a = 0; a < n; ++a) largest = std::max(largest, std::abs(slope[a] - time * f(a)));
     }

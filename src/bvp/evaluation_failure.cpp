@@ -57,10 +57,10 @@ std::string evaluation_failure(const DefiningSystem& defining, const Collocation
   std::sort(rising.begin(), rising.end(), [&](int a, int b) { return rule.gauss(a) < rule.gauss(b); });
   for (int s = 0; s < x.shape.segments; ++s) {
     const IndexVector& v = defining.signature()[static_cast<std::size_t>(s)];
-    for (int j = 0; j < x.shape.intervals; ++j) {
-      const auto nodes = x.states.middleCols(s * x.shape.nodes() + j * c, c + 1);
-      const double left = x.mesh[static_cast<std::size_t>(j)];
-      const double h = x.mesh[static_cast<std::size_t>(j + 1)] - left;
+    for (int j = 0; j < x.shape.intervals_of(s); ++j) {
+      const auto nodes = x.states.middleCols(x.shape.first_node(s) + j * c, c + 1);
+      const double left = x.mesh_of(s)[j];
+      const double h = x.mesh_of(s)[j + 1] - left;
       for (const int g : rising) {
         const Eigen::VectorXd point = nodes * rule.value.row(g).transpose();
         const double tau = left + h * rule.gauss(g);

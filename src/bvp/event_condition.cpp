@@ -3,6 +3,7 @@
 #include "bvp/defining_system.hpp"
 
 #include <cmath>
+#include <utility>
 
 namespace tchat {
 
@@ -13,10 +14,11 @@ EventCondition::EventCondition(const DefiningSystem& system, const OrbitShape& s
 }
 
 bool EventCondition::evaluate(CondensedSystem&, const Orbit& x) {
-  const int node = at_end_ ? x.shape.nodes() - 1 : 0;
-  double* const by_state = gradient_.states.col(segment_ * x.shape.nodes() + node).data();
-  system_.system().first(FunctionKind::event, event_, x.node(segment_, node), x.par.data(), system_.free_parameters(),
-                         &value_, by_state, gradient_.globals.data());
+  const int column = at_end_ ? x.shape.last_node(segment_) : x.shape.first_node(segment_);
+  if (column != column_) gradient_.states.col(std::exchange(column_, column)).setZero();
+  double* const by_state = gradient_.states.col(column).data();
+  system_.system().first(FunctionKind::event, event_, x.states.col(column).data(), x.par.data(),
+                         system_.free_parameters(), &value_, by_state, gradient_.globals.data());
   return std::isfinite(value_) && all_finite(by_state, x.shape.dimension) &&
          all_finite(gradient_.globals.data(), system_.free_count());
 }

@@ -29,6 +29,7 @@ class EventCondition final : public OrbitCondition {
   int segment_;
   int event_;
   bool at_end_;
+  int column_ = 0;  // of the gradient that is not zero
   double value_ = 0.0;
   OrbitVector gradient_;
 };

@@ -29,7 +29,7 @@ class EventAlongSegment {
                     int event)
       : system_(system), field_(field), rule_(rule), x_(x), s_(s), event_(event) {}
 
-  double length(int j) const { return x_.mesh[static_cast<std::size_t>(j + 1)] - x_.mesh[static_cast<std::size_t>(j)]; }
+  double length(int j) const { return x_.mesh_of(s_)[j + 1] - x_.mesh_of(s_)[j]; }
 
   /// d h / d tau at sigma in [0, 1] of interval j, from the polynomial.
   double slope(int j, double sigma) const {
@@ -61,7 +61,7 @@ class EventAlongSegment {
     const double correction = std::abs(to_zero) <= x_.duration(s_) ? to_zero : 0.0;
     const double value = system_.event(event_, u.data(), par()) + 0.5 * rate * correction;
     u += correction * f;
-    const double tau = x_.mesh[static_cast<std::size_t>(j)] + sigma * length(j) + correction / x_.duration(s_);
+    const double tau = x_.mesh_of(s_)[j] + sigma * length(j) + correction / x_.duration(s_);
     return {snapped(tau), value, u};
   }
 
@@ -113,7 +113,7 @@ class EventAlongSegment {
   /// The nodes of interval j, one a column.
   Eigen::MatrixXd::ConstColsBlockXpr nodes(int j) const {
     const int c = x_.shape.collocation;
-    return x_.states.middleCols(s_ * x_.shape.nodes() + j * c, c + 1);
+    return x_.states.middleCols(x_.shape.first_node(s_) + j * c, c + 1);
   }
 
   const HybridSystem& system_;
@@ -130,7 +130,7 @@ std::array<int, 2> free_ends(const DefiningSystem& system, const Orbit& x, const
   const bool is_pinned =
       is_pinned_start(system.system(), system.signature(), x, s, course.event, scale_of(system.system(), x, course));
   const bool is_terminal = system.signature()[static_cast<std::size_t>(s)].event == course.event;
-  return {is_pinned ? -1 : 0, is_terminal ? -1 : x.shape.nodes() - 1};
+  return {is_pinned ? -1 : 0, is_terminal ? -1 : x.shape.nodes_of(s) - 1};
 }
 
 EventCourse course_of(const DefiningSystem& system, const CollocationRule& rule, const Orbit& x, int s, int event) {
@@ -180,7 +180,7 @@ bool is_pinned_start(const HybridSystem& system, const Signature& signature, con
 
 /// All in one call; where one point spoils it for others (an exception makes all of them unknown), each on its own.
 void EventCourseFinder::find_gradients(const HybridSystem& system, const Orbit& x, EventCourse& course) {
-  const int nodes = x.shape.nodes();
+  const int nodes = x.shape.nodes_of(course.segment);
   const int n = x.shape.dimension;
   const double* par = x.par.data();
   course.at_nodes.setConstant(nodes, NAN);
@@ -206,13 +206,15 @@ void EventCourseFinder::find_slopes(const CollocationRule& rule, const Orbit& x,
     rule.basis(static_cast<double>(i) / c, nullptr, slopes.data());
     for (int k = 0; k <= c; ++k) of_basis(i, k) = slopes[static_cast<std::size_t>(k)];
   }
-  rates_.resize(n, static_cast<Eigen::Index>(c + 1) * x.shape.intervals);
-  slopes_.resize(c + 1, x.shape.intervals);
-  array_functions().interpolate({of_basis.data(), c + 1, c, n, x.shape.intervals}, x.node(s, 0), rates_.data(), n);
+  const int intervals = x.shape.intervals_of(s);
+  const double* const mesh = x.mesh_of(s);
+  rates_.resize(n, static_cast<Eigen::Index>(c + 1) * intervals);
+  slopes_.resize(c + 1, intervals);
+  array_functions().interpolate({of_basis.data(), c + 1, c, n, intervals}, x.node(s, 0), rates_.data(), n);
   with_dimension(n, [&](auto entries) {
     const double* rate = rates_.data();
-    for (int j = 0; j < x.shape.intervals; ++j) {
-      const double length = x.mesh[static_cast<std::size_t>(j + 1)] - x.mesh[static_cast<std::size_t>(j)];
+    for (int j = 0; j < intervals; ++j) {
+      const double length = mesh[j + 1] - mesh[j];
       for (int i = 0; i <= c; ++i, rate += entries) {
         const double* gradient = gradients_.col(j * c + i).data();
         double slope = 0.0;
@@ -229,7 +231,7 @@ void EventCourseFinder::find_dips(const HybridSystem& system, int field, const C
   const int c = x.shape.collocation;
   bool risen = false;
   double before = 0.0;
-  for (int j = 0; j < x.shape.intervals; ++j) {
+  for (int j = 0; j < x.shape.intervals_of(course.segment); ++j) {
     for (int i = 0; i <= c; ++i) {
       const double sigma = static_cast<double>(i) / c;
       const double slope = slopes_(i, j);
@@ -303,8 +305,8 @@ std::vector<EventMinimum> least_candidates(const DefiningSystem& system, const C
   std::vector<EventMinimum> candidates;
   for (const int node : free_ends(system, x, course))
     if (node >= 0)
-      candidates.push_back(
-          {x.tau(node), course.at_nodes(node), Vector::Map(x.node(course.segment, node), x.shape.dimension)});
+      candidates.push_back({x.tau(course.segment, node), course.at_nodes(node),
+                            Vector::Map(x.node(course.segment, node), x.shape.dimension)});
   for (EventMinimum& minimum : polished_minima(system.system(), system.signature(), rule, x, course))
     candidates.push_back(std::move(minimum));
   return candidates;

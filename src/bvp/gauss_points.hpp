@@ -8,12 +8,14 @@
 
 namespace tchat {
 
-/// Calls use(interval, Gauss point, h w): its weight in an integral over tau from 0 to 1.
+/// Calls use(interval, Gauss point, h, h w) for segment s: the interval's length, and the point's weight in an integral
+/// over tau from 0 to 1.
 template <class Use>
-void for_each_gauss_point(const Orbit& x, const CollocationRule& rule, const Use& use) {
-  for (int j = 0; j < x.shape.intervals; ++j) {
-    const double h = x.mesh[static_cast<std::size_t>(j + 1)] - x.mesh[static_cast<std::size_t>(j)];
-    for (int g = 0; g < rule.points(); ++g) use(j, g, h * rule.weights(g));
+void for_each_gauss_point(const Orbit& x, const CollocationRule& rule, int s, const Use& use) {
+  const double* const mesh = x.mesh_of(s);
+  for (int j = 0; j < x.shape.intervals_of(s); ++j) {
+    const double h = mesh[j + 1] - mesh[j];
+    for (int g = 0; g < rule.points(); ++g) use(j, g, h, h * rule.weights(g));
   }
 }
 

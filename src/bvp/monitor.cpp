@@ -141,7 +141,7 @@ class VelocityMonitor final : public Monitor {
     by_state_.noalias() += fx_.transpose() * hx_;
     by_parameter_.noalias() += fp_.transpose() * hx_;
     row.set_zero();
-    row.states.col((segment_ + 1) * x.shape.nodes() - 1) = by_state_;
+    row.states.col(x.shape.last_node(segment_)) = by_state_;
     row.globals = by_parameter_;
     return result;
   }
@@ -168,7 +168,7 @@ class QuantityMonitor : public Monitor {
   /// nodes and state_ is the state. Returns the quantity.
   double add(const Orbit& x, int s, int j, const double* weights, double factor, OrbitVector& row) const {
     const double value = function_.first(state_.data(), x.par.data(), by_state_.data(), by_parameter_.data());
-    const int column = s * x.shape.nodes() + j * x.shape.collocation;
+    const int column = x.shape.first_node(s) + j * x.shape.collocation;
     for (int i = 0; i <= x.shape.collocation; ++i)
       for (int a = 0; a < x.shape.dimension; ++a) row.states(a, column + i) += factor * weights[i] * by_state_(a);
     row.globals += factor * by_parameter_;
@@ -190,7 +190,7 @@ class EndMonitor final : public QuantityMonitor {
   double gradient(const Orbit& x, const CollocationRule&, OrbitVector& row) const override {
     row.set_zero();
     const double result = function_.first(place(x), x.par.data(), by_state_.data(), by_parameter_.data());
-    row.states.col(at_end_ ? (segment_ + 1) * x.shape.nodes() - 1 : segment_ * x.shape.nodes()) = by_state_;
+    row.states.col(at_end_ ? x.shape.last_node(segment_) : x.shape.first_node(segment_)) = by_state_;
     row.globals = by_parameter_;
     return result;
   }
@@ -225,7 +225,7 @@ class IntegralMonitor final : public QuantityMonitor {
     double result = 0.0;
     for (int s = first_; s <= last_; ++s) {
       const double scale = x.duration(s) / divisor;
-      for_each_gauss_point(x, rule, [&](int j, int g, double weight) {
+      for_each_gauss_point(x, rule, s, [&](int j, int g, double, double weight) {
         interpolate(x, rule, s, j, g, state_.data());
         for (int i = 0; i <= rule.points(); ++i) weights_[static_cast<std::size_t>(i)] = rule.value(g, i);
         row.durations(s) += weight / divisor * add(x, s, j, weights_.data(), scale * weight, row);
@@ -239,7 +239,7 @@ class IntegralMonitor final : public QuantityMonitor {
  private:
   double of_segment(const Orbit& x, const CollocationRule& rule, int s) const {
     double sum = 0.0;
-    for_each_gauss_point(x, rule, [&](int j, int g, double weight) {
+    for_each_gauss_point(x, rule, s, [&](int j, int g, double, double weight) {
       interpolate(x, rule, s, j, g, state_.data());
       sum += weight * function_.value(state_.data(), x.par.data());
     });
@@ -311,14 +311,14 @@ class ExtremumMonitor final : public QuantityMonitor {
     int node = 0;
     double best = -std::numeric_limits<double>::infinity();
     for (int s = first_; s <= last_; ++s)
-      for (int k = 0; k < x.shape.nodes(); ++k)
+      for (int k = 0; k < x.shape.nodes_of(s); ++k)
         if (const double value = sign_ * function_.value(x.node(s, k), x.par.data()); value > best)
           best = value, segment = s, node = k;
     const int c = x.shape.collocation;
-    Place place{segment, std::min(node / c, x.shape.intervals - 1), 0.0, sign_ * best};
+    Place place{segment, std::min(node / c, x.shape.intervals_of(segment) - 1), 0.0, sign_ * best};
     place.sigma = static_cast<double>(node - place.interval * c) / c;
     if (node > 0) refine(x, rule, node - 1, place);
-    if (node + 1 < x.shape.nodes()) refine(x, rule, node, place);
+    if (node + 1 < x.shape.nodes_of(segment)) refine(x, rule, node, place);
     return place;
   }
 

@@ -4,14 +4,23 @@
 
 namespace tchat {
 
-double Orbit::tau(int k) const {
+OwnIntervals::OwnIntervals(const std::vector<int>& counts) {
+  std::vector<int> starts{0};
+  for (const int count : counts) starts.push_back(starts.back() + count);
+  starts_ = std::make_shared<const std::vector<int>>(std::move(starts));
+}
+
+OrbitShape OrbitShape::with_own_meshes() const {
+  OrbitShape result = *this;
+  result.own = OwnIntervals(std::vector<int>(static_cast<std::size_t>(segments), intervals));
+  return result;
+}
+
+double Orbit::tau(int s, int k) const {
   const int c = shape.collocation;
-  const int j = k / c;
   const int i = k % c;
-  if (i == 0) return mesh[static_cast<std::size_t>(j)];
-  const double left = mesh[static_cast<std::size_t>(j)];
-  const double right = mesh[static_cast<std::size_t>(j + 1)];
-  return left + (right - left) * i / c;
+  const double* const left = mesh_of(s) + k / c;
+  return i == 0 ? *left : *left + (left[1] - *left) * i / c;
 }
 
 std::vector<double> Orbit::node_times() const {
@@ -23,6 +32,16 @@ std::vector<double> Orbit::node_times() const {
 std::vector<double> uniform_mesh(int intervals) {
   std::vector<double> mesh(static_cast<std::size_t>(intervals) + 1);
   for (int j = 0; j <= intervals; ++j) mesh[static_cast<std::size_t>(j)] = static_cast<double>(j) / intervals;
+  return mesh;
+}
+
+std::vector<double> uniform_mesh(const OrbitShape& shape) {
+  if (!shape.own) return uniform_mesh(shape.intervals);
+  std::vector<double> mesh;
+  for (int s = 0; s < shape.segments; ++s) {
+    const std::vector<double> of_segment = uniform_mesh(shape.intervals_of(s));
+    mesh.insert(mesh.end(), of_segment.begin(), of_segment.end());
+  }
   return mesh;
 }
 

@@ -13,7 +13,7 @@ double event_scale(const HybridSystem& system, const Orbit& x, int event) {
   if (x.shape.stored_nodes() == 1) return event_at(system, event, x.end(0), x.par.data()).scale(x.end(0));
   double largest = 0.0;
   for (int s = 0; s < x.shape.segments; ++s)
-    for (int k = 0; k < x.shape.nodes(); k += x.shape.collocation)
+    for (int k = 0; k < x.shape.nodes_of(s); k += x.shape.collocation)
       largest = std::max(largest, std::abs(system.event(event, x.node(s, k), x.par.data())));
   return largest;
 }

@@ -52,8 +52,7 @@ void PeriodicOrbitSystem::integral_values(const Orbit& x, const Orbit& reference
   for (const int s : without_event_) {
     double phase = 0.0;
     double speed = 0.0;
-    for_each_gauss_point(x, rule, [&](int j, int g, double weight) {
-      const double h = x.mesh[static_cast<std::size_t>(j + 1)] - x.mesh[static_cast<std::size_t>(j)];
+    for_each_gauss_point(x, rule, s, [&](int j, int g, double h, double weight) {
       interpolate(x, rule, s, j, g, difference_.data());
       interpolate(reference, rule, s, j, g, slope_.data());
       for (int a = 0; a < n; ++a) difference_[static_cast<std::size_t>(a)] -= slope_[static_cast<std::size_t>(a)];
@@ -75,10 +74,9 @@ void PeriodicOrbitSystem::integral_gradients(const Orbit& x, const Orbit& refere
     OrbitVector& row = rows[r];
     row.set_zero();
     double speed = 0.0;
-    for_each_gauss_point(x, rule, [&](int j, int g, double weight) {
-      const double h = x.mesh[static_cast<std::size_t>(j + 1)] - x.mesh[static_cast<std::size_t>(j)];
+    for_each_gauss_point(x, rule, s, [&](int j, int g, double h, double weight) {
       slope_at(reference, rule, s, j, g, slope_.data());
-      const int column = s * x.shape.nodes() + j * x.shape.collocation;
+      const int column = x.shape.first_node(s) + j * x.shape.collocation;
       for (int a = 0; a < dimension(); ++a) {
         const double slope = slope_[static_cast<std::size_t>(a)];
         speed += weight / (h * h) * slope * slope;

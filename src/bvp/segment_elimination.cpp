@@ -16,11 +16,10 @@ namespace {
 
 LaneArray lane_zeros(std::ptrdiff_t count) { return LaneArray(static_cast<std::size_t>(count * lanes), 0.0); }
 
-std::vector<int> lanes_in_use(const LaneSchedule& schedule) {
-  std::vector<int> result;
-  for (int l = 0; l < lanes; ++l)
-    if (schedule.size(l) > 0) result.push_back(l);
-  return result;
+/// How many groups the segments have at most, however their intervals are dealt out.
+std::ptrdiff_t most_groups(const OrbitShape& shape) {
+  const std::ptrdiff_t m = shape.segments;
+  return shape.own ? (m * shape.intervals + m * (lanes - 1)) / lanes : m * LaneSchedule(shape.intervals).groups();
 }
 
 }  // namespace
@@ -39,23 +38,19 @@ SegmentElimination::SegmentElimination(const OrbitShape& shape, int scalars, int
       columns_(scalars + 1),
       border_(border),
       rule_(rule),
-      schedule_(shape.intervals),
-      groups_(schedule_.groups()),
+      plans_(index(shape.segments)),
+      first_groups_(index(shape.segments + 1)),
       interval_(shape.collocation * n_, (shape.collocation - 1) * n_, (shape.collocation + 1) * n_ + columns_),
       join_(2 * n_, n_, 3 * n_ + columns_),
       top_join_(join_kernel(n_, columns_)),
-      joins_(joins_of_halves(groups_)),
-      levels_(levels_of(joins_)),
-      top_lanes_(lanes_in_use(schedule_)),
-      top_joins_(joins_of_halves(static_cast<int>(top_lanes_.size()))),
       within_(threads.within),
-      kept_segments_(threads.segments > 1 ? shape.segments : 1),
-      kept_groups_(threads.segments > 1 || threads.within > 1 ? groups_ : 1),
-      outcomes_(index(groups_)) {
-  const std::ptrdiff_t blocks = block(shape.segments, 0);
-  const std::ptrdiff_t joins = static_cast<std::ptrdiff_t>(shape.segments) * (groups_ - 1);
-  number_of_middle_.resize(index(groups_));
-  for (const Join& at : joins_) number_of_middle_[index(at.middle)] = at.number;
+      keeps_segments_(threads.segments > 1),
+      keeps_groups_(threads.within > 1) {
+  deal_out(shape);
+  const std::ptrdiff_t blocks = most_groups(shape);
+  const std::ptrdiff_t joins = blocks - shape.segments;
+  const std::ptrdiff_t of_segment = shape.own ? blocks : plan(0).groups;
+  outcomes_.resize(index(of_segment));
   const int interval_rows = interval_.rows() + border_;
   const int join_rows = join_.rows() + border_;
   interval_blocks_ = {blocks, interval_.block_size(border_)};
@@ -78,7 +73,7 @@ SegmentElimination::SegmentElimination(const OrbitShape& shape, int scalars, int
   nodes_ = lane_zeros((c + 1) * n_);
   points_ = lane_zeros(c * n_);
   zero_rhs_ = lane_zeros(std::max(interval_rows, join_rows));
-  const std::ptrdiff_t kept = static_cast<std::ptrdiff_t>(kept_segments_) * kept_groups_;
+  const std::ptrdiff_t kept = keeps_segments_ ? blocks : keeps_groups_ ? of_segment : 1;
   f_ = derivatives_ = {kept, c * n_ * lanes};
   fx_ = {kept, c * n_ * n_ * lanes};
   fp_ = {kept, c * n_ * (scalars_ - 1) * lanes};
@@ -95,38 +90,20 @@ SegmentElimination::SegmentElimination(const OrbitShape& shape, int scalars, int
   top_local_ = {workers, top_join_.width()};
 }
 
-/// Pieces before those that they are part of, in an order that goes on with what was made last.
-std::vector<SegmentElimination::Join> SegmentElimination::joins_of_halves(int pieces) {
-  std::vector<Join> result;
-  std::vector<Join> open{{0, halfway(0, pieces), pieces}};
-  while (!open.empty()) {  // a piece, its right half, its left half: the reverse of the order wanted
-    const Join at = open.back();
-    open.pop_back();
-    if (at.last - at.first < 2) continue;
-    result.push_back(at);
-    open.push_back({at.first, halfway(at.first, at.middle), at.middle});
-    open.push_back({at.middle, halfway(at.middle, at.last), at.last});
-  }
-  std::reverse(result.begin(), result.end());
-  for (std::size_t i = 0; i < result.size(); ++i) result[i].number = static_cast<int>(i);
-  return result;
+/// Made when it is needed first; segments of equally many intervals have one in common.
+const SegmentPlan& SegmentElimination::plan_for(int intervals) {
+  const auto known = std::find_if(known_plans_.begin(), known_plans_.end(),
+                                  [&](const auto& plan) { return plan->schedule.intervals() == intervals; });
+  if (known != known_plans_.end()) return **known;
+  return *known_plans_.emplace_back(std::make_unique<const SegmentPlan>(intervals));
 }
 
-/// A join is of the level after those of its two pieces.
-std::vector<std::vector<SegmentElimination::Join>> SegmentElimination::levels_of(const std::vector<Join>& joins) {
-  std::vector<std::vector<Join>> levels;
-  for (const Join& at : joins) {
-    std::size_t level = 0;
-    for (int pieces = 1; pieces < at.last - at.first; pieces *= 2) ++level;
-    levels.resize(std::max(levels.size(), level));
-    levels[level - 1].push_back(at);
+void SegmentElimination::deal_out(const OrbitShape& shape) {
+  shape_ = shape;
+  for (int s = 0; s < shape.segments; ++s) {
+    plans_[index(s)] = &plan_for(shape.intervals_of(s));
+    first_groups_[index(s + 1)] = first_groups_[index(s)] + plan(s).groups;
   }
-  return levels;
-}
-
-/// The mesh node where a piece of a lane begins; of one beyond the last, where the segment ends.
-int SegmentElimination::top_node(int piece) const {
-  return piece < static_cast<int>(top_lanes_.size()) ? schedule_.start(top_lanes_[index(piece)]) : shape_.intervals;
 }
 
 namespace {
@@ -142,32 +119,34 @@ Linearization worst(std::span<const Linearization> outcomes) {
 
 Linearization SegmentElimination::condense(int s, const HybridSystem& system, int field, std::span<const int> active,
                                            const Orbit& x, std::span<const OrbitVector> rows, double* collocation) {
+  const int groups = plan(s).groups;
   within_.run(
-      groups_, [&](int group) { evaluate_group(s, group, system, field, active, x); },
+      groups, [&](int group) { evaluate_group(s, group, system, field, active, x); },
       [&](int group, int thread) { outcomes_[index(group)] = condense_group(s, group, x, rows, collocation, thread); });
-  if (const Linearization outcome = worst(outcomes_); outcome != Linearization::ready) return outcome;
+  if (const Linearization outcome = worst(std::span(outcomes_).first(index(groups))); outcome != Linearization::ready)
+    return outcome;
   return join_groups(s) && join_lanes(s) ? Linearization::ready : Linearization::singular;
 }
 
 void SegmentElimination::evaluate(int s, const HybridSystem& system, int field, std::span<const int> active,
                                   const Orbit& x) {
-  assert(kept_segments_ == shape_.segments && kept_groups_ == groups_);
-  for (int group = 0; group < groups_; ++group) evaluate_group(s, group, system, field, active, x);
+  assert(keeps_segments_);
+  for (int group = 0; group < plan(s).groups; ++group) evaluate_group(s, group, system, field, active, x);
 }
 
 Linearization SegmentElimination::condense_evaluated(int s, const Orbit& x, std::span<const OrbitVector> rows,
                                                      double* collocation, int thread) {
   Linearization all = Linearization::ready;
-  for (int group = 0; group < groups_; ++group)
+  for (int group = 0; group < plan(s).groups; ++group)
     all = worst(std::array{all, condense_group(s, group, x, rows, collocation, thread)});
   if (all != Linearization::ready) return all;
-  for (const Join& at : joins_)
+  for (const Join& at : plan(s).joins)
     if (!join(s, at)) return Linearization::singular;
   return join_lanes(s) ? Linearization::ready : Linearization::singular;
 }
 
 double SegmentElimination::largest_residual() const {
-  return *std::max_element(largest_residuals_.begin(), largest_residuals_.end());
+  return *std::max_element(largest_residuals_.begin(), largest_residuals_.begin() + first_groups_.back());
 }
 
 Linearization SegmentElimination::condense_group(int s, int group, const Orbit& x, std::span<const OrbitVector> rows,
@@ -183,17 +162,17 @@ bool SegmentElimination::eliminate_group(int s, int group) {
 }
 
 bool SegmentElimination::join_groups(int s) {
-  for_joins([&](const Join& at, int) {
+  for_joins(s, [&](const Join& at, int) {
     outcomes_[index(at.middle)] = join(s, at) ? Linearization::ready : Linearization::singular;
   });
-  return worst(outcomes_) == Linearization::ready;
+  return worst(std::span(outcomes_).first(index(plan(s).groups))) == Linearization::ready;
 }
 
 LanePiece SegmentElimination::piece(int s, int first, int last) const {
   const bool one_interval = last - first == 1;
   const LaneKernel& kernel = one_interval ? interval_ : join_;
-  const double* block =
-      one_interval ? interval_blocks_[this->block(s, first)] : join_blocks_[this->block(s, join_of(first, last))];
+  const double* block = one_interval ? interval_blocks_[this->block(s, first)]
+                                     : join_blocks_[this->block(s, plan(s).join_of(first, last))];
   const int p = kernel.pivots(), stride = kernel.stride();
   return {block + (p * stride + p) * lanes, block + (kernel.rows() * stride + p) * lanes, stride};
 }
@@ -204,7 +183,7 @@ bool SegmentElimination::join(int s, const Join& at) {
   const LanePiece left = piece(s, at.first, at.middle);
   assembly_.join({n_, columns_, border_, join_.stride()}, left, piece(s, at.middle, at.last), target);
   for (int l = 0; l < lanes; ++l)
-    if (passes(at, l)) pass_on(left, l, target);
+    if (plan(s).passes(at, l)) pass_on(left, l, target);
   return join_.eliminate(target, border_, join_swaps_[b], join_blocks_.behind(b)) == 0;
 }
 
@@ -236,17 +215,18 @@ const double* SegmentElimination::top_piece(int s, int first, int last, int& wid
 
 /// The joins between lanes: columns (middle | first | last | scalars), rows (left piece | right piece | border).
 bool SegmentElimination::join_lanes(int s) {
-  const LanePiece all = piece(s, 0, groups_);
-  const int pieces = static_cast<int>(top_lanes_.size());
+  const SegmentPlan& plan = this->plan(s);
+  const LanePiece all = piece(s, 0, plan.groups);
+  const int pieces = static_cast<int>(plan.top_lanes.size());
   for (int k = 0; k < pieces; ++k) {
     double* to = lane_pieces_[top_block(s, k)];
     for (int a = 0; a < n_; ++a, to += length())
-      take_lane(all.rows + a * all.stride * lanes, top_lanes_[index(k)], length(), to);
+      take_lane(all.rows + a * all.stride * lanes, plan.top_lanes[index(k)], length(), to);
     for (int r = 0; r < border_; ++r, to += length())
-      take_lane(all.border + r * all.stride * lanes, top_lanes_[index(k)], length(), to);
+      take_lane(all.border + r * all.stride * lanes, plan.top_lanes[index(k)], length(), to);
   }
   const int width = top_join_.width();
-  for (const Join& at : top_joins_) {
+  for (const Join& at : plan.top_joins) {
     double* target = top_blocks_[top_block(s, at.middle)];
     std::fill_n(target, (top_join_.rows() + border_) * width, 0.0);
     int left_width = 0;
@@ -287,13 +267,14 @@ void SegmentElimination::for_pivots(const Work& work) const {
     return result;
   };
   for (int s = 0; s < shape_.segments; ++s) {
-    for (int group = 0; group < groups_; ++group)
+    const SegmentPlan& plan = this->plan(s);
+    for (int group = 0; group < plan.groups; ++group)
       of_lanes(interval_, interval_blocks_[block(s, group)], interval_swaps_[block(s, group)],
-               lanes_where([&](int l) { return schedule_.holds(group, l); }));
-    for (const Join& at : joins_)
+               lanes_where([&](int l) { return plan.schedule.holds(group, l); }));
+    for (const Join& at : plan.joins)
       of_lanes(join_, join_blocks_[block(s, at)], join_swaps_[block(s, at)],
-               lanes_where([&](int l) { return !passes(at, l); }));
-    for (const Join& at : top_joins_) {
+               lanes_where([&](int l) { return !plan.passes(at, l); }));
+    for (const Join& at : plan.top_joins) {
       const double* block = top_blocks_[top_block(s, at.middle)];
       const int* swaps = top_swaps_[top_block(s, at.middle)];
       for (int k = 0; k < n_; ++k) work(block[std::ptrdiff_t{k} * top_join_.width() + k], swaps[k] != k);

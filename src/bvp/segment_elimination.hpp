@@ -16,7 +16,7 @@
 ///   levels at most, by little in practice.
 ///
 /// Border rows are eliminated on the way. Work and memory are linear in the number of intervals. All arrays are
-/// allocated when the object is made.
+/// allocated when the object is made, but for the plan of a number of intervals that no segment had before.
 ///
 /// Several threads: segments have nothing to do with one another, and neither have the groups of a segment, nor joins
 /// of one level. Whoever has a piece writes to its own blocks alone, so that results do not depend on the threads to
@@ -25,11 +25,13 @@
 /// where they are eliminated, joined and solved: processors may share no cache.
 #pragma once
 
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "bvp/collocation_rule.hpp"
 #include "bvp/orbit.hpp"
+#include "bvp/segment_plan.hpp"
 #include "hybrid/hybrid_system.hpp"
 #include "linear_algebra/block_array.hpp"
 #include "linear_algebra/block_kernel.hpp"
@@ -41,27 +43,6 @@ namespace tchat {
 /// Outcome of a linearisation; factors exist only when it is `ready`. `condition_lost`: the condition of a
 /// two-parameter curve cannot be evaluated.
 enum class Linearization { ready, not_finite, singular, condition_lost };
-
-/// Which interval of a segment is where. Lanes have equally many intervals or one less: those have none in the last
-/// group, the last lane always has one.
-class LaneSchedule {
- public:
-  explicit LaneSchedule(int intervals) : intervals_(intervals) {}
-  /// Sets of one interval in each lane.
-  int groups() const { return (intervals_ + lanes - 1) / lanes; }
-  /// The first interval of a lane; that of lane `lanes` is the number of intervals.
-  int start(int lane) const { return static_cast<int>(static_cast<long>(lane) * intervals_ / lanes); }
-  int size(int lane) const { return start(lane + 1) - start(lane); }
-  bool holds(int group, int lane) const { return group < size(lane); }
-  /// The lane whose interval a lane computes with in a group: its own, or where it has none the last one's.
-  int source(int group, int lane) const { return holds(group, lane) ? lane : lanes - 1; }
-  int interval(int group, int lane) const { return start(source(group, lane)) + group; }
-  /// The mesh node of a lane before its interval `group`, or where it has none at its end.
-  int node(int group, int lane) const { return group < size(lane) ? start(lane) + group : start(lane + 1); }
-
- private:
-  int intervals_;
-};
 
 /// A product that may be larger or smaller than any double: mantissa * 2^exponent.
 struct LargeProduct {
@@ -95,6 +76,10 @@ class SegmentElimination {
   /// different segments as `threads` says may be worked on by different threads at a time.
   SegmentElimination(const OrbitShape& shape, int scalars, int border, const CollocationRule& rule,
                      const EliminationThreads& threads = {});
+
+  /// For orbits that have as many intervals, dealt out to segments with meshes of their own in another way. What was
+  /// eliminated is lost.
+  void deal_out(const OrbitShape& shape);
 
   /// The collocation rows of segment s, whose field has this number, at x and `rows`' parts of the segment, eliminated.
   /// `collocation` becomes their residual, unless it is null: interval, Gauss point, component. The same as evaluate()
@@ -136,24 +121,16 @@ class SegmentElimination {
   int determinant_sign() const;
 
  private:
-  /// The elimination of what is between pieces first..middle-1 and middle..last-1.
-  struct Join {
-    int first, middle, last;
-    int number = 0;  // among all joins in the order in which they are done
-  };
-  static std::vector<Join> joins_of_halves(int pieces);
-  static std::vector<std::vector<Join>> levels_of(const std::vector<Join>& joins);
-  static int halfway(int first, int last) { return first + (last - first) / 2; }
+  using Join = PieceJoin;
+  static int halfway(int first, int last) { return SegmentPlan::halfway(first, last); }
   static std::size_t index(std::ptrdiff_t i) { return static_cast<std::size_t>(i); }
-  /// Numbers of blocks of a group, of a join within lanes, and of a lane or a join between lanes.
-  std::ptrdiff_t block(int s, int group) const { return static_cast<std::ptrdiff_t>(s) * groups_ + group; }
-  std::ptrdiff_t block(int s, const Join& at) const {
-    return static_cast<std::ptrdiff_t>(s) * (groups_ - 1) + at.number;
-  }
+  const SegmentPlan& plan_for(int intervals);
+  const SegmentPlan& plan(int s) const { return *plans_[index(s)]; }
+  /// Numbers of blocks of a group, of a join within lanes, and of a lane or a join between lanes. A segment has one
+  /// join less than groups.
+  std::ptrdiff_t block(int s, int group) const { return first_groups_[index(s)] + group; }
+  std::ptrdiff_t block(int s, const Join& at) const { return first_groups_[index(s)] - s + at.number; }
   std::ptrdiff_t top_block(int s, int middle) const { return static_cast<std::ptrdiff_t>(s) * lanes + middle; }
-  /// Does a lane have nothing on the right side of a join?
-  bool passes(const Join& at, int lane) const { return at.middle >= schedule_.size(lane); }
-  int top_node(int piece) const;
 
   template <class Work>
   void for_pivots(const Work& work) const;
@@ -168,16 +145,13 @@ class SegmentElimination {
   bool fill_group(int s, int group, const Orbit& x, double* collocation, int thread);
   void keep_residual(int s, int group, double* collocation, const double* residual);
   void fill_border(int s, int group, std::span<const OrbitVector> rows);
-  const Join& join_of(int first, int last) const {
-    return joins_[index(number_of_middle_[index(halfway(first, last))])];
-  }
   LanePiece piece(int s, int first, int last) const;
   bool eliminate_group(int s, int group);
   bool join_groups(int s);
   template <class Work>
-  void for_joins(const Work& work);
+  void for_joins(int s, const Work& work);
   template <class Work>
-  void for_joins_in_reverse(const Work& work);
+  void for_joins_in_reverse(int s, const Work& work);
   bool join(int s, const Join& at);
   void pass_on(const LanePiece& left, int lane, double* target) const;
   bool join_lanes(int s);
@@ -205,17 +179,13 @@ class SegmentElimination {
   int columns_;  // scalars and the residual
   int border_;
   CollocationRule rule_;
-  LaneSchedule schedule_;
-  int groups_;
+  std::vector<std::unique_ptr<const SegmentPlan>> known_plans_;  // of different numbers of intervals
+  std::vector<const SegmentPlan*> plans_;                        // of segments
+  std::vector<std::ptrdiff_t> first_groups_;                     // of segments, and behind the last one
   LaneAssembly assembly_;
   LaneKernel interval_;
   LaneKernel join_;
   BlockKernel top_join_;
-  std::vector<Join> joins_;                // of groups, each after those that make its two pieces
-  std::vector<int> number_of_middle_;      // of those joins
-  std::vector<std::vector<Join>> levels_;  // the same, those of one level independent of one another
-  std::vector<int> top_lanes_;             // that have intervals
-  std::vector<Join> top_joins_;            // of top_lanes_
 
   // of groups and joins
   BlockArray<double> interval_blocks_;  // (c n + b) x stride
@@ -236,7 +206,7 @@ class SegmentElimination {
   std::vector<double> largest_residuals_;  // of groups
 
   SharedWork within_;
-  int kept_segments_, kept_groups_;  // whose fields are kept at a time: all that several threads may have begun, or 1
+  bool keeps_segments_, keeps_groups_;   // whose fields are kept: all that several threads may have begun, or one
   std::vector<Linearization> outcomes_;  // of groups, or of the joins of these numbers
 
   // of groups that are evaluated and not yet filled: the field, its derivatives, and those of the polynomials
@@ -252,21 +222,22 @@ class SegmentElimination {
 /// work(join, thread), each after those that make its two pieces: one after the other in the order that goes on with
 /// what was made last, or all of a level at a time.
 template <class Work>
-void SegmentElimination::for_joins(const Work& work) {
+void SegmentElimination::for_joins(int s, const Work& work) {
   if (within_.threads() == 1)
-    for (const Join& at : joins_) work(at, 0);
+    for (const Join& at : plan(s).joins) work(at, 0);
   else
-    for (const std::vector<Join>& level : levels_)
+    for (const std::vector<Join>& level : plan(s).levels)
       within_.each(static_cast<int>(level.size()), [&](int i, int thread) { work(level[index(i)], thread); });
 }
 
 /// The same with the pieces after the join.
 template <class Work>
-void SegmentElimination::for_joins_in_reverse(const Work& work) {
+void SegmentElimination::for_joins_in_reverse(int s, const Work& work) {
+  const SegmentPlan& of = plan(s);
   if (within_.threads() == 1)
-    for (auto at = joins_.rbegin(); at != joins_.rend(); ++at) work(*at, 0);
+    for (auto at = of.joins.rbegin(); at != of.joins.rend(); ++at) work(*at, 0);
   else
-    for (auto level = levels_.rbegin(); level != levels_.rend(); ++level)
+    for (auto level = of.levels.rbegin(); level != of.levels.rend(); ++level)
       within_.each_in_reverse(static_cast<int>(level->size()),
                               [&](int i, int thread) { work((*level)[index(i)], thread); });
 }

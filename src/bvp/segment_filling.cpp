@@ -11,14 +11,14 @@ namespace tchat {
 static_assert(lanes == TCHAT_POINTS_OF_SET);
 
 std::ptrdiff_t SegmentElimination::field_block(int s, int group) const {
-  return static_cast<std::ptrdiff_t>(s % kept_segments_) * kept_groups_ + group % kept_groups_;
+  return keeps_segments_ ? block(s, group) : keeps_groups_ ? group : 0;
 }
 
 /// The field and its derivatives at the Gauss points of a group's intervals.
 void SegmentElimination::evaluate_group(int s, int group, const HybridSystem& system, int field,
                                         std::span<const int> active, const Orbit& x) {
   const double* from[lanes];
-  for (int l = 0; l < lanes; ++l) from[l] = x.node(s, schedule_.interval(group, l) * shape_.collocation);
+  for (int l = 0; l < lanes; ++l) from[l] = x.node(s, plan(s).schedule.interval(group, l) * shape_.collocation);
   assembly_.gather(from, (shape_.collocation + 1) * n_, nodes_.data());
   LaneCollocation at{};
   at.n = n_;
@@ -42,15 +42,16 @@ void SegmentElimination::evaluate_at_points(int s, int group, const HybridSystem
   int place[lanes];  // of a lane's first point
   int held = 0;
   for (int l = 0; l < lanes; ++l)
-    if (schedule_.holds(group, l)) place[l] = held, held += c;
+    if (plan(s).schedule.holds(group, l)) place[l] = held, held += c;
   double* to[lanes];
-  for (int l = 0; l < lanes; ++l) to[l] = schedule_.holds(group, l) ? x_of_points_.data() + place[l] * n_ : nullptr;
+  for (int l = 0; l < lanes; ++l)
+    to[l] = plan(s).schedule.holds(group, l) ? x_of_points_.data() + place[l] * n_ : nullptr;
   assembly_.scatter(points_.data(), c * n_, to);
   system.first_at_points(FunctionKind::field, field, held, x_of_points_.data(), x.par.data(), active,
                          f_of_points_.data(), fx_of_points_.data(), fp_of_points_.data());
   const auto gather = [&](const std::vector<double>& of_points, int size, double* of_lanes) {
     const double* from[lanes];
-    for (int l = 0; l < lanes; ++l) from[l] = of_points.data() + place[schedule_.source(group, l)] * size;
+    for (int l = 0; l < lanes; ++l) from[l] = of_points.data() + place[plan(s).schedule.source(group, l)] * size;
     assembly_.gather(from, c * size, of_lanes);
   };
   gather(f_of_points_, n_, f_[b]);
@@ -64,9 +65,10 @@ bool SegmentElimination::fill_group(int s, int group, const Orbit& x, double* co
   LaneCollocation at{
       n_, shape_.collocation, scalars_, rule_.value.data(), rule_.slope.data(), f_[b], fx_[b], fp_[b], {},
       {}, derivatives_[b]};
+  const double* const mesh = x.mesh_of(s);
   for (int l = 0; l < lanes; ++l) {
-    const int j = schedule_.interval(group, l);
-    at.h[l] = x.mesh[index(j + 1)] - x.mesh[index(j)];
+    const int j = plan(s).schedule.interval(group, l);
+    at.h[l] = mesh[j + 1] - mesh[j];
     at.scale[l] = at.h[l] * x.duration(s);
   }
   const bool finite =
@@ -83,7 +85,7 @@ void SegmentElimination::keep_residual(int s, int group, double* collocation, co
   if (collocation == nullptr) return;
   double* to[lanes];
   for (int l = 0; l < lanes; ++l)
-    to[l] = schedule_.holds(group, l) ? collocation + schedule_.interval(group, l) * rows : nullptr;
+    to[l] = plan(s).schedule.holds(group, l) ? collocation + plan(s).schedule.interval(group, l) * rows : nullptr;
   assembly_.scatter(residual, rows, to);
 }
 
@@ -98,15 +100,15 @@ void SegmentElimination::fill_border(int s, int group, std::span<const OrbitVect
     const double* left_node[lanes];
     const double* interior[lanes];
     for (int l = 0; l < lanes; ++l) {
-      const int j = schedule_.interval(group, l);
-      left_node[l] = rows[index(r)].states.col(s * shape_.nodes() + j * shape_.collocation).data();
+      const int j = plan(s).schedule.interval(group, l);
+      left_node[l] = rows[index(r)].states.col(shape_.first_node(s) + j * shape_.collocation).data();
       interior[l] = left_node[l] + n_;
     }
     assembly_.gather(interior, left, row);
     assembly_.gather(left_node, n_, row + left * lanes);
     std::fill_n(row + (left + n_) * lanes, (width - left - n_) * lanes, 0.0);
     for (int l = 0; l < lanes; ++l)
-      if (schedule_.interval(group, l) == shape_.intervals - 1)
+      if (plan(s).schedule.interval(group, l) == shape_.intervals_of(s) - 1)
         put_lane(interior[l] + left, n_, l, row + (left + n_) * lanes);
   }
 }

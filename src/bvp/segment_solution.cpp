@@ -33,7 +33,7 @@ void solve_block(const LaneKernel& kernel, const BlockArray<double>& blocks, std
 /// The right-hand sides of a piece's n condensed rows and its border rows.
 double* SegmentElimination::piece_rhs(int s, int first, int last) {
   return last - first == 1 ? interval_rhs_[block(s, first)] + interval_.pivots() * lanes
-                           : join_rhs_[block(s, join_of(first, last))] + n_ * lanes;
+                           : join_rhs_[block(s, plan(s).join_of(first, last))] + n_ * lanes;
 }
 
 double* SegmentElimination::top_rhs(int s, int first, int last) {
@@ -45,7 +45,7 @@ void SegmentElimination::condense_group_rhs(int s, int group, const double* coll
   const std::ptrdiff_t b = block(s, group);
   double* r = interval_rhs_[b];
   for (int l = 0; l < lanes; ++l) {
-    const double* from = collocation + schedule_.interval(group, l) * rows;
+    const double* from = collocation + plan(s).schedule.interval(group, l) * rows;
     for (int i = 0; i < rows; ++i) r[i * lanes + l] = -from[i];
   }
   std::fill_n(r + rows * lanes, border_ * lanes, 0.0);
@@ -62,7 +62,7 @@ void SegmentElimination::condense_join_rhs(int s, const Join& at) {
   std::copy_n(right, count, r + count);
   for (int k = 0; k < border_ * lanes; ++k) r[2 * count + k] = left[count + k] + right[count + k];
   for (int l = 0; l < lanes; ++l) {
-    if (!passes(at, l)) continue;
+    if (!plan(s).passes(at, l)) continue;
     for (int a = 0; a < n_; ++a) r[a * lanes + l] = 0.0, r[count + a * lanes + l] = left[a * lanes + l];
     for (int k = 0; k < border_; ++k) r[2 * count + k * lanes + l] = left[count + k * lanes + l];
   }
@@ -70,12 +70,13 @@ void SegmentElimination::condense_join_rhs(int s, const Join& at) {
 }
 
 void SegmentElimination::condense_right_hand_side(int s, const double* collocation, double* condensed) {
-  within_.each(groups_, [&](int group, int) { condense_group_rhs(s, group, collocation); });
-  for_joins([&](const Join& at, int) { condense_join_rhs(s, at); });
-  const double* all = piece_rhs(s, 0, groups_);
-  const int pieces = static_cast<int>(top_lanes_.size());
-  for (int k = 0; k < pieces; ++k) take_lane(all, top_lanes_[index(k)], n_ + border_, lane_rhs_[top_block(s, k)]);
-  for (const Join& at : top_joins_) {
+  const SegmentPlan& plan = this->plan(s);
+  within_.each(plan.groups, [&](int group, int) { condense_group_rhs(s, group, collocation); });
+  for_joins(s, [&](const Join& at, int) { condense_join_rhs(s, at); });
+  const double* all = piece_rhs(s, 0, plan.groups);
+  const int pieces = static_cast<int>(plan.top_lanes.size());
+  for (int k = 0; k < pieces; ++k) take_lane(all, plan.top_lanes[index(k)], n_ + border_, lane_rhs_[top_block(s, k)]);
+  for (const Join& at : plan.top_joins) {
     const std::ptrdiff_t b = top_block(s, at.middle);
     const double* left = top_rhs(s, at.first, at.middle);
     const double* right = top_rhs(s, at.middle, at.last);
@@ -96,24 +97,24 @@ void SegmentElimination::expand_together(int s, std::span<const SegmentSolution>
          }));
   for (const SegmentSolution& of : solutions) {
     put_ends(s, of);
-    for (auto at = top_joins_.rbegin(); at != top_joins_.rend(); ++at) expand_top_join(s, *at, of, thread);
+    for (auto at = plan(s).top_joins.rbegin(); at != plan(s).top_joins.rend(); ++at)
+      expand_top_join(s, *at, of, thread);
   }
   for_joins_in_reverse(
-      [&](const Join& at, int within) { expand_lane_join(s, at, solutions, std::max(thread, within)); });
+      s, [&](const Join& at, int within) { expand_lane_join(s, at, solutions, std::max(thread, within)); });
   within_.each_in_reverse(  // as blocks are fetched
-      groups_, [&](int group, int within) { expand_group(s, group, solutions, std::max(thread, within)); });
+      plan(s).groups, [&](int group, int within) { expand_group(s, group, solutions, std::max(thread, within)); });
 }
 
 void SegmentElimination::put_ends(int s, const SegmentSolution& of) {
-  const int first = s * shape_.nodes();
   of.dx->durations(s) = of.ends[2 * n_];
-  std::copy_n(of.ends, n_, of.dx->states.col(first).data());
-  std::copy_n(of.ends + n_, n_, of.dx->states.col(first + shape_.nodes() - 1).data());
+  std::copy_n(of.ends, n_, of.dx->states.col(shape_.first_node(s)).data());
+  std::copy_n(of.ends + n_, n_, of.dx->states.col(shape_.last_node(s)).data());
 }
 
 void SegmentElimination::expand_top_join(int s, const Join& at, const SegmentSolution& of, int thread) {
   const auto node = [&](int piece) {
-    return of.dx->states.col(s * shape_.nodes() + top_node(piece) * shape_.collocation).data();
+    return of.dx->states.col(shape_.first_node(s) + plan(s).top_node(piece) * shape_.collocation).data();
   };
   const std::ptrdiff_t b = top_block(s, at.middle);
   double* local = top_local_[thread];
@@ -145,13 +146,13 @@ void SegmentElimination::expand_lane_join(int s, const Join& at, std::span<const
 }
 
 void SegmentElimination::gather_around_join(int s, const Join& at, const SegmentSolution& of, double* local) const {
-  const double* states = of.dx->states.col(s * shape_.nodes()).data();
+  const double* states = of.dx->states.col(shape_.first_node(s)).data();
   const int step = shape_.collocation * n_;
   const double* first[lanes];
   const double* last[lanes];
   for (int l = 0; l < lanes; ++l) {
-    first[l] = states + schedule_.node(at.first, l) * step;
-    last[l] = states + schedule_.node(at.last, l) * step;
+    first[l] = states + plan(s).schedule.node(at.first, l) * step;
+    last[l] = states + plan(s).schedule.node(at.last, l) * step;
   }
   assembly_.gather(first, n_, local + n_ * lanes);
   assembly_.gather(last, n_, local + 2 * n_ * lanes);
@@ -160,10 +161,10 @@ void SegmentElimination::gather_around_join(int s, const Join& at, const Segment
 
 void SegmentElimination::scatter_from_join(int s, const Join& at, const double* local,
                                            const SegmentSolution& of) const {
-  double* states = of.dx->states.col(s * shape_.nodes()).data();
+  double* states = of.dx->states.col(shape_.first_node(s)).data();
   double* to[lanes];
   for (int l = 0; l < lanes; ++l)
-    to[l] = passes(at, l) ? nullptr : states + schedule_.node(at.middle, l) * shape_.collocation * n_;
+    to[l] = plan(s).passes(at, l) ? nullptr : states + plan(s).schedule.node(at.middle, l) * shape_.collocation * n_;
   assembly_.scatter(local, n_, to);
 }
 
@@ -177,13 +178,13 @@ void SegmentElimination::expand_group(int s, int group, std::span<const SegmentS
 }
 
 void SegmentElimination::gather_around_group(int s, int group, const SegmentSolution& of, double* local) const {
-  const double* states = of.dx->states.col(s * shape_.nodes()).data();
+  const double* states = of.dx->states.col(shape_.first_node(s)).data();
   const int step = shape_.collocation * n_;
   double* ends = local + interval_.pivots() * lanes;
   const double* left[lanes];
   const double* right[lanes];
   for (int l = 0; l < lanes; ++l) {
-    left[l] = states + schedule_.interval(group, l) * step;
+    left[l] = states + plan(s).schedule.interval(group, l) * step;
     right[l] = left[l] + step;
   }
   assembly_.gather(left, n_, ends);
@@ -192,19 +193,20 @@ void SegmentElimination::gather_around_group(int s, int group, const SegmentSolu
 }
 
 void SegmentElimination::scatter_from_group(int s, int group, const double* local, const SegmentSolution& of) const {
-  double* states = of.dx->states.col(s * shape_.nodes()).data();
+  double* states = of.dx->states.col(shape_.first_node(s)).data();
   const int step = shape_.collocation * n_;
   double* to[lanes];
   for (int l = 0; l < lanes; ++l)
-    to[l] = schedule_.holds(group, l) ? states + schedule_.interval(group, l) * step + n_ : nullptr;
+    to[l] = plan(s).schedule.holds(group, l) ? states + plan(s).schedule.interval(group, l) * step + n_ : nullptr;
   assembly_.scatter(local, interval_.pivots(), to);
 }
 
 void SegmentElimination::expand_adjoint(int s, const double* weights, double* collocation) {
-  const int pieces = static_cast<int>(top_lanes_.size());
+  const SegmentPlan& plan = this->plan(s);
+  const int pieces = static_cast<int>(plan.top_lanes.size());
   // Right-hand sides are no longer needed: their places serve as scratch.
   std::copy_n(weights, n_, top_rhs(s, 0, pieces));
-  for (auto at = top_joins_.rbegin(); at != top_joins_.rend(); ++at) {
+  for (auto at = plan.top_joins.rbegin(); at != plan.top_joins.rend(); ++at) {
     const std::ptrdiff_t b = top_block(s, at->middle);
     double* w = top_rhs_[b];
     std::fill_n(w, n_, 0.0);
@@ -212,11 +214,11 @@ void SegmentElimination::expand_adjoint(int s, const double* weights, double* co
     std::copy_n(w, n_, top_rhs(s, at->first, at->middle));
     std::copy_n(w + n_, n_, top_rhs(s, at->middle, at->last));
   }
-  double* all = piece_rhs(s, 0, groups_);
+  double* all = piece_rhs(s, 0, plan.groups);
   std::fill_n(all, n_ * lanes, 0.0);
-  for (int k = 0; k < pieces; ++k) put_lane(lane_rhs_[top_block(s, k)], n_, top_lanes_[index(k)], all);
-  for_joins_in_reverse([&](const Join& at, int) { expand_adjoint_join(s, at); });
-  within_.each(groups_, [&](int group, int) { expand_adjoint_group(s, group, collocation); });
+  for (int k = 0; k < pieces; ++k) put_lane(lane_rhs_[top_block(s, k)], n_, plan.top_lanes[index(k)], all);
+  for_joins_in_reverse(s, [&](const Join& at, int) { expand_adjoint_join(s, at); });
+  within_.each(plan.groups, [&](int group, int) { expand_adjoint_group(s, group, collocation); });
 }
 
 void SegmentElimination::expand_adjoint_join(int s, const Join& at) {
@@ -229,7 +231,7 @@ void SegmentElimination::expand_adjoint_join(int s, const Join& at) {
   std::copy_n(w, count, left);
   std::copy_n(w + count, count, piece_rhs(s, at.middle, at.last));
   for (int l = 0; l < lanes; ++l)
-    if (passes(at, l))
+    if (plan(s).passes(at, l))
       for (int a = 0; a < n_; ++a) left[a * lanes + l] = w[count + a * lanes + l];
 }
 
@@ -242,7 +244,7 @@ void SegmentElimination::expand_adjoint_group(int s, int group, double* collocat
   interval_.forward_transposed(interval_blocks_[b], interval_swaps_[b], w);
   double* to[lanes];
   for (int l = 0; l < lanes; ++l)
-    to[l] = schedule_.holds(group, l) ? collocation + schedule_.interval(group, l) * rows : nullptr;
+    to[l] = plan(s).schedule.holds(group, l) ? collocation + plan(s).schedule.interval(group, l) * rows : nullptr;
   assembly_.scatter(w, rows, to);
 }
 

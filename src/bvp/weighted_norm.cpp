@@ -9,17 +9,17 @@ WeightedNorm WeightedNorm::unit(int dimension, int segments) {
   return {Eigen::VectorXd::Ones(dimension), Eigen::VectorXd::Ones(parameter_room(segments))};
 }
 
-MassIntervals mass_intervals(const Orbit& x, const CollocationRule& rule, const Eigen::VectorXd& weights) {
-  return {x.mesh.data(),           x.shape.intervals, rule.mass.data(),
-          x.shape.collocation + 1, weights.data(),    x.shape.dimension};
+MassIntervals mass_intervals(const Orbit& x, const CollocationRule& rule, const Eigen::VectorXd& weights, int s) {
+  return {x.mesh_of(s),   x.shape.intervals_of(s), rule.mass.data(), x.shape.collocation + 1,
+          weights.data(), x.shape.dimension};
 }
 
 void WeightedNorm::dual(const Orbit& x, const CollocationRule& rule, const std::vector<int>& free_parameters,
                         const OrbitVector& v, OrbitVector& row) const {
-  const MassIntervals mass = mass_intervals(x, rule, state_weights_);
   for (int s = 0; s < x.shape.segments; ++s) {
-    const int first = s * x.shape.nodes();
-    row.states.middleCols(first, x.shape.nodes()).setZero();  // not all at once, to find it in the cache
+    const MassIntervals mass = mass_intervals(x, rule, state_weights_, s);
+    const int first = x.shape.first_node(s);
+    row.states.middleCols(first, x.shape.nodes_of(s)).setZero();  // not all at once, to find it in the cache
     array_functions().add_mass(mass, v.states.col(first).data(), row.states.col(first).data());
     row.durations(s) = parameter_weights_(first_duration - 1 + s) * v.durations(s);
   }

@@ -14,9 +14,9 @@
 
 namespace tchat {
 
-/// M of add_mass() and mass_product() for states of one segment (n x nodes) on the mesh of x: a . M v is the integral
+/// M of add_mass() and mass_product() for states of segment s (n x nodes) on the mesh of x: a . M v is the integral
 /// of sum_i weights_i a_i v_i over its scaled time. The arguments must outlive it.
-MassIntervals mass_intervals(const Orbit& x, const CollocationRule& rule, const Eigen::VectorXd& weights);
+MassIntervals mass_intervals(const Orbit& x, const CollocationRule& rule, const Eigen::VectorXd& weights, int s);
 
 class WeightedNorm {
  public:

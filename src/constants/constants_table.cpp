@@ -164,6 +164,8 @@ std::vector<Constant> make_table() {
       {"ERRMAX",
        "error between mesh points, or of a known multiplier, beyond which NTST is doubled, or the branch ends; 0: any",
        extension_record, &R::error_bound, at_least(0), "", "1e-2", ""},
+      {"OWNMESH", "give each segment a mesh of its own, of NTST intervals on average", extension_record, &R::own_meshes,
+       one_of({0, 1}), "0 (one mesh in common) or 1 (own meshes)", "1", "not of tori"},
       {"PROBLEM", "problem of the run, where the command line names none", extension_record, &R::problem, any(),
        "a name or path for -p, from the folder of the constants file", "linosc", ""},
       {"PAR", "values of parameters", command_line_record, &R::parameter_values, any(),

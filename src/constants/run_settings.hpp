@@ -108,6 +108,7 @@ struct RunSettings {
 
   double harmonic_tolerance = 1e-7;  ///< HARMTOL, of the last harmonics of a torus; 0: their number stays
   double error_bound = 1e-2;         ///< ERRMAX, of the error between mesh points and of a known multiplier; 0: none
+  bool own_meshes = false;           ///< OWNMESH, of each segment
   int harmonics = 0;                 ///< NHARM, of a torus; 0: as the start has
   int grazing_jump = 1;              ///< GRJUMP
   bool stop_at_grazing = true;       ///< GRSTOP

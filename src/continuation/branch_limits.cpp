@@ -41,8 +41,11 @@ double rate_at(const Eigen::VectorXd& f, const Eigen::MatrixXd& fx, double time,
   return std::max(perturbations, std::abs(of_flow));
 }
 
-/// The largest z of the orbit's mesh intervals from `first` on, 0 where none exceeds `least`, which is cheap to see.
-double largest_growth(const DefiningSystem& system, const Orbit& x, int first, Rate rate, double least) {
+/// Of which intervals of a segment.
+enum class Which { all, last };
+
+/// The largest z of the orbit's mesh intervals, 0 where none exceeds `least`, which is cheap to see.
+double largest_growth(const DefiningSystem& system, const Orbit& x, Which which, Rate rate, double least) {
   const int n = x.shape.dimension;
   const int c = x.shape.collocation;
   StackVector f(n);
@@ -55,9 +58,9 @@ double largest_growth(const DefiningSystem& system, const Orbit& x, int first, R
                             fx.data(), nullptr);
       return fx.allFinite() && fx.norm() * time > least ? rate_at(f, fx, time, rate) * time : 0.0;
     };
-    for (int j = first; j < x.shape.intervals; ++j) {
-      const auto at = static_cast<std::size_t>(j);
-      const double time = (x.mesh[at + 1] - x.mesh[at]) * x.duration(s);
+    const int intervals = x.shape.intervals_of(s);
+    for (int j = which == Which::all ? 0 : intervals - 1; j < intervals; ++j) {
+      const double time = (x.mesh_of(s)[j + 1] - x.mesh_of(s)[j]) * x.duration(s);
       const double left = growth_at(j, time);
       if (left > std::max(largest, least)) largest = std::max(largest, std::min(left, growth_at(j + 1, time)));
     }
@@ -81,8 +84,8 @@ std::string unresolved_by_mesh(const DefiningSystem& system, const Orbit& x, con
   if (!multipliers.valid) return "";
   const double limit = resolved_growth(x.shape.collocation);
   const double growth = count_unstable(multipliers).outside > 0
-                            ? largest_growth(system, x, 0, Rate::of_perturbations_and_flow, limit)
-                            : largest_growth(system, x, x.shape.intervals - 1, Rate::of_decaying_flow, limit);
+                            ? largest_growth(system, x, Which::all, Rate::of_perturbations_and_flow, limit)
+                            : largest_growth(system, x, Which::last, Rate::of_decaying_flow, limit);
   if (growth == 0.0) return "";
   return fmt::format(
       "NTST = {} does not resolve the next orbit: perturbations or the flow change by a factor of exp({:.3g}) "
@@ -96,9 +99,8 @@ double growth_exponent(const DefiningSystem& system, const Orbit& x) {
   Eigen::MatrixXd fx(n, n);
   double exponent = 0.0;
   for (int s = 0; s < x.shape.segments; ++s)
-    for (int j = 0; j < x.shape.intervals; ++j) {
-      const auto at = static_cast<std::size_t>(j);
-      const double time = (x.mesh[at + 1] - x.mesh[at]) * x.duration(s);
+    for (int j = 0; j < x.shape.intervals_of(s); ++j) {
+      const double time = (x.mesh_of(s)[j + 1] - x.mesh_of(s)[j]) * x.duration(s);
       system.system().first(FunctionKind::field, system.signature()[static_cast<std::size_t>(s)].field,
                             x.node(s, j * x.shape.collocation), x.par.data(), {}, f.data(), fx.data(), nullptr);
       if (fx.allFinite()) exponent += std::max(eigenvalues(fx).real().maxCoeff() * time, 0.0);

@@ -49,7 +49,7 @@ std::optional<ClosedBranch::Return> ClosedBranch::on_step(const PathPoint& here,
   const std::optional<double> length = phase_is_fixed_ ? place(here, ds) : place_of_measures(here, next, ds);
   if (!length) return std::nullopt;
   Return way{here, *length};
-  follower_.change_mesh(way.from, first_.orbit.mesh);
+  follower_.change_mesh(way.from, first_.orbit.shape, first_.orbit.mesh);
   if (reach(way, next, ds)) return way;
   follower_.linearize_at(next);
   return std::nullopt;
@@ -60,8 +60,9 @@ std::optional<double> ClosedBranch::place(const PathPoint& here, double ds) {
   if (here.orbit.mesh != moved_.mesh) {
     const Orbit& first = first_.orbit;
     const CollocationRule& rule = follower_.condensed().rule();
-    transfer_.set(first.shape, first.mesh, first.shape, here.orbit.mesh, rule);
+    transfer_.set(first.shape, first.mesh, here.orbit.shape, here.orbit.mesh, rule);
     transfer_(first.states, moved_.states);
+    moved_.shape = here.orbit.shape;
     moved_.mesh = here.orbit.mesh;
   }
   const double length = dot_difference(here.dual, moved_, here.orbit, system_.free_parameters());

@@ -465,9 +465,11 @@ void ContinuationRun::report_start(const std::string& test_name) {
 
 /// A new mesh where it is due, and the step length for the d-file.
 void ContinuationRun::prepare_next_step() {
-  if (settings_.adapt_mesh_every > 0 && here_.orbit.shape.intervals > 1 && number_ % settings_.adapt_mesh_every == 0)
-    follower_.change_mesh(
-        here_, equidistribution_.mesh(here_.orbit, follower_.condensed().rule(), here_.orbit.shape.intervals));
+  if (settings_.adapt_mesh_every > 0 && here_.orbit.shape.intervals > 1 && number_ % settings_.adapt_mesh_every == 0) {
+    const std::vector<double>& mesh =
+        equidistribution_.mesh(here_.orbit, follower_.condensed().rule(), here_.orbit.shape.intervals);
+    follower_.change_mesh(here_, equidistribution_.shape(), mesh);
+  }
   sink_.next_step(number_, step_.value());
 }
 

@@ -45,7 +45,7 @@ SlowPoint slowest_point(const DefiningSystem& system, const Orbit& x, const Vect
   VectorXd f(x.shape.dimension);
   double least = std::numeric_limits<double>::infinity();
   for (int s = 0; s < x.shape.segments; ++s)
-    for (int k = 0; k < x.shape.nodes(); ++k) {
+    for (int k = 0; k < x.shape.nodes_of(s); ++k) {
       const int field = system.signature()[static_cast<std::size_t>(s)].field;
       system.system().value(FunctionKind::field, field, x.node(s, k), x.par.data(), f.data());
       const double speed = scaled_size(f, ranges);

@@ -33,8 +33,7 @@ PathFollower::PathFollower(const DefiningSystem& system, const OrbitShape& shape
       predictor_(make_predictor(system.free_parameters())),
       settings_(settings),
       dx_(condensed().make_vector()),
-      on_tangent_{shape, uniform_mesh(shape.intervals), dx_.states,
-                  ParameterVector::Zero(parameter_room(shape.segments))} {
+      on_tangent_{shape, uniform_mesh(shape), dx_.states, ParameterVector::Zero(parameter_room(shape.segments))} {
   problem_.remember(unused_);
 }
 
@@ -75,9 +74,11 @@ double PathFollower::alignment(const PathPoint& point, const OrbitVector& direct
 
 double PathFollower::cosine_at_ends(const PathPoint& from, const PathPoint& to) const {
   if (condensed().closing_rows_gave_way()) return 1.0;
-  const double cosine =
-      problem_.at_ends(from.dual, to.tangent) /
-      std::sqrt(std::abs(problem_.at_ends(from.dual, from.tangent) * problem_.at_ends(to.dual, to.tangent)));
+  const auto at_ends = [&](const OrbitVector& row, const OrbitVector& v) {
+    return BorderedProblem::at_ends(from.orbit.shape, row, v);
+  };
+  const double cosine = at_ends(from.dual, to.tangent) /
+                        std::sqrt(std::abs(at_ends(from.dual, from.tangent) * at_ends(to.dual, to.tangent)));
   return std::isfinite(cosine) ? cosine : 1.0;
 }
 
@@ -362,14 +363,14 @@ NewtonResult PathFollower::start_by_minimum_norm(PathPoint& point) {
   return result;
 }
 
-void PathFollower::change_mesh(PathPoint& point, const std::vector<double>& mesh) {
-  const OrbitShape& shape = point.orbit.shape;
-  transfer_.set(shape, point.orbit.mesh, shape, mesh, condensed().rule());
+void PathFollower::change_mesh(PathPoint& point, const OrbitShape& shape, const std::vector<double>& mesh) {
+  transfer_.set(point.orbit.shape, point.orbit.mesh, shape, mesh, condensed().rule());
   for (Eigen::MatrixXd* states : {&point.orbit.states, &point.tangent.states}) {
     transfer_(*states, moved_);
     states->swap(moved_);
   }
   if (point.trail.mesh() == point.orbit.mesh) point.trail.change_mesh(mesh, transfer_);
+  point.orbit.shape = shape;
   point.orbit.mesh = mesh;
   normalise(point.orbit, point.tangent, point.dual);
 }

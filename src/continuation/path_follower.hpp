@@ -71,7 +71,9 @@ class PathFollower {
   double relative_residual(const Orbit& x);
 
   /// Moves the point to a new mesh of the same size: states and tangent are interpolated, the tangent renormalised.
-  void change_mesh(PathPoint& point, const std::vector<double>& mesh);
+  /// `shape`: of orbits on that mesh, the point's own unless its segments have other numbers of intervals there.
+  void change_mesh(PathPoint& point, const OrbitShape& shape, const std::vector<double>& mesh);
+  void change_mesh(PathPoint& point, const std::vector<double>& mesh) { change_mesh(point, point.orbit.shape, mesh); }
   void reverse(PathPoint& point) const;
   /// Makes the tangent one of unit length and the dual its own.
   void renormalise(PathPoint& point) const { normalise(point.orbit, point.tangent, point.dual); }

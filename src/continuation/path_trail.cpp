@@ -24,7 +24,7 @@ void copy(const PathPoint& point, const std::vector<int>& free, PathTrail::Mark&
 
 }  // namespace
 
-PathTrail::PathTrail(const OrbitShape& shape, int global_count) : mesh_(index(shape.intervals + 1)) {
+PathTrail::PathTrail(const OrbitShape& shape, int global_count) : mesh_(index(shape.mesh_points())) {
   const OrbitVector zero(shape, global_count);
   for (const std::size_t k : {0U, 1U}) own_[k] = std::make_shared<Mark>(Mark{zero, zero});
 }

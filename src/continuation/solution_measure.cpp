@@ -30,10 +30,9 @@ double time_mean(const Orbit& x, const Integrand& integrand) {
   double mean = 0.0;
   for (int s = 0; s < x.shape.segments; ++s) {
     double segment = 0.0;
-    for (int j = 0; j < x.shape.intervals; ++j) {
-      const double h = x.mesh[static_cast<std::size_t>(j + 1)] - x.mesh[static_cast<std::size_t>(j)];
-      segment += h * integrand(x.states.middleCols(s * x.shape.nodes() + j * c, c + 1));
-    }
+    const double* const mesh = x.mesh_of(s);
+    for (int j = 0; j < x.shape.intervals_of(s); ++j)
+      segment += (mesh[j + 1] - mesh[j]) * integrand(x.states.middleCols(x.shape.first_node(s) + j * c, c + 1));
     mean += shares.of(s) * segment;
   }
   return mean;
@@ -42,10 +41,10 @@ double time_mean(const Orbit& x, const Integrand& integrand) {
 }  // namespace
 
 double l2_norm(const Orbit& x, const CollocationRule& rule, const Eigen::VectorXd& state_weights) {
-  const MassIntervals mass = mass_intervals(x, rule, state_weights);
   const TimeShares shares(x);
   double mean = 0.0;
-  for (int s = 0; s < x.shape.segments; ++s) mean += shares.of(s) * array_functions().mass_product(mass, x.node(s, 0));
+  for (int s = 0; s < x.shape.segments; ++s)
+    mean += shares.of(s) * array_functions().mass_product(mass_intervals(x, rule, state_weights, s), x.node(s, 0));
   return std::sqrt(mean);
 }
 

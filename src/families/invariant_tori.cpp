@@ -56,6 +56,8 @@ class TorusFamily final : public SegmentFamily {
         path, settings.problem_type));
   }
 
+  OrbitShape shape(const RunSettings& settings) const override { return SegmentFamily::shape(settings).in_common(); }
+
   /// A torus restarts with as many orbits as its label has. A switch starts from one periodic orbit.
   OrbitShape restart_shape(const RunSettings& settings, const LabelledSolution& label,
                            const std::string& path) const override {

@@ -26,12 +26,12 @@ inline bool switches_at_state(const RunSettings& settings, const LabelledSolutio
   return problem_type(settings).facts().switches_branch && label.tau.size() == 1;
 }
 
-/// A solution that consists of the segments of the signature on a mesh of NTST intervals.
+/// A solution that consists of the segments of the signature on a mesh of NTST intervals, or on own ones (OWNMESH).
 class SegmentFamily : public SolutionFamily {
  public:
   using SolutionFamily::SolutionFamily;
 
-  OrbitShape shape(const RunSettings& settings) const final { return shape_of_segments(settings); }
+  OrbitShape shape(const RunSettings& settings) const override { return shape_of_segments(settings); }
   SelectedStart start_from_data(const std::string& path, const RunSettings& settings,
                                 const HybridSystem& system) const override {
     return start_from_orbit(path, settings, system);

@@ -8,6 +8,7 @@
 
 #include "files/labelled_solution.hpp"
 #include "files/number_format.hpp"
+#include "files/solution_identifier.hpp"
 #include "hybrid/parameter_vector.hpp"
 #include "problem_type/point_type.hpp"
 
@@ -18,7 +19,6 @@ namespace {
 constexpr int numbers_per_line = 7;
 constexpr int integers_per_line = 20;
 constexpr int least_parameters = 100;
-constexpr int values_of_a_kind = 4;
 
 /// Lines that `count` items take, `per_line` on each.
 int lines_for(int count, int per_line) { return (count + per_line - 1) / per_line; }
@@ -55,7 +55,10 @@ EntrySizes checked_sizes(const LabelledSolution& solution) {
   require(solution.dimension > 0 && sizes.states > 0 && sizes.states % solution.dimension == 0,
           "states are not a whole number of segments");
   sizes.segments = sizes.states / solution.dimension;
-  sizes.internal = values_of_a_kind * (1 + static_cast<int>(solution.further.size()));
+  sizes.internal = kind_values * (1 + static_cast<int>(solution.further.size()));
+  if (!solution.own_mesh.empty())
+    sizes.internal +=
+        kind_values + static_cast<int>(own_mesh_values(static_cast<std::int64_t>(solution.own_mesh.size())));
   sizes.parameters = std::max(least_parameters, first_duration - 1 + sizes.segments) + sizes.internal;
   if (solution.has_direction()) {
     require(solution.parameter_direction.size() == solution.free_parameters.size(),
@@ -96,7 +99,7 @@ void append_identifier(std::string& text, const LabelledSolution& solution, cons
   text += '\n';
 }
 
-/// PAR(1..NPAR): the solution's own, zeros, and what a UZ point is.
+/// PAR(1..NPAR): the solution's own, zeros, what a UZ point is, and the meshes of segments.
 std::vector<double> all_parameters(const LabelledSolution& solution, const EntrySizes& sizes) {
   const auto ordinary = static_cast<std::size_t>(sizes.parameters - sizes.internal);
   std::vector<double> parameters = solution.parameters;
@@ -107,6 +110,12 @@ std::vector<double> all_parameters(const LabelledSolution& solution, const Entry
   for (const UserPointKind& kind : all_kinds(solution))
     parameters.insert(parameters.end(), {static_cast<double>(kind.kind), static_cast<double>(kind.segment),
                                          static_cast<double>(kind.index), kind.tau});
+  if (!solution.own_mesh.empty()) {
+    parameters.insert(parameters.end(), {own_mesh_mark, static_cast<double>(sizes.segments),
+                                         static_cast<double>(solution.own_mesh.size()), 0.0});
+    parameters.insert(parameters.end(), solution.own_mesh.begin(), solution.own_mesh.end());
+    parameters.resize(static_cast<std::size_t>(sizes.parameters), 0.0);
+  }
   return parameters;
 }
 

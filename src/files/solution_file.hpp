@@ -4,7 +4,8 @@
 ///     t, U(1..n m)                    NTPL records, each on lines of at most 7 numbers of 19 columns after 4 blanks
 ///     ICP; d PAR(ICP)/ds; dU/ds       only with direction
 ///     PAR(1..NPAR)                    at most 7 numbers of 26 columns on a line, exact; the last NPARI = 4 are kind,
-///                                     segment, index and tau of a UZ point
+///                                     segment, index and tau of a UZ point; more of them are further kinds, and
+///                                     meshes of segments (solution_identifier.hpp)
 ///
 /// NPAR = max(100, 60 + m) + 4: the parameters are padded with zeros. NaN and inf are written as 1e99 (capped_value).
 #pragma once

@@ -145,6 +145,7 @@ bool may_be(const SolutionIdentifier& id, std::string_view numbers, const StartL
     const auto kind = parse_fortran_real(words[k]), segment = parse_fortran_real(words[k + 1]),
                index = parse_fortran_real(words[k + 2]);
     if (!kind || !segment || !index || std::abs(*kind) > 1e6 || std::abs(*index) > 1e6) return true;
+    if (*kind == own_mesh_mark) break;
     kinds.push_back({static_cast<int>(*kind), 0, static_cast<int>(*index), 0.0});
   }
   if (kinds.empty()) return true;
@@ -328,8 +329,14 @@ class SolutionReader {
     for (std::int64_t k = 0; k < ordinary; ++k) solution.parameters.push_back(numbers.real());
     if (id.has_kind()) {
       solution.kind = read_kind(numbers);
-      for (std::int64_t k = kind_values; k < id.internal_parameters(); k += kind_values)
-        solution.further.push_back(read_kind(numbers));
+      for (std::int64_t left = id.internal_parameters() - kind_values; left > 0; left -= kind_values) {
+        const UserPointKind kind = read_kind(numbers, own_mesh_mark);
+        if (kind.kind == own_mesh_mark) {
+          read_own_mesh(kind.segment, kind.index, left - kind_values, numbers, solution);
+          break;
+        }
+        solution.further.push_back(kind);
+      }
     } else {
       for (std::int64_t k = 0; k < id.internal_parameters(); ++k) numbers.real();
     }
@@ -373,7 +380,29 @@ class SolutionReader {
     }
   }
 
-  static UserPointKind read_kind(NumberStream& numbers) {
+  /// `left`: the internal values that are left.
+  static void read_own_mesh(int segments, int points, std::int64_t left, NumberStream& numbers,
+                            LabelledSolution& solution) {
+    const auto need = [&numbers](bool condition) {
+      if (!condition)
+        numbers.refuse(
+            "the internal values at the end of the parameters are no meshes of the segments, each of which rises from "
+            "0 to 1; the file is damaged");
+    };
+    need(own_mesh_values(points) == left && segments * solution.dimension == solution.states.rows());
+    int ends = 0;
+    for (int k = 0; k < points; ++k) {
+      const double tau = numbers.real();
+      const bool begins = k == 0 || solution.own_mesh.back() == 1.0;
+      need(begins ? tau == 0.0 : tau > solution.own_mesh.back() && tau <= 1.0);
+      if (tau == 1.0) ++ends;
+      solution.own_mesh.push_back(tau);
+    }
+    need(ends == segments && solution.own_mesh.back() == 1.0 && (points - segments) % segments == 0);
+    for (std::int64_t k = points; k < left; ++k) numbers.real();
+  }
+
+  static UserPointKind read_kind(NumberStream& numbers, int most = UserPointKind::extremum) {
     const auto whole = [&numbers](double lowest, double highest, const std::string& what) {
       const double value = numbers.real();
       if (!(value >= lowest && value <= highest) || value != static_cast<double>(static_cast<int>(value)))
@@ -383,7 +412,7 @@ class SolutionReader {
       return static_cast<int>(value);
     };
     UserPointKind kind;
-    kind.kind = whole(0.0, UserPointKind::extremum, "kind");
+    kind.kind = whole(0.0, most, "kind");
     kind.segment = whole(0.0, max_segments, "segment");
     kind.index = whole(kind.kind == UserPointKind::other_type ? -32.0 : -1.0, 1e6, "index");
     kind.tau = numbers.real();

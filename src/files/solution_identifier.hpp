@@ -14,6 +14,13 @@ namespace tchat {
 /// How many internal values at the end of PAR say what a UZ label is: kind, segment, index, tau; as many again for
 /// each further kind.
 inline constexpr int kind_values = 4;
+/// In place of a kind, behind the others: so many segments have meshes of their own (segment), of so many points in all
+/// (index). These follow, and zeros up to a multiple of kind_values.
+inline constexpr int own_mesh_mark = 9;
+/// The values behind that mark.
+inline std::int64_t own_mesh_values(std::int64_t points) {
+  return (points + kind_values - 1) / kind_values * kind_values;
+}
 
 /// The integers in the order of the file; the last four are zero in the older generation.
 struct SolutionIdentifier {

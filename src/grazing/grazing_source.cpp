@@ -26,9 +26,7 @@ constexpr double no_time = 1e-7;
 
 Orbit orbit_at(const LabelledSolution& solution, const RunSettings& settings, const std::string& source) {
   const auto segments = static_cast<int>(settings.segments.size());
-  return orbit_from_solution(
-             solution, {settings.dimension, segments, solution.mesh_intervals, solution.collocation_points}, {}, source)
-      .orbit;
+  return orbit_from_solution(solution, stored_shape(solution, settings.dimension, segments), {}, source).orbit;
 }
 
 const IndexVector& index_of(const RunSettings& settings, int s) {

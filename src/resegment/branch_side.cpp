@@ -25,7 +25,7 @@ double slope_along_tangent(const HybridSystem& system, const DefiningSystem& def
   Eigen::Matrix2Xd by_parameter(2, grazing.free_count());
   grazing.end_derivatives(impact, point.orbit.end(impact), point.orbit.par.data(), values.data(), by_state.data(),
                           by_parameter.data());
-  const Eigen::Index end = (impact + 1) * point.orbit.shape.nodes() - 1;
+  const Eigen::Index end = point.orbit.shape.last_node(impact);
   return by_state.row(1).dot(point.tangent.states.col(end)) + by_parameter.row(1).dot(point.tangent.globals);
 }
 
@@ -37,7 +37,7 @@ double event_along_tangent(const HybridSystem& system, const DefiningSystem& def
   double h = 0.0;
   system.first(FunctionKind::event, at.event, point.orbit.end(at.segment), point.orbit.par.data(),
                defining.free_parameters(), &h, by_state.data(), by_parameter.data());
-  const Eigen::Index end = (at.segment + 1) * point.orbit.shape.nodes() - 1;
+  const Eigen::Index end = point.orbit.shape.last_node(at.segment);
   return by_state.dot(point.tangent.states.col(end)) + by_parameter.dot(point.tangent.globals);
 }
 

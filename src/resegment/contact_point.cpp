@@ -70,8 +70,9 @@ int jump_at_contact(const HybridSystem& system, const RunSettings& settings, con
   const IndexVector& from = settings.segments[static_cast<std::size_t>(before)].index;
   // An orbit that had no section was cut at this contact, so what a start in mid-orbit may meet is asked for instead.
   const bool was_smooth = m == 1 && from.jump == no_function;
-  const auto watched = was_smooth ? system.successors({0, 0, 0}, x.node(before, x.shape.nodes() / 2), x.par.data())
-                                  : system.successors(from, x.end(before), x.par.data());
+  const auto watched = was_smooth
+                           ? system.successors({0, 0, 0}, x.node(before, x.shape.nodes_of(before) / 2), x.par.data())
+                           : system.successors(from, x.end(before), x.par.data());
   const int field = settings.segments[static_cast<std::size_t>(contact.segment)].index.field;
   std::vector<int> jumps;
   for (const IndexVector& v : watched.value_or(std::vector<IndexVector>{}))

@@ -181,9 +181,9 @@ class LostContacts {
     };
     const EventAt end = event_at(system_, section.event, section.field, x.end(0), x.par.data());
     if (std::abs(end.h) <= on_it * end.scale(x.end(0)) && falls(end)) return 1.0;
-    for (int k = 1; k < x.shape.nodes(); ++k) {
-      const double from = x.tau(k - 1);
-      const double to = x.tau(k);
+    for (int k = 1; k < x.shape.nodes_of(0); ++k) {
+      const double from = x.tau(0, k - 1);
+      const double to = x.tau(0, k);
       const double high = value(from);
       const double low = value(to);
       if (!(high > 0.0 && low <= 0.0)) continue;

@@ -48,7 +48,7 @@ std::vector<int> jumps_without_effect(const HybridSystem& system, const Orbit& x
   std::vector<int> jumps{identity_jump(system, field)};
   Eigen::VectorXd after(x.shape.dimension);
   const auto moves = [&](int jump) {
-    for (int k = 0; k < x.shape.nodes(); ++k) {
+    for (int k = 0; k < x.shape.nodes_of(s); ++k) {
       const Eigen::Map<const Eigen::VectorXd> state(x.node(s, k), x.shape.dimension);
       system.value(FunctionKind::jump, jump, state.data(), x.par.data(), after.data());
       const double change = (after - state).lpNorm<Eigen::Infinity>();

@@ -10,37 +10,105 @@ namespace {
 
 std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
-/// Density of the old mesh at tau: intervals per unit of tau.
-double density_at(const std::vector<double>& mesh, double tau) {
-  const auto right = std::clamp<std::ptrdiff_t>(std::upper_bound(mesh.begin(), mesh.end(), tau) - mesh.begin(), 1,
-                                                static_cast<std::ptrdiff_t>(mesh.size()) - 1);
-  return 1.0 / (mesh[static_cast<std::size_t>(right)] - mesh[static_cast<std::size_t>(right - 1)]);
+/// The interval of segment s that tau is in.
+int interval_at(const Orbit& x, int s, double tau) {
+  const double* const mesh = x.mesh_of(s);
+  const int intervals = x.shape.intervals_of(s);
+  const auto right = static_cast<int>(std::upper_bound(mesh, mesh + intervals + 1, tau) - mesh);
+  return std::clamp(right - 1, 0, intervals - 1);
+}
+
+/// Density of the old mesh of segment s at tau: intervals per unit of tau.
+double density_at(const Orbit& x, int s, double tau) {
+  const double* const left = x.mesh_of(s) + interval_at(x, s, tau);
+  return 1.0 / (left[1] - left[0]);
+}
+
+constexpr double least_density = 1e-3;
+
+/// Meshes of their own for the segments of `target`, whose points come from place(segment, tau) of the old orbit: each
+/// has the density of the old mesh there, and its share of the intervals.
+template <class PlaceOf>
+void set_own_meshes(const Orbit& x, const PlaceOf& place, Orbit& target) {
+  const int m = target.shape.segments;
+  int fine = 0;
+  for (int s = 0; s < x.shape.segments; ++s) fine = std::max(fine, 8 * x.shape.intervals_of(s));
+  const std::vector<double> grid = uniform_mesh(fine);
+  Eigen::MatrixXd densities = Eigen::MatrixXd::Constant(fine, m, least_density);
+  for (int p = 0; p < m; ++p)
+    for (int j = 0; j < fine; ++j) {
+      const auto at = place(p, 0.5 * (grid[index(j)] + grid[index(j + 1)]));
+      if (at.rate > 0.0) densities(j, p) += density_at(x, at.segment, at.tau) * at.rate;
+    }
+  std::vector<int> counts;
+  deal_out(densities.colwise().mean().transpose(), target.shape.total_intervals(), least_own_intervals, counts);
+  target.shape.own = OwnIntervals(counts);
+  target.mesh.clear();
+  for (int p = 0; p < m; ++p) {
+    const std::vector<double> mesh = equal_parts(grid, densities.col(p), counts[index(p)]);
+    target.mesh.insert(target.mesh.end(), mesh.begin(), mesh.end());
+  }
+}
+
+/// A point of the old orbit.
+struct OldPoint {
+  int segment;
+  double tau;
+  double rate;  ///< of the old tau by the new one
+};
+
+OldPoint place_in(const OrbitPiece& piece, double tau) {
+  return {piece.segment, piece.from + (piece.to - piece.from) * tau, piece.to - piece.from};
 }
 
 /// N intervals that follow the old mesh on every piece of positive duration.
 std::vector<double> mesh_for(const Orbit& x, const std::vector<OrbitPiece>& pieces) {
   const int fine = 4 * x.shape.intervals;
   const std::vector<double> grid = uniform_mesh(fine);
-  Eigen::VectorXd density = Eigen::VectorXd::Constant(fine, 1e-3);
+  Eigen::VectorXd density = Eigen::VectorXd::Constant(fine, least_density);
   for (const OrbitPiece& piece : pieces)
     for (int j = 0; j < fine && !piece.empty(); ++j) {
-      const double middle = 0.5 * (grid[index(j)] + grid[index(j + 1)]);
-      density(j) += density_at(x.mesh, piece.from + (piece.to - piece.from) * middle) * (piece.to - piece.from);
+      const OldPoint at = place_in(piece, 0.5 * (grid[index(j)] + grid[index(j + 1)]));
+      density(j) += density_at(x, at.segment, at.tau) * at.rate;
     }
   return equal_parts(grid, density, x.shape.intervals);
 }
 
 /// Whole segments in another order, or repeated, and constant ones: of states, or of a direction's.
-Eigen::MatrixXd copy_segments(const Eigen::MatrixXd& states, int nodes, const std::vector<OrbitPiece>& pieces) {
-  Eigen::MatrixXd result(states.rows(), nodes * static_cast<Eigen::Index>(pieces.size()));
-  for (std::size_t p = 0; p < pieces.size(); ++p) {
-    auto columns = result.middleCols(static_cast<Eigen::Index>(p) * nodes, nodes);
-    if (pieces[p].constant.size() > 0)
-      columns.colwise() = pieces[p].constant;
+Eigen::MatrixXd copy_segments(const Eigen::MatrixXd& states, const OrbitShape& from, const OrbitShape& to,
+                              const std::vector<OrbitPiece>& pieces) {
+  Eigen::MatrixXd result(states.rows(), to.columns());
+  for (int p = 0; p < to.segments; ++p) {
+    const OrbitPiece& piece = pieces[index(p)];
+    auto columns = result.middleCols(to.first_node(p), to.nodes_of(p));
+    if (piece.constant.size() > 0)
+      columns.colwise() = piece.constant;
     else
-      columns = states.middleCols(pieces[p].segment * nodes, nodes);
+      columns = states.middleCols(from.first_node(piece.segment), from.nodes_of(piece.segment));
   }
   return result;
+}
+
+/// Do whole segments keep their meshes? Own ones do where their intervals sum up to those of as many segments.
+bool keeps_meshes(const OrbitShape& shape, const std::vector<OrbitPiece>& pieces) {
+  if (!shape.own) return true;
+  int intervals = 0;
+  for (const OrbitPiece& piece : pieces) intervals += shape.intervals_of(piece.segment);
+  return intervals == shape.intervals * static_cast<int>(pieces.size());
+}
+
+/// The meshes of the pieces, which are whole segments.
+void copy_meshes(const Orbit& x, const std::vector<OrbitPiece>& pieces, Orbit& target) {
+  target.mesh = x.mesh;
+  if (!x.shape.own) return;
+  std::vector<int> counts;
+  target.mesh.clear();
+  for (const OrbitPiece& piece : pieces) {
+    counts.push_back(x.shape.intervals_of(piece.segment));
+    const double* const mesh = x.mesh_of(piece.segment);
+    target.mesh.insert(target.mesh.end(), mesh, mesh + counts.back() + 1);
+  }
+  target.shape.own = OwnIntervals(counts);
 }
 
 Eigen::MatrixXd resample(const Orbit& x, const std::vector<OrbitPiece>& pieces, const Orbit& target) {
@@ -48,14 +116,14 @@ Eigen::MatrixXd resample(const Orbit& x, const std::vector<OrbitPiece>& pieces, 
   Eigen::MatrixXd result(target.shape.dimension, target.shape.columns());
   for (std::size_t p = 0; p < pieces.size(); ++p) {
     const OrbitPiece& piece = pieces[p];
+    const auto s = static_cast<int>(p);
+    const int first = target.shape.first_node(s);
     if (piece.constant.size() > 0) {
-      result.middleCols(static_cast<Eigen::Index>(p) * target.shape.nodes(), target.shape.nodes()).colwise() =
-          piece.constant;
+      result.middleCols(first, target.shape.nodes_of(s)).colwise() = piece.constant;
       continue;
     }
-    for (int k = 0; k < target.shape.nodes(); ++k)
-      result.col(static_cast<Eigen::Index>(p) * target.shape.nodes() + k) =
-          state_at(x, rule, piece.segment, piece.from + (piece.to - piece.from) * target.tau(k));
+    for (int k = 0; k < target.shape.nodes_of(s); ++k)
+      result.col(first + k) = state_at(x, rule, piece.segment, place_in(piece, target.tau(s, k)).tau);
   }
   return result;
 }
@@ -78,12 +146,7 @@ class JoinedPieces {
 
   double duration() const { return ends_.back(); }
 
-  struct Place {
-    int segment;
-    double tau;
-    double rate;  ///< of the old tau by the new one
-  };
-  Place at(double tau) const {
+  OldPoint at(double tau) const {
     const double time = tau * duration();
     std::size_t k = 0;
     while (k + 1 < ends_.size() && time > ends_[k]) ++k;
@@ -98,35 +161,44 @@ class JoinedPieces {
   std::vector<double> ends_;  // times
 };
 
+/// N intervals that follow the old mesh on all joined pieces.
+std::vector<double> mesh_for(const Orbit& x, const std::vector<JoinedPieces>& joined) {
+  const int fine = 8 * x.shape.intervals;
+  const std::vector<double> grid = uniform_mesh(fine);
+  Eigen::VectorXd density = Eigen::VectorXd::Constant(fine, least_density);
+  for (const JoinedPieces& pieces : joined)
+    for (int j = 0; j < fine; ++j) {
+      const OldPoint at = pieces.at(0.5 * (grid[index(j)] + grid[index(j + 1)]));
+      density(j) += density_at(x, at.segment, at.tau) * at.rate;
+    }
+  return equal_parts(grid, density, x.shape.intervals);
+}
+
 }  // namespace
 
 Orbit joined_orbit(const Orbit& old, const std::vector<std::vector<OrbitPiece>>& groups) {
   Orbit result;
-  result.shape = old.shape;
+  result.shape = old.shape.in_common();
   result.shape.segments = static_cast<int>(groups.size());
   result.par = old.par;
   make_room(result.par, result.shape.segments);
   result.par.tail(result.par.size() - first_duration + 1).setZero();
-  const int fine = 8 * old.shape.intervals;
-  const std::vector<double> grid = uniform_mesh(fine);
-  Eigen::VectorXd density = Eigen::VectorXd::Constant(fine, 1e-3);
   std::vector<JoinedPieces> joined;
   for (const auto& pieces : groups) {
     joined.emplace_back(old, pieces);
     result.duration(static_cast<int>(joined.size()) - 1) = joined.back().duration();
-    for (int j = 0; j < fine; ++j) {
-      const JoinedPieces::Place place = joined.back().at(0.5 * (grid[index(j)] + grid[index(j + 1)]));
-      density(j) += density_at(old.mesh, place.tau) * place.rate;
-    }
   }
-  result.mesh = equal_parts(grid, density, old.shape.intervals);
+  if (old.shape.own)
+    set_own_meshes(
+        old, [&](int s, double tau) { return joined[index(s)].at(tau); }, result);
+  else
+    result.mesh = mesh_for(old, joined);
   const CollocationRule rule(old.shape.collocation);
   result.states.resize(result.shape.dimension, result.shape.columns());
-  for (std::size_t s = 0; s < joined.size(); ++s)
-    for (int k = 0; k < result.shape.nodes(); ++k) {
-      const JoinedPieces::Place place = joined[s].at(result.tau(k));
-      result.states.col(static_cast<Eigen::Index>(s) * result.shape.nodes() + k) =
-          state_at(old, rule, place.segment, place.tau);
+  for (int s = 0; s < result.shape.segments; ++s)
+    for (int k = 0; k < result.shape.nodes_of(s); ++k) {
+      const OldPoint place = joined[index(s)].at(result.tau(s, k));
+      result.states.col(result.shape.first_node(s) + k) = state_at(old, rule, place.segment, place.tau);
     }
   return result;
 }
@@ -137,36 +209,41 @@ Eigen::VectorXd end_of(const OrbitPiece& piece, const Orbit& x) {
 }
 
 Eigen::VectorXd state_at(const Orbit& x, const CollocationRule& rule, int s, double tau) {
-  const auto right = std::upper_bound(x.mesh.begin(), x.mesh.end(), tau) - x.mesh.begin();
-  const int j = std::clamp(static_cast<int>(right) - 1, 0, x.shape.intervals - 1);
+  const int j = interval_at(x, s, tau);
+  const double* const left = x.mesh_of(s) + j;
   const int c = x.shape.collocation;
   Eigen::VectorXd basis(c + 1);
-  rule.basis((tau - x.mesh[index(j)]) / (x.mesh[index(j + 1)] - x.mesh[index(j)]), basis.data(), nullptr);
-  return x.states.middleCols(s * x.shape.nodes() + j * c, c + 1) * basis;
+  rule.basis((tau - left[0]) / (left[1] - left[0]), basis.data(), nullptr);
+  return x.states.middleCols(x.shape.first_node(s) + j * c, c + 1) * basis;
 }
 
 OrbitStart assemble(const OrbitStart& old, const std::vector<OrbitPiece>& pieces) {
   const Orbit& x = old.orbit;
   OrbitStart result;
-  result.orbit.shape = x.shape;
+  result.orbit.shape = x.shape.in_common();
   result.orbit.shape.segments = static_cast<int>(pieces.size());
   result.orbit.par = x.par;
   set_durations(x, pieces, result.orbit);
   const auto is_whole = [](const OrbitPiece& piece) { return piece.whole(); };
   const bool whole = std::all_of(pieces.begin(), pieces.end(), is_whole);
-  const bool copied = std::all_of(pieces.begin(), pieces.end(), [&](const OrbitPiece& piece) {
-    return is_whole(piece) || piece.constant.size() > 0;
-  });
+  const bool copied =
+      keeps_meshes(x.shape, pieces) && std::all_of(pieces.begin(), pieces.end(), [&](const OrbitPiece& piece) {
+        return is_whole(piece) || piece.constant.size() > 0;
+      });
   if (!copied) {
-    result.orbit.mesh = mesh_for(x, pieces);
+    if (x.shape.own)
+      set_own_meshes(
+          x, [&](int p, double tau) { return place_in(pieces[index(p)], tau); }, result.orbit);
+    else
+      result.orbit.mesh = mesh_for(x, pieces);
     result.orbit.states = resample(x, pieces, result.orbit);
     return result;
   }
-  result.orbit.mesh = x.mesh;
-  result.orbit.states = copy_segments(x.states, x.shape.nodes(), pieces);
+  copy_meshes(x, pieces, result.orbit);
+  result.orbit.states = copy_segments(x.states, x.shape, result.orbit.shape, pieces);
   if (!whole || !old.direction) return result;
   OrbitVector direction(result.orbit.shape, static_cast<int>(old.direction->globals.size()));
-  direction.states = copy_segments(old.direction->states, x.shape.nodes(), pieces);
+  direction.states = copy_segments(old.direction->states, x.shape, result.orbit.shape, pieces);
   direction.globals = old.direction->globals;
   for (std::size_t p = 0; p < pieces.size(); ++p)
     direction.durations(static_cast<Eigen::Index>(p)) = old.direction->durations(pieces[p].segment);

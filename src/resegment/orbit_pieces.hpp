@@ -5,7 +5,8 @@
 /// or in a state of its own. All new segments share one mesh: the old mesh when every piece is a whole segment (then
 /// states and direction are copied exactly), otherwise a mesh whose density is the sum of those that the old mesh gives
 /// to the pieces; there the old collocation polynomials are evaluated, so the new orbit has the accuracy that the old
-/// one has between mesh points, order NCOL + 1.
+/// one has between mesh points, order NCOL + 1. Where segments have meshes of their own, so have the new ones: each has
+/// the density that the old mesh gives to its piece, and its share of the intervals.
 #pragma once
 
 #include <vector>
@@ -25,7 +26,8 @@ struct OrbitPiece {
   bool empty() const { return from == to; }
 };
 
-/// The direction is kept when all pieces are whole segments, and dropped otherwise. Pieces must not be empty as a list.
+/// The direction is kept when all pieces are whole segments that keep their meshes, and dropped otherwise. Pieces must
+/// not be empty as a list.
 OrbitStart assemble(const OrbitStart& old, const std::vector<OrbitPiece>& pieces);
 
 /// Each list of pieces, none empty, joined to one segment, on a mesh whose density is the sum of those of all pieces.

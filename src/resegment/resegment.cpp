@@ -48,9 +48,8 @@ namespace {
 OrbitStart start_of(const LabelledOrbit& source, const std::string& path) {
   const LabelledSolution& solution = source.solution;
   const auto segments = static_cast<int>(source.settings.segments.size());
-  return orbit_from_solution(
-      solution, {source.settings.dimension, segments, solution.mesh_intervals, solution.collocation_points},
-      source.free_parameters, path);
+  return orbit_from_solution(solution, stored_shape(solution, source.settings.dimension, segments),
+                             source.free_parameters, path);
 }
 
 LabelledOrbit read_source(const ResegmentRequest& request, const std::string& path, const std::string& constants,

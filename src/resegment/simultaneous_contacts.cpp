@@ -35,7 +35,7 @@ Slope slope_at(const HybridSystem& system, int field, int event, const double* x
 
 double largest_value(const HybridSystem& system, const Orbit& x, int s, int event) {
   double largest = 0.0;
-  for (int k = 0; k < x.shape.nodes(); ++k)
+  for (int k = 0; k < x.shape.nodes_of(s); ++k)
     largest = std::max(largest, std::abs(system.event(event, x.node(s, k), x.par.data())));
   return largest;
 }

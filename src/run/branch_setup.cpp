@@ -62,10 +62,15 @@ BranchSetup Discretisation::refined(const BranchSetup& setup, const PathPoint& l
   for (std::size_t k = 0; k < settings.held.size(); ++k) settings.held[k].value = setup.follower->held()[k].value;
   const CollocationRule& rule = setup.follower->condensed().rule();
   const int intervals = settings.mesh_intervals;
-  const std::vector<double> mesh = settings.adapt_mesh_every > 0 ? equidistributed_mesh(last.orbit, rule, intervals)
-                                                                 : resampled_mesh(last.orbit.mesh, intervals);
-  OrbitShape shape = last.orbit.shape;
-  shape.intervals = intervals;
+  OrbitShape shape = resized(last.orbit.shape, intervals);
+  std::vector<double> mesh;
+  if (settings.adapt_mesh_every > 0) {
+    MeshEquidistribution equidistribution;
+    mesh = equidistribution.mesh(last.orbit, rule, intervals);
+    shape = equidistribution.shape();
+  } else {
+    mesh = resampled_mesh(last.orbit.shape, last.orbit.mesh, shape);
+  }
   const MeshTransfer transfer(last.orbit.shape, last.orbit.mesh, shape, mesh, rule);
   SelectedStart start;
   start.start.orbit = {shape, mesh, transfer(last.orbit.states), last.orbit.par};

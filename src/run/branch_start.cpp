@@ -34,8 +34,8 @@ std::string undetermined(const HybridSystem& system, const DefiningSystem& defin
   std::vector<Entry> entries;
   for (int s = 0; s < shape.segments; ++s) {
     for (int a = 0; a < shape.dimension; ++a) {
-      const double start = std::abs(direction.states(a, s * shape.nodes()));
-      const double end = std::abs(direction.states(a, (s + 1) * shape.nodes() - 1));
+      const double start = std::abs(direction.states(a, shape.first_node(s)));
+      const double end = std::abs(direction.states(a, shape.last_node(s)));
       entries.push_back({std::max(start, end), fmt::format("{} on segment {}", system.state_name(a + 1), s + 1)});
     }
     entries.push_back({std::abs(direction.durations(s)), fmt::format("the duration of segment {}", s + 1)});

@@ -72,14 +72,14 @@ RunSettings doubled(RunSettings settings) {
 /// duration changes by sigma, in the second by -sigma; at the time t of the one segment, whose duration stays, it is
 /// v - sigma f t / T in the first and -v - sigma f (2 - t / T) in the second.
 void double_segment(const DefiningSystem& defining, const Orbit& x, const OrbitVector& v, OrbitVector& direction) {
-  const int last = x.shape.nodes() - 1;
+  const int last = x.shape.last_node(0);
   Eigen::VectorXd f(x.shape.dimension);
   for (int k = 0; k <= last; ++k) {
     defining.system().value(FunctionKind::field, defining.signature().front().field, x.node(0, k), x.par.data(),
                             f.data());
     f *= v.durations(0);
-    direction.states.col(k) = v.states.col(k) - x.tau(k) * f;
-    direction.states.col(last + k) = -v.states.col(k) - (1.0 - x.tau(k)) * f;
+    direction.states.col(k) = v.states.col(k) - x.tau(0, k) * f;
+    direction.states.col(last + k) = -v.states.col(k) - (1.0 - x.tau(0, k)) * f;
   }
 }
 
@@ -93,8 +93,9 @@ void repeat_segment(const Eigen::MatrixXd& states, Eigen::MatrixXd& twice) {
 /// An orbit without a section twice over, as one segment of two periods.
 Bifurcation double_without_section(const DefiningSystem& defining, const PathPoint& point, const OrbitVector& v) {
   const Orbit& x = point.orbit;
-  OrbitShape shape = x.shape;
+  OrbitShape shape = x.shape.in_common();
   shape.intervals *= 2;
+  if (x.shape.own) shape = shape.with_own_meshes();
   std::vector<double> mesh;
   for (const double tau : x.mesh) mesh.push_back(0.5 * tau);
   for (std::size_t j = 1; j < x.mesh.size(); ++j) mesh.push_back(0.5 + 0.5 * x.mesh[j]);
@@ -118,9 +119,16 @@ Bifurcation double_at(PathFollower& follower, const DefiningSystem& defining, co
     throw ComputationError("the critical vector of the period doubling was not found");
   const OrbitVector& v = critical.null_vector();
   if (!defining.has_event(0)) return double_without_section(defining, point, v);
-  OrbitShape shape = x.shape;
+  OrbitShape shape = x.shape.in_common();
   shape.segments *= 2;
-  Bifurcation result{{shape, x.mesh, Eigen::MatrixXd(shape.dimension, shape.columns()), x.par},
+  std::vector<double> mesh = x.mesh;
+  if (x.shape.own) {
+    std::vector<int> intervals;
+    for (int s = 0; s < shape.segments; ++s) intervals.push_back(x.shape.intervals_of(s % x.shape.segments));
+    shape.own = OwnIntervals(intervals);
+    mesh.insert(mesh.end(), x.mesh.begin(), x.mesh.end());
+  }
+  Bifurcation result{{shape, mesh, Eigen::MatrixXd(shape.dimension, shape.columns()), x.par},
                      OrbitVector(shape, defining.free_count()),
                      OrbitVector(shape, defining.free_count())};
   const int m = x.shape.segments;

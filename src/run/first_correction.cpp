@@ -181,14 +181,15 @@ bool solves_but_for_condition(PathFollower& follower, const DefiningSystem& syst
 }
 
 /// The orbit on the mesh adapted to it, or on one that is half or a quarter of the way there: on a coarse mesh the
-/// whole way takes it out of reach of Newton's method. False when all fail.
-bool adapt_mesh(PathFollower& follower, const std::vector<double>& adapted, PathPoint& point) {
-  const std::vector<double> old = point.orbit.mesh;
+/// whole way takes it out of reach of Newton's method. `old`: its mesh with the numbers of intervals of `shape`. False
+/// when all fail.
+bool adapt_mesh(PathFollower& follower, const OrbitShape& shape, const std::vector<double>& old,
+                const std::vector<double>& adapted, PathPoint& point) {
   for (const double share : {1.0, 0.5, 0.25}) {
     std::vector<double> mesh = adapted;
     for (std::size_t j = 0; j < mesh.size(); ++j) mesh[j] = old[j] + share * (adapted[j] - old[j]);
     PathPoint trial = point;
-    follower.change_mesh(trial, mesh);
+    follower.change_mesh(trial, shape, mesh);
     if (!follower.start_at_fixed_parameter(trial).converged()) continue;
     std::swap(point, trial);
     return true;
@@ -199,13 +200,17 @@ bool adapt_mesh(PathFollower& follower, const std::vector<double>& adapted, Path
 /// On meshes adapted to the point until they settle; the last good one is kept.
 void settle_mesh(PathFollower& follower, PathPoint& point) {
   const int intervals = point.orbit.shape.intervals;
+  MeshEquidistribution equidistribution;
   for (int pass = 0; pass < most_meshes; ++pass) {
-    const std::vector<double>& old = point.orbit.mesh;
-    const std::vector<double> mesh = equidistributed_mesh(point.orbit, follower.condensed().rule(), intervals);
+    const std::vector<double> mesh = equidistribution.mesh(point.orbit, follower.condensed().rule(), intervals);
+    const OrbitShape shape = equidistribution.shape();
+    const std::vector<double> old = resampled_mesh(point.orbit.shape, point.orbit.mesh, shape);
     double moved = 0.0;
-    for (std::size_t j = 1; j + 1 < mesh.size(); ++j)
-      moved = std::max(moved, std::abs(mesh[j] - old[j]) / (mesh[j + 1] - mesh[j - 1]));
-    if (moved < settled || !adapt_mesh(follower, mesh, point)) return;
+    for (std::size_t j = 1; j + 1 < mesh.size(); ++j)  // where a segment ends and another one starts none moves
+      if (mesh[j] > mesh[j - 1] && mesh[j + 1] > mesh[j])
+        moved = std::max(moved, std::abs(mesh[j] - old[j]) / (mesh[j + 1] - mesh[j - 1]));
+    const bool has_settled = moved < settled && shape == point.orbit.shape;
+    if (has_settled || !adapt_mesh(follower, shape, old, mesh, point)) return;
   }
 }
 

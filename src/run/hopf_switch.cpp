@@ -156,8 +156,8 @@ void begin_on_section(const HybridSystem& system, int event, const Orbit& x, con
 
 /// Re(v exp(2 pi i tau)) at the nodes.
 void set_oscillation(const Eigen::VectorXcd& v, const Orbit& orbit, OrbitVector& direction) {
-  for (int k = 0; k < orbit.shape.nodes(); ++k)
-    direction.states.col(k) = (v * std::polar(1.0, 2.0 * std::numbers::pi * orbit.tau(k))).real();
+  for (int k = 0; k < orbit.shape.nodes_of(0); ++k)
+    direction.states.col(k) = (v * std::polar(1.0, 2.0 * std::numbers::pi * orbit.tau(0, k))).real();
 }
 
 /// The orbit of the largest amplitude, up to |DS|, that converges.
@@ -199,7 +199,7 @@ BranchSetup begin_periodic_orbits(const HybridSystem& system, const RunSettings&
 
   const RunSettings of_orbit = with_watched_events(system, of_periodic_orbit(settings), x);
   const OrbitShape shape = family_of(of_orbit).shape(of_orbit);
-  Orbit still{shape, uniform_mesh(shape.intervals), x.states.col(0).replicate(1, shape.columns()), x.par};
+  Orbit still{shape, uniform_mesh(shape), x.states.col(0).replicate(1, shape.columns()), x.par};
   still.duration(0) = 2.0 * std::numbers::pi / oscillation.omega;
   SelectedStart start = selected;
   start.start = {still, {}};

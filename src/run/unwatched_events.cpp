@@ -46,7 +46,7 @@ bool is_negative(const HybridSystem& system, int event, const Orbit& x, int s, i
   double least = 0.0;
   double scale = 1.0;
   for (; s < x.shape.segments; s += segments_per_return)
-    for (int k = 0; k < x.shape.nodes(); ++k) {
+    for (int k = 0; k < x.shape.nodes_of(s); ++k) {
       const double h = system.event(event, x.node(s, k), x.par.data());
       if (!(h >= least)) least = h;
       scale = std::max(scale, std::abs(h));

@@ -52,7 +52,7 @@ TestValue ContactTest::evaluate(const TestedPoint& point) const {
 /// Between pinned ends h may rise and fall without a minimum in between: no contact, positive.
 int ContactTest::sign_without_minimum(const Orbit& x) const {
   if (!(x.duration(segment_) > 0.0)) return 0;
-  for (int k = 1; k + 1 < x.shape.nodes(); ++k)
+  for (int k = 1; k + 1 < x.shape.nodes_of(segment_); ++k)
     if (system_.system().event(event_, x.node(segment_, k), x.par.data()) > 0.0) return 1;
   return 0;
 }

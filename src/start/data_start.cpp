@@ -30,7 +30,9 @@ void set_parameters(const DatFile& data, const HybridSystem& system, const std::
 }  // namespace
 
 OrbitShape shape_of_segments(const RunSettings& settings) {
-  return {settings.dimension, segment_count(settings), settings.mesh_intervals, settings.collocation_points};
+  const OrbitShape in_common{settings.dimension, segment_count(settings), settings.mesh_intervals,
+                             settings.collocation_points};
+  return settings.own_meshes ? in_common.with_own_meshes() : in_common;
 }
 
 SelectedStart start_from_state(const std::string& path, const RunSettings& settings, const HybridSystem& system) {

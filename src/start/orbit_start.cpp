@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "bvp/mesh_adaptation.hpp"
+#include "bvp/mesh_in_common.hpp"
 #include "problem_type/problem_type.hpp"
 #include "text/user_error.hpp"
 
@@ -135,6 +136,37 @@ ParameterVector stored_parameters(const LabelledSolution& solution, const OrbitS
   return par;
 }
 
+/// The intervals of a segment on average.
+int own_intervals(const LabelledSolution& solution, int segments) {
+  return (static_cast<int>(solution.own_mesh.size()) - segments) / segments;
+}
+
+/// On the segments' own meshes: those of the file, exactly, or the one in common for each.
+void take_own_meshes(const LabelledSolution& solution, OrbitStart& start) {
+  Orbit& x = start.orbit;
+  if (solution.own_mesh.empty()) {
+    x = with_own_meshes(std::move(x));
+    return;
+  }
+  const std::vector<double>& mesh = solution.own_mesh;
+  std::vector<int> intervals;
+  for (auto begin = mesh.begin(); begin != mesh.end();) {
+    const auto end = std::find(begin, mesh.end(), 1.0);
+    intervals.push_back(static_cast<int>(end - begin));
+    begin = end + 1;
+  }
+  OrbitShape own = x.shape;
+  own.intervals = own_intervals(solution, own.segments);
+  own.own = OwnIntervals(intervals);
+  const auto on_own = [&](const Eigen::MatrixXd& states) {
+    return states_on_own_meshes(states, x.shape, x.mesh, own, mesh);
+  };
+  if (start.direction) start.direction->states = on_own(start.direction->states);
+  x.states = on_own(x.states);
+  x.shape = own;
+  x.mesh = mesh;
+}
+
 OrbitStart point_start(const LabelledSolution& solution, const OrbitShape& shape,
                        const std::vector<int>& free_parameters) {
   OrbitStart start;
@@ -144,10 +176,45 @@ OrbitStart point_start(const LabelledSolution& solution, const OrbitShape& shape
   return start;
 }
 
+struct StoredStates {
+  Orbit orbit;
+  OrbitVector direction;
+};
+
+/// An orbit on own meshes on one in common.
+StoredStates in_common(const Orbit& x, const OrbitVector& direction) {
+  StoredStates result{{x.shape.in_common(), mesh_in_common(x.shape, x.mesh), {}, x.par}, direction};
+  Orbit& stored = result.orbit;
+  stored.shape.intervals = static_cast<int>(stored.mesh.size()) - 1;
+  const MeshTransfer transfer(x.shape, x.mesh, stored.shape, stored.mesh, CollocationRule(x.shape.collocation));
+  stored.states = transfer(x.states);
+  if (direction.states.size() > 0) result.direction.states = transfer(direction.states);
+  return result;
+}
+
+/// Where the rows tell the derivatives between them, on meshes that equidistribute the error of the data on a mesh in
+/// common, which is as fine as the rows or four times as fine.
+Orbit on_own_meshes(const DatFile& data, const OrbitShape& shape, const ParameterVector& par) {
+  const auto rows = static_cast<int>(data.tau.size());
+  OrbitShape fine = shape.in_common();
+  fine.intervals = std::clamp(rows / fine.collocation, fine.intervals, 4 * fine.intervals);
+  const Orbit x = with_own_meshes(orbit_from_data(data, fine, par));
+  if (rows < shape.mean_nodes()) return x;
+  const CollocationRule rule(shape.collocation);
+  MeshEquidistribution equidistribution;
+  const std::vector<double> mesh = equidistribution.mesh(x, rule, shape.intervals);
+  const MeshTransfer transfer(x.shape, x.mesh, equidistribution.shape(), mesh, rule);
+  return {equidistribution.shape(), mesh, transfer(x.states), par};
+}
+
 }  // namespace
 
 std::optional<Orbit> orbit_from_rows(const DatFile& data, const OrbitShape& shape, const ParameterVector& par) {
   constexpr int highest_degree = 7;
+  if (shape.own) {
+    std::optional<Orbit> in_common = orbit_from_rows(data, shape.in_common(), par);
+    return in_common ? std::optional(with_own_meshes(*std::move(in_common))) : std::nullopt;
+  }
   const int rows = static_cast<int>(data.tau.size()) - 1;
   for (int degree = highest_degree; degree > 1; --degree) {
     if (rows % degree != 0) continue;
@@ -162,6 +229,7 @@ std::optional<Orbit> orbit_from_rows(const DatFile& data, const OrbitShape& shap
 }
 
 Orbit orbit_from_data(const DatFile& data, const OrbitShape& shape, const ParameterVector& par) {
+  if (shape.own) return on_own_meshes(data, shape, par);
   if (const std::vector<double> mesh = mesh_of_rows(data, shape); !mesh.empty()) return on_mesh(data, mesh, shape, par);
   std::optional<Orbit> same_density = orbit_from_rows(data, shape, par);
   // On a coarser mesh every interval covers several, and which of them it had best unite is seen anew.
@@ -228,20 +296,45 @@ OrbitStart orbit_from_solution(const LabelledSolution& solution, const OrbitShap
     start.orbit.par.segment(first_duration - 1, shape.segments).setOnes();
   if (const std::optional<int> period = auto_period(solution.problem_type))
     std::swap(start.orbit.par(*period - 1), start.orbit.duration(0));
-  if (stored == shape) return start;
+  if (shape.own) take_own_meshes(solution, start);
+  const OrbitShape from = start.orbit.shape;
+  if (from.intervals == shape.intervals && from.collocation == shape.collocation) return start;
 
-  const std::vector<double> new_mesh = resampled_mesh(mesh, shape.intervals);
-  start.orbit.states = interpolate_states(start.orbit.states, stored, mesh, shape, new_mesh);
-  if (start.direction)
-    start.direction->states = interpolate_states(start.direction->states, stored, mesh, shape, new_mesh);
+  const CollocationRule rule(from.collocation);
+  OrbitShape to = resized(from, shape.intervals);
+  std::vector<double> new_mesh;
+  if (shape.own && solution.own_mesh.empty()) {  // as many intervals for each segment as it needs
+    MeshEquidistribution equidistribution;
+    new_mesh = equidistribution.mesh(start.orbit, rule, shape.intervals);
+    to = equidistribution.shape();
+  } else {
+    new_mesh = resampled_mesh(from, start.orbit.mesh, to);
+  }
+  to.collocation = shape.collocation;
+  const MeshTransfer transfer(from, start.orbit.mesh, to, new_mesh, rule);
+  start.orbit.states = transfer(start.orbit.states);
+  if (start.direction) start.direction->states = transfer(start.direction->states);
   start.orbit.mesh = new_mesh;
-  start.orbit.shape = shape;
+  start.orbit.shape = to;
   return start;
+}
+
+OrbitShape stored_shape(const LabelledSolution& solution, int dimension, int segments) {
+  OrbitShape shape{dimension, segments, solution.mesh_intervals, solution.collocation_points};
+  if (solution.own_mesh.empty()) return shape;
+  shape.intervals = own_intervals(solution, segments);
+  return shape.with_own_meshes();
 }
 
 LabelledSolution labelled_solution(const Orbit& orbit, const OrbitVector& direction,
                                    const std::vector<int>& free_parameters, const std::vector<int>& listed) {
   const OrbitShape& shape = orbit.shape;
+  if (shape.own) {
+    const StoredStates stored = in_common(orbit, direction);
+    LabelledSolution solution = labelled_solution(stored.orbit, stored.direction, free_parameters, listed);
+    if (!have_one_mesh(shape, orbit.mesh)) solution.own_mesh = orbit.mesh;
+    return solution;
+  }
   LabelledSolution solution;
   solution.dimension = shape.dimension;
   solution.mesh_intervals = shape.intervals;

@@ -17,9 +17,8 @@ namespace {
 
 /// An orbit that solves nothing, on an uneven mesh.
 Orbit any_orbit(const OrbitShape& shape) {
-  Orbit x{shape, uniform_mesh(shape.intervals), Eigen::MatrixXd(shape.dimension, shape.columns()),
-          parameters({0.9, 0.3, 0.2})};
-  for (std::size_t j = 1; j + 1 < x.mesh.size(); ++j) x.mesh[j] = std::pow(x.mesh[j], 1.3);
+  Orbit x{shape, uniform_mesh(shape), Eigen::MatrixXd(shape.dimension, shape.columns()), parameters({0.9, 0.3, 0.2})};
+  for (double& tau : x.mesh) tau = std::pow(tau, 1.3);
   for (Eigen::Index k = 0; k < x.states.cols(); ++k)
     for (Eigen::Index i = 0; i < x.states.rows(); ++i)
       x.states(i, k) = std::sin(0.3 + 0.9 * static_cast<double>(i) + 0.011 * static_cast<double>(k));
@@ -43,7 +42,22 @@ Shared shared(int segments, int intervals, int collocation, const EliminationThr
 }
 
 Shared many_segments() { return shared<4>(64, 20, 4, {2, 1}); }
+/// Each of two segments has as many intervals as the other one lacks of twice 20.
+Shared different_segments() {
+  Shared result = many_segments();
+  std::vector<int> counts;
+  for (int s = 0; s < 64; ++s) counts.push_back(s % 2 == 0 ? 5 + s / 4 : 40 - counts.back());
+  result.shape.own = OwnIntervals(counts);
+  return result;
+}
+
 Shared many_dimensions() { return shared<50>(2, 21, 2, {1, 2}); }
+
+Shared many_dimensions_on_own_meshes() {
+  Shared result = many_dimensions();
+  result.shape.own = OwnIntervals({9, 33});
+  return result;
+}
 
 /// Everything that is asked of a Newton matrix.
 struct Answers {
@@ -91,7 +105,8 @@ void check_same(const OrbitVector& a, const OrbitVector& b) {
 }  // namespace
 
 TEST_CASE("threads that share segments, or the pieces of one, change no bit") {
-  const Shared problem = GENERATE(many_segments(), many_dimensions());
+  const Shared problem =
+      GENERATE(many_segments(), different_segments(), many_dimensions(), many_dimensions_on_own_meshes());
   CAPTURE(problem.shape.dimension);
   const Answers alone = answers(problem, 1);
   REQUIRE(alone.outcome == Linearization::ready);

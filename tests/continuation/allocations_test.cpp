@@ -12,6 +12,7 @@
 #include "bvp/critical_multiplier.hpp"
 #include "bvp/critical_pair.hpp"
 #include "bvp/grazing_orbit_system.hpp"
+#include "bvp/mesh_in_common.hpp"
 #include "continuation/continuation_run.hpp"
 #include "continuation/planar_torus.hpp"
 #include "files/run_files.hpp"
@@ -22,6 +23,7 @@
 #include "special_points/torus_contact_condition.hpp"
 #include "support/branch_fixture.hpp"
 #include "support/linear_oscillator.hpp"
+#include "support/sharp_start.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/three_modes.hpp"
 
@@ -230,6 +232,46 @@ TEST_CASE("no allocation from the hundredth point of a branch on, files, tests a
   const BranchSummary summary = run.run(orbits.corrected(start));
   REQUIRE(summary.points == to);
   CHECK(sink.labels() == 0);
+  CHECK(ours == 0);
+  CHECK(solver == 0);
+}
+
+/// Counts from one point of the branch to another, of which nothing is kept.
+class QuietSink final : public BranchSink {
+ public:
+  QuietSink(int from, int to) : from_(from), to_(to) {}
+  void point(const BranchPoint& point) override {
+    if (point.number == from_) ours = 0, solver = 0, counting = true;
+    if (point.number == to_) counting = false;
+    shapes_ += !(shape_ == point.path.orbit.shape);
+    shape_ = point.path.orbit.shape;
+  }
+  void next_step(int, double) override {}
+  void note(int, const std::string&) override {}
+  /// How often the segments got other numbers of intervals.
+  int shapes() const { return shapes_; }
+  const OrbitShape& shape() const { return shape_; }
+
+ private:
+  int from_, to_;
+  OrbitShape shape_;
+  int shapes_ = 0;
+};
+
+TEST_CASE("no allocation along a branch on own meshes that have settled, new meshes included") {
+  give_solver_its_own_allocator();
+  const double rate = 50.0;
+  const Orbit start = with_own_meshes(SharpStart::sampled(SharpStart::orbit(rate), rate, 30, 4));
+  PeriodicOrbits orbits(system_of<SharpStart>(), SharpStart::signature(), 1, start.shape, {8, 2, 1e-9, 1e-9});
+  constexpr int from = 100, to = 300;
+  ContinuationSettings settings = branch_settings(start.shape, 1, 0.01, 0.01, to);
+  settings.adapt_mesh_every = 3;
+  QuietSink sink(from, to - 1);
+  ContinuationRun run(orbits.follower, orbits.system, settings, {}, sink);
+  const BranchSummary summary = run.run(orbits.corrected(start));
+  REQUIRE(summary.points == to);
+  CHECK(sink.shape().intervals_of(0) > sink.shape().intervals_of(1));
+  CHECK(sink.shapes() <= 5);
   CHECK(ours == 0);
   CHECK(solver == 0);
 }

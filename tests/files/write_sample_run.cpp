@@ -65,6 +65,7 @@ std::vector<Sample> samples(std::size_t columns, int first_label, int first_type
       sample.orbit.state_direction.resize(0, 0);
       sample.orbit.parameter_direction.clear();
     }
+    if (k == 6 || k == 10) sample.orbit.own_mesh = {0.0, 0.3, 1.0, 0.0, 0.1, 0.2, 0.7, 1.0};
     sample.multipliers = {{0.1 * k, 0.5}, {0.1 * k, -0.5}, {-3.0 * k, 0.0}, {1e-12, 0.0}};
     all.push_back(sample);
   }

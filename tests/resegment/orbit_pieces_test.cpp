@@ -34,11 +34,25 @@ OrbitStart sample(int intervals, int collocation) {
   return start;
 }
 
+/// The same on meshes of their own, of 30 and 60 intervals.
+OrbitStart sample_on_own_meshes(int collocation) {
+  OrbitStart start = sample(45, collocation);
+  Orbit& x = start.orbit;
+  x.shape.own = OwnIntervals({30, 60});
+  x.mesh = uniform_mesh(x.shape);
+  for (int s = 0; s < 2; ++s)
+    for (int k = 0; k < x.shape.nodes_of(s); ++k) {
+      x.states.col(x.shape.first_node(s) + k) = exact(starts[s] + durations[s] * x.tau(s, k));
+      start.direction->states.col(x.shape.first_node(s) + k).setConstant(s + x.tau(s, k));
+    }
+  return start;
+}
+
 double worst_error(const Orbit& x, int s, double from_time) {
   double worst = 0.0;
-  for (int k = 0; k < x.shape.nodes(); ++k) {
+  for (int k = 0; k < x.shape.nodes_of(s); ++k) {
     const Eigen::Map<const Eigen::Vector2d> state(x.node(s, k));
-    worst = std::max(worst, (state - exact(from_time + x.duration(s) * x.tau(k))).cwiseAbs().maxCoeff());
+    worst = std::max(worst, (state - exact(from_time + x.duration(s) * x.tau(s, k))).cwiseAbs().maxCoeff());
   }
   return worst;
 }
@@ -116,4 +130,28 @@ TEST_CASE("durations beyond the new number of segments are cleared") {
   const OrbitStart made = assemble(sample(10, 4), {{1, 0.0, 1.0}});
   CHECK(made.orbit.duration(0) == 1.3);
   CHECK(made.orbit.duration(1) == 0.0);
+}
+
+TEST_CASE("own meshes: pieces have their shares of the intervals, whole segments are copied, and joined they agree") {
+  const OrbitStart old = sample_on_own_meshes(5);
+  const Orbit cut = assemble(old, {{0, 0.0, 1.0}, {1, 0.0, 0.25}, {1, 0.25, 1.0}}).orbit;
+  CHECK(cut.shape.total_intervals() == 3 * 45);
+  CHECK(std::abs(cut.shape.intervals_of(0) - 30 * 3 * 45 / 90) <= 6);
+  CHECK(std::abs(3 * cut.shape.intervals_of(1) - cut.shape.intervals_of(2)) <= 12);
+  CHECK(worst_error(cut, 0, 0.0) < 1e-11);
+  CHECK(worst_error(cut, 1, 0.7) < 1e-11);
+  CHECK(worst_error(cut, 2, 0.7 + 0.25 * 1.3) < 1e-11);
+
+  const Orbit joined = joined_orbit(cut, {{{0, 0.0, 1.0}}, {{1, 0.0, 1.0}, {2, 0.0, 1.0}}});
+  CHECK(joined.shape.total_intervals() == 2 * 45);
+  CHECK(worst_error(joined, 0, 0.0) < 1e-10);
+  CHECK(worst_error(joined, 1, 0.7) < 1e-10);
+
+  const OrbitStart turned = assemble(old, {{1, 0.0, 1.0}, {0, 0.0, 1.0}});
+  CHECK(turned.orbit.shape.intervals_of(0) == 60);
+  CHECK(turned.orbit.shape.intervals_of(1) == 30);
+  REQUIRE(turned.direction);
+  const Eigen::Index nodes = old.orbit.shape.nodes_of(0);
+  CHECK(turned.orbit.states.rightCols(nodes) == old.orbit.states.leftCols(nodes));
+  CHECK(turned.direction->states.rightCols(nodes) == old.direction->states.leftCols(nodes));
 }

@@ -53,6 +53,17 @@ OrbitVector direction_of(const Orbit& x, int globals) {
   return v;
 }
 
+/// Two segments with two and four intervals of their own.
+Orbit on_own_meshes() {
+  Orbit x = two_segments();
+  x.shape.own = OwnIntervals({2, 4});
+  x.mesh = {0.0, 0.3, 1.0, 0.0, 0.1, 0.2, 0.7, 1.0};
+  for (int s = 0; s < 2; ++s)
+    for (int k = 0; k < x.shape.nodes_of(s); ++k)
+      Eigen::VectorXd::Map(x.node(s, k), 2) = cubic(x.tau(s, k)) + Eigen::Vector2d::Constant(std::sin(3.0 * k + s));
+  return x;
+}
+
 }  // namespace
 
 TEST_CASE("cubic data are met exactly between rows of any distance") {
@@ -143,4 +154,57 @@ TEST_CASE("the period of AUTO's orbits, PAR(11), is the duration of the only seg
   const Orbit start = orbit_from_solution(label, x.shape, {}, "q.x").orbit;
   CHECK(start.duration(0) == 6.25);
   CHECK(start.par(10) == 0.0);
+}
+
+TEST_CASE("an orbit on own meshes comes back from its labelled solution, with its direction") {
+  const Orbit x = on_own_meshes();
+  const OrbitVector v = direction_of(x, 1);
+  const LabelledSolution solution = labelled_solution(x, v, {1}, {1, 61, 62});
+  CHECK(solution.own_mesh == x.mesh);
+  const OrbitStart again = orbit_from_solution(solution, x.shape.in_common().with_own_meshes(), {1}, "q.x");
+  CHECK(again.orbit.shape == x.shape);
+  CHECK(again.orbit.mesh == x.mesh);
+  CHECK((again.orbit.states - x.states).cwiseAbs().maxCoeff() < 1e-12);
+  REQUIRE(again.direction.has_value());
+  CHECK((again.direction->states - v.states).cwiseAbs().maxCoeff() < 1e-12);
+  CHECK(again.direction->durations == v.durations);
+}
+
+TEST_CASE("own meshes of another size keep their share of the intervals, and a mesh in common is dealt out anew") {
+  const Orbit x = on_own_meshes();
+  const LabelledSolution solution = labelled_solution(x, {}, {1}, {1, 61, 62});
+  const Orbit larger = orbit_from_solution(solution, OrbitShape{2, 2, 30, 4}.with_own_meshes(), {1}, "q.x").orbit;
+  CHECK(larger.shape.intervals_of(0) + larger.shape.intervals_of(1) == 60);
+  CHECK(std::abs(larger.shape.intervals_of(1) - 40) <= 3);
+  const Orbit common = orbit_from_solution(solution, {2, 2, 30, 4}, {1}, "q.x").orbit;
+  CHECK_FALSE(common.shape.own);
+
+  const double sharp = 40.0;
+  const ParameterVector par = parameters({0.5});
+  const auto smooth = [](double t) { return Eigen::Vector2d(std::cos(t), std::sin(t)); };
+  const auto layer = [&](double t) { return Eigen::Vector2d(std::exp(-sharp * t), std::sin(t)); };
+  const Orbit both = sampled_orbit({{1.0, layer}, {1.0, smooth}}, 2, 100, 4, par);
+  const LabelledSolution fine = labelled_solution(both, {}, {1}, {1, 61, 62});
+  const Orbit dealt = orbit_from_solution(fine, OrbitShape{2, 2, 20, 4}.with_own_meshes(), {1}, "q.x").orbit;
+  CHECK(dealt.shape.intervals_of(0) > 2 * dealt.shape.intervals_of(1));
+  const Orbit same = orbit_from_solution(fine, both.shape.with_own_meshes(), {1}, "q.x").orbit;
+  CHECK(same.states == both.states);
+}
+
+TEST_CASE("data give each segment a mesh of its own") {
+  DatFile data;
+  for (int k = 0; k <= 400; ++k) {
+    data.tau.push_back(k / 400.0);
+    data.states.conservativeResize(2, k + 1);
+    data.states.col(k) << std::exp(-60.0 * k / 400.0), std::cos(k / 400.0);
+  }
+  const ParameterVector par = parameters({0.5});
+  const Orbit x = orbit_from_data(data, OrbitShape{1, 2, 20, 4}.with_own_meshes(), par);
+  CHECK(x.shape.total_intervals() == 40);
+  CHECK(x.shape.intervals_of(0) > x.shape.intervals_of(1));
+  for (int s = 0; s < 2; ++s)
+    for (int k = 0; k < x.shape.nodes_of(s); ++k) {
+      const double tau = x.tau(s, k), exact = s == 0 ? std::exp(-60.0 * tau) : std::cos(tau);
+      CHECK(std::abs(x.node(s, k)[0] - exact) < 1e-3);
+    }
 }
