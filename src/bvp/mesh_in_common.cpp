@@ -11,8 +11,7 @@ namespace {
 
 std::size_t index(std::ptrdiff_t i) { return static_cast<std::size_t>(i); }
 
-/// Of times that are written with ten decimals.
-constexpr double rounding_of_times = 2e-10;
+constexpr double rounding_of_times = 1e-14;
 
 /// The largest of the segments' densities, intervals per unit of tau, on each interval of `grid`, which has the points
 /// of all meshes.

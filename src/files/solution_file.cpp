@@ -125,19 +125,22 @@ std::string format_solution(const LabelledSolution& solution) {
   const EntrySizes sizes = checked_sizes(solution);
   std::string text;
   append_identifier(text, solution, sizes);
+  // Polynomials on the segments' own meshes are extended a little beyond the states that are written.
+  const auto append_number = solution.own_mesh.empty() ? append_e19 : append_e26;
   std::vector<double> record(static_cast<std::size_t>(sizes.states) + 1);
   for (Eigen::Index point = 0; point < sizes.points; ++point) {
     record[0] = solution.tau[static_cast<std::size_t>(point)];
     for (Eigen::Index row = 0; row < sizes.states; ++row)
       record[static_cast<std::size_t>(row) + 1] = solution.states(row, point);
-    append_numbers(text, record);
+    append_numbers(text, record, append_number);
   }
   if (solution.has_direction()) {
     append_integers(text, solution.free_parameters);
     append_numbers(text, solution.parameter_direction);
     for (Eigen::Index point = 0; point < sizes.points; ++point)
       append_numbers(text,
-                     std::span(solution.state_direction.col(point).data(), static_cast<std::size_t>(sizes.states)));
+                     std::span(solution.state_direction.col(point).data(), static_cast<std::size_t>(sizes.states)),
+                     append_number);
   }
   // Nothing corrects a fixed parameter at a restart: it has to be the same number again.
   append_numbers(text, all_parameters(solution, sizes), append_e26);

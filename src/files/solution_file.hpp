@@ -1,7 +1,8 @@
 /// One labelled solution as an entry of a q-file, in AUTO-07p's layout:
 ///
 ///     16 integers:  BR PT TY LAB NFPR ISW NTPL NAR NROWPR NTST NCOL NPAR NPARI NDIM IPS 0
-///     t, U(1..n m)                    NTPL records, each on lines of at most 7 numbers of 19 columns after 4 blanks
+///     t, U(1..n m)                    NTPL records, each on lines of at most 7 numbers of 19 columns after 4 blanks,
+///                                     or of 26, exact, where segments have their own meshes
 ///     ICP; d PAR(ICP)/ds; dU/ds       only with direction
 ///     PAR(1..NPAR)                    at most 7 numbers of 26 columns on a line, exact; the last NPARI = 4 are kind,
 ///                                     segment, index and tau of a UZ point; more of them are further kinds, and

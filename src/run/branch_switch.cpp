@@ -279,7 +279,7 @@ BranchSetup switch_branch(const HybridSystem& system, const RunSettings& setting
         "{}: ISW = -1 switches at {}, but the run does not start from such a label; name one, for example "
         "IRS={}1",
         selected.source, problem_type(settings).facts().starts_at, problem_type(settings).facts().start_example));
-  if (selected.start.orbit.shape != family_of(settings).shape(settings))
+  if (selected.start.orbit.shape.in_common() != family_of(settings).shape(settings).in_common())
     throw UserError(
         fmt::format("{}: label {} is an equilibrium: its branch point is left with IPS = {}, and periodic "
                     "orbits (IPS = {}) begin at a Hopf bifurcation (HB)",

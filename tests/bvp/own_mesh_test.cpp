@@ -48,7 +48,8 @@ double error_of_ends(const Orbit& x, const PeriodicOrbit& exact) {
   for (int s = 0; s < x.shape.segments; ++s) {
     const auto& segment = exact.map.segments[static_cast<std::size_t>(s)];
     worst = std::max(worst, std::abs(x.duration(s) - segment.duration));
-    worst = std::max(worst, (Eigen::VectorXd::Map(x.start(s), x.shape.dimension) - segment.start).cwiseAbs().maxCoeff());
+    worst =
+        std::max(worst, (Eigen::VectorXd::Map(x.start(s), x.shape.dimension) - segment.start).cwiseAbs().maxCoeff());
   }
   return worst;
 }

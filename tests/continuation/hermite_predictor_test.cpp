@@ -13,7 +13,7 @@ using namespace tchat::test;
 namespace {
 
 const std::vector<int> alpha{1};
-constexpr OrbitShape shape{4, 1, 40, 4};
+const OrbitShape shape{4, 1, 40, 4};
 
 /// The impacting branch at omega = 1.8901, towards its fold at v = 5.1987: alpha turns there, the orbit goes on.
 struct Branch {

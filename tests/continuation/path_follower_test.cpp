@@ -10,7 +10,7 @@ using namespace tchat::test;
 namespace {
 
 const Signature impacting{{1, 1, 1}};
-constexpr OrbitShape shape{4, 1, 50, 4};
+const OrbitShape shape{4, 1, 50, 4};
 
 Orbit closed_form(double omega, double v) {
   const OscillatorOrbit orbit = one_impact_orbit(omega, v);

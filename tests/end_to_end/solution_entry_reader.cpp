@@ -29,6 +29,15 @@ class LineReader {
     return reals(count, 19, pattern);
   }
 
+  /// The same, or with all digits, as the first line has them.
+  std::vector<double> states(std::size_t count) {
+    const auto here = in_.tellg();
+    std::string text;
+    std::getline(in_, text);
+    in_.seekg(here);
+    return text.size() == 4 + 26 * std::min<std::size_t>(7, count) ? exact_reals(count) : reals(count);
+  }
+
   /// The same with all digits.
   std::vector<double> exact_reals(std::size_t count) {
     static const std::regex pattern(" +-?[0-9]\\.[0-9]{16}E[+-][0-9]{3}");
@@ -106,7 +115,7 @@ SolutionEntry read_entry(LineReader& reader) {
   REQUIRE((lines == plain || lines == plain + direction));
 
   for (int k = 0; k < points; ++k) {
-    std::vector<double> record = reader.reals(static_cast<std::size_t>(states) + 1);
+    std::vector<double> record = reader.states(static_cast<std::size_t>(states) + 1);
     entry.t.push_back(record.front());
     record.erase(record.begin());
     entry.states.push_back(std::move(record));
@@ -116,7 +125,7 @@ SolutionEntry read_entry(LineReader& reader) {
   if (lines != plain) {
     entry.free_parameters = reader.integers(static_cast<std::size_t>(free));
     entry.parameter_direction = reader.reals(static_cast<std::size_t>(free));
-    for (int k = 0; k < points; ++k) entry.direction.push_back(reader.reals(static_cast<std::size_t>(states)));
+    for (int k = 0; k < points; ++k) entry.direction.push_back(reader.states(static_cast<std::size_t>(states)));
   }
   entry.par = reader.exact_reals(static_cast<std::size_t>(parameters));
   entry.internal.assign(entry.par.end() - internal, entry.par.end());

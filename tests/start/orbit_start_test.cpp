@@ -172,7 +172,7 @@ TEST_CASE("an orbit on own meshes comes back from its labelled solution, with it
 
 TEST_CASE("own meshes of another size keep their share of the intervals, and a mesh in common is dealt out anew") {
   const Orbit x = on_own_meshes();
-  const LabelledSolution solution = labelled_solution(x, {}, {1}, {1, 61, 62});
+  const LabelledSolution solution = labelled_solution(x, {}, {}, {});
   const Orbit larger = orbit_from_solution(solution, OrbitShape{2, 2, 30, 4}.with_own_meshes(), {1}, "q.x").orbit;
   CHECK(larger.shape.intervals_of(0) + larger.shape.intervals_of(1) == 60);
   CHECK(std::abs(larger.shape.intervals_of(1) - 40) <= 3);
@@ -184,7 +184,7 @@ TEST_CASE("own meshes of another size keep their share of the intervals, and a m
   const auto smooth = [](double t) { return Eigen::Vector2d(std::cos(t), std::sin(t)); };
   const auto layer = [&](double t) { return Eigen::Vector2d(std::exp(-sharp * t), std::sin(t)); };
   const Orbit both = sampled_orbit({{1.0, layer}, {1.0, smooth}}, 2, 100, 4, par);
-  const LabelledSolution fine = labelled_solution(both, {}, {1}, {1, 61, 62});
+  const LabelledSolution fine = labelled_solution(both, {}, {}, {});
   const Orbit dealt = orbit_from_solution(fine, OrbitShape{2, 2, 20, 4}.with_own_meshes(), {1}, "q.x").orbit;
   CHECK(dealt.shape.intervals_of(0) > 2 * dealt.shape.intervals_of(1));
   const Orbit same = orbit_from_solution(fine, both.shape.with_own_meshes(), {1}, "q.x").orbit;
@@ -198,7 +198,8 @@ TEST_CASE("data give each segment a mesh of its own") {
     data.states.conservativeResize(2, k + 1);
     data.states.col(k) << std::exp(-60.0 * k / 400.0), std::cos(k / 400.0);
   }
-  const ParameterVector par = parameters({0.5});
+  ParameterVector par = parameters({0.5});
+  par.segment(first_duration - 1, 2).setOnes();
   const Orbit x = orbit_from_data(data, OrbitShape{1, 2, 20, 4}.with_own_meshes(), par);
   CHECK(x.shape.total_intervals() == 40);
   CHECK(x.shape.intervals_of(0) > x.shape.intervals_of(1));

@@ -1,5 +1,5 @@
-/// An orbit of one sharp segment and a smooth one: x is thrown away from y by 1 and falls back to it at the rate k, which
-/// lifts y, while both decay; from the level a both grow towards 2 until x reaches the level b.
+/// An orbit of one sharp segment and a smooth one: x is thrown away from y by 1 and falls back to it at the rate k,
+/// which lifts y, while both decay; from the level a both grow towards 2 until x reaches the level b.
 ///
 ///     x' = k (y - x) - x + k (x - y)^2 / 2, y' = k (x - y)^2 / 2 - y  until x = a;
 ///     x' = 2 - x, y' = 2 - y  until x = b;    x := x + d, y := y - e
