@@ -151,6 +151,28 @@ TEST_CASE("restarts on own meshes are exact, from common ones and back too") {
   CHECK(own_intervals(workspace.solutions("back").back()).empty());
 }
 
+TEST_CASE("rotated and doubled, an orbit keeps its own meshes, and data made of it give each segment its own again") {
+  const Workspace workspace;
+  start(workspace);
+  succeed(workspace, branch + "-o own NTST=20 OWNMESH=1");
+  const std::vector<int> counts = own_intervals(workspace.solutions("own")[1]);
+  REQUIRE(counts.size() == 2);
+  succeed(workspace, "resegment -q q.own 2 --to rotate --by 1 -o turned -p sharp");
+  succeed(workspace, "run sharp -q -c turned -s turned -o rotated NMX=1");
+  CHECK(first_change(workspace, "rotated") < 1e-12);
+  CHECK(own_intervals(workspace.solutions("rotated").front()) == std::vector<int>{counts[1], counts[0]});
+  succeed(workspace, "resegment -q q.own 2 --to double -o twice -p sharp");
+  succeed(workspace, "run sharp -q -c twice -s twice -o doubled NMX=1");
+  CHECK(first_change(workspace, "doubled") < 1e-12);
+  CHECK(own_intervals(workspace.solutions("doubled").front()) ==
+        std::vector<int>{counts[0], counts[1], counts[0], counts[1]});
+  succeed(workspace, "resegment -q q.own 2 --to rotate --by 1 --dat -o data -p sharp");
+  succeed(workspace, "run sharp -q -c data -d data -o again NMX=1");
+  const std::vector<int> again = own_intervals(workspace.solutions("again").front());
+  REQUIRE(again.size() == 2);
+  CHECK(again[1] > 2 * again[0]);
+}
+
 TEST_CASE("a segment that is a thousand times shorter than the other one") {
   const Workspace workspace;
   start(workspace, "PAR(k)=20 PAR(q)=1000");

@@ -126,7 +126,8 @@ def check_solutions(solutions, sections, type_translation):
         branch, point, type_number, label, intervals, collocation = wanted["identifier"]
         solution = solutions.getLabel(label)
         for key, value in (("BR", branch), ("PT", point), ("LAB", label), ("TY number", type_number),
-                           ("NTST", intervals), ("NCOL", collocation), ("IPS", 180), ("NDIM", 4), ("NPARI", 4)):
+                           ("NTST", intervals), ("NCOL", collocation), ("IPS", 180), ("NDIM", 4),
+                           ("NPARI", len(wanted["internal"]))):
             same(solution[key], value, "%s of label %d" % (key, label))
         same(solution["TY"], type_translation(type_number)["short name"], "type of label %d" % label)
         near(list(solution.indepvararray), [s[0] for s in wanted["states"]], "t of label %d" % label)
@@ -136,8 +137,10 @@ def check_solutions(solutions, sections, type_translation):
         parameters = list(solution.PAR.toarray())
         ordinary = len(wanted["parameters"])
         near(parameters[:ordinary], wanted["parameters"], "parameters of label %d" % label)
-        near(parameters[ordinary:-4], [0.0] * (len(parameters) - ordinary - 4), "padding of label %d" % label)
-        near(parameters[-4:], wanted["kind"], "internal values of label %d" % label)
+        internal = len(wanted["internal"])
+        near(parameters[ordinary:-internal], [0.0] * (len(parameters) - ordinary - internal),
+             "padding of label %d" % label)
+        near(parameters[-internal:], wanted["internal"], "internal values of label %d" % label)
         if wanted["rates"]:
             same(list(solution["Active ICP"]), [1, 61, 62], "free parameters of label %d" % label)
             near(solution["rldot"], wanted["rates"], "direction of label %d" % label)

@@ -3,6 +3,7 @@
 // With the name of a q-file: prints all that our reader finds in it.
 #include <fmt/format.h>
 
+#include <cmath>
 #include <cstdio>
 #include <string>
 #include <vector>
@@ -65,7 +66,12 @@ std::vector<Sample> samples(std::size_t columns, int first_label, int first_type
       sample.orbit.state_direction.resize(0, 0);
       sample.orbit.parameter_direction.clear();
     }
-    if (k == 6 || k == 10) sample.orbit.own_mesh = {0.0, 0.3, 1.0, 0.0, 0.1, 0.2, 0.7, 1.0};
+    if (k == 6 || k == 10) {  // these have all digits in the file, of which AUTO's writer keeps ten
+      sample.orbit.own_mesh = {0.0, 0.3, 1.0, 0.0, 0.1, 0.2, 0.7, 1.0};
+      for (Eigen::MatrixXd* states : {&sample.orbit.states, &sample.orbit.state_direction})
+        *states = (256.0 * *states).array().round() / 256.0;
+      for (double& tau : sample.orbit.tau) tau = std::round(256.0 * tau) / 256.0;
+    }
     sample.multipliers = {{0.1 * k, 0.5}, {0.1 * k, -0.5}, {-3.0 * k, 0.0}, {1e-12, 0.0}};
     all.push_back(sample);
   }
@@ -104,7 +110,8 @@ void write_expected(std::FILE* expected, const Sample& sample) {
   fmt::print(expected, "solution: {} {} {} {} {} {}\n", orbit.branch, orbit.point, orbit.type, orbit.label,
              orbit.mesh_intervals, orbit.collocation_points);
   fmt::print(expected, "parameters: {}\n", joined(orbit.parameters));
-  fmt::print(expected, "kind: {} {} {} {}\n", orbit.kind.kind, orbit.kind.segment, orbit.kind.index, orbit.kind.tau);
+  fmt::print(expected, "internal: {} {} {} {}{}\n", orbit.kind.kind, orbit.kind.segment, orbit.kind.index,
+             orbit.kind.tau, orbit.own_mesh.empty() ? "" : fmt::format(" 8 2 8 0 {}", joined(orbit.own_mesh)));
   fmt::print(expected, "rates: {}\n", joined(orbit.parameter_direction));
   for (Eigen::Index p = 0; p < orbit.states.cols(); ++p) {
     const std::vector<double> states(orbit.states.col(p).begin(), orbit.states.col(p).end());
