@@ -17,7 +17,7 @@ std::vector<Eigen::Index> rows_of_ends(const OrbitShape& shape) {
   std::vector<Eigen::Index> result;
   Eigen::Index row = 0;
   for (int s = 0; s < shape.segments; ++s) {
-    row += static_cast<Eigen::Index>(shape.nodes() - 1) * shape.dimension;
+    row += static_cast<Eigen::Index>(shape.nodes_of(s) - 1) * shape.dimension;
     result.push_back(row);
     row += 1 + shape.dimension;
   }
@@ -40,16 +40,16 @@ Pattern pattern_of(const OrbitShape& shape) {
   Pattern pattern;
   int row = 0;
   for (int s = 0; s < shape.segments; ++s) {
-    const int first = s * shape.nodes() * n;
+    const int first = shape.first_node(s) * n;
     const int duration = shape.columns() * n + s;
-    for (int j = 0; j < shape.intervals; ++j)
+    for (int j = 0; j < shape.intervals_of(s); ++j)
       for (int k = 0; k < c * n; ++k, ++row) {
         pattern.put(row, first + j * c * n, (c + 1) * n);
         pattern.put(row, duration, 1);
       }
-    const int end = first + (shape.nodes() - 1) * n;
+    const int end = shape.last_node(s) * n;
     pattern.put(row++, end, n);
-    const int next = (s + 1) % shape.segments * shape.nodes() * n;
+    const int next = shape.first_node((s + 1) % shape.segments) * n;
     for (int a = 0; a < n; ++a, ++row) {
       pattern.put(row, next + a, 1);
       pattern.put(row, end, n);
@@ -82,6 +82,11 @@ NodalSystem::NodalSystem(const DefiningSystem& system, const OrbitShape& shape)
       fp_(shape.dimension, system.free_count()) {}
 
 bool NodalSystem::factorize(const Orbit& x) {
+  if (!(x.shape == shape_)) {  // segments on meshes of their own have got other numbers of intervals
+    shape_ = x.shape;
+    rows_of_ends_ = rows_of_ends(shape_);
+    lu_ = sparse_of(shape_);
+  }
   values_.clear();
   for (int s = 0; s < shape_.segments; ++s) {
     put_collocation(x, s);
@@ -93,9 +98,10 @@ bool NodalSystem::factorize(const Orbit& x) {
 void NodalSystem::put_collocation(const Orbit& x, int s) {
   const int n = shape_.dimension;
   const int field = system_.signature()[static_cast<std::size_t>(s)].field;
-  Eigen::Index row = end_row(s) - static_cast<Eigen::Index>(shape_.nodes() - 1) * n;
-  for (int j = 0; j < shape_.intervals; ++j) {
-    const double h = x.mesh[static_cast<std::size_t>(j + 1)] - x.mesh[static_cast<std::size_t>(j)];
+  Eigen::Index row = end_row(s) - static_cast<Eigen::Index>(shape_.nodes_of(s) - 1) * n;
+  const double* const mesh = x.mesh_of(s);
+  for (int j = 0; j < shape_.intervals_of(s); ++j) {
+    const double h = mesh[j + 1] - mesh[j];
     for (int g = 0; g < shape_.collocation; ++g) {
       interpolate(x, rule_, s, j, g, state_.data());
       system_.system().first(FunctionKind::field, field, state_.data(), x.par.data(), system_.free_parameters(),
@@ -157,11 +163,11 @@ double NodalSystem::phase_derivative(const Eigen::VectorXd& weights, const Orbit
 }
 
 RowWeights NodalSystem::by_kind(const Eigen::VectorXd& weights) const {
-  const auto of_collocation = static_cast<std::ptrdiff_t>(shape_.nodes() - 1) * shape_.dimension;
   const std::ptrdiff_t of_ends = 1 + shape_.dimension;
   RowWeights result;
   for (int s = 0; s < shape_.segments; ++s) {
     const double* const ends = weights.data() + end_row(s);
+    const auto of_collocation = static_cast<std::ptrdiff_t>(shape_.nodes_of(s) - 1) * shape_.dimension;
     result.collocation.insert(result.collocation.end(), ends - of_collocation, ends);
     result.ends.insert(result.ends.end(), ends, ends + of_ends);
   }

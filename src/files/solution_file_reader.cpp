@@ -330,7 +330,7 @@ class SolutionReader {
     if (id.has_kind()) {
       solution.kind = read_kind(numbers);
       for (std::int64_t left = id.internal_parameters() - kind_values; left > 0; left -= kind_values) {
-        const UserPointKind kind = read_kind(numbers, own_mesh_mark);
+        const UserPointKind kind = read_kind(numbers, true);
         if (kind.kind == own_mesh_mark) {
           read_own_mesh(kind.segment, kind.index, left - kind_values, numbers, solution);
           break;
@@ -402,17 +402,18 @@ class SolutionReader {
     for (std::int64_t k = points; k < left; ++k) numbers.real();
   }
 
-  static UserPointKind read_kind(NumberStream& numbers, int most = UserPointKind::extremum) {
-    const auto whole = [&numbers](double lowest, double highest, const std::string& what) {
+  static UserPointKind read_kind(NumberStream& numbers, bool may_be_mark = false) {
+    const auto whole = [&](double lowest, double highest, const std::string& what) {
       const double value = numbers.real();
-      if (!(value >= lowest && value <= highest) || value != static_cast<double>(static_cast<int>(value)))
+      if (!(value >= lowest && value <= highest) || value != static_cast<double>(static_cast<int>(value)) ||
+          (what == "kind" && value == own_mesh_mark && !may_be_mark))
         numbers.refuse(fmt::format(
             "{} as {} of a UZ point (one of the internal values at the end of the parameters); the file is damaged",
             value, what));
       return static_cast<int>(value);
     };
     UserPointKind kind;
-    kind.kind = whole(0.0, most, "kind");
+    kind.kind = whole(0.0, UserPointKind::extremum, "kind");
     kind.segment = whole(0.0, max_segments, "segment");
     kind.index = whole(kind.kind == UserPointKind::other_type ? -32.0 : -1.0, 1e6, "index");
     kind.tau = numbers.real();

@@ -16,7 +16,7 @@ namespace tchat {
 inline constexpr int kind_values = 4;
 /// In place of a kind, behind the others: so many segments have meshes of their own (segment), of so many points in all
 /// (index). These follow, and zeros up to a multiple of kind_values.
-inline constexpr int own_mesh_mark = 9;
+inline constexpr int own_mesh_mark = 8;
 /// The values behind that mark.
 inline std::int64_t own_mesh_values(std::int64_t points) {
   return (points + kind_values - 1) / kind_values * kind_values;

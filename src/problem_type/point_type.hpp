@@ -49,7 +49,7 @@ struct UserPointKind {
     grazing_codimension_two = 5,
     other_type = 6,  ///< a point that has a type number of its own, beside the label's
     boundary_equilibrium = 7,
-    extremum = 8
+    extremum = 9  ///< 8 marks meshes of segments in files
   };
   int kind = none;
   int segment = 0;  ///< from 1
