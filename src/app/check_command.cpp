@@ -69,7 +69,7 @@ int find_parameter(const HybridSystem& system, const std::string& key) {
 int largest_given_parameter(const std::vector<std::string>& settings) {
   int largest = 0;
   for (const std::string& setting : settings)
-    for (int k = 1; k < first_duration; ++k)
+    for (int k = 1; k < ParameterLayout().first_duration(); ++k)
       if (setting.starts_with(fmt::format("PAR({})=", k))) largest = std::max(largest, k);
   return largest;
 }
@@ -110,7 +110,7 @@ std::optional<ConservationCheck> conservation(const HybridSystem& system, const 
   if (settings.conserved.empty()) return std::nullopt;
   require_functions(system, settings);
   const Quantity conserved = conserved_quantity(system, settings.conserved);
-  Eigen::VectorXd par = Eigen::VectorXd::Zero(parameter_length);
+  Eigen::VectorXd par = Eigen::VectorXd::Zero(system.layout().room());
   par.head(options.parameters.size()) = options.parameters;
   return check_conservation(system, conserved, settings.conserved, settings.segments, checked_states(system, options),
                             par);

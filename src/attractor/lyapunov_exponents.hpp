@@ -43,8 +43,8 @@ struct LyapunovSettings {
 
 class LyapunovAccumulator {
  public:
-  /// `par` has parameter_length entries. A view of `system`, which outlives this object. Throws UserError when the
-  /// section does not exist or exponents < 0 or more than there are.
+  /// `par` has the room of the problem's ParameterLayout. A view of `system`, which outlives this object. Throws
+  /// UserError when the section does not exist or exponents < 0 or more than there are.
   LyapunovAccumulator(const HybridSystem& system, const Eigen::VectorXd& par, const LyapunovSettings& settings);
   LyapunovAccumulator(const LyapunovAccumulator&) = delete;
   LyapunovAccumulator& operator=(const LyapunovAccumulator&) = delete;

@@ -28,7 +28,7 @@ BoundaryValueSystem::BoundaryValueSystem(const HybridSystem& system, Signature s
       q_(size(integral_conditions())),
       q_by_state_(q_.size() * state_.size()),
       q_by_parameter_(q_.size() * size(segments() + free_count())) {
-  for (int s = 0; s < segments(); ++s) active_.push_back(first_duration + s);
+  for (int s = 0; s < segments(); ++s) active_.push_back(layout().duration(s));
   active_.insert(active_.end(), this->free_parameters().begin(), this->free_parameters().end());
   by_parameter_.resize(size(system.boundary_conditions()) * active_.size());
 }

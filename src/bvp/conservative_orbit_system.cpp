@@ -11,8 +11,8 @@ namespace tchat {
 
 namespace {
 
-std::vector<int> with_unfolding(std::vector<int> free, std::size_t segments) {
-  free.push_back(unfolding_parameter(static_cast<int>(segments)));
+std::vector<int> with_unfolding(std::vector<int> free, const ParameterLayout& layout, std::size_t segments) {
+  free.push_back(layout.unfolding(static_cast<int>(segments)));
   return free;
 }
 
@@ -20,7 +20,8 @@ std::vector<int> with_unfolding(std::vector<int> free, std::size_t segments) {
 
 ConservativeOrbitSystem::ConservativeOrbitSystem(const HybridSystem& system, const Signature& signature,
                                                  std::vector<int> free_parameters, Quantity conserved, std::string name)
-    : PeriodicOrbitSystem(system, signature, with_unfolding(std::move(free_parameters), signature.size())),
+    : PeriodicOrbitSystem(system, signature,
+                          with_unfolding(std::move(free_parameters), system.layout(), signature.size())),
       conserved_(system, conserved, {}),
       name_(std::move(name)),
       gradient_(static_cast<std::size_t>(dimension())) {}
@@ -38,7 +39,7 @@ void ConservativeOrbitSystem::target_value(int s, const Orbit& x, double* target
   PeriodicOrbitSystem::target_value(s, x, target);
   if (!closes(s)) return;
   find_gradient(x);
-  const double lambda = x.par(unfolding_parameter(segments()) - 1);
+  const double lambda = x.par(layout().unfolding(segments()) - 1);
   for (int a = 0; a < dimension(); ++a) target[a] += lambda * gradient_[static_cast<std::size_t>(a)];
 }
 
@@ -51,7 +52,7 @@ double* ConservativeOrbitSystem::target_derivatives(int s, const Orbit& x, doubl
 std::string ConservativeOrbitSystem::why_no_solution(const Orbit& x) const {
   constexpr double gap = 1e-6;  // of the states where the ring closes
   find_gradient(x);
-  const double lambda = x.par(unfolding_parameter(segments()) - 1);
+  const double lambda = x.par(layout().unfolding(segments()) - 1);
   const double slope = Eigen::Map<const Eigen::VectorXd>(gradient_.data(), dimension()).norm();
   if (std::abs(lambda) * slope <= gap * x.states.cwiseAbs().maxCoeff()) return "";
   std::string places;

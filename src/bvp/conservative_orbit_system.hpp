@@ -29,7 +29,7 @@ class ConservativeOrbitSystem final : public PeriodicOrbitSystem {
                           Quantity conserved, std::string name);
 
   int conserved_quantities() const override { return 1; }
-  std::optional<double> unfolding(const Orbit& x) const override { return x.par(unfolding_parameter(segments()) - 1); }
+  std::optional<double> unfolding(const Orbit& x) const override { return x.par(layout().unfolding(segments()) - 1); }
   /// Where lambda is not zero: H changes along the orbit.
   std::string why_no_solution(const Orbit& x) const override;
 

@@ -62,7 +62,7 @@ void CriticalBranchPoint::recall(const std::vector<double>& memory) {
 
 bool CriticalBranchPoint::evaluate(CondensedSystem& condensed, const Orbit& x) {
   if (!multiplier_.evaluate(condensed, x)) return false;
-  b_ = unfolded_ != nullptr ? x.par(unfolding_parameter(x.shape.segments) - 1) : 0.0;
+  b_ = unfolded_ != nullptr ? x.par(x.par.layout().unfolding(x.shape.segments) - 1) : 0.0;
   size_ = 1.0 + x.states.cwiseAbs().maxCoeff();
   for (int k = 0; k < directions(); ++k) {
     map_.parameter_column(condensed, x, k, columns_.col(k).data());

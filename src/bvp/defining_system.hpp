@@ -34,6 +34,7 @@ class DefiningSystem {
   const Signature& signature() const { return signature_; }
   const std::vector<int>& free_parameters() const { return free_parameters_; }
   int dimension() const { return system_.dimension(); }
+  ParameterLayout layout() const { return system_.layout(); }
   /// How many orbits of one return each are coupled: several lie on a torus (torus_system.hpp).
   virtual int orbits() const { return 1; }
   /// What a branch of solutions of this shape needs while it is computed. Defined with the system's family

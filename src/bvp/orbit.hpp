@@ -75,9 +75,9 @@ struct Orbit {
   Eigen::MatrixXd states;    ///< n x m (N c + 1): column first_node(s) + k is node k of segment s
   ParameterVector par;       ///< PAR, durations included
 
-  double duration(int s) const { return par(first_duration - 1 + s); }
-  double& duration(int s) { return par(first_duration - 1 + s); }
-  double period() const { return par.segment(first_duration - 1, shape.segments).sum(); }
+  double duration(int s) const { return par.duration(s); }
+  double& duration(int s) { return par.duration(s); }
+  double period() const { return par.durations(shape.segments).sum(); }
 
   const double* node(int s, int k) const { return states.col(shape.first_node(s) + k).data(); }
   double* node(int s, int k) { return states.col(shape.first_node(s) + k).data(); }

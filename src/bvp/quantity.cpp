@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hybrid/parameter_vector.hpp"
 #include "text/user_error.hpp"
 
 namespace tchat {
@@ -54,7 +53,7 @@ QuantityFunction::QuantityFunction(const HybridSystem& system, Quantity quantity
   if (quantity_.kind != Quantity::Kind::user_function) return;
   values_.resize(static_cast<std::size_t>(system.table().user_values));
   state_.resize(static_cast<std::size_t>(system.dimension()));
-  par_.resize(parameter_length);
+  par_.resize(static_cast<std::size_t>(system.layout().room()));
 }
 
 double QuantityFunction::value(const double* x, const double* par) const {
@@ -83,11 +82,11 @@ double QuantityFunction::first(const double* x, const double* par, double* by_st
     return x[quantity_.index - 1];
   }
   std::copy_n(x, n, state_.begin());
-  std::copy_n(par, parameter_length, par_.begin());
+  std::copy_n(par, par_.size(), par_.begin());
   for (int a = 0; a < n; ++a)
     by_state[a] = by_difference(state_[static_cast<std::size_t>(a)], state_.data(), par_.data());
   for (std::size_t k = 0; k < active_.size(); ++k)
-    by_parameter[k] = active_[k] > parameter_length  // none that a function of the problem reads
+    by_parameter[k] = static_cast<std::size_t>(active_[k]) > par_.size()  // none that a function of the problem reads
                           ? 0.0
                           : by_difference(par_[static_cast<std::size_t>(active_[k] - 1)], state_.data(), par_.data());
   return value(x, par);

@@ -29,7 +29,7 @@ Eigen::MatrixXd columns_of(const Eigen::MatrixXd& states, const Eigen::VectorXd&
   return columns;
 }
 
-Eigen::VectorXd durations_of(const Orbit& x) { return x.par.segment(first_duration - 1, x.shape.segments); }
+Eigen::VectorXd durations_of(const Orbit& x) { return x.par.durations(x.shape.segments); }
 
 /// Adds `turns` times w to the states of a column of them; `states` of its rows are states.
 void wind(Eigen::Ref<Eigen::VectorXd> column, Eigen::Index states, const Eigen::VectorXd& w, double turns) {
@@ -60,7 +60,7 @@ TorusSystem::TorusSystem(const HybridSystem& system, const Signature& one_return
       slope_at_zero_(interpolation_weights(orbits, 0.0, 1)),
       phase_row_(dimension(), orbits) {
   const auto& free = this->free_parameters();
-  const auto at = std::find(free.begin(), free.end(), rotation_parameter);
+  const auto at = std::find(free.begin(), free.end(), layout().rotation());
   rotation_global_ = at == free.end() ? -1 : static_cast<int>(at - free.begin());
 }
 
@@ -183,9 +183,8 @@ Orbit resampled_torus(const Orbit& x, int orbits, int new_orbits, const Eigen::V
   const Eigen::MatrixXd nodes = columns.topRows(columns.rows() - m);
   result.states = Eigen::Map<const Eigen::MatrixXd>(nodes.data(), x.shape.dimension, result.shape.columns());
   const Eigen::MatrixXd durations = columns.bottomRows(m);
-  result.par.segment(first_duration - 1, x.shape.segments).setZero();
-  result.par.segment(first_duration - 1, result.shape.segments) =
-      Eigen::Map<const Eigen::VectorXd>(durations.data(), durations.size());
+  result.par.durations(x.shape.segments).setZero();
+  result.par.durations(result.shape.segments) = Eigen::Map<const Eigen::VectorXd>(durations.data(), durations.size());
   return result;
 }
 
@@ -234,7 +233,7 @@ void set_return_at(const TorusSystem& system, const Orbit& x, double phi, int de
   result.mesh = x.mesh;
   result.par = x.par;
   result.states.setZero();
-  result.par.segment(first_duration - 1, m).setZero();
+  result.par.durations(m).setZero();
   double mean_phase = 0.0;  // what the weights make of l / N
   const Eigen::Index columns = result.shape.columns();
   for (int l = 0; l < system.orbits(); ++l) {

@@ -25,8 +25,8 @@
 ///
 ///     sum_l R_il(rho) (x_{l,1}(0) - w l / N) + w (i / N + rho) + c.
 ///
-/// rho is PAR(rotation_parameter). What the torus is in terms of frequencies: one return lasts T = mean over phi of the
-/// return time on the average, omega_1 = 2 pi / T, omega_2 = rho omega_1.
+/// rho is PAR(ParameterLayout::rotation()). What the torus is in terms of frequencies: one return lasts T = mean over
+/// phi of the return time on the average, omega_1 = 2 pi / T, omega_2 = rho omega_1.
 #pragma once
 
 #include "bvp/periodic_orbit_system.hpp"
@@ -44,7 +44,7 @@ class TorusSystem final : public PeriodicOrbitSystem {
   std::unique_ptr<BranchAnalysis> make_analysis(const OrbitShape& shape) const override;
   int orbits() const override { return orbits_; }
   int segments_per_return() const { return segments() / orbits_; }
-  static double rotation(const Orbit& x) { return x.par(rotation_parameter - 1); }
+  static double rotation(const Orbit& x) { return x.par.rotation(); }
   const TorusWinding& winding() const { return winding_; }
 
   int integral_conditions() const override { return 1; }

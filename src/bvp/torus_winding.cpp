@@ -90,8 +90,8 @@ TorusWinding torus_winding(const HybridSystem& system, const Signature& one_retu
   MatrixXd curve(n, orbits);
   for (Index l = 0; l < orbits; ++l) curve.col(l) = Eigen::Map<const VectorXd>(x.start(static_cast<int>(l * m)), n);
   TorusWinding winding = no_winding(static_cast<int>(n));
-  const VectorXd par = x.par;
-  const double rho = par(rotation_parameter - 1);
+  const VectorXd& par = x.par;
+  const double rho = x.par.rotation();
   const Eigen::RowVectorXd weights = interpolation_weights(static_cast<int>(orbits), rho);
   VectorXd end = function_value(system, FunctionKind::jump, one_return.back().jump,
                                 Eigen::Map<const VectorXd>(x.end(static_cast<int>(m) - 1), n), par);

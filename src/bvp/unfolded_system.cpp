@@ -21,7 +21,7 @@ void UnfoldedSystem::coupling_pattern(int s, CouplingPattern& pattern) const {
 }
 
 void UnfoldedSystem::add(int s, const Orbit& x, double* values) const {
-  const double b = x.par(unfolding_parameter(segments()) - 1);
+  const double b = x.par(layout().unfolding(segments()) - 1);
   for (int r = 0; r < coupling_rows(s); ++r) values[r] += b * direction_of(s)[r];
 }
 

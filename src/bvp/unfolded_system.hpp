@@ -2,9 +2,9 @@
 ///
 ///     F_r(x, T, p) + b phi_r = 0,
 ///
-/// with one more free parameter b, PAR(unfolding_parameter(m)). Where the derivative of F has lost one rank for all
-/// values of the parameters, as at the branch points of a symmetric system, b phi with a phi outside of its range makes
-/// it regular, and b comes out as zero (bvp/critical_branch_point.hpp).
+/// with one more free parameter b, PAR(ParameterLayout::unfolding(m)). Where the derivative of F has lost one rank for
+/// all values of the parameters, as at the branch points of a symmetric system, b phi with a phi outside of its range
+/// makes it regular, and b comes out as zero (bvp/critical_branch_point.hpp).
 ///
 /// phi belongs to the point that a step goes from, like the border of a condition: the solutions with b = 0 do not
 /// depend on it.
@@ -28,7 +28,7 @@ class UnfoldedSystem final : public DefiningSystem {
   const std::vector<double>& direction() const { return direction_; }
 
   std::unique_ptr<BranchAnalysis> make_analysis(const OrbitShape& shape) const override;
-  std::optional<double> unfolding(const Orbit& x) const override { return x.par(unfolding_parameter(segments()) - 1); }
+  std::optional<double> unfolding(const Orbit& x) const override { return x.par(layout().unfolding(segments()) - 1); }
   int coupling_rows(int s) const override { return ring_->coupling_rows(s); }
   void coupling_pattern(int s, CouplingPattern& pattern) const override;
   void coupling_values(int s, const Orbit& x, double* values) const override;

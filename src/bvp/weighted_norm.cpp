@@ -2,11 +2,13 @@
 
 namespace tchat {
 
-WeightedNorm::WeightedNorm(Eigen::VectorXd state_weights, Eigen::VectorXd parameter_weights)
+WeightedNorm::WeightedNorm(Eigen::VectorXd state_weights, ParameterVector parameter_weights)
     : state_weights_(std::move(state_weights)), parameter_weights_(std::move(parameter_weights)) {}
 
 WeightedNorm WeightedNorm::unit(int dimension, int segments) {
-  return {Eigen::VectorXd::Ones(dimension), Eigen::VectorXd::Ones(parameter_room(segments))};
+  ParameterVector parameters(ParameterLayout(), segments);
+  parameters.setOnes();
+  return {Eigen::VectorXd::Ones(dimension), std::move(parameters)};
 }
 
 MassIntervals mass_intervals(const Orbit& x, const CollocationRule& rule, const Eigen::VectorXd& weights, int s) {
@@ -21,7 +23,7 @@ void WeightedNorm::dual(const Orbit& x, const CollocationRule& rule, const std::
     const int first = x.shape.first_node(s);
     row.states.middleCols(first, x.shape.nodes_of(s)).setZero();  // not all at once, to find it in the cache
     array_functions().add_mass(mass, v.states.col(first).data(), row.states.col(first).data());
-    row.durations(s) = parameter_weights_(first_duration - 1 + s) * v.durations(s);
+    row.durations(s) = parameter_weights_.duration(s) * v.durations(s);
   }
   for (std::size_t g = 0; g < free_parameters.size(); ++g) {
     const auto i = static_cast<Eigen::Index>(g);

@@ -21,8 +21,8 @@ MassIntervals mass_intervals(const Orbit& x, const CollocationRule& rule, const 
 class WeightedNorm {
  public:
   /// `state_weights` has n entries, `parameter_weights` those of the orbit's PAR, all >= 0.
-  WeightedNorm(Eigen::VectorXd state_weights, Eigen::VectorXd parameter_weights);
-  /// All weights 1.
+  WeightedNorm(Eigen::VectorXd state_weights, ParameterVector parameter_weights);
+  /// All weights 1, for a problem of at most 60 parameters.
   static WeightedNorm unit(int dimension, int segments = 1);
 
   /// The dual vector <v, .> on the mesh of x, written to `row`.
@@ -31,7 +31,7 @@ class WeightedNorm {
 
  private:
   Eigen::VectorXd state_weights_;
-  Eigen::VectorXd parameter_weights_;
+  ParameterVector parameter_weights_;
 };
 
 }  // namespace tchat

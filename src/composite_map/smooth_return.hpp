@@ -17,8 +17,8 @@ namespace tchat {
 
 /// Along `path` from z: each index vector's field until its event falls to zero, then its jump (`no_function`: none).
 /// Events and their first derivatives are located by CVODES; second derivatives along them by a Runge-Kutta formula of
-/// order 7. `par` has parameter_length entries; `order` is 1 or 2. Throws ComputationError, naming the segment, for
-/// what cannot be integrated, an event that does not come, and one that is met tangentially.
+/// order 7. `par` has the room of the problem's ParameterLayout; `order` is 1 or 2. Throws ComputationError, naming the
+/// segment, for what cannot be integrated, an event that does not come, and one that is met tangentially.
 QuadraticMap smooth_return(const HybridSystem& system, const Signature& path, const Eigen::VectorXd& z,
                            const Eigen::VectorXd& par, int order, const FlowOptions& options = {});
 

@@ -39,7 +39,7 @@ struct SuspendedSystem::At {
   std::vector<int> active;
 
   At(const SuspendedSystem& self, const double* z, const double* par_given, const int* more, int more_count)
-      : x(z), par(Eigen::Map<const VectorXd>(par_given, parameter_length)), active(self.along_) {
+      : x(z), par(Eigen::Map<const VectorXd>(par_given, self.base_.layout().room())), active(self.along_) {
     const int n = self.base_.dimension();
     for (std::size_t k = 0; k < self.along_.size(); ++k) par(self.along_[k] - 1) = z[n + static_cast<int>(k)];
     active.insert(active.end(), more, more + more_count);

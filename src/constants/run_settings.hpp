@@ -10,7 +10,7 @@
 
 #include "constants/place.hpp"
 #include "hybrid/index_vector.hpp"
-#include "hybrid/parameter_vector.hpp"
+#include "hybrid/parameter_layout.hpp"
 #include "problem_type/problem_id.hpp"
 
 namespace tchat {
@@ -55,6 +55,12 @@ struct StopRule {
 /// A name in ICP, UZR, THL, HOLD or BOUNDS, and where it was found first.
 struct GivenName {
   std::string text;
+  std::string keyword;
+  Place place;
+};
+
+/// Where a constant with PAR indices was given. Which indices there are is checked when the problem is known.
+struct GivenIndices {
   std::string keyword;
   Place place;
 };
@@ -121,11 +127,14 @@ struct RunSettings {
   std::string conserved;             ///< CONSERVED, a function of the state that orbits keep; empty: none
   int mode = 1;                      ///< MODE, of the oscillations about an equilibrium, from the slowest
   std::string problem;               ///< PROBLEM, from the folder of the constants file; empty: none is named
+  ParameterLayout layout;            ///< of the problem's PAR; that of few parameters until resolve_names()
   /// Names of monitors in ICP, UZR, THL, HOLD and BOUNDS: PAR(first_monitor(segments)), ... stand for them in this
   /// order.
   std::vector<std::string> monitors;
   /// All names in these constants, until resolve_names() has replaced them: PAR(name_index(k)) stands for name k.
   std::vector<GivenName> names;
+  /// Lists of PAR indices that resolve_names() has yet to check.
+  std::vector<GivenIndices> unchecked;
 
   /// PAR(k) = v given on the command line, by index or by the problem's own name.
   struct ParameterValue {
@@ -142,7 +151,7 @@ struct RunSettings {
 };
 
 inline int first_monitor(const RunSettings& settings) {
-  return first_monitor(static_cast<int>(settings.segments.size()));
+  return settings.layout.first_monitor(static_cast<int>(settings.segments.size()));
 }
 
 /// Does PAR(k) stand for a monitor of this run?

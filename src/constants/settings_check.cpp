@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "constants/settings_type.hpp"
-#include "hybrid/parameter_vector.hpp"
 #include "problem_type/family.hpp"
 #include "problem_type/problem_type.hpp"
 #include "text/number.hpp"
@@ -22,22 +21,25 @@ class SettingsCheck {
  public:
   SettingsCheck(const RunSettings& settings, const PlaceOf& place) : settings_(settings), place_(place) {}
 
-  void free_parameters() const {
+  void listed_parameters() const {
     const std::vector<int>& list = settings_.free_parameters;
     if (list.empty()) refuse_constant("ICP", "ICP", "an empty list", "at least one parameter");
-    for (std::size_t i = 0; i < list.size(); ++i) {
-      const std::string name = fmt::format("ICP({})", i + 1);
-      parameter_index("ICP", name, list[i], segments());
-      if (std::find(list.begin(), list.begin() + static_cast<std::ptrdiff_t>(i), list[i]) !=
-          list.begin() + static_cast<std::ptrdiff_t>(i))
-        refuse_constant("ICP", name, fmt::format("{} twice", in_quotes(std::to_string(list[i]))),
-                        "each parameter once");
-    }
+    for (auto k = list.begin(); k != list.end(); ++k)
+      if (std::find(list.begin(), k, *k) != k)
+        refuse_constant("ICP", fmt::format("ICP({})", k - list.begin() + 1),
+                        fmt::format("{} twice", in_quotes(std::to_string(*k))), "each parameter once");
+  }
+
+  void free_parameters() const {
+    const std::vector<int>& list = settings_.free_parameters;
+    listed_parameters();
+    for (std::size_t i = 0; i < list.size(); ++i)
+      parameter_index("ICP", fmt::format("ICP({})", i + 1), list[i], segments());
     if (rules().counts_conditions) return conditions();
     const auto held = static_cast<int>(settings_.held.size());
     const int needed = free_parameter_count(settings_);
-    const auto of_problem =
-        std::count_if(list.begin(), list.end(), [this](int k) { return k < first_duration || is_name(settings_, k); });
+    const auto of_problem = std::count_if(
+        list.begin(), list.end(), [this](int k) { return is_parameter(settings_, k) || is_name(settings_, k); });
     if (of_problem < needed)
       refuse_constant(
           "ICP", "ICP", fmt::format("{} parameters that are not durations", of_problem),
@@ -193,7 +195,7 @@ class SettingsCheck {
     for (const HeldValue& held : settings_.held) indices.push_back(held.parameter);
     each_once("HOLD", indices);
     for (const HeldValue& held : settings_.held)
-      if (!is_duration(held.parameter, segments_of_run()) && !stands_in(held.parameter))
+      if (!layout().is_duration(held.parameter, segments_of_run()) && !stands_in(held.parameter))
         refuse_constant("HOLD", "HOLD", in_quotes(std::to_string(held.parameter)),
                         "names of monitors, or durations (T1, T2, ...); a parameter of the problem keeps its value "
                         "unless ICP frees it");
@@ -206,6 +208,7 @@ class SettingsCheck {
   }
 
  private:
+  const ParameterLayout& layout() const { return settings_.layout; }
   const SignatureRules& rules() const { return signature_rules(settings_); }
   int segments() const { return static_cast<int>(settings_.segments.size()); }
 
@@ -220,14 +223,15 @@ class SettingsCheck {
   }
 
   void parameter_index(std::string_view keyword, const std::string& name, int k, int segment_count) const {
-    if ((k >= 1 && k < first_duration + segment_count) || (stands_in(k) && keyword != "PAR")) return;
-    const std::string durations = segment_count == 1
-                                      ? fmt::format("{} (the duration of the segment)", first_duration)
-                                      : fmt::format("{} to {} (durations of the {} segments)", first_duration,
-                                                    first_duration + segment_count - 1, segment_count);
-    const std::string duration = k < first_duration ? "" : fmt::format(" ({})", duration_name(k));
+    if (layout().is_parameter(k, segment_count) || layout().is_duration(k, segment_count)) return;
+    if (stands_in(k) && keyword != "PAR") return;
+    const int first = layout().first_duration();
+    const std::string durations = segment_count == 1 ? fmt::format("{} (the duration of the segment)", first)
+                                                     : fmt::format("{} to {} (durations of the {} segments)", first,
+                                                                   first + segment_count - 1, segment_count);
+    const std::string duration = k < first ? "" : fmt::format(" ({})", layout().duration_name(k));
     refuse_constant(keyword, name, in_quotes(std::to_string(k)) + duration,
-                    fmt::format("1 to {} (parameters of the problem) or {}", first_duration - 1, durations));
+                    fmt::format("1 to {} (parameters of the problem) or {}", first - 1, durations));
   }
 
   /// Two of them may have come from a name and a number.
@@ -277,13 +281,14 @@ void check_parameter_indices(const RunSettings& settings, const PlaceOf& place) 
   check.user_values();
   check.held_values();
   check.bounded_values();
+  check.parameter_values();
 }
 
 void check_settings(const RunSettings& settings, const PlaceOf& place) {
   const SettingsCheck check(settings, place);
   check.signature();
   check.conserved();
-  check_parameter_indices(settings, place);
+  check.listed_parameters();
   check.bounds("RL0", settings.parameter_min, "RL1", settings.parameter_max);
   check.bounds("A0", settings.measure_min, "A1", settings.measure_max);
   check.steps();
@@ -291,7 +296,6 @@ void check_settings(const RunSettings& settings, const PlaceOf& place) {
   check.state_weights();
   check.test_functions();
   check.grazing_segment();
-  check.parameter_values();
 }
 
 std::vector<std::string> settings_warnings(const RunSettings& settings, const std::string& source) {

@@ -8,19 +8,18 @@
 
 #include "constants/constant_value.hpp"
 #include "constants/run_settings.hpp"
-#include "hybrid/parameter_vector.hpp"
 
 namespace tchat {
 
-/// Checks: ICP not empty, without repetition, with the free parameters that problem type and branch mode need; indices
-/// of ICP, THL, UZR, PAR either 1..60 or a duration 61..60+m (THL and UZR up to 60+2m for the doubled orbit of a branch
-/// switch); THU <= NDIM; RL0 < RL1; A0 < A1; DSMIN <= DSMAX > 0 unless IADS = 0; IPLT from -NDIM to
-/// 3 NDIM; GCIPSI within the GCHGRZIND lists (IPS 180);
-/// one grazing segment (IPS 150). Indices that stand for names and monitors may be among those of ICP, THL and UZR.
-/// Throws UserError; `place` tells where a constant was given.
+/// Checks what does not depend on the problem: ICP not empty, without repetition; THU <= NDIM; RL0 < RL1; A0 < A1;
+/// DSMIN <= DSMAX > 0 unless IADS = 0; IPLT from -NDIM to 3 NDIM; GCIPSI within the GCHGRZIND lists (IPS 180); one
+/// grazing segment (IPS 150). Throws UserError; `place` tells where a constant was given.
 void check_settings(const RunSettings& settings, const std::function<Place(std::string_view keyword)>& place);
 
-/// The part of check_settings() that concerns ICP, THL, UZR and HOLD.
+/// Checks what depends on where the durations begin, which is known with the problem: ICP without repetition,
+/// with the free parameters that problem type and branch mode need; indices of ICP, THL, UZR, HOLD, BOUNDS and PAR
+/// either parameters or durations of the m segments (but for ICP and of 2m for the doubled orbit of a branch switch).
+/// Indices that stand for names and monitors may be among them, but not among those of PAR. Throws UserError.
 void check_parameter_indices(const RunSettings& settings, const std::function<Place(std::string_view keyword)>& place);
 
 /// What is accepted without effect, in sentences beginning with `source`.

@@ -205,10 +205,9 @@ Token SettingsDraft::index_token(const Constant& constant, const std::string& sh
   const std::string name = token.text.substr(negative ? 1 : 0);
   if (!has_parameter_indices(constant)) return token;
   if (!starts_like_name(name)) {
-    if (parse_integer(name).value_or(0) >= first_duration + 2 * max_segments)
+    if (parse_integer(name).value_or(0) > most_parameters + 2 * max_segments)
       refuse(constant, shown, token.place, in_quotes(token.text),
-             fmt::format("1 to {} (parameters of the problem) or {}, ... (durations of the segments)",
-                         first_duration - 1, first_duration));
+             "1, 2, ... (parameters of the problem, then durations of the segments)");
     return token;
   }
   std::vector<GivenName>& names = settings_.names;
@@ -415,11 +414,26 @@ void SettingsDraft::check_counts() const {
   }
 }
 
+/// A list that was read before and is not checked yet keeps its place.
+void SettingsDraft::note_indices() {
+  std::vector<GivenIndices> unchecked;
+  for (const Constant& constant : constants_table()) {
+    if (!has_parameter_indices(constant) && constant.keyword != "PAR") continue;
+    const auto earlier = std::find_if(settings_.unchecked.begin(), settings_.unchecked.end(),
+                                      [&](const auto& given) { return given.keyword == constant.keyword; });
+    const bool is_earlier = !is_given(constant.keyword) && earlier != settings_.unchecked.end();
+    unchecked.push_back(is_earlier ? *earlier
+                                   : GivenIndices{std::string(constant.keyword), place_of(constant.keyword)});
+  }
+  settings_.unchecked = std::move(unchecked);
+}
+
 RunSettings SettingsDraft::finish(Warnings* warnings) {
   settle_segments();
   check_counts();
   settings_.branch_mode = standard_branch_mode(settings_.branch_mode);
   check_settings(settings_, [this](std::string_view keyword) { return place_of(keyword); });
+  note_indices();
   if (warnings != nullptr)
     for (std::string& sentence : settings_warnings(settings_, source_)) warnings->push_back(std::move(sentence));
   return settings_;

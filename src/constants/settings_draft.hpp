@@ -1,5 +1,5 @@
 /// Settings in the making: constants are assigned one after the other, each checked by itself; what ties several of
-/// them together (list lengths, the segments' lists, indices of durations) is settled by `finish`.
+/// them together (list lengths, the segments' lists) is settled by `finish`.
 #pragma once
 
 #include <map>
@@ -54,6 +54,7 @@ class SettingsDraft {
   Lists monitors_of_segments(const Constant& constant) const;
   void check_count(const Constant& constant, std::size_t actual) const;
   void check_counts() const;
+  void note_indices();
 
   Token index_token(const Constant& constant, const std::string& shown, const Token& token);
 

@@ -36,8 +36,8 @@ int index_of(RunSettings& settings, const GivenName& name, const ParameterNames&
 
 }  // namespace
 
-void resolve_names(RunSettings& settings, const ParameterNames& names) {
-  if (settings.names.empty()) return;
+void resolve_names(RunSettings& settings, const ParameterLayout& layout, const ParameterNames& names) {
+  settings.layout = layout;
   std::vector<int> indices;
   for (const GivenName& name : settings.names) indices.push_back(index_of(settings, name, names));
   const auto resolve = [&](int& k) {
@@ -48,10 +48,12 @@ void resolve_names(RunSettings& settings, const ParameterNames& names) {
   for (UserValue& value : settings.user_values) resolve(value.parameter);
   for (HeldValue& held : settings.held) resolve(held.parameter);
   for (BoundedValue& bounded : settings.bounds) resolve(bounded.parameter);
-  const std::vector<GivenName> given = std::exchange(settings.names, {});
+  settings.names.clear();
+  const std::vector<GivenIndices> given = std::exchange(settings.unchecked, {});
+  if (given.empty()) return;
   check_parameter_indices(settings, [&given](std::string_view keyword) {
     const auto found =
-        std::find_if(given.begin(), given.end(), [&](const auto& name) { return name.keyword == keyword; });
+        std::find_if(given.begin(), given.end(), [&](const auto& each) { return each.keyword == keyword; });
     return found != given.end() ? found->place : Place{given.front().place.source};
   });
 }

@@ -1,4 +1,4 @@
-/// Names of parameters, durations and monitors in constants: their PAR indices, once the problem is known.
+/// What constants say of PAR, once the problem is known: the indices of names, and which indices there are.
 #pragma once
 
 #include <functional>
@@ -14,7 +14,8 @@ inline constexpr int names_a_monitor = 0;
 /// PAR index of a name. `where`, the place and the constant, begins the message when there is no such name.
 using ParameterNames = std::function<int(const std::string& name, const std::string& where)>;
 
-/// Replaces the stand-ins of all names by PAR indices and checks these again. Throws UserError.
-void resolve_names(RunSettings& settings, const ParameterNames& names);
+/// Replaces the stand-ins of all names by PAR indices and checks all indices for a problem of this layout. Throws
+/// UserError.
+void resolve_names(RunSettings& settings, const ParameterLayout& layout, const ParameterNames& names);
 
 }  // namespace tchat

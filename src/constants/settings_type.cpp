@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "hybrid/parameter_vector.hpp"
 #include "problem_type/family.hpp"
 #include "problem_type/problem_type.hpp"
 #include "text/user_error.hpp"
@@ -43,8 +42,7 @@ std::vector<int> free_entries(const RunSettings& settings) {
   const auto needed = static_cast<std::size_t>(type.free_entries(settings));
   std::vector<int> result;
   for (const int k : settings.free_parameters)
-    if (result.size() < needed && !is_monitor(settings, k) &&
-        (own_conditions || !is_duration(k, segment_count(settings))))
+    if (result.size() < needed && !is_monitor(settings, k) && (own_conditions || !is_duration(settings, k)))
       result.push_back(k);
   if (result.size() == needed) return result;
   if (own_conditions)
@@ -63,14 +61,14 @@ std::vector<int> free_entries(const RunSettings& settings) {
 std::vector<int> free_problem_parameters(const RunSettings& settings) {
   std::vector<int> result;
   for (const int k : free_entries(settings))
-    if (!is_duration(k, segment_count(settings))) result.push_back(k);
+    if (!is_duration(settings, k)) result.push_back(k);
   return result;
 }
 
 std::vector<bool> free_durations(const RunSettings& settings) {
   std::vector<bool> free(settings.segments.size(), signature_rules(settings).ends_in_events);
   for (const int k : free_entries(settings))
-    if (is_duration(k, segment_count(settings))) free[static_cast<std::size_t>(duration_segment(k))] = true;
+    if (is_duration(settings, k)) free[static_cast<std::size_t>(settings.layout.duration_segment(k))] = true;
   return free;
 }
 
@@ -78,14 +76,14 @@ std::vector<int> active_parameters(const RunSettings& settings) {
   const std::vector<int> entries = free_entries(settings);
   const std::vector<bool> durations = free_durations(settings);
   const auto is_free = [&](int k) {
-    return is_duration(k, segment_count(settings)) ? durations[static_cast<std::size_t>(duration_segment(k))]
-                                                   : contains(entries, k);
+    return is_duration(settings, k) ? durations[static_cast<std::size_t>(settings.layout.duration_segment(k))]
+                                    : contains(entries, k);
   };
   std::vector<int> result;
   for (const int k : settings.free_parameters)
     if (is_free(k)) result.push_back(k);
   for (int s = 0; s < segment_count(settings); ++s)
-    if (is_free(first_duration + s) && !contains(result, first_duration + s)) result.push_back(first_duration + s);
+    if (const int k = settings.layout.duration(s); is_free(k) && !contains(result, k)) result.push_back(k);
   return result;
 }
 
@@ -115,7 +113,7 @@ void change_indices(RunSettings& settings, const Change& change) {
 }  // namespace
 
 void renumber_monitors(RunSettings& settings, int old_segments) {
-  const int before = first_monitor(old_segments), now = first_monitor(settings);
+  const int before = settings.layout.first_monitor(old_segments), now = first_monitor(settings);
   change_indices(settings, [&](int& k) {
     if (k >= before && k < before + static_cast<int>(settings.monitors.size())) k += now - before;
     return false;

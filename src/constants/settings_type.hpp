@@ -14,6 +14,15 @@ struct SignatureRules;
 
 inline int segment_count(const RunSettings& settings) { return static_cast<int>(settings.segments.size()); }
 
+/// Is PAR(k) the duration of a segment of the settings?
+inline bool is_duration(const RunSettings& settings, int k) {
+  return settings.layout.is_duration(k, segment_count(settings));
+}
+/// Is it a parameter of the problem, or the rotation number?
+inline bool is_parameter(const RunSettings& settings, int k) {
+  return settings.layout.is_parameter(k, segment_count(settings));
+}
+
 /// Throws UserError with the list of what there is.
 const ProblemType& problem_type(const RunSettings& settings);
 

@@ -8,7 +8,7 @@
 namespace tchat {
 
 MonitorSet::MonitorSet(const std::vector<MonitorName>& names, const DefiningSystem& system)
-    : first_(first_monitor(system.segments())) {
+    : first_(system.layout().first_monitor(system.segments())) {
   for (const MonitorName& name : names) list_.push_back({make_monitor(name, system), name.number});
 }
 

@@ -13,7 +13,7 @@ namespace tchat {
 class MonitorSet {
  public:
   MonitorSet() = default;
-  /// `names`: those of PAR(first_monitor(segments)), ...; `system` outlives the set.
+  /// `names`: those of PAR(ParameterLayout::first_monitor(segments)), ...; `system` outlives the set.
   MonitorSet(const std::vector<MonitorName>& names, const DefiningSystem& system);
 
   /// Is PAR(k) one whose gradient is known?

@@ -33,7 +33,7 @@ PathFollower::PathFollower(const DefiningSystem& system, const OrbitShape& shape
       predictor_(make_predictor(system.free_parameters())),
       settings_(settings),
       dx_(condensed().make_vector()),
-      on_tangent_{shape, uniform_mesh(shape), dx_.states, ParameterVector::Zero(parameter_room(shape.segments))} {
+      on_tangent_{shape, uniform_mesh(shape), dx_.states, ParameterVector(system.layout(), shape.segments)} {
   problem_.remember(unused_);
 }
 
@@ -46,8 +46,8 @@ OrbitVector PathFollower::principal_row(const Orbit& x) const {
   OrbitVector row = condensed().make_vector();
   if (monitors_.has_gradient(principal_)) {
     monitors_.gradient(principal_, x, condensed().rule(), row);
-  } else if (is_duration(principal_, system_.segments())) {
-    row.durations(duration_segment(principal_)) = 1.0;
+  } else if (system_.layout().is_duration(principal_, system_.segments())) {
+    row.durations(system_.layout().duration_segment(principal_)) = 1.0;
   } else {
     row.globals(principal_global()) = 1.0;
   }
@@ -56,7 +56,8 @@ OrbitVector PathFollower::principal_row(const Orbit& x) const {
 
 double PathFollower::principal_direction(const PathPoint& point) const {
   if (monitors_.has_gradient(principal_)) return dot(principal_row(point.orbit), point.tangent);
-  if (is_duration(principal_, system_.segments())) return point.tangent.durations(duration_segment(principal_));
+  if (const ParameterLayout layout = system_.layout(); layout.is_duration(principal_, system_.segments()))
+    return point.tangent.durations(layout.duration_segment(principal_));
   return point.tangent.globals(principal_global());
 }
 

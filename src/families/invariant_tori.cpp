@@ -41,8 +41,7 @@ class TorusFamily final : public SegmentFamily {
                              "  the harmonics are too few where the trivial multiplier is off: raise NHARM, lower "
                              "HARMTOL, or stop before\n"
                              "  the torus loses its smoothness\n"},
-             .own_parameter_name = rotation_name,
-             .own_parameter = rotation_parameter,
+             .has_rotation = true,
              .doubles_mesh = false,
              .reports_stability = false,
              .has_several_returns = true}) {}

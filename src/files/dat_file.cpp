@@ -7,7 +7,7 @@
 
 #include "constants/constant_value.hpp"
 #include "files/orbit_parts.hpp"
-#include "hybrid/parameter_vector.hpp"
+#include "hybrid/parameter_layout.hpp"
 #include "text/number.hpp"
 #include "text/text_file.hpp"
 #include "text/user_error.hpp"
@@ -110,7 +110,7 @@ class DatReader {
     }
     if (parts.size() != std::size_t(segments_)) refuse_cuts(parts.size());
     DatFile file = data_of_parts(parts);
-    file.parameters.insert(file.parameters.end(), parameters_.begin(), parameters_.end());
+    file.parameters = parameters_;
     file.named_parameters = named_parameters_;
     return file;
   }
@@ -245,10 +245,8 @@ class DatReader {
       return;
     }
     const auto index = parse_integer(name);
-    const int last = std::max(parameter_length, first_duration - 1 + segments_);
-    if (!index || *index < 1 || *index > last)
-      refuse(fmt::format("PAR({}): an index from 1 to {} or a parameter's name is needed, as in `# PAR(2) = 0.8`", name,
-                         last));
+    if (!index || *index < 1 || *index > most_parameters + max_segments)
+      refuse(fmt::format("PAR({}): an index from 1 on or a parameter's name is needed, as in `# PAR(2) = 0.8`", name));
     parameters_.emplace_back(*index, value);
   }
 

@@ -20,7 +20,8 @@ struct DatFile {
   std::vector<double> tau;                         ///< rising, from 0 to 1
   double span = 1.0;                               ///< last t - first t in the file
   Eigen::MatrixXd states;                          ///< (n m) x tau.size()
-  std::vector<std::pair<int, double>> parameters;  ///< PAR index 1..parameter_length and value, in file order
+  std::vector<double> durations;                   ///< of the segments, where their own times tell them; else empty
+  std::vector<std::pair<int, double>> parameters;  ///< PAR index and value, in file order
   std::vector<std::pair<std::string, double>> named_parameters;  ///< by the problem's own names, in file order
 };
 

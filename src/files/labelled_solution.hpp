@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "hybrid/parameter_layout.hpp"
 #include "problem_type/point_type.hpp"
 #include "problem_type/problem_id.hpp"
 
@@ -19,6 +20,7 @@ struct LabelledSolution {
   int branch_mode = periodic_orbit.branch_mode;  ///< ISW of the run
   int problem_type = periodic_orbit.number;      ///< IPS; 0 in files of the older generation (12 integers)
   int dimension = 0;                             ///< n of one segment; 0 in files of the older generation
+  ParameterLayout layout;                        ///< of the parameters
   int mesh_intervals = 0;
   int collocation_points = 0;
 

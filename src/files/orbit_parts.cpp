@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "hybrid/parameter_vector.hpp"
-
 namespace tchat {
 
 namespace {
@@ -57,7 +55,7 @@ DatFile data_of_parts(const std::vector<OrbitPart>& parts) {
   data.span = 0.0;
   for (std::size_t s = 0; s < parts.size(); ++s) {
     data.span += parts[s].duration();
-    data.parameters.emplace_back(first_duration + static_cast<int>(s), parts[s].duration());
+    data.durations.push_back(parts[s].duration());
     for (std::size_t k = 0; k < data.tau.size(); ++k)
       data.states.col(static_cast<Eigen::Index>(k)).segment(n * static_cast<Eigen::Index>(s), n) =
           state_at(parts[s], data.tau[k]);

@@ -20,7 +20,7 @@ struct OrbitPart {
 OrbitPart joined(const OrbitPart& first, const OrbitPart& second);
 
 /// The data of an orbit with these segments: the relative times of all parts together, states between rows by linear
-/// interpolation, durations as PAR(61), ... A part of one row lasts no time. `parts` is not empty.
+/// interpolation, and the durations. A part of one row lasts no time. `parts` is not empty.
 DatFile data_of_parts(const std::vector<OrbitPart>& parts);
 
 }  // namespace tchat

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "hybrid/parameter_vector.hpp"
+#include "constants/settings_type.hpp"
 #include "problem_type/family.hpp"
 
 namespace tchat {
@@ -19,8 +19,9 @@ std::string name_at(const std::vector<std::string>& names, int k, const char* sy
   return fmt::format("{}({})", symbol, k);
 }
 
-PointColumn parameter_column(int k, const ProblemNames& names) {
-  return {PointColumn::Kind::parameter, k, names.parameter(k)};
+PointColumn parameter_column(int k, const RunSettings& settings, const ProblemNames& names) {
+  const int segment = is_duration(settings, k) ? settings.layout.duration_segment(k) + 1 : 0;
+  return {PointColumn::Kind::parameter, k, names.parameter(k), segment};
 }
 
 }  // namespace
@@ -73,18 +74,17 @@ PointColumn measure_column(int selector, int dimension, const ProblemNames& name
 
 std::vector<PointColumn> point_columns(const RunSettings& settings, const ProblemNames& names) {
   const std::vector<int>& free = settings.free_parameters;
-  const int segments = std::max(static_cast<int>(settings.segments.size()), 1);
-  const auto problem_parameters = static_cast<int>(
-      std::count_if(free.begin(), free.end(), [segments](int k) { return !is_duration(k, segments); }));
+  const auto problem_parameters =
+      static_cast<int>(std::count_if(free.begin(), free.end(), [&](int k) { return !is_duration(settings, k); }));
   const int maxima = std::clamp(most_screen_columns - problem_parameters, 0, settings.dimension);
 
   std::vector<PointColumn> columns;
-  if (!free.empty()) columns.push_back(parameter_column(free.front(), names));
+  if (!free.empty()) columns.push_back(parameter_column(free.front(), settings, names));
   columns.push_back(measure_column(settings.measure, settings.dimension, names));
   const FileHeadings& headings = family_of(settings.problem_type).facts().headings;
   for (int k = 1; k <= maxima; ++k)
     columns.push_back({PointColumn::Kind::maximum, k, headings.maximum + names.state(k)});
-  for (std::size_t i = 1; i < free.size(); ++i) columns.push_back(parameter_column(free[i], names));
+  for (std::size_t i = 1; i < free.size(); ++i) columns.push_back(parameter_column(free[i], settings, names));
   const auto is_listed = [&](const std::string& name) {
     return std::any_of(free.begin(), free.end(),
                        [&](int k) { return is_monitor(settings, k) && names.parameter(k) == name; });

@@ -43,6 +43,7 @@ struct PointColumn {
   Kind kind = Kind::period;
   int index = 0;  ///< from 1; 0 where there is nothing to count
   std::string name;
+  int segment = 0;  ///< from 1: the segment whose duration a parameter is; 0: of none
 };
 
 /// The measure that IPLT selects: 0 or beyond 3 n in size the L2 norm, 1..n maxima, -1..-n minima, n+1..2n integrals,

@@ -7,6 +7,7 @@
 
 #include "files/labelled_solution.hpp"
 #include "files/number_format.hpp"
+#include "problem_type/family.hpp"
 #include "problem_type/point_type.hpp"
 
 namespace tchat {
@@ -144,8 +145,9 @@ std::string constants_lines(const RunSettings& s) {
 std::string list_lines(const PointFileHeader& header) {
   const RunSettings& s = header.settings;
   const int segments = static_cast<int>(s.segments.size());
+  const bool is_torus = family_of(s.problem_type).facts().has_rotation;
   std::string text = ConstantsLine()
-                         .integer("NPAR", std::max(100, 60 + segments))
+                         .integer("NPAR", s.layout.stored(segments, is_torus))
                          .pair("THL", weights(s.parameter_weights))
                          .pair("THU", weights(s.state_weights))
                          .str();
@@ -165,6 +167,8 @@ std::string list_lines(const PointFileHeader& header) {
               .integer("GRJUMP", s.grazing_jump)
               .pair("SIGNATURE", signature_text(s))
               .str();
+  if (const int parameters = s.layout.recorded(is_torus); parameters > 0)
+    text += ConstantsLine().pair("PARAMETERS", fmt::format("{}", parameters)).str();
   return text;
 }
 

@@ -2,8 +2,9 @@
 ///
 ///     BR (I4)  +-PT (I6)  TY (I4)  LAB (I5)  values (19 columns each)         PT negative: stable
 ///
-/// The header holds the constants of the run as `KEY = value` pairs, names, the signature under keys of our own, and
-/// ends with a bare "   0" and the headings of the columns.
+/// The header holds the constants of the run as `KEY = value` pairs, names, under keys of our own the signature and,
+/// where durations do not begin at PAR(61), the number of parameters of the problem, and ends with a bare "   0" and
+/// the headings of the columns.
 #pragma once
 
 #include <string>

@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "constants/constant_value.hpp"
-#include "hybrid/parameter_vector.hpp"
 #include "problem_type/problem_type.hpp"
 #include "text/number.hpp"
 #include "text/text_file.hpp"
@@ -128,6 +127,9 @@ class Header {
     integer(line, "ISP", section_.detect_bifurcations);
     integer(line, "NDIM", section_.dimension);
     integer(line, "NSEG", section_.segments);
+    int parameters = section_.layout.parameters();
+    integer(line, "PARAMETERS", parameters);
+    section_.layout = ParameterLayout(std::clamp(parameters, 0, most_parameters));
     names(line, "unames", section_.states);
     names(line, "parnames", section_.parameters);
     names(line, "columns", long_names_);
@@ -329,8 +331,8 @@ std::string name_in(const std::map<int, std::string>& names, int k, const char* 
 
 std::string PointSection::parameter_name(int k) const { return name_in(parameters, k, "PAR"); }
 std::string PointSection::shown_parameter(int k) const {
-  const bool is_of_duration = segments > 0 && is_own_problem_type(problem_type) && is_duration(k, segments);
-  return is_of_duration && parameters.count(k) == 0 ? duration_name(k) : parameter_name(k);
+  const bool is_of_duration = segments > 0 && is_own_problem_type(problem_type) && layout.is_duration(k, segments);
+  return is_of_duration && parameters.count(k) == 0 ? layout.duration_name(k) : parameter_name(k);
 }
 std::string PointSection::state_name(int k) const { return name_in(states, k, "U"); }
 
@@ -339,7 +341,8 @@ std::vector<int> PointSection::free_problem_parameters() const {
   constexpr int auto_period_parameter = 11;
   std::vector<int> result;
   for (const int k : active_parameters) {
-    const bool not_own = ours ? is_duration(k, segments > 0 ? segments : max_segments) : k == auto_period_parameter;
+    const bool not_own =
+        ours ? layout.is_duration(k, segments > 0 ? segments : max_segments) : k == auto_period_parameter;
     if (!not_own) result.push_back(k);
   }
   return result;

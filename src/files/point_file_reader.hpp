@@ -18,6 +18,8 @@
 #include <string_view>
 #include <vector>
 
+#include "hybrid/parameter_layout.hpp"
+
 namespace tchat {
 
 /// One computed point.
@@ -36,6 +38,7 @@ struct PointSection {
   int detect_bifurcations = 2;         ///< ISP
   int dimension = 0;                   ///< NDIM
   int segments = 0;                    ///< NSEG; 0 in files of other programs
+  ParameterLayout layout;              ///< PARAMETERS, where the file has it
   int curve_type = 0;                  ///< two-parameter runs: type number of the points that make the curve, else 0
   std::vector<int> active_parameters;  ///< PAR indices free in the computation, durations and periods included
   std::map<int, std::string> states;   ///< names of states that have one, by number
@@ -49,10 +52,10 @@ struct PointSection {
 
   /// PAR(k) by its name or as "PAR(k)".
   std::string parameter_name(int k) const;
-  /// The same with "T2" for PAR(62), a duration: what screens and axes show.
+  /// The same with "T2" for the second duration: what screens and axes show.
   std::string shown_parameter(int k) const;
   std::string state_name(int k) const;
-  /// The free parameters that are no durations (PAR(61), ...) and no period (PAR(11) of AUTO's periodic orbits).
+  /// The free parameters that are no durations and no period (PAR(11) of AUTO's periodic orbits).
   std::vector<int> free_problem_parameters() const;
   /// The k of a column that is PAR(k), by its name or as "PAR(k)".
   std::optional<int> parameter_of_column(std::size_t column) const;

@@ -7,7 +7,6 @@
 
 #include "files/labelled_solution.hpp"
 #include "files/number_format.hpp"
-#include "hybrid/parameter_vector.hpp"
 #include "problem_type/point_type.hpp"
 
 namespace tchat {
@@ -17,11 +16,7 @@ namespace {
 constexpr std::size_t most_columns = 5;
 constexpr int column_width = 13;
 
-bool is_of_duration(const PointColumn& column) {
-  // Monitors have other names.
-  return column.kind == PointColumn::Kind::parameter && column.index >= first_duration &&
-         (column.name == fmt::format("PAR({})", column.index) || column.name == duration_name(column.index));
-}
+bool is_of_duration(const PointColumn& column) { return column.segment > 0; }
 
 /// What the screen shows first: 0 always, then in this order as far as there is room.
 int rank(const PointColumn& column, std::size_t place) {
@@ -47,7 +42,7 @@ std::vector<std::size_t> shown(const std::vector<PointColumn>& columns) {
 }  // namespace
 
 std::string shown_name(const PointColumn& column) {
-  return is_of_duration(column) ? duration_name(column.index) : column.name;
+  return is_of_duration(column) ? fmt::format("T{}", column.segment) : column.name;
 }
 
 std::string format_table_heading(const std::vector<PointColumn>& columns) {

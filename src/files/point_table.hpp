@@ -15,7 +15,7 @@
 
 namespace tchat {
 
-/// The name of a column on the screen: "T1" for PAR(61), else its heading.
+/// The name of a column on the screen: "T1" for the first duration, else its heading.
 std::string shown_name(const PointColumn& column);
 
 /// The headings, one line with its newline.

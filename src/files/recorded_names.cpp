@@ -14,8 +14,10 @@ namespace tchat {
 
 namespace {
 
-std::vector<std::string> list_of(const std::map<int, std::string>& names, const char* symbol) {
-  constexpr int most = 1000;  // whatever number a file says
+constexpr int most_names = 1000;
+
+/// `most`: whatever number a file says.
+std::vector<std::string> list_of(const std::map<int, std::string>& names, const char* symbol, int most) {
   std::vector<std::string> list;
   const int last = names.empty() ? 0 : std::min(names.rbegin()->first, most);
   for (int k = 1; k <= last; ++k) list.push_back(names.contains(k) ? names.at(k) : fmt::format("{}({})", symbol, k));
@@ -31,8 +33,9 @@ RecordedNames recorded_names(const std::string& solution_path) {
   if (path.empty() || !std::filesystem::is_regular_file(path, error)) return recorded;
   try {
     const PointFile file = read_point_file(path);
-    recorded.names.states = list_of(file.sections.front().states, "U");
-    recorded.names.parameters = list_of(file.sections.front().parameters, "PAR");
+    const PointSection& section = file.sections.front();
+    recorded.names.states = list_of(section.states, "U", most_names);
+    recorded.names.parameters = list_of(section.parameters, "PAR", most_names + section.layout.parameters());
   } catch (const UserError&) {
     recorded.warning = fmt::format("{} cannot be read: names of states and parameters are left out", path);
   }

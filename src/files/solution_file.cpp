@@ -9,7 +9,8 @@
 #include "files/labelled_solution.hpp"
 #include "files/number_format.hpp"
 #include "files/solution_identifier.hpp"
-#include "hybrid/parameter_vector.hpp"
+#include "hybrid/parameter_layout.hpp"
+#include "problem_type/family.hpp"
 #include "problem_type/point_type.hpp"
 
 namespace tchat {
@@ -18,7 +19,6 @@ namespace {
 
 constexpr int numbers_per_line = 7;
 constexpr int integers_per_line = 20;
-constexpr int least_parameters = 100;
 
 /// Lines that `count` items take, `per_line` on each.
 int lines_for(int count, int per_line) { return (count + per_line - 1) / per_line; }
@@ -35,6 +35,7 @@ struct EntrySizes {
   int free_parameters = 0;
   int parameters = 0;  ///< NPAR
   int internal = 0;    ///< NPARI, the last of them
+  int recorded = 0;    ///< P
 
   int lines(bool direction) const {
     const int record = lines_for(states + 1, numbers_per_line);
@@ -59,7 +60,9 @@ EntrySizes checked_sizes(const LabelledSolution& solution) {
   if (!solution.own_mesh.empty())
     sizes.internal +=
         kind_values + static_cast<int>(own_mesh_values(static_cast<std::int64_t>(solution.own_mesh.size())));
-  sizes.parameters = std::max(least_parameters, first_duration - 1 + sizes.segments) + sizes.internal;
+  const bool is_torus = family_of(solution.problem_type).facts().has_rotation;
+  sizes.parameters = solution.layout.stored(sizes.segments, is_torus) + sizes.internal;
+  sizes.recorded = solution.layout.recorded(is_torus);
   if (solution.has_direction()) {
     require(solution.parameter_direction.size() == solution.free_parameters.size(),
             "direction does not fit the free parameters");
@@ -94,7 +97,7 @@ void append_identifier(std::string& text, const LabelledSolution& solution, cons
     text += integer_field(value, 6);
   text += integer_field(sizes.points, 8) + integer_field(sizes.states + 1, 6) + integer_field(lines, 8);
   for (const int value : {solution.mesh_intervals, solution.collocation_points, sizes.parameters, sizes.internal,
-                          solution.dimension, solution.problem_type, 0})
+                          solution.dimension, solution.problem_type, sizes.recorded})
     text += integer_field(value, 5);
   text += '\n';
 }

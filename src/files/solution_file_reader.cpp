@@ -320,6 +320,7 @@ class SolutionReader {
     solution.branch_mode = id.branch_mode();
     solution.problem_type = id.problem_type();
     solution.dimension = id.dimension();
+    solution.layout = id.layout();
     solution.mesh_intervals = static_cast<int>(id.mesh_intervals());
     solution.collocation_points = static_cast<int>(id.collocation_points());
     read_states(id, numbers, solution);
@@ -511,8 +512,34 @@ int segment_count(const LabelledSolution& solution) {
   if (solution.dimension > 0) return rows % solution.dimension == 0 ? rows / solution.dimension : 0;
   const auto durations =
       static_cast<int>(std::count_if(solution.free_parameters.begin(), solution.free_parameters.end(),
-                                     [](int k) { return is_duration(k, max_segments); }));
+                                     [&](int k) { return solution.layout.is_duration(k, max_segments); }));
   return durations > 0 && rows % durations == 0 ? durations : 0;
+}
+
+LabelledSolution in_layout(LabelledSolution solution, const ParameterLayout& layout) {
+  const ParameterLayout before = std::exchange(solution.layout, layout);
+  const bool has_durations = is_own_problem_type(solution.problem_type) || !records_problem_type(solution.problem_type);
+  const bool same_places = before.first_duration() == layout.first_duration() && before.rotation() == layout.rotation();
+  if (same_places || !has_durations) return solution;
+  const int segments = segment_count(solution);
+  const bool is_torus = family_of(solution.problem_type).facts().has_rotation;
+  const auto new_place = [&](int k) {
+    if (is_torus && k == before.rotation()) return layout.rotation();
+    return before.is_duration(k, segments) ? layout.duration(before.duration_segment(k)) : k;
+  };
+  const std::vector<double> old = std::exchange(solution.parameters, {});
+  solution.parameters.assign(static_cast<std::size_t>(layout.stored(segments, is_torus)), 0.0);
+  for (int k = 1; k <= static_cast<int>(old.size()); ++k) {
+    const int place = new_place(k);
+    const bool is_kept = place != k || before.is_duration(k, segments) || layout.is_parameter(k, segments);
+    if (is_kept && place <= static_cast<int>(solution.parameters.size()))
+      solution.parameters[static_cast<std::size_t>(place - 1)] = old[static_cast<std::size_t>(k - 1)];
+  }
+  for (int& k : solution.free_parameters) k = new_place(k);
+  if (solution.kind.kind == UserPointKind::user_value) solution.kind.index = new_place(solution.kind.index);
+  for (UserPointKind& kind : solution.further)
+    if (kind.kind == UserPointKind::user_value) kind.index = new_place(kind.index);
+  return solution;
 }
 
 double stored_parameter(const LabelledSolution& solution, int k) {
@@ -522,7 +549,7 @@ double stored_parameter(const LabelledSolution& solution, int k) {
 
 double duration(const LabelledSolution& solution, int s) {
   const bool old_file = !records_problem_type(solution.problem_type);
-  const double own = stored_parameter(solution, first_duration + s);
+  const double own = stored_parameter(solution, solution.layout.duration(s));
   const bool of_auto = is_shared_problem_type(solution.problem_type) && own == 0.0;
   if ((is_own_problem_type(solution.problem_type) && !of_auto) || (old_file && own != 0.0)) return own;
   const std::optional<int> k = auto_period(solution.problem_type);

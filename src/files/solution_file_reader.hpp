@@ -56,11 +56,15 @@ StartLabel read_label(const std::string& word);
 /// 0 when neither tells.
 int segment_count(const LabelledSolution& solution);
 
+/// The same solution for a problem of another number of parameters: those that both have, durations and rotation number
+/// go to their places in `layout`.
+LabelledSolution in_layout(LabelledSolution solution, const ParameterLayout& layout);
+
 /// PAR(k); 0 where the solution has none.
 double stored_parameter(const LabelledSolution& solution, int k);
 
-/// Of segment s, from 0: PAR(61+s). Orbits of AUTO itself have their period in PAR(11), and its boundary value problems
-/// are on the interval from 0 to 1.
+/// Of segment s, from 0: PAR(61+s), or behind more than 60 parameters. Orbits of AUTO itself have their period in
+/// PAR(11), and its boundary value problems are on the interval from 0 to 1.
 double duration(const LabelledSolution& solution, int s);
 
 /// Sum of the durations; 0 for an equilibrium, and when the number of segments is not known.

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "hybrid/parameter_vector.hpp"
 #include "text/user_error.hpp"
 
 namespace tchat {
@@ -27,9 +26,12 @@ void check_segments(const SolutionIdentifier& id, const Requirement& need) {
   const std::int64_t segments = id.states() / id.dimension();
   need(segments <= max_segments,
        fmt::format("{} segments (integer 8 less 1, over integer 14), at most {} allowed", segments, max_segments));
-  need(id.parameters() - id.internal_parameters() >= first_duration - 1 + segments,
+  need(id.values[15] >= 0 && id.values[15] <= most_parameters,
+       fmt::format("{} parameters of the problem (integer 16), 0 to {} allowed", id.values[15], most_parameters));
+  const int first = id.layout().first_duration();
+  need(id.parameters() - id.internal_parameters() >= first - 1 + segments,
        fmt::format("NPAR = {} parameters (integer 12) have no room for the durations PAR({}..{})", id.parameters(),
-                   first_duration, first_duration - 1 + segments));
+                   first, first - 1 + segments));
 }
 
 }  // namespace

@@ -1,12 +1,14 @@
 /// The first line of a solution in a q-file: 16 integers, 12 in files of the older generation.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
 #include <string>
-#include "hybrid/parameter_vector.hpp"
+
+#include "hybrid/parameter_layout.hpp"
 #include "problem_type/problem_type.hpp"
 
 namespace tchat {
@@ -42,6 +44,8 @@ struct SolutionIdentifier {
   std::int64_t internal_parameters() const { return values[12]; }  ///< NPARI, the last of the NPAR
   int dimension() const { return values[13]; }                     ///< NDIM, of one segment
   int problem_type() const { return values[14]; }                  ///< IPS
+  /// Where PAR has the durations. The last integer is the number of the problem's parameters where the file records it.
+  ParameterLayout layout() const { return ParameterLayout(is_ours() ? std::clamp(values[15], 0, most_parameters) : 0); }
 
   std::int64_t states() const { return numbers_per_point() - 1; }
   /// A line that only carries the largest branch and label.
@@ -49,7 +53,8 @@ struct SolutionIdentifier {
   /// Written by this program; of a problem type that is AUTO's too, where PAR has room for durations.
   bool is_ours() const {
     return is_own_problem_type(problem_type()) &&
-           (!is_shared_problem_type(problem_type()) || parameters() - internal_parameters() >= first_duration);
+           (!is_shared_problem_type(problem_type()) ||
+            parameters() - internal_parameters() >= ParameterLayout().first_duration());
   }
   bool has_kind() const { return is_ours() && internal_parameters() > 0 && internal_parameters() % kind_values == 0; }
 

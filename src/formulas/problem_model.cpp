@@ -12,12 +12,12 @@
 #include "formulas/expression_check.hpp"
 #include "formulas/expression_value.hpp"
 #include "hybrid/hybrid_system.hpp"
+#include "hybrid/parameter_layout.hpp"
 
 namespace tchat::formulas {
 
 namespace {
 
-constexpr std::size_t most_parameters = 60;
 constexpr std::size_t most_definitions = 1000;
 
 /// Names of fields, events or jumps, with their numbers.
@@ -98,8 +98,8 @@ class ModelCheck {
     if (model_.names.states().size() > static_cast<std::size_t>(most_states))
       errors_.add(file_as_a_whole, fmt::format("there are {} states, at most {} are allowed",
                                                model_.names.states().size(), most_states));
-    if (file().parameters.size() > most_parameters)
-      errors_.add(file().parameters[most_parameters].name.at,
+    if (file().parameters.size() > static_cast<std::size_t>(most_parameters))
+      errors_.add(file().parameters[static_cast<std::size_t>(most_parameters)].name.at,
                   fmt::format("there are {} parameters, at most {} are allowed; write those that never change as "
                               "'number NAME=VALUE'",
                               file().parameters.size(), most_parameters));

@@ -26,7 +26,7 @@ struct GrazingPoint {
   int jump = 1;              ///< g_D
   Signature aftermath = {};  ///< segments in other fields after the impact, of no duration at x*; mostly none
   Eigen::VectorXd x;         ///< x*, n
-  ParameterVector par;       ///< parameter_length entries
+  ParameterVector par;       ///< of the problem's layout
 
   double a = 0.0;                    ///< a* = h_{P,x} f
   Eigen::VectorXd f;                 ///< n
@@ -41,9 +41,9 @@ struct GrazingPoint {
 };
 
 /// Of a state that lies on h_D = h_P = 0 but for rounding (`corrected_contact` sees to that). `par` has
-/// parameter_length entries. Throws UserError, beginning with `source`, when a* is not positive, when x* is not on both
-/// surfaces, when the jump is the identity, when it moves
-/// states in grazing contact, or when a segment of the aftermath does not begin on the surface on which it ends.
+/// PAR of the problem's layout. Throws UserError, beginning with `source`, when a* is not positive, when x* is not on
+/// both surfaces, when the jump is the identity, when it moves states in grazing contact, or when a segment of the
+/// aftermath does not begin on the surface on which it ends.
 GrazingPoint grazing_point(const HybridSystem& system, int field, int event, int jump, const Eigen::VectorXd& x,
                            const ParameterVector& par, const std::string& source, const Signature& aftermath = {});
 

@@ -24,9 +24,12 @@ using Eigen::VectorXd;
 /// Of the period: segments that last less are those of an impact of velocity zero.
 constexpr double no_time = 1e-7;
 
-Orbit orbit_at(const LabelledSolution& solution, const RunSettings& settings, const std::string& source) {
+Orbit orbit_at(const LabelledSolution& solution, const RunSettings& settings, const HybridSystem& system,
+               const std::string& source) {
   const auto segments = static_cast<int>(settings.segments.size());
-  return orbit_from_solution(solution, stored_shape(solution, settings.dimension, segments), {}, source).orbit;
+  return orbit_from_solution(in_layout(solution, system.layout()),
+                             stored_shape(solution, settings.dimension, segments), {}, source)
+      .orbit;
 }
 
 const IndexVector& index_of(const RunSettings& settings, int s) {
@@ -100,7 +103,7 @@ void require_jump(const HybridSystem& system, const ContactTurn& turn, const std
 
 ContactTurn contact_turn(const LabelledSolution& solution, const RunSettings& settings, const HybridSystem& system,
                          std::optional<int> jump, int parameter, const std::string& source) {
-  const Orbit x = orbit_at(solution, settings, source);
+  const Orbit x = orbit_at(solution, settings, system, source);
   const ContactPoint contact = contact_point(solution, x, system, settings, source);
   require_one_contact(contact, x, system, settings, source);
   ContactTurn turn;
@@ -110,7 +113,7 @@ ContactTurn contact_turn(const LabelledSolution& solution, const RunSettings& se
                                                               : jump_at_contact(system, settings, x, contact);
   turn.contact = {own.field, contact.event, brought};
   turn.par = x.par;
-  turn.par.tail(turn.par.size() - first_duration + 1).setZero();
+  turn.par.clear_durations();
   turn.x = state_at(x, CollocationRule(x.shape.collocation), contact.segment,
                     contact.where == ContactPoint::inside ? contact.tau : 1.0);
   if (contact.where == ContactPoint::section || contact.where == ContactPoint::grazing_curve)

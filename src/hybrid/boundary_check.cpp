@@ -7,7 +7,6 @@
 #include <random>
 
 #include "hybrid/difference_derivatives.hpp"
-#include "hybrid/parameter_vector.hpp"
 
 namespace tchat {
 
@@ -30,10 +29,11 @@ BoundaryCheck check_boundary(const HybridSystem& system, int segments, const Vec
   const MatrixXd starts = MatrixXd::NullaryExpr(n, segments, any);
   const MatrixXd ends = MatrixXd::NullaryExpr(n, segments, any);
   VectorXd values = par;
-  for (int s = 0; s < segments; ++s) values(first_duration - 1 + s) = 1.5 + any();
+  const ParameterLayout layout = system.layout();
+  for (int s = 0; s < segments; ++s) values(layout.duration(s) - 1) = 1.5 + any();
   std::vector<int> active(static_cast<std::size_t>(system.parameters()));
   std::iota(active.begin(), active.end(), 1);
-  for (int s = 0; s < segments; ++s) active.push_back(first_duration + s);
+  for (int s = 0; s < segments; ++s) active.push_back(layout.duration(s));
 
   // Columns: starts, ends, parameters and durations.
   const int states = n * segments;
@@ -54,8 +54,8 @@ BoundaryCheck check_boundary(const HybridSystem& system, int segments, const Vec
                          place / n + 1);
     }
     const int k = active[static_cast<std::size_t>(c - 2 * states)];
-    return is_duration(k, segments) ? fmt::format("T of segment {}", duration_segment(k) + 1)
-                                    : system.parameter_name(k);
+    return layout.is_duration(k, segments) ? fmt::format("T of segment {}", layout.duration_segment(k) + 1)
+                                           : system.parameter_name(k);
   };
   BoundaryCheck check{segments, rows, 0.0, {}};
   const double scale = 1.0 + (expected.allFinite() ? expected.cwiseAbs().maxCoeff() : 0.0);

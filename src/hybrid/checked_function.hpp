@@ -14,7 +14,7 @@ namespace tchat {
 /// Where functions are compared.
 struct TestPoint {
   Eigen::VectorXd x;    // n
-  Eigen::VectorXd par;  // parameter_length
+  Eigen::VectorXd par;  // room of the layout
   bool is_random;       // a NaN at a random point is no fault
 };
 

@@ -14,7 +14,7 @@ namespace {
 constexpr double rounding = 1e-10;  // of states and event functions, after Newton's method
 
 ParameterVector generic_parameters(const HybridSystem& system) {
-  ParameterVector par = ParameterVector::Zero(parameter_length);
+  ParameterVector par(system.layout());
   for (int i = 0; i < system.parameters(); ++i) par(i) = 0.37 + 0.11 * i;
   return par;
 }

@@ -122,7 +122,7 @@ class FunctionChecker {
     const int q = system_.parameters();
     VectorXd x = VectorXd::Constant(n + guard, padding);
     x.head(n) = at.x;
-    VectorXd par = VectorXd::Constant(parameter_length, padding);
+    VectorXd par = VectorXd::Constant(system_.layout().room(), padding);
     par.head(q) = at.par.head(q);
     VectorXd out = VectorXd::Constant(function_.rows() + n + guard, untouched);
     system_.value(check_.kind, check_.index, x.data(), par.data(), out.data());
@@ -254,10 +254,11 @@ class FunctionChecker {
 };
 
 VectorXd base_parameters(const HybridSystem& system, const VectorXd& given) {
-  if (given.size() > parameter_length || !given.allFinite())
-    throw UserError(fmt::format("{} parameter values were given, allowed are at most {} finite ones.", given.size(),
-                                parameter_length));
-  VectorXd par = VectorXd::Zero(parameter_length);
+  const int room = system.layout().room();
+  if (given.size() > room || !given.allFinite())
+    throw UserError(
+        fmt::format("{} parameter values were given, allowed are at most {} finite ones.", given.size(), room));
+  VectorXd par = VectorXd::Zero(room);
   const double* const initial = system.table().initial_parameters;
   for (int k = 0; k < system.parameters(); ++k) par(k) = initial != nullptr ? initial[k] : 1.0;
   par.head(given.size()) = given;

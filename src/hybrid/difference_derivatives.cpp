@@ -6,13 +6,11 @@
 #include <limits>
 #include <vector>
 
-#include "hybrid/parameter_vector.hpp"
-
 namespace tchat {
 
 namespace {
 
-/// Numbers on the stack, of many states not.
+/// Numbers on the stack, as long as they are not too many.
 class Column {
  public:
   /// Not set.
@@ -27,6 +25,7 @@ class Column {
   double* data() { return begin_; }
   const double* data() const { return begin_; }
   double& operator[](std::size_t k) { return begin_[k]; }
+  std::size_t size() const { return size_; }
   void set_zero() { std::fill_n(begin_, size_, 0.0); }
 
  private:
@@ -44,20 +43,20 @@ constexpr int step_sizes = 4;
 constexpr double computed = 1e3 * std::numeric_limits<double>::epsilon();
 constexpr double differenced = 1e-8;
 
-/// A copy of the point that differences may move, on the stack.
+/// A copy of the point that differences may move.
 struct MovablePoint {
   Column x;
-  std::array<double, parameter_length> par;
+  Column par;
 
-  MovablePoint(const double* x0, int n, const double* par0) : x(n) {
-    std::copy(x0, x0 + n, x.data());
-    std::copy(par0, par0 + parameter_length, par.begin());
+  MovablePoint(const HybridSystem& system, const double* x0, const double* par0)
+      : x(system.dimension()), par(system.layout().room()) {
+    std::copy_n(x0, x.size(), x.data());
+    std::copy_n(par0, par.size(), par.data());
   }
   double& variable(int c, int n, std::span<const int> active) {
-    // No function depends on what is beyond, nor on PAR(512).
-    return c < n
-               ? x[static_cast<std::size_t>(c)]
-               : par[static_cast<std::size_t>(std::min(active[static_cast<std::size_t>(c - n)], parameter_length) - 1)];
+    // No function depends on what is beyond, nor on the last entry.
+    if (c < n) return x[static_cast<std::size_t>(c)];
+    return par[std::min(static_cast<std::size_t>(active[static_cast<std::size_t>(c - n)]), par.size()) - 1];
   }
 };
 
@@ -126,7 +125,7 @@ template <class Function>
 void difference_columns(const Function& function, const HybridSystem& system, int rows, const double* x,
                         const double* par, std::span<const int> active, double* dx, double* dp) {
   const int n = system.dimension();
-  MovablePoint point(x, n, par);
+  MovablePoint point(system, x, par);
   for (int c = 0; c < n + static_cast<int>(active.size()); ++c)
     difference_column(function, point, point.variable(c, n, active), rows, c < n ? dx + c * rows : dp + (c - n) * rows);
 }
@@ -213,7 +212,7 @@ void difference_first(const HybridSystem& system, FunctionKind kind, int index, 
 
 void difference_by_parameter(const HybridSystem& system, FunctionKind kind, int index, const double* x,
                              const double* par, int k, double* column) {
-  MovablePoint point(x, system.dimension(), par);
+  MovablePoint point(system, x, par);
   double& variable = point.variable(system.dimension(), system.dimension(), std::span(&k, 1));
   difference_column(Value(system, kind, index), point, variable, system.rows(kind), column);
 }
@@ -221,7 +220,7 @@ void difference_by_parameter(const HybridSystem& system, FunctionKind kind, int 
 void difference_second(const HybridSystem& system, FunctionKind kind, int index, const double* x, const double* par,
                        std::span<const int> active, const double* direction, double* out, double* dx, double* dp) {
   const int rows = system.rows(kind);
-  const MovablePoint here(x, system.dimension(), par);
+  const MovablePoint here(system, x, par);
   const auto differentiate = [&](const auto& directional) {
     directional(here, out);
     difference_columns(directional, system, rows, x, par, active, dx, dp);
@@ -238,7 +237,7 @@ void difference_boundary(const HybridSystem& system, const OrbitEnds& at, std::s
   const auto count = static_cast<std::size_t>(system.dimension()) * static_cast<std::size_t>(at.segments);
   std::vector<double> starts(at.starts, at.starts + count);
   std::vector<double> ends(at.ends, at.ends + count);
-  std::vector<double> par(at.par, at.par + parameter_length);
+  std::vector<double> par(at.par, at.par + system.layout().room(at.segments));
   const OrbitEnds near{at.segments, starts.data(), ends.data(), par.data()};
   const auto column = [&](double& variable, double* derivative) {
     const double here = variable;

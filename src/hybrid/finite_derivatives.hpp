@@ -11,7 +11,7 @@ namespace tchat {
 /// "flow has no finite derivatives at x = (0, 0): ...", with what may be the reason.
 std::string no_finite_derivatives(const HybridSystem& system, FunctionKind kind, int index, const Eigen::VectorXd& x);
 
-/// Are the derivatives of function `index` by the states finite at x, wherever its value is? `par` has parameter_length
+/// Are the derivatives of function `index` by the states finite at x, wherever its value is? `par` has layout().room()
 /// entries. Allocates.
 bool has_finite_derivatives(const HybridSystem& system, FunctionKind kind, int index, const double* x,
                             const double* par);

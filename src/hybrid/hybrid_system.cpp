@@ -9,7 +9,6 @@
 #include <stdexcept>
 
 #include "hybrid/difference_derivatives.hpp"
-#include "hybrid/parameter_vector.hpp"
 
 namespace tchat {
 
@@ -63,8 +62,8 @@ HybridSystem::HybridSystem(const tchat_problem& table) : table_(&table) {
   require(table.name != nullptr, "its table has no name");
   require(table.dimension >= 1 && table.dimension <= most_states,
           fmt::format("its dimension is {}, allowed are 1..{}", table.dimension, most_states));
-  require(table.parameters >= 0 && table.parameters <= 60,
-          fmt::format("it has {} parameters, allowed are 0..60", table.parameters));
+  require(table.parameters >= 0 && table.parameters <= most_parameters,
+          fmt::format("it has {} parameters, allowed are 0..{}", table.parameters, most_parameters));
   // Smooth problems and boundary value problems need no events and jumps.
   require(table.fields >= 1 && table.events >= 0 && table.jumps >= 0,
           fmt::format("it has {} fields, {} events and {} jumps, at least one field is needed", table.fields,
@@ -118,8 +117,8 @@ int HybridSystem::count(FunctionKind kind) const {
 std::string HybridSystem::state_name(int k) const { return name_or(table_->state_names, dimension(), k, "U({})"); }
 
 std::string HybridSystem::parameter_name(int k) const {
-  if (k == rotation_parameter && parameters() < k) return rotation_name;
-  if (is_duration(k, max_segments)) return duration_name(k);
+  if (k == layout().rotation()) return rotation_name;
+  if (layout().is_duration(k, max_segments)) return layout().duration_name(k);
   return name_or(table_->parameter_names, parameters(), k, "PAR({})");
 }
 
@@ -142,7 +141,7 @@ int HybridSystem::parameter_index(const std::string& name) const {
   const char* const* const names = table_->parameter_names;
   for (int k = 1; names != nullptr && k <= parameters(); ++k)
     if (names[k - 1] != nullptr && name == names[k - 1]) return k;
-  return name == rotation_name && parameters() < rotation_parameter ? rotation_parameter : 0;
+  return name == rotation_name ? layout().rotation() : 0;
 }
 
 std::optional<std::vector<IndexVector>> HybridSystem::successors(const IndexVector& from, const double* x,

@@ -2,7 +2,7 @@
 /// derivatives, over a problem table (plugin, or a class compiled into a test); and, for boundary value problems, the
 /// boundary conditions and integrands that the problem has of its own.
 ///
-/// Indices count from 1. x has `dimension()` entries, par is a ParameterVector's data (parameter_length entries).
+/// Indices count from 1. x has `dimension()` entries, par is a ParameterVector's data (layout().room() entries).
 /// Matrices are column-major. Evaluation never allocates and never throws; a function that cannot be evaluated gives
 /// entries that are not finite, which callers check (`all_finite`).
 #pragma once
@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "hybrid/index_vector.hpp"
+#include "hybrid/parameter_layout.hpp"
 #include "tchat/problem.h"
 
 namespace tchat {
@@ -43,6 +44,8 @@ class HybridSystem {
   /// The states of the mode of a field.
   int dimension_of(int field) const { return has_modes() ? table_->field_dimensions[field - 1] : dimension(); }
   int parameters() const { return table_->parameters; }
+  /// Where PAR has the parameters and where the durations begin.
+  ParameterLayout layout() const { return ParameterLayout(parameters()); }
   /// How many functions of a kind there are; integrands are one for each segment, whatever their number.
   int count(FunctionKind kind) const;
   /// How many values a function of a kind has.
@@ -61,11 +64,12 @@ class HybridSystem {
   const tchat_problem& table() const { return *table_; }
 
   std::string name() const { return table_->name; }
-  /// User's name or "U(k)", "PAR(k)", "field i", ... ; k counts from 1.
+  /// User's name or "U(k)", "PAR(k)", "field i", ... ; k counts from 1. Durations are "T1", ..., and the rotation
+  /// number of tori is "rho".
   std::string state_name(int k) const;
   std::string parameter_name(int k) const;
   std::string function_name(FunctionKind kind, int index) const;
-  /// 1-based index of a parameter by its name; 0 if there is none.
+  /// 1-based index of a parameter by its name, "rho" among them; 0 if there is none.
   int parameter_index(const std::string& name) const;
 
   /// out = F(x, p), rows(kind) entries. The index of an integrand is the number of its segment. Jump 0 is the identity,

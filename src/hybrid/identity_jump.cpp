@@ -11,7 +11,7 @@ namespace {
 /// The first `states` states; the others are zero.
 bool leaves_states(const HybridSystem& system, int k, int states) {
   const int n = system.dimension();
-  ParameterVector par = ParameterVector::Zero(parameter_length);
+  ParameterVector par(system.layout());
   for (int i = 0; i < system.parameters(); ++i) par(i) = 0.37 + 0.11 * i;
   Eigen::VectorXd x = Eigen::VectorXd::Zero(n);
   Eigen::VectorXd g(n);

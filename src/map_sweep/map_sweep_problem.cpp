@@ -52,8 +52,8 @@ MapContext context_of(const SweepRequest& request, const LoadedProblem& loaded, 
   const HybridSystem& system = loaded.library->system();
   MapContext context;
   context.par = initial_parameters(system);
-  const ParameterVector before = ParameterVector::Constant(context.par.size(), NAN);
-  ParameterVector marked = before;
+  ParameterVector marked = context.par;
+  marked.setConstant(NAN);
   apply_command_line(system, loaded.constants.settings, marked);
   apply_command_line(system, loaded.constants.settings, context.par);
   for (int k = 1; k <= system.parameters(); ++k)

@@ -33,7 +33,7 @@ Orbit orbit_of_label(const HybridSystem& system, const LabelledSolution& solutio
                     "constants of its run with -c",
                     source, rows, m, n));
   return orbit_from_solution(
-             solution,
+             in_layout(solution, system.layout()),
              {system.dimension(), static_cast<int>(rows / n), solution.mesh_intervals, solution.collocation_points}, {},
              source)
       .orbit;

@@ -34,7 +34,7 @@ class TorusLabel {
   /// Of each event function once, in the order of the segments.
   const std::vector<Section>& sections() const { return sections_; }
   const ParameterVector& par() const { return orbit_.par; }
-  double rotation() const { return orbit_.par(rotation_parameter - 1); }
+  double rotation() const { return orbit_.par.rotation(); }
   int orbits() const { return torus_.orbits(); }
   const std::string& source() const { return source_; }
 

@@ -56,7 +56,8 @@ std::optional<IndexedName> indexed_name(const std::string& text) {
 std::string with_names(const PointSection& section, const std::string& wanted) {
   const auto is_wanted = [&](const auto& parameter) { return parameter.second == wanted; };
   const bool is_own = std::any_of(section.parameters.begin(), section.parameters.end(), is_wanted);
-  if (const auto duration = duration_of_name(wanted); duration && !is_own) return fmt::format("PAR({})", *duration);
+  if (const auto duration = section.layout.duration_of_name(wanted); duration && !is_own)
+    return fmt::format("PAR({})", *duration);
   const auto found = indexed_name(wanted);
   if (!found) return wanted;
   return found->before +
@@ -81,7 +82,7 @@ std::string shown_name(const PointSection& section, std::size_t column) {
 std::optional<int> parameter_index(const PointSection& section, const std::string& wanted) {
   for (const auto& [k, name] : section.parameters)
     if (name == wanted) return k;
-  if (const auto duration = duration_of_name(wanted)) return duration;
+  if (const auto duration = section.layout.duration_of_name(wanted)) return duration;
   const auto found = indexed_name(wanted);
   if (found && found->symbol == "par" && found->before.empty()) return found->index;
   return std::nullopt;

@@ -76,7 +76,7 @@ EventSurfaces::EventSurfaces(const HybridSystem& system, const std::vector<Orbit
     : system_(system), orbits_(orbits) {
   for (const OrbitTrace& orbit : orbits) {
     parameters_.push_back(orbit.parameters);
-    parameters_.back().resize(TCHAT_PAR_LENGTH, 0.0);
+    parameters_.back().resize(static_cast<std::size_t>(system.layout().room()), 0.0);
   }
   const int count = system.count(FunctionKind::event);
   for (const int event : events)

@@ -81,7 +81,7 @@ LabelText orbit_name(const std::vector<OrbitTrace>& orbits, std::size_t k, const
   bool first = true;
   for (const auto& [index, value] : orbit.free_parameters) {
     const auto position = static_cast<std::size_t>(index - 1);
-    const bool is_rotation = index == rotation_parameter && orbit.section_points.cols() > 0;
+    const bool is_rotation = index == orbit.rotation_parameter && orbit.section_points.cols() > 0;
     const std::string name = is_rotation                            ? "rho"
                              : position < options.parameters.size() ? options.parameters[position]
                                                                     : fmt::format("PAR({})", index);

@@ -10,7 +10,7 @@
 #include <cstdlib>
 #include <new>
 
-#include "hybrid/parameter_vector.hpp"
+#include "hybrid/parameter_layout.hpp"
 #include "text/user_error.hpp"
 
 namespace tchat {
@@ -49,6 +49,7 @@ void FortranCalls::Free::operator()(double* memory) const { std::free(memory); }
 FortranCalls::FortranCalls(const std::string& path, void* library, const ProblemSizes& sizes)
     : n_(sizes.dimension),
       value_room_(std::max(n_, sizes.integral_conditions) + beyond),
+      par_room_(ParameterLayout(sizes.parameters).room()),
       field_(require<Derivatives>(path, library, "gcfunc_", "GCFUNC", true)),
       event_(require<Derivatives>(path, library, "gcbound_", "GCBOUND", !sizes.events.empty())),
       integrand_(require<Derivatives>(path, library, "gcicnd_", "GCICND", sizes.integral_conditions > 0)),
@@ -61,13 +62,14 @@ FortranCalls::FortranCalls(const std::string& path, void* library, const Problem
   const bool second = sizes.derivative_order >= 2 || n_ <= large;
   const auto size = static_cast<std::size_t>(n_);
   const auto room = static_cast<std::size_t>(value_room_);
+  const auto parameters = static_cast<std::size_t>(par_room_);
   const std::size_t extents[] = {size + beyond,
-                                 static_cast<std::size_t>(parameter_length) + beyond,
+                                 parameters + beyond,
                                  room,
                                  size * room + beyond,
-                                 room * parameter_length + room,
+                                 room * parameters + room,
                                  second ? size * size * room + beyond : 1,
-                                 second ? room * size * parameter_length + room : 1};
+                                 second ? room * size * parameters + room : 1};
   std::size_t total = 0;
   for (const std::size_t extent : extents) total += extent;
   // Large arrays that are never touched cost nothing this way.
@@ -86,11 +88,11 @@ void FortranCalls::boundary(const OrbitEnds& at, int order) {
   const auto count = static_cast<std::size_t>(count_);
   starts_.assign(at.starts, at.starts + states);
   ends_.assign(at.ends, at.ends + states);
-  std::copy(at.par, at.par + parameter_length, par_);
+  std::copy_n(at.par, par_room_, par_);
   conditions_.assign(count + beyond, unset());
   by_starts_.assign(count * states + beyond, 0.0);
   by_ends_.assign(count * states + beyond, 0.0);
-  by_par_.assign(count * parameter_length + beyond, 0.0);
+  by_par_.assign(count * static_cast<std::size_t>(par_room_) + beyond, 0.0);
   Integer n = n_;
   Integer segments = at.segments;
   Integer wanted = order;
@@ -110,7 +112,7 @@ bool FortranCalls::is_unset(double value) { return std::bit_cast<std::uint64_t>(
 void FortranCalls::load(const double* x, const double* par) {
   std::copy(x, x + n_, x_);
   std::fill(x_ + n_, x_ + n_ + beyond, NAN);  // a library written for more states then gives NaN
-  std::copy(par, par + parameter_length, par_);
+  std::copy_n(par, par_room_, par_);
 }
 
 void FortranCalls::clear_derivatives(int order, std::span<const int> active) {
@@ -148,6 +150,18 @@ bool FortranCalls::wrote_beyond() const {
   return !std::all_of(value_ + rows_, value_ + value_room_, [](double value) { return is_unset(value); });
 }
 
+int FortranCalls::parameter_count(const std::string& path, void* library) {
+  const auto function = find<void (*)(Integer*)>(library, "gcnpar_");
+  if (function == nullptr) return 0;
+  Integer count = -1;
+  function(&count);
+  if (count >= 1 && count <= most_parameters) return count;
+  throw UserError(
+      fmt::format("plugin {}: GCNPAR sets NPAR to {}, allowed are 1 to {}.\n"
+                  "  Set it to the number of parameters, or leave GCNPAR out where 60 are enough.",
+                  path, count, most_parameters));
+}
+
 void FortranCalls::starting_values(int segment, double* x, double* par) {
   load(x, par);
   Integer n = n_;
@@ -155,7 +169,7 @@ void FortranCalls::starting_values(int segment, double* x, double* par) {
   double time = 0.0;
   starting_values_(&n, x_, par_, &time, &number);
   std::copy(x_, x_ + n_, x);
-  std::copy(par_, par_ + parameter_length, par);
+  std::copy_n(par_, par_room_, par);
 }
 
 void FortranCalls::output_parameters(int segment, const double* x, double* par) {
@@ -163,7 +177,7 @@ void FortranCalls::output_parameters(int segment, const double* x, double* par) 
   Integer n = n_;
   Integer number = segment;
   output_parameters_(&n, x_, par_, &number);
-  std::copy(par_, par_ + parameter_length, par);
+  std::copy_n(par_, par_room_, par);
 }
 
 }  // namespace tchat

@@ -46,6 +46,8 @@ class FortranCalls {
   bool left_unset(int i) const;
   bool wrote_beyond() const;
 
+  /// GCNPAR: how many parameters the problem has; 0 where the library does not say.
+  static int parameter_count(const std::string& path, void* library);
   bool has_starting_values() const { return starting_values_ != nullptr; }
   bool has_output_parameters() const { return output_parameters_ != nullptr; }
   /// GCSTPNT for a segment, from 1: entries of `par` and `x` that it does not set stay as they are.
@@ -58,8 +60,8 @@ class FortranCalls {
   static bool is_unset(double value);
 
  private:
-  /// The subroutines know parameter_length entries of PAR, of which they set nothing at the last.
-  static std::ptrdiff_t column(int k) { return std::min(k, parameter_length - 1); }
+  /// The subroutines know par_room_ entries of PAR, of which they set nothing at the last.
+  std::ptrdiff_t column(int k) const { return std::min(k, par_room_ - 1); }
 
   using Integer = int;
   using Derivatives = void (*)(Integer*, double*, double*, Integer*, double*, double*, double*, double*, double*,
@@ -80,6 +82,7 @@ class FortranCalls {
   int n_;
   int rows_ = 1;
   int value_room_;
+  int par_room_;
   Derivatives field_ = nullptr, event_ = nullptr, integrand_ = nullptr;
   Jump jump_ = nullptr;
   StartingValues starting_values_ = nullptr;

@@ -8,7 +8,7 @@
 #include <filesystem>
 
 #include "hybrid/difference_derivatives.hpp"
-#include "hybrid/parameter_vector.hpp"
+#include "hybrid/parameter_layout.hpp"
 #include "text/user_error.hpp"
 
 namespace tchat {
@@ -24,6 +24,12 @@ std::size_t place(FunctionKind kind) { return static_cast<std::size_t>(kind); }
 
 int last_of(const std::vector<int>& indices, int least) { return indices.empty() ? least : indices.back(); }
 
+/// With the number of parameters that the library itself gives.
+ProblemSizes sizes_of(const std::string& path, void* library, ProblemSizes sizes) {
+  sizes.parameters = std::max(sizes.parameters, FortranCalls::parameter_count(path, library));
+  return sizes;
+}
+
 std::span<const int> list(const std::int32_t* active, std::int32_t count) {
   return {active, static_cast<std::size_t>(count)};
 }
@@ -31,7 +37,9 @@ std::span<const int> list(const std::int32_t* active, std::int32_t count) {
 }  // namespace
 
 FortranProblem::FortranProblem(const std::string& path, void* library, const ProblemSizes& sizes)
-    : sizes_(sizes), name_(std::filesystem::path(path).stem().string()), calls_(path, library, sizes) {
+    : sizes_(sizes_of(path, library, sizes)),
+      name_(std::filesystem::path(path).stem().string()),
+      calls_(path, library, sizes_) {
   read_starting_values(path);
   fill_table();
   try_functions(path);
@@ -39,12 +47,13 @@ FortranProblem::FortranProblem(const std::string& path, void* library, const Pro
 
 void FortranProblem::read_starting_values(const std::string& path) {
   std::vector<double> x(static_cast<std::size_t>(sizes_.dimension), FortranCalls::unset());
-  std::vector<double> par(parameter_length, FortranCalls::unset());
-  std::vector<double> from_zero(parameter_length, 0.0);  // tells an entry left unset from one computed of such
+  const ParameterLayout layout(sizes_.parameters);
+  std::vector<double> par(static_cast<std::size_t>(layout.room()), FortranCalls::unset());
+  std::vector<double> from_zero(par.size(), 0.0);  // tells an entry left unset from one computed of such
   for (std::vector<double>* const start : {&from_zero, &par})
     for (int segment = sizes_.segments; segment >= 1 && calls_.has_starting_values(); --segment)
       calls_.starting_values(segment, x.data(), start->data());  // segment 1 has the last word
-  for (int k = 1; k <= parameter_length; ++k) {
+  for (int k = 1; k <= layout.room(); ++k) {
     const double value = par[static_cast<std::size_t>(k - 1)];
     const double other = from_zero[static_cast<std::size_t>(k - 1)];
     if (FortranCalls::is_unset(value) && other == 0.0) continue;
@@ -53,14 +62,14 @@ void FortranProblem::read_starting_values(const std::string& path) {
           fmt::format("plugin {}: GCSTPNT sets PAR({}) to a value that is not finite.\n"
                       "  Compute it from entries of PAR that are set before it, or leave it out.",
                       path, k));
-    if (k < first_duration) sizes_.parameters = std::max(sizes_.parameters, k);
+    if (k < layout.first_duration()) sizes_.parameters = std::max(sizes_.parameters, k);
   }
   for (int k = 1; k <= sizes_.parameters; ++k) {
     const double value = par[static_cast<std::size_t>(k - 1)];
     parameters_.push_back(FortranCalls::is_unset(value) ? 0.0 : value);
   }
   for (int s = 0; s < sizes_.segments; ++s) {
-    const double value = par[static_cast<std::size_t>(first_duration - 1 + s)];
+    const double value = par[static_cast<std::size_t>(layout.duration(s) - 1)];
     durations_.push_back(FortranCalls::is_unset(value) ? NAN : value);
   }
   const bool gives_state = std::all_of(x.begin(), x.end(), [](double value) { return std::isfinite(value); });
@@ -202,7 +211,8 @@ void FortranProblem::try_functions(const std::string& path) const {
 void FortranProblem::try_function(const std::string& path, FunctionKind kind, int index) const {
   const char* const subroutine = subroutines[place(kind)];
   const char* const output = outputs[place(kind)];
-  std::vector<double> par(parameter_length, 0.0);
+  const ParameterLayout layout(sizes_.parameters);
+  std::vector<double> par(static_cast<std::size_t>(layout.room()), 0.0);
   std::copy(parameters_.begin(), parameters_.end(), par.begin());
   calls_.evaluate(kind, index, state_.data(), par.data(), 0, {});
   const int n = sizes_.dimension;
@@ -228,9 +238,10 @@ void FortranProblem::try_function(const std::string& path, FunctionKind kind, in
 }
 
 void FortranProblem::try_boundary(const std::string& path) const {
-  std::vector<double> par(parameter_length, 0.0);
+  const ParameterLayout layout(sizes_.parameters);
+  std::vector<double> par(static_cast<std::size_t>(layout.room()), 0.0);
   std::copy(parameters_.begin(), parameters_.end(), par.begin());
-  std::fill_n(par.begin() + first_duration - 1, sizes_.segments, 1.0);
+  std::fill_n(par.begin() + layout.first_duration() - 1, sizes_.segments, 1.0);
   std::vector<double> states;
   for (int s = 0; s < sizes_.segments; ++s) states.insert(states.end(), state_.begin(), state_.end());
   calls_.boundary({sizes_.segments, states.data(), states.data(), par.data()}, 0);

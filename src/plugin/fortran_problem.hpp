@@ -1,7 +1,8 @@
 /// A problem in the Fortran interface of TC-HAT, wrapped as a problem table.
 ///
 /// The library exports subroutines (gfortran's names: lower case with an underscore; every argument by reference,
-/// arrays column-major). With N = GCNDIM and PAR of at least 512 entries:
+/// arrays column-major). With N = GCNDIM and PAR of at least 512 entries, or as many more as a problem of more than 60
+/// parameters needs:
 ///
 ///     GCFUNC (GCNDIM, X, PAR, GCIDIFF, FI, DFIDX, DFIDP, DFIDXDX, DFIDXDP, SEGNO)     field SEGNO
 ///         FI(N), DFIDX(N,N), DFIDP(N,*), DFIDXDX(N,N,N), DFIDXDP(N,N,*)
@@ -14,6 +15,9 @@
 ///     GCICND (GCNDIM, X, PAR, GCIDIFF, FI, DFIDX, DFIDP, DFIDXDX, DFIDXDP, SEGNO)     integrands on segment SEGNO
 ///         FI(NINT), DFIDX(NINT,N), DFIDP(NINT,*), DFIDXDX(NINT,N,N), DFIDXDP(NINT,N,*)
 ///     GCSTPNT(GCNDIM, X, PAR, T, SEGNO)    optional: starting values of PAR, durations included, and a state
+///     GCNPAR (NPAR)                        optional: sets NPAR to the number of parameters, which may be beyond 60;
+///     the
+///                                          durations follow them then, PAR(NPAR + 1), ...
 ///     GCPVLS (GCNDIM, X, PAR, SEGNO)       optional: sets entries of PAR that are output; X at the end of segment
 ///     SEGNO
 ///

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "constants/settings_type.hpp"
-#include "hybrid/parameter_vector.hpp"
+#include "hybrid/parameter_layout.hpp"
 #include "problem_type/family.hpp"
 #include "problem_type/problem_type.hpp"
 
@@ -36,8 +36,11 @@ ProblemSizes problem_sizes(const RunSettings& settings) {
     sizes.boundary_conditions = settings.boundary_conditions;
     sizes.integral_conditions = settings.integral_conditions;
   }
+  const ParameterLayout few;  // no more parameters are known without the problem
+  const bool has_rotation = family_of(settings).facts().has_rotation;
   for (const int k : settings.free_parameters)
-    if (k < first_duration) sizes.parameters = std::max(sizes.parameters, k);
+    if (k < few.first_duration() && !(has_rotation && k == few.rotation()))
+      sizes.parameters = std::max(sizes.parameters, k);
   for (const SegmentSettings& segment : settings.segments) {
     sizes.add(segment.index);
     for (const int event : segment.monitor) insert(sizes.events, event);

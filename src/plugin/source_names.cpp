@@ -6,7 +6,6 @@
 #include <optional>
 
 #include "formulas/formula_file.hpp"
-#include "hybrid/parameter_vector.hpp"
 #include "plugin/plugin_build.hpp"
 #include "text/text_file.hpp"
 
@@ -14,7 +13,6 @@ namespace tchat {
 
 namespace {
 
-constexpr std::size_t most_names = first_duration - 1;
 constexpr std::size_t longest_source = 1 << 20;  // bytes; a key has been pressed, and somebody waits
 
 bool is_word(char c) { return c == '_' || std::isalnum(static_cast<unsigned char>(c)) != 0; }
@@ -62,7 +60,7 @@ std::vector<std::string> parameter_names_in_formulas(std::string_view text) {
   formulas::FormulaErrors mistakes;
   std::vector<std::string> names;
   for (const formulas::Assignment& parameter : formulas::read_formula_file(text, mistakes).parameters)
-    if (names.size() < most_names) names.push_back(parameter.name.text);
+    names.push_back(parameter.name.text);
   return names;
 }
 
@@ -74,7 +72,7 @@ std::vector<std::string> parameter_names_in_cpp(std::string_view text) {
   if (at == std::string::npos) return {};
   at = plain.find_first_not_of("[]0123456789 \t\r\n=", at);
   std::vector<std::string> names;
-  while (at != std::string::npos && plain[at] != '}' && names.size() < most_names) {
+  while (at != std::string::npos && plain[at] != '}') {
     if (plain[at] == '"') {
       const std::size_t end = plain.find('"', at + 1);
       if (end == std::string::npos) return {};

@@ -12,7 +12,7 @@ namespace tchat {
 /// formulas, the list `parameter_names` of C++. Empty where the source has no names, or there is none.
 std::vector<std::string> parameter_names_in_source(const std::string& name_or_path);
 
-/// The strings of the first list `parameter_names[] = {"a", "b"}` of a C++ text outside of comments, at most 60; empty
+/// The strings of the first list `parameter_names[] = {"a", "b"}` of a C++ text outside of comments; empty
 /// when it is not a list of plain strings.
 std::vector<std::string> parameter_names_in_cpp(std::string_view text);
 

@@ -63,12 +63,11 @@ struct FamilyFacts {
   SignatureRules signature = {};
   FileHeadings headings = {};
   SummaryWords summary;
-  const char* own_parameter_name = "";    ///< of a parameter that the family adds to those of the problem
-  std::optional<int> own_parameter = {};  ///< its PAR index
-  bool doubles_mesh = true;               ///< a run doubles NTST when the mesh does not resolve a solution
-  bool reports_stability = true;          ///< a change of stability without a special point is reported
-  bool has_return_map = true;             ///< multipliers are those of a return map
-  bool has_several_returns = false;       ///< a solution consists of several orbits of the signature, one return each
+  bool has_rotation = false;         ///< the rotation number is one more parameter beside those of the problem
+  bool doubles_mesh = true;          ///< a run doubles NTST when the mesh does not resolve a solution
+  bool reports_stability = true;     ///< a change of stability without a special point is reported
+  bool has_return_map = true;        ///< multipliers are those of a return map
+  bool has_several_returns = false;  ///< a solution consists of several orbits of the signature, one return each
 };
 
 /// The multipliers that a label must have, by those that were computed.

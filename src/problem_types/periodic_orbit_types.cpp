@@ -69,7 +69,7 @@ std::unique_ptr<PeriodicOrbitSystem> ring(const HybridSystem& system, const RunS
 /// With the unfolding parameter among the free ones of the defining system, but not among those of the run.
 std::unique_ptr<UnfoldedSystem> unfolded(const HybridSystem& system, const RunSettings& settings,
                                          std::vector<int> free) {
-  free.push_back(unfolding_parameter(segment_count(settings)));
+  free.push_back(system.layout().unfolding(segment_count(settings)));
   return std::make_unique<UnfoldedSystem>(ring(system, settings, std::move(free)));
 }
 

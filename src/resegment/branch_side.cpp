@@ -59,7 +59,7 @@ double least_along_tangent(const HybridSystem& system, const DefiningSystem& def
 
 /// Of parameters and durations. The monitors behind them in PAR are evaluated by the run, not stored in its start.
 bool has_moved(const Orbit& found, const Orbit& start) {
-  const Eigen::Index own = first_monitor(start.shape.segments) - 1;
+  const Eigen::Index own = start.par.layout().first_monitor(start.shape.segments) - 1;
   const auto before = start.par.head(own).array();
   const double scale = 1.0 + std::abs(start.period());
   return ((found.par.head(own).array() - before).abs() > correction_moves_at_most * (scale + before.abs())).any();

@@ -9,7 +9,8 @@ namespace tchat {
 
 std::string data_text(const Orbit& x, const HybridSystem& system) {
   std::string text = parameter_lines(system, x.par);
-  for (int s = 0; s < x.shape.segments; ++s) text += fmt::format("# PAR({}) = {}\n", first_duration + s, x.duration(s));
+  for (int s = 0; s < x.shape.segments; ++s)
+    text += fmt::format("# PAR({}) = {}\n", x.par.layout().duration(s), x.duration(s));
   const LabelledSolution rows = labelled_solution(x, {}, {}, {});
   for (Eigen::Index k = 0; k < rows.states.cols(); ++k) {
     text += fmt::format("{:.15g}", rows.tau[static_cast<std::size_t>(k)]);

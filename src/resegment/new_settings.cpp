@@ -6,7 +6,6 @@
 
 #include "constants/settings_type.hpp"
 #include "hybrid/identity_jump.hpp"
-#include "hybrid/parameter_vector.hpp"
 #include "problem_type/problem_type.hpp"
 #include "setup/problem_setup.hpp"
 #include "text/user_error.hpp"
@@ -39,19 +38,18 @@ std::vector<int> new_free_parameters(const RunSettings& now, const RunSettings& 
                     system.name()));
   const bool first = !monitors.empty() && now.free_parameters.front() == monitors.front();
   list.insert(first ? list.begin() : list.end(), monitors.begin(), monitors.end());
-  for (std::size_t s = 0; s < segments; ++s) list.push_back(first_duration + static_cast<int>(s));
+  for (std::size_t s = 0; s < segments; ++s) list.push_back(now.layout.duration(static_cast<int>(s)));
   return list;
 }
 
 std::vector<IndexedValue> new_weights(const RunSettings& old, const SegmentList& segments) {
-  const int m = static_cast<int>(old.segments.size());
   std::vector<IndexedValue> weights;
   for (const IndexedValue& w : old.parameter_weights)
-    if (!is_duration(w.index, m)) weights.push_back(w);
+    if (!is_duration(old, w.index)) weights.push_back(w);
   for (std::size_t s = 0; s < segments.size(); ++s)
     for (const IndexedValue& w : old.parameter_weights)
-      if (is_duration(w.index, m) && duration_segment(w.index) == segments[s].piece.segment)
-        weights.push_back({first_duration + static_cast<int>(s), w.value});
+      if (is_duration(old, w.index) && old.layout.duration_segment(w.index) == segments[s].piece.segment)
+        weights.push_back({old.layout.duration(static_cast<int>(s)), w.value});
   return weights;
 }
 
@@ -77,7 +75,7 @@ RunSettings new_settings(const RunSettings& old, const SegmentList& segments, co
   const int m = static_cast<int>(old.segments.size());
   RunSettings settings = old;
   leave_out_monitors(settings);
-  std::erase_if(settings.free_parameters, [m](int k) { return is_duration(k, m); });
+  std::erase_if(settings.free_parameters, [&old](int k) { return is_duration(old, k); });
   settings.problem_type = problem.problem_type;
   settings.branch_mode = problem.branch_mode;
   settings.grazing_jump = problem.grazing_jump;
@@ -93,8 +91,9 @@ RunSettings new_settings(const RunSettings& old, const SegmentList& segments, co
   settings.free_parameters = new_free_parameters(settings, old, segments.size(), problem, system);
   settings.parameter_weights = new_weights(old, segments);
   settings.test_functions = new_test_functions(segments, problem, system);
-  std::erase_if(settings.user_values, [](const UserValue& value) { return value.parameter >= first_duration; });
-  std::erase_if(settings.bounds, [](const BoundedValue& value) { return value.parameter >= first_duration; });
+  const auto is_left_out = [&old](const auto& value) { return !is_parameter(old, value.parameter); };
+  std::erase_if(settings.user_values, is_left_out);
+  std::erase_if(settings.bounds, is_left_out);
   settings.stop_rules.clear();
   return settings;
 }

@@ -128,10 +128,10 @@ Eigen::MatrixXd resample(const Orbit& x, const std::vector<OrbitPiece>& pieces, 
   return result;
 }
 
-/// PAR(61..) of the new orbit; what the old one had beyond is zero.
+/// The durations of the new orbit; what the old one had beyond is zero.
 void set_durations(const Orbit& x, const std::vector<OrbitPiece>& pieces, Orbit& target) {
-  make_room(target.par, target.shape.segments);
-  target.par.tail(target.par.size() - first_duration + 1).setZero();
+  target.par.make_room(target.shape.segments);
+  target.par.clear_durations();
   for (std::size_t p = 0; p < pieces.size(); ++p)
     target.duration(static_cast<int>(p)) = (pieces[p].to - pieces[p].from) * x.duration(pieces[p].segment);
 }
@@ -181,8 +181,8 @@ Orbit joined_orbit(const Orbit& old, const std::vector<std::vector<OrbitPiece>>&
   result.shape = old.shape.in_common();
   result.shape.segments = static_cast<int>(groups.size());
   result.par = old.par;
-  make_room(result.par, result.shape.segments);
-  result.par.tail(result.par.size() - first_duration + 1).setZero();
+  result.par.make_room(result.shape.segments);
+  result.par.clear_durations();
   std::vector<JoinedPieces> joined;
   for (const auto& pieces : groups) {
     joined.emplace_back(old, pieces);

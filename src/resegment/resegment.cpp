@@ -60,7 +60,6 @@ LabelledOrbit read_source(const ResegmentRequest& request, const std::string& pa
   source.solution = find_solution(file.solutions, read_label(request.label), path);
   const LabelledSolution& solution = source.solution;
   source.name = fmt::format("label {} of {}", solution.label, path);
-  const int m = static_cast<int>(source.settings.segments.size());
   if (!is_same_problem_type(solution.problem_type, source.settings.problem_type))
     throw UserError(
         fmt::format("{} was computed with IPS = {}, but {} has IPS = {}; give the constants of that run "
@@ -70,10 +69,15 @@ LabelledOrbit read_source(const ResegmentRequest& request, const std::string& pa
   if (const std::string why = family.why_not(Analysis::resegmentation, request.label); !why.empty())
     throw UserError(
         fmt::format("{} is {} (IPS = {}){}", source.name, family.facts().solution, source.settings.problem_type, why));
-  for (const int k : solution.free_parameters)
-    if (!is_duration(k, m)) source.free_parameters.push_back(k);
-  source.start = start_of(source, path);
   return source;
+}
+
+/// Takes the orbit over into the numbering of the problem's PAR.
+void place_source(LabelledOrbit& source, const ParameterLayout& layout, const std::string& path) {
+  source.solution = in_layout(std::move(source.solution), layout);
+  for (const int k : source.solution.free_parameters)
+    if (!is_duration(source.settings, k)) source.free_parameters.push_back(k);
+  source.start = start_of(source, path);
 }
 
 /// A direction, computed with the label's free parameters, as one of the new problem: nothing when the problem is of
@@ -97,7 +101,7 @@ LabelledSolution make_solution(const LabelledOrbit& source, const NewOrbit& targ
                                const RunSettings& settings) {
   const std::vector<int> free = free_problem_parameters(settings);
   std::vector<int> listed = free;
-  for (int s = 0; s < start.orbit.shape.segments; ++s) listed.push_back(first_duration + s);
+  for (int s = 0; s < start.orbit.shape.segments; ++s) listed.push_back(start.orbit.par.layout().duration(s));
   LabelledSolution solution = labelled_solution(start.orbit, start.direction.value_or(OrbitVector{}), free,
                                                 start.direction ? listed : std::vector<int>{});
   solution.branch = source.solution.branch;
@@ -149,6 +153,7 @@ std::string choose_side(const ResegmentRequest& request, const HybridSystem& sys
                         OrbitStart start, RunSettings& settings) {
   if (request.data) start.direction.reset();
   SelectedStart selected;
+  selected.known_parameters = ParameterVector(system.layout());
   selected.start = std::move(start);
   selected.from_solution = !request.data;
   selected.problem_type = settings.problem_type;
@@ -301,7 +306,8 @@ std::vector<std::string> begin_grazing_tori(const ResegmentRequest& request, con
                                [&] { return problem_sizes(given); });
   const HybridSystem& system = library.system();
   resolve_names(given, system);
-  RunSettings settings = grazing_torus_settings(given, solution, name, system, is_overridden(request.overrides, "ICP"));
+  const LabelledSolution torus = in_layout(solution, system.layout());
+  RunSettings settings = grazing_torus_settings(given, torus, name, system, is_overridden(request.overrides, "ICP"));
   apply_overrides(settings, request.overrides, &warnings);
   resolve_names(settings, system);
   const auto further = check_settings_against(system, settings, {"the new constants", request.overrides});
@@ -310,7 +316,7 @@ std::vector<std::string> begin_grazing_tori(const ResegmentRequest& request, con
   settings.problem = problem_to_record(problem, outputs.constants);
   refuse_same_file(outputs.solutions, path, "q-file");
   refuse_same_file(outputs.constants, constants, "constants file");
-  replace_solution_file(request.output, format_solution(grazing_torus_start(solution)));
+  replace_solution_file(request.output, format_solution(grazing_torus_start(torus)));
   write_whole_file(outputs.constants, keyword_text(settings));
   screen << fmt::format(
       "{}: a torus in grazing contact, IPS = {} from it on.\n{} and {} written; next: tchat run {} -c {} "
@@ -340,6 +346,7 @@ std::vector<std::string> resegment(const ResegmentRequest& asked, std::ostream& 
   const HybridSystem& system = library.system();
   resolve_names(labelled.settings, system);
   check_settings_against(system, labelled.settings, {constants});
+  place_source(labelled, system.layout(), path);
   std::vector<Birth::InnerContact> lost;
   const LabelledOrbit source =
       without_contacts(request, with_section(request, labelled, system, problem, path), system, lost);

@@ -37,7 +37,7 @@ bool has_section(const RunSettings& settings) {
 LabelledSolution cut_at_contact(const LabelledSolution& solution, RunSettings& settings, const HybridSystem& system,
                                 const std::string& source) {
   const OrbitShape shape{settings.dimension, 1, solution.mesh_intervals, solution.collocation_points};
-  const Orbit x = orbit_from_solution(solution, shape, {}, source).orbit;
+  const Orbit x = orbit_from_solution(in_layout(solution, system.layout()), shape, {}, source).orbit;
   const ContactPoint contact = contact_point(solution, x, system, settings, source);
   const double tau = contact.where == ContactPoint::inside ? contact.tau : 1.0;
   const Orbit cut = tau < 1.0 ? joined_orbit(x, {{{0, tau, 1.0}, {0, 0.0, tau}}}) : x;
@@ -50,6 +50,7 @@ LabelledSolution cut_at_contact(const LabelledSolution& solution, RunSettings& s
   result.tau = std::move(orbit.tau);
   result.states = std::move(orbit.states);
   result.parameters = std::move(orbit.parameters);
+  result.layout = orbit.layout;
   result.parameter_direction.clear();
   result.state_direction.resize(0, 0);
   const auto move = [tau](UserPointKind& kind) {

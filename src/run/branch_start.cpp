@@ -81,7 +81,7 @@ bool has_drifted(const Orbit& stored, const Orbit& corrected) {
 /// Files do not have the parameter that unfolds equations, which is zero at every solution.
 OrbitStart with_unfolding(OrbitStart start, const DefiningSystem& system) {
   if (!system.unfolding(start.orbit)) return start;
-  start.orbit.par(unfolding_parameter(start.orbit.shape.segments) - 1) = 0.0;
+  start.orbit.par(system.layout().unfolding(start.orbit.shape.segments) - 1) = 0.0;
   if (start.direction && start.direction->globals.size() < system.free_count()) {
     start.direction->globals.conservativeResize(system.free_count());
     start.direction->globals(system.free_count() - 1) = 0.0;

@@ -63,7 +63,8 @@ RunSettings doubled(RunSettings settings) {
     const int repeated = w.index + static_cast<int>(m);
     const bool given =
         std::any_of(weights.begin(), weights.end(), [&](const IndexedValue& other) { return other.index == repeated; });
-    if (is_duration(w.index, static_cast<int>(m)) && !given) settings.parameter_weights.push_back({repeated, w.value});
+    if (settings.layout.is_duration(w.index, static_cast<int>(m)) && !given)
+      settings.parameter_weights.push_back({repeated, w.value});
   }
   return settings;
 }
@@ -132,7 +133,7 @@ Bifurcation double_at(PathFollower& follower, const DefiningSystem& defining, co
                      OrbitVector(shape, defining.free_count()),
                      OrbitVector(shape, defining.free_count())};
   const int m = x.shape.segments;
-  make_room(result.orbit.par, shape.segments);
+  result.orbit.par.make_room(shape.segments);
   result.orbit.states << x.states, x.states;
   result.direction.states << v.states, -v.states;
   result.direction.durations << v.durations, -v.durations;

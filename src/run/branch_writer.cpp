@@ -23,7 +23,7 @@ namespace {
 ProblemNames names_of_run(const HybridSystem& system, const RunSettings& settings) {
   ProblemNames names = ProblemNames::of(system, settings);
   const FamilyFacts& family = family_of(settings).facts();
-  if (family.own_parameter) names.set_parameter(*family.own_parameter, family.own_parameter_name);
+  if (family.has_rotation) names.set_parameter(settings.layout.rotation(), rotation_name);
   return names;
 }
 
@@ -155,7 +155,7 @@ std::string BranchWriter::place(const PointLine& line) const {
   std::string text;
   for (std::size_t k = 0; k < section_.columns.size(); ++k)
     if (const PointColumn& column = section_.columns[k];
-        column.kind == PointColumn::Kind::parameter && (k == 0 || column.index < first_duration))
+        column.kind == PointColumn::Kind::parameter && (k == 0 || is_parameter(section_.settings, column.index)))
       text += fmt::format("{}{} = {:.10g}", text.empty() ? "" : ", ", shown_name(column),
                           std::abs(line.values[k]) < std::numeric_limits<double>::min() ? 0.0 : line.values[k]);
   return text;

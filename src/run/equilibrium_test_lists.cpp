@@ -19,8 +19,9 @@ void add_equilibrium_bifurcations(TestList& tests, const RunSettings& settings) 
   const int kind = std::abs(settings.detect_bifurcations);
   const bool stop = settings.detect_bifurcations < 0;
   if (settings.detect_folds != 0)
-    tests.push_back(std::make_unique<FoldTest>(settings.free_parameters.front(), free_problem_parameters(settings), 1,
-                                               settings.detect_folds < 0, PointType::equilibrium_fold));
+    tests.push_back(std::make_unique<FoldTest>(settings.free_parameters.front(), free_problem_parameters(settings),
+                                               settings.layout, 1, settings.detect_folds < 0,
+                                               PointType::equilibrium_fold));
   if (kind == 2 || kind == 3)
     tests.push_back(std::make_unique<BranchPointTest>(stop, PointType::equilibrium_branch_point));
   if (kind == 2 || kind == 4) tests.push_back(std::make_unique<HopfTest>(stop));

@@ -101,7 +101,7 @@ std::vector<int> changed_parameters(const SelectedStart& selected, const Definin
   const std::vector<int>& free = system.free_parameters();
   const ParameterVector& wanted = selected.start.orbit.par;
   std::vector<int> changed;
-  for (int k = 1; k < first_duration; ++k) {
+  for (int k = 1; k < system.layout().first_duration(); ++k) {
     const bool found = k != principal && std::find(free.begin(), free.end(), k) != free.end();
     if (!found && wanted(k - 1) != selected.known_parameters(k - 1)) changed.push_back(k);
   }

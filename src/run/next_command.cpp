@@ -21,7 +21,7 @@ namespace {
 /// ICP(1), where it is a parameter of the problem; else 0.
 int principal_parameter(const RunSettings& settings) {
   const int k = settings.free_parameters.empty() ? 0 : settings.free_parameters.front();
-  return k < first_duration ? k : 0;
+  return is_parameter(settings, k) ? k : 0;
 }
 
 /// A parameter to vary beside `first`: one that ICP has, else the first of the problem; 0 where there is no other.

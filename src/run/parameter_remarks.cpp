@@ -47,7 +47,7 @@ std::string idle_parameters(const HybridSystem& system, const RunSettings& setti
   std::string list;
   std::size_t count = 0;
   for (const int k : settings.free_parameters)
-    if (k < first_duration && ++count > free_count)
+    if (is_parameter(settings, k) && ++count > free_count)
       list += fmt::format("{}{}", list.empty() ? "" : ", ", system.parameter_name(k));
   if (list.empty()) return "";
   return fmt::format(

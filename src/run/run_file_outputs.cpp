@@ -53,10 +53,10 @@ class SolutionFileOutput final : public BranchOutput {
     const Orbit& x = point.of_branch.path.orbit;
     std::vector<int> active = section_.active_parameters;
     for (int s = segment_count(section_.settings); s < x.shape.segments; ++s)  // the further orbits of a torus
-      active.push_back(first_duration + s);
+      active.push_back(x.par.layout().duration(s));
     std::vector<int> free_parameters;
     for (const int k : active)
-      if (!is_duration(k, x.shape.segments)) free_parameters.push_back(k);
+      if (!x.par.layout().is_duration(k, x.shape.segments)) free_parameters.push_back(k);
     OrbitVector direction = point.of_branch.path.tangent;
     if (section_.settings.step < 0.0) direction.scale(-1.0);  // the branch goes against its tangents
     LabelledSolution solution = labelled_solution(x, direction, free_parameters, active);

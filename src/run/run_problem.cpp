@@ -69,7 +69,7 @@ void refuse_to_replace_start(const RunRequest& request, const SelectedStart& sta
 void refuse_start_outside(const Orbit& start, const CollocationRule& rule, const ContinuationSettings& settings,
                           const std::string& source) {
   for (const BranchBounds& bounds : branch_bounds(settings)) {
-    if (bounds.parameter >= first_monitor(start.shape.segments))
+    if (bounds.parameter >= start.par.layout().first_monitor(start.shape.segments))
       continue;  // its value comes with the first point's multipliers
     const double value = bounds.value(start, rule);
     if (!is_beyond(settings, bounds, value)) continue;

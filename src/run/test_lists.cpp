@@ -40,7 +40,7 @@ void add_sliding_onsets(TestList& tests, const DefiningSystem& system, const Run
 /// Does a parameter of the problem keep its value along the branch? Its user values are passed nowhere.
 bool is_fixed(const RunSettings& settings, int parameter) {
   const std::vector<int> free = free_problem_parameters(settings);
-  return parameter < first_duration && std::find(free.begin(), free.end(), parameter) == free.end();
+  return is_parameter(settings, parameter) && std::find(free.begin(), free.end(), parameter) == free.end();
 }
 
 }  // namespace
@@ -57,8 +57,8 @@ void add_bifurcations(TestList& tests, const DefiningSystem& system, const RunSe
   const bool stop = settings.detect_bifurcations < 0;
   if (settings.detect_folds != 0)
     tests.push_back(std::make_unique<FoldTest>(settings.free_parameters.front(), system.free_parameters(),
-                                               system.segments(), settings.detect_folds < 0, PointType::fold,
-                                               held_text(system.system(), settings)));
+                                               system.layout(), system.segments(), settings.detect_folds < 0,
+                                               PointType::fold, held_text(system.system(), settings)));
   if (kind == 2 || kind == 3) tests.push_back(std::make_unique<BranchPointTest>(stop));
   if ((kind == 2 || kind == 4) && has_multipliers(settings.problem_type)) {
     tests.push_back(std::make_unique<PeriodDoublingTest>(stop));

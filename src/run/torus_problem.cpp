@@ -27,12 +27,12 @@ TestList torus_tests(const TorusSystem& system, const RunSettings& settings,
   for (const MonitoredEvent& at : events)
     tests.push_back(std::make_unique<TorusContactTest>(system, at.segment, at.event, settings.stop_at_grazing));
   const std::vector<int>& free = system.free_parameters();
-  if (std::find(free.begin(), free.end(), rotation_parameter) != free.end())
+  if (std::find(free.begin(), free.end(), system.layout().rotation()) != free.end())
     for (const auto& [p, q] : {std::pair{0, 1}, {1, 1}, {1, 2}, {1, 3}, {2, 3}, {1, 4}, {3, 4}})
       tests.push_back(std::make_unique<StrongResonanceTest>(p, q));
   if (settings.detect_folds != 0)
-    tests.push_back(std::make_unique<FoldTest>(settings.free_parameters.front(), free, system.segments(),
-                                               settings.detect_folds < 0, PointType::fold,
+    tests.push_back(std::make_unique<FoldTest>(settings.free_parameters.front(), free, system.layout(),
+                                               system.segments(), settings.detect_folds < 0, PointType::fold,
                                                held_text(system.system(), settings)));
   add_user_values(tests, system.system(), settings);
   return tests;
@@ -65,9 +65,10 @@ class TorusDiscretisation final : public Discretisation {
 /// The inner product of pseudo-arclength, a mean over the orbits: steps mean the same for any number of them.
 WeightedNorm mean_norm(const RunSettings& settings, int orbits) {
   Eigen::VectorXd states = state_weights(settings) / orbits;
-  Eigen::VectorXd parameters = Eigen::VectorXd::Ones(parameter_length);
+  ParameterVector parameters(settings.layout);
+  parameters.setOnes();
   for (const IndexedValue& w : settings.parameter_weights) parameters(w.index - 1) = w.value;
-  parameters.segment(first_duration - 1, max_torus_segments) /= orbits;
+  parameters.durations(max_torus_segments) /= orbits;
   return {std::move(states), std::move(parameters)};
 }
 

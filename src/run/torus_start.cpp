@@ -91,7 +91,7 @@ int harmonics_wanted(const RunSettings& settings, int otherwise) {
 RunSettings on_periodic_orbit(RunSettings settings) {
   settings.problem_type = periodic_orbit.number;
   settings.branch_mode = periodic_orbit.branch_mode;
-  std::erase_if(settings.free_parameters, [](int k) { return k == rotation_parameter; });
+  std::erase_if(settings.free_parameters, [&](int k) { return k == settings.layout.rotation(); });
   return settings;
 }
 
@@ -154,10 +154,10 @@ Birth birth_at(PathFollower& along, const Orbit& x, int orbits, int globals, con
   OrbitShape shape = x.shape;
   shape.segments = orbits * m;
   Birth birth{{shape, x.mesh, x.states.replicate(1, orbits), x.par}, OrbitVector(shape, globals)};
-  birth.still.par(rotation_parameter - 1) = std::arg(mu) / (2.0 * std::numbers::pi);
+  birth.still.par.rotation() = std::arg(mu) / (2.0 * std::numbers::pi);
   for (int i = 0; i < orbits; ++i) {
     const Complex turned = std::polar(1.0, 2.0 * std::numbers::pi * i / orbits);
-    birth.still.par.segment(first_duration - 1 + i * m, m) = x.par.segment(first_duration - 1, m);
+    birth.still.par.durations(m, i * m) = x.par.durations(m);
     birth.direction.states.middleCols(i * x.shape.columns(), x.shape.columns()) =
         turned.real() * real.states - turned.imag() * imaginary.states;
     birth.direction.durations.segment(i * m, m) = turned.real() * real.durations - turned.imag() * imaginary.durations;
@@ -191,7 +191,7 @@ RunSettings settings_of_orbits(const RunSettings& one_return, int orbits) {
   for (int i = 0; i < orbits; ++i)
     settings.segments.insert(settings.segments.end(), one_return.segments.begin(), one_return.segments.end());
   for (const IndexedValue& w : one_return.parameter_weights)
-    for (int i = 0; i < (is_duration(w.index, m) ? orbits : 1); ++i)
+    for (int i = 0; i < (one_return.layout.is_duration(w.index, m) ? orbits : 1); ++i)
       settings.parameter_weights.push_back({w.index + i * m, w.value});
   return settings;
 }
@@ -210,8 +210,7 @@ BranchSetup continue_torus(const ProblemType& type, const HybridSystem& system, 
     if (selected.start.direction)
       start.start.direction = resampled_torus(*selected.start.direction, shape, stored, orbits);
     // Durations are found anew.
-    const Eigen::Index beyond = parameter_length - first_duration + 1;
-    start.known_parameters.tail(beyond) = start.start.orbit.par.tail(beyond);
+    start.known_parameters.durations(max_torus_segments) = start.start.orbit.par.durations(max_torus_segments);
   }
   BranchSetup setup = type.prepare(system, settings, start);
   setup.start = first_point(*setup.follower, *setup.defining, start, setup.settings);
@@ -247,12 +246,11 @@ BranchSetup begin_torus(const HybridSystem& system, const RunSettings& settings,
   std::optional<FirstPoint> first =
       first_torus(*setup.follower, birth, from.tangent, continuation_settings(of_run).step, trouble);
   if (!first)
-    throw ComputationError(
-        fmt::format("no torus beside the torus bifurcation of label {} of {} (rho = {:.6g}) for an amplitude of {:.3g} "
-                    "or less: {}; "
-                    "try another DS, compute the label with a smaller EPSS, or keep rho and free a second parameter",
-                    selected.label, selected.source, birth.still.par(rotation_parameter - 1), std::abs(settings.step),
-                    describe(trouble)));
+    throw ComputationError(fmt::format(
+        "no torus beside the torus bifurcation of label {} of {} (rho = {:.6g}) for an amplitude of {:.3g} "
+        "or less: {}; "
+        "try another DS, compute the label with a smaller EPSS, or keep rho and free a second parameter",
+        selected.label, selected.source, birth.still.par.rotation(), std::abs(settings.step), describe(trouble)));
   setup.start = std::move(*first);
   return setup;
 }

@@ -3,19 +3,34 @@
 #include <fmt/format.h>
 
 #include "setup/problem_setup.hpp"
+#include "text/user_error.hpp"
 
 namespace tchat {
 
 ParameterVector initial_parameters(const HybridSystem& system) {
-  ParameterVector par = ParameterVector::Zero(parameter_length);
+  ParameterVector par(system.layout());
   if (system.table().initial_parameters != nullptr)
     for (int i = 0; i < system.parameters(); ++i) par(i) = system.table().initial_parameters[i];
   return par;
 }
 
+std::vector<std::pair<int, double>> given_parameters(const DatFile& data, const HybridSystem& system,
+                                                     const std::string& path, const ParameterVector& par) {
+  std::vector<std::pair<int, double>> given = data.parameters;
+  for (const auto& [k, value] : given)
+    if (k > par.size())
+      throw UserError(
+          fmt::format("{}: PAR({}) is neither a parameter of problem {}, which has {}, nor a duration of its segments, "
+                      "PAR({}), ...",
+                      path, k, system.name(), system.parameters(), par.layout().first_duration()));
+  for (const auto& [name, value] : data.named_parameters)
+    given.emplace_back(parameter_index(system, name, path), value);
+  return given;
+}
+
 std::string parameter_lines(const HybridSystem& system, const Eigen::VectorXd& par) {
   std::string text;
-  for (int k = 1; k < first_duration; ++k)
+  for (int k = 1; k < system.layout().first_duration(); ++k)
     if (k <= system.parameters() || par(k - 1) != 0.0) text += fmt::format("# PAR({}) = {}\n", k, par(k - 1));
   return text;
 }

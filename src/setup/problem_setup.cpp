@@ -48,22 +48,29 @@ double available_memory() {
   return 0.0;
 }
 
-/// May the problem read entries of PAR beyond its parameters? The Fortran interface, which alone knows durations, has
-/// no number of parameters; entries that are set for output are among PAR(1..60) too.
+/// May the problem read entries of PAR beyond its parameters? The Fortran interface, which alone knows durations, need
+/// not say how many parameters it has; entries that are set for output stand before the durations too.
 bool has_further_parameters(const HybridSystem& system) {
   return system.table().initial_durations != nullptr || system.table().output_parameters != nullptr;
 }
 
 bool is_own_parameter(const HybridSystem& system, int k) {
-  return k >= 1 && (k <= system.parameters() || k >= first_duration || has_further_parameters(system));
+  return k >= 1 &&
+         (k <= system.parameters() || k >= system.layout().first_duration() || has_further_parameters(system));
 }
 
-bool is_parameter(const HybridSystem& system, int k) { return k == rotation_parameter || is_own_parameter(system, k); }
+bool is_known(const HybridSystem& system, int k) {
+  return k == system.layout().rotation() || is_own_parameter(system, k);
+}
 
 std::string parameter_list(const HybridSystem& system) {
+  constexpr int most = 60, first = 20;  // of more, the first and the last
   std::string names;
   for (int i = 1; i <= system.parameters(); ++i)
-    names += fmt::format("{}{}", i > 1 ? ", " : "", system.parameter_name(i));
+    if (system.parameters() <= most || i <= first || i == system.parameters())
+      names += fmt::format("{}{}", i > 1 ? ", " : "", system.parameter_name(i));
+    else if (i == first + 1)
+      names += ", ...";
   if (names.empty()) return "none";
   return system.parameters() == 1 ? "PAR(1): " + names
                                   : fmt::format("PAR(1) to PAR({}): {}", system.parameters(), names);
@@ -121,19 +128,13 @@ void check_contact_jump(const HybridSystem& system, const RunSettings& settings,
         source.of("GRJUMP"), settings.grazing_jump, system.function_name(FunctionKind::jump, settings.grazing_jump)));
 }
 
-/// The rotation number is a parameter of tori alone, and theirs alone.
+/// The rotation number is a parameter of tori alone.
 void check_rotation(const HybridSystem& system, const RunSettings& settings, const SettingsSource& source,
                     const std::vector<int>& free) {
-  const bool is_free = std::find(free.begin(), free.end(), rotation_parameter) != free.end();
-  const bool has_own = system.parameters() >= rotation_parameter;
-  if (family_of(settings).facts().own_parameter == rotation_parameter && has_own)
-    throw UserError(
-        fmt::format("IPS = {}: PAR({}) is the rotation number of a torus, but problem {} has a parameter of its "
-                    "own there; a problem with tori may have {} parameters",
-                    settings.problem_type, rotation_parameter, system.name(), rotation_parameter - 1));
-  if (is_free && !has_own && !family_of(settings).facts().own_parameter && !has_further_parameters(system))
+  const bool is_free = std::find(free.begin(), free.end(), system.layout().rotation()) != free.end();
+  if (is_free && !family_of(settings).facts().has_rotation && !has_further_parameters(system))
     throw UserError(fmt::format("{}: ICP: {} is the rotation number of a torus, a parameter with IPS = {} alone",
-                                source.of("ICP"), system.parameter_name(rotation_parameter), invariant_torus.number));
+                                source.of("ICP"), rotation_name, invariant_torus.number));
 }
 
 /// PAR(name) = v and UZR beyond the problem's parameters would do nothing, and so would the run's free parameter: they
@@ -148,7 +149,7 @@ void check_parameters(const HybridSystem& system, const RunSettings& settings, c
   };
   if (!settings.conserved.empty()) conserved_quantity(system, settings.conserved);
   const std::vector<int> free = free_problem_parameters(settings);
-  if (free.empty() && !settings.conserved.empty() && settings.free_parameters.front() < first_duration)
+  if (free.empty() && !settings.conserved.empty() && is_parameter(settings, settings.free_parameters.front()))
     throw UserError(fmt::format(
         "{}: ICP(1) is {}, but CONSERVED = {} leaves no parameter of the problem free: name what changes along the "
         "family, start({}), period or another monitor, or a duration; with HOLD of one of them a parameter is "
@@ -157,10 +158,12 @@ void check_parameters(const HybridSystem& system, const RunSettings& settings, c
         settings.conserved));
   check_rotation(system, settings, source, free);
   const auto is_parameter_here = [&](int k) {
-    return is_own_parameter(system, k) || k == family_of(settings).facts().own_parameter;
+    const bool is_rotation = k == system.layout().rotation() && !is_duration(settings, k);
+    if (is_rotation && family_of(settings).facts().has_rotation) return true;
+    return is_own_parameter(system, k) && !(is_rotation && k >= system.layout().first_duration());
   };
   for (const int k : settings.free_parameters) {
-    if (k >= first_duration || is_parameter_here(k)) continue;
+    if (is_parameter_here(k)) continue;
     if (std::find(free.begin(), free.end(), k) != free.end()) throw UserError(no_parameter("ICP", k));
     warnings.push_back(no_parameter("ICP", k));
   }
@@ -221,12 +224,12 @@ std::vector<std::string> check_settings_against(const HybridSystem& system, cons
 
 int parameter_index(const HybridSystem& system, const std::string& name, const std::string& where) {
   if (const std::optional<int> k = parse_integer(name)) {
-    if (is_parameter(system, *k)) return *k;
+    if (is_known(system, *k)) return *k;
   } else if (const int named = system.parameter_index(name); named > 0) {
     return named;
   }
-  throw UserError(fmt::format("{}: PAR({}) is no parameter of problem {}; it has {}; PAR(61), ... are the durations",
-                              where, name, system.name(), parameter_list(system)));
+  throw UserError(fmt::format("{}: PAR({}) is no parameter of problem {}; it has {}; PAR({}), ... are the durations",
+                              where, name, system.name(), parameter_list(system), system.layout().first_duration()));
 }
 
 Eigen::VectorXd state_weights(const RunSettings& settings) {
@@ -236,9 +239,10 @@ Eigen::VectorXd state_weights(const RunSettings& settings) {
 }
 
 WeightedNorm weighted_norm(const RunSettings& settings) {
-  Eigen::VectorXd weights = Eigen::VectorXd::Ones(parameter_room(segment_count(settings)));
+  ParameterVector weights(settings.layout, segment_count(settings));
+  weights.setOnes();
   for (const IndexedValue& w : settings.parameter_weights) weights(w.index - 1) = w.value;
-  return {state_weights(settings), weights};
+  return {state_weights(settings), std::move(weights)};
 }
 
 NewtonSettings newton_settings(const RunSettings& settings) {

@@ -25,7 +25,7 @@ struct SettingsSource {
 /// Throws UserError when the constants ask for what the problem does not have: another dimension, a field, event
 /// function or jump that does not exist, a parameter beyond the problem's own (its value on the command line, a user
 /// value of it, the run's free ones). Returns warnings: a GCSEGTYP that contradicts the jump, such a parameter printed
-/// or weighted. What the Fortran interface reads of PAR is not known: any of PAR(1..60) will do there.
+/// or weighted. What the Fortran interface reads of PAR is not known: any entry before the durations will do there.
 std::vector<std::string> check_settings_against(const HybridSystem& system, const RunSettings& settings,
                                                 const SettingsSource& source);
 

@@ -51,8 +51,8 @@ std::vector<MonitorName> monitor_names(const HybridSystem& system, const RunSett
 }  // namespace
 
 std::string parameter_name(const HybridSystem& system, const RunSettings& settings, int k) {
-  return is_monitor(settings, k) ? settings.monitors[static_cast<std::size_t>(k - first_monitor(settings))]
-                                 : system.parameter_name(k);
+  if (is_monitor(settings, k)) return settings.monitors[static_cast<std::size_t>(k - first_monitor(settings))];
+  return is_duration(settings, k) ? settings.layout.duration_name(k) : system.parameter_name(k);
 }
 
 std::string held_text(const HybridSystem& system, const RunSettings& settings) {
@@ -82,7 +82,7 @@ BranchMonitors branch_monitors(const DefiningSystem& system, const RunSettings& 
     std::shared_ptr<const Monitor> monitor =
         is_monitor(settings, held.parameter)
             ? make_monitor(names[static_cast<std::size_t>(held.parameter - first_monitor(settings))], system)
-            : make_duration_monitor(duration_segment(held.parameter));
+            : make_duration_monitor(settings.layout.duration_segment(held.parameter));
     const double value = held.value ? *held.value : monitor->value(start, rule);
     monitors.held.push_back({std::move(monitor), value, parameter_name(system.system(), settings, held.parameter)});
   }

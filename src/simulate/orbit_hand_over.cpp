@@ -84,14 +84,14 @@ bool is_free(const std::vector<int>& free, int k) { return std::find(free.begin(
 
 /// Weights of parameters: those given; durations have none, unless some have been given one.
 std::vector<IndexedValue> parameter_weights(const RunSettings& base, int segments) {
-  const auto is_weighted = [](const IndexedValue& w) { return w.index >= first_duration && w.value != 0.0; };
+  const auto is_weighted = [&base](const IndexedValue& w) { return !is_parameter(base, w.index) && w.value != 0.0; };
   const bool durations_weighted =
       std::any_of(base.parameter_weights.begin(), base.parameter_weights.end(), is_weighted);
   std::vector<IndexedValue> weights;
   for (const IndexedValue& weight : base.parameter_weights)
-    if (weight.index < first_duration) weights.push_back(weight);
+    if (is_parameter(base, weight.index)) weights.push_back(weight);
   if (!durations_weighted)
-    for (int s = 0; s < segments; ++s) weights.push_back({first_duration + s, 0.0});
+    for (int s = 0; s < segments; ++s) weights.push_back({base.layout.duration(s), 0.0});
   return weights;
 }
 
@@ -108,9 +108,9 @@ RunSettings with_free_parameter(const RunSettings& base, const Eigen::VectorXd& 
   const double value = par(parameter - 1);
   if (!same_parameter || value < settings.parameter_min) settings.parameter_min = -no_bound;
   if (!same_parameter || value > settings.parameter_max) settings.parameter_max = no_bound;
-  std::erase_if(settings.bounds, [&par](const BoundedValue& bounded) {
+  std::erase_if(settings.bounds, [&](const BoundedValue& bounded) {
     const int k = bounded.parameter;
-    return k >= first_duration || par(k - 1) < bounded.least || par(k - 1) > bounded.most;
+    return !is_parameter(base, k) || par(k - 1) < bounded.least || par(k - 1) > bounded.most;
   });
   return settings;
 }
@@ -143,7 +143,8 @@ std::string orbit_data_text(const HybridSystem& system, const FoundOrbit& orbit,
   text += fmt::format("# period {}\n", orbit.map.period);
   text += parameter_lines(system, par);
   for (std::size_t s = 0; s < orbit.map.segments.size(); ++s)
-    text += fmt::format("# PAR({}) = {}\n", first_duration + static_cast<int>(s), orbit.map.segments[s].duration);
+    text +=
+        fmt::format("# PAR({}) = {}\n", system.layout().duration(static_cast<int>(s)), orbit.map.segments[s].duration);
   text += fmt::format("# tau, then the {} states of each segment\n", system.dimension());
   for (std::size_t k = 0; k < samples.tau.size(); ++k) {
     text += fmt::format("{:.17g}", samples.tau[k]);
@@ -175,7 +176,7 @@ RunSettings orbit_settings(const HybridSystem& system, const RunSettings& base, 
   settings.mesh_intervals = samples.intervals;
   settings.problem_type = periodic_orbit.number;
   settings.branch_mode = periodic_orbit.branch_mode;
-  for (int s = 0; s < m; ++s) settings.free_parameters.push_back(first_duration + s);
+  for (int s = 0; s < m; ++s) settings.free_parameters.push_back(system.layout().duration(s));
   settings.parameter_weights = parameter_weights(base, m);
   std::erase_if(settings.user_values,
                 [&](const UserValue& u) { return !is_free(settings.free_parameters, std::abs(u.parameter)); });
@@ -211,7 +212,7 @@ RunSettings equilibrium_settings(const HybridSystem& system, const RunSettings& 
   settings.branch_mode = equilibrium.branch_mode;
   settings.test_functions.clear();
   settings.parameter_weights.clear();
-  std::erase_if(settings.user_values, [](const UserValue& value) { return value.parameter >= first_duration; });
+  std::erase_if(settings.user_values, [&base](const UserValue& value) { return !is_parameter(base, value.parameter); });
   SegmentSettings segment;
   segment.index = {field, no_function, no_function};
   segment.type = 0;

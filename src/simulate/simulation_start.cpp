@@ -131,8 +131,7 @@ void apply_data(const SimulationRequest& request, const SimulationConstants& con
                 SimulationStart& start) {
   const std::string path = data_path(*request.data);
   const DatFile data = read_start(path, constants, system.dimension());
-  for (const auto& [k, value] : data.parameters) start.par(k - 1) = value;
-  for (const auto& [name, value] : data.named_parameters) start.par(parameter_index(system, name, path) - 1) = value;
+  for (const auto& [k, value] : given_parameters(data, system, path, start.par)) start.par(k - 1) = value;
   start.state = data.states.col(0).head(system.dimension());
   start.source = fmt::format("first row of {}", path);
   start_after_orbit(system, constants, data.states, start);
@@ -153,8 +152,9 @@ void apply_label(const SimulationRequest& request, const SimulationConstants& co
                                 solution.label,
                                 solution.dimension > 0 ? solution.dimension : static_cast<int>(solution.states.rows()),
                                 system.name(), system.dimension()));
-  for (std::size_t k = 0; k < solution.parameters.size() && k < static_cast<std::size_t>(parameter_length); ++k)
-    start.par(static_cast<Eigen::Index>(k)) = solution.parameters[k];
+  const LabelledSolution placed = in_layout(solution, system.layout());
+  for (std::size_t k = 0; k < std::min(placed.parameters.size(), static_cast<std::size_t>(start.par.size())); ++k)
+    start.par(static_cast<Eigen::Index>(k)) = placed.parameters[k];
   start.state = solution.states.col(0).head(system.dimension());
   start.source = fmt::format("label {} of {}", solution.label, path);
   start_after_orbit(system, constants, solution.states, start);

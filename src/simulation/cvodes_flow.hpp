@@ -18,7 +18,7 @@ namespace tchat {
 
 class CvodesFlow final : public WatchedFlow {
  public:
-  /// `par` has parameter_length entries. A view of `system`, which outlives this object.
+  /// `par` has the room of the problem's ParameterLayout. A view of `system`, which outlives this object.
   CvodesFlow(const HybridSystem& system, int field, const Eigen::VectorXd& x0, const Eigen::VectorXd& par,
              const FlowOptions& options);
   CvodesFlow(const CvodesFlow&) = delete;

@@ -88,8 +88,8 @@ struct SimulatedSegment {
 
 class HybridSimulation {
  public:
-  /// par has parameter_length entries. The system behind `rule` outlives this object. Throws UserError for a state of
-  /// the wrong length or not finite, and when there is no first mode.
+  /// par has the room of the problem's ParameterLayout. The system behind `rule` outlives this object. Throws UserError
+  /// for a state of the wrong length or not finite, and when there is no first mode.
   HybridSimulation(ModeRule rule, const Eigen::VectorXd& x0, const Eigen::VectorXd& par, SimulationSettings settings);
   /// Continues behind the last event of `at`, as if it had been met in the state `end` (before its jump), with other
   /// settings. Requires an event in `at`.

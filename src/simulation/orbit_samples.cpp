@@ -81,7 +81,7 @@ Orbit on_mesh(const HybridSystem& system, const FoundOrbit& orbit, const VectorX
   const int n = system.dimension();
   const int m = static_cast<int>(orbit.signature.size());
   const OrbitShape shape{n, m, static_cast<int>(mesh.size()) - 1, collocation};
-  Orbit x{shape, std::move(mesh), MatrixXd(n, shape.columns()), ParameterVector::Zero(parameter_room(shape.segments))};
+  Orbit x{shape, std::move(mesh), MatrixXd(n, shape.columns()), ParameterVector(system.layout(), m)};
   const MatrixXd stacked = sample_all(system, orbit, par, x.node_times());
   for (int s = 0; s < m; ++s) {
     x.states.middleCols(s * shape.nodes(), shape.nodes()) = stacked.middleRows(s * n, n);

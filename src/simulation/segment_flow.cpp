@@ -33,7 +33,8 @@ VectorXd checked_parameters(const HybridSystem& system, int field, const VectorX
           fmt::format("the state has {} entries, {} has dimension {}.", x0.size(), system.name(), system.dimension()));
   require(x0.allFinite(), "the state at the start is not finite.");
   for (const int k : options.active)
-    require(k >= 1 && k < first_duration, fmt::format("PAR({}) is no parameter, allowed are 1..60.", k));
+    require(k >= 1 && k < system.layout().first_duration(),
+            fmt::format("PAR({}) is no parameter, allowed are 1..{}.", k, system.layout().first_duration() - 1));
   return full_parameters(system, par);
 }
 
@@ -54,7 +55,7 @@ VectorXd full_parameters(const HybridSystem& system, const VectorXd& par) {
   require(par.size() >= system.parameters(),
           fmt::format("{} parameter values given, {} needs {}.", par.size(), system.name(), system.parameters()));
   require(par.allFinite(), "a parameter value is not finite.");
-  VectorXd full = VectorXd::Zero(std::max<Eigen::Index>(par.size(), parameter_length));
+  VectorXd full = VectorXd::Zero(std::max<Eigen::Index>(par.size(), system.layout().room()));
   full.head(par.size()) = par;
   return full;
 }

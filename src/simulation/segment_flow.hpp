@@ -38,8 +38,8 @@ struct SegmentFlow {
   double event_velocity = 0.0;           ///< h_x f at x(T); of the terminal event function
 };
 
-/// PAR(1), PAR(2), ... checked and padded with zeros to at least parameter_length entries. UserError: fewer than the
-/// problem's parameters, or not finite.
+/// PAR(1), PAR(2), ... checked and padded with zeros to at least the room of the problem's ParameterLayout. UserError:
+/// fewer than the problem's parameters, or not finite.
 Eigen::VectorXd full_parameters(const HybridSystem& system, const Eigen::VectorXd& par);
 
 /// `par` is PAR(1), PAR(2), ... : at least the problem's parameters.

@@ -49,7 +49,8 @@ class WatchedFlow {
   virtual const std::string& message() const = 0;
 };
 
-/// By the method that `options` name. A view of `system`, which outlives the flow; `par` has parameter_length entries.
+/// By the method that `options` name. A view of `system`, which outlives the flow; `par` has the room of the problem's
+/// ParameterLayout.
 std::unique_ptr<WatchedFlow> make_flow(const HybridSystem& system, int field, const Eigen::VectorXd& x0,
                                        const Eigen::VectorXd& par, const FlowOptions& options);
 

@@ -76,15 +76,15 @@ bool is_multiplier_at(const TestedPoint& point, int target) {
   return multiplier_distance(point.multipliers, target) <= agreeing_multiplier;
 }
 
-FoldTest::FoldTest(int parameter, const std::vector<int>& free_parameters, int segments, bool stop, PointType type,
-                   std::string held)
-    : is_duration_(is_duration(parameter, segments)),
-      is_monitor_(parameter >= first_monitor(segments)),
+FoldTest::FoldTest(int parameter, const std::vector<int>& free_parameters, const ParameterLayout& layout, int segments,
+                   bool stop, PointType type, std::string held)
+    : is_duration_(layout.is_duration(parameter, segments)),
+      is_monitor_(parameter >= layout.first_monitor(segments)),
       stop_(stop),
       type_(type),
       held_(std::move(held)) {
   index_ = is_duration_
-               ? duration_segment(parameter)
+               ? layout.duration_segment(parameter)
                : std::find(free_parameters.begin(), free_parameters.end(), parameter) - free_parameters.begin();
 }
 

@@ -18,10 +18,11 @@ class HybridSystem;
 /// LP: the component of the tangent along the principal parameter; where a section is tangent, its label (GR).
 class FoldTest final : public TestFunction {
  public:
-  /// `parameter` is a PAR index, of a monitor too; `free_parameters` those of the tangent's globals; `held`:
-  /// names of the monitors that are held: the curve followed turns, not the orbits of the problem.
-  FoldTest(int parameter, const std::vector<int>& free_parameters, int segments, bool stop,
-           PointType type = PointType::fold, std::string held = {});
+  /// `parameter` is a PAR index, of a monitor too; `free_parameters` those of the tangent's globals; `layout`: of PAR
+  /// for `segments` segments; `held`: names of the monitors that are held: the curve followed turns, not the orbits of
+  /// the problem.
+  FoldTest(int parameter, const std::vector<int>& free_parameters, const ParameterLayout& layout, int segments,
+           bool stop, PointType type = PointType::fold, std::string held = {});
   std::string name() const override { return "fold"; }
   TestValue evaluate(const TestedPoint& point) const override;
   std::string reason_to_vanish(const TestedPoint&) const override { return "ICP(1) stays the same along the branch"; }

@@ -22,11 +22,6 @@ bool given_on_command_line(const HybridSystem& system, const RunSettings& settin
   return false;
 }
 
-void set_parameters(const DatFile& data, const HybridSystem& system, const std::string& path, ParameterVector& par) {
-  for (const auto& [k, value] : data.parameters) par(k - 1) = value;
-  for (const auto& [name, value] : data.named_parameters) par(parameter_index(system, name, path) - 1) = value;
-}
-
 }  // namespace
 
 OrbitShape shape_of_segments(const RunSettings& settings) {
@@ -40,10 +35,11 @@ SelectedStart start_from_state(const std::string& path, const RunSettings& setti
   SelectedStart selected;
   selected.source = path;
   selected.known_parameters = initial_parameters(system);
-  set_parameters(data, system, path, selected.known_parameters);
+  for (const auto& [k, value] : given_parameters(data, system, path, selected.known_parameters))
+    selected.known_parameters(k - 1) = value;
   ParameterVector par = selected.known_parameters;
   apply_command_line(system, settings, par);
-  par(first_duration - 1) = 0.0;
+  par.duration(0) = 0.0;
   selected.start.orbit = point_from_data(data, par);
   selected.label_start = settings.start.from_data();
   selected.last_label = selected.label_start ? 0 : 1;
@@ -55,27 +51,28 @@ SelectedStart start_from_orbit(const std::string& path, const RunSettings& setti
   const DatFile data =
       looks_like_trajectory(path) ? data_of_trajectory(path, settings) : read_dat_file(path, settings.dimension, m);
   ParameterVector par = initial_parameters(system);
-  make_room(par, m);
+  par.make_room(m);
+  const ParameterLayout& layout = par.layout();
   std::vector<bool> given(static_cast<std::size_t>(m), false);
   const auto set = [&](int k, double value) {
     par(k - 1) = value;
-    if (is_duration(k, m)) given[static_cast<std::size_t>(duration_segment(k))] = true;
+    if (layout.is_duration(k, m)) given[static_cast<std::size_t>(layout.duration_segment(k))] = true;
   };
   const tchat_problem& table = system.table();
   for (int s = 0; table.initial_durations != nullptr && s < std::min(m, table.durations); ++s)
-    if (std::isfinite(table.initial_durations[s])) set(first_duration + s, table.initial_durations[s]);
-  for (const auto& [k, value] : data.parameters) set(k, value);
-  for (const auto& [name, value] : data.named_parameters) set(parameter_index(system, name, path), value);
+    if (std::isfinite(table.initial_durations[s])) set(layout.duration(s), table.initial_durations[s]);
+  for (std::size_t s = 0; s < data.durations.size(); ++s) set(layout.duration(static_cast<int>(s)), data.durations[s]);
+  for (const auto& [k, value] : given_parameters(data, system, path, par)) set(k, value);
   const ParameterVector known = par;
   apply_command_line(system, settings, par);
   for (int s = 0; s < m; ++s) {
-    if (given[static_cast<std::size_t>(s)] || given_on_command_line(system, settings, first_duration + s)) continue;
+    if (given[static_cast<std::size_t>(s)] || given_on_command_line(system, settings, layout.duration(s))) continue;
     if (m > 1)
       throw UserError(fmt::format(
           "{}: the duration of segment {} is not given; with several segments every one is needed, add a line "
           "`# PAR({}) = value` to the file or 'PAR({})=value' to the command line",
-          path, s + 1, first_duration + s, first_duration + s));
-    par(first_duration - 1) = data.span;
+          path, s + 1, layout.duration(s), layout.duration(s)));
+    par.duration(0) = data.span;
   }
   const OrbitShape shape = shape_of_segments(settings);
   SelectedStart selected;
@@ -83,7 +80,7 @@ SelectedStart start_from_orbit(const std::string& path, const RunSettings& setti
   selected.start.orbit = orbit_from_data(data, shape, par);
   selected.second = orbit_from_rows(data, shape, par);
   selected.known_parameters = known;
-  selected.known_parameters.segment(first_duration - 1, m) = par.segment(first_duration - 1, m);
+  selected.known_parameters.durations(m) = par.durations(m);
   selected.label_start = settings.start.from_data();
   selected.last_label = selected.label_start ? 0 : 1;
   return selected;

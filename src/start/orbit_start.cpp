@@ -114,9 +114,10 @@ std::optional<OrbitVector> stored_direction(const LabelledSolution& solution, co
   std::size_t found = 0;
   for (std::size_t i = 0; i < solution.free_parameters.size() && i < solution.parameter_direction.size(); ++i) {
     const bool is_period = solution.free_parameters[i] == auto_period(solution.problem_type);
-    const int k = is_period ? first_duration : solution.free_parameters[i];
-    if (is_duration(k, stored.segments)) {
-      direction.durations(duration_segment(k)) = solution.parameter_direction[i];
+    const ParameterLayout& layout = solution.layout;
+    const int k = is_period ? layout.first_duration() : solution.free_parameters[i];
+    if (layout.is_duration(k, stored.segments)) {
+      direction.durations(layout.duration_segment(k)) = solution.parameter_direction[i];
       continue;
     }
     const auto at = std::find(free_parameters.begin(), free_parameters.end(), k);
@@ -130,7 +131,7 @@ std::optional<OrbitVector> stored_direction(const LabelledSolution& solution, co
 }
 
 ParameterVector stored_parameters(const LabelledSolution& solution, const OrbitShape& shape) {
-  ParameterVector par = ParameterVector::Zero(parameter_room(shape.segments));
+  ParameterVector par(solution.layout, shape.segments);
   for (std::size_t k = 0; k < std::min(solution.parameters.size(), static_cast<std::size_t>(par.size())); ++k)
     par(static_cast<Eigen::Index>(k)) = solution.parameters[k];
   return par;
@@ -292,8 +293,8 @@ OrbitStart orbit_from_solution(const LabelledSolution& solution, const OrbitShap
   start.orbit.par = stored_parameters(solution, stored);
   // A boundary value problem of AUTO itself is one on the interval from 0 to 1.
   if (is_shared_problem_type(solution.problem_type) &&
-      solution.parameters.size() < static_cast<std::size_t>(first_duration))
-    start.orbit.par.segment(first_duration - 1, shape.segments).setOnes();
+      solution.parameters.size() < static_cast<std::size_t>(solution.layout.first_duration()))
+    start.orbit.par.durations(shape.segments).setOnes();
   if (const std::optional<int> period = auto_period(solution.problem_type))
     std::swap(start.orbit.par(*period - 1), start.orbit.duration(0));
   if (shape.own) take_own_meshes(solution, start);
@@ -335,8 +336,10 @@ LabelledSolution labelled_solution(const Orbit& orbit, const OrbitVector& direct
     if (!have_one_mesh(shape, orbit.mesh)) solution.own_mesh = orbit.mesh;
     return solution;
   }
+  const ParameterLayout& layout = orbit.par.layout();
   LabelledSolution solution;
   solution.dimension = shape.dimension;
+  solution.layout = layout;
   solution.mesh_intervals = shape.intervals;
   const int points = shape.stored_nodes();
   solution.collocation_points = (points - 1) / shape.intervals;
@@ -346,15 +349,15 @@ LabelledSolution labelled_solution(const Orbit& orbit, const OrbitVector& direct
   if (direction.states.size() > 0) solution.state_direction = stack(direction.states, shape).leftCols(points);
   solution.free_parameters = listed;
   for (const int k : listed) {
-    if (is_duration(k, shape.segments)) {
-      solution.parameter_direction.push_back(direction.durations(duration_segment(k)));
+    if (layout.is_duration(k, shape.segments)) {
+      solution.parameter_direction.push_back(direction.durations(layout.duration_segment(k)));
       continue;
     }
     const auto at = std::find(free_parameters.begin(), free_parameters.end(), k);
     solution.parameter_direction.push_back(
         at == free_parameters.end() ? 0.0 : direction.globals(at - free_parameters.begin()));
   }
-  const int used = std::max(100, first_duration - 1 + shape.segments);
+  const int used = layout.stored(shape.segments, true);  // the orbit may be part of a torus
   solution.parameters.assign(orbit.par.data(), orbit.par.data() + used);
   return solution;
 }

@@ -41,7 +41,7 @@ const LabelledSolution& find_start(const SolutionFile& file, const std::string& 
 SelectedStart start_from_solution(const std::string& path, const RunSettings& settings, const HybridSystem& system,
                                   const std::vector<int>& free_parameters, const RunRequest& request) {
   const SolutionFile file = read_solution_file(path, settings.start);
-  const LabelledSolution& solution = find_start(file, path, settings, request);
+  const LabelledSolution solution = in_layout(find_start(file, path, settings, request), system.layout());
   SelectedStart selected;
   selected.source = path;
   selected.from_solution = true;

@@ -19,7 +19,7 @@ struct SelectedStart {
   bool from_solution = false;       ///< a label of a q-file
   bool label_start = true;          ///< IRS = 0: the first point gets a label
   bool parameters_changed = false;  ///< the command line changed a value that the label had
-  ParameterVector known_parameters = ParameterVector::Zero(parameter_length);  ///< without the command line's values
+  ParameterVector known_parameters = ParameterVector(ParameterLayout());  ///< without the command line's values
   int branch = 1;
   int last_label = 0;      ///< largest label in the start file
   int problem_type = 0;    ///< IPS of the label, 0 if unknown

@@ -41,7 +41,7 @@ struct SamplerSetup {
   std::vector<SweepTarget> over;
   std::vector<Eigen::VectorXd> starts;  ///< states, of start 1, 2, ...
   std::vector<StartSide> sides;         ///< of events on whose surface they lie
-  Eigen::VectorXd par;                  ///< parameter_length
+  Eigen::VectorXd par;                  ///< with the room of the layout
   Recording recording;
   bool follows = false;
   std::vector<CaptureRegion> known;  ///< of the known attractors 1, 2, ...; empty: nothing is captured

@@ -61,7 +61,7 @@ SweepTarget parse_over(const HybridSystem& system, const std::string& text) {
     std::string states;
     for (int k = 1; k <= system.dimension(); ++k) states += (k > 1 ? ", " : "") + system.state_name(k);
     target.position = parameter_index(system, name, fmt::format("--over {} (states: {})", text, states));
-    if (target.position > system.parameters() && target.position >= first_duration)
+    if (target.position > system.parameters() && target.position >= system.layout().first_duration())
       refuse_over(text, "a duration is no parameter of a simulation");
     quantity.name = system.parameter_name(target.position);
   }
@@ -101,7 +101,7 @@ std::vector<SweepTarget> parse_overs(const HybridSystem& system, const std::vect
 }
 
 void set_swept_values(const std::vector<SweepTarget>& over, const Eigen::VectorXd& values, Eigen::VectorXd& state,
-                      ParameterVector& par) {
+                      Eigen::VectorXd& par) {
   for (std::size_t q = 0; q < over.size(); ++q)
     (over[q].quantity.is_state ? state : par)(over[q].position - 1) = values(static_cast<Eigen::Index>(q));
 }

@@ -26,7 +26,7 @@ std::vector<SweepTarget> parse_overs(const HybridSystem& system, const std::vect
 
 /// Writes the values of the swept quantities, in their order, into a state and PAR.
 void set_swept_values(const std::vector<SweepTarget>& over, const Eigen::VectorXd& values, Eigen::VectorXd& state,
-                      ParameterVector& par);
+                      Eigen::VectorXd& par);
 
 class SweepGrid {
  public:

@@ -16,7 +16,6 @@
 #include "files/labelled_solution.hpp"
 #include "files/number_format.hpp"
 #include "files/solution_file_reader.hpp"
-#include "hybrid/parameter_vector.hpp"
 #include "problem_type/point_type.hpp"
 #include "problem_type/problem_type.hpp"
 #include "tables/table_format.hpp"
@@ -45,7 +44,9 @@ std::set<int> parameters_of(const PointSection& section, const std::map<int, dou
   std::set<int> result;
   for (const auto& [k, name] : section.parameters) result.insert(k);
   for (const auto& [k, value] : values)
-    if (is_duration(k, section.segments) || (k < first_duration && value != 0.0)) result.insert(k);
+    if (section.layout.is_duration(k, section.segments) ||
+        (section.layout.is_parameter(k, section.segments) && value != 0.0))
+      result.insert(k);
   return result;
 }
 
@@ -95,11 +96,11 @@ class PointNumbers {
   TableCell parameter_cell(std::size_t s, std::size_t row, int k) const {
     const PointSection& section = file_.sections[s];
     const auto period = places_[s].find("PERIOD");
-    if (section.segments == 1 && k == first_duration && period != places_[s].end())
+    if (section.segments == 1 && k == section.layout.first_duration() && period != places_[s].end())
       return number_cell(section.rows[row].values[period->second]);
     const auto& active = section.active_parameters;
     const bool fixed = !active.empty() && std::find(active.begin(), active.end(), k) == active.end();
-    if (fixed && !is_duration(k, section.segments)) {
+    if (fixed && !section.layout.is_duration(k, section.segments)) {
       const auto value = file_.parameters[s].find(k);
       return value == file_.parameters[s].end() ? TableCell() : number_cell(value->second);
     }

@@ -7,7 +7,6 @@
 #include <utility>
 #include <vector>
 
-#include "hybrid/parameter_vector.hpp"
 #include "tables/table_format.hpp"
 
 namespace tchat {
@@ -43,8 +42,9 @@ std::set<int> parameters_of(const SolutionFile& file, const ProblemNames& names)
     const int segments = segment_count(solution);
     for (int k = 1; k <= static_cast<int>(solution.parameters.size()); ++k) {
       const bool has_name = k <= static_cast<int>(names.parameters.size());
-      const bool is_used = k < first_duration && solution.parameters[static_cast<std::size_t>(k - 1)] != 0.0;
-      if (has_name || is_used || is_duration(k, segments)) result.insert(k);
+      const bool is_used =
+          solution.layout.is_parameter(k, segments) && solution.parameters[static_cast<std::size_t>(k - 1)] != 0.0;
+      if (has_name || is_used || solution.layout.is_duration(k, segments)) result.insert(k);
     }
   }
   return result;
@@ -93,7 +93,8 @@ void write_label_table(TableWriter& out, const SolutionFile& file, const Problem
     add(known(description(solution, [&names](int k) { return names.parameter(k); })));
     for (const int k : parameters) {
       const auto index = static_cast<std::size_t>(k - 1);
-      const bool has = index < solution.parameters.size() && (k < first_duration || is_duration(k, segments));
+      const bool has = index < solution.parameters.size() &&
+                       (solution.layout.is_parameter(k, segments) || solution.layout.is_duration(k, segments));
       add(has ? TableCell(solution.parameters[index]) : TableCell());
     }
     out.row(row);

@@ -6,7 +6,6 @@
 #include <utility>
 #include <vector>
 
-#include "hybrid/parameter_vector.hpp"
 #include "tables/table_format.hpp"
 #include "text/user_error.hpp"
 
@@ -21,7 +20,7 @@ std::string free_parameters(const LabelledSolution& solution, int segments, cons
   if (solution.free_parameters.empty()) return "those of ICP";
   std::string list;
   for (const int k : solution.free_parameters)
-    if (!is_duration(k, segments))
+    if (!solution.layout.is_duration(k, segments))
       list += fmt::format("{}{} = {:.9g}", list.empty() ? "" : ", ", names.parameter(k), stored_parameter(solution, k));
   return list;
 }
@@ -86,7 +85,8 @@ OrbitSizes sizes_of(const LabelledSolution& solution, const std::string& name, i
 std::vector<int> known_parameters(const LabelledSolution& solution, const ProblemNames& names) {
   std::vector<int> known;
   const auto stored = static_cast<int>(solution.parameters.size());
-  for (int k = 1; k < std::min(first_duration, stored + 1); ++k) {
+  for (int k = 1; k <= stored; ++k) {
+    if (!solution.layout.is_parameter(k, segment_count(solution))) continue;
     const auto& free = solution.free_parameters;
     const bool is_free = std::find(free.begin(), free.end(), k) != free.end();
     const bool is_named = names.parameter(k) != fmt::format("PAR({})", k);

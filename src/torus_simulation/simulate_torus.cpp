@@ -92,7 +92,7 @@ RunSettings torus_settings(const SimulationConstants& constants, int parameter) 
   settings.conserved.clear();
   settings.problem_type = invariant_torus.number;
   settings.branch_mode = invariant_torus.branch_mode;
-  settings.free_parameters = {parameter, rotation_parameter};
+  settings.free_parameters = {parameter, constants.settings.layout.rotation()};
   settings.start = {"", 1};
   return settings;
 }

@@ -90,7 +90,7 @@ Orbit orbits_from_curve(const HybridSystem& system, const Signature& one_return,
   const auto m = static_cast<int>(one_return.size());
   const OrbitShape shape{system.dimension(), orbits * m, intervals, collocation};
   Orbit x{shape, uniform_mesh(intervals), Eigen::MatrixXd(shape.dimension, shape.columns()), par};
-  x.par(rotation_parameter - 1) = curve.rotation();
+  x.par.rotation() = curve.rotation();
   FlowOptions options;
   options.relative_tolerance = 1e-12;
   options.absolute_tolerance = 1e-13;

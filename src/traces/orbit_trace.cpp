@@ -48,10 +48,11 @@ OrbitTrace orbit_trace(const LabelledSolution& solution, const std::string& name
   OrbitTrace trace;
   trace.name = name;
   trace.parameters = solution.parameters;
+  trace.rotation_parameter = solution.layout.rotation();
   const int segments = segments_of(solution, dimension, path);
   const Eigen::Index n = solution.states.rows() / segments;
   for (const int k : solution.free_parameters)
-    if (!is_duration(k, segments)) trace.free_parameters.emplace_back(k, stored_parameter(solution, k));
+    if (!solution.layout.is_duration(k, segments)) trace.free_parameters.emplace_back(k, stored_parameter(solution, k));
   double start = 0.0;
   for (int s = 0; s < segments; ++s) {
     TraceSegment segment;

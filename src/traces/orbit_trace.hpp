@@ -20,6 +20,7 @@ struct OrbitTrace {
   std::string name;                                     ///< for the key: "PD1"
   std::vector<std::pair<int, double>> free_parameters;  ///< PAR index and value, durations left out
   std::vector<double> parameters;                       ///< PAR(1), PAR(2), ...
+  int rotation_parameter = 0;                           ///< PAR index of a torus's rotation number
   std::vector<TraceSegment> segments;
   bool is_closed = true;  ///< periodic; a trajectory and the solution of a boundary value problem are not
   LineKind kind = LineKind::stable;

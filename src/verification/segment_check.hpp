@@ -61,8 +61,8 @@ struct SegmentCheck {
   std::vector<EventMet> passed;  ///< events met that change nothing (sections: the same field, the same state after it)
 };
 
-/// `par` has parameter_length entries; `scale` > 0 for every state; an event function that goes less than `tolerance`
-/// (in `depth`) below zero touches it only.
+/// `par` has the room of the problem's ParameterLayout; `scale` > 0 for every state; an event function that goes less
+/// than `tolerance` (in `depth`) below zero touches it only.
 SegmentCheck check_segment(const HybridSystem& system, const StoredSegment& segment, const Eigen::VectorXd& par,
                            const Eigen::VectorXd& scale, double tolerance);
 

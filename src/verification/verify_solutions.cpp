@@ -139,7 +139,9 @@ class Table {
  private:
   Orbit orbit_of(const LabelledSolution& solution) const {
     const auto segments = static_cast<int>(solution.states.rows() / settings_.dimension);
-    return orbit_from_solution(solution, stored_shape(solution, settings_.dimension, segments), {}, "the q-file").orbit;
+    return orbit_from_solution(in_layout(solution, system_.layout()),
+                               stored_shape(solution, settings_.dimension, segments), {}, "the q-file")
+        .orbit;
   }
 
   bool has_inadmissibilities(const Orbit& x) const {

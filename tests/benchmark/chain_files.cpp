@@ -19,7 +19,7 @@ std::string data_text(const Orbit& x) {
   std::string text;
   for (int k = 0; k < 5; ++k) text += fmt::format("# PAR({}) = {:.17g}\n", k + 1, x.par(k));
   for (int s = 0; s < x.shape.segments; ++s)
-    text += fmt::format("# PAR({}) = {:.17g}\n", first_duration + s, x.duration(s));
+    text += fmt::format("# PAR({}) = {:.17g}\n", ParameterLayout().first_duration() + s, x.duration(s));
   for (int k = 0; k < x.shape.nodes(); ++k) {
     text += fmt::format("{:.17g}", x.tau(k));
     for (int s = 0; s < x.shape.segments; ++s)
@@ -32,7 +32,8 @@ std::string data_text(const Orbit& x) {
 std::string constants_text(const OrbitShape& shape, int points) {
   const std::vector<int> ones(static_cast<std::size_t>(shape.segments), 1);
   const std::string list = fmt::format("[{}]", fmt::join(ones, ", "));
-  return fmt::format("NDIM = {}, IPS = 180, IRS = 0\nICP = [1, {}]\n", shape.dimension, first_duration) +
+  return fmt::format("NDIM = {}, IPS = 180, IRS = 0\nICP = [1, {}]\n", shape.dimension,
+                     ParameterLayout().first_duration()) +
          fmt::format("NTST = {}, NCOL = {}, IAD = 3, NMX = {}\n", shape.intervals, shape.collocation, points) +
          fmt::format("DS = {}, DSMAX = {}\n", step_length(shape.segments), 4 * step_length(shape.segments)) +
          fmt::format("GCFIND = {0}, GCHIND = {0}, GCGIND = {0}, GCSEGTYP = {0}\n", list);

@@ -89,7 +89,7 @@ class TorusWalk {
   TorusWalk(const Case& torus, int orbits)
       : torus_(torus),
         shape_{torus.system->dimension(), orbits, intervals, collocation},
-        system_(*torus.system, {{1, 1, 1}}, orbits, {omega_parameter, rotation_parameter}),
+        system_(*torus.system, {{1, 1, 1}}, orbits, {omega_parameter, ParameterLayout().rotation()}),
         follower_(system_, shape_, WeightedNorm::unit(shape_.dimension), newton, omega_parameter),
         point_(follower_.make_point(start())),
         next_(point_) {
@@ -118,9 +118,9 @@ class TorusWalk {
  private:
   Orbit start() const {
     Orbit x{shape_, uniform_mesh(intervals), Eigen::MatrixXd(shape_.dimension, shape_.columns()),
-            ParameterVector::Zero(parameter_length)};
+            ParameterVector(ParameterLayout())};
     x.par(0) = first_omega, x.par(1) = golden, x.par(2) = 5.0;
-    x.par(rotation_parameter - 1) = torus_.rotation;
+    x.par.rotation() = torus_.rotation;
     for (int i = 0; i < shape_.segments; ++i) {
       x.duration(i) = torus_.time;
       for (int k = 0; k < shape_.nodes(); ++k)
@@ -151,7 +151,7 @@ Simulated simulated(const Case& torus, double tolerance, int returns) {
   settings.flow.absolute_tolerance = 0.1 * tolerance;
   settings.flow.variational = false;
   settings.samples = 0;
-  ParameterVector par = ParameterVector::Zero(parameter_length);
+  ParameterVector par{ParameterLayout()};
   par(0) = first_omega, par(1) = golden, par(2) = 5.0;
   const Mode mode{{{1, 1, 1}}, {}};
   Simulated result;

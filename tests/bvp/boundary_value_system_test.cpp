@@ -70,7 +70,7 @@ const HybridSystem& undifferentiated() {
 
 Orbit any_orbit(const OrbitShape& shape) {
   Orbit x{shape, uniform_mesh(shape.intervals), Eigen::MatrixXd(shape.dimension, shape.columns()),
-          ParameterVector::Zero(parameter_length)};
+          ParameterVector(ParameterLayout())};
   for (std::size_t j = 1; j + 1 < x.mesh.size(); ++j) x.mesh[j] = std::pow(x.mesh[j], 1.3);
   for (Eigen::Index k = 0; k < x.states.cols(); ++k)
     for (Eigen::Index i = 0; i < x.states.rows(); ++i)
@@ -147,7 +147,7 @@ TEST_CASE("Newton's step of a boundary value problem with integrals: the residua
 
 TEST_CASE("integral conditions: exact for polynomials, in time and not in tau") {
   const BoundaryValueSystem system(system_of<Quadratic>(), {{1, 0, 0}}, {}, {true});
-  Orbit x{{1, 1, 3, 2}, {0.0, 0.2, 0.5, 1.0}, Eigen::MatrixXd(1, 7), ParameterVector::Zero(parameter_length)};
+  Orbit x{{1, 1, 3, 2}, {0.0, 0.2, 0.5, 1.0}, Eigen::MatrixXd(1, 7), ParameterVector(ParameterLayout())};
   x.duration(0) = 3.0;
   const std::vector<double> tau = x.node_times();
   for (Eigen::Index k = 0; k < 7; ++k) x.states(0, k) = 3.0 * tau[static_cast<std::size_t>(k)];  // x = t

@@ -40,8 +40,7 @@ const HybridSystem& hybrid() { return system_of<Watched>(); }
 
 Orbit some_orbit() {
   const OrbitShape shape{2, 2, 4, 3};
-  Orbit x{
-      shape, {0.0, 0.2, 0.45, 0.8, 1.0}, Eigen::MatrixXd(2, shape.columns()), ParameterVector::Zero(parameter_length)};
+  Orbit x{shape, {0.0, 0.2, 0.45, 0.8, 1.0}, Eigen::MatrixXd(2, shape.columns()), ParameterVector(ParameterLayout())};
   for (Eigen::Index k = 0; k < x.states.cols(); ++k) {
     const double t = 0.23 * static_cast<double>(k);
     x.states.col(k) << std::sin(t) + 0.1 * t, 0.8 * std::cos(1.3 * t + 0.4);
@@ -106,7 +105,7 @@ TEST_CASE("values of monitors") {
 TEST_CASE("the extremum between nodes is that of the polynomial") {
   // x = t (1 - t) on one interval of degree 2: its top is 1/4 at t = 1/2; shifted to lie between nodes.
   const PeriodicOrbitSystem system(hybrid(), {{1, 1, 1}}, {1, 2});
-  Orbit x{{2, 1, 2, 2}, {0.0, 0.3, 1.0}, Eigen::MatrixXd::Zero(2, 5), ParameterVector::Zero(parameter_length)};
+  Orbit x{{2, 1, 2, 2}, {0.0, 0.3, 1.0}, Eigen::MatrixXd::Zero(2, 5), ParameterVector(ParameterLayout())};
   x.duration(0) = 1.0;
   const std::vector<double> tau = x.node_times();
   for (Eigen::Index k = 0; k < 5; ++k) {

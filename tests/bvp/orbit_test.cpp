@@ -54,9 +54,10 @@ TEST_CASE("moving an orbit along a vector, and measuring the way back by a dual 
 
 TEST_CASE("the inner product integrates polynomials exactly, with the user's weights") {
   const Orbit x = orbit_of([](double t) { return Eigen::Vector2d(t, t * t); });
-  ParameterVector weights = ParameterVector::Ones(parameter_length);
+  ParameterVector weights{ParameterLayout()};
+  weights.setOnes();
   weights(0) = 5.0;
-  weights(first_duration) = 0.0;  // PAR(62)
+  weights(ParameterLayout().first_duration()) = 0.0;  // PAR(62)
   const WeightedNorm norm(Eigen::Vector2d(2.0, 3.0), weights);
   OrbitVector v(x.shape, 1), row(x.shape, 1);
   v.states = x.states;

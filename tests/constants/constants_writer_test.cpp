@@ -112,6 +112,6 @@ TEST_CASE("The table knows each constant once, with an example that is accepted"
     if (constant.keyword == "HOLD") overrides.emplace_back("ICP = [1, 2, 61, 62]");  // one more parameter is free
     if (constant.keyword == "CONSERVED") overrides.emplace_back("ICP = [61, 62]");   // one less
     CHECK_NOTHROW(apply_overrides(s, overrides));
-    CHECK_NOTHROW(resolve_names(s, monitors));
+    CHECK_NOTHROW(resolve_names(s, ParameterLayout(), monitors));
   }
 }

@@ -4,6 +4,7 @@
 
 #include "constants/constants_file.hpp"
 #include "constants/sample_files.hpp"
+#include "constants/settings_names.hpp"
 #include "text/user_error.hpp"
 
 using namespace tchat;
@@ -35,9 +36,19 @@ std::string first_lines(int count) {
   return text.substr(0, end);
 }
 
+/// For a problem of few parameters.
+void resolve(RunSettings& settings) {
+  resolve_names(settings, ParameterLayout(), [](const std::string&, const std::string&) { return names_a_monitor; });
+}
+
+void read_for_problem(const std::string& text) {
+  RunSettings settings = read_constants_text(text, "gc.bad");
+  resolve(settings);
+}
+
 void check_all(const std::vector<Malformed>& files) {
   for (const Malformed& file : files) {
-    const std::string message = message_of([&] { read_constants_text(file.text, "gc.bad"); });
+    const std::string message = message_of([&] { read_for_problem(file.text); });
     for (const std::string& part : file.expected) {
       CAPTURE(file.text, message, part);
       CHECK(message.find(part) != std::string::npos);
@@ -240,12 +251,14 @@ TEST_CASE("Malformed overrides", "[constants]") {
       {"PAR(0)=1", {"command line: PAR(0) (", "found '0'"}},
       {"PAR(63)=1", {"command line: PAR(63) (", "found '63'", "61 to 62"}},
       {"PAR=1", {"command line: PAR (", "pairs"}},
-      {"IPS=150", {"command line: ICP (", "at least 2"}},
+      {"IPS=150", {"gc.test:2: ICP (", "at least 2"}},
   };
   for (const Malformed& override_text : overrides) {
     RunSettings settings = read_constants_text(appendix_b(), "gc.test");
-    const std::string message =
-        message_of([&] { apply_overrides(settings, std::vector<std::string>{override_text.text}); });
+    const std::string message = message_of([&] {
+      apply_overrides(settings, std::vector<std::string>{override_text.text});
+      resolve(settings);
+    });
     for (const std::string& part : override_text.expected) {
       CAPTURE(override_text.text, message, part);
       CHECK(message.find(part) != std::string::npos);

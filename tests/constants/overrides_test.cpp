@@ -57,7 +57,7 @@ TEST_CASE("Names of parameters in the place of their indices", "[constants]") {
   RunSettings s = with({"ICP=[omega, alpha, 61]", "UZR={omega: [1.5, 2], -alpha: 3}", "THL={omega: 0.5}"});
   CHECK(s.names.size() == 2);
   CHECK(keyword_text(s).find("UZR = {omega: [1.5, 2], -alpha: 3} ") != std::string::npos);
-  resolve_names(s, names);
+  resolve_names(s, ParameterLayout(), names);
   CHECK(s.names.empty());
   CHECK(s.free_parameters == std::vector<int>{2, 1, 61});
   REQUIRE(s.user_values.size() == 3);
@@ -71,7 +71,7 @@ TEST_CASE("Names of parameters in the place of their indices", "[constants]") {
   const auto refusal = [&names](const char* key_value) {
     RunSettings wrong = with({key_value});
     try {
-      resolve_names(wrong, names);
+      resolve_names(wrong, ParameterLayout(), names);
     } catch (const UserError& error) {
       return std::string(error.what());
     }

@@ -4,6 +4,8 @@
 
 #include "constants/constants_file.hpp"
 #include "constants/sample_files.hpp"
+#include "constants/settings_names.hpp"
+#include "constants/settings_type.hpp"
 #include "text/user_error.hpp"
 
 using namespace tchat;
@@ -13,6 +15,8 @@ using tchat::testing::same_constants;
 using Ints = std::vector<int>;
 
 namespace {
+
+int no_names(const std::string&, const std::string&) { return names_a_monitor; }
 
 RunSettings read(const std::string& text) { return read_constants_text(text, "gc.test"); }
 
@@ -186,7 +190,23 @@ TEST_CASE("Branch modes and problem types that a run may refuse are read", "[con
 TEST_CASE("A switch may weigh the durations of the doubled orbit", "[constants]") {
   const std::string switching = appendix_b_with(3, "50 2 3 2 -1 0 0 0");
   CHECK(read(replaced(switching, "62 0.0\t", "64 0.0\t")).parameter_weights[1].index == 64);
-  CHECK_THROWS_AS(read(replaced(switching, "62 0.0\t", "65 0.0\t")), UserError);
+  RunSettings beyond = read(replaced(switching, "62 0.0\t", "65 0.0\t"));
+  CHECK_THROWS_WITH(resolve_names(beyond, ParameterLayout(), no_names), Catch::Contains("ITHL"));
+}
+
+TEST_CASE("Durations follow more than 60 parameters", "[constants]") {
+  const auto with_indices = [](const std::string& icp, int parameters) {
+    RunSettings s = read(appendix_b_with(2, icp));
+    resolve_names(s, ParameterLayout(parameters), no_names);
+    return s;
+  };
+  CHECK(free_problem_parameters(with_indices("3 61 101 102", 100)) == Ints{61});
+  CHECK(active_parameters(with_indices("1 100", 100)) == Ints{100, 101, 102});
+  CHECK(active_parameters(with_indices("1 1", 61)) == Ints{1, 62, 63});
+  CHECK_THROWS_WITH(with_indices("3 1 101 103", 100),
+                    Catch::Contains("gc.test:2: ICP(3)") &&
+                        Catch::Contains("1 to 100 (parameters of the problem) or 101 to 102 (durations"));
+  CHECK_THROWS_WITH(with_indices("2 101 102", 100), Catch::Contains("0 parameters that are not durations"));
 }
 
 TEST_CASE("Suspicious but legal text is reported", "[constants]") {

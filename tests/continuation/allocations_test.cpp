@@ -322,7 +322,8 @@ TEST_CASE("no allocation of our own along a grazing curve") {
 
 TEST_CASE("no allocation of our own along branches of tori, rho free or fixed") {
   give_solver_its_own_allocator();
-  const std::vector<int> free = GENERATE(std::vector<int>{omega, rotation_parameter}, std::vector<int>{omega, 2});
+  const std::vector<int> free =
+      GENERATE(std::vector<int>{omega, ParameterLayout().rotation()}, std::vector<int>{omega, 2});
   Torus torus(15, {4, 1, 10, 4}, free);
   PathPoint here = torus.follower.make_point(torus.start(2.0, 1e-5));
   REQUIRE(torus.follower.start_at_fixed_parameter(here).converged());
@@ -336,7 +337,7 @@ TEST_CASE("no allocation of our own along branches of tori, rho free or fixed") 
 TEST_CASE("no allocation of our own along tori in grazing contact, rho free or fixed") {
   give_solver_its_own_allocator();
   const std::vector<int> free =
-      GENERATE(std::vector<int>{omega, wall, rotation_parameter}, std::vector<int>{omega, 2, wall});
+      GENERATE(std::vector<int>{omega, wall, ParameterLayout().rotation()}, std::vector<int>{omega, 2, wall});
   const Torus torus(15, {4, 1, 10, 4});
   const TorusSystem system(system_of<PlanarTorus>(), {{1, 1, 1}}, 15, free);
   PathFollower follower(system, torus.shape, WeightedNorm::unit(4), {12, 12, 1e-10, 1e-10}, omega,

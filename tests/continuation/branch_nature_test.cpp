@@ -96,7 +96,7 @@ using Tests = std::vector<std::unique_ptr<TestFunction>>;
 Tests folds_and_sections(const DefiningSystem& system, bool stop) {
   Tests tests;
   for (int s = 0; s < system.segments(); ++s) tests.push_back(std::make_unique<ImpactVelocityTest>(system, s, stop));
-  tests.push_back(std::make_unique<FoldTest>(1, system.free_parameters(), system.segments(), false));
+  tests.push_back(std::make_unique<FoldTest>(1, system.free_parameters(), ParameterLayout(), system.segments(), false));
   return tests;
 }
 

@@ -68,7 +68,7 @@ RecordedBranch go_round(const Variant& v) {
   settings.adapt_mesh_every = v.adapt_every;
   settings.stop_when_closed = v.stop;
   Tests tests;
-  tests.push_back(std::make_unique<FoldTest>(1, orbits.system.free_parameters(), 1, false));
+  tests.push_back(std::make_unique<FoldTest>(1, orbits.system.free_parameters(), ParameterLayout(), 1, false));
   for (const double value : v.user_values) tests.push_back(std::make_unique<UserValueTest>(1, value, false, "p"));
   return record(orbits.follower, orbits.system, point, settings, std::move(tests));
 }
@@ -140,7 +140,7 @@ TEST_CASE("a branch that starts at a fold finds it once") {
   ContinuationSettings settings = branch_settings(start.shape, 1, 0.05, 0.1, 500);
   settings.location_tolerance = 1e-9;
   Tests tests;
-  tests.push_back(std::make_unique<FoldTest>(1, orbits.system.free_parameters(), 1, false));
+  tests.push_back(std::make_unique<FoldTest>(1, orbits.system.free_parameters(), ParameterLayout(), 1, false));
   const RecordedBranch branch = record(orbits.follower, orbits.system, point, settings, std::move(tests));
   check_closed(branch, 2);
 }

@@ -184,7 +184,7 @@ Branch follow(const Eigen::VectorXd& state, const ParameterVector& par, const st
 }
 
 ParameterVector values(std::initializer_list<double> list) {
-  ParameterVector par = ParameterVector::Zero(parameter_length);
+  ParameterVector par{ParameterLayout()};
   std::copy(list.begin(), list.end(), par.begin());
   return par;
 }

@@ -39,9 +39,9 @@ struct AngleTorus {
 /// Its N orbits in closed form, moved off by waves of this size.
 Orbit angle_torus(int orbits, int intervals, int collocation, double w, double off) {
   const OrbitShape shape{3, orbits, intervals, collocation};
-  Orbit x{shape, uniform_mesh(intervals), Eigen::MatrixXd(3, shape.columns()), ParameterVector::Zero(parameter_length)};
+  Orbit x{shape, uniform_mesh(intervals), Eigen::MatrixXd(3, shape.columns()), ParameterVector(ParameterLayout())};
   x.par(0) = w, x.par(1) = golden, x.par(2) = 5.0;
-  x.par(rotation_parameter - 1) = w / golden - std::floor(w / golden);
+  x.par.rotation() = w / golden - std::floor(w / golden);
   for (int i = 0; i < orbits; ++i) {
     x.duration(i) = 2.0 * pi / golden;
     for (int k = 0; k < shape.nodes(); ++k) {
@@ -142,7 +142,7 @@ TEST_CASE("torus: another number of orbits is the same curve") {
 
 TEST_CASE("torus: the least value of an event function between the orbits, and its gradient") {
   Torus torus(31, {4, 1, 20, 4});
-  const TorusSystem system(system_of<PlanarTorus>(), {{1, 1, 1}}, 31, {omega, rotation_parameter, wall});
+  const TorusSystem system(system_of<PlanarTorus>(), {{1, 1, 1}}, 31, {omega, ParameterLayout().rotation(), wall});
   Orbit x = torus.start(2.0, 0.0);
   const double w = 2.0, largest = 1.0 / (1.0 - 1.0 / std::sqrt(1.0 + w * w));
   CondensedSystem condensed(system, torus.shape, {3});
@@ -168,7 +168,7 @@ TEST_CASE("torus: a state that is an angle winds along the curve, and a return e
   // x and y are no angles, whatever they do.
   CHECK(angle_states(hybrid, {{1, 1, 1}}, start.states.leftCols(5), start.par) == std::vector<Eigen::Index>{2});
 
-  const TorusSystem system(hybrid, {{1, 1, 1}}, 31, {omega, rotation_parameter}, winding);
+  const TorusSystem system(hybrid, {{1, 1, 1}}, 31, {omega, ParameterLayout().rotation()}, winding);
   PathFollower follower(system, start.shape, WeightedNorm::unit(3), {12, 12, 1e-12, 1e-12}, omega);
   PathPoint point = follower.make_point(start);
   REQUIRE(follower.start_at_fixed_parameter(point).converged());

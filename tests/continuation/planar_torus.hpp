@@ -25,7 +25,7 @@ inline Eigen::Vector4d state_at(double psi, double t, double w) {
 }
 
 struct Torus {
-  Torus(int orbits, const OrbitShape& one_return, std::vector<int> free = {omega, rotation_parameter})
+  Torus(int orbits, const OrbitShape& one_return, std::vector<int> free = {omega, ParameterLayout().rotation()})
       : system(system_of<PlanarTorus>(), {{1, 1, 1}}, orbits, std::move(free)),
         shape{4, orbits, one_return.intervals, one_return.collocation},
         follower(system, shape, WeightedNorm::unit(4), {12, 12, 1e-12, 1e-12}, omega) {}
@@ -33,9 +33,9 @@ struct Torus {
   /// The closed form, moved off by waves of this size.
   Orbit start(double w, double off) const {
     Orbit x{shape, uniform_mesh(shape.intervals), Eigen::MatrixXd(4, shape.columns()),
-            ParameterVector::Zero(parameter_length)};
+            ParameterVector(ParameterLayout())};
     x.par(0) = w, x.par(1) = golden, x.par(2) = 5.0;
-    x.par(rotation_parameter - 1) = w / golden - std::floor(w / golden);
+    x.par.rotation() = w / golden - std::floor(w / golden);
     for (int i = 0; i < shape.segments; ++i) {
       x.duration(i) = 2.0 * pi / golden;
       for (int k = 0; k < shape.nodes(); ++k) {

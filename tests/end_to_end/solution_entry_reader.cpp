@@ -108,8 +108,9 @@ SolutionEntry read_entry(LineReader& reader) {
   REQUIRE(states % entry.dimension == 0);
   REQUIRE(internal > 0);
   REQUIRE(internal % 4 == 0);
-  REQUIRE(parameters >= std::max(100, 60 + states / entry.dimension) + internal);
-  REQUIRE(id[15] == 0);
+  entry.problem_parameters = id[15];
+  REQUIRE((id[15] == 0 || id[15] >= 60));
+  REQUIRE(parameters >= std::max(100, std::max(60, id[15]) + states / entry.dimension) + internal);
   const int plain = (states / 7 + 1) * points + (parameters + 6) / 7;
   const int direction = (free + 19) / 20 + (free + 6) / 7 + (states + 6) / 7 * points;
   REQUIRE((lines == plain || lines == plain + direction));

@@ -8,7 +8,7 @@ namespace test_support {
 
 struct SolutionEntry {
   int branch = 0, point = 0, type = 0, label = 0, branch_mode = 0, intervals = 0, collocation = 0, dimension = 0,
-      problem_type = 0;
+      problem_type = 0, problem_parameters = 0;
   std::vector<double> t;
   std::vector<std::vector<double>> states;     ///< for each t, U(1), U(2), ...
   std::vector<int> free_parameters;            ///< ICP

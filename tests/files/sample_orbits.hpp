@@ -7,8 +7,9 @@
 
 namespace test_support {
 
-/// `segments` segments of dimension n on a mesh of `intervals` x `collocation`; every number is different.
-inline tchat::LabelledSolution sample_orbit(int n, int segments, int intervals, int collocation) {
+/// `segments` segments of dimension n on a mesh of `intervals` x `collocation`; every number is different. Of a problem
+/// of so many `parameters`, whose durations stand behind them or, of few, behind PAR(60).
+inline tchat::LabelledSolution sample_orbit(int n, int segments, int intervals, int collocation, int parameters = 4) {
   tchat::LabelledSolution orbit;
   orbit.branch = 2;
   orbit.point = 17;
@@ -30,9 +31,12 @@ inline tchat::LabelledSolution sample_orbit(int n, int segments, int intervals, 
   orbit.free_parameters = {1};
   orbit.parameter_direction = {-0.125};
   orbit.parameters = {3.0, 2.0, 0.05, 0.8};
-  orbit.parameters.resize(60, 0.0);
+  const int before_durations = parameters > 60 ? parameters : 60;
+  orbit.layout = tchat::ParameterLayout(parameters);
+  orbit.parameters.resize(static_cast<std::size_t>(before_durations), 0.0);
+  if (parameters > 60) orbit.parameters.back() = -7.5;
   for (int s = 1; s <= segments; ++s) {
-    orbit.free_parameters.push_back(60 + s);
+    orbit.free_parameters.push_back(before_durations + s);
     orbit.parameter_direction.push_back(0.25 * s);
     orbit.parameters.push_back(1.0 + 0.5 * s);
   }

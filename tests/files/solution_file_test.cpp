@@ -94,7 +94,8 @@ void check_entry(const LabelledSolution& orbit) {
   const int points = static_cast<int>(orbit.states.cols());
   const int segments = states / orbit.dimension;
   const int free = static_cast<int>(orbit.free_parameters.size());
-  const int parameters = std::max(100, 60 + segments) + 4;
+  const int own = orbit.layout.parameters();
+  const int parameters = std::max(100, (own > 60 ? own : 60) + segments) + 4;
   FixedColumns entry(format_solution(orbit));
   const std::vector<int> expected = {orbit.branch,
                                      (orbit.point - 1) % 9999 + 1,
@@ -111,7 +112,7 @@ void check_entry(const LabelledSolution& orbit) {
                                      4,
                                      orbit.dimension,
                                      orbit.problem_type,
-                                     0};
+                                     own > 60 ? own : 0};
   CHECK(entry.identifier == expected);
   for (int p = 0; p < points; ++p) {
     const auto record = entry.numbers(states + 1);
@@ -272,4 +273,59 @@ TEST_CASE("What is several things at once has four internal values for each", "[
   CHECK(file.solutions[0].kind == UserPointKind{});
   CHECK(file.solutions[0].further == orbit.further);
   CHECK(file.solutions[0].parameters[0] == orbit.parameters[0]);
+}
+
+TEST_CASE("more than 60 parameters: the file says where the durations begin") {
+  for (const int parameters : {60, 61, 99, 130, 700}) {
+    CAPTURE(parameters);
+    const LabelledSolution orbit = sample_orbit(3, 2, 4, 3, parameters);
+    check_entry(orbit);
+    const SolutionFile file = parse_solution_file(format_solution(orbit), "q.many");
+    REQUIRE(file.solutions.size() == 1);
+    const LabelledSolution& read = file.solutions.front();
+    CHECK(read.layout.first_duration() == std::max(parameters, 60) + 1);
+    CHECK(duration(read, 0) == 1.5);
+    CHECK(duration(read, 1) == 2.0);
+    CHECK(period(read) == 3.5);
+    CHECK(read.free_parameters == orbit.free_parameters);
+    CHECK(format_solution(read) == format_solution(orbit));
+  }
+  std::string damaged = format_solution(sample_orbit(3, 2, 4, 3, 130));
+  damaged.replace(88, 5, " 9999");
+  CHECK_THROWS_WITH(parse_solution_file(damaged, "q.many"),
+                    Catch::Contains("no room for the durations PAR(10000..10001)"));
+}
+
+TEST_CASE("the rotation number of a torus has a place behind the durations where PAR(60) is a parameter") {
+  for (const int parameters : {4, 59, 60, 61, 200}) {
+    CAPTURE(parameters);
+    LabelledSolution torus = sample_orbit(3, 7, 4, 3, parameters);
+    torus.problem_type = invariant_torus.number;
+    const int rho = torus.layout.rotation();
+    torus.parameters.resize(static_cast<std::size_t>(std::max<int>(rho, static_cast<int>(torus.parameters.size()))));
+    torus.parameters[static_cast<std::size_t>(rho - 1)] = 0.3819660112501051;
+    torus.free_parameters.push_back(rho);
+    torus.parameter_direction.push_back(0.5);
+    const LabelledSolution read = parse_solution_file(format_solution(torus), "q.torus").solutions.at(0);
+    CHECK(read.layout.rotation() == rho);
+    CHECK(stored_parameter(read, read.layout.rotation()) == 0.3819660112501051);
+    CHECK(duration(read, 6) == 4.5);
+  }
+}
+
+TEST_CASE("a solution goes over into the numbering of a problem that has got more parameters, and back") {
+  for (const int before : {4, 60, 61, 80})
+    for (const int now : {4, 61, 80, 300}) {
+      CAPTURE(before, now);
+      const LabelledSolution orbit = sample_orbit(3, 2, 4, 3, before);
+      const LabelledSolution placed = in_layout(orbit, ParameterLayout(now));
+      CHECK(duration(placed, 0) == 1.5);
+      CHECK(duration(placed, 1) == 2.0);
+      for (int k = 1; k <= 4; ++k) CHECK(stored_parameter(placed, k) == stored_parameter(orbit, k));
+      CHECK(placed.free_parameters == std::vector<int>{1, std::max(now, 60) + 1, std::max(now, 60) + 2});
+      const LabelledSolution back = in_layout(placed, orbit.layout);
+      CHECK(back.free_parameters == orbit.free_parameters);
+      CHECK(period(back) == 3.5);
+      if (now >= before) CHECK(stored_parameter(back, before) == stored_parameter(orbit, before));
+    }
 }

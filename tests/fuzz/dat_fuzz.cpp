@@ -24,7 +24,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   fuzz::require(file.states.cols() == static_cast<Eigen::Index>(file.tau.size()), "a column for each time");
   fuzz::require(file.states.allFinite(), "finite states");
   for (const auto& [index, value] : file.parameters)
-    fuzz::require(index >= 1 && index <= parameter_length && std::isfinite(value), "a parameter's value");
+    fuzz::require(index >= 1 && index <= most_parameters + max_segments && std::isfinite(value), "a parameter's value");
   for (const auto& [name, value] : file.named_parameters)
     fuzz::require(!name.empty() && std::isfinite(value), "a named parameter's value");
   return 0;

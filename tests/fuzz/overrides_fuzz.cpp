@@ -43,7 +43,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     fuzz::require(positional_text(settings) == before, "refused overrides change nothing");
     return 0;
   }
-  if (!fuzz::accepts([&] { resolve_names(settings, index_of); }, "command line")) return 0;
+  if (!fuzz::accepts([&] { resolve_names(settings, ParameterLayout(), index_of); }, "command line")) return 0;
   const std::string after = positional_text(settings);
   fuzz::require(fuzz::accepts([&] {
                   fuzz::require(positional_text(read_constants_text(after, fuzz::source)) == after, "same again");

@@ -117,7 +117,7 @@ struct SlippingSupport {
 };
 
 inline ParameterVector parameters(std::initializer_list<double> values) {
-  ParameterVector par = ParameterVector::Zero(parameter_length);
+  ParameterVector par{ParameterLayout()};
   int k = 0;
   for (const double value : values) par(k++) = value;
   return par;

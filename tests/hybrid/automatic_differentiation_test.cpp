@@ -57,7 +57,7 @@ Evaluated second(const HybridSystem& system, FunctionKind kind, const VectorXd& 
 }
 
 VectorXd full(const VectorXd& par) {
-  VectorXd all = VectorXd::Zero(parameter_length);
+  VectorXd all = VectorXd::Zero(ParameterLayout().room());
   all.head(par.size()) = par;
   return all;
 }

@@ -72,7 +72,7 @@ TEST_CASE("an unusable table is refused") {
       {"dimension is 0", [](tchat_problem& t) { t.dimension = 0; }},
       {"dimension is -3", [](tchat_problem& t) { t.dimension = -3; }},
       {"dimension is 100001", [](tchat_problem& t) { t.dimension = 100001; }},
-      {"61 parameters", [](tchat_problem& t) { t.parameters = 61; }},
+      {"1000001 parameters", [](tchat_problem& t) { t.parameters = 1000001; }},
       {"-1 parameters", [](tchat_problem& t) { t.parameters = -1; }},
       {"0 fields", [](tchat_problem& t) { t.fields = 0; }},
       {"-1 events", [](tchat_problem& t) { t.events = -1; }},
@@ -95,7 +95,7 @@ TEST_CASE("central differences where the table has no derivatives") {
   Point7 z;
   z << 0.7, -0.4, 1.3, 1.9, 0.8, -1.1, 2.3;
   const VectorXd x = z.head(3);
-  VectorXd par = VectorXd::Zero(parameter_length);
+  VectorXd par = VectorXd::Zero(ParameterLayout().room());
   par.head(4) = z.tail(4);
   const std::vector<int> active = {1, 2, 3, 4};
   VectorXd direction(7);
@@ -125,7 +125,7 @@ TEST_CASE("differences are exact for linear functions and reach all parameters o
   tchat_problem table = linosc_table();
   table.derivative_order = 0;
   const HybridSystem system(table);
-  VectorXd x(4), par = VectorXd::Zero(parameter_length);
+  VectorXd x(4), par = VectorXd::Zero(ParameterLayout().room());
   x << 0.4, -0.7, 0.6, -0.9;
   par.head(4) << 3.0, 1.7, 0.05, 0.8;
   const std::vector<int> active = {4};
@@ -169,7 +169,7 @@ struct Awkward {
 
 TEST_CASE("an output left unset, or an exception, becomes NaN") {
   const HybridSystem system(*ProblemTable<Awkward>::get("awkward"));
-  const VectorXd x = VectorXd::Constant(2, 1.5), par = VectorXd::Constant(parameter_length, 2.0);
+  const VectorXd x = VectorXd::Constant(2, 1.5), par = VectorXd::Constant(ParameterLayout().room(), 2.0);
   VectorXd f(2);
   MatrixXd fx(2, 2);
   system.value(FunctionKind::field, 1, x.data(), par.data(), f.data());

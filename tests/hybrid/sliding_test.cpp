@@ -123,7 +123,7 @@ Orbit orbit_at(double h, double above, double below) {
   x.mesh = uniform_mesh(1);
   x.states = Eigen::MatrixXd::Zero(2, x.shape.columns());
   x.states.row(0).setConstant(h);
-  x.par = ParameterVector::Zero(parameter_length);
+  x.par = ParameterVector(ParameterLayout());
   x.par(0) = above, x.par(1) = below;
   x.duration(0) = x.duration(1) = 1.0;
   return x;

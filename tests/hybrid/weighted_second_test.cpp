@@ -18,7 +18,7 @@ namespace {
 double any(int k) { return std::sin(1.3 + 0.9 * k + 0.01 * k * k); }
 
 ParameterVector parameters(const std::vector<double>& first) {
-  ParameterVector par = ParameterVector::Zero(parameter_length);
+  ParameterVector par{ParameterLayout()};
   for (std::size_t k = 0; k < first.size(); ++k) par(static_cast<Eigen::Index>(k)) = first[k];
   return par;
 }

@@ -118,7 +118,7 @@ TEST_CASE("a table made before there were boundary value problems still loads, w
   const ProblemLibrary library(resolve_plugin(folder.write("older.cpp", small_plugin(spoil)), build_options));
   CHECK(library.system().boundary_conditions() == 0);
   CHECK(library.system().integral_conditions() == 0);
-  const double x[] = {0.5, 0.25}, par[parameter_length] = {3.0};
+  const double x[] = {0.5, 0.25}, par[TCHAT_PAR_LENGTH] = {3.0};
   double f[2] = {};
   library.system().value(FunctionKind::field, 1, x, par, f);
   CHECK(f[0] == 1.5);
@@ -150,7 +150,7 @@ void check_points_at_once(const HybridSystem& system, const std::vector<double>&
   }
 }
 
-const std::vector<double> some_par(parameter_length, 0.7);
+const std::vector<double> some_par(TCHAT_PAR_LENGTH, 0.7);
 
 }  // namespace
 

@@ -393,6 +393,32 @@ class Problems(unittest.TestCase):
         gc.collect()
         self.assertFalse(os.path.exists(folder))
 
+    def test_durations_behind_more_than_60_parameters(self):
+        few = ("par Gamma=1.3, r=0.5\ninit velocity=3, w=1.3\ngrowth = 1 - (table^2 + w^2)/Gamma^2\n"
+               "height' = velocity\nvelocity' = -1\ntable' = growth*table + w\nw' = growth*w - table\n"
+               "event contact = height - table\njump impact: velocity -> -r*velocity + (1 + r)*w\n"
+               "after any: contact -> impact\n")
+        many = "par %s\n" % ", ".join("q%d=0.5" % k for k in range(1, 101)) + few
+        runs = [tchat.Problem(text, name=name).simulate().orbit.continue_(Gamma=(1.2, 1.6), NMX=25)
+                for text, name in ((few, "few"), (many, "many"))]
+        for column in ("Gamma", "T1", "PERIOD"):
+            np.testing.assert_allclose(runs[1][column], runs[0][column], rtol=1e-8)
+        ours = runs[1].PD[0]
+        self.assertAlmostEqual(ours["Gamma"], runs[0].PD[0]["Gamma"], places=8)
+        self.assertAlmostEqual(ours.period, 2.0 * np.pi, places=8)
+        self.assertEqual((ours["q70"], ours["r"], ours["T1"]), (0.5, 0.5, ours.period))
+        self.assertTrue(ours.verify().passed)
+        self.assertAlmostEqual(ours.switch(DS=0.01, NMX=5)["PERIOD"][0], 4.0 * np.pi, delta=1e-3)
+        folder = find_auto()
+        if folder is not None:
+            sys.path.insert(0, folder)
+            allow_new_numpy()
+            from auto import parseB, parseS
+            theirs = parseS.parseS(runs[1].path.replace("p.", "q.")).getLabel(ours.label)
+            self.assertEqual(theirs["Active ICP"], [101, 103])
+            self.assertEqual(list(theirs.PAR.toarray()[99:103]), [0.5, ours["Gamma"], 0.5, ours.period])
+            np.testing.assert_array_equal(parseB.parseBR(runs[1].path)[0]["Gamma"], runs[1]["Gamma"])
+
     def test_unstable_gait_from_a_guess(self):
         """The short gait of Garcia, Chatterjee, Ruina and Coleman (1998) at the slope 0.009."""
         orbit = tchat.Problem(WALKER).simulate(state=[0.194, -0.204, 0.388, -0.0151], refine=True).orbit

@@ -27,7 +27,7 @@ Labelled labelled(const Signature& signature, const UserPointKind& kind, const E
   for (const IndexVector& index : signature) result.settings.segments.push_back({1, index, {1}});
   result.x.shape = {5, static_cast<int>(signature.size()), 1, 2};
   result.x.states = end.replicate(1, result.x.shape.columns());
-  result.x.par = ParameterVector::Zero(parameter_length);
+  result.x.par = ParameterVector(ParameterLayout());
   return result;
 }
 

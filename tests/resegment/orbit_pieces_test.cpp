@@ -19,7 +19,7 @@ OrbitStart sample(int intervals, int collocation) {
   x.shape = {2, 2, intervals, collocation};
   for (int j = 0; j <= intervals; ++j) x.mesh.push_back(std::pow(static_cast<double>(j) / intervals, 1.3));
   x.states.resize(2, x.shape.columns());
-  x.par = ParameterVector::Zero(parameter_length);
+  x.par = ParameterVector(ParameterLayout());
   x.par(0) = 3.5;
   start.direction = OrbitVector(x.shape, 1);
   start.direction->globals(0) = 0.25;

@@ -32,7 +32,7 @@ Signature signature(const SegmentList& segments) {
 Orbit orbit(std::initializer_list<double> durations) {
   Orbit x;
   x.shape = {5, static_cast<int>(durations.size()), 1, 2};
-  x.par = ParameterVector::Zero(parameter_length);
+  x.par = ParameterVector(ParameterLayout());
   int s = 0;
   for (const double t : durations) x.duration(s++) = t;
   return x;
@@ -111,7 +111,7 @@ TEST_CASE("constants follow the pieces: weights, test functions, free parameters
 
 TEST_CASE("the index jump function says what follows an impact of velocity zero") {
   const ParameterVector par = [] {
-    ParameterVector p = ParameterVector::Zero(parameter_length);
+    ParameterVector p{ParameterLayout()};
     p(0) = 0.598, p(1) = 0.8;
     return p;
   }();

@@ -44,5 +44,6 @@ TEST_CASE("a second parameter is idle with ISW = 1, which matters at a point tha
              Catch::StartsWith(linosc().parameter_name(2)) && Catch::Contains("the curve of LP in two parameters"));
   CHECK(idle_parameters(linosc(), settings, start_at(PointType::regular), 1).empty());
   CHECK(idle_parameters(linosc(), settings_with({1}), start_at(PointType::fold), 1).empty());
-  CHECK(idle_parameters(linosc(), settings_with({1, first_duration}), start_at(PointType::fold), 1).empty());
+  CHECK(idle_parameters(linosc(), settings_with({1, ParameterLayout().first_duration()}), start_at(PointType::fold), 1)
+            .empty());
 }

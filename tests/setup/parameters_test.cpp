@@ -70,7 +70,7 @@ TEST_CASE("lines of a .dat file hold the problem's parameters, and what else is 
   CHECK(parameter_lines(ball(), par) == "# PAR(1) = 9.81\n# PAR(2) = 0.75\n");
   par(1) = 0.0;
   par(4) = -2.0;
-  par(first_duration - 1) = 3.0;  // a duration
+  par(ParameterLayout().first_duration() - 1) = 3.0;  // a duration
   CHECK(parameter_lines(ball(), par) == "# PAR(1) = 9.81\n# PAR(2) = 0\n# PAR(5) = -2\n");
 }
 
@@ -79,7 +79,7 @@ TEST_CASE("names in ICP become indices of parameters, durations and monitors") {
   settings.names = {{"r", "ICP", {}}, {"T1", "ICP", {}}, {"max(U(1))", "ICP", {}}};
   settings.free_parameters = {name_index(0), name_index(1), name_index(2)};
   resolve_names(settings, ball());
-  CHECK(settings.free_parameters == std::vector<int>{2, first_duration, first_monitor(settings)});
+  CHECK(settings.free_parameters == std::vector<int>{2, ParameterLayout().first_duration(), first_monitor(settings)});
   CHECK(settings.monitors == std::vector<std::string>{"max(U(1))"});
 
   settings.names = {{"mass", "ICP", {}}};

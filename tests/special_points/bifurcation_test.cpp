@@ -19,7 +19,8 @@ enum Which : std::size_t { fold, branch_point, doubling, torus, velocity };
 /// All bifurcation tests, in the order of Which, then the impact velocity of every segment.
 Tests all_tests(const DefiningSystem& system, int principal) {
   Tests tests;
-  tests.push_back(std::make_unique<FoldTest>(principal, system.free_parameters(), system.segments(), false));
+  tests.push_back(
+      std::make_unique<FoldTest>(principal, system.free_parameters(), ParameterLayout(), system.segments(), false));
   tests.push_back(std::make_unique<BranchPointTest>(false));
   tests.push_back(std::make_unique<PeriodDoublingTest>(false));
   tests.push_back(std::make_unique<TorusTest>(false));
@@ -88,11 +89,10 @@ TEST_CASE("fold: the turning point of the normal form, from both sides, and no b
 }
 
 TEST_CASE("fold: the principal parameter may be a duration") {
-  const FoldTest of_duration(62, {1}, 2, false);
-  const FoldTest of_second(7, {3, 7}, 2, false);
+  const FoldTest of_duration(62, {1}, ParameterLayout(), 2, false);
+  const FoldTest of_second(7, {3, 7}, ParameterLayout(), 2, false);
   const OrbitShape shape{1, 2, 2, 2};
-  const Orbit x{shape, uniform_mesh(2), Eigen::MatrixXd::Zero(1, shape.columns()),
-                ParameterVector::Zero(parameter_length)};
+  const Orbit x{shape, uniform_mesh(2), Eigen::MatrixXd::Zero(1, shape.columns()), ParameterVector(ParameterLayout())};
   OrbitVector tangent(shape, 2);
   tangent.durations << 0.25, -0.5;
   tangent.globals << 0.125, 0.75;

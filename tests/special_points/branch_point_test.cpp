@@ -59,7 +59,7 @@ RecordedBranch across(int field, const Variant& v, double w0 = 0.0) {
   settings.parameter_min = -0.21;
   settings.parameter_max = 0.21;
   Tests tests;
-  tests.push_back(std::make_unique<FoldTest>(1, orbits.system.free_parameters(), 1, false));
+  tests.push_back(std::make_unique<FoldTest>(1, orbits.system.free_parameters(), ParameterLayout(), 1, false));
   tests.push_back(std::make_unique<BranchPointTest>(false));
   tests.push_back(std::make_unique<PeriodDoublingTest>(false));
   tests.push_back(std::make_unique<TorusTest>(false));

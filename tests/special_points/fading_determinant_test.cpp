@@ -23,7 +23,7 @@ RecordedBranch follow(PeriodicOrbits& orbits, const Orbit& start, int parameter,
   settings.multipliers = false;
   settings.adapt_mesh_every = 3;
   Tests tests;
-  tests.push_back(std::make_unique<FoldTest>(parameter, orbits.system.free_parameters(), 1, false));
+  tests.push_back(std::make_unique<FoldTest>(parameter, orbits.system.free_parameters(), ParameterLayout(), 1, false));
   tests.push_back(std::make_unique<BranchPointTest>(false));
   RecordedBranch branch = record(orbits.follower, orbits.system, point, settings, std::move(tests));
   CAPTURE(branch.notes);

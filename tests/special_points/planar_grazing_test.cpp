@@ -40,7 +40,7 @@ Tests tests_of(const DefiningSystem& system, bool fold_first) {
   Tests tests;
   tests.push_back(std::make_unique<ImpactVelocityTest>(system, 0, false));
   tests.insert(fold_first ? tests.begin() : tests.end(),
-               std::make_unique<FoldTest>(1, system.free_parameters(), 1, false));
+               std::make_unique<FoldTest>(1, system.free_parameters(), ParameterLayout(), 1, false));
   tests.push_back(std::make_unique<PeriodDoublingTest>(false));
   return tests;
 }

@@ -20,7 +20,7 @@ void follow(const HybridSystem& hybrid, const RandomForm& form, int number, int 
   const double from = direction > 0.0 ? form.least_mu : form.most_mu;
   const Orbit start = form.orbit(from, intervals, 4);
   const PeriodicOrbitSystem system(hybrid, {{1, 1, 1}}, {1});
-  Eigen::VectorXd weights = Eigen::VectorXd::Zero(parameter_length);
+  Eigen::VectorXd weights = Eigen::VectorXd::Zero(ParameterLayout().room());
   weights(0) = 1.0;
   PathFollower follower(system, start.shape, WeightedNorm(Eigen::VectorXd::Ones(form.n), weights), tight_newton(), 1);
   PathPoint point = follower.make_point(start);
@@ -34,7 +34,7 @@ void follow(const HybridSystem& hybrid, const RandomForm& form, int number, int 
   settings.multipliers = false;
   settings.adapt_mesh_every = 3;
   Tests tests;
-  tests.push_back(std::make_unique<FoldTest>(1, system.free_parameters(), 1, false));
+  tests.push_back(std::make_unique<FoldTest>(1, system.free_parameters(), ParameterLayout(), 1, false));
   tests.push_back(std::make_unique<BranchPointTest>(false));
   const RecordedBranch branch = record(follower, system, point, settings, std::move(tests));
   CAPTURE(branch.notes);

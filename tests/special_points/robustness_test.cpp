@@ -99,7 +99,8 @@ double bifurcation(double omega, double from, PointType type, double ds, const V
       linosc(), cut_orbit(orbit, variant.cut), orbit.par(), 1, ds, variant,
       [](const DefiningSystem& system) {
         Tests tests;
-        tests.push_back(std::make_unique<FoldTest>(1, system.free_parameters(), system.segments(), false));
+        tests.push_back(
+            std::make_unique<FoldTest>(1, system.free_parameters(), ParameterLayout(), system.segments(), false));
         tests.push_back(std::make_unique<BranchPointTest>(false));
         tests.push_back(std::make_unique<PeriodDoublingTest>(false));
         tests.push_back(std::make_unique<TorusTest>(false));

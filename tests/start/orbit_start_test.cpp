@@ -102,7 +102,7 @@ TEST_CASE("rows that divide intervals of a mesh are an orbit on that mesh") {
 TEST_CASE("an orbit with its direction comes back from its label") {
   const Orbit x = two_segments();
   const OrbitVector v = direction_of(x, 2);
-  const std::vector<int> listed{3, first_duration, 1, first_duration + 1};
+  const std::vector<int> listed{3, ParameterLayout().first_duration(), 1, ParameterLayout().first_duration() + 1};
   LabelledSolution label = labelled_solution(x, v, {1, 3}, listed);
   CHECK(label.parameter_direction == std::vector<double>{2.0, 0.3, 1.0, -0.4});
 

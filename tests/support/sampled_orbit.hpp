@@ -16,7 +16,7 @@ struct Piece {
 };
 
 inline ParameterVector parameters(std::initializer_list<double> values) {
-  ParameterVector par = ParameterVector::Zero(parameter_length);
+  ParameterVector par{ParameterLayout()};
   Eigen::Index k = 0;
   for (const double v : values) par(k++) = v;
   return par;

@@ -25,9 +25,9 @@ LabelledSolution ball() {
       0.0, 0.0, 0.0;
   label.parameters.assign(100, 0.0);
   label.parameters[0] = 1.0;
-  label.parameters[first_duration - 1] = 2.0;
-  label.parameters[first_duration] = 0.5;
-  label.free_parameters = {1, first_duration, first_duration + 1};
+  label.parameters[ParameterLayout().first_duration() - 1] = 2.0;
+  label.parameters[ParameterLayout().first_duration()] = 0.5;
+  label.free_parameters = {1, ParameterLayout().first_duration(), ParameterLayout().first_duration() + 1};
   return label;
 }
 

@@ -34,7 +34,8 @@ LabelledSolution torus() {
     for (int k = 0; k < 3; ++k)
       label.states.block<3, 1>(3 * i, k) = on_torus(static_cast<double>(i) / returns, 0.5 * k);
   label.parameters.assign(100, 0.0);
-  for (int i = 0; i < returns; ++i) label.parameters[static_cast<std::size_t>(first_duration - 1 + i)] = 2.0;
+  for (int i = 0; i < returns; ++i)
+    label.parameters[static_cast<std::size_t>(ParameterLayout().first_duration() - 1 + i)] = 2.0;
   return label;
 }
 

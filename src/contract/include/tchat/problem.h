@@ -10,8 +10,9 @@
  * A problem is three families of smooth functions, numbered from 1:
  *     fields f_i(x, p) in R^n,   events h_j(x, p) in R (the system lives in h >= 0),   jumps g_k(x, p) in R^n.
  *
- * Shapes. x has `dimension` entries. par has at least TCHAT_PAR_LENGTH entries: par[k-1] is PAR(k), of which the first
- * `parameters` are the problem's own and par[60], par[61], ... are the segment durations. Matrices are column-major.
+ * Shapes. x has `dimension` entries. par has at least TCHAT_PAR_LENGTH entries, or as many more as `parameters` needs:
+ * par[k-1] is PAR(k). The first `parameters` are the problem's own. The segment durations are par[60], par[61], ..., or
+ * follow the parameters where these are more than 60: TCHAT_FIRST_DURATION. Matrices are column-major.
  * A function of kind TCHAT_EVENT has 1 row, TCHAT_INTEGRAND `integral_conditions` rows, the others `dimension` rows.
  *
  * A function that cannot be evaluated at a point returns NaN there; tchat then shortens its step.
@@ -24,6 +25,8 @@
 
 #define TCHAT_PROBLEM_ABI 2
 #define TCHAT_PAR_LENGTH 512
+/* The index k of par[k] = T_1 in a problem of `parameters` parameters. */
+#define TCHAT_FIRST_DURATION(parameters) ((parameters) > 60 ? (parameters) : 60)
 #define TCHAT_POINTS_OF_SET 4 /* of first_in_lanes */
 
 #ifdef __cplusplus
@@ -49,7 +52,7 @@ typedef struct tchat_problem {
   uint32_t struct_size; /* sizeof(tchat_problem) */
 
   int32_t dimension;  /* n >= 1 */
-  int32_t parameters; /* 0..60 */
+  int32_t parameters; /* 0.. */
   int32_t fields;     /* number of fields, 1.. */
   int32_t events;     /* number of event functions, 1.. (0.. with boundary conditions) */
   int32_t jumps;      /* number of jump functions, 1.. (0.. with boundary conditions) */
@@ -95,7 +98,7 @@ typedef struct tchat_problem {
   const char* const* user_value_names; /* `user_values` strings or NULL */
   void (*user_value)(const void* self, const double* x, const double* par, double* out);
 
-  /* Starting values of PAR(61), PAR(62), ..., the durations: `durations` values, NaN for one that is not known. NULL
+  /* Starting values of the durations: `durations` values, NaN for one that is not known. NULL
    * when the problem does not say. */
   int32_t durations;
   const double* initial_durations;
@@ -105,8 +108,8 @@ typedef struct tchat_problem {
   void (*output_parameters)(const void* self, int32_t segment, const double* x, double* par);
 
   /* Boundary value problems (IPS = 4): `boundary_conditions` conditions, each zero, on the starts x_s(0) and ends
-   * x_s(1) of `segments` segments (dimension x segments each) and par, in which par[60 + s - 1] is T_s. 0 and NULL:
-   * none. */
+   * x_s(1) of `segments` segments (dimension x segments each) and par, in which par[TCHAT_FIRST_DURATION(parameters) +
+   * s - 1] is T_s. 0 and NULL: none. */
   int32_t boundary_conditions;
   void (*boundary)(const void* self, int32_t segments, const double* starts, const double* ends, const double* par,
                    double* out);

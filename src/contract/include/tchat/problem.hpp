@@ -250,7 +250,7 @@ class ProblemTable {
   static_assert(slide_with_all_states(),
                 "tchat: `sliding`: field, minus and plus must have all states: `dimension_of`");
   static_assert(n >= 1, "tchat: `dimension` must be at least 1");
-  static_assert(q >= 0 && q <= 60, "tchat: `parameters` must be between 0 and 60");
+  static_assert(q >= 0, "tchat: `parameters`, their number, must not be negative");
   static_assert(Problem::fields >= 1, "tchat: `fields`, the number of vector fields, must be at least 1");
   static_assert(boundary_count() >= 0, "tchat: `boundary_conditions`, their number, must not be negative");
   static_assert(integral_count() >= 0, "tchat: `integral_conditions`, their number, must not be negative");
@@ -272,7 +272,7 @@ class ProblemTable {
   using Parameters = std::array<T, static_cast<std::size_t>(q > 0 ? q : 1)>;
 
   /// For integrands, which may depend on them.
-  static constexpr int durations_begin = 60;  // PAR(61) is T_1
+  static constexpr int durations_begin = TCHAT_FIRST_DURATION(q);  // par[durations_begin] is T_1
   template <class T>
   using Durations = std::array<T, static_cast<std::size_t>(integral_count() > 0 ? 64 : 1)>;
 
