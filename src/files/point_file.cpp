@@ -145,9 +145,9 @@ std::string constants_lines(const RunSettings& s) {
 std::string list_lines(const PointFileHeader& header) {
   const RunSettings& s = header.settings;
   const int segments = static_cast<int>(s.segments.size());
-  const bool is_torus = family_of(s.problem_type).facts().has_rotation;
+  const bool has_rotation = family_of(s.problem_type).facts().has_rotation;
   std::string text = ConstantsLine()
-                         .integer("NPAR", s.layout.stored(segments, is_torus))
+                         .integer("NPAR", s.layout.stored(segments, has_rotation))
                          .pair("THL", weights(s.parameter_weights))
                          .pair("THU", weights(s.state_weights))
                          .str();
@@ -167,7 +167,7 @@ std::string list_lines(const PointFileHeader& header) {
               .integer("GRJUMP", s.grazing_jump)
               .pair("SIGNATURE", signature_text(s))
               .str();
-  if (const int parameters = s.layout.recorded(is_torus); parameters > 0)
+  if (const int parameters = s.layout.recorded(has_rotation); parameters > 0)
     text += ConstantsLine().pair("PARAMETERS", fmt::format("{}", parameters)).str();
   return text;
 }

@@ -60,9 +60,9 @@ EntrySizes checked_sizes(const LabelledSolution& solution) {
   if (!solution.own_mesh.empty())
     sizes.internal +=
         kind_values + static_cast<int>(own_mesh_values(static_cast<std::int64_t>(solution.own_mesh.size())));
-  const bool is_torus = family_of(solution.problem_type).facts().has_rotation;
-  sizes.parameters = solution.layout.stored(sizes.segments, is_torus) + sizes.internal;
-  sizes.recorded = solution.layout.recorded(is_torus);
+  const bool has_rotation = family_of(solution.problem_type).facts().has_rotation;
+  sizes.parameters = solution.layout.stored(sizes.segments, has_rotation) + sizes.internal;
+  sizes.recorded = solution.layout.recorded(has_rotation);
   if (solution.has_direction()) {
     require(solution.parameter_direction.size() == solution.free_parameters.size(),
             "direction does not fit the free parameters");

@@ -522,13 +522,13 @@ LabelledSolution in_layout(LabelledSolution solution, const ParameterLayout& lay
   const bool same_places = before.first_duration() == layout.first_duration() && before.rotation() == layout.rotation();
   if (same_places || !has_durations) return solution;
   const int segments = segment_count(solution);
-  const bool is_torus = family_of(solution.problem_type).facts().has_rotation;
+  const bool has_rotation = family_of(solution.problem_type).facts().has_rotation;
   const auto new_place = [&](int k) {
-    if (is_torus && k == before.rotation()) return layout.rotation();
+    if (has_rotation && k == before.rotation()) return layout.rotation();
     return before.is_duration(k, segments) ? layout.duration(before.duration_segment(k)) : k;
   };
   const std::vector<double> old = std::exchange(solution.parameters, {});
-  solution.parameters.assign(static_cast<std::size_t>(layout.stored(segments, is_torus)), 0.0);
+  solution.parameters.assign(static_cast<std::size_t>(layout.stored(segments, has_rotation)), 0.0);
   for (int k = 1; k <= static_cast<int>(old.size()); ++k) {
     const int place = new_place(k);
     const bool is_kept = place != k || before.is_duration(k, segments) || layout.is_parameter(k, segments);

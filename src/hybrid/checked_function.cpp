@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "hybrid/extrapolated_difference.hpp"
 
@@ -27,9 +28,12 @@ std::string point_text(const TestPoint& at) {
 }
 
 CheckedFunction::CheckedFunction(const HybridSystem& system, FunctionKind kind, int index)
-    : system_(system), kind_(kind), index_(index), active_(static_cast<std::size_t>(system.parameters())) {
+    : CheckedFunction(system, kind, index, std::vector<int>(static_cast<std::size_t>(system.parameters()))) {
   std::iota(active_.begin(), active_.end(), 1);
 }
+
+CheckedFunction::CheckedFunction(const HybridSystem& system, FunctionKind kind, int index, std::vector<int> active)
+    : system_(system), kind_(kind), index_(index), active_(std::move(active)) {}
 
 VectorXd CheckedFunction::value(const TestPoint& at) const {
   VectorXd out(rows());
@@ -54,18 +58,17 @@ MatrixXd CheckedFunction::second(const TestPoint& at, const VectorXd& direction,
 }
 
 double CheckedFunction::variable(const TestPoint& at, int c) const {
-  return c < system_.dimension() ? at.x(c) : at.par(c - system_.dimension());
+  return c < system_.dimension() ? at.x(c) : at.par(parameter(c) - 1);
 }
 
 TestPoint CheckedFunction::moved(TestPoint at, int c, double t) const {
-  double& moving = c < system_.dimension() ? at.x(c) : at.par(c - system_.dimension());
+  double& moving = c < system_.dimension() ? at.x(c) : at.par(parameter(c) - 1);
   moving += t;
   return at;
 }
 
 std::string CheckedFunction::variable_name(int c) const {
-  const int n = system_.dimension();
-  return c < n ? system_.state_name(c + 1) : system_.parameter_name(c - n + 1);
+  return c < system_.dimension() ? system_.state_name(c + 1) : system_.parameter_name(parameter(c));
 }
 
 std::string CheckedFunction::row_name(int row) const {

@@ -21,14 +21,17 @@ struct TestPoint {
 /// "x = (1, 0.5)"
 std::string point_text(const TestPoint& at);
 
-/// One function F with its variables: c = 0..n-1 are the states, then come PAR(1..q).
+/// One function F with its variables: c = 0..n-1 are the states, then come parameters, all of them unless some are
+/// chosen.
 class CheckedFunction {
  public:
   /// A view of `system`, which outlives this object.
   CheckedFunction(const HybridSystem& system, FunctionKind kind, int index);
+  /// `active`: PAR indices, from 1.
+  CheckedFunction(const HybridSystem& system, FunctionKind kind, int index, std::vector<int> active);
 
   int rows() const { return system_.rows(kind_); }
-  int variables() const { return system_.dimension() + system_.parameters(); }
+  int variables() const { return system_.dimension() + static_cast<int>(active_.size()); }
 
   Eigen::VectorXd value(const TestPoint& at) const;
   /// [F_x, F_p], rows x variables; `value` becomes F.
@@ -45,10 +48,12 @@ class CheckedFunction {
   std::string row_name(int row) const;
 
  private:
+  int parameter(int c) const { return active_[static_cast<std::size_t>(c - system_.dimension())]; }
+
   const HybridSystem& system_;
   FunctionKind kind_;
   int index_;
-  std::vector<int> active_;  // 1..q
+  std::vector<int> active_;
 };
 
 /// An entry of a matrix of derivatives against differences.

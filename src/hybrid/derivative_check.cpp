@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
+#include <numeric>
 #include <random>
 #include <set>
 
@@ -20,11 +22,12 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double consistency_factor = 1e-11;  // between two exact evaluations
-constexpr int guard = 16;                     // entries of room behind arguments and outputs
-constexpr double untouched = -7.25e77;        // what the room behind the outputs holds
-constexpr int most_faults = 10;               // wrong entries of one function that are listed
-constexpr int many_variables = 16;            // from here on random directions instead of every variable
+constexpr double consistency_factor = 1e-11;   // between two exact evaluations
+constexpr int guard = 16;                      // entries of room behind arguments and outputs
+constexpr double untouched = -7.25e77;         // what the room behind the outputs holds
+constexpr int most_faults = 10;                // wrong entries of one function that are listed
+constexpr int most_parameters_of_second = 60;  // of more a random choice: every one costs as many evaluations again
+constexpr int many_variables = 16;             // from here on random directions instead of every variable
 
 /// Where roots and angles are likely to have zero arguments, and asin and acos arguments of modulus 1: the problem's
 /// start and zero, and those with one state 0, 1 or -1.
@@ -48,7 +51,11 @@ class FunctionChecker {
  public:
   FunctionChecker(const HybridSystem& system, FunctionKind kind, int index, const std::vector<TestPoint>& points,
                   unsigned seed)
-      : system_(system), function_(system, kind, index), points_(points), random_(seed) {
+      : system_(system),
+        function_(system, kind, index),
+        points_(points),
+        random_(seed),
+        of_second_(system, kind, index, some_parameters(system, seed)) {
     check_.kind = kind;
     check_.index = index;
   }
@@ -68,6 +75,14 @@ class FunctionChecker {
   }
 
  private:
+  static std::vector<int> some_parameters(const HybridSystem& system, unsigned seed) {
+    std::vector<int> all(static_cast<std::size_t>(system.parameters())), some;
+    std::iota(all.begin(), all.end(), 1);
+    std::mt19937 random(seed);
+    std::sample(all.begin(), all.end(), std::back_inserter(some), most_parameters_of_second, random);
+    return some;
+  }
+
   void check_values() {
     const int rows = function_.rows();
     std::vector<int> failures(static_cast<std::size_t>(rows), 0);
@@ -180,21 +195,21 @@ class FunctionChecker {
 
   void check_second(const TestPoint& at) {
     if (!has_finite_derivatives(system_, check_.kind, check_.index, at.x.data(), at.par.data())) return;
-    const int variables = function_.variables();
+    const int variables = of_second_.variables();
     const bool every_variable = variables <= many_variables;
     for (int k = 0; k < (every_variable ? variables : 4); ++k)
       check_along(at, every_variable ? VectorXd(VectorXd::Unit(variables, k)) : random_direction(),
-                  every_variable ? function_.variable_name(k) : "a random direction");
+                  every_variable ? of_second_.variable_name(k) : "a random direction");
   }
 
   void check_along(const TestPoint& at, const VectorXd& direction, const std::string& name) {
     VectorXd along;
-    const MatrixXd derivative = function_.second(at, direction, along);
+    const MatrixXd derivative = of_second_.second(at, direction, along);
     check_agreement(at, direction, along, name);
     const auto compared =
-        compare_with_differences(function_, at, derivative, [this, &direction](const TestPoint& near) {
+        compare_with_differences(of_second_, at, derivative, [this, &direction](const TestPoint& near) {
           VectorXd d;
-          function_.second(near, direction, d);
+          of_second_.second(near, direction, d);
           return d;
         });
     const ComparedEntry& worst = compared.worst;
@@ -203,14 +218,14 @@ class FunctionChecker {
     second_at_ = point_text(at);
     check_.second_error = worst.relative;
     check_.worst_second =
-        fmt::format("d2 {} / d {} d {}", function_.row_name(worst.row), name, function_.variable_name(worst.column));
+        fmt::format("d2 {} / d {} d {}", of_second_.row_name(worst.row), name, of_second_.variable_name(worst.column));
   }
 
   /// The directional derivative that comes with second derivatives is exact too; a difference is a first derivative's
   /// fault, reported already when the differences saw it.
   void check_agreement(const TestPoint& at, const VectorXd& direction, const VectorXd& along, const std::string& name) {
     VectorXd value;
-    const MatrixXd first = function_.first(at, value);
+    const MatrixXd first = of_second_.first(at, value);
     const VectorXd expected = first * direction;
     const double scale = 1.0 + first.lpNorm<Eigen::Infinity>() + value.lpNorm<Eigen::Infinity>();
     for (int r = 0; r < function_.rows(); ++r) {
@@ -224,7 +239,7 @@ class FunctionChecker {
 
   VectorXd random_direction() {
     std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-    return VectorXd::NullaryExpr(function_.variables(), [&] { return uniform(random_); });
+    return VectorXd::NullaryExpr(of_second_.variables(), [&] { return uniform(random_); });
   }
 
   static std::string text(const ComparedEntry& worst, const std::string& entry, const std::string& at) {
@@ -240,6 +255,7 @@ class FunctionChecker {
   CheckedFunction function_;
   const std::vector<TestPoint>& points_;
   std::mt19937 random_;
+  CheckedFunction of_second_;  // by states and at most 60 parameters
   FunctionCheck check_;
   std::vector<TestPoint> evaluable_;
   struct FirstFault {

@@ -59,14 +59,14 @@ class ParameterLayout {
   constexpr int room(int segments = 1) const { return std::max(least_length, unfolding(segments)); }
 
   /// How many of these a labelled solution of a torus, or of any other kind, stores: TC-HAT's 100 at least.
-  constexpr int stored(int segments, bool is_torus) const {
+  constexpr int stored(int segments, bool has_rotation) const {
     const int last = std::max(least_stored, first_duration() - 1 + segments);
-    return is_torus ? std::max(last, rotation()) : last;
+    return has_rotation ? std::max(last, rotation()) : last;
   }
 
   /// The number of parameters where a file must record it to be understood without the problem; else 0.
-  constexpr int recorded(bool is_torus) const {
-    return parameters_ > least_room || (is_torus && !has_room_for_rotation()) ? parameters_ : 0;
+  constexpr int recorded(bool has_rotation) const {
+    return parameters_ > least_room || (has_rotation && !has_room_for_rotation()) ? parameters_ : 0;
   }
 
   /// "T2" of the second duration: what users read. Files of runs have PAR(62), as TC-HAT's do.

@@ -22,7 +22,7 @@ using Eigen::VectorXd;
 /// A grazing orbit with its maps.
 struct GrazingCase {
   const HybridSystem* system;
-  VectorXd par;
+  ParameterVector par;
   VectorXd x;
   Signature segments;
   std::vector<double> durations;
@@ -38,8 +38,8 @@ struct GrazingCase {
     return CompositeMap(
         LocalContact(smooth(smooth_order), std::make_shared<DiscontinuityMap>(*system, point()), order));
   }
-  VectorXd at(double parameter) const {
-    VectorXd moved = par;
+  ParameterVector at(double parameter) const {
+    ParameterVector moved = par;
     moved(0) = parameter;
     return moved;
   }
@@ -98,7 +98,7 @@ VectorXd flow_to(const HybridSystem& system, int event, const VectorXd& start, c
 /// `section`: near the orbit's point on P, behind the wall.
 TrueOrbit true_orbit(const GrazingCase& grazing, const VectorXd& section, double parameter) {
   const HybridSystem& system = *grazing.system;
-  const VectorXd par = grazing.at(parameter);
+  const ParameterVector par = grazing.at(parameter);
   const double depth = -system.event(1, section.data(), par.data());
   REQUIRE(depth > 0.0);
   const VectorXd before = flow_to(system, 1, section, par, -std::sqrt(2.0 * depth / grazing.point().a));
@@ -116,7 +116,7 @@ TrueOrbit true_orbit(const GrazingCase& grazing, const VectorXd& section, double
 }
 
 /// Fixed point in contact of the map by Newton's method, its steps halved where they would leave contact.
-VectorXd fixed_point(const CompositeMap& map, VectorXd x, const VectorXd& par) {
+VectorXd fixed_point(const CompositeMap& map, VectorXd x, const ParameterVector& par) {
   for (int k = 0; k < 40; ++k) {
     const Iterate iterate = map.step(x, par);
     const MatrixXd matrix = MatrixXd::Identity(x.size(), x.size()) - map.tangent(x, par);
@@ -150,12 +150,12 @@ TEST_CASE("planar: the smooth map's derivative, both fixed points (3.7), (3.9) a
   }
   const CompositeMap map = grazing.map(MapOrder::three_halves, 1);
   // Without contact (3.9) is exact for the linear map.
-  const VectorXd below = grazing.at(0.99);
+  const ParameterVector below = grazing.at(0.99);
   VectorXd x = grazing.x;
   for (int k = 0; k < 30; ++k) x = map.step(x, below).image;
   CHECK(x(0) - grazing.x(0) == Approx(p_mu * -0.01 / (1.0 - p1)).epsilon(1e-9));
   // With contact to lowest order (3.7); the term of order 3/2 takes part in the next one.
-  const VectorXd above = grazing.at(1.0 + 1e-6);
+  const ParameterVector above = grazing.at(1.0 + 1e-6);
   x = grazing.x + Eigen::Vector2d(1e-9, 0.0);
   for (int k = 0; k < 30; ++k) x = map.step(x, above).image;
   CHECK(x(0) - grazing.x(0) == Approx(p_mu * 1e-6 / (1.0 - 0.64 * p1)).epsilon(1e-5));
@@ -268,7 +268,7 @@ TEST_CASE("rand3d, m = 0.39: period adding of the composite map beside direct si
   const CompositeMap map = grazing.map(MapOrder::exact, 2);
   MapIteration settings;
   for (const auto& [dmu, period] : {std::pair{5e-7, 4}, {1.0e-4, 2}, {1.0e-3, 2}, {2.0e-3, 1}}) {
-    const VectorXd par = grazing.at(grazing.par(0) + dmu);
+    const ParameterVector par = grazing.at(grazing.par(0) + dmu);
     const MapAttractor attractor = iterate_to_attractor(map, grazing.x, par, settings);
     REQUIRE(attractor.kind == AttractorKind::periodic);
     CHECK(attractor.period == period);
@@ -287,7 +287,7 @@ TEST_CASE("rand3d, m = 0.39: period adding of the composite map beside direct si
 
 TEST_CASE("the composite map's tangent against differences, to every order") {
   const GrazingCase grazing = rand3d_028();
-  const VectorXd par = grazing.at(grazing.par(0) + 3e-4);
+  const ParameterVector par = grazing.at(grazing.par(0) + 3e-4);
   // On P near x*, in contact: along directions in P.
   const GrazingPoint point = grazing.point();
   const VectorXd normal = point.section_gradient.normalized();

@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <initializer_list>
 
+#include "hybrid/parameter_vector.hpp"
 #include "support/test_system.hpp"
 
 // Their line of registration would make a plugin of the test.
@@ -18,8 +19,8 @@
 namespace tchat::test {
 
 /// PAR(1), PAR(2), ... and zeros.
-inline Eigen::VectorXd full_par(std::initializer_list<double> values) {
-  Eigen::VectorXd par = Eigen::VectorXd::Zero(TCHAT_PAR_LENGTH);
+inline ParameterVector full_par(std::initializer_list<double> values) {
+  ParameterVector par{ParameterLayout()};
   int k = 0;
   for (const double value : values) par(k++) = value;
   return par;

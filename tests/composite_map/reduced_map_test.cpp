@@ -26,8 +26,8 @@ struct FvdpCase {
     return std::make_shared<const DiscontinuityMap>(system_of<ForcedVanDerPol>(), point, section);
   }
   double phase() const { return torus->projection().phase(section ? torus->on_curve(grazing.phase) : point.x); }
-  VectorXd at(double dmu) const {
-    VectorXd par = grazing.par;
+  ParameterVector at(double dmu) const {
+    ParameterVector par = grazing.par;
     par(0) -= dmu;
     return par;
   }
@@ -35,7 +35,7 @@ struct FvdpCase {
 
 FvdpCase fvdp_case(int event) {
   const HybridSystem& system = system_of<ForcedVanDerPol>();
-  const VectorXd par = full_par({5.0, 0.1, 0.75, 1.505, 0.8, 2.923685098});
+  const ParameterVector par = full_par({5.0, 0.1, 0.75, 1.505, 0.8, 2.923685098});
   CurveSettings settings;
   if (event == 2) settings.angles = {2};
   const FittedCurve fit = fit_invariant_curve(torus_points(par, event, 4000), settings, "points");
@@ -55,7 +55,7 @@ FvdpCase fvdp_case(int event) {
 }
 
 /// d phi' / d phi of a map by differences.
-double difference(const IteratedMap& map, const TorusReturn& torus, const VectorXd& par, double phi) {
+double difference(const IteratedMap& map, const TorusReturn& torus, const ParameterVector& par, double phi) {
   const double h = 1e-6;
   const auto image = [&](double at) { return torus.projection().phase(map.step(torus.on_curve(at), par).image); };
   const double d = image(phi + h) - image(phi - h);
@@ -91,7 +91,7 @@ TEST_CASE("fvdp on P: the torus's grazing point, rho_1 and rho_2 of (3.28), (3.2
   };
   CHECK(off(1e-4) / off(1e-6) == Approx(100.0).epsilon(0.2));
   for (const double share : {-0.7, 0.1, 0.6}) {
-    const VectorXd par = fvdp.at(dmu);
+    const ParameterVector par = fvdp.at(dmu);
     const double phi = fvdp.phase() + share * of.width;
     const VectorXd x = fvdp.torus->on_curve(phi);
     CHECK(reduced.step(x, par).contact);
@@ -105,7 +105,7 @@ TEST_CASE("fvdp on P: the torus's grazing point, rho_1 and rho_2 of (3.28), (3.2
 
   // The full map: contact moves the phase by (3.18), the rest of the state by (1 - r^2) of the penetration.
   const CompositeMap map(LocalContact(fvdp.torus, fvdp.contact(), MapOrder::one, 0.25));
-  const VectorXd par = fvdp.at(dmu);
+  const ParameterVector par = fvdp.at(dmu);
   const VectorXd x = fvdp.point.x;
   const LocalContact::Result after = LocalContact(fvdp.torus, fvdp.contact(), MapOrder::one, 0.25).apply(x, par);
   CHECK(after.penetration == Approx(dmu).epsilon(1e-9));

@@ -42,7 +42,7 @@ double largest(const MatrixXd& m) { return m.cwiseAbs().maxCoeff(); }
 TEST_CASE("the return of a linear oscillator to a moving wall, to second order in state and parameters") {
   // From (x1, x2) to x1 = d with x2 < 0: x2 = -sqrt(r^2 - d^2), r^2 = x1^2 + x2^2, whatever the start on the way up.
   const SuspendedSystem suspended(system_of<HalfTurn>(), {1, 2}, 1, 2);
-  const VectorXd par = full_par({0.7, 0.0});
+  const ParameterVector par = full_par({0.7, 0.0});
   const Eigen::Vector2d x(0.3, 1.1);
   const VectorXd z = suspended.suspended(x, par);
   const QuadraticMap map = smooth_return(suspended.system(), {{1, 1, 1}}, z, par, 2);
@@ -69,7 +69,7 @@ TEST_CASE("event functions and derivatives of the suspended system against diffe
   const SuspendedSystem suspended(system_of<ThreeDimensionalOscillator>(), {2, 1}, 1, 1,
                                   SectionPlane{Eigen::Vector3d(0.3, -1.0, 0.2), Eigen::Vector3d(-0.8, 0.2, 0.5)});
   const HybridSystem& system = suspended.system();
-  const VectorXd par = full_par({-0.8, 0.28, 0.8});
+  const ParameterVector par = full_par({-0.8, 0.28, 0.8});
   VectorXd z(5);
   z << -0.7, 0.3, 0.5, 0.31, -0.85;
   REQUIRE(system.dimension() == 5);
@@ -109,7 +109,7 @@ TEST_CASE("event functions and derivatives of the suspended system against diffe
 TEST_CASE("second order of rand3d's smooth return against differences of its first order") {
   const auto suspended =
       std::make_shared<SuspendedSystem>(system_of<ThreeDimensionalOscillator>(), std::vector<int>{1, 2}, 1, 1);
-  const VectorXd par = full_par({-0.798146332928, 0.28, 0.8});
+  const ParameterVector par = full_par({-0.798146332928, 0.28, 0.8});
   const Eigen::Vector3d x(-0.798146332928, 0.274740619469, 0.624223368742);
   const GrazingTurn turn{x, par, {{1, 2, 2}}, {6.725184221523}, Eigen::Vector3d(1.5, 1.5, 1.2)};
   const PeriodicReturn smooth(suspended, turn, suspended->least_distance(), 2);

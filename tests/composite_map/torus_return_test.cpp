@@ -19,7 +19,7 @@ using Eigen::VectorXd;
 
 TEST_CASE("fvdp's smooth torus: mu*, x3* and the curve's second derivative, and the map that it makes", "[slow]") {
   const HybridSystem& system = system_of<ForcedVanDerPol>();
-  const VectorXd par = full_par({5.0, 0.1, 0.75, 1.505, 0.8, 2.9236851});
+  const ParameterVector par = full_par({5.0, 0.1, 0.75, 1.505, 0.8, 2.9236851});
   const MatrixXd all = torus_points(par, 2, 10000);
   CurveSettings settings;
   settings.angles = {2};
@@ -83,7 +83,7 @@ TEST_CASE("fvdp's smooth torus: mu*, x3* and the curve's second derivative, and 
     }
   }
 
-  VectorXd elsewhere = par;
+  ParameterVector elsewhere = par;
   elsewhere(2) = 0.7;
   CHECK_THROWS_WITH(TorusReturn(suspended, fit.curve, projection, elsewhere, suspended->least_distance(), {}),
                     Catch::Contains("does not take the invariant curve to itself") && Catch::Contains("PAR(k)=v"));

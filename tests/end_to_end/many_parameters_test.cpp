@@ -14,8 +14,8 @@ using namespace test_support;
 namespace {
 
 constexpr int harmonics = 120;
-constexpr int amplitudes = harmonics - 1;    // a_2, a_3, ...; alpha is that of the first harmonic
-constexpr int parameters = amplitudes + 5;   // then alpha, omega, zeta, r, wall
+constexpr int amplitudes = harmonics - 1;   // a_2, a_3, ...; alpha is that of the first harmonic
+constexpr int parameters = amplitudes + 5;  // then alpha, omega, zeta, r, wall
 constexpr double whole_turn = 2.0 * 3.14159265358979323846;
 constexpr double period_at_start = whole_turn / 1.9;
 const std::vector<std::string> own_names{"alpha", "omega", "zeta", "r", "wall"};
@@ -301,8 +301,7 @@ void check_same(const Workspace& workspace, const std::string& run, double toler
     CHECK(labels[k].problem_parameters == parameters);
     CHECK(expected[k].problem_parameters == 0);
     for (int a = 2; a <= harmonics; ++a) CHECK(labels[k].parameter(a - 1) == Approx(0.02 / (a * a)).epsilon(1e-15));
-    for (int own = 1; own <= 5; ++own)
-      CHECK(labels[k].parameter(amplitudes + own) == near(expected[k].parameter(own)));
+    for (int own = 1; own <= 5; ++own) CHECK(labels[k].parameter(amplitudes + own) == near(expected[k].parameter(own)));
     CHECK(labels[k].parameter(duration) == near(expected[k].parameter(61)));
     CHECK(labels[k].parameter(duration) * labels[k].parameter(omega) == Approx(whole_turn).epsilon(1e-8));
   }
@@ -326,7 +325,8 @@ TEST_CASE("120 amplitudes as parameters of a C++ class give the branches that co
   compute(workspace, "series", "alpha", "omega");
   check_all(workspace, 1e-8);
 
-  CHECK(contains(succeed(workspace, "verify q.series_impacting LP1 -p series").out, "1 label agrees with forward integration"));
+  CHECK(contains(succeed(workspace, "verify q.series_impacting LP1 -p series").out,
+                 "1 label agrees with forward integration"));
   const std::string labels = succeed(workspace, "labels series_impacting").out;
   CHECK(contains(labels, "alpha = 2.07430"));
   CHECK_FALSE(contains(labels, fmt::format("PAR({})", duration)));
@@ -346,9 +346,10 @@ TEST_CASE("120 amplitudes as parameters of a C++ class give the branches that co
   CHECK(workspace.solutions("doubled").back().parameter(duration + 1) == Approx(period_at_start).epsilon(1e-9));
 
   // An amplitude beyond PAR(60) moves the orbit; its name, its number, bounds, user values and monitors.
-  succeed(workspace, std::vector<std::string>{"run", "series", "-q", "-c", "r.series_smooth", "-s", "series_smooth", "-o",
-                                              "user", "IRS=1", "ICP=[a70,velocity(1)]", "UZR={69: 0.001}",
-                                              "BOUNDS={a70: [0, 0.004]}", "THL={a70: 2, T1: 0}", "NMX=30", "DS=0.001", "RL0=-1", "RL1=1"});
+  succeed(workspace,
+          std::vector<std::string>{"run", "series", "-q", "-c", "r.series_smooth", "-s", "series_smooth", "-o", "user",
+                                   "IRS=1", "ICP=[a70,velocity(1)]", "UZR={69: 0.001}", "BOUNDS={a70: [0, 0.004]}",
+                                   "THL={a70: 2, T1: 0}", "NMX=30", "DS=0.001", "RL0=-1", "RL1=1"});
   const auto moved = workspace.solutions("user");
   CHECK(std::any_of(moved.begin(), moved.end(), [](const SolutionEntry& label) {
     return label.type == -4 && std::abs(label.parameter(69) - 0.001) < 1e-9;
@@ -403,6 +404,94 @@ TEST_CASE("numbers that are neither parameters nor durations, where durations be
   CHECK(contains(refusal(workspace, run + "PAR(beta)=1"), "PAR(125), ... are the durations"));
   workspace.write("series.dat", "# PAR(5000) = 1\n" + workspace.read("series.dat"));
   CHECK(contains(refusal(workspace, run), "PAR(5000) is neither a parameter of problem Series, which has 124, nor"));
+}
+
+TEST_CASE("a curve of grazing in two parameters beyond the 60th, and a held monitor") {
+  const Workspace workspace;
+  compute_reference(workspace);
+  workspace.write("series.cpp", cpp_source(true));
+  succeed(workspace, "simulate series -q --dat series");
+  succeed(workspace, "run series -q -d series -c series -o series_smooth ICP=[alpha,T1] DS=0.05 RL0=1 RL1=4");
+  for (const std::string x : {"few", "series"}) {
+    succeed(workspace, fmt::format("resegment q.{0}_smooth GR1 --to grazing-curve -o {0}_from ICP=[alpha,omega]", x));
+    succeed(workspace, fmt::format("run {0} -q -c {0}_from -s {0}_from -o {0}_grazing NMX=8", x));
+    succeed(workspace, fmt::format("run {0} -q -c r.{0}_smooth -s {0}_smooth -o {0}_held IRS=1 ICP=[alpha,zeta] "
+                                   "HOLD=[max(x1)] NMX=6 DS=0.01",
+                                   x));
+  }
+  check_same(workspace, "grazing", 1e-8);
+  check_same(workspace, "held", 1e-8);
+}
+
+TEST_CASE("a boundary value problem of 1000 parameters gives what it gives with two") {
+  // A quarter period of the pendulum, cut at half the amplitude, and an integral of its square.
+  const Workspace workspace;
+  for (const int count : {2, 1000}) {
+    const std::string name = fmt::format("pendulum{}", count);
+    workspace.write(name + ".cpp", fmt::format(R"(#include <tchat/problem.hpp>
+struct Pendulum {{
+  static constexpr int dimension = 2, parameters = {0}, fields = 1;
+  template <class T>
+  void field(int, const T* x, const T*, T* f) const {{ f[0] = x[1], f[1] = -sin(x[0]); }}
+  static constexpr int boundary_conditions = 6;
+  template <class T>
+  void boundary(const tchat::Ends<T>& x, const T* par, T* b) const {{
+    b[0] = x.start(1)[0] - par[{0} - 2];
+    b[1] = x.start(1)[1];
+    b[2] = x.end(1)[0] - 0.5 * par[{0} - 2];
+    for (int i = 0; i < 2; ++i) b[3 + i] = x.start(2)[i] - x.end(1)[i];
+    b[5] = x.end(2)[0];
+  }}
+  static constexpr int integral_conditions = 1;
+  template <class T>
+  void integrand(int, const T* x, const T* par, const T* durations, T* q) const {{
+    q[0] = x[0] * x[0] - par[{0} - 1] * durations[0];
+  }}
+}};
+TCHAT_PROBLEM(Pendulum)
+)",
+                                               count));
+    const int durations = std::max(count, 60);
+    std::string data = fmt::format("# PAR({}) = 0.1, PAR({}) = 0.008, PAR({}) = 1.0472, PAR({}) = 0.5236\n", count - 1,
+                                   count, durations + 1, durations + 2);
+    for (int k = 0; k <= 20; ++k) {
+      const double first = 1.0472 * k / 20, second = 1.0472 + 0.5236 * k / 20;
+      data += fmt::format("{} {} {} {} {}\n", k / 20.0, 0.1 * std::cos(first), -0.1 * std::sin(first),
+                          0.1 * std::cos(second), -0.1 * std::sin(second));
+    }
+    workspace.write(name + ".dat", data);
+    workspace.write("gc." + name, fmt::format("NDIM=2, IPS=4, NBC=6, NINT=1, GCFIND=[1,1], ICP=[{},{},T1,T2], NTST=20, "
+                                              "NMX=10, DS=0.05, EPSL=1e-10, EPSU=1e-10\n",
+                                              count - 1, count));
+    succeed(workspace, fmt::format("run {} -q", name));
+  }
+  CHECK(contains(succeed(workspace, "check pendulum1000").out, "No fault found"));
+  const PointSection few = workspace.points("pendulum2").front(), many = workspace.points("pendulum1000").front();
+  REQUIRE(many.rows.size() == few.rows.size());
+  for (std::size_t k = 0; k < few.rows.size(); ++k)
+    for (std::size_t c = 0; c < few.rows[k].values.size(); ++c)
+      CHECK(many.rows[k].values[c] == Approx(few.rows[k].values[c]).epsilon(1e-9).margin(1e-9));
+  const SolutionEntry last = workspace.solutions("pendulum1000").back();
+  CHECK(last.parameter(1001) + last.parameter(1002) ==
+        Approx(std::comp_ellint_1(std::sin(0.5 * last.parameter(999)))).epsilon(1e-7));
+}
+
+TEST_CASE("a conservative family among 100 further parameters") {
+  const Workspace workspace;
+  std::string text = "par q1=1";
+  for (int k = 2; k <= 100; ++k) text += fmt::format(", q{}=1", k);
+  workspace.write("ball.tch", text + "\nx' = v\nv' = -1\nevent wall = x\njump bounce: v -> -v\naux energy = v^2/2+x\n");
+  workspace.write("gc.ball", "NDIM=2 IPS=180 CONSERVED=energy ICP=[energy,period] NTST=5 NMX=6 DS=0.1 IAD=0\n");
+  text = "# PAR(101) = 2\n";
+  for (const double tau : {0.0, 0.25, 0.5, 0.75, 1.0})
+    text += fmt::format("{} {} {}\n", tau, 2.0 * tau * (1.0 - tau), 1.0 - 2.0 * tau);
+  workspace.write("ball.dat", text);
+  succeed(workspace, "run ball -q");
+  const PointSection section = workspace.points("ball").front();
+  for (const PointRow& row : section.rows)
+    CHECK(row.values[section.column("energy")] ==
+          Approx(std::pow(row.values[section.column("period")], 2) / 8.0).epsilon(1e-9));
+  CHECK(section.rows.back().values[section.column("energy")] > 0.7);
 }
 
 TEST_CASE("a line # PAR(100) = v of the data sets the 100th parameter") {
@@ -467,8 +556,9 @@ TEST_CASE("tori of problems of 60 and more parameters have rho behind their dura
     CAPTURE(name);
     workspace.write(name + ".cpp", torus_source(workspace, more));
     workspace.shell(fmt::format("cp '{}' gc.{}", TORUS_CONSTANTS, name));
-    succeed(workspace, fmt::format("simulate {0} -q -c {0} --torus {0}_found", name));
-    succeed(workspace, fmt::format("run {0} -q -c {0} -s {0}_found -o {0} NMX=8 UZR={{rho:0.35}}", name));
+    succeed(workspace, fmt::format("simulate {0} -q -c {0} --torus {0}_found NTST=12 NCOL=4", name));
+    succeed(workspace,
+            fmt::format("run {0} -q -c {0} -s {0}_found -o {0} NTST=12 NCOL=4 NMX=6 UZR={{rho:0.35}}", name));
     CHECK(contains(succeed(workspace, fmt::format("labels {}", name)).out, "rho = "));
     const PointSection section = workspace.points(name).front(), few = workspace.points("few").front();
     REQUIRE(section.rows.size() == few.rows.size());
@@ -484,7 +574,8 @@ TEST_CASE("tori of problems of 60 and more parameters have rho behind their dura
     const int rho = more == 0 ? 60 : durations + 257;
     CHECK(last.parameter(rho) == Approx(few.rows.back().values[few.column("rho")]).epsilon(1e-9));
     // A restart, and two other parameters with rho fixed.
-    succeed(workspace, fmt::format("run {0} -q -c r.{0} -s {0} -o {0}_fixed IRS=UZ1 ICP=[omega,Omega] UZR={{}} NMX=3", name));
+    succeed(workspace,
+            fmt::format("run {0} -q -c r.{0} -s {0} -o {0}_fixed IRS=UZ1 ICP=[omega,Omega] UZR={{}} NMX=3", name));
     CHECK(workspace.solutions(name + "_fixed").back().parameter(rho) == Approx(0.35).epsilon(1e-8));
     CHECK(succeed(workspace, fmt::format("verify q.{0}_fixed -p {0}", name)).status == 0);
   }

@@ -295,7 +295,7 @@ TEST_CASE("tables that cannot be used") {
       {"table.struct_size = 8;", {"table has 8 bytes", "another tchat"}},
       {"table.dimension = 0;", {"dimension is 0", "allowed are 1..1000"}},
       {"table.dimension = 2000000000;", {"dimension is 2000000000"}},
-      {"table.parameters = 61;", {"61 parameters", "allowed are 0..60"}},
+      {"table.parameters = 1000001;", {"1000001 parameters", "allowed are 0..1000000"}},
       {"table.fields = 0;", {"0 fields", "at least one field"}},
       {"table.name = 0;", {"no name"}},
       {"table.value = 0;", {"no function `value`"}},

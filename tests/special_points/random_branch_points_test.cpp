@@ -20,7 +20,7 @@ void follow(const HybridSystem& hybrid, const RandomForm& form, int number, int 
   const double from = direction > 0.0 ? form.least_mu : form.most_mu;
   const Orbit start = form.orbit(from, intervals, 4);
   const PeriodicOrbitSystem system(hybrid, {{1, 1, 1}}, {1});
-  Eigen::VectorXd weights = Eigen::VectorXd::Zero(ParameterLayout().room());
+  ParameterVector weights{ParameterLayout()};
   weights(0) = 1.0;
   PathFollower follower(system, start.shape, WeightedNorm(Eigen::VectorXd::Ones(form.n), weights), tight_newton(), 1);
   PathPoint point = follower.make_point(start);

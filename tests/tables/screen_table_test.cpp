@@ -49,10 +49,10 @@ TEST_CASE("At most five columns, so that a line fits 100 characters") {
 TEST_CASE("Free parameters and the period are always shown, then the measure and maxima, durations are not",
           "[output]") {
   using Kind = PointColumn::Kind;
-  std::vector<PointColumn> columns{{Kind::parameter, 2, "omega"}, {Kind::l2_norm, 0, "L2-NORM"},
-                                   {Kind::maximum, 1, "MAX q1"},  {Kind::maximum, 2, "MAX v1"},
-                                   {Kind::maximum, 3, "MAX q2"},  {Kind::parameter, 1, "a"},
-                                   {Kind::parameter, 61, "T1"},   {Kind::period, 0, "PERIOD"}};
+  std::vector<PointColumn> columns{{Kind::parameter, 2, "omega"},       {Kind::l2_norm, 0, "L2-NORM"},
+                                   {Kind::maximum, 1, "MAX q1"},        {Kind::maximum, 2, "MAX v1"},
+                                   {Kind::maximum, 3, "MAX q2"},        {Kind::parameter, 1, "a"},
+                                   {Kind::parameter, 61, "PAR(61)", 1}, {Kind::period, 0, "PERIOD"}};
   CHECK(format_table_heading(columns) ==
         "  BR    PT  TY  LAB      omega      L2-NORM       MAX q1            a       PERIOD\n");
   CHECK(format_table_line({1, 2, true, 0, 0, {1, 2, 3, 4, 5, 6, 7, 8}}, columns) ==

@@ -59,7 +59,7 @@ class Comparison final : public tchat::BranchSink {
 tchat::Orbit first_orbit(double damping) {
   const tchat::OrbitShape shape{2, 1, 20, 4};
   tchat::Orbit orbit{shape, tchat::uniform_mesh(shape.intervals), Eigen::MatrixXd(2, shape.columns()),
-                     tchat::ParameterVector(system.layout())};
+                     tchat::ParameterVector(tchat::ParameterLayout(2))};
   const double omega = std::sqrt(1.0 - damping * damping);
   const double velocity = 1.0 / (1.0 - multiplier_at(damping));
   orbit.par(0) = damping;
