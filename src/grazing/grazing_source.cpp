@@ -27,8 +27,8 @@ constexpr double no_time = 1e-7;
 Orbit orbit_at(const LabelledSolution& solution, const RunSettings& settings, const HybridSystem& system,
                const std::string& source) {
   const auto segments = static_cast<int>(settings.segments.size());
-  return orbit_from_solution(in_layout(solution, system.layout()),
-                             stored_shape(solution, settings.dimension, segments), {}, source)
+  return orbit_from_solution(in_layout(solution, system.layout()), stored_shape(solution, settings.dimension, segments),
+                             {}, source)
       .orbit;
 }
 

@@ -30,10 +30,10 @@ std::optional<Orbit> orbit_from_rows(const DatFile& data, const OrbitShape& shap
 Orbit point_from_data(const DatFile& data, const ParameterVector& par);
 
 /// The labelled solution on a mesh of shape.intervals and shape.collocation: its own where they agree, otherwise one of
-/// the same density; on own meshes of segments where `shape` has such, else on one in common. PAR is that of the solution
-/// (in_layout()). The direction is kept when it has one and its free problem parameters are `free_parameters`, in any order. An equilibrium is one where
-/// `shape` says so. Throws UserError (naming `source`) when the number of states is not n m, and when one is an
-/// equilibrium and the other is not.
+/// the same density; on own meshes of segments where `shape` has such, else on one in common. PAR is that of the
+/// solution (in_layout()). The direction is kept when it has one and its free problem parameters are `free_parameters`,
+/// in any order. An equilibrium is one where `shape` says so. Throws UserError (naming `source`) when the number of
+/// states is not n m, and when one is an equilibrium and the other is not.
 OrbitStart orbit_from_solution(const LabelledSolution& solution, const OrbitShape& shape,
                                const std::vector<int>& free_parameters, const std::string& source);
 
