@@ -36,7 +36,7 @@ double cubic(int s, double tau) { return 1.0 + s - tau + (4.0 + s) * tau * tau *
 
 Orbit cubic_orbit(const OrbitShape& shape) {
   Orbit x{shape, shape.own ? uneven_meshes(shape) : uniform_mesh(shape),
-          Eigen::MatrixXd(shape.dimension, shape.columns()), ParameterVector::Zero(parameter_length)};
+          Eigen::MatrixXd(shape.dimension, shape.columns()), ParameterVector(ParameterLayout())};
   for (int s = 0; s < shape.segments; ++s)
     for (int k = 0; k < shape.nodes_of(s); ++k) x.node(s, k)[0] = cubic(s, x.tau(s, k));
   return x;

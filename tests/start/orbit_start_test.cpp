@@ -199,7 +199,7 @@ TEST_CASE("data give each segment a mesh of its own") {
     data.states.col(k) << std::exp(-60.0 * k / 400.0), std::cos(k / 400.0);
   }
   ParameterVector par = parameters({0.5});
-  par.segment(first_duration - 1, 2).setOnes();
+  par.durations(2).setOnes();
   const Orbit x = orbit_from_data(data, OrbitShape{1, 2, 20, 4}.with_own_meshes(), par);
   CHECK(x.shape.total_intervals() == 40);
   CHECK(x.shape.intervals_of(0) > x.shape.intervals_of(1));
