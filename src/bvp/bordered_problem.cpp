@@ -21,12 +21,6 @@ namespace {
 /// The columns of the states at both ends of segment s.
 std::array<int, 2> end_columns(const OrbitShape& shape, int s) { return {shape.first_node(s), shape.last_node(s)}; }
 
-/// The terms that row . v is the sum of, without their signs: its size, whatever the units of the unknowns are.
-double terms(const OrbitVector& row, const OrbitVector& v) {
-  return row.states.cwiseProduct(v.states).cwiseAbs().sum() + row.durations.cwiseProduct(v.durations).cwiseAbs().sum() +
-         row.globals.cwiseProduct(v.globals).cwiseAbs().sum();
-}
-
 /// Orthogonal to all rows: their vector product.
 template <class Rows>
 auto vector_product(const Rows& rows) {
@@ -157,7 +151,7 @@ BorderedProblem::Numbers BorderedProblem::on_null_vectors(const OrbitVector& row
 /// The largest length that row . Z may have with these sizes of its terms; not zero.
 double BorderedProblem::size_on_null_vectors(const OrbitVector& row) const {
   double sum = std::numeric_limits<double>::min();
-  for (const OrbitVector& z : null_vectors_) sum += terms(row, z) * terms(row, z);
+  for (const OrbitVector& z : null_vectors_) sum += dot_of_sizes(row, z) * dot_of_sizes(row, z);
   return std::sqrt(sum);
 }
 

@@ -67,6 +67,11 @@ double dot(const OrbitVector& row, const OrbitVector& v) {
          row.globals.dot(v.globals);
 }
 
+double dot_of_sizes(const OrbitVector& row, const OrbitVector& v) {
+  return row.states.cwiseProduct(v.states).cwiseAbs().sum() + row.durations.cwiseProduct(v.durations).cwiseAbs().sum() +
+         row.globals.cwiseProduct(v.globals).cwiseAbs().sum();
+}
+
 std::pair<double, double> dot_both(const OrbitVector& row, const OrbitVector& v, const OrbitVector& w) {
   double sums[2];
   array_functions().dot_both(row.states.data(), v.states.data(), w.states.data(), row.states.size(), sums);

@@ -117,6 +117,9 @@ struct OrbitVector {
 /// Plain sum of products of all entries; the value of the dual vector `row` on `v`.
 double dot(const OrbitVector& row, const OrbitVector& v);
 
+/// The terms of that sum without their signs: its size, whatever the units of the unknowns are.
+double dot_of_sizes(const OrbitVector& row, const OrbitVector& v);
+
 /// dot(row, v) and dot(row, w).
 std::pair<double, double> dot_both(const OrbitVector& row, const OrbitVector& v, const OrbitVector& w);
 

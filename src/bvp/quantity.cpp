@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "text/user_error.hpp"
 
@@ -92,17 +93,25 @@ double QuantityFunction::first(const double* x, const double* par, double* by_st
   return value(x, par);
 }
 
+/// A function may change on the scale of a small variable itself: where formulas of two orders differ much, with a step
+/// that is small against it.
 double QuantityFunction::by_difference(double& variable, const double* x, const double* par) const {
+  constexpr double much = 1e-4;  // the error of the better one is about the square
   const double here = variable;
-  const double step = 1e-3 * (1.0 + std::abs(here));
-  const auto at = [&](double steps) {
-    variable = here + steps * step;
-    return value(x, par);
+  const auto derivative = [&](double step) {
+    const auto at = [&](double steps) {
+      variable = here + steps * step;
+      return value(x, par);
+    };
+    const double near = at(1.0) - at(-1.0);
+    const double far = at(2.0) - at(-2.0);
+    variable = here;
+    return std::pair((8.0 * near - far) / (12.0 * step), near / (2.0 * step));
   };
-  const double near = at(1.0) - at(-1.0);
-  const double far = at(2.0) - at(-2.0);
-  variable = here;
-  return (8.0 * near - far) / (12.0 * step);
+  const auto [best, rough] = derivative(1e-3 * (1.0 + std::abs(here)));
+  if (std::abs(best - rough) <= much * std::abs(best) || here == 0.0) return best;
+  const auto [other, other_rough] = derivative(1e-3 * std::abs(here));
+  return std::abs(other - other_rough) < std::abs(best - rough) || !std::isfinite(best) ? other : best;
 }
 
 }  // namespace tchat

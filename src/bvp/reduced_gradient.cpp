@@ -10,6 +10,7 @@ namespace tchat {
 
 namespace {
 
+constexpr double noise = 1e-6;  // of the terms of a second derivative
 /// Closer to a singular matrix there is no family in these parameters.
 constexpr double least_distance = 1e-10;
 
@@ -34,9 +35,11 @@ ReducedGradient::ReducedGradient(const DefiningSystem& system, const OrbitShape&
       values_(system.free_count() - std::ssize(held)),
       sizes_(values_.size()),
       tangent_(shape, system.free_count()),
-      row_(shape, system.free_count()) {}
+      row_(shape, system.free_count()),
+      second_row_(row_) {}
 
 bool ReducedGradient::evaluate(const Orbit& x) {
+  why_none_ = "these orbits are no family in the parameters (multiplier 1)";
   if (!nodal_.factorize(x) || !(nodal_.singular_distance() > least_distance)) return false;
   const Eigen::MatrixXd& columns = nodal_.parameter_columns();
   for (std::size_t i = 0; i < monitors_.size(); ++i) {
@@ -48,7 +51,10 @@ bool ReducedGradient::evaluate(const Orbit& x) {
     for (Eigen::Index k = 0; k < terms_.cols(); ++k)
       terms_(r, k) += std::abs(q) / (1.0 + std::abs(x.par(system_.free_parameters()[static_cast<std::size_t>(k)] - 1)));
   }
-  if (!derivatives_.allFinite() || !find_multipliers()) return false;
+  why_none_ = "a derivative of a monitor is not finite";
+  if (!derivatives_.allFinite()) return false;
+  why_none_ = "what is held does not depend on the last parameters, which are to follow: give ICP another order";
+  if (!find_multipliers()) return false;
   combined_ = adjoint_.front();
   for (std::size_t i = 1; i < adjoint_.size(); ++i)
     combined_ += combination_(static_cast<Eigen::Index>(i)) * adjoint_[i];
@@ -91,12 +97,32 @@ const OrbitVector& ReducedGradient::tangent(int k) {
   return tangent_;
 }
 
+/// The largest change of a free parameter against its own size, which is the scale on which monitors may change.
+double ReducedGradient::relative_change(const Orbit& x, const OrbitVector& y) const {
+  constexpr double least = 1e-6;
+  double largest = 0.0;
+  for (Eigen::Index k = 0; k < y.globals.size(); ++k) {
+    const double p = std::abs(x.par(system_.free_parameters()[static_cast<std::size_t>(k)] - 1));
+    largest = std::max(largest, std::abs(y.globals(k)) / (p > least ? p : 1.0));
+  }
+  return largest;
+}
+
+double ReducedGradient::distance(const Orbit& x, int k) {
+  derivative(x, k, second_row_);
+  const OrbitVector& y = tangent(k);
+  const double second = dot(second_row_, y);
+  if (!(std::abs(second) > noise * dot_of_sizes(second_row_, y))) return std::numeric_limits<double>::infinity();
+  const double p = x.par(system_.free_parameters()[static_cast<std::size_t>(k)] - 1);
+  return std::abs(values_(k) / second) / (1.0 + std::abs(p));
+}
+
 void ReducedGradient::derivative(const Orbit& x, int k, OrbitVector& row) {
   constexpr double share = 2e-3;  // of the orbit's size: the fifth root of rounding, about
   const OrbitVector& y = tangent(k);
   const double size =
       std::max({y.states.cwiseAbs().maxCoeff() / (1.0 + x.states.cwiseAbs().maxCoeff()),
-                y.durations.cwiseAbs().maxCoeff() / (1.0 + std::abs(x.period())), y.globals.cwiseAbs().maxCoeff()});
+                y.durations.cwiseAbs().maxCoeff() / (1.0 + std::abs(x.period())), relative_change(x, y)});
   const double step = share / size;
   row.set_zero();
   add_monitor_gradient(x, y, step, 8.0 / (12.0 * step), row);
@@ -124,16 +150,22 @@ void ReducedGradient::add_monitor_gradient(const Orbit& x, const OrbitVector& al
 ReducedGradient::Nature ReducedGradient::nature(const Orbit& x, const std::vector<int>& parameters) {
   constexpr double least = 1e-4;  // far more than differences and the distance to the point leave
   const auto count = std::ssize(parameters);
-  Eigen::MatrixXd second(count, count);
+  Eigen::MatrixXd second(count, count), terms(count, count);
   OrbitVector row(x.shape, system_.free_count());
   for (Eigen::Index i = 0; i < count; ++i) {
     derivative(x, parameters[static_cast<std::size_t>(i)], row);
-    for (Eigen::Index k = 0; k < count; ++k) second(i, k) = dot(row, tangent(parameters[static_cast<std::size_t>(k)]));
+    for (Eigen::Index k = 0; k < count; ++k) {
+      const OrbitVector& y = tangent(parameters[static_cast<std::size_t>(k)]);
+      second(i, k) = dot(row, y);
+      terms(i, k) = dot_of_sizes(row, y);
+    }
   }
   const Eigen::VectorXd units =
       second.diagonal().cwiseAbs().cwiseMax(std::numeric_limits<double>::min()).cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd scaled = units.asDiagonal() * second * units.asDiagonal();
-  const double uncertainty = least + (scaled - scaled.transpose()).cwiseAbs().maxCoeff();
+  const Eigen::MatrixXd of_terms = units.asDiagonal() * terms * units.asDiagonal();
+  const double uncertainty =
+      least + (scaled - scaled.transpose()).cwiseAbs().maxCoeff() + noise * of_terms.cwiseAbs().maxCoeff();
   const Eigen::VectorXd eigenvalues =
       Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(0.5 * (scaled + scaled.transpose())).eigenvalues();
   if (!eigenvalues.allFinite() || !(eigenvalues.cwiseAbs().minCoeff() > uncertainty)) return Nature::unknown;

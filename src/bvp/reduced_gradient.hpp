@@ -35,8 +35,9 @@ class ReducedGradient {
   /// How many independent parameters: the first ones of the system.
   int count() const { return static_cast<int>(values_.size()); }
 
-  /// H at x. False where the orbit is not part of such a family (multiplier 1), or something is not finite.
+  /// H at x. False where there is none, why_none() says why.
   bool evaluate(const Orbit& x);
+  const char* why_none() const { return why_none_; }
   /// Does a monitor depend on the phase of x, an orbit where evaluate() was last, while no event fixes it? Then H says
   /// nothing.
   bool depends_on_phase(const Orbit& x);
@@ -46,6 +47,9 @@ class ReducedGradient {
 
   /// Sets `row` to dH_k at x, where evaluate() was last.
   void derivative(const Orbit& x, int k, OrbitVector& row);
+  /// How far x, where evaluate() was last, is from an orbit with H_k = 0 when p_k alone changes, by Newton's step in
+  /// units of 1 + |p_k|; infinite where the second derivative may be zero.
+  double distance(const Orbit& x, int k);
   /// y_k; until the next call.
   const OrbitVector& tangent(int k);
 
@@ -57,6 +61,7 @@ class ReducedGradient {
 
  private:
   bool find_multipliers();
+  double relative_change(const Orbit& x, const OrbitVector& y) const;
   void add_monitor_gradient(const Orbit& x, const OrbitVector& along, double step, double factor, OrbitVector& row);
 
   const DefiningSystem& system_;
@@ -71,7 +76,8 @@ class ReducedGradient {
   Eigen::MatrixXd dependent_;             // of the last parameters by the independent ones
   Eigen::VectorXd values_, sizes_;
   RowWeights weights_;
-  OrbitVector tangent_, row_;
+  OrbitVector tangent_, row_, second_row_;
+  const char* why_none_ = "";
   Orbit displaced_;
 };
 

@@ -35,11 +35,11 @@ void StationaryMonitor::remember(std::vector<double>& memory) const { memory = n
 
 bool is_stationary(const DefiningSystem& system, const Orbit& x, const Monitor& objective,
                    const std::vector<HeldMonitor>& held) {
-  constexpr double zero = 1e-3;  // far more than a located point leaves, whatever its tolerances
+  constexpr double near = 1e-2;  // far more than a located point leaves, whatever its tolerances
   ReducedGradient gradient(system, x.shape, objective, held_monitors(held));
   if (!gradient.evaluate(x) || gradient.depends_on_phase(x)) return false;
   for (int k = 0; k < gradient.count() - 1; ++k)
-    if (!(std::abs(gradient.value(k)) <= zero * gradient.size(k))) return false;
+    if (!(gradient.distance(x, k) <= near)) return false;
   return true;
 }
 

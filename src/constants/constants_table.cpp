@@ -66,7 +66,7 @@ std::vector<Constant> make_table() {
        "0 (none), 1 (multipliers only), 2 (all), 3 (BP only), 4 (all but BP), or their negatives", "2", ""},
       {"ISW", "branch mode", 3, &R::branch_mode, one_of(with_zero(branch_modes())),
        "1 (normal), 2 (two-parameter curve of the point IRS), 3 (curve in three parameters: generic BP, TR of a fixed "
-       "angle), 2 to 6 (extremum of a monitor in so many parameters), -1 (switch to the branch that bifurcates at "
+       "angle), 2 to 6 (extrema of a monitor, so many parameters free), -1 (switch to the branch that bifurcates at "
        "IRS); 0 means 1",
        "1", ""},
       {"IPLT", "solution measure", 3, &R::measure, any(),

@@ -56,6 +56,7 @@ class DatReader {
                                   dimension_, dimension_ == 1 ? "" : "s"));
     DatFile file;
     file.parameters = parameters_;
+    file.parameter_lines = parameter_lines_;
     file.named_parameters = named_parameters_;
     file.tau = {0.0};
     file.states = Eigen::Map<const Eigen::VectorXd>(rows_.data() + rows_.size() - std::size_t(dimension_), dimension_);
@@ -71,6 +72,7 @@ class DatReader {
                       path_, count == 0 ? "no row" : "only one row", columns_ - 1));
     DatFile file;
     file.parameters = parameters_;
+    file.parameter_lines = parameter_lines_;
     file.named_parameters = named_parameters_;
     file.span = rows_[(count - 1) * columns_] - rows_[0];
     if (!std::isfinite(file.span))
@@ -111,6 +113,7 @@ class DatReader {
     if (parts.size() != std::size_t(segments_)) refuse_cuts(parts.size());
     DatFile file = data_of_parts(parts);
     file.parameters = parameters_;
+    file.parameter_lines = parameter_lines_;
     file.named_parameters = named_parameters_;
     return file;
   }
@@ -248,6 +251,7 @@ class DatReader {
     if (!index || *index < 1 || *index > most_parameters + max_segments)
       refuse(fmt::format("PAR({}): an index from 1 on or a parameter's name is needed, as in `# PAR(2) = 0.8`", name));
     parameters_.emplace_back(*index, value);
+    parameter_lines_.push_back(line_);
   }
 
   /// A row at which t repeats.
@@ -266,6 +270,7 @@ class DatReader {
   std::vector<double> rows_;
   std::vector<Cut> cuts_;
   std::vector<std::pair<int, double>> parameters_;
+  std::vector<long> parameter_lines_;
   std::vector<std::pair<std::string, double>> named_parameters_;
 };
 

@@ -22,6 +22,7 @@ struct DatFile {
   Eigen::MatrixXd states;                          ///< (n m) x tau.size()
   std::vector<double> durations;                   ///< of the segments, where their own times tell them; else empty
   std::vector<std::pair<int, double>> parameters;  ///< PAR index and value, in file order
+  std::vector<long> parameter_lines;               ///< where these stand, from 1
   std::vector<std::pair<std::string, double>> named_parameters;  ///< by the problem's own names, in file order
 };
 

@@ -43,21 +43,21 @@ std::string nature_text(ReducedGradient::Nature nature) {
 
 /// "Gradient of cost: alpha 0, omega 0.312; a minimum in alpha"
 std::string gradient_text(const HybridSystem& system, const RunSettings& settings, const Orbit& x) {
-  constexpr double zero = 1e-7;  // of its terms: what a located extremum leaves
+  constexpr double near = 1e-5;  // what a located extremum leaves
   const PeriodicOrbitSystem orbits(system, settings.signature(), gradient_parameters(system, settings));
   const std::shared_ptr<const Monitor> objective = principal_monitor(orbits, settings);
   const BranchMonitors monitors = branch_monitors(orbits, settings, x);
   std::string text = "Gradient of " + parameter_name(system, settings, settings.free_parameters.front());
   if (!monitors.held.empty()) text += fmt::format(" with {} held", held_text(system, settings));
   ReducedGradient gradient(orbits, x.shape, *objective, held_monitors(monitors.held));
-  if (!gradient.evaluate(x)) return text + ": none, for these orbits are no family in the parameters (multiplier 1)";
+  if (!gradient.evaluate(x)) return fmt::format("{}: none, for {}", text, gradient.why_none());
   if (gradient.depends_on_phase(x))
     return text + ": none, for it depends on the phase of the orbit, which no event fixes";
   std::vector<int> stationary;
   std::string names;
   for (int k = 0; k < gradient.count(); ++k) {
     const std::string name = system.parameter_name(orbits.free_parameters()[static_cast<std::size_t>(k)]);
-    const bool is_zero = std::abs(gradient.value(k)) <= zero * gradient.size(k);
+    const bool is_zero = gradient.value(k) == 0.0 || gradient.distance(x, k) <= near;
     text += fmt::format("{} {} {:.8g}", k == 0 ? ":" : ",", name, is_zero ? 0.0 : gradient.value(k));
     if (!is_zero) continue;
     stationary.push_back(k);
@@ -80,14 +80,19 @@ bool starts_at_extremum(const HybridSystem& system, const RunSettings& settings,
 }
 
 void check_extremum(const HybridSystem& system, const RunSettings& settings, SelectedStart& start) {
+  if (!is_monitor(settings, settings.free_parameters.front()))
+    throw UserError(
+        fmt::format("{}: ISW = {} follows an extremum of a monitor: name that first in ICP, as in "
+                    "ICP = [period, ...], and after it the {} parameters that are free",
+                    start.source, settings.branch_mode, settings.branch_mode));
   if (is_stationary_start(system, settings, start.start.orbit)) return;
   const int mode = settings.branch_mode;
   throw UserError(
-      fmt::format("{}: {} is not stationary in the first {} of ICP at label {}, where ISW = {} would begin; name an EX "
-                  "label of a run "
-                  "with ISW = {}, and its parameters in the same order",
+      fmt::format("{}: {} is not stationary in the first {} of ICP {}, where ISW = {} would begin; name an EX "
+                  "label of a run with ISW = {}, and its parameters in the same order",
                   start.source, parameter_name(system, settings, settings.free_parameters.front()),
-                  mode == 2 ? "parameter" : fmt::format("{} parameters", mode - 1), start.label, mode, mode - 1));
+                  mode == 2 ? "parameter" : fmt::format("{} parameters", mode - 1),
+                  start.from_solution ? fmt::format("at label {}", start.label) : "at the start", mode, mode - 1));
 }
 
 BranchCurve extrema(const PeriodicOrbitSystem& system, const RunSettings& settings, const SelectedStart& start) {

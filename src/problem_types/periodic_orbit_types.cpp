@@ -42,6 +42,9 @@ ProblemFacts extremum_facts(int branch_mode) {
   return facts;
 }
 
+/// EX is a UZ in files.
+std::vector<PointType> extremum_labels() { return {PointType::user, PointType::end, PointType::regular}; }
+
 ProblemFacts switch_facts(const char* title, bool may_double) {
   return {.number = branch_switch.number,
           .branch_mode = branch_switch.branch_mode,
@@ -166,11 +169,11 @@ std::vector<const ProblemType*> periodic_orbit_types() {
   static const ProblemRow<UnfoldedSystem> persistent_branch_points(
       curve_facts(PointType::branch_point, 2, "branch points that persist (symmetry breaking) in two parameters"),
       {PointType::branch_point}, unfolded, branch_point<UnfoldedSystem>, start_persistent_branch_points);
-  static const Ring extrema_2(extremum_facts(2), {}, ring, extrema, check_extremum, starts_at_extremum);
-  static const Ring extrema_3(extremum_facts(3), {}, ring, extrema, check_extremum, starts_at_extremum);
-  static const Ring extrema_4(extremum_facts(4), {}, ring, extrema, check_extremum, starts_at_extremum);
-  static const Ring extrema_5(extremum_facts(5), {}, ring, extrema, check_extremum, starts_at_extremum);
-  static const Ring extrema_6(extremum_facts(6), {}, ring, extrema, check_extremum, starts_at_extremum);
+  static const Ring extrema_2(extremum_facts(2), extremum_labels(), ring, extrema, check_extremum, starts_at_extremum);
+  static const Ring extrema_3(extremum_facts(3), extremum_labels(), ring, extrema, check_extremum, starts_at_extremum);
+  static const Ring extrema_4(extremum_facts(4), extremum_labels(), ring, extrema, check_extremum, starts_at_extremum);
+  static const Ring extrema_5(extremum_facts(5), extremum_labels(), ring, extrema, check_extremum, starts_at_extremum);
+  static const Ring extrema_6(extremum_facts(6), extremum_labels(), ring, extrema, check_extremum, starts_at_extremum);
   static const Ring angles(
       curve_facts(PointType::torus, 3, "torus bifurcations of the start's angle in three parameters"),
       {PointType::torus}, ring, fixed_angle);

@@ -217,7 +217,7 @@ void settle_mesh(PathFollower& follower, PathPoint& point) {
 /// The free parameters beside ICP(1) that Newton's method has moved by more than data of five digits explain; "" when
 /// there is none.
 std::string moved_beside(const Orbit& start, const Orbit& found, const DefiningSystem& system, int principal,
-                         const std::string& source) {
+                         const std::string& principal_name, const std::string& source) {
   std::string text;
   for (const int k : system.free_parameters()) {
     const double asked = start.par(k - 1);
@@ -226,7 +226,7 @@ std::string moved_beside(const Orbit& start, const Orbit& found, const DefiningS
     const HybridSystem& problem = system.system();
     text += fmt::format(
         "{}the first point has {} = {:.12g}, the start from {} {:.12g}: it is free, and found with {} fixed",
-        text.empty() ? "" : "; ", problem.parameter_name(k), value, source, asked, problem.parameter_name(principal));
+        text.empty() ? "" : "; ", problem.parameter_name(k), value, source, asked, principal_name);
   }
   return text;
 }
@@ -316,7 +316,7 @@ FirstCorrection correct_start(PathFollower& follower, const DefiningSystem& syst
   }
   if (!selected.from_solution && settings.adapt_mesh_every > 0 && start.shape.intervals > 1)
     settle_mesh(follower, point);
-  corrected.note = moved_beside(start, point.orbit, system, principal, selected.source);
+  corrected.note = moved_beside(start, point.orbit, system, principal, name, selected.source);
   corrected.point = std::move(point);
   return corrected;
 }

@@ -53,6 +53,7 @@ std::string run_words(const NextStart& start, const RunSettings& settings, const
 
 /// The same that follow an extremum of ICP(1), a monitor, in one more parameter.
 std::string extremum_words(const RunSettings& settings, const HybridSystem& system) {
+  if (!settings.conserved.empty()) return "";
   const int first = free_problem_parameters(settings).front();
   const int second = other_parameter(first, settings, system);
   if (second == 0) return "";

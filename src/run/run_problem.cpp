@@ -152,7 +152,6 @@ Problem load_problem(const RunRequest& request, const Reports& reports) {
   const std::string constants = constants_path(request.constants.value_or(request.name));
   ReadSettings read = read_settings(request, constants, &constant_warnings);
   reports.warn(constant_warnings);
-  free_problem_parameters(read.used);  // refuses what no plugin can cure
 
   const std::string name = problem_of_run(request.problem, request.name, recorded_problem(read.in_file, constants));
   const std::string plugin = resolve_plugin(name, {.progress = reports.progress});

@@ -17,12 +17,12 @@ ParameterVector initial_parameters(const HybridSystem& system) {
 std::vector<std::pair<int, double>> given_parameters(const DatFile& data, const HybridSystem& system,
                                                      const std::string& path, const ParameterVector& par) {
   std::vector<std::pair<int, double>> given = data.parameters;
-  for (const auto& [k, value] : given)
-    if (k > par.size())
-      throw UserError(
-          fmt::format("{}: PAR({}) is neither a parameter of problem {}, which has {}, nor a duration of its segments, "
-                      "PAR({}), ...",
-                      path, k, system.name(), system.parameters(), par.layout().first_duration()));
+  for (std::size_t i = 0; i < given.size(); ++i)
+    if (const int k = given[i].first; k > par.size())
+      throw UserError(fmt::format(
+          "{}:{}: PAR({}) is neither a parameter of problem {}, which has {}, nor a duration of its segments, "
+          "PAR({}), ...",
+          path, data.parameter_lines[i], k, system.name(), system.parameters(), par.layout().first_duration()));
   for (const auto& [name, value] : data.named_parameters)
     given.emplace_back(parameter_index(system, name, path), value);
   return given;

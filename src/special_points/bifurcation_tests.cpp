@@ -100,9 +100,11 @@ SpecialPoint FoldTest::classify(const TestedPoint& point, bool) const {
   const DefiningSystem& system = point.condensed.system();
   const int s = touching_segment(point);
   const bool is_fold = has_multiplier_one(point.multipliers);
-  if (is_monitor_ && point.multipliers.valid && !is_fold)
+  const bool of_orbits = type_ == PointType::fold && system.orbits() == 1 && !point.multipliers.are_eigenvalues;
+  if (is_monitor_ && of_orbits && point.multipliers.valid && !is_fold)
     return {PointType::user, {UserPointKind::extremum}, stop_, "extremum of ICP(1) along the branch"};
   if (!held_.empty()) return {type_, {}, stop_, "fold of the curve with " + held_ + " held"};
+  if (is_monitor_ && !is_fold) return {type_, {}, stop_, "fold, or extremum of ICP(1) along the branch"};
   if (s < 0 || is_fold) return {type_, {}, stop_, "fold"};
   return {PointType::user,
           {UserPointKind::impact_velocity, s + 1, system.signature()[static_cast<std::size_t>(s)].event, 1.0},

@@ -92,7 +92,7 @@ struct Largest {
   }
 };
 
-/// Do folds of this run have the multiplier 1? Those of a family without a parameter are extrema of what is conserved.
+/// Do folds and branch points of this run have the multiplier 1, whatever was found out while it ran?
 bool is_in_parameter(const RunSettings& settings) {
   if (!settings.held.empty()) return false;
   return !settings.conserved.empty() || !is_monitor(settings, settings.free_parameters.front());

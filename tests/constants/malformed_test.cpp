@@ -88,7 +88,7 @@ TEST_CASE("Malformed positional files", "[constants]") {
       {appendix_b_with(3, "50 8 3 2 1 0 0 0"), {"gc.bad:3: NCOL (", "found '8'", "from 2 to 7"}},
       {appendix_b_with(3, "50 4 -3 2 1 0 0 0"), {"gc.bad:3: IAD (", "found '-3'"}},
       {appendix_b_with(3, "50 4 3 5 1 0 0 0"), {"gc.bad:3: ISP (", "found '5'"}},
-      {appendix_b_with(3, "50 4 3 2 5 0 0 0"), {"gc.bad:3: ISW (", "found '5'", "2 (two-parameter"}},
+      {appendix_b_with(3, "50 4 3 2 7 0 0 0"), {"gc.bad:3: ISW (", "found '7'", "2 (two-parameter"}},
       {appendix_b_with(3, "50 4 3 2 2 0 0 0"), {"gc.bad:2: ICP (", "at least 2"}},
       {appendix_b_with(3, "50 4 3 2 1 x 0 0"), {"gc.bad:3: IPLT (", "found 'x'"}},
       {appendix_b_with(3, "50 4 3 2 1 3* 0 0"), {"gc.bad:3: IPLT (", "'3*'", "r*v"}},

@@ -357,10 +357,10 @@ TEST_CASE("contact modes that are run twice cross the families of twice the peri
   workspace.succeed("run chain -q -c two -s two -o two DSMAX=0.4");
   const auto located = [&](const std::string& name, const std::string& type) {
     std::vector<std::pair<double, double>> found;
-    const PointSection section = workspace.points(name).front();
+    const std::vector<PointSection> sections = workspace.points(name);
     for (const DiagnosticPoint& point : of_type(read_diagnostics(workspace.read("d." + name)), type)) {
-      const PointRow& row = with_label(workspace.points(name), point.label);
-      found.emplace_back(row.values[section.column("period")], row.values[section.column("energy")]);
+      const PointRow& row = with_label(sections, point.label);
+      found.emplace_back(row.values[sections.front().column("period")], row.values[sections.front().column("energy")]);
     }
     return found;
   };
