@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "text/user_error.hpp"
 
@@ -94,24 +93,31 @@ double QuantityFunction::first(const double* x, const double* par, double* by_st
 }
 
 /// A function may change on the scale of a small variable itself: where formulas of two orders differ much, with a step
-/// that is small against it.
+/// that is small against it, unless rounding is more than that then.
 double QuantityFunction::by_difference(double& variable, const double* x, const double* par) const {
   constexpr double much = 1e-4;  // the error of the better one is about the square
+  constexpr double rounding = 1e-15;
   const double here = variable;
-  const auto derivative = [&](double step) {
+  struct Difference {
+    double derivative, uncertainty;
+  };
+  const auto with_step = [&](double step) {
     const auto at = [&](double steps) {
       variable = here + steps * step;
       return value(x, par);
     };
     const double near = at(1.0) - at(-1.0);
     const double far = at(2.0) - at(-2.0);
+    const double size = std::abs(at(2.0)) + std::abs(at(-2.0));
     variable = here;
-    return std::pair((8.0 * near - far) / (12.0 * step), near / (2.0 * step));
+    const double derivative = (8.0 * near - far) / (12.0 * step);
+    return Difference{derivative, std::abs(derivative - near / (2.0 * step)) + rounding * size / step};
   };
-  const auto [best, rough] = derivative(1e-3 * (1.0 + std::abs(here)));
-  if (std::abs(best - rough) <= much * std::abs(best) || here == 0.0) return best;
-  const auto [other, other_rough] = derivative(1e-3 * std::abs(here));
-  return std::abs(other - other_rough) < std::abs(best - rough) || !std::isfinite(best) ? other : best;
+  const Difference usual = with_step(1e-3 * (1.0 + std::abs(here)));
+  if (usual.uncertainty <= much * std::abs(usual.derivative) || here == 0.0) return usual.derivative;
+  const Difference small = with_step(1e-3 * std::abs(here));
+  return small.uncertainty < usual.uncertainty || !std::isfinite(usual.uncertainty) ? small.derivative
+                                                                                    : usual.derivative;
 }
 
 }  // namespace tchat

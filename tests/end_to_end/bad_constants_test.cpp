@@ -42,7 +42,7 @@ TEST_CASE("a malformed line of a constants file is refused by file, line and con
       {3, "50 8 3 2 1 0 0 0", {"NCOL", "'8'", "allowed"}},
       {3, "50 4 -1 2 1 0 0 0", {"IAD", "'-1'", "allowed"}},
       {3, "50 4 3 9 1 0 0 0", {"ISP", "'9'", "allowed"}},
-      {3, "50 4 3 2 5 0 0 0", {"ISW", "'5'", "allowed"}},
+      {3, "50 4 3 2 7 0 0 0", {"ISW", "'7'", "allowed"}},
       {4, "-1 2.5 3.4 0 100", {"NMX", "'-1'", "allowed"}},
       {4, "60 3.4 2.5 0 100", {"RL1", "2.5", "RL0"}},
       {4, "60 nan 3.4 0 100", {"RL0", "'nan'", "allowed"}},
