@@ -17,6 +17,7 @@
 #include "app/complete_command.hpp"
 #include "app/constants_command.hpp"
 #include "app/dat_command.hpp"
+#include "app/explore_command.hpp"
 #include "app/grazing_command.hpp"
 #include "app/help_format.hpp"
 #include "app/labels_command.hpp"
@@ -76,10 +77,11 @@ struct Command {
 };
 
 /// In the order of the help.
-constexpr std::array<Command, 14> commands = {{{"run", add_run_command},
+constexpr std::array<Command, 15> commands = {{{"run", add_run_command},
                                                {"resegment", add_resegment_command},
                                                {"simulate", add_simulate_command},
                                                {"sweep", add_sweep_command},
+                                               {"explore", add_explore_command},
                                                {"labels", add_labels_command},
                                                {"orbit", add_orbit_command},
                                                {"table", add_table_command},

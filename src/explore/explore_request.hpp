@@ -1,0 +1,27 @@
+/// One `tchat explore`: what the command line says, before any file is read.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace tchat {
+
+struct ExploreRequest {
+  std::string name;
+  std::optional<std::string> constants;  ///< -c
+  std::optional<std::string> problem;    ///< -p
+  std::optional<std::string> output;     ///< -o: the folder O of all files
+  std::string over;                      ///< "P=a:b" or "P=a:b:COUNT"
+  std::vector<std::string> states;       ///< --state of the sweep
+  std::vector<std::string> overrides;    ///< KEY=VALUE: parameters for all commands, constants for runs
+  int workers = 1;
+  int doublings = 4;     ///< of the period, from an attractor on
+  int segments = 32;     ///< of the longest signature
+  int branches = 50;     ///< at most so many are kept
+  double seconds = 0.0;  ///< wall time after which no command is begun; 0: any
+  bool fresh = false;    ///< results of an earlier run are thrown away
+  bool quiet = false;
+};
+
+}  // namespace tchat

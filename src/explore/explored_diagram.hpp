@@ -1,0 +1,59 @@
+/// What `tchat explore` finds: branches with what each came from, orbits that lead to branches that are there, what is
+/// left, and how much of a sweep lies on branches.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "explore/command_job.hpp"
+
+namespace tchat {
+
+/// A labelled point of a branch.
+struct ExploredLabel {
+  int label = 0;
+  std::string type;    ///< GR, PD, ...
+  double parameter = 0.0;
+  std::string leads_to;  ///< the branch that the switch there follows; "" without one
+  std::string remark;    ///< why there is none, where one was tried or left out
+};
+
+struct ExploredBranch {
+  std::string name;    ///< of its files in the folder
+  std::string parent;  ///< "" for an attractor
+  std::string origin;  ///< "attractor 2 at alpha = 3.05", "PD 4"
+  int doublings = 0;
+  double from = 0.0, to = 0.0;  ///< range of the parameter
+  std::vector<std::string> signatures;
+  std::vector<ExploredLabel> labels;
+  CommandJob job;
+};
+
+/// An attractor of the sweep that lies on no branch.
+struct UnexplainedAttractor {
+  int attractor = 0;
+  std::string kind;
+  double first = 0.0, last = 0.0;  ///< values at which it is
+  int count = 0;
+  std::string command;  ///< that shows it at the first value
+};
+
+struct ExploredDiagram {
+  std::string parameter;
+  std::vector<CommandJob> first_jobs;  ///< the sweep
+  std::vector<ExploredBranch> branches;
+  std::vector<std::string> joins;  ///< "a1_PD3: a2 again"
+  std::vector<UnexplainedAttractor> unexplained;
+  int periodic = 0, on_branches = 0, other = 0;  ///< attractors over all values; `other`: not periodic
+  bool complete = true;                          ///< false: interrupted, or a budget left something
+  std::string left;                              ///< what a budget left, in words
+};
+
+/// The tree of branches, coverage and what is left, for people.
+std::string tree_text(const ExploredDiagram& diagram);
+/// The same as JSON.
+std::string tree_json(const ExploredDiagram& diagram);
+/// Rules that make all files of the diagram by plain commands. `folder`: of the files.
+std::string makefile_text(const ExploredDiagram& diagram, const std::string& folder);
+
+}  // namespace tchat
