@@ -17,15 +17,15 @@ namespace {
 
 int do_explore(const ExploreRequest& request) {
   std::ostream* const progress = ::isatty(STDERR_FILENO) != 0 && !request.quiet ? &std::cerr : nullptr;
-  return run_interruptibly([&](const std::function<bool()>& interrupted) {
-    return explore(request, interrupted, std::cout, progress);
-  });
+  return run_interruptibly(
+      [&](const std::function<bool()>& interrupted) { return explore(request, interrupted, std::cout, progress); });
 }
 
 }  // namespace
 
 void add_explore_command(CLI::App& app, std::function<int()>& chosen) {
-  CLI::App* command = app.add_subcommand("explore", "the whole diagram over a parameter: attractors, branches, switches");
+  CLI::App* command =
+      app.add_subcommand("explore", "the whole diagram over a parameter: attractors, branches, switches");
   const auto request = std::make_shared<ExploreRequest>();
   command->add_option("NAME", request->name, "problem NAME.cpp or NAME.tch")->required();
   command->add_option("-c,--constants", request->constants, "constants of the simulations from gc.C")->type_name("C");

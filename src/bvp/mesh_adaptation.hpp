@@ -75,7 +75,7 @@ OrbitShape resized(const OrbitShape& shape, int intervals);
 std::vector<double> equal_parts(std::span<const double> mesh, const Eigen::VectorXd& density, int parts);
 
 /// Evaluates states on another mesh, possibly of other N and c, of segments' own or in common (`to` has the same n and
-/// m): the weights once, for as many matrices of states as there are. `rule` is that of `from`.
+/// m). The weights are computed once and serve any number of matrices. `rule` is that of `from`.
 class MeshTransfer {
  public:
   MeshTransfer() = default;

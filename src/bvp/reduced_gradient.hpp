@@ -27,8 +27,7 @@ namespace tchat {
 
 class ReducedGradient {
  public:
-  /// All outlive this object. The system frees as many parameters more than `held` has entries as there are to be
-  /// independent.
+  /// The arguments outlive this object. Of the system's free parameters, the last held.size() depend on the others.
   ReducedGradient(const DefiningSystem& system, const OrbitShape& shape, const Monitor& objective,
                   std::vector<const Monitor*> held);
 

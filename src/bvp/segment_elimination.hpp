@@ -16,7 +16,7 @@
 ///   levels at most, by little in practice.
 ///
 /// Border rows are eliminated on the way. Work and memory are linear in the number of intervals. All arrays are
-/// allocated when the object is made, but for the plan of a number of intervals that no segment had before.
+/// allocated when the object is made, except for plans: each number of intervals gets one when a segment first has it.
 ///
 /// Several threads: segments have nothing to do with one another, and neither have the groups of a segment, nor joins
 /// of one level. Whoever has a piece writes to its own blocks alone, so that results do not depend on the threads to

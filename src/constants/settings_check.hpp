@@ -18,7 +18,7 @@ void check_settings(const RunSettings& settings, const std::function<Place(std::
 
 /// Checks what depends on where the durations begin, which is known with the problem: ICP without repetition,
 /// with the free parameters that problem type and branch mode need; indices of ICP, THL, UZR, HOLD, BOUNDS and PAR
-/// either parameters or durations of the m segments (but for ICP and of 2m for the doubled orbit of a branch switch).
+/// name parameters or durations of the m segments (2m for the doubled orbit of a branch switch, except in ICP).
 /// Indices that stand for names and monitors may be among them, but not among those of PAR. Throws UserError.
 void check_parameter_indices(const RunSettings& settings, const std::function<Place(std::string_view keyword)>& place);
 

@@ -30,9 +30,7 @@ std::string joined(const std::vector<std::string>& lines) {
   return text;
 }
 
-std::string text_of(const std::string& path) {
-  return read_text_if_there(path, "output of a command").value_or("");
-}
+std::string text_of(const std::string& path) { return read_text_if_there(path, "output of a command").value_or(""); }
 
 /// Has it been done, by the same commands, and are its files there?
 bool is_done(const CommandJob& job, const std::string& stamp) {
@@ -69,13 +67,12 @@ struct JobRunner::Process {
   pid_t id = 0;
 };
 
-bool JobRunner::begin_line(const CommandJob& job, Process& process) const {
+void JobRunner::begin_line(const CommandJob& job, Process& process) const {
   const pid_t parent = ::getpid();
   const std::string commands = search_path();
   process.id = ::fork();
   if (process.id < 0) throw ComputationError(fmt::format("cannot start a process: {}", std::strerror(errno)));
   if (process.id == 0) become(job.lines[process.line], path(job, ".log"), commands, parent);
-  return true;
 }
 
 std::vector<JobResult> JobRunner::run(const std::vector<CommandJob>& jobs) {

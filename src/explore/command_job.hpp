@@ -17,9 +17,9 @@ struct CommandJob {
 };
 
 struct JobResult {
-  bool was_run = false;   ///< false: not begun, for the time was over or a signal has come
+  bool was_run = false;  ///< false: not begun, for the time was over or a signal has come
   bool succeeded = false;
-  std::string log;        ///< what the commands wrote
+  std::string log;  ///< what the commands wrote
 };
 
 class JobRunner {
@@ -34,8 +34,7 @@ class JobRunner {
 
  private:
   struct Process;
-  bool begin(const CommandJob& job, std::size_t number, Process& process) const;
-  bool begin_line(const CommandJob& job, Process& process) const;
+  void begin_line(const CommandJob& job, Process& process) const;
   std::string path(const CommandJob& job, const char* ending) const { return folder_ + "/." + job.name + ending; }
 
   std::string folder_;

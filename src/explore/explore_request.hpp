@@ -17,7 +17,6 @@ struct ExploreRequest {
   std::vector<std::string> overrides;    ///< KEY=VALUE: parameters for all commands, constants for runs
   int workers = 1;
   int doublings = 4;     ///< of the period, from an attractor on
-  int segments = 32;     ///< of the longest signature
   int branches = 50;     ///< at most so many are kept
   double seconds = 0.0;  ///< wall time after which no command is begun; 0: any
   bool fresh = false;    ///< results of an earlier run are thrown away

@@ -31,8 +31,9 @@ std::string json_list(const List& list, const Text& text) {
 
 std::string branch_json(const ExploredBranch& branch) {
   const std::string labels = json_list(branch.labels, [](const ExploredLabel& label) {
-    return fmt::format(R"({{"label": {}, "type": {}, "parameter": {}, "leads_to": {}, "remark": {}}})", json(label.label),
-                       json(label.type), json(label.parameter), json(label.leads_to), json(label.remark));
+    return fmt::format(R"({{"label": {}, "type": {}, "parameter": {}, "leads_to": {}, "remark": {}}})",
+                       json(label.label), json(label.type), json(label.parameter), json(label.leads_to),
+                       json(label.remark));
   });
   const auto texts = [](const std::string& text) { return json(text); };
   return fmt::format(
@@ -110,8 +111,10 @@ std::string tree_json(const ExploredDiagram& diagram) {
 std::string makefile_text(const ExploredDiagram& diagram, const std::string& folder) {
   std::string all;
   for (const ExploredBranch& branch : diagram.branches) all += " " + branch.job.outputs.front();
-  std::string text = fmt::format("# Makes the branches of {} with make -f, also with -j.\nTCHAT = tchat\nFOLDER = {}\n\nall:{}\n\n{}:\n\tmkdir -p $@\n\n",
-                                 folder, folder, all, "$(FOLDER)");
+  std::string text = fmt::format(
+      "# Makes the branches of {} with make -f, also with -j.\nTCHAT = tchat\nFOLDER = {}\n\nall:{}\n\n{}:\n\tmkdir -p "
+      "$@\n\n",
+      folder, folder, all, "$(FOLDER)");
   for (const CommandJob& job : diagram.first_jobs) text += rule(job);
   for (const ExploredBranch& branch : diagram.branches) text += rule(branch.job);
   return text;

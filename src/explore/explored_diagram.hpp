@@ -12,7 +12,7 @@ namespace tchat {
 /// A labelled point of a branch.
 struct ExploredLabel {
   int label = 0;
-  std::string type;    ///< GR, PD, ...
+  std::string type;  ///< GR, PD, ...
   double parameter = 0.0;
   std::string leads_to;  ///< the branch that the switch there follows; "" without one
   std::string remark;    ///< why there is none, where one was tried or left out

@@ -42,9 +42,10 @@ struct SweptRange {
 
 SweptRange read_range(const std::string& text) {
   const auto refuse = [&] {
-    throw UserError(fmt::format("--over {}: a parameter with the range of its values is needed, as alpha=2.9:3.3, or with "
-                                "the number of values of the sweep, alpha=2.9:3.3:401",
-                                in_quotes(text)));
+    throw UserError(
+        fmt::format("--over {}: a parameter with the range of its values is needed, as alpha=2.9:3.3, or with "
+                    "the number of values of the sweep, alpha=2.9:3.3:401",
+                    in_quotes(text)));
   };
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos || equals == 0) refuse();
@@ -89,7 +90,6 @@ class Explorer {
         range_(read_range(request.over)),
         folder_(request.output.value_or(request.name + ".diagram")),
         screen_(screen),
-        progress_(progress),
         loaded_(load_for_simulation(simulation_request(request), progress)),
         problem_(request.problem.value_or(request.name)),
         begun_(std::chrono::steady_clock::now()),
@@ -145,8 +145,11 @@ class Explorer {
   /// The words of all runs: the range, steps that are fractions of it, then what the user says.
   std::vector<std::string> run_words() const {
     const double width = range_.to - range_.from;
-    std::vector<std::string> words{icp(), "RL0=" + number_text(range_.from), "RL1=" + number_text(range_.to),
-                                   fmt::format("DS={:g}", width / 200.0), fmt::format("DSMAX={:g}", width / 20.0),
+    std::vector<std::string> words{icp(),
+                                   "RL0=" + number_text(range_.from),
+                                   "RL1=" + number_text(range_.to),
+                                   fmt::format("DS={:g}", width / 200.0),
+                                   fmt::format("DSMAX={:g}", width / 20.0),
                                    "NMX=400"};
     words.insert(words.end(), constants_.begin(), constants_.end());
     return words;
@@ -163,8 +166,8 @@ class Explorer {
     std::vector<std::string> over{
         fmt::format("{}={}:{}:{}", range_.parameter, number_text(range_.from), number_text(range_.to), range_.count)};
     job.lines = {fmt::format("tchat sweep {}{} --over{}{}{} --follow both -o {} -j {} -q", problem_arguments(problem_),
-                             constants_option(), quoted(over), states, quoted(parameters_), quoted_for_shell(path("sweep")),
-                             request_.workers)};
+                             constants_option(), quoted(over), states, quoted(parameters_),
+                             quoted_for_shell(path("sweep")), request_.workers)};
     diagram_.first_jobs = {job};
     const JobResult result = runner_.run({job}).front();
     if (!result.was_run) {
@@ -181,7 +184,8 @@ class Explorer {
   }
 
   /// A branch through an attractor, from a state on it.
-  Candidate from_state(const std::string& name, const std::string& origin, double value, const std::string& state) const {
+  Candidate from_state(const std::string& name, const std::string& origin, double value,
+                       const std::string& state) const {
     Candidate candidate;
     ExploredBranch& branch = candidate.branch;
     branch.name = name;
@@ -190,13 +194,14 @@ class Explorer {
     const std::string arguments = problem_arguments(problem_);
     std::vector<std::string> simulated = parameters_;
     simulated.push_back(at_value(value));
-    branch.job = {name,
-                  {fmt::format("tchat simulate {}{}{}{} --free {} -o {} --dat -q", arguments, constants_option(), state,
-                               quoted(simulated), quoted_for_shell(range_.parameter), quoted_for_shell(path(name))),
-                   fmt::format("tchat run {} -c {} -d {} -o {} --both --clip -q{}", arguments, quoted_for_shell(path(name)),
-                               quoted_for_shell(path(name)), quoted_for_shell(path(name)), quoted(run_words()))},
-                  {},
-                  files_of(name)};
+    branch.job = {
+        name,
+        {fmt::format("tchat simulate {}{}{}{} --free {} -o {} --dat -q", arguments, constants_option(), state,
+                     quoted(simulated), quoted_for_shell(range_.parameter), quoted_for_shell(path(name))),
+         fmt::format("tchat run {} -c {} -d {} -o {} --both --clip -q{}", arguments, quoted_for_shell(path(name)),
+                     quoted_for_shell(path(name)), quoted_for_shell(path(name)), quoted(run_words()))},
+        {},
+        files_of(name)};
     return candidate;
   }
 
@@ -367,8 +372,7 @@ class Explorer {
     for (const LabelledSolution& solution : solutions.solutions) {
       const std::string type = type_name(solution);
       if (type == "EP" || type == "RG" || type.empty()) continue;
-      ExploredLabel label{solution.label, type,
-                          stored_parameter(solution, settings.free_parameters.front()), "", ""};
+      ExploredLabel label{solution.label, type, stored_parameter(solution, settings.free_parameters.front()), "", ""};
       const NextStart start{solution.label, basic_type(solution.type), solution.kind};
       const bool is_curve = type == "LP" || type == "EX";
       const std::string command = is_curve ? "" : next_command(start, settings, system, problem_, path(name));
@@ -397,8 +401,8 @@ class Explorer {
       return;
     }
     const std::string start = fmt::format("{}_{}{}", parent.name, type, label.label);
-    branch.origin = fmt::format("{} {} of {} at {} = {:.6g}", type, label.label, parent.name, range_.parameter,
-                                label.parameter);
+    branch.origin =
+        fmt::format("{} {} of {} at {} = {:.6g}", type, label.label, parent.name, range_.parameter, label.parameter);
     const std::size_t both = command.find(" && ");
     branch.name = both == std::string::npos ? start : start + "_branch";
     branch.job = {branch.name, {}, {file('q', parent.name), file('r', parent.name)}, files_of(branch.name)};
@@ -460,7 +464,6 @@ class Explorer {
   SweptRange range_;
   std::string folder_;
   std::ostream& screen_;
-  std::ostream* progress_;
   LoadedProblem loaded_;
   std::string problem_;
   std::vector<std::string> parameters_, constants_;

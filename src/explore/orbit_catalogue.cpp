@@ -79,7 +79,7 @@ std::vector<OrbitNumbers> orbits_at(const CataloguedSection& section, double par
   return result;
 }
 
-/// Far more than tolerances of runs leave, far less than orbits differ by that are told apart.
+/// Of the largest number: runs leave errors far below this, and different orbits differ by far more.
 constexpr double least_uncertainty = 1e-5;
 
 bool agree(const OrbitNumbers& known, const VectorXd& numbers) {
@@ -95,7 +95,8 @@ bool agree(const OrbitNumbers& known, const VectorXd& numbers) {
 PrimitiveWord primitive_word(const SignatureWord& signature) {
   std::size_t length = 1;
   while (length < signature.size() && (signature.size() % length != 0 || !repeats_after(signature, length))) ++length;
-  SignatureWord word(signature.begin(), signature.begin() + static_cast<std::ptrdiff_t>(std::min(length, signature.size())));
+  SignatureWord word(signature.begin(),
+                     signature.begin() + static_cast<std::ptrdiff_t>(std::min(length, signature.size())));
   SignatureWord least = word;
   for (std::size_t shift = 1; shift < word.size(); ++shift) {
     std::rotate(word.begin(), word.begin() + 1, word.end());
@@ -135,15 +136,15 @@ std::string OrbitCatalogue::branch_of(const CataloguedSection& section) const {
   const auto count = static_cast<Index>(section.parameter.size());
   std::string found;
   for (const double share : {0.5, 0.75, 0.95}) {
-    const auto row = std::min<Index>(count - 1, static_cast<Index>(std::lround(share * static_cast<double>(count - 1))));
+    const auto row =
+        std::min<Index>(count - 1, static_cast<Index>(std::lround(share * static_cast<double>(count - 1))));
     found = branch_at(section.signature, section.parameter[static_cast<std::size_t>(row)], section.numbers.col(row));
     if (found.empty()) return "";
   }
   return found;
 }
 
-std::string OrbitCatalogue::branch_at(const PrimitiveWord& signature, double parameter,
-                                      const VectorXd& numbers) const {
+std::string OrbitCatalogue::branch_at(const PrimitiveWord& signature, double parameter, const VectorXd& numbers) const {
   for (const CataloguedSection& known : sections_) {
     if (known.signature.word != signature.word) continue;
     for (const OrbitNumbers& orbit : orbits_at(known, parameter))

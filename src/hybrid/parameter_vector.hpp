@@ -40,7 +40,7 @@ class ParameterVector : public Eigen::VectorXd {
   double rotation() const { return (*this)(layout_.rotation() - 1); }
   double& rotation() { return (*this)(layout_.rotation() - 1); }
 
-  /// Gives the vector as many entries as an orbit of `segments` segments needs, new ones zero.
+  /// Resizes the vector for an orbit of `segments` segments; new entries are zero.
   void make_room(int segments) {
     const Eigen::Index before = size();
     if (before == layout_.room(segments)) return;

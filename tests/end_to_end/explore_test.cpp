@@ -51,7 +51,8 @@ TEST_CASE("the bouncing ball: all period doublings from one command, every perio
   SECTION("one command at a time gives the same") {
     REQUIRE(workspace.tchat(exploration + " -o two").status == 0);
     std::string other = workspace.read("two.json");
-    for (std::size_t at = other.find("two/"); at != std::string::npos; at = other.find("two/")) other.replace(at, 3, "one");
+    for (std::size_t at = other.find("two/"); at != std::string::npos; at = other.find("two/"))
+      other.replace(at, 3, "one");
     CHECK(other == workspace.read("one.json"));
   }
   SECTION("a killed exploration goes on, and nothing is done again") {
@@ -94,5 +95,6 @@ TEST_CASE("ranges that are none are refused with the form") {
     CHECK(outcome.status == 2);
     CHECK(outcome.text().find("as alpha=2.9:3.3") != std::string::npos);
   }
-  CHECK(workspace.tchat("explore linosc --over beta=1:2").text().find("no parameter of this name") != std::string::npos);
+  CHECK(workspace.tchat("explore linosc --over beta=1:2").text().find("no parameter of this name") !=
+        std::string::npos);
 }

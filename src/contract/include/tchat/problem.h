@@ -10,7 +10,7 @@
  * A problem is three families of smooth functions, numbered from 1:
  *     fields f_i(x, p) in R^n,   events h_j(x, p) in R (the system lives in h >= 0),   jumps g_k(x, p) in R^n.
  *
- * Shapes. x has `dimension` entries. par has at least TCHAT_PAR_LENGTH entries, or as many more as `parameters` needs:
+ * Shapes. x has `dimension` entries. par has at least TCHAT_PAR_LENGTH entries, more where `parameters` needs them:
  * par[k-1] is PAR(k). The first `parameters` are the problem's own. The segment durations are par[60], par[61], ..., or
  * follow the parameters where these are more than 60: TCHAT_FIRST_DURATION. Matrices are column-major.
  * A function of kind TCHAT_EVENT has 1 row, TCHAT_INTEGRAND `integral_conditions` rows, the others `dimension` rows.
