@@ -6,6 +6,7 @@
 #include <cassert>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 
 #include "bvp/lane_entries.hpp"
 #include "linear_algebra/partial_lu.hpp"
@@ -21,6 +22,32 @@ std::ptrdiff_t most_groups(const OrbitShape& shape) {
   const std::ptrdiff_t m = shape.segments;
   return shape.own ? (m * shape.intervals + m * (lanes - 1)) / lanes : m * LaneSchedule(shape.intervals).groups();
 }
+
+/// work(reciprocal pivot, is its row exchanged with another one?) for all pivots of a block in the lanes that count:
+/// eliminated blocks hold reciprocal pivots.
+template <class Counts, class Work>
+void for_pivots(const LaneKernel& kernel, const double* block, const int* swaps, const Counts& counts,
+                const Work& work) {
+  for (int l = 0; l < lanes; ++l) {
+    if (!counts(l)) continue;
+    for (int k = 0; k < kernel.pivots(); ++k)
+      work(block[static_cast<std::ptrdiff_t>(k * kernel.stride() + k) * lanes + l], swaps[k * lanes + l] != k);
+  }
+}
+
+/// The sign of a product of pivots.
+class SignProduct {
+ public:
+  void operator()(double reciprocal, bool exchanged) {
+    signs_ ^= std::bit_cast<std::uint64_t>(reciprocal);
+    exchanges_ ^= exchanged ? 1U : 0U;
+  }
+  bool negative() const { return (signs_ >> 63U) != exchanges_; }
+
+ private:
+  std::uint64_t signs_ = 0;  // in the highest bit
+  unsigned exchanges_ = 0;
+};
 
 }  // namespace
 
@@ -68,6 +95,9 @@ SegmentElimination::SegmentElimination(const OrbitShape& shape, int scalars, int
   top_rhs_ = {tops, join_rows};
   whole_ = {shape.segments, (n_ + border_) * length()};
   largest_residuals_.resize(index(blocks));
+  negative_groups_.resize(index(blocks));
+  negative_joins_.resize(index(joins));
+  negative_top_joins_.resize(index(tops));
 
   const int c = shape.collocation;
   nodes_ = lane_zeros((c + 1) * n_);
@@ -158,7 +188,12 @@ Linearization SegmentElimination::condense_group(int s, int group, const Orbit& 
 
 bool SegmentElimination::eliminate_group(int s, int group) {
   const std::ptrdiff_t b = block(s, group);
-  return interval_.eliminate(interval_blocks_[b], border_, interval_swaps_[b], interval_blocks_.behind(b)) == 0;
+  if (interval_.eliminate(interval_blocks_[b], border_, interval_swaps_[b], interval_blocks_.behind(b)) != 0)
+    return false;
+  SignProduct sign;
+  for_pivots_of_group(s, group, std::ref(sign));
+  negative_groups_[index(b)] = sign.negative();
+  return true;
 }
 
 bool SegmentElimination::join_groups(int s) {
@@ -184,7 +219,11 @@ bool SegmentElimination::join(int s, const Join& at) {
   assembly_.join({n_, columns_, border_, join_.stride()}, left, piece(s, at.middle, at.last), target);
   for (int l = 0; l < lanes; ++l)
     if (plan(s).passes(at, l)) pass_on(left, l, target);
-  return join_.eliminate(target, border_, join_swaps_[b], join_blocks_.behind(b)) == 0;
+  if (join_.eliminate(target, border_, join_swaps_[b], join_blocks_.behind(b)) != 0) return false;
+  SignProduct sign;
+  for_pivots_of_join(s, at, std::ref(sign));
+  negative_joins_[index(b)] = sign.negative();
+  return true;
 }
 
 /// Where a lane has nothing on the right, the join's rows say that an unknown of no meaning is zero, and then what the
@@ -242,6 +281,9 @@ bool SegmentElimination::join_lanes(int s) {
       for (int k = 0; k < n_ + columns_; ++k) to[2 * n_ + k] += right[n_ + k];
     }
     if (!top_join_.eliminate(target, border_, top_swaps_[top_block(s, at.middle)])) return false;
+    SignProduct sign;
+    for_pivots_of_top_join(s, at, std::ref(sign));
+    negative_top_joins_[index(top_block(s, at.middle))] = sign.negative();
   }
   int last_width = 0;
   const double* from = top_piece(s, 0, pieces, last_width);
@@ -249,51 +291,46 @@ bool SegmentElimination::join_lanes(int s) {
   return true;
 }
 
-/// work(reciprocal pivot, is its row exchanged with another one?) for all pivots of all segments.
 template <class Work>
-void SegmentElimination::for_pivots(const Work& work) const {
-  // The blocks hold reciprocal pivots.
-  const auto of_lanes = [&](const LaneKernel& kernel, const double* block, const int* swaps,
-                            const std::array<bool, static_cast<std::size_t>(lanes)>& counts) {
-    for (int k = 0; k < kernel.pivots(); ++k) {
-      const double* pivots = block + static_cast<std::ptrdiff_t>(k * kernel.stride() + k) * lanes;
-      for (int l = 0; l < lanes; ++l)
-        if (counts[static_cast<std::size_t>(l)]) work(pivots[l], swaps[k * lanes + l] != k);
-    }
-  };
-  const auto lanes_where = [](const auto& holds) {
-    std::array<bool, static_cast<std::size_t>(lanes)> result{};
-    for (int l = 0; l < lanes; ++l) result[static_cast<std::size_t>(l)] = holds(l);
-    return result;
-  };
-  for (int s = 0; s < shape_.segments; ++s) {
-    const SegmentPlan& plan = this->plan(s);
-    for (int group = 0; group < plan.groups; ++group)
-      of_lanes(interval_, interval_blocks_[block(s, group)], interval_swaps_[block(s, group)],
-               lanes_where([&](int l) { return plan.schedule.holds(group, l); }));
-    for (const Join& at : plan.joins)
-      of_lanes(join_, join_blocks_[block(s, at)], join_swaps_[block(s, at)],
-               lanes_where([&](int l) { return !plan.passes(at, l); }));
-    for (const Join& at : plan.top_joins) {
-      const double* block = top_blocks_[top_block(s, at.middle)];
-      const int* swaps = top_swaps_[top_block(s, at.middle)];
-      for (int k = 0; k < n_; ++k) work(block[std::ptrdiff_t{k} * top_join_.width() + k], swaps[k] != k);
-    }
-  }
+void SegmentElimination::for_pivots_of_group(int s, int group, const Work& work) const {
+  const std::ptrdiff_t b = block(s, group);
+  const auto counts = [&](int lane) { return plan(s).schedule.holds(group, lane); };
+  for_pivots(interval_, interval_blocks_[b], interval_swaps_[b], counts, work);
+}
+
+template <class Work>
+void SegmentElimination::for_pivots_of_join(int s, const Join& at, const Work& work) const {
+  const std::ptrdiff_t b = block(s, at);
+  const auto counts = [&](int lane) { return !plan(s).passes(at, lane); };
+  for_pivots(join_, join_blocks_[b], join_swaps_[b], counts, work);
+}
+
+template <class Work>
+void SegmentElimination::for_pivots_of_top_join(int s, const Join& at, const Work& work) const {
+  const double* block = top_blocks_[top_block(s, at.middle)];
+  const int* swaps = top_swaps_[top_block(s, at.middle)];
+  for (int k = 0; k < n_; ++k) work(block[std::ptrdiff_t{k} * top_join_.width() + k], swaps[k] != k);
 }
 
 void SegmentElimination::divide_by_determinant(LargeProduct& product) const {
-  for_pivots([&](double reciprocal, bool exchanged) { product.multiply(exchanged ? -reciprocal : reciprocal); });
+  const auto divide = [&](double reciprocal, bool exchanged) { product.multiply(exchanged ? -reciprocal : reciprocal); };
+  for (int s = 0; s < shape_.segments; ++s) {
+    for (int group = 0; group < plan(s).groups; ++group) for_pivots_of_group(s, group, divide);
+    for (const Join& at : plan(s).joins) for_pivots_of_join(s, at, divide);
+    for (const Join& at : plan(s).top_joins) for_pivots_of_top_join(s, at, divide);
+  }
 }
 
 int SegmentElimination::determinant_sign() const {
-  std::uint64_t signs = 0;  // in the highest bit
-  unsigned exchanges = 0;
-  for_pivots([&](double reciprocal, bool exchanged) {
-    signs ^= std::bit_cast<std::uint64_t>(reciprocal);
-    exchanges ^= exchanged ? 1U : 0U;
-  });
-  return (signs >> 63U) == exchanges ? 1 : -1;
+  unsigned negative = 0;
+  const auto count = [&](const std::vector<unsigned char>& of, std::ptrdiff_t end) {
+    for (std::ptrdiff_t i = 0; i < end; ++i) negative ^= of[index(i)];
+  };
+  count(negative_groups_, first_groups_.back());
+  count(negative_joins_, first_groups_.back() - shape_.segments);
+  for (int s = 0; s < shape_.segments; ++s)
+    for (const Join& at : plan(s).top_joins) negative ^= negative_top_joins_[index(top_block(s, at.middle))];
+  return negative == 0 ? 1 : -1;
 }
 
 }  // namespace tchat

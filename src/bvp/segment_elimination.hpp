@@ -133,7 +133,11 @@ class SegmentElimination {
   std::ptrdiff_t top_block(int s, int middle) const { return static_cast<std::ptrdiff_t>(s) * lanes + middle; }
 
   template <class Work>
-  void for_pivots(const Work& work) const;
+  void for_pivots_of_group(int s, int group, const Work& work) const;
+  template <class Work>
+  void for_pivots_of_join(int s, const Join& at, const Work& work) const;
+  template <class Work>
+  void for_pivots_of_top_join(int s, const Join& at, const Work& work) const;
   /// Where the values of the field in a group are kept, until its block is filled.
   std::ptrdiff_t field_block(int s, int group) const;
   void evaluate_group(int s, int group, const HybridSystem& system, int field, std::span<const int> active,
@@ -204,6 +208,8 @@ class SegmentElimination {
   BlockArray<double> whole_;  // (n + b) x length
 
   std::vector<double> largest_residuals_;  // of groups
+  // is the determinant of what was eliminated negative? Found while the block is in the cache.
+  std::vector<unsigned char> negative_groups_, negative_joins_, negative_top_joins_;
 
   SharedWork within_;
   bool keeps_segments_, keeps_groups_;   // whose fields are kept: all that several threads may have begun, or one
