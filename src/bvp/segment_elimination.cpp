@@ -313,7 +313,9 @@ void SegmentElimination::for_pivots_of_top_join(int s, const Join& at, const Wor
 }
 
 void SegmentElimination::divide_by_determinant(LargeProduct& product) const {
-  const auto divide = [&](double reciprocal, bool exchanged) { product.multiply(exchanged ? -reciprocal : reciprocal); };
+  const auto divide = [&](double reciprocal, bool exchanged) {
+    product.multiply(exchanged ? -reciprocal : reciprocal);
+  };
   for (int s = 0; s < shape_.segments; ++s) {
     for (int group = 0; group < plan(s).groups; ++group) for_pivots_of_group(s, group, divide);
     for (const Join& at : plan(s).joins) for_pivots_of_join(s, at, divide);

@@ -1,0 +1,44 @@
+/// The attractors of a sweep, value by value.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "explore/orbit_catalogue.hpp"
+#include "hybrid/hybrid_system.hpp"
+#include "sweep/sweep_file.hpp"
+
+namespace tchat {
+
+/// What one value and start lead to.
+struct AttractorSample {
+  const SweepAttractor* attractor = nullptr;
+  std::size_t row = 0;
+  double value = 0.0;   ///< of the parameter
+  double period = 0.0;  ///< in time; NaN
+};
+
+class AttractorSamples {
+ public:
+  /// Of no value.
+  AttractorSamples() = default;
+  /// `system` must outlive this. Throws UserError as read_sweep_file() does.
+  AttractorSamples(const std::string& path, const HybridSystem& system)
+      : table_(read_sweep_file(path)), system_(&system) {}
+
+  const SweepTable& table() const { return table_; }
+  void for_each(const std::function<void(const AttractorSample&)>& use) const;
+  /// "0.1,-2": the first recorded state; "" where states are not recorded.
+  std::string state_of(const AttractorSample& sample) const;
+  /// The words of `tchat simulate` that begin on an attractor, where it has been found first.
+  static std::string words_of(const SweepAttractor& attractor);
+  double value_of(const SweepAttractor& attractor) const;
+
+ private:
+  SweepTable table_;
+  const HybridSystem* system_ = nullptr;
+};
+
+SignatureWord signature_word(const SweepAttractor& attractor);
+
+}  // namespace tchat

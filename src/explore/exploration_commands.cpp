@@ -1,0 +1,109 @@
+#include "explore/exploration_commands.hpp"
+
+#include <fmt/format.h>
+
+#include "plugin/plugin_build.hpp"
+#include "problem_type/problem_type.hpp"
+#include "text/number.hpp"
+#include "text/user_error.hpp"
+#include "text/words.hpp"
+
+namespace tchat {
+
+namespace {
+
+/// Words quoted for the shell, with blanks before each.
+std::string quoted(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += " " + quoted_for_shell(word);
+  return text;
+}
+
+std::string state_word(const HybridSystem& system, int k) {
+  const std::string name = system.state_name(k);
+  return name.find_first_of(" \t(),") == std::string::npos ? name : fmt::format("U({})", k);
+}
+
+}  // namespace
+
+bool sets_parameter(const std::string& word) { return word.starts_with("PAR("); }
+
+ExplorationCommands::ExplorationCommands(const ExploreRequest& request, const HybridSystem& system)
+    : request_(request),
+      range_(read_swept_range("--over", request.over)),
+      folder_(request.output.value_or(request.name + ".diagram")),
+      problem_(request.problem.value_or(request.name)),
+      constants_option_(request.constants ? " -c " + quoted_for_shell(*request.constants) : "") {
+  if (system.parameter_index(range_.parameter) == 0 && !parse_integer(range_.parameter))
+    throw UserError(fmt::format("--over {}: {} has no parameter of this name", range_.parameter, system.name()));
+  for (const std::string& word : request.overrides) (sets_parameter(word) ? parameters_ : constants_).push_back(word);
+  for (int k = 1; k <= system.dimension() && monitors_.size() + 2 <= max_monitors; ++k)
+    for (const char* kind : {"mean", "max"}) monitors_.push_back(fmt::format("{}({})", kind, state_word(system, k)));
+}
+
+std::string ExplorationCommands::at_value(double value) const {
+  return fmt::format("PAR({})={}", range_.parameter, value);
+}
+
+std::vector<std::string> ExplorationCommands::files_of(const std::string& name) const {
+  return {file('p', name), file('q', name), file('d', name), file('r', name)};
+}
+
+/// The words of all runs: the range, steps that are fractions of it, then what the user says.
+std::vector<std::string> ExplorationCommands::run_words() const {
+  const double width = range_.to - range_.from;
+  std::string free = range_.parameter;
+  for (const std::string& name : monitors_) free += "," + name;
+  std::vector<std::string> words{fmt::format("ICP=[{}]", free),           fmt::format("RL0={}", range_.from),
+                                 fmt::format("RL1={}", range_.to),        fmt::format("DS={:g}", width / 200.0),
+                                 fmt::format("DSMAX={:g}", width / 20.0), "NMX=400"};
+  words.insert(words.end(), constants_.begin(), constants_.end());
+  return words;
+}
+
+CommandJob ExplorationCommands::sweep() const {
+  std::string words = quoted({fmt::format("{}={}:{}:{}", range_.parameter, range_.from, range_.to, range_.count)});
+  for (const std::string& state : request_.states) words += " --state " + quoted_for_shell(state);
+  CommandJob job{"sweep", {}, {}, {path("sweep.sweep")}};
+  job.lines = {fmt::format("tchat sweep {}{} --over{}{} --follow both -o {} -j {} -q", problem_arguments(problem_),
+                           constants_option_, words, quoted(parameters_), quoted_for_shell(path("sweep")),
+                           request_.workers)};
+  return job;
+}
+
+CommandJob ExplorationCommands::start(const std::string& name, double value, const std::string& words) const {
+  std::vector<std::string> simulated = parameters_;
+  simulated.push_back(at_value(value));
+  const std::string arguments = problem_arguments(problem_);
+  const std::string output = quoted_for_shell(path(name));
+  return {name,
+          {fmt::format("tchat simulate {}{} {}{} --free {} -o {} --dat -q", arguments, constants_option_, words,
+                       quoted(simulated), quoted_for_shell(range_.parameter), output),
+           fmt::format("tchat run {} -c {} -d {} -o {} --both --clip -q{}", arguments, output, output, output,
+                       quoted(run_words()))},
+          {},
+          files_of(name)};
+}
+
+CommandJob ExplorationCommands::switching(const SwitchPoint& at) const {
+  const std::size_t both = at.command.find(" && ");
+  const bool resegments = both != std::string::npos;
+  const std::string name = fmt::format("{}_{}{}{}", at.branch, at.type, at.label, resegments ? "_branch" : "");
+  CommandJob job{name, {}, {file('q', at.branch), file('r', at.branch)}, files_of(name)};
+  if (resegments) job.lines.push_back(at.command.substr(0, both) + " -q");
+  std::string run = resegments ? at.command.substr(both + 4) : at.command;
+  run += std::string(at.type == "BP" ? " --both" : "") + " --clip -q";
+  std::vector<std::string> words = constants_;
+  if (resegments || at.type == "HB") {  // begins with constants of its own; the sign of DS has been chosen
+    words = run_words();
+    std::erase_if(words, [](const std::string& word) { return word.starts_with("DS="); });
+  }
+  job.lines.push_back(run + quoted(words));
+  return job;
+}
+
+std::string ExplorationCommands::show(double value, const std::string& state) const {
+  return fmt::format("tchat simulate {} --state {}{}", problem_arguments(problem_), state, quoted({at_value(value)}));
+}
+
+}  // namespace tchat

@@ -1,0 +1,66 @@
+/// The commands of an exploration, as jobs: what they have in common, and which one follows what.
+///
+/// All files are in one folder; every command is one that a user could have typed beside it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "explore/command_job.hpp"
+#include "explore/explore_request.hpp"
+#include "explore/swept_range.hpp"
+#include "hybrid/hybrid_system.hpp"
+
+namespace tchat {
+
+/// A labelled point of a branch that is there.
+struct SwitchPoint {
+  std::string branch;
+  int label = 0;
+  std::string type;        ///< GR, PD, ...
+  double parameter = 0.0;  ///< the value of the explored one
+  std::string command;     ///< run/next_command.hpp
+};
+
+class ExplorationCommands {
+ public:
+  /// `system` must outlive this. Throws UserError where the request's range is none, or not one of a parameter.
+  ExplorationCommands(const ExploreRequest& request, const HybridSystem& system);
+
+  const SweptRange& range() const { return range_; }
+  const std::string& folder() const { return folder_; }
+  /// NAME or the path of -p.
+  const std::string& problem() const { return problem_; }
+  /// Names of the monitors of branches: mean and largest value of each state.
+  const std::vector<std::string>& monitors() const { return monitors_; }
+  /// The path of a file in the folder; `letter` is p, q, d or r.
+  std::string file(char letter, const std::string& name) const { return folder_ + "/" + letter + "." + name; }
+  std::string path(const std::string& name) const { return folder_ + "/" + name; }
+  /// "PAR(alpha)=3.05"
+  std::string at_value(double value) const;
+
+  CommandJob sweep() const;
+  /// A branch through an orbit that a simulation settles on from a state: `words` of `tchat simulate` that give it.
+  CommandJob start(const std::string& name, double value, const std::string& words) const;
+  /// What begins at a labelled point.
+  CommandJob switching(const SwitchPoint& at) const;
+  /// "tchat simulate ..." of an attractor, by a state on it.
+  std::string show(double value, const std::string& state) const;
+
+ private:
+  std::vector<std::string> files_of(const std::string& name) const;
+  std::vector<std::string> run_words() const;
+
+  const ExploreRequest& request_;
+  SweptRange range_;
+  std::string folder_;
+  std::string problem_;
+  std::string constants_option_;
+  std::vector<std::string> parameters_, constants_;  ///< KEY=VALUE of the command line
+  std::vector<std::string> monitors_;
+};
+
+/// Does a word of the command line set a parameter?
+bool sets_parameter(const std::string& word);
+
+}  // namespace tchat

@@ -1,0 +1,38 @@
+#include "explore/swept_range.hpp"
+
+#include <fmt/format.h>
+
+#include <optional>
+#include <vector>
+
+#include "text/number.hpp"
+#include "text/user_error.hpp"
+#include "text/words.hpp"
+
+namespace tchat {
+
+SweptRange read_swept_range(const std::string& option, const std::string& text) {
+  const auto refuse = [&] {
+    throw UserError(
+        fmt::format("{} {}: a parameter with the range of its values is needed, as alpha=2.9:3.3, or with the number "
+                    "of values, alpha=2.9:3.3:401",
+                    option, in_quotes(text)));
+  };
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos || equals == 0) refuse();
+  SweptRange range{text.substr(0, equals)};
+  std::vector<std::string> parts;
+  for (std::size_t from = equals + 1; from <= text.size();) {
+    const std::size_t to = std::min(text.find(':', from), text.size());
+    parts.push_back(text.substr(from, to - from));
+    from = to + 1;
+  }
+  if (parts.size() < 2 || parts.size() > 3) refuse();
+  const std::optional<double> a = parse_real(parts[0]), b = parse_real(parts[1]);
+  const std::optional<int> count = parts.size() == 3 ? parse_integer(parts[2]) : std::optional(range.count);
+  if (!a || !b || !(*a < *b) || !count || *count < 2) refuse();
+  range.from = *a, range.to = *b, range.count = *count;
+  return range;
+}
+
+}  // namespace tchat
