@@ -48,27 +48,6 @@ std::string share(const ExploredDiagram& diagram) {
                      diagram.periodic, 100.0 * diagram.on_branches / diagram.periodic);
 }
 
-/// A word in a rule.
-std::string in_rule(const std::string& word) {
-  std::string text;
-  for (const char c : word) {
-    if (c == '$') text += '$';
-    text += c;
-  }
-  return text;
-}
-
-std::string rule(const CommandJob& job) {
-  std::string text;
-  for (const std::string& file : job.outputs) text += file + " ";
-  text += "&:";
-  for (const std::string& file : job.inputs) text += " " + file;
-  text += " | $(FOLDER)\n";
-  for (const std::string& line : job.lines)
-    text += "\t" + (line.starts_with("tchat ") ? "$(TCHAT)" + in_rule(line.substr(5)) : in_rule(line)) + "\n";
-  return text + "\n";
-}
-
 }  // namespace
 
 std::string tree_text(const ExploredDiagram& diagram) {
@@ -108,16 +87,10 @@ std::string tree_json(const ExploredDiagram& diagram) {
       json_list(diagram.branches, branch_json));
 }
 
-std::string makefile_text(const ExploredDiagram& diagram, const std::string& folder) {
-  std::string all;
-  for (const ExploredBranch& branch : diagram.branches) all += " " + branch.job.outputs.front();
-  std::string text = fmt::format(
-      "# Makes the branches of {} with make -f, also with -j.\nTCHAT = tchat\nFOLDER = {}\n\nall:{}\n\n{}:\n\tmkdir -p "
-      "$@\n\n",
-      folder, folder, all, "$(FOLDER)");
-  for (const CommandJob& job : diagram.first_jobs) text += rule(job);
-  for (const ExploredBranch& branch : diagram.branches) text += rule(branch.job);
-  return text;
+std::vector<CommandJob> jobs_of(const ExploredDiagram& diagram) {
+  std::vector<CommandJob> jobs = diagram.first_jobs;
+  for (const ExploredBranch& branch : diagram.branches) jobs.push_back(branch.job);
+  return jobs;
 }
 
 }  // namespace tchat

@@ -53,7 +53,7 @@ struct ExploredDiagram {
 std::string tree_text(const ExploredDiagram& diagram);
 /// The same as JSON.
 std::string tree_json(const ExploredDiagram& diagram);
-/// Rules that make all files of the diagram by plain commands. `folder`: of the files.
-std::string makefile_text(const ExploredDiagram& diagram, const std::string& folder);
+/// All that make its files, each after those that make its inputs.
+std::vector<CommandJob> jobs_of(const ExploredDiagram& diagram);
 
 }  // namespace tchat

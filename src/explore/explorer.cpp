@@ -13,6 +13,7 @@
 #include "explore/attractor_samples.hpp"
 #include "explore/command_job.hpp"
 #include "explore/exploration_commands.hpp"
+#include "explore/exploration_makefile.hpp"
 #include "explore/orbit_catalogue.hpp"
 #include "files/replaced_file.hpp"
 #include "files/solution_file_reader.hpp"
@@ -305,7 +306,7 @@ class Explorer {
     write(folder + ".txt", text);
     write(folder + ".json", tree_json(diagram_));
     write((fs::path(folder).parent_path() / ("Makefile." + fs::path(folder).filename().string())).string(),
-          makefile_text(diagram_, folder));
+          exploration_makefile(jobs_of(diagram_), folder));
     show("\n" + text);
     return diagram_.branches.empty() ? 1 : 0;
   }

@@ -1,8 +1,12 @@
 // tchat explore: diagrams whose special points are known in closed form, the same whatever is done at a time or
 // interrupted, and by make alone.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <chrono>
 #include <cmath>
+#include <filesystem>
+#include <numeric>
+#include <random>
 #include <thread>
 
 #include "end_to_end/workspace.hpp"
@@ -31,6 +35,60 @@ double value_of(const std::string& tree, const std::string& text) {
   return std::stod(tree.substr(at + text.size()));
 }
 
+/// The names of p- and q-files of the tree's branches in a folder.
+std::vector<std::string> branch_files(const Workspace& workspace, const std::string& folder) {
+  const std::string makefile = workspace.read("Makefile." + folder);
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(workspace.file(folder))) {
+    const std::string name = entry.path().filename().string();
+    if (!name.starts_with("p.") && !name.starts_with("q.")) continue;
+    if (makefile.find(folder + "/" + name + " ") != std::string::npos) names.push_back(name);
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+/// An orbit by its states where segments begin.
+struct FoundOrbit {
+  std::string branch;
+  double parameter = 0.0;
+  std::vector<std::vector<double>> states;
+};
+
+/// At user values, on all branches of the tree.
+std::vector<FoundOrbit> orbits_at_user_values(const Workspace& workspace, const std::string& folder) {
+  std::vector<FoundOrbit> orbits;
+  for (const std::string& name : branch_files(workspace, folder)) {
+    if (!name.starts_with("q.")) continue;
+    for (const SolutionEntry& entry : read_solutions(workspace.read(folder + "/" + name))) {
+      if (entry.internal.empty() || entry.internal.front() != 1.0) continue;
+      FoundOrbit orbit{name, std::round(entry.parameter(1) * 1e8) * 1e-8, {}};
+      const std::vector<double>& first = entry.states.front();
+      const auto n = static_cast<std::size_t>(entry.dimension);
+      for (std::size_t at = 0; at + n <= first.size(); at += n)
+        orbit.states.emplace_back(first.begin() + static_cast<std::ptrdiff_t>(at),
+                                  first.begin() + static_cast<std::ptrdiff_t>(at + n));
+      orbits.push_back(orbit);
+    }
+  }
+  return orbits;
+}
+
+/// The largest difference of states, whichever segment of `b` is the first, and however often the orbits are run.
+double distance(const FoundOrbit& a, const FoundOrbit& b) {
+  const std::size_t count = std::lcm(a.states.size(), b.states.size());
+  double least = INFINITY;
+  for (std::size_t shift = 0; shift < b.states.size(); ++shift) {
+    double largest = 0.0;
+    for (std::size_t k = 0; k < count; ++k)
+      for (std::size_t i = 0; i < a.states.front().size(); ++i)
+        largest =
+            std::max(largest, std::abs(a.states[k % a.states.size()][i] - b.states[(k + shift) % b.states.size()][i]));
+    least = std::min(least, largest);
+  }
+  return least;
+}
+
 const std::string exploration = "explore ball --over Gamma=1:1.7:71 --doublings 2";
 
 }  // namespace
@@ -55,24 +113,60 @@ TEST_CASE("the bouncing ball: all period doublings from one command, every perio
       other.replace(at, 3, "one");
     CHECK(other == workspace.read("one.json"));
   }
-  SECTION("a killed exploration goes on, and nothing is done again") {
-    for (int k = 0; k < 4; ++k) {
+  SECTION("killed at 20 random times, it goes on to the same tree") {
+    std::mt19937 random(20);
+    std::uniform_int_distribution<int> milliseconds(20, 900);
+    for (int kills = 0; kills < 20;) {
       const std::unique_ptr<Process> process = workspace.start_tchat(exploration + " -o killed -q");
-      std::this_thread::sleep_for(std::chrono::milliseconds(150 + 170 * k));  // and is killed with `process`
+      std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds(random)));
+      if (!process->ended()) {
+        ++kills;  // with `process`
+        continue;
+      }
+      CHECK(workspace.read("killed.txt") == tree);
+      std::filesystem::remove_all(workspace.file("killed"));
     }
     REQUIRE(workspace.tchat(exploration + " -o killed").status == 0);
     CHECK(workspace.read("killed.txt") == tree);
+    for (const std::string& name : branch_files(workspace, "one"))
+      CHECK(workspace.read("killed/" + name) == workspace.read("one/" + name));
   }
   SECTION("make alone makes the same files") {
     REQUIRE(workspace.shell("mkdir made && cp ball.tch Makefile.one made").status == 0);
     const Outcome made = workspace.make("made", "-s -j2 -f Makefile.one");
     INFO(made.text());
     REQUIRE(made.status == 0);
-    for (const char* const name : {"p.a1", "q.a1", "p.a2"}) {
+    for (const std::string& name : branch_files(workspace, "one")) {
       INFO(name);
-      CHECK(workspace.read(std::string("made/one/") + name) == workspace.read(std::string("one/") + name));
+      CHECK(workspace.read("made/one/" + name) == workspace.read("one/" + name));
     }
   }
+  SECTION("parts that are made one by one are the whole") {
+    REQUIRE(workspace.shell("mkdir parts && cp ball.tch Makefile.one parts").status == 0);
+    for (const char* const part : {"1", "2", "3"})
+      REQUIRE(workspace.make("parts", std::string("-s -f Makefile.one part PARTS=3 PART=") + part).status == 0);
+    CHECK(workspace.make("parts", "-q -f Makefile.one").status == 0);
+    for (const std::string& name : branch_files(workspace, "one"))
+      CHECK(workspace.read("parts/one/" + name) == workspace.read("one/" + name));
+  }
+}
+
+TEST_CASE("no orbit lies on two branches of an exploration") {
+  const Workspace workspace;
+  workspace.write("ball.tch", ball);
+  // Values that are far from bifurcations.
+  const Outcome outcome = workspace.tchat({"explore", "ball", "--over", "Gamma=1:1.71:72", "-o", "one", "-j", "2", "-q",
+                                           "UZR={Gamma:[1.2,1.4,1.6,1.68,1.7,1.7035,1.7095]}"});
+  INFO(outcome.text());
+  REQUIRE(outcome.status == 0);
+  const std::vector<FoundOrbit> orbits = orbits_at_user_values(workspace, "one");
+  CHECK(orbits.size() > 20);
+  for (const FoundOrbit& a : orbits)
+    for (const FoundOrbit& b : orbits) {
+      if (a.branch >= b.branch || a.parameter != b.parameter) continue;
+      INFO(a.branch << " and " << b.branch << " at " << a.parameter);
+      CHECK(distance(a, b) > 1e-5);
+    }
 }
 
 TEST_CASE("the impact oscillator: resegmentation at grazing joins the branches of two attractors") {

@@ -1,0 +1,68 @@
+#include "explore/exploration_makefile.hpp"
+
+#include <fmt/format.h>
+
+#include <map>
+
+namespace tchat {
+
+namespace {
+
+/// A word in a rule.
+std::string in_rule(const std::string& word) {
+  std::string text;
+  for (const char c : word) {
+    if (c == '$') text += '$';
+    text += c;
+  }
+  return text;
+}
+
+std::string rule(const CommandJob& job) {
+  std::string text;
+  for (const std::string& file : job.outputs) text += file + " ";
+  text += "&:";
+  for (const std::string& file : job.inputs) text += " " + file;
+  text += " | $(FOLDER)\n";
+  for (const std::string& line : job.lines)
+    text += "\t" + (line.starts_with("tchat ") ? "$(TCHAT)" + in_rule(line.substr(5)) : in_rule(line)) + "\n";
+  return text + "\n";
+}
+
+/// The first files of jobs that have inputs in common, or make them, together: jobs of different trees share nothing.
+std::vector<std::string> trees(const std::vector<CommandJob>& jobs) {
+  std::vector<std::string> files;
+  std::map<std::string, std::size_t> tree_of;
+  for (const CommandJob& job : jobs) {
+    std::size_t tree = files.size();
+    for (const std::string& input : job.inputs)
+      if (const auto made = tree_of.find(input); made != tree_of.end()) tree = made->second;
+    if (tree == files.size()) files.emplace_back();
+    for (const std::string& output : job.outputs) tree_of[output] = tree;
+    files[tree] += " " + job.outputs.front();
+  }
+  return files;
+}
+
+}  // namespace
+
+std::string exploration_makefile(const std::vector<CommandJob>& jobs, const std::string& folder) {
+  const std::vector<std::string> parts = trees(jobs);
+  std::string text =
+      fmt::format("# Makes the files of {0} with make -f, also with -j.\nTCHAT = tchat\nFOLDER = {0}\n\n", folder);
+  std::string all, numbered;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    all += fmt::format(" $(TREE{})", i + 1);
+    numbered += fmt::format("TREE{} ={}\n", i + 1, parts[i]);
+  }
+  text +=
+      fmt::format("# What has no file in common. Part PART of PARTS: make -f ... part PART=2 PARTS=8\n{}\n", numbered);
+  text += fmt::format("all:{}\n\n", all);
+  text += fmt::format("PART = 1\nPARTS = 1\npart: $(foreach tree,$(shell seq $(PART) $(PARTS) {}),$(TREE$(tree)))\n\n",
+                      parts.size());
+  text += ".PHONY: all part\n\n$(FOLDER):\n\tmkdir -p $@\n\n";
+  for (const CommandJob& job : jobs) text += rule(job);
+  return text;
+}
+
+}  // namespace tchat
