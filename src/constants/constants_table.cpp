@@ -27,7 +27,7 @@ Limits any() { return {}; }
 
 constexpr double largest_weight = 1e15;  // beyond it rounding of one entry hides the step of all others
 constexpr double last_parameter = first_name + max_names;  // names stand there
-constexpr double max_list = 1000;                          // length of lists that nothing else bounds
+constexpr double max_list = 100000;                        // length of lists that nothing else bounds
 constexpr std::string_view kept = "read and kept, no effect";
 constexpr std::string_view type_with_count =
     "a type with a count (BP, LP, HB, PD, TR, UZ, GR, BE, XI, GC, CP, R1, ..., R4, BT, ZH, GH, EP, MX or RG) and a "
