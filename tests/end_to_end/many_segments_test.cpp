@@ -59,6 +59,19 @@ TEST_CASE("an orbit of 302 impacts is run, written, read, verified and resegment
   CHECK(workspace.solutions("rotated").back().parameter(61 + 297) == Approx(2.0).epsilon(1e-9));
 }
 
+TEST_CASE("no list of constants ends an orbit of more than a thousand segments") {
+  const Workspace workspace;
+  workspace.write("ball.tch", thrown_ball);
+  workspace.succeed("simulate ball -q --dat ball --events 8000 --max-period 1500 PAR(r)=0.995 PAR(vc)=0.0066");
+  workspace.succeed("run ball -q -c ball -d ball -o branch NTST=2 ICP=[r] NMX=3 DS=1e-5");
+  const SolutionEntry last = workspace.solutions("branch").back();
+  REQUIRE(last.states.front().size() > 2000);
+  const int segments = static_cast<int>(last.states.front().size()) / 2;
+  double sum = 0.0;
+  for (int s = 1; s <= segments; ++s) sum += last.par.at(static_cast<std::size_t>(60 + s - 1));
+  CHECK(sum == Approx(period(last.parameter(1), segments)).epsilon(1e-10));
+}
+
 TEST_CASE("durations beyond the 256th and monitors keep apart") {
   const Workspace workspace;
   const int segments = simulate(workspace, 0.0067);
