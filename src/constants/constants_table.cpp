@@ -55,8 +55,7 @@ std::vector<Constant> make_table() {
       {"NICP", "number of free parameters listed", 2, ListCount{"ICP"}, range(1, max_segments), "", "3", ""},
       {"ICP", "free parameters, durations included", 2, &R::free_parameters, range(1, last_parameter),
        "PAR indices: 1 to 60 of the problem (or its names), 61, 62, ... the durations of the segments (behind more "
-       "than "
-       "60 parameters they follow these); names of monitors",
+       "than 60 parameters they follow these); names of monitors",
        "[1, 61, 62]", ""},
       {"NTST", "number of mesh intervals of each segment", 3, &R::mesh_intervals, range(1, 5000), "", "50", ""},
       {"NCOL", "number of collocation points of each mesh interval", 3, &R::collocation_points, range(2, 7), "", "4",

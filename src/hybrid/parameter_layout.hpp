@@ -27,7 +27,7 @@ class ParameterLayout {
   constexpr ParameterLayout() = default;
   constexpr explicit ParameterLayout(int parameters) : parameters_(parameters) {}
 
-  /// P; problems of fewer than 60 parameters have the same layout, whatever P is.
+  /// P; problems of up to 60 parameters have the same layout, whatever P is.
   constexpr int parameters() const { return parameters_; }
 
   constexpr int first_duration() const { return std::max(parameters_, least_room) + 1; }

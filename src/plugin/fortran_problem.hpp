@@ -15,11 +15,8 @@
 ///     GCICND (GCNDIM, X, PAR, GCIDIFF, FI, DFIDX, DFIDP, DFIDXDX, DFIDXDP, SEGNO)     integrands on segment SEGNO
 ///         FI(NINT), DFIDX(NINT,N), DFIDP(NINT,*), DFIDXDX(NINT,N,N), DFIDXDP(NINT,N,*)
 ///     GCSTPNT(GCNDIM, X, PAR, T, SEGNO)    optional: starting values of PAR, durations included, and a state
-///     GCNPAR (NPAR)                        optional: sets NPAR to the number of parameters, which may be beyond 60;
-///     the
-///                                          durations follow them then, PAR(NPAR + 1), ...
-///     GCPVLS (GCNDIM, X, PAR, SEGNO)       optional: sets entries of PAR that are output; X at the end of segment
-///     SEGNO
+///     GCNPAR (NPAR)                        optional: the number of parameters; beyond 60 the durations follow them
+///     GCPVLS (GCNDIM, X, PAR, SEGNO)       optional: sets entries of PAR that are output; X where segment SEGNO ends
 ///
 /// Values are NaN before a call and derivatives zero, so that an output left unset is seen and only nonzero derivatives
 /// need be set. What such a library cannot give (second derivatives of jumps and by two parameters; parameter
