@@ -64,6 +64,8 @@ void add_recording_options(CLI::App& command, SweepRequest& request, std::string
                   "minus the minima of event function J, measured without the impact")
       ->type_name("J")
       ->group(group);
+  command.add_flag("--max", request.largest, "largest value of each state over a period, as columns max(X)")
+      ->group(group);
   add_exponent_count(command, exponents, "the K largest Lyapunov exponents and their errors [all]", group);
 }
 

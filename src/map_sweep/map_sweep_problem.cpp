@@ -35,6 +35,7 @@ void refuse_options_of_simulations(const SweepRequest& request) {
   refuse(s.plan.transient_time > 0.0, "--transient-time", "give the number of returns with --transient-events");
   refuse(s.signature.has_value() || s.follow_signature, "--signature", "leave it out");
   refuse(s.modes.has_value(), "--mode", "leave it out");
+  refuse(request.largest, "--max", "leave it out");
 }
 
 std::vector<int> swept_parameters(const std::vector<SweepTarget>& over) {

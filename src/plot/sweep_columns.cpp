@@ -167,7 +167,7 @@ std::vector<std::string> sweep_states(const SweepTable& table) {
     const bool scalar =
         std::find(scalars.begin(), scalars.end(), name) != scalars.end() || swept_quantity(table, name) != nullptr;
     const bool exponent = name.starts_with("lambda") || name.starts_with("error");
-    if (!scalar && !exponent) states.push_back(name);
+    if (!scalar && !exponent && !is_largest_value_column(name)) states.push_back(name);
   }
   return states;
 }

@@ -44,6 +44,7 @@ class RangeCheck {
 void check_states(const AttractorSample& sample, int dimension, RangeCheck& check) {
   const Eigen::Index n = dimension;
   if (sample.sections.cols() > 0) check.count("a recorded state", sample.sections.rows(), n, false);
+  if (sample.largest.cols() > 0) check.count("a list of largest values", sample.largest.rows(), n, false);
   if (sample.identity.cols() > 0) check.count("a section state", sample.identity.rows(), n, false);
   check.count("the range", sample.range.size(), n, sample.identity.cols() == 0);
   check.count("the last state", sample.last.x.size(), n, true);

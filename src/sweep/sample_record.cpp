@@ -12,6 +12,9 @@ namespace tchat {
 
 namespace {
 
+/// Before what a line has only if it was asked for; no message begins with it.
+constexpr const char* largest_values = "@max";
+
 /// FNV-1a: tells a line that was cut or damaged.
 std::uint64_t line_hash(std::string_view text) {
   std::uint64_t hash = 14695981039346656037ULL;
@@ -157,6 +160,10 @@ std::string record_line(const SampleRecord& record) {
   line.vector(sample.range);
   line.vector(sample.last.x);
   line.index_vectors(sample.last.watched);
+  if (sample.largest.size() > 0) {
+    line.word(largest_values);
+    line.matrix(sample.largest);
+  }
   return line.finished(one_line(sample.message));
 }
 
@@ -185,6 +192,10 @@ std::optional<SampleRecord> read_record(const std::string& line) {
   sample.range = reader.vector();
   sample.last.x = reader.vector();
   sample.last.watched = reader.index_vectors();
+  if (reader.rest().starts_with(std::string(largest_values) + ' ')) {
+    reader.word();
+    sample.largest = reader.matrix();
+  }
   sample.message = reader.rest();
   if (!reader.ok() || !kind) return std::nullopt;
   sample.kind = *kind;

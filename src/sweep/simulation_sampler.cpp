@@ -6,6 +6,7 @@
 #include <cmath>
 #include <deque>
 #include <limits>
+#include <map>
 #include <utility>
 
 #include "attractor/attractor_search.hpp"
@@ -20,6 +21,7 @@
 #include "simulation/decay.hpp"
 #include "simulation/watched_flow.hpp"
 #include "sweep/incoming_states.hpp"
+#include "sweep/largest_values.hpp"
 #include "text/user_error.hpp"
 
 namespace tchat {
@@ -85,6 +87,7 @@ class SampleRun {
       keep_exponents(exponents.spectrum());
     }
     finish();
+    if (setup_.recording.largest) measure_largest(simulation);
     return std::move(sample_);
   }
 
@@ -295,6 +298,51 @@ class SampleRun {
     }
     sample_.range = high - low;
     for (const Eigen::Index k : search_.ignorable()) sample_.range(k) = 0.0;
+  }
+
+  void measure_largest(const HybridSimulation& simulation) {
+    if (!is_attractor(sample_.kind) || kept_.empty()) return;
+    const Eigen::Index dots = std::max<Eigen::Index>(1, sample_.sections.cols());
+    if (sample_.kind == AttractorKind::periodic)
+      sample_.largest = largest_of_period(simulation).replicate(1, dots);
+    else if (sample_.kind == AttractorKind::rest)
+      sample_.largest = kept_.back().end.replicate(1, dots);
+    else
+      sample_.largest = largest_between_events();
+    for (const Eigen::Index k : search_.ignorable()) sample_.largest.row(k).setConstant(NAN);
+  }
+
+  /// One turn is simulated once more.
+  VectorXd largest_of_period(const HybridSimulation& simulation) const {
+    LargestValues largest(system_, par_);
+    SimulationSettings settings = plain_settings();
+    settings.samples = 0;
+    settings.on_piece = [&largest](int field, const DenseOutput& state, double from, double to) {
+      largest.add_piece(field, state, from, to);
+    };
+    HybridSimulation on_orbit(simulation, search_.orbit()->end, settings);
+    for (std::size_t s = 0; s < kept_.size(); ++s)
+      if (on_orbit.next(never).ended_by == SegmentEnd::interrupted) throw SampleInterrupted();
+    return largest.values();
+  }
+
+  /// For each event up to the next of the same event function; of states recorded elsewhere, over all that is kept.
+  MatrixXd largest_between_events() const {
+    const Eigen::Index dots = std::max<Eigen::Index>(1, sample_.sections.cols());
+    VectorXd all = kept_.front().high;
+    for (const SimulatedSegment& segment : kept_) all = all.cwiseMax(segment.high);
+    if (setup_.recording.states != Recording::States::all_events || dots != std::ssize(kept_))
+      return all.replicate(1, dots);
+    MatrixXd largest = MatrixXd::Constant(system_.dimension(), dots, NAN);
+    std::map<int, VectorXd> since_event;  // behind the segment looked at, which goes backwards
+    for (Eigen::Index s = dots - 1; s >= 0; --s) {
+      const SimulatedSegment& segment = kept_[static_cast<std::size_t>(s)];
+      if (const auto next = since_event.find(segment.index.event); next != since_event.end())
+        largest.col(s) = next->second;
+      since_event[segment.index.event] = VectorXd::Constant(system_.dimension(), -never);
+      for (auto& [event, high] : since_event) high = high.cwiseMax(segment.high);
+    }
+    return largest;
   }
 
   void describe_period() {

@@ -26,9 +26,10 @@ struct Recording {
     /// account of only afterwards (2.64)
     contact,
   } states = States::none;
-  int section = 0;      ///< event function
-  int penetration = 0;  ///< event function whose least value is wanted; 0 none
-  int exponents = 0;    ///< 0: none
+  int section = 0;       ///< event function
+  int penetration = 0;   ///< event function whose least value is wanted; 0 none
+  int exponents = 0;     ///< 0: none
+  bool largest = false;  ///< AttractorSample::largest
 
   /// On the wall itself there is nothing to follow.
   bool has_incoming_states() const { return states == States::section && penetration > 0 && penetration != section; }

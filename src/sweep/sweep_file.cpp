@@ -200,6 +200,10 @@ std::string attractor_line(const SweepAttractor& attractor) {
 
 }  // namespace
 
+std::string largest_value_column(const std::string& state) { return "max(" + state + ")"; }
+
+bool is_largest_value_column(const std::string& column) { return column.starts_with("max(") && column.ends_with(')'); }
+
 double SweptQuantity::value(long i) const {
   if (i <= 0 || count <= 1) return from;
   if (i >= count - 1) return to;

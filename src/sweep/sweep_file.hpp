@@ -10,10 +10,11 @@
 ///     periodic 2 6.72 1 0.01 ...
 ///
 /// One row for each recorded state, or one row of a value without any; scalars stand in every row. Columns that were
-/// not asked for are missing. `period` is in events, `time` in time; what does not exist is `nan`. Attractor 0: none.
-/// Columns of section states have the names of the states, that of a swept initial state is `NAME(0)`; where the states
-/// of several event functions are recorded a column `event` tells which. The state of an attractor is one that
-/// `tchat simulate --state` goes on from, with the values of its index.
+/// not asked for are missing, as those of the largest values of states, max(x1), ... before the states. `period` is in
+/// events, `time` in time; what does not exist is `nan`. Attractor 0: none. Columns of section states have the names of
+/// the states, that of a swept initial state is `NAME(0)`; where the states of several event functions are recorded a
+/// column `event` tells which. The state of an attractor is one that `tchat simulate --state` goes on from, with the
+/// values of its index.
 #pragma once
 
 #include <Eigen/Core>
@@ -25,6 +26,11 @@
 #include "attractor/attractor_kind.hpp"
 
 namespace tchat {
+
+/// Column of the largest value of a state: max(x1), as p-files call it.
+std::string largest_value_column(const std::string& state);
+/// Is it the name of such a column?
+bool is_largest_value_column(const std::string& column);
 
 /// One `--over`.
 struct SweptQuantity {

@@ -247,6 +247,7 @@ class TableWriter {
     line += " period time impacts";
     if (job_.columns.penetration) line += " penetration";
     for (int k = 1; k <= job_.columns.exponents; ++k) line += fmt::format(" lambda{} error{}", k, k);
+    for (const std::string& state : job_.columns.largest) line += " " + word(largest_value_column(state));
     for (const std::string& state : job_.columns.states) line += " " + word(state);
     return line + "\n";
   }
@@ -264,6 +265,7 @@ class TableWriter {
       const bool is_dot = has_states && dot < sample.sections.cols();
       if (job_.columns.event) add_event(sample, is_dot, dot, text);
       add_scalars(sample, is_dot, dot, text);
+      add_largest(sample, dot, text);
       for (std::size_t k = 0; k < job_.columns.states.size(); ++k)
         add_number(text, is_dot ? sample.sections(static_cast<Eigen::Index>(k), dot) : NAN);
       text += '\n';
@@ -296,6 +298,11 @@ class TableWriter {
       add_number(text, k < sample.exponents.size() ? sample.exponents(k) : NAN);
       add_number(text, k < sample.errors.size() ? sample.errors(k) : NAN);
     }
+  }
+
+  void add_largest(const AttractorSample& sample, Eigen::Index dot, std::string& text) const {
+    for (std::size_t k = 0; k < job_.columns.largest.size(); ++k)
+      add_number(text, dot < sample.largest.cols() ? sample.largest(static_cast<Eigen::Index>(k), dot) : NAN);
   }
 
   const SweepJob& job_;

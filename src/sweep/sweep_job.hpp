@@ -22,8 +22,9 @@ namespace tchat {
 struct SweepColumns {
   bool event = false;  ///< of each recorded state
   bool penetration = false;
-  int exponents = 0;                ///< how many, each with its error
-  std::vector<std::string> states;  ///< names; empty: no states are recorded
+  int exponents = 0;                 ///< how many, each with its error
+  std::vector<std::string> largest;  ///< names of the states whose largest values have columns
+  std::vector<std::string> states;   ///< names; empty: no states are recorded
 };
 
 /// Where a start's values begin.

@@ -43,6 +43,10 @@ struct AttractorSample {
   Eigen::MatrixXd sections;           ///< recorded states, n x (number of them), in the order of time
   std::vector<int> section_events;    ///< the event function of each, where several are recorded; else empty
   Eigen::VectorXd section_penetrations;  ///< of each, on P (h_J,x f = 0), or of the contact beside it; else empty
+  /// max(x_k) for each recorded state, n x (number of them, 1 without any): over the period; at rest x_k; without a
+  /// period up to the next recorded state of the same event function, NaN behind the last one. NaN of ignorable states
+  /// too. Empty: not asked for, or no attractor.
+  Eigen::MatrixXd largest;
   /// Section states by which equal attractors are known; periodic: one period, of every event in the order of
   /// `signature`. n x (number of them)
   Eigen::MatrixXd identity;

@@ -61,6 +61,7 @@ Recording read_recording(const SweepRequest& request, const HybridSystem& system
                                   *request.exponents, system.name(), n, n));
     recording.exponents = *request.exponents > 0 ? *request.exponents : n;
   }
+  recording.largest = request.largest;
   return recording;
 }
 
@@ -82,12 +83,20 @@ void add_starts(const SweepRequest& request, const LoadedProblem& loaded, Sample
   }
 }
 
+/// A state as monitors name it, whose words and brackets have a meaning.
+std::string name_in_monitor(const std::string& name, int k) {
+  return name.find_first_of(" \t(),") == std::string::npos ? name : fmt::format("U({})", k);
+}
+
 void choose_columns(const HybridSystem& system, const Recording& recording, SweepColumns& columns) {
   columns.event = recording.states == Recording::States::all_events;
   columns.penetration = recording.penetration > 0;
   columns.exponents = recording.exponents;
-  if (recording.states == Recording::States::none) return;
-  for (int k = 1; k <= system.dimension(); ++k) columns.states.push_back(system.state_name(k));
+  std::vector<std::string> states;
+  for (int k = 1; k <= system.dimension(); ++k) states.push_back(system.state_name(k));
+  for (int k = 1; k <= system.dimension() && recording.largest; ++k)
+    columns.largest.push_back(name_in_monitor(states[static_cast<std::size_t>(k) - 1], k));
+  if (recording.states != Recording::States::none) columns.states = std::move(states);
 }
 
 std::string recorded_text(const Recording& recording) {
@@ -125,6 +134,7 @@ void add_identity(const HybridSystem& system, const SamplerSetup& setup, bool ca
   add("states", recorded_text(setup.recording));
   add("penetration", fmt::format("{}", setup.recording.penetration));
   add("exponents", fmt::format("{}", setup.recording.exponents));
+  if (setup.recording.largest) add("largest", "values of states");
   add("capture", captures ? "yes" : "no");
 }
 

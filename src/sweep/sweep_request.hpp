@@ -17,6 +17,7 @@ struct SweepRequest {
   std::optional<std::string> section;      ///< an event function's number or name, "all" or "none"
   std::optional<std::string> penetration;  ///< an event function's number or name
   std::optional<int> exponents;            ///< --lyapunov: how many, 0 all
+  bool largest = false;                    ///< --max
   bool to_the_end = false;                 ///< nothing is captured
 
   int workers = 1;

@@ -67,6 +67,23 @@ TEST_CASE("impact oscillator: the orbit with one impact a period, its impact vel
   CHECK(sample.section_events == std::vector<int>{1});
 }
 
+TEST_CASE("impact oscillator without impacts: the largest values are its amplitudes") {
+  const double omega = 2.0072, zeta = 0.05, alpha = 2.0;
+  SamplerSetup setup =
+      setup_from(Eigen::Vector4d(0.0, 0.0, 0.0, 1.0), parameters({alpha, omega, zeta, 0.8}), "1,1,1;1,2,2");
+  setup.recording.largest = true;
+  const AttractorSample sample = sampled(setup, linosc(), VectorXd());
+  REQUIRE(sample.kind == AttractorKind::periodic);
+  REQUIRE(sample.impacts == 0);
+  const double amplitude = alpha / std::hypot(1.0 - omega * omega, 2.0 * zeta * omega);
+  REQUIRE(sample.largest.cols() == sample.sections.cols());
+  for (Eigen::Index k = 0; k < sample.largest.cols(); ++k) {
+    CHECK(sample.largest(0, k) == Approx(amplitude).epsilon(1e-7));
+    CHECK(sample.largest(1, k) == Approx(amplitude * omega).epsilon(1e-7));
+    CHECK(sample.largest(2, k) == Approx(1.0).epsilon(1e-7));
+  }
+}
+
 TEST_CASE("logistic map of a clock: periods, and chaos with the exponent ln 2") {
   const HybridSystem& system = system_of<LogisticClock>();
   SamplerSetup setup = setup_from(Eigen::Vector3d(0.0, 0.3, 0.0), parameters({0.0}), "1,1,1");
@@ -85,11 +102,17 @@ TEST_CASE("logistic map of a clock: periods, and chaos with the exponent ln 2") 
     }
   }
   setup.recording.exponents = 3;
+  setup.recording.largest = true;
   const AttractorSample chaos = sampled(setup, system, VectorXd::Constant(1, 4.0));
   CHECK(chaos.kind == AttractorKind::chaotic);
   CHECK(std::isnan(chaos.period));
   REQUIRE(chaos.exponents.size() == 3);
   CHECK(std::abs(chaos.exponents(0) - std::log(2.0)) <= 4.0 * chaos.errors(0));
+  // Without a period the largest values are those up to the next event: c is constant in between.
+  const Eigen::Index last = chaos.sections.cols() - 1;
+  REQUIRE(chaos.largest.cols() == last + 1);
+  for (Eigen::Index k = 0; k < last; ++k) CHECK(chaos.largest(1, k) == Approx(chaos.sections(1, k + 1)).epsilon(1e-9));
+  CHECK(std::isnan(chaos.largest(0, last)));
 }
 
 TEST_CASE("a sampler that is interrupted gives the value up") {

@@ -113,6 +113,7 @@ TEST_CASE("files that are no sweep, or damaged, are refused with their line") {
 }
 
 TEST_CASE("a record of a journal is read back to the last bit, and a damaged one is not") {
+  const bool has_largest = GENERATE(false, true);
   SampleRecord record{123456789, 2, {}};
   AttractorSample& sample = record.sample;
   sample.kind = AttractorKind::periodic;
@@ -126,6 +127,7 @@ TEST_CASE("a record of a journal is read back to the last bit, and a damaged one
   sample.section_events = {1, 2, 1, 1};
   sample.section_penetrations = Eigen::VectorXd::Random(4);
   sample.identity = Eigen::MatrixXd::Random(3, 2);
+  if (has_largest) sample.largest = Eigen::MatrixXd::Random(3, 4);
   sample.range = Eigen::VectorXd::Random(3);
   sample.last = {Eigen::VectorXd::Random(3), {{1, 1, 1}, {1, 2, 2}}};
   sample.known = 3;
@@ -147,6 +149,7 @@ TEST_CASE("a record of a journal is read back to the last bit, and a damaged one
   CHECK(read->sample.section_events == sample.section_events);
   CHECK(read->sample.section_penetrations == sample.section_penetrations);
   CHECK(read->sample.identity == sample.identity);
+  CHECK(read->sample.largest == sample.largest);
   CHECK(read->sample.last.x == sample.last.x);
   CHECK(read->sample.last.watched == sample.last.watched);
   CHECK(read->sample.known == 3);
