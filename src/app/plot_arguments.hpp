@@ -28,6 +28,8 @@ struct PlotArguments {
   std::string labels;
   bool no_labels = false;
   bool numbers = false;
+  bool black = false;  ///< branches
+  bool grey = false;   ///< dots of sweeps
   std::string plugin;
   std::string surfaces;
   int dimension = 0;

@@ -60,6 +60,7 @@ class SweepLayers {
     look_.x = arguments.x;
     look_.y = arguments.dots.empty() ? arguments.y : arguments.dots;
     look_.z = arguments.z;
+    look_.grey = arguments.grey;
     for (const std::string& text : arguments.at) look_.choices.push_back(read_sweep_choice(text));
     const PlotRange range = read_plot_range(arguments.z_range, "--zrange");
     look_.z_low = range.low, look_.z_high = range.high;
@@ -91,7 +92,7 @@ class SweepLayers {
 NamedFigure branches(const std::vector<PlotItem>& items, const PlotArguments& arguments) {
   NamedFigure result;
   std::vector<BranchFile> files;
-  BranchFigureOptions options{arguments.x, arguments.y, read_label_selection(arguments), {}, {}, {}};
+  BranchFigureOptions options{arguments.x, arguments.y, read_label_selection(arguments), {}, {}, {}, arguments.black};
   SweepLayers sweeps(items, arguments);
   std::size_t lines = 0;  // of the key: one a file, more for a sweep in several colours
   for (const PlotItem& item : items) {

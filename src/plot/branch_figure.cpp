@@ -203,14 +203,14 @@ class BranchFigureBuilder {
   void add_branch(const Piece& piece, const Intervals& intervals) {
     const BranchFile& file = files_[piece.file];
     const std::string colour = !curves_.empty() ? unused_colour(curve_kinds_, position(plain_files_, file.path))
-                               : plain_files_.size() > 1 ? series_colour(piece.file)
-                                                         : neutral;
+                               : plain_files_.size() > 1 && !options_.black ? series_colour(piece.file)
+                                                                            : neutral;
     knows_stability_ = knows_stability_ || section_of(piece).has_stability();
     add_runs(piece, intervals, [this, &colour](LineKind kind) {
       kinds_.insert(kind);
       return line_stroke(kind, colour, line_width);
     });
-    add_file_entry(piece.file, {Dash::solid, line_width, colour}, std::nullopt, file.name);
+    if (!options_.black) add_file_entry(piece.file, {Dash::solid, line_width, colour}, std::nullopt, file.name);
   }
 
   void add_curve(const Piece& piece, const Intervals& intervals) {
@@ -288,7 +288,7 @@ class BranchFigureBuilder {
 
   /// What the dashes mean; the name of a lone branch is left out where they say enough.
   void add_key() {
-    if (knows_stability_ && key_.size() == 1 && options_.legend.empty()) key_.clear();
+    if (knows_stability_ && key_.size() == 1 && key_[0].stroke && options_.legend.empty()) key_.clear();
     if (!knows_stability_) kinds_.erase(LineKind::stable);
     const std::string colour = key_.empty() || (key_.size() == 1 && key_[0].stroke) ? neutral : "#606060";
     for (KeyEntry& entry : line_kind_entries(kinds_, colour, line_width)) key_.push_back(std::move(entry));

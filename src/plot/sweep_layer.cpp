@@ -137,6 +137,7 @@ class SweepLayerBuilder {
 
   std::vector<Group> make_groups() {
     if (!look_.z.empty()) return coloured_groups(look_.z);
+    if (look_.grey) return {Group{plain_text(file_.name), cloud_colour(0), std::vector<bool>(rows_.size(), true)}};
     const std::vector<double>* start = table_.column("start");
     std::vector<Group> groups;
     for (std::size_t k = 0; k < table_.starts.size() && start != nullptr; ++k) {

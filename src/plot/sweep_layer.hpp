@@ -28,6 +28,7 @@ struct SweepLook {
   std::vector<SweepChoice> choices;     ///< --at
   std::optional<double> z_low, z_high;  ///< of a scale of colours
   LabelText z_label;
+  bool grey = false;              ///< the same for all starts
   bool beneath_branches = false;  ///< pale
   std::size_t sweep = 0;          ///< its place among those of the picture
   std::size_t clouds_before = 0;  ///< in the same picture, which have other colours
