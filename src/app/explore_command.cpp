@@ -30,7 +30,9 @@ void add_explore_command(CLI::App& app, std::function<int()>& chosen) {
   command->add_option("NAME", request->name, "problem NAME.cpp or NAME.tch")->required();
   command->add_option("-c,--constants", request->constants, "constants of the simulations from gc.C")->type_name("C");
   command->add_option("-p,--problem", request->problem, "problem P.cpp, P.tch, P.f or P.so [NAME]")->type_name("P");
-  command->add_option("-o,--output", request->output, "folder of the files; O.txt, O.json, Makefile.O [NAME.diagram]")
+  command
+      ->add_option("-o,--output", request->output,
+                   "folder of the files; O.txt, O.json, O.png, O.svg, O.html, Makefile.O [NAME.diagram]")
       ->type_name("O");
   command->add_option("--over", request->over, "range of the parameter, and the number of values of the sweep [201]")
       ->required()
@@ -38,6 +40,8 @@ void add_explore_command(CLI::App& app, std::function<int()>& chosen) {
   command->add_option("--state", request->states, "initial state of the sweep, as 0,0.1,-2; may be repeated")
       ->allow_extra_args(false)
       ->take_all();
+  command->add_option("-y", request->quantity, "y-axis of the picture [the max(X) that varies most]")
+      ->type_name("QUANTITY");
   command->add_option("-j,--jobs", request->workers, "commands at a time; they do not change the result")
       ->type_name("N")
       ->check(whole_number(1, 1024))

@@ -65,9 +65,9 @@ CommandJob ExplorationCommands::sweep() const {
   std::string words = quoted({fmt::format("{}={}:{}:{}", range_.parameter, range_.from, range_.to, range_.count)});
   for (const std::string& state : request_.states) words += " --state " + quoted_for_shell(state);
   CommandJob job{"sweep", {}, {}, {path("sweep.sweep")}};
-  job.lines = {fmt::format("tchat sweep {}{} --over{}{} --follow both -o {} -j {} -q", problem_arguments(problem_),
-                           constants_option_, words, quoted(parameters_), quoted_for_shell(path("sweep")),
-                           request_.workers)};
+  job.lines = {fmt::format("tchat sweep {}{} --over{}{} --follow both --max -o {} -j {} -q",
+                           problem_arguments(problem_), constants_option_, words, quoted(parameters_),
+                           quoted_for_shell(path("sweep")), request_.workers)};
   return job;
 }
 

@@ -46,22 +46,25 @@ std::vector<std::string> trees(const std::vector<CommandJob>& jobs) {
 
 }  // namespace
 
-std::string exploration_makefile(const std::vector<CommandJob>& jobs, const std::string& folder) {
+std::string exploration_makefile(const std::vector<CommandJob>& jobs, const std::vector<CommandJob>& last,
+                                 const std::string& folder) {
   const std::vector<std::string> parts = trees(jobs);
   std::string text =
       fmt::format("# Makes the files of {0} with make -f, also with -j.\nTCHAT = tchat\nFOLDER = {0}\n\n", folder);
-  std::string all, numbered;
+  std::string branches, numbered, pictures;
   for (std::size_t i = 0; i < parts.size(); ++i) {
-    all += fmt::format(" $(TREE{})", i + 1);
+    branches += fmt::format(" $(TREE{})", i + 1);
     numbered += fmt::format("TREE{} ={}\n", i + 1, parts[i]);
   }
   text +=
       fmt::format("# What has no file in common. Part PART of PARTS: make -f ... part PART=2 PARTS=8\n{}\n", numbered);
-  text += fmt::format("all:{}\n\n", all);
+  for (const CommandJob& job : last) pictures += " " + job.outputs.front();
+  text += fmt::format("all: branches{}\n\nbranches:{}\n\n", pictures, branches);
   text += fmt::format("PART = 1\nPARTS = 1\npart: $(foreach tree,$(shell seq $(PART) $(PARTS) {}),$(TREE$(tree)))\n\n",
                       parts.size());
-  text += ".PHONY: all part\n\n$(FOLDER):\n\tmkdir -p $@\n\n";
+  text += ".PHONY: all branches part\n\n$(FOLDER):\n\tmkdir -p $@\n\n";
   for (const CommandJob& job : jobs) text += rule(job);
+  for (const CommandJob& job : last) text += rule(job);
   return text;
 }
 

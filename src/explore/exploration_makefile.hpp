@@ -8,9 +8,10 @@
 
 namespace tchat {
 
-/// `jobs` come after those that make their inputs. Target `all` makes everything, `part` a part of PARTS, number PART
-/// from 1: no file belongs to two parts, so that parts can be made at the same time by processes that know nothing of
-/// each other.
-std::string exploration_makefile(const std::vector<CommandJob>& jobs, const std::string& folder);
+/// `jobs` come after those that make their inputs, and before `last` ones. Target `branches` makes the files of `jobs`,
+/// `all` those of both, `part` a part of PARTS of the branches, number PART from 1: no file belongs to two parts, so
+/// that parts can be made at the same time by processes that know nothing of each other.
+std::string exploration_makefile(const std::vector<CommandJob>& jobs, const std::vector<CommandJob>& last,
+                                 const std::string& folder);
 
 }  // namespace tchat

@@ -15,6 +15,7 @@ struct ExploreRequest {
   std::string over;                      ///< "P=a:b" or "P=a:b:COUNT"
   std::vector<std::string> states;       ///< --state of the sweep
   std::vector<std::string> overrides;    ///< KEY=VALUE: parameters for all commands, constants for runs
+  std::string quantity;                  ///< -y of the picture; empty: chosen
   int workers = 1;
   int doublings = 4;     ///< of the period, from an attractor on
   int branches = 50;     ///< at most so many are kept

@@ -80,10 +80,12 @@ std::string tree_json(const ExploredDiagram& diagram) {
                        json(one.command));
   });
   return fmt::format(
-      "{{\"parameter\": {}, \"complete\": {}, \"periodic\": {}, \"on_branches\": {}, \"not_periodic\": {},\n"
+      "{{\"parameter\": {}, \"quantity\": {}, \"complete\": {}, \"periodic\": {}, \"on_branches\": {}, "
+      "\"not_periodic\": {},\n"
       "\"unexplained\": {},\n\"joins\": {},\n\"branches\": {}}}\n",
-      json(diagram.parameter), diagram.complete, json(diagram.periodic), json(diagram.on_branches), json(diagram.other),
-      unexplained, json_list(diagram.joins, [](const std::string& text) { return json(text); }),
+      json(diagram.parameter), json(diagram.quantity), diagram.complete, json(diagram.periodic),
+      json(diagram.on_branches), json(diagram.other), unexplained,
+      json_list(diagram.joins, [](const std::string& text) { return json(text); }),
       json_list(diagram.branches, branch_json));
 }
 

@@ -41,6 +41,8 @@ struct UnexplainedAttractor {
 struct ExploredDiagram {
   std::string parameter;
   std::vector<CommandJob> first_jobs;  ///< the sweep
+  std::string quantity;                ///< along the picture's y-axis; "": that of tchat plot
+  std::vector<CommandJob> last_jobs;   ///< picture and page
   std::vector<ExploredBranch> branches;
   std::vector<std::string> joins;  ///< "a1_PD3: a2 again"
   std::vector<UnexplainedAttractor> unexplained;

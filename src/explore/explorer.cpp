@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <iostream>
 #include <map>
 #include <set>
 
@@ -12,6 +13,7 @@
 #include "constants/settings_type.hpp"
 #include "explore/attractor_samples.hpp"
 #include "explore/command_job.hpp"
+#include "explore/diagram_picture.hpp"
 #include "explore/exploration_commands.hpp"
 #include "explore/exploration_makefile.hpp"
 #include "explore/orbit_catalogue.hpp"
@@ -20,6 +22,7 @@
 #include "problem_type/point_type.hpp"
 #include "run/next_command.hpp"
 #include "setup/named_parameters.hpp"
+#include "setup/warnings.hpp"
 #include "simulate/loaded_problem.hpp"
 #include "text/user_error.hpp"
 #include "text/words.hpp"
@@ -302,12 +305,15 @@ class Explorer {
   int finish() {
     measure_coverage();
     const std::string& folder = commands_.folder();
+    add_pictures({folder, commands_.path("sweep.sweep"), commands_.monitors(), request_.quantity}, samples_.table(),
+                 diagram_);
     const std::string text = tree_text(diagram_);
     write(folder + ".txt", text);
     write(folder + ".json", tree_json(diagram_));
     write((fs::path(folder).parent_path() / ("Makefile." + fs::path(folder).filename().string())).string(),
-          exploration_makefile(jobs_of(diagram_), folder));
+          exploration_makefile(jobs_of(diagram_), diagram_.last_jobs, folder));
     show("\n" + text);
+    print_warnings(std::cerr, draw_pictures(diagram_.last_jobs, folder, interrupted_));
     return diagram_.branches.empty() ? 1 : 0;
   }
 

@@ -145,7 +145,7 @@ TEST_CASE("the bouncing ball: all period doublings from one command, every perio
     REQUIRE(workspace.shell("mkdir parts && cp ball.tch Makefile.one parts").status == 0);
     for (const char* const part : {"1", "2", "3"})
       REQUIRE(workspace.make("parts", std::string("-s -f Makefile.one part PARTS=3 PART=") + part).status == 0);
-    CHECK(workspace.make("parts", "-q -f Makefile.one").status == 0);
+    CHECK(workspace.make("parts", "-q -f Makefile.one branches").status == 0);
     for (const std::string& name : branch_files(workspace, "one"))
       CHECK(workspace.read("parts/one/" + name) == workspace.read("one/" + name));
   }

@@ -1,0 +1,144 @@
+#include "explore/diagram_picture.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <set>
+#include <sstream>
+#include <utility>
+
+#include "files/point_file_reader.hpp"
+#include "text/words.hpp"
+
+namespace tchat {
+
+namespace {
+
+using Points = std::vector<std::pair<double, double>>;
+
+constexpr std::size_t most_colours = 8;  // of branches that can be told apart by a key
+constexpr double cells = 48.0;           // of the grid along each axis
+constexpr double same_place = 1e-4;      // as a share of the range of the parameter
+
+/// Adds the points of a branch. False if one of its sections does not have the column.
+bool add_points(const PointFile& file, const std::string& column, Points& points) {
+  for (const PointSection& section : file.sections) {
+    const auto at = std::find(section.columns.begin(), section.columns.end(), column);
+    if (at == section.columns.end()) return false;
+    const auto place = static_cast<std::size_t>(at - section.columns.begin());
+    for (const PointRow& row : section.rows) points.emplace_back(row.values.front(), row.values[place]);
+  }
+  return true;
+}
+
+/// Adds the attractors of a sweep.
+bool add_points(const SweepTable& sweep, const std::string& column, Points& points) {
+  const std::vector<double>* const y = sweep.column(column);
+  if (y == nullptr) return false;
+  const std::vector<double>& x = *sweep.column(sweep.over.front().column());
+  bool has_some = false;
+  for (std::size_t row = 0; row < sweep.rows(); ++row) {
+    if (!std::isfinite((*y)[row])) continue;
+    points.emplace_back(x[row], (*y)[row]);
+    has_some = true;
+  }
+  return has_some;
+}
+
+/// How many cells of a grid over the points' own range have one; constants have one row of cells.
+std::size_t cells_with_points(const Points& points) {
+  if (points.empty()) return 0;
+  const auto [left, right] = std::minmax_element(points.begin(), points.end());
+  const auto [low, high] = std::minmax_element(points.begin(), points.end(),
+                                               [](const auto& a, const auto& b) { return a.second < b.second; });
+  constexpr double rounding = 1e-6;
+  const double width = right->first - left->first, height = high->second - low->second;
+  const double size = std::max(std::abs(low->second), std::abs(high->second));
+  std::set<std::pair<int, int>> found;
+  for (const auto& [x, y] : points)
+    found.emplace(width > 0.0 ? static_cast<int>(cells * (x - left->first) / width) : 0,
+                  height > rounding * size ? static_cast<int>(cells * (y - low->second) / height) : 0);
+  return found.size();
+}
+
+bool has_label(const ExploredDiagram& diagram, const std::string& type, double parameter, double slack) {
+  for (const ExploredBranch& branch : diagram.branches)
+    for (const ExploredLabel& label : branch.labels)
+      if (label.type == type && std::abs(label.parameter - parameter) <= slack) return true;
+  return false;
+}
+
+/// The types of labels to draw. A branch point where a doubled branch is born is the period doubling once more.
+std::string drawn_types(const ExploredDiagram& diagram, const SweptQuantity& over) {
+  const double slack = same_place * std::abs(over.to - over.from);
+  std::set<std::string> types;
+  for (const ExploredBranch& branch : diagram.branches)
+    for (const ExploredLabel& label : branch.labels)
+      if (label.type != "BP" || !has_label(diagram, "PD", label.parameter, slack)) types.insert(label.type);
+  std::string list;
+  for (const std::string& type : types) list += (list.empty() ? "" : ",") + type;
+  return list.empty() ? "none" : list;
+}
+
+/// The first line of the message that ended a command, which stands alone.
+std::string message_in(const std::string& log) {
+  const std::string program = "tchat: ", warning = "tchat: warning: ";
+  std::istringstream lines(log);
+  for (std::string line; std::getline(lines, line);)
+    if (line.starts_with(program) && !line.starts_with(warning)) return line.substr(program.size());
+  return log.substr(0, log.find('\n'));
+}
+
+}  // namespace
+
+std::string chosen_quantity(const ExploredDiagram& diagram, const DiagramFiles& files, const SweepTable& sweep) {
+  std::string best;
+  std::size_t most = 0;
+  for (const std::string& name : files.monitors) {
+    Points points;
+    if (!is_largest_value_column(name) || !add_points(sweep, name, points)) continue;
+    const bool is_known = std::all_of(diagram.branches.begin(), diagram.branches.end(), [&](const auto& branch) {
+      return add_points(read_point_file(branch.job.outputs.front()), name, points);
+    });
+    const std::size_t count = cells_with_points(points);
+    if (is_known && count > most) best = name, most = count;
+  }
+  return best;
+}
+
+void add_pictures(const DiagramFiles& files, const SweepTable& sweep, ExploredDiagram& diagram) {
+  if (diagram.branches.empty()) return;
+  diagram.quantity = files.quantity.empty() ? chosen_quantity(diagram, files, sweep) : files.quantity;
+  std::string words = "tchat plot";
+  std::vector<std::string> inputs;
+  for (const ExploredBranch& branch : diagram.branches) inputs.push_back(branch.job.outputs.front());
+  inputs.push_back(files.sweep);
+  for (const std::string& file : inputs) words += " " + quoted_for_shell(file);
+  if (!diagram.quantity.empty()) words += " -y " + quoted_for_shell(diagram.quantity);
+  words += " --grey --labels " + drawn_types(diagram, sweep.over.front());
+  if (diagram.branches.size() > most_colours) words += " --black";
+  const auto add = [&](const char* name, const std::vector<std::string>& outputs) {
+    CommandJob job{name, {}, inputs, outputs};
+    for (const std::string& file : outputs) job.lines.push_back(words + " -o " + quoted_for_shell(file));
+    diagram.last_jobs.push_back(std::move(job));
+  };
+  add("picture", {files.folder + ".png", files.folder + ".svg"});
+  add("page", {files.folder + ".html"});
+}
+
+std::vector<std::string> draw_pictures(const std::vector<CommandJob>& jobs, const std::string& folder,
+                                       const std::function<bool()>& interrupted) {
+  for (const CommandJob& job : jobs)
+    for (const std::string& file : job.outputs) std::filesystem::remove(file);
+  std::vector<std::string> warnings;
+  const std::vector<JobResult> results = JobRunner(folder, 1, interrupted).run(jobs);
+  for (std::size_t i = 0; i < jobs.size(); ++i)
+    if (results[i].was_run && !results[i].succeeded)
+      warnings.push_back(fmt::format("the {} is not drawn: {}", jobs[i].name, message_in(results[i].log)));
+  return warnings;
+}
+
+}  // namespace tchat
