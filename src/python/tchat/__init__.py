@@ -10,14 +10,16 @@
 Everything is done by the commands of tchat, on files in a folder of the problem (a scratch folder unless one is named):
 the same numbers, the same messages. What tchat refuses raises tchat.Error with its sentence.
 
-    Problem            a problem: simulate(), start(), sweep()
+    Problem            a problem: simulate(), start(), sweep(), explore()
     Branch, Label      a branch, and what its labels lead to: switch(), resegment(), curve(), verify(), grazing()
     Orbit              a labelled orbit: orbit.t, orbit["x"], orbit.period
+    Diagram            all branches that explore() finds, or that are in files of tchat explore
     load               the branch of files that are there already
     run, simulate, sweep    the commands themselves, with their own words
 """
 
 from .branch import Branch, Label, Part, load, run
+from .diagram import Diagram, ExploredBranch
 from .orbit import Orbit
 from .problem import Problem
 from .program import Error, Progress, Report, TchatWarning
@@ -25,6 +27,7 @@ from .simulation import Simulation, Trajectory, read_events, read_trajectory, si
 from .start import Start
 from .sweep import Sweep, read_sweep, sweep
 
-__all__ = ["Problem", "Start", "Branch", "Label", "Part", "Orbit", "Simulation", "Trajectory", "Sweep", "Report",
+__all__ = ["Problem", "Start", "Branch", "Label", "Part", "Orbit", "Simulation", "Trajectory", "Sweep", "Diagram",
+           "ExploredBranch", "Report",
            "Progress", "Error", "TchatWarning", "load", "run", "simulate", "sweep", "read_trajectory", "read_events",
            "read_sweep"]

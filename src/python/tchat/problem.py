@@ -6,6 +6,7 @@ import tempfile
 import weakref
 
 from .branch import run_words
+from .diagram import explore
 from .program import Error, execute
 from .simulation import Simulation
 from .start import Start
@@ -58,7 +59,7 @@ class Problem:
             self._counts[kind] = self._counts.get(kind, 0) + 1
             name = "%s%d" % (kind, self._counts[kind])
             if not any(os.path.exists(self.path(file % name)) for file in
-                       ("p.%s", "q.%s", "%s.dat", "%s.trajectory", "%s.sweep")):
+                       ("p.%s", "q.%s", "%s.dat", "%s.trajectory", "%s.sweep", "%s.json")):
                 return name
 
     def _execute(self, command, words, accepted=(0,)):
@@ -124,17 +125,27 @@ class Problem:
         return Start(self, name, False)
 
     def sweep(self, *words, over, jobs=1, name=None, section=None, follow=None, state=None, lyapunov=None,
-              penetration=None, **values):
+              penetration=None, max=None, **values):
         """`tchat sweep`: what attracts, over={"A": (0.5, 2, 200)} or two of them; section= the event whose passages are
-        recorded, follow="up", "down" or "both". A Sweep."""
+        recorded, follow="up", "down" or "both"; max=True records the largest value of each state. A Sweep."""
         name = self._new_name("sweep", name)
         options = option_words(dict(section=section, follow=follow, state=state_word(state), lyapunov=lyapunov,
-                                    penetration=penetration))
+                                    penetration=penetration, max=max))
         words = [self.name, "-p", self.source, "-o", name, "-j", jobs] + over_words(over) + options + list(words)
         screen = self._execute("sweep", words + value_words(values, self.program))
         result = read_sweep(self.path(name))
         result.screen = screen
         return result
+
+    def explore(self, *words, over, jobs=1, name=None, state=None, doublings=None, branches=None, time=None, y=None,
+                **values):
+        """`tchat explore`: the whole diagram over={"A": (0.5, 2)}, or {"A": (0.5, 2, 401)} with the number of values of
+        its sweep. A Diagram. jobs= commands run at a time; doublings=, branches= and time= (seconds) limit it, y= is
+        along its picture. Parameters are those of all commands, constants those of the runs."""
+        name = self._new_name("diagram", name)
+        options = option_words(dict(jobs=jobs, state=state_word(state), doublings=doublings, branches=branches,
+                                    time=time)) + (["-y", y] if y else [])
+        return explore(self, words, name, over, options, value_words(values, self.program))
 
     def __repr__(self):
         return "problem %s in %s" % (self.name, self.folder)

@@ -41,7 +41,7 @@ class Sweep:
             return np.array(words, dtype=object)
         values = np.array(words, dtype=float)
         whole = name in ("index", "start", "attractor", "event")
-        return values.astype(int) if whole else values
+        return values.astype(int) if whole and np.all(np.isfinite(values)) else values
 
     @staticmethod
     def _attractor(match):

@@ -1,0 +1,140 @@
+"""What `tchat explore` finds: the branches over a parameter, and what each begins at."""
+
+import json
+import os
+
+from .branch import load
+from .orbit import _axes, read_signature
+from .program import Error
+from .sweep import read_sweep
+
+
+class ExploredBranch:
+    """A branch of a diagram.
+
+    name, origin          of its files, and in words what it begins at: "PD 3 of a2 at alpha = 3.03619"
+    parent, children      branches of the diagram; parent is None for that of an attractor
+    range, signatures     of the parameter, and of its orbits
+    labels                a dictionary for each special point: label, type, parameter, leads_to (a name or ""), remark
+    commands              those of tchat that make it, in the folder of the problem
+    branch                its points, orbits and labels: a Branch
+    """
+
+    def __init__(self, diagram, found):
+        self._diagram, self._parent, self._branch = diagram, found["parent"], None
+        self.name, self.origin = found["name"], found["origin"]
+        self.range = found["from"], found["to"]
+        self.signatures = [read_signature(text) for text in found["signatures"]]
+        self.labels, self.commands = found["labels"], found["commands"]
+
+    @property
+    def parent(self):
+        return self._diagram[self._parent] if self._parent else None
+
+    @property
+    def children(self):
+        return [one for one in self._diagram.branches if one._parent == self.name]
+
+    @property
+    def branch(self):
+        if self._branch is None:
+            path = os.path.join(self._diagram.path, "p." + self.name)
+            self._branch = load(path, self._diagram.problem, self._diagram._program)
+        return self._branch
+
+    def __repr__(self):
+        return "%s: %.6g to %.6g, %s" % (self.name, *self.range, self.origin)
+
+
+class Diagram:
+    """The branches that `tchat explore` has found: diagram.branches, or diagram["a1"] by name.
+
+    parameter, quantity   along the axes of its picture
+    coverage              the share of the sweep's periodic attractors that lie on a branch; None without any
+    unexplained           a dictionary for each attractor on no branch: attractor, kind, count, first, last, command
+    joins                 runs that led to branches found before, in words
+    complete              False if a budget or an interruption has left something
+    sweep                 its Sweep
+    text                  the tree in words
+    path                  the folder of the branches; path + ".png", ".svg", ".html" are its picture and page
+    """
+
+    def __init__(self, path, problem=None, program=None):
+        self.path, self.problem, self._program = os.fspath(path), problem, problem.program if problem else program
+        try:
+            with open(self.path + ".json", encoding="utf-8") as file:
+                found = json.load(file)
+            with open(self.path + ".txt", encoding="utf-8") as file:
+                self.text = file.read()
+            self.branches = [ExploredBranch(self, one) for one in found["branches"]]
+            self.parameter, self.quantity, self.complete = found["parameter"], found["quantity"], found["complete"]
+            self.unexplained, self.joins = found["unexplained"], found["joins"]
+            self.coverage = found["on_branches"] / found["periodic"] if found["periodic"] else None
+        except OSError as error:
+            raise Error("%s: cannot be read (what tchat explore -o %s writes): %s" %
+                        (error.filename, self.path, error.strerror)) from None
+        except (ValueError, KeyError, TypeError):
+            raise Error("%s.json: this is no diagram of tchat explore" % self.path) from None
+        self._by_name = {one.name: one for one in self.branches}
+
+    def __getitem__(self, name):
+        if name not in self._by_name:
+            raise Error("%s: no branch %r; there are %s" % (self.path, name, ", ".join(self._by_name) or "none"))
+        return self._by_name[name]
+
+    def __iter__(self):
+        return iter(self.branches)
+
+    def __len__(self):
+        return len(self.branches)
+
+    @property
+    def sweep(self):
+        return read_sweep(os.path.join(self.path, "sweep"))
+
+    def plot(self, ax=None, y=None, **style):
+        """Draws all branches with matplotlib on the attractors of the sweep; y is by default that of the picture."""
+        ax = ax if ax is not None else _axes()
+        y = y or self.quantity
+        if y in self.sweep.columns:
+            self.sweep.plot(ax, x=self.parameter, y=y, marker=".", color="0.65", zorder=0)
+        for one in self.branches:
+            one.branch.plot(ax, x=self.parameter, y=y, **style)
+        return ax
+
+    def picture(self):
+        """The bytes of its PNG."""
+        return self._drawn(".png")
+
+    def _drawn(self, ending):
+        try:
+            with open(self.path + ending, "rb") as file:
+                return file.read()
+        except OSError as error:
+            raise Error("%s: cannot be read (tchat explore draws it with gnuplot): %s" %
+                        (self.path + ending, error.strerror)) from None
+
+    def _repr_png_(self):
+        return self.picture() if os.path.exists(self.path + ".png") else None
+
+    def __repr__(self):
+        return self.text.rstrip("\n")
+
+
+def range_word(over):
+    """NAME=FROM:TO or NAME=FROM:TO:COUNT of {"gamma": (0, 0.05)} or {"gamma": (0, 0.05, 200)}."""
+    if len(over) != 1:
+        raise Error("over=%r: a diagram is explored over one parameter, as over={\"gamma\": (0, 0.05)}" % (over,))
+    (name, (begin, end, *count)), = over.items()
+    return "%s=%r:%r" % (name, float(begin), float(end)) + "".join(":%d" % one for one in count)
+
+
+def explore(problem, words, name, over, options, value_words):
+    """Runs `tchat explore` of a Problem: its Diagram, also without any branch."""
+    try:
+        problem._execute("explore", [problem.name, "-p", problem.source, "-o", name, "--over", range_word(over)] +
+                         options + list(words) + value_words)
+    except Error as error:
+        if error.status != 1 or "Coverage: " not in error.screen:
+            raise
+    return Diagram(problem.path(name), problem)
