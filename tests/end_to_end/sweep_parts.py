@@ -20,7 +20,8 @@ import time
 TCHAT, SOURCE, WHAT = sys.argv[1:4]
 OVER = {
     "diagram": ["--over", "alpha=2:6:1000", "PAR(zeta)=0.3", "--section", "1", "--penetration", "1"],
-    "following": ["--over", "alpha=1.9:2.6:150", "--over", "r=0.7:0.8:2", "PAR(omega)=1.8901", "--follow", "both"],
+    "following": ["--over", "alpha=1.9:2.6:150", "--over", "r=0.7:0.8:2", "PAR(omega)=1.8901", "--follow", "both",
+                  "--max"],
     "basin": ["--over", "x1=-1:1:25", "--over", "x2=-5:5:20", "PAR(alpha)=2.2", "PAR(omega)=1.8901", "PAR(zeta)=0.1"],
 }[WHAT]
 FAULTS = []

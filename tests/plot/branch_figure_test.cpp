@@ -358,6 +358,19 @@ TEST_CASE("eight curves in one picture: no colour twice, none of them grey, all 
   CHECK(colours.size() == 8);
 }
 
+TEST_CASE("black branches have no names in the key") {
+  const TemporaryFolder folder;
+  const std::string text = header(180, 1) + rows({{-1, 9, 1, 0.0, 1.0, 2.0}, {-2, 9, 2, 0.5, 1.0, 2.0}});
+  BranchFigureOptions options;
+  options.black = true;
+  const Figure figure = branch_figure(
+      {read_branch_file(folder.write("p.a", text)), read_branch_file(folder.write("p.b", text))}, options);
+  REQUIRE(figure.panels[0].curves.size() == 2);
+  for (const Curve& curve : figure.panels[0].curves) CHECK(curve.stroke.colour == "#000000");
+  REQUIRE(figure.key.size() == 1);
+  CHECK(figure.key[0].text.text == "stable");
+}
+
 TEST_CASE("twelve branches have twelve colours") {
   std::set<std::string> colours;
   for (std::size_t k = 0; k < 12; ++k) colours.insert(series_colour(k));

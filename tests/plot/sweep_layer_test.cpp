@@ -164,6 +164,12 @@ TEST_CASE("sweeps up and down have a colour each, the first with larger dots ben
   CHECK(picture.clouds[0].size > picture.clouds[1].size);
   CHECK(picture.key[0].text.text == "up");
   CHECK(picture.key[1].text.text == "down");
+  SweepLook look;
+  look.grey = true;
+  std::vector<std::string> warnings;
+  const Underlay grey = sweep_layer(file, look, warnings);
+  REQUIRE(grey.clouds.size() == 1);
+  CHECK(grey.clouds[0].points.size() == picture.clouds[0].points.size() + picture.clouds[1].points.size());
   file.table.starts = {"x = (0,0)", "x = (1,0)"};
   CHECK(layer(file).clouds.size() == 1);
 }

@@ -194,6 +194,36 @@ class ClosedForms(unittest.TestCase):
         self.assertEqual(len(sweep.frame()), len(sweep))
 
 
+class Explored(unittest.TestCase):
+    """A diagram of one branch, whose largest values are amplitudes of the oscillator without impacts."""
+
+    def test_diagram(self):
+        oscillator, omega = tchat.Problem(PLUGIN, name="linosc", folder="explored"), 2.0072
+        diagram = oscillator.explore(over={"alpha": (2, 2.9, 10)}, y="max(x1)", omega=omega)
+        self.assertEqual([one.name for one in diagram], ["a1"])
+        self.assertEqual((diagram.parameter, diagram.quantity, diagram.coverage, diagram.complete),
+                         ("alpha", "max(x1)", 1.0, True))
+        branch, sweep = diagram["a1"].branch, diagram.sweep
+        for found in (branch, sweep):
+            amplitude = found["alpha"] / np.hypot(1 - omega ** 2, 0.1 * omega)
+            np.testing.assert_allclose(found["max(x1)"], amplitude, rtol=1e-7)
+            np.testing.assert_allclose(found["max(x2)"], omega * amplitude, rtol=1e-7)
+        self.assertEqual((diagram["a1"].parent, diagram["a1"].children), (None, []))
+        self.assertEqual(branch.problem, oscillator)
+        self.assertIn("1 branches. Coverage: 20 of 20", diagram.text)
+        self.assertEqual(tchat.Diagram("explored/diagram1").text, diagram.text)
+
+    def test_what_is_none_is_refused(self):
+        oscillator = tchat.Problem(PLUGIN, name="linosc")
+        for over in ({}, {"alpha": (2, 3), "omega": (1, 2)}):
+            self.assertRaisesRegex(tchat.Error, "over one parameter", oscillator.explore, over=over)
+        self.assertRaisesRegex(tchat.Error, "no parameter of this name", oscillator.explore, over={"beta": (1, 2)})
+        self.assertRaisesRegex(tchat.Error, "what tchat explore -o none writes", tchat.Diagram, "none")
+        pathlib.Path("other.json").write_text("{}")
+        pathlib.Path("other.txt").write_text("")
+        self.assertRaisesRegex(tchat.Error, "no diagram of tchat explore", tchat.Diagram, "other")
+
+
 class Auto(unittest.TestCase):
     def test_same_as_autos_readers(self):
         folder = find_auto()
