@@ -204,9 +204,11 @@ class Explorer {
   }
 
   static std::string last_line(const std::string& log) {
-    const std::string_view text = trimmed(log);
-    const std::size_t end = text.find_last_of('\n');
-    return std::string(end == std::string_view::npos ? text : text.substr(end + 1));
+    const std::size_t end = log.find_last_not_of(" \n");
+    if (end == std::string::npos) return "";
+    const std::size_t before = log.find_last_of('\n', end);
+    const std::size_t begin = before == std::string::npos ? 0 : before + 1;
+    return log.substr(begin, end + 1 - begin);
   }
 
   void describe(const PointFile& points, ExploredBranch& branch) const {
