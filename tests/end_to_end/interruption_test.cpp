@@ -2,6 +2,8 @@
 #include <signal.h>
 
 #include <catch2/catch.hpp>
+#include <chrono>
+#include <filesystem>
 #include <thread>
 
 #include "end_to_end/workspace.hpp"
@@ -14,9 +16,15 @@ namespace {
 const std::string endless =
     "run linosc -c impacting -d impacting -o branch NMX=1000000 DS=1e-6 DSMAX=1e-6 NPR=3 NTST=100 UZR={}";
 
-void wait_for_points(const Workspace& workspace, Process& process, std::size_t bytes) {
+/// Until q.branch, written after `begun`, has so many bytes.
+void wait_for_points(const Workspace& workspace, Process& process, std::size_t bytes,
+                     std::filesystem::file_time_type begun = {}) {
   const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
-  while (!workspace.has("q.branch") || workspace.read("q.branch").size() < bytes) {
+  const auto is_there = [&] {
+    return workspace.has("q.branch") && std::filesystem::last_write_time(workspace.file("q.branch")) > begun &&
+           workspace.read("q.branch").size() >= bytes;
+  };
+  while (!is_there()) {
     REQUIRE_FALSE(process.ended());
     REQUIRE(std::chrono::steady_clock::now() < deadline);
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
@@ -74,8 +82,9 @@ TEST_CASE("after SIGKILL the files load, an incomplete set never replaces a comp
   workspace.run("-c impacting -d impacting -o branch NMX=5");
   const std::string complete = workspace.read("q.branch");
   for (int attempt = 0; attempt < 2; ++attempt) {
+    const auto begun = std::filesystem::file_time_type::clock::now();
     const auto process = workspace.start_tchat(endless);
-    wait_for_points(workspace, *process, some_solutions);
+    wait_for_points(workspace, *process, some_solutions, begun);  // not those that the last one left
     kill(*process);
     CHECK_FALSE(is_complete(workspace.read("d.branch")));
     CHECK(workspace.tchat("labels q.branch").err.empty());
