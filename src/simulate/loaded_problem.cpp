@@ -11,6 +11,7 @@ LoadedProblem load_for_simulation(const SimulationRequest& request, std::ostream
   SimulationConstants constants = read_simulation_constants(request);
   loaded.library = std::make_unique<ProblemLibrary>(
       loaded.plugin, [&] { return sizes_of(request, with_signature(request, constants)); });
+  loaded.library->add_section();
   const HybridSystem& system = loaded.library->system();
   resolve_names(constants.settings, system);
   loaded.constants = with_signature(request, constants);
