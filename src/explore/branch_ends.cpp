@@ -18,6 +18,14 @@ std::vector<std::string> lines_of(const std::string& text) {
   return lines;
 }
 
+/// A long message without its explanations, which the log has.
+std::string first_part(const std::string& text) {
+  constexpr std::size_t short_enough = 120;
+  if (text.size() <= short_enough) return text;
+  const std::size_t end = text.find_first_of(":;", short_enough / 3);
+  return end <= short_enough ? text.substr(0, end) : text.substr(0, short_enough) + "...";
+}
+
 }  // namespace
 
 std::vector<std::string> branch_ends(const std::string& log) {
@@ -48,7 +56,7 @@ std::string failure_text(const std::string& log) {
     else if (text.empty() && !trimmed(line).empty())
       text = line;
   }
-  return text;
+  return first_part(text);
 }
 
 }  // namespace tchat

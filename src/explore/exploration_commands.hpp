@@ -24,7 +24,8 @@ struct SwitchPoint {
 
 class ExplorationCommands {
  public:
-  /// `system` must outlive this; `has_added_section`: tchat has cut it. Throws UserError where the request's range is none, or not one of a parameter.
+  /// `system` must outlive this; `has_added_section`: tchat has cut it. Throws UserError where the request's range is
+  /// none, or not one of a parameter.
   ExplorationCommands(const ExploreRequest& request, const HybridSystem& system, bool has_added_section);
 
   const SweptRange& range() const { return range_; }

@@ -48,7 +48,7 @@ std::string percent(int part, int whole) { return fmt::format("{:.4g} %", 100.0 
 std::string coverage_text(const ExploredDiagram& diagram) {
   const int known = diagram.periodic + diagram.at_rest;
   if (known == 0) return "no periodic attractor, none at rest";
-  const char* const kinds = diagram.at_rest == 0 ? "periodic attractors"
+  const char* const kinds = diagram.at_rest == 0    ? "periodic attractors"
                             : diagram.periodic == 0 ? "equilibria"
                                                     : "periodic attractors and equilibria";
   return fmt::format("{} of {} {} of the sweep lie on branches ({})", diagram.on_branches, known, kinds,
@@ -139,8 +139,8 @@ std::string tree_json(const ExploredDiagram& diagram) {
       "{{\"parameter\": {}, \"complete\": {}, \"periodic\": {}, \"at_rest\": {}, \"on_branches\": {}, "
       "\"others\": {}, \"left\": {},\n\"unexplained\": {},\n\"joins\": {},\n\"branches\": {}}}\n",
       json(diagram.parameter), diagram.complete, json(diagram.periodic), json(diagram.at_rest),
-      json(diagram.on_branches), counts_json(diagram.others), counts_json(diagram.left),
-      unexplained, json_list(diagram.joins, [](const std::string& text) { return json(text); }),
+      json(diagram.on_branches), counts_json(diagram.others), counts_json(diagram.left), unexplained,
+      json_list(diagram.joins, [](const std::string& text) { return json(text); }),
       json_list(diagram.branches, branch_json));
 }
 

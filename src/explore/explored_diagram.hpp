@@ -49,7 +49,7 @@ struct ExploredDiagram {
   int periodic = 0, at_rest = 0, on_branches = 0;  ///< attractors over all values and starts
   std::map<std::string, int> others;               ///< motions of other kinds: chaotic, ...
   bool complete = true;                            ///< false: interrupted
-  std::map<std::string, int> left;                 ///< what a budget left: how many labels and attractors were not followed
+  std::map<std::string, int> left;  ///< what a budget left: how many labels and attractors were not followed
 };
 
 /// The tree of branches, coverage and what is left, for people.

@@ -111,8 +111,8 @@ class Explorer {
     Candidate candidate;
     candidate.parent = std::string::npos;
     candidate.branch.name = name;
-    candidate.branch.origin = fmt::format("attractor {} at {} = {:.6g}", name.substr(0, name.find('_')),
-                                          diagram_.parameter, value);
+    candidate.branch.origin =
+        fmt::format("attractor {} at {} = {:.6g}", name.substr(0, name.find('_')), diagram_.parameter, value);
     candidate.branch.job = commands_.start(name, value, words, attractor.kind == AttractorKind::rest);
     return candidate;
   }
@@ -219,7 +219,8 @@ class Explorer {
     if (!result.succeeded) {
       set_outcome(candidate, "", "failed: " + failure_text(result.log));
       if (candidate.parent >= diagram_.branches.size())
-        diagram_.joins.push_back(fmt::format("{} ({}): failed: {}", branch.name, branch.origin, failure_text(result.log)));
+        diagram_.joins.push_back(
+            fmt::format("{} ({}): failed: {}", branch.name, branch.origin, failure_text(result.log)));
       return false;
     }
     const PointFile points = read_point_file(commands_.file('p', branch.name));

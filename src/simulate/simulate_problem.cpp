@@ -128,9 +128,9 @@ std::string hand_over_equilibrium(const SimulationRequest& request, const Simula
   const VectorXd& par = simulation.parameters();
   const RunSettings base = constants.is_given() ? constants.settings : default_orbit_settings(constants.settings);
   const Mode& mode = simulation.mode();
-  RunSettings settings = equilibrium_settings(
-      system, base, mode.field(), has_added_section ? own_events(system) : mode.all_events(), x, par,
-      continuation_parameter(request, constants, system));
+  RunSettings settings =
+      equilibrium_settings(system, base, mode.field(), has_added_section ? own_events(system) : mode.all_events(), x,
+                           par, continuation_parameter(request, constants, system));
   const OrbitPaths paths = orbit_paths(name);
   settings.problem = problem_to_record(request.problem.value_or(request.name), paths.constants);
   write_whole_file(paths.data, equilibrium_data_text(system, x, par));

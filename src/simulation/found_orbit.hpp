@@ -46,7 +46,8 @@ struct FoundOrbit {
 /// segment after it. As it was when nothing else ends a segment. Samples and marks are not kept.
 std::vector<SimulatedSegment> without_sections(const HybridSystem& system, std::vector<SimulatedSegment> turn);
 
-/// The orbit of a smooth system as one segment without a section, {(i,0,0)}, on which `monitored` event functions count.
+/// The orbit of a smooth system as one segment without a section, {(i,0,0)}, on which `monitored` event functions
+/// count.
 FoundOrbit without_cuts(FoundOrbit orbit, std::vector<int> monitored);
 
 /// A turn rotated so that its index vectors read the same wherever the simulation stopped: with `first`, if the orbit

@@ -522,7 +522,7 @@ class SampleRun {
   long events_ = 0;
   std::optional<VectorXd> rest_;  // the equilibrium that the motion comes to
   bool has_stayed_ = false;
-  bool is_open_ = false;          // it has been simulated as long as wanted, and has not repeated itself
+  bool is_open_ = false;  // it has been simulated as long as wanted, and has not repeated itself
   std::deque<SimulatedSegment> kept_;
   AttractorSample sample_;
 };
