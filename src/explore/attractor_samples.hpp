@@ -47,6 +47,7 @@ class AttractorSamples {
  private:
   /// Rows of a value and start, one of them each.
   std::vector<std::size_t> first_rows() const;
+  const std::vector<double>* state_column(int k) const;
 
   SweepTable table_;
   const HybridSystem* system_ = nullptr;

@@ -59,16 +59,16 @@ std::vector<std::string> ExplorationCommands::files_of(const std::string& name) 
 }
 
 /// The words of all runs: the range, steps that are fractions of it, then what the user says.
-std::vector<std::string> ExplorationCommands::run_words(bool is_equilibrium) const {
+std::vector<std::string> ExplorationCommands::run_words(bool rests) const {
   const double width = range_.to - range_.from;
   std::string free = range_.parameter;
-  if (!is_equilibrium)
+  if (!rests)
     for (const std::string& name : monitors_) free += "," + name;
   std::vector<std::string> words{fmt::format("ICP=[{}]", free),           fmt::format("RL0={}", range_.from),
                                  fmt::format("RL1={}", range_.to),        fmt::format("DS={:g}", width / 200.0),
                                  fmt::format("DSMAX={:g}", width / 20.0), "NMX=400"};
   if (!watched_.empty()) words.insert(words.end(), {"GRSTOP=0", "GCHGRZIND=[" + watched_ + "]"});
-  if (!watched_.empty() && !is_equilibrium) words.push_back("GCIPSI=" + watched_);
+  if (!watched_.empty() && !rests) words.push_back("GCIPSI=" + watched_);
   words.insert(words.end(), constants_.begin(), constants_.end());
   return words;
 }
@@ -91,7 +91,7 @@ CommandJob ExplorationCommands::sweep_from(const std::vector<std::string>& state
 }
 
 CommandJob ExplorationCommands::start(const std::string& name, double value, const std::string& words,
-                                      bool is_equilibrium) const {
+                                      bool rests) const {
   std::vector<std::string> simulated = parameters_;
   simulated.push_back(at_value(value));
   const std::string arguments = problem_arguments(problem_);
@@ -100,7 +100,7 @@ CommandJob ExplorationCommands::start(const std::string& name, double value, con
           {fmt::format("tchat simulate {}{} {}{} --free {} -o {} --dat -q", arguments, constants_option_, words,
                        quoted(simulated), quoted_for_shell(range_.parameter), output),
            fmt::format("tchat run {} -c {} -d {} -o {} --both --clip{}", arguments, output, output, output,
-                       quoted(run_words(is_equilibrium)))},
+                       quoted(run_words(rests)))},
           {},
           files_of(name)};
 }

@@ -44,7 +44,7 @@ class ExplorationCommands {
   /// From each of these states, as --state takes them, at every value.
   CommandJob sweep_from(const std::vector<std::string>& states) const;
   /// A branch through what a simulation settles on from a state: `words` of `tchat simulate` that give it.
-  CommandJob start(const std::string& name, double value, const std::string& words, bool is_equilibrium) const;
+  CommandJob start(const std::string& name, double value, const std::string& words, bool rests) const;
   /// What begins at a labelled point.
   CommandJob switching(const SwitchPoint& at) const;
   /// The equilibrium of a label as that of another field.
@@ -54,7 +54,7 @@ class ExplorationCommands {
 
  private:
   std::vector<std::string> files_of(const std::string& name) const;
-  std::vector<std::string> run_words(bool is_equilibrium = false) const;
+  std::vector<std::string> run_words(bool rests = false) const;
   CommandJob sweep_job(const std::string& name, const std::vector<std::string>& states, const char* options) const;
 
   const ExploreRequest& request_;

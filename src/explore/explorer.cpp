@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
-#include <map>
 #include <set>
 
 #include "constants/constants_file.hpp"
@@ -14,6 +13,7 @@
 #include "explore/boundary_equilibrium.hpp"
 #include "explore/branch_ends.hpp"
 #include "explore/command_job.hpp"
+#include "explore/coverage.hpp"
 #include "explore/exploration_commands.hpp"
 #include "explore/orbit_catalogue.hpp"
 #include "files/replaced_file.hpp"
@@ -36,12 +36,6 @@ struct Candidate {
   ExploredBranch branch;
   std::size_t parent = 0;  ///< of the diagram's branches; beyond them without one
   std::size_t label = 0;   ///< of the parent's labels
-};
-
-/// A sweep, and the letter before the numbers of its attractors.
-struct Sweep {
-  std::string letter;
-  AttractorSamples samples;
 };
 
 class Explorer {
@@ -101,7 +95,8 @@ class Explorer {
       return false;
     }
     if (!result.succeeded) throw ComputationError(fmt::format("the sweep failed:\n{}", result.log));
-    sweeps_.push_back({sweeps_.empty() ? "a" : "b", AttractorSamples(job.outputs.front(), loaded_.library->system())});
+    sweeps_.push_back({sweeps_.empty() ? "a" : "b", AttractorSamples(job.outputs.front(), loaded_.library->system()),
+                       loaded_.library->has_added_section()});
     return true;
   }
 
@@ -115,10 +110,6 @@ class Explorer {
         fmt::format("attractor {} at {} = {:.6g}", name.substr(0, name.find('_')), diagram_.parameter, value);
     candidate.branch.job = commands_.start(name, value, words, attractor.kind == AttractorKind::rest);
     return candidate;
-  }
-
-  static bool is_followed(const SweepAttractor& attractor) {
-    return attractor.kind == AttractorKind::periodic || attractor.kind == AttractorKind::rest;
   }
 
   /// Has the attractor more segments than are followed?
@@ -149,7 +140,7 @@ class Explorer {
       std::set<int> numbers;
       sweep.samples.for_each([&](const AttractorSample& sample) {
         const SweepAttractor& attractor = *sample.attractor;
-        if (!is_followed(attractor) || is_too_long(attractor) || !branch_of(sweep, sample).empty()) return;
+        if (!is_followed(attractor) || is_too_long(attractor) || !branch_of(catalogue_, sweep, sample).empty()) return;
         const std::string name = fmt::format("{}{}", sweep.letter, attractor.number);
         if (!numbers.insert(attractor.number).second || !tried_.insert({name, sample.value}).second) return;
         const std::string state = sweep.samples.state_of(sample);
@@ -160,17 +151,6 @@ class Explorer {
       });
     }
     return list;
-  }
-
-  std::string branch_of(const Sweep& sweep, const AttractorSample& sample) const {
-    if (sample.attractor->kind == AttractorKind::rest) {
-      const auto state = sweep.samples.numbers_of(sample);
-      return state ? catalogue_.branch_with_state(sample.value, *state) : "";
-    }
-    // Orbits of a problem that tchat has cut are followed without that section.
-    const SignatureWord word =
-        loaded_.library->has_added_section() ? SignatureWord{{1, 0, 0}} : signature_word(*sample.attractor);
-    return catalogue_.branch_with_period(word, sample.value, sample.period);
   }
 
   /// Round after round; true where a branch has been found.
@@ -329,40 +309,6 @@ class Explorer {
     next.push_back(std::move(candidate));
   }
 
-  void measure_coverage() {
-    for (const Sweep& sweep : sweeps_) measure_coverage(sweep);
-  }
-
-  void measure_coverage(const Sweep& sweep) {
-    std::map<int, UnexplainedAttractor> missing;
-    for (const auto& [kind, count] : sweep.samples.kinds())
-      if (kind == AttractorKind::periodic)
-        diagram_.periodic += count;
-      else if (kind == AttractorKind::rest)
-        diagram_.at_rest += count;
-      else
-        diagram_.others[kind == AttractorKind::none ? "without attractor" : to_string(kind)] += count;
-    sweep.samples.for_each([&](const AttractorSample& sample) {
-      const SweepAttractor& known = *sample.attractor;
-      if (is_followed(known) && !branch_of(sweep, sample).empty()) {
-        ++diagram_.on_branches;
-        return;
-      }
-      UnexplainedAttractor& one = missing[known.number];
-      if (one.count++ == 0) {
-        const std::string state = sweep.samples.state_of(sample);
-        one = {fmt::format("{}{}", sweep.letter, known.number),
-               to_string(known.kind),
-               sample.value,
-               sample.value,
-               1,
-               state.empty() ? "" : commands_.show(sample.value, state)};
-      }
-      one.last = sample.value;
-    });
-    for (auto& [number, one] : missing) diagram_.unexplained.push_back(std::move(one));
-  }
-
   static void write(const std::string& path, const std::string& text) {
     ReplacedFile out(path);
     out.write(text);
@@ -370,7 +316,7 @@ class Explorer {
   }
 
   int finish() {
-    measure_coverage();
+    for (const Sweep& sweep : sweeps_) measure_coverage(sweep, catalogue_, commands_, diagram_);
     const std::string& folder = commands_.folder();
     const std::string text = tree_text(diagram_);
     write(folder + ".txt", text);

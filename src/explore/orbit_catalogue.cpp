@@ -128,42 +128,46 @@ std::vector<CataloguedSection> catalogued_sections(const std::string& branch, co
   int number = 0;
   for (const PointSection& section : file.sections) {
     ++number;
-    const bool is_equilibrium = section.problem_type == equilibrium.number;
-    const std::vector<std::string> names = is_equilibrium ? state_columns(section) : monitors;
+    const bool rests = section.problem_type == equilibrium.number;
+    const std::vector<std::string> names = rests ? state_columns(section) : monitors;
     std::vector<std::size_t> columns;
-    if (const auto period = column_of(section, "PERIOD"); period && !is_equilibrium) columns.push_back(*period);
+    if (const auto period = column_of(section, "PERIOD"); period && !rests) columns.push_back(*period);
     for (const std::string& name : names)
       if (const auto column = column_of(section, name)) columns.push_back(*column);
-    if (columns.size() != (is_equilibrium ? 0 : 1) + names.size()) continue;
-    CataloguedSection one{branch, number, primitive_word(section.signature), {}, is_equilibrium, {}};
+    if (columns.size() != (rests ? 0 : 1) + names.size()) continue;
+    CataloguedSection one{branch, number, primitive_word(section.signature), {}, rests, {}};
     one.numbers.resize(std::ssize(columns), std::ssize(section.rows));
     for (std::size_t r = 0; r < section.rows.size(); ++r) {
       one.parameter.push_back(section.rows[r].values.front());
       for (std::size_t k = 0; k < columns.size(); ++k)
         one.numbers(static_cast<Index>(k), static_cast<Index>(r)) = section.rows[r].values[columns[k]];
-      if (!is_equilibrium) one.numbers(0, static_cast<Index>(r)) /= one.signature.repetitions;
+      if (!rests) one.numbers(0, static_cast<Index>(r)) /= one.signature.repetitions;
     }
     result.push_back(std::move(one));
   }
   return result;
 }
 
-/// Three points tell: the middle of the section, and on to its end. Its beginning is near where it bifurcates.
+/// Points from the middle of the section to its end tell; its beginning is near where it bifurcates. All but one have to
+/// agree: a largest value may have a kink, which interpolation does not see.
 std::string OrbitCatalogue::branch_of(const CataloguedSection& section) const {
   const auto count = static_cast<Index>(section.parameter.size());
   std::string found;
-  for (const double share : {0.5, 0.75, 0.95}) {
+  int missing = 0;
+  for (const double share : {0.4, 0.5, 0.6, 0.75, 0.95}) {
     const auto row =
         std::min<Index>(count - 1, static_cast<Index>(std::lround(share * static_cast<double>(count - 1))));
-    found = branch_at(section, section.parameter[static_cast<std::size_t>(row)], section.numbers.col(row));
-    if (found.empty()) return "";
+    const std::string branch =
+        branch_at(section, section.parameter[static_cast<std::size_t>(row)], section.numbers.col(row));
+    if (branch.empty() && ++missing > 1) return "";
+    if (!branch.empty()) found = branch;
   }
   return found;
 }
 
 std::string OrbitCatalogue::branch_with_state(double parameter, const VectorXd& state) const {
   for (const CataloguedSection& known : sections_) {
-    if (!known.is_equilibrium) continue;
+    if (!known.rests) continue;
     for (const OrbitNumbers& one : orbits_at(known, parameter))
       if (agree(one, state)) return known.branch;
   }
@@ -172,9 +176,9 @@ std::string OrbitCatalogue::branch_with_state(double parameter, const VectorXd& 
 
 std::string OrbitCatalogue::branch_at(const CataloguedSection& like, double parameter, const VectorXd& numbers) const {
   for (const CataloguedSection& known : sections_) {
-    if (known.is_equilibrium != like.is_equilibrium || known.signature.word != like.signature.word) continue;
+    if (known.rests != like.rests || known.signature.word != like.signature.word) continue;
     for (const OrbitNumbers& orbit : orbits_at(known, parameter))
-      if (agree(orbit, like.is_equilibrium ? numbers : with_period_of(orbit, numbers))) return known.branch;
+      if (agree(orbit, like.rests ? numbers : with_period_of(orbit, numbers))) return known.branch;
   }
   return "";
 }
@@ -182,7 +186,7 @@ std::string OrbitCatalogue::branch_at(const CataloguedSection& like, double para
 std::string OrbitCatalogue::branch_with_period(const SignatureWord& signature, double parameter, double period) const {
   const PrimitiveWord wanted = primitive_word(signature);
   for (const CataloguedSection& known : sections_) {
-    if (known.is_equilibrium || known.signature.word != wanted.word) continue;
+    if (known.rests || known.signature.word != wanted.word) continue;
     for (const OrbitNumbers& orbit : orbits_at(known, parameter)) {
       const double time = orbit.numbers(0) * known.signature.repetitions;
       const double tolerance = 2.0 * orbit.uncertainty(0) * known.signature.repetitions + 1e-4 * std::abs(period);

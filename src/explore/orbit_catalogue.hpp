@@ -30,7 +30,7 @@ struct CataloguedSection {
   int number = 1;  ///< of the section in its file
   PrimitiveWord signature;
   std::vector<double> parameter;
-  bool is_equilibrium = false;
+  bool rests = false;
   Eigen::MatrixXd numbers;  ///< a column for each point: period of one repetition, then the other numbers;
                             ///< of an equilibrium its states
 };

@@ -15,6 +15,8 @@ LoadedProblem load_for_simulation(const SimulationRequest& request, std::ostream
   const HybridSystem& system = loaded.library->system();
   resolve_names(constants.settings, system);
   loaded.constants = with_signature(request, constants);
+  // A signature of constants has no section that a simulation could end at.
+  if (loaded.library->has_added_section() && !request.signature) loaded.constants.has_signature = false;
   fit_to_problem(loaded.constants, system, request.overrides);
   return loaded;
 }
