@@ -46,12 +46,9 @@ void measure_coverage(const Sweep& sweep, const OrbitCatalogue& catalogue, const
     UnexplainedAttractor& one = missing[known.number];
     if (one.count++ == 0) {
       const std::string state = sweep.samples.state_of(sample);
-      one = {fmt::format("{}{}", sweep.letter, known.number),
-             to_string(known.kind),
-             sample.value,
-             sample.value,
-             1,
-             state.empty() ? "" : commands.show(sample.value, state)};
+      one = {
+          fmt::format("{}{}", sweep.letter, known.number),        to_string(known.kind), sample.value, sample.value, 1,
+          state.empty() ? "" : commands.show(sample.value, state)};
     }
     one.last = sample.value;
   });

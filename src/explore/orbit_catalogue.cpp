@@ -148,8 +148,8 @@ std::vector<CataloguedSection> catalogued_sections(const std::string& branch, co
   return result;
 }
 
-/// Points from the middle of the section to its end tell; its beginning is near where it bifurcates. All but one have to
-/// agree: a largest value may have a kink, which interpolation does not see.
+/// Points from the middle of the section to its end tell; its beginning is near where it bifurcates. All but one have
+/// to agree: a largest value may have a kink, which interpolation does not see.
 std::string OrbitCatalogue::branch_of(const CataloguedSection& section) const {
   const auto count = static_cast<Index>(section.parameter.size());
   std::string found;

@@ -4,6 +4,7 @@
 #include <boost/math/tools/toms748_solve.hpp>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <cstdio>
 
 #include "end_to_end/workspace.hpp"
 
@@ -15,10 +16,9 @@ namespace {
 double nearest(const std::string& tree, const std::string& type, double value) {
   double best = INFINITY;
   for (std::size_t at = tree.find(type + " "); at != std::string::npos; at = tree.find(type + " ", at + 1)) {
-    const std::size_t place = tree.find(" at ", at);
-    if (place == std::string::npos || place > at + 12) continue;
-    const double found = std::stod(tree.substr(place + 4));
-    if (std::abs(found - value) < std::abs(best - value)) best = found;
+    double found = INFINITY;
+    const bool is_label = std::sscanf(tree.c_str() + at, "%*s %*d at %lf", &found) == 1;
+    if (is_label && std::abs(found - value) < std::abs(best - value)) best = found;
   }
   return best;
 }
