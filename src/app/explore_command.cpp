@@ -46,6 +46,15 @@ void add_explore_command(CLI::App& app, std::function<int()>& chosen) {
       ->type_name("N")
       ->check(whole_number(1, 1024))
       ->capture_default_str();
+  command
+      ->add_option("--starts", request->starts, "further initial states, from each of which every value is simulated")
+      ->type_name("N")
+      ->check(whole_number(0, 1000))
+      ->capture_default_str();
+  command->add_option("--segments", request->segments, "most segments of a signature that is followed")
+      ->type_name("N")
+      ->check(whole_number(1, 100000))
+      ->capture_default_str();
   command->add_option("--doublings", request->doublings, "period doublings to follow, one after the other")
       ->type_name("N")
       ->check(whole_number(0, 16))

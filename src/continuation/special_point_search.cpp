@@ -363,7 +363,9 @@ std::optional<SpecialPointSearch::Cut> SpecialPointSearch::first_in(const PathPo
     std::vector<std::size_t> group = vanishing_with(first, zeros, there, length, step.data);
     std::erase_if(group, [&](std::size_t test) { return !has_evidence(test, trial, there); });
     if (!group.empty()) return Cut{{trial, first.ds, there}, group, result};
-    std::erase_if(zeros, [&](const Zero& zero) { return searches_[zero.test] != Search::located; });
+    // The first one too where it has changed its sign back at the end of the step: it is looked for once.
+    std::erase_if(zeros,
+                  [&](const Zero& zero) { return zero.test == first.test || searches_[zero.test] != Search::located; });
   }
   if (!branch_point) return std::nullopt;
   branch_point->put_zero(trial);

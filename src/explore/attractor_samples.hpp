@@ -2,7 +2,10 @@
 #pragma once
 
 #include <functional>
+#include <map>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "explore/orbit_catalogue.hpp"
 #include "hybrid/hybrid_system.hpp"
@@ -11,7 +14,7 @@
 namespace tchat {
 
 /// What one value and start lead to.
-struct AttractorSample {
+struct SweptAttractor {
   const SweepAttractor* attractor = nullptr;
   std::size_t row = 0;
   double value = 0.0;   ///< of the parameter
@@ -27,14 +30,25 @@ class AttractorSamples {
       : table_(read_sweep_file(path)), system_(&system) {}
 
   const SweepTable& table() const { return table_; }
-  void for_each(const std::function<void(const AttractorSample&)>& use) const;
+  void for_each(const std::function<void(const SweptAttractor&)>& use) const;
+  /// How often a value and a start lead to each kind of motion, attractor or not.
+  std::map<AttractorKind, int> kinds() const;
   /// "0.1,-2": the first recorded state; "" where states are not recorded.
-  std::string state_of(const AttractorSample& sample) const;
+  std::string state_of(const SweptAttractor& sample) const;
+  /// The same as numbers.
+  std::optional<Eigen::VectorXd> numbers_of(const SweptAttractor& sample) const;
   /// The words of `tchat simulate` that begin on an attractor, where it has been found first.
   static std::string words_of(const SweepAttractor& attractor);
   double value_of(const SweepAttractor& attractor) const;
+  /// `count` states of low discrepancy in the least box around the starts and the recorded states, as --state takes
+  /// them.
+  std::vector<std::string> further_starts(int count) const;
 
  private:
+  /// Rows of a value and start, one of them each.
+  std::vector<std::size_t> first_rows() const;
+  const std::vector<double>* state_column(int k) const;
+
   SweepTable table_;
   const HybridSystem* system_ = nullptr;
 };

@@ -19,6 +19,13 @@ std::string quoted(const std::vector<std::string>& words) {
   return text;
 }
 
+/// "[1,2,3]"; "" for none.
+std::string all_events(int count) {
+  std::string text;
+  for (int j = 1; j <= count; ++j) text += fmt::format("{}{}", text.empty() ? "[" : ",", j);
+  return text.empty() ? "" : text + "]";
+}
+
 std::string state_word(const HybridSystem& system, int k) {
   const std::string name = system.state_name(k);
   return name.find_first_of(" \t(),") == std::string::npos ? name : fmt::format("U({})", k);
@@ -28,7 +35,8 @@ std::string state_word(const HybridSystem& system, int k) {
 
 bool sets_parameter(const std::string& word) { return word.starts_with("PAR("); }
 
-ExplorationCommands::ExplorationCommands(const ExploreRequest& request, const HybridSystem& system)
+ExplorationCommands::ExplorationCommands(const ExploreRequest& request, const HybridSystem& system,
+                                         bool has_added_section)
     : request_(request),
       range_(read_swept_range("--over", request.over)),
       folder_(request.output.value_or(request.name + ".diagram")),
@@ -37,6 +45,7 @@ ExplorationCommands::ExplorationCommands(const ExploreRequest& request, const Hy
   if (system.parameter_index(range_.parameter) == 0 && !parse_integer(range_.parameter))
     throw UserError(fmt::format("--over {}: {} has no parameter of this name", range_.parameter, system.name()));
   for (const std::string& word : request.overrides) (sets_parameter(word) ? parameters_ : constants_).push_back(word);
+  if (has_added_section) watched_ = all_events(system.count(FunctionKind::event) - 1);
   for (int k = 1; k <= system.dimension() && monitors_.size() + 2 <= max_monitors; ++k)
     for (const char* kind : {"mean", "max"}) monitors_.push_back(fmt::format("{}({})", kind, state_word(system, k)));
 }
@@ -50,28 +59,39 @@ std::vector<std::string> ExplorationCommands::files_of(const std::string& name) 
 }
 
 /// The words of all runs: the range, steps that are fractions of it, then what the user says.
-std::vector<std::string> ExplorationCommands::run_words() const {
+std::vector<std::string> ExplorationCommands::run_words(bool rests) const {
   const double width = range_.to - range_.from;
   std::string free = range_.parameter;
-  for (const std::string& name : monitors_) free += "," + name;
+  if (!rests)
+    for (const std::string& name : monitors_) free += "," + name;
   std::vector<std::string> words{fmt::format("ICP=[{}]", free),           fmt::format("RL0={}", range_.from),
                                  fmt::format("RL1={}", range_.to),        fmt::format("DS={:g}", width / 200.0),
                                  fmt::format("DSMAX={:g}", width / 20.0), "NMX=400"};
+  if (!watched_.empty()) words.insert(words.end(), {"GRSTOP=0", "GCHGRZIND=[" + watched_ + "]"});
+  if (!watched_.empty() && !rests) words.push_back("GCIPSI=" + watched_);
   words.insert(words.end(), constants_.begin(), constants_.end());
   return words;
 }
 
-CommandJob ExplorationCommands::sweep() const {
+CommandJob ExplorationCommands::sweep_job(const std::string& name, const std::vector<std::string>& states,
+                                          const char* options) const {
   std::string words = quoted({fmt::format("{}={}:{}:{}", range_.parameter, range_.from, range_.to, range_.count)});
-  for (const std::string& state : request_.states) words += " --state " + quoted_for_shell(state);
-  CommandJob job{"sweep", {}, {}, {path("sweep.sweep")}};
-  job.lines = {fmt::format("tchat sweep {}{} --over{}{} --follow both --max -o {} -j {} -q",
-                           problem_arguments(problem_), constants_option_, words, quoted(parameters_),
-                           quoted_for_shell(path("sweep")), request_.workers)};
+  for (const std::string& state : states) words += " --state " + quoted_for_shell(state);
+  CommandJob job{name, {}, {}, {path(name + ".sweep")}};
+  job.lines = {fmt::format("tchat sweep {}{} --over{}{}{} --max -o {} -j {} -q", problem_arguments(problem_),
+                           constants_option_, words, quoted(parameters_), options, quoted_for_shell(path(name)),
+                           request_.workers)};
   return job;
 }
 
-CommandJob ExplorationCommands::start(const std::string& name, double value, const std::string& words) const {
+CommandJob ExplorationCommands::sweep() const { return sweep_job("sweep", request_.states, " --follow both"); }
+
+CommandJob ExplorationCommands::sweep_from(const std::vector<std::string>& states) const {
+  return sweep_job("starts", states, "");
+}
+
+CommandJob ExplorationCommands::start(const std::string& name, double value, const std::string& words,
+                                      bool rests) const {
   std::vector<std::string> simulated = parameters_;
   simulated.push_back(at_value(value));
   const std::string arguments = problem_arguments(problem_);
@@ -79,8 +99,8 @@ CommandJob ExplorationCommands::start(const std::string& name, double value, con
   return {name,
           {fmt::format("tchat simulate {}{} {}{} --free {} -o {} --dat -q", arguments, constants_option_, words,
                        quoted(simulated), quoted_for_shell(range_.parameter), output),
-           fmt::format("tchat run {} -c {} -d {} -o {} --both --clip -q{}", arguments, output, output, output,
-                       quoted(run_words()))},
+           fmt::format("tchat run {} -c {} -d {} -o {} --both --clip{}", arguments, output, output, output,
+                       quoted(run_words(rests)))},
           {},
           files_of(name)};
 }
@@ -92,7 +112,7 @@ CommandJob ExplorationCommands::switching(const SwitchPoint& at) const {
   CommandJob job{name, {}, {file('q', at.branch), file('r', at.branch)}, files_of(name)};
   if (resegments) job.lines.push_back(at.command.substr(0, both) + " -q");
   std::string run = resegments ? at.command.substr(both + 4) : at.command;
-  run += std::string(at.type == "BP" ? " --both" : "") + " --clip -q";
+  run += std::string(at.type == "BP" || at.type == "BE" ? " --both" : "") + " --clip";
   std::vector<std::string> words = constants_;
   if (resegments || at.type == "HB") {  // begins with constants of its own; the sign of DS has been chosen
     words = run_words();
@@ -100,6 +120,13 @@ CommandJob ExplorationCommands::switching(const SwitchPoint& at) const {
   }
   job.lines.push_back(run + quoted(words));
   return job;
+}
+
+std::string ExplorationCommands::in_other_field(const std::string& branch, int label, int field) const {
+  const std::string from = quoted_for_shell(path(branch));
+  return fmt::format("tchat run {} -c {} -s {} IRS={} GCFIND=[{}] -o {}", problem_arguments(problem_),
+                     quoted_for_shell(file('r', branch)), from, label, field,
+                     quoted_for_shell(fmt::format("{}_BE{}", path(branch), label)));
 }
 
 std::string ExplorationCommands::show(double value, const std::string& state) const {

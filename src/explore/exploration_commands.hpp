@@ -24,8 +24,9 @@ struct SwitchPoint {
 
 class ExplorationCommands {
  public:
-  /// `system` must outlive this. Throws UserError where the request's range is none, or not one of a parameter.
-  ExplorationCommands(const ExploreRequest& request, const HybridSystem& system);
+  /// `system` must outlive this; `has_added_section`: tchat has cut it. Throws UserError where the request's range is
+  /// none, or not one of a parameter.
+  ExplorationCommands(const ExploreRequest& request, const HybridSystem& system, bool has_added_section);
 
   const SweptRange& range() const { return range_; }
   const std::string& folder() const { return folder_; }
@@ -40,18 +41,24 @@ class ExplorationCommands {
   std::string at_value(double value) const;
 
   CommandJob sweep() const;
-  /// A branch through an orbit that a simulation settles on from a state: `words` of `tchat simulate` that give it.
-  CommandJob start(const std::string& name, double value, const std::string& words) const;
+  /// From each of these states, as --state takes them, at every value.
+  CommandJob sweep_from(const std::vector<std::string>& states) const;
+  /// A branch through what a simulation settles on from a state: `words` of `tchat simulate` that give it.
+  CommandJob start(const std::string& name, double value, const std::string& words, bool rests) const;
   /// What begins at a labelled point.
   CommandJob switching(const SwitchPoint& at) const;
+  /// The equilibrium of a label as that of another field.
+  std::string in_other_field(const std::string& branch, int label, int field) const;
   /// "tchat simulate ..." of an attractor, by a state on it.
   std::string show(double value, const std::string& state) const;
 
  private:
   std::vector<std::string> files_of(const std::string& name) const;
-  std::vector<std::string> run_words() const;
+  std::vector<std::string> run_words(bool rests = false) const;
+  CommandJob sweep_job(const std::string& name, const std::vector<std::string>& states, const char* options) const;
 
   const ExploreRequest& request_;
+  std::string watched_;  ///< words that watch all events, where none has a jump: a contact changes nothing
   SweptRange range_;
   std::string folder_;
   std::string problem_;

@@ -17,7 +17,9 @@ struct ExploreRequest {
   std::vector<std::string> overrides;    ///< KEY=VALUE: parameters for all commands, constants for runs
   std::string quantity;                  ///< -y of the picture; empty: chosen
   int workers = 1;
+  int starts = 2;        ///< further initial states at every value
   int doublings = 4;     ///< of the period, from an attractor on
+  int segments = 32;     ///< most of them in a signature that is followed
   int branches = 50;     ///< at most so many are kept
   double seconds = 0.0;  ///< wall time after which no command is begun; 0: any
   bool fresh = false;    ///< results of an earlier run are thrown away

@@ -37,15 +37,49 @@ std::string branch_json(const ExploredBranch& branch) {
   });
   const auto texts = [](const std::string& text) { return json(text); };
   return fmt::format(
-      R"({{"name": {}, "parent": {}, "origin": {}, "from": {}, "to": {}, "signatures": {}, "labels": {}, "commands": {}}})",
+      R"({{"name": {}, "parent": {}, "origin": {}, "from": {}, "to": {}, "signatures": {}, "labels": {}, "ends": {}, "commands": {}}})",
       json(branch.name), json(branch.parent), json(branch.origin), json(branch.from), json(branch.to),
-      json_list(branch.signatures, texts), labels, json_list(branch.job.lines, texts));
+      json_list(branch.signatures, texts), labels, json_list(branch.ends, texts), json_list(branch.job.lines, texts));
 }
 
-std::string share(const ExploredDiagram& diagram) {
-  if (diagram.periodic == 0) return "no periodic attractor";
-  return fmt::format("{} of {} periodic attractors of the sweep lie on branches ({:.4g} %)", diagram.on_branches,
-                     diagram.periodic, 100.0 * diagram.on_branches / diagram.periodic);
+std::string percent(int part, int whole) { return fmt::format("{:.4g} %", 100.0 * part / whole); }
+
+/// "341 of 341 periodic attractors of the sweep lie on branches (100 %)"
+std::string coverage_text(const ExploredDiagram& diagram) {
+  const int known = diagram.periodic + diagram.at_rest;
+  if (known == 0) return "no periodic attractor, none at rest";
+  const char* const kinds = diagram.at_rest == 0    ? "periodic attractors"
+                            : diagram.periodic == 0 ? "equilibria"
+                                                    : "periodic attractors and equilibria";
+  return fmt::format("{} of {} {} of the sweep lie on branches ({})", diagram.on_branches, known, kinds,
+                     percent(diagram.on_branches, known));
+}
+
+/// Values and starts that lead elsewhere, with their share of all.
+std::string others_text(const ExploredDiagram& diagram) {
+  int all = diagram.periodic + diagram.at_rest;
+  for (const auto& [kind, count] : diagram.others) all += count;
+  std::string text;
+  for (const auto& [kind, count] : diagram.others)
+    text += fmt::format("{}{} {} ({})", text.empty() ? "" : ", ", count, kind, percent(count, all));
+  return text.empty() ? "" : "Other motions: " + text + ".\n";
+}
+
+std::string left_text(const ExploredDiagram& diagram) {
+  int all = 0;
+  std::string text;
+  for (const auto& [budget, count] : diagram.left) {
+    all += count;
+    text += fmt::format("{}{} by {}", text.empty() ? "" : ", ", count, budget);
+  }
+  return all == 0 ? "" : fmt::format("Left: {} starts of branches, at least; {}.\n", all, text);
+}
+
+std::string counts_json(const std::map<std::string, int>& counts) {
+  std::string text;
+  for (const auto& [key, count] : counts)
+    text += fmt::format("{}{}: {}", text.empty() ? "" : ", ", json(key), json(count));
+  return "{" + text + "}";
 }
 
 }  // namespace
@@ -58,17 +92,18 @@ std::string tree_text(const ExploredDiagram& diagram) {
       const std::string indent(static_cast<std::size_t>(2 * depth), ' ');
       text += fmt::format("{}{}  {:.6g} to {:.6g}, {}\n", indent, branch.name, branch.from, branch.to, branch.origin);
       for (const ExploredLabel& label : branch.labels) text += fmt::format("{}    {}\n", indent, label_text(label));
+      for (const std::string& end : branch.ends) text += fmt::format("{}    ends: {}\n", indent, end);
       add(branch.name, depth + 1);
     }
   };
   add("", 0);
   if (diagram.branches.empty()) text += "  none\n";
-  text += fmt::format("\n{} branches. Coverage: {}.\n", diagram.branches.size(), share(diagram));
-  if (diagram.other > 0) text += fmt::format("{} attractors are not periodic.\n", diagram.other);
+  text += fmt::format("\n{} branches. Coverage: {}.\n", diagram.branches.size(), coverage_text(diagram));
+  text += others_text(diagram);
   for (const UnexplainedAttractor& one : diagram.unexplained)
     text += fmt::format("On no branch: attractor {} ({}), {} times from {:.6g} to {:.6g}{}\n", one.attractor, one.kind,
                         one.count, one.first, one.last, one.command.empty() ? "" : ": " + one.command);
-  if (!diagram.left.empty()) text += fmt::format("Left: {}.\n", diagram.left);
+  text += left_text(diagram);
   if (!diagram.complete) text += "Not complete: the same command goes on.\n";
   return text;
 }
@@ -80,11 +115,11 @@ std::string tree_json(const ExploredDiagram& diagram) {
                        json(one.command));
   });
   return fmt::format(
-      "{{\"parameter\": {}, \"quantity\": {}, \"complete\": {}, \"periodic\": {}, \"on_branches\": {}, "
-      "\"not_periodic\": {},\n"
-      "\"unexplained\": {},\n\"joins\": {},\n\"branches\": {}}}\n",
-      json(diagram.parameter), json(diagram.quantity), diagram.complete, json(diagram.periodic),
-      json(diagram.on_branches), json(diagram.other), unexplained,
+      "{{\"parameter\": {}, \"quantity\": {}, \"complete\": {}, \"periodic\": {}, \"at_rest\": {}, \"on_branches\": "
+      "{}, "
+      "\"others\": {}, \"left\": {},\n\"unexplained\": {},\n\"joins\": {},\n\"branches\": {}}}\n",
+      json(diagram.parameter), json(diagram.quantity), diagram.complete, json(diagram.periodic), json(diagram.at_rest),
+      json(diagram.on_branches), counts_json(diagram.others), counts_json(diagram.left), unexplained,
       json_list(diagram.joins, [](const std::string& text) { return json(text); }),
       json_list(diagram.branches, branch_json));
 }

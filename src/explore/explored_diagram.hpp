@@ -2,6 +2,7 @@
 /// left, and how much of a sweep lies on branches.
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -25,13 +26,14 @@ struct ExploredBranch {
   int doublings = 0;
   double from = 0.0, to = 0.0;  ///< range of the parameter
   std::vector<std::string> signatures;
+  std::vector<std::string> ends;  ///< why each direction ended
   std::vector<ExploredLabel> labels;
   CommandJob job;
 };
 
 /// An attractor of the sweep that lies on no branch.
 struct UnexplainedAttractor {
-  int attractor = 0;
+  std::string attractor;  ///< "a3": attractor 3 of the sweep; "b2": of the further starts
   std::string kind;
   double first = 0.0, last = 0.0;  ///< values at which it is
   int count = 0;
@@ -46,9 +48,10 @@ struct ExploredDiagram {
   std::vector<ExploredBranch> branches;
   std::vector<std::string> joins;  ///< "a1_PD3: a2 again"
   std::vector<UnexplainedAttractor> unexplained;
-  int periodic = 0, on_branches = 0, other = 0;  ///< attractors over all values; `other`: not periodic
-  bool complete = true;                          ///< false: interrupted, or a budget left something
-  std::string left;                              ///< what a budget left, in words
+  int periodic = 0, at_rest = 0, on_branches = 0;  ///< attractors over all values and starts
+  std::map<std::string, int> others;               ///< motions of other kinds: chaotic, ...
+  bool complete = true;                            ///< false: interrupted
+  std::map<std::string, int> left;  ///< what a budget left: how many labels and attractors were not followed
 };
 
 /// The tree of branches, coverage and what is left, for people.

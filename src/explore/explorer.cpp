@@ -6,13 +6,15 @@
 #include <chrono>
 #include <filesystem>
 #include <iostream>
-#include <map>
 #include <set>
 
 #include "constants/constants_file.hpp"
 #include "constants/settings_type.hpp"
 #include "explore/attractor_samples.hpp"
+#include "explore/boundary_equilibrium.hpp"
+#include "explore/branch_ends.hpp"
 #include "explore/command_job.hpp"
+#include "explore/coverage.hpp"
 #include "explore/diagram_picture.hpp"
 #include "explore/exploration_commands.hpp"
 #include "explore/exploration_makefile.hpp"
@@ -47,7 +49,7 @@ class Explorer {
       : request_(request),
         screen_(screen),
         loaded_(load_for_simulation(simulation_request(request), progress)),
-        commands_(request, loaded_.library->system()),
+        commands_(request, loaded_.library->system(), loaded_.library->has_added_section()),
         begun_(std::chrono::steady_clock::now()),
         runner_(commands_.folder(), request.workers, [this, interrupted] { return interrupted() || is_late(); }),
         interrupted_(interrupted) {
@@ -84,15 +86,21 @@ class Explorer {
   }
 
   bool sweep() {
-    const CommandJob job = commands_.sweep();
-    diagram_.first_jobs = {job};
+    if (!add_sweep(commands_.sweep())) return false;
+    const std::vector<std::string> states = sweeps_.front().samples.further_starts(request_.starts);
+    return states.empty() || add_sweep(commands_.sweep_from(states));
+  }
+
+  bool add_sweep(const CommandJob& job) {
+    diagram_.first_jobs.push_back(job);
     const JobResult result = runner_.run({job}).front();
     if (!result.was_run) {
       diagram_.complete = false;
       return false;
     }
     if (!result.succeeded) throw ComputationError(fmt::format("the sweep failed:\n{}", result.log));
-    samples_ = AttractorSamples(job.outputs.front(), loaded_.library->system());
+    sweeps_.push_back({sweeps_.empty() ? "a" : "b", AttractorSamples(job.outputs.front(), loaded_.library->system()),
+                       loaded_.library->has_added_section()});
     return true;
   }
 
@@ -102,45 +110,61 @@ class Explorer {
     Candidate candidate;
     candidate.parent = std::string::npos;
     candidate.branch.name = name;
-    candidate.branch.origin = fmt::format("attractor {} at {} = {:.6g}", attractor.number, diagram_.parameter, value);
-    candidate.branch.job = commands_.start(name, value, words);
+    candidate.branch.origin =
+        fmt::format("attractor {} at {} = {:.6g}", name.substr(0, name.find('_')), diagram_.parameter, value);
+    candidate.branch.job = commands_.start(name, value, words, attractor.kind == AttractorKind::rest);
     return candidate;
   }
 
-  /// A branch for each attractor that repeats itself or rests.
-  std::vector<Candidate> seeds() const {
+  /// Has the attractor more segments than are followed?
+  bool is_too_long(const SweepAttractor& attractor) const {
+    return static_cast<int>(signature_word(attractor).size()) > request_.segments;
+  }
+
+  /// A branch for each attractor that repeats itself or rests, of the first sweep.
+  std::vector<Candidate> seeds() {
     std::vector<Candidate> list;
-    for (const SweepAttractor& attractor : samples_.table().attractors)
-      if (attractor.kind == AttractorKind::periodic || attractor.kind == AttractorKind::rest)
-        list.push_back(start_at(attractor, fmt::format("a{}", attractor.number), samples_.value_of(attractor),
-                                AttractorSamples::words_of(attractor)));
+    const Sweep& sweep = sweeps_.front();
+    for (const SweepAttractor& attractor : sweep.samples.table().attractors) {
+      if (!is_followed(attractor)) continue;
+      if (is_too_long(attractor)) {
+        ++diagram_.left[segments_budget()];
+        continue;
+      }
+      list.push_back(start_at(attractor, fmt::format("{}{}", sweep.letter, attractor.number),
+                              sweep.samples.value_of(attractor), AttractorSamples::words_of(attractor)));
+    }
     return list;
   }
 
-  /// Attractors of the sweep that lie on no branch yet, one of each number that has not been tried at its value.
+  /// Attractors that lie on no branch yet, one of each number that has not been tried at its value.
   std::vector<Candidate> more_seeds() {
     std::vector<Candidate> list;
-    std::set<int> numbers;
-    samples_.for_each([&](const AttractorSample& sample) {
-      const SweepAttractor& attractor = *sample.attractor;
-      if (attractor.kind != AttractorKind::periodic || !branch_of(sample).empty()) return;
-      if (!numbers.insert(attractor.number).second || !tried_.insert({attractor.number, sample.value}).second) return;
-      const std::string state = samples_.state_of(sample);
-      if (state.empty()) return;
-      list.push_back(start_at(attractor, fmt::format("a{}_{}", attractor.number, tried_.size()), sample.value,
-                              "--state " + state + " --before-event"));
-    });
+    for (const Sweep& sweep : sweeps_) {
+      std::set<int> numbers;
+      sweep.samples.for_each([&](const SweptAttractor& sample) {
+        const SweepAttractor& attractor = *sample.attractor;
+        if (!is_followed(attractor) || is_too_long(attractor) || !branch_of(catalogue_, sweep, sample).empty()) return;
+        const std::string name = fmt::format("{}{}", sweep.letter, attractor.number);
+        if (!numbers.insert(attractor.number).second || !tried_.insert({name, sample.value}).second) return;
+        const std::string state = sweep.samples.state_of(sample);
+        if (state.empty()) return;
+        const bool is_at_event = attractor.kind == AttractorKind::periodic;
+        list.push_back(start_at(attractor, fmt::format("{}_{}", name, tried_.size()), sample.value,
+                                "--state " + state + (is_at_event ? " --before-event" : "")));
+      });
+    }
     return list;
-  }
-
-  std::string branch_of(const AttractorSample& sample) const {
-    return catalogue_.branch_with_period(signature_word(*sample.attractor), sample.value, sample.period);
   }
 
   /// Round after round; true where a branch has been found.
   bool follow(std::vector<Candidate> round) {
     bool found = false;
     while (!round.empty() && goes_on()) {
+      if (is_full()) {
+        for (const Candidate& candidate : round) leave(candidate, branches_budget());
+        break;
+      }
       std::vector<CommandJob> jobs;
       for (const Candidate& candidate : round) jobs.push_back(candidate.branch.job);
       const std::vector<JobResult> results = runner_.run(jobs);
@@ -149,6 +173,16 @@ class Explorer {
       round = std::move(next);
     }
     return found;
+  }
+
+  bool is_full() const { return static_cast<int>(diagram_.branches.size()) >= request_.branches; }
+  std::string branches_budget() const { return fmt::format("--branches {}", request_.branches); }
+  std::string segments_budget() const { return fmt::format("--segments {}", request_.segments); }
+
+  /// A budget leaves it.
+  void leave(const Candidate& candidate, const std::string& budget) {
+    ++diagram_.left[budget];
+    set_outcome(candidate, "", "left by " + budget);
   }
 
   void set_outcome(const Candidate& candidate, const std::string& leads_to, const std::string& remark) {
@@ -167,9 +201,10 @@ class Explorer {
       return false;
     }
     if (!result.succeeded) {
-      set_outcome(candidate, "", "failed: " + last_line(result.log));
+      set_outcome(candidate, "", "failed: " + failure_text(result.log));
       if (candidate.parent >= diagram_.branches.size())
-        diagram_.joins.push_back(fmt::format("{} ({}): failed: {}", branch.name, branch.origin, last_line(result.log)));
+        diagram_.joins.push_back(
+            fmt::format("{} ({}): failed: {}", branch.name, branch.origin, failure_text(result.log)));
       return false;
     }
     const PointFile points = read_point_file(commands_.file('p', branch.name));
@@ -188,27 +223,19 @@ class Explorer {
       diagram_.joins.push_back(fmt::format("{} ({}): {} again", branch.name, branch.origin, known));
       return false;
     }
-    if (static_cast<int>(diagram_.branches.size()) >= request_.branches) {
-      diagram_.left = fmt::format("--branches {} reached", request_.branches);
-      set_outcome(candidate, "", "left: " + diagram_.left);
+    if (is_full()) {
+      leave(candidate, branches_budget());
       return false;
     }
     for (CataloguedSection& section : sections) catalogue_.add(std::move(section));
     describe(points, branch);
+    branch.ends = branch_ends(result.log);
     set_outcome(candidate, branch.name, "");
     diagram_.branches.push_back(branch);
     show(fmt::format("{}: {}, {} = {:.6g} to {:.6g}\n", branch.name, branch.origin, diagram_.parameter, branch.from,
                      branch.to));
     add_switches(diagram_.branches.size() - 1, next);
     return true;
-  }
-
-  static std::string last_line(const std::string& log) {
-    const std::size_t end = log.find_last_not_of(" \n");
-    if (end == std::string::npos) return "";
-    const std::size_t before = log.find_last_of('\n', end);
-    const std::size_t begin = before == std::string::npos ? 0 : before + 1;
-    return log.substr(begin, end + 1 - begin);
   }
 
   void describe(const PointFile& points, ExploredBranch& branch) const {
@@ -238,64 +265,52 @@ class Explorer {
       const std::string type = type_name(solution);
       if (type == "EP" || type == "RG" || type.empty()) continue;
       ExploredLabel label{solution.label, type, stored_parameter(solution, settings.free_parameters.front()), "", ""};
-      const NextStart start{solution.label, basic_type(solution.type), solution.kind};
-      const bool is_curve = type == "LP" || type == "EX";
-      const std::string command =
-          is_curve ? "" : next_command(start, settings, system, commands_.problem(), commands_.path(name));
       diagram_.branches[at].labels.push_back(label);
-      if (command.empty()) continue;
-      add_switch(at, type, command, next);
+      const std::string command = command_at(solution, type, settings, name);
+      if (!command.empty()) add_switch(at, type, command, settings, next);
     }
   }
 
-  void add_switch(std::size_t at, const std::string& type, const std::string& command, std::vector<Candidate>& next) {
-    const ExploredBranch& parent = diagram_.branches[at];
-    const std::size_t number = parent.labels.size() - 1;
-    ExploredLabel& label = diagram_.branches[at].labels.back();
-    if (type == "TR") {
-      label.remark = "left: tori are not followed";
-      return;
+  /// The command that follows what begins at a label; "" where nothing does.
+  std::string command_at(const LabelledSolution& solution, const std::string& type, const RunSettings& settings,
+                         const std::string& name) const {
+    const HybridSystem& system = loaded_.library->system();
+    if (type == "LP" || type == "EX") return "";
+    if (type == "GR" && loaded_.library->has_added_section()) return "";  // no jump: contact changes nothing
+    if (type == "BE") {
+      const int field = other_field_at_rest(system, solution, settings.segments.front().index.field);
+      return field == 0 ? "" : commands_.in_other_field(name, solution.label, field);
     }
+    return next_command({solution.label, basic_type(solution.type), solution.kind}, settings, system,
+                        commands_.problem(), commands_.path(name));
+  }
+
+  /// How many segments the branch that begins at a label has, at least.
+  static int segments_after(const std::string& type, const RunSettings& settings) {
+    const auto own = static_cast<int>(settings.segments.size());
+    const bool is_smooth = settings.segments.front().index.event == no_function;
+    return type == "PD" && !is_smooth ? 2 * own : own;
+  }
+
+  void add_switch(std::size_t at, const std::string& type, const std::string& command, const RunSettings& settings,
+                  std::vector<Candidate>& next) {
+    const ExploredBranch& parent = diagram_.branches[at];
+    const ExploredLabel& label = parent.labels.back();
     Candidate candidate;
     candidate.parent = at;
-    candidate.label = number;
+    candidate.label = parent.labels.size() - 1;
     ExploredBranch& branch = candidate.branch;
     branch.parent = parent.name;
     branch.doublings = parent.doublings + (type == "PD" ? 1 : 0);
-    if (branch.doublings > request_.doublings) {
-      label.remark = fmt::format("left: --doublings {} reached", request_.doublings);
-      return;
-    }
+    if (type == "TR") return leave(candidate, "tori");
+    if (branch.doublings > request_.doublings)
+      return leave(candidate, fmt::format("--doublings {}", request_.doublings));
+    if (segments_after(type, settings) > request_.segments) return leave(candidate, segments_budget());
     branch.origin =
         fmt::format("{} {} of {} at {} = {:.6g}", type, label.label, parent.name, diagram_.parameter, label.parameter);
     branch.job = commands_.switching({parent.name, label.label, type, label.parameter, command});
     branch.name = branch.job.name;
     next.push_back(std::move(candidate));
-  }
-
-  void measure_coverage() {
-    std::map<int, UnexplainedAttractor> missing;
-    samples_.for_each([&](const AttractorSample& sample) {
-      const SweepAttractor& known = *sample.attractor;
-      const bool repeats = known.kind == AttractorKind::periodic;
-      (repeats ? diagram_.periodic : diagram_.other) += 1;
-      if (repeats && !branch_of(sample).empty()) {
-        ++diagram_.on_branches;
-        return;
-      }
-      UnexplainedAttractor& one = missing[known.number];
-      if (one.count++ == 0) {
-        const std::string state = samples_.state_of(sample);
-        one = {known.number,
-               to_string(known.kind),
-               sample.value,
-               sample.value,
-               1,
-               state.empty() ? "" : commands_.show(sample.value, state)};
-      }
-      one.last = sample.value;
-    });
-    for (auto& [number, one] : missing) diagram_.unexplained.push_back(std::move(one));
   }
 
   static void write(const std::string& path, const std::string& text) {
@@ -305,10 +320,11 @@ class Explorer {
   }
 
   int finish() {
-    measure_coverage();
+    for (const Sweep& sweep : sweeps_) measure_coverage(sweep, catalogue_, commands_, diagram_);
     const std::string& folder = commands_.folder();
-    add_pictures({folder, commands_.path("sweep.sweep"), commands_.monitors(), request_.quantity}, samples_.table(),
-                 diagram_);
+    if (!sweeps_.empty())
+      add_pictures({folder, commands_.path("sweep.sweep"), commands_.monitors(), request_.quantity},
+                   sweeps_.front().samples.table(), diagram_);
     const std::string text = tree_text(diagram_);
     write(folder + ".txt", text);
     write(folder + ".json", tree_json(diagram_));
@@ -326,10 +342,10 @@ class Explorer {
   std::chrono::steady_clock::time_point begun_;
   JobRunner runner_;
   std::function<bool()> interrupted_;
-  AttractorSamples samples_;
+  std::vector<Sweep> sweeps_;
   OrbitCatalogue catalogue_;
   ExploredDiagram diagram_;
-  std::set<std::pair<int, double>> tried_;
+  std::set<std::pair<std::string, double>> tried_;
 };
 
 }  // namespace

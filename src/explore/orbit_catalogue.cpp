@@ -5,6 +5,8 @@
 #include <limits>
 #include <optional>
 
+#include "problem_type/problem_type.hpp"
+
 namespace tchat {
 
 namespace {
@@ -22,6 +24,12 @@ std::optional<std::size_t> column_of(const PointSection& section, const std::str
   const auto at = std::find(section.columns.begin(), section.columns.end(), name);
   if (at == section.columns.end()) return std::nullopt;
   return static_cast<std::size_t>(at - section.columns.begin());
+}
+
+std::vector<std::string> state_columns(const PointSection& section) {
+  std::vector<std::string> names;
+  for (int k = 1; k <= section.dimension; ++k) names.push_back(section.state_name(k));
+  return names;
 }
 
 /// What the polynomial through the points first..last has at `parameter`, between points i and i + 1. The points are
@@ -82,6 +90,15 @@ std::vector<OrbitNumbers> orbits_at(const CataloguedSection& section, double par
 /// Of the largest number: runs leave errors far below this, and different orbits differ by far more.
 constexpr double least_uncertainty = 1e-5;
 
+/// A signature does not count how often an orbit is run round where nothing is cut: its period may be a multiple of
+/// that of the known one, or a part of it.
+VectorXd with_period_of(const OrbitNumbers& known, VectorXd numbers) {
+  const double ratio = numbers(0) / known.numbers(0);
+  const double turns = std::max(1.0, std::round(std::max(ratio, 1.0 / ratio)));
+  numbers(0) *= ratio > 1.0 ? 1.0 / turns : turns;
+  return numbers;
+}
+
 bool agree(const OrbitNumbers& known, const VectorXd& numbers) {
   const double size = numbers.cwiseAbs().maxCoeff();
   for (Index k = 0; k < numbers.size(); ++k)
@@ -111,44 +128,57 @@ std::vector<CataloguedSection> catalogued_sections(const std::string& branch, co
   int number = 0;
   for (const PointSection& section : file.sections) {
     ++number;
+    const bool rests = section.problem_type == equilibrium.number;
+    const std::vector<std::string> names = rests ? state_columns(section) : monitors;
     std::vector<std::size_t> columns;
-    const std::optional<std::size_t> period = column_of(section, "PERIOD");
-    if (!period) continue;
-    columns.push_back(*period);
-    for (const std::string& name : monitors)
+    if (const auto period = column_of(section, "PERIOD"); period && !rests) columns.push_back(*period);
+    for (const std::string& name : names)
       if (const auto column = column_of(section, name)) columns.push_back(*column);
-    if (columns.size() != 1 + monitors.size()) continue;
-    CataloguedSection one{branch, number, primitive_word(section.signature), {}, {}};
+    if (columns.size() != (rests ? 0 : 1) + names.size()) continue;
+    CataloguedSection one{branch, number, primitive_word(section.signature), {}, rests, {}};
     one.numbers.resize(std::ssize(columns), std::ssize(section.rows));
     for (std::size_t r = 0; r < section.rows.size(); ++r) {
       one.parameter.push_back(section.rows[r].values.front());
       for (std::size_t k = 0; k < columns.size(); ++k)
         one.numbers(static_cast<Index>(k), static_cast<Index>(r)) = section.rows[r].values[columns[k]];
-      one.numbers(0, static_cast<Index>(r)) /= one.signature.repetitions;
+      if (!rests) one.numbers(0, static_cast<Index>(r)) /= one.signature.repetitions;
     }
     result.push_back(std::move(one));
   }
   return result;
 }
 
-/// Three points tell: the middle of the section, and on to its end. Its beginning is near where it bifurcates.
+/// Points from the middle of the section to its end tell; its beginning is near where it bifurcates. All but one have
+/// to agree: a largest value may have a kink, which interpolation does not see.
 std::string OrbitCatalogue::branch_of(const CataloguedSection& section) const {
   const auto count = static_cast<Index>(section.parameter.size());
   std::string found;
-  for (const double share : {0.5, 0.75, 0.95}) {
+  int missing = 0;
+  for (const double share : {0.4, 0.5, 0.6, 0.75, 0.95}) {
     const auto row =
         std::min<Index>(count - 1, static_cast<Index>(std::lround(share * static_cast<double>(count - 1))));
-    found = branch_at(section.signature, section.parameter[static_cast<std::size_t>(row)], section.numbers.col(row));
-    if (found.empty()) return "";
+    const std::string branch =
+        branch_at(section, section.parameter[static_cast<std::size_t>(row)], section.numbers.col(row));
+    if (branch.empty() && ++missing > 1) return "";
+    if (!branch.empty()) found = branch;
   }
   return found;
 }
 
-std::string OrbitCatalogue::branch_at(const PrimitiveWord& signature, double parameter, const VectorXd& numbers) const {
+std::string OrbitCatalogue::branch_with_state(double parameter, const VectorXd& state) const {
   for (const CataloguedSection& known : sections_) {
-    if (known.signature.word != signature.word) continue;
+    if (!known.rests) continue;
+    for (const OrbitNumbers& one : orbits_at(known, parameter))
+      if (agree(one, state)) return known.branch;
+  }
+  return "";
+}
+
+std::string OrbitCatalogue::branch_at(const CataloguedSection& like, double parameter, const VectorXd& numbers) const {
+  for (const CataloguedSection& known : sections_) {
+    if (known.rests != like.rests || known.signature.word != like.signature.word) continue;
     for (const OrbitNumbers& orbit : orbits_at(known, parameter))
-      if (agree(orbit, numbers)) return known.branch;
+      if (agree(orbit, like.rests ? numbers : with_period_of(orbit, numbers))) return known.branch;
   }
   return "";
 }
@@ -156,7 +186,7 @@ std::string OrbitCatalogue::branch_at(const PrimitiveWord& signature, double par
 std::string OrbitCatalogue::branch_with_period(const SignatureWord& signature, double parameter, double period) const {
   const PrimitiveWord wanted = primitive_word(signature);
   for (const CataloguedSection& known : sections_) {
-    if (known.signature.word != wanted.word) continue;
+    if (known.rests || known.signature.word != wanted.word) continue;
     for (const OrbitNumbers& orbit : orbits_at(known, parameter)) {
       const double time = orbit.numbers(0) * known.signature.repetitions;
       const double tolerance = 2.0 * orbit.uncertainty(0) * known.signature.repetitions + 1e-4 * std::abs(period);

@@ -30,10 +30,13 @@ struct CataloguedSection {
   int number = 1;  ///< of the section in its file
   PrimitiveWord signature;
   std::vector<double> parameter;
-  Eigen::MatrixXd numbers;  ///< a column for each point: period of one repetition, then the other numbers
+  bool rests = false;
+  Eigen::MatrixXd numbers;  ///< a column for each point: period of one repetition, then the other numbers;
+                            ///< of an equilibrium its states
 };
 
-/// The sections of a p-file, whose columns have the names `monitors` and PERIOD. Sections without these are left out.
+/// The sections of a p-file, whose columns have the names `monitors` and PERIOD, or those of states on branches of
+/// equilibria. Sections without these are left out.
 std::vector<CataloguedSection> catalogued_sections(const std::string& branch, const PointFile& file,
                                                    const std::vector<std::string>& monitors);
 
@@ -47,9 +50,11 @@ class OrbitCatalogue {
   /// The branch with an orbit of this signature and period (of one repetition) at the parameter value; "" where there
   /// is none.
   std::string branch_with_period(const SignatureWord& signature, double parameter, double period) const;
+  /// The branch with this equilibrium.
+  std::string branch_with_state(double parameter, const Eigen::VectorXd& state) const;
 
  private:
-  std::string branch_at(const PrimitiveWord& signature, double parameter, const Eigen::VectorXd& numbers) const;
+  std::string branch_at(const CataloguedSection& like, double parameter, const Eigen::VectorXd& numbers) const;
 
   std::vector<CataloguedSection> sections_;
 };

@@ -232,6 +232,12 @@ ProblemLibrary::ProblemLibrary(const std::string& path, const std::string& file,
       problem_(guarded(path, handle_.get(), fortran_.get())),
       system_(problem_->table()) {}
 
+void ProblemLibrary::add_section() {
+  if (sectioned_ || !lacks_sections(system_)) return;
+  sectioned_ = std::make_unique<SectionedProblem>(problem_->table());
+  system_ = HybridSystem(sectioned_->table());
+}
+
 std::string ProblemLibrary::complaint() const {
   if (problem_->thrown().empty()) return "";
   return fmt::format("plugin {}: an exception of {}\n  Its values are 1e99 in the files where it threw.", path_,

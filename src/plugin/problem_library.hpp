@@ -16,6 +16,7 @@
 #include "plugin/fortran_problem.hpp"
 #include "plugin/guarded_problem.hpp"
 #include "plugin/problem_sizes.hpp"
+#include "plugin/sectioned_problem.hpp"
 
 namespace tchat {
 
@@ -35,6 +36,9 @@ class ProblemLibrary {
   /// The problem; a view that must not outlive this object.
   const HybridSystem& system() const { return system_; }
   const std::string& path() const { return path_; }
+  /// From now on system() is the sectioned problem (sectioned_problem.hpp), if the problem lacks sections.
+  void add_section();
+  bool has_added_section() const { return sectioned_ != nullptr; }
   /// What of the derivatives is a finite difference, for the d-file; empty when all are exact.
   std::vector<std::string> derivative_notes() const;
   /// What a function that is called for output only has thrown: one sentence with the cure; "" when none did.
@@ -53,6 +57,7 @@ class ProblemLibrary {
   std::unique_ptr<void, Close> handle_;
   std::unique_ptr<FortranProblem> fortran_;  // empty: the library has a table of its own
   std::unique_ptr<GuardedProblem> problem_;
+  std::unique_ptr<SectionedProblem> sectioned_;  // empty: the problem as it is
   HybridSystem system_;
 };
 

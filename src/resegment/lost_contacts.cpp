@@ -10,6 +10,7 @@
 #include "hybrid/contact_segment.hpp"
 #include "hybrid/event_at.hpp"
 #include "hybrid/identity_jump.hpp"
+#include "resegment/contact_point.hpp"
 #include "resegment/simultaneous_contacts.hpp"
 #include "text/user_error.hpp"
 
@@ -24,10 +25,14 @@ class LostContacts {
  public:
   LostContacts(const LabelledOrbit& source, const HybridSystem& system)
       : source_(source), system_(system), signature_(source.settings.signature()), x_(source.start.orbit) {
+    is_open_.assign(signature_.size(), false);
     for (int s = 0; s < count(); ++s) lost_.push_back(is_lost(s));
+    for (int s = 0; s < count(); ++s)
+      if (is_lost_at(s)) is_open_[static_cast<std::size_t>(before(s))] = true;
+    find_lost_impacts();
   }
 
-  bool any() const { return std::find(lost_.begin(), lost_.end(), true) != lost_.end(); }
+  bool any() const { return std::find(is_open_.begin(), is_open_.end(), true) != is_open_.end(); }
 
   /// Segments that last some time.
   std::size_t lasting() const {
@@ -65,6 +70,7 @@ class LostContacts {
   int before(int s) const { return (s + count() - 1) % count(); }
   const IndexVector& index(int s) const { return signature_[static_cast<std::size_t>(s)]; }
   bool is_lost_at(int s) const { return lost_[static_cast<std::size_t>(s)]; }
+  bool is_open(int s) const { return is_open_[static_cast<std::size_t>(s)]; }
 
   /// A contact between two segments of one field, which end in its jump as if it were none.
   bool is_lost(int s) const {
@@ -74,24 +80,49 @@ class LostContacts {
   /// Of two neighbours that both last no time the first is the contact.
   bool is_lost_before(int s) const { return s > 0 && lost_[static_cast<std::size_t>(s - 1)]; }
 
-  /// Groups end where no lost contact follows; when one follows everywhere, the orbit is closed at one of them: where a
-  /// section is met there, else at the last one.
-  void find_groups() {
-    int first = -1;
-    for (int s = 0; s < count() && first < 0; ++s)
-      if (!is_lost_at(s) && !is_lost_at(before(s))) first = s;
-    is_closed_ = first < 0;
-    for (int s = 0; is_closed_ && s < count(); ++s) {
-      if (!is_lost_at(s)) continue;
-      first = after(s);
-      if (section_at_end(x_, system_, before(s), index(before(s)).field, index(before(s)).event)) break;
+  /// Impacts of velocity zero, where the label is of one: their jumps change nothing, and the segments of no duration
+  /// after them are lost too.
+  void find_lost_impacts() {
+    if (source_.solution.kind.kind != UserPointKind::impact_velocity) return;
+    const ContactPoint own = contact_point(source_.solution, x_, system_, source_.settings, source_.name);
+    if (own.where != ContactPoint::impact) return;
+    for (const ContactPoint& impact : simultaneous_contacts(own, x_, system_, source_.settings)) {
+      if (!leaves_state(impact.segment)) continue;
+      std::vector<int> empty;
+      int next = after(impact.segment);
+      for (; next != impact.segment && lasts_no_time(x_, next); next = after(next)) empty.push_back(next);
+      if (index(next).field != index(impact.segment).field) continue;
+      for (const int s : empty) lost_[static_cast<std::size_t>(s)] = true;
+      is_open_[static_cast<std::size_t>(impact.segment)] = true;
     }
-    groups_.clear();
-    for (int k = 0; k < count(); ++k) {
-      const int s = (first + k) % count();
+  }
+
+  bool leaves_state(int s) const {
+    constexpr double rounding = 1e-6;  // the velocity of a located point
+    const Eigen::Map<const Eigen::VectorXd> end(x_.end(s), x_.shape.dimension);
+    Eigen::VectorXd image(end.size());
+    system_.value(FunctionKind::jump, index(s).jump, end.data(), x_.par.data(), image.data());
+    return (image - end).lpNorm<Eigen::Infinity>() <= rounding * (1.0 + end.lpNorm<Eigen::Infinity>());
+  }
+
+  /// Groups end where the end of a segment remains; when none does, the orbit is closed at the first one that a section
+  /// meets, else at the last one.
+  void find_groups() {
+    int last = -1;
+    for (int s = 0; s < count(); ++s)
+      if (!is_lost_at(s) && !is_open(s)) last = s;
+    is_closed_ = last < 0;
+    for (int s = 0; is_closed_ && s < count(); ++s) {
       if (is_lost_at(s)) continue;
-      if (k == 0 || !is_lost_at(before(s))) groups_.emplace_back();
+      last = s;
+      if (section_at_end(x_, system_, s, index(s).field, index(s).event)) break;
+    }
+    groups_.assign(1, {});
+    for (int k = 1; k <= count(); ++k) {
+      const int s = (last + k) % count();
+      if (is_lost_at(s)) continue;
       groups_.back().push_back(s);
+      if (!is_open(s) && s != last) groups_.emplace_back();
     }
   }
 
@@ -113,8 +144,18 @@ class LostContacts {
     double time = 0.0;
     for (const int s : group) {
       time += x_.duration(s);
-      if (s != group.back()) contacts.push_back({number, index(s).event, time / total});
+      if (s != group.back() || is_closed_) contacts.push_back({number, index(s).event, time / total});
     }
+  }
+
+  /// What the problem lets follow the section; an identity jump where it does not say.
+  int jump_of_section(int field, int section) const {
+    const int last = before(groups_.front().front());
+    const auto watched = system_.successors(index(last), x_.end(last), x_.par.data());
+    if (watched)
+      for (const IndexVector& v : *watched)
+        if (v.field == field && v.event == section) return v.jump;
+    return identity(field);
   }
 
   int identity(int field) const {
@@ -133,7 +174,7 @@ class LostContacts {
             "{}: without its contact nothing cuts the orbit, and problem {} has no event function that falls through "
             "zero at the contact, as a velocity does; name a section with --signature \"{},EVENT,JUMP\"",
             source_.name, system_.name(), only.index.field));
-      only.index = {only.index.field, *section, identity(only.index.field)};
+      only.index = {only.index.field, *section, jump_of_section(only.index.field, *section)};
       return;
     }
     if (wanted->size() != 1)
@@ -152,7 +193,6 @@ class LostContacts {
       contact.tau -= at;
       if (contact.tau < 0.0) contact.tau += 1.0;
     }
-    result.contacts.push_back({0, index(groups_.front().back()).event, 1.0 - at});
   }
 
   void require_function(FunctionKind kind, int number) const {
@@ -200,7 +240,8 @@ class LostContacts {
   const HybridSystem& system_;
   Signature signature_;
   const Orbit& x_;
-  std::vector<bool> lost_;  // of each segment
+  std::vector<bool> lost_;     // of each segment
+  std::vector<bool> is_open_;  // its end is no longer one
   std::vector<Group> groups_;
   bool is_closed_ = false;
 };

@@ -1,4 +1,5 @@
-/// Where contact segments have shrunk to nothing: the segments before and after each of them are one.
+/// Where contact segments have shrunk to nothing, or impacts have velocity zero: the segments before and after each of
+/// them are one.
 #pragma once
 
 #include <optional>
@@ -17,7 +18,8 @@ struct OrbitWithoutContacts {
   std::vector<Birth::InnerContact> contacts;
 };
 
-/// The labelled orbit without its contact segments of no duration (hybrid/contact_segment.hpp). Nothing when it has
+/// The labelled orbit without its contact segments of no duration (hybrid/contact_segment.hpp), and, if the label is of
+/// an impact of velocity zero, without such impacts and the segments of no duration after them. Nothing when it has
 /// none, or when `wanted`, the signature that the user gave, has as many segments as last some time. Where nothing but
 /// the contact cut the orbit, it is cut where event function `wanted` falls through zero, without `wanted` at the
 /// contact itself, where a velocity does; throws UserError when there is no such place.

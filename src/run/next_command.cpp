@@ -73,6 +73,15 @@ bool is_free_of_other_events(const UserPointKind& contact, const RunSettings& se
   return is_identity_jump(system, end) && settings.segments[(before + 1) % m].index.field == end.field;
 }
 
+/// With a contact an impact is born; where an impact has velocity zero it vanishes. "" at other points.
+std::string resegmentation_target(const UserPointKind& kind, const RunSettings& settings, const HybridSystem& system) {
+  if (kind.kind == UserPointKind::contact) return is_free_of_other_events(kind, settings, system) ? "impacting" : "";
+  if (kind.kind != UserPointKind::impact_velocity) return "";
+  const IndexVector& end = settings.segments[static_cast<std::size_t>(kind.segment - 1)].index;
+  const bool is_impact = end.event == kind.index && !is_identity_jump(system, end);
+  return is_impact ? "signature" : "";
+}
+
 }  // namespace
 
 std::string next_command(const NextStart& start, const RunSettings& settings, const HybridSystem& system,
@@ -82,12 +91,12 @@ std::string next_command(const NextStart& start, const RunSettings& settings, co
   const std::string name =
       quoted_for_shell(fmt::format("{}_{}{}", output, type_name(start.type, start.kind), start.label));
   const std::string solutions = quoted_for_shell(output_path('q', output));
-  if (start.kind.kind == UserPointKind::contact) {
+  if (const std::string target = resegmentation_target(start.kind, settings, system); !target.empty()) {
     const SolutionFamily& family = type.family();
     const bool is_cut = family.why_not(Analysis::resegmentation, "").empty() && !family.facts().has_several_returns;
-    if (!is_cut || !is_free_of_other_events(start.kind, settings, system)) return "";
-    return fmt::format("tchat resegment {} {} --to impacting -o {} && tchat run {} -c {} -s {} -o {}_branch", solutions,
-                       start.label, name, problem_arguments(problem), name, name, name);
+    if (!is_cut) return "";
+    return fmt::format("tchat resegment {} {} --to {} -o {} && tchat run {} -c {} -s {} -o {}_branch", solutions,
+                       start.label, target, name, problem_arguments(problem), name, name, name);
   }
   const bool is_extremum = start.kind.kind == UserPointKind::extremum;
   if ((start.kind.kind != UserPointKind::none && !is_extremum) || !settings.held.empty()) return "";

@@ -17,9 +17,9 @@ struct NextStart {
 };
 
 /// A line for the shell: at a bifurcation a run on the branch that is born there, at a fold the curve of folds in two
-/// parameters, at an extremum that of extrema, at a contact resegmentation and a run with the new signature. "" where
-/// no command suits most users, and on curves in two parameters. `settings` are those of the run that wrote the label
-/// to q.`output`; `problem` is the name or path of its problem.
+/// parameters, at an extremum that of extrema, at a contact or an impact of velocity zero resegmentation and a run with
+/// the new signature. "" where no command suits most users, and on curves in two parameters. `settings` are those of
+/// the run that wrote the label to q.`output`; `problem` is the name or path of its problem.
 std::string next_command(const NextStart& start, const RunSettings& settings, const HybridSystem& system,
                          const std::string& problem, const std::string& output);
 

@@ -11,9 +11,12 @@ LoadedProblem load_for_simulation(const SimulationRequest& request, std::ostream
   SimulationConstants constants = read_simulation_constants(request);
   loaded.library = std::make_unique<ProblemLibrary>(
       loaded.plugin, [&] { return sizes_of(request, with_signature(request, constants)); });
+  loaded.library->add_section();
   const HybridSystem& system = loaded.library->system();
   resolve_names(constants.settings, system);
   loaded.constants = with_signature(request, constants);
+  // A signature of constants has no section that a simulation could end at.
+  if (loaded.library->has_added_section() && !request.signature) loaded.constants.has_signature = false;
   fit_to_problem(loaded.constants, system, request.overrides);
   return loaded;
 }

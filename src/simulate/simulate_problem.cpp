@@ -113,15 +113,24 @@ std::string next_run_text(const SimulationRequest& request, const OrbitPaths& pa
                      request.name, plugin, name, name, name);
 }
 
+/// The event functions of the problem itself: the last one is the section that tchat has added.
+std::vector<int> own_events(const HybridSystem& sectioned) {
+  std::vector<int> events;
+  for (int j = 1; j < sectioned.count(FunctionKind::event); ++j) events.push_back(j);
+  return events;
+}
+
 /// Writes the equilibrium for `tchat run`; what to say about it.
 std::string hand_over_equilibrium(const SimulationRequest& request, const SimulationConstants& constants,
-                                  const HybridSimulation& simulation, const VectorXd& x, const std::string& name) {
+                                  const HybridSimulation& simulation, bool has_added_section, const VectorXd& x,
+                                  const std::string& name) {
   const HybridSystem& system = simulation.system();
   const VectorXd& par = simulation.parameters();
   const RunSettings base = constants.is_given() ? constants.settings : default_orbit_settings(constants.settings);
   const Mode& mode = simulation.mode();
-  RunSettings settings = equilibrium_settings(system, base, mode.field(), mode.all_events(), x, par,
-                                              continuation_parameter(request, constants, system));
+  RunSettings settings =
+      equilibrium_settings(system, base, mode.field(), has_added_section ? own_events(system) : mode.all_events(), x,
+                           par, continuation_parameter(request, constants, system));
   const OrbitPaths paths = orbit_paths(name);
   settings.problem = problem_to_record(request.problem.value_or(request.name), paths.constants);
   write_whole_file(paths.data, equilibrium_data_text(system, x, par));
@@ -145,7 +154,9 @@ std::string hand_over(const SimulationRequest& request, const SimulationConstant
                                 ? ""
                                 : fmt::format("The orbit is sharp: NTST = {} instead of {}, for an error of {:.1e}.\n",
                                               samples.intervals, base.mesh_intervals, samples.error);
-  return finer + unmonitored_events(system, orbit, samples, par) + next_run_text(request, paths, name);
+  const bool is_smooth = orbit.modes.front().index_vectors.empty();  // no event says where its field holds
+  return finer + (is_smooth ? "" : unmonitored_events(system, orbit, samples, par)) +
+         next_run_text(request, paths, name);
 }
 
 /// "" when the orbit can be continued; otherwise why not.
@@ -206,6 +217,9 @@ int simulate_problem(const SimulationRequest& request, std::ostream& screen, std
   if (exponents) exponents->attach(settings);
   HybridSimulation simulation(start.rule, start.state, start.par, settings);
   say(start_text(system, start, simulation.mode()));
+  if (loaded.library->has_added_section())
+    say(fmt::format("No event ends a segment of {}, so each {} does.\n", system.name(),
+                    system.function_name(FunctionKind::event, system.count(FunctionKind::event))));
   warnings << side_without_effect(simulation, request.side);
   for (const StartNotice& notice : start_notices(simulation)) warnings << notice_text(system, notice);
   SimulationFiles files(system, output, problem_text(system, start.par), start.par,
@@ -276,13 +290,14 @@ int simulate_problem(const SimulationRequest& request, std::ostream& screen, std
   }
   if (!request.hand_over) return 0;
   if (rest) {
-    say(hand_over_equilibrium(request, constants, simulation, *rest, orbit_name));
+    say(hand_over_equilibrium(request, constants, simulation, loaded.library->has_added_section(), *rest, orbit_name));
     return 0;
   }
   if (const std::string why = obstacle(system, result, orbit); !why.empty()) {
     warnings << fmt::format("tchat: --dat: nothing written, {}\n", why);
     return 1;
   }
+  if (loaded.library->has_added_section()) orbit = without_cuts(std::move(orbit), own_events(system));
   say(hand_over(request, constants, system, orbit, start.par, orbit_name));
   return 0;
 }

@@ -151,6 +151,16 @@ std::vector<SimulatedSegment> without_sections(const HybridSystem& system, std::
   return kept;
 }
 
+FoundOrbit without_cuts(FoundOrbit orbit, std::vector<int> monitored) {
+  MapSegment whole = orbit.map.segments.front();
+  whole.end = orbit.map.segments.back().end;
+  whole.duration = orbit.map.period;
+  orbit.map.segments = {whole};
+  orbit.signature = {{orbit.signature.front().field, no_function, no_function}};
+  orbit.modes = {Mode{{}, std::move(monitored)}};
+  return orbit;
+}
+
 FoundOrbit refine(const HybridSystem& system, const SimulationResult& result, const VectorXd& par,
                   const IndexVector& first, bool is_guess) {
   const std::vector<SimulatedSegment> turn = in_standard_order(result.turn, first);

@@ -46,6 +46,10 @@ struct FoundOrbit {
 /// segment after it. As it was when nothing else ends a segment. Samples and marks are not kept.
 std::vector<SimulatedSegment> without_sections(const HybridSystem& system, std::vector<SimulatedSegment> turn);
 
+/// The orbit of a smooth system as one segment without a section, {(i,0,0)}, on which `monitored` event functions
+/// count.
+FoundOrbit without_cuts(FoundOrbit orbit, std::vector<int> monitored);
+
 /// A turn rotated so that its index vectors read the same wherever the simulation stopped: with `first`, if the orbit
 /// has it, in front, and the smallest sequence of those.
 std::vector<SimulatedSegment> in_standard_order(std::vector<SimulatedSegment> turn, const IndexVector& first);

@@ -68,6 +68,9 @@ class SampleRun {
     side_ = start.side;
   }
 
+  /// At the end it stays where it is, at an equilibrium that does not attract.
+  bool has_stayed() const { return has_stayed_; }
+
   AttractorSample run() {
     SimulationRequest request = setup_.request;
     if (point_.at && !point_.at->watched.empty()) request.modes = modes_text(point_.at->watched);
@@ -228,7 +231,10 @@ class SampleRun {
 
   /// Dots are those of the orbit itself.
   AttractorKind settled_kind() {
-    if (!search_.orbit()) return AttractorKind::rest;
+    if (!search_.orbit()) {
+      rest_ = search_.equilibrium();
+      return AttractorKind::rest;
+    }
     const std::vector<SimulatedSegment>& turn = search_.orbit()->turn;
     kept_.assign(turn.begin(), turn.end());
     return AttractorKind::periodic;
@@ -255,8 +261,9 @@ class SampleRun {
     } else if (is_far) {
       sample_.kind = AttractorKind::escape;
     } else if (segment.ended_by == SegmentEnd::no_event) {
-      const bool rests = reached_equilibrium(system_, segment, par_, search_.ignorable()).has_value();
-      sample_.kind = rests ? AttractorKind::rest : AttractorKind::escape;
+      rest_ = reached_equilibrium(system_, segment, par_, search_.ignorable());
+      sample_.kind = rest_ ? AttractorKind::rest : AttractorKind::escape;
+      has_stayed_ = !rest_;
     }
   }
 
@@ -376,6 +383,7 @@ class SampleRun {
     if (setup_.recording.has_incoming_states()) take_incoming(contacts, dots);
     if (setup_.recording.states == Recording::States::contact) dots = std::move(contacts);
     if (setup_.recording.states == Recording::States::none) return;
+    if (rest_) dots = {{0.0, no_function, *rest_}};
     sample_.sections = columns_of(dots, n);
     if (setup_.recording.states == Recording::States::all_events)
       for (const Dot& dot : dots) sample_.section_events.push_back(dot.event);
@@ -560,6 +568,8 @@ class SampleRun {
   DecayDetector decay_;
   Capture capture_;
   long events_ = 0;
+  std::optional<VectorXd> rest_;  // the equilibrium that the motion comes to
+  bool has_stayed_ = false;
   bool is_open_ = false;  // it has been simulated as long as wanted, and has not repeated itself
   std::deque<SimulatedSegment> kept_;
   AttractorSample sample_;
@@ -578,7 +588,13 @@ SampleStart sample_start(const SamplerSetup& setup, const SweepPoint& point) {
 }
 
 AttractorSample SimulationSampler::operator()(const SweepPoint& point, const std::function<bool()>& interrupted) const {
-  return SampleRun(setup_, system_, point, interrupted).run();
+  SampleRun run(setup_, system_, point, interrupted);
+  AttractorSample sample = run.run();
+  if (!run.has_stayed() || !point.at) return sample;
+  // What the neighbouring value has handed over has lost its stability: the motion begins at its start instead.
+  SweepPoint own = point;
+  own.at.reset();
+  return SampleRun(setup_, system_, own, interrupted).run();
 }
 
 }  // namespace tchat

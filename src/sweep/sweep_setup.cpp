@@ -103,6 +103,7 @@ class WorkerSystems {
     systems_.push_back(&loaded.library->system());
     for (int worker = 1; worker < count; ++worker) {
       copies_.push_back(ProblemLibrary::copy_of(loaded.plugin, [&] { return sizes_of(request, loaded.constants); }));
+      copies_.back()->add_section();
       systems_.push_back(&copies_.back()->system());
     }
   }

@@ -50,10 +50,10 @@ class Diagram:
     """The branches that `tchat explore` has found: diagram.branches, or diagram["a1"] by name.
 
     parameter, quantity   along the axes of its picture
-    coverage              the share of the sweep's periodic attractors that lie on a branch; None without any
+    coverage              the share of the sweep's periodic attractors and equilibria that lie on a branch; None without any
     unexplained           a dictionary for each attractor on no branch: attractor, kind, count, first, last, command
     joins                 runs that led to branches found before, in words
-    complete              False if a budget or an interruption has left something
+    complete              False if an interruption has left something
     sweep                 its Sweep
     text                  the tree in words
     path                  the folder of the branches; path + ".png", ".svg", ".html" are its picture and page
@@ -69,7 +69,8 @@ class Diagram:
             self.branches = [ExploredBranch(self, one) for one in found["branches"]]
             self.parameter, self.quantity, self.complete = found["parameter"], found["quantity"], found["complete"]
             self.unexplained, self.joins = found["unexplained"], found["joins"]
-            self.coverage = found["on_branches"] / found["periodic"] if found["periodic"] else None
+            known = found["periodic"] + found["at_rest"]
+            self.coverage = found["on_branches"] / known if known else None
         except OSError as error:
             raise Error("%s: cannot be read (what tchat explore -o %s writes): %s" %
                         (error.filename, self.path, error.strerror)) from None

@@ -1,0 +1,58 @@
+#include "explore/coverage.hpp"
+
+#include <fmt/format.h>
+
+#include <map>
+
+namespace tchat {
+
+namespace {
+
+void count_kinds(const Sweep& sweep, ExploredDiagram& diagram) {
+  for (const auto& [kind, count] : sweep.samples.kinds())
+    if (kind == AttractorKind::periodic)
+      diagram.periodic += count;
+    else if (kind == AttractorKind::rest)
+      diagram.at_rest += count;
+    else
+      diagram.others[kind == AttractorKind::none ? "without attractor" : to_string(kind)] += count;
+}
+
+}  // namespace
+
+bool is_followed(const SweepAttractor& attractor) {
+  return attractor.kind == AttractorKind::periodic || attractor.kind == AttractorKind::rest;
+}
+
+std::string branch_of(const OrbitCatalogue& catalogue, const Sweep& sweep, const SweptAttractor& sample) {
+  if (sample.attractor->kind == AttractorKind::rest) {
+    const auto state = sweep.samples.numbers_of(sample);
+    return state ? catalogue.branch_with_state(sample.value, *state) : "";
+  }
+  const SignatureWord word = sweep.is_cut ? SignatureWord{{1, 0, 0}} : signature_word(*sample.attractor);
+  return catalogue.branch_with_period(word, sample.value, sample.period);
+}
+
+void measure_coverage(const Sweep& sweep, const OrbitCatalogue& catalogue, const ExplorationCommands& commands,
+                      ExploredDiagram& diagram) {
+  count_kinds(sweep, diagram);
+  std::map<int, UnexplainedAttractor> missing;
+  sweep.samples.for_each([&](const SweptAttractor& sample) {
+    const SweepAttractor& known = *sample.attractor;
+    if (is_followed(known) && !branch_of(catalogue, sweep, sample).empty()) {
+      ++diagram.on_branches;
+      return;
+    }
+    UnexplainedAttractor& one = missing[known.number];
+    if (one.count++ == 0) {
+      const std::string state = sweep.samples.state_of(sample);
+      one = {
+          fmt::format("{}{}", sweep.letter, known.number),        to_string(known.kind), sample.value, sample.value, 1,
+          state.empty() ? "" : commands.show(sample.value, state)};
+    }
+    one.last = sample.value;
+  });
+  for (auto& [number, one] : missing) diagram.unexplained.push_back(std::move(one));
+}
+
+}  // namespace tchat

@@ -1,0 +1,29 @@
+/// How many attractors of a sweep lie on branches.
+#pragma once
+
+#include <string>
+
+#include "explore/attractor_samples.hpp"
+#include "explore/exploration_commands.hpp"
+#include "explore/explored_diagram.hpp"
+#include "explore/orbit_catalogue.hpp"
+
+namespace tchat {
+
+struct Sweep {
+  std::string letter;  ///< before the numbers of its attractors
+  AttractorSamples samples;
+  bool is_cut = false;  ///< by tchat (plugin/sectioned_problem.hpp): its orbits are followed without that section
+};
+
+/// Does a branch begin at such an attractor? At periodic ones and those at rest.
+bool is_followed(const SweepAttractor& attractor);
+
+/// The branch that the attractor of a value lies on; "" where there is none.
+std::string branch_of(const OrbitCatalogue& catalogue, const Sweep& sweep, const SweptAttractor& sample);
+
+/// Adds the sweep's counts to the diagram, and its attractors on no branch.
+void measure_coverage(const Sweep& sweep, const OrbitCatalogue& catalogue, const ExplorationCommands& commands,
+                      ExploredDiagram& diagram);
+
+}  // namespace tchat

@@ -1,0 +1,123 @@
+// tchat explore of textbook systems, one command each: every attractor on a branch, and special points that are known
+// in closed form or from the characteristic polynomial.
+#include <array>
+#include <boost/math/tools/toms748_solve.hpp>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstdio>
+
+#include "end_to_end/workspace.hpp"
+
+using namespace test_support;
+
+namespace {
+
+/// The parameter of the label of this type that is nearest to `value`.
+double nearest(const std::string& tree, const std::string& type, double value) {
+  double best = INFINITY;
+  for (std::size_t at = tree.find(type + " "); at != std::string::npos; at = tree.find(type + " ", at + 1)) {
+    double found = INFINITY;
+    const bool is_label = std::sscanf(tree.c_str() + at, "%*s %*d at %lf", &found) == 1;
+    if (is_label && std::abs(found - value) < std::abs(best - value)) best = found;
+  }
+  return best;
+}
+
+void check_label(const std::string& tree, const std::string& type, double value) {
+  INFO(type << " in\n" << tree);
+  CHECK(nearest(tree, type, value) == Approx(value).epsilon(1e-8));
+}
+
+/// The tree of an exploration, in which every attractor lies on a branch.
+std::string explored(const Workspace& workspace, const std::string& source, const std::string& arguments) {
+  if (!source.empty()) REQUIRE(workspace.shell("cp " + source + " .").status == 0);
+  const Outcome outcome = workspace.tchat("explore " + arguments + " -o diagram -j 2 -q");
+  INFO(outcome.text());
+  REQUIRE(outcome.status == 0);
+  const std::string tree = workspace.read("diagram.txt");
+  INFO(tree);
+  CHECK(tree.find("(100 %)") != std::string::npos);
+  return tree;
+}
+
+/// The drill string at an equilibrium, where all of it turns at the speed w.
+struct DrillString {
+  double Ju = 0.47, bu = 2.42, k = 0.075, Jl = 0.035, Ts = 0.28, Tc = 0.047, ws = 1.43, bl = 0.0105;
+  double stribeck(double w) const { return (Ts - Tc) * std::exp(-w * w / (ws * ws)); }
+  double friction(double w) const { return Tc + stribeck(w) + bl * w; }
+  double slope(double w) const { return -2.0 * w / (ws * ws) * stribeck(w) + bl; }
+  double torque(double w) const { return bu * w + friction(w); }
+  /// a2 a1 - a0 of the characteristic polynomial l^3 + a2 l^2 + a1 l + a0: zero at a Hopf bifurcation.
+  double hurwitz(double w) const {
+    const double u = bu / Ju, l = slope(w) / Jl;
+    return (u + l) * (u * l + k / Ju + k / Jl) - (k / Ju * l + k / Jl * u);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("predators and prey, a problem without jumps: equilibria, branch point, Hopf bifurcation, cycles") {
+  const Workspace workspace;
+  const std::string tree = explored(workspace, PREDATOR_SOURCE, "predator --over K=0.5:6:56 --state 0.5,0.3");
+  // With d = 1/2: prey x = 1 with predators from K = 1 on, cycles from K = 3 on, the harvest begins at K = 5.
+  check_label(tree, "BP", 1.0);
+  check_label(tree, "HB", 3.0);
+  check_label(tree, "BE", 5.0);
+  check_label(tree, "GR", 3.050997322);  // problems/predator/Makefile
+}
+
+TEST_CASE("a smooth problem: the cycle of the Brusselator is found from its equilibrium and by simulation") {
+  const Workspace workspace;
+  workspace.write("brusselator.tch", "par A=1, B=1.5\ninit x=1.2, y=1\nx' = A - (B + 1)*x + x^2*y\ny' = B*x - x^2*y\n");
+  const std::string tree = explored(workspace, "", "brusselator --over B=1.5:2.5:21");
+  check_label(tree, "HB", 2.0);  // 1 + A^2
+}
+
+TEST_CASE("the neuron of Izhikevich: rest, fold and Hopf bifurcation, spikes") {
+  const Workspace workspace;
+  const std::string tree = explored(workspace, std::string(SYSTEMS) + "/izhikevich.tch", "izhikevich --over I=0:20:81");
+  // 0.04 v^2 + (5 - b) v + 140 + I = 0 at rest; the trace 0.08 v + 5 - a is zero at v = -62.25.
+  check_label(tree, "HB", 3.7975);
+  check_label(tree, "LP", 4.0);
+}
+
+TEST_CASE("an oscillator between two walls grazes both where its amplitude reaches them") {
+  const Workspace workspace;
+  const std::string tree =
+      explored(workspace, std::string(SYSTEMS) + "/two_walls.tch", "two_walls --over omega=1.3:1.6:31 --segments 8");
+  // (1 - omega^2)^2 + (2 zeta omega)^2 = F^2 with F = 1.
+  check_label(tree, "GR", std::sqrt(2.0 - 4.0 * 0.05 * 0.05));
+}
+
+TEST_CASE("a drill string: stick-slip beside steady rotation, which loses its stability in a Hopf bifurcation") {
+  const Workspace workspace;
+  const std::string tree =
+      explored(workspace, std::string(SYSTEMS) + "/drill_string.tch", "drill_string --over torque=4:9:51");
+  const DrillString drill;
+  std::uintmax_t iterations = 100;
+  const auto root = boost::math::tools::toms748_solve([&](double w) { return drill.hurwitz(w); }, 2.0, 4.0,
+                                                      boost::math::tools::eps_tolerance<double>(50), iterations);
+  check_label(tree, "HB", drill.torque(0.5 * (root.first + root.second)));
+}
+
+TEST_CASE("an impact that loses its velocity is followed to the orbit without it") {
+  const Workspace workspace;
+  const Outcome outcome = workspace.tchat("explore linosc --over alpha=2.5:3.5:51 PAR(omega)=2.0072 -o osc -q");
+  INFO(outcome.text());
+  REQUIRE(outcome.status == 0);
+  const std::string tree = workspace.read("osc.txt");
+  INFO(tree);
+  CHECK(tree.find("GR 4 at 3.035495345 -> a1") != std::string::npos);
+  // Of the doubled orbit one of two impacts vanishes: one impact in two periods, born at a fold.
+  CHECK(tree.find("-> a2_PD3_GR6_branch\n") != std::string::npos);
+}
+
+TEST_CASE("budgets leave switches, which are counted") {
+  const Workspace workspace;
+  REQUIRE(workspace.tchat("explore linosc --over alpha=2.5:3.5:51 PAR(omega)=2.0072 -o osc -q --segments 1").status ==
+          0);
+  const std::string tree = workspace.read("osc.txt");
+  INFO(tree);
+  CHECK(tree.find("PD 3 at 3.036193566: left by --segments 1") != std::string::npos);
+  CHECK(tree.find("1 by --segments 1") != std::string::npos);
+}
