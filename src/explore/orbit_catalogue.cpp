@@ -5,6 +5,8 @@
 #include <limits>
 #include <optional>
 
+#include "explore/point_interpolation.hpp"
+
 namespace tchat {
 
 namespace {
@@ -24,70 +26,16 @@ std::optional<std::size_t> column_of(const PointSection& section, const std::str
   return static_cast<std::size_t>(at - section.columns.begin());
 }
 
-/// What the polynomial through the points first..last has at `parameter`, between points i and i + 1. The points are
-/// parametrised by their distance, in which a branch is smooth at folds too.
-VectorXd interpolated(const CataloguedSection& section, Index first, Index last, Index i, double parameter) {
-  const auto p = [&](Index k) { return section.parameter[static_cast<std::size_t>(k)]; };
-  const Index rows = section.numbers.rows();
-  VectorXd at(last - first + 1);
-  at(0) = 0.0;
-  for (Index k = first; k < last; ++k) {
-    const double size = section.numbers.cwiseAbs().maxCoeff() + std::abs(p(k));
-    const double step = std::hypot((section.numbers.col(k + 1) - section.numbers.col(k)).norm(), p(k + 1) - p(k));
-    at(k + 1 - first) = at(k - first) + std::max(step, 1e-14 * size);
-  }
-  const auto value = [&](double s) {
-    VectorXd result = VectorXd::Zero(rows + 1);
-    for (Index k = first; k <= last; ++k) {
-      double weight = 1.0;
-      for (Index l = first; l <= last; ++l)
-        if (l != k) weight *= (s - at(l - first)) / (at(k - first) - at(l - first));
-      result(0) += weight * p(k);
-      result.tail(rows) += weight * section.numbers.col(k);
-    }
-    return result;
-  };
-  double low = at(i - first), high = at(i + 1 - first);
-  const bool rises = p(i + 1) >= p(i);
-  for (int halving = 0; halving < 60; ++halving) {
-    const double middle = 0.5 * (low + high);
-    ((value(middle)(0) < parameter) == rises ? low : high) = middle;
-  }
-  return value(0.5 * (low + high)).tail(rows);
-}
-
 /// The orbits of a section at a parameter value, with the uncertainty of each number.
-struct OrbitNumbers {
-  VectorXd numbers, uncertainty;
-};
-std::vector<OrbitNumbers> orbits_at(const CataloguedSection& section, double parameter) {
-  std::vector<OrbitNumbers> result;
-  const auto count = static_cast<Index>(section.parameter.size());
-  for (Index i = 0; i + 1 < count; ++i) {
+std::vector<InterpolatedPoint> orbits_at(const CataloguedSection& section, double parameter) {
+  std::vector<InterpolatedPoint> result;
+  for (Index i = 0; i + 1 < std::ssize(section.parameter); ++i) {
     const double a = section.parameter[static_cast<std::size_t>(i)];
     const double b = section.parameter[static_cast<std::size_t>(i + 1)];
     if (!(std::min(a, b) <= parameter && parameter <= std::max(a, b)) || a == b) continue;
-    const Index first = std::max<Index>(0, i - 1);
-    const Index last = std::min<Index>(count - 1, i + 2);
-    const VectorXd best = interpolated(section, first, last, i, parameter);
-    const bool drops_first = last - i > i - first || last == count - 1;
-    const Index nearer = last - first < 2 ? first : drops_first ? first + (first < i ? 1 : 0) : first;
-    const Index farther = last - first < 2 ? last : nearer > first ? last : std::max(i + 1, last - 1);
-    const VectorXd other = interpolated(section, nearer, farther, i, parameter);
-    result.push_back({best, (best - other).cwiseAbs()});
+    result.push_back(interpolate(section.parameter, section.numbers, i, parameter));
   }
   return result;
-}
-
-/// Of the largest number: runs leave errors far below this, and different orbits differ by far more.
-constexpr double least_uncertainty = 1e-5;
-
-bool agree(const OrbitNumbers& known, const VectorXd& numbers) {
-  const double size = numbers.cwiseAbs().maxCoeff();
-  for (Index k = 0; k < numbers.size(); ++k)
-    if (!(std::abs(known.numbers(k) - numbers(k)) <= 2.0 * known.uncertainty(k) + least_uncertainty * size))
-      return false;
-  return true;
 }
 
 }  // namespace
@@ -147,8 +95,8 @@ std::string OrbitCatalogue::branch_of(const CataloguedSection& section) const {
 std::string OrbitCatalogue::branch_at(const PrimitiveWord& signature, double parameter, const VectorXd& numbers) const {
   for (const CataloguedSection& known : sections_) {
     if (known.signature.word != signature.word) continue;
-    for (const OrbitNumbers& orbit : orbits_at(known, parameter))
-      if (agree(orbit, numbers)) return known.branch;
+    for (const InterpolatedPoint& orbit : orbits_at(known, parameter))
+      if (agrees(orbit, numbers)) return known.branch;
   }
   return "";
 }
@@ -157,7 +105,7 @@ std::string OrbitCatalogue::branch_with_period(const SignatureWord& signature, d
   const PrimitiveWord wanted = primitive_word(signature);
   for (const CataloguedSection& known : sections_) {
     if (known.signature.word != wanted.word) continue;
-    for (const OrbitNumbers& orbit : orbits_at(known, parameter)) {
+    for (const InterpolatedPoint& orbit : orbits_at(known, parameter)) {
       const double time = orbit.numbers(0) * known.signature.repetitions;
       const double tolerance = 2.0 * orbit.uncertainty(0) * known.signature.repetitions + 1e-4 * std::abs(period);
       if (std::abs(time - period) <= tolerance) return known.branch;
