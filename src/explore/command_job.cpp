@@ -61,6 +61,11 @@ std::string search_path() {
 
 }  // namespace
 
+std::string last_message(const JobResult& result) {
+  const std::string_view text(result.log.data(), result.log.find_last_not_of(" \n") + 1);
+  return std::string(text.substr(text.find_last_of('\n') + 1));
+}
+
 struct JobRunner::Process {
   std::size_t job = 0;
   std::size_t line = 0;

@@ -22,6 +22,9 @@ struct JobResult {
   std::string log;  ///< what the commands wrote
 };
 
+/// The last line of what the commands wrote.
+std::string last_message(const JobResult& result);
+
 class JobRunner {
  public:
   /// At most `workers` jobs at a time, their stamps and logs in `folder`. No job is begun once `is_over` says so.

@@ -13,11 +13,13 @@ struct ExploreRequest {
   std::optional<std::string> problem;    ///< -p
   std::optional<std::string> output;     ///< -o: the folder O of all files
   std::string over;                      ///< "P=a:b" or "P=a:b:COUNT"
+  std::optional<std::string> second;     ///< --and "Q=c:d": the curves of special points in two parameters
   std::vector<std::string> states;       ///< --state of the sweep
   std::vector<std::string> overrides;    ///< KEY=VALUE: parameters for all commands, constants for runs
   int workers = 1;
   int doublings = 4;     ///< of the period, from an attractor on
-  int branches = 50;     ///< at most so many are kept
+  int branches = 50;     ///< at most so many are kept, and of curves with their slices as many
+  int returns = 1;       ///< at grazing, orbits with one impact in as many returns are followed, too
   double seconds = 0.0;  ///< wall time after which no command is begun; 0: any
   bool fresh = false;    ///< results of an earlier run are thrown away
   bool quiet = false;

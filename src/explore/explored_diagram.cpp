@@ -5,42 +5,15 @@
 #include <algorithm>
 #include <functional>
 
-#include "tables/table_format.hpp"
+#include "explore/json_list.hpp"
 
 namespace tchat {
 
 namespace {
 
-std::string label_text(const ExploredLabel& label) {
-  std::string text = fmt::format("{} {} at {:.10g}", label.type, label.label, label.parameter);
-  if (!label.leads_to.empty()) text += " -> " + label.leads_to;
-  if (!label.remark.empty()) text += ": " + label.remark;
-  return text;
-}
-
 std::string json(const std::string& text) { return json_value(text); }
 std::string json(double value) { return json_value(value); }
 std::string json(int value) { return json_value(value); }
-
-template <class List, class Text>
-std::string json_list(const List& list, const Text& text) {
-  std::string result;
-  for (const auto& one : list) result += (result.empty() ? "" : ", ") + text(one);
-  return "[" + result + "]";
-}
-
-std::string branch_json(const ExploredBranch& branch) {
-  const std::string labels = json_list(branch.labels, [](const ExploredLabel& label) {
-    return fmt::format(R"({{"label": {}, "type": {}, "parameter": {}, "leads_to": {}, "remark": {}}})",
-                       json(label.label), json(label.type), json(label.parameter), json(label.leads_to),
-                       json(label.remark));
-  });
-  const auto texts = [](const std::string& text) { return json(text); };
-  return fmt::format(
-      R"({{"name": {}, "parent": {}, "origin": {}, "from": {}, "to": {}, "signatures": {}, "labels": {}, "commands": {}}})",
-      json(branch.name), json(branch.parent), json(branch.origin), json(branch.from), json(branch.to),
-      json_list(branch.signatures, texts), labels, json_list(branch.job.lines, texts));
-}
 
 std::string share(const ExploredDiagram& diagram) {
   if (diagram.periodic == 0) return "no periodic attractor";
@@ -71,6 +44,26 @@ std::string rule(const CommandJob& job) {
 
 }  // namespace
 
+std::string label_text(const ExploredLabel& label) {
+  std::string text = fmt::format("{} {} at {:.10g}", label.type, label.label, label.parameter);
+  if (!label.leads_to.empty()) text += " -> " + label.leads_to;
+  if (!label.remark.empty()) text += ": " + label.remark;
+  if (!label.curve.empty()) text += ", curve " + label.curve;
+  return text;
+}
+
+std::string branch_json(const ExploredBranch& branch) {
+  const std::string labels = json_list(branch.labels, [](const ExploredLabel& label) {
+    return fmt::format(R"({{"label": {}, "type": {}, "parameter": {}, "leads_to": {}, "remark": {}, "curve": {}}})",
+                       json(label.label), json(label.type), json(label.parameter), json(label.leads_to),
+                       json(label.remark), json(label.curve));
+  });
+  return fmt::format(
+      R"({{"name": {}, "parent": {}, "origin": {}, "from": {}, "to": {}, "signatures": {}, "labels": {}, "commands": {}}})",
+      json(branch.name), json(branch.parent), json(branch.origin), json(branch.from), json(branch.to),
+      json_list(branch.signatures), labels, json_list(branch.job.lines));
+}
+
 std::string tree_text(const ExploredDiagram& diagram) {
   std::string text = fmt::format("Branches over {}:\n", diagram.parameter);
   const std::function<void(const std::string&, int)> add = [&](const std::string& parent, int depth) {
@@ -94,7 +87,7 @@ std::string tree_text(const ExploredDiagram& diagram) {
   return text;
 }
 
-std::string tree_json(const ExploredDiagram& diagram) {
+std::string tree_json(const ExploredDiagram& diagram, const std::string& further) {
   const std::string unexplained = json_list(diagram.unexplained, [](const UnexplainedAttractor& one) {
     return fmt::format(R"({{"attractor": {}, "kind": {}, "count": {}, "first": {}, "last": {}, "command": {}}})",
                        json(one.attractor), json(one.kind), json(one.count), json(one.first), json(one.last),
@@ -102,21 +95,23 @@ std::string tree_json(const ExploredDiagram& diagram) {
   });
   return fmt::format(
       "{{\"parameter\": {}, \"complete\": {}, \"periodic\": {}, \"on_branches\": {}, \"not_periodic\": {},\n"
-      "\"unexplained\": {},\n\"joins\": {},\n\"branches\": {}}}\n",
+      "\"unexplained\": {},\n\"joins\": {},\n\"branches\": {}{}}}\n",
       json(diagram.parameter), diagram.complete, json(diagram.periodic), json(diagram.on_branches), json(diagram.other),
-      unexplained, json_list(diagram.joins, [](const std::string& text) { return json(text); }),
-      json_list(diagram.branches, branch_json));
+      unexplained, json_list(diagram.joins), json_list(diagram.branches, branch_json), further);
 }
 
-std::string makefile_text(const ExploredDiagram& diagram, const std::string& folder) {
+std::string makefile_text(const ExploredDiagram& diagram, const std::string& folder,
+                          const std::vector<const CommandJob*>& further) {
   std::string all;
   for (const ExploredBranch& branch : diagram.branches) all += " " + branch.job.outputs.front();
+  for (const CommandJob* job : further) all += " " + job->outputs.front();
   std::string text = fmt::format(
       "# Makes the branches of {} with make -f, also with -j.\nTCHAT = tchat\nFOLDER = {}\n\nall:{}\n\n{}:\n\tmkdir -p "
       "$@\n\n",
       folder, folder, all, "$(FOLDER)");
   for (const CommandJob& job : diagram.first_jobs) text += rule(job);
   for (const ExploredBranch& branch : diagram.branches) text += rule(branch.job);
+  for (const CommandJob* job : further) text += rule(*job);
   return text;
 }
 
