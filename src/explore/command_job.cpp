@@ -62,8 +62,10 @@ std::string search_path() {
 }  // namespace
 
 std::string last_message(const JobResult& result) {
-  const std::string_view text(result.log.data(), result.log.find_last_not_of(" \n") + 1);
-  return std::string(text.substr(text.find_last_of('\n') + 1));
+  const std::string log = "\n" + result.log.substr(0, result.log.find_last_not_of(" \n") + 1);
+  const std::size_t message = log.rfind("\ntchat: ");
+  const std::size_t from = (message == std::string::npos ? log.rfind('\n') : message) + 1;
+  return log.substr(from, log.find('\n', from) - from);
 }
 
 struct JobRunner::Process {

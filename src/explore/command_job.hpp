@@ -22,7 +22,7 @@ struct JobResult {
   std::string log;  ///< what the commands wrote
 };
 
-/// The last line of what the commands wrote.
+/// The last message "tchat: ..." of what the commands wrote, or else its last line.
 std::string last_message(const JobResult& result);
 
 class JobRunner {

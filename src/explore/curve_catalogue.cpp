@@ -111,9 +111,10 @@ std::vector<CurveSection> curve_sections(const std::string& curve, const std::st
     const Index second = column_named(section, columns.second);
     const Index period = column_named(section, "PERIOD");
     const std::vector<Index> monitors = number_columns(section, columns);
-    CurveSection one{curve, kind, primitive_word(section.signature), {}, {}};
+    const int repetitions = primitive_word(section.signature).repetitions;
+    CurveSection one{curve, kind, {}, {}};
     for (const PointRow& row : section.rows) {
-      one.points.push_back(curve_point(row, second, period, monitors, columns, one.signature.repetitions));
+      one.points.push_back(curve_point(row, second, period, monitors, columns, repetitions));
       one.labels.push_back(row.label);
     }
     result.push_back(std::move(one));
@@ -127,17 +128,19 @@ std::string CurveCatalogue::curve_of(const CurveSection& section) const {
   for (const double share : {0.5, 0.75, 0.95}) {
     const auto last = static_cast<double>(section.points.size() - 1);
     const CurvePoint& point = section.points[static_cast<std::size_t>(std::lround(share * last))];
-    found = curve_at(section.kind, section.signature, point);
+    found = curve_at(section.kind, point);
     if (found.empty()) return "";
   }
   return found;
 }
 
-std::string CurveCatalogue::curve_at(const std::string& kind, const PrimitiveWord& signature,
-                                     const CurvePoint& point) const {
+std::string CurveCatalogue::curve_at(const std::string& kind, const CurvePoint& point) const {
   for (const CurveSection& known : sections_) {
-    if (known.kind != kind || known.signature.word != signature.word) continue;
-    const auto same = [&](const Passage& passage) { return has_orbit(passage, point.numbers); };
+    const bool is_doubled = kind == "BP" && known.kind == "PD";
+    if (known.kind != kind && !is_doubled) continue;
+    const auto same = [&](const Passage& passage) {
+      return is_doubled ? has_orbit_repeated(passage, point.numbers) : has_orbit(passage, point.numbers);
+    };
     if (any_passage(known, point.place, same)) return known.curve;
   }
   return "";

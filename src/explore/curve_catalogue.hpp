@@ -1,8 +1,9 @@
 /// The curves in two parameters that are there, and which of them pass through a point.
 ///
 /// A point is a place (P, Q), each in units of its range, with the numbers of its orbit: period, mean and largest value
-/// of each state. Two curves of one kind and signature whose points have these in common, up to the error of
-/// interpolation, are one curve. The numbers do not depend on where an orbit is cut.
+/// of each state. Two curves of one kind whose points have these in common, up to the error of interpolation, are one
+/// curve. The numbers do not depend on where an orbit is cut, nor on how often. A branch point of an orbit of doubled
+/// period is on the curve of period doublings.
 #pragma once
 
 #include <Eigen/Core>
@@ -23,7 +24,6 @@ struct CurvePoint {
 struct CurveSection {
   std::string curve;
   std::string kind;  ///< LP, PD, ..., GR
-  PrimitiveWord signature;
   std::vector<CurvePoint> points;
   std::vector<int> labels;  ///< of each point; 0 without
 };
@@ -46,10 +46,10 @@ class CurveCatalogue {
 
   /// The curve that all of `section` is on but its beginning; "" where there is none.
   std::string curve_of(const CurveSection& section) const;
-  /// The curve of this kind and signature through a point; "" where there is none.
-  std::string curve_at(const std::string& kind, const PrimitiveWord& signature, const CurvePoint& point) const;
-  /// Names of all curves with the orbit of a point there, or with one that this orbit repeats, or that repeats it;
-  /// whatever their kinds and signatures.
+  /// The curve of this kind (of PD, too, for a BP) through a point; "" where there is none.
+  std::string curve_at(const std::string& kind, const CurvePoint& point) const;
+  /// Names of all curves with the orbit of a point there, or with one that this orbit repeats, or that repeats it,
+  /// whatever their kinds.
   std::vector<std::string> curves_through(const CurvePoint& point) const;
 
  private:

@@ -155,6 +155,7 @@ std::vector<CurveRounds::Labelled> CurveRounds::labels_of(const RunFiles& files)
     one.point.place(1) = one.second / columns().widths(1);
     const auto known = files.admissible.labels.find(solution.label);
     one.is_admissible = known == files.admissible.labels.end() || known->second;
+    one.is_section_tangent = tangent_section(solution.kind, files.settings, context_.system);
     result.push_back(std::move(one));
   }
   return result;
@@ -181,7 +182,6 @@ void CurveRounds::add_curve(const RunFiles& files, const Labelled& label, bool h
   curve.job = commands_.curve(curve.name, command, files.name);
   candidate.label = label.label;
   candidate.start = label.point;
-  if (!files.sections.empty()) candidate.signature = files.sections.front().signature;
   next.push_back(std::move(candidate));
 }
 
@@ -200,11 +200,10 @@ void CurveRounds::add_slices(const ExploredCurve& curve, const Labelled& label, 
     }
 }
 
-/// Of grazing curves by the orbit alone: the curve has a signature of its own.
+/// Of a grazing curve the orbit at the label may be one that repeats.
 std::string CurveRounds::known_curve(const Candidate& candidate) const {
   if (candidate.is_slice) return "";
-  if (candidate.curve.kind != "GR")
-    return catalogue_.curve_at(candidate.curve.kind, candidate.signature, candidate.start);
+  if (candidate.curve.kind != "GR") return catalogue_.curve_at(candidate.curve.kind, candidate.start);
   for (const std::string& name : catalogue_.curves_through(candidate.start))
     if (const ExploredCurve* const curve = find_named(curves_.curves, name); curve != nullptr && curve->kind == "GR")
       return name;
@@ -298,7 +297,12 @@ void CurveRounds::describe(ExploredCurve& curve, const std::string& log) const {
   curve.points = files.admissible.points;
   curve.inadmissible = files.admissible.inadmissible;
   for (const Labelled& label : labels_of(files))
-    curve.labels.push_back({label.label, label.type, label.first, label.second, zeros_text(label.xi_zeros), {}, {}});
+    curve.labels.push_back({label.label,
+                            label.type,
+                            label.first,
+                            label.second,
+                            label.is_section_tangent ? "tangent section, no grazing" : zeros_text(label.xi_zeros),
+                            {}});
   const std::vector<std::string> reasons = reasons_in(log);
   for (std::size_t k = 0; k < points.sections.size(); ++k) {
     add_once(curve.signatures, signature_text(points.sections[k]));
@@ -314,7 +318,10 @@ CurveEnd CurveRounds::end_of(const ExploredCurve& curve, const PointSection& sec
   const Eigen::Vector2d place = whole.points.back().place.cwiseProduct(widths);
   CurveEnd end{place(0), place(1), stopped};
   if (const CurveLabel* const label = find_label(curve.labels, whole.labels.back()))
-    end.reason = fmt::format("{} {}", label->type, label->label) + (label->type == "MX" ? ", " + stopped : "");
+    end.reason = fmt::format("{} {}", label->type, label->label) + (label->type == "MX" ? ", " + stopped
+                                                                    : label->type == "GR" && !label->detail.empty()
+                                                                        ? ", " + label->detail
+                                                                        : "");
   const SweptRange* const ranges[] = {&context_.commands.range(), &commands_.second()};
   for (int k = 0; k < 2; ++k)
     for (const double edge : {ranges[k]->from, ranges[k]->to})

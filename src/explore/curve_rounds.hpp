@@ -45,14 +45,14 @@ class CurveRounds {
     double first = 0.0, second = 0.0;
     CurvePoint point;
     bool is_admissible = true;
+    bool is_section_tangent = false;
   };
   /// A job with what it is to find: a curve, or a slice.
   struct Candidate {
     bool is_slice = false;
     ExploredCurve curve;
     ExploredBranch slice;
-    CurvePoint start;  ///< of a curve
-    PrimitiveWord signature;
+    CurvePoint start;   ///< of a curve
     std::string owner;  ///< the branch, slice or curve that it is from
     int label = 0;      ///< of the owner
     const CommandJob& job() const { return is_slice ? slice.job : curve.job; }

@@ -14,7 +14,6 @@ std::string label_text(const CurveLabel& label) {
   std::string text = fmt::format("{} {} at {}", label.type, label.label, place_text(label.first, label.second));
   if (!label.detail.empty()) text += ": " + label.detail;
   if (!label.leads_to.empty()) text += fmt::format(" -> {}", fmt::join(label.leads_to, ", "));
-  for (const std::string& remark : label.remarks) text += "; " + remark;
   return text;
 }
 
@@ -53,10 +52,9 @@ std::string joint_text(const JoinedPoint& point) {
 
 std::string curve_json(const ExploredCurve& curve) {
   const auto label_json = [](const CurveLabel& label) {
-    return fmt::format(
-        R"({{"label": {}, "type": {}, "first": {}, "second": {}, "detail": {}, "leads_to": {}, "remarks": {}}})",
-        label.label, json_value(label.type), json_value(label.first), json_value(label.second),
-        json_value(label.detail), json_list(label.leads_to), json_list(label.remarks));
+    return fmt::format(R"({{"label": {}, "type": {}, "first": {}, "second": {}, "detail": {}, "leads_to": {}}})",
+                       label.label, json_value(label.type), json_value(label.first), json_value(label.second),
+                       json_value(label.detail), json_list(label.leads_to));
   };
   const auto end_json = [](const CurveEnd& end) {
     return fmt::format(R"({{"first": {}, "second": {}, "reason": {}}})", json_value(end.first), json_value(end.second),

@@ -16,7 +16,6 @@ struct CurveLabel {
   double first = 0.0, second = 0.0;
   std::string detail;                 ///< which functions vanish there
   std::vector<std::string> leads_to;  ///< curves and slices that start there
-  std::vector<std::string> remarks;   ///< why there are none, where some were left out
 };
 
 struct CurveEnd {

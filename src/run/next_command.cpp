@@ -86,8 +86,7 @@ bool is_grazing(const UserPointKind& kind) {
 bool begins_grazing_curve(const UserPointKind& kind, const RunSettings& settings, const HybridSystem& system) {
   const SolutionFamily& family = problem_type(settings).family();
   if (!family.why_not(Analysis::resegmentation, "").empty() || family.facts().has_several_returns) return false;
-  if (kind.kind == UserPointKind::impact_velocity)
-    return !changes_nothing(static_cast<std::size_t>(kind.segment - 1), settings, system);
+  if (kind.kind == UserPointKind::impact_velocity) return !tangent_section(kind, settings, system);
   return is_free_of_other_events(kind, settings, system);
 }
 
@@ -123,6 +122,12 @@ std::string next_command(const NextStart& start, const RunSettings& settings, co
   if (words.empty()) return "";
   return fmt::format("tchat run {} -c {} -s {} IRS={}{} -o {}", problem_arguments(problem),
                      quoted_for_shell(output_path('r', output)), quoted_for_shell(output), start.label, words, name);
+}
+
+bool tangent_section(const UserPointKind& kind, const RunSettings& settings, const HybridSystem& system) {
+  const auto segment = static_cast<std::size_t>(kind.segment - 1);
+  return kind.kind == UserPointKind::impact_velocity && segment < settings.segments.size() &&
+         changes_nothing(segment, settings, system);
 }
 
 std::string curve_command(const NextStart& start, const RunSettings& settings, const HybridSystem& system,
