@@ -35,7 +35,7 @@ void add_explore_command(CLI::App& app, std::function<int()>& chosen) {
   command->add_option("--over", request->over, "range of the parameter, and the number of values of the sweep [201]")
       ->required()
       ->type_name("P=FROM:TO[:COUNT]");
-  command->add_option("--and", request->second, "range of a second parameter: curves of special points in both")
+  command->add_option("--and", request->second, "range of a second parameter: curves of the special points in both")
       ->type_name("Q=FROM:TO");
   command->add_option("--state", request->states, "initial state of the sweep, as 0,0.1,-2; may be repeated")
       ->allow_extra_args(false)
@@ -52,11 +52,11 @@ void add_explore_command(CLI::App& app, std::function<int()>& chosen) {
       ->type_name("N")
       ->check(whole_number(1, 100000))
       ->capture_default_str();
-  CLI::Option* const returns =
-      command->add_option("--returns", request->returns, "at grazing, follow orbits with one impact in up to K returns")
-          ->type_name("K")
-          ->check(whole_number(1, 64))
-          ->default_str("1, with --and 4");
+  command
+      ->add_option("--returns", request->returns,
+                   "at grazing, orbits with one impact in up to K returns [1; 4 where xi_n = 0 on a grazing curve]")
+      ->type_name("K")
+      ->check(whole_number(1, 64));
   command->add_option("--time", request->seconds, "seconds after which no command is begun; the same command goes on")
       ->type_name("T")
       ->check(CLI::PositiveNumber);
@@ -66,11 +66,11 @@ void add_explore_command(CLI::App& app, std::function<int()>& chosen) {
   command->footer(
       "A sweep finds attractors. Each is followed in both directions, and at special points the command\n"
       "that `tchat run` proposes follows what begins there, until nothing new is found.\n"
+      "With --and, each special point is then followed as a curve in both parameters.\n"
       "All commands are in Makefile.O, which makes the same files without tchat explore.\n"
       "Example: tchat explore linosc --over alpha=1.5:4 'PAR(omega)=2.0072' -j 2\n"
       "Exit status: 0 branches were found, 1 none, 2 bad usage or input, 130 or 143 interrupted.");
-  command->callback([&chosen, request, returns] {
-    if (request->second && returns->count() == 0) request->returns = 4;
+  command->callback([&chosen, request] {
     chosen = [request] {
       take_source_as_problem(request->name, request->problem);
       return do_explore(*request);

@@ -15,7 +15,9 @@ namespace tchat {
 
 CurveCommands::CurveCommands(const ExploreRequest& request, const ExplorationCommands& commands,
                              const HybridSystem& system, double value)
-    : commands_(commands), returns_(request.returns), second_(read_swept_range("--and", *request.second, false)) {
+    : commands_(commands),
+      returns_(request.returns.value_or(4)),
+      second_(read_swept_range("--and", *request.second, false)) {
   index_ = system.parameter_index(second_.parameter);
   if (index_ == 0) index_ = parse_integer(second_.parameter).value_or(0);
   if (index_ < 1 || index_ > system.parameters())

@@ -25,6 +25,8 @@ class CurveCommands {
   const SweptRange& second() const { return second_; }
   /// Of Q in PAR.
   int second_index() const { return index_; }
+  /// The largest n of the points with xi_n = 0 that are used.
+  int returns() const { return returns_; }
   /// By a command of run/next_command.hpp, from a label of the files `source`, in both directions.
   CommandJob curve(const std::string& name, const std::string& command, const std::string& source) const;
   /// Beside a point of a grazing curve, in the direction of `sign` along it: orbits with one impact in n returns over

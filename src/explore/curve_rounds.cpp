@@ -188,7 +188,7 @@ void CurveRounds::add_curve(const RunFiles& files, const Labelled& label, bool h
 void CurveRounds::add_slices(const ExploredCurve& curve, const Labelled& label, Candidates& next) const {
   for (const int returns : label.xi_zeros)
     for (const int sign : {1, -1}) {
-      if (returns > context_.request.returns) continue;
+      if (returns > commands_.returns()) continue;
       Candidate candidate;
       candidate.is_slice = true;
       candidate.slice.has_returns = true;

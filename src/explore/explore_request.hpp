@@ -17,9 +17,11 @@ struct ExploreRequest {
   std::vector<std::string> states;       ///< --state of the sweep
   std::vector<std::string> overrides;    ///< KEY=VALUE: parameters for all commands, constants for runs
   int workers = 1;
-  int doublings = 4;     ///< of the period, from an attractor on
-  int branches = 50;     ///< at most so many are kept, and of curves with their slices as many
-  int returns = 1;       ///< at grazing, orbits with one impact in as many returns are followed, too
+  int doublings = 4;  ///< of the period, from an attractor on
+  int branches = 50;  ///< at most so many are kept, and of curves with their slices as many
+  /// At grazing, orbits with one impact in up to so many returns are followed: 1, and 4 from points with xi_n = 0 of
+  /// grazing curves, where nothing else is asked for.
+  std::optional<int> returns;
   double seconds = 0.0;  ///< wall time after which no command is begun; 0: any
   bool fresh = false;    ///< results of an earlier run are thrown away
   bool quiet = false;

@@ -299,7 +299,7 @@ class Explorer {
   void add_returns(Candidate candidate, const SwitchPoint& at, std::vector<Candidate>& next) const {
     const std::string origin = candidate.branch.origin;
     candidate.branch.has_returns = true;
-    for (candidate.returns = 2; candidate.returns <= request_.returns; ++candidate.returns) {
+    for (candidate.returns = 2; candidate.returns <= request_.returns.value_or(1); ++candidate.returns) {
       candidate.branch.origin = fmt::format("one impact in {} returns, {}", candidate.returns, origin);
       candidate.branch.job = commands_.born(at, candidate.returns);
       candidate.branch.name = candidate.branch.job.name;
