@@ -154,6 +154,24 @@ TEST_CASE("the bouncing ball in two parameters: each curve once, whichever branc
   CHECK(tree.find("BP curve") == std::string::npos);
 }
 
+TEST_CASE("one impact in two returns: a period doubling is passed twice within a step that turns at a branch point") {
+  const Workspace workspace;
+  const Outcome outcome = workspace.tchat(
+      "explore linosc --over alpha=1:40:41 PAR(omega)=2 --returns 2 --doublings 0 --branches 4 -o osc -q");
+  INFO(outcome.text());
+  REQUIRE(outcome.status == 0);
+  const std::string tree = workspace.read("osc.txt");
+  INFO(tree);
+  const std::size_t at = tree.find("a1_GR2_in2_GR3_branch  ");
+  REQUIRE(at != std::string::npos);
+  const auto value = [&](const std::string& label) {
+    return std::stod(tree.substr(tree.find(label, at) + label.size()));
+  };
+  // The branch goes back where it bifurcates from the orbits of one period, through the same orbits shifted by one.
+  CHECK(value("BP 3 at ") == Approx(doubling(2.0, 1)).epsilon(1e-8));
+  CHECK(value("PD 2 at ") == Approx(value("PD 4 at ")).epsilon(1e-8));
+}
+
 TEST_CASE("second ranges that are none are refused with the form") {
   const Workspace workspace;
   const auto refusal = [&](const std::string& words) {
