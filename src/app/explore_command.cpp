@@ -37,6 +37,8 @@ void add_explore_command(CLI::App& app, std::function<int()>& chosen) {
   command->add_option("--over", request->over, "range of the parameter, and the number of values of the sweep [201]")
       ->required()
       ->type_name("P=FROM:TO[:COUNT]");
+  command->add_option("--and", request->second, "range of a second parameter: curves of the special points in both")
+      ->type_name("Q=FROM:TO");
   command->add_option("--state", request->states, "initial state of the sweep, as 0,0.1,-2; may be repeated")
       ->allow_extra_args(false)
       ->take_all();
@@ -59,10 +61,15 @@ void add_explore_command(CLI::App& app, std::function<int()>& chosen) {
       ->type_name("N")
       ->check(whole_number(0, 16))
       ->capture_default_str();
-  command->add_option("--branches", request->branches, "most branches")
+  command->add_option("--branches", request->branches, "most branches; with --and, most curves too")
       ->type_name("N")
       ->check(whole_number(1, 100000))
       ->capture_default_str();
+  command
+      ->add_option("--returns", request->returns,
+                   "at grazing, orbits with one impact in up to K returns [1; 4 where xi_n = 0 on a grazing curve]")
+      ->type_name("K")
+      ->check(whole_number(1, 64));
   command->add_option("--time", request->seconds, "seconds after which no command is begun; the same command goes on")
       ->type_name("T")
       ->check(CLI::PositiveNumber);
@@ -72,6 +79,7 @@ void add_explore_command(CLI::App& app, std::function<int()>& chosen) {
   command->footer(
       "A sweep finds attractors. Each is followed in both directions, and at special points the command\n"
       "that `tchat run` proposes follows what begins there, until nothing new is found.\n"
+      "With --and, each special point is then followed as a curve in both parameters.\n"
       "All commands are in Makefile.O, which makes the same files without tchat explore.\n"
       "Example: tchat explore linosc --over alpha=1.5:4 'PAR(omega)=2.0072' -j 2\n"
       "Exit status: 0 branches were found, 1 none, 2 bad usage or input, 130 or 143 interrupted.");

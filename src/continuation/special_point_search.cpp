@@ -576,6 +576,8 @@ std::vector<std::size_t> SpecialPointSearch::vanishing_with(const Zero& first, c
                                                 (small && is_flat(*zero, there, zero->ds - first.ds, length, end));
     if (same) group.push_back(i);
   }
+  // Before a branch point it may have vanished twice, and then has no other sign at the end of the step.
+  if (std::find(group.begin(), group.end(), first.test) == group.end()) group.push_back(first.test);
   return group;
 }
 

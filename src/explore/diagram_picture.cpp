@@ -21,7 +21,7 @@ using Points = std::vector<std::pair<double, double>>;
 
 constexpr std::size_t most_colours = 8;  // of branches that can be told apart by a key
 constexpr double cells = 48.0;           // of the grid along each axis
-constexpr double same_place = 1e-4;      // as a share of the range of the parameter
+constexpr double same_label = 1e-4;      // as a share of the range of the parameter
 
 /// Adds the points of a branch. False if one of its sections does not have the column.
 bool add_points(const PointFile& file, const std::string& column, Points& points) {
@@ -73,7 +73,7 @@ bool has_label(const ExploredDiagram& diagram, const std::string& type, double p
 
 /// The types of labels to draw. A branch point where a doubled branch is born is the period doubling once more.
 std::string drawn_types(const ExploredDiagram& diagram, const SweptQuantity& over) {
-  const double slack = same_place * std::abs(over.to - over.from);
+  const double slack = same_label * std::abs(over.to - over.from);
   std::set<std::string> types;
   for (const ExploredBranch& branch : diagram.branches)
     for (const ExploredLabel& label : branch.labels)

@@ -12,13 +12,6 @@ namespace tchat {
 
 namespace {
 
-/// Words quoted for the shell, with blanks before each.
-std::string quoted(const std::vector<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words) text += " " + quoted_for_shell(word);
-  return text;
-}
-
 /// "[1,2,3]"; "" for none.
 std::string all_events(int count) {
   std::string text;
@@ -32,6 +25,12 @@ std::string state_word(const HybridSystem& system, int k) {
 }
 
 }  // namespace
+
+std::string shell_words(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += " " + quoted_for_shell(word);
+  return text;
+}
 
 bool sets_parameter(const std::string& word) { return word.starts_with("PAR("); }
 
@@ -75,11 +74,11 @@ std::vector<std::string> ExplorationCommands::run_words(bool rests) const {
 
 CommandJob ExplorationCommands::sweep_job(const std::string& name, const std::vector<std::string>& states,
                                           const char* options) const {
-  std::string words = quoted({fmt::format("{}={}:{}:{}", range_.parameter, range_.from, range_.to, range_.count)});
+  std::string words = shell_words({fmt::format("{}={}:{}:{}", range_.parameter, range_.from, range_.to, range_.count)});
   for (const std::string& state : states) words += " --state " + quoted_for_shell(state);
   CommandJob job{name, {}, {}, {path(name + ".sweep")}};
   job.lines = {fmt::format("tchat sweep {}{} --over{}{}{} --max -o {} -j {} -q", problem_arguments(problem_),
-                           constants_option_, words, quoted(parameters_), options, quoted_for_shell(path(name)),
+                           constants_option_, words, shell_words(parameters_), options, quoted_for_shell(path(name)),
                            request_.workers)};
   return job;
 }
@@ -98,9 +97,9 @@ CommandJob ExplorationCommands::start(const std::string& name, double value, con
   const std::string output = quoted_for_shell(path(name));
   return {name,
           {fmt::format("tchat simulate {}{} {}{} --free {} -o {} --dat -q", arguments, constants_option_, words,
-                       quoted(simulated), quoted_for_shell(range_.parameter), output),
+                       shell_words(simulated), quoted_for_shell(range_.parameter), output),
            fmt::format("tchat run {} -c {} -d {} -o {} --both --clip{}", arguments, output, output, output,
-                       quoted(run_words(rests)))},
+                       shell_words(run_words(rests)))},
           {},
           files_of(name)};
 }
@@ -118,7 +117,7 @@ CommandJob ExplorationCommands::switching(const SwitchPoint& at) const {
     words = run_words();
     std::erase_if(words, [](const std::string& word) { return word.starts_with("DS="); });
   }
-  job.lines.push_back(run + quoted(words));
+  job.lines.push_back(run + shell_words(words));
   return job;
 }
 
@@ -129,8 +128,30 @@ std::string ExplorationCommands::in_other_field(const std::string& branch, int l
                      quoted_for_shell(fmt::format("{}_BE{}", path(branch), label)));
 }
 
+std::vector<std::string> ExplorationCommands::born_lines(const std::string& source, const std::string& label,
+                                                         int returns, const std::string& name) const {
+  std::vector<std::string> words = run_words();
+  std::erase_if(words, [](const std::string& word) { return word.starts_with("DS="); });  // the sign is chosen
+  words.insert(words.begin(), {"ILP=1", "ISP=2"});
+  const std::string cut = quoted_for_shell(path(name + "_start"));
+  return {
+      fmt::format("tchat resegment {} {} --to impacting --repeat {} -o {} -q{}", quoted_for_shell(file('q', source)),
+                  label, returns, cut, shell_words({fmt::format("ICP=[{}]", range_.parameter)})),
+      fmt::format("tchat run {} -c {} -s {} -o {} --clip -q{}", problem_arguments(problem_), cut, cut,
+                  quoted_for_shell(path(name)), shell_words(words))};
+}
+
+CommandJob ExplorationCommands::born(const SwitchPoint& at, int returns) const {
+  const std::string name = fmt::format("{}_{}{}_in{}", at.branch, at.type, at.label, returns);
+  return {name,
+          born_lines(at.branch, std::to_string(at.label), returns, name),
+          {file('q', at.branch), file('r', at.branch)},
+          files_of(name)};
+}
+
 std::string ExplorationCommands::show(double value, const std::string& state) const {
-  return fmt::format("tchat simulate {} --state {}{}", problem_arguments(problem_), state, quoted({at_value(value)}));
+  return fmt::format("tchat simulate {} --state {}{}", problem_arguments(problem_), state,
+                     shell_words({at_value(value)}));
 }
 
 }  // namespace tchat

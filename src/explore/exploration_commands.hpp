@@ -49,11 +49,19 @@ class ExplorationCommands {
   CommandJob switching(const SwitchPoint& at) const;
   /// The equilibrium of a label as that of another field.
   std::string in_other_field(const std::string& branch, int label, int field) const;
+  /// Orbits with one impact in so many returns that begin at a grazing point.
+  CommandJob born(const SwitchPoint& at, int returns) const;
+  /// The same at a label of the files `source`, to those of `name`.
+  std::vector<std::string> born_lines(const std::string& source, const std::string& label, int returns,
+                                      const std::string& name) const;
   /// "tchat simulate ..." of an attractor, by a state on it.
   std::string show(double value, const std::string& state) const;
+  /// The p-, q-, d- and r-file of a branch.
+  std::vector<std::string> files_of(const std::string& name) const;
+  /// KEY=VALUE of the command line for all runs.
+  const std::vector<std::string>& constants() const { return constants_; }
 
  private:
-  std::vector<std::string> files_of(const std::string& name) const;
   std::vector<std::string> run_words(bool rests = false) const;
   CommandJob sweep_job(const std::string& name, const std::vector<std::string>& states, const char* options) const;
 
@@ -67,6 +75,8 @@ class ExplorationCommands {
   std::vector<std::string> monitors_;
 };
 
+/// Words quoted for the shell, with a blank before each.
+std::string shell_words(const std::vector<std::string>& words);
 /// Does a word of the command line set a parameter?
 bool sets_parameter(const std::string& word);
 

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
+#include <numeric>
 
 namespace tchat {
 
@@ -29,19 +31,22 @@ std::string rule(const CommandJob& job) {
   return text + "\n";
 }
 
-/// The first files of jobs that have inputs in common, or make them, together: jobs of different trees share nothing.
+/// The first files of the jobs that are joined by what they make and need: those of different trees share no file.
 std::vector<std::string> trees(const std::vector<CommandJob>& jobs) {
-  std::vector<std::string> files;
-  std::map<std::string, std::size_t> tree_of;
-  for (const CommandJob& job : jobs) {
-    std::size_t tree = files.size();
-    for (const std::string& input : job.inputs)
-      if (const auto made = tree_of.find(input); made != tree_of.end()) tree = made->second;
-    if (tree == files.size()) files.emplace_back();
-    for (const std::string& output : job.outputs) tree_of[output] = tree;
-    files[tree] += " " + job.outputs.front();
-  }
-  return files;
+  std::map<std::string, std::size_t> maker;
+  for (std::size_t i = 0; i < jobs.size(); ++i)
+    for (const std::string& output : jobs[i].outputs) maker[output] = i;
+  std::vector<std::size_t> tree(jobs.size());
+  std::iota(tree.begin(), tree.end(), std::size_t{0});
+  for (std::size_t i = 0; i < jobs.size(); ++i)
+    for (const std::string& input : jobs[i].inputs)
+      if (const auto made = maker.find(input); made != maker.end())
+        std::replace(tree.begin(), tree.end(), std::size_t{tree[i]}, std::size_t{tree[made->second]});
+  std::map<std::size_t, std::string> files;
+  for (std::size_t i = 0; i < jobs.size(); ++i) files[tree[i]] += " " + jobs[i].outputs.front();
+  std::vector<std::string> result;
+  for (const auto& [number, list] : files) result.push_back(list);
+  return result;
 }
 
 }  // namespace

@@ -5,42 +5,15 @@
 #include <algorithm>
 #include <functional>
 
-#include "tables/table_format.hpp"
+#include "explore/json_list.hpp"
 
 namespace tchat {
 
 namespace {
 
-std::string label_text(const ExploredLabel& label) {
-  std::string text = fmt::format("{} {} at {:.10g}", label.type, label.label, label.parameter);
-  if (!label.leads_to.empty()) text += " -> " + label.leads_to;
-  if (!label.remark.empty()) text += ": " + label.remark;
-  return text;
-}
-
 std::string json(const std::string& text) { return json_value(text); }
 std::string json(double value) { return json_value(value); }
 std::string json(int value) { return json_value(value); }
-
-template <class List, class Text>
-std::string json_list(const List& list, const Text& text) {
-  std::string result;
-  for (const auto& one : list) result += (result.empty() ? "" : ", ") + text(one);
-  return "[" + result + "]";
-}
-
-std::string branch_json(const ExploredBranch& branch) {
-  const std::string labels = json_list(branch.labels, [](const ExploredLabel& label) {
-    return fmt::format(R"({{"label": {}, "type": {}, "parameter": {}, "leads_to": {}, "remark": {}}})",
-                       json(label.label), json(label.type), json(label.parameter), json(label.leads_to),
-                       json(label.remark));
-  });
-  const auto texts = [](const std::string& text) { return json(text); };
-  return fmt::format(
-      R"({{"name": {}, "parent": {}, "origin": {}, "from": {}, "to": {}, "signatures": {}, "labels": {}, "ends": {}, "commands": {}}})",
-      json(branch.name), json(branch.parent), json(branch.origin), json(branch.from), json(branch.to),
-      json_list(branch.signatures, texts), labels, json_list(branch.ends, texts), json_list(branch.job.lines, texts));
-}
 
 std::string percent(int part, int whole) { return fmt::format("{:.4g} %", 100.0 * part / whole); }
 
@@ -84,6 +57,26 @@ std::string counts_json(const std::map<std::string, int>& counts) {
 
 }  // namespace
 
+std::string label_text(const ExploredLabel& label) {
+  std::string text = fmt::format("{} {} at {:.10g}", label.type, label.label, label.parameter);
+  if (!label.leads_to.empty()) text += " -> " + label.leads_to;
+  if (!label.remark.empty()) text += ": " + label.remark;
+  if (!label.curve.empty()) text += ", curve " + label.curve;
+  return text;
+}
+
+std::string branch_json(const ExploredBranch& branch) {
+  const std::string labels = json_list(branch.labels, [](const ExploredLabel& label) {
+    return fmt::format(R"({{"label": {}, "type": {}, "parameter": {}, "leads_to": {}, "remark": {}, "curve": {}}})",
+                       json(label.label), json(label.type), json(label.parameter), json(label.leads_to),
+                       json(label.remark), json(label.curve));
+  });
+  return fmt::format(
+      R"({{"name": {}, "parent": {}, "origin": {}, "from": {}, "to": {}, "signatures": {}, "labels": {}, "commands": {}}})",
+      json(branch.name), json(branch.parent), json(branch.origin), json(branch.from), json(branch.to),
+      json_list(branch.signatures), labels, json_list(branch.job.lines));
+}
+
 std::string tree_text(const ExploredDiagram& diagram) {
   std::string text = fmt::format("Branches over {}:\n", diagram.parameter);
   const std::function<void(const std::string&, int)> add = [&](const std::string& parent, int depth) {
@@ -108,7 +101,7 @@ std::string tree_text(const ExploredDiagram& diagram) {
   return text;
 }
 
-std::string tree_json(const ExploredDiagram& diagram) {
+std::string tree_json(const ExploredDiagram& diagram, const std::string& further) {
   const std::string unexplained = json_list(diagram.unexplained, [](const UnexplainedAttractor& one) {
     return fmt::format(R"({{"attractor": {}, "kind": {}, "count": {}, "first": {}, "last": {}, "command": {}}})",
                        json(one.attractor), json(one.kind), json(one.count), json(one.first), json(one.last),
@@ -117,11 +110,10 @@ std::string tree_json(const ExploredDiagram& diagram) {
   return fmt::format(
       "{{\"parameter\": {}, \"quantity\": {}, \"complete\": {}, \"periodic\": {}, \"at_rest\": {}, \"on_branches\": "
       "{}, "
-      "\"others\": {}, \"left\": {},\n\"unexplained\": {},\n\"joins\": {},\n\"branches\": {}}}\n",
+      "\"others\": {}, \"left\": {},\n\"unexplained\": {},\n\"joins\": {},\n\"branches\": {}{}}}\n",
       json(diagram.parameter), json(diagram.quantity), diagram.complete, json(diagram.periodic), json(diagram.at_rest),
       json(diagram.on_branches), counts_json(diagram.others), counts_json(diagram.left), unexplained,
-      json_list(diagram.joins, [](const std::string& text) { return json(text); }),
-      json_list(diagram.branches, branch_json));
+      json_list(diagram.joins), json_list(diagram.branches, branch_json), further);
 }
 
 std::vector<CommandJob> jobs_of(const ExploredDiagram& diagram) {

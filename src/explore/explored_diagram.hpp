@@ -17,6 +17,7 @@ struct ExploredLabel {
   double parameter = 0.0;
   std::string leads_to;  ///< the branch that the switch there follows; "" without one
   std::string remark;    ///< why there is none, where one was tried or left out
+  std::string curve;     ///< the curve in two parameters through it; "" without one
 };
 
 struct ExploredBranch {
@@ -24,6 +25,7 @@ struct ExploredBranch {
   std::string parent;  ///< "" for an attractor
   std::string origin;  ///< "attractor 2 at alpha = 3.05", "PD 4"
   int doublings = 0;
+  bool has_returns = false;     ///< one impact in several returns to grazing, or from such a branch
   double from = 0.0, to = 0.0;  ///< range of the parameter
   std::vector<std::string> signatures;
   std::vector<std::string> ends;  ///< why each direction ended
@@ -54,10 +56,14 @@ struct ExploredDiagram {
   std::map<std::string, int> left;  ///< what a budget left: how many labels and attractors were not followed
 };
 
+/// "GR 2 at 3.035 -> a2"
+std::string label_text(const ExploredLabel& label);
+std::string branch_json(const ExploredBranch& branch);
+
 /// The tree of branches, coverage and what is left, for people.
 std::string tree_text(const ExploredDiagram& diagram);
-/// The same as JSON.
-std::string tree_json(const ExploredDiagram& diagram);
+/// The same as JSON. `further`: members of the object, each with a comma and a newline before it.
+std::string tree_json(const ExploredDiagram& diagram, const std::string& further = "");
 /// All that make its files, each after those that make its inputs.
 std::vector<CommandJob> jobs_of(const ExploredDiagram& diagram);
 

@@ -6,15 +6,18 @@
 #include <chrono>
 #include <filesystem>
 #include <iostream>
+#include <optional>
 #include <set>
 
 #include "constants/constants_file.hpp"
 #include "constants/settings_type.hpp"
+#include "explore/admissible_points.hpp"
 #include "explore/attractor_samples.hpp"
 #include "explore/boundary_equilibrium.hpp"
 #include "explore/branch_ends.hpp"
 #include "explore/command_job.hpp"
 #include "explore/coverage.hpp"
+#include "explore/curve_rounds.hpp"
 #include "explore/diagram_picture.hpp"
 #include "explore/exploration_commands.hpp"
 #include "explore/exploration_makefile.hpp"
@@ -24,8 +27,10 @@
 #include "problem_type/point_type.hpp"
 #include "run/next_command.hpp"
 #include "setup/named_parameters.hpp"
+#include "setup/parameter_values.hpp"
 #include "setup/warnings.hpp"
 #include "simulate/loaded_problem.hpp"
+#include "text/number.hpp"
 #include "text/user_error.hpp"
 #include "text/words.hpp"
 
@@ -39,7 +44,8 @@ namespace fs = std::filesystem;
 struct Candidate {
   ExploredBranch branch;
   std::size_t parent = 0;  ///< of the diagram's branches; beyond them without one
-  std::size_t label = 0;   ///< of the parent's labels
+  std::size_t label = 0;   ///< of the parent's labels; beyond them where it is not told what follows
+  int returns = 1;         ///< at grazing, one impact in so many
 };
 
 class Explorer {
@@ -54,6 +60,7 @@ class Explorer {
         runner_(commands_.folder(), request.workers, [this, interrupted] { return interrupted() || is_late(); }),
         interrupted_(interrupted) {
     diagram_.parameter = commands_.range().parameter;
+    if (request.second) curves_.emplace(curve_context(), value_of_second());
   }
 
   int explore() {
@@ -61,6 +68,7 @@ class Explorer {
     if (!sweep()) return finish();
     follow(seeds());
     for (bool found = true; found && goes_on();) found = follow(more_seeds());
+    if (curves_ && goes_on()) curves_->follow();
     return finish();
   }
 
@@ -73,6 +81,26 @@ class Explorer {
     for (const std::string& word : request.overrides)
       if (sets_parameter(word)) simulation.overrides.push_back(word);
     return simulation;
+  }
+
+  CurveRounds::Context curve_context() {
+    return {request_,
+            commands_,
+            loaded_.library->system(),
+            runner_,
+            diagram_,
+            [this] { return goes_on(); },
+            [this](const std::string& text) { show(text); }};
+  }
+
+  /// In the diagram over the first parameter.
+  double value_of_second() const {
+    const HybridSystem& system = loaded_.library->system();
+    const std::string name = read_swept_range("--and", *request_.second, false).parameter;
+    const int index = system.parameter_index(name) > 0 ? system.parameter_index(name) : parse_integer(name).value_or(0);
+    ParameterVector par = initial_parameters(system);
+    apply_command_line(system, loaded_.constants.settings, par);
+    return index >= 1 && index <= system.parameters() ? par(index - 1) : 0.0;
   }
 
   bool is_late() const {
@@ -187,6 +215,7 @@ class Explorer {
 
   void set_outcome(const Candidate& candidate, const std::string& leads_to, const std::string& remark) {
     if (candidate.parent >= diagram_.branches.size()) return;
+    if (candidate.returns > 1) return;
     ExploredLabel& label = diagram_.branches[candidate.parent].labels[candidate.label];
     label.leads_to = leads_to;
     label.remark = remark;
@@ -207,6 +236,7 @@ class Explorer {
             fmt::format("{} ({}): failed: {}", branch.name, branch.origin, failure_text(result.log)));
       return false;
     }
+    if (candidate.returns > 1 && admissible_points(commands_.file('d', branch.name)).only_at_start) return false;
     const PointFile points = read_point_file(commands_.file('p', branch.name));
     std::vector<CataloguedSection> sections = catalogued_sections(branch.name, points, commands_.monitors());
     std::string known;
@@ -264,7 +294,8 @@ class Explorer {
     for (const LabelledSolution& solution : solutions.solutions) {
       const std::string type = type_name(solution);
       if (type == "EP" || type == "RG" || type.empty()) continue;
-      ExploredLabel label{solution.label, type, stored_parameter(solution, settings.free_parameters.front()), "", ""};
+      ExploredLabel label{
+          solution.label, type, stored_parameter(solution, settings.free_parameters.front()), "", "", ""};
       diagram_.branches[at].labels.push_back(label);
       const std::string command = command_at(solution, type, settings, name);
       if (!command.empty()) add_switch(at, type, command, settings, next);
@@ -302,15 +333,31 @@ class Explorer {
     ExploredBranch& branch = candidate.branch;
     branch.parent = parent.name;
     branch.doublings = parent.doublings + (type == "PD" ? 1 : 0);
+    branch.has_returns = parent.has_returns;
     if (type == "TR") return leave(candidate, "tori");
     if (branch.doublings > request_.doublings)
       return leave(candidate, fmt::format("--doublings {}", request_.doublings));
     if (segments_after(type, settings) > request_.segments) return leave(candidate, segments_budget());
     branch.origin =
         fmt::format("{} {} of {} at {} = {:.6g}", type, label.label, parent.name, diagram_.parameter, label.parameter);
-    branch.job = commands_.switching({parent.name, label.label, type, label.parameter, command});
+    const SwitchPoint at_label{parent.name, label.label, type, label.parameter, command};
+    branch.job = commands_.switching(at_label);
     branch.name = branch.job.name;
     next.push_back(std::move(candidate));
+    if (command.find(" --to impacting ") != std::string::npos && !diagram_.branches[at].has_returns)
+      add_returns(next.back(), at_label, next);
+  }
+
+  /// At a grazing point, orbits with one impact in more than one return.
+  void add_returns(Candidate candidate, const SwitchPoint& at, std::vector<Candidate>& next) const {
+    const std::string origin = candidate.branch.origin;
+    candidate.branch.has_returns = true;
+    for (candidate.returns = 2; candidate.returns <= request_.returns.value_or(1); ++candidate.returns) {
+      candidate.branch.origin = fmt::format("one impact in {} returns, {}", candidate.returns, origin);
+      candidate.branch.job = commands_.born(at, candidate.returns);
+      candidate.branch.name = candidate.branch.job.name;
+      next.push_back(candidate);
+    }
   }
 
   static void write(const std::string& path, const std::string& text) {
@@ -325,11 +372,14 @@ class Explorer {
     if (!sweeps_.empty())
       add_pictures({folder, commands_.path("sweep.sweep"), commands_.monitors(), request_.quantity},
                    sweeps_.front().samples.table(), diagram_);
-    const std::string text = tree_text(diagram_);
+    const ExploredCurves curves = curves_ ? curves_->curves() : ExploredCurves{};
+    const std::string text = tree_text(diagram_) + curves_text(curves);
+    std::vector<CommandJob> jobs = jobs_of(diagram_);
+    for (const CommandJob* const job : curve_jobs(curves)) jobs.push_back(*job);
     write(folder + ".txt", text);
-    write(folder + ".json", tree_json(diagram_));
+    write(folder + ".json", tree_json(diagram_, curves_json(curves)));
     write((fs::path(folder).parent_path() / ("Makefile." + fs::path(folder).filename().string())).string(),
-          exploration_makefile(jobs_of(diagram_), diagram_.last_jobs, folder));
+          exploration_makefile(jobs, diagram_.last_jobs, folder));
     show("\n" + text);
     print_warnings(std::cerr, draw_pictures(diagram_.last_jobs, folder, interrupted_));
     return diagram_.branches.empty() ? 1 : 0;
@@ -346,6 +396,7 @@ class Explorer {
   OrbitCatalogue catalogue_;
   ExploredDiagram diagram_;
   std::set<std::pair<std::string, double>> tried_;
+  std::optional<CurveRounds> curves_;
 };
 
 }  // namespace

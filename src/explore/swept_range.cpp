@@ -11,12 +11,11 @@
 
 namespace tchat {
 
-SweptRange read_swept_range(const std::string& option, const std::string& text) {
+SweptRange read_swept_range(const std::string& option, const std::string& text, bool may_have_count) {
   const auto refuse = [&] {
-    throw UserError(
-        fmt::format("{} {}: a parameter with the range of its values is needed, as alpha=2.9:3.3, or with the number "
-                    "of values, alpha=2.9:3.3:401",
-                    option, in_quotes(text)));
+    throw UserError(fmt::format("{} {}: a parameter with the range of its values is needed, as alpha=2.9:3.3{}", option,
+                                in_quotes(text),
+                                may_have_count ? ", or with the number of values, alpha=2.9:3.3:401" : ""));
   };
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos || equals == 0) refuse();
@@ -27,7 +26,7 @@ SweptRange read_swept_range(const std::string& option, const std::string& text) 
     parts.push_back(text.substr(from, to - from));
     from = to + 1;
   }
-  if (parts.size() < 2 || parts.size() > 3) refuse();
+  if (parts.size() < 2 || parts.size() > (may_have_count ? 3 : 2)) refuse();
   const std::optional<double> a = parse_real(parts[0]), b = parse_real(parts[1]);
   const std::optional<int> count = parts.size() == 3 ? parse_integer(parts[2]) : std::optional(range.count);
   if (!a || !b || !(*a < *b) || !count || *count < 2) refuse();

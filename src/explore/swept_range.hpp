@@ -12,7 +12,7 @@ struct SweptRange {
   int count = 201;
 };
 
-/// `option` is named in messages. Throws UserError.
-SweptRange read_swept_range(const std::string& option, const std::string& text);
+/// `option` is named in messages. Throws UserError, for a number of values too where there is to be none.
+SweptRange read_swept_range(const std::string& option, const std::string& text, bool may_have_count = true);
 
 }  // namespace tchat

@@ -62,15 +62,40 @@ std::string extremum_words(const RunSettings& settings, const HybridSystem& syst
   return " ISW=2 " + quoted_for_shell("ICP=[" + names + "]");
 }
 
-/// Is a contact at the end of a segment alone there? It is where that end changes neither the state nor the field.
+/// Does the end of a segment change neither the state nor the field?
+bool changes_nothing(std::size_t segment, const RunSettings& settings, const HybridSystem& system) {
+  const IndexVector& end = settings.segments[segment].index;
+  return is_identity_jump(system, end) &&
+         settings.segments[(segment + 1) % settings.segments.size()].index.field == end.field;
+}
+
+/// Is a contact alone there? At the end of a segment it is where that end changes nothing.
 bool is_free_of_other_events(const UserPointKind& contact, const RunSettings& settings, const HybridSystem& system) {
   constexpr double at_the_end = 1e-6;
   if (contact.tau > at_the_end && contact.tau < 1.0 - at_the_end) return true;
   const std::size_t m = settings.segments.size();
   const auto segment = static_cast<std::size_t>(contact.segment - 1);
-  const std::size_t before = contact.tau <= at_the_end ? (segment + m - 1) % m : segment;
-  const IndexVector& end = settings.segments[before].index;
-  return is_identity_jump(system, end) && settings.segments[(before + 1) % m].index.field == end.field;
+  return changes_nothing(contact.tau <= at_the_end ? (segment + m - 1) % m : segment, settings, system);
+}
+
+bool is_grazing(const UserPointKind& kind) {
+  return kind.kind == UserPointKind::contact || kind.kind == UserPointKind::impact_velocity;
+}
+
+/// Can `tchat resegment --to grazing-curve` cut the orbit at this contact?
+bool begins_grazing_curve(const UserPointKind& kind, const RunSettings& settings, const HybridSystem& system) {
+  const SolutionFamily& family = problem_type(settings).family();
+  if (!family.why_not(Analysis::resegmentation, "").empty() || family.facts().has_several_returns) return false;
+  if (kind.kind == UserPointKind::impact_velocity) return !tangent_section(kind, settings, system);
+  return is_free_of_other_events(kind, settings, system);
+}
+
+/// Do ISW = 2 and two parameters follow the points of a label?
+bool has_curve(const NextStart& start, const RunSettings& settings) {
+  const ProblemType& type = problem_type(settings);
+  if (type.facts().in_two_parameters || type.facts().curve != 0 || !settings.held.empty()) return false;
+  if (start.kind.kind == UserPointKind::contact) return curve_of(-start.type, settings.problem_type) != nullptr;
+  return start.kind.kind == UserPointKind::none && curve_of(start.type, settings.problem_type) != nullptr;
 }
 
 /// With a contact an impact is born; where an impact has velocity zero it vanishes. "" at other points.
@@ -106,6 +131,26 @@ std::string next_command(const NextStart& start, const RunSettings& settings, co
   if (words.empty()) return "";
   return fmt::format("tchat run {} -c {} -s {} IRS={}{} -o {}", problem_arguments(problem),
                      quoted_for_shell(output_path('r', output)), quoted_for_shell(output), start.label, words, name);
+}
+
+bool tangent_section(const UserPointKind& kind, const RunSettings& settings, const HybridSystem& system) {
+  const auto segment = static_cast<std::size_t>(kind.segment - 1);
+  return kind.kind == UserPointKind::impact_velocity && segment < settings.segments.size() &&
+         changes_nothing(segment, settings, system);
+}
+
+std::string curve_command(const NextStart& start, const RunSettings& settings, const HybridSystem& system,
+                          const std::string& problem, const std::string& output, const std::string& curve) {
+  const std::string run = "tchat run " + problem_arguments(problem);
+  if (is_grazing(start.kind) && begins_grazing_curve(start.kind, settings, system)) {
+    const std::string cut = quoted_for_shell(curve + "_start");
+    return fmt::format("tchat resegment {} {} --to grazing-curve -o {} && {} -c {} -s {} -o {}",
+                       quoted_for_shell(output_path('q', output)), start.label, cut, run, cut, cut,
+                       quoted_for_shell(curve));
+  }
+  if (!has_curve(start, settings)) return "";
+  return fmt::format("{} -c {} -s {} IRS={} ISW=2 -o {}", run, quoted_for_shell(output_path('r', output)),
+                     quoted_for_shell(output), start.label, quoted_for_shell(curve));
 }
 
 }  // namespace tchat

@@ -23,4 +23,13 @@ struct NextStart {
 std::string next_command(const NextStart& start, const RunSettings& settings, const HybridSystem& system,
                          const std::string& problem, const std::string& output);
 
+/// Is the kind that of a section which the orbit touches, and no contact that changes the motion?
+bool tangent_section(const UserPointKind& kind, const RunSettings& settings, const HybridSystem& system);
+
+/// Commands, joined by " && ", that follow the points of a label in two parameters, to files of the name `curve`; they
+/// lack ICP. At a grazing contact the first one resegments. "" where there is no such curve: on curves only a contact
+/// has one.
+std::string curve_command(const NextStart& start, const RunSettings& settings, const HybridSystem& system,
+                          const std::string& problem, const std::string& output, const std::string& curve);
+
 }  // namespace tchat

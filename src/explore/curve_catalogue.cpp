@@ -1,0 +1,158 @@
+#include "explore/curve_catalogue.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "explore/point_interpolation.hpp"
+
+namespace tchat {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::Vector2d;
+using Eigen::VectorXd;
+
+/// In units of the ranges: points are located far more accurately.
+constexpr double place_tolerance = 1e-5;
+/// Relative, of whole numbers of periods.
+constexpr double period_tolerance = 1e-4;
+
+Index column_named(const PointSection& section, const std::string& name) {
+  const auto at = std::find(section.columns.begin(), section.columns.end(), name);
+  return at == section.columns.end() ? -1 : at - section.columns.begin();
+}
+
+std::vector<Index> number_columns(const PointSection& section, const CurveColumns& columns) {
+  std::vector<Index> result;
+  for (const std::string& name : columns.monitors)
+    if (const Index column = column_named(section, name); column >= 0) result.push_back(column);
+  return result;
+}
+
+/// Where a section passes a place: its numbers there, the first of which is the distance from the place.
+using Passage = InterpolatedPoint;
+
+/// Between points i and i + 1, in coordinates along and across the chord; false where the place is not beside it.
+bool passes(const CurveSection& section, Index i, const Vector2d& place, Passage& passage) {
+  const auto& points = section.points;
+  const auto at = [&](Index k) -> const CurvePoint& { return points[static_cast<std::size_t>(k)]; };
+  const Vector2d chord = at(i + 1).place - at(i).place;
+  const double length = chord.norm();
+  if (!(length > 0.0)) return false;
+  const Vector2d along = chord / length;
+  const Vector2d across(-along.y(), along.x());
+  const double here = along.dot(place - at(i).place);
+  if (here < -place_tolerance || here > length + place_tolerance ||
+      std::abs(across.dot(place - at(i).place)) > length + place_tolerance)
+    return false;
+  const Index first = std::max<Index>(0, i - 1);
+  const Index last = std::min<Index>(std::ssize(points) - 1, i + 2);
+  std::vector<double> coordinate;
+  Eigen::MatrixXd numbers(1 + at(i).numbers.size(), last - first + 1);
+  for (Index k = first; k <= last; ++k) {
+    coordinate.push_back(along.dot(at(k).place - at(i).place));
+    numbers(0, k - first) = across.dot(at(k).place - place);
+    numbers.col(k - first).tail(at(i).numbers.size()) = at(k).numbers;
+  }
+  passage = interpolate(coordinate, numbers, i - first, std::clamp(here, 0.0, length));
+  return true;
+}
+
+bool is_near(const Passage& passage) {
+  return std::abs(passage.numbers(0)) <= 2.0 * passage.uncertainty(0) + place_tolerance;
+}
+
+InterpolatedPoint orbit_at(const Passage& passage) {
+  const Index count = passage.numbers.size() - 1;
+  return {passage.numbers.tail(count), passage.uncertainty.tail(count)};
+}
+
+bool has_orbit(const Passage& passage, const VectorXd& numbers) {
+  return passage.numbers.size() == numbers.size() + 1 && is_near(passage) && agrees(orbit_at(passage), numbers);
+}
+
+/// The same with periods that are whole numbers of each other.
+bool has_orbit_repeated(const Passage& passage, VectorXd numbers) {
+  if (passage.numbers.size() != numbers.size() + 1) return false;
+  const double known = passage.numbers(1);
+  const double ratio = std::max(known, numbers(0)) / std::min(known, numbers(0));
+  if (known > 0.0 && numbers(0) > 0.0 && std::abs(ratio - std::round(ratio)) <= period_tolerance * ratio)
+    numbers(0) = known;
+  return has_orbit(passage, numbers);
+}
+
+bool any_passage(const CurveSection& section, const Vector2d& place,
+                 const std::function<bool(const Passage&)>& is_wanted) {
+  Passage passage;
+  for (Index i = 0; i + 1 < std::ssize(section.points); ++i)
+    if (passes(section, i, place, passage) && is_wanted(passage)) return true;
+  return false;
+}
+
+CurvePoint curve_point(const PointRow& row, Index second, Index period, const std::vector<Index>& monitors,
+                       const CurveColumns& columns, int repetitions) {
+  const auto value = [&](Index column) { return row.values[static_cast<std::size_t>(column)]; };
+  const double of_second = second < 0 ? std::numeric_limits<double>::quiet_NaN() : value(second);
+  CurvePoint point{{value(0) / columns.widths(0), of_second / columns.widths(1)}, VectorXd(1 + std::ssize(monitors))};
+  point.numbers(0) = period < 0 ? 0.0 : value(period) / repetitions;
+  for (Index k = 0; k < std::ssize(monitors); ++k) point.numbers(1 + k) = value(monitors[static_cast<std::size_t>(k)]);
+  return point;
+}
+
+}  // namespace
+
+std::vector<CurveSection> curve_sections(const std::string& curve, const std::string& kind, const PointFile& file,
+                                         const CurveColumns& columns) {
+  std::vector<CurveSection> result;
+  for (const PointSection& section : file.sections) {
+    const Index second = column_named(section, columns.second);
+    const Index period = column_named(section, "PERIOD");
+    const std::vector<Index> monitors = number_columns(section, columns);
+    const int repetitions = primitive_word(section.signature).repetitions;
+    CurveSection one{curve, kind, {}, {}};
+    for (const PointRow& row : section.rows) {
+      one.points.push_back(curve_point(row, second, period, monitors, columns, repetitions));
+      one.labels.push_back(row.label);
+    }
+    result.push_back(std::move(one));
+  }
+  return result;
+}
+
+/// Three points tell: the middle of the section, and on to its end. Its beginning is near where it was started.
+std::string CurveCatalogue::curve_of(const CurveSection& section) const {
+  std::string found;
+  for (const double share : {0.5, 0.75, 0.95}) {
+    const auto last = static_cast<double>(section.points.size() - 1);
+    const CurvePoint& point = section.points[static_cast<std::size_t>(std::lround(share * last))];
+    found = curve_at(section.kind, point);
+    if (found.empty()) return "";
+  }
+  return found;
+}
+
+std::string CurveCatalogue::curve_at(const std::string& kind, const CurvePoint& point) const {
+  for (const CurveSection& known : sections_) {
+    const bool is_doubled = kind == "BP" && known.kind == "PD";
+    if (known.kind != kind && !is_doubled) continue;
+    const auto same = [&](const Passage& passage) {
+      return is_doubled ? has_orbit_repeated(passage, point.numbers) : has_orbit(passage, point.numbers);
+    };
+    if (any_passage(known, point.place, same)) return known.curve;
+  }
+  return "";
+}
+
+std::vector<std::string> CurveCatalogue::curves_through(const CurvePoint& point) const {
+  std::vector<std::string> names;
+  const auto same = [&](const Passage& passage) { return has_orbit_repeated(passage, point.numbers); };
+  for (const CurveSection& known : sections_)
+    if ((names.empty() || names.back() != known.curve) && any_passage(known, point.place, same))
+      names.push_back(known.curve);
+  return names;
+}
+
+}  // namespace tchat

@@ -1,0 +1,59 @@
+/// The curves in two parameters that are there, and which of them pass through a point.
+///
+/// A point is a place (P, Q), each in units of its range, with the numbers of its orbit: period, mean and largest value
+/// of each state. Two curves of one kind whose points have these in common, up to the error of interpolation, are one
+/// curve. The numbers do not depend on where an orbit is cut, nor on how often. A branch point of an orbit of doubled
+/// period is on the curve of period doublings.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "explore/orbit_catalogue.hpp"
+#include "files/point_file_reader.hpp"
+
+namespace tchat {
+
+struct CurvePoint {
+  Eigen::Vector2d place;
+  Eigen::VectorXd numbers;  ///< period (0 for equilibria), then the monitors that there are
+};
+
+/// The points of one direction of a curve.
+struct CurveSection {
+  std::string curve;
+  std::string kind;  ///< LP, PD, ..., GR
+  std::vector<CurvePoint> points;
+  std::vector<int> labels;  ///< of each point; 0 without
+};
+
+/// Which columns of p-files have what a point consists of.
+struct CurveColumns {
+  std::string second;  ///< the name of Q; P is in the first column
+  std::vector<std::string> monitors;
+  Eigen::Vector2d widths;  ///< of the ranges of P and Q
+};
+
+/// The sections of a p-file. Without a column of Q, in files of branches, the second coordinate of each place is NaN.
+std::vector<CurveSection> curve_sections(const std::string& curve, const std::string& kind, const PointFile& file,
+                                         const CurveColumns& columns);
+
+class CurveCatalogue {
+ public:
+  void add(CurveSection section) { sections_.push_back(std::move(section)); }
+  const std::vector<CurveSection>& sections() const { return sections_; }
+
+  /// The curve that all of `section` is on but its beginning; "" where there is none.
+  std::string curve_of(const CurveSection& section) const;
+  /// The curve of this kind (of PD, too, for a BP) through a point; "" where there is none.
+  std::string curve_at(const std::string& kind, const CurvePoint& point) const;
+  /// Names of all curves with the orbit of a point there, or with one that this orbit repeats, or that repeats it,
+  /// whatever their kinds.
+  std::vector<std::string> curves_through(const CurvePoint& point) const;
+
+ private:
+  std::vector<CurveSection> sections_;
+};
+
+}  // namespace tchat

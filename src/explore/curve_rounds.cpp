@@ -1,0 +1,398 @@
+#include "explore/curve_rounds.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "constants/constants_file.hpp"
+#include "explore/admissible_points.hpp"
+#include "files/solution_file_reader.hpp"
+#include "problem_type/point_type.hpp"
+#include "run/next_command.hpp"
+#include "setup/named_parameters.hpp"
+#include "text/words.hpp"
+
+namespace tchat {
+
+/// All that the files of a run tell.
+struct CurveRounds::RunFiles {
+  std::string name;
+  RunSettings settings;
+  SolutionFile solutions;
+  std::vector<CurveSection> sections;
+  AdmissiblePoints admissible;
+};
+
+namespace {
+
+/// In units of the ranges.
+constexpr double same_place = 1e-6;
+
+bool is_special(const std::string& type) { return !type.empty() && type != "EP" && type != "RG" && type != "UZ"; }
+
+/// EX is one of a monitor, not of orbits.
+bool may_have_curve(const std::string& type) {
+  return is_special(type) && type != "EX" && type != "XI" && type != "MX";
+}
+
+std::vector<int> xi_zeros(const LabelledSolution& solution) {
+  std::vector<int> result;
+  for (const UserPointKind& kind : all_kinds(solution))
+    if (kind.kind == UserPointKind::xi) result.push_back(kind.index);
+  return result;
+}
+
+/// "xi_1 = xi_2 = 0"
+std::string zeros_text(const std::vector<int>& indices) {
+  std::string text;
+  for (const int n : indices) text += fmt::format("xi_{} = ", n);
+  return text.empty() ? "" : text + "0";
+}
+
+/// The sentences behind "stopped: " in what a run wrote, one for each direction.
+std::vector<std::string> reasons_in(const std::string& log) {
+  static constexpr std::string_view word = "\n  stopped: ";
+  static constexpr std::string_view continued = "      ";
+  std::vector<std::string> reasons;
+  for (std::size_t at = log.find(word); at != std::string::npos; at = log.find(word, at + 1)) {
+    std::size_t from = at + word.size();
+    std::size_t to = std::min(log.find('\n', from), log.size());
+    std::string reason = log.substr(from, to - from);
+    while (log.compare(std::min(to + 1, log.size()), continued.size(), continued) == 0) {
+      from = to + 1;
+      to = std::min(log.find('\n', from), log.size());
+      reason += " " + std::string(trimmed(std::string_view(log).substr(from, to - from)));
+    }
+    reasons.push_back(reason);
+  }
+  return reasons;
+}
+
+std::string signature_text(const PointSection& section) {
+  Signature signature;
+  for (const auto& v : section.signature) signature.push_back({v[0], v[1], v[2]});
+  return to_string(signature);
+}
+
+void add_once(std::vector<std::string>& list, const std::string& text) {
+  if (std::find(list.begin(), list.end(), text) == list.end()) list.push_back(text);
+}
+
+/// ", on a1_GR2_curve and 3 others"
+std::string ends_on(const JoinedPoint& joint, const std::string& curve) {
+  std::string first;
+  std::size_t others = 0;
+  for (const JoinedCurve& other : joint.curves) {
+    if (other.curve == curve) continue;
+    if (first.empty() && !other.is_end) first = other.curve;
+    ++others;
+  }
+  if (first.empty()) return fmt::format(", with {} other{}", others, others > 1 ? "s" : "");
+  return fmt::format(", on {}", first) + (others > 1 ? fmt::format(" with {} more", others - 1) : "");
+}
+
+template <class List>
+auto* find_named(List& list, const std::string& name) {
+  const auto at = std::find_if(list.begin(), list.end(), [&](const auto& one) { return one.name == name; });
+  return at == list.end() ? nullptr : &*at;
+}
+
+template <class List>
+auto* find_label(List& labels, int number) {
+  const auto at = std::find_if(labels.begin(), labels.end(), [&](const auto& one) { return one.label == number; });
+  return at == labels.end() ? nullptr : &*at;
+}
+
+}  // namespace
+
+CurveRounds::CurveRounds(const Context& context, double value)
+    : context_(context), commands_(context.request, context.commands, context.system, value) {
+  curves_.first = context.commands.range().parameter;
+  curves_.second = commands_.second().parameter;
+}
+
+void CurveRounds::follow() {
+  Candidates round;
+  for (const ExploredBranch& branch : context_.diagram.branches) add_curves(branch, round);
+  while (!round.empty() && context_.goes_on()) round = run(round);
+  join();
+}
+
+CurveColumns CurveRounds::columns() const {
+  const SweptRange& first = context_.commands.range();
+  const SweptRange& second = commands_.second();
+  return {second.parameter, context_.commands.monitors(), {first.to - first.from, second.to - second.from}};
+}
+
+CurveRounds::RunFiles CurveRounds::files_of(const std::string& name) const {
+  const ExplorationCommands& commands = context_.commands;
+  RunFiles files{name, read_constants_file(commands.file('r', name)), read_solution_file(commands.file('q', name)),
+                 curve_sections(name, "", read_point_file(commands.file('p', name)), columns()),
+                 admissible_points(commands.file('d', name))};
+  resolve_names(files.settings, context_.system);
+  return files;
+}
+
+std::vector<CurveRounds::Labelled> CurveRounds::labels_of(const RunFiles& files) const {
+  std::vector<Labelled> result;
+  const int principal = files.settings.free_parameters.front();
+  for (const LabelledSolution& solution : files.solutions.solutions) {
+    const std::string type = type_name(solution);
+    if (!is_special(type)) continue;
+    Labelled one;
+    one.label = solution.label;
+    one.type = type;
+    one.start = {solution.label, basic_type(solution.type), solution.kind};
+    one.xi_zeros = xi_zeros(solution);
+    one.first = stored_parameter(solution, principal);
+    one.second = stored_parameter(solution, commands_.second_index());
+    for (const CurveSection& section : files.sections)
+      for (std::size_t k = 0; k < section.points.size(); ++k)
+        if (section.labels[k] == solution.label) one.point = section.points[k];
+    one.point.place(1) = one.second / columns().widths(1);
+    const auto known = files.admissible.labels.find(solution.label);
+    one.is_admissible = known == files.admissible.labels.end() || known->second;
+    one.is_section_tangent = tangent_section(solution.kind, files.settings, context_.system);
+    result.push_back(std::move(one));
+  }
+  return result;
+}
+
+void CurveRounds::add_curves(const ExploredBranch& branch, Candidates& next) const {
+  const RunFiles files = files_of(branch.name);
+  for (const Labelled& label : labels_of(files))
+    if (label.is_admissible && may_have_curve(label.type)) add_curve(files, label, branch.has_returns, next);
+}
+
+void CurveRounds::add_curve(const RunFiles& files, const Labelled& label, bool has_returns, Candidates& next) const {
+  const ExplorationCommands& commands = context_.commands;
+  Candidate candidate;
+  ExploredCurve& curve = candidate.curve;
+  curve.name = fmt::format("{}_{}{}_curve", files.name, label.type, label.label);
+  curve.kind = label.type;
+  curve.has_returns = has_returns;
+  curve.parent = candidate.owner = files.name;
+  curve.origin = fmt::format("{} {} of {}", label.type, label.label, files.name);
+  const std::string command = curve_command(label.start, files.settings, context_.system, commands.problem(),
+                                            commands.path(files.name), commands.path(curve.name));
+  if (command.empty()) return;
+  curve.job = commands_.curve(curve.name, command, files.name);
+  candidate.label = label.label;
+  candidate.start = label.point;
+  next.push_back(std::move(candidate));
+}
+
+void CurveRounds::add_slices(const ExploredCurve& curve, const Labelled& label, Candidates& next) const {
+  for (const int returns : label.xi_zeros)
+    for (const int sign : {1, -1}) {
+      if (returns > commands_.returns()) continue;
+      Candidate candidate;
+      candidate.is_slice = true;
+      candidate.slice.has_returns = true;
+      candidate.slice.parent = candidate.owner = curve.name;
+      candidate.slice.job = commands_.slice({curve.name, label.label, returns}, sign);
+      candidate.slice.name = candidate.slice.job.name;
+      candidate.label = label.label;
+      next.push_back(std::move(candidate));
+    }
+}
+
+/// Of a grazing curve the orbit at the label may be one that repeats.
+std::string CurveRounds::known_curve(const Candidate& candidate) const {
+  if (candidate.is_slice) return "";
+  if (candidate.curve.kind != "GR") return catalogue_.curve_at(candidate.curve.kind, candidate.start);
+  for (const std::string& name : catalogue_.curves_through(candidate.start))
+    if (const ExploredCurve* const curve = find_named(curves_.curves, name); curve != nullptr && curve->kind == "GR")
+      return name;
+  return "";
+}
+
+void CurveRounds::set_curve(const Candidate& candidate, const std::string& curve) {
+  for (std::vector<ExploredBranch>* const list : {&context_.diagram.branches, &curves_.slices})
+    if (ExploredBranch* const branch = find_named(*list, candidate.owner))
+      if (ExploredLabel* const label = find_label(branch->labels, candidate.label)) label->curve = curve;
+  if (ExploredCurve* const owner = find_named(curves_.curves, candidate.owner))
+    if (CurveLabel* const label = find_label(owner->labels, candidate.label); label != nullptr && curve != owner->name)
+      add_once(label->leads_to, curve);
+}
+
+bool CurveRounds::is_left() {
+  curves_.budget = context_.request.branches;
+  if (std::ssize(curves_.curves) + std::ssize(curves_.slices) < curves_.budget) return false;
+  ++curves_.left;
+  return true;
+}
+
+/// What it finds starts the next round.
+CurveRounds::Candidates CurveRounds::run(const Candidates& round) {
+  Candidates tried, next;
+  for (const Candidate& candidate : round) {
+    const std::string known = known_curve(candidate);
+    if (!known.empty())
+      set_curve(candidate, known);
+    else
+      tried.push_back(candidate);
+  }
+  std::vector<CommandJob> jobs;
+  for (const Candidate& candidate : tried) jobs.push_back(candidate.job());
+  const std::vector<JobResult> results = context_.runner.run(jobs);
+  for (std::size_t i = 0; i < tried.size(); ++i) {
+    if (!results[i].was_run) {
+      context_.diagram.complete = false;
+      continue;
+    }
+    if (!results[i].succeeded)
+      curves_.failures.push_back(fmt::format("{} failed: {}", tried[i].name(), failure_text(results[i].log)));
+    else if (tried[i].is_slice)
+      take_slice(tried[i], next);
+    else
+      take_curve(tried[i], results[i].log, next);
+  }
+  return next;
+}
+
+void CurveRounds::take_curve(const Candidate& candidate, const std::string& log, Candidates& next) {
+  ExploredCurve curve = candidate.curve;
+  const PointFile points = read_point_file(context_.commands.file('p', curve.name));
+  std::vector<CurveSection> sections = curve_sections(curve.name, curve.kind, points, columns());
+  std::erase_if(sections, [](const CurveSection& section) { return section.points.size() < 2; });
+  std::string known;
+  for (const CurveSection& section : sections) {
+    known = catalogue_.curve_of(section);
+    if (known.empty()) break;
+  }
+  if (!known.empty()) {
+    set_curve(candidate, known);
+    curves_.again.push_back(fmt::format("{} ({}): {} again", curve.name, curve.origin, known));
+    return;
+  }
+  if (is_left()) return;
+  for (CurveSection& section : sections) catalogue_.add(std::move(section));
+  describe(curve, log);
+  set_curve(candidate, curve.name);
+  curves_.curves.push_back(curve);
+  context_.show(
+      fmt::format("{}: {} curve from {}, {}\n", curve.name, curve.kind, curve.origin, range_text(curves_, curve)));
+  const RunFiles files = files_of(curve.name);
+  for (const Labelled& label : labels_of(files)) {
+    if (label.type == "XI" && !curve.has_returns) add_slices(curve, label, next);
+    if (label.type == "GR" && label.is_admissible) add_curve(files, label, curve.has_returns, next);
+  }
+}
+
+void CurveRounds::describe(ExploredCurve& curve, const std::string& log) const {
+  const RunFiles files = files_of(curve.name);
+  const PointFile points = read_point_file(context_.commands.file('p', curve.name));
+  const Eigen::Vector2d widths = columns().widths;
+  Eigen::Array2d least = Eigen::Array2d::Constant(std::numeric_limits<double>::infinity()), most = -least;
+  for (const CurveSection& section : files.sections)
+    for (const CurvePoint& point : section.points) {
+      least = least.min(point.place.array() * widths.array());
+      most = most.max(point.place.array() * widths.array());
+    }
+  curve.first_from = least(0), curve.second_from = least(1), curve.first_to = most(0), curve.second_to = most(1);
+  curve.points = files.admissible.points;
+  curve.inadmissible = files.admissible.inadmissible;
+  for (const Labelled& label : labels_of(files))
+    curve.labels.push_back({label.label,
+                            label.type,
+                            label.first,
+                            label.second,
+                            label.is_section_tangent ? "tangent section, no grazing" : zeros_text(label.xi_zeros),
+                            {}});
+  const std::vector<std::string> reasons = reasons_in(log);
+  for (std::size_t k = 0; k < points.sections.size(); ++k) {
+    add_once(curve.signatures, signature_text(points.sections[k]));
+    curve.ends.push_back(end_of(curve, points.sections[k], reasons.size() == points.sections.size() ? reasons[k] : ""));
+  }
+}
+
+/// At the edge of the rectangle, at a label, else as the run says.
+CurveEnd CurveRounds::end_of(const ExploredCurve& curve, const PointSection& section,
+                             const std::string& stopped) const {
+  const Eigen::Vector2d widths = columns().widths;
+  const CurveSection whole = curve_sections("", "", {{section}, {}}, columns()).front();
+  const Eigen::Vector2d place = whole.points.back().place.cwiseProduct(widths);
+  CurveEnd end{place(0), place(1), stopped};
+  if (const CurveLabel* const label = find_label(curve.labels, whole.labels.back()))
+    end.reason = fmt::format("{} {}", label->type, label->label) + (label->type == "MX" ? ", " + stopped
+                                                                    : label->type == "GR" && !label->detail.empty()
+                                                                        ? ", " + label->detail
+                                                                        : "");
+  const SweptRange* const ranges[] = {&context_.commands.range(), &commands_.second()};
+  for (int k = 0; k < 2; ++k)
+    for (const double edge : {ranges[k]->from, ranges[k]->to})
+      if (std::abs(place(k) - edge) <= same_place * widths(k))
+        end.reason = fmt::format("the edge {} = {}", ranges[k]->parameter, edge);
+  return end;
+}
+
+void CurveRounds::take_slice(const Candidate& candidate, Candidates& next) {
+  ExploredBranch slice = candidate.slice;
+  const RunFiles files = files_of(slice.name);
+  if (files.admissible.only_at_start) return;
+  if (is_left()) return;
+  slice.from = std::numeric_limits<double>::infinity();
+  slice.to = -slice.from;
+  for (const PointSection& section : read_point_file(context_.commands.file('p', slice.name)).sections) {
+    add_once(slice.signatures, signature_text(section));
+    for (const PointRow& row : section.rows) {
+      slice.from = std::min(slice.from, row.values.front());
+      slice.to = std::max(slice.to, row.values.front());
+    }
+  }
+  const double second = stored_parameter(files.solutions.solutions.front(), commands_.second_index());
+  slice.origin =
+      fmt::format("at {} = {:.6g} beside XI {} of {}", curves_.second, second, candidate.label, candidate.owner);
+  for (const Labelled& label : labels_of(files))
+    slice.labels.push_back({label.label, label.type, label.first, "", label.is_admissible ? "" : "inadmissible", ""});
+  curves_.slices.push_back(slice);
+  set_curve(candidate, slice.name);
+  context_.show(
+      fmt::format("{}: {}, {} = {:.6g} to {:.6g}\n", slice.name, slice.origin, curves_.first, slice.from, slice.to));
+  add_curves(slice, next);
+}
+
+void CurveRounds::join() {
+  for (const CurveSection& section : catalogue_.sections()) {
+    const ExploredCurve* const curve = find_named(curves_.curves, section.curve);
+    for (std::size_t k = 0; k < section.points.size(); ++k)
+      if (section.labels[k] > 0) join_label(*curve, section, k);
+  }
+  for (const JoinedPoint& joint : curves_.joints)
+    for (const JoinedCurve& one : joint.curves)
+      for (CurveEnd& end : find_named(curves_.curves, one.curve)->ends)
+        if (one.is_end && is_at(joint, end.first, end.second)) end.reason += ends_on(joint, one.curve);
+}
+
+bool CurveRounds::is_at(const JoinedPoint& joint, double first, double second) const {
+  const Eigen::Vector2d widths = columns().widths;
+  return std::abs(joint.first - first) <= same_place * widths(0) &&
+         std::abs(joint.second - second) <= same_place * widths(1);
+}
+
+void CurveRounds::join_label(const ExploredCurve& curve, const CurveSection& section, std::size_t point) {
+  const CurveLabel* const label = find_label(curve.labels, section.labels[point]);
+  if (label == nullptr) return;
+  std::vector<std::string> others = catalogue_.curves_through(section.points[point]);
+  std::erase(others, curve.name);
+  if (others.empty()) return;
+  auto joint = std::find_if(curves_.joints.begin(), curves_.joints.end(),
+                            [&](const JoinedPoint& one) { return is_at(one, label->first, label->second); });
+  if (joint == curves_.joints.end()) joint = curves_.joints.insert(joint, JoinedPoint{label->first, label->second, {}});
+  const auto member = [&](const std::string& name) -> JoinedCurve& {
+    for (JoinedCurve& one : joint->curves)
+      if (one.curve == name) return one;
+    return joint->curves.emplace_back(JoinedCurve{name, 0, "", false});
+  };
+  for (const std::string& other : others) member(other);
+  JoinedCurve& self = member(curve.name);
+  self.label = label->label;
+  self.type = label->type;
+  self.is_end = point + 1 == section.points.size();
+}
+
+}  // namespace tchat

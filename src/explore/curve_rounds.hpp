@@ -1,0 +1,90 @@
+/// Curves in two parameters, after the diagram over one: every special point with a curve is followed in both
+/// directions in the rectangle, unless a curve that is there passes through it. At grazing points with xi_n = 0 the
+/// orbits with one impact in n returns are followed over the first parameter, on both sides along the grazing curve;
+/// their special points have curves, too. A contact on a curve has its grazing curve.
+///
+/// Rounds of jobs, as in explorer.hpp.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "explore/curve_catalogue.hpp"
+#include "explore/curve_commands.hpp"
+#include "explore/explored_curves.hpp"
+#include "run/next_command.hpp"
+
+namespace tchat {
+
+class CurveRounds {
+ public:
+  /// What an exploration is asked and has. All must outlive this.
+  struct Context {
+    const ExploreRequest& request;
+    const ExplorationCommands& commands;
+    const HybridSystem& system;
+    JobRunner& runner;
+    ExploredDiagram& diagram;  ///< its labels are told their curves
+    std::function<bool()> goes_on;
+    std::function<void(const std::string&)> show;
+  };
+  /// `value`: of the second parameter in the diagram. Throws UserError as CurveCommands does.
+  CurveRounds(const Context& context, double value);
+
+  void follow();
+  const ExploredCurves& curves() const { return curves_; }
+
+ private:
+  /// A label with its orbit.
+  struct Labelled {
+    int label = 0;
+    std::string type;
+    NextStart start;
+    std::vector<int> xi_zeros;
+    double first = 0.0, second = 0.0;
+    CurvePoint point;
+    bool is_admissible = true;
+    bool is_section_tangent = false;
+  };
+  /// A job with what it is to find: a curve, or a slice.
+  struct Candidate {
+    bool is_slice = false;
+    ExploredCurve curve;
+    ExploredBranch slice;
+    CurvePoint start;   ///< of a curve
+    std::string owner;  ///< the branch, slice or curve that it is from
+    int label = 0;      ///< of the owner
+    const CommandJob& job() const { return is_slice ? slice.job : curve.job; }
+    const std::string& name() const { return job().name; }
+  };
+  using Candidates = std::vector<Candidate>;
+  struct RunFiles;
+
+  CurveColumns columns() const;
+  RunFiles files_of(const std::string& name) const;
+  std::vector<Labelled> labels_of(const RunFiles& files) const;
+  /// The curve that is there and passes through the start of a candidate; "" without one.
+  std::string known_curve(const Candidate& candidate) const;
+  void set_curve(const Candidate& candidate, const std::string& curve);
+
+  void add_curves(const ExploredBranch& branch, Candidates& next) const;
+  void add_curve(const RunFiles& files, const Labelled& label, bool has_returns, Candidates& next) const;
+  void add_slices(const ExploredCurve& curve, const Labelled& label, Candidates& next) const;
+  Candidates run(const Candidates& round);
+  bool is_left();
+  void take_curve(const Candidate& candidate, const std::string& log, Candidates& next);
+  void take_slice(const Candidate& candidate, Candidates& next);
+  void describe(ExploredCurve& curve, const std::string& log) const;
+  CurveEnd end_of(const ExploredCurve& curve, const PointSection& section, const std::string& stopped) const;
+  void join();
+  bool is_at(const JoinedPoint& joint, double first, double second) const;
+  void join_label(const ExploredCurve& curve, const CurveSection& section, std::size_t point);
+
+  Context context_;
+  CurveCommands commands_;
+  CurveCatalogue catalogue_;
+  ExploredCurves curves_;
+};
+
+}  // namespace tchat

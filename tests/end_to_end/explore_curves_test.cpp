@@ -1,0 +1,187 @@
+// tchat explore --and: curves in two parameters that are known in closed form, and the points that they have in common.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "end_to_end/closed_forms.hpp"
+#include "end_to_end/workspace.hpp"
+#include "files/point_file_reader.hpp"
+
+using namespace test_support;
+
+namespace {
+
+constexpr double zeta = 0.05, restitution = 0.8;
+
+constexpr const char* ball = R"(par Gamma=1.3, r=0.5
+init velocity=3, w=1.3
+growth = 1 - (table^2 + w^2)/Gamma^2
+height'   = velocity
+velocity' = -1
+table'    = growth*table + w
+w'        = growth*w - table
+event contact = height - table
+jump impact: velocity -> -r*velocity + (1 + r)*w
+after any: contact -> impact
+)";
+
+/// The name of the first curve of a kind from a label whose branch has all of `from` in its name.
+std::string curve_from(const std::string& tree, const std::string& kind, const std::vector<std::string>& from) {
+  const std::string word = "  " + kind + " curve from ";
+  for (std::size_t at = tree.find(word); at != std::string::npos; at = tree.find(word, at + 1)) {
+    const std::size_t line = tree.rfind('\n', at) + 1;
+    const std::string origin = tree.substr(at, tree.find(':', at) - at);
+    const auto has = [&](const std::string& part) { return origin.find(part) != std::string::npos; };
+    if (std::all_of(from.begin(), from.end(), has)) return tree.substr(line, at - line);
+  }
+  FAIL("no " << kind << " curve from " << from.back() << " in\n" << tree);
+  return "";
+}
+
+struct Place {
+  double first, second;
+};
+
+/// All points of a curve but its ends.
+std::vector<Place> inner_points(const std::string& path, const std::string& second) {
+  std::vector<Place> places;
+  for (const tchat::PointSection& section : tchat::read_point_file(path).sections) {
+    const auto column = std::find(section.columns.begin(), section.columns.end(), second) - section.columns.begin();
+    for (std::size_t k = 0; k + 1 < section.rows.size(); ++k)
+      places.push_back({section.rows[k].values.front(), section.rows[k].values[static_cast<std::size_t>(column)]});
+  }
+  REQUIRE(places.size() > 4);
+  return places;
+}
+
+double squared_alpha(double velocity, double omega, int periods) {
+  return std::pow(ImpactingOrbit(velocity, omega, zeta, restitution, periods).alpha(), 2);
+}
+
+/// The fold of the orbits with one impact in so many periods: alpha^2 is quadratic in the impact velocity.
+double fold(double omega, int periods) {
+  const double zero = squared_alpha(0.0, omega, periods);
+  const double one = squared_alpha(1.0, omega, periods), two = squared_alpha(2.0, omega, periods);
+  const double second = 0.5 * (two - 2.0 * one + zero), first = one - zero - second;
+  return std::sqrt(zero - first * first / (4.0 * second));
+}
+
+/// Their doubling. With E the free oscillator's flow over the period and S the impact's saltation matrix
+/// ((-r, 0), (s, -r)), s = (1 + r) (alpha y2 - 1)/v, the multiplier -1 has 1 + tr(E S) + det(E S) = 0, which is linear
+/// in s; alpha y2 at the impact is linear in v.
+double doubling(double omega, int periods) {
+  const double time = 2.0 * M_PI * periods / omega, frequency = std::sqrt(1.0 - zeta * zeta);
+  const double decay = std::exp(-zeta * time);
+  const double s =
+      (2.0 * restitution * decay * std::cos(frequency * time) - 1.0 - restitution * restitution * decay * decay) /
+      (decay * std::sin(frequency * time) / frequency);
+  const auto force = [&](double velocity) {
+    const ImpactingOrbit orbit(velocity, omega, zeta, restitution, periods);
+    return orbit.alpha() * orbit.at(0.0)[3];
+  };
+  const double at_rest = force(0.0), slope = force(1.0) - at_rest;
+  const double velocity = (1.0 + restitution) * (at_rest - 1.0) / (s - (1.0 + restitution) * slope);
+  return ImpactingOrbit(velocity, omega, zeta, restitution, periods).alpha();
+}
+
+}  // namespace
+
+TEST_CASE("the impact oscillator: folds and doublings of three periods come from points of the grazing curve") {
+  const Workspace workspace;
+  const Outcome outcome =
+      workspace.tchat("explore linosc --over alpha=1:40:41 --and omega=1.4:6.5 PAR(omega)=2.0072 -o osc -q -j 2");
+  INFO(outcome.text());
+  REQUIRE(outcome.status == 0);
+  const std::string tree = workspace.read("osc.txt");
+  INFO(tree);
+  const auto points = [&](const std::string& name) { return inner_points(workspace.file("osc/p." + name), "omega"); };
+
+  for (const Place& point : points(curve_from(tree, "GR", {" of a1"})))
+    CHECK(point.first ==
+          Approx(std::hypot(1.0 - point.second * point.second, 2.0 * zeta * point.second)).epsilon(1e-8));
+  // Where xi_k = 0 and xi_n > 0 for n < k: the free oscillator makes half a turn in k periods.
+  for (int k = 1; k <= 3; ++k) {
+    const std::vector<std::string> family{"_XI", "_in" + std::to_string(k) + "_"};
+    INFO("one impact in " << k << " periods");
+    const std::string folds = curve_from(tree, "LP", family);
+    const std::string doublings = k == 1 ? "a2_PD3_curve" : curve_from(tree, "PD", family);
+    for (const Place& point : points(folds)) CHECK(point.first == Approx(fold(point.second, k)).epsilon(1e-8));
+    for (const Place& point : points(doublings)) CHECK(point.first == Approx(doubling(point.second, k)).epsilon(1e-8));
+    const double omega = 2.0 * k * std::sqrt(1.0 - zeta * zeta);
+    const std::string joint = fmt::format("({:.10g}, {:.10g}): ", std::hypot(1.0 - omega * omega, 0.1 * omega), omega);
+    const std::size_t at = tree.find(joint, tree.find("Codimension two"));
+    REQUIRE(at != std::string::npos);
+    const std::string members = tree.substr(at, tree.find('\n', at) - at);
+    for (const std::string& name : {folds, doublings, std::string("a1_GR2_curve")})
+      CHECK(members.find(name) != std::string::npos);
+  }
+
+  SECTION("the same command finds all of it done, and make makes the curves") {
+    REQUIRE(
+        workspace.tchat("explore linosc --over alpha=1:40:41 --and omega=1.4:6.5 PAR(omega)=2.0072 -o osc -q").status ==
+        0);
+    CHECK(workspace.read("osc.txt") == tree);
+    const std::string file = "osc/p." + curve_from(tree, "PD", {"_in3_"});
+    const std::string before = workspace.read(file);
+    REQUIRE(workspace.shell("mkdir made && cp linosc.so Makefile.osc made").status == 0);
+    const Outcome made = workspace.make("made", "-s -f Makefile.osc " + file);
+    INFO(made.text());
+    REQUIRE(made.status == 0);
+    CHECK(workspace.read("made/" + file) == before);
+  }
+}
+
+TEST_CASE("the bouncing ball in two parameters: each curve once, whichever branch has its label") {
+  const Workspace workspace;
+  workspace.write("ball.tch", ball);
+  const Outcome outcome = workspace.tchat("explore ball --over Gamma=1:1.7:71 --and r=0.35:0.6 --doublings 1 -o b -q");
+  INFO(outcome.text());
+  REQUIRE(outcome.status == 0);
+  const std::string tree = workspace.read("b.txt");
+  INFO(tree);
+  const auto birth = [](double r) { return M_PI * (1.0 - r) / (1.0 + r); };
+  for (const Place& point : inner_points(workspace.file("b/p.a1_LP4_curve"), "r"))
+    CHECK(point.first == Approx(birth(point.second)).epsilon(1e-8));
+  for (const Place& point : inner_points(workspace.file("b/p.a1_PD2_curve"), "r")) {
+    const double r = point.second;
+    const double slope = 2.0 * (1.0 + r * r) / ((1.0 + r) * (1.0 + r));
+    CHECK(point.first == Approx(std::hypot(birth(r), slope)).epsilon(1e-8));
+  }
+  CHECK(tree.find("the edge r = 0.6") != std::string::npos);
+  CHECK(tree.find("the edge Gamma = 1.7") != std::string::npos);
+  // The doubled orbits have BP where the others have PD.
+  CHECK(tree.find("-> a1, curve a1_PD2_curve") != std::string::npos);
+  CHECK(tree.find("BP curve") == std::string::npos);
+}
+
+TEST_CASE("one impact in two returns: a period doubling is passed twice within a step that turns at a branch point") {
+  const Workspace workspace;
+  const Outcome outcome = workspace.tchat(
+      "explore linosc --over alpha=1:40:41 PAR(omega)=2 --returns 2 --doublings 0 --branches 4 -o osc -q");
+  INFO(outcome.text());
+  REQUIRE(outcome.status == 0);
+  const std::string tree = workspace.read("osc.txt");
+  INFO(tree);
+  const std::size_t at = tree.find("a1_GR2_in2_GR3_branch  ");
+  REQUIRE(at != std::string::npos);
+  const auto value = [&](const std::string& label) {
+    return std::stod(tree.substr(tree.find(label, at) + label.size()));
+  };
+  // The branch goes back where it bifurcates from the orbits of one period, through the same orbits shifted by one.
+  CHECK(value("BP 3 at ") == Approx(doubling(2.0, 1)).epsilon(1e-8));
+  CHECK(value("PD 2 at ") == Approx(value("PD 4 at ")).epsilon(1e-8));
+}
+
+TEST_CASE("second ranges that are none are refused with the form") {
+  const Workspace workspace;
+  const auto refusal = [&](const std::string& words) {
+    const Outcome outcome = workspace.tchat("explore linosc --over alpha=1:5 --and " + words);
+    CHECK(outcome.status == 2);
+    return outcome.text();
+  };
+  for (const char* const words : {"omega", "omega=3:2", "omega=1:3:100"})
+    CHECK(refusal(words).find("as alpha=2.9:3.3") != std::string::npos);
+  CHECK(refusal("beta=1:2").find("no parameter of this name") != std::string::npos);
+  CHECK(refusal("alpha=1:2").find("the parameter of --over") != std::string::npos);
+  CHECK(refusal("omega=3:4").find("the diagram is at omega = 2, outside of this range") != std::string::npos);
+}
