@@ -138,8 +138,9 @@ std::string CurveCatalogue::curve_at(const std::string& kind, const CurvePoint& 
   for (const CurveSection& known : sections_) {
     const bool is_doubled = kind == "BP" && known.kind == "PD";
     if (known.kind != kind && !is_doubled) continue;
+    const bool may_repeat = is_doubled || kind == "GR";  // an orbit that touches does so on every turn
     const auto same = [&](const Passage& passage) {
-      return is_doubled ? has_orbit_repeated(passage, point.numbers) : has_orbit(passage, point.numbers);
+      return may_repeat ? has_orbit_repeated(passage, point.numbers) : has_orbit(passage, point.numbers);
     };
     if (any_passage(known, point.place, same)) return known.curve;
   }

@@ -26,7 +26,7 @@ constexpr double same_label = 1e-4;      // as a share of the range of the param
 /// Adds the points of a branch. False if one of its sections does not have the column.
 bool add_points(const PointFile& file, const std::string& column, Points& points) {
   for (const PointSection& section : file.sections) {
-    const auto at = std::find(section.columns.begin(), section.columns.end(), column);
+    const auto at = std::find(section.columns.begin(), section.columns.end(), section.at_rest(column));
     if (at == section.columns.end()) return false;
     const auto place = static_cast<std::size_t>(at - section.columns.begin());
     for (const PointRow& row : section.rows) points.emplace_back(row.values.front(), row.values[place]);

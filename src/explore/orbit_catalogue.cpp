@@ -6,143 +6,141 @@
 #include <optional>
 
 #include "explore/point_interpolation.hpp"
-    #include "problem_type/problem_type.hpp"
-    
-    namespace tchat {
+#include "problem_type/problem_type.hpp"
 
-  namespace {
+namespace tchat {
 
-  using Eigen::Index;
-  using Eigen::VectorXd;
+namespace {
 
-  bool repeats_after(const SignatureWord& word, std::size_t length) {
-    for (std::size_t i = length; i < word.size(); ++i)
-      if (word[i] != word[i - length]) return false;
-    return true;
+using Eigen::Index;
+using Eigen::VectorXd;
+
+bool repeats_after(const SignatureWord& word, std::size_t length) {
+  for (std::size_t i = length; i < word.size(); ++i)
+    if (word[i] != word[i - length]) return false;
+  return true;
+}
+
+std::optional<std::size_t> column_of(const PointSection& section, const std::string& name) {
+  const auto at = std::find(section.columns.begin(), section.columns.end(), name);
+  if (at == section.columns.end()) return std::nullopt;
+  return static_cast<std::size_t>(at - section.columns.begin());
+}
+
+std::vector<std::string> state_columns(const PointSection& section) {
+  std::vector<std::string> names;
+  for (int k = 1; k <= section.dimension; ++k) names.push_back(section.state_name(k));
+  return names;
+}
+
+/// The orbits of a section at a parameter value, with the uncertainty of each number.
+std::vector<InterpolatedPoint> orbits_at(const CataloguedSection& section, double parameter) {
+  std::vector<InterpolatedPoint> result;
+  for (Index i = 0; i + 1 < std::ssize(section.parameter); ++i) {
+    const double a = section.parameter[static_cast<std::size_t>(i)];
+    const double b = section.parameter[static_cast<std::size_t>(i + 1)];
+    if (!(std::min(a, b) <= parameter && parameter <= std::max(a, b)) || a == b) continue;
+    result.push_back(interpolate(section.parameter, section.numbers, i, parameter));
   }
-
-  std::optional<std::size_t> column_of(const PointSection& section, const std::string& name) {
-    const auto at = std::find(section.columns.begin(), section.columns.end(), name);
-    if (at == section.columns.end()) return std::nullopt;
-    return static_cast<std::size_t>(at - section.columns.begin());
-  }
-
-  std::vector<std::string> state_columns(const PointSection& section) {
-    std::vector<std::string> names;
-    for (int k = 1; k <= section.dimension; ++k) names.push_back(section.state_name(k));
-    return names;
-  }
-
-    /// The orbits of a section at a parameter value, with the uncertainty of each number.
-  std::vector<InterpolatedPoint> orbits_at(const CataloguedSection& section, double parameter) {
-    std::vector<InterpolatedPoint> result;
-    for (Index i = 0; i + 1 < std::ssize(section.parameter); ++i) {
-      const double a = section.parameter[static_cast<std::size_t>(i)];
-      const double b = section.parameter[static_cast<std::size_t>(i + 1)];
-      if (!(std::min(a, b) <= parameter && parameter <= std::max(a, b)) || a == b) continue;
-      result.push_back(interpolate(section.parameter, section.numbers, i, parameter));
-    }
-    return result;
-  }
+  return result;
+}
 
 /// A signature does not count how often an orbit is run round where nothing is cut: its period may be a multiple of
-  /// that of the known one, or a part of it.
-  VectorXd with_period_of(const InterpolatedPoint& known, VectorXd numbers) {
-    const double ratio = numbers(0) / known.numbers(0);
-    const double turns = std::max(1.0, std::round(std::max(ratio, 1.0 / ratio)));
-    numbers(0) *= ratio > 1.0 ? 1.0 / turns : turns;
-    return numbers;
+/// that of the known one, or a part of it.
+VectorXd with_period_of(const InterpolatedPoint& known, VectorXd numbers) {
+  const double ratio = numbers(0) / known.numbers(0);
+  const double turns = std::max(1.0, std::round(std::max(ratio, 1.0 / ratio)));
+  numbers(0) *= ratio > 1.0 ? 1.0 / turns : turns;
+  return numbers;
+}
+
+}  // namespace
+
+PrimitiveWord primitive_word(const SignatureWord& signature) {
+  std::size_t length = 1;
+  while (length < signature.size() && (signature.size() % length != 0 || !repeats_after(signature, length))) ++length;
+  SignatureWord word(signature.begin(),
+                     signature.begin() + static_cast<std::ptrdiff_t>(std::min(length, signature.size())));
+  SignatureWord least = word;
+  for (std::size_t shift = 1; shift < word.size(); ++shift) {
+    std::rotate(word.begin(), word.begin() + 1, word.end());
+    least = std::min(least, word);
   }
+  return {least, signature.empty() ? 1 : static_cast<int>(signature.size() / least.size())};
+}
 
-    }  // namespace
-
-  PrimitiveWord primitive_word(const SignatureWord& signature) {
-    std::size_t length = 1;
-    while (length < signature.size() && (signature.size() % length != 0 || !repeats_after(signature, length))) ++length;
-    SignatureWord word(signature.begin(),
-                       signature.begin() + static_cast<std::ptrdiff_t>(std::min(length, signature.size())));
-    SignatureWord least = word;
-    for (std::size_t shift = 1; shift < word.size(); ++shift) {
-      std::rotate(word.begin(), word.begin() + 1, word.end());
-      least = std::min(least, word);
+std::vector<CataloguedSection> catalogued_sections(const std::string& branch, const PointFile& file,
+                                                   const std::vector<std::string>& monitors) {
+  std::vector<CataloguedSection> result;
+  int number = 0;
+  for (const PointSection& section : file.sections) {
+    ++number;
+    const bool rests = section.problem_type == equilibrium.number;
+    const std::vector<std::string> names = rests ? state_columns(section) : monitors;
+    std::vector<std::size_t> columns;
+    if (const auto period = column_of(section, "PERIOD"); period && !rests) columns.push_back(*period);
+    for (const std::string& name : names)
+      if (const auto column = column_of(section, name)) columns.push_back(*column);
+    if (columns.size() != (rests ? 0 : 1) + names.size()) continue;
+    CataloguedSection one{branch, number, primitive_word(section.signature), {}, rests, {}};
+    one.numbers.resize(std::ssize(columns), std::ssize(section.rows));
+    for (std::size_t r = 0; r < section.rows.size(); ++r) {
+      one.parameter.push_back(section.rows[r].values.front());
+      for (std::size_t k = 0; k < columns.size(); ++k)
+        one.numbers(static_cast<Index>(k), static_cast<Index>(r)) = section.rows[r].values[columns[k]];
+      if (!rests) one.numbers(0, static_cast<Index>(r)) /= one.signature.repetitions;
     }
-    return {least, signature.empty() ? 1 : static_cast<int>(signature.size() / least.size())};
+    result.push_back(std::move(one));
   }
+  return result;
+}
 
-  std::vector<CataloguedSection> catalogued_sections(const std::string& branch, const PointFile& file,
-                                                     const std::vector<std::string>& monitors) {
-    std::vector<CataloguedSection> result;
-    int number = 0;
-    for (const PointSection& section : file.sections) {
-      ++number;
-      const bool rests = section.problem_type == equilibrium.number;
-      const std::vector<std::string> names = rests ? state_columns(section) : monitors;
-      std::vector<std::size_t> columns;
-      if (const auto period = column_of(section, "PERIOD"); period && !rests) columns.push_back(*period);
-      for (const std::string& name : names)
-        if (const auto column = column_of(section, name)) columns.push_back(*column);
-      if (columns.size() != (rests ? 0 : 1) + names.size()) continue;
-      CataloguedSection one{branch, number, primitive_word(section.signature), {}, rests, {}};
-      one.numbers.resize(std::ssize(columns), std::ssize(section.rows));
-      for (std::size_t r = 0; r < section.rows.size(); ++r) {
-        one.parameter.push_back(section.rows[r].values.front());
-        for (std::size_t k = 0; k < columns.size(); ++k)
-          one.numbers(static_cast<Index>(k), static_cast<Index>(r)) = section.rows[r].values[columns[k]];
-        if (!rests) one.numbers(0, static_cast<Index>(r)) /= one.signature.repetitions;
-      }
-      result.push_back(std::move(one));
-    }
-    return result;
+/// Points from the middle of the section to its end tell; its beginning is near where it bifurcates. All but one have
+/// to agree: a largest value may have a kink, which interpolation does not see.
+std::string OrbitCatalogue::branch_of(const CataloguedSection& section) const {
+  const auto count = static_cast<Index>(section.parameter.size());
+  std::string found;
+  int missing = 0;
+  for (const double share : {0.4, 0.5, 0.6, 0.75, 0.95}) {
+    const auto row =
+        std::min<Index>(count - 1, static_cast<Index>(std::lround(share * static_cast<double>(count - 1))));
+    const std::string branch =
+        branch_at(section, section.parameter[static_cast<std::size_t>(row)], section.numbers.col(row));
+    if (branch.empty() && ++missing > 1) return "";
+    if (!branch.empty()) found = branch;
   }
+  return found;
+}
 
-  /// Points from the middle of the section to its end tell; its beginning is near where it bifurcates. All but one have
-  /// to agree: a largest value may have a kink, which interpolation does not see.
-  std::string OrbitCatalogue::branch_of(const CataloguedSection& section) const {
-    const auto count = static_cast<Index>(section.parameter.size());
-    std::string found;
-    int missing = 0;
-    for (const double share : {0.4, 0.5, 0.6, 0.75, 0.95}) {
-      const auto row =
-          std::min<Index>(count - 1, static_cast<Index>(std::lround(share * static_cast<double>(count - 1))));
-      const std::string branch =
-          branch_at(section, section.parameter[static_cast<std::size_t>(row)], section.numbers.col(row));
-      if (branch.empty() && ++missing > 1) return "";
-      if (!branch.empty()) found = branch;
-    }
-    return found;
+std::string OrbitCatalogue::branch_with_state(double parameter, const VectorXd& state) const {
+  for (const CataloguedSection& known : sections_) {
+    if (!known.rests) continue;
+    for (const InterpolatedPoint& one : orbits_at(known, parameter))
+      if (agrees(one, state)) return known.branch;
   }
+  return "";
+}
 
-  std::string OrbitCatalogue::branch_with_state(double parameter, const VectorXd& state) const {
-    for (const CataloguedSection& known : sections_) {
-      if (!known.rests) continue;
-      for (const InterpolatedPoint& one : orbits_at(known, parameter))
-        if (agrees(one, state)) return known.branch;
-    }
-    return "";
+std::string OrbitCatalogue::branch_at(const CataloguedSection& like, double parameter, const VectorXd& numbers) const {
+  for (const CataloguedSection& known : sections_) {
+    if (known.rests != like.rests || known.signature.word != like.signature.word) continue;
+    for (const InterpolatedPoint& orbit : orbits_at(known, parameter))
+      if (agrees(orbit, like.rests ? numbers : with_period_of(orbit, numbers))) return known.branch;
   }
+  return "";
+}
 
-  std::string OrbitCatalogue::branch_at(const CataloguedSection& like, double parameter, const VectorXd& numbers)
-      const {
-    for (const CataloguedSection& known : sections_) {
-      if (known.rests != like.rests || known.signature.word != like.signature.word) continue;
-      for (const InterpolatedPoint& orbit : orbits_at(known, parameter))
-        if (agrees(orbit, like.rests ? numbers : with_period_of(orbit, numbers))) return known.branch;
+std::string OrbitCatalogue::branch_with_period(const SignatureWord& signature, double parameter, double period) const {
+  const PrimitiveWord wanted = primitive_word(signature);
+  for (const CataloguedSection& known : sections_) {
+    if (known.rests || known.signature.word != wanted.word) continue;
+    for (const InterpolatedPoint& orbit : orbits_at(known, parameter)) {
+      const double time = orbit.numbers(0) * known.signature.repetitions;
+      const double tolerance = 2.0 * orbit.uncertainty(0) * known.signature.repetitions + 1e-4 * std::abs(period);
+      if (std::abs(time - period) <= tolerance) return known.branch;
     }
-    return "";
   }
-
-  std::string OrbitCatalogue::branch_with_period(const SignatureWord& signature, double parameter, double period)
-      const {
-    const PrimitiveWord wanted = primitive_word(signature);
-    for (const CataloguedSection& known : sections_) {
-      if (known.rests || known.signature.word != wanted.word) continue;
-      for (const InterpolatedPoint& orbit : orbits_at(known, parameter)) {
-        const double time = orbit.numbers(0) * known.signature.repetitions;
-        const double tolerance = 2.0 * orbit.uncertainty(0) * known.signature.repetitions + 1e-4 * std::abs(period);
-        if (std::abs(time - period) <= tolerance) return known.branch;
-      }
-    }
-    return "";
-  }
+  return "";
+}
 
 }  // namespace tchat

@@ -336,6 +336,14 @@ std::string PointSection::shown_parameter(int k) const {
 }
 std::string PointSection::state_name(int k) const { return name_in(states, k, "U"); }
 
+std::string PointSection::at_rest(const std::string& column) const {
+  if (problem_type != equilibrium.number) return column;
+  for (int k = 1; k <= dimension; ++k)
+    for (const char* const kind : {"max", "min", "mean"})
+      if (column == fmt::format("{}({})", kind, state_name(k))) return state_name(k);
+  return column;
+}
+
 std::vector<int> PointSection::free_problem_parameters() const {
   const bool ours = is_own_problem_type(problem_type);
   constexpr int auto_period_parameter = 11;

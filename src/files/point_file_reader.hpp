@@ -55,6 +55,8 @@ struct PointSection {
   /// The same with "T2" for the second duration: what screens and axes show.
   std::string shown_parameter(int k) const;
   std::string state_name(int k) const;
+  /// "x" for "max(x)", "min(x)" or "mean(x)" of equilibria, where nothing moves; else `column` itself.
+  std::string at_rest(const std::string& column) const;
   /// The free parameters that are no durations and no period (PAR(11) of AUTO's periodic orbits).
   std::vector<int> free_problem_parameters() const;
   /// The k of a column that is PAR(k), by its name or as "PAR(k)".

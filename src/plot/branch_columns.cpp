@@ -122,7 +122,7 @@ std::vector<std::string> shared_free_parameters(const std::vector<BranchFile>& f
 
 std::optional<ColumnSource> column_source(const BranchFile& file, std::size_t section, const std::string& wanted) {
   const PointSection& s = file.sections[section];
-  const std::string name = normal(wanted);
+  const std::string name = s.at_rest(normal(wanted));
   ColumnSource source;
   if (const auto column = column_index(s, name)) {
     source.column = *column;

@@ -76,6 +76,9 @@ class SectionNames {
     for (int k = 1; k <= section.dimension; ++k) {
       for (const std::string& name : {section.state_name(k), fmt::format("U({})", k)}) {
         names_.push_back(name);
+        for (const char* const kind : {"max", "min", "mean"})
+          if (const std::string whole = fmt::format("{}({})", kind, name); section.at_rest(whole) != whole)
+            names_.push_back(whole);
         names_.push_back("MAX " + name);
       }
     }
