@@ -81,7 +81,7 @@ NodalSystem::NodalSystem(const DefiningSystem& system, const OrbitShape& shape)
       fx_(shape.dimension, shape.dimension),
       fp_(shape.dimension, system.free_count()) {}
 
-bool NodalSystem::factorize(const Orbit& x) {
+bool NodalSystem::factorize(const Orbit& x, double mu) {
   if (!(x.shape == shape_)) {  // segments on meshes of their own have got other numbers of intervals
     shape_ = x.shape;
     rows_of_ends_ = rows_of_ends(shape_);
@@ -90,7 +90,7 @@ bool NodalSystem::factorize(const Orbit& x) {
   values_.clear();
   for (int s = 0; s < shape_.segments; ++s) {
     put_collocation(x, s);
-    put_ends(x, s);
+    put_ends(x, s, s + 1 < shape_.segments ? 1.0 : mu);
   }
   return columns_.allFinite() && lu_.factorize(values_);
 }
@@ -118,7 +118,7 @@ void NodalSystem::put_collocation(const Orbit& x, int s) {
   }
 }
 
-void NodalSystem::put_ends(const Orbit& x, int s) {
+void NodalSystem::put_ends(const Orbit& x, int s, double mu) {
   const int n = shape_.dimension;
   const HybridSystem& hybrid = system_.system();
   const std::vector<int>& free = system_.free_parameters();
@@ -136,7 +136,7 @@ void NodalSystem::put_ends(const Orbit& x, int s) {
   system_.clear_absent(s, fx_.data(), n);
   system_.clear_absent(s, fp_.data(), system_.free_count());
   for (int a = 0; a < n; ++a) {
-    values_.push_back(1.0);
+    values_.push_back(mu);
     for (int b = 0; b < n; ++b) values_.push_back(-fx_(a, b));
     columns_.row(row++) = -fp_.row(a);
   }
@@ -154,6 +154,18 @@ void NodalSystem::solve_adjoint(const OrbitVector& q, Eigen::VectorXd& weights) 
   right_.tail(shape_.segments) = q.durations;
   weights.resize(right_.size());
   lu_.solve_transposed(right_.data(), weights.data());
+}
+
+Eigen::VectorXd NodalSystem::solve(const Eigen::VectorXd& right) {
+  Eigen::VectorXd solution(right.size());
+  lu_.solve(right.data(), solution.data());
+  return solution;
+}
+
+Eigen::VectorXd NodalSystem::solve_adjoint(const Eigen::VectorXd& right) {
+  Eigen::VectorXd weights(right.size());
+  lu_.solve_transposed(right.data(), weights.data());
+  return weights;
 }
 
 /// M maps the shift, v = the field, to |f|^2 in the row of the plane across the flow, and to zero in all others.
