@@ -42,6 +42,22 @@ class ShiftedOrbit {
     return v - (mu - shift_) * (closing_ * start);
   }
 
+  /// M(mu) v + p's column dp = right for the first free parameter, with q' v_1(0) = 0: regular at a fold, mu = 1, where
+  /// q is the critical direction.
+  Vector solve_beside(double mu, const Vector& right, const Vector& q, double& dp) {
+    const Vector v = nodal_.solve(right);
+    const Vector by_parameter = nodal_.solve(nodal_.parameter_columns().col(0));
+    Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(n_ + 1, n_ + 1);
+    matrix.topLeftCorner(n_, n_) = Eigen::MatrixXd::Identity(n_, n_) + (mu - shift_) * starts_;
+    matrix.topRightCorner(n_, 1) = by_parameter.head(n_);
+    matrix.bottomLeftCorner(1, n_) = q.transpose();
+    Vector start(n_ + 1);
+    start << v.head(n_), 0.0;
+    start = matrix.partialPivLu().solve(start);
+    dp = start(n_);
+    return v - dp * by_parameter - (mu - shift_) * (closing_ * start.head(n_));
+  }
+
   /// The vectors V and W of the multiplier nearest to mu, with |V_1(0)| = 1 and W_closing V_1(0) = 1; false where there
   /// is none near it.
   bool find_critical(Complex mu, ComplexVector& v, ComplexVector& w) {
@@ -145,14 +161,19 @@ Product product(const ComplexVector& w, const ComplexVector& rows) {
 
 constexpr double rounding_of_sums = 1e-13;  // of sums over all nodes, and of the vectors that solve sparse systems
 
-std::optional<NormalForm> form_of(const DefiningSystem& system, const Orbit& x, Complex critical) {
-  const bool is_fold = critical == Complex(1.0, 0.0);
-  ShiftedOrbit orbit(system, x, is_fold ? -1.0 : 1.0);
+bool is_fold(Complex critical) { return critical == Complex(1.0, 0.0); }
+double shift_for(Complex critical) { return is_fold(critical) ? -1.0 : 1.0; }
+
+/// `direction` becomes q.
+std::optional<NormalForm> form_of(const DefiningSystem& system, const Orbit& x, Complex critical,
+                                  ComplexVector& direction) {
+  ShiftedOrbit orbit(system, x, shift_for(critical));
   ComplexVector v, w;
   if (!orbit.is_regular() || !orbit.find_critical(critical, v, w)) return std::nullopt;
+  direction = v.head(x.shape.dimension);
   const Forms forms(system, x);
   const ComplexVector vv = forms.second(v, v);
-  if (is_fold) {
+  if (is_fold(critical)) {
     const Product sum = product(w, vv);
     return NormalForm{-0.5 * sum.value, rounding_of_sums * sum.size};
   }
@@ -171,8 +192,9 @@ std::optional<NormalForm> form_of(const DefiningSystem& system, const Orbit& x, 
   return NormalForm{factor * sum.value, rounding_of_sums * std::abs(factor) * sum.size};
 }
 
-/// The orbit at the same parameters on every second mesh point, corrected.
-std::optional<Orbit> on_coarse_mesh(const DefiningSystem& system, const Orbit& x) {
+/// The orbit on every second mesh point, corrected: at the same parameters, or near a fold at a start that differs from
+/// this one across q alone.
+std::optional<Orbit> on_coarse_mesh(const DefiningSystem& system, const Orbit& x, Complex critical, const Vector& q) {
   if (x.shape.own || x.shape.intervals < 2) return std::nullopt;
   Orbit coarse = x;
   coarse.mesh.clear();
@@ -180,17 +202,20 @@ std::optional<Orbit> on_coarse_mesh(const DefiningSystem& system, const Orbit& x
   coarse.mesh.push_back(1.0);
   coarse.shape.intervals = static_cast<int>(coarse.mesh.size()) - 1;
   coarse.states = interpolate_states(x.states, x.shape, x.mesh, coarse.shape, coarse.mesh);
-  NodalSystem nodal(system, coarse.shape);
   const NodalExpansion expansion(system);
   constexpr int most_iterations = 6;
   for (int k = 0; k < most_iterations; ++k) {
-    if (!nodal.factorize(coarse)) return std::nullopt;
-    const Vector change = nodal.solve(-expansion.part(coarse, {}, 0));
+    ShiftedOrbit orbit(system, coarse, shift_for(critical));
+    if (!orbit.is_regular()) return std::nullopt;
+    const Vector right = -expansion.part(coarse, {}, 0);
+    double dp = 0.0;
+    const Vector change = is_fold(critical) ? orbit.solve_beside(1.0, right, q, dp) : orbit.solve(1.0, right).real();
     if (!change.allFinite()) return std::nullopt;
     coarse.states += Eigen::Map<const Eigen::MatrixXd>(change.data(), coarse.states.rows(), coarse.states.cols());
     for (int s = 0; s < coarse.shape.segments; ++s)
       coarse.duration(s) += change(change.size() - coarse.shape.segments + s);
-    if (change.lpNorm<Eigen::Infinity>() < 1e-12 * (1.0 + coarse.states.cwiseAbs().maxCoeff())) return coarse;
+    coarse.par(system.free_parameters().front() - 1) += dp;
+    if (change.lpNorm<Eigen::Infinity>() < 1e-11 * (1.0 + coarse.states.cwiseAbs().maxCoeff())) return coarse;
   }
   return std::nullopt;
 }
@@ -198,10 +223,11 @@ std::optional<Orbit> on_coarse_mesh(const DefiningSystem& system, const Orbit& x
 }  // namespace
 
 std::optional<NormalForm> normal_form(const DefiningSystem& system, const Orbit& x, Complex critical) {
-  std::optional<NormalForm> form = form_of(system, x, critical);
+  ComplexVector q;
+  std::optional<NormalForm> form = form_of(system, x, critical, q);
   if (!form) return form;
-  const std::optional<Orbit> coarse = on_coarse_mesh(system, x);
-  const std::optional<NormalForm> other = coarse ? form_of(system, *coarse, critical) : std::nullopt;
+  const std::optional<Orbit> coarse = on_coarse_mesh(system, x, critical, q.real());
+  const std::optional<NormalForm> other = coarse ? form_of(system, *coarse, critical, q) : std::nullopt;
   if (!other) return std::nullopt;
   form->uncertainty += std::abs(form->coefficient - other->coefficient);
   return form;
