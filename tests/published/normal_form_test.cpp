@@ -122,6 +122,21 @@ TEST_CASE("normal form of a period doubling, in closed form: two segments and ju
   }
 }
 
+TEST_CASE("strong damping and growth along the orbit leave the normal form as it is") {
+  // States that follow x, and do not act back: one is damped by e^-300, one grows by e^30 and is reset.
+  const Workspace workspace;
+  std::string formulas = cubic_map;
+  formulas.replace(formulas.find("phi' = 1\n"), 9, "phi' = 1\ndamped' = x - 300*damped\ngrowing' = x + 30*growing\n");
+  formulas.replace(formulas.find("phi -> phi - 1"), 14, "phi -> phi - 1, growing -> growing*exp(-35)");
+  simulate(workspace, "map", formulas.c_str(), "--state 0,0,0,0 --free p");
+  workspace.succeed("run map -q -c map -d map -o map DS=0.02 RL1=0.1 NMX=20");
+  const PrintedForm form = form_at(workspace, "map", "PD");
+  CHECK(form.uncertainty < 1e-9);
+  // With 1 for x, q has y = -1 / 300 and z = -(1 - e^-30) e^-5 / (30 (1 + e^-5)); c goes with its square.
+  const double y = 1.0 / 300.0, z = (1.0 - std::exp(-30.0)) * std::exp(-5.0) / (30.0 * (1.0 + std::exp(-5.0)));
+  CHECK(form.value == Approx(0.46 / (1.0 + y * y + z * z)).epsilon(1e-9));
+}
+
 TEST_CASE("normal form of a torus bifurcation, in closed form") {
   const Workspace workspace;
   simulate(workspace, "bent", bent_oscillator, "--state 0,0,0 --free s");
