@@ -26,6 +26,7 @@ std::vector<Eigen::Index> rows_of_ends(const OrbitShape& shape) {
 
 struct Pattern {
   std::vector<int> rows, columns;
+  std::vector<int> groups;  // of each row: mesh intervals and ends of segments one after the other
 
   /// All `count` columns from `column` on, of `row`.
   void put(int row, int column, int count) {
@@ -38,14 +39,15 @@ Pattern pattern_of(const OrbitShape& shape) {
   const int n = shape.dimension;
   const int c = shape.collocation;
   Pattern pattern;
-  int row = 0;
+  int row = 0, group = 0;
   for (int s = 0; s < shape.segments; ++s) {
     const int first = shape.first_node(s) * n;
     const int duration = shape.columns() * n + s;
-    for (int j = 0; j < shape.intervals_of(s); ++j)
+    for (int j = 0; j < shape.intervals_of(s); ++j, ++group)
       for (int k = 0; k < c * n; ++k, ++row) {
         pattern.put(row, first + j * c * n, (c + 1) * n);
         pattern.put(row, duration, 1);
+        pattern.groups.push_back(group);
       }
     const int end = shape.last_node(s) * n;
     pattern.put(row++, end, n);
@@ -54,13 +56,14 @@ Pattern pattern_of(const OrbitShape& shape) {
       pattern.put(row, next + a, 1);
       pattern.put(row, end, n);
     }
+    pattern.groups.resize(static_cast<std::size_t>(row), group++);
   }
   return pattern;
 }
 
 SparseLu sparse_of(const OrbitShape& shape) {
   const Pattern pattern = pattern_of(shape);
-  return {static_cast<int>(unknowns(shape)), pattern.rows, pattern.columns};
+  return {static_cast<int>(unknowns(shape)), pattern.rows, pattern.columns, pattern.groups};
 }
 
 }  // namespace

@@ -22,8 +22,8 @@ using ComplexVector = Eigen::VectorXcd;
 /// mu.
 class ShiftedOrbit {
  public:
-  ShiftedOrbit(const DefiningSystem& system, const Orbit& x, double shift)
-      : nodal_(system, x.shape), shift_(shift), n_(x.shape.dimension) {
+  /// `nodal` is of the orbit's shape, and used up.
+  ShiftedOrbit(NodalSystem& nodal, const Orbit& x, double shift) : nodal_(nodal), shift_(shift), n_(x.shape.dimension) {
     regular_ = nodal_.factorize(x, shift);
     if (!regular_) return;
     closing_.resize(nodal_.size(), n_);
@@ -88,18 +88,24 @@ class ShiftedOrbit {
 
  private:
   Eigen::Index last_row() const { return size() - n_; }
+  template <class Solve>
+  static ComplexVector by_parts(const ComplexVector& right, const Solve& solve) {
+    ComplexVector result(right.size());
+    result.real() = solve(Vector(right.real()));
+    if (right.imag().isZero(0.0))
+      result.imag().setZero();
+    else
+      result.imag() = solve(Vector(right.imag()));
+    return result;
+  }
   ComplexVector solve_real(const ComplexVector& right) {
-    const Vector real = nodal_.solve(right.real());
-    const Vector imaginary = nodal_.solve(right.imag());
-    return real + Complex(0.0, 1.0) * imaginary;
+    return by_parts(right, [&](const Vector& part) { return nodal_.solve(part); });
   }
   ComplexVector solve_real_adjoint(const ComplexVector& right) {
-    const Vector real = nodal_.solve_adjoint(right.real());
-    const Vector imaginary = nodal_.solve_adjoint(right.imag());
-    return real + Complex(0.0, 1.0) * imaginary;
+    return by_parts(right, [&](const Vector& part) { return nodal_.solve_adjoint(part); });
   }
 
-  NodalSystem nodal_;
+  NodalSystem& nodal_;
   double shift_;
   Eigen::Index n_;
   bool regular_ = false;
@@ -165,9 +171,9 @@ bool is_fold(Complex critical) { return critical == Complex(1.0, 0.0); }
 double shift_for(Complex critical) { return is_fold(critical) ? -1.0 : 1.0; }
 
 /// `direction` becomes q.
-std::optional<NormalForm> form_of(const DefiningSystem& system, const Orbit& x, Complex critical,
+std::optional<NormalForm> form_of(const DefiningSystem& system, NodalSystem& nodal, const Orbit& x, Complex critical,
                                   ComplexVector& direction) {
-  ShiftedOrbit orbit(system, x, shift_for(critical));
+  ShiftedOrbit orbit(nodal, x, shift_for(critical));
   ComplexVector v, w;
   if (!orbit.is_regular() || !orbit.find_critical(critical, v, w)) return std::nullopt;
   direction = v.head(x.shape.dimension);
@@ -192,44 +198,49 @@ std::optional<NormalForm> form_of(const DefiningSystem& system, const Orbit& x, 
   return NormalForm{factor * sum.value, rounding_of_sums * std::abs(factor) * sum.size};
 }
 
-/// The orbit on every second mesh point, corrected: at the same parameters, or near a fold at a start that differs from
-/// this one across q alone.
-std::optional<Orbit> on_coarse_mesh(const DefiningSystem& system, const Orbit& x, Complex critical, const Vector& q) {
-  if (x.shape.own || x.shape.intervals < 2) return std::nullopt;
+Orbit on_every_second_point(const Orbit& x) {
   Orbit coarse = x;
   coarse.mesh.clear();
   for (int j = 0; j < x.shape.intervals; j += 2) coarse.mesh.push_back(x.mesh[static_cast<std::size_t>(j)]);
   coarse.mesh.push_back(1.0);
   coarse.shape.intervals = static_cast<int>(coarse.mesh.size()) - 1;
   coarse.states = interpolate_states(x.states, x.shape, x.mesh, coarse.shape, coarse.mesh);
+  return coarse;
+}
+
+/// Chord iteration at the same parameters, or near a fold at a start that moves across q alone. False where it fails.
+bool correct(const DefiningSystem& system, NodalSystem& nodal, Complex critical, const Vector& q, Orbit& x) {
   const NodalExpansion expansion(system);
-  constexpr int most_iterations = 6;
+  ShiftedOrbit orbit(nodal, x, shift_for(critical));
+  if (!orbit.is_regular()) return false;
+  constexpr int most_iterations = 10;
   for (int k = 0; k < most_iterations; ++k) {
-    ShiftedOrbit orbit(system, coarse, shift_for(critical));
-    if (!orbit.is_regular()) return std::nullopt;
-    const Vector right = -expansion.part(coarse, {}, 0);
+    const Vector right = -expansion.part(x, {}, 0);
     double dp = 0.0;
     const Vector change = is_fold(critical) ? orbit.solve_beside(1.0, right, q, dp) : orbit.solve(1.0, right).real();
-    if (!change.allFinite()) return std::nullopt;
-    coarse.states += Eigen::Map<const Eigen::MatrixXd>(change.data(), coarse.states.rows(), coarse.states.cols());
-    for (int s = 0; s < coarse.shape.segments; ++s)
-      coarse.duration(s) += change(change.size() - coarse.shape.segments + s);
-    coarse.par(system.free_parameters().front() - 1) += dp;
-    if (change.lpNorm<Eigen::Infinity>() < 1e-11 * (1.0 + coarse.states.cwiseAbs().maxCoeff())) return coarse;
+    if (!change.allFinite()) return false;
+    x.states += Eigen::Map<const Eigen::MatrixXd>(change.data(), x.states.rows(), x.states.cols());
+    for (int s = 0; s < x.shape.segments; ++s) x.duration(s) += change(change.size() - x.shape.segments + s);
+    x.par(system.free_parameters().front() - 1) += dp;
+    if (change.lpNorm<Eigen::Infinity>() < 1e-11 * (1.0 + x.states.cwiseAbs().maxCoeff())) return true;
   }
-  return std::nullopt;
+  return false;
 }
 
 }  // namespace
 
 std::optional<NormalForm> normal_form(const DefiningSystem& system, const Orbit& x, Complex critical) {
+  if (x.shape.own || x.shape.intervals < 2) return std::nullopt;
   ComplexVector q;
-  std::optional<NormalForm> form = form_of(system, x, critical, q);
+  NodalSystem fine(system, x.shape);
+  std::optional<NormalForm> form = form_of(system, fine, x, critical, q);
   if (!form) return form;
-  const std::optional<Orbit> coarse = on_coarse_mesh(system, x, critical, q.real());
-  const std::optional<NormalForm> other = coarse ? form_of(system, *coarse, critical, q) : std::nullopt;
-  if (!other) return std::nullopt;
-  form->uncertainty += std::abs(form->coefficient - other->coefficient);
+  Orbit other = on_every_second_point(x);
+  NodalSystem coarse(system, other.shape);
+  if (!correct(system, coarse, critical, q.real(), other)) return std::nullopt;
+  const std::optional<NormalForm> compared = form_of(system, coarse, other, critical, q);
+  if (!compared) return std::nullopt;
+  form->uncertainty += std::abs(form->coefficient - compared->coefficient);
   return form;
 }
 
