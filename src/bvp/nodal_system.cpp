@@ -26,6 +26,7 @@ std::vector<Eigen::Index> rows_of_ends(const OrbitShape& shape) {
 
 struct Pattern {
   std::vector<int> rows, columns;
+  std::vector<int> groups;  // of each row: mesh intervals and ends of segments one after the other
 
   /// All `count` columns from `column` on, of `row`.
   void put(int row, int column, int count) {
@@ -38,14 +39,15 @@ Pattern pattern_of(const OrbitShape& shape) {
   const int n = shape.dimension;
   const int c = shape.collocation;
   Pattern pattern;
-  int row = 0;
+  int row = 0, group = 0;
   for (int s = 0; s < shape.segments; ++s) {
     const int first = shape.first_node(s) * n;
     const int duration = shape.columns() * n + s;
-    for (int j = 0; j < shape.intervals_of(s); ++j)
+    for (int j = 0; j < shape.intervals_of(s); ++j, ++group)
       for (int k = 0; k < c * n; ++k, ++row) {
         pattern.put(row, first + j * c * n, (c + 1) * n);
         pattern.put(row, duration, 1);
+        pattern.groups.push_back(group);
       }
     const int end = shape.last_node(s) * n;
     pattern.put(row++, end, n);
@@ -54,13 +56,14 @@ Pattern pattern_of(const OrbitShape& shape) {
       pattern.put(row, next + a, 1);
       pattern.put(row, end, n);
     }
+    pattern.groups.resize(static_cast<std::size_t>(row), group++);
   }
   return pattern;
 }
 
 SparseLu sparse_of(const OrbitShape& shape) {
   const Pattern pattern = pattern_of(shape);
-  return {static_cast<int>(unknowns(shape)), pattern.rows, pattern.columns};
+  return {static_cast<int>(unknowns(shape)), pattern.rows, pattern.columns, pattern.groups};
 }
 
 }  // namespace
@@ -81,7 +84,7 @@ NodalSystem::NodalSystem(const DefiningSystem& system, const OrbitShape& shape)
       fx_(shape.dimension, shape.dimension),
       fp_(shape.dimension, system.free_count()) {}
 
-bool NodalSystem::factorize(const Orbit& x) {
+bool NodalSystem::factorize(const Orbit& x, double mu) {
   if (!(x.shape == shape_)) {  // segments on meshes of their own have got other numbers of intervals
     shape_ = x.shape;
     rows_of_ends_ = rows_of_ends(shape_);
@@ -90,7 +93,7 @@ bool NodalSystem::factorize(const Orbit& x) {
   values_.clear();
   for (int s = 0; s < shape_.segments; ++s) {
     put_collocation(x, s);
-    put_ends(x, s);
+    put_ends(x, s, s + 1 < shape_.segments ? 1.0 : mu);
   }
   return columns_.allFinite() && lu_.factorize(values_);
 }
@@ -118,7 +121,7 @@ void NodalSystem::put_collocation(const Orbit& x, int s) {
   }
 }
 
-void NodalSystem::put_ends(const Orbit& x, int s) {
+void NodalSystem::put_ends(const Orbit& x, int s, double mu) {
   const int n = shape_.dimension;
   const HybridSystem& hybrid = system_.system();
   const std::vector<int>& free = system_.free_parameters();
@@ -136,7 +139,7 @@ void NodalSystem::put_ends(const Orbit& x, int s) {
   system_.clear_absent(s, fx_.data(), n);
   system_.clear_absent(s, fp_.data(), system_.free_count());
   for (int a = 0; a < n; ++a) {
-    values_.push_back(1.0);
+    values_.push_back(mu);
     for (int b = 0; b < n; ++b) values_.push_back(-fx_(a, b));
     columns_.row(row++) = -fp_.row(a);
   }
@@ -154,6 +157,18 @@ void NodalSystem::solve_adjoint(const OrbitVector& q, Eigen::VectorXd& weights) 
   right_.tail(shape_.segments) = q.durations;
   weights.resize(right_.size());
   lu_.solve_transposed(right_.data(), weights.data());
+}
+
+Eigen::VectorXd NodalSystem::solve(const Eigen::VectorXd& right) {
+  Eigen::VectorXd solution(right.size());
+  lu_.solve(right.data(), solution.data());
+  return solution;
+}
+
+Eigen::VectorXd NodalSystem::solve_adjoint(const Eigen::VectorXd& right) {
+  Eigen::VectorXd weights(right.size());
+  lu_.solve_transposed(right.data(), weights.data());
+  return weights;
 }
 
 /// M maps the shift, v = the field, to |f|^2 in the row of the plane across the flow, and to zero in all others.

@@ -426,7 +426,9 @@ void ContinuationRun::record(const SpecialPoint& special, const PointData& data)
                     test_values_,
                     data.details};
   if (settings_.remark) point.remark = settings_.remark(here_.orbit);
-  if (settings_.label_remark && point.labelled()) point.remark += settings_.label_remark(here_.orbit);
+  for (const std::string& more :
+       {special.remark, settings_.label_remark && point.labelled() ? settings_.label_remark(here_.orbit) : ""})
+    if (!more.empty()) point.remark += (point.remark.empty() ? "" : "; ") + more;
   summary_.points = number_;
   summary_.inadmissible_points += !violations.empty();
   summary_.multipliers_computed = settings_.multipliers;

@@ -231,6 +231,38 @@ void difference_second(const HybridSystem& system, FunctionKind kind, int index,
     differentiate(DifferencedDirectional(system, kind, index, rows, active, direction));
 }
 
+void difference_third(const HybridSystem& system, FunctionKind kind, int index, const double* x, const double* par,
+                      double* out) {
+  const Eigen::Index n = system.dimension();
+  const Eigen::Index r = system.rows(kind);
+  const Eigen::Map<const Eigen::MatrixXd> at(x, n, 8);
+  Eigen::Map<Eigen::MatrixXd> of(out, r, 8);
+  Eigen::VectorXd value(r), along(r);
+  Eigen::MatrixXd fx(r, n), matrix(r, n);
+  system.first(kind, index, x, par, {}, value.data(), fx.data(), nullptr);
+  const auto second = [&](const Eigen::VectorXd& state, int m) -> const Eigen::MatrixXd& {
+    system.second(kind, index, state.data(), par, {}, at.col(m).data(), along.data(), matrix.data(), nullptr);
+    return matrix;
+  };
+  of.col(0) = value;
+  of.rightCols(7).noalias() = fx * at.rightCols(7);
+  const Eigen::VectorXd state = at.col(0);
+  const Eigen::MatrixXd by_first = second(state, 1);
+  const Eigen::MatrixXd by_second = second(state, 2);
+  of.col(3) += by_first * at.col(2);
+  of.col(5) += by_first * at.col(4);
+  of.col(6) += by_second * at.col(4);
+  of.col(7) += by_first * at.col(6) + by_second * at.col(5) + second(state, 4) * at.col(3);
+  const double size = at.col(4).norm();
+  if (size == 0.0 || at.col(1).isZero(0.0) || at.col(2).isZero(0.0)) return;
+  const double step = 1e-3 * (1.0 + state.norm()) / size;
+  const auto difference = [&](double h) {
+    const Eigen::VectorXd ahead = second(state + h * at.col(4), 1) * at.col(2);
+    return Eigen::VectorXd((ahead - second(state - h * at.col(4), 1) * at.col(2)) / (2.0 * h));
+  };
+  of.col(7) += (4.0 * difference(0.5 * step) - difference(step)) / 3.0;
+}
+
 void difference_boundary(const HybridSystem& system, const OrbitEnds& at, std::span<const int> active, double* out,
                          double* dstarts, double* dends, double* dp) {
   const int rows = system.boundary_conditions();

@@ -24,6 +24,10 @@ void difference_by_parameter(const HybridSystem& system, FunctionKind kind, int 
 void difference_second(const HybridSystem& system, FunctionKind kind, int index, const double* x, const double* par,
                        std::span<const int> active, const double* direction, double* out, double* dx, double* dp);
 
+/// HybridSystem::third, the third derivatives by a difference of second ones, of fourth order.
+void difference_third(const HybridSystem& system, FunctionKind kind, int index, const double* x, const double* par,
+                      double* out);
+
 /// The derivatives of the boundary conditions, shapes as in HybridSystem::boundary_first, by differences of them.
 void difference_boundary(const HybridSystem& system, const OrbitEnds& at, std::span<const int> active, double* out,
                          double* dstarts, double* dends, double* dp);

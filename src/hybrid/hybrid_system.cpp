@@ -198,6 +198,15 @@ void HybridSystem::second(FunctionKind kind, int index, const double* x, const d
     difference_second(*this, kind, index, x, par, active, direction, out, dx, dp);
 }
 
+void HybridSystem::third(FunctionKind kind, int index, const double* x, const double* par, double* out) const {
+  if (is_identity(kind, index))
+    std::copy_n(x, 8 * dimension(), out);
+  else if (has_third())
+    table_->third(table_->self, static_cast<int>(kind), index, x, par, out);
+  else
+    difference_third(*this, kind, index, x, par, out);
+}
+
 void HybridSystem::boundary_first(const OrbitEnds& at, std::span<const int> active, double* out, double* dstarts,
                                   double* dends, double* dp) const {
   if (table_->derivative_order >= 1 && table_->boundary_first != nullptr)

@@ -115,6 +115,12 @@ class HybridSystem {
   void second(FunctionKind kind, int index, const double* x, const double* par, std::span<const int> active,
               const double* direction, double* out, double* dx, double* dp) const;
 
+  /// The coefficients (tchat_problem::third) of F along states x_m, m = 0..7, that depend on three numbers whose
+  /// squares are left out: 8 dimension() numbers to 8 rows(kind). Where the table has none they are made of second
+  /// derivatives and a difference of these, good to about 1e-8; that allocates.
+  void third(FunctionKind kind, int index, const double* x, const double* par, double* out) const;
+  bool has_third() const { return table_->third != nullptr; }
+
   /// The boundary conditions: boundary_conditions() values.
   void boundary(const OrbitEnds& at, double* out) const {
     table_->boundary(table_->self, at.segments, at.starts, at.ends, at.par, out);

@@ -117,6 +117,7 @@ struct SparseLu::State {
   }
   bool is_factored() const { return small ? small_is_factored : frontal_is_factored || numeric != nullptr; }
   bool factorize_small();
+  void analyse();
   void solve_by_fronts(int system, const double* b, double* x);
   void solve_unrefined(int system, const double* b, double* x) {
     const bool transposed = system != UMFPACK_A;
@@ -139,6 +140,16 @@ bool SparseLu::State::factorize_small() {
     for (SparseMatrix::InnerIterator it(matrix, column); it; ++it)
       small->entries()[it.row() * rows + column] = it.value();
   return small_is_factored = small->factorize();
+}
+
+/// For UMFPACK.
+void SparseLu::State::analyse() {
+  const auto size = static_cast<int>(matrix.rows());
+  check(umfpack_di_symbolic(size, size, matrix.outerIndexPtr(), matrix.innerIndexPtr(), nullptr, &symbolic, control,
+                            info),
+        "the pattern is structurally singular");
+  integer_work.resize(static_cast<std::size_t>(size));
+  real_work.resize(static_cast<std::size_t>(size) * 5);
 }
 
 /// Refined once, like solutions by SmallLu.
@@ -185,12 +196,10 @@ SparseLu::SparseLu(int size, const std::vector<int>& rows, const std::vector<int
     return;
   }
   if (!groups.empty()) st.frontal = FrontalLu::make(size, rows, columns, groups);
-  if (st.frontal) st.rest = st.change = std::vector<double>(static_cast<std::size_t>(size));
-  check(umfpack_di_symbolic(size, size, st.matrix.outerIndexPtr(), st.matrix.innerIndexPtr(), nullptr, &st.symbolic,
-                            st.control, st.info),
-        "the pattern is structurally singular");
-  st.integer_work.resize(static_cast<std::size_t>(size));
-  st.real_work.resize(static_cast<std::size_t>(size) * 5);
+  if (st.frontal)
+    st.rest = st.change = std::vector<double>(static_cast<std::size_t>(size));
+  else
+    st.analyse();
 }
 
 SparseLu::~SparseLu() = default;
@@ -216,9 +225,10 @@ bool SparseLu::factorize(const std::vector<double>& values) {
   return factorize_sparse();
 }
 
-/// By UMFPACK.
+/// By UMFPACK; where frontal matrices did not do, its analysis of the pattern comes first.
 bool SparseLu::factorize_sparse() {
   State& st = *state_;
+  if (st.symbolic == nullptr) st.analyse();
   const double* entries = st.matrix.valuePtr();
   const int status = umfpack_di_numeric(st.matrix.outerIndexPtr(), st.matrix.innerIndexPtr(), entries, st.symbolic,
                                         &st.numeric, st.control, st.info);

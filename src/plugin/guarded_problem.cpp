@@ -61,6 +61,10 @@ struct GuardedProblem::Calls {
     fail_points(plugin, kind, 1, x, par, active, count, out, dx, dp);
   }
 
+  static void fail_third(const tchat_problem& plugin, std::int32_t kind, const double*, const double*, double* out) {
+    set_nan(out, 8 * rows(plugin, kind));
+  }
+
   static void fail_points(const tchat_problem& plugin, std::int32_t kind, std::int32_t points, const double*,
                           const double*, const std::int32_t*, std::int32_t count, double* out, double* dx, double* dp) {
     const int numbers = points * rows(plugin, kind);
@@ -159,6 +163,7 @@ GuardedProblem::GuardedProblem(const tchat_problem& plugin, const std::string& p
   table_.value = &Calls::evaluate<&tchat_problem::value, &Calls::fail_value>;
   if (plugin.first != nullptr) table_.first = &Calls::evaluate<&tchat_problem::first, &Calls::fail_first>;
   if (plugin.second != nullptr) table_.second = &Calls::evaluate<&tchat_problem::second, &Calls::fail_second>;
+  if (plugin.third != nullptr) table_.third = &Calls::evaluate<&tchat_problem::third, &Calls::fail_third>;
   if (plugin.first_at_points != nullptr)
     table_.first_at_points = &Calls::evaluate<&tchat_problem::first_at_points, &Calls::fail_points>;
   if (plugin.first_in_lanes != nullptr)

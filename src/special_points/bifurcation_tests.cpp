@@ -10,6 +10,7 @@
 #include "bvp/transversality.hpp"
 #include "hybrid/identity_jump.hpp"
 #include "special_points/label_evidence.hpp"
+#include "special_points/normal_form_text.hpp"
 
 namespace tchat {
 
@@ -105,7 +106,7 @@ SpecialPoint FoldTest::classify(const TestedPoint& point, bool) const {
     return {PointType::user, {UserPointKind::extremum}, stop_, "extremum of ICP(1) along the branch"};
   if (!held_.empty()) return {type_, {}, stop_, "fold of the curve with " + held_ + " held"};
   if (is_monitor_ && !is_fold) return {type_, {}, stop_, "fold, or extremum of ICP(1) along the branch"};
-  if (s < 0 || is_fold) return {type_, {}, stop_, "fold"};
+  if (s < 0 || is_fold) return {type_, {}, stop_, "fold", {}, is_fold ? normal_form_text(point, 1.0) : ""};
   return {PointType::user,
           {UserPointKind::impact_velocity, s + 1, system.signature()[static_cast<std::size_t>(s)].event, 1.0},
           stop_,
@@ -138,8 +139,8 @@ std::string PeriodDoublingTest::objection(const TestedPoint& point) const {
 
 bool PeriodDoublingTest::is_genuine(const TestedPoint& point) const { return is_multiplier_at(point, -1); }
 
-SpecialPoint PeriodDoublingTest::classify(const TestedPoint&, bool) const {
-  return {PointType::period_doubling, {}, stop_, "period doubling"};
+SpecialPoint PeriodDoublingTest::classify(const TestedPoint& point, bool) const {
+  return {PointType::period_doubling, {}, stop_, "period doubling", {}, normal_form_text(point, -1.0)};
 }
 
 TestValue TorusTest::evaluate(const TestedPoint& point) const {
@@ -155,7 +156,8 @@ TestValue TorusTest::evaluate(const TestedPoint& point) const {
 SpecialPoint TorusTest::classify(const TestedPoint& point, bool) const {
   const std::complex<double>* mu = nearest_pair(point.multipliers);
   const double angle = mu == nullptr ? 0.0 : std::arg(*mu);
-  return {PointType::torus, {}, stop_, fmt::format("torus bifurcation, angle {:.10g}", angle)};
+  const std::string remark = mu == nullptr ? "" : normal_form_text(point, *mu / std::abs(*mu));
+  return {PointType::torus, {}, stop_, fmt::format("torus bifurcation, angle {:.10g}", angle), {}, remark};
 }
 
 ImpactVelocityTest::ImpactVelocityTest(const DefiningSystem& system, int segment, bool stop)

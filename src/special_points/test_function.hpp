@@ -68,6 +68,7 @@ struct SpecialPoint {
   bool ends_branch = false;
   std::string description;                  ///< one line for the d-file
   std::vector<UserPointKind> further = {};  ///< what else vanishes there
+  std::string remark = {};                  ///< one line for the screen and the d-file; may be empty
 };
 
 class TestFunction {

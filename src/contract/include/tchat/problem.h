@@ -158,6 +158,12 @@ typedef struct tchat_problem {
    */
   const int32_t* field_dimensions;
   const int32_t* jump_dimensions;
+
+  /* Third derivatives: F along states that depend on three numbers e_1, e_2, e_3 of which squares are left out, x = sum
+   * of x_m e^m, where bit k - 1 of m = 0..7 says that e^m has the factor e_k. out_m are the coefficients of F, so that
+   * out_7 is F_xxx x_1 x_2 x_4 + F_xx x_1 x_6 + F_xx x_2 x_5 + F_xx x_4 x_3 + F_x x_7. x_m (dimension) and out_m (rows)
+   * stand one behind the other. NULL: tchat takes differences of `second`. */
+  void (*third)(const void* self, int32_t kind, int32_t index, const double* x, const double* par, double* out);
 } tchat_problem;
 
 /* Size of the table before the conditions of boundary value problems were added: such a table has none. */
@@ -172,6 +178,8 @@ typedef struct tchat_problem {
 #define TCHAT_PROBLEM_FIFTH_SIZE offsetof(tchat_problem, first_in_lanes)
 /* And before modes could differ in dimension. */
 #define TCHAT_PROBLEM_SIXTH_SIZE offsetof(tchat_problem, field_dimensions)
+/* And before it had third derivatives. */
+#define TCHAT_PROBLEM_SEVENTH_SIZE offsetof(tchat_problem, third)
 
 typedef const tchat_problem* (*tchat_problem_entry)(void);
 #define TCHAT_PROBLEM_ENTRY "tchat_problem_table"

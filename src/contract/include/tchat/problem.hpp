@@ -509,6 +509,31 @@ class ProblemTable {
     }
   }
 
+  using Product = Dual<1, Dual<1, Dual<1>>>;
+  /// That of the product e^m.
+  template <class P>
+  static auto& coefficient(P& of, int m) {
+    auto& first = (m & 1) != 0 ? of.derivative[0] : of.value;
+    auto& second = (m & 2) != 0 ? first.derivative[0] : first.value;
+    return (m & 4) != 0 ? second.derivative[0] : second.value;
+  }
+
+  __attribute__((cold)) static void third(const void* self, std::int32_t kind, std::int32_t index, const double* x,
+                                          const double* par, double* out) {
+    States<Product> xs;
+    Parameters<Product> ps;
+    Durations<Product> ts;
+    Values<Product> ys;
+    load(x, par, xs, ps, ts);
+    for (int m = 1; m < 8; ++m)
+      for (int i = 0; i < n; ++i) coefficient(xs[static_cast<std::size_t>(i)], m) = x[m * n + i];
+    preset(ys);
+    evaluate<Product>(self, kind, index, xs.data(), ps.data(), ts.data(), ys.data());
+    const int r = rows(kind);
+    for (int m = 0; m < 8; ++m)
+      for (int i = 0; i < r; ++i) out[m * r + i] = coefficient(ys[static_cast<std::size_t>(i)], m);
+  }
+
   /// Directions one by one: two in one dual number are slower, and every kind of dual number has to be compiled.
   // NOLINTBEGIN(readability-non-const-parameter): written by way of WeightedPoints
   static void second_at_points(const void* self, std::int32_t kind, std::int32_t index, std::int32_t points,
@@ -780,6 +805,7 @@ class ProblemTable {
     table.value = &value;
     table.first = &first;
     table.second = &second;
+    table.third = &third;
     table.first_at_points = &first_at_points;
     table.second_at_points = &second_at_points;
     if constexpr (has_lanes && !gives_derivatives) table.first_in_lanes = &first_in_lanes;
