@@ -81,6 +81,7 @@ SectionedProblem::SectionedProblem(const tchat_problem& plain) : plain_(plain), 
   table_.value = &Calls::value;
   table_.first = plain.derivative_order >= 1 ? &Calls::first : nullptr;
   table_.second = nullptr;
+  table_.third = nullptr;
   table_.successors = &Calls::successors;
   table_.user_values = 0;
   table_.output_parameters = nullptr;
