@@ -73,6 +73,7 @@ void add_explore_command(CLI::App& app, std::function<int()>& chosen) {
   command->add_option("--time", request->seconds, "seconds after which no command is begun; the same command goes on")
       ->type_name("T")
       ->check(CLI::PositiveNumber);
+  command->add_flag("--tori", request->tori, "follow the tori that are born at TR");
   command->add_flag("-q,--quiet", request->quiet, "print nothing");
   command->add_option("KEY=VALUE", request->overrides,
                       "parameters of all commands, constants of the runs, as 'PAR(omega)=0.8' NMX=100");

@@ -152,7 +152,7 @@ void add_plot_command(CLI::App& app, std::function<int()>& chosen) {
       ->allow_extra_args(false);
   command->add_option("--labels", a->labels, "types of points to label, as LP,PD,EP; all; none")->type_name("TYPES");
   command->add_flag("--no-labels", a->no_labels, "no special points");
-  command->add_flag("--black", a->black, "branches in black, without their names in the key");
+  command->add_flag("--black", a->black, "branches in black, curves of a kind alike: no names in the key");
   command->add_flag("--grey", a->grey, "dots of a sweep in one grey, from whatever start");
   command->add_flag("--numbers", a->numbers, "labels with their numbers");
   command

@@ -129,6 +129,14 @@ void add_pictures(const DiagramFiles& files, const SweepTable& sweep, ExploredDi
   add("page", {files.folder + ".html"});
 }
 
+void add_curve_picture(const std::string& folder, const std::vector<std::string>& files, ExploredDiagram& diagram) {
+  if (files.empty()) return;
+  const std::string picture = folder + "_curves.png";
+  std::string words = "tchat plot";
+  for (const std::string& file : files) words += " " + quoted_for_shell(file);
+  diagram.last_jobs.push_back({"curves", {words + " --black -o " + quoted_for_shell(picture)}, files, {picture}});
+}
+
 std::vector<std::string> draw_pictures(const std::vector<CommandJob>& jobs, const std::string& folder,
                                        const std::function<bool()>& interrupted) {
   for (const CommandJob& job : jobs)

@@ -26,7 +26,7 @@ struct ExploreRequest {
   /// grazing curves, where nothing else is asked for.
   std::optional<int> returns;
   double seconds = 0.0;  ///< wall time after which no command is begun; 0: any
-  bool fresh = false;    ///< results of an earlier run are thrown away
+  bool tori = false;     ///< are followed where they are born
   bool quiet = false;
 };
 

@@ -284,12 +284,13 @@ class Explorer {
     }
   }
 
-  /// The commands that follow the labels of a branch.
+  /// The commands that follow the labels of a branch; none from tori.
   void add_switches(std::size_t at, std::vector<Candidate>& next) {
     const std::string name = diagram_.branches[at].name;
     RunSettings settings = read_constants_file(commands_.file('r', name));
     const HybridSystem& system = loaded_.library->system();
     resolve_names(settings, system);
+    const bool are_tori = settings.problem_type == invariant_torus.number;
     const SolutionFile solutions = read_solution_file(commands_.file('q', name));
     for (const LabelledSolution& solution : solutions.solutions) {
       const std::string type = type_name(solution);
@@ -297,7 +298,7 @@ class Explorer {
       ExploredLabel label{
           solution.label, type, stored_parameter(solution, settings.free_parameters.front()), "", "", ""};
       diagram_.branches[at].labels.push_back(label);
-      const std::string command = command_at(solution, type, settings, name);
+      const std::string command = are_tori ? "" : command_at(solution, type, settings, name);
       if (!command.empty()) add_switch(at, type, command, settings, next);
     }
   }
@@ -334,7 +335,7 @@ class Explorer {
     branch.parent = parent.name;
     branch.doublings = parent.doublings + (type == "PD" ? 1 : 0);
     branch.has_returns = parent.has_returns;
-    if (type == "TR") return leave(candidate, "tori");
+    if (type == "TR" && !request_.tori) return leave(candidate, "no --tori");
     if (branch.doublings > request_.doublings)
       return leave(candidate, fmt::format("--doublings {}", request_.doublings));
     if (segments_after(type, settings) > request_.segments) return leave(candidate, segments_budget());
@@ -373,6 +374,9 @@ class Explorer {
       add_pictures({folder, commands_.path("sweep.sweep"), commands_.monitors(), request_.quantity},
                    sweeps_.front().samples.table(), diagram_);
     const ExploredCurves curves = curves_ ? curves_->curves() : ExploredCurves{};
+    std::vector<std::string> curve_files;
+    for (const ExploredCurve& curve : curves.curves) curve_files.push_back(curve.job.outputs.front());
+    add_curve_picture(folder, curve_files, diagram_);
     const std::string text = tree_text(diagram_) + curves_text(curves);
     std::vector<CommandJob> jobs = jobs_of(diagram_);
     for (const CommandJob* const job : curve_jobs(curves)) jobs.push_back(*job);

@@ -65,7 +65,7 @@ class BranchFigureBuilder {
     for (const BranchFile& file : files)
       for (const PointSection& section : file.sections) {
         if (section.is_two_parameter_curve())
-          add_once(curves_, FileCurve{file.path, kind_of(section)});
+          add_once(curves_, curve_in(file, section));
         else
           add_once(plain_files_, file.path);
       }
@@ -182,6 +182,11 @@ class BranchFigureBuilder {
     add_markers(piece);
   }
 
+  /// Without names, curves of one kind are alike in all files.
+  FileCurve curve_in(const BranchFile& file, const PointSection& section) const {
+    return {options_.black ? "" : file.path, kind_of(section)};
+  }
+
   const PointSection& section_of(const Piece& piece) const { return files_[piece.file].sections[piece.section]; }
 
   using Intervals = std::vector<std::vector<PicturePoint>>;  // the line from each point to the next
@@ -214,8 +219,7 @@ class BranchFigureBuilder {
   }
 
   void add_curve(const Piece& piece, const Intervals& intervals) {
-    const FileCurve curve{files_[piece.file].path, kind_of(section_of(piece))};
-    const CurveKind& kind = curve_kinds_[position(curves_, curve)];
+    const CurveKind& kind = curve_kinds_[position(curves_, curve_in(files_[piece.file], section_of(piece)))];
     const std::size_t first = panel_.curves.size();
     add_runs(piece, intervals, [this, &kind](LineKind line) {
       if (line == LineKind::inadmissible) kinds_.insert(line);

@@ -39,7 +39,8 @@ struct BranchFigureOptions {
   std::vector<std::string> legend = {};  ///< a text for each file; empty: chosen here
   std::vector<NamedCloud> clouds = {};
   Underlay underlay = {};
-  bool black = false;  ///< branches in one parameter, which then have no line in the key
+  /// Branches in one parameter, which then have no line in the key; curves have one for each kind.
+  bool black = false;
 };
 
 /// `files` may be empty when there are clouds or an underlay. Throws UserError for columns and expressions that a file
