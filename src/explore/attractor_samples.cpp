@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "text/number.hpp"
 #include "text/words.hpp"
@@ -52,11 +53,22 @@ std::vector<std::size_t> AttractorSamples::first_rows() const {
 
 void AttractorSamples::for_each(const std::function<void(const SweptAttractor&)>& use) const {
   for (const std::size_t row : first_rows()) {
-    const auto number = static_cast<std::size_t>((*table_.column("attractor"))[row]);
-    if (number >= 1)
+    const double found = (*table_.column("attractor"))[row];
+    const std::size_t number = found >= 1.0 ? static_cast<std::size_t>(found) : 0;
+    if (number >= 1 && number <= table_.attractors.size())
       use({&table_.attractors[number - 1], row, (*table_.column(table_.over.front().column()))[row],
            (*table_.column("time"))[row]});
   }
+}
+
+std::vector<double> AttractorSamples::values_of(const SweptAttractor& sample,
+                                                const std::vector<std::string>& names) const {
+  std::vector<double> values;
+  for (const std::string& name : names) {
+    const std::vector<double>* const column = table_.column(name);
+    values.push_back(column == nullptr ? std::numeric_limits<double>::quiet_NaN() : (*column)[sample.row]);
+  }
+  return values;
 }
 
 std::map<AttractorKind, int> AttractorSamples::kinds() const {

@@ -33,6 +33,8 @@ class AttractorSamples {
   void for_each(const std::function<void(const SweptAttractor&)>& use) const;
   /// How often a value and a start lead to each kind of motion, attractor or not.
   std::map<AttractorKind, int> kinds() const;
+  /// The columns of these names, NaN for those that are missing.
+  std::vector<double> values_of(const SweptAttractor& sample, const std::vector<std::string>& names) const;
   /// "0.1,-2": the first recorded state; "" where states are not recorded.
   std::string state_of(const SweptAttractor& sample) const;
   /// The same as numbers.

@@ -30,7 +30,7 @@ std::string branch_of(const OrbitCatalogue& catalogue, const Sweep& sweep, const
     return state ? catalogue.branch_with_state(sample.value, *state) : "";
   }
   const SignatureWord word = sweep.is_cut ? SignatureWord{{1, 0, 0}} : signature_word(*sample.attractor);
-  return catalogue.branch_with_period(word, sample.value, sample.period);
+  return catalogue.branch_with(word, sample.value, sample.period, sweep.samples.values_of(sample, sweep.monitors));
 }
 
 void measure_coverage(const Sweep& sweep, const OrbitCatalogue& catalogue, const ExplorationCommands& commands,

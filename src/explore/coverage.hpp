@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "explore/attractor_samples.hpp"
 #include "explore/exploration_commands.hpp"
@@ -13,6 +14,7 @@ namespace tchat {
 struct Sweep {
   std::string letter;  ///< before the numbers of its attractors
   AttractorSamples samples;
+  std::vector<std::string> monitors;  ///< of branches, which it has columns of in part
   bool is_cut = false;  ///< by tchat (plugin/sectioned_problem.hpp): its orbits are followed without that section
 };
 

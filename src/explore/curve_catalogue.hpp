@@ -7,6 +7,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -16,7 +17,7 @@
 namespace tchat {
 
 struct CurvePoint {
-  Eigen::Vector2d place;
+  Eigen::Vector2d place = Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
   Eigen::VectorXd numbers;  ///< period (0 for equilibria), then the monitors that there are
 };
 

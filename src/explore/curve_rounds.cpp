@@ -52,25 +52,6 @@ std::string zeros_text(const std::vector<int>& indices) {
   return text.empty() ? "" : text + "0";
 }
 
-/// The sentences behind "stopped: " in what a run wrote, one for each direction.
-std::vector<std::string> reasons_in(const std::string& log) {
-  static constexpr std::string_view word = "\n  stopped: ";
-  static constexpr std::string_view continued = "      ";
-  std::vector<std::string> reasons;
-  for (std::size_t at = log.find(word); at != std::string::npos; at = log.find(word, at + 1)) {
-    std::size_t from = at + word.size();
-    std::size_t to = std::min(log.find('\n', from), log.size());
-    std::string reason = log.substr(from, to - from);
-    while (log.compare(std::min(to + 1, log.size()), continued.size(), continued) == 0) {
-      from = to + 1;
-      to = std::min(log.find('\n', from), log.size());
-      reason += " " + std::string(trimmed(std::string_view(log).substr(from, to - from)));
-    }
-    reasons.push_back(reason);
-  }
-  return reasons;
-}
-
 std::string signature_text(const PointSection& section) {
   Signature signature;
   for (const auto& v : section.signature) signature.push_back({v[0], v[1], v[2]});
@@ -81,7 +62,7 @@ void add_once(std::vector<std::string>& list, const std::string& text) {
   if (std::find(list.begin(), list.end(), text) == list.end()) list.push_back(text);
 }
 
-/// ", on a1_GR2_curve and 3 others"
+/// ", on a1_GR2_curve with 3 more"
 std::string ends_on(const JoinedPoint& joint, const std::string& curve) {
   std::string first;
   std::size_t others = 0;
@@ -303,8 +284,9 @@ void CurveRounds::describe(ExploredCurve& curve, const std::string& log) const {
                             label.second,
                             label.is_section_tangent ? "tangent section, no grazing" : zeros_text(label.xi_zeros),
                             {}});
-  const std::vector<std::string> reasons = reasons_in(log);
+  const std::vector<std::string> reasons = branch_ends(log);
   for (std::size_t k = 0; k < points.sections.size(); ++k) {
+    if (points.sections[k].rows.empty()) continue;
     add_once(curve.signatures, signature_text(points.sections[k]));
     curve.ends.push_back(end_of(curve, points.sections[k], reasons.size() == points.sections.size() ? reasons[k] : ""));
   }
@@ -333,7 +315,7 @@ CurveEnd CurveRounds::end_of(const ExploredCurve& curve, const PointSection& sec
 void CurveRounds::take_slice(const Candidate& candidate, Candidates& next) {
   ExploredBranch slice = candidate.slice;
   const RunFiles files = files_of(slice.name);
-  if (files.admissible.only_at_start) return;
+  if (files.admissible.only_at_start || files.solutions.solutions.empty()) return;
   if (is_left()) return;
   slice.from = std::numeric_limits<double>::infinity();
   slice.to = -slice.from;

@@ -137,7 +137,7 @@ std::vector<std::string> ExplorationCommands::born_lines(const std::string& sour
   return {
       fmt::format("tchat resegment {} {} --to impacting --repeat {} -o {} -q{}", quoted_for_shell(file('q', source)),
                   label, returns, cut, shell_words({fmt::format("ICP=[{}]", range_.parameter)})),
-      fmt::format("tchat run {} -c {} -s {} -o {} --clip -q{}", problem_arguments(problem_), cut, cut,
+      fmt::format("tchat run {} -c {} -s {} -o {} --clip{}", problem_arguments(problem_), cut, cut,
                   quoted_for_shell(path(name)), shell_words(words))};
 }
 
@@ -150,8 +150,10 @@ CommandJob ExplorationCommands::born(const SwitchPoint& at, int returns) const {
 }
 
 std::string ExplorationCommands::show(double value, const std::string& state) const {
-  return fmt::format("tchat simulate {} --state {}{}", problem_arguments(problem_), state,
-                     shell_words({at_value(value)}));
+  std::vector<std::string> words = parameters_;
+  words.push_back(at_value(value));
+  return fmt::format("tchat simulate {}{} --state {}{}", problem_arguments(problem_), constants_option_, state,
+                     shell_words(words));
 }
 
 }  // namespace tchat

@@ -96,7 +96,7 @@ std::string curves_text(const ExploredCurves& all) {
   for (const JoinedPoint& point : all.joints) text += joint_text(point);
   text += fmt::format("\n{} curves.\n", all.curves.size());
   for (const std::string& note : all.failures) text += note + "\n";
-  if (all.left > 0) text += fmt::format("Left: {} more, --branches {} reached.\n", all.left, all.budget);
+  if (all.left > 0) text += fmt::format("Left: at least {} more, --branches {} reached.\n", all.left, all.budget);
   return text;
 }
 

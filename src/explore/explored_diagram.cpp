@@ -93,6 +93,7 @@ std::string tree_text(const ExploredDiagram& diagram) {
   if (diagram.branches.empty()) text += "  none\n";
   text += fmt::format("\n{} branches. Coverage: {}.\n", diagram.branches.size(), coverage_text(diagram));
   text += others_text(diagram);
+  for (const std::string& failure : diagram.failures) text += "Failed: " + failure + ".\n";
   for (const UnexplainedAttractor& one : diagram.unexplained)
     text += fmt::format("On no branch: attractor {} ({}), {} times from {:.6g} to {:.6g}{}\n", one.attractor, one.kind,
                         one.count, one.first, one.last, one.command.empty() ? "" : ": " + one.command);
@@ -110,10 +111,10 @@ std::string tree_json(const ExploredDiagram& diagram, const std::string& further
   return fmt::format(
       "{{\"parameter\": {}, \"quantity\": {}, \"complete\": {}, \"periodic\": {}, \"at_rest\": {}, \"on_branches\": "
       "{}, "
-      "\"others\": {}, \"left\": {},\n\"unexplained\": {},\n\"joins\": {},\n\"branches\": {}{}}}\n",
+      "\"others\": {}, \"left\": {},\n\"unexplained\": {},\n\"joins\": {},\n\"failures\": {},\n\"branches\": {}{}}}\n",
       json(diagram.parameter), json(diagram.quantity), diagram.complete, json(diagram.periodic), json(diagram.at_rest),
       json(diagram.on_branches), counts_json(diagram.others), counts_json(diagram.left), unexplained,
-      json_list(diagram.joins), json_list(diagram.branches, branch_json), further);
+      json_list(diagram.joins), json_list(diagram.failures), json_list(diagram.branches, branch_json), further);
 }
 
 std::vector<CommandJob> jobs_of(const ExploredDiagram& diagram) {

@@ -48,7 +48,8 @@ struct ExploredDiagram {
   std::string quantity;                ///< along the picture's y-axis; "": that of tchat plot
   std::vector<CommandJob> last_jobs;   ///< picture and page
   std::vector<ExploredBranch> branches;
-  std::vector<std::string> joins;  ///< "a1_PD3: a2 again"
+  std::vector<std::string> joins;     ///< "a1_PD3: a2 again"
+  std::vector<std::string> failures;  ///< commands that failed, with their messages
   std::vector<UnexplainedAttractor> unexplained;
   int periodic = 0, at_rest = 0, on_branches = 0;  ///< attractors over all values and starts
   std::map<std::string, int> others;               ///< motions of other kinds: chaotic, ...

@@ -127,7 +127,7 @@ class Explorer {
       return false;
     }
     if (!result.succeeded) throw ComputationError(fmt::format("the sweep failed:\n{}", result.log));
-    sweeps_.push_back({sweeps_.empty() ? "a" : "b", AttractorSamples(job.outputs.front(), loaded_.library->system()),
+    sweeps_.push_back({sweeps_.empty() ? "a" : "b", AttractorSamples(job.outputs.front(), loaded_.library->system()), commands_.monitors(),
                        loaded_.library->has_added_section()});
     return true;
   }
@@ -231,9 +231,7 @@ class Explorer {
     }
     if (!result.succeeded) {
       set_outcome(candidate, "", "failed: " + failure_text(result.log));
-      if (candidate.parent >= diagram_.branches.size())
-        diagram_.joins.push_back(
-            fmt::format("{} ({}): failed: {}", branch.name, branch.origin, failure_text(result.log)));
+      diagram_.failures.push_back(fmt::format("{} ({}): {}", branch.name, branch.origin, failure_text(result.log)));
       return false;
     }
     if (candidate.returns > 1 && admissible_points(commands_.file('d', branch.name)).only_at_start) return false;
@@ -335,7 +333,7 @@ class Explorer {
     branch.parent = parent.name;
     branch.doublings = parent.doublings + (type == "PD" ? 1 : 0);
     branch.has_returns = parent.has_returns;
-    if (type == "TR" && !request_.tori) return leave(candidate, "no --tori");
+    if (type == "TR" && !request_.tori) return leave(candidate, "missing --tori");
     if (branch.doublings > request_.doublings)
       return leave(candidate, fmt::format("--doublings {}", request_.doublings));
     if (segments_after(type, settings) > request_.segments) return leave(candidate, segments_budget());
@@ -368,6 +366,7 @@ class Explorer {
   }
 
   int finish() {
+    if (interrupted_()) diagram_.complete = false;
     for (const Sweep& sweep : sweeps_) measure_coverage(sweep, catalogue_, commands_, diagram_);
     const std::string& folder = commands_.folder();
     if (!sweeps_.empty())

@@ -54,6 +54,17 @@ VectorXd with_period_of(const InterpolatedPoint& known, VectorXd numbers) {
   return numbers;
 }
 
+/// As far as the monitors are known. Where a largest value moves from one maximum to another, interpolation is coarse.
+bool about_agree(const InterpolatedPoint& orbit, const std::vector<double>& monitors) {
+  constexpr double coarse = 1e-2;
+  const double size = orbit.numbers.tail(orbit.numbers.size() - 1).cwiseAbs().maxCoeff();
+  for (std::size_t k = 0; k < monitors.size(); ++k) {
+    const auto row = static_cast<Index>(k + 1);  // behind the period
+    if (std::isfinite(monitors[k]) && std::abs(orbit.numbers(row) - monitors[k]) > coarse * size) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 PrimitiveWord primitive_word(const SignatureWord& signature) {
@@ -130,14 +141,15 @@ std::string OrbitCatalogue::branch_at(const CataloguedSection& like, double para
   return "";
 }
 
-std::string OrbitCatalogue::branch_with_period(const SignatureWord& signature, double parameter, double period) const {
+std::string OrbitCatalogue::branch_with(const SignatureWord& signature, double parameter, double period,
+                                        const std::vector<double>& monitors) const {
   const PrimitiveWord wanted = primitive_word(signature);
   for (const CataloguedSection& known : sections_) {
     if (known.rests || known.signature.word != wanted.word) continue;
     for (const InterpolatedPoint& orbit : orbits_at(known, parameter)) {
       const double time = orbit.numbers(0) * known.signature.repetitions;
       const double tolerance = 2.0 * orbit.uncertainty(0) * known.signature.repetitions + 1e-4 * std::abs(period);
-      if (std::abs(time - period) <= tolerance) return known.branch;
+      if (std::abs(time - period) <= tolerance && about_agree(orbit, monitors)) return known.branch;
     }
   }
   return "";

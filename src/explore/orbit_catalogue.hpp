@@ -47,9 +47,10 @@ class OrbitCatalogue {
 
   /// The branch of which `section`, or all of it but its beginning, is a part; "" where there is none.
   std::string branch_of(const CataloguedSection& section) const;
-  /// The branch with an orbit of this signature and period (of one repetition) at the parameter value; "" where there
-  /// is none.
-  std::string branch_with_period(const SignatureWord& signature, double parameter, double period) const;
+  /// The branch with an orbit of this signature and period at the parameter value, whose monitors are about these (NaN:
+  /// not known); "" where there is none.
+  std::string branch_with(const SignatureWord& signature, double parameter, double period,
+                          const std::vector<double>& monitors) const;
   /// The branch with this equilibrium.
   std::string branch_with_state(double parameter, const Eigen::VectorXd& state) const;
 

@@ -8,7 +8,8 @@ namespace tchat {
 
 bool lacks_sections(const HybridSystem& system) {
   const bool has_index_vectors = system.count(FunctionKind::event) > 0 && system.count(FunctionKind::jump) > 0;
-  return !has_index_vectors && system.count(FunctionKind::field) == 1 && system.boundary_conditions() == 0;
+  return !has_index_vectors && !system.has_modes() && system.count(FunctionKind::field) == 1 &&
+         system.boundary_conditions() == 0;
 }
 
 struct SectionedProblem::Calls {

@@ -101,7 +101,8 @@ bool has_curve(const NextStart& start, const RunSettings& settings) {
 /// With a contact an impact is born; where an impact has velocity zero it vanishes. "" at other points.
 std::string resegmentation_target(const UserPointKind& kind, const RunSettings& settings, const HybridSystem& system) {
   if (kind.kind == UserPointKind::contact) return is_free_of_other_events(kind, settings, system) ? "impacting" : "";
-  if (kind.kind != UserPointKind::impact_velocity) return "";
+  const auto segments = static_cast<int>(settings.segments.size());
+  if (kind.kind != UserPointKind::impact_velocity || kind.segment < 1 || kind.segment > segments) return "";
   const IndexVector& end = settings.segments[static_cast<std::size_t>(kind.segment - 1)].index;
   const bool is_impact = end.event == kind.index && !is_identity_jump(system, end);
   return is_impact ? "signature" : "";

@@ -218,7 +218,7 @@ int simulate_problem(const SimulationRequest& request, std::ostream& screen, std
   HybridSimulation simulation(start.rule, start.state, start.par, settings);
   say(start_text(system, start, simulation.mode()));
   if (loaded.library->has_added_section())
-    say(fmt::format("No event ends a segment of {}, so each {} does.\n", system.name(),
+    say(fmt::format("{} has no event that ends a segment: its motion is cut at each {}.\n", system.name(),
                     system.function_name(FunctionKind::event, system.count(FunctionKind::event))));
   warnings << side_without_effect(simulation, request.side);
   for (const StartNotice& notice : start_notices(simulation)) warnings << notice_text(system, notice);

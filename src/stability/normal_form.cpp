@@ -167,6 +167,13 @@ Product product(const ComplexVector& w, const ComplexVector& rows) {
 
 constexpr double rounding_of_sums = 1e-13;  // of sums over all nodes, and of the vectors that solve sparse systems
 
+/// As a share of the terms: rounding, or differences for derivatives that the problem does not give.
+double error_of_sums(const HybridSystem& system) {
+  if (system.has_third()) return rounding_of_sums;
+  constexpr double of_second = 1e-6, of_third = 1e-7;
+  return system.table().derivative_order < 2 ? of_second : of_third;
+}
+
 bool is_fold(Complex critical) { return critical == Complex(1.0, 0.0); }
 double shift_for(Complex critical) { return is_fold(critical) ? -1.0 : 1.0; }
 
@@ -181,7 +188,8 @@ std::optional<NormalForm> form_of(const DefiningSystem& system, NodalSystem& nod
   const ComplexVector vv = forms.second(v, v);
   if (is_fold(critical)) {
     const Product sum = product(w, vv);
-    return NormalForm{-0.5 * sum.value, rounding_of_sums * sum.size};
+    if (!std::isfinite(sum.size)) return std::nullopt;
+    return NormalForm{-0.5 * sum.value, 0.5 * rounding_of_sums * sum.size};
   }
   ComplexVector rows = forms.third(v);
   Complex factor = -1.0 / 6.0;
@@ -195,7 +203,7 @@ std::optional<NormalForm> form_of(const DefiningSystem& system, NodalSystem& nod
   }
   const Product sum = product(w, rows);
   if (!std::isfinite(sum.size)) return std::nullopt;
-  return NormalForm{factor * sum.value, rounding_of_sums * std::abs(factor) * sum.size};
+  return NormalForm{factor * sum.value, error_of_sums(system.system()) * std::abs(factor) * sum.size};
 }
 
 Orbit on_every_second_point(const Orbit& x) {
@@ -238,9 +246,11 @@ std::optional<NormalForm> normal_form(const DefiningSystem& system, const Orbit&
   Orbit other = on_every_second_point(x);
   NodalSystem coarse(system, other.shape);
   if (!correct(system, coarse, critical, q.real(), other)) return std::nullopt;
-  const std::optional<NormalForm> compared = form_of(system, coarse, other, critical, q);
+  ComplexVector coarse_q;
+  const std::optional<NormalForm> compared = form_of(system, coarse, other, critical, coarse_q);
   if (!compared) return std::nullopt;
-  form->uncertainty += std::abs(form->coefficient - compared->coefficient);
+  const bool is_turned = is_fold(critical) && q.real().dot(coarse_q.real()) < 0.0;  // two entries are largest
+  form->uncertainty += std::abs(form->coefficient - (is_turned ? -1.0 : 1.0) * compared->coefficient);
   return form;
 }
 

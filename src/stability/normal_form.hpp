@@ -31,14 +31,15 @@ namespace tchat {
 
 struct NormalForm {
   std::complex<double> coefficient;  ///< a, c, d
-  /// How well it is known: the difference to that of the same orbit on every second mesh point, and rounding.
+  /// How well it is known: the difference to that of the same orbit on every second mesh point, and the errors of sums
+  /// and of differences for derivatives. That of the orbit's place on the branch (EPSS) is not in it.
   double uncertainty = 0.0;
 };
 
 /// The coefficient of an orbit that has the multiplier `critical` up to the accuracy of the branch: 1, -1 or e^(i
 /// theta), 0 < theta < pi. Nothing where equations are singular, as with a second critical multiplier, or where the
-/// mesh has but one interval. The map has to be smooth at the orbit: no end of a segment tangent to its event surface.
-/// Allocates.
+/// mesh has but one interval, or segments have meshes of their own. The map has to be smooth at the orbit: no end of a
+/// segment tangent to its event surface. Allocates.
 std::optional<NormalForm> normal_form(const DefiningSystem& system, const Orbit& x, std::complex<double> critical);
 
 }  // namespace tchat

@@ -313,7 +313,7 @@ class SampleRun {
     if (sample_.kind == AttractorKind::periodic)
       sample_.largest = largest_of_period(simulation).replicate(1, dots);
     else if (sample_.kind == AttractorKind::rest)
-      sample_.largest = kept_.back().end.replicate(1, dots);
+      sample_.largest = (rest_ ? *rest_ : kept_.back().end).replicate(1, dots);
     else
       sample_.largest = largest_between_events();
     for (const Eigen::Index k : search_.ignorable()) sample_.largest.row(k).setConstant(NAN);

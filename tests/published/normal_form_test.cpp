@@ -137,6 +137,18 @@ TEST_CASE("strong damping and growth along the orbit leave the normal form as it
   CHECK(form.value == Approx(0.46 / (1.0 + y * y + z * z)).epsilon(1e-9));
 }
 
+TEST_CASE("where another multiplier is outside the unit circle, nothing is called stable") {
+  const Workspace workspace;
+  std::string formulas = cubic_map;
+  formulas.replace(formulas.find("phi' = 1\n"), 9, "phi' = 1\nother' = 0.02*other\n");  // e^0.02, near 1
+  simulate(workspace, "map", formulas.c_str(), "--state 0,0,0 --free p");
+  workspace.succeed("run map -q -c map -d map -o map DS=0.02 RL1=0.1 NMX=20");
+  const PrintedForm form = form_at(workspace, "map", "PD");
+  CHECK(form.value == Approx(0.46).epsilon(1e-9));
+  CHECK(form.verdict.find("supercritical; another multiplier") != std::string::npos);
+  CHECK(form.verdict.find("stable doubled orbits") == std::string::npos);
+}
+
 TEST_CASE("normal form of a torus bifurcation, in closed form") {
   const Workspace workspace;
   simulate(workspace, "bent", bent_oscillator, "--state 0,0,0 --free s");
@@ -196,7 +208,11 @@ TEST_CASE("normal forms of the bouncing ball against its branches") {
     for (const SolutionEntry& entry : workspace.solutions("fold")) {
       if (!is_user_value(entry)) continue;
       const Eigen::VectorXd difference = start(entry, 0) - start(fold, 0);
-      if (q.size() == 0) q = difference.normalized();
+      if (q.size() == 0) {  // its entry of largest modulus is positive
+        Eigen::Index largest = 0;
+        difference.cwiseAbs().maxCoeff(&largest);
+        q = difference.normalized() * (difference(largest) > 0.0 ? 1.0 : -1.0);
+      }
       double multiplier = INFINITY;
       for (const std::complex<double>& mu : with_label(points, entry.label).multipliers)
         if (std::abs(mu - 1.0) < std::abs(multiplier - 1.0)) multiplier = mu.real();
@@ -205,7 +221,7 @@ TEST_CASE("normal forms of the bouncing ball against its branches") {
     }
     REQUIRE(distances.size() == 12);
     CHECK(form.name == "a");
-    CHECK(std::abs(form.value) == Approx(std::abs(at_zero(distances, slopes, 7))).epsilon(1e-4));
+    CHECK(form.value == Approx(at_zero(distances, slopes, 7)).epsilon(1e-4));
   }
   SECTION("a coarse mesh knows how well it knows") {
     workspace.succeed("run ball -q -c ball -d ball -o fine RL1=1.6 DSMAX=0.05 NMX=80 NTST=100");

@@ -52,7 +52,7 @@ class Diagram:
     parameter, quantity   along the axes of its picture
     coverage              the share of the sweep's periodic attractors and equilibria that lie on a branch; None without any
     unexplained           a dictionary for each attractor on no branch: attractor, kind, count, first, last, command
-    joins                 runs that led to branches found before, in words
+    joins, failures       runs that led to branches found before, and those that failed, in words
     complete              False if an interruption has left something
     sweep                 its Sweep
     text                  the tree in words
@@ -68,7 +68,7 @@ class Diagram:
                 self.text = file.read()
             self.branches = [ExploredBranch(self, one) for one in found["branches"]]
             self.parameter, self.quantity, self.complete = found["parameter"], found["quantity"], found["complete"]
-            self.unexplained, self.joins = found["unexplained"], found["joins"]
+            self.unexplained, self.joins, self.failures = found["unexplained"], found["joins"], found["failures"]
             known = found["periodic"] + found["at_rest"]
             self.coverage = found["on_branches"] / known if known else None
         except OSError as error:
