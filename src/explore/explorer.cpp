@@ -127,8 +127,8 @@ class Explorer {
       return false;
     }
     if (!result.succeeded) throw ComputationError(fmt::format("the sweep failed:\n{}", result.log));
-    sweeps_.push_back({sweeps_.empty() ? "a" : "b", AttractorSamples(job.outputs.front(), loaded_.library->system()), commands_.monitors(),
-                       loaded_.library->has_added_section()});
+    sweeps_.push_back({sweeps_.empty() ? "a" : "b", AttractorSamples(job.outputs.front(), loaded_.library->system()),
+                       commands_.monitors(), loaded_.library->has_added_section()});
     return true;
   }
 

@@ -303,6 +303,7 @@ TEST_CASE("elastic ball: the energy is g^2 T^2 / 8 along the family") {
   CHECK(printed_lambda(outcome) < rounding);
   CHECK(!contains(outcome.text(), "homoclinic"));
   CHECK(!contains(workspace.read("d.ball"), "homoclinic"));
+  CHECK(!contains(workspace.read("d.ball"), "normal form"));
   workspace.succeed("verify ball");
 }
 
