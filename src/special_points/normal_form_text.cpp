@@ -60,8 +60,8 @@ std::string normal_form_text(const TestedPoint& point, std::complex<double> crit
   if (const int s = touching_segment(point); s >= 0)
     return fmt::format("no normal form: the end of segment {} is tangent to its event surface", s + 1);
   const bool is_fold = critical == 1.0, is_doubling = critical == -1.0;
-  const bool is_torus = !is_fold && !is_doubling;
-  if (is_torus && is_strong_resonance(critical)) return "no normal form: the angle is that of a strong resonance";
+  const bool is_pair = !is_fold && !is_doubling;
+  if (is_pair && is_strong_resonance(critical)) return "no normal form: the angle is that of a strong resonance";
   const std::optional<NormalForm> form = normal_form(system, point.orbit, critical);
   if (!form) return "no normal form: its equations are singular, or the mesh is too coarse for an error estimate";
   const char* const name = is_fold ? "a" : is_doubling ? "c" : "Re d";
@@ -70,7 +70,7 @@ std::string normal_form_text(const TestedPoint& point, std::complex<double> crit
   if (is_fold) return text;
   if (!(std::abs(value) > form->uncertainty)) return text + ", too uncertain to decide between sub- and supercritical";
   const bool supercritical = is_doubling ? value > 0.0 : value < 0.0;
-  return text + ", " + criticality(point, supercritical, critical, is_torus ? "tori" : "doubled orbits");
+  return text + ", " + criticality(point, supercritical, critical, is_pair ? "tori" : "doubled orbits");
 }
 
 }  // namespace tchat
