@@ -18,7 +18,7 @@ const std::string endless =
 
 /// Until q.branch, written after `begun`, has so many bytes.
 void wait_for_points(const Workspace& workspace, Process& process, std::size_t bytes,
-                     std::filesystem::file_time_type begun = {}) {
+                     std::filesystem::file_time_type begun = std::filesystem::file_time_type::min()) {
   const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
   const auto is_there = [&] {
     return workspace.has("q.branch") && std::filesystem::last_write_time(workspace.file("q.branch")) > begun &&
