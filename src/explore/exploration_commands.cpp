@@ -41,8 +41,12 @@ ExplorationCommands::ExplorationCommands(const ExploreRequest& request, const Hy
       folder_(request.output.value_or(request.name + ".diagram")),
       problem_(request.problem.value_or(request.name)),
       constants_option_(request.constants ? " -c " + quoted_for_shell(*request.constants) : "") {
-  if (system.parameter_index(range_.parameter) == 0 && !parse_integer(range_.parameter))
+  const int index = system.parameter_index(range_.parameter);
+  const int number = index > 0 ? index : parse_integer(range_.parameter).value_or(0);
+  if (number < 1 || number > system.parameters())
     throw UserError(fmt::format("--over {}: {} has no parameter of this name", range_.parameter, system.name()));
+  if (const std::string name = system.parameter_name(number); system.parameter_index(name) == number)
+    range_.parameter = name;
   for (const std::string& word : request.overrides) (sets_parameter(word) ? parameters_ : constants_).push_back(word);
   if (has_added_section) watched_ = all_events(system.count(FunctionKind::event) - 1);
   for (int k = 1; k <= system.dimension() && monitors_.size() + 2 <= max_monitors; ++k)
