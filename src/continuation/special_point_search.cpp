@@ -607,7 +607,7 @@ SpecialPoint SpecialPointSearch::classify(const std::vector<std::size_t>& group,
       special.description += joined(special.description, found.description);
       special.ends_branch = special.ends_branch || found.ends_branch;
     }
-    if (special.remark.empty()) special.remark = found.remark;
+    if (special.remark.empty() && found.remark.starts_with("normal form")) special.remark = found.remark;
   }
   special.description = with_sliding_names(special, tested(at.point, at.data));
   for (const std::size_t i : group) {

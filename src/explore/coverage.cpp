@@ -46,10 +46,12 @@ void measure_coverage(const Sweep& sweep, const OrbitCatalogue& catalogue, const
     UnexplainedAttractor& one = missing[known.number];
     if (one.count++ == 0) {
       const std::string state = sweep.samples.state_of(sample);
-      one = {
-          fmt::format("{}{}", sweep.letter, known.number),        to_string(known.kind), sample.value, sample.value, 1,
-          state.empty() ? "" : commands.show(sample.value, state)};
+      one.attractor = fmt::format("{}{}", sweep.letter, known.number);
+      one.kind = to_string(known.kind);
+      one.first = sample.value;
+      one.command = state.empty() ? "" : commands.show(sample.value, state);
     }
+    one.segments = known.kind == AttractorKind::periodic ? static_cast<int>(signature_word(known).size()) : 0;
     one.last = sample.value;
   });
   for (auto& [number, one] : missing) diagram.unexplained.push_back(std::move(one));

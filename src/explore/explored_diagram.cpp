@@ -95,8 +95,11 @@ std::string tree_text(const ExploredDiagram& diagram) {
   text += others_text(diagram);
   for (const std::string& failure : diagram.failures) text += "Failed: " + failure + ".\n";
   for (const UnexplainedAttractor& one : diagram.unexplained)
-    text += fmt::format("On no branch: attractor {} ({}), {} times from {:.6g} to {:.6g}{}\n", one.attractor, one.kind,
-                        one.count, one.first, one.last, one.command.empty() ? "" : ": " + one.command);
+    text +=
+        fmt::format("On no branch: attractor {} ({}{}), {} times from {:.6g} to {:.6g}{}\n", one.attractor, one.kind,
+                    one.segments > 0 ? fmt::format(", {} segments", one.segments) : "", one.count, one.first, one.last,
+                    (one.leads_to.empty() ? "" : "; a start there leads to " + one.leads_to) +
+                        (one.command.empty() ? "" : ": " + one.command));
   text += left_text(diagram);
   if (!diagram.complete) text += "Not complete: the same command goes on.\n";
   return text;
@@ -104,9 +107,10 @@ std::string tree_text(const ExploredDiagram& diagram) {
 
 std::string tree_json(const ExploredDiagram& diagram, const std::string& further) {
   const std::string unexplained = json_list(diagram.unexplained, [](const UnexplainedAttractor& one) {
-    return fmt::format(R"({{"attractor": {}, "kind": {}, "count": {}, "first": {}, "last": {}, "command": {}}})",
-                       json(one.attractor), json(one.kind), json(one.count), json(one.first), json(one.last),
-                       json(one.command));
+    return fmt::format(
+        R"({{"attractor": {}, "kind": {}, "count": {}, "first": {}, "last": {}, "segments": {}, "leads_to": {}, "command": {}}})",
+        json(one.attractor), json(one.kind), json(one.count), json(one.first), json(one.last), json(one.segments),
+        json(one.leads_to), json(one.command));
   });
   return fmt::format(
       "{{\"parameter\": {}, \"quantity\": {}, \"complete\": {}, \"periodic\": {}, \"at_rest\": {}, \"on_branches\": "

@@ -39,7 +39,9 @@ struct UnexplainedAttractor {
   std::string kind;
   double first = 0.0, last = 0.0;  ///< values at which it is
   int count = 0;
-  std::string command;  ///< that shows it at the first value
+  std::string command;   ///< that shows it at the first value
+  int segments = 0;      ///< of a periodic one: more than --segments are not followed
+  std::string leads_to;  ///< the branch that a start on it has led to nevertheless
 };
 
 struct ExploredDiagram {

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <filesystem>
 #include <iostream>
+#include <map>
 #include <optional>
 #include <set>
 
@@ -248,6 +249,7 @@ class Explorer {
     }
     if (!known.empty()) {
       set_outcome(candidate, known, "");
+      if (candidate.parent >= diagram_.branches.size()) met_[branch.name.substr(0, branch.name.find('_'))] = known;
       diagram_.joins.push_back(fmt::format("{} ({}): {} again", branch.name, branch.origin, known));
       return false;
     }
@@ -368,6 +370,8 @@ class Explorer {
   int finish() {
     if (interrupted_()) diagram_.complete = false;
     for (const Sweep& sweep : sweeps_) measure_coverage(sweep, catalogue_, commands_, diagram_);
+    for (UnexplainedAttractor& one : diagram_.unexplained)
+      if (const auto met = met_.find(one.attractor); met != met_.end()) one.leads_to = met->second;
     const std::string& folder = commands_.folder();
     if (!sweeps_.empty())
       add_pictures({folder, commands_.path("sweep.sweep"), commands_.monitors(), request_.quantity},
@@ -399,6 +403,7 @@ class Explorer {
   OrbitCatalogue catalogue_;
   ExploredDiagram diagram_;
   std::set<std::pair<std::string, double>> tried_;
+  std::map<std::string, std::string> met_;  // by attractor, the known branch that a start on it led to
   std::optional<CurveRounds> curves_;
 };
 

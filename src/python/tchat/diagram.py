@@ -51,7 +51,8 @@ class Diagram:
 
     parameter, quantity   along the axes of its picture
     coverage              the share of the sweep's periodic attractors and equilibria that lie on a branch; None without any
-    unexplained           a dictionary for each attractor on no branch: attractor, kind, count, first, last, command
+    unexplained           a dictionary for each attractor on no branch: attractor, kind, count, first, last,
+                          segments, leads_to, command
     joins, failures       runs that led to branches found before, and those that failed, in words
     complete              False if an interruption has left something
     sweep                 its Sweep
