@@ -210,7 +210,7 @@ class Explored(unittest.TestCase):
             np.testing.assert_allclose(found["max(x2)"], omega * amplitude, rtol=1e-7)
         self.assertEqual((diagram["a1"].parent, diagram["a1"].children), (None, []))
         self.assertEqual(branch.problem, oscillator)
-        self.assertIn("1 branches. Coverage: 20 of 20", diagram.text)
+        self.assertIn("1 branches. Coverage: 40 of 40", diagram.text)
         self.assertEqual(tchat.Diagram("explored/diagram1").text, diagram.text)
 
     def test_what_is_none_is_refused(self):
