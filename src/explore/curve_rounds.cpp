@@ -9,6 +9,7 @@
 
 #include "constants/constants_file.hpp"
 #include "explore/admissible_points.hpp"
+#include "explore/branch_ends.hpp"
 #include "files/solution_file_reader.hpp"
 #include "problem_type/point_type.hpp"
 #include "run/next_command.hpp"
