@@ -1,5 +1,6 @@
 #include "hybrid/difference_derivatives.hpp"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
