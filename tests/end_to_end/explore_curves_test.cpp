@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "end_to_end/bouncing_ball.hpp"
 #include "end_to_end/closed_forms.hpp"
 #include "end_to_end/workspace.hpp"
 #include "files/point_file_reader.hpp"
@@ -12,18 +13,6 @@ using namespace test_support;
 namespace {
 
 constexpr double zeta = 0.05, restitution = 0.8;
-
-constexpr const char* ball = R"(par Gamma=1.3, r=0.5
-init velocity=3, w=1.3
-growth = 1 - (table^2 + w^2)/Gamma^2
-height'   = velocity
-velocity' = -1
-table'    = growth*table + w
-w'        = growth*w - table
-event contact = height - table
-jump impact: velocity -> -r*velocity + (1 + r)*w
-after any: contact -> impact
-)";
 
 /// The name of the first curve of a kind from a label whose branch has all of `from` in its name.
 std::string curve_from(const std::string& tree, const std::string& kind, const std::vector<std::string>& from) {
@@ -133,7 +122,7 @@ TEST_CASE("the impact oscillator: folds and doublings of three periods come from
 
 TEST_CASE("the bouncing ball in two parameters: each curve once, whichever branch has its label") {
   const Workspace workspace;
-  workspace.write("ball.tch", ball);
+  workspace.write("ball.tch", bouncing_ball);
   const Outcome outcome = workspace.tchat("explore ball --over Gamma=1:1.7:71 --and r=0.35:0.6 --doublings 1 -o b -q");
   INFO(outcome.text());
   REQUIRE(outcome.status == 0);

@@ -9,23 +9,12 @@
 #include <random>
 #include <thread>
 
+#include "end_to_end/bouncing_ball.hpp"
 #include "end_to_end/workspace.hpp"
 
 using namespace test_support;
 
 namespace {
-
-constexpr const char* ball = R"(par Gamma=1.3, r=0.5
-init velocity=3, w=1.3
-growth = 1 - (table^2 + w^2)/Gamma^2
-height'   = velocity
-velocity' = -1
-table'    = growth*table + w
-w'        = growth*w - table
-event contact = height - table
-jump impact: velocity -> -r*velocity + (1 + r)*w
-after any: contact -> impact
-)";
 
 /// The parameter of the first line of the tree that has `text`.
 double value_of(const std::string& tree, const std::string& text) {
@@ -97,7 +86,7 @@ TEST_CASE("the bouncing ball: all period doublings from one command, every perio
   // With g = 1 and one bounce a period: pi (1 - r) / (1 + r) = Gamma cos(phase) at its birth and, for r = 1/2, its
   // doubling at Gamma^2 = (pi/3)^2 + (10/9)^2.
   const Workspace workspace;
-  workspace.write("ball.tch", ball);
+  workspace.write("ball.tch", bouncing_ball);
   const Outcome outcome = workspace.tchat(exploration + " -o one -j 2");
   INFO(outcome.text());
   REQUIRE(outcome.status == 0);
@@ -153,7 +142,7 @@ TEST_CASE("the bouncing ball: all period doublings from one command, every perio
 
 TEST_CASE("no orbit lies on two branches of an exploration") {
   const Workspace workspace;
-  workspace.write("ball.tch", ball);
+  workspace.write("ball.tch", bouncing_ball);
   // Values that are far from bifurcations.
   const Outcome outcome = workspace.tchat({"explore", "ball", "--over", "Gamma=1:1.71:72", "-o", "one", "-j", "2", "-q",
                                            "UZR={Gamma:[1.2,1.4,1.6,1.68,1.7,1.7035,1.7095]}"});

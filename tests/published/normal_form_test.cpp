@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "end_to_end/bouncing_ball.hpp"
 #include "published/chain.hpp"
 
 using namespace test_support;
@@ -69,18 +70,6 @@ phi' = 1
 event turn = 1 - phi
 jump back: phi -> phi - 1
 after any: turn -> back
-)";
-
-constexpr const char* bouncing_ball = R"(par Gamma=1.3, r=0.5
-init velocity=3, w=1.3
-growth = 1 - (table^2 + w^2)/Gamma^2
-height'   = velocity
-velocity' = -1
-table'    = growth*table + w
-w'        = growth*w - table
-event contact = height - table
-jump impact: velocity -> -r*velocity + (1 + r)*w
-after any: contact -> impact
 )";
 
 void simulate(const Workspace& workspace, const std::string& name, const char* formulas, const std::string& words) {
