@@ -25,7 +25,7 @@ class CurveRounds {
     const ExplorationCommands& commands;
     const HybridSystem& system;
     JobRunner& runner;
-    ExploredDiagram& diagram;  ///< its labels are told their curves
+    ExploredDiagram& diagram;  ///< the curves found are entered at its labels
     std::function<bool()> goes_on;
     std::function<void(const std::string&)> show;
   };

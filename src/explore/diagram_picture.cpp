@@ -19,7 +19,7 @@ namespace {
 
 using Points = std::vector<std::pair<double, double>>;
 
-constexpr std::size_t most_colours = 8;  // of branches that can be told apart by a key
+constexpr std::size_t most_colours = 8;  // that distinguish branches in a key
 constexpr double cells = 48.0;           // of the grid along each axis
 constexpr double same_label = 1e-4;      // as a share of the range of the parameter
 

@@ -45,7 +45,7 @@ namespace fs = std::filesystem;
 struct Candidate {
   ExploredBranch branch;
   std::size_t parent = 0;  ///< of the diagram's branches; beyond them without one
-  std::size_t label = 0;   ///< of the parent's labels; beyond them where it is not told what follows
+  std::size_t label = 0;   ///< of the parent's labels
   int returns = 1;         ///< at grazing, one impact in so many
 };
 

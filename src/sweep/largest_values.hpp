@@ -16,7 +16,7 @@ class LargestValues {
   /// A view of `system` and `par`, which outlive this object.
   LargestValues(const HybridSystem& system, const Eigen::VectorXd& par);
 
-  /// x(t) of the field from one time to another: what SimulationSettings::on_piece is told.
+  /// x(t) of the field from one time to another: the argument of SimulationSettings::on_piece.
   void add_piece(int field, const DenseOutput& state, double from, double to);
 
   /// One for each state, -infinity before any piece.
