@@ -82,6 +82,7 @@ class Blocks {
     if (!open_) return;
     const std::size_t text = line.find_first_not_of(' ', line.find("NOTE:") + 5);
     if (text != std::string_view::npos) points_.back().notes.emplace_back(line.substr(text));
+    if (const auto note = parse_normal_form(line)) points_.back().normal_form = note;
     take_xi_zeros(words);
   }
 

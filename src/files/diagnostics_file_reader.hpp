@@ -3,7 +3,7 @@
 ///
 /// Only what AUTO's own readers rely on is looked at: the bars of 47 `=` between blocks, the line below a
 /// `BR PT TY LAB` heading, lines `Multiplier k re im`, `Eigenvalue k: re im` and `Iterations : n`; and of this program
-/// the word `inadmissible` and notes, among them `xi_1 = 0, xi_2 = 0`.
+/// the word `inadmissible` and notes, among them `xi_1 = 0, xi_2 = 0` and that of a normal form.
 #pragma once
 
 #include <complex>
@@ -11,6 +11,8 @@
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "problem_type/normal_form_note.hpp"
 
 namespace tchat {
 
@@ -21,6 +23,7 @@ struct DiagnosticPoint {
   int label = 0;
   bool admissible = true;
   std::vector<std::string> notes;                 ///< the first line of each, in their order
+  std::optional<NormalFormNote> normal_form;      ///< of its notes
   std::vector<int> xi_zeros;                      ///< n of every xi_n = 0 in its notes
   std::vector<std::complex<double>> multipliers;  ///< of an equilibrium the eigenvalues
   std::optional<double> parameter;                ///< the first number after the label: ICP(1), to 6 digits

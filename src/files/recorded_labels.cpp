@@ -46,6 +46,7 @@ void take_words(const std::string& path, const std::map<int, int>& points, std::
     label.admissible = point.admissible;
     const bool is_special = !point.type.empty() && point.type != "EP" && point.type != "RG";
     label.violation = violation_in(point.notes);
+    label.normal_form = point.normal_form;
     const bool has_words = is_special && !point.notes.empty() && !point.notes.front().starts_with(violation_begin);
     if (has_words) label.words = point.notes.front();
   }

@@ -7,13 +7,15 @@
 #include <vector>
 
 #include "files/solution_file_reader.hpp"
+#include "problem_type/normal_form_note.hpp"
 
 namespace tchat {
 
 struct RecordedLabel {
   std::optional<bool> stable;  ///< nothing where stability was not computed, or says nothing (curves of bifurcations)
   bool admissible = true;
-  std::string words;      ///< what the point is; "" when the d-file does not tell
+  std::string words;  ///< what the point is; "" when the d-file does not tell
+  std::optional<NormalFormNote> normal_form;
   std::string violation;  ///< of the model, at an inadmissible point
 };
 

@@ -249,6 +249,9 @@ class BranchFigureBuilder {
       Marker marker = special_point_marker(type, piece.points[k]);
       marker.minor = !file.admissible[piece.section][row];
       marker.computed = first + k;
+      if (const DiagnosticPoint* const point = file.diagnostic_of(piece.section, row);
+          point != nullptr && point->normal_form && point->normal_form->is_subcritical())
+        marker.filled = false;
       const auto zeros = file.xi_zeros.find(label);
       if (options_.labels.numbers)
         marker.label = plain_text(fmt::format("{} {}", type, label));

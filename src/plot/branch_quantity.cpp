@@ -59,6 +59,12 @@ std::vector<std::string> places(const PointSection& section) {
   return names;
 }
 
+/// A number of a normal form by its name; nullptr: none of them.
+const double NormalFormNote::*of_normal_form(std::string_view name) {
+  if (name == "coefficient") return &NormalFormNote::value;
+  return name == "uncertainty" ? &NormalFormNote::uncertainty : nullptr;
+}
+
 /// STATE@WHERE, taken apart.
 struct StateAt {
   int state = 0;  // from 0
@@ -71,6 +77,7 @@ class SectionNames {
   explicit SectionNames(const PointSection& section) : section_(section) {
     for (const std::string& column : section.columns) names_.push_back(column);
     for (const auto& [k, name] : section.parameters) names_.push_back(name);
+    names_.insert(names_.end(), {"coefficient", "uncertainty"});
     for (const int k : section.active_parameters) names_.push_back(fmt::format("PAR({})", k));
     for (const auto& [k, name] : section.parameters) names_.push_back(fmt::format("PAR({})", k));
     for (int k = 1; k <= section.dimension; ++k) {
@@ -133,7 +140,7 @@ class QuantityReader {
         option_(option) {}
 
   BranchQuantity read() const {
-    if (column_source(file_, index_, wanted_)) return named(wanted_);
+    if (column_source(file_, index_, wanted_) || of_normal_form(wanted_)) return named(wanted_);
     if (!looks_like_expression(wanted_)) find_column(file_, index_, wanted_, option_);  // refuses it
     const KnownNames known{[this](std::string_view text) { return names_.length(text); },
                            fmt::format("{}", fmt::join(section_.columns, ", "))};
@@ -156,8 +163,19 @@ class QuantityReader {
       return quantity;
     }
     if (const auto state = names_.state_at(name)) return at_segments(name, *state);
+    if (const auto number = of_normal_form(name)) return of_forms(name, number);
     find_column(file_, index_, name, option_);  // refuses it
     return {};
+  }
+
+  BranchQuantity of_forms(const std::string& name, const double NormalFormNote::*number) const {
+    BranchQuantity quantity{plain_text(name), {{}}, {}, ""};
+    for (std::size_t row = 0; row < section_.rows.size(); ++row) {
+      const DiagnosticPoint* const point = file_.diagnostic_of(index_, row);
+      quantity.known.push_back(point != nullptr && point->normal_form);
+      quantity.arms[0].push_back(quantity.known.back() ? *point->normal_form.*number : nothing);
+    }
+    return quantity;
   }
 
   BranchQuantity at_segments(const std::string& name, const StateAt& at) const {

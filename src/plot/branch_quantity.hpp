@@ -21,7 +21,8 @@ struct BranchQuantity {
 
 /// `wanted` is a column (find_column), STATE@WHERE, or an expression of them. WHERE is the name of an event function or
 /// of a jump, or the number of a segment; the state is that at the end of these segments, before the jump, and with
-/// STATE@after:WHERE that behind the jump. Throws UserError for what is none of these, and when q.NAME is needed and
+/// STATE@after:WHERE that behind the jump. `coefficient` and `uncertainty` are those of normal forms, known at
+/// labels that have one in d.NAME. Throws UserError for what is none of these, and when q.NAME is needed and
 /// has none of the orbits.
 BranchQuantity read_quantity(const BranchFile& file, std::size_t section, const std::string& wanted,
                              const char* option);

@@ -106,7 +106,8 @@ SpecialPoint FoldTest::classify(const TestedPoint& point, bool) const {
     return {PointType::user, {UserPointKind::extremum}, stop_, "extremum of ICP(1) along the branch"};
   if (!held_.empty()) return {type_, {}, stop_, "fold of the curve with " + held_ + " held"};
   if (is_monitor_ && !is_fold) return {type_, {}, stop_, "fold, or extremum of ICP(1) along the branch"};
-  if (s < 0 || is_fold) return {type_, {}, stop_, "fold", {}, is_fold ? normal_form_text(point, 1.0) : ""};
+  const bool has_form = is_fold || point.multipliers.are_eigenvalues;
+  if (s < 0 || is_fold) return {type_, {}, stop_, "fold", {}, has_form ? fold_text(point) : ""};
   return {PointType::user,
           {UserPointKind::impact_velocity, s + 1, system.signature()[static_cast<std::size_t>(s)].event, 1.0},
           stop_,
@@ -129,7 +130,9 @@ std::string BranchPointTest::objection(const TestedPoint& point) const {
   return objection_without_multiplier(point, 1, "the determinant changes sign");
 }
 
-SpecialPoint BranchPointTest::classify(const TestedPoint&, bool) const { return {type_, {}, stop_, "branch point"}; }
+SpecialPoint BranchPointTest::classify(const TestedPoint& point, bool) const {
+  return {type_, {}, stop_, "branch point", {}, branch_point_text(point)};
+}
 
 TestValue PeriodDoublingTest::evaluate(const TestedPoint& point) const { return multiplier_product(point, -1); }
 

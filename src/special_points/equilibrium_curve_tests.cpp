@@ -10,6 +10,7 @@
 
 #include "bvp/condensed_system.hpp"
 #include "bvp/orbit_accuracy.hpp"
+#include "special_points/label_evidence.hpp"
 #include "stability/equilibrium_eigenvalues.hpp"
 #include "stability/lyapunov_coefficient.hpp"
 
@@ -18,15 +19,6 @@ namespace tchat {
 namespace {
 
 using Eigenvalues = std::vector<std::complex<double>>;
-
-/// Of differences that a coefficient is made of.
-constexpr double difference_accuracy = 1e-8;
-
-double largest_modulus(const Eigenvalues& values) {
-  double largest = 0.0;
-  for (const auto& value : values) largest = std::max(largest, std::abs(value));
-  return largest;
-}
 
 /// Without the one that is zero on a fold curve.
 Eigenvalues without_zero(Eigenvalues values) {
@@ -199,8 +191,8 @@ class BautinTest final : public TestFunction {
     const double square = pair_.square();
     if (!(square > 0.0)) return TestValue::undefined();
     const double omega = std::sqrt(square);
-    const double coefficient = omega * first_lyapunov_coefficient(point.condensed.system(), point.orbit, omega);
-    return TestValue::of(coefficient, difference_accuracy);
+    const Coefficient l = first_lyapunov_coefficient(point.condensed.system(), point.orbit, omega);
+    return TestValue::of(omega * l.value, omega * l.uncertainty);
   }
   SpecialPoint classify(const TestedPoint&, bool) const override {
     return {PointType::generalized_hopf, {}, false, "generalised Hopf point: the first Lyapunov coefficient is 0"};

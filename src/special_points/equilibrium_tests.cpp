@@ -7,6 +7,7 @@
 
 #include "bvp/orbit_accuracy.hpp"
 #include "special_points/bifurcation_tests.hpp"
+#include "special_points/normal_form_text.hpp"
 #include "stability/equilibrium_eigenvalues.hpp"
 
 namespace tchat {
@@ -26,7 +27,9 @@ SpecialPoint HopfTest::classify(const TestedPoint& point, bool) const {
   return {PointType::hopf,
           {},
           stop_,
-          fmt::format("Hopf bifurcation, omega = {:.10g}, period {:.10g}", omega, 2.0 * std::numbers::pi / omega)};
+          fmt::format("Hopf bifurcation, omega = {:.10g}, period {:.10g}", omega, 2.0 * std::numbers::pi / omega),
+          {},
+          hopf_text(point, omega)};
 }
 
 std::string BoundaryEquilibriumTest::name() const { return fmt::format("h{} at the equilibrium", event_); }

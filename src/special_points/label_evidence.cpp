@@ -22,20 +22,8 @@ bool is_known(const FloquetMultipliers& multipliers) {
   return multipliers.determined() && multipliers.structural <= structural_bound;
 }
 
-double largest_modulus(const FloquetMultipliers& multipliers) {
-  double largest = 0.0;
-  for (const Complex& mu : multipliers.nontrivial()) largest = std::max(largest, std::abs(mu));
-  return largest;
-}
-
-/// By how much a multiplier is outside of the unit circle, an eigenvalue to the right of the imaginary axis, as a share
-/// of its size.
-double excess(const FloquetMultipliers& multipliers, const Complex& mu) {
-  return multipliers.are_eigenvalues ? mu.real() : std::abs(mu) - 1.0;
-}
-
 double doubt_of_stability(const FloquetMultipliers& multipliers) {
-  if (multipliers.are_eigenvalues) return orbit_accuracy * largest_modulus(multipliers);
+  if (multipliers.are_eigenvalues) return orbit_accuracy * largest_modulus(multipliers.nontrivial());
   return std::max(stability_margin, multiplier_accuracy(multipliers));
 }
 
@@ -43,12 +31,23 @@ double doubt_of_stability(const FloquetMultipliers& multipliers) {
 std::vector<Complex> by_excess(const FloquetMultipliers& multipliers) {
   const auto nontrivial = multipliers.nontrivial();
   std::vector<Complex> list(nontrivial.begin(), nontrivial.end());
-  std::stable_sort(list.begin(), list.end(),
-                   [&](const Complex& a, const Complex& b) { return excess(multipliers, a) > excess(multipliers, b); });
+  std::stable_sort(list.begin(), list.end(), [&](const Complex& a, const Complex& b) {
+    return stability_excess(multipliers, a) > stability_excess(multipliers, b);
+  });
   return list;
 }
 
 }  // namespace
+
+double largest_modulus(std::span<const Complex> values) {
+  double largest = 0.0;
+  for (const Complex& value : values) largest = std::max(largest, std::abs(value));
+  return largest;
+}
+
+double stability_excess(const FloquetMultipliers& multipliers, const Complex& mu) {
+  return multipliers.are_eigenvalues ? mu.real() : std::abs(mu) - 1.0;
+}
 
 double multiplier_accuracy(const FloquetMultipliers& multipliers) {
   return std::max(orbit_accuracy, multipliers.are_eigenvalues ? 0.0 : multipliers.structural);
@@ -84,7 +83,7 @@ UnstableCount count_unstable(const FloquetMultipliers& multipliers) {
   UnstableCount count;
   const double level = doubt_of_stability(multipliers);
   for (const Complex& mu : multipliers.nontrivial()) {
-    const double by = excess(multipliers, mu);
+    const double by = stability_excess(multipliers, mu);
     ++(by > level ? count.outside : by < -level ? count.inside : count.undecided);
   }
   return count;

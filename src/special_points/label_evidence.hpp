@@ -6,6 +6,8 @@
 /// resolves the orbit, or what changed sign is rounding. Such a point is reported in words and has no label.
 #pragma once
 
+#include <complex>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -22,6 +24,11 @@ double multiplier_accuracy(const FloquetMultipliers& multipliers);
 
 /// Distance of the multiplier nearest to `target`, infinite without multipliers. The trivial one is left out.
 double multiplier_distance(const FloquetMultipliers& multipliers, double target);
+
+double largest_modulus(std::span<const std::complex<double>> values);
+
+/// By how much a multiplier is outside of the unit circle, an eigenvalue to the right of the imaginary axis.
+double stability_excess(const FloquetMultipliers& multipliers, const std::complex<double>& mu);
 
 /// Where the structural multiplier is larger, the other multipliers of that mesh are not used.
 inline constexpr double structural_bound = 5e-2;

@@ -1,4 +1,6 @@
-/// What a label says of its normal form: the coefficient with its uncertainty, and sub- or supercritical.
+/// What a label says of its normal form: the coefficient with its uncertainty, and sub- or supercritical. "" at points
+/// that have none; where a coefficient cannot be found, why. A verdict is given only where the coefficient is larger
+/// than its uncertainty.
 #pragma once
 
 #include <complex>
@@ -9,8 +11,16 @@
 namespace tchat {
 
 /// Of a bifurcation of periodic orbits in one parameter with the multiplier `critical`: 1 (fold), -1 (period doubling)
-/// or e^(i theta) (torus). "" at other points; where there is no coefficient, why. Says super- or subcritical only
-/// where the coefficient is larger than its uncertainty.
+/// or e^(i theta) (torus).
 std::string normal_form_text(const TestedPoint& point, std::complex<double> critical);
+
+/// Of a fold of periodic orbits or of equilibria in one parameter.
+std::string fold_text(const TestedPoint& point);
+
+/// Of a branch point of periodic orbits or of equilibria in one parameter: transcritical or pitchfork.
+std::string branch_point_text(const TestedPoint& point);
+
+/// Of a Hopf bifurcation of equilibria in one parameter with the eigenvalues +- i omega.
+std::string hopf_text(const TestedPoint& point, double omega);
 
 }  // namespace tchat

@@ -26,6 +26,7 @@
 
 #include "bvp/defining_system.hpp"
 #include "bvp/orbit.hpp"
+#include "stability/branching.hpp"
 
 namespace tchat {
 
@@ -41,5 +42,10 @@ struct NormalForm {
 /// mesh has but one interval, or segments have meshes of their own. The map has to be smooth at the orbit: no end of a
 /// segment tangent to its event surface. Allocates.
 std::optional<NormalForm> normal_form(const DefiningSystem& system, const Orbit& x, std::complex<double> critical);
+
+/// What crosses at the branch point near x (branching.hpp): with V and W as above and mu = 1, g is the return map less
+/// the identity along q, so that a = p B(q, q) / 2 as at a fold. Nothing under the same conditions, or where no branch
+/// crosses. Allocates.
+std::optional<BranchingForm> orbit_branching(const DefiningSystem& system, const Orbit& x);
 
 }  // namespace tchat

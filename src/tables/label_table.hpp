@@ -2,12 +2,14 @@
 ///
 ///     label  type  name  branch  point  problem_type  branch_mode  segments  dimension  mesh_intervals
 ///     collocation_points  stable  admissible  period  signature  free  kind
+///     normal_form  coefficient  uncertainty  verdict
 ///         type in letters; name as IRS knows it (GR1), several with a blank between; problem_type is IPS,
-///         branch_mode ISW; free: the names of the free parameters, with commas between; kind in words
+///         branch_mode ISW; free: the names of the free parameters, with commas between; kind in words;
+///         normal_form: the name of the coefficient (problem_type/normal_form_note.hpp)
 ///     the parameters by their names: those with a name, those that are not zero, durations
 ///
-/// Not known: stable without a p-file and along curves of special points, admissible without a d-file, problem_type,
-/// segments, dimension and period in older files, signature without the constants of the run.
+/// Not known: stable without a p-file and along curves of special points, admissible and a normal form without a
+/// d-file, problem_type, segments, dimension and period in older files, signature without the constants of the run.
 #pragma once
 
 #include <map>

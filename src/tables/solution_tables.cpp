@@ -27,13 +27,14 @@ std::string free_parameters(const LabelledSolution& solution, int segments, cons
 
 std::string yes_or_no(const std::optional<bool>& answer) { return !answer ? "-" : *answer ? "yes" : "no"; }
 
-/// What a point is, as the run has said it, else as the q-file tells it; and what it violates.
+/// What a point is, as the run has said it, else as the q-file tells it; its normal form, and what it violates.
 std::vector<std::string> remarks(const LabelledSolution& solution, const RecordedLabel& label,
                                  const ProblemNames& names) {
   std::vector<std::string> list;
   const std::string what =
       !label.words.empty() ? label.words : description(solution, [&names](int k) { return names.parameter(k); });
   if (!what.empty()) list.push_back(what);
+  if (label.normal_form) list.push_back(format_normal_form(*label.normal_form, ""));
   if (!label.admissible) list.push_back("inadmissible" + (label.violation.empty() ? "" : ": " + label.violation));
   return list;
 }

@@ -65,3 +65,30 @@ TEST_CASE("the xi_n that vanish are read from the notes") {
   CHECK(points[0].xi_zeros == std::vector<int>{2, 4});
   CHECK(points[1].xi_zeros.empty());
 }
+
+TEST_CASE("a normal form is read from its note, whatever else that says") {
+  const std::string heading = "  BR    PT  TY  LAB       p\n";
+  const auto form_of = [&](const std::string& note) {
+    return parse_diagnostics(
+               heading + "   1     2  PD    2   8.0E-01\n   1     2  NOTE: period doubling\n   1     2  NOTE: " + note +
+               "\n")
+        .front()
+        .normal_form;
+  };
+  for (const std::string& explanation : {std::string(), std::string(": stable orbits"), std::string("; another one")}) {
+    const NormalFormNote written{"Re d", -1.25, 3e-11, "supercritical"};
+    const auto form = form_of("lambda = 2; " + format_normal_form(written, explanation) + "; gradient: p 3");
+    REQUIRE(form);
+    CHECK(form->name == "Re d");
+    CHECK(form->value == -1.25);
+    CHECK(form->uncertainty == 3e-11);
+    CHECK(form->verdict == "supercritical");
+    CHECK_FALSE(form->is_subcritical());
+  }
+  CHECK(form_of(format_normal_form({"c", 1.0, 0.5, "subcritical pitchfork"}, ""))->is_subcritical());
+  CHECK(form_of(format_normal_form({"a", 1.0, 0.5}, ""))->verdict.empty());
+  CHECK(form_of("normal form a = 0.5 +- 1e-12; gradient: p 3")->uncertainty == 1e-12);
+  CHECK_FALSE(form_of("no normal form: the end of segment 1 is tangent to its event surface"));
+  CHECK_FALSE(form_of("normal form a = 0.5"));
+  CHECK_FALSE(form_of("normal form a = x +- 2"));
+}

@@ -124,6 +124,22 @@ TEST_CASE("inadmissible points and names of UZ points come from the d-file") {
   CHECK(figure.key.back().text.text == "inadmissible");
 }
 
+TEST_CASE("subcritical points are open symbols") {
+  const TemporaryFolder folder;
+  const std::string path = folder.write("p.a", header(180, 1) + rows(branch));
+  for (const bool subcritical : {false, true}) {
+    std::string text = diagnostics(3, "PD", 2, 0.2, true);
+    const std::string verdict = subcritical ? "subcritical" : "supercritical";
+    text.insert(text.find("===="),
+                "   1     3  NOTE: " + format_normal_form({"c", 0.5, 1e-9, verdict}, ": what") + "\n");
+    folder.write("d.a", text);
+    const Figure figure = branch_figure({read_branch_file(path)}, {});
+    REQUIRE(figure.panels[0].markers.size() == 2);
+    CHECK(figure.panels[0].markers[0].label.text == "PD");
+    CHECK(figure.panels[0].markers[0].filled == !subcritical);
+  }
+}
+
 TEST_CASE("where stability is not known there is none to show") {
   const TemporaryFolder folder;
   std::string text = header(4, 1);

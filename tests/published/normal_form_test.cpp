@@ -5,40 +5,11 @@
 #include <cmath>
 
 #include "end_to_end/bouncing_ball.hpp"
-#include "published/chain.hpp"
+#include "published/printed_form.hpp"
 
 using namespace test_support;
 
 namespace {
-
-/// "normal form NAME = VALUE +- UNCERTAINTY, ..." of a label.
-struct PrintedForm {
-  std::string name, verdict;
-  double value = NAN, uncertainty = NAN;
-};
-
-PrintedForm printed_form(const DiagnosticPoint& point) {
-  for (const std::string& note : point.notes) {
-    const std::size_t at = note.find("normal form ");
-    const std::size_t equals = note.find(" = ", at), plus_minus = note.find(" +- ", at);
-    if (at == std::string::npos || equals == std::string::npos || plus_minus == std::string::npos) continue;
-    PrintedForm form;
-    form.name = note.substr(at + 12, equals - at - 12);
-    form.value = std::stod(note.substr(equals + 3));
-    std::size_t length = 0;
-    form.uncertainty = std::stod(note.substr(plus_minus + 4), &length);
-    form.verdict = note.substr(plus_minus + 4 + length);
-    return form;
-  }
-  return {};
-}
-
-PrintedForm form_at(const Workspace& workspace, const std::string& name, const std::string& type) {
-  const std::vector<DiagnosticPoint> points = of_type(read_diagnostics(workspace.read("d." + name)), type);
-  REQUIRE(!points.empty());
-  INFO(workspace.read("d." + name));
-  return printed_form(points.front());
-}
 
 /// x -> -(1 + p) x + b x^2 + c x^3 once in a unit of time has f''' / 6 + (f'' / 2)^2 = c + b^2 at p = 0.
 constexpr const char* cubic_map = R"(par p=-0.1, b=0.4, c=0.3, a=1
@@ -72,20 +43,6 @@ jump back: phi -> phi - 1
 after any: turn -> back
 )";
 
-void simulate(const Workspace& workspace, const std::string& name, const char* formulas, const std::string& words) {
-  workspace.write(name + ".tch", formulas);
-  workspace.succeed("simulate " + name + " -o " + name + " --dat -q " + words);
-}
-
-/// The constant term of the polynomial of this degree through points, by least squares.
-double at_zero(const std::vector<double>& x, const std::vector<double>& y, int degree) {
-  Eigen::MatrixXd powers(static_cast<Eigen::Index>(x.size()), degree + 1);
-  for (std::size_t i = 0; i < x.size(); ++i)
-    for (int k = 0; k <= degree; ++k) powers(static_cast<Eigen::Index>(i), k) = std::pow(x[i], k);
-  const Eigen::VectorXd values = Eigen::Map<const Eigen::VectorXd>(y.data(), static_cast<Eigen::Index>(y.size()));
-  return powers.colPivHouseholderQr().solve(values)(0);
-}
-
 Eigen::VectorXd start(const SolutionEntry& entry, int segment) {
   const auto n = static_cast<std::size_t>(entry.dimension);
   return Eigen::Map<const Eigen::VectorXd>(entry.states.front().data() + static_cast<std::size_t>(segment) * n,
@@ -117,7 +74,7 @@ TEST_CASE("strong damping and growth along the orbit leave the normal form as it
   std::string formulas = cubic_map;
   formulas.replace(formulas.find("phi' = 1\n"), 9, "phi' = 1\ndamped' = x - 300*damped\ngrowing' = x + 30*growing\n");
   formulas.replace(formulas.find("phi -> phi - 1"), 14, "phi -> phi - 1, growing -> growing*exp(-35)");
-  simulate(workspace, "map", formulas.c_str(), "--state 0,0,0,0 --free p");
+  simulate(workspace, "map", formulas, "--state 0,0,0,0 --free p");
   workspace.succeed("run map -q -c map -d map -o map DS=0.02 RL1=0.1 NMX=20");
   const PrintedForm form = form_at(workspace, "map", "PD");
   CHECK(form.uncertainty < 1e-9);
@@ -130,7 +87,7 @@ TEST_CASE("where another multiplier is outside the unit circle, nothing is calle
   const Workspace workspace;
   std::string formulas = cubic_map;
   formulas.replace(formulas.find("phi' = 1\n"), 9, "phi' = 1\nother' = 0.02*other\n");  // e^0.02, near 1
-  simulate(workspace, "map", formulas.c_str(), "--state 0,0,0 --free p");
+  simulate(workspace, "map", formulas, "--state 0,0,0 --free p");
   workspace.succeed("run map -q -c map -d map -o map DS=0.02 RL1=0.1 NMX=20");
   const PrintedForm form = form_at(workspace, "map", "PD");
   CHECK(form.value == Approx(0.46).epsilon(1e-9));

@@ -406,6 +406,11 @@ class Problems(unittest.TestCase):
         self.assertTrue(0.005 < branch["gamma"].max() <= 0.02)
         doubling, = branch.PD
         self.assertTrue(min(abs(branch.multipliers[list(branch["name"]).index("PD1")] + 1.0)) < 1e-6)
+        self.assertEqual((doubling["normal_form"], doubling.verdict), ("c", "supercritical"))
+        self.assertTrue(0 < doubling.uncertainty < doubling.coefficient)
+        at = list(branch["name"]).index("PD1")
+        self.assertEqual(branch["coefficient"][at], doubling.coefficient)
+        self.assertTrue(np.isnan(branch.labels[0].coefficient) and not branch.labels[0].verdict)
         twice = doubling.switch(name="twice")
         self.assertEqual(len(twice.labels[0].signature), 4)
         self.assertAlmostEqual(twice["PERIOD"][0], 2 * doubling.period, delta=1e-3)

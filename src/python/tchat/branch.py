@@ -169,12 +169,15 @@ class Label:
     label.name, label.type, label.label, label.point     "PD1", "PD", 4, and the number of the point
     label["omega"]       a parameter, or a column of the table of labels (`tchat labels --csv`)
     label.orbit          its states; label.signature, label.period
+    label.coefficient, label.uncertainty, label.verdict  its normal form: NaN, NaN and "" where it has none;
+                         label["normal_form"] is the name of the coefficient, "c"
     """
 
     def __init__(self, branch, path, row):
         self.branch, self._path, self._row = branch, path, row
         self.name, self.type, self.label, self.point = row["name"], row["type"], int(row["label"]), int(row["point"])
         self.period, self.signature, self.kind = row["period"], read_signature(row["signature"]), row["kind"]
+        self.coefficient, self.uncertainty, self.verdict = row["coefficient"], row["uncertainty"], row["verdict"]
         self._orbit = None
 
     def __getitem__(self, name):

@@ -1,0 +1,71 @@
+/// What crosses at a branch point: the equations reduced to two unknowns, with their coefficients.
+///
+/// F(u, p) = 0, N equations for u in R^N and one parameter, has at the branch point V and W with F_u V = 0, W F_u = 0, W
+/// F_p = 0. With a column b, W b = 1, and a row r, r V = 1, the system
+///
+///     F(u, p) + zeta b = 0,     r (u - u_0) = y,     p = p_0 + s                              (N + 1 unknowns u, zeta)
+///
+/// is regular, and zeta = g(y, s) vanishes where the original one has a solution: y is the distance of two solutions at
+/// one parameter along V. With V^ = (V, 0), U^ = (U, 1), F_u U + F_p = 0, r U = 0,
+///
+///     g = a y^2 + g_ys y s + g_ss s^2 / 2 + c y^3 + ...,
+///     a = -W F''(V^, V^) / 2,   g_ys = -W F''(V^, U^),   g_ss = -W F''(U^, U^),
+///     c = -W (F'''(V, V, V) + 3 F''(V, H)) / 6,          F_u H + F''(V, V) = zeta b, r H = 0.
+///
+/// Two branches cross where b^2 = g_ys^2 - 2 a g_ss > 0, and the critical eigenvalue (or multiplier less 1) is g_y: on
+/// one it grows by b, on the other by -b per unit of the parameter. For a = 0 (pitchfork) the second one turns, y^2 =
+/// -g_ys s / c, at the rate -2 b times the sign of g_ys: c < 0 is supercritical, with what is born where the other one
+/// is unstable.
+///
+/// The point itself is refined: F + zeta b = 0, g_y = 0, g_s = 0 are N + 2 equations for the N + 2 unknowns u, zeta and
+/// p. So the centre of the bifurcation is found where errors of a mesh make an imperfect one of it, which zeta balances,
+/// and the place of the label along the branch adds no error (G. Moore, The numerical treatment of non-trivial
+/// bifurcation points, Numer. Funct. Anal. Optim. 2, 1980).
+#pragma once
+
+#include <optional>
+
+#include "bvp/orbit.hpp"
+#include "stability/multilinear.hpp"
+
+namespace tchat {
+
+/// The equations near a branch point. Directions "with the parameter" have N + 1 entries, the last one its change.
+class SingularEquations {
+ public:
+  using Vector = Eigen::VectorXd;
+  virtual ~SingularEquations() = default;
+
+  /// At x, which the calls below refer to until the next one; false where it cannot be done.
+  virtual bool linearise(const Orbit& x) = 0;
+  virtual const Vector& right_vector() const = 0;  ///< V
+  virtual const Vector& left_vector() const = 0;   ///< W
+  virtual double critical() const = 0;             ///< -W F_u V = g_y
+  virtual Vector residual() const = 0;             ///< F
+  virtual Vector by_parameter() const = 0;         ///< F_p
+  /// v and `excess` of F_u v + excess b = right, r v = 0.
+  virtual Vector solve(const Vector& right, double& excess) = 0;
+  virtual Vector second(const Vector& u, const Vector& v) const = 0;  ///< F''(u, v), with the parameter
+  virtual Vector third(const Vector& v) const = 0;                    ///< F'''(v, v, v)
+  virtual void move(Orbit& x, const Vector& change) const = 0;        ///< with the parameter
+  /// Errors of second and third derivatives, as a share of sums over them.
+  virtual double second_error() const = 0;
+  virtual double third_error() const = 0;
+};
+
+/// Coefficients of g, with the errors of sums. The sign of a is that of V.
+struct BranchingForm {
+  Coefficient a, b, c;
+};
+
+/// At the branch point near x, which becomes the refined one. Nothing where there is none: equations more than simply
+/// singular, or b^2 <= 0. Allocates.
+std::optional<BranchingForm> branching_form(SingularEquations& equations, Orbit& x);
+
+enum class Branching { transcritical, pitchfork, undecided };
+
+/// A pitchfork: a is 0 within an uncertainty that is small for its size. A fold at a distance of a^2 / (4 c b) from the
+/// branch point, by which a transcritical one differs from it, cannot be seen. Undecided also where b may be 0.
+Branching branching_of(const BranchingForm& form);
+
+}  // namespace tchat
