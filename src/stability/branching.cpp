@@ -31,9 +31,9 @@ class Reduction {
     u_ = with_parameter(equations_.solve(-equations_.by_parameter(), g_.s), 1.0);
     g_.y = equations_.critical();
     along_v_ = equations_.second(v_, v_);
-    g_.yy = derivative(along_v_, equations_.second_error());
-    g_.ys = derivative(equations_.second(v_, u_), equations_.second_error());
-    g_.ss = derivative(equations_.second(u_, u_), equations_.second_error());
+    g_.yy = derivative(along_v_);
+    g_.ys = derivative(equations_.second(v_, u_));
+    g_.ss = derivative(equations_.second(u_, u_));
   }
 
   const ReducedEquation& g() const { return g_; }
@@ -54,17 +54,16 @@ class Reduction {
                          0.5 * (std::abs(g_.yy.value) * g_.ss.uncertainty + std::abs(g_.ss.value) * g_.yy.uncertainty);
     double zeta = 0.0;
     const Vector curvature = equations_.solve(-along_v_, zeta);
-    const Coefficient cubic = derivative(equations_.third(equations_.right_vector()), equations_.third_error());
-    const Coefficient bent =
-        derivative(3.0 * equations_.second(v_, with_parameter(curvature, 0.0)), equations_.second_error());
+    const Coefficient cubic = derivative(equations_.third(equations_.right_vector()));
+    const Coefficient bent = derivative(3.0 * equations_.second(v_, with_parameter(curvature, 0.0)));
     return {{0.5 * g_.yy.value, 0.5 * g_.yy.uncertainty},
             {rate, error / rate},
             {(cubic.value + bent.value) / 6.0, (cubic.uncertainty + bent.uncertainty) / 6.0}};
   }
 
  private:
-  Coefficient derivative(const Vector& rows, double error) const {
-    return {-w_.dot(rows), error * w_.cwiseAbs().dot(rows.cwiseAbs())};
+  Coefficient derivative(const Vector& rows) const {
+    return {-w_.dot(rows), equations_.error() * w_.cwiseAbs().dot(rows.cwiseAbs())};
   }
 
   SingularEquations& equations_;
@@ -110,7 +109,7 @@ Branching branching_of(const BranchingForm& form) {
   if (std::abs(form.a.value) > form.a.uncertainty) return Branching::transcritical;
   const bool is_cubic = std::abs(form.c.value) > form.c.uncertainty;
   return is_cubic && form.a.uncertainty < share * std::sqrt(std::abs(form.c.value)) ? Branching::pitchfork
-                                                                                     : Branching::undecided;
+                                                                                    : Branching::undecided;
 }
 
 }  // namespace tchat

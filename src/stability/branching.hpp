@@ -1,7 +1,7 @@
 /// What crosses at a branch point: the equations reduced to two unknowns, with their coefficients.
 ///
-/// F(u, p) = 0, N equations for u in R^N and one parameter, has at the branch point V and W with F_u V = 0, W F_u = 0, W
-/// F_p = 0. With a column b, W b = 1, and a row r, r V = 1, the system
+/// F(u, p) = 0, N equations for u in R^N and one parameter, has at the branch point V and W with F_u V = 0, W F_u = 0,
+/// W F_p = 0. With a column b, W b = 1, and a row r, r V = 1, the system
 ///
 ///     F(u, p) + zeta b = 0,     r (u - u_0) = y,     p = p_0 + s                              (N + 1 unknowns u, zeta)
 ///
@@ -18,9 +18,9 @@
 /// is unstable.
 ///
 /// The point itself is refined: F + zeta b = 0, g_y = 0, g_s = 0 are N + 2 equations for the N + 2 unknowns u, zeta and
-/// p. So the centre of the bifurcation is found where errors of a mesh make an imperfect one of it, which zeta balances,
-/// and the place of the label along the branch adds no error (G. Moore, The numerical treatment of non-trivial
-/// bifurcation points, Numer. Funct. Anal. Optim. 2, 1980).
+/// p. So the centre of the bifurcation is found where errors of a mesh make an imperfect one of it, which zeta
+/// balances, and the place of the label along the branch adds no error (G. Moore, The numerical treatment of
+/// non-trivial bifurcation points, Numer. Funct. Anal. Optim. 2, 1980).
 #pragma once
 
 #include <optional>
@@ -48,9 +48,7 @@ class SingularEquations {
   virtual Vector second(const Vector& u, const Vector& v) const = 0;  ///< F''(u, v), with the parameter
   virtual Vector third(const Vector& v) const = 0;                    ///< F'''(v, v, v)
   virtual void move(Orbit& x, const Vector& change) const = 0;        ///< with the parameter
-  /// Errors of second and third derivatives, as a share of sums over them.
-  virtual double second_error() const = 0;
-  virtual double third_error() const = 0;
+  virtual double error() const = 0;  ///< of sums over derivatives, as a share of their sizes
 };
 
 /// Coefficients of g, with the errors of sums. The sign of a is that of V.

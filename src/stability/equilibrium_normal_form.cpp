@@ -67,8 +67,7 @@ class EquilibriumEquations final : public SingularEquations {
     x.states.topRows(q_.size()).colwise() += change.head(q_.size());
     x.par(system_.free_parameters().front() - 1) += change(q_.size());
   }
-  double second_error() const override { return error_of_second(system_.system()); }
-  double third_error() const override { return error_of_third(system_.system()); }
+  double error() const override { return error_of_sums(system_.system()); }
 
  private:
   const DefiningSystem& system_;
@@ -87,7 +86,7 @@ std::optional<Coefficient> equilibrium_fold_form(const DefiningSystem& system, c
   if (!critical) return std::nullopt;
   const Product sum = product(critical->p, forms.second(critical->q, critical->q));
   if (!std::isfinite(sum.size)) return std::nullopt;
-  return Coefficient{0.5 * sum.value.real(), 0.5 * error_of_second(system.system()) * sum.size};
+  return Coefficient{0.5 * sum.value.real(), 0.5 * error_of_sums(system.system()) * sum.size};
 }
 
 std::optional<BranchingForm> equilibrium_branching(const DefiningSystem& system, const Orbit& x) {

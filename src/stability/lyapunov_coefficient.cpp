@@ -24,8 +24,7 @@ Coefficient first_lyapunov_coefficient(const DefiningSystem& system, const Orbit
   const Product by_mean = product(w, bilinear(second, q, mean));
   const Product by_twice = product(w, bilinear(second, qbar, twice));
   const std::complex<double> sum = cubic.value - 2.0 * by_mean.value + by_twice.value;
-  const double error = error_of_third(system.system()) * cubic.size +
-                       error_of_second(system.system()) * (2.0 * by_mean.size + by_twice.size);
+  const double error = error_of_sums(system.system()) * (cubic.size + 2.0 * by_mean.size + by_twice.size);
   return {sum.real() / (2.0 * omega), error / (2.0 * omega)};
 }
 

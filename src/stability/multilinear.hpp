@@ -50,9 +50,8 @@ struct Product {
 /// w^T rows, without conjugation.
 Product product(const Eigen::VectorXcd& w, const Eigen::VectorXcd& rows);
 
-/// Errors of such sums as a share of their sizes: rounding, or differences for derivatives that the problem does not
-/// give.
-double error_of_second(const HybridSystem& system);
-double error_of_third(const HybridSystem& system);
+/// The error of such sums as a share of their sizes: rounding, or that of differences. A problem without third
+/// derivatives may leave second ones of jumps to differences, too.
+double error_of_sums(const HybridSystem& system);
 
 }  // namespace tchat

@@ -60,7 +60,7 @@ std::optional<NormalForm> form_of(const DefiningSystem& system, NodalSystem& nod
   if (is_fold(critical)) {
     const Product sum = product(w, vv);
     if (!std::isfinite(sum.size)) return std::nullopt;
-    return NormalForm{-0.5 * sum.value, 0.5 * error_of_second(system.system()) * sum.size};
+    return NormalForm{-0.5 * sum.value, 0.5 * error_of_sums(system.system()) * sum.size};
   }
   ComplexVector rows = forms.third(v);
   Complex factor = -1.0 / 6.0;
@@ -74,7 +74,7 @@ std::optional<NormalForm> form_of(const DefiningSystem& system, NodalSystem& nod
   }
   const Product sum = product(w, rows);
   if (!std::isfinite(sum.size)) return std::nullopt;
-  return NormalForm{factor * sum.value, error_of_third(system.system()) * std::abs(factor) * sum.size};
+  return NormalForm{factor * sum.value, error_of_sums(system.system()) * std::abs(factor) * sum.size};
 }
 
 Orbit on_every_second_point(const Orbit& x) {
@@ -142,8 +142,7 @@ class OrbitEquations final : public SingularEquations {
   void move(Orbit& x, const Vector& change) const override {
     move_orbit(system_, x, change, change(change.size() - 1));
   }
-  double second_error() const override { return error_of_second(system_.system()); }
-  double third_error() const override { return error_of_third(system_.system()); }
+  double error() const override { return error_of_sums(system_.system()); }
 
   Vector start() const { return v_.head(x_.shape.dimension); }  ///< q
 

@@ -29,11 +29,11 @@ constexpr const char* label_headings[] = {"label",
                                           "period",
                                           "signature",
                                           "free",
-                                          "kind",
                                           "normal_form",
                                           "coefficient",
                                           "uncertainty",
-                                          "verdict"};
+                                          "verdict",
+                                          "kind"};
 
 TableCell known(int number) { return number > 0 ? TableCell(number) : TableCell(); }
 
@@ -94,13 +94,13 @@ void write_label_table(TableWriter& out, const SolutionFile& file, const Problem
     add(segments > 0 ? TableCell(period(solution)) : TableCell());
     add(known(signature));
     add(known(free_names(solution, names)));
-    add(known(description(solution, [&names](int k) { return names.parameter(k); })));
     const NormalFormNote* const form =
         is_recorded && record->second.normal_form ? &*record->second.normal_form : nullptr;
     add(form == nullptr ? TableCell() : known(form->name));
     add(form == nullptr ? TableCell() : TableCell(form->value));
     add(form == nullptr ? TableCell() : TableCell(form->uncertainty));
     add(form == nullptr ? TableCell() : known(form->verdict));
+    add(known(description(solution, [&names](int k) { return names.parameter(k); })));
     for (const int k : parameters) {
       const auto index = static_cast<std::size_t>(k - 1);
       const bool has = index < solution.parameters.size() &&

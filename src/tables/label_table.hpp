@@ -1,8 +1,8 @@
 /// The labelled solutions of a q-file as a table for other programs, one row a label.
 ///
 ///     label  type  name  branch  point  problem_type  branch_mode  segments  dimension  mesh_intervals
-///     collocation_points  stable  admissible  period  signature  free  kind
-///     normal_form  coefficient  uncertainty  verdict
+///     collocation_points  stable  admissible  period  signature  free
+///     normal_form  coefficient  uncertainty  verdict  kind
 ///         type in letters; name as IRS knows it (GR1), several with a blank between; problem_type is IPS,
 ///         branch_mode ISW; free: the names of the free parameters, with commas between; kind in words;
 ///         normal_form: the name of the coefficient (problem_type/normal_form_note.hpp)

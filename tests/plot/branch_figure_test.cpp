@@ -134,7 +134,7 @@ TEST_CASE("subcritical points are open symbols") {
                 "   1     3  NOTE: " + format_normal_form({"c", 0.5, 1e-9, verdict}, ": what") + "\n");
     folder.write("d.a", text);
     const Figure figure = branch_figure({read_branch_file(path)}, {});
-    REQUIRE(figure.panels[0].markers.size() == 2);
+    REQUIRE(figure.panels[0].markers.size() == 1);
     CHECK(figure.panels[0].markers[0].label.text == "PD");
     CHECK(figure.panels[0].markers[0].filled == !subcritical);
   }

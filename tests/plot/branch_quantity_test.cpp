@@ -55,6 +55,8 @@ BranchFile branch() {
   }
   file.solutions.resize(3);
   file.solution = {{0, 1, 2}};
+  file.diagnostic = {{-1, 0, -1}};
+  file.diagnostics.resize(1);
   file.parameters = {{{1, 8.0}, {2, 2.0}}};
   return file;
 }
@@ -97,6 +99,17 @@ TEST_CASE("states at events: an arm for each in a period, before and behind the 
   REQUIRE(ratio.arms.size() == 2);
   CHECK(ratio.arms[1] == std::vector<double>{-1.0, -1.0, -1.0});
   CHECK(read_quantity(file, 0, "x2@wall*x1@2", "-y").arms.size() == 2);
+}
+
+TEST_CASE("coefficients of normal forms are known where the d-file has one") {
+  BranchFile file = branch();
+  file.diagnostics[0].normal_form = NormalFormNote{"c", 0.5, 1e-9, "supercritical"};
+  const BranchQuantity coefficient = read_quantity(file, 0, "coefficient", "-y");
+  CHECK(coefficient.known == std::vector<bool>{false, true, false});
+  CHECK(coefficient.arms[0][1] == 0.5);
+  const BranchQuantity relative = read_quantity(file, 0, "uncertainty/coefficient", "-y");
+  CHECK(relative.arms[0][1] == Approx(2e-9));
+  CHECK_FALSE(relative.known[0]);
 }
 
 TEST_CASE("a branch of two impacts has two arms in the picture") {

@@ -11,7 +11,8 @@ using namespace test_support;
 namespace {
 
 /// Once in a unit of time X = x - p - p^2 -> (1 + p)^2 X + b X^2 + c X^3 + e X z, z -> z / 2 + k X^2. At p = 0 the
-/// centre manifold is z = 2 k X^2: for b = 0 the cubic coefficient is c + 2 k e. Multipliers of X = 0: (1 + p)^2 and 1/2.
+/// centre manifold is z = 2 k X^2: for b = 0 the cubic coefficient is c + 2 k e. Multipliers of X = 0: (1 + p)^2 and
+/// 1/2.
 constexpr const char* forking_map = R"(par p=-0.1, b=0, c=-0.3, e=0.2, k=0.5
 init x=-0.09
 x' = 0
@@ -112,7 +113,9 @@ TEST_CASE("coefficients of normal forms in the tables of labels and of points") 
   workspace.succeed("run fork -q -c fork -d fork -o fork PAR(c)=0.4" + steps);
   const PrintedForm form = form_at(workspace, "fork", "BP");
   const std::string value = fmt::format("{:.10g}", form.value), uncertainty = fmt::format("{:.1g}", form.uncertainty);
-  const auto has = [](const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; };
+  const auto has = [](const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+  };
   const std::string labels = workspace.succeed("labels fork").out;
   CHECK(has(labels, "normal form c = " + value + " +- " + uncertainty + ", subcritical pitchfork\n"));
   const std::string json = workspace.succeed("labels fork --json").out;
@@ -251,4 +254,14 @@ after any: right -> impact, left -> impact
   CHECK(form.verdict.find(", supercritical pitchfork") == 0);
   CHECK(other.value == Approx(form.value).epsilon(1e-8));  // of the symmetric orbits
   CHECK(other.verdict == form.verdict);
+
+  for (const char* const intervals : {"3", "5", "10", "20"}) {  // asymmetric meshes that know how well they know c
+    workspace.succeed({"run", "walls", "-q", "-c", "walls", "-d", "walls", "-o", "coarse", "NMX=60", "RL0=4.5",
+                       "DS=-0.02", "DSMAX=0.2", std::string("NTST=") + intervals});
+    const PrintedForm coarse = form_at(workspace, "coarse", "BP");
+    INFO(intervals << " intervals: " << coarse.value << " +- " << coarse.uncertainty);
+    CHECK(coarse.name == "c");
+    CHECK(std::abs(coarse.value - form.value) <= coarse.uncertainty + 1e-9);
+    CHECK(coarse.uncertainty < 0.01);
+  }
 }
