@@ -60,7 +60,7 @@ void add_labels_command(CLI::App& app, std::function<int()>& chosen) {
   command->footer(
       "SEG is the number of segments. Parameter names and STABLE are read from p.NAME, inadmissible points\n"
       "from d.NAME. IRS, STOP and `tchat orbit` accept the names of the table (PD1, GR1, UZ1). CSV and JSON\n"
-      "also have the parameters, the signature and the coefficient, uncertainty and verdict of normal forms.\n"
+      "also have parameters, the signature and normal forms.\n"
       "Example: tchat labels q.mems");
   const auto arguments = std::make_shared<LabelsArguments>();
   command->add_option("FILE", arguments->path, "q-file; `mems` means q.mems")->required();

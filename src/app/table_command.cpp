@@ -85,7 +85,7 @@ void add_table_command(CLI::App& app, std::function<int()>& chosen) {
       "One line a point: section, branch, point, type, name (as in IRS: GR1), label, kind, stable and\n"
       "admissible (1 or 0), all columns of the p-file, fixed parameters, durations, multipliers, Newton\n"
       "iterations. Unknown values are empty (null in JSON). With --column: section, point and these\n"
-      "columns, x2@wall (2) for the second value in a period; coefficient and uncertainty of normal forms.\n"
+      "columns, x2@wall (2) for the second value in a period; also coefficient, uncertainty.\n"
       "Example: tchat table p.mems > mems.csv");
   const auto arguments = std::make_shared<TableArguments>();
   command->add_option("FILES", arguments->files, "p-file (`mems` means p.mems); q- and d-file if they are elsewhere");
