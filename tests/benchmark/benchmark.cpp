@@ -25,7 +25,7 @@ namespace {
 constexpr const char* purpose =
     "Times continuation of the impacting orbit {J1} of the linear impact oscillator (omega = 2.0072, n = 4, NCOL = 4)\n"
     "and of a chain of such oscillators (n = 10, 20, 50), and prints tables:\n"
-    "  (a) time per continuation step for 1 to 64 segments, 50 to 800 mesh intervals, 4 to 50 states;\n"
+    "  (a) time per continuation step for 1 to 512 segments, 50 to 800 mesh intervals, 4 to 50 states;\n"
     "  (b) one Newton matrix and the multipliers, in units of the local eliminations of one Newton matrix;\n"
     "  (c) a step along a fold, period-doubling, torus or grazing curve, divided by a step of the one-parameter "
     "branch;\n"
@@ -89,8 +89,8 @@ void print_tables(const Choice& choice) {
   using namespace tchat::benchmark;
   const bool quick = choice.quick;
   if (choice.has('a')) {
-    StepSizes sizes{{1, 2, 4, 8, 16, 32, 64}, {50, 100, 200, 400, 800}, {4, 10, 20, 50}};
-    if (quick) sizes = {{1, 2}, {10, 20}, {4, 10}, 10, 2};
+    StepSizes sizes{{1, 2, 4, 8, 16, 32, 64}, {50, 100, 200, 400, 800}, {4, 10, 20, 50}, 50, {64, 128, 256, 512}};
+    if (quick) sizes = {{1, 2}, {10, 20}, {4, 10}, 10, {2, 4}, 5, 2};
     print_step_times(sizes);
   }
   if (choice.has('b')) print_matrix_times(quick ? 5 : 2000);

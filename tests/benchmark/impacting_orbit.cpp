@@ -48,7 +48,7 @@ Orbit impacting_orbit(const OrbitShape& shape) {
   x.shape = shape;
   x.mesh = uniform_mesh(shape.intervals);
   x.states.resize(shape.dimension, shape.columns());
-  x.par = ParameterVector(ParameterLayout());
+  x.par = ParameterVector(ParameterLayout(), shape.segments);
   x.par.head(5) << data.alpha, data.omega, data.zeta, data.restitution, chain_coupling;
   const double period = 2.0 * std::numbers::pi / data.omega;
   for (int s = 0; s < shape.segments; ++s) {

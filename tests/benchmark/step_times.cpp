@@ -58,6 +58,9 @@ void print_step_times(const StepSizes& sizes) {
   for (const int m : sizes.segments) shapes.push_back(walk_shape(m, sizes.intervals_for_segments));
   print_table("k", sizes.segments, shapes, sizes.rounds, wanted);
   shapes.clear();
+  for (const int m : sizes.many_segments) shapes.push_back(walk_shape(m, sizes.intervals_for_many));
+  print_table("k", sizes.many_segments, shapes, sizes.rounds, wanted);
+  shapes.clear();
   for (const int intervals : sizes.intervals) shapes.push_back(walk_shape(1, intervals));
   print_table("NTST", sizes.intervals, shapes, sizes.rounds, wanted);
   shapes.clear();

@@ -1,4 +1,5 @@
-/// Table (a): how the time of a continuation step grows with the number of segments, of mesh intervals and of states.
+/// Table (a): how the time of a continuation step grows with the number of segments, also of hundreds, of mesh
+/// intervals and of states.
 #pragma once
 
 #include <vector>
@@ -10,7 +11,9 @@ struct StepSizes {
   std::vector<int> intervals;
   std::vector<int> dimensions;
   int intervals_for_segments = 50;  ///< NTST while the segments vary
-  int rounds = 10;                  ///< each twice ten steps
+  std::vector<int> many_segments;
+  int intervals_for_many = 10;  ///< NTST while many segments vary
+  int rounds = 10;              ///< each twice ten steps
 };
 
 void print_step_times(const StepSizes& sizes);
