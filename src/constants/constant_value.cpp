@@ -67,13 +67,17 @@ double real_value(const Constant& constant, const std::string& name, const RawVa
 std::optional<StartLabel> parse_typed_label(std::string_view text) {
   if (text.size() >= 2 && (text.front() == '\'' || text.front() == '"') && text.back() == text.front())
     text = text.substr(1, text.size() - 2);
-  if (text.size() < 3 || !is_digit(text[2])) return std::nullopt;
-  StartLabel label;
-  for (const char c : text.substr(0, 2)) label.type += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
-  const auto count = parse_integer(text.substr(2));
-  if (find_point_type(label.type) == nullptr || !count || *count < 1) return std::nullopt;
-  label.number = *count;
-  return label;
+  for (const std::size_t letters : {3U, 2U}) {  // R1 and LPD are types
+    if (text.size() <= letters) continue;
+    StartLabel label;
+    for (const char c : text.substr(0, letters))
+      label.type += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+    const auto count = parse_integer(text.substr(letters));
+    if (find_point_type(label.type) == nullptr || !is_digit(text[letters]) || !count || *count < 1) continue;
+    label.number = *count;
+    return label;
+  }
+  return std::nullopt;
 }
 
 }  // namespace tchat

@@ -30,8 +30,9 @@ constexpr double last_parameter = first_name + max_names;  // names stand there
 constexpr double max_list = 100000;                        // length of lists that nothing else bounds
 constexpr std::string_view kept = "read and kept, no effect";
 constexpr std::string_view type_with_count =
-    "a type with a count (BP, LP, HB, PD, TR, UZ, GR, BE, XI, GC, CP, R1, ..., R4, BT, ZH, GH, EP, MX or RG) and a "
-    "number";
+    "a type with a count (BP, LP, HB, PD, TR, UZ, GR, BE, XI, GC, EX, EP, MX or RG, of curves CP, R1, ..., R4, GPD, "
+    "CH, "
+    "LPD, LTR, PTR, TTR, BT, ZH or GH) and a number";
 
 std::vector<int> with_zero(std::vector<int> choices) {
   choices.push_back(0);
@@ -48,8 +49,8 @@ std::vector<Constant> make_table() {
       {"NDIM", "number of states of one segment", 1, &R::dimension, range(1, most_states), "", "5", ""},
       {"IPS", "problem type", 1, &R::problem_type, one_of(problem_type_numbers()), families, "180", ""},
       {"IRS", "label to start from, 0: from data", 1, &R::start, at_least(0),
-       "a label number >= 0, or a type with a count (PD1: BP, LP, HB, PD, TR, UZ, GR, BE, XI, GC, CP, R1, ..., R4, BT, "
-       "ZH, GH, EP, MX or RG and a number)",
+       "a label number >= 0, or a type with a count (PD1: BP, LP, HB, PD, TR, UZ, GR, BE, XI, GC, EX, EP, MX or RG, of "
+       "curves CP, R1, ..., R4, GPD, CH, LPD, LTR, PTR, TTR, BT, ZH or GH, and a number)",
        "PD1", ""},
       {"ILP", "detect folds; negative: and stop there", 1, &R::detect_folds, range(-1, 1), "", "1", ""},
       {"NICP", "number of free parameters listed", 2, ListCount{"ICP"}, range(1, max_segments), "", "3", ""},
@@ -151,6 +152,8 @@ std::vector<Constant> make_table() {
        ""},
       {"CONSERVED", "conserved function, such as an energy; its orbits need no free parameter", extension_record,
        &R::conserved, any(), "a user function or a state of the problem", "energy", "of IPS = 180"},
+      {"CURVE", "curve to follow from a label of several, by the type of its points; empty: the label's own",
+       extension_record, &R::curve, any(), "LP, PD, TR, BP or HB", "TR", "of ISW = 2 and 3"},
       {"MODE", "oscillation that a family starts with at an equilibrium, 1: the slowest", extension_record, &R::mode,
        at_least(1), "", "2", "with CONSERVED and ISW = -1"},
       {"ICPMOVE", "let ICP(1) move where no orbit is found at its first value", extension_record, &R::start_may_move,

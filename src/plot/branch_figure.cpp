@@ -23,11 +23,11 @@ namespace {
 constexpr const char* neutral = "#000000";
 constexpr double line_width = 3.0;
 
-/// Letters that all points of a two-parameter curve share: from the header, or from the tens digit of a type.
+/// Letters that all points of a two-parameter curve share: from the header, or from a type.
 int curve_type_of(const PointSection& section) {
   if (section.curve_type != 0) return section.curve_type;
   for (const PointRow& row : section.rows)
-    if (const int tens = std::abs(row.type) / 10; tens > 0) return tens;
+    if (const int curve = curve_type(row.type); curve > 0) return curve;
   return 0;
 }
 

@@ -67,6 +67,12 @@ constexpr auto table = std::to_array<PointTypeFacts>({
      true, false, false},
     {"R4", -8, UserPointKind::none, "1:4 resonance on a curve of torus bifurcations", PointSymbol::diamond, false, true,
      false, false},
+    {"GPD", -71, UserPointKind::none,
+     "generalised period doubling on a curve of period doublings: the coefficient c of the normal form is zero",
+     PointSymbol::triangle, false, true, false, true},
+    {"CH", -81, UserPointKind::none,
+     "Chenciner point on a torus curve: the coefficient Re d of the normal form is zero", PointSymbol::diamond, false,
+     true, false, true},
     {"EP", 9, UserPointKind::none,
      "first point of a run from data, or the regular end of a branch; also where a closed branch is back at its first "
      "point, or an orbit has shrunk to an equilibrium",
@@ -74,20 +80,24 @@ constexpr auto table = std::to_array<PointTypeFacts>({
     {"MX", -9, UserPointKind::none, "no convergence: the last converged point again, with its mesh and multipliers",
      PointSymbol::reversed_triangle, true, false, false, false},
     {"RG", 4, UserPointKind::none, "every NPR-th point", PointSymbol::dot, true, false, false, false},
-    {"LTR", 23, UserPointKind::none, "fold and torus bifurcation at once, in AUTO's files", PointSymbol::square, false,
-     true, false, true},
-    {"LTR", 83, UserPointKind::none, "fold and torus bifurcation at once, in AUTO's files", PointSymbol::square, false,
-     true, false, true},
-    {"LPD", 28, UserPointKind::none, "fold and period doubling at once, in AUTO's files", PointSymbol::square, false,
-     true, false, true},
-    {"LPD", 78, UserPointKind::none, "fold and period doubling at once, in AUTO's files", PointSymbol::square, false,
-     true, false, true},
-    {"PTR", 77, UserPointKind::none, "period doubling and torus bifurcation at once, in AUTO's files",
+    {"LTR", 23, UserPointKind::none,
+     "fold and torus bifurcation at once: a multiplier 1 and a complex pair on the unit circle", PointSymbol::square,
+     false, true, false, true},
+    {"LTR", 83, UserPointKind::none,
+     "fold and torus bifurcation at once: a multiplier 1 and a complex pair on the unit circle", PointSymbol::square,
+     false, true, false, true},
+    {"LPD", 28, UserPointKind::none, "fold and period doubling at once (fold-flip): multipliers 1 and -1",
+     PointSymbol::square, false, true, false, true},
+    {"LPD", 78, UserPointKind::none, "fold and period doubling at once (fold-flip): multipliers 1 and -1",
+     PointSymbol::square, false, true, false, true},
+    {"PTR", 77, UserPointKind::none,
+     "period doubling and torus bifurcation at once: a multiplier -1 and a complex pair on the unit circle",
      PointSymbol::triangle, false, true, false, true},
-    {"PTR", 87, UserPointKind::none, "period doubling and torus bifurcation at once, in AUTO's files",
+    {"PTR", 87, UserPointKind::none,
+     "period doubling and torus bifurcation at once: a multiplier -1 and a complex pair on the unit circle",
      PointSymbol::triangle, false, true, false, true},
-    {"TTR", 88, UserPointKind::none, "two torus bifurcations at once, in AUTO's files", PointSymbol::diamond, false,
-     true, false, true},
+    {"TTR", 88, UserPointKind::none, "two torus bifurcations at once: two complex pairs on the unit circle",
+     PointSymbol::diamond, false, true, false, true},
 });
 
 }  // namespace
@@ -118,6 +128,13 @@ bool is_among(const std::vector<PointType>& types, int type) {
 }
 
 int basic_type(int type) { return type % 10; }
+
+int curve_type(int type) {
+  constexpr std::array of_orbits = {PointType::fold_and_torus, PointType::fold_and_doubling};
+  const bool is_of_orbits =
+      std::any_of(of_orbits.begin(), of_orbits.end(), [type](PointType one) { return static_cast<int>(one) == type; });
+  return is_of_orbits ? static_cast<int>(PointType::fold) : std::abs(type) / 10;
+}
 
 int file_type(PointType type, int curve) {
   const int number = static_cast<int>(type);

@@ -34,7 +34,17 @@ enum class PointType {
   resonance_1 = -5,        ///< 1:1, on fold and torus curves
   resonance_2 = -6,        ///< 1:2, on period-doubling and torus curves
   resonance_3 = -7,        ///< 1:3, on torus curves
-  resonance_4 = -8         ///< 1:4, on torus curves
+  resonance_4 = -8,        ///< 1:4, on torus curves
+  // With tens digits, the first seven as AUTO has them.
+  fold_and_torus = 23,         ///< on fold curves
+  fold_and_doubling = 28,      ///< on fold curves
+  doubling_and_torus = 77,     ///< on curves of period doublings
+  doubling_and_fold = 78,      ///< on curves of period doublings
+  torus_and_fold = 83,         ///< on torus curves
+  torus_and_doubling = 87,     ///< on torus curves
+  two_tori = 88,               ///< on torus curves
+  generalized_doubling = -71,  ///< on curves of period doublings
+  chenciner = -81              ///< on torus curves
 };
 
 /// What a UZ label is: the last PAR entries of a q-file entry, four internal values for each kind. What vanishes with
@@ -86,6 +96,9 @@ const PointTypeFacts* find_point_type(int type, const UserPointKind& kind);
 bool is_among(const std::vector<PointType>& types, int type);
 /// -59 -> -9, 54 -> 4.
 int basic_type(int type);
+/// The type of the points of the curve that a point with this number in files is on: its tens digit; 0: on none. AUTO's
+/// numbers for codimension two have a 2 for folds of periodic orbits.
+int curve_type(int type);
 /// The number in files: with the tens digit of the curve that is followed, 0 for none.
 int file_type(PointType type, int curve);
 

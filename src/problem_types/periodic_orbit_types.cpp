@@ -1,5 +1,8 @@
 /// The problem types of periodic orbits (IPS = 180): branches in one parameter (5.1-5.7), curves in two or three with
 /// one or two conditions more (5.11-5.22), and switches to other branches.
+#include <iterator>
+#include <utility>
+
 #include "bvp/conservative_orbit_system.hpp"
 #include "bvp/critical_branch_point.hpp"
 #include "bvp/critical_multiplier.hpp"
@@ -15,6 +18,7 @@
 #include "run/hopf_switch.hpp"
 #include "run/problem_row.hpp"
 #include "special_points/bifurcation_tests.hpp"
+#include "special_points/codimension_two_tests.hpp"
 #include "special_points/curve_tests.hpp"
 
 namespace tchat {
@@ -87,25 +91,34 @@ BranchCurve branch(const PeriodicOrbitSystem& system, const RunSettings& run, co
           gradient_remark(system.system(), run)};
 }
 
+/// Where a quantity is conserved multipliers come in pairs, and meet others than these.
+void add_meetings(TestList& tests, const PeriodicOrbitSystem& system, TestList meetings) {
+  if (system.conserved_quantities() > 0) return;
+  std::move(meetings.begin(), meetings.end(), std::back_inserter(tests));
+}
+
 BranchCurve fold(const PeriodicOrbitSystem& system, const RunSettings&, const SelectedStart& start) {
   return curve_of(system, std::make_unique<CriticalMultiplier>(system, start.start.orbit.shape, 1),
-                  [](TestList& tests, const CriticalMultiplier& condition) {
+                  [&system](TestList& tests, const CriticalMultiplier& condition) {
                     tests.push_back(cusp_test(condition));
                     tests.push_back(double_multiplier_test(PointType::resonance_1, condition));
+                    add_meetings(tests, system, fold_curve_meetings());
                   });
 }
 
 BranchCurve period_doubling(const PeriodicOrbitSystem& system, const RunSettings&, const SelectedStart& start) {
   return curve_of(system, std::make_unique<CriticalMultiplier>(system, start.start.orbit.shape, -1),
-                  [](TestList& tests, const CriticalMultiplier& condition) {
+                  [&system](TestList& tests, const CriticalMultiplier& condition) {
                     tests.push_back(double_multiplier_test(PointType::resonance_2, condition));
+                    add_meetings(tests, system, doubling_curve_meetings(system));
                   });
 }
 
 BranchCurve torus(const PeriodicOrbitSystem& system, const RunSettings&, const SelectedStart& start) {
   return curve_of(system, std::make_unique<CriticalPair>(system, start.start.orbit.shape, pair_at(system, start)),
-                  [](TestList& tests, const CriticalPair& pair) {
+                  [&system](TestList& tests, const CriticalPair& pair) {
                     for (auto& test : torus_curve_tests(pair)) tests.push_back(std::move(test));
+                    add_meetings(tests, system, torus_curve_meetings(system, pair));
                   });
 }
 

@@ -364,7 +364,7 @@ NewOrbit to_repeated(const LabelledOrbit& source) {
     throw UserError(fmt::format("{} lies on a grazing curve; an orbit of type IPS = 180 can be doubled", source.name));
   constexpr int period_doubling = static_cast<int>(PointType::period_doubling);
   const int type = source.solution.type;
-  const bool doubling = basic_type(type) == period_doubling || std::abs(type) / 10 == period_doubling;
+  const bool doubling = basic_type(type) == period_doubling || curve_type(type) == period_doubling;
   NewOrbit target{repeated(segments_of(source.settings)),
                   {periodic_orbit.number, doubling ? branch_switch.branch_mode : periodic_orbit.branch_mode,
                    source.settings.grazing_jump}};

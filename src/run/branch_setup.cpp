@@ -20,12 +20,26 @@ namespace tchat {
 
 namespace {
 
-/// The type that the start chooses, where IPS and ISW leave a choice: by the curve that a label was computed on (tens
-/// digit), else by its own type, and by what its orbit is where types share such labels.
+/// The type that CURVE names, where IPS and ISW leave a choice.
+const ProblemType& type_of_curve(const RunSettings& settings) {
+  std::string names;
+  for (const ProblemType* type : problem_types_of(settings.problem_type, settings.branch_mode)) {
+    const std::string name = curve_name(type->facts().curve);
+    if (name == settings.curve) return *type;
+    if (!name.empty()) names += (names.empty() ? "" : ", ") + name;
+  }
+  throw UserError(fmt::format(
+      "CURVE = {}: with IPS = {} and ISW = {} there {} to follow; remove it with CURVE=", settings.curve,
+      settings.problem_type, settings.branch_mode, names.empty() ? "is no curve" : "are the curves of " + names));
+}
+
+/// The type that the start chooses, where IPS and ISW leave a choice: by the curve that a label was computed on, else
+/// by its own type, and by what its orbit is where types share such labels.
 const ProblemType& type_at(const HybridSystem& system, const RunSettings& settings, const SelectedStart& selected) {
   const ProblemType& first = problem_type(settings.problem_type, settings.branch_mode);
-  const int tens = std::abs(selected.type) / 10;
-  for (const int label_type : tens > 0 ? std::vector<int>{tens} : selected.types)
+  if (!settings.curve.empty() && first.facts().in_two_parameters) return type_of_curve(settings);
+  const int of_label = curve_type(selected.type);
+  for (const int label_type : of_label > 0 ? std::vector<int>{of_label} : selected.types)
     for (const ProblemType* type : problem_types_of(settings.problem_type, settings.branch_mode))
       if (type->begins_at(label_type) && type->accepts(system, settings, selected)) return *type;
   if (first.facts().curve == 0) return first;

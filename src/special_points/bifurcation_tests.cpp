@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <vector>
 
 #include "bvp/condensed_system.hpp"
 #include "bvp/no_duration.hpp"
@@ -43,14 +45,18 @@ bool has_multiplier_one(const FloquetMultipliers& multipliers) {
   return std::any_of(list.begin(), list.end(), [](const auto& mu) { return std::abs(mu - 1.0) < 1e-3; });
 }
 
-/// The complex multiplier (upper half plane) nearest to the unit circle; null without one.
-const std::complex<double>* nearest_pair(const FloquetMultipliers& multipliers) {
-  const std::complex<double>* nearest = nullptr;
-  for (const auto& mu : multipliers.values) {
-    if (!is_upper(mu)) continue;
-    if (nearest == nullptr || std::abs(std::abs(mu) - 1.0) < std::abs(std::abs(*nearest) - 1.0)) nearest = &mu;
-  }
-  return nearest;
+/// Of each complex pair the one in the upper half plane, by its distance to the unit circle.
+std::vector<std::complex<double>> upper_halves(const TestedPoint& point, std::optional<std::complex<double>> known) {
+  std::vector<std::complex<double>> pairs;
+  std::copy_if(point.multipliers.values.begin(), point.multipliers.values.end(), std::back_inserter(pairs), is_upper);
+  if (known && !pairs.empty())
+    pairs.erase(std::min_element(pairs.begin(), pairs.end(), [&](const auto& a, const auto& b) {
+      return std::abs(a - *known) < std::abs(b - *known);
+    }));
+  std::stable_sort(pairs.begin(), pairs.end(), [](const auto& a, const auto& b) {
+    return std::abs(std::abs(a) - 1.0) < std::abs(std::abs(b) - 1.0);
+  });
+  return pairs;
 }
 
 }  // namespace
@@ -146,21 +152,31 @@ SpecialPoint PeriodDoublingTest::classify(const TestedPoint& point, bool) const 
   return {PointType::period_doubling, {}, stop_, "period doubling", {}, normal_form_text(point, -1.0)};
 }
 
-TestValue TorusTest::evaluate(const TestedPoint& point) const {
-  if (!trusted(point.multipliers) || !point.multipliers.determined()) return TestValue::undefined();
-  const std::complex<double>* nearest = nearest_pair(point.multipliers);
-  if (nearest == nullptr) return TestValue::undefined();
-  double sign = 1.0;
-  for (const auto& mu : point.multipliers.values)
-    if (is_upper(mu) && std::abs(mu) < 1.0) sign = -sign;
-  return TestValue::of(sign * std::abs(std::abs(*nearest) - 1.0), multiplier_accuracy(point.multipliers));
+std::optional<std::complex<double>> nearest_pair(const TestedPoint& point, std::optional<std::complex<double>> known) {
+  const std::vector<std::complex<double>> pairs = upper_halves(point, known);
+  return pairs.empty() ? std::nullopt : std::optional(pairs.front());
 }
 
+TestValue pair_distance(const TestedPoint& point, std::optional<std::complex<double>> known) {
+  if (!trusted(point.multipliers) || !point.multipliers.determined()) return TestValue::undefined();
+  const std::vector<std::complex<double>> pairs = upper_halves(point, known);
+  if (pairs.empty()) return TestValue::undefined();
+  const auto inside = std::count_if(pairs.begin(), pairs.end(), [](const auto& mu) { return std::abs(mu) < 1.0; });
+  const double distance = std::abs(std::abs(pairs.front()) - 1.0);
+  return TestValue::of(inside % 2 == 0 ? distance : -distance, multiplier_accuracy(point.multipliers));
+}
+
+TestValue TorusTest::evaluate(const TestedPoint& point) const { return pair_distance(point); }
+
 SpecialPoint TorusTest::classify(const TestedPoint& point, bool) const {
-  const std::complex<double>* mu = nearest_pair(point.multipliers);
-  const double angle = mu == nullptr ? 0.0 : std::arg(*mu);
-  const std::string remark = mu == nullptr ? "" : normal_form_text(point, *mu / std::abs(*mu));
-  return {PointType::torus, {}, stop_, fmt::format("torus bifurcation, angle {:.10g}", angle), {}, remark};
+  const std::optional<std::complex<double>> mu = nearest_pair(point);
+  const std::string remark = mu ? normal_form_text(point, *mu / std::abs(*mu)) : "";
+  return {PointType::torus,
+          {},
+          stop_,
+          fmt::format("torus bifurcation, angle {:.10g}", mu ? std::arg(*mu) : 0.0),
+          {},
+          remark};
 }
 
 ImpactVelocityTest::ImpactVelocityTest(const DefiningSystem& system, int segment, bool stop)

@@ -8,6 +8,9 @@
 /// singular matrix.
 #pragma once
 
+#include <complex>
+#include <optional>
+
 #include "special_points/test_function.hpp"
 
 namespace tchat {
@@ -108,6 +111,13 @@ TestValue multiplier_product(const TestedPoint& point, int target);
 /// Is a multiplier at the target where this product vanishes? Where none goes through infinity with an a_s, as in the
 /// plane, the product vanishes with that a_s.
 bool is_multiplier_at(const TestedPoint& point, int target);
+
+/// Distance of the nearest complex pair from the unit circle, negative when an odd number of pairs is inside; undefined
+/// without a pair. The pair of `known`, on the circle all along a curve, is left out.
+TestValue pair_distance(const TestedPoint& point, std::optional<std::complex<double>> known = std::nullopt);
+/// That pair's multiplier in the upper half plane.
+std::optional<std::complex<double>> nearest_pair(const TestedPoint& point,
+                                                 std::optional<std::complex<double>> known = std::nullopt);
 
 /// "x1 = 1, x2 = 0, ...": a state of `orbit`, n entries; what is below its uncertainty there is written as 0.
 std::string state_text(const HybridSystem& system, const Orbit& orbit, const double* state);

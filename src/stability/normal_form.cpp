@@ -193,4 +193,14 @@ std::optional<NormalForm> normal_form(const DefiningSystem& system, const Orbit&
   return form;
 }
 
+std::optional<NormalForm> NormalFormSolver::find(const Orbit& x, Complex critical) {
+  if (x.shape.own) return std::nullopt;
+  if (!nodal_ || shape_ != x.shape) {
+    nodal_ = std::make_unique<NodalSystem>(system_, x.shape);
+    shape_ = x.shape;
+  }
+  ComplexVector q;
+  return form_of(system_, *nodal_, x, critical, q);
+}
+
 }  // namespace tchat

@@ -22,9 +22,11 @@
 #pragma once
 
 #include <complex>
+#include <memory>
 #include <optional>
 
 #include "bvp/defining_system.hpp"
+#include "bvp/nodal_system.hpp"
 #include "bvp/orbit.hpp"
 #include "stability/branching.hpp"
 
@@ -47,5 +49,18 @@ std::optional<NormalForm> normal_form(const DefiningSystem& system, const Orbit&
 /// the identity along q, so that a = p B(q, q) / 2 as at a fold. Nothing under the same conditions, or where no branch
 /// crosses. Allocates.
 std::optional<BranchingForm> orbit_branching(const DefiningSystem& system, const Orbit& x);
+
+/// The coefficients along a curve, from orbit to orbit on meshes of one shape, without an estimate of the mesh's error:
+/// the uncertainty is that of sums and differences alone.
+class NormalFormSolver {
+ public:
+  explicit NormalFormSolver(const DefiningSystem& system) : system_(system) {}
+  std::optional<NormalForm> find(const Orbit& x, std::complex<double> critical);
+
+ private:
+  const DefiningSystem& system_;
+  std::optional<OrbitShape> shape_;
+  std::unique_ptr<NodalSystem> nodal_;  // of shape_
+};
 
 }  // namespace tchat

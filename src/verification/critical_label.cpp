@@ -29,7 +29,7 @@ std::optional<Complex> angle_of_pair(const Multipliers& multipliers) {
 /// Type numbers of what is critical there: the tens digit of a point on a two-parameter curve, or its own number.
 std::vector<int> critical_types(const LabelledSolution& solution, bool is_in_parameter) {
   if (keeps_contact(solution.problem_type)) return {};
-  if (std::abs(solution.type) >= 10) return {std::abs(solution.type) / 10};
+  if (const int curve = curve_type(solution.type); curve > 0) return {curve};
   std::vector<int> types = {solution.type};
   for (const UserPointKind& kind : solution.further)
     if (kind.kind == UserPointKind::other_type) types.push_back(kind.index);

@@ -1,0 +1,133 @@
+#include "special_points/codimension_two_tests.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <complex>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "bvp/condensed_system.hpp"
+#include "special_points/bifurcation_tests.hpp"
+#include "special_points/label_evidence.hpp"
+#include "stability/normal_form.hpp"
+
+namespace tchat {
+
+namespace {
+
+using Complex = std::complex<double>;
+
+/// e^(i theta) of the pair that a torus curve keeps on the circle.
+std::optional<Complex> critical(const CriticalPair* pair) {
+  if (pair == nullptr) return std::nullopt;
+  return pair->multiplier() / std::abs(pair->multiplier());
+}
+
+/// A real multiplier 1 or -1 besides the critical ones.
+class SecondMultiplierTest final : public TestFunction {
+ public:
+  /// `pair`: of a torus curve, else null.
+  SecondMultiplierTest(PointType type, int target, const CriticalPair* pair = nullptr)
+      : type_(type), target_(target), pair_(pair) {}
+  std::string name() const override { return type_name(static_cast<int>(type_)); }
+  /// The pair's own factors, 2 - 2 cos theta or 2 + 2 cos theta, touch zero where its halves meet.
+  TestValue evaluate(const TestedPoint& point) const override {
+    const TestValue product = multiplier_product(point, target_);
+    if (pair_ == nullptr || !product.value) return product;
+    const double of_pair = 2.0 - 2.0 * target_ * pair_->cosine();
+    constexpr double halves_meet = 1e-6;
+    if (!(of_pair > halves_meet)) return TestValue::undefined();
+    return TestValue::of(*product.value / of_pair, product.zero_level / of_pair);
+  }
+  bool is_genuine(const TestedPoint& point) const override { return is_multiplier_at(point, target_); }
+  SpecialPoint classify(const TestedPoint&, bool) const override {
+    return {type_, {}, false, fmt::format("a second critical multiplier: {}", target_)};
+  }
+
+ private:
+  PointType type_;
+  int target_;
+  const CriticalPair* pair_;
+};
+
+/// A complex pair on the unit circle besides the critical multipliers.
+class SecondPairTest final : public TestFunction {
+ public:
+  explicit SecondPairTest(PointType type, const CriticalPair* pair = nullptr) : type_(type), pair_(pair) {}
+  std::string name() const override { return type_name(static_cast<int>(type_)); }
+  TestValue evaluate(const TestedPoint& point) const override { return pair_distance(point, critical(pair_)); }
+  /// Rounding makes a complex pair of a double real multiplier.
+  bool is_genuine(const TestedPoint& point) const override {
+    constexpr double surely_complex = 1e-3;
+    const std::optional<Complex> mu = nearest_pair(point, critical(pair_));
+    return mu && mu->imag() > surely_complex;
+  }
+  SpecialPoint classify(const TestedPoint& point, bool) const override {
+    const std::optional<Complex> mu = nearest_pair(point, critical(pair_));
+    return {type_, {}, false, fmt::format("a critical pair, angle {:.10g}, besides", mu ? std::arg(*mu) : 0.0)};
+  }
+
+ private:
+  PointType type_;
+  const CriticalPair* pair_;
+};
+
+/// The coefficient of the cubic term, c or Re d. It has a pole where another multiplier passes 1, with which it is
+/// multiplied.
+class CubicTermTest final : public TestFunction {
+ public:
+  CubicTermTest(const DefiningSystem& system, PointType type, const CriticalPair* pair = nullptr)
+      : type_(type), pair_(pair), solver_(std::make_unique<NormalFormSolver>(system)) {}
+  std::string name() const override { return type_name(static_cast<int>(type_)); }
+  TestValue evaluate(const TestedPoint& point) const override {
+    const TestValue product = multiplier_product(point, 1);
+    if (!product.value || touching_segment(point) >= 0) return TestValue::undefined();
+    const std::optional<NormalForm> form = solver_->find(point.orbit, critical(pair_).value_or(-1.0));
+    if (!form) return TestValue::undefined();
+    const double factor = *product.value / (1.0 + std::abs(*product.value));
+    return TestValue::of(form->coefficient.real() * factor, form->uncertainty * std::abs(factor));
+  }
+  /// Where the other multiplier does not act on the critical one there is no pole, and what vanishes is the factor.
+  bool is_genuine(const TestedPoint& point) const override {
+    constexpr double surely_apart = 1e-5;
+    return multiplier_distance(point.multipliers, 1.0) > surely_apart;
+  }
+  SpecialPoint classify(const TestedPoint&, bool) const override {
+    return {type_, {}, false, pair_ == nullptr ? "the normal form's c is zero" : "the normal form's Re d is zero"};
+  }
+
+ private:
+  PointType type_;
+  const CriticalPair* pair_;
+  std::unique_ptr<NormalFormSolver> solver_;  // of any point: what it keeps is room
+};
+
+}  // namespace
+
+TestList fold_curve_meetings() {
+  TestList tests;
+  tests.push_back(std::make_unique<SecondMultiplierTest>(PointType::fold_and_doubling, -1));
+  tests.push_back(std::make_unique<SecondPairTest>(PointType::fold_and_torus));
+  return tests;
+}
+
+TestList doubling_curve_meetings(const DefiningSystem& system) {
+  TestList tests;
+  tests.push_back(std::make_unique<SecondMultiplierTest>(PointType::doubling_and_fold, 1));
+  tests.push_back(std::make_unique<SecondPairTest>(PointType::doubling_and_torus));
+  tests.push_back(std::make_unique<CubicTermTest>(system, PointType::generalized_doubling));
+  return tests;
+}
+
+TestList torus_curve_meetings(const DefiningSystem& system, const CriticalPair& pair) {
+  TestList tests;
+  tests.push_back(std::make_unique<SecondMultiplierTest>(PointType::torus_and_fold, 1, &pair));
+  tests.push_back(std::make_unique<SecondMultiplierTest>(PointType::torus_and_doubling, -1, &pair));
+  tests.push_back(std::make_unique<SecondPairTest>(PointType::two_tori, &pair));
+  tests.push_back(std::make_unique<CubicTermTest>(system, PointType::chenciner, &pair));
+  return tests;
+}
+
+}  // namespace tchat

@@ -1,0 +1,24 @@
+/// Points of codimension two on curves of folds, period doublings and torus bifurcations of periodic orbits: another
+/// multiplier, or pair, is critical too, or the coefficient of the normal form is zero (Kuznetsov, ch. 9).
+///
+///     curve   a multiplier 1   a multiplier -1   a pair on the circle   coefficient 0
+///     LP      -                LPD               LTR                    cusp (curve_tests.hpp)
+///     PD      LPD              -                 PTR                    GPD: c
+///     TR      LTR              PTR               TTR                    CH: Re d
+///
+/// What else meets a curve there are the other curve, or curves: both go on.
+#pragma once
+
+#include "bvp/critical_pair.hpp"
+#include "special_points/test_function.hpp"
+
+namespace tchat {
+
+/// LPD and LTR.
+TestList fold_curve_meetings();
+/// LPD, PTR and GPD.
+TestList doubling_curve_meetings(const DefiningSystem& system);
+/// LTR, PTR, TTR and CH; `pair` is evaluated at the tested point.
+TestList torus_curve_meetings(const DefiningSystem& system, const CriticalPair& pair);
+
+}  // namespace tchat
