@@ -416,7 +416,8 @@ class SolutionReader {
     UserPointKind kind;
     kind.kind = whole(0.0, UserPointKind::extremum, "kind");
     kind.segment = whole(0.0, max_segments, "segment");
-    kind.index = whole(kind.kind == UserPointKind::other_type ? -99.0 : -1.0, 1e9, "index");  // type numbers: two digits
+    kind.index =
+        whole(kind.kind == UserPointKind::other_type ? -99.0 : -1.0, 1e9, "index");  // type numbers: two digits
     kind.tau = numbers.real();
     return kind;
   }

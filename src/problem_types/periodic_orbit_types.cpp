@@ -106,19 +106,19 @@ BranchCurve fold(const PeriodicOrbitSystem& system, const RunSettings&, const Se
                   });
 }
 
-BranchCurve period_doubling(const PeriodicOrbitSystem& system, const RunSettings&, const SelectedStart& start) {
+BranchCurve period_doubling(const PeriodicOrbitSystem& system, const RunSettings& run, const SelectedStart& start) {
   return curve_of(system, std::make_unique<CriticalMultiplier>(system, start.start.orbit.shape, -1),
-                  [&system](TestList& tests, const CriticalMultiplier& condition) {
+                  [&system, cubic = run.cubic_terms](TestList& tests, const CriticalMultiplier& condition) {
                     tests.push_back(double_multiplier_test(PointType::resonance_2, condition));
-                    add_meetings(tests, system, doubling_curve_meetings(system));
+                    add_meetings(tests, system, doubling_curve_meetings(system, cubic));
                   });
 }
 
-BranchCurve torus(const PeriodicOrbitSystem& system, const RunSettings&, const SelectedStart& start) {
+BranchCurve torus(const PeriodicOrbitSystem& system, const RunSettings& run, const SelectedStart& start) {
   return curve_of(system, std::make_unique<CriticalPair>(system, start.start.orbit.shape, pair_at(system, start)),
-                  [&system](TestList& tests, const CriticalPair& pair) {
+                  [&system, cubic = run.cubic_terms](TestList& tests, const CriticalPair& pair) {
                     for (auto& test : torus_curve_tests(pair)) tests.push_back(std::move(test));
-                    add_meetings(tests, system, torus_curve_meetings(system, pair));
+                    add_meetings(tests, system, torus_curve_meetings(system, pair, cubic));
                   });
 }
 

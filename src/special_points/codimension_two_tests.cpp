@@ -113,20 +113,20 @@ TestList fold_curve_meetings() {
   return tests;
 }
 
-TestList doubling_curve_meetings(const DefiningSystem& system) {
+TestList doubling_curve_meetings(const DefiningSystem& system, bool coefficients) {
   TestList tests;
   tests.push_back(std::make_unique<SecondMultiplierTest>(PointType::doubling_and_fold, 1));
   tests.push_back(std::make_unique<SecondPairTest>(PointType::doubling_and_torus));
-  tests.push_back(std::make_unique<CubicTermTest>(system, PointType::generalized_doubling));
+  if (coefficients) tests.push_back(std::make_unique<CubicTermTest>(system, PointType::generalized_doubling));
   return tests;
 }
 
-TestList torus_curve_meetings(const DefiningSystem& system, const CriticalPair& pair) {
+TestList torus_curve_meetings(const DefiningSystem& system, const CriticalPair& pair, bool coefficients) {
   TestList tests;
   tests.push_back(std::make_unique<SecondMultiplierTest>(PointType::torus_and_fold, 1, &pair));
   tests.push_back(std::make_unique<SecondMultiplierTest>(PointType::torus_and_doubling, -1, &pair));
   tests.push_back(std::make_unique<SecondPairTest>(PointType::two_tori, &pair));
-  tests.push_back(std::make_unique<CubicTermTest>(system, PointType::chenciner, &pair));
+  if (coefficients) tests.push_back(std::make_unique<CubicTermTest>(system, PointType::chenciner, &pair));
   return tests;
 }
 

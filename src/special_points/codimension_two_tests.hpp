@@ -6,7 +6,8 @@
 ///     PD      LPD              -                 PTR                    GPD: c
 ///     TR      LTR              PTR               TTR                    CH: Re d
 ///
-/// What else meets a curve there are the other curve, or curves: both go on.
+/// The other curve, or curves, go on there as well. A coefficient takes a sparse factorisation at every point: it is
+/// looked at where `coefficients` says so.
 #pragma once
 
 #include "bvp/critical_pair.hpp"
@@ -17,8 +18,8 @@ namespace tchat {
 /// LPD and LTR.
 TestList fold_curve_meetings();
 /// LPD, PTR and GPD.
-TestList doubling_curve_meetings(const DefiningSystem& system);
+TestList doubling_curve_meetings(const DefiningSystem& system, bool coefficients);
 /// LTR, PTR, TTR and CH; `pair` is evaluated at the tested point.
-TestList torus_curve_meetings(const DefiningSystem& system, const CriticalPair& pair);
+TestList torus_curve_meetings(const DefiningSystem& system, const CriticalPair& pair, bool coefficients);
 
 }  // namespace tchat

@@ -78,10 +78,13 @@ std::string criticality(const TestedPoint& point, const char* name, const Coeffi
 
 constexpr const char* singular = "no normal form: its equations are singular";
 
-/// Why periodic orbits have no coefficient here; nothing where one can be computed.
-std::optional<std::string> why_none(const TestedPoint& point) {
+/// Why periodic orbits have no coefficient here; nothing where one can be computed. With monitors held a multiplier 1
+/// says nothing of the branch.
+std::optional<std::string> why_none(const TestedPoint& point, bool of_multiplier_one) {
   const DefiningSystem& system = point.condensed.system();
-  if (!point.one_parameter_family || system.orbits() > 1 || system.conserved_quantities() > 0) return "";
+  if (point.condition != nullptr || system.orbits() > 1) return "";
+  if (system.conserved_quantities() > 0) return "no normal form: a quantity is conserved";
+  if (of_multiplier_one && !point.one_parameter_family) return "";
   if (const int s = touching_segment(point); s >= 0)
     return fmt::format("no normal form: the end of segment {} is tangent to its event surface", s + 1);
   return std::nullopt;
@@ -93,11 +96,11 @@ std::string without_estimate() { return fmt::format("{}, or the mesh is too coar
 
 std::string normal_form_text(const TestedPoint& point, std::complex<double> critical) {
   if (point.multipliers.are_eigenvalues) return "";
-  if (const std::optional<std::string> why = why_none(point)) return *why;
+  if (const std::optional<std::string> why = why_none(point, critical == 1.0)) return *why;
   const bool is_fold = critical == 1.0, is_doubling = critical == -1.0;
   const bool is_pair = !is_fold && !is_doubling;
   if (is_pair && is_strong_resonance(critical)) return "no normal form: the angle is that of a strong resonance";
-  const std::optional<NormalForm> form = normal_form(point.condensed.system(), point.orbit, critical);
+  const std::optional<NormalForm> form = normal_form(point.condensed.system(), point.orbit, point.tangent, critical);
   if (!form) return without_estimate();
   const Coefficient coefficient{form->coefficient.real(), form->uncertainty};
   if (is_fold) return format_normal_form({"a", coefficient.value, coefficient.uncertainty}, "");
@@ -117,7 +120,7 @@ std::string branch_point_text(const TestedPoint& point) {
   if (!point.one_parameter_family || !multipliers.valid) return "";
   const DefiningSystem& system = point.condensed.system();
   if (!multipliers.are_eigenvalues)
-    if (const std::optional<std::string> why = why_none(point)) return *why;
+    if (const std::optional<std::string> why = why_none(point, true)) return *why;
   const std::optional<BranchingForm> form =
       multipliers.are_eigenvalues ? equilibrium_branching(system, point.orbit) : orbit_branching(system, point.orbit);
   if (!form) return multipliers.are_eigenvalues ? singular : without_estimate();

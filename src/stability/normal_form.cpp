@@ -1,5 +1,6 @@
 #include "stability/normal_form.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "bvp/mesh_adaptation.hpp"
@@ -47,20 +48,25 @@ class Forms {
 bool is_fold(Complex critical) { return critical == Complex(1.0, 0.0); }
 double shift_for(Complex critical) { return is_fold(critical) ? -1.0 : 1.0; }
 
-/// `direction` becomes q.
-std::optional<NormalForm> form_of(const DefiningSystem& system, NodalSystem& nodal, const Orbit& x, Complex critical,
-                                  ComplexVector& direction) {
+/// A coefficient with the error of sums, the vector q that it belongs to, and the multiplier itself.
+struct Found {
+  NormalForm form;
+  Vector q;
+  Complex multiplier;
+};
+
+std::optional<Found> form_of(const DefiningSystem& system, NodalSystem& nodal, const Orbit& x, Complex critical) {
   ShiftedOrbit orbit(nodal, x, shift_for(critical));
   ComplexVector v, w;
   Complex multiplier;
   if (!orbit.is_regular() || !orbit.find_critical(critical, v, w, multiplier)) return std::nullopt;
-  direction = v.head(x.shape.dimension);
+  const Vector q = v.head(x.shape.dimension).real();
   const Forms forms(system, x);
   const ComplexVector vv = forms.second(v, v);
   if (is_fold(critical)) {
     const Product sum = product(w, vv);
     if (!std::isfinite(sum.size)) return std::nullopt;
-    return NormalForm{-0.5 * sum.value, 0.5 * error_of_sums(system.system()) * sum.size};
+    return Found{{-0.5 * sum.value, 0.5 * error_of_sums(system.system()) * sum.size}, q, multiplier};
   }
   ComplexVector rows = forms.third(v);
   Complex factor = -1.0 / 6.0;
@@ -74,7 +80,7 @@ std::optional<NormalForm> form_of(const DefiningSystem& system, NodalSystem& nod
   }
   const Product sum = product(w, rows);
   if (!std::isfinite(sum.size)) return std::nullopt;
-  return NormalForm{factor * sum.value, error_of_sums(system.system()) * std::abs(factor) * sum.size};
+  return Found{{factor * sum.value, error_of_sums(system.system()) * std::abs(factor) * sum.size}, q, multiplier};
 }
 
 Orbit on_every_second_point(const Orbit& x) {
@@ -94,12 +100,15 @@ void move_orbit(const DefiningSystem& system, Orbit& x, const Vector& change, do
   x.par(system.free_parameters().front() - 1) += dp;
 }
 
-/// Chord iteration at the same parameters, or near a fold at a start that moves across q alone. False where it fails.
+/// Chord iteration at the same parameters, or near a fold at a start that moves across q alone, until it no longer
+/// comes nearer: rounding, which the orbit may amplify. False where it fails.
 bool correct(const DefiningSystem& system, NodalSystem& nodal, Complex critical, const Vector& q, Orbit& x) {
   const NodalExpansion expansion(system);
   ShiftedOrbit orbit(nodal, x, shift_for(critical));
   if (!orbit.is_regular()) return false;
   constexpr int most_iterations = 10;
+  constexpr double arrived = 1e-11, near = 1e-6;
+  double last = near;
   for (int k = 0; k < most_iterations; ++k) {
     const Vector right = -expansion.part(x, {}, 0);
     double dp = 0.0;
@@ -107,7 +116,9 @@ bool correct(const DefiningSystem& system, NodalSystem& nodal, Complex critical,
                                             : orbit.solve(1.0, right).real();
     if (!change.allFinite()) return false;
     move_orbit(system, x, change, dp);
-    if (change.lpNorm<Eigen::Infinity>() < 1e-11 * (1.0 + x.states.cwiseAbs().maxCoeff())) return true;
+    const double size = change.lpNorm<Eigen::Infinity>() / (1.0 + x.states.cwiseAbs().maxCoeff());
+    if (size < arrived || (last < near && size > 0.5 * last)) return true;
+    last = size;
   }
   return false;
 }
@@ -156,6 +167,26 @@ class OrbitEquations final : public SingularEquations {
   double critical_ = 0.0;
 };
 
+/// At a fold the sign of a is that of q, which may have two entries of largest modulus.
+double difference(const Found& a, const Found& b, Complex critical) {
+  const bool is_turned = is_fold(critical) && a.q.dot(b.q) < 0.0;
+  return std::abs(a.form.coefficient - (is_turned ? -1.0 : 1.0) * b.form.coefficient);
+}
+
+/// `other`, on a mesh of its own, by a small step along the tangent at x: no orbit, but for squares of the step.
+void move_along(const DefiningSystem& system, const Orbit& x, const OrbitVector& tangent, Orbit& other) {
+  constexpr double small = 1e-5;
+  double fastest = tangent.states.cwiseAbs().maxCoeff() / (1.0 + x.states.cwiseAbs().maxCoeff());
+  for (std::size_t k = 0; k < system.free_parameters().size(); ++k)
+    fastest = std::max(fastest, std::abs(tangent.globals(static_cast<Eigen::Index>(k))) /
+                                    (1.0 + std::abs(x.par(system.free_parameters()[k] - 1))));
+  const double step = small / fastest;
+  other.states += step * interpolate_states(tangent.states, x.shape, x.mesh, other.shape, other.mesh);
+  for (int s = 0; s < x.shape.segments; ++s) other.duration(s) += step * tangent.durations(s);
+  for (std::size_t k = 0; k < system.free_parameters().size(); ++k)
+    other.par(system.free_parameters()[k] - 1) += step * tangent.globals(static_cast<Eigen::Index>(k));
+}
+
 void add_difference(Coefficient& fine, double coarse) { fine.uncertainty += std::abs(fine.value - coarse); }
 
 }  // namespace
@@ -176,21 +207,25 @@ std::optional<BranchingForm> orbit_branching(const DefiningSystem& system, const
   return form;
 }
 
-std::optional<NormalForm> normal_form(const DefiningSystem& system, const Orbit& x, Complex critical) {
+std::optional<NormalForm> normal_form(const DefiningSystem& system, const Orbit& x, const OrbitVector& tangent,
+                                      Complex critical) {
   if (x.shape.own || x.shape.intervals < 2) return std::nullopt;
-  ComplexVector q;
   NodalSystem fine(system, x.shape);
-  std::optional<NormalForm> form = form_of(system, fine, x, critical, q);
-  if (!form) return form;
+  const std::optional<Found> found = form_of(system, fine, x, critical);
+  if (!found) return std::nullopt;
   Orbit other = on_every_second_point(x);
   NodalSystem coarse(system, other.shape);
-  if (!correct(system, coarse, critical, q.real(), other)) return std::nullopt;
-  ComplexVector coarse_q;
-  const std::optional<NormalForm> compared = form_of(system, coarse, other, critical, coarse_q);
+  if (!correct(system, coarse, critical, found->q, other)) return std::nullopt;
+  const std::optional<Found> compared = form_of(system, coarse, other, critical);
   if (!compared) return std::nullopt;
-  const bool is_turned = is_fold(critical) && q.real().dot(coarse_q.real()) < 0.0;  // two entries are largest
-  form->uncertainty += std::abs(form->coefficient - (is_turned ? -1.0 : 1.0) * compared->coefficient);
-  return form;
+  NormalForm form = found->form;
+  form.uncertainty += difference(*found, *compared, critical);
+  move_along(system, x, tangent, other);
+  const std::optional<Found> beside = form_of(system, coarse, other, critical);
+  if (!beside) return std::nullopt;
+  form.uncertainty += std::abs(found->multiplier - critical) * difference(*beside, *compared, critical) /
+                      std::abs(beside->multiplier - compared->multiplier);
+  return std::isfinite(form.uncertainty) ? std::optional(form) : std::nullopt;
 }
 
 std::optional<NormalForm> NormalFormSolver::find(const Orbit& x, Complex critical) {
@@ -199,8 +234,8 @@ std::optional<NormalForm> NormalFormSolver::find(const Orbit& x, Complex critica
     nodal_ = std::make_unique<NodalSystem>(system_, x.shape);
     shape_ = x.shape;
   }
-  ComplexVector q;
-  return form_of(system_, *nodal_, x, critical, q);
+  const std::optional<Found> found = form_of(system_, *nodal_, x, critical);
+  return found ? std::optional(found->form) : std::nullopt;
 }
 
 }  // namespace tchat

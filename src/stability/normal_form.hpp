@@ -34,16 +34,18 @@ namespace tchat {
 
 struct NormalForm {
   std::complex<double> coefficient;  ///< a, c, d
-  /// How well it is known: the difference to that of the same orbit on every second mesh point, and the errors of sums
-  /// and of differences for derivatives. That of the orbit's place on the branch (EPSS) is not in it.
+  /// How well it is known: the difference to that of the same orbit on every second mesh point, what the orbit's place
+  /// on the branch makes of it (its multiplier is not quite the critical one), and the errors of sums and of
+  /// differences for derivatives.
   double uncertainty = 0.0;
 };
 
-/// The coefficient of an orbit that has the multiplier `critical` up to the accuracy of the branch: 1, -1 or e^(i
-/// theta), 0 < theta < pi. Nothing where equations are singular, as with a second critical multiplier, or where the
-/// mesh has but one interval, or segments have meshes of their own. The map has to be smooth at the orbit: no end of a
-/// segment tangent to its event surface. Allocates.
-std::optional<NormalForm> normal_form(const DefiningSystem& system, const Orbit& x, std::complex<double> critical);
+/// The coefficient of an orbit that has the multiplier `critical` up to the accuracy of the branch, along `tangent`: 1,
+/// -1 or e^(i theta), 0 < theta < pi. Nothing where equations are singular, as with a second critical multiplier, or
+/// where the mesh has but one interval, or segments have meshes of their own. The map has to be smooth at the orbit: no
+/// end of a segment tangent to its event surface. Allocates.
+std::optional<NormalForm> normal_form(const DefiningSystem& system, const Orbit& x, const OrbitVector& tangent,
+                                      std::complex<double> critical);
 
 /// What crosses at the branch point near x (branching.hpp): with V and W as above and mu = 1, g is the return map less
 /// the identity along q, so that a = p B(q, q) / 2 as at a fold. Nothing under the same conditions, or where no branch

@@ -239,7 +239,7 @@ def pipeline_runs(results):
     """Every `tchat run` of the pipelines' logs: folder, words of the command without the program, library."""
     runs = []
     for log in sorted(glob.glob(os.path.join(results, "*", "log"))):
-        for line in open(log):
+        for line in open(log).read().replace("\\\n", " ").splitlines():
             found = re.match(r"cd (\S+) && \S+ (run .*)$", line)
             if not found:
                 continue

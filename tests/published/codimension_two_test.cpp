@@ -27,7 +27,7 @@ void simulate(const Workspace& workspace, const std::string& head, const std::st
 void follow(const Workspace& workspace, const std::string& name, const std::string& from, const std::string& label,
             const std::string& ds, const std::string& words = "") {
   workspace.succeed("run map -q -c r." + from + " -s " + from + " -o " + name + " ISW=2 ICP=[q,p] IRS=" + label +
-                    " DS=" + ds + " DSMAX=0.02 NMX=100 NPR=1 RL0=-0.5 RL1=0.5 " + words);
+                    " DS=" + ds + " DSMAX=0.02 NMX=100 NPR=1 CUBIC=1 RL0=-0.5 RL1=0.5 " + words);
 }
 
 /// The label of that type is at (p, q).
@@ -48,8 +48,8 @@ void check_curve(const Workspace& workspace, const std::string& name, const std:
   }
 }
 
-/// A fold at p = 0, x = 0, and a multiplier of modulus 1 + q + k x for the other states: critical at x = -q / k, p = -(q
-/// / k)^2. This curve touches that of folds at q = 0.
+/// A fold at p = 0, x = 0, and a multiplier of modulus 1 + q + k x for the other states: critical at x = -q / k, p =
+/// -(q / k)^2. This curve touches that of folds at q = 0.
 constexpr double k = 0.7;
 double touching(double q) { return -(q / k) * (q / k); }
 double folds(double) { return 0.0; }
@@ -119,7 +119,8 @@ TEST_CASE("two curves of torus bifurcations cross at TTR") {
 }
 
 TEST_CASE("generalised period doubling, and the folds of doubled orbits that begin there") {
-  // x -> -(1 + p) x + q x^3 + x^5: c = q; doubled orbits, x -> -x, have p = q x^2 + x^4, and folds at p = -q^2 / 4, q < 0.
+  // x -> -(1 + p) x + q x^3 + x^5: c = q; doubled orbits, x -> -x, have p = q x^2 + x^4, and folds at p = -q^2 / 4, q <
+  // 0.
   const Workspace workspace;
   simulate(workspace, "par p=-0.3, q=-0.3\ninit x=0\nx' = 0\n", "x -> -(1+p)*x + q*x^3 + x^5");
   follow(workspace, "doublings", "up", "PD1", "0.02");
