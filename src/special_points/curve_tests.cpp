@@ -5,6 +5,7 @@
 
 #include "bvp/orbit_accuracy.hpp"
 #include "bvp/transversality.hpp"
+#include "special_points/normal_form_text.hpp"
 
 namespace tchat {
 
@@ -39,7 +40,9 @@ class CuspTest final : public TestFunction {
     const OrbitVector& v = fold_.null_vector();
     return TestValue::of(fold_.cusp_function(), orbit_accuracy * std::sqrt(dot(gradient, gradient) * dot(v, v)));
   }
-  SpecialPoint classify(const TestedPoint&, bool) const override { return {PointType::cusp, {}, false, "cusp"}; }
+  SpecialPoint classify(const TestedPoint& point, bool) const override {
+    return {PointType::cusp, {}, false, "cusp", {}, codimension_two_text(point, PointType::cusp)};
+  }
 
  private:
   const CriticalMultiplier& fold_;
@@ -62,7 +65,9 @@ class DoubleMultiplierTest final : public TestFunction {
     }
     return TestValue::of(result, level);
   }
-  SpecialPoint classify(const TestedPoint&, bool) const override { return {type_, {}, false, name()}; }
+  SpecialPoint classify(const TestedPoint& point, bool) const override {
+    return {type_, {}, false, name(), {}, codimension_two_text(point, type_)};
+  }
 
  private:
   PointType type_;
@@ -82,11 +87,13 @@ class AngleTest final : public TestFunction {
   Resolution resolution() const override {
     return resonance_.ends_curve ? Resolution::direction : Resolution::crossings;
   }
-  SpecialPoint classify(const TestedPoint&, bool) const override {
+  SpecialPoint classify(const TestedPoint& point, bool) const override {
     return {resonance_.type,
             {},
             resonance_.ends_curve,
-            name() + (resonance_.ends_curve ? ", where the torus curve ends" : "")};
+            name() + (resonance_.ends_curve ? ", where the torus curve ends" : ""),
+            {},
+            codimension_two_text(point, resonance_.type)};
   }
 
  private:

@@ -14,6 +14,7 @@
 #include "stability/equilibrium_normal_form.hpp"
 #include "stability/lyapunov_coefficient.hpp"
 #include "stability/normal_form.hpp"
+#include "stability/resonance_form.hpp"
 
 namespace tchat {
 
@@ -78,6 +79,12 @@ std::string criticality(const TestedPoint& point, const char* name, const Coeffi
 
 constexpr const char* singular = "no normal form: its equations are singular";
 
+std::optional<std::string> why_not_smooth(const TestedPoint& point) {
+  const int s = touching_segment(point);
+  if (s < 0) return std::nullopt;
+  return fmt::format("no normal form: the end of segment {} is tangent to its event surface", s + 1);
+}
+
 /// Why periodic orbits have no coefficient here; nothing where one can be computed. With monitors held a multiplier 1
 /// says nothing of the branch.
 std::optional<std::string> why_none(const TestedPoint& point, bool of_multiplier_one) {
@@ -85,9 +92,7 @@ std::optional<std::string> why_none(const TestedPoint& point, bool of_multiplier
   if (point.condition != nullptr || system.orbits() > 1) return "";
   if (system.conserved_quantities() > 0) return "no normal form: a quantity is conserved";
   if (of_multiplier_one && !point.one_parameter_family) return "";
-  if (const int s = touching_segment(point); s >= 0)
-    return fmt::format("no normal form: the end of segment {} is tangent to its event surface", s + 1);
-  return std::nullopt;
+  return why_not_smooth(point);
 }
 
 std::string without_estimate() { return fmt::format("{}, or the mesh is too coarse for an error estimate", singular); }
@@ -140,6 +145,17 @@ std::string branch_point_text(const TestedPoint& point) {
       note.verdict = "too uncertain to decide between transcritical and pitchfork";
       return format_normal_form(note, "");
   }
+}
+
+std::string codimension_two_text(const TestedPoint& point, PointType type) {
+  const DefiningSystem& system = point.condensed.system();
+  if (point.multipliers.are_eigenvalues || system.orbits() > 1 || system.conserved_quantities() > 0) return "";
+  if (const std::optional<std::string> why = why_not_smooth(point)) return *why;
+  std::string text;
+  for (const auto& [name, of] : codimension_two_form(system, point.orbit, type))
+    text += text.empty() ? format_normal_form({name, of.value, of.uncertainty}, "")
+                         : fmt::format("; {} = {:.10g} +- {:.1g}", name, of.value, of.uncertainty);
+  return text.empty() ? without_estimate() : text;
 }
 
 std::string hopf_text(const TestedPoint& point, double omega) {

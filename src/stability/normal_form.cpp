@@ -7,6 +7,7 @@
 #include "bvp/nodal_expansion.hpp"
 #include "bvp/nodal_system.hpp"
 #include "stability/multilinear.hpp"
+#include "stability/orbit_forms.hpp"
 #include "stability/shifted_orbit.hpp"
 
 namespace tchat {
@@ -16,37 +17,6 @@ namespace {
 using Complex = std::complex<double>;
 using Vector = Eigen::VectorXd;
 using ComplexVector = Eigen::VectorXcd;
-
-/// Second and third derivatives of the orbit's equations.
-class Forms {
- public:
-  Forms(const DefiningSystem& system, const Orbit& x) : expansion_(system), x_(x) {}
-
-  Vector second(const Vector& u, const Vector& v) const {
-    NodalParts parts{};
-    parts[1] = &u, parts[2] = &v;
-    return expansion_.part(x_, parts, 3);
-  }
-  ComplexVector second(const ComplexVector& u, const ComplexVector& v) const {
-    return bilinear([this](const Vector& a, const Vector& b) { return second(a, b); }, u, v);
-  }
-  Vector third(const Vector& u, const Vector& v, const Vector& w) const {
-    NodalParts parts{};
-    parts[1] = &u, parts[2] = &v, parts[4] = &w;
-    return expansion_.part(x_, parts, 7);
-  }
-  /// Of q, q, q*.
-  ComplexVector third(const ComplexVector& q) const {
-    return trilinear([this](const Vector& a, const Vector& b, const Vector& c) { return third(a, b, c); }, q);
-  }
-
- private:
-  NodalExpansion expansion_;
-  const Orbit& x_;
-};
-
-bool is_fold(Complex critical) { return critical == Complex(1.0, 0.0); }
-double shift_for(Complex critical) { return is_fold(critical) ? -1.0 : 1.0; }
 
 /// A coefficient with the error of sums, the vector q that it belongs to, and the multiplier itself.
 struct Found {
@@ -61,7 +31,7 @@ std::optional<Found> form_of(const DefiningSystem& system, NodalSystem& nodal, c
   Complex multiplier;
   if (!orbit.is_regular() || !orbit.find_critical(critical, v, w, multiplier)) return std::nullopt;
   const Vector q = v.head(x.shape.dimension).real();
-  const Forms forms(system, x);
+  const OrbitForms forms(system, x);
   const ComplexVector vv = forms.second(v, v);
   if (is_fold(critical)) {
     const Product sum = product(w, vv);
@@ -81,46 +51,6 @@ std::optional<Found> form_of(const DefiningSystem& system, NodalSystem& nodal, c
   const Product sum = product(w, rows);
   if (!std::isfinite(sum.size)) return std::nullopt;
   return Found{{factor * sum.value, error_of_sums(system.system()) * std::abs(factor) * sum.size}, q, multiplier};
-}
-
-Orbit on_every_second_point(const Orbit& x) {
-  Orbit coarse = x;
-  coarse.mesh.clear();
-  for (int j = 0; j < x.shape.intervals; j += 2) coarse.mesh.push_back(x.mesh[static_cast<std::size_t>(j)]);
-  coarse.mesh.push_back(1.0);
-  coarse.shape.intervals = static_cast<int>(coarse.mesh.size()) - 1;
-  coarse.states = interpolate_states(x.states, x.shape, x.mesh, coarse.shape, coarse.mesh);
-  return coarse;
-}
-
-void move_orbit(const DefiningSystem& system, Orbit& x, const Vector& change, double dp) {
-  const Eigen::Index of_states = x.states.size();
-  x.states += Eigen::Map<const Eigen::MatrixXd>(change.data(), x.states.rows(), x.states.cols());
-  for (int s = 0; s < x.shape.segments; ++s) x.duration(s) += change(of_states + s);
-  x.par(system.free_parameters().front() - 1) += dp;
-}
-
-/// Chord iteration at the same parameters, or near a fold at a start that moves across q alone, until it no longer
-/// comes nearer: rounding, which the orbit may amplify. False where it fails.
-bool correct(const DefiningSystem& system, NodalSystem& nodal, Complex critical, const Vector& q, Orbit& x) {
-  const NodalExpansion expansion(system);
-  ShiftedOrbit orbit(nodal, x, shift_for(critical));
-  if (!orbit.is_regular()) return false;
-  constexpr int most_iterations = 10;
-  constexpr double arrived = 1e-11, near = 1e-6;
-  double last = near;
-  for (int k = 0; k < most_iterations; ++k) {
-    const Vector right = -expansion.part(x, {}, 0);
-    double dp = 0.0;
-    const Vector change = is_fold(critical) ? orbit.solve_beside(1.0, right, orbit.parameter_column(), q, dp)
-                                            : orbit.solve(1.0, right).real();
-    if (!change.allFinite()) return false;
-    move_orbit(system, x, change, dp);
-    const double size = change.lpNorm<Eigen::Infinity>() / (1.0 + x.states.cwiseAbs().maxCoeff());
-    if (size < arrived || (last < near && size > 0.5 * last)) return true;
-    last = size;
-  }
-  return false;
 }
 
 /// M(1) with the column E q and the row q', q the start of V: what g is in branching.hpp is P(x, p) - x along q, P the
@@ -149,7 +79,7 @@ class OrbitEquations final : public SingularEquations {
     return orbit_->solve_beside(1.0, right, orbit_->closing_rows(start()), start(), excess);
   }
   Vector second(const Vector& u, const Vector& v) const override { return expansion_.second_with_parameter(x_, u, v); }
-  Vector third(const Vector& v) const override { return Forms(system_, x_).third(v, v, v); }
+  Vector third(const Vector& v) const override { return OrbitForms(system_, x_).third(v, v, v); }
   void move(Orbit& x, const Vector& change) const override {
     move_orbit(system_, x, change, change(change.size() - 1));
   }
@@ -215,7 +145,7 @@ std::optional<NormalForm> normal_form(const DefiningSystem& system, const Orbit&
   if (!found) return std::nullopt;
   Orbit other = on_every_second_point(x);
   NodalSystem coarse(system, other.shape);
-  if (!correct(system, coarse, critical, found->q, other)) return std::nullopt;
+  if (!correct_orbit(system, coarse, critical, found->q, other)) return std::nullopt;
   const std::optional<Found> compared = form_of(system, coarse, other, critical);
   if (!compared) return std::nullopt;
   NormalForm form = found->form;

@@ -2,7 +2,9 @@
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
+#include <Eigen/SVD>
 #include <cmath>
+#include <utility>
 
 namespace tchat {
 
@@ -19,6 +21,19 @@ Eigen::VectorXcd by_parts(const Eigen::VectorXcd& right, const Solve& solve) {
   return result;
 }
 
+/// x and a number g with A x + g column = right, row x = 0.
+template <class Number>
+Eigen::Matrix<Number, Eigen::Dynamic, 1> solve_bordered(
+    const Eigen::Matrix<Number, Eigen::Dynamic, Eigen::Dynamic>& a, const Eigen::Matrix<Number, Eigen::Dynamic, 1>& column,
+    const Eigen::Matrix<Number, Eigen::Dynamic, 1>& row, const Eigen::Matrix<Number, Eigen::Dynamic, 1>& right) {
+  const Eigen::Index n = a.rows();
+  Eigen::Matrix<Number, Eigen::Dynamic, Eigen::Dynamic> matrix(n + 1, n + 1);
+  matrix << a, column, row.transpose(), Number(0.0);
+  Eigen::Matrix<Number, Eigen::Dynamic, 1> rights(n + 1);
+  rights << right, Number(0.0);
+  return matrix.partialPivLu().solve(rights).eval().head(n);
+}
+
 }  // namespace
 
 ShiftedOrbit::ShiftedOrbit(NodalSystem& nodal, const Orbit& x, double shift)
@@ -33,6 +48,12 @@ ShiftedOrbit::ShiftedOrbit(NodalSystem& nodal, const Orbit& x, double shift)
 
 ShiftedOrbit::Vector ShiftedOrbit::closing_rows(const Vector& q) const {
   Vector rows = Vector::Zero(size());
+  rows.tail(n_) = q;
+  return rows;
+}
+
+ShiftedOrbit::ComplexVector ShiftedOrbit::closing_rows(const ComplexVector& q) const {
+  ComplexVector rows = ComplexVector::Zero(size());
   rows.tail(n_) = q;
   return rows;
 }
@@ -83,6 +104,41 @@ bool ShiftedOrbit::find_critical(Complex mu, ComplexVector& v, ComplexVector& w,
   start.head(n_) = p;
   w = (shift_ - multiplier) * solve_real_adjoint(start);
   return true;
+}
+
+ShiftedOrbit::ComplexVector ShiftedOrbit::solve_singular(Complex mu, const ComplexVector& right, const ComplexVector& p,
+                                                         const ComplexVector& q) {
+  const ComplexVector v = solve_real(right);
+  const Eigen::MatrixXcd matrix = Eigen::MatrixXcd::Identity(n_, n_) + (mu - shift_) * starts_;
+  const ComplexVector start = solve_bordered<Complex>(matrix, q, p, v.head(n_));
+  return v - (mu - shift_) * (closing_ * start);
+}
+
+std::optional<ShiftedOrbit::DoubleVectors> ShiftedOrbit::find_double(double mu) {
+  const double distance = mu - shift_;
+  const Eigen::MatrixXd matrix = Eigen::MatrixXd::Identity(n_, n_) + distance * starts_;
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  constexpr double singular = 1e-2;
+  const Vector& sizes = svd.singularValues();
+  if (n_ < 2 || !(sizes(n_ - 1) < singular * sizes(n_ - 2))) return std::nullopt;
+  Vector q = svd.matrixV().col(n_ - 1);
+  Vector p = svd.matrixU().col(n_ - 1);
+  Eigen::Index largest = 0;
+  q.cwiseAbs().maxCoeff(&largest);
+  if (q(largest) < 0.0) q = -q;
+  const Vector q1 = solve_bordered<double>(matrix, p, q, -starts_ * q);
+  p /= p.dot(q1);
+  Vector p1 = solve_bordered<double>(matrix.transpose(), q, p, -starts_.transpose() * p);
+  p1 -= p1.dot(q1) * p;
+  const auto weights = [this](const Vector& start) {
+    Vector right = Vector::Zero(size());
+    right.head(n_) = start;
+    return nodal_.solve_adjoint(right);
+  };
+  DoubleVectors found{-distance * (closing_ * q), -(closing_ * (q + distance * q1)), -distance * weights(p),
+                      -weights(p + distance * p1)};
+  const bool is_finite = found.v1.allFinite() && found.w.allFinite() && found.w1.allFinite();
+  return is_finite ? std::optional(std::move(found)) : std::nullopt;
 }
 
 ShiftedOrbit::ComplexVector ShiftedOrbit::solve_real(const ComplexVector& right) {

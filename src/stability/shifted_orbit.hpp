@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <complex>
+#include <optional>
 
 #include "bvp/nodal_system.hpp"
 
@@ -21,7 +22,9 @@ class ShiftedOrbit {
 
   bool is_regular() const { return regular_; }
   Eigen::Index size() const { return nodal_.size(); }
+  Eigen::Index dimension() const { return n_; }
   /// E q.
+  ComplexVector closing_rows(const ComplexVector& q) const;
   Vector closing_rows(const Vector& q) const;
   /// p's column of the first free parameter.
   Vector parameter_column() const { return nodal_.parameter_columns().col(0); }
@@ -35,6 +38,18 @@ class ShiftedOrbit {
   /// The multiplier nearest to mu and its vectors V and W, with |V_1(0)| = 1 and W_closing V_1(0) = 1; false where
   /// there is none near mu. The entry of V_1(0) of largest modulus is positive.
   bool find_critical(Complex mu, ComplexVector& v, ComplexVector& w, Complex& multiplier);
+
+  /// M(mu) v = right where mu is a simple multiplier with the vectors p and q and p has no part of the right-hand side;
+  /// p v_1(0) = 0.
+  ComplexVector solve_singular(Complex mu, const ComplexVector& right, const ComplexVector& p, const ComplexVector& q);
+
+  /// Vectors of a double multiplier mu with one eigenvector: M V = 0, W M = 0, and M V1 = -E q, W1 M = -p F' with q =
+  /// V_1(0), p = W_closing, |q| = 1, p q1 = p1 q = 1, p1 q1 = 0.
+  struct DoubleVectors {
+    Vector v, v1, w, w1;
+  };
+  /// Nothing where mu is not nearly a multiplier, or one with two eigenvectors.
+  std::optional<DoubleVectors> find_double(double mu);
 
  private:
   ComplexVector solve_real(const ComplexVector& right);

@@ -1,0 +1,85 @@
+#include "stability/orbit_forms.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "bvp/mesh_adaptation.hpp"
+#include "stability/shifted_orbit.hpp"
+
+namespace tchat {
+
+using Complex = std::complex<double>;
+using Vector = Eigen::VectorXd;
+using ComplexVector = Eigen::VectorXcd;
+
+Vector OrbitForms::second(const Vector& u, const Vector& v) const {
+  NodalParts parts{};
+  parts[1] = &u, parts[2] = &v;
+  return expansion_.part(x_, parts, 3);
+}
+
+ComplexVector OrbitForms::second(const ComplexVector& u, const ComplexVector& v) const {
+  return bilinear([this](const Vector& a, const Vector& b) { return second(a, b); }, u, v);
+}
+
+Vector OrbitForms::third(const Vector& u, const Vector& v, const Vector& w) const {
+  NodalParts parts{};
+  parts[1] = &u, parts[2] = &v, parts[4] = &w;
+  return expansion_.part(x_, parts, 7);
+}
+
+ComplexVector OrbitForms::third(const ComplexVector& q) const {
+  return trilinear([this](const Vector& a, const Vector& b, const Vector& c) { return third(a, b, c); }, q);
+}
+
+/// With q = a + i b it is (a a a - 3 a b b) + i (3 a a b - b b b).
+ComplexVector OrbitForms::cube(const ComplexVector& q) const {
+  const Vector a = q.real(), b = q.imag();
+  ComplexVector result(q.size());
+  result.real() = third(a, a, a) - 3.0 * third(a, b, b);
+  result.imag() = 3.0 * third(a, a, b) - third(b, b, b);
+  return result;
+}
+
+bool is_fold(Complex critical) { return critical == Complex(1.0, 0.0); }
+double shift_for(Complex critical) { return is_fold(critical) ? -1.0 : 1.0; }
+
+Orbit on_every_second_point(const Orbit& x) {
+  Orbit coarse = x;
+  coarse.mesh.clear();
+  for (int j = 0; j < x.shape.intervals; j += 2) coarse.mesh.push_back(x.mesh[static_cast<std::size_t>(j)]);
+  coarse.mesh.push_back(1.0);
+  coarse.shape.intervals = static_cast<int>(coarse.mesh.size()) - 1;
+  coarse.states = interpolate_states(x.states, x.shape, x.mesh, coarse.shape, coarse.mesh);
+  return coarse;
+}
+
+void move_orbit(const DefiningSystem& system, Orbit& x, const Vector& change, double dp) {
+  const Eigen::Index of_states = x.states.size();
+  x.states += Eigen::Map<const Eigen::MatrixXd>(change.data(), x.states.rows(), x.states.cols());
+  for (int s = 0; s < x.shape.segments; ++s) x.duration(s) += change(of_states + s);
+  x.par(system.free_parameters().front() - 1) += dp;
+}
+
+bool correct_orbit(const DefiningSystem& system, NodalSystem& nodal, Complex critical, const Vector& q, Orbit& x) {
+  const NodalExpansion expansion(system);
+  ShiftedOrbit orbit(nodal, x, shift_for(critical));
+  if (!orbit.is_regular()) return false;
+  constexpr int most_iterations = 10;
+  constexpr double arrived = 1e-11, near = 1e-6;
+  double last = near;
+  for (int k = 0; k < most_iterations; ++k) {
+    const Vector right = -expansion.part(x, {}, 0);
+    double dp = 0.0;
+    const Vector change = is_fold(critical) ? orbit.solve_beside(1.0, right, orbit.parameter_column(), q, dp)
+                                            : orbit.solve(1.0, right).real();
+    if (!change.allFinite()) return false;
+    move_orbit(system, x, change, dp);
+    const double size = change.lpNorm<Eigen::Infinity>() / (1.0 + x.states.cwiseAbs().maxCoeff());
+    if (size < arrived || (last < near && size > 0.5 * last)) return true;
+    last = size;
+  }
+  return false;
+}
+
+}  // namespace tchat
