@@ -31,6 +31,11 @@ std::optional<Quantity> find_quantity(const HybridSystem& system, const std::str
   return std::nullopt;
 }
 
+std::string state_in_monitor(const HybridSystem& system, int k) {
+  const std::string name = system.state_name(k);
+  return name.find_first_of(" \t(),") == std::string::npos ? name : fmt::format("U({})", k);
+}
+
 std::string quantity_list(const HybridSystem& system) {
   std::string list;
   for (int k = 1; k <= system.dimension(); ++k) list += (k > 1 ? ", " : "") + system.state_name(k);

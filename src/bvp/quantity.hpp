@@ -19,6 +19,9 @@ struct Quantity {
 /// By its name: "x" or U(1) for states, the name of a user function or PVLS(1), the name of an event function or h1.
 std::optional<Quantity> find_quantity(const HybridSystem& system, const std::string& name);
 
+/// The name of state k in those of monitors: U(k) where blanks, commas or brackets of its own would have a meaning.
+std::string state_in_monitor(const HybridSystem& system, int k);
+
 /// The function that CONSERVED names. Throws UserError where the problem has none of that name.
 Quantity conserved_quantity(const HybridSystem& system, const std::string& name);
 

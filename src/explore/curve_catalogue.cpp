@@ -6,6 +6,8 @@
 #include <limits>
 
 #include "explore/point_interpolation.hpp"
+#include "problem_type/point_type.hpp"
+#include "problem_type/problem_type.hpp"
 
 namespace tchat {
 
@@ -20,16 +22,26 @@ constexpr double place_tolerance = 1e-5;
 /// Relative, of whole numbers of periods.
 constexpr double period_tolerance = 1e-4;
 
-Index column_named(const PointSection& section, const std::string& name) {
-  const auto at = std::find(section.columns.begin(), section.columns.end(), name);
-  return at == section.columns.end() ? -1 : at - section.columns.begin();
+/// Of an equilibrium the mean and the largest value of a state are the state.
+std::vector<std::size_t> number_columns(const PointSection& section, const CurveColumns& columns) {
+  std::vector<std::size_t> result;
+  for (const std::string& name : columns.monitors)
+    if (const auto column = section.column(section.at_rest(name))) result.push_back(*column);
+  return result;
 }
 
-std::vector<Index> number_columns(const PointSection& section, const CurveColumns& columns) {
-  std::vector<Index> result;
-  for (const std::string& name : columns.monitors)
-    if (const Index column = column_named(section, name); column >= 0) result.push_back(column);
-  return result;
+/// A Hopf bifurcation of periodic orbits is where they have shrunk.
+bool has_shrunk(const PointSection& section, const PointRow& row) {
+  return section.problem_type != equilibrium.number && basic_type(row.type) == static_cast<int>(PointType::hopf);
+}
+
+/// The equilibrium in an orbit that has shrunk, which the means give.
+VectorXd numbers_of(const CurvePoint& point) {
+  VectorXd numbers = point.numbers;
+  if (!point.has_shrunk) return numbers;
+  numbers(0) = 0.0;
+  for (Index k = 2; k < numbers.size(); k += 2) numbers(k) = numbers(k - 1);
+  return numbers;
 }
 
 /// Where a section passes a place: its numbers there, the first of which is the distance from the place.
@@ -92,13 +104,16 @@ bool any_passage(const CurveSection& section, const Vector2d& place,
   return false;
 }
 
-CurvePoint curve_point(const PointRow& row, Index second, Index period, const std::vector<Index>& monitors,
-                       const CurveColumns& columns, int repetitions) {
-  const auto value = [&](Index column) { return row.values[static_cast<std::size_t>(column)]; };
-  const double of_second = second < 0 ? std::numeric_limits<double>::quiet_NaN() : value(second);
-  CurvePoint point{{value(0) / columns.widths(0), of_second / columns.widths(1)}, VectorXd(1 + std::ssize(monitors))};
-  point.numbers(0) = period < 0 ? 0.0 : value(period) / repetitions;
-  for (Index k = 0; k < std::ssize(monitors); ++k) point.numbers(1 + k) = value(monitors[static_cast<std::size_t>(k)]);
+CurvePoint curve_point(const PointSection& section, const PointRow& row, const CurveColumns& columns,
+                       const std::vector<std::size_t>& monitors) {
+  const auto second = section.column(columns.second), period = section.column("PERIOD");
+  const double of_second = second ? row.values[*second] : std::numeric_limits<double>::quiet_NaN();
+  CurvePoint point{{row.values.front() / columns.widths(0), of_second / columns.widths(1)},
+                   VectorXd(1 + std::ssize(monitors)),
+                   has_shrunk(section, row)};
+  point.numbers(0) = period ? row.values[*period] / primitive_word(section.signature).repetitions : 0.0;
+  for (Index k = 0; k < std::ssize(monitors); ++k)
+    point.numbers(1 + k) = row.values[monitors[static_cast<std::size_t>(k)]];
   return point;
 }
 
@@ -108,13 +123,10 @@ std::vector<CurveSection> curve_sections(const std::string& curve, const std::st
                                          const CurveColumns& columns) {
   std::vector<CurveSection> result;
   for (const PointSection& section : file.sections) {
-    const Index second = column_named(section, columns.second);
-    const Index period = column_named(section, "PERIOD");
-    const std::vector<Index> monitors = number_columns(section, columns);
-    const int repetitions = primitive_word(section.signature).repetitions;
+    const std::vector<std::size_t> monitors = number_columns(section, columns);
     CurveSection one{curve, kind, {}, {}};
     for (const PointRow& row : section.rows) {
-      one.points.push_back(curve_point(row, second, period, monitors, columns, repetitions));
+      one.points.push_back(curve_point(section, row, columns, monitors));
       one.labels.push_back(row.label);
     }
     result.push_back(std::move(one));
@@ -135,12 +147,13 @@ std::string CurveCatalogue::curve_of(const CurveSection& section) const {
 }
 
 std::string CurveCatalogue::curve_at(const std::string& kind, const CurvePoint& point) const {
+  const VectorXd numbers = numbers_of(point);
   for (const CurveSection& known : sections_) {
     const bool is_doubled = kind == "BP" && known.kind == "PD";
     if (known.kind != kind && !is_doubled) continue;
     const bool may_repeat = is_doubled || kind == "GR";  // an orbit that touches does so on every turn
     const auto same = [&](const Passage& passage) {
-      return may_repeat ? has_orbit_repeated(passage, point.numbers) : has_orbit(passage, point.numbers);
+      return may_repeat ? has_orbit_repeated(passage, numbers) : has_orbit(passage, numbers);
     };
     if (any_passage(known, point.place, same)) return known.curve;
   }
@@ -149,7 +162,8 @@ std::string CurveCatalogue::curve_at(const std::string& kind, const CurvePoint& 
 
 std::vector<std::string> CurveCatalogue::curves_through(const CurvePoint& point) const {
   std::vector<std::string> names;
-  const auto same = [&](const Passage& passage) { return has_orbit_repeated(passage, point.numbers); };
+  const VectorXd numbers = numbers_of(point);
+  const auto same = [&](const Passage& passage) { return has_orbit_repeated(passage, numbers); };
   for (const CurveSection& known : sections_)
     if ((names.empty() || names.back() != known.curve) && any_passage(known, point.place, same))
       names.push_back(known.curve);

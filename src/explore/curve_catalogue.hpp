@@ -1,9 +1,10 @@
 /// The curves in two parameters that are there, and which of them pass through a point.
 ///
 /// A point is a place (P, Q), each in units of its range, with the numbers of its orbit: period, mean and largest value
-/// of each state. Two curves of one kind whose points have these in common, up to the error of interpolation, are one
-/// curve. The numbers do not depend on where an orbit is cut, nor on how often. A branch point of an orbit of doubled
-/// period is on the curve of period doublings.
+/// of each state; of an equilibrium 0 and twice each state. Two curves of one kind whose points have these in common,
+/// up to the error of interpolation, are one curve. The numbers do not depend on where an orbit is cut, nor on how
+/// often. A branch point of an orbit of doubled period is on the curve of period doublings, and the end of a branch
+/// whose orbits shrink is on that of Hopf bifurcations.
 #pragma once
 
 #include <Eigen/Core>
@@ -18,7 +19,8 @@ namespace tchat {
 
 struct CurvePoint {
   Eigen::Vector2d place = Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
-  Eigen::VectorXd numbers;  ///< period (0 for equilibria), then the monitors that there are
+  Eigen::VectorXd numbers;  ///< period (0 for equilibria), then the monitors that there are, by pairs: mean, largest
+  bool has_shrunk = false;  ///< an orbit that is all but an equilibrium
 };
 
 /// The points of one direction of a curve.

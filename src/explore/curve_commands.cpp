@@ -7,24 +7,20 @@
 #include <numeric>
 
 #include "plugin/plugin_build.hpp"
-#include "text/number.hpp"
 #include "text/user_error.hpp"
 #include "text/words.hpp"
 
 namespace tchat {
 
 CurveCommands::CurveCommands(const ExploreRequest& request, const ExplorationCommands& commands,
-                             const HybridSystem& system, double value)
+                             const HybridSystem& system, const ParameterVector& par)
     : commands_(commands),
       returns_(request.returns.value_or(4)),
       second_(read_swept_range("--and", *request.second, false)) {
-  index_ = system.parameter_index(second_.parameter);
-  if (index_ == 0) index_ = parse_integer(second_.parameter).value_or(0);
-  if (index_ < 1 || index_ > system.parameters())
-    throw UserError(fmt::format("--and {}: {} has no parameter of this name", second_.parameter, system.name()));
-  second_.parameter = system.parameter_name(index_);
+  index_ = find_parameter("--and", system, second_);
   if (second_.parameter == commands.range().parameter)
     throw UserError(fmt::format("--and {}: this is the parameter of --over; another one is needed", second_.parameter));
+  const double value = par(index_ - 1);
   if (value < second_.from || value > second_.to)
     throw UserError(
         fmt::format("--and {0}={1}:{2}: the diagram is at {0} = {3}, outside of this range; give it another "

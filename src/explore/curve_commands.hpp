@@ -4,6 +4,7 @@
 #include <string>
 
 #include "explore/exploration_commands.hpp"
+#include "hybrid/parameter_vector.hpp"
 
 namespace tchat {
 
@@ -16,10 +17,10 @@ struct ResonantPoint {
 
 class CurveCommands {
  public:
-  /// `commands` and `system` must outlive this. Throws UserError where --and has no range, or not one of a parameter,
-  /// or one without the value at which the diagram is.
+  /// `commands` must outlive this; `par` are the parameters of the diagram over one. Throws UserError where --and has
+  /// no range, or not one of a parameter, or one without the value at which the diagram is.
   CurveCommands(const ExploreRequest& request, const ExplorationCommands& commands, const HybridSystem& system,
-                double value);
+                const ParameterVector& par);
 
   /// Of Q; its `parameter` is the name.
   const SweptRange& second() const { return second_; }
@@ -27,7 +28,7 @@ class CurveCommands {
   int second_index() const { return index_; }
   /// The largest n of the points with xi_n = 0 that are used.
   int returns() const { return returns_; }
-  /// By a command of run/next_command.hpp, from a label of the files `source`, in both directions.
+  /// By the line of a CurveCommand (run/next_command.hpp), from a label of the files `source`, in both directions.
   CommandJob curve(const std::string& name, const std::string& command, const std::string& source) const;
   /// Beside a point of a grazing curve, in the direction of `sign` along it: orbits with one impact in n returns over
   /// P.

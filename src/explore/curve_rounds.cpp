@@ -34,9 +34,12 @@ constexpr double same_place = 1e-6;
 
 bool is_special(const std::string& type) { return !type.empty() && type != "EP" && type != "RG" && type != "UZ"; }
 
-/// EX is one of a monitor, not of orbits.
-bool may_have_curve(const std::string& type) {
-  return is_special(type) && type != "EX" && type != "XI" && type != "MX";
+/// MX and XI are no special points of orbits.
+bool may_have_curve(const std::string& type) { return is_special(type) && type != "XI" && type != "MX"; }
+
+/// Is a label of a curve one of another curve that crosses it?
+bool has_further_curve(const std::string& type, const std::string& kind) {
+  return type == "GR" || type == "BE" || (kind == "BE" && (type == "HB" || type == "LP"));
 }
 
 std::vector<int> xi_zeros(const LabelledSolution& solution) {
@@ -51,12 +54,6 @@ std::string zeros_text(const std::vector<int>& indices) {
   std::string text;
   for (const int n : indices) text += fmt::format("xi_{} = ", n);
   return text.empty() ? "" : text + "0";
-}
-
-std::string signature_text(const PointSection& section) {
-  Signature signature;
-  for (const auto& v : section.signature) signature.push_back({v[0], v[1], v[2]});
-  return to_string(signature);
 }
 
 void add_once(std::vector<std::string>& list, const std::string& text) {
@@ -90,8 +87,8 @@ auto* find_label(List& labels, int number) {
 
 }  // namespace
 
-CurveRounds::CurveRounds(const Context& context, double value)
-    : context_(context), commands_(context.request, context.commands, context.system, value) {
+CurveRounds::CurveRounds(const Context& context, const ParameterVector& par)
+    : context_(context), commands_(context.request, context.commands, context.system, par) {
   curves_.first = context.commands.range().parameter;
   curves_.second = commands_.second().parameter;
 }
@@ -100,6 +97,7 @@ void CurveRounds::follow() {
   Candidates round;
   for (const ExploredBranch& branch : context_.diagram.branches) add_curves(branch, round);
   while (!round.empty() && context_.goes_on()) round = run(round);
+  if (context_.goes_on()) settle_unfollowed();
   join();
 }
 
@@ -143,13 +141,13 @@ std::vector<CurveRounds::Labelled> CurveRounds::labels_of(const RunFiles& files)
   return result;
 }
 
-void CurveRounds::add_curves(const ExploredBranch& branch, Candidates& next) const {
+void CurveRounds::add_curves(const ExploredBranch& branch, Candidates& next) {
   const RunFiles files = files_of(branch.name);
   for (const Labelled& label : labels_of(files))
-    if (label.is_admissible && may_have_curve(label.type)) add_curve(files, label, branch.has_returns, next);
+    if (may_have_curve(label.type)) add_curve(files, label, branch.has_returns, next);
 }
 
-void CurveRounds::add_curve(const RunFiles& files, const Labelled& label, bool has_returns, Candidates& next) const {
+void CurveRounds::add_curve(const RunFiles& files, const Labelled& label, bool has_returns, Candidates& next) {
   const ExplorationCommands& commands = context_.commands;
   Candidate candidate;
   ExploredCurve& curve = candidate.curve;
@@ -158,13 +156,13 @@ void CurveRounds::add_curve(const RunFiles& files, const Labelled& label, bool h
   curve.has_returns = has_returns;
   curve.parent = candidate.owner = files.name;
   curve.origin = fmt::format("{} {} of {}", label.type, label.label, files.name);
-  const std::string command = curve_command(label.start, files.settings, context_.system, commands.problem(),
-                                            commands.path(files.name), commands.path(curve.name));
-  if (command.empty()) return;
-  curve.job = commands_.curve(curve.name, command, files.name);
   candidate.label = label.label;
   candidate.start = label.point;
-  next.push_back(std::move(candidate));
+  const CurveCommand command = curve_command(label.start, files.settings, context_.system, commands.problem(),
+                                             commands.path(files.name), commands.path(curve.name));
+  candidate.why_none = label.is_admissible ? command.why_none : "the orbit there is inadmissible";
+  if (candidate.why_none.empty()) curve.job = commands_.curve(curve.name, command.line, files.name);
+  (candidate.why_none.empty() ? next : unfollowed_).push_back(std::move(candidate));
 }
 
 void CurveRounds::add_slices(const ExploredCurve& curve, const Labelled& label, Candidates& next) const {
@@ -190,6 +188,14 @@ std::string CurveRounds::known_curve(const Candidate& candidate) const {
     if (const ExploredCurve* const curve = find_named(curves_.curves, name); curve != nullptr && curve->kind == "GR")
       return name;
   return "";
+}
+
+void CurveRounds::settle_unfollowed() {
+  for (const Candidate& candidate : unfollowed_)
+    if (const std::string known = known_curve(candidate); !known.empty())
+      set_curve(candidate, known);
+    else
+      curves_.without[candidate.why_none].push_back(candidate.curve.origin);
 }
 
 void CurveRounds::set_curve(const Candidate& candidate, const std::string& curve) {
@@ -261,7 +267,8 @@ void CurveRounds::take_curve(const Candidate& candidate, const std::string& log,
   const RunFiles files = files_of(curve.name);
   for (const Labelled& label : labels_of(files)) {
     if (label.type == "XI" && !curve.has_returns) add_slices(curve, label, next);
-    if (label.type == "GR" && label.is_admissible) add_curve(files, label, curve.has_returns, next);
+    if (label.is_admissible && has_further_curve(label.type, curve.kind))
+      add_curve(files, label, curve.has_returns, next);
   }
 }
 
@@ -285,10 +292,10 @@ void CurveRounds::describe(ExploredCurve& curve, const std::string& log) const {
                             label.second,
                             label.is_section_tangent ? "tangent section, no grazing" : zeros_text(label.xi_zeros),
                             {}});
+  curve.signatures = signatures_of(points);
   const std::vector<std::string> reasons = branch_ends(log);
   for (std::size_t k = 0; k < points.sections.size(); ++k) {
     if (points.sections[k].rows.empty()) continue;
-    add_once(curve.signatures, signature_text(points.sections[k]));
     curve.ends.push_back(end_of(curve, points.sections[k], reasons.size() == points.sections.size() ? reasons[k] : ""));
   }
 }
@@ -318,15 +325,7 @@ void CurveRounds::take_slice(const Candidate& candidate, Candidates& next) {
   const RunFiles files = files_of(slice.name);
   if (files.admissible.only_at_start || files.solutions.solutions.empty()) return;
   if (is_left()) return;
-  slice.from = std::numeric_limits<double>::infinity();
-  slice.to = -slice.from;
-  for (const PointSection& section : read_point_file(context_.commands.file('p', slice.name)).sections) {
-    add_once(slice.signatures, signature_text(section));
-    for (const PointRow& row : section.rows) {
-      slice.from = std::min(slice.from, row.values.front());
-      slice.to = std::max(slice.to, row.values.front());
-    }
-  }
+  describe_points(read_point_file(context_.commands.file('p', slice.name)), context_.commands.range(), slice);
   const double second = stored_parameter(files.solutions.solutions.front(), commands_.second_index());
   slice.origin =
       fmt::format("at {} = {:.6g} beside XI {} of {}", curves_.second, second, candidate.label, candidate.owner);

@@ -1,7 +1,8 @@
 /// Curves in two parameters, after the diagram over one: every special point with a curve is followed in both
-/// directions in the rectangle, unless a curve that is there passes through it. At grazing points with xi_n = 0 the
-/// orbits with one impact in n returns are followed over the first parameter, on both sides along the grazing curve;
-/// their special points have curves, too. A contact on a curve has its grazing curve.
+/// directions in the rectangle, unless a curve that is there passes through it. Those without are listed with the
+/// reason. At grazing points with xi_n = 0 the orbits with one impact in n returns are followed over the first
+/// parameter, on both sides along the grazing curve; their special points have curves, too. A contact on a curve has
+/// its grazing curve.
 ///
 /// Rounds of jobs, as in explorer.hpp.
 #pragma once
@@ -29,8 +30,8 @@ class CurveRounds {
     std::function<bool()> goes_on;
     std::function<void(const std::string&)> show;
   };
-  /// `value`: of the second parameter in the diagram. Throws UserError as CurveCommands does.
-  CurveRounds(const Context& context, double value);
+  /// `par`: those of the diagram over one. Throws UserError as CurveCommands does.
+  CurveRounds(const Context& context, const ParameterVector& par);
 
   void follow();
   const ExploredCurves& curves() const { return curves_; }
@@ -52,9 +53,10 @@ class CurveRounds {
     bool is_slice = false;
     ExploredCurve curve;
     ExploredBranch slice;
-    CurvePoint start;   ///< of a curve
-    std::string owner;  ///< the branch, slice or curve that it is from
-    int label = 0;      ///< of the owner
+    CurvePoint start;      ///< of a curve
+    std::string owner;     ///< the branch, slice or curve that it is from
+    int label = 0;         ///< of the owner
+    std::string why_none;  ///< no command follows it
     const CommandJob& job() const { return is_slice ? slice.job : curve.job; }
     const std::string& name() const { return job().name; }
   };
@@ -68,8 +70,9 @@ class CurveRounds {
   std::string known_curve(const Candidate& candidate) const;
   void set_curve(const Candidate& candidate, const std::string& curve);
 
-  void add_curves(const ExploredBranch& branch, Candidates& next) const;
-  void add_curve(const RunFiles& files, const Labelled& label, bool has_returns, Candidates& next) const;
+  void add_curves(const ExploredBranch& branch, Candidates& next);
+  /// To `next`, or to those without a command.
+  void add_curve(const RunFiles& files, const Labelled& label, bool has_returns, Candidates& next);
   void add_slices(const ExploredCurve& curve, const Labelled& label, Candidates& next) const;
   Candidates run(const Candidates& round);
   bool is_left();
@@ -77,6 +80,8 @@ class CurveRounds {
   void take_slice(const Candidate& candidate, Candidates& next);
   void describe(ExploredCurve& curve, const std::string& log) const;
   CurveEnd end_of(const ExploredCurve& curve, const PointSection& section, const std::string& stopped) const;
+  /// Labels that no command follows may be on a curve nevertheless.
+  void settle_unfollowed();
   void join();
   bool is_at(const JoinedPoint& joint, double first, double second) const;
   void join_label(const ExploredCurve& curve, const CurveSection& section, std::size_t point);
@@ -85,6 +90,7 @@ class CurveRounds {
   CurveCommands commands_;
   CurveCatalogue catalogue_;
   ExploredCurves curves_;
+  Candidates unfollowed_;
 };
 
 }  // namespace tchat

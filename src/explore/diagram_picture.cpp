@@ -7,9 +7,9 @@
 #include <filesystem>
 #include <limits>
 #include <set>
-#include <sstream>
 #include <utility>
 
+#include "explore/branch_ends.hpp"
 #include "files/point_file_reader.hpp"
 #include "text/words.hpp"
 
@@ -26,10 +26,9 @@ constexpr double same_label = 1e-4;      // as a share of the range of the param
 /// Adds the points of a branch. False if one of its sections does not have the column.
 bool add_points(const PointFile& file, const std::string& column, Points& points) {
   for (const PointSection& section : file.sections) {
-    const auto at = std::find(section.columns.begin(), section.columns.end(), section.at_rest(column));
-    if (at == section.columns.end()) return false;
-    const auto place = static_cast<std::size_t>(at - section.columns.begin());
-    for (const PointRow& row : section.rows) points.emplace_back(row.values.front(), row.values[place]);
+    const auto place = section.column(section.at_rest(column));
+    if (!place) return false;
+    for (const PointRow& row : section.rows) points.emplace_back(row.values.front(), row.values[*place]);
   }
   return true;
 }
@@ -81,15 +80,6 @@ std::string drawn_types(const ExploredDiagram& diagram, const SweptQuantity& ove
   std::string list;
   for (const std::string& type : types) list += (list.empty() ? "" : ",") + type;
   return list.empty() ? "none" : list;
-}
-
-/// The first line of the message that ended a command, which stands alone.
-std::string message_in(const std::string& log) {
-  const std::string program = "tchat: ", warning = "tchat: warning: ";
-  std::istringstream lines(log);
-  for (std::string line; std::getline(lines, line);)
-    if (line.starts_with(program) && !line.starts_with(warning)) return line.substr(program.size());
-  return log.substr(0, log.find('\n'));
 }
 
 }  // namespace
@@ -145,7 +135,7 @@ std::vector<std::string> draw_pictures(const std::vector<CommandJob>& jobs, cons
   const std::vector<JobResult> results = JobRunner(folder, 1, interrupted).run(jobs);
   for (std::size_t i = 0; i < jobs.size(); ++i)
     if (results[i].was_run && !results[i].succeeded)
-      warnings.push_back(fmt::format("the {} is not drawn: {}", jobs[i].name, message_in(results[i].log)));
+      warnings.push_back(fmt::format("the {} is not drawn: {}", jobs[i].name, failure_text(results[i].log)));
   return warnings;
 }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "bvp/quantity.hpp"
 #include "plugin/plugin_build.hpp"
 #include "problem_type/problem_type.hpp"
 #include "text/number.hpp"
@@ -17,11 +18,6 @@ std::string all_events(int count) {
   std::string text;
   for (int j = 1; j <= count; ++j) text += fmt::format("{}{}", text.empty() ? "[" : ",", j);
   return text.empty() ? "" : text + "]";
-}
-
-std::string state_word(const HybridSystem& system, int k) {
-  const std::string name = system.state_name(k);
-  return name.find_first_of(" \t(),") == std::string::npos ? name : fmt::format("U({})", k);
 }
 
 }  // namespace
@@ -41,16 +37,12 @@ ExplorationCommands::ExplorationCommands(const ExploreRequest& request, const Hy
       folder_(request.output.value_or(request.name + ".diagram")),
       problem_(request.problem.value_or(request.name)),
       constants_option_(request.constants ? " -c " + quoted_for_shell(*request.constants) : "") {
-  const int index = system.parameter_index(range_.parameter);
-  const int number = index > 0 ? index : parse_integer(range_.parameter).value_or(0);
-  if (number < 1 || number > system.parameters())
-    throw UserError(fmt::format("--over {}: {} has no parameter of this name", range_.parameter, system.name()));
-  if (const std::string name = system.parameter_name(number); system.parameter_index(name) == number)
-    range_.parameter = name;
+  find_parameter("--over", system, range_);
   for (const std::string& word : request.overrides) (sets_parameter(word) ? parameters_ : constants_).push_back(word);
   if (has_added_section) watched_ = all_events(system.count(FunctionKind::event) - 1);
   for (int k = 1; k <= system.dimension() && monitors_.size() + 2 <= max_monitors; ++k)
-    for (const char* kind : {"mean", "max"}) monitors_.push_back(fmt::format("{}({})", kind, state_word(system, k)));
+    for (const char* kind : {"mean", "max"})
+      monitors_.push_back(fmt::format("{}({})", kind, state_in_monitor(system, k)));
 }
 
 std::string ExplorationCommands::at_value(double value) const {

@@ -95,6 +95,8 @@ std::string curves_text(const ExploredCurves& all) {
   if (!all.joints.empty()) text += "\nCodimension two, on several curves:\n";
   for (const JoinedPoint& point : all.joints) text += joint_text(point);
   text += fmt::format("\n{} curves.\n", all.curves.size());
+  for (const auto& [reason, labels] : all.without)
+    text += fmt::format("Without a curve: {}: {}.\n", fmt::join(labels, ", "), reason);
   for (const std::string& note : all.failures) text += note + "\n";
   if (all.left > 0) text += fmt::format("Left: at least {} more, --branches {} reached.\n", all.left, all.budget);
   return text;
@@ -102,11 +104,15 @@ std::string curves_text(const ExploredCurves& all) {
 
 std::string curves_json(const ExploredCurves& all) {
   if (all.second.empty()) return "";
+  std::string without;
+  for (const auto& [reason, labels] : all.without)
+    without += fmt::format(R"({}{{"labels": {}, "reason": {}}})", without.empty() ? "" : ", ", json_list(labels),
+                           json_value(reason));
   return fmt::format(
       ",\n\"second_parameter\": {}, \"curves_left\": {},\n\"curves\": {},\n\"slices\": {},\n\"codimension_two\": "
-      "{},\n\"curve_joins\": {},\n\"curve_failures\": {}",
+      "{},\n\"curve_joins\": {},\n\"without_curve\": [{}],\n\"curve_failures\": {}",
       json_value(all.second), all.left, json_list(all.curves, curve_json), json_list(all.slices, branch_json),
-      json_list(all.joints, joint_json), json_list(all.again), json_list(all.failures));
+      json_list(all.joints, joint_json), json_list(all.again), without, json_list(all.failures));
 }
 
 std::vector<const CommandJob*> curve_jobs(const ExploredCurves& curves) {

@@ -2,6 +2,7 @@
 /// codimension two that they have in common.
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -54,9 +55,10 @@ struct ExploredCurves {
   std::vector<ExploredCurve> curves;
   std::vector<ExploredBranch> slices;  ///< branches over `first` that start beside a point of a grazing curve
   std::vector<JoinedPoint> joints;
-  std::vector<std::string> again;     ///< "a2_LP4_curve: a1_LP3_curve again"
-  std::vector<std::string> failures;  ///< commands that failed, with their last message
-  int left = 0;                       ///< curves and slices beyond the budget
+  std::map<std::string, std::vector<std::string>> without;  ///< by reason, labels that no curve follows: "BP 2 of a1"
+  std::vector<std::string> again;                           ///< "a2_LP4_curve: a1_LP3_curve again"
+  std::vector<std::string> failures;                        ///< commands that failed, with their last message
+  int left = 0;                                             ///< curves and slices beyond the budget
   int budget = 0;
 };
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <limits>
 
 #include "explore/json_list.hpp"
 
@@ -56,6 +57,28 @@ std::string counts_json(const std::map<std::string, int>& counts) {
 }
 
 }  // namespace
+
+std::vector<std::string> signatures_of(const PointFile& points) {
+  std::vector<std::string> list;
+  for (const PointSection& section : points.sections) {
+    Signature signature;
+    for (const auto& v : section.signature) signature.push_back({v[0], v[1], v[2]});
+    const std::string text = to_string(signature);
+    if (std::find(list.begin(), list.end(), text) == list.end()) list.push_back(text);
+  }
+  return list;
+}
+
+void describe_points(const PointFile& points, const SweptRange& range, ExploredBranch& branch) {
+  branch.signatures = signatures_of(points);
+  branch.from = std::numeric_limits<double>::infinity();
+  branch.to = -branch.from;
+  for (const PointSection& section : points.sections)
+    for (const PointRow& row : section.rows) {
+      branch.from = std::max(range.from, std::min(branch.from, row.values.front()));
+      branch.to = std::min(range.to, std::max(branch.to, row.values.front()));
+    }
+}
 
 std::string label_text(const ExploredLabel& label) {
   std::string text = fmt::format("{} {} at {:.10g}", label.type, label.label, label.parameter);

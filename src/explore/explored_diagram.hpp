@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "explore/command_job.hpp"
+#include "explore/swept_range.hpp"
+#include "files/point_file_reader.hpp"
 
 namespace tchat {
 
@@ -58,6 +60,11 @@ struct ExploredDiagram {
   bool complete = true;                            ///< false: interrupted
   std::map<std::string, int> left;  ///< what a budget left: how many labels and attractors were not followed
 };
+
+/// The signatures of the sections of a p-file, each once.
+std::vector<std::string> signatures_of(const PointFile& points);
+/// Sets signatures and range of a branch from its p-file. Points that a clipped run has beyond `range` do not count.
+void describe_points(const PointFile& points, const SweptRange& range, ExploredBranch& branch);
 
 /// "GR 2 at 3.035 -> a2"
 std::string label_text(const ExploredLabel& label);

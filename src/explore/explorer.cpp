@@ -61,7 +61,7 @@ class Explorer {
         runner_(commands_.folder(), request.workers, [this, interrupted] { return interrupted() || is_late(); }),
         interrupted_(interrupted) {
     diagram_.parameter = commands_.range().parameter;
-    if (request.second) curves_.emplace(curve_context(), value_of_second());
+    if (request.second) curves_.emplace(curve_context(), parameters());
   }
 
   int explore() {
@@ -94,14 +94,11 @@ class Explorer {
             [this](const std::string& text) { show(text); }};
   }
 
-  /// In the diagram over the first parameter.
-  double value_of_second() const {
-    const HybridSystem& system = loaded_.library->system();
-    const std::string name = read_swept_range("--and", *request_.second, false).parameter;
-    const int index = system.parameter_index(name) > 0 ? system.parameter_index(name) : parse_integer(name).value_or(0);
-    ParameterVector par = initial_parameters(system);
-    apply_command_line(system, loaded_.constants.settings, par);
-    return index >= 1 && index <= system.parameters() ? par(index - 1) : 0.0;
+  /// Of the diagram over the first one.
+  ParameterVector parameters() const {
+    ParameterVector par = initial_parameters(loaded_.library->system());
+    apply_command_line(loaded_.library->system(), loaded_.constants.settings, par);
+    return par;
   }
 
   bool is_late() const {
@@ -258,7 +255,7 @@ class Explorer {
       return false;
     }
     for (CataloguedSection& section : sections) catalogue_.add(std::move(section));
-    describe(points, branch);
+    describe_points(points, commands_.range(), branch);
     branch.ends = branch_ends(result.log);
     set_outcome(candidate, branch.name, "");
     diagram_.branches.push_back(branch);
@@ -266,22 +263,6 @@ class Explorer {
                      branch.to));
     add_switches(diagram_.branches.size() - 1, next);
     return true;
-  }
-
-  void describe(const PointFile& points, ExploredBranch& branch) const {
-    branch.from = std::numeric_limits<double>::infinity();
-    branch.to = -branch.from;
-    for (const PointSection& section : points.sections) {
-      for (const PointRow& row : section.rows) {
-        branch.from = std::max(commands_.range().from, std::min(branch.from, row.values.front()));
-        branch.to = std::min(commands_.range().to, std::max(branch.to, row.values.front()));
-      }
-      Signature signature;
-      for (const auto& v : section.signature) signature.push_back({v[0], v[1], v[2]});
-      if (const std::string text = to_string(signature);
-          std::find(branch.signatures.begin(), branch.signatures.end(), text) == branch.signatures.end())
-        branch.signatures.push_back(text);
-    }
   }
 
   /// The commands that follow the labels of a branch; none from tori.

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 
 #include "explore/point_interpolation.hpp"
 #include "problem_type/problem_type.hpp"
@@ -19,12 +18,6 @@ bool repeats_after(const SignatureWord& word, std::size_t length) {
   for (std::size_t i = length; i < word.size(); ++i)
     if (word[i] != word[i - length]) return false;
   return true;
-}
-
-std::optional<std::size_t> column_of(const PointSection& section, const std::string& name) {
-  const auto at = std::find(section.columns.begin(), section.columns.end(), name);
-  if (at == section.columns.end()) return std::nullopt;
-  return static_cast<std::size_t>(at - section.columns.begin());
 }
 
 std::vector<std::string> state_columns(const PointSection& section) {
@@ -89,9 +82,9 @@ std::vector<CataloguedSection> catalogued_sections(const std::string& branch, co
     const bool rests = section.problem_type == equilibrium.number;
     const std::vector<std::string> names = rests ? state_columns(section) : monitors;
     std::vector<std::size_t> columns;
-    if (const auto period = column_of(section, "PERIOD"); period && !rests) columns.push_back(*period);
+    if (const auto period = section.column("PERIOD"); period && !rests) columns.push_back(*period);
     for (const std::string& name : names)
-      if (const auto column = column_of(section, name)) columns.push_back(*column);
+      if (const auto column = section.column(name)) columns.push_back(*column);
     if (columns.size() != (rests ? 0 : 1) + names.size()) continue;
     CataloguedSection one{branch, number, primitive_word(section.signature), {}, rests, {}};
     one.numbers.resize(std::ssize(columns), std::ssize(section.rows));

@@ -34,4 +34,14 @@ SweptRange read_swept_range(const std::string& option, const std::string& text, 
   return range;
 }
 
+int find_parameter(const std::string& option, const HybridSystem& system, SweptRange& range) {
+  const int index = system.parameter_index(range.parameter);
+  const int number = index > 0 ? index : parse_integer(range.parameter).value_or(0);
+  if (number < 1 || number > system.parameters())
+    throw UserError(fmt::format("{} {}: {} has no parameter of this name", option, range.parameter, system.name()));
+  if (const std::string name = system.parameter_name(number); system.parameter_index(name) == number)
+    range.parameter = name;
+  return number;
+}
+
 }  // namespace tchat

@@ -9,6 +9,7 @@
 #include "files/number_format.hpp"
 #include "problem_type/family.hpp"
 #include "problem_type/point_type.hpp"
+#include "problem_type/problem_type.hpp"
 
 namespace tchat {
 
@@ -186,8 +187,8 @@ std::string format_point_header(const PointFileHeader& header, const std::vector
   text += parameter_line("User-specified", header.settings.free_parameters);
   text += parameter_line("Active continuation", header.active_parameters);
   if (header.curve_type != 0)
-    text +=
-        fmt::format("{}   Branch type: {}  TY = '{}'\n", line_start, header.curve_type, curve_name(header.curve_type));
+    text += fmt::format("{}   Branch type: {}  TY = '{}'\n", line_start, header.curve_type,
+                        curve_name(header.settings.problem_type, header.curve_type));
   if (const std::string names = long_names(columns); !names.empty())
     text += ConstantsLine().pair("columns", names).str();
   text += std::string(line_start) + '\n' + line_start + "    PT  TY  LAB ";

@@ -336,11 +336,18 @@ std::string PointSection::shown_parameter(int k) const {
 }
 std::string PointSection::state_name(int k) const { return name_in(states, k, "U"); }
 
+std::optional<std::size_t> PointSection::column(const std::string& name) const {
+  const auto at = std::find(columns.begin(), columns.end(), name);
+  if (at == columns.end()) return std::nullopt;
+  return static_cast<std::size_t>(at - columns.begin());
+}
+
 std::string PointSection::at_rest(const std::string& column) const {
   if (problem_type != equilibrium.number) return column;
   for (int k = 1; k <= dimension; ++k)
     for (const char* const kind : {"max", "min", "mean"})
-      if (column == fmt::format("{}({})", kind, state_name(k))) return state_name(k);
+      for (const std::string& name : {state_name(k), fmt::format("U({})", k)})
+        if (column == fmt::format("{}({})", kind, name)) return state_name(k);
   return column;
 }
 

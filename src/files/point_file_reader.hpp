@@ -50,6 +50,8 @@ struct PointSection {
   std::vector<std::string> columns;  ///< names in full, headings in files without them; COLUMN(k) without header
   std::vector<PointRow> rows;
 
+  /// The place of a column in `columns` and in the values of rows; nothing where there is none of this name.
+  std::optional<std::size_t> column(const std::string& name) const;
   /// PAR(k) by its name or as "PAR(k)".
   std::string parameter_name(int k) const;
   /// The same with "T2" for the second duration: what screens and axes show.

@@ -32,7 +32,7 @@ int curve_type_of(const PointSection& section) {
 }
 
 CurveKind kind_of(const PointSection& section) {
-  return curve_kind(curve_type_of(section),
+  return curve_kind(curve_name(section.problem_type, curve_type_of(section)),
                     keeps_contact(section.problem_type) || family_of(section.problem_type).is_drawn_as_contact());
 }
 

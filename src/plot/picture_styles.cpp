@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 
 namespace tchat {
 
@@ -85,26 +86,19 @@ std::vector<std::string> all_point_types() {
   return types;
 }
 
-CurveKind curve_kind(int curve_type, bool grazing) {
+CurveKind curve_kind(const std::string& letters, bool grazing) {
   if (grazing) return {"grazing", "#000000", Symbol::circle, false};
-  switch (curve_type) {
-    case 2:
-    case 5:
-      return {"fold", "#0060a8", Symbol::square, true};
-    case 7:
-      return {"period doubling", "#c04000", Symbol::triangle, true};
-    case 8:
-      return {"torus", "#3a9a4a", Symbol::diamond, true};
-    case 4:
-      return {"two events at once", "#008080", Symbol::circle, false};
-    case 3:
-      return {"Hopf", "#9a5aa0", Symbol::reversed_triangle, true};
-    case 1:
-    case 6:
-      return {"branch points", "#7a4420", Symbol::pentagon, true};
-    default:
-      return {"two-parameter curve", "#000000", Symbol::dot, true};
-  }
+  static const std::map<std::string, CurveKind> kinds{
+      {"LP", {"fold", "#0060a8", Symbol::square, true}},
+      {"PD", {"period doubling", "#c04000", Symbol::triangle, true}},
+      {"TR", {"torus", "#3a9a4a", Symbol::diamond, true}},
+      {"GR", {"two events at once", "#008080", Symbol::circle, false}},
+      {"BE", {"boundary equilibrium", "#008080", Symbol::pentagon, false}},
+      {"HB", {"Hopf", "#9a5aa0", Symbol::reversed_triangle, true}},
+      {"BP", {"branch points", "#7a4420", Symbol::pentagon, true}},
+  };
+  const auto known = kinds.find(letters);
+  return known != kinds.end() ? known->second : CurveKind{"two-parameter curve", "#000000", Symbol::dot, true};
 }
 
 std::string unused_colour(const std::vector<CurveKind>& curves, std::size_t k) {

@@ -40,15 +40,15 @@ bool is_labelled_by_default(const std::string& type);
 /// All letters that points can have, for messages.
 std::vector<std::string> all_point_types();
 
-/// What a two-parameter curve consists of, by the type number of its points (5, 7, 8), or 0 for grazing orbits. It has
-/// a colour, and small symbols along it: those of the special points that make the curve.
+/// What a two-parameter curve consists of, by the letters of its points ("" where files do not tell), or grazing
+/// orbits. It has a colour, and small symbols along it: those of the special points that make the curve.
 struct CurveKind {
   std::string name;
   std::string colour;
   Symbol symbol = Symbol::circle;
   bool filled = true;
 };
-CurveKind curve_kind(int curve_type, bool grazing);
+CurveKind curve_kind(const std::string& letters, bool grazing);
 
 /// Several curves in one picture: the first of a kind has the colour of the kind, further ones others; as long as there
 /// are colours each has its own.

@@ -154,11 +154,6 @@ std::string type_name(int type, const UserPointKind& kind) {
   return found != nullptr ? found->name : "";
 }
 
-std::string curve_name(int curve_type) {
-  const bool of_user_points = curve_type == -static_cast<int>(PointType::user);
-  return of_user_points ? type_name(-curve_type, {UserPointKind::contact}) : type_name(curve_type);
-}
-
 std::vector<std::string> type_names(int type, const UserPointKind& kind, const std::vector<UserPointKind>& further) {
   constexpr int user = static_cast<int>(PointType::user);
   std::vector<std::string> names{type_name(type, kind)};

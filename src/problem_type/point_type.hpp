@@ -111,9 +111,6 @@ bool is_bifurcation(PointType type);
 /// "" for an ordinary point and unknown numbers.
 std::string type_name(int type, const UserPointKind& kind = {});
 
-/// The name of the points that a two-parameter curve consists of, by its tens digit: "LP", ..., "GR" for 4.
-std::string curve_name(int curve_type);
-
 /// All names of a point that is several things at once, each once, its own first: {"GR", "UZ"}.
 std::vector<std::string> type_names(int type, const UserPointKind& kind, const std::vector<UserPointKind>& further);
 

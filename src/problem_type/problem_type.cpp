@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "problem_type/family.hpp"
+#include "problem_type/point_type.hpp"
 #include "text/user_error.hpp"
 
 namespace tchat {
@@ -106,6 +107,12 @@ bool keeps_contact(int number) {
 bool is_two_parameter_curve(int number, int branch_mode) {
   const ProblemType* type = nearest_problem_type(number, branch_mode);
   return std::abs(branch_mode) == in_two_parameters || (type != nullptr && type->facts().in_two_parameters);
+}
+
+std::string curve_name(int number, int curve_type) {
+  if (curve_type != -static_cast<int>(PointType::user)) return type_name(curve_type);
+  const bool is_at_rest = number == equilibrium.number;
+  return type_name(-curve_type, {is_at_rest ? UserPointKind::boundary_equilibrium : UserPointKind::contact});
 }
 
 bool has_two_parameter_curves(int number) { return !problem_types_of(number, in_two_parameters).empty(); }

@@ -110,6 +110,9 @@ bool records_problem_type(int number);
 bool is_same_problem_type(int number, int other);
 bool keeps_contact(int number);
 bool is_two_parameter_curve(int number, int branch_mode);
+/// The letters of the points that a two-parameter curve of this IPS consists of, by the tens digit of its labels: "LP",
+/// ...; for 4 "BE" of equilibria, "GR" of others; "" for 0.
+std::string curve_name(int number, int curve_type);
 /// Is there a type that follows folds and the like of this one in two parameters?
 bool has_two_parameter_curves(int number);
 /// Words of `tchat run` that follow the branch born at a label, after IRS: " IPS=182 ISW=-1 'ICP=[a,rho]'"; "" where

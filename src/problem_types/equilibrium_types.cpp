@@ -1,8 +1,12 @@
-/// The problem types of equilibria (IPS = 1): branches in one parameter (bvp/equilibrium_system.hpp), curves of folds
-/// and Hopf bifurcations in two, and the switch at a branch point.
+/// The problem types of equilibria (IPS = 1): branches in one parameter (bvp/equilibrium_system.hpp), curves of folds,
+/// Hopf bifurcations and boundary equilibria in two, and the switch at a branch point.
+#include <cmath>
+
 #include "bvp/equilibrium_fold.hpp"
 #include "bvp/equilibrium_system.hpp"
+#include "bvp/event_condition.hpp"
 #include "bvp/hopf_pair.hpp"
+#include "bvp/orbit_accuracy.hpp"
 #include "families/families.hpp"
 #include "problem_types/problem_types.hpp"
 #include "run/branch_switch.hpp"
@@ -49,6 +53,40 @@ BranchCurve hopf(const EquilibriumSystem& system, const RunSettings&, const Sele
   return curve_of(system, std::make_unique<HopfPair>(system, start.start.orbit.shape), hopf_curve_tests);
 }
 
+/// The event function that is zero at a start: that of a BE label, elsewhere the one nearest to zero. A BE label on
+/// such a curve (tens digit) is where another one vanishes as well. 0 where none is zero.
+int boundary_event(const HybridSystem& system, const SelectedStart& start) {
+  constexpr double at_zero = 1e-6;  // a located point is known to EPSS
+  const bool is_label = start.kind.kind == UserPointKind::boundary_equilibrium;
+  const bool is_on_curve = basic_type(start.type) != start.type;
+  if (is_label && !is_on_curve) return start.kind.index;
+  const Orbit& x = start.start.orbit;
+  int nearest = 0;
+  double least = at_zero;
+  for (int event = 1; event <= system.count(FunctionKind::event); ++event) {
+    if (is_label && event == start.kind.index) continue;
+    const double distance = std::abs(system.event(event, x.end(0), x.par.data())) / event_scale(system, x, event);
+    if (distance <= least) nearest = event, least = distance;
+  }
+  return nearest;
+}
+
+bool is_on_boundary(const HybridSystem& system, const RunSettings&, const SelectedStart& start) {
+  return boundary_event(system, start) != 0;
+}
+
+/// f_i(x, p) = 0 and h_j(x, p) = 0.
+BranchCurve boundary(const EquilibriumSystem& system, const RunSettings&, const SelectedStart& start) {
+  const int event = boundary_event(system.system(), start);
+  return {std::make_unique<EventCondition>(system, start.start.orbit.shape, 0, event, true),
+          [&system, event](const RunSettings& settings) {
+            TestList tests = boundary_equilibrium_tests(system, settings, event);
+            add_boundary_bifurcations(tests, system, settings);
+            add_user_values(tests, system.system(), settings);
+            return tests;
+          }};
+}
+
 ProblemFacts equilibrium_facts(int branch_mode, const char* title) {
   return {.number = equilibrium.number,
           .branch_mode = branch_mode,
@@ -79,10 +117,16 @@ std::vector<const ProblemType*> equilibrium_types() {
                            {PointType::equilibrium_fold}, state, fold);
   static const State hopf_points(curve_facts(PointType::hopf, "Hopf bifurcations of equilibria in two parameters"),
                                  {PointType::hopf}, state, hopf);
+  ProblemFacts boundary_facts =
+      curve_facts(PointType::ordinary, "boundary equilibria, where an event function is zero, in two parameters");
+  boundary_facts.curve = -static_cast<int>(PointType::user);  // BE labels are UZ in files
+  boundary_facts.stability = StabilityMeaning::without_contact;
+  static const State boundaries(boundary_facts, {PointType::user, PointType::end, PointType::regular}, state, boundary,
+                                nullptr, is_on_boundary);
   static const SwitchRow switches(
       equilibrium_facts(branch_switch.branch_mode, "the branch of equilibria that crosses at a BP label"),
       branch_switch_labels(), switch_branch);
-  return {&branches, &folds, &hopf_points, &switches};
+  return {&branches, &folds, &hopf_points, &boundaries, &switches};
 }
 
 }  // namespace tchat

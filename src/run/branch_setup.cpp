@@ -48,8 +48,7 @@ const ProblemType& type_at(const HybridSystem& system, const RunSettings& settin
   std::string example;
   for (const ProblemType* type : problem_types_of(settings.problem_type, settings.branch_mode)) {
     const int curve = type->facts().curve;
-    const bool of_contacts = curve == -static_cast<int>(PointType::user);
-    const std::string label = of_contacts ? "GR" : curve != 0 ? type_name(curve) : type->facts().start_example;
+    const std::string label = curve != 0 ? curve_name(settings.problem_type, curve) : type->facts().start_example;
     curves += fmt::format("{}{} ({})", curves.empty() ? "" : ", ", type->facts().title, label);
     if (example.empty()) example = label;
   }

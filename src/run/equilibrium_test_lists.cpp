@@ -4,14 +4,25 @@
 
 #include "constants/settings_type.hpp"
 #include "special_points/bifurcation_tests.hpp"
+#include "special_points/equilibrium_curve_tests.hpp"
 #include "special_points/equilibrium_tests.hpp"
 
 namespace tchat {
 
-TestList boundary_equilibrium_tests(const DefiningSystem& system, const RunSettings& settings) {
+namespace {
+
+void add_hopf(TestList& tests, const RunSettings& settings) {
+  const int kind = std::abs(settings.detect_bifurcations);
+  if (kind == 2 || kind == 4) tests.push_back(std::make_unique<HopfTest>(settings.detect_bifurcations < 0));
+}
+
+}  // namespace
+
+TestList boundary_equilibrium_tests(const DefiningSystem& system, const RunSettings& settings, int except) {
   TestList tests;
   for (const int event : settings.segments.front().monitor)
-    tests.push_back(std::make_unique<BoundaryEquilibriumTest>(system, event, settings.stop_at_grazing));
+    if (event != except)
+      tests.push_back(std::make_unique<BoundaryEquilibriumTest>(system, event, settings.stop_at_grazing));
   return tests;
 }
 
@@ -24,7 +35,12 @@ void add_equilibrium_bifurcations(TestList& tests, const RunSettings& settings) 
                                                PointType::equilibrium_fold));
   if (kind == 2 || kind == 3)
     tests.push_back(std::make_unique<BranchPointTest>(stop, PointType::equilibrium_branch_point));
-  if (kind == 2 || kind == 4) tests.push_back(std::make_unique<HopfTest>(stop));
+  add_hopf(tests, settings);
+}
+
+void add_boundary_bifurcations(TestList& tests, const DefiningSystem& system, const RunSettings& settings) {
+  if (settings.detect_folds != 0) tests.push_back(zero_eigenvalue_test(system));
+  add_hopf(tests, settings);
 }
 
 }  // namespace tchat

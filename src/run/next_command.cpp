@@ -82,20 +82,55 @@ bool is_grazing(const UserPointKind& kind) {
   return kind.kind == UserPointKind::contact || kind.kind == UserPointKind::impact_velocity;
 }
 
-/// Can `tchat resegment --to grazing-curve` cut the orbit at this contact?
-bool begins_grazing_curve(const UserPointKind& kind, const RunSettings& settings, const HybridSystem& system) {
+/// Why `tchat resegment --to grazing-curve` cannot cut the orbit at this contact; "" where it can.
+std::string why_no_grazing_curve(const UserPointKind& kind, const RunSettings& settings, const HybridSystem& system) {
   const SolutionFamily& family = problem_type(settings).family();
-  if (!family.why_not(Analysis::resegmentation, "").empty() || family.facts().has_several_returns) return false;
-  if (kind.kind == UserPointKind::impact_velocity) return !tangent_section(kind, settings, system);
-  return is_free_of_other_events(kind, settings, system);
+  if (const std::string reason = family.why_not(Analysis::resegmentation, ""); !reason.empty()) return reason;
+  if (family.facts().has_several_returns) return "the contact is one of several coupled orbits";
+  if (system.count(FunctionKind::jump) == 0) return "the problem has no jump that the contact could bring";
+  if (tangent_section(kind, settings, system)) return "the section becomes tangent, and no motion changes";
+  if (kind.kind == UserPointKind::contact && !is_free_of_other_events(kind, settings, system))
+    return "another event is at the contact";
+  return "";
 }
 
-/// Do ISW = 2 and two parameters follow the points of a label?
-bool has_curve(const NextStart& start, const RunSettings& settings) {
+/// Is the contact one inside a segment of orbits that no jump changes?
+bool is_held_contact(const UserPointKind& kind, const RunSettings& settings, const HybridSystem& system) {
+  const SolutionFamily& family = problem_type(settings).family();
+  const bool is_orbit = family.why_not(Analysis::resegmentation, "").empty() && !family.facts().has_several_returns;
+  return is_orbit && kind.kind == UserPointKind::contact && kind.tau > 0.0 && kind.tau < 1.0 && settings.held.empty() &&
+         system.count(FunctionKind::jump) == 0;
+}
+
+/// Words of `tchat run` that keep the least value of the event function zero, and watch the other ones only.
+std::string held_contact_words(const UserPointKind& kind, const RunSettings& settings) {
+  const auto segment = static_cast<std::size_t>(kind.segment - 1);
+  const std::string place = settings.segments.size() > 1 ? fmt::format(", {}", kind.segment) : "";
+  std::string others;
+  int number = 0;  // GCIPSI counts through the events of all segments
+  for (std::size_t s = 0; s < settings.segments.size(); ++s)
+    for (const int event : settings.segments[s].monitor)
+      if (const bool is_held = s == segment && event == kind.index; (++number, !is_held))
+        others += fmt::format("{}{}", others.empty() ? "" : ",", number);
+  return quoted_for_shell(fmt::format("HOLD={{min(h{}{}): 0}}", kind.index, place)) +
+         fmt::format(" ISW=1 'GCIPSI=[{}]'", others);
+}
+
+/// Why ISW = 2 and two parameters do not follow the points of a label; "" where they do.
+std::string why_no_curve(const NextStart& start, const RunSettings& settings) {
   const ProblemType& type = problem_type(settings);
-  if (type.facts().in_two_parameters || type.facts().curve != 0 || !settings.held.empty()) return false;
-  if (start.kind.kind == UserPointKind::contact) return curve_of(-start.type, settings.problem_type) != nullptr;
-  return start.kind.kind == UserPointKind::none && curve_of(start.type, settings.problem_type) != nullptr;
+  const UserPointKind::Kind kind = static_cast<UserPointKind::Kind>(start.kind.kind);
+  const std::string name = type_name(start.type, start.kind);
+  if (type.facts().in_two_parameters || type.facts().curve != 0)
+    return fmt::format("ISW = 2 at {} of a curve continues that curve", name);
+  if (!settings.held.empty()) return "HOLD keeps a monitor on the branch";
+  if (kind == UserPointKind::extremum)
+    return "an extremum is one of ICP(1), no special point of orbits; ISW = 2 with that monitor first in ICP follows "
+           "it";
+  const bool is_contact = kind == UserPointKind::contact || kind == UserPointKind::boundary_equilibrium;
+  const bool has_one = is_contact || kind == UserPointKind::none;
+  if (has_one && curve_of(is_contact ? -start.type : start.type, settings.problem_type) != nullptr) return "";
+  return fmt::format("ISW = 2 does not follow {} of {}", name, type.facts().solutions);
 }
 
 /// With a contact an impact is born; where an impact has velocity zero it vanishes. "" at other points.
@@ -140,18 +175,25 @@ bool tangent_section(const UserPointKind& kind, const RunSettings& settings, con
          changes_nothing(segment, settings, system);
 }
 
-std::string curve_command(const NextStart& start, const RunSettings& settings, const HybridSystem& system,
-                          const std::string& problem, const std::string& output, const std::string& curve) {
+CurveCommand curve_command(const NextStart& start, const RunSettings& settings, const HybridSystem& system,
+                           const std::string& problem, const std::string& output, const std::string& curve) {
   const std::string run = "tchat run " + problem_arguments(problem);
-  if (is_grazing(start.kind) && begins_grazing_curve(start.kind, settings, system)) {
+  const std::string from_label = fmt::format("{} -c {} -s {} IRS={}", run, quoted_for_shell(output_path('r', output)),
+                                             quoted_for_shell(output), start.label);
+  const std::string to_curve = " -o " + quoted_for_shell(curve);
+  if (is_held_contact(start.kind, settings, system))
+    return {fmt::format("{} {}{}", from_label, held_contact_words(start.kind, settings), to_curve), ""};
+  const std::string no_grazing =
+      is_grazing(start.kind) ? why_no_grazing_curve(start.kind, settings, system) : "no contact";
+  if (no_grazing.empty()) {
     const std::string cut = quoted_for_shell(curve + "_start");
-    return fmt::format("tchat resegment {} {} --to grazing-curve -o {} && {} -c {} -s {} -o {}",
-                       quoted_for_shell(output_path('q', output)), start.label, cut, run, cut, cut,
-                       quoted_for_shell(curve));
+    return {fmt::format("tchat resegment {} {} --to grazing-curve -o {} && {} -c {} -s {}{}",
+                        quoted_for_shell(output_path('q', output)), start.label, cut, run, cut, cut, to_curve),
+            ""};
   }
-  if (!has_curve(start, settings)) return "";
-  return fmt::format("{} -c {} -s {} IRS={} ISW=2 -o {}", run, quoted_for_shell(output_path('r', output)),
-                     quoted_for_shell(output), start.label, quoted_for_shell(curve));
+  const std::string why_none = why_no_curve(start, settings);
+  if (why_none.empty()) return {from_label + " ISW=2" + to_curve, ""};
+  return {"", is_grazing(start.kind) ? no_grazing : why_none};
 }
 
 }  // namespace tchat

@@ -26,10 +26,15 @@ std::string next_command(const NextStart& start, const RunSettings& settings, co
 /// Is the kind that of a section which the orbit touches, and no contact that changes the motion?
 bool tangent_section(const UserPointKind& kind, const RunSettings& settings, const HybridSystem& system);
 
-/// Commands, joined by " && ", that follow the points of a label in two parameters, to files of the name `curve`; they
-/// lack ICP. At a grazing contact the first one resegments. "" where there is no such curve: on curves only a contact
-/// has one.
-std::string curve_command(const NextStart& start, const RunSettings& settings, const HybridSystem& system,
-                          const std::string& problem, const std::string& output, const std::string& curve);
+/// How the points of a label are followed in two parameters.
+struct CurveCommand {
+  std::string line;      ///< commands, joined by " && ", the last of which is a run that lacks ICP; "": there are none
+  std::string why_none;  ///< why not, in words
+};
+
+/// To files of the name `curve`. A grazing contact is cut first (tchat resegment); one that changes nothing, in
+/// problems without jumps, is kept by HOLD. On curves only contacts are followed, whose curves others are.
+CurveCommand curve_command(const NextStart& start, const RunSettings& settings, const HybridSystem& system,
+                           const std::string& problem, const std::string& output, const std::string& curve);
 
 }  // namespace tchat

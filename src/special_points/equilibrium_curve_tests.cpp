@@ -9,7 +9,9 @@
 #include <utility>
 
 #include "bvp/condensed_system.hpp"
+#include "bvp/defining_system.hpp"
 #include "bvp/orbit_accuracy.hpp"
+#include "linear_algebra/dense_matrix.hpp"
 #include "special_points/label_evidence.hpp"
 #include "stability/equilibrium_eigenvalues.hpp"
 #include "stability/lyapunov_coefficient.hpp"
@@ -132,6 +134,17 @@ class PassedFrequencyTest final : public TestFunction {
   const HopfPair& pair_;
 };
 
+/// The least modulus, with the sign of the product of all, relative to `scale`: zero where an eigenvalue is.
+double signed_least(const Eigenvalues& values, double scale) {
+  double least = std::abs(values.front());
+  double sign = 1.0;
+  for (const auto& value : values) {
+    least = std::min(least, std::abs(value));
+    if (value.imag() == 0.0 && value.real() < 0.0) sign = -sign;
+  }
+  return sign * least / scale;
+}
+
 SpecialPoint zero_hopf_point(double omega) {
   return {PointType::zero_hopf, {}, false, fmt::format("zero-Hopf point, omega = {:.10g}", omega)};
 }
@@ -165,13 +178,7 @@ class HopfFoldTest final : public TestFunction {
   TestValue evaluate(const TestedPoint& point) const override {
     const Eigenvalues others = without_pair(point.multipliers.values);
     if (!point.multipliers.valid || others.empty()) return TestValue::undefined();
-    double least = std::abs(others.front());
-    double sign = 1.0;
-    for (const auto& value : others) {
-      least = std::min(least, std::abs(value));
-      if (value.imag() == 0.0 && value.real() < 0.0) sign = -sign;
-    }
-    return TestValue::of(sign * least / largest_modulus(point.multipliers.values), orbit_accuracy);
+    return TestValue::of(signed_least(others, largest_modulus(point.multipliers.values)), orbit_accuracy);
   }
   SpecialPoint classify(const TestedPoint&, bool) const override {
     return zero_hopf_point(std::sqrt(std::abs(pair_.square())));
@@ -202,7 +209,40 @@ class BautinTest final : public TestFunction {
   const HopfPair& pair_;
 };
 
+/// LP on a curve of boundary equilibria.
+class ZeroEigenvalueTest final : public TestFunction {
+ public:
+  explicit ZeroEigenvalueTest(const DefiningSystem& system) : system_(system) {}
+  std::string name() const override { return "eigenvalue 0"; }
+  TestValue evaluate(const TestedPoint& point) const override {
+    const Eigenvalues& all = point.multipliers.values;
+    if (!point.multipliers.valid || all.empty()) return TestValue::undefined();
+    return TestValue::of(signed_least(all, largest_modulus(all)), orbit_accuracy);
+  }
+  /// w^T f_p = 0 for both parameters, w the left null vector, is a branch point in either.
+  bool is_genuine(const TestedPoint& point) const override {
+    constexpr double in_range = 1e-6;
+    const int n = system_.dimension(), field = system_.signature().front().field;
+    Eigen::VectorXd f(n);
+    Eigen::MatrixXd by_state(n, n), by_parameter(n, system_.free_count());
+    system_.system().first(FunctionKind::field, field, point.orbit.end(0), point.orbit.par.data(),
+                           system_.free_parameters(), f.data(), by_state.data(), by_parameter.data());
+    const Eigen::VectorXd w = eigenvector(by_state * by_state.transpose(), 0.0).real().normalized();
+    return (by_parameter.transpose() * w).norm() > in_range * by_parameter.norm();
+  }
+  SpecialPoint classify(const TestedPoint&, bool) const override {
+    return {PointType::equilibrium_fold, {}, false, "fold of equilibria: the eigenvalue 0"};
+  }
+
+ private:
+  const DefiningSystem& system_;
+};
+
 }  // namespace
+
+std::unique_ptr<TestFunction> zero_eigenvalue_test(const DefiningSystem& system) {
+  return std::make_unique<ZeroEigenvalueTest>(system);
+}
 
 TestList equilibrium_fold_tests(const EquilibriumFold& fold) {
   TestList tests;

@@ -38,8 +38,8 @@ double shift_for(std::complex<double> critical);
 Orbit on_every_second_point(const Orbit& x);
 /// By a change of the nodes and durations, and of the first free parameter.
 void move_orbit(const DefiningSystem& system, Orbit& x, const Eigen::VectorXd& change, double dp);
-/// Chord iteration at the same parameters, or near a fold at a start that moves across q alone, until it no longer comes
-/// nearer: rounding, which the orbit may amplify. False where it fails. `nodal` is of the orbit's shape.
+/// Chord iteration at the same parameters, or near a fold at a start that moves across q alone, until it no longer
+/// comes nearer: rounding, which the orbit may amplify. False where it fails. `nodal` is of the orbit's shape.
 bool correct_orbit(const DefiningSystem& system, NodalSystem& nodal, std::complex<double> critical,
                    const Eigen::VectorXd& q, Orbit& x);
 

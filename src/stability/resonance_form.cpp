@@ -61,7 +61,8 @@ class Reduction {
     if (!orbit_.find_critical(1.0, v, w, multiplier)) return false;
     found_.q = v.real().head(orbit_.dimension());
     double excess = 0.0;
-    const Vector h = orbit_.solve_beside(1.0, -forms_.second(v, v).real(), orbit_.closing_rows(found_.q), found_.q, excess);
+    const Vector h =
+        orbit_.solve_beside(1.0, -forms_.second(v, v).real(), orbit_.closing_rows(found_.q), found_.q, excess);
     const Product c = of_map(w, forms_.third(v) + 3.0 * forms_.second(v, ComplexVector(h.cast<Complex>())), 1.0 / 6.0);
     add("c", c.value.real(), c.size);
     return true;

@@ -1,6 +1,6 @@
-/// Coefficients of normal forms where two multipliers are critical, or the first coefficient is zero: at the cusp and at
-/// the strong resonances 1:1 to 1:4 (Kuznetsov, Elements of Applied Bifurcation Theory, 3rd ed., ch. 9; Kuznetsov and
-/// Meijer, SIAM J. Sci. Comput. 26, 2005).
+/// Coefficients of normal forms where two multipliers are critical, or the first coefficient is zero: at the cusp and
+/// at the strong resonances 1:1 to 1:4 (Kuznetsov, Elements of Applied Bifurcation Theory, 3rd ed., ch. 9; Kuznetsov
+/// and Meijer, SIAM J. Sci. Comput. 26, 2005).
 ///
 /// With A, B, C the first three derivatives of the return map, complex products without conjugation:
 ///

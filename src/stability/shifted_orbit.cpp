@@ -23,9 +23,10 @@ Eigen::VectorXcd by_parts(const Eigen::VectorXcd& right, const Solve& solve) {
 
 /// x and a number g with A x + g column = right, row x = 0.
 template <class Number>
-Eigen::Matrix<Number, Eigen::Dynamic, 1> solve_bordered(
-    const Eigen::Matrix<Number, Eigen::Dynamic, Eigen::Dynamic>& a, const Eigen::Matrix<Number, Eigen::Dynamic, 1>& column,
-    const Eigen::Matrix<Number, Eigen::Dynamic, 1>& row, const Eigen::Matrix<Number, Eigen::Dynamic, 1>& right) {
+Eigen::Matrix<Number, Eigen::Dynamic, 1> solve_bordered(const Eigen::Matrix<Number, Eigen::Dynamic, Eigen::Dynamic>& a,
+                                                        const Eigen::Matrix<Number, Eigen::Dynamic, 1>& column,
+                                                        const Eigen::Matrix<Number, Eigen::Dynamic, 1>& row,
+                                                        const Eigen::Matrix<Number, Eigen::Dynamic, 1>& right) {
   const Eigen::Index n = a.rows();
   Eigen::Matrix<Number, Eigen::Dynamic, Eigen::Dynamic> matrix(n + 1, n + 1);
   matrix << a, column, row.transpose(), Number(0.0);

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 
+#include "bvp/quantity.hpp"
 #include "simulate/loaded_problem.hpp"
 #include "simulate/simulation_rule.hpp"
 #include "simulate/simulation_start.hpp"
@@ -83,11 +84,6 @@ void add_starts(const SweepRequest& request, const LoadedProblem& loaded, Sample
   }
 }
 
-/// A state as monitors name it, whose words and brackets have a meaning.
-std::string name_in_monitor(const std::string& name, int k) {
-  return name.find_first_of(" \t(),") == std::string::npos ? name : fmt::format("U({})", k);
-}
-
 void choose_columns(const HybridSystem& system, const Recording& recording, SweepColumns& columns) {
   columns.event = recording.states == Recording::States::all_events;
   columns.penetration = recording.penetration > 0;
@@ -95,7 +91,7 @@ void choose_columns(const HybridSystem& system, const Recording& recording, Swee
   std::vector<std::string> states;
   for (int k = 1; k <= system.dimension(); ++k) states.push_back(system.state_name(k));
   for (int k = 1; k <= system.dimension() && recording.largest; ++k)
-    columns.largest.push_back(name_in_monitor(states[static_cast<std::size_t>(k) - 1], k));
+    columns.largest.push_back(state_in_monitor(system, k));
   if (recording.states != Recording::States::none) columns.states = std::move(states);
 }
 

@@ -1,7 +1,9 @@
 // tchat explore --and: curves in two parameters that are known in closed form, and the points that they have in common.
 #include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <cstdio>
 
 #include "end_to_end/bouncing_ball.hpp"
 #include "end_to_end/closed_forms.hpp"
@@ -159,6 +161,100 @@ TEST_CASE("one impact in two returns: a period doubling is passed twice within a
   // The branch goes back where it bifurcates from the orbits of one period, through the same orbits shifted by one.
   CHECK(value("BP 3 at ") == Approx(doubling(2.0, 1)).epsilon(1e-8));
   CHECK(value("PD 2 at ") == Approx(value("PD 4 at ")).epsilon(1e-8));
+}
+
+namespace {
+
+/// How many curves of a kind a tree has.
+std::size_t count_of(const std::string& tree, const std::string& kind) {
+  std::size_t count = 0;
+  const std::string word = "  " + kind + " curve from ";
+  for (std::size_t at = tree.find(word); at != std::string::npos; at = tree.find(word, at + 1)) ++count;
+  return count;
+}
+
+/// The label of this type that is nearest to a place, of a curve.
+Place nearest_label(const std::string& tree, const std::string& curve, const std::string& type, const Place& to) {
+  Place best{INFINITY, INFINITY};
+  const std::size_t from = tree.find("\n" + curve + "  ") + 1;
+  for (std::size_t line = tree.find('\n', from) + 1; tree.compare(line, 4, "    ") == 0;
+       line = tree.find('\n', line) + 1) {
+    Place found{INFINITY, INFINITY};
+    const std::string form = "    " + type + " %*d at (%lf, %lf)";
+    if (std::sscanf(tree.c_str() + line, form.c_str(), &found.first, &found.second) == 2 &&
+        std::hypot(found.first - to.first, found.second - to.second) <
+            std::hypot(best.first - to.first, best.second - to.second))
+      best = found;
+  }
+  return best;
+}
+
+/// Two curves have labels of these types at a place, and are listed together there.
+void check_meeting(const std::string& tree, const Place& place, const std::vector<std::array<std::string, 2>>& labels) {
+  INFO("(" << place.first << ", " << place.second << ") in\n" << tree);
+  for (const auto& [curve, type] : labels) {
+    INFO(type << " of " << curve);
+    const Place found = nearest_label(tree, curve, type, place);
+    CHECK(found.first == Approx(place.first).margin(1e-7));
+    CHECK(found.second == Approx(place.second).margin(1e-7));
+  }
+  bool is_listed = false;
+  for (std::size_t at = tree.find("\n(", tree.find("Codimension two")); at != std::string::npos;
+       at = tree.find("\n(", at + 1)) {
+    Place found{};
+    std::sscanf(tree.c_str() + at, "\n(%lf, %lf)", &found.first, &found.second);
+    if (std::hypot(found.first - place.first, found.second - place.second) > 1e-6) continue;
+    const std::string members = tree.substr(at + 1, tree.find('\n', at + 1) - at);
+    is_listed = std::all_of(labels.begin(), labels.end(),
+                            [&](const auto& label) { return members.find(label[0]) != std::string::npos; });
+  }
+  CHECK(is_listed);
+}
+
+}  // namespace
+
+TEST_CASE("equilibria: fold, Hopf and boundary curves, and the points where they meet") {
+  // The normal form of the Bogdanov-Takens bifurcation (Yu. A. Kuznetsov, Elements of Applied Bifurcation Theory,
+  // section 8.4) with a surface x = -s, s = 1/2 + b2/4. At rest b1 + b2 x + x^2 = 0 and y = 0; the trace is -x, the
+  // determinant -(b2 + 2 x).
+  const Workspace workspace;
+  workspace.write("bt.tch",
+                  "par b1=0.1, b2=-1\ninit x=0.1\nx' = y\ny' = b1 + b2*x + x^2 - x*y\nevent wall = x + 0.5 + b2/4\n");
+  const Outcome outcome = workspace.tchat("explore bt --over b1=-1:2.5:36 --and b2=-3:3 -o b -j 2 -q");
+  INFO(outcome.text());
+  REQUIRE(outcome.status == 0);
+  const std::string tree = workspace.read("b.txt");
+  INFO(tree);
+  for (const char* const kind : {"LP", "HB", "BE", "GR"}) CHECK(count_of(tree, kind) == 1);
+  const auto curve = [&](const char* kind) { return curve_from(tree, kind, {"of a"}); };
+  const auto points = [&](const char* kind) { return inner_points(workspace.file("b/p." + curve(kind)), "b2"); };
+  for (const Place& point : points("LP"))
+    CHECK(point.first == Approx(point.second * point.second / 4.0).epsilon(1e-8).margin(1e-8));
+  for (const Place& point : points("HB")) CHECK(std::abs(point.first) <= 1e-8);
+  for (const Place& point : points("BE")) {
+    const double x = -0.5 - point.second / 4.0;
+    CHECK(point.first == Approx(-x * x - point.second * x).epsilon(1e-8).margin(1e-8));
+  }
+  check_meeting(tree, {0.0, 0.0}, {{curve("LP"), "BT"}, {curve("HB"), "BT"}});
+  check_meeting(tree, {1.0, 2.0}, {{curve("LP"), "BE"}, {curve("BE"), "LP"}});
+  check_meeting(tree, {0.0, -2.0}, {{curve("HB"), "BE"}, {curve("BE"), "HB"}, {curve("GR"), "HB"}});
+  // The cycles shrink at the label of the equilibrium's Hopf bifurcation.
+  CHECK(tree.find("curve " + curve("HB"), tree.find("-> ")) != std::string::npos);
+  CHECK(tree.find("Without a curve") == std::string::npos);
+}
+
+TEST_CASE("equilibria and cycles: cusp, zero-Hopf and generalised Hopf points where curves meet") {
+  // x' = b1 + b2 x - x^3 drives the growth x - 1 + l r^2 - r^4, l = b2 - 1, of an oscillation of the amplitude r.
+  const Workspace workspace;
+  workspace.write("cusp.tch",
+                  "par b1=0, b2=1.5\ninit x=1.2, u=1\nr2 = u^2 + v^2\ngrowth = x - 1 + (b2 - 1)*r2 - r2^2\n"
+                  "x' = b1 + b2*x - x^3\nu' = growth*u - v\nv' = growth*v + u\n");
+  const Outcome outcome = workspace.tchat("explore cusp --over b1=-3:3:31 --and b2=-1:3.5 -o c -j 2 -q");
+  INFO(outcome.text());
+  REQUIRE(outcome.status == 0);
+  const std::string tree = workspace.read("c.txt");
+  INFO(tree);
+  CHECK(count_of(tree, "LP") > 0);
 }
 
 TEST_CASE("second ranges that are none are refused with the form") {

@@ -147,3 +147,48 @@ TEST_CASE("Chenciner point: the torus bifurcation is neither super- nor subcriti
   check_place(workspace, "tori", "CH", 0.0, 0.0);
   check_curve(workspace, "tori", [](double) { return 0.0; });
 }
+
+// Coefficients. Return maps of the states at the start of the clock's turn, in closed form; formulas of a, b, c, d by
+// hand.
+
+namespace {
+
+double printed(const Workspace& workspace, const std::string& name, const std::string& type,
+               const std::string& coefficient) {
+  const std::vector<DiagnosticPoint> points = of_type(read_diagnostics(workspace.read("d." + name)), type);
+  REQUIRE(points.size() == 1);
+  for (const std::string& note : points.front().notes) {
+    const std::size_t at = note.find(coefficient + " = ");
+    if (at != std::string::npos) return std::stod(note.substr(at + coefficient.size() + 3));
+  }
+  INFO(workspace.read("d." + name));
+  FAIL("no " << coefficient);
+  return NAN;
+}
+
+constexpr double coefficient_accuracy = 1e-6;  // the point is located to 1e-9 on the arclength, slopes are of size 10
+
+}  // namespace
+
+TEST_CASE("the coefficient of a cusp") {
+  // p + q x + 0.4 x^2 y + 0.7 x^3 more each time, y -> y / 2 + 0.6 x^2: y = 1.2 x^2 on the centre manifold.
+  const Workspace workspace;
+  simulate(workspace, "par p=-0.3, q=-0.3\ninit x=-0.6, y=0\nx' = 0\ny' = 0\n",
+           "x -> x + p - 0.7*x^3 + q*x - 0.4*x*y, y -> y/2 + 0.6*x^2");
+  workspace.succeed("run map -d map -c map -o fold 'PAR(q)=0.5' DS=-0.01 DSMAX=0.02 NMX=200 RL0=-1 -q STOP=[LP1]");
+  follow(workspace, "folds", "fold", "LP1", "-0.02");
+  check_place(workspace, "folds", "CP", 0.0, 0.0);
+  CHECK(printed(workspace, "folds", "CP", "c") == Approx(-0.7 - 0.4 * 1.2).margin(coefficient_accuracy));
+}
+
+TEST_CASE("coefficients of the 1:2 resonance") {
+  // (x, y) -> (-x + y, -(1 + p) y + q x + c x^3 + d x^2 y + e x^2): c + e^2 / 2 and d + e^2.
+  const Workspace workspace;
+  simulate(workspace, "par p=-0.3, q=0.1\ninit x=0, y=0\nx' = 0\ny' = 0\n",
+           "x -> -x + y, y -> -(1+p)*y + q*x + 0.3*x^3 + 0.5*x^2*y + 0.2*x^2");
+  workspace.succeed("run map -d map -c map -o down 'PAR(q)=-0.05' ICP=[q] DS=0.01 DSMAX=0.02 NMX=60 RL1=0.5 -q");
+  follow(workspace, "doublings", "down", "PD1", "0.02", "ICP=[p,q]");
+  check_place(workspace, "doublings", "R2", 0.0, 0.0);
+  CHECK(printed(workspace, "doublings", "R2", "c") == Approx(0.3 + 0.02).margin(coefficient_accuracy));
+  CHECK(printed(workspace, "doublings", "R2", "d") == Approx(0.5 + 0.04).margin(coefficient_accuracy));
+}

@@ -213,8 +213,22 @@ class Explored(unittest.TestCase):
         self.assertIn("1 branches. Coverage: 40 of 40", diagram.text)
         self.assertEqual(tchat.Diagram("explored/diagram1").text, diagram.text)
 
+    def test_curves_in_two_parameters(self):
+        """The Hopf bifurcation of the Brusselator is at B = 1 + A^2."""
+        chemistry = tchat.Problem("par A=1, B=1.5\ninit x=1.2, y=1\nx' = A - (B + 1)*x + x^2*y\ny' = B*x - x^2*y\n")
+        diagram = chemistry.explore(over={"B": (1.5, 2.5, 11)}, and_={"A": (0.8, 1.1)})
+        curve, = diagram.curves
+        self.assertEqual((diagram.second, curve.kind, curve.name), ("A", "HB", "a1_HB2_curve"))
+        self.assertEqual((curve.parent, diagram[curve.name]), (diagram["a1"], curve))
+        np.testing.assert_allclose(curve.branch["B"], 1 + curve.branch["A"] ** 2, rtol=1e-8)
+        self.assertEqual(sorted(end["reason"] for end in curve.ends), ["the edge A = 0.8", "the edge A = 1.1"])
+        self.assertIn(curve.name, [label["curve"] for label in diagram["a1"].labels])
+        self.assertEqual((diagram.slices, diagram.codimension_two), ([], []))
+
     def test_what_is_none_is_refused(self):
         oscillator = tchat.Problem(PLUGIN, name="linosc")
+        self.assertRaisesRegex(tchat.Error, "and_=", oscillator.explore, over={"alpha": (2, 3)},
+                               and_={"omega": (1, 2, 3)})
         for over in ({}, {"alpha": (2, 3), "omega": (1, 2)}):
             self.assertRaisesRegex(tchat.Error, "over one parameter", oscillator.explore, over=over)
         self.assertRaisesRegex(tchat.Error, "no parameter of this name", oscillator.explore, over={"beta": (1, 2)})

@@ -19,7 +19,7 @@ the same numbers, the same messages. What tchat refuses raises tchat.Error with 
 """
 
 from .branch import Branch, Label, Part, load, run
-from .diagram import Diagram, ExploredBranch
+from .diagram import Diagram, ExploredBranch, ExploredCurve
 from .orbit import Orbit
 from .problem import Problem
 from .program import Error, Progress, Report, TchatWarning
@@ -28,6 +28,5 @@ from .start import Start
 from .sweep import Sweep, read_sweep, sweep
 
 __all__ = ["Problem", "Start", "Branch", "Label", "Part", "Orbit", "Simulation", "Trajectory", "Sweep", "Diagram",
-           "ExploredBranch", "Report",
-           "Progress", "Error", "TchatWarning", "load", "run", "simulate", "sweep", "read_trajectory", "read_events",
-           "read_sweep"]
+           "ExploredBranch", "ExploredCurve", "Report", "Progress", "Error", "TchatWarning", "load", "run", "simulate",
+           "sweep", "read_trajectory", "read_events", "read_sweep"]

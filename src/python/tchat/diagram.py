@@ -1,4 +1,4 @@
-"""What `tchat explore` finds: the branches over a parameter, and what each begins at."""
+"""What `tchat explore` finds: the branches over a parameter, what each begins at, and curves in two parameters."""
 
 import json
 import os
@@ -9,21 +9,12 @@ from .program import Error
 from .sweep import read_sweep
 
 
-class ExploredBranch:
-    """A branch of a diagram.
-
-    name, origin          of its files, and in words what it begins at: "PD 3 of a2 at alpha = 3.03619"
-    parent, children      branches of the diagram; parent is None for that of an attractor
-    range, signatures     of the parameter, and of its orbits
-    labels                a dictionary for each special point: label, type, parameter, leads_to (a name or ""), remark
-    commands              those of tchat that make it, in the folder of the problem
-    branch                its points, orbits and labels: a Branch
-    """
+class _Explored:
+    """What branches and curves of a diagram have in common: files of a name."""
 
     def __init__(self, diagram, found):
         self._diagram, self._parent, self._branch = diagram, found["parent"], None
         self.name, self.origin = found["name"], found["origin"]
-        self.range = found["from"], found["to"]
         self.signatures = [read_signature(text) for text in found["signatures"]]
         self.labels, self.commands = found["labels"], found["commands"]
 
@@ -32,18 +23,55 @@ class ExploredBranch:
         return self._diagram[self._parent] if self._parent else None
 
     @property
-    def children(self):
-        return [one for one in self._diagram.branches if one._parent == self.name]
-
-    @property
     def branch(self):
         if self._branch is None:
             path = os.path.join(self._diagram.path, "p." + self.name)
             self._branch = load(path, self._diagram.problem, self._diagram._program)
         return self._branch
 
+
+class ExploredBranch(_Explored):
+    """A branch of a diagram.
+
+    name, origin          of its files, and in words what it begins at: "PD 3 of a2 at alpha = 3.03619"
+    parent, children      branches of the diagram; parent is None for that of an attractor
+    range, signatures     of the parameter, and of its orbits
+    labels                a dictionary for each special point: label, type, parameter, leads_to and curve (names or ""),
+                          remark
+    commands              those of tchat that make it, in the folder of the problem
+    branch                its points, orbits and labels: a Branch
+    """
+
+    def __init__(self, diagram, found):
+        super().__init__(diagram, found)
+        self.range = found["from"], found["to"]
+
+    @property
+    def children(self):
+        return [one for one in self._diagram.branches if one._parent == self.name]
+
     def __repr__(self):
         return "%s: %.6g to %.6g, %s" % (self.name, *self.range, self.origin)
+
+
+class ExploredCurve(_Explored):
+    """A curve of special points in two parameters. name, signatures, commands and branch as those of a branch.
+
+    kind, origin          "PD", and the label that it begins at: "PD 3 of a2"
+    parent                the branch or curve of that label
+    ranges                of both parameters
+    labels                a dictionary for each special point: label, type, first and second (the parameters), detail,
+                          leads_to (names of curves and branches)
+    ends                  a dictionary for each end: first, second, reason
+    """
+
+    def __init__(self, diagram, found):
+        super().__init__(diagram, found)
+        self.kind, self.ends = found["kind"], found["ends"]
+        self.ranges = tuple(found["first"]), tuple(found["second"])
+
+    def __repr__(self):
+        return "%s: %s curve from %s" % (self.name, self.kind, self.origin)
 
 
 class Diagram:
@@ -56,6 +84,11 @@ class Diagram:
     joins, failures       runs that led to branches found before, and those that failed, in words
     complete              False if an interruption has left something
     sweep                 its Sweep
+    second                the other parameter of its curves; None without and_
+    curves                those of special points in two parameters, by name like branches: diagram["a2_PD3_curve"]
+    slices                branches over the parameter that begin beside points of grazing curves
+    codimension_two       a dictionary for each point that several curves have in common: first, second, curves
+    without_curve         a dictionary for each reason why labels have no curve: labels, reason
     text                  the tree in words
     path                  the folder of the branches; path + ".png", ".svg", ".html" are its picture and page
     """
@@ -68,6 +101,11 @@ class Diagram:
             with open(self.path + ".txt", encoding="utf-8") as file:
                 self.text = file.read()
             self.branches = [ExploredBranch(self, one) for one in found["branches"]]
+            self.second = found.get("second_parameter")
+            self.curves = [ExploredCurve(self, one) for one in found.get("curves", [])]
+            self.slices = [ExploredBranch(self, one) for one in found.get("slices", [])]
+            self.codimension_two = found.get("codimension_two", [])
+            self.without_curve = found.get("without_curve", [])
             self.parameter, self.quantity, self.complete = found["parameter"], found["quantity"], found["complete"]
             self.unexplained, self.joins, self.failures = found["unexplained"], found["joins"], found["failures"]
             known = found["periodic"] + found["at_rest"]
@@ -77,7 +115,7 @@ class Diagram:
                         (error.filename, self.path, error.strerror)) from None
         except (ValueError, KeyError, TypeError):
             raise Error("%s.json: this is no diagram of tchat explore" % self.path) from None
-        self._by_name = {one.name: one for one in self.branches}
+        self._by_name = {one.name: one for one in self.branches + self.curves + self.slices}
 
     def __getitem__(self, name):
         if name not in self._by_name:
@@ -104,6 +142,13 @@ class Diagram:
             one.branch.plot(ax, x=self.parameter, y=y, **style)
         return ax
 
+    def plot_curves(self, ax=None, **style):
+        """Draws all curves over both parameters with matplotlib."""
+        ax = ax if ax is not None else _axes()
+        for one in self.curves:
+            one.branch.plot(ax, x=self.parameter, y=self.second, **style)
+        return ax
+
     def picture(self):
         """The bytes of its PNG."""
         return self._drawn(".png")
@@ -123,19 +168,21 @@ class Diagram:
         return self.text.rstrip("\n")
 
 
-def range_word(over):
+def range_word(over, option="over", counts=(0, 1)):
     """NAME=FROM:TO or NAME=FROM:TO:COUNT of {"gamma": (0, 0.05)} or {"gamma": (0, 0.05, 200)}."""
-    if len(over) != 1:
-        raise Error("over=%r: a diagram is explored over one parameter, as over={\"gamma\": (0, 0.05)}" % (over,))
+    if len(over) != 1 or len(next(iter(over.values()))) - 2 not in counts:
+        raise Error("%s=%r: a diagram is explored over one parameter between two values, as %s={\"gamma\": (0, 0.05)}" %
+                    (option, over, option))
     (name, (begin, end, *count)), = over.items()
     return "%s=%r:%r" % (name, float(begin), float(end)) + "".join(":%d" % one for one in count)
 
 
-def explore(problem, words, name, over, options, value_words):
+def explore(problem, words, name, over, second, options, value_words):
     """Runs `tchat explore` of a Problem: its Diagram, also without any branch."""
+    ranges = ["--over", range_word(over)] + (["--and", range_word(second, "and_", (0,))] if second else [])
     try:
-        problem._execute("explore", [problem.name, "-p", problem.source, "-o", name, "--over", range_word(over)] +
-                         options + list(words) + value_words)
+        problem._execute("explore", [problem.name, "-p", problem.source, "-o", name] + ranges + options + list(words) +
+                         value_words)
     except Error as error:
         if error.status != 1 or "Coverage: " not in error.screen:
             raise

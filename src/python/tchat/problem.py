@@ -137,15 +137,16 @@ class Problem:
         result.screen = screen
         return result
 
-    def explore(self, *words, over, jobs=1, name=None, state=None, starts=None, doublings=None, segments=None,
-                branches=None, time=None, y=None, **values):
+    def explore(self, *words, over, and_=None, jobs=1, name=None, state=None, starts=None, doublings=None,
+                segments=None, branches=None, time=None, y=None, **values):
         """`tchat explore`: the whole diagram over={"A": (0.5, 2)}, or {"A": (0.5, 2, 401)} with the number of values of
-        its sweep. A Diagram. jobs= commands run at a time, starts= further initial states at each value; doublings=,
-        segments=, branches= and time= (seconds) limit it, y= is along its picture. Parameters are those of all commands, constants those of the runs."""
+        its sweep; and_={"B": (1, 3)} follows special points as curves in both parameters. A Diagram. jobs= commands run
+        at a time, starts= further initial states at each value; doublings=, segments=, branches= and time= (seconds)
+        limit it, y= is along its picture. Parameters are those of all commands, constants those of the runs."""
         name = self._new_name("diagram", name)
         options = option_words(dict(jobs=jobs, state=state_word(state), starts=starts, doublings=doublings,
                                     segments=segments, branches=branches, time=time)) + (["-y", y] if y else [])
-        return explore(self, words, name, over, options, value_words(values, self.program))
+        return explore(self, words, name, over, and_, options, value_words(values, self.program))
 
     def __repr__(self):
         return "problem %s in %s" % (self.name, self.folder)
