@@ -214,6 +214,7 @@ class IntegralMonitor final : public QuantityMonitor {
   double value(const Orbit& x, const CollocationRule& rule) const override {
     double total = 0.0;
     for (int s = first_; s <= last_; ++s) total += x.duration(s) * of_segment(x, rule, s);
+    if (mean_ && total == 0.0 && x.period() == 0.0) return of_segment(x, rule, first_);  // an equilibrium
     return mean_ ? total / time(x) : total;
   }
 

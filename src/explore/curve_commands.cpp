@@ -28,9 +28,10 @@ CurveCommands::CurveCommands(const ExploreRequest& request, const ExplorationCom
                     second_.parameter, second_.from, second_.to, value, std::midpoint(second_.from, second_.to)));
 }
 
-std::string CurveCommands::free_parameters() const {
+std::string CurveCommands::free_parameters(bool rests) const {
   std::string names = commands_.range().parameter + "," + second_.parameter;
-  for (const std::string& monitor : commands_.monitors()) names += "," + monitor;
+  if (!rests)
+    for (const std::string& monitor : commands_.monitors()) names += "," + monitor;
   return fmt::format("ICP=[{}]", names);
 }
 
@@ -40,7 +41,8 @@ double CurveCommands::largest_step() const {
   return std::sqrt((first.to - first.from) * (second_.to - second_.from)) / 20.0;
 }
 
-CommandJob CurveCommands::curve(const std::string& name, const std::string& command, const std::string& source) const {
+CommandJob CurveCommands::curve(const std::string& name, const std::string& command, const std::string& source,
+                                bool rests) const {
   CommandJob job{name, {}, {commands_.file('q', source), commands_.file('r', source)}, commands_.files_of(name)};
   const std::size_t both = command.find(" && ");
   const bool resegments = both != std::string::npos;
@@ -48,7 +50,7 @@ CommandJob CurveCommands::curve(const std::string& name, const std::string& comm
   if (resegments)
     job.lines.push_back(command.substr(0, both) + " -q" +
                         shell_words({fmt::format("ICP=[{},{}]", first.parameter, second_.parameter)}));
-  std::vector<std::string> words{free_parameters(),
+  std::vector<std::string> words{free_parameters(rests),
                                  fmt::format("RL0={}", first.from),
                                  fmt::format("RL1={}", first.to),
                                  fmt::format("BOUNDS={{{}: [{}, {}]}}", second_.parameter, second_.from, second_.to),

@@ -29,13 +29,14 @@ class CurveCommands {
   /// The largest n of the points with xi_n = 0 that are used.
   int returns() const { return returns_; }
   /// By the line of a CurveCommand (run/next_command.hpp), from a label of the files `source`, in both directions.
-  CommandJob curve(const std::string& name, const std::string& command, const std::string& source) const;
+  /// `rests`: of equilibria, which have no monitors.
+  CommandJob curve(const std::string& name, const std::string& command, const std::string& source, bool rests) const;
   /// Beside a point of a grazing curve, in the direction of `sign` along it: orbits with one impact in n returns over
   /// P.
   CommandJob slice(const ResonantPoint& at, int sign) const;
 
  private:
-  std::string free_parameters() const;
+  std::string free_parameters(bool rests) const;
   double largest_step() const;
 
   const ExplorationCommands& commands_;

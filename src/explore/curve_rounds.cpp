@@ -12,6 +12,7 @@
 #include "explore/branch_ends.hpp"
 #include "files/solution_file_reader.hpp"
 #include "problem_type/point_type.hpp"
+#include "problem_type/problem_type.hpp"
 #include "run/next_command.hpp"
 #include "setup/named_parameters.hpp"
 #include "text/words.hpp"
@@ -161,7 +162,9 @@ void CurveRounds::add_curve(const RunFiles& files, const Labelled& label, bool h
   const CurveCommand command = curve_command(label.start, files.settings, context_.system, commands.problem(),
                                              commands.path(files.name), commands.path(curve.name));
   candidate.why_none = label.is_admissible ? command.why_none : "the orbit there is inadmissible";
-  if (candidate.why_none.empty()) curve.job = commands_.curve(curve.name, command.line, files.name);
+  if (candidate.why_none.empty())
+    curve.job =
+        commands_.curve(curve.name, command.line, files.name, files.settings.problem_type == equilibrium.number);
   (candidate.why_none.empty() ? next : unfollowed_).push_back(std::move(candidate));
 }
 
@@ -242,17 +245,21 @@ CurveRounds::Candidates CurveRounds::run(const Candidates& round) {
   return next;
 }
 
+/// One of the same round has its start, or all of it but its beginning.
+std::string CurveRounds::curve_again(const Candidate& candidate, const std::vector<CurveSection>& sections) const {
+  std::string known = known_curve(candidate);
+  if (!known.empty()) return known;
+  for (const CurveSection& section : sections)
+    if (known = catalogue_.curve_of(section); known.empty()) break;
+  return known;
+}
+
 void CurveRounds::take_curve(const Candidate& candidate, const std::string& log, Candidates& next) {
   ExploredCurve curve = candidate.curve;
   const PointFile points = read_point_file(context_.commands.file('p', curve.name));
   std::vector<CurveSection> sections = curve_sections(curve.name, curve.kind, points, columns());
   std::erase_if(sections, [](const CurveSection& section) { return section.points.size() < 2; });
-  std::string known;
-  for (const CurveSection& section : sections) {
-    known = catalogue_.curve_of(section);
-    if (known.empty()) break;
-  }
-  if (!known.empty()) {
+  if (const std::string known = curve_again(candidate, sections); !known.empty()) {
     set_curve(candidate, known);
     curves_.again.push_back(fmt::format("{} ({}): {} again", curve.name, curve.origin, known));
     return;
@@ -344,6 +351,8 @@ void CurveRounds::join() {
     for (std::size_t k = 0; k < section.points.size(); ++k)
       if (section.labels[k] > 0) join_label(*curve, section, k);
   }
+  for (JoinedPoint& joint : curves_.joints)
+    for (JoinedCurve& one : joint.curves) name_label(joint, one);
   for (const JoinedPoint& joint : curves_.joints)
     for (const JoinedCurve& one : joint.curves)
       for (CurveEnd& end : find_named(curves_.curves, one.curve)->ends)
@@ -354,6 +363,16 @@ bool CurveRounds::is_at(const JoinedPoint& joint, double first, double second) c
   const Eigen::Vector2d widths = columns().widths;
   return std::abs(joint.first - first) <= same_place * widths(0) &&
          std::abs(joint.second - second) <= same_place * widths(1);
+}
+
+/// A label may be the other curve's only by its place: where orbits shrink, the equilibria have no period.
+void CurveRounds::name_label(const JoinedPoint& joint, JoinedCurve& member) const {
+  if (member.label > 0) return;
+  for (const CurveLabel& label : find_named(curves_.curves, member.curve)->labels)
+    if (is_at(joint, label.first, label.second)) {
+      member.label = label.label;
+      member.type = label.type;
+    }
 }
 
 void CurveRounds::join_label(const ExploredCurve& curve, const CurveSection& section, std::size_t point) {

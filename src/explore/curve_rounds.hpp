@@ -68,6 +68,7 @@ class CurveRounds {
   std::vector<Labelled> labels_of(const RunFiles& files) const;
   /// The curve that is there and passes through the start of a candidate; "" without one.
   std::string known_curve(const Candidate& candidate) const;
+  std::string curve_again(const Candidate& candidate, const std::vector<CurveSection>& sections) const;
   void set_curve(const Candidate& candidate, const std::string& curve);
 
   void add_curves(const ExploredBranch& branch, Candidates& next);
@@ -83,6 +84,7 @@ class CurveRounds {
   /// Labels that no command follows may be on a curve nevertheless.
   void settle_unfollowed();
   void join();
+  void name_label(const JoinedPoint& joint, JoinedCurve& member) const;
   bool is_at(const JoinedPoint& joint, double first, double second) const;
   void join_label(const ExploredCurve& curve, const CurveSection& section, std::size_t point);
 

@@ -82,24 +82,31 @@ bool is_grazing(const UserPointKind& kind) {
   return kind.kind == UserPointKind::contact || kind.kind == UserPointKind::impact_velocity;
 }
 
+/// Is there nothing that a contact could change: one field, and no jump but identities?
+bool contacts_change_nothing(const HybridSystem& system) {
+  for (int k = 1; k <= system.count(FunctionKind::jump); ++k)
+    if (!is_identity_jump(system, k)) return false;
+  return system.count(FunctionKind::field) == 1;
+}
+
 /// Why `tchat resegment --to grazing-curve` cannot cut the orbit at this contact; "" where it can.
 std::string why_no_grazing_curve(const UserPointKind& kind, const RunSettings& settings, const HybridSystem& system) {
   const SolutionFamily& family = problem_type(settings).family();
   if (const std::string reason = family.why_not(Analysis::resegmentation, ""); !reason.empty()) return reason;
   if (family.facts().has_several_returns) return "the contact is one of several coupled orbits";
-  if (system.count(FunctionKind::jump) == 0) return "the problem has no jump that the contact could bring";
+  if (contacts_change_nothing(system)) return "the contact changes nothing";
   if (tangent_section(kind, settings, system)) return "the section becomes tangent, and no motion changes";
   if (kind.kind == UserPointKind::contact && !is_free_of_other_events(kind, settings, system))
     return "another event is at the contact";
   return "";
 }
 
-/// Is the contact one inside a segment of orbits that no jump changes?
+/// Is it a contact inside a segment, which changes nothing?
 bool is_held_contact(const UserPointKind& kind, const RunSettings& settings, const HybridSystem& system) {
   const SolutionFamily& family = problem_type(settings).family();
   const bool is_orbit = family.why_not(Analysis::resegmentation, "").empty() && !family.facts().has_several_returns;
   return is_orbit && kind.kind == UserPointKind::contact && kind.tau > 0.0 && kind.tau < 1.0 && settings.held.empty() &&
-         system.count(FunctionKind::jump) == 0;
+         contacts_change_nothing(system);
 }
 
 /// Words of `tchat run` that keep the least value of the event function zero, and watch the other ones only.

@@ -190,20 +190,21 @@ Place nearest_label(const std::string& tree, const std::string& curve, const std
 }
 
 /// Two curves have labels of these types at a place, and are listed together there.
-void check_meeting(const std::string& tree, const Place& place, const std::vector<std::array<std::string, 2>>& labels) {
+void check_meeting(const std::string& tree, const Place& place, const std::vector<std::array<std::string, 2>>& labels,
+                   double tolerance) {
   INFO("(" << place.first << ", " << place.second << ") in\n" << tree);
   for (const auto& [curve, type] : labels) {
     INFO(type << " of " << curve);
     const Place found = nearest_label(tree, curve, type, place);
-    CHECK(found.first == Approx(place.first).margin(1e-7));
-    CHECK(found.second == Approx(place.second).margin(1e-7));
+    CHECK(found.first == Approx(place.first).epsilon(0.0).margin(tolerance));
+    CHECK(found.second == Approx(place.second).epsilon(0.0).margin(tolerance));
   }
   bool is_listed = false;
   for (std::size_t at = tree.find("\n(", tree.find("Codimension two")); at != std::string::npos;
        at = tree.find("\n(", at + 1)) {
     Place found{};
     std::sscanf(tree.c_str() + at, "\n(%lf, %lf)", &found.first, &found.second);
-    if (std::hypot(found.first - place.first, found.second - place.second) > 1e-6) continue;
+    if (std::hypot(found.first - place.first, found.second - place.second) > 2.0 * tolerance) continue;
     const std::string members = tree.substr(at + 1, tree.find('\n', at + 1) - at);
     is_listed = std::all_of(labels.begin(), labels.end(),
                             [&](const auto& label) { return members.find(label[0]) != std::string::npos; });
@@ -213,48 +214,63 @@ void check_meeting(const std::string& tree, const Place& place, const std::vecto
 
 }  // namespace
 
-TEST_CASE("equilibria: fold, Hopf and boundary curves, and the points where they meet") {
-  // The normal form of the Bogdanov-Takens bifurcation (Yu. A. Kuznetsov, Elements of Applied Bifurcation Theory,
-  // section 8.4) with a surface x = -s, s = 1/2 + b2/4. At rest b1 + b2 x + x^2 = 0 and y = 0; the trace is -x, the
-  // determinant -(b2 + 2 x).
+TEST_CASE("predators and prey: Hopf, boundary and grazing curve end or cross where a cycle is born on the surface") {
   const Workspace workspace;
-  workspace.write("bt.tch",
-                  "par b1=0.1, b2=-1\ninit x=0.1\nx' = y\ny' = b1 + b2*x + x^2 - x*y\nevent wall = x + 0.5 + b2/4\n");
-  const Outcome outcome = workspace.tchat("explore bt --over b1=-1:2.5:36 --and b2=-3:3 -o b -j 2 -q");
+  REQUIRE(workspace.shell("cp " PREDATOR_SOURCE " .").status == 0);
+  const Outcome outcome =
+      workspace.tchat("explore predator --over K=0.5:6:56 --and d=0.3:0.8 --state 0.5,0.3 -o food -j 2 -q");
   INFO(outcome.text());
   REQUIRE(outcome.status == 0);
-  const std::string tree = workspace.read("b.txt");
+  const std::string tree = workspace.read("food.txt");
   INFO(tree);
-  for (const char* const kind : {"LP", "HB", "BE", "GR"}) CHECK(count_of(tree, kind) == 1);
-  const auto curve = [&](const char* kind) { return curve_from(tree, kind, {"of a"}); };
-  const auto points = [&](const char* kind) { return inner_points(workspace.file("b/p." + curve(kind)), "b2"); };
-  for (const Place& point : points("LP"))
-    CHECK(point.first == Approx(point.second * point.second / 4.0).epsilon(1e-8).margin(1e-8));
-  for (const Place& point : points("HB")) CHECK(std::abs(point.first) <= 1e-8);
-  for (const Place& point : points("BE")) {
-    const double x = -0.5 - point.second / 4.0;
-    CHECK(point.first == Approx(-x * x - point.second * x).epsilon(1e-8).margin(1e-8));
+  for (const char* const kind : {"HB", "BE", "GR"}) CHECK(count_of(tree, kind) == 1);
+  const std::string hopf = curve_from(tree, "HB", {"of a"}), boundary = curve_from(tree, "BE", {"of a"});
+  const std::string grazing = curve_from(tree, "GR", {"of a"});
+  // At rest x = d/(1 - d) and y = (1 - x/K)(1 + x); the prey's isocline has its maximum there at the Hopf bifurcation.
+  for (const Place& point : inner_points(workspace.file("food/p." + hopf), "d"))
+    CHECK(point.first == Approx((1.0 + point.second) / (1.0 - point.second)).epsilon(1e-8));
+  constexpr double P = 1.6;
+  for (const Place& point : inner_points(workspace.file("food/p." + boundary), "d")) {
+    const double x = point.second / (1.0 - point.second);
+    CHECK(point.first == Approx(x / (1.0 - P / (1.0 + x))).epsilon(1e-8));
   }
-  check_meeting(tree, {0.0, 0.0}, {{curve("LP"), "BT"}, {curve("HB"), "BT"}});
-  check_meeting(tree, {1.0, 2.0}, {{curve("LP"), "BE"}, {curve("BE"), "LP"}});
-  check_meeting(tree, {0.0, -2.0}, {{curve("HB"), "BE"}, {curve("BE"), "HB"}, {curve("GR"), "HB"}});
-  // The cycles shrink at the label of the equilibrium's Hopf bifurcation.
-  CHECK(tree.find("curve " + curve("HB"), tree.find("-> ")) != std::string::npos);
-  CHECK(tree.find("Without a curve") == std::string::npos);
+  const double d = std::sqrt(1.0 - 1.0 / P);  // both
+  check_meeting(tree, {(1.0 + d) / (1.0 - d), d}, {{hopf, "BE"}, {boundary, "HB"}, {grazing, "HB"}}, 1e-6);
+  CHECK(tree.find("HB 4 at 3, curve " + hopf) != std::string::npos);  // where the cycles shrink
+  CHECK(tree.find("Without a curve: BP 2 of a1, BP 5 of a2: ISW = 2 does not follow BP of equilibria.") !=
+        std::string::npos);
 }
 
-TEST_CASE("equilibria and cycles: cusp, zero-Hopf and generalised Hopf points where curves meet") {
+TEST_CASE("equilibria and cycles: cusp, zero-Hopf, generalised Hopf and boundary points where curves meet") {
   // x' = b1 + b2 x - x^3 drives the growth x - 1 + l r^2 - r^4, l = b2 - 1, of an oscillation of the amplitude r.
   const Workspace workspace;
   workspace.write("cusp.tch",
-                  "par b1=0, b2=1.5\ninit x=1.2, u=1\nr2 = u^2 + v^2\ngrowth = x - 1 + (b2 - 1)*r2 - r2^2\n"
-                  "x' = b1 + b2*x - x^3\nu' = growth*u - v\nv' = growth*v + u\n");
+                  "par b1=0, b2=1.5\ninit u=1, x=1.2\nr2 = u^2 + v^2\ngrowth = x - 1 + (b2 - 1)*r2 - r2^2\n"
+                  "u' = growth*u - v\nv' = growth*v + u\nx' = b1 + b2*x - x^3\n"
+                  "event low = x + 1\njump back: x -> 2\nafter any: low -> back\n");
   const Outcome outcome = workspace.tchat("explore cusp --over b1=-3:3:31 --and b2=-1:3.5 -o c -j 2 -q");
   INFO(outcome.text());
   REQUIRE(outcome.status == 0);
   const std::string tree = workspace.read("c.txt");
   INFO(tree);
-  CHECK(count_of(tree, "LP") > 0);
+  CHECK(count_of(tree, "LP") == 2);
+  CHECK(count_of(tree, "HB") == 1);
+  CHECK(count_of(tree, "BE") == 1);
+  const std::string hopf = curve_from(tree, "HB", {"of a2"}), boundary = curve_from(tree, "BE", {"of a2"});
+  const std::string folds = curve_from(tree, "LP", {"of a2"}), cycles = curve_from(tree, "LP", {"of a2_HB"});
+  const auto points = [&](const std::string& name) { return inner_points(workspace.file("c/p." + name), "b2"); };
+  const auto at_rest = [](double x, double b2) { return Approx(x * x * x - b2 * x).epsilon(1e-8).margin(1e-8); };
+  for (const Place& point : points(hopf)) CHECK(point.first == at_rest(1.0, point.second));
+  for (const Place& point : points(boundary)) CHECK(point.first == at_rest(-1.0, point.second));
+  for (const Place& point : points(folds))
+    CHECK(std::abs(point.first) == at_rest(-std::sqrt(std::max(point.second, 0.0) / 3.0), point.second));
+  for (const Place& point : points(cycles))
+    CHECK(point.first == at_rest(1.0 - std::pow(point.second - 1.0, 2) / 4.0, point.second));
+  const Place cusp = nearest_label(tree, folds, "CP", {0.0, 0.0});
+  CHECK(std::hypot(cusp.first, cusp.second) <= 1e-8);
+  check_meeting(tree, {-2.0, 3.0}, {{folds, "ZH"}, {hopf, "ZH"}}, 1e-8);
+  check_meeting(tree, {2.0, 3.0}, {{folds, "BE"}, {boundary, "LP"}}, 1e-8);
+  check_meeting(tree, {0.0, 1.0}, {{hopf, "GH"}, {cycles, "HB"}}, 1e-7);
 }
 
 TEST_CASE("second ranges that are none are refused with the form") {
