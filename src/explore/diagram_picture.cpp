@@ -119,12 +119,16 @@ void add_pictures(const DiagramFiles& files, const SweepTable& sweep, ExploredDi
   add("page", {files.folder + ".html"});
 }
 
-void add_curve_picture(const std::string& folder, const std::vector<std::string>& files, ExploredDiagram& diagram) {
+void add_curve_picture(const std::string& folder, const std::vector<std::string>& files, const std::string& second,
+                       ExploredDiagram& diagram) {
   if (files.empty()) return;
   const std::string picture = folder + "_curves.png";
   std::string words = "tchat plot";
   for (const std::string& file : files) words += " " + quoted_for_shell(file);
-  diagram.last_jobs.push_back({"curves", {words + " --black -o " + quoted_for_shell(picture)}, files, {picture}});
+  diagram.last_jobs.push_back({"curves",
+                               {words + " -y " + quoted_for_shell(second) + " --black -o " + quoted_for_shell(picture)},
+                               files,
+                               {picture}});
 }
 
 std::vector<std::string> draw_pictures(const std::vector<CommandJob>& jobs, const std::string& folder,

@@ -30,8 +30,10 @@ std::string chosen_quantity(const ExploredDiagram& diagram, const DiagramFiles& 
 /// Adds the commands that make O.png, O.svg and O.html, and what they show; nothing to a diagram without branches.
 void add_pictures(const DiagramFiles& files, const SweepTable& sweep, ExploredDiagram& diagram);
 
-/// Adds the command that makes O_curves.png of these p-files of curves in two parameters; nothing for none.
-void add_curve_picture(const std::string& folder, const std::vector<std::string>& files, ExploredDiagram& diagram);
+/// Adds the command that makes O_curves.png of these p-files of curves in two parameters, `second` along y; nothing for
+/// none.
+void add_curve_picture(const std::string& folder, const std::vector<std::string>& files, const std::string& second,
+                       ExploredDiagram& diagram);
 
 /// Runs them, also if they have been run before. Returns a warning for each that failed, whose files are then missing.
 std::vector<std::string> draw_pictures(const std::vector<CommandJob>& jobs, const std::string& folder,

@@ -360,7 +360,7 @@ class Explorer {
     const ExploredCurves curves = curves_ ? curves_->curves() : ExploredCurves{};
     std::vector<std::string> curve_files;
     for (const ExploredCurve& curve : curves.curves) curve_files.push_back(curve.job.outputs.front());
-    add_curve_picture(folder, curve_files, diagram_);
+    add_curve_picture(folder, curve_files, curves.second, diagram_);
     const std::string text = tree_text(diagram_) + curves_text(curves);
     std::vector<CommandJob> jobs = jobs_of(diagram_);
     for (const CommandJob* const job : curve_jobs(curves)) jobs.push_back(*job);
