@@ -45,9 +45,9 @@ CommandJob CurveCommands::curve(const std::string& name, const std::string& comm
                                 bool rests) const {
   CommandJob job{name, {}, {commands_.file('q', source), commands_.file('r', source)}, commands_.files_of(name)};
   const std::size_t both = command.find(" && ");
-  const bool resegments = both != std::string::npos;
+  const bool has_start = both != std::string::npos;
   const SweptRange& first = commands_.range();
-  if (resegments)
+  if (has_start)
     job.lines.push_back(command.substr(0, both) + " -q" +
                         shell_words({fmt::format("ICP=[{},{}]", first.parameter, second_.parameter)}));
   std::vector<std::string> words{free_parameters(rests),
@@ -59,9 +59,9 @@ CommandJob CurveCommands::curve(const std::string& name, const std::string& comm
                                  "NMX=400"};
   std::vector<int> returns(static_cast<std::size_t>(returns_));
   std::iota(returns.begin(), returns.end(), 1);
-  if (resegments) words.push_back(fmt::format("GCIPSI=[{}]", fmt::join(returns, ",")));
+  if (command.starts_with("tchat resegment")) words.push_back(fmt::format("GCIPSI=[{}]", fmt::join(returns, ",")));
   words.insert(words.end(), commands_.constants().begin(), commands_.constants().end());
-  job.lines.push_back((resegments ? command.substr(both + 4) : command) + " --both --clip" + shell_words(words));
+  job.lines.push_back((has_start ? command.substr(both + 4) : command) + " --both --clip" + shell_words(words));
   return job;
 }
 

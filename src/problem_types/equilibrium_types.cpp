@@ -53,9 +53,9 @@ BranchCurve hopf(const EquilibriumSystem& system, const RunSettings&, const Sele
   return curve_of(system, std::make_unique<HopfPair>(system, start.start.orbit.shape), hopf_curve_tests);
 }
 
-/// The event function that is zero at a start: that of a BE label, elsewhere the one nearest to zero. A BE label on
-/// such a curve (tens digit) is where another one vanishes as well. 0 where none is zero.
-int boundary_event(const HybridSystem& system, const SelectedStart& start) {
+/// The event function that is zero at a start: that of a BE label, elsewhere the monitored one nearest to zero. A BE
+/// label on such a curve (tens digit) is where another one vanishes as well. 0 where none is zero.
+int boundary_event(const HybridSystem& system, const RunSettings& settings, const SelectedStart& start) {
   constexpr double at_zero = 1e-6;  // a located point is known to EPSS
   const bool is_label = start.kind.kind == UserPointKind::boundary_equilibrium;
   const bool is_on_curve = basic_type(start.type) != start.type;
@@ -63,21 +63,22 @@ int boundary_event(const HybridSystem& system, const SelectedStart& start) {
   const Orbit& x = start.start.orbit;
   int nearest = 0;
   double least = at_zero;
-  for (int event = 1; event <= system.count(FunctionKind::event); ++event) {
+  for (const int event : settings.segments.front().monitor) {
     if (is_label && event == start.kind.index) continue;
-    const double distance = std::abs(system.event(event, x.end(0), x.par.data())) / event_scale(system, x, event);
+    const double scale = event_scale(system, x, event);  // 0 where h depends on parameters alone
+    const double distance = std::abs(system.event(event, x.end(0), x.par.data())) / (scale > 0.0 ? scale : 1.0);
     if (distance <= least) nearest = event, least = distance;
   }
   return nearest;
 }
 
-bool is_on_boundary(const HybridSystem& system, const RunSettings&, const SelectedStart& start) {
-  return boundary_event(system, start) != 0;
+bool is_on_boundary(const HybridSystem& system, const RunSettings& settings, const SelectedStart& start) {
+  return boundary_event(system, settings, start) != 0;
 }
 
 /// f_i(x, p) = 0 and h_j(x, p) = 0.
-BranchCurve boundary(const EquilibriumSystem& system, const RunSettings&, const SelectedStart& start) {
-  const int event = boundary_event(system.system(), start);
+BranchCurve boundary(const EquilibriumSystem& system, const RunSettings& run, const SelectedStart& start) {
+  const int event = boundary_event(system.system(), run, start);
   return {std::make_unique<EventCondition>(system, start.start.orbit.shape, 0, event, true),
           [&system, event](const RunSettings& settings) {
             TestList tests = boundary_equilibrium_tests(system, settings, event);

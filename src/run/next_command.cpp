@@ -123,6 +123,13 @@ std::string held_contact_words(const UserPointKind& kind, const RunSettings& set
          fmt::format(" ISW=1 'GCIPSI=[{}]'", others);
 }
 
+/// Is it where a curve of equilibria in two parameters reaches a surface?
+bool is_boundary_of_curve(const NextStart& start, const RunSettings& settings) {
+  const ProblemFacts& facts = problem_type(settings).facts();
+  const bool is_boundary = start.kind.kind == UserPointKind::boundary_equilibrium;
+  return is_boundary && facts.in_two_parameters && facts.curve != -start.type;
+}
+
 /// Why ISW = 2 and two parameters do not follow the points of a label; "" where they do.
 std::string why_no_curve(const NextStart& start, const RunSettings& settings) {
   const ProblemType& type = problem_type(settings);
@@ -196,6 +203,12 @@ CurveCommand curve_command(const NextStart& start, const RunSettings& settings, 
     const std::string cut = quoted_for_shell(curve + "_start");
     return {fmt::format("tchat resegment {} {} --to grazing-curve -o {} && {} -c {} -s {}{}",
                         quoted_for_shell(output_path('q', output)), start.label, cut, run, cut, cut, to_curve),
+            ""};
+  }
+  if (is_boundary_of_curve(start, settings)) {  // there ISW = 2 would continue the curve: the point as one of a branch
+    const std::string point = quoted_for_shell(curve + "_start");
+    return {fmt::format("{} ISW=1 NMX=1 -o {} && {} -c {} -s {} IRS=EP1 ISW=2{}", from_label, point, run,
+                        quoted_for_shell(output_path('r', curve + "_start")), point, to_curve),
             ""};
   }
   const std::string why_none = why_no_curve(start, settings);

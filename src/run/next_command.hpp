@@ -33,7 +33,7 @@ struct CurveCommand {
 };
 
 /// To files of the name `curve`. A grazing contact is cut first (tchat resegment); one that changes nothing, in
-/// problems without jumps, is kept by HOLD. On curves only contacts are followed, whose curves others are.
+/// problems without jumps, is kept by HOLD. On curves only contacts and BE are followed, whose curves others are.
 CurveCommand curve_command(const NextStart& start, const RunSettings& settings, const HybridSystem& system,
                            const std::string& problem, const std::string& output, const std::string& curve);
 

@@ -214,6 +214,20 @@ void check_meeting(const std::string& tree, const Place& place, const std::vecto
 
 }  // namespace
 
+namespace {
+
+constexpr double predators_on_surface = 1.6;
+
+/// Predators and prey at rest, x = d/(1 - d) and y = (1 - x/K)(1 + x), on the surface.
+void check_boundary(const std::string& path) {
+  for (const Place& point : inner_points(path, "d")) {
+    const double x = point.second / (1.0 - point.second);
+    CHECK(point.first == Approx(x / (1.0 - predators_on_surface / (1.0 + x))).epsilon(1e-8));
+  }
+}
+
+}  // namespace
+
 TEST_CASE("predators and prey: Hopf, boundary and grazing curve end or cross where a cycle is born on the surface") {
   const Workspace workspace;
   REQUIRE(workspace.shell("cp " PREDATOR_SOURCE " .").status == 0);
@@ -226,19 +240,33 @@ TEST_CASE("predators and prey: Hopf, boundary and grazing curve end or cross whe
   for (const char* const kind : {"HB", "BE", "GR"}) CHECK(count_of(tree, kind) == 1);
   const std::string hopf = curve_from(tree, "HB", {"of a"}), boundary = curve_from(tree, "BE", {"of a"});
   const std::string grazing = curve_from(tree, "GR", {"of a"});
-  // At rest x = d/(1 - d) and y = (1 - x/K)(1 + x); the prey's isocline has its maximum there at the Hopf bifurcation.
+  // The prey's isocline has its maximum at the Hopf bifurcation.
   for (const Place& point : inner_points(workspace.file("food/p." + hopf), "d"))
     CHECK(point.first == Approx((1.0 + point.second) / (1.0 - point.second)).epsilon(1e-8));
-  constexpr double P = 1.6;
-  for (const Place& point : inner_points(workspace.file("food/p." + boundary), "d")) {
-    const double x = point.second / (1.0 - point.second);
-    CHECK(point.first == Approx(x / (1.0 - P / (1.0 + x))).epsilon(1e-8));
-  }
-  const double d = std::sqrt(1.0 - 1.0 / P);  // both
+  check_boundary(workspace.file("food/p." + boundary));
+  const double d = std::sqrt(1.0 - 1.0 / predators_on_surface);  // both
   check_meeting(tree, {(1.0 + d) / (1.0 - d), d}, {{hopf, "BE"}, {boundary, "HB"}, {grazing, "HB"}}, 1e-6);
   CHECK(tree.find("HB 4 at 3, curve " + hopf) != std::string::npos);  // where the cycles shrink
   CHECK(tree.find("Without a curve: BP 2 of a1, BP 5 of a2: ISW = 2 does not follow BP of equilibria.") !=
         std::string::npos);
+}
+
+TEST_CASE("predators and prey: a boundary curve from where the Hopf curve reaches the surface") {
+  const Workspace workspace;
+  REQUIRE(workspace.shell("cp " PREDATOR_SOURCE " .").status == 0);
+  const Outcome outcome =
+      workspace.tchat("explore predator --over K=2:4.5:26 --and d=0.45:0.7 --state 0.5,0.3 -o food -j 2 -q");
+  INFO(outcome.text());
+  REQUIRE(outcome.status == 0);
+  const std::string tree = workspace.read("food.txt");
+  INFO(tree);
+  CHECK(count_of(tree, "BE") == 1);
+  const std::string boundary = curve_from(tree, "BE", {"BE", "_HB", "_curve"});
+  check_boundary(workspace.file("food/p." + boundary));
+  // ISW = 2 from a label of the curve goes on along it.
+  const std::string files = "food/r." + boundary + " -s food/" + boundary;
+  REQUIRE(workspace.tchat("run predator -c " + files + " IRS=EP1 ISW=2 RL1=8 BOUNDS={} NMX=10 -o further").status == 0);
+  check_boundary(workspace.file("p.further"));
 }
 
 TEST_CASE("equilibria and cycles: cusp, zero-Hopf, generalised Hopf and boundary points where curves meet") {
