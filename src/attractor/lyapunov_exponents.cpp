@@ -387,4 +387,9 @@ void LyapunovAccumulator::pass(const SimulatedSegment& segment) { p_->pass(segme
 
 LyapunovSpectrum LyapunovAccumulator::spectrum() const { return p_->spectrum(); }
 
+VectorXd LyapunovAccumulator::growing_direction() const {
+  const MatrixXd& v = p_->frame.vectors();
+  return p_->known >= 0 && p_->known < v.cols() ? VectorXd(v.col(p_->known)) : VectorXd::Zero(v.rows());
+}
+
 }  // namespace tchat

@@ -64,6 +64,9 @@ class LyapunovAccumulator {
   /// Of what has been passed up to now. `time` is time also with a section; exponents are then per return and `events`
   /// are returns.
   LyapunovSpectrum spectrum() const;
+  /// The direction that grows fastest beside those known to have the exponent zero, where the last segment passed has
+  /// ended, before its jump: n, of unit length; zero before there is one.
+  Eigen::VectorXd growing_direction() const;
 
  private:
   struct Implementation;

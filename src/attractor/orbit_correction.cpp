@@ -269,14 +269,16 @@ bool is_leaving(const OrbitCandidate& candidate, const CorrectedOrbit& orbit) {
   const auto wanted = static_cast<std::size_t>(std::min(std::log(growth_of_leaving) / std::log(growth), 1e6));
   const std::size_t turns = std::min(std::max(wanted, turns_of_leaving), candidate.passed.size() - 1);
   if (turns < turns_of_leaving) return false;
-  const auto distance = [&](std::size_t k) {
-    return size_of(candidate, without_ignorable(candidate, candidate.passed[k] - orbit.end));
+  const auto distance = [&](std::size_t k) -> VectorXd {
+    return without_ignorable(candidate, candidate.passed[k] - orbit.end);
   };
   const std::size_t last = candidate.passed.size() - 1;
-  for (std::size_t k = last - turns; k < last; ++k)
-    if (!(std::abs(distance(k + 1) - growth * distance(k)) <= like_growth * growth * distance(k))) return false;
+  for (std::size_t k = last - turns; k < last; ++k) {
+    const VectorXd expected = without_ignorable(candidate, orbit.turn.derivative * distance(k));
+    if (!(size_of(candidate, distance(k + 1) - expected) <= like_growth * size_of(candidate, expected))) return false;
+  }
   const double expected = static_cast<double>(turns) * std::log(growth);
-  return std::log(distance(last) / distance(last - turns)) >= 0.5 * expected;
+  return std::log(size_of(candidate, distance(last)) / size_of(candidate, distance(last - turns))) >= 0.5 * expected;
 }
 
 }  // namespace tchat

@@ -52,8 +52,8 @@ SimulatedTurn turn_of(const OrbitCandidate& candidate, const Eigen::VectorXd& y)
 /// that M holds all the way. A distance that integration cannot tell from zero is no distance.
 bool approaches(const OrbitCandidate& candidate, const CorrectedOrbit& orbit);
 
-/// Is the motion still leaving this unstable orbit? Its distance has grown in each of the last turns about as the
-/// largest multiplier says. Its exponents are then those of the orbit.
+/// Is the motion still leaving this unstable orbit? Its distance d has become about M d in each of the last turns, and
+/// has grown as the largest multiplier says. Its exponents are then those of the orbit.
 bool is_leaving(const OrbitCandidate& candidate, const CorrectedOrbit& orbit);
 
 }  // namespace tchat

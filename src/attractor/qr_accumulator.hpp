@@ -17,6 +17,7 @@ class OrthonormalFrame {
 
   /// Columns to be multiplied by what transports them.
   Eigen::MatrixXd& vectors() { return v_; }
+  const Eigen::MatrixXd& vectors() const { return v_; }
   /// V = Q R; V <- Q, and ln |R_jj| is added to the growth. A direction that vanishes to rounding against the others
   /// has lost all: minus infinity; unless `may_vanish` is false, where that is rounding of large numbers.
   void orthonormalise(bool may_vanish = true);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "attractor/chaos_evidence.hpp"
 #include "attractor/exponent_signs.hpp"
 #include "setup/progress_line.hpp"
 
@@ -37,7 +38,7 @@ std::string bar_text(double error) {
 
 std::string counted(int n, const char* what) { return fmt::format("{} {} exponent{}", n, what, n == 1 ? "" : "s"); }
 
-std::string meaning(const LyapunovSpectrum& spectrum, int section, bool orbit_attracts) {
+std::string meaning(const LyapunovSpectrum& spectrum, int section, bool orbit_attracts, const std::string& doubt) {
   const bool has_flow = !spectrum.structural.empty() && section == 0;
   const char* const others = has_flow ? "One zero exponent, the others negative" : "All exponents are negative";
   const ExponentSigns signs = signs_of(spectrum);
@@ -45,6 +46,8 @@ std::string meaning(const LyapunovSpectrum& spectrum, int section, bool orbit_at
     return "A stable periodic orbit, by its multipliers; the exponents have not converged to ln |multiplier| / period "
            "yet (--time, --events, --accuracy).";
   if (orbit_attracts) return fmt::format("{}: a stable periodic orbit.", others);
+  if (signs.positive > 0 && !doubt.empty())
+    return fmt::format("{}, but undecided: {}.", counted(signs.positive, "positive"), doubt);
   if (signs.positive > 0) return fmt::format("{}: the motion is chaotic.", counted(signs.positive, "positive"));
   if (signs.unclear > 0)
     return "Undecided: the bars are too large to tell what the motion is; a longer one has smaller bars (--time, "
@@ -89,14 +92,15 @@ std::string ended_text(const SimulationResult& result) {
   return "No Lyapunov exponents: the motion has ended; --events or --time computes those of a part of it.\n";
 }
 
-/// Goes on until the bars are small enough; false when it was ended otherwise than by an event.
-bool go_on(HybridSimulation& simulation, LyapunovAccumulator& exponents, double accuracy, ProgressLine& line) {
+/// Goes on until the bars are small enough, to the segment `last`; false when it was ended otherwise than by an event.
+bool go_on(HybridSimulation& simulation, LyapunovAccumulator& exponents, double accuracy, ProgressLine& line,
+           SimulatedSegment& last) {
   exponents.begin();
   long next_look = least_measured;
   for (long done = 1; done <= most_measured; ++done) {
-    const SimulatedSegment segment = simulation.next(std::numeric_limits<double>::max());
-    exponents.pass(segment);
-    if (segment.ended_by != SegmentEnd::event) return false;
+    last = simulation.next(std::numeric_limits<double>::max());
+    exponents.pass(last);
+    if (last.ended_by != SegmentEnd::event) return false;
     if (line.is_due()) {
       const LyapunovSpectrum now = exponents.spectrum();
       line.show(fmt::format("{} events for exponents, the largest {}{}, bars up to {:.2g} ", done,
@@ -108,6 +112,21 @@ bool go_on(HybridSimulation& simulation, LyapunovAccumulator& exponents, double 
     next_look += next_look / 4;
   }
   return true;
+}
+
+/// Why a positive exponent may be no chaos; "" where it is, or where there is none.
+std::string doubt_of_chaos(HybridSimulation& simulation, SimulatedSegment last, LyapunovAccumulator& exponents,
+                           const LyapunovSpectrum& spectrum, int section, const SimulationSettings& settings) {
+  if (signs_of(spectrum).positive == 0) return "";
+  if (last.ended_by == SegmentEnd::end_time) {
+    last = simulation.next(std::numeric_limits<double>::max());
+    exponents.pass(last);
+  }
+  if (last.ended_by != SegmentEnd::event) return "the motion ends";
+  const double unit = section == 0 ? 1.0 : static_cast<double>(spectrum.events) / spectrum.time;
+  return chaos_evidence(simulation, last.end, exponents.growing_direction(), unit * spectrum.exponents.maxCoeff(),
+                        settings)
+      .doubt;
 }
 
 }  // namespace
@@ -124,7 +143,7 @@ std::unique_ptr<LyapunovAccumulator> exponents_to_measure(const SimulationReques
 }
 
 std::string spectrum_text(const HybridSystem& system, const LyapunovSpectrum& spectrum, int section,
-                          bool orbit_attracts) {
+                          bool orbit_attracts, const std::string& doubt) {
   if (!spectrum.fault.empty()) return fmt::format("No Lyapunov exponents: {}.\n", spectrum.fault);
   std::string text =
       section == 0 ? fmt::format("Lyapunov exponents per unit of time, of {} events in a time of {:.6g}\n",
@@ -136,19 +155,21 @@ std::string spectrum_text(const HybridSystem& system, const LyapunovSpectrum& sp
                         bar_text(spectrum.errors(j)),
                         spectrum.is_structural(j) ? structural_text(spectrum, section, j) : "");
   text += losses(spectrum);
-  return text + "  " + meaning(spectrum, section, orbit_attracts) + "\n";
+  return text + "  " + meaning(spectrum, section, orbit_attracts, doubt) + "\n";
 }
 
 std::string exponents_of(const SimulationRequest& request, const SimulationResult& result, HybridSimulation& simulation,
-                         LyapunovAccumulator& exponents, bool orbit_attracts, std::ostream* progress) {
+                         LyapunovAccumulator& exponents, bool orbit_attracts, const SimulationSettings& settings,
+                         std::ostream* progress) {
   const HybridSystem& system = simulation.system();
   const bool goes_on = !has_wanted_length(request.plan);
   if (goes_on && (result.last.ended_by != SegmentEnd::event || result.accumulation || result.dies_out))
     return ended_text(result);
   std::string remark;
+  SimulatedSegment last = result.last;
   if (goes_on) {
     ProgressLine line(progress);
-    if (!go_on(simulation, exponents, request.accuracy, line))
+    if (!go_on(simulation, exponents, request.accuracy, line, last))
       remark = "  The simulation has ended before the bars were small enough.\n";
   }
   const LyapunovSpectrum spectrum = exponents.spectrum();
@@ -156,7 +177,9 @@ std::string exponents_of(const SimulationRequest& request, const SimulationResul
     remark =
         fmt::format("  After {} events a bar is still above {:g} (--accuracy); --events or --time simulate longer.\n",
                     spectrum.events, request.accuracy);
-  return spectrum_text(system, spectrum, request.section, orbit_attracts) + remark;
+  const std::string doubt =
+      orbit_attracts ? "" : doubt_of_chaos(simulation, last, exponents, spectrum, request.section, settings);
+  return spectrum_text(system, spectrum, request.section, orbit_attracts, doubt) + remark;
 }
 
 }  // namespace tchat

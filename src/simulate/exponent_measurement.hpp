@@ -19,12 +19,14 @@ std::unique_ptr<LyapunovAccumulator> exponents_to_measure(const SimulationReques
 
 /// Without a wanted length the simulation goes on from where `result` left it, until the bars are small enough, at most
 /// 100000 events. The exponents for people, with a line that says what they mean; `orbit_attracts` when the motion has
-/// settled on a stable periodic orbit. `progress` may be null.
+/// settled on a stable periodic orbit. `settings` are those of the simulation. `progress` may be null.
 std::string exponents_of(const SimulationRequest& request, const SimulationResult& result, HybridSimulation& simulation,
-                         LyapunovAccumulator& exponents, bool orbit_attracts, std::ostream* progress);
+                         LyapunovAccumulator& exponents, bool orbit_attracts, const SimulationSettings& settings,
+                         std::ostream* progress);
 
-/// The table of them and what they mean; `orbit_attracts` when the motion has settled on a stable periodic orbit.
+/// The table of them and what they mean; `orbit_attracts` when the motion has settled on a stable periodic orbit,
+/// `doubt` where a positive exponent may be no chaos.
 std::string spectrum_text(const HybridSystem& system, const LyapunovSpectrum& spectrum, int section,
-                          bool orbit_attracts);
+                          bool orbit_attracts, const std::string& doubt = "");
 
 }  // namespace tchat

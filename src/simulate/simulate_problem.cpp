@@ -281,7 +281,7 @@ int simulate_problem(const SimulationRequest& request, std::ostream& screen, std
     // Those of the orbit itself, not of the way to it.
     HybridSimulation measured =
         is_attracting && search.orbit() ? HybridSimulation(simulation, search.orbit()->end, settings) : simulation;
-    say(exponents_of(request, result, measured, *exponents, is_attracting, progress));
+    say(exponents_of(request, result, measured, *exponents, is_attracting, settings, progress));
   }
   say(written_text(output, files));
   if (result.last.ended_by == SegmentEnd::failed) {

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "attractor/attractor_search.hpp"
+#include "attractor/chaos_evidence.hpp"
 #include "attractor/equilibrium_approach.hpp"
 #include "attractor/exponent_signs.hpp"
 #include "attractor/lyapunov_exponents.hpp"
@@ -135,6 +136,7 @@ class SampleRun {
   /// Of a motion that has not settled yet: goes on until it does, or the exponents tell.
   void tell_kind(HybridSimulation& simulation, LyapunovAccumulator& exponents) {
     exponents.begin();
+    VectorXd end;
     long done = 0;
     for (long decision = first_decision;; decision *= 2) {
       for (; done < decision; ++done) {
@@ -145,31 +147,40 @@ class SampleRun {
           sample_.message = "it has ended while its exponents were computed: " + segment.message;
           return;
         }
-        if (search_.has_settled(simulation, segment)) {
-          sample_.kind = settled_kind();
-          return;
-        }
+        if (search_.has_settled(simulation, segment)) return keep_settled();
+        end = segment.end;
       }
       const LyapunovSpectrum spectrum = exponents.spectrum();
       const AttractorKind kind = kind_by_exponents(spectrum);
       const bool tells = kind == AttractorKind::chaotic || kind == AttractorKind::quasi_periodic;
       if (!tells && decision < last_decision) continue;
-      if (search_.conclude(simulation)) {
-        sample_.kind = settled_kind();
-        return;
+      if (search_.conclude(simulation)) return keep_settled();
+      std::string doubt = search_.doubt();
+      bool is_told = tells && !search_.is_near_unstable_orbit();
+      if (is_told && kind == AttractorKind::chaotic) {
+        doubt = doubt_of_chaos(simulation, end, exponents, spectrum);
+        is_told = doubt.empty();
       }
-      const bool is_told = tells && !search_.is_near_unstable_orbit();
       if (!is_told && decision < last_decision) continue;
       keep_exponents(spectrum);
       sample_.kind = is_told ? kind : AttractorKind::none;
-      if (!is_told) sample_.message = undecided_text(spectrum, kind);
+      if (!is_told) sample_.message = undecided_text(spectrum, kind, doubt);
       return;
     }
   }
 
-  std::string undecided_text(const LyapunovSpectrum& spectrum, AttractorKind kind) const {
+  /// "" where a positive exponent is that of chaos.
+  std::string doubt_of_chaos(const HybridSimulation& simulation, const VectorXd& end,
+                             const LyapunovAccumulator& exponents, const LyapunovSpectrum& spectrum) const {
+    const ChaosEvidence evidence =
+        chaos_evidence(simulation, end, exponents.growing_direction(), spectrum.exponents.maxCoeff(), plain_settings());
+    if (evidence.was_interrupted) throw SampleInterrupted();
+    return evidence.doubt;
+  }
+
+  std::string undecided_text(const LyapunovSpectrum& spectrum, AttractorKind kind, const std::string& doubt) const {
     std::string text = "undecided: " + largest_exponents_text(spectrum) + " are the largest exponents";
-    if (!search_.doubt().empty()) return text + "; " + search_.doubt();
+    if (!doubt.empty()) return text + "; " + doubt;
     if (kind == AttractorKind::periodic)
       text += fmt::format(", as of a periodic orbit, and none of 1 to {} events is approached",
                           setup_.request.plan.max_period);
@@ -229,7 +240,7 @@ class SampleRun {
     return std::nullopt;
   }
 
-  /// Dots are those of the orbit itself.
+  /// Dots are those of the orbit itself. A motion that keeps to an unstable one has no attractor.
   AttractorKind settled_kind() {
     if (!search_.orbit()) {
       rest_ = search_.equilibrium();
@@ -237,8 +248,11 @@ class SampleRun {
     }
     const std::vector<SimulatedSegment>& turn = search_.orbit()->turn;
     kept_.assign(turn.begin(), turn.end());
-    return AttractorKind::periodic;
+    if (search_.orbit()->stability != OrbitStability::unstable) return AttractorKind::periodic;
+    sample_.message = "undecided: " + search_.doubt() + "; start beside it (--state)";
+    return AttractorKind::none;
   }
+  void keep_settled() { sample_.kind = settled_kind(); }
 
   /// Segments of which dots are made: of the transient only what may turn out to be a period.
   void keep(const SimulatedSegment& segment) {

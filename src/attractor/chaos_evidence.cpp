@@ -1,0 +1,149 @@
+#include "attractor/chaos_evidence.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "attractor/exponent_signs.hpp"
+#include "attractor/lyapunov_exponents.hpp"
+#include "hybrid/event_at.hpp"
+
+namespace tchat {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+constexpr double least_growth = 3.0;  // of the logarithm of a distance in a window
+constexpr double most_spread = 3.0;
+constexpr double least_share = 1e-3;  // of a state, as a share of the largest range
+constexpr double share_of_others = 0.3;
+constexpr double no_range = 1e-12;    // of a state, as a share of the largest range: rounding
+constexpr long first_window = 64;     // events
+constexpr long most_events = 8192;
+constexpr double without_end = 1e300;
+
+/// A simulation of which one part after the other is looked at.
+class PushedMotion {
+ public:
+  PushedMotion(const HybridSimulation& motion, const VectorXd& end, SimulationSettings settings)
+      : settings_(std::move(settings)), end_(end) {
+    settings_.samples = 0;
+    settings_.sections.clear();
+    settings_.on_piece = {};
+    at_.emplace(motion, end, settings_);
+  }
+
+  /// The ranges of the states over so many events, and their exponents if `exponents` is not null. False when the motion
+  /// ends.
+  bool pass(long events, LyapunovAccumulator* exponents = nullptr) {
+    SimulationSettings settings = settings_;
+    if (exponents != nullptr) exponents->attach(settings);
+    HybridSimulation simulation(*at_, end_, settings);
+    if (exponents != nullptr) exponents->begin();
+    for (long k = 0; k < events; ++k) {
+      SimulatedSegment segment = simulation.next(without_end);
+      low_ = k == 0 ? segment.low : low_.cwiseMin(segment.low);
+      high_ = k == 0 ? segment.high : high_.cwiseMax(segment.high);
+      was_interrupted_ = segment.ended_by == SegmentEnd::interrupted;
+      message_ = segment.message;
+      if (segment.ended_by != SegmentEnd::event) return false;
+      if (exponents != nullptr) exponents->pass(segment);
+      end_ = segment.end;
+      time_ += segment.duration;
+      ++events_;
+    }
+    at_.emplace(simulation, end_, settings_);
+    return true;
+  }
+
+  VectorXd range() const { return high_ - low_; }
+  double time() const { return time_; }
+  long events() const { return events_; }
+  const SimulationSettings& settings() const { return settings_; }
+  ChaosEvidence ended() const {
+    return {false, was_interrupted_, "a motion that begins beside it has ended: " + message_};
+  }
+
+ private:
+  SimulationSettings settings_;
+  std::optional<HybridSimulation> at_;
+  VectorXd end_, low_, high_;
+  double time_ = 0.0;
+  long events_ = 0;
+  bool was_interrupted_ = false;
+  std::string message_;
+};
+
+/// Onto the surface of the last event, along the flow.
+VectorXd on_event(const HybridSimulation& motion, const VectorXd& end, const VectorXd& change) {
+  const IndexVector& last = motion.last_event();
+  const EventAt at = event_at(motion.system(), last.event, last.field, end.data(), motion.parameters().data());
+  const VectorXd projected = at.project(change);
+  return end + (projected.allFinite() ? projected : change);
+}
+
+}  // namespace
+
+void ChaosJudge::add(const LyapunovSpectrum& spectrum, const VectorXd& range) {
+  spread_ = 0.0;
+  for (Index i = 0; i < range_.size(); ++i)
+    if (range(i) > no_range * range.maxCoeff())
+      spread_ = std::max(spread_, range(i) / range_(i));
+  const ExponentSigns signs = signs_of(spectrum);
+  double largest = 0.0;
+  for (Index j = 0; j < spectrum.exponents.size(); ++j)
+    if (!spectrum.is_structural(j)) largest = std::max(largest, spectrum.exponents(j));
+  const bool grows = signs.positive > 0 && largest * spectrum.time >= least_growth;
+  const bool counts = grows && (in_a_row_ == 0 || spread_ <= most_spread);
+  in_a_row_ = counts ? in_a_row_ + 1 : grows ? 1 : 0;
+  regular_in_a_row_ = signs.positive == 0 && signs.unclear == 0 ? regular_in_a_row_ + 1 : 0;
+  last_ = spectrum;
+  range_ = range;
+}
+
+std::string ChaosJudge::doubt() const {
+  if (spread_ > most_spread)
+    return fmt::format("a motion that begins beside it still spreads: its range grows {:.2g}-fold", spread_);
+  return fmt::format("a motion that begins beside it has the largest exponents {}: it leaves something unstable",
+                     largest_exponents_text(last_));
+}
+
+/// Of each state its range, not less than a share of the largest.
+VectorXd push_along(const VectorXd& direction, const VectorXd& range) {
+  const VectorXd scale = range.cwiseMax(least_share * range.maxCoeff());
+  const double largest = direction.cwiseQuotient(scale).cwiseAbs().maxCoeff();
+  VectorXd push = VectorXd::Zero(range.size());
+  if (std::isfinite(largest) && largest > 0.0) push = direction / largest;
+  for (Index i = 0; i < push.size(); ++i) push(i) += (i % 2 == 0 ? share_of_others : -share_of_others) * scale(i);
+  return ChaosJudge::push * push;
+}
+
+ChaosEvidence chaos_evidence(const HybridSimulation& motion, const VectorXd& end, const VectorXd& direction,
+                             double rate, SimulationSettings settings) {
+  PushedMotion beside(motion, end, settings);
+  if (!beside.pass(first_window)) return beside.ended();
+  const double events_before = ChaosJudge::growth_before / rate * static_cast<double>(first_window) / beside.time();
+  if (!(events_before <= static_cast<double>(most_events)))
+    return {false, false,
+            fmt::format("a distance grows {:.2g}-fold in {} events only, as where a motion leaves something unstable",
+                        std::exp(rate * beside.time() * most_events / first_window), most_events)};
+  PushedMotion pushed(motion, on_event(motion, end, push_along(direction, beside.range())), std::move(settings));
+  if (!pushed.pass(1 + static_cast<long>(events_before))) return pushed.ended();
+  LyapunovSettings of_windows;
+  of_windows.exponents = std::min<int>(2, motion.system().dimension());
+  of_windows.flow = pushed.settings().flow;
+  ChaosJudge judge;
+  for (long window = first_window; !judge.is_chaotic() && !judge.is_regular() && window < most_events; window *= 2) {
+    LyapunovAccumulator exponents(motion.system(), motion.parameters(), of_windows);
+    if (!pushed.pass(window, &exponents)) return pushed.ended();
+    judge.add(exponents.spectrum(), pushed.range());
+  }
+  return {judge.is_chaotic(), false, judge.is_chaotic() ? "" : judge.doubt()};
+}
+
+}  // namespace tchat
