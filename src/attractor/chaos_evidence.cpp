@@ -22,8 +22,8 @@ constexpr double least_growth = 3.0;  // of the logarithm of a distance in a win
 constexpr double most_spread = 3.0;
 constexpr double least_share = 1e-3;  // of a state, as a share of the largest range
 constexpr double share_of_others = 0.3;
-constexpr double no_range = 1e-12;    // of a state, as a share of the largest range: rounding
-constexpr long first_window = 64;     // events
+constexpr double no_range = 1e-12;  // of a state, as a share of the largest range: rounding
+constexpr long first_window = 64;   // events
 constexpr long most_events = 8192;
 constexpr double without_end = 1e300;
 
@@ -38,8 +38,8 @@ class PushedMotion {
     at_.emplace(motion, end, settings_);
   }
 
-  /// The ranges of the states over so many events, and their exponents if `exponents` is not null. False when the motion
-  /// ends.
+  /// The ranges of the states over so many events, and their exponents if `exponents` is not null. False when the
+  /// motion ends.
   bool pass(long events, LyapunovAccumulator* exponents = nullptr) {
     SimulationSettings settings = settings_;
     if (exponents != nullptr) exponents->attach(settings);
@@ -92,8 +92,7 @@ VectorXd on_event(const HybridSimulation& motion, const VectorXd& end, const Vec
 void ChaosJudge::add(const LyapunovSpectrum& spectrum, const VectorXd& range) {
   spread_ = 0.0;
   for (Index i = 0; i < range_.size(); ++i)
-    if (range(i) > no_range * range.maxCoeff())
-      spread_ = std::max(spread_, range(i) / range_(i));
+    if (range(i) > no_range * range.maxCoeff()) spread_ = std::max(spread_, range(i) / range_(i));
   const ExponentSigns signs = signs_of(spectrum);
   double largest = 0.0;
   for (Index j = 0; j < spectrum.exponents.size(); ++j)

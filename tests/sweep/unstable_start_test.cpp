@@ -142,8 +142,7 @@ TEST_CASE("a motion on or next to a saddle cycle is not chaotic") {
       CHECK(sample.kind != AttractorKind::quasi_periodic);
       // On the saddle z = 0 the motion stays; beside it z goes to the root of PAR(2).
       if (distance == 0.0) CHECK(sample.kind == AttractorKind::none);
-      if (sample.kind == AttractorKind::periodic)
-        CHECK(sample.sections(2, 0) == Approx(std::sqrt(rate)).epsilon(1e-4));
+      if (sample.kind == AttractorKind::periodic) CHECK(sample.sections(2, 0) == Approx(std::sqrt(rate)).epsilon(1e-4));
     }
 }
 
