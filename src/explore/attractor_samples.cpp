@@ -28,6 +28,11 @@ std::vector<double> numbers_of_start(const std::string& text) {
   return numbers;
 }
 
+/// What is watched on the first segment.
+std::string mode_words(const SweepAttractor& attractor) {
+  return attractor.mode.empty() ? "" : " --mode " + quoted_for_shell(attractor.mode);
+}
+
 /// The least box around numbers of each state.
 struct StateBox {
   explicit StateBox(int n) : low(Eigen::VectorXd::Constant(n, INFINITY)), high(-low) {}
@@ -94,9 +99,12 @@ std::optional<Eigen::VectorXd> AttractorSamples::numbers_of(const SweptAttractor
   return state;
 }
 
-std::string AttractorSamples::state_of(const SweptAttractor& sample) const {
+std::string AttractorSamples::words_of(const SweptAttractor& sample) const {
   const std::optional<Eigen::VectorXd> state = numbers_of(sample);
-  return state ? fmt::format("{}", fmt::join(state->begin(), state->end(), ",")) : "";
+  if (!state) return "";
+  std::string words = fmt::format("--state {}", fmt::join(state->begin(), state->end(), ","));
+  if (sample.attractor->kind != AttractorKind::periodic) return words;
+  return words + mode_words(*sample.attractor) + " --before-event";
 }
 
 std::vector<std::string> AttractorSamples::further_starts(int count) const {
@@ -127,8 +135,7 @@ std::string AttractorSamples::words_of(const SweepAttractor& attractor) {
   std::string words = "--state ";
   for (Eigen::Index k = 0; k < attractor.state.size(); ++k)
     words += fmt::format("{}{}", k > 0 ? "," : "", attractor.state(k));
-  if (!attractor.mode.empty()) words += " --mode " + quoted_for_shell(attractor.mode);
-  return words;
+  return words + mode_words(attractor);
 }
 
 double AttractorSamples::value_of(const SweepAttractor& attractor) const {

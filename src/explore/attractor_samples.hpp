@@ -35,10 +35,10 @@ class AttractorSamples {
   std::map<AttractorKind, int> kinds() const;
   /// The columns of these names, NaN for those that are missing.
   std::vector<double> values_of(const SweptAttractor& sample, const std::vector<std::string>& names) const;
-  /// "0.1,-2": the first recorded state; "" where states are not recorded.
-  std::string state_of(const SweptAttractor& sample) const;
-  /// The same as numbers.
+  /// The first recorded state, of a period that in which its first segment ends; nothing where none is recorded.
   std::optional<Eigen::VectorXd> numbers_of(const SweptAttractor& sample) const;
+  /// The words of `tchat simulate` that begin there; "" where none is recorded.
+  std::string words_of(const SweptAttractor& sample) const;
   /// The words of `tchat simulate` that begin on an attractor, where it has been found first.
   static std::string words_of(const SweepAttractor& attractor);
   double value_of(const SweepAttractor& attractor) const;

@@ -45,11 +45,11 @@ void measure_coverage(const Sweep& sweep, const OrbitCatalogue& catalogue, const
     }
     UnexplainedAttractor& one = missing[known.number];
     if (one.count++ == 0) {
-      const std::string state = sweep.samples.state_of(sample);
+      const std::string words = sweep.samples.words_of(sample);
       one.attractor = fmt::format("{}{}", sweep.letter, known.number);
       one.kind = to_string(known.kind);
       one.first = sample.value;
-      one.command = state.empty() ? "" : commands.show(sample.value, state);
+      one.command = words.empty() ? "" : commands.show(sample.value, words);
     }
     one.segments = known.kind == AttractorKind::periodic ? static_cast<int>(signature_word(known).size()) : 0;
     one.last = sample.value;

@@ -145,11 +145,11 @@ CommandJob ExplorationCommands::born(const SwitchPoint& at, int returns) const {
           files_of(name)};
 }
 
-std::string ExplorationCommands::show(double value, const std::string& state) const {
-  std::vector<std::string> words = parameters_;
-  words.push_back(at_value(value));
-  return fmt::format("tchat simulate {}{} --state {}{}", problem_arguments(problem_), constants_option_, state,
-                     shell_words(words));
+std::string ExplorationCommands::show(double value, const std::string& words) const {
+  std::vector<std::string> parameters = parameters_;
+  parameters.push_back(at_value(value));
+  return fmt::format("tchat simulate {}{} {}{}", problem_arguments(problem_), constants_option_, words,
+                     shell_words(parameters));
 }
 
 }  // namespace tchat

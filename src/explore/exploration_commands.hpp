@@ -54,8 +54,8 @@ class ExplorationCommands {
   /// The same at a label of the files `source`, to those of `name`.
   std::vector<std::string> born_lines(const std::string& source, const std::string& label, int returns,
                                       const std::string& name) const;
-  /// "tchat simulate ..." of an attractor, by a state on it.
-  std::string show(double value, const std::string& state) const;
+  /// "tchat simulate ..." of an attractor, with the `words` that begin on it.
+  std::string show(double value, const std::string& words) const;
   /// The p-, q-, d- and r-file of a branch.
   std::vector<std::string> files_of(const std::string& name) const;
   /// KEY=VALUE of the command line for all runs.

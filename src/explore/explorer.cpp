@@ -173,11 +173,9 @@ class Explorer {
         if (!is_followed(attractor) || is_too_long(attractor) || !branch_of(catalogue_, sweep, sample).empty()) return;
         const std::string name = fmt::format("{}{}", sweep.letter, attractor.number);
         if (!numbers.insert(attractor.number).second || !tried_.insert({name, sample.value}).second) return;
-        const std::string state = sweep.samples.state_of(sample);
-        if (state.empty()) return;
-        const bool is_at_event = attractor.kind == AttractorKind::periodic;
-        list.push_back(start_at(attractor, fmt::format("{}_{}", name, tried_.size()), sample.value,
-                                "--state " + state + (is_at_event ? " --before-event" : "")));
+        const std::string words = sweep.samples.words_of(sample);
+        if (!words.empty())
+          list.push_back(start_at(attractor, fmt::format("{}_{}", name, tried_.size()), sample.value, words));
       });
     }
     return list;

@@ -112,6 +112,16 @@ TEST_CASE("an impact that loses its velocity is followed to the orbit without it
   CHECK(tree.find("-> a2_PD3_GR6_branch\n") != std::string::npos);
 }
 
+TEST_CASE("an attractor that only further starts find begins a branch where its first segment ends") {
+  const Workspace workspace;
+  // The block rocks thrice as slowly as the ground shakes; at the corner the other field is as good a start.
+  const std::string tree = explored(workspace, ROCKING_BLOCK,
+                                    "rocking_block --over beta=1.045:1.065:5 --segments 6 --starts 8");
+  INFO(tree);
+  CHECK(tree.find("2 branches.") != std::string::npos);
+  CHECK(tree.find("\nb2_1  1.045 to 1.065") != std::string::npos);
+}
+
 TEST_CASE("budgets leave switches, which are counted") {
   const Workspace workspace;
   REQUIRE(workspace.tchat("explore linosc --over alpha=2.5:3.5:51 PAR(omega)=2.0072 -o osc -q --segments 1").status ==
