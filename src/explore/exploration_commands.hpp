@@ -47,6 +47,9 @@ class ExplorationCommands {
   CommandJob start(const std::string& name, double value, const std::string& words, bool rests) const;
   /// What begins at a labelled point.
   CommandJob switching(const SwitchPoint& at) const;
+  /// Of the branch `known` the orbits at a value of the parameter, so many points on from a label at most, to compare
+  /// with one of the branch `name`.
+  CommandJob correction(const std::string& name, const std::string& known, int label, double value, int points) const;
   /// The equilibrium of a label as that of another field.
   std::string in_other_field(const std::string& branch, int label, int field) const;
   /// Orbits with one impact in so many returns that begin at a grazing point.

@@ -16,6 +16,7 @@
 #include "explore/attractor_samples.hpp"
 #include "explore/boundary_equilibrium.hpp"
 #include "explore/branch_ends.hpp"
+#include "explore/branch_recognition.hpp"
 #include "explore/command_job.hpp"
 #include "explore/coverage.hpp"
 #include "explore/curve_rounds.hpp"
@@ -217,14 +218,28 @@ class Explorer {
     label.remark = remark;
   }
 
+  bool interrupt(const Candidate& candidate) {
+    diagram_.complete = false;
+    set_outcome(candidate, "", "not followed: the exploration was interrupted");
+    return false;
+  }
+
+  /// The branch that all sections of a run are a part of, but for those of one point; "" where there is none.
+  std::optional<std::string> known_branch(const std::vector<CataloguedSection>& sections) {
+    const BranchRecognition recognition(catalogue_, commands_, loaded_.library->system(), runner_);
+    std::string known;
+    for (const CataloguedSection& section : sections) {
+      const std::optional<std::string> same = recognition.branch_of(section);
+      if (!same || (same->empty() && section.parameter.size() > 1)) return same;
+      if (!same->empty()) known = *same;
+    }
+    return known;
+  }
+
   /// Keeps a branch that is new, and adds what begins at its labels to the next round.
   bool take(const Candidate& candidate, const JobResult& result, std::vector<Candidate>& next) {
     ExploredBranch branch = candidate.branch;
-    if (!result.was_run) {
-      diagram_.complete = false;
-      set_outcome(candidate, "", "not followed: the exploration was interrupted");
-      return false;
-    }
+    if (!result.was_run) return interrupt(candidate);
     if (!result.succeeded) {
       set_outcome(candidate, "", "failed: " + failure_text(result.log));
       diagram_.failures.push_back(fmt::format("{} ({}): {}", branch.name, branch.origin, failure_text(result.log)));
@@ -233,16 +248,9 @@ class Explorer {
     if (candidate.returns > 1 && admissible_points(commands_.file('d', branch.name)).only_at_start) return false;
     const PointFile points = read_point_file(commands_.file('p', branch.name));
     std::vector<CataloguedSection> sections = catalogued_sections(branch.name, points, commands_.monitors());
-    std::string known;
-    for (const CataloguedSection& section : sections) {
-      const std::string same = catalogue_.branch_of(section);
-      if (same.empty() && section.parameter.size() > 1) {
-        known.clear();
-        break;
-      }
-      if (!same.empty()) known = same;
-    }
-    if (!known.empty()) {
+    const std::optional<std::string> found = known_branch(sections);
+    if (!found) return interrupt(candidate);
+    if (const std::string& known = *found; !known.empty()) {
       set_outcome(candidate, known, "");
       if (candidate.parent >= diagram_.branches.size()) met_[branch.name.substr(0, branch.name.find('_'))] = known;
       diagram_.joins.push_back(fmt::format("{} ({}): {} again", branch.name, branch.origin, known));

@@ -26,15 +26,18 @@ std::vector<std::string> state_columns(const PointSection& section) {
   return names;
 }
 
+/// Between point i and the next one.
+bool passes(const CataloguedSection& section, Index i, double parameter) {
+  const double a = section.parameter[static_cast<std::size_t>(i)];
+  const double b = section.parameter[static_cast<std::size_t>(i + 1)];
+  return std::min(a, b) <= parameter && parameter <= std::max(a, b) && a != b;
+}
+
 /// The orbits of a section at a parameter value, with the uncertainty of each number.
 std::vector<InterpolatedPoint> orbits_at(const CataloguedSection& section, double parameter) {
   std::vector<InterpolatedPoint> result;
-  for (Index i = 0; i + 1 < std::ssize(section.parameter); ++i) {
-    const double a = section.parameter[static_cast<std::size_t>(i)];
-    const double b = section.parameter[static_cast<std::size_t>(i + 1)];
-    if (!(std::min(a, b) <= parameter && parameter <= std::max(a, b)) || a == b) continue;
-    result.push_back(interpolate(section.parameter, section.numbers, i, parameter));
-  }
+  for (Index i = 0; i + 1 < std::ssize(section.parameter); ++i)
+    if (passes(section, i, parameter)) result.push_back(interpolate(section.parameter, section.numbers, i, parameter));
   return result;
 }
 
@@ -45,6 +48,21 @@ VectorXd with_period_of(const InterpolatedPoint& known, VectorXd numbers) {
   const double turns = std::max(1.0, std::round(std::max(ratio, 1.0 / ratio)));
   numbers(0) *= ratio > 1.0 ? 1.0 / turns : turns;
   return numbers;
+}
+
+bool are_near(const InterpolatedPoint& orbit, const VectorXd& numbers) {
+  constexpr double errors = 20.0, share = 1e-3;
+  const double size = numbers.cwiseAbs().maxCoeff();
+  return ((orbit.numbers - numbers).array().abs() <= errors * orbit.uncertainty.array() + share * size).all();
+}
+
+/// From the middle of a section to its end: its beginning is near where it bifurcates.
+std::vector<Index> rows_compared(const CataloguedSection& section) {
+  const auto last = static_cast<Index>(section.parameter.size()) - 1;
+  std::vector<Index> rows;
+  for (const double share : {0.4, 0.5, 0.6, 0.75, 0.95})
+    rows.push_back(std::min<Index>(last, static_cast<Index>(std::lround(share * static_cast<double>(last)))));
+  return rows;
 }
 
 /// As far as the monitors are known. Where a largest value moves from one maximum to another, interpolation is coarse.
@@ -86,10 +104,16 @@ std::vector<CataloguedSection> catalogued_sections(const std::string& branch, co
     for (const std::string& name : names)
       if (const auto column = section.column(name)) columns.push_back(*column);
     if (columns.size() != (rests ? 0 : 1) + names.size()) continue;
-    CataloguedSection one{branch, number, primitive_word(section.signature), {}, rests, {}};
+    CataloguedSection one;
+    one.branch = branch;
+    one.number = number;
+    one.own_signature = section.signature;
+    one.signature = primitive_word(section.signature);
+    one.rests = rests;
     one.numbers.resize(std::ssize(columns), std::ssize(section.rows));
     for (std::size_t r = 0; r < section.rows.size(); ++r) {
       one.parameter.push_back(section.rows[r].values.front());
+      one.labels.push_back(section.rows[r].label);
       for (std::size_t k = 0; k < columns.size(); ++k)
         one.numbers(static_cast<Index>(k), static_cast<Index>(r)) = section.rows[r].values[columns[k]];
       if (!rests) one.numbers(0, static_cast<Index>(r)) /= one.signature.repetitions;
@@ -99,21 +123,46 @@ std::vector<CataloguedSection> catalogued_sections(const std::string& branch, co
   return result;
 }
 
-/// Points from the middle of the section to its end tell; its beginning is near where it bifurcates. All but one have
-/// to agree: a largest value may have a kink, which interpolation does not see.
+/// All orbits but one have to agree: a largest value may have a kink, which interpolation does not see.
 std::string OrbitCatalogue::branch_of(const CataloguedSection& section) const {
-  const auto count = static_cast<Index>(section.parameter.size());
   std::string found;
   int missing = 0;
-  for (const double share : {0.4, 0.5, 0.6, 0.75, 0.95}) {
-    const auto row =
-        std::min<Index>(count - 1, static_cast<Index>(std::lround(share * static_cast<double>(count - 1))));
+  for (const Index row : rows_compared(section)) {
     const std::string branch =
         branch_at(section, section.parameter[static_cast<std::size_t>(row)], section.numbers.col(row));
     if (branch.empty() && ++missing > 1) return "";
     if (!branch.empty()) found = branch;
   }
   return found;
+}
+
+std::vector<std::string> OrbitCatalogue::branches_near(const CataloguedSection& section) const {
+  constexpr int enough = 3;
+  std::vector<std::string> names, near;
+  for (const CataloguedSection& known : sections_)
+    if (std::find(names.begin(), names.end(), known.branch) == names.end()) names.push_back(known.branch);
+  const std::vector<Index> rows = rows_compared(section);
+  for (const std::string& name : names)
+    if (std::count_if(rows.begin(), rows.end(), [&](Index row) { return !places_near(name, section, row).empty(); }) >=
+        enough)
+      near.push_back(name);
+  return near;
+}
+
+std::vector<BranchPlace> OrbitCatalogue::places_near(const std::string& branch, const CataloguedSection& like,
+                                                     Index row) const {
+  std::vector<BranchPlace> places;
+  const double parameter = like.parameter[static_cast<std::size_t>(row)];
+  for (const CataloguedSection& known : sections_) {
+    if (known.branch != branch || known.rests != like.rests || known.signature.word != like.signature.word) continue;
+    for (Index i = 0; i + 1 < std::ssize(known.parameter); ++i) {
+      if (!passes(known, i, parameter)) continue;
+      const InterpolatedPoint orbit = interpolate(known.parameter, known.numbers, i, parameter);
+      const VectorXd numbers = like.numbers.col(row);
+      if (are_near(orbit, like.rests ? numbers : with_period_of(orbit, numbers))) places.push_back({&known, i});
+    }
+  }
+  return places;
 }
 
 std::string OrbitCatalogue::branch_with_state(double parameter, const VectorXd& state) const {

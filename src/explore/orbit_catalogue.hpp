@@ -1,9 +1,9 @@
 /// The orbits of the branches that are there, by numbers that do not depend on where an orbit begins nor on how often
 /// it is run round: its period, and mean and largest value of each state in time.
 ///
-/// An orbit is on a branch where the branch has one at the same parameter with the same numbers, up to the error of
-/// interpolation between its points (cubic, compared with quadratic). Two different orbits may share these numbers in
-/// principle; mirror images differ in their means.
+/// An orbit is like one of a branch that has the same numbers at the same parameter, up to the error of interpolation
+/// between its points (cubic, compared with quadratic). Two different orbits may share these numbers: whether they are
+/// the same is decided by their states (explore/branch_recognition.hpp).
 #pragma once
 
 #include <Eigen/Core>
@@ -27,9 +27,11 @@ PrimitiveWord primitive_word(const SignatureWord& signature);
 /// The points of one direction of a branch.
 struct CataloguedSection {
   std::string branch;
-  int number = 1;  ///< of the section in its file
+  int number = 1;               ///< of the section in its file
+  SignatureWord own_signature;  ///< as its orbits begin
   PrimitiveWord signature;
   std::vector<double> parameter;
+  std::vector<int> labels;  ///< of each point; 0 without
   bool rests = false;
   Eigen::MatrixXd numbers;  ///< a column for each point: period of one repetition, then the other numbers;
                             ///< of an equilibrium its states
@@ -40,13 +42,25 @@ struct CataloguedSection {
 std::vector<CataloguedSection> catalogued_sections(const std::string& branch, const PointFile& file,
                                                    const std::vector<std::string>& monitors);
 
+/// Where a branch has an orbit between two of its points.
+struct BranchPlace {
+  const CataloguedSection* section = nullptr;
+  Eigen::Index point = 0;  ///< the one before
+};
+
 class OrbitCatalogue {
  public:
   void add(CataloguedSection section) { sections_.push_back(std::move(section)); }
   const std::vector<CataloguedSection>& sections() const { return sections_; }
 
-  /// The branch of which `section`, or all of it but its beginning, is a part; "" where there is none.
+  /// The branch of which `section`, or all of it but its beginning, is a part by its numbers; "" where there is none.
   std::string branch_of(const CataloguedSection& section) const;
+  /// Branches that it may be a part of: numbers of three of five orbits are near, to 20 errors of interpolation and
+  /// 1e-3 of their size. In the order in which they were added.
+  std::vector<std::string> branches_near(const CataloguedSection& section) const;
+  /// Where a branch passes the parameter value of point `row` of `like` with numbers as near as that.
+  std::vector<BranchPlace> places_near(const std::string& branch, const CataloguedSection& like,
+                                       Eigen::Index row) const;
   /// The branch with an orbit of this signature and period at the parameter value, whose monitors are about these (NaN:
   /// not known); "" where there is none.
   std::string branch_with(const SignatureWord& signature, double parameter, double period,

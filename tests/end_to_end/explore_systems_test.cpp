@@ -115,11 +115,20 @@ TEST_CASE("an impact that loses its velocity is followed to the orbit without it
 TEST_CASE("an attractor that only further starts find begins a branch where its first segment ends") {
   const Workspace workspace;
   // The block rocks thrice as slowly as the ground shakes; at the corner the other field is as good a start.
-  const std::string tree = explored(workspace, ROCKING_BLOCK,
-                                    "rocking_block --over beta=1.045:1.065:5 --segments 6 --starts 8");
+  const std::string tree =
+      explored(workspace, ROCKING_BLOCK, "rocking_block --over beta=1.045:1.065:5 --segments 6 --starts 8");
   INFO(tree);
   CHECK(tree.find("2 branches.") != std::string::npos);
   CHECK(tree.find("\nb2_1  1.045 to 1.065") != std::string::npos);
+}
+
+TEST_CASE("mirror images of equal periods, means and largest values are two branches") {
+  const Workspace workspace;
+  const std::string starts = " --state 1,0.1,0 --state=-1,0.1,0";
+  const std::string tree =
+      explored(workspace, std::string(SYSTEMS) + "/mirrored.tch", "mirrored --over p=0.8:1.2:5" + starts);
+  INFO(tree);
+  CHECK(tree.find("2 branches.") != std::string::npos);
 }
 
 TEST_CASE("budgets leave switches, which are counted") {

@@ -158,6 +158,20 @@ TEST_CASE("no orbit lies on two branches of an exploration") {
     }
 }
 
+TEST_CASE("a branch that is met where it has no label is known by an orbit that a further run corrects") {
+  const Workspace workspace;
+  workspace.write("ball.tch", bouncing_ball);
+  const std::string command = "explore ball --over Gamma=1:1.7:71 --doublings 1 NMX=30 -q";  // runs end anywhere
+  REQUIRE(workspace.tchat(command + " -o one -j 1").status == 0);
+  REQUIRE(workspace.tchat(command + " -o two -j 2").status == 0);
+  const std::string tree = workspace.read("one.txt");
+  INFO(tree);
+  CHECK_FALSE(workspace.read("one/q.a4_BP3_like_a3").empty());
+  CHECK(tree.find("BP 3 at 1.696780746 -> a3") != std::string::npos);
+  CHECK(tree.find("6 branches.") != std::string::npos);
+  CHECK(workspace.read("two.txt") == tree);
+}
+
 TEST_CASE("the impact oscillator: resegmentation at grazing joins the branches of two attractors") {
   const Workspace workspace;
   const Outcome outcome = workspace.tchat("explore linosc --over alpha=2.5:3.5:51 PAR(omega)=2.0072 -o osc -q");

@@ -1,0 +1,47 @@
+/// Of which known branch the orbits of a run are a part.
+///
+/// Numbers of the catalogue tell which branches are near. Among those the last labelled orbit of the run decides: the
+/// known branch's orbit at exactly the same parameter value, which it has as a label or which a further run from its
+/// nearest label corrects, is the same one or not (explore/orbit_identity.hpp). Where there is no such orbit, as when
+/// the known branch ends before, the numbers decide alone.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "explore/command_job.hpp"
+#include "explore/exploration_commands.hpp"
+#include "explore/orbit_catalogue.hpp"
+#include "explore/orbit_identity.hpp"
+
+namespace tchat {
+
+class BranchRecognition {
+ public:
+  /// Views of all of them, which outlive this object.
+  BranchRecognition(const OrbitCatalogue& catalogue, const ExplorationCommands& commands, const HybridSystem& system,
+                    JobRunner& runner)
+      : catalogue_(catalogue), commands_(commands), system_(system), runner_(runner) {}
+
+  /// "" where there is none; nothing where a run was not begun for the time was over.
+  std::optional<std::string> branch_of(const CataloguedSection& section) const;
+
+ private:
+  enum class Verdict { same, different, unknown, interrupted };
+  struct Point {
+    const CataloguedSection* section = nullptr;
+    Eigen::Index row = 0;
+  };
+  Verdict compare(const Point& own, const LabelledSolution& orbit, const std::string& branch) const;
+  Verdict compare_with_labels(const Point& own, const LabelledSolution& orbit, const std::string& branch) const;
+  Verdict compare_with_run(const Point& own, const LabelledSolution& orbit, const BranchPlace& place) const;
+  bool is_same(const Point& own, const LabelledSolution& orbit, const CataloguedSection& known,
+               const LabelledSolution& other) const;
+
+  const OrbitCatalogue& catalogue_;
+  const ExplorationCommands& commands_;
+  const HybridSystem& system_;
+  JobRunner& runner_;
+};
+
+}  // namespace tchat

@@ -1,0 +1,25 @@
+/// Are two labelled solutions at one parameter value the same orbit?
+///
+/// Orbits cut by events are compared by their states where segments end, before the jumps: the same when these agree
+/// for some rotation of the signature, over as many turns as bring both to their beginning. A smooth orbit has no such
+/// states; points of one are compared with the nearest ones on the curve of the other. An equilibrium has one state.
+#pragma once
+
+#include <vector>
+
+#include "explore/orbit_catalogue.hpp"
+#include "files/labelled_solution.hpp"
+
+namespace tchat {
+
+struct ComparedOrbit {
+  const LabelledSolution* solution = nullptr;
+  SignatureWord signature;  ///< with its repetitions
+};
+
+/// Largest difference of two orbits of one primitive signature, as a share of the size of each state (its largest
+/// modulus on `a`, at least 1e-3 of that of all). States from 0 that are in `drifting`, which nothing depends on, are
+/// left out. Infinite where they cannot be compared: tori, other signatures, other numbers of states.
+double orbit_distance(const ComparedOrbit& a, const ComparedOrbit& b, const std::vector<Eigen::Index>& drifting);
+
+}  // namespace tchat
