@@ -17,7 +17,8 @@ using Eigen::Index;
 using Eigen::VectorXd;
 
 constexpr double same_parameter = 1e-9;  // relative to 1 + |p|
-/// 100 times the tolerance of Newton's method for states, EPSU = 1e-7: meshes add to what that leaves.
+/// 100 times the tolerance of Newton's method for states, EPSU = 1e-7: meshes add to what that leaves. In mems two
+/// orbits differ by 2e-4 at least, and one by 1e-6 at most.
 constexpr double same_orbit = 1e-5;
 
 bool is_at(double parameter, double value) {
@@ -44,9 +45,12 @@ LabelledSolution read_label_of(const std::string& path, int label) {
   return find_solution(read_solution_file(path, wanted).solutions, wanted, path);
 }
 
-Index last_labelled(const CataloguedSection& section) {
-  for (Index row = std::ssize(section.labels) - 1; row >= 0; --row)
-    if (section.labels[static_cast<std::size_t>(row)] > 0) return row;
+/// Where no other branch passes: at a bifurcation the branches that meet have one orbit.
+Index last_regular_label(const CataloguedSection& section) {
+  for (Index row = std::ssize(section.labels) - 1; row >= 0; --row) {
+    const auto at = static_cast<std::size_t>(row);
+    if (section.labels[at] > 0 && !section.bifurcates[at]) return row;
+  }
   return -1;
 }
 
@@ -63,7 +67,7 @@ Index nearest_labelled(const CataloguedSection& section, Index point) {
 
 std::optional<std::string> BranchRecognition::branch_of(const CataloguedSection& section) const {
   const std::string by_numbers = catalogue_.branch_of(section);
-  const Point own{&section, last_labelled(section)};
+  const Point own{&section, last_regular_label(section)};
   if (own.row < 0) return by_numbers;
   const std::vector<std::string> near = catalogue_.branches_near(section);
   if (near.empty()) return by_numbers;

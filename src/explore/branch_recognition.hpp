@@ -1,9 +1,9 @@
 /// Of which known branch the orbits of a run are a part.
 ///
-/// Numbers of the catalogue tell which branches are near. Among those the last labelled orbit of the run decides: the
-/// known branch's orbit at exactly the same parameter value, which it has as a label or which a further run from its
-/// nearest label corrects, is the same one or not (explore/orbit_identity.hpp). Where there is no such orbit, as when
-/// the known branch ends before, the numbers decide alone.
+/// Numbers of the catalogue tell which branches are near. Among those the last labelled orbit of the run that is no
+/// bifurcation decides: the known branch's orbit at exactly the same parameter value, which it has as a label or which
+/// a further run from its nearest label corrects, is the same one or not (explore/orbit_identity.hpp). Where there is
+/// no such orbit, as when the known branch ends before, the numbers decide alone.
 #pragma once
 
 #include <optional>

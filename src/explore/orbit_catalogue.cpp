@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "explore/point_interpolation.hpp"
+#include "problem_type/point_type.hpp"
 #include "problem_type/problem_type.hpp"
 
 namespace tchat {
@@ -51,7 +52,7 @@ VectorXd with_period_of(const InterpolatedPoint& known, VectorXd numbers) {
 }
 
 bool are_near(const InterpolatedPoint& orbit, const VectorXd& numbers) {
-  constexpr double errors = 20.0, share = 1e-3;
+  constexpr double errors = 5.0, share = 1e-4;
   const double size = numbers.cwiseAbs().maxCoeff();
   return ((orbit.numbers - numbers).array().abs() <= errors * orbit.uncertainty.array() + share * size).all();
 }
@@ -114,6 +115,7 @@ std::vector<CataloguedSection> catalogued_sections(const std::string& branch, co
     for (std::size_t r = 0; r < section.rows.size(); ++r) {
       one.parameter.push_back(section.rows[r].values.front());
       one.labels.push_back(section.rows[r].label);
+      one.bifurcates.push_back(is_bifurcation(static_cast<PointType>(basic_type(section.rows[r].type))));
       for (std::size_t k = 0; k < columns.size(); ++k)
         one.numbers(static_cast<Index>(k), static_cast<Index>(r)) = section.rows[r].values[columns[k]];
       if (!rests) one.numbers(0, static_cast<Index>(r)) /= one.signature.repetitions;

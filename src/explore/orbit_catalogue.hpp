@@ -31,7 +31,8 @@ struct CataloguedSection {
   SignatureWord own_signature;  ///< as its orbits begin
   PrimitiveWord signature;
   std::vector<double> parameter;
-  std::vector<int> labels;  ///< of each point; 0 without
+  std::vector<int> labels;       ///< of each point; 0 without
+  std::vector<bool> bifurcates;  ///< is it a point where branches meet or turn, as far as its type tells?
   bool rests = false;
   Eigen::MatrixXd numbers;  ///< a column for each point: period of one repetition, then the other numbers;
                             ///< of an equilibrium its states

@@ -97,8 +97,8 @@ double distance_of_curves(const LabelledSolution& a, const LabelledSolution& b, 
   const VectorXd weight = weights(a.states, drifting);
   double largest = 0.0;
   for (Index k = 0; k < points_compared; ++k)
-    largest = std::max(largest,
-                       distance_from_curve(a.states.col(k * (a.states.cols() - 1) / points_compared), b, weight));
+    largest =
+        std::max(largest, distance_from_curve(a.states.col(k * (a.states.cols() - 1) / points_compared), b, weight));
   return largest;
 }
 
