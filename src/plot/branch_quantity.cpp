@@ -172,8 +172,9 @@ class QuantityReader {
     BranchQuantity quantity{plain_text(name), {{}}, {}, ""};
     for (std::size_t row = 0; row < section_.rows.size(); ++row) {
       const DiagnosticPoint* const point = file_.diagnostic_of(index_, row);
-      quantity.known.push_back(point != nullptr && point->normal_form);
-      quantity.arms[0].push_back(quantity.known.back() ? *point->normal_form.*number : nothing);
+      const NormalFormNote* const form = point != nullptr && point->normal_form ? &*point->normal_form : nullptr;
+      quantity.known.push_back(form != nullptr);
+      quantity.arms[0].push_back(form != nullptr ? form->*number : nothing);
     }
     return quantity;
   }
