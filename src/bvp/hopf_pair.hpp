@@ -53,6 +53,7 @@ class HopfPair final : public OrbitCondition {
   using Plane = Eigen::Matrix<double, Eigen::Dynamic, 2>;
 
   bool begin();
+  bool begin_at_double_zero();
   bool find_plane();
   Eigen::MatrixXd newton_matrix(const Plane& border) const;
   void orthonormalise();

@@ -139,7 +139,10 @@ int curve_type(int type) {
 int file_type(PointType type, int curve) {
   const int number = static_cast<int>(type);
   if (number == 0 || std::abs(number) >= 10) return number;
-  return number < 0 ? number - 10 * curve : number + 10 * curve;
+  const int on_curve = number < 0 ? number - 10 * curve : number + 10 * curve;
+  const bool is_taken = std::any_of(table.begin(), table.end(),
+                                    [=](const PointTypeFacts& row) { return row.is_whole && row.number == on_curve; });
+  return is_taken && type != PointType::end ? file_type(PointType::end, curve) : on_curve;
 }
 
 bool is_fold(PointType type) { return type == PointType::fold || type == PointType::equilibrium_fold; }

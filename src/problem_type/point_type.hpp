@@ -99,7 +99,8 @@ int basic_type(int type);
 /// The type of the points of the curve that a point with this number in files is on: its tens digit; 0: on none. AUTO's
 /// numbers for codimension two have a 2 for folds of periodic orbits.
 int curve_type(int type);
-/// The number in files: with the tens digit of the curve that is followed, 0 for none.
+/// The number in files: with the tens digit of the curve that is followed, 0 for none. A Hopf point at the end of a
+/// torus curve is an end: its own number would be that of LTR.
 int file_type(PointType type, int curve);
 
 bool is_fold(PointType type);

@@ -24,7 +24,7 @@ namespace {
 const ProblemType& type_of_curve(const RunSettings& settings) {
   std::string names;
   for (const ProblemType* type : problem_types_of(settings.problem_type, settings.branch_mode)) {
-    const std::string name = curve_name(type->facts().curve);
+    const std::string name = curve_name(settings.problem_type, type->facts().curve);
     if (name == settings.curve) return *type;
     if (!name.empty()) names += (names.empty() ? "" : ", ") + name;
   }

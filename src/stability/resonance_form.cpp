@@ -18,7 +18,7 @@ using Vector = Eigen::VectorXd;
 using ComplexVector = Eigen::VectorXcd;
 
 /// Coefficients of one orbit with the errors of sums, and the vector q, whose sign some of them have.
-struct Found {
+struct ResonanceCoefficients {
   std::vector<NamedCoefficient> coefficients;
   Vector q;
 };
@@ -32,12 +32,12 @@ Product of_map(const Vector& w, const Vector& rows, double factor) {
   return of_map(w.cast<Complex>().eval(), rows.cast<Complex>().eval(), factor);
 }
 
-class Reduction {
+class ResonanceReduction {
  public:
-  Reduction(const DefiningSystem& system, const Orbit& x, ShiftedOrbit& orbit)
+  ResonanceReduction(const DefiningSystem& system, const Orbit& x, ShiftedOrbit& orbit)
       : error_(error_of_sums(system.system())), forms_(system, x), orbit_(orbit) {}
 
-  std::optional<Found> find(PointType type) {
+  std::optional<ResonanceCoefficients> find(PointType type) {
     bool is_found = false;
     if (type == PointType::cusp) is_found = find_cusp();
     if (type == PointType::resonance_1) is_found = find_double(1.0);
@@ -117,7 +117,7 @@ class Reduction {
     const ComplexVector right = -square_ - 2.0 * std::conj(b.value) * orbit_.closing_rows(q);
     const ComplexVector h = orbit_.solve_singular(std::conj(mu), right, p, q);
     const Product c = of_map(w_, cubic_ + forms_.second(ComplexVector(v_.conjugate()), h), 0.5);
-    add("|b|", std::abs(b.value), b.size);
+    add("|b1|", 3.0 * std::abs(b.value), 3.0 * b.size);
     add("Re c1", (3.0 * mu * mu * c.value).real() - 3.0 * std::norm(b.value),
         3.0 * c.size + 6.0 * std::abs(b.value) * b.size);
     return true;
@@ -130,17 +130,16 @@ class Reduction {
     const Product c = of_map(w_, cubic_ + forms_.second(conjugate, h), 0.5);
     const Product d =
         of_map(w_, forms_.cube(conjugate) + 3.0 * forms_.second(conjugate, ComplexVector(h.conjugate())), 1.0 / 6.0);
-    const Complex ratio = Complex(0.0, -1.0) * c.value / std::abs(d.value);
-    const double size = (c.size + std::abs(ratio) * d.size) / std::abs(d.value);
-    add("Re A", ratio.real(), size);
-    add("Im A", ratio.imag(), size);
+    add("Re c1", 4.0 * c.value.imag(), 4.0 * c.size);
+    add("Im c1", -4.0 * c.value.real(), 4.0 * c.size);
+    add("|d1|", 4.0 * std::abs(d.value), 4.0 * d.size);
     return true;
   }
 
   double error_;
   OrbitForms forms_;
   ShiftedOrbit& orbit_;
-  Found found_;
+  ResonanceCoefficients found_;
   ComplexVector v_, w_, square_, cubic_;  // of a pair
 };
 
@@ -151,9 +150,10 @@ Complex critical_multiplier(PointType type) {
   return 1.0;
 }
 
-std::optional<Found> find_on(const DefiningSystem& system, NodalSystem& nodal, const Orbit& x, PointType type) {
+std::optional<ResonanceCoefficients> find_on(const DefiningSystem& system, NodalSystem& nodal, const Orbit& x,
+                                             PointType type) {
   ShiftedOrbit orbit(nodal, x, shift_for(critical_multiplier(type)));
-  return orbit.is_regular() ? Reduction(system, x, orbit).find(type) : std::nullopt;
+  return orbit.is_regular() ? ResonanceReduction(system, x, orbit).find(type) : std::nullopt;
 }
 
 }  // namespace
@@ -161,12 +161,12 @@ std::optional<Found> find_on(const DefiningSystem& system, NodalSystem& nodal, c
 std::vector<NamedCoefficient> codimension_two_form(const DefiningSystem& system, const Orbit& x, PointType type) {
   if (x.shape.own || x.shape.intervals < 2) return {};
   NodalSystem fine(system, x.shape);
-  std::optional<Found> found = find_on(system, fine, x, type);
+  std::optional<ResonanceCoefficients> found = find_on(system, fine, x, type);
   if (!found) return {};
   Orbit other = on_every_second_point(x);
   NodalSystem coarse(system, other.shape);
   if (!correct_orbit(system, coarse, critical_multiplier(type), found->q, other)) return {};
-  const std::optional<Found> compared = find_on(system, coarse, other, type);
+  const std::optional<ResonanceCoefficients> compared = find_on(system, coarse, other, type);
   if (!compared) return {};
   const bool is_turned = type == PointType::resonance_1 && found->q.dot(compared->q) < 0.0;
   for (std::size_t k = 0; k < found->coefficients.size(); ++k) {

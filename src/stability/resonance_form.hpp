@@ -14,10 +14,10 @@
 ///             d = (p (C(q,q,q1) + 2 B(q,k) + B(q1,h)) + p1 (C(q,q,q) + 3 B(q,h))) / 2
 ///     1:3     A q = mu q, mu = e^(2 pi i / 3), |q| = 1:  z -> mu z + b z*^2 + c z |z|^2,  b = p B(q*,q*) / 2,
 ///             (mu* - A) h = B(q,q) - 2 b* q*,  c = p (C(q,q,q*) + 2 B(q,(1-A)^-1 B(q,q*)) + B(q*,h)) / 2;
-///             what matters: |b|, and Re c1 of c1 = 3 mu^2 c - 3 |b|^2
+///             what matters: |b1| = 3 |b|, and Re c1 of c1 = 3 mu^2 c - 3 |b|^2
 ///     1:4     A q = i q, |q| = 1:  z -> i z + c z |z|^2 + d z*^3,
 ///             c = p (C(q,q,q*) + 2 B(q,(1-A)^-1 B(q,q*)) + B(q*,h)) / 2,  (-1 - A) h = B(q,q),
-///             d = p (C(q*,q*,q*) + 3 B(q*,h*)) / 6;  what matters: -i c / |d|
+///             d = p (C(q*,q*,q*) + 3 B(q*,h*)) / 6;  what matters: c1 = -4 i c and |d1| = 4 |d|
 ///
 /// As in normal_form.hpp everything is done on the nodes of the whole orbit.
 #pragma once
@@ -38,7 +38,7 @@ struct NamedCoefficient {
 };
 
 /// Of an orbit that is this point of codimension two (cusp, resonance_1, ..., resonance_4) up to the accuracy of its
-/// curve: c; a, b; c, d; |b|, Re c1; Re(-i c/|d|), Im(-i c/|d|). Uncertainties as in NormalForm. Empty for other types,
+/// curve: c; a, b; c, d; |b1|, Re c1; Re c1, Im c1, |d1|. Uncertainties as in NormalForm. Empty for other types,
 /// where equations are singular, and where normal_form() has no coefficient. Allocates.
 std::vector<NamedCoefficient> codimension_two_form(const DefiningSystem& system, const Orbit& x, PointType type);
 

@@ -42,7 +42,7 @@ ShiftedOrbit::ShiftedOrbit(NodalSystem& nodal, const Orbit& x, double shift)
   regular_ = nodal_.factorize(x, shift);
   if (!regular_) return;
   closing_.resize(nodal_.size(), n_);
-  for (Eigen::Index k = 0; k < n_; ++k) closing_.col(k) = nodal_.solve(closing_rows(Vector::Unit(n_, k)));
+  for (Eigen::Index k = 0; k < n_; ++k) closing_.col(k) = nodal_.solve(closing_rows(Vector(Vector::Unit(n_, k))));
   starts_ = closing_.topRows(n_);
   regular_ = closing_.allFinite();
 }
@@ -105,6 +105,14 @@ bool ShiftedOrbit::find_critical(Complex mu, ComplexVector& v, ComplexVector& w,
   start.head(n_) = p;
   w = (shift_ - multiplier) * solve_real_adjoint(start);
   return true;
+}
+
+Eigen::Index ShiftedOrbit::parameter_across_fold() {
+  ComplexVector v, w;
+  Complex multiplier;
+  Eigen::Index k = 0;
+  if (find_critical(1.0, v, w, multiplier)) (w.transpose() * nodal_.parameter_columns()).cwiseAbs().maxCoeff(&k);
+  return k;
 }
 
 ShiftedOrbit::ComplexVector ShiftedOrbit::solve_singular(Complex mu, const ComplexVector& right, const ComplexVector& p,

@@ -26,8 +26,10 @@ class ShiftedOrbit {
   /// E q.
   ComplexVector closing_rows(const ComplexVector& q) const;
   Vector closing_rows(const Vector& q) const;
-  /// p's column of the first free parameter.
-  Vector parameter_column() const { return nodal_.parameter_columns().col(0); }
+  /// The column of a free parameter.
+  Vector parameter_column(Eigen::Index k = 0) const { return nodal_.parameter_columns().col(k); }
+  /// The free parameter that moves a fold the most, as far as the columns tell.
+  Eigen::Index parameter_across_fold();
 
   ComplexVector solve(Complex mu, const ComplexVector& right);
 

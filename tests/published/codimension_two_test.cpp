@@ -2,6 +2,7 @@
 // jump of a clock.
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <complex>
 #include <functional>
 #include <string>
 
@@ -102,7 +103,7 @@ TEST_CASE("curves of period doublings and of torus bifurcations cross at PTR, fr
   check_curve(workspace, "doublings", doublings);
   follow(workspace, "tori", "doublings", "PTR1", "0.02", "CURVE=TR");
   check_curve(workspace, "tori", tori);
-  follow(workspace, "tori", "tori", "EP1", "-0.02", "CURVE=");
+  follow(workspace, "tori", "tori", "EP1", "-0.02", "CURVE= RL1=0.6");
   check_place(workspace, "tori", "PTR", 0.0, 0.0);
   check_curve(workspace, "tori", tori);
 }
@@ -148,8 +149,7 @@ TEST_CASE("Chenciner point: the torus bifurcation is neither super- nor subcriti
   check_curve(workspace, "tori", [](double) { return 0.0; });
 }
 
-// Coefficients. Return maps of the states at the start of the clock's turn, in closed form; formulas of a, b, c, d by
-// hand.
+// Coefficients.
 
 namespace {
 
@@ -171,24 +171,147 @@ constexpr double coefficient_accuracy = 1e-6;  // the point is located to 1e-9 o
 }  // namespace
 
 TEST_CASE("the coefficient of a cusp") {
-  // p + q x + 0.4 x^2 y + 0.7 x^3 more each time, y -> y / 2 + 0.6 x^2: y = 1.2 x^2 on the centre manifold.
+  // y = 1.2 x^2 + ... on the centre manifold: x + p + q x - (0.7 + 0.4 * 1.2) x^3.
   const Workspace workspace;
-  simulate(workspace, "par p=-0.3, q=-0.3\ninit x=-0.6, y=0\nx' = 0\ny' = 0\n",
-           "x -> x + p - 0.7*x^3 + q*x - 0.4*x*y, y -> y/2 + 0.6*x^2");
-  workspace.succeed("run map -d map -c map -o fold 'PAR(q)=0.5' DS=-0.01 DSMAX=0.02 NMX=200 RL0=-1 -q STOP=[LP1]");
+  simulate(workspace, "par p=-0.1, q=0.5\ninit x=-0.6, y=0.5\nx' = 0\ny' = 0\n",
+           "x -> x + p + q*x - 0.7*x^3 - 0.4*x*y, y -> y/2 + 0.6*x^2");
+  workspace.succeed("run map -d map -c map -o fold DS=0.01 DSMAX=0.02 NMX=200 RL1=0.5 STOP=[LP1] -q");
   follow(workspace, "folds", "fold", "LP1", "-0.02");
   check_place(workspace, "folds", "CP", 0.0, 0.0);
-  CHECK(printed(workspace, "folds", "CP", "c") == Approx(-0.7 - 0.4 * 1.2).margin(coefficient_accuracy));
+  CHECK(printed(workspace, "folds", "CP", "c") == Approx(-1.18).margin(coefficient_accuracy));
+}
+
+TEST_CASE("coefficients of the 1:1 resonance, from which curves of folds and of torus bifurcations are followed") {
+  // The derivative has the determinant 1 + q - x where y = 0: 1 at q = x, p = -0.7 x^2.
+  const Workspace workspace;
+  simulate(workspace, "par p=-0.2, q=-0.4\ninit x=-0.5, y=0\nx' = 0\ny' = 0\n",
+           "x -> x + y, y -> y + p + (2*q)*y + 0.7*x^2 + 0.4*x*y + 0.2*y^2");
+  follow(workspace, "folds", "up", "LP1", "0.02");
+  check_place(workspace, "folds", "R1", 0.0, 0.0);
+  check_curve(workspace, "folds", folds);
+  CHECK(printed(workspace, "folds", "R1", "a") == Approx(0.7).margin(coefficient_accuracy));
+  CHECK(printed(workspace, "folds", "R1", "b") == Approx(0.4).margin(coefficient_accuracy));
+  follow(workspace, "tori", "folds", "R11", "-0.02", "CURVE=TR CUBIC=0");
+  check_curve(workspace, "tori", [](double q) { return -0.7 * 4.0 * q * q; });
 }
 
 TEST_CASE("coefficients of the 1:2 resonance") {
   // (x, y) -> (-x + y, -(1 + p) y + q x + c x^3 + d x^2 y + e x^2): c + e^2 / 2 and d + e^2.
   const Workspace workspace;
-  simulate(workspace, "par p=-0.3, q=0.1\ninit x=0, y=0\nx' = 0\ny' = 0\n",
+  simulate(workspace, "par q=-0.05, p=-0.3\ninit x=0, y=0\nx' = 0\ny' = 0\n",
            "x -> -x + y, y -> -(1+p)*y + q*x + 0.3*x^3 + 0.5*x^2*y + 0.2*x^2");
-  workspace.succeed("run map -d map -c map -o down 'PAR(q)=-0.05' ICP=[q] DS=0.01 DSMAX=0.02 NMX=60 RL1=0.5 -q");
-  follow(workspace, "doublings", "down", "PD1", "0.02", "ICP=[p,q]");
+  workspace.succeed("run map -d map -c map -o up ICP=[q] DS=0.01 DSMAX=0.02 NMX=60 RL1=0.5 -q");
+  workspace.succeed("run map -q -c r.up -s up -o doublings ISW=2 ICP=[p,q] IRS=PD1 DS=0.02 DSMAX=0.02 NMX=50");
   check_place(workspace, "doublings", "R2", 0.0, 0.0);
-  CHECK(printed(workspace, "doublings", "R2", "c") == Approx(0.3 + 0.02).margin(coefficient_accuracy));
-  CHECK(printed(workspace, "doublings", "R2", "d") == Approx(0.5 + 0.04).margin(coefficient_accuracy));
+  CHECK(printed(workspace, "doublings", "R2", "c") == Approx(0.32).margin(coefficient_accuracy));
+  CHECK(printed(workspace, "doublings", "R2", "d") == Approx(0.54).margin(coefficient_accuracy));
+  // The derivative has the determinant 1 + p - q.
+  workspace.succeed("run map -q -c r.doublings -s doublings -o tori IRS=R21 CURVE=TR DS=-0.02 NMX=40 NPR=1 RL0=-0.5");
+  check_curve(workspace, "tori", [](double p) { return p; });
+}
+
+TEST_CASE("coefficients of the 1:3 and the 1:4 resonance") {
+  // z -> (1 + p) e^(i theta) z + B z*^2 + C z |z|^2 + D z*^3, B = 0.3 + 0.1 i, C = -0.5 - 0.2 i, D = 0.15 + 0.05 i;
+  // with |q| = 1, z is sqrt(2) times the amplitude. At 1:4, z*^2 is removed first: C + 2 |B|^2 / (-1 + i) is left.
+  const auto follow_tori = [](const Workspace& workspace, const std::string& angle) {
+    simulate(workspace,
+             "par p=-0.2, q=-0.3\ninit x=0, y=0\na = q + " + angle +
+                 "\nc = (1+p)*cos(a)\ns = (1+p)*sin(a)\nr = x^2 + y^2\nx' = 0\ny' = 0\n",
+             "x -> c*x - s*y + 0.3*(x^2-y^2) + 0.2*x*y - r*(0.5*x-0.2*y) + 0.15*(x^3-3*x*y^2) + 0.05*(3*x^2*y-y^3), "
+             "y -> s*x + c*y + 0.1*(x^2-y^2) - 0.6*x*y - r*(0.5*y+0.2*x) - 0.15*(3*x^2*y-y^3) + 0.05*(x^3-3*x*y^2)");
+    follow(workspace, "tori", "up", "TR1", "0.02");
+  };
+  using Complex = std::complex<double>;
+  const Complex b(0.3, 0.1), c(-0.5, -0.2), d(0.15, 0.05);
+  const Workspace third;
+  follow_tori(third, "2*pi/3");
+  check_place(third, "tori", "R3", 0.0, 0.0);
+  const Complex mu = std::polar(1.0, 2.0 * std::acos(-1.0) / 3.0);
+  CHECK(printed(third, "tori", "R3", "|b1|") ==
+        Approx(3.0 * std::sqrt(2.0) * std::abs(b)).margin(coefficient_accuracy));
+  CHECK(printed(third, "tori", "R3", "Re c1") ==
+        Approx((6.0 * mu * mu * c).real() - 6.0 * std::norm(b)).margin(coefficient_accuracy));
+  const Workspace fourth;
+  follow_tori(fourth, "pi/2");
+  check_place(fourth, "tori", "R4", 0.0, 0.0);
+  const Complex c1 = Complex(0.0, -8.0) * (c + 2.0 * std::norm(b) / Complex(-1.0, 1.0));
+  CHECK(printed(fourth, "tori", "R4", "Re c1") == Approx(c1.real()).margin(coefficient_accuracy));
+  CHECK(printed(fourth, "tori", "R4", "Im c1") == Approx(c1.imag()).margin(coefficient_accuracy));
+  CHECK(printed(fourth, "tori", "R4", "|d1|") == Approx(8.0 * std::abs(d)).margin(coefficient_accuracy));
+}
+
+TEST_CASE("Steinmetz and Larter's reaction: NS curve with the published Chenciner point") {
+  // C. G. Steinmetz, R. Larter, J. Chem. Phys. 94, 1388 (1991); the point (1.757356, 0.9125773) is published for it, in
+  // digits of which the last is uncertain: Re d is -6e-5 there, and zero 3.6e-6 farther on the same curve.
+  const Workspace workspace;
+  workspace.write("reaction.tch", R"(par k1=0.1631021, k2=1250, k3=0.046875, k4=20, k5=1.104, k6=0.001, k7=1.5
+par km7=0.1175, k8=0.75
+init A=31.78997, B=1.45468, X=0.01524586, Y=0.1776113
+A' = -k1*A*B*X - k3*A*B*Y + k7 - km7*A
+B' = -k1*A*B*X - k3*A*B*Y + k8
+X' = k1*A*B*X - 2*k2*X^2 + 2*k3*A*B*Y - k4*X + k6
+Y' = -k3*A*B*Y + 2*k2*X^2 - k5*Y
+)");
+  workspace.succeed("simulate reaction --free k8 --dat start -o sim -q");
+  workspace.succeed("run reaction -q -c start -d start -o cycle NTST=60 NMX=60 DS=0.005 DSMAX=0.05 RL1=1");
+  workspace.succeed(
+      "run reaction -q -c r.cycle -s cycle -o curve IRS=TR1 ISW=2 ICP=[k7,k8] CUBIC=1 DS=0.01 DSMAX=0.1 NMX=60 "
+      "RL1=1.9");
+  const SolutionEntry point = only(workspace, "curve", "CH");
+  CHECK(std::abs(point.parameter(7) - 1.757356) < 5e-6);
+  CHECK(std::abs(point.parameter(9) - 0.9125773) < 1e-6);
+}
+
+TEST_CASE("a curve of torus bifurcations begins at a double Hopf point") {
+  // Amplitudes r' = (m1 - r^2 - 0.3 s^2) r, s' = (m2 + 0.4 r^2 - s^2) s: the cycle r^2 = m1 loses stability at m1 = -m2
+  // / 0.4, down to the point where both are zero.
+  const Workspace workspace;
+  workspace.write("map.tch", R"(par p=-0.2, q=-0.5
+init x=0, y=0, u=0, v=0
+r = x^2 + y^2
+s = u^2 + v^2
+x' = (p - r - 0.3*s)*x - 1.7*y
+y' = (p - r - 0.3*s)*y + 1.7*x
+u' = (q + 0.4*r - s)*u - v
+v' = (q + 0.4*r - s)*v + u
+)");
+  workspace.succeed("simulate map --free p --dat rest -o rest -q");
+  workspace.succeed("run map -q -d rest -c rest -o rest DS=0.01 DSMAX=0.05 RL1=1 NMX=60");
+  workspace.succeed("run map -q -c r.rest -s rest -o cycle IRS=HB1 IPS=180 ISW=-1 DS=0.01 DSMAX=0.05 NMX=60 RL1=2");
+  follow(workspace, "tori", "cycle", "TR1", "0.02", "DSMAX=0.05 RL0=-2");
+  check_curve(workspace, "tori", [](double q) { return -q / 0.4; });
+  CHECK(std::abs(workspace.solutions("tori").back().parameter(2)) < accuracy);
+}
+
+TEST_CASE("a curve of torus bifurcations begins at a zero-Hopf point") {
+  // z' = q + z^2 + r^2, r' = (p - z + z^2) r: the cycle r^2 = -q - z^2 has the trace 2 z, zero at p = 0.
+  const Workspace workspace;
+  workspace.write("map.tch", R"(par p=-1.5, q=-0.4
+init z=-0.6, x=0, y=0
+r = x^2 + y^2
+z' = q + z^2 + r
+x' = (p - z + z^2)*x - 1.3*y
+y' = (p - z + z^2)*y + 1.3*x
+)");
+  workspace.succeed("simulate map --free p --dat rest -o rest -q");
+  workspace.succeed("run map -q -d rest -c rest -o rest DS=0.01 DSMAX=0.05 RL1=1 NMX=60");
+  workspace.succeed("run map -q -c r.rest -s rest -o cycle IRS=HB1 IPS=180 ISW=-1 DS=0.01 DSMAX=0.05 NMX=60 RL1=2");
+  follow(workspace, "tori", "cycle", "TR1", "0.02", "DSMAX=0.05 CUBIC=0");
+  check_curve(workspace, "tori", [](double) { return 0.0; });
+  CHECK(std::abs(workspace.solutions("tori").back().parameter(2)) < accuracy);
+}
+
+TEST_CASE("at a Bogdanov-Takens point the curve of Hopf points is followed") {
+  // Kuznetsov's normal form: folds p = q^2 / 4, Hopf points p = 0, q < 0.
+  const Workspace workspace;
+  workspace.write("map.tch", "par p=0.1, q=-1\ninit x=0.11, y=0\nx' = y\ny' = p + q*x + x^2 - x*y\n");
+  workspace.succeed("simulate map --free p --dat rest -o rest -q");
+  workspace.succeed("run map -q -d rest -c rest -o rest DS=0.01 DSMAX=0.05 RL1=1 NMX=60");
+  follow(workspace, "folds", "rest", "LP1", "0.02", "RL0=-2");
+  check_place(workspace, "folds", "BT", 0.0, 0.0);
+  check_curve(workspace, "folds", [](double q) { return 0.25 * q * q; });
+  follow(workspace, "hopf", "folds", "BT1", "-0.02", "CURVE=HB");
+  check_curve(workspace, "hopf", [](double) { return 0.0; });
+  CHECK(workspace.tchat("run map -c r.folds -s folds -o x IRS=BT1 CURVE=TR").err.find("CURVE = TR") !=
+        std::string::npos);
 }
