@@ -92,7 +92,7 @@ VectorXd on_event(const HybridSimulation& motion, const VectorXd& end, const Vec
 void ChaosJudge::add(const LyapunovSpectrum& spectrum, const VectorXd& range) {
   spread_ = 0.0;
   for (Index i = 0; i < range_.size(); ++i)
-    if (range(i) > no_range * range.maxCoeff()) spread_ = std::max(spread_, range(i) / range_(i));
+    if (std::min(range(i), range_(i)) > no_range * range.maxCoeff()) spread_ = std::max(spread_, range(i) / range_(i));
   const ExponentSigns signs = signs_of(spectrum);
   double largest = 0.0;
   for (Index j = 0; j < spectrum.exponents.size(); ++j)
@@ -108,12 +108,14 @@ void ChaosJudge::add(const LyapunovSpectrum& spectrum, const VectorXd& range) {
 std::string ChaosJudge::doubt() const {
   if (spread_ > most_spread)
     return fmt::format("a motion that begins beside it still spreads: its range grows {:.2g}-fold", spread_);
-  return fmt::format("a motion that begins beside it has the largest exponents {}: it leaves something unstable",
-                     largest_exponents_text(last_));
+  const char* const meaning = is_regular() ? "it leaves something unstable"
+                                           : "too uncertain; a longer --transient or another --state may decide";
+  return fmt::format("a motion that begins beside it has the largest exponents {}: {}", largest_exponents_text(last_),
+                     meaning);
 }
 
-/// Of each state its range, not less than a share of the largest.
 VectorXd push_along(const VectorXd& direction, const VectorXd& range) {
+  // Of each state its range, not less than a share of the largest.
   const VectorXd scale = range.cwiseMax(least_share * range.maxCoeff());
   const double largest = direction.cwiseQuotient(scale).cwiseAbs().maxCoeff();
   VectorXd push = VectorXd::Zero(range.size());

@@ -20,7 +20,7 @@ namespace tchat {
 /// Collects windows until the question is decided. Of simulations and of maps alike.
 class ChaosJudge {
  public:
-  /// How far a distance must grow before the first window: exp of this. It begins with `push` of the range.
+  /// The logarithm of the growth that a push must have before the first window; it begins with `push` of the range.
   static constexpr double growth_before = 10.0;
   static constexpr double push = 1e-3;
 
@@ -39,7 +39,7 @@ class ChaosJudge {
   Eigen::VectorXd range_;
 };
 
-/// By how much to push, n: along `direction` (n), and a third of that along each state, so that nothing unstable is
+/// By how much to push, n: along `direction` (n), and 0.3 of that along each state, so that nothing unstable is
 /// kept to exactly. The measure is ChaosJudge::push of `range` (n, of each state at least 1e-3 of the largest).
 Eigen::VectorXd push_along(const Eigen::VectorXd& direction, const Eigen::VectorXd& range);
 

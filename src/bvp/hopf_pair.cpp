@@ -41,27 +41,29 @@ std::string HopfPair::beyond_end() const {
                         : "";
 }
 
-/// The plane of the eigenvector of the pair nearest to the imaginary axis.
 /// At a double eigenvalue 0, which rounding may have made two real ones: the plane that f_x f_x maps to nearly nothing.
 bool HopfPair::begin_at_double_zero() {
   constexpr double nearly_zero = 1e-4;
   const auto beyond = [size = nearly_zero * jacobian_.norm()](const auto& value) { return std::abs(value) > size; };
   const Eigen::VectorXcd values = eigenvalues(jacobian_);
-  if (values.size() - std::count_if(values.begin(), values.end(), beyond) < 2) return false;
+  if (values.size() - std::count_if(values.begin(), values.end(), beyond) != 2) return false;
   const Eigen::MatrixXd square = jacobian_ * jacobian_;
   plane_ = Eigen::JacobiSVD<Eigen::MatrixXd>(square, Eigen::ComputeFullV).matrixV().rightCols<2>();
   pair_ = plane_.transpose() * jacobian_ * plane_;
   return started_ = true;
 }
 
+/// The plane of the eigenvector of the pair nearest to the imaginary axis.
 bool HopfPair::begin() {
-  if (begin_at_double_zero()) return true;
+  constexpr double about_critical = 0.1;
   const Eigen::VectorXcd values = eigenvalues(jacobian_);
   const std::complex<double>* nearest = nullptr;
   for (const auto& value : values)
     if (value.imag() > 0.0 &&
         (nearest == nullptr || std::abs(value.real() / value.imag()) < std::abs(nearest->real() / nearest->imag())))
       nearest = &value;
+  const bool is_critical = nearest != nullptr && std::abs(nearest->real()) < about_critical * nearest->imag();
+  if (!is_critical && begin_at_double_zero()) return true;
   if (nearest == nullptr) return false;
   const Eigen::VectorXcd vector = eigenvector(jacobian_, *nearest);
   plane_.col(0) = vector.real();

@@ -153,10 +153,10 @@ std::vector<Constant> make_table() {
       {"CONSERVED", "conserved function, such as an energy; its orbits need no free parameter", extension_record,
        &R::conserved, any(), "a user function or a state of the problem", "energy", "of IPS = 180"},
       {"CURVE", "curve to follow from a label of several, by the type of its points; empty: the label's own",
-       extension_record, &R::curve, any(), "LP, PD, TR, BP or HB", "TR", "of ISW = 2 and 3"},
+       extension_record, &R::curve, any(), "LP, PD, TR, BP, HB or BE", "TR", "of ISW = 2 and 3"},
       {"CUBIC",
-       "locate GPD and CH on curves of PD and TR, where the cubic coefficient of the normal form is zero; a point then "
-       "takes about 7 times as long",
+       "locate GPD and CH on curves of PD and TR, where the cubic coefficient of the normal form is zero: one "
+       "sparse factorisation more at every point",
        extension_record, &R::cubic_terms, one_of({0, 1}), "0 (no) or 1 (yes)", "1", "of ISW = 2"},
       {"MODE", "oscillation that a family starts with at an equilibrium, 1: the slowest", extension_record, &R::mode,
        at_least(1), "", "2", "with CONSERVED and ISW = -1"},

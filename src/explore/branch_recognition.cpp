@@ -17,8 +17,7 @@ using Eigen::Index;
 using Eigen::VectorXd;
 
 constexpr double same_parameter = 1e-9;  // relative to 1 + |p|
-/// 100 times the tolerance of Newton's method for states, EPSU = 1e-7: meshes add to what that leaves. In mems two
-/// orbits differ by 2e-4 at least, and one by 1e-6 at most.
+/// 100 times the tolerance of Newton's method for states, EPSU = 1e-7: meshes add to what that leaves.
 constexpr double same_orbit = 1e-5;
 
 bool is_at(double parameter, double value) {

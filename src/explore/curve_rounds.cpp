@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -38,9 +39,11 @@ bool is_special(const std::string& type) { return !type.empty() && type != "EP" 
 /// MX and XI are no special points of orbits.
 bool may_have_curve(const std::string& type) { return is_special(type) && type != "XI" && type != "MX"; }
 
-/// Is a label of a curve one of another curve that crosses it?
+/// May another curve go through a label of a curve?
 bool has_further_curve(const std::string& type, const std::string& kind) {
-  return type == "GR" || type == "BE" || (kind == "BE" && (type == "HB" || type == "LP"));
+  constexpr std::array meetings = {"GR", "BE", "LPD", "LTR", "PTR", "R1", "R2", "BT", "ZH"};
+  return std::find(meetings.begin(), meetings.end(), type) != meetings.end() ||
+         (kind == "BE" && (type == "HB" || type == "LP"));
 }
 
 std::vector<int> xi_zeros(const LabelledSolution& solution) {
@@ -98,7 +101,7 @@ void CurveRounds::follow() {
   Candidates round;
   for (const ExploredBranch& branch : context_.diagram.branches) add_curves(branch, round);
   while (!round.empty() && context_.goes_on()) round = run(round);
-  if (context_.goes_on()) settle_unfollowed();
+  settle_unfollowed();
   join();
 }
 
@@ -126,7 +129,7 @@ std::vector<CurveRounds::Labelled> CurveRounds::labels_of(const RunFiles& files)
     Labelled one;
     one.label = solution.label;
     one.type = type;
-    one.start = {solution.label, basic_type(solution.type), solution.kind};
+    one.start = {solution.label, label_type(solution.type), solution.kind};
     one.xi_zeros = xi_zeros(solution);
     one.first = stored_parameter(solution, principal);
     one.second = stored_parameter(solution, commands_.second_index());
@@ -153,7 +156,6 @@ void CurveRounds::add_curve(const RunFiles& files, const Labelled& label, bool h
   Candidate candidate;
   ExploredCurve& curve = candidate.curve;
   curve.name = fmt::format("{}_{}{}_curve", files.name, label.type, label.label);
-  curve.kind = label.type;
   curve.has_returns = has_returns;
   curve.parent = candidate.owner = files.name;
   curve.origin = fmt::format("{} {} of {}", label.type, label.label, files.name);
@@ -161,6 +163,7 @@ void CurveRounds::add_curve(const RunFiles& files, const Labelled& label, bool h
   candidate.start = label.point;
   const CurveCommand command = curve_command(label.start, files.settings, context_.system, commands.problem(),
                                              commands.path(files.name), commands.path(curve.name));
+  curve.kind = command.kind;
   candidate.why_none = label.is_admissible ? command.why_none : "the orbit there is inadmissible";
   if (candidate.why_none.empty())
     curve.job =

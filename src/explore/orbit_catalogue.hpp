@@ -56,8 +56,8 @@ class OrbitCatalogue {
 
   /// The branch of which `section`, or all of it but its beginning, is a part by its numbers; "" where there is none.
   std::string branch_of(const CataloguedSection& section) const;
-  /// Branches that it may be a part of: numbers of three of five orbits are near, to 20 errors of interpolation and
-  /// 1e-3 of their size. In the order in which they were added.
+  /// Branches that it may be a part of: numbers of three of five orbits are near, to 5 errors of interpolation and
+  /// 1e-4 of their size. In the order in which they were added.
   std::vector<std::string> branches_near(const CataloguedSection& section) const;
   /// Where a branch passes the parameter value of point `row` of `like` with numbers as near as that.
   std::vector<BranchPlace> places_near(const std::string& branch, const CataloguedSection& like,

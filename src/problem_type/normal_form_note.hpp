@@ -15,7 +15,7 @@ struct NormalFormNote {
   double uncertainty = 0.0;
   std::string verdict = {};  ///< "supercritical", "subcritical", "transcritical", ...; "" where there is none to say
 
-  /// Is what is born on the side where the solution that it is born from is stable, and unstable itself?
+  /// Is what is born unstable, beside the stable solution that it is born from?
   bool is_subcritical() const { return verdict.starts_with("subcritical"); }
 };
 

@@ -129,11 +129,46 @@ bool is_among(const std::vector<PointType>& types, int type) {
 
 int basic_type(int type) { return type % 10; }
 
+int label_type(int type) {
+  const PointTypeFacts* const found = find_point_type(type, {});
+  return found != nullptr && found->is_whole ? type : basic_type(type);
+}
+
 int curve_type(int type) {
   constexpr std::array of_orbits = {PointType::fold_and_torus, PointType::fold_and_doubling};
   const bool is_of_orbits =
       std::any_of(of_orbits.begin(), of_orbits.end(), [type](PointType one) { return static_cast<int>(one) == type; });
   return is_of_orbits ? static_cast<int>(PointType::fold) : std::abs(type) / 10;
+}
+
+std::vector<PointType> curves_through(int type) {
+  const PointTypeFacts* const found = find_point_type(type, {});
+  const auto point = found != nullptr ? static_cast<PointType>(found->number) : PointType::ordinary;
+  switch (point) {
+    case PointType::fold:
+    case PointType::period_doubling:
+    case PointType::torus:
+    case PointType::branch_point:
+    case PointType::equilibrium_fold:
+    case PointType::hopf:
+      return {point};
+    case PointType::fold_and_torus:
+    case PointType::torus_and_fold:
+    case PointType::resonance_1:
+      return {PointType::fold, PointType::torus};
+    case PointType::fold_and_doubling:
+    case PointType::doubling_and_fold:
+      return {PointType::fold, PointType::period_doubling};
+    case PointType::doubling_and_torus:
+    case PointType::torus_and_doubling:
+    case PointType::resonance_2:
+      return {PointType::period_doubling, PointType::torus};
+    case PointType::bogdanov_takens:
+    case PointType::zero_hopf:
+      return {PointType::equilibrium_fold, PointType::hopf};
+    default:
+      return {};
+  }
 }
 
 int file_type(PointType type, int curve) {

@@ -96,9 +96,14 @@ const PointTypeFacts* find_point_type(int type, const UserPointKind& kind);
 bool is_among(const std::vector<PointType>& types, int type);
 /// -59 -> -9, 54 -> 4.
 int basic_type(int type);
+/// The same, but for numbers that have a tens digit of their own, which stay.
+int label_type(int type);
 /// The type of the points of the curve that a point with this number in files is on: its tens digit; 0: on none. AUTO's
 /// numbers for codimension two have a 2 for folds of periodic orbits.
 int curve_type(int type);
+/// The types of the curves in two parameters that go through a point with this number in files, or without the tens
+/// digit: its own bifurcation, or both where two meet. Empty for other points.
+std::vector<PointType> curves_through(int type);
 /// The number in files: with the tens digit of the curve that is followed, 0 for none. A Hopf point at the end of a
 /// torus curve is an end: its own number would be that of LTR.
 int file_type(PointType type, int curve);

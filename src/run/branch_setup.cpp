@@ -20,24 +20,33 @@ namespace tchat {
 
 namespace {
 
-/// The type that CURVE names, where IPS and ISW leave a choice.
-const ProblemType& type_of_curve(const RunSettings& settings) {
+/// The type that CURVE names, one of those whose curves go through the label. Throws UserError where it is none.
+const ProblemType& type_of_curve(const HybridSystem& system, const RunSettings& settings,
+                                 const SelectedStart& selected) {
+  std::vector<int> label_types = selected.types;
+  if (const int own = curve_type(selected.type); own > 0) label_types.push_back(own);
+  for (const PointType type : curves_through(selected.type)) label_types.push_back(static_cast<int>(type));
   std::string names;
   for (const ProblemType* type : problem_types_of(settings.problem_type, settings.branch_mode)) {
+    const auto begins = [type](int label_type) { return type->begins_at(label_type); };
     const std::string name = curve_name(settings.problem_type, type->facts().curve);
+    if (name.empty() || std::none_of(label_types.begin(), label_types.end(), begins) ||
+        !type->accepts(system, settings, selected))
+      continue;
     if (name == settings.curve) return *type;
-    if (!name.empty()) names += (names.empty() ? "" : ", ") + name;
+    names += (names.empty() ? "" : ", ") + name;
   }
-  throw UserError(fmt::format(
-      "CURVE = {}: with IPS = {} and ISW = {} there {} to follow; remove it with CURVE=", settings.curve,
-      settings.problem_type, settings.branch_mode, names.empty() ? "is no curve" : "are the curves of " + names));
+  throw UserError(
+      fmt::format("CURVE = {}: with IPS = {} and ISW = {} the curves through the start are those of {}; "
+                  "name one of them, or none with CURVE=",
+                  settings.curve, settings.problem_type, settings.branch_mode, names.empty() ? "no points" : names));
 }
 
 /// The type that the start chooses, where IPS and ISW leave a choice: by the curve that a label was computed on, else
 /// by its own type, and by what its orbit is where types share such labels.
 const ProblemType& type_at(const HybridSystem& system, const RunSettings& settings, const SelectedStart& selected) {
   const ProblemType& first = problem_type(settings.problem_type, settings.branch_mode);
-  if (!settings.curve.empty() && first.facts().in_two_parameters) return type_of_curve(settings);
+  if (!settings.curve.empty() && first.facts().in_two_parameters) return type_of_curve(system, settings, selected);
   const int of_label = curve_type(selected.type);
   for (const int label_type : of_label > 0 ? std::vector<int>{of_label} : selected.types)
     for (const ProblemType* type : problem_types_of(settings.problem_type, settings.branch_mode))

@@ -130,10 +130,21 @@ bool is_boundary_of_curve(const NextStart& start, const RunSettings& settings) {
   return is_boundary && facts.in_two_parameters && facts.curve != -start.type;
 }
 
+/// Of a label on a curve: the name of the other curve that goes through it; "" where there is none.
+std::string crossing_curve(const NextStart& start, const RunSettings& settings) {
+  const ProblemFacts& facts = problem_type(settings).facts();
+  if (!facts.in_two_parameters) return "";
+  for (const PointType other : curves_through(start.type))
+    if (const int type = static_cast<int>(other);
+        type != facts.curve && curve_of(type, settings.problem_type) != nullptr)
+      return curve_name(settings.problem_type, type);
+  return "";
+}
+
 /// Why ISW = 2 and two parameters do not follow the points of a label; "" where they do.
 std::string why_no_curve(const NextStart& start, const RunSettings& settings) {
   const ProblemType& type = problem_type(settings);
-  const UserPointKind::Kind kind = static_cast<UserPointKind::Kind>(start.kind.kind);
+  const int kind = start.kind.kind;
   const std::string name = type_name(start.type, start.kind);
   if (type.facts().in_two_parameters || type.facts().curve != 0)
     return fmt::format("ISW = 2 at {} of a curve continues that curve", name);
@@ -195,25 +206,28 @@ CurveCommand curve_command(const NextStart& start, const RunSettings& settings, 
   const std::string from_label = fmt::format("{} -c {} -s {} IRS={}", run, quoted_for_shell(output_path('r', output)),
                                              quoted_for_shell(output), start.label);
   const std::string to_curve = " -o " + quoted_for_shell(curve);
+  const std::string own = type_name(start.type, start.kind);
   if (is_held_contact(start.kind, settings, system))
-    return {fmt::format("{} {}{}", from_label, held_contact_words(start.kind, settings), to_curve), ""};
+    return {fmt::format("{} {}{}", from_label, held_contact_words(start.kind, settings), to_curve), "", own};
   const std::string no_grazing =
       is_grazing(start.kind) ? why_no_grazing_curve(start.kind, settings, system) : "no contact";
   if (no_grazing.empty()) {
     const std::string cut = quoted_for_shell(curve + "_start");
     return {fmt::format("tchat resegment {} {} --to grazing-curve -o {} && {} -c {} -s {}{}",
                         quoted_for_shell(output_path('q', output)), start.label, cut, run, cut, cut, to_curve),
-            ""};
+            "", own};
   }
   if (is_boundary_of_curve(start, settings)) {  // there ISW = 2 would continue the curve: the point as one of a branch
     const std::string point = quoted_for_shell(curve + "_start");
     return {fmt::format("{} ISW=1 NMX=1 -o {} && {} -c {} -s {} IRS=EP1 ISW=2{}", from_label, point, run,
                         quoted_for_shell(output_path('r', curve + "_start")), point, to_curve),
-            ""};
+            "", own};
   }
+  if (const std::string name = crossing_curve(start, settings); !name.empty())
+    return {fmt::format("{} ISW=2 CURVE={}{}", from_label, name, to_curve), "", name};
   const std::string why_none = why_no_curve(start, settings);
-  if (why_none.empty()) return {from_label + " ISW=2" + to_curve, ""};
-  return {"", is_grazing(start.kind) ? no_grazing : why_none};
+  if (why_none.empty()) return {from_label + " ISW=2" + to_curve, "", own};
+  return {"", is_grazing(start.kind) ? no_grazing : why_none, own};
 }
 
 }  // namespace tchat

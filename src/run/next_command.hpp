@@ -12,7 +12,7 @@ namespace tchat {
 /// A label that a run has written.
 struct NextStart {
   int label = 0;
-  int type = 0;  ///< type number without the tens digit of a curve
+  int type = 0;  ///< type number without the tens digit of a curve, but for numbers that have one of their own
   UserPointKind kind;
 };
 
@@ -30,10 +30,12 @@ bool tangent_section(const UserPointKind& kind, const RunSettings& settings, con
 struct CurveCommand {
   std::string line;      ///< commands, joined by " && ", the last of which is a run that lacks ICP; "": there are none
   std::string why_none;  ///< why not, in words
+  std::string kind;      ///< name of the points that the curve consists of
 };
 
 /// To files of the name `curve`. A grazing contact is cut first (tchat resegment); one that changes nothing, in
-/// problems without jumps, is kept by HOLD. On curves only contacts and BE are followed, whose curves others are.
+/// problems with one field and no jumps but identities, is kept by HOLD. From a label of a curve, only another curve is
+/// followed: a contact's, that of BE, or the one that CURVE names.
 CurveCommand curve_command(const NextStart& start, const RunSettings& settings, const HybridSystem& system,
                            const std::string& problem, const std::string& output, const std::string& curve);
 

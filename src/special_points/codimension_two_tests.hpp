@@ -7,7 +7,7 @@
 ///     TR      LTR              PTR               TTR                    CH: Re d
 ///
 /// The other curve, or curves, go on there as well. A coefficient takes a sparse factorisation at every point: it is
-/// looked at where `coefficients` says so.
+/// computed only if `coefficients`.
 #pragma once
 
 #include "bvp/critical_pair.hpp"

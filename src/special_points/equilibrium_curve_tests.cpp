@@ -217,7 +217,8 @@ class ZeroEigenvalueTest final : public TestFunction {
   TestValue evaluate(const TestedPoint& point) const override {
     const Eigenvalues& all = point.multipliers.values;
     if (!point.multipliers.valid || all.empty()) return TestValue::undefined();
-    return TestValue::of(signed_least(all, largest_modulus(all)), orbit_accuracy);
+    const double scale = all.size() > 1 ? largest_modulus(all) : 1.0 + std::abs(all.front());  // of one state
+    return TestValue::of(signed_least(all, scale), orbit_accuracy);
   }
   /// w^T f_p = 0 for both parameters, w the left null vector, is a branch point in either.
   bool is_genuine(const TestedPoint& point) const override {

@@ -1,6 +1,7 @@
 #include "stability/branching.hpp"
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 
 namespace tchat {
@@ -72,6 +73,12 @@ class Reduction {
   ReducedEquation g_;
 };
 
+/// Of a step with the parameter, whose change is relative to its own size.
+double relative_length(const Vector& step, double size, double parameter) {
+  const Eigen::Index n = step.size() - 1;
+  return std::max(step.head(n).lpNorm<Eigen::Infinity>() / size, std::abs(step(n)) / (1.0 + std::abs(parameter)));
+}
+
 /// `before` is that of a point one step before, `place` the rounding of states.
 std::optional<BranchingForm> with_errors_of_place(BranchingForm form, const BranchingForm& before, double place) {
   form.a.uncertainty += std::abs(form.a.value - before.a.value) + 3.0 * std::abs(form.c.value) * place;
@@ -86,18 +93,21 @@ std::optional<BranchingForm> with_errors_of_place(BranchingForm form, const Bran
 
 std::optional<BranchingForm> branching_form(SingularEquations& equations, Orbit& x) {
   constexpr int most_steps = 8;
-  constexpr double arrived = 1e-10, farthest = 0.1, rounding = 1e-13;
+  constexpr double arrived = 1e-10, near = 1e-6, farthest = 0.1, rounding = 1e-13;
   const double size = 1.0 + x.states.cwiseAbs().maxCoeff();
   std::optional<BranchingForm> before;
+  double last = farthest;
   for (int k = 0; k < most_steps; ++k) {
     if (!equations.linearise(x)) return std::nullopt;
     const Reduction reduction(equations);
     if (!(reduction.g().square_of_rate() > 0.0)) return std::nullopt;
     if (before) return with_errors_of_place(reduction.form(), *before, rounding * size);
     const Vector step = reduction.step();
-    const double length = step.lpNorm<Eigen::Infinity>() / size;
+    const double length = relative_length(step, size, equations.parameter(x));
     if (!(length < farthest)) return std::nullopt;
-    if (length < arrived) before = reduction.form();
+    const bool is_rounding = last < near && length > 0.5 * last;  // that the equations may amplify
+    if (length < arrived || is_rounding) before = reduction.form();
+    last = length;
     equations.move(x, step);
   }
   return std::nullopt;

@@ -48,6 +48,7 @@ class SingularEquations {
   virtual Vector second(const Vector& u, const Vector& v) const = 0;  ///< F''(u, v), with the parameter
   virtual Vector third(const Vector& v) const = 0;                    ///< F'''(v, v, v)
   virtual void move(Orbit& x, const Vector& change) const = 0;        ///< with the parameter
+  virtual double parameter(const Orbit& x) const = 0;
   virtual double error() const = 0;  ///< of sums over derivatives, as a share of their sizes
 };
 

@@ -67,6 +67,7 @@ class EquilibriumEquations final : public SingularEquations {
     x.states.topRows(q_.size()).colwise() += change.head(q_.size());
     x.par(system_.free_parameters().front() - 1) += change(q_.size());
   }
+  double parameter(const Orbit& x) const override { return x.par(system_.free_parameters().front() - 1); }
   double error() const override { return error_of_sums(system_.system()); }
 
  private:

@@ -83,6 +83,7 @@ class OrbitEquations final : public SingularEquations {
   void move(Orbit& x, const Vector& change) const override {
     move_orbit(system_, x, change, change(change.size() - 1));
   }
+  double parameter(const Orbit& x) const override { return x.par(system_.free_parameters().front() - 1); }
   double error() const override { return error_of_sums(system_.system()); }
 
   Vector start() const { return v_.head(x_.shape.dimension); }  ///< q

@@ -38,8 +38,9 @@ struct NamedCoefficient {
 };
 
 /// Of an orbit that is this point of codimension two (cusp, resonance_1, ..., resonance_4) up to the accuracy of its
-/// curve: c; a, b; c, d; |b1|, Re c1; Re c1, Im c1, |d1|. Uncertainties as in NormalForm. Empty for other types,
-/// where equations are singular, and where normal_form() has no coefficient. Allocates.
+/// curve: c; a, b; c, d; |b1|, Re c1; Re c1, Im c1, |d1|. Uncertainties are those of the mesh and of sums; that of the
+/// point's place is not in them. Empty for other types, where equations are singular, and where normal_form() has no
+/// coefficient. Allocates.
 std::vector<NamedCoefficient> codimension_two_form(const DefiningSystem& system, const Orbit& x, PointType type);
 
 }  // namespace tchat

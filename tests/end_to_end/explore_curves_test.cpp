@@ -206,8 +206,9 @@ void check_meeting(const std::string& tree, const Place& place, const std::vecto
     std::sscanf(tree.c_str() + at, "\n(%lf, %lf)", &found.first, &found.second);
     if (std::hypot(found.first - place.first, found.second - place.second) > 2.0 * tolerance) continue;
     const std::string members = tree.substr(at + 1, tree.find('\n', at + 1) - at);
-    is_listed = std::all_of(labels.begin(), labels.end(),
-                            [&](const auto& label) { return members.find(label[0]) != std::string::npos; });
+    is_listed = is_listed || std::all_of(labels.begin(), labels.end(), [&](const auto& label) {
+                  return members.find(label[0]) != std::string::npos;
+                });
   }
   CHECK(is_listed);
 }

@@ -39,7 +39,7 @@ void check_place(const Workspace& workspace, const std::string& name, const std:
   CHECK(std::abs(label.parameter(2) - q) < accuracy);
 }
 
-/// All points of the curve are at (p(q), q), and some on both sides of q = 0 where `both` says so.
+/// All points of the curve are at (p(q), q).
 void check_curve(const Workspace& workspace, const std::string& name, const std::function<double(double)>& p) {
   const std::vector<SolutionEntry> points = workspace.solutions(name);
   REQUIRE(points.size() > 10);
