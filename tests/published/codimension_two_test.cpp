@@ -315,3 +315,23 @@ TEST_CASE("at a Bogdanov-Takens point the curve of Hopf points is followed") {
   CHECK(workspace.tchat("run map -c r.folds -s folds -o x IRS=BT1 CURVE=TR").err.find("CURVE = TR") !=
         std::string::npos);
 }
+
+TEST_CASE("a curve of folds of periodic orbits begins at a generalised Hopf point") {
+  // r' = (p + q r^2 - r^4) r: two cycles meet at r^2 = q / 2, p = -q^2 / 4.
+  const Workspace workspace;
+  workspace.write("map.tch", R"(par p=-0.3, q=0.4
+init x=0, y=0
+r = x^2 + y^2
+x' = (p + q*r - r^2)*x - 1.3*y
+y' = (p + q*r - r^2)*y + 1.3*x
+)");
+  workspace.succeed("simulate map --free p --dat rest -o rest -q");
+  workspace.succeed("run map -q -d rest -c rest -o rest DS=0.01 DSMAX=0.05 RL1=0.5 NMX=60");
+  follow(workspace, "hopf", "rest", "HB1", "-0.02");
+  check_place(workspace, "hopf", "GH", 0.0, 0.0);
+  check_curve(workspace, "hopf", [](double) { return 0.0; });
+  workspace.succeed("run map -q -c r.rest -s rest -o cycle IRS=HB1 IPS=180 ISW=-1 DS=0.01 DSMAX=0.05 NMX=60");
+  follow(workspace, "folds", "cycle", "LP1", "-0.02");
+  check_curve(workspace, "folds", [](double q) { return -0.25 * q * q; });
+  CHECK(std::abs(workspace.solutions("folds").back().parameter(2)) < 1e-4);  // an orbit that shrinks like sqrt(q)
+}
