@@ -27,9 +27,10 @@ Outcome succeed(const Workspace& workspace, const std::vector<std::string>& word
 std::map<std::string, double> gradient(const DiagnosticPoint& point) {
   std::map<std::string, double> result;
   for (const std::string& note : point.notes) {
-    if (note.compare(0, 11, "Gradient of") != 0) continue;
-    const std::size_t from = note.find(':') + 1;
-    std::istringstream in(note.substr(from, note.find(';') - from));
+    const std::size_t at = note.find("Gradient of");
+    if (at == std::string::npos) continue;
+    const std::size_t from = note.find(':', at) + 1;
+    std::istringstream in(note.substr(from, note.find(';', from) - from));
     std::string name, value;
     while (in >> name >> value) result[name] = std::stod(value);
   }
