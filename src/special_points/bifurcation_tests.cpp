@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <vector>
 
 #include "bvp/condensed_system.hpp"
@@ -45,18 +44,15 @@ bool has_multiplier_one(const FloquetMultipliers& multipliers) {
   return std::any_of(list.begin(), list.end(), [](const auto& mu) { return std::abs(mu - 1.0) < 1e-3; });
 }
 
-/// Of each complex pair the one in the upper half plane, by its distance to the unit circle.
-std::vector<std::complex<double>> upper_halves(const TestedPoint& point, std::optional<std::complex<double>> known) {
-  std::vector<std::complex<double>> pairs;
-  std::copy_if(point.multipliers.values.begin(), point.multipliers.values.end(), std::back_inserter(pairs), is_upper);
-  if (known && !pairs.empty())
-    pairs.erase(std::min_element(pairs.begin(), pairs.end(), [&](const auto& a, const auto& b) {
-      return std::abs(a - *known) < std::abs(b - *known);
-    }));
-  std::stable_sort(pairs.begin(), pairs.end(), [](const auto& a, const auto& b) {
-    return std::abs(std::abs(a) - 1.0) < std::abs(std::abs(b) - 1.0);
-  });
-  return pairs;
+/// Of each complex pair the one in the upper half plane, but for the pair nearest to `known`. Allocates nothing.
+template <class Visit>
+void for_pairs(const TestedPoint& point, const std::optional<std::complex<double>>& known, const Visit& visit) {
+  const std::complex<double>* left_out = nullptr;
+  for (const auto& mu : point.multipliers.values)
+    if (known && is_upper(mu) && (left_out == nullptr || std::abs(mu - *known) < std::abs(*left_out - *known)))
+      left_out = &mu;
+  for (const auto& mu : point.multipliers.values)
+    if (is_upper(mu) && &mu != left_out) visit(mu);
 }
 
 }  // namespace
@@ -153,17 +149,22 @@ SpecialPoint PeriodDoublingTest::classify(const TestedPoint& point, bool) const 
 }
 
 std::optional<std::complex<double>> nearest_pair(const TestedPoint& point, std::optional<std::complex<double>> known) {
-  const std::vector<std::complex<double>> pairs = upper_halves(point, known);
-  return pairs.empty() ? std::nullopt : std::optional(pairs.front());
+  std::optional<std::complex<double>> nearest;
+  for_pairs(point, known, [&](const std::complex<double>& mu) {
+    if (!nearest || std::abs(std::abs(mu) - 1.0) < std::abs(std::abs(*nearest) - 1.0)) nearest = mu;
+  });
+  return nearest;
 }
 
 TestValue pair_distance(const TestedPoint& point, std::optional<std::complex<double>> known) {
   if (!trusted(point.multipliers) || !point.multipliers.determined()) return TestValue::undefined();
-  const std::vector<std::complex<double>> pairs = upper_halves(point, known);
-  if (pairs.empty()) return TestValue::undefined();
-  const auto inside = std::count_if(pairs.begin(), pairs.end(), [](const auto& mu) { return std::abs(mu) < 1.0; });
-  const double distance = std::abs(std::abs(pairs.front()) - 1.0);
-  return TestValue::of(inside % 2 == 0 ? distance : -distance, multiplier_accuracy(point.multipliers));
+  const std::optional<std::complex<double>> nearest = nearest_pair(point, known);
+  if (!nearest) return TestValue::undefined();
+  double sign = 1.0;
+  for_pairs(point, known, [&](const std::complex<double>& mu) {
+    if (std::abs(mu) < 1.0) sign = -sign;
+  });
+  return TestValue::of(sign * std::abs(std::abs(*nearest) - 1.0), multiplier_accuracy(point.multipliers));
 }
 
 TestValue TorusTest::evaluate(const TestedPoint& point) const { return pair_distance(point); }
