@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
+
 #include "bvp/quantity.hpp"
 #include "plugin/plugin_build.hpp"
 #include "problem_type/problem_type.hpp"
@@ -37,6 +39,10 @@ ExplorationCommands::ExplorationCommands(const ExploreRequest& request, const Hy
       folder_(request.output.value_or(request.name + ".diagram")),
       problem_(request.problem.value_or(request.name)),
       constants_option_(request.constants ? " -c " + quoted_for_shell(*request.constants) : "") {
+  if (std::filesystem::path(folder_).lexically_normal() == std::filesystem::path(problem_).lexically_normal())
+    throw UserError(fmt::format(
+        "-o {0}: a folder of this name would be taken for the problem; give another name, as in -o {0}.diagram",
+        folder_));
   find_parameter("--over", system, range_);
   for (const std::string& word : request.overrides) (sets_parameter(word) ? parameters_ : constants_).push_back(word);
   if (has_added_section) watched_ = all_events(system.count(FunctionKind::event) - 1);

@@ -82,6 +82,14 @@ const std::string exploration = "explore ball --over Gamma=1:1.7:71 --doublings 
 
 }  // namespace
 
+TEST_CASE("explore: the diagram's folder does not hide the problem") {
+  const Workspace workspace;
+  const Outcome refused = workspace.tchat("explore linosc --over alpha=1.5:4:11 -o linosc");
+  CHECK(refused.status == 2);
+  CHECK(refused.err.find("-o linosc.diagram") != std::string::npos);
+  CHECK_FALSE(workspace.has("linosc.txt"));
+}
+
 TEST_CASE("the bouncing ball: all period doublings from one command, every periodic attractor on a branch") {
   // With g = 1 and one bounce a period: pi (1 - r) / (1 + r) = Gamma cos(phase) at its birth and, for r = 1/2, its
   // doubling at Gamma^2 = (pi/3)^2 + (10/9)^2.
