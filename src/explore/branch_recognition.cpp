@@ -19,8 +19,6 @@ using Eigen::VectorXd;
 constexpr double same_parameter = 1e-9;  // relative to 1 + |p|
 /// 100 times the tolerance of Newton's method for states, EPSU = 1e-7: meshes add to what that leaves.
 constexpr double same_orbit = 1e-5;
-/// Of orbits that nothing cuts: one that is run round several times has a coarse mesh.
-constexpr double same_curve = 1e-4;
 
 bool is_at(double parameter, double value) {
   return std::abs(parameter - value) <= same_parameter * (1.0 + std::abs(value));
@@ -86,10 +84,8 @@ std::optional<std::string> BranchRecognition::branch_of(const CataloguedSection&
 
 bool BranchRecognition::is_same(const Point& own, const LabelledSolution& orbit, const CataloguedSection& known,
                                 const LabelledSolution& other) const {
-  const SignatureWord& word = own.section->own_signature;
-  const double distance =
-      orbit_distance({&orbit, word}, {&other, known.own_signature}, drifting_states(system_, orbit));
-  return distance <= (is_uncut(word) ? same_curve : same_orbit);
+  return orbit_distance({&orbit, own.section->own_signature}, {&other, known.own_signature},
+                        drifting_states(system_, orbit)) <= same_orbit;
 }
 
 BranchRecognition::Verdict BranchRecognition::compare(const Point& own, const LabelledSolution& orbit,

@@ -21,6 +21,8 @@ constexpr Index points_compared = 12;
 constexpr Index nodes_beside = 2;  // on each side of the nearest one
 constexpr int halvings = 40;
 
+bool is_smooth(const SignatureWord& word) { return word.size() == 1 && word.front()[1] == 0; }
+
 /// n x m
 MatrixXd ends_of_segments(const LabelledSolution& solution) {
   const Index n = solution.dimension;
@@ -90,21 +92,17 @@ double distance_from_curve(const VectorXd& state, const LabelledSolution& orbit,
   return distance(state, state_at(orbit, first, last, 0.5 * (low + high)), weight);
 }
 
-/// From mesh points, where an orbit that is run round several times on a coarse mesh is known best.
 double distance_of_curves(const LabelledSolution& a, const LabelledSolution& b, const std::vector<Index>& drifting) {
   if (std::ssize(b.tau) != b.states.cols()) return unknown;
   const VectorXd weight = weights(a.states, drifting);
   double largest = 0.0;
-  for (Index k = 0; k < points_compared; ++k) {
-    const Index node = k * a.mesh_intervals / points_compared * a.collocation_points;
-    largest = std::max(largest, distance_from_curve(a.states.col(std::min(node, a.states.cols() - 1)), b, weight));
-  }
+  for (Index k = 0; k < points_compared; ++k)
+    largest =
+        std::max(largest, distance_from_curve(a.states.col(k * (a.states.cols() - 1) / points_compared), b, weight));
   return largest;
 }
 
 }  // namespace
-
-bool is_uncut(const SignatureWord& word) { return word.size() == 1 && word.front()[1] == 0; }
 
 double orbit_distance(const ComparedOrbit& a, const ComparedOrbit& b, const std::vector<Index>& drifting) {
   const LabelledSolution &x = *a.solution, &y = *b.solution;
@@ -115,8 +113,8 @@ double orbit_distance(const ComparedOrbit& a, const ComparedOrbit& b, const std:
   if (x.problem_type == equilibrium.number)
     return distance(x.states.col(0), y.states.col(0), weights(x.states.leftCols(1), drifting));
   if (x.problem_type != periodic_orbit.number) return unknown;
-  if (!is_uncut(a.signature)) return distance_of_ends(a, b, drifting);
-  return is_uncut(b.signature) ? distance_of_curves(x, y, drifting) : unknown;
+  if (!is_smooth(a.signature)) return distance_of_ends(a, b, drifting);
+  return is_smooth(b.signature) ? distance_of_curves(x, y, drifting) : unknown;
 }
 
 }  // namespace tchat

@@ -12,9 +12,6 @@
 
 namespace tchat {
 
-/// One segment that no event ends.
-bool is_uncut(const SignatureWord& word);
-
 struct ComparedOrbit {
   const LabelledSolution* solution = nullptr;
   SignatureWord signature;  ///< with its repetitions
