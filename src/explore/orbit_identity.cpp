@@ -29,6 +29,12 @@ MatrixXd ends_of_segments(const LabelledSolution& solution) {
   return Eigen::Map<const MatrixXd>(solution.states.rightCols(1).data(), n, solution.states.rows() / n);
 }
 
+/// n x all nodes of all segments
+MatrixXd states_of(const LabelledSolution& solution) {
+  return Eigen::Map<const MatrixXd>(solution.states.data(), solution.dimension,
+                                    solution.states.size() / solution.dimension);
+}
+
 /// 1 / size of each state, 0 of those left out.
 VectorXd weights(const MatrixXd& states, const std::vector<Index>& drifting) {
   VectorXd sizes = states.cwiseAbs().rowwise().maxCoeff();
@@ -46,7 +52,7 @@ double distance(const VectorXd& a, const VectorXd& b, const VectorXd& weight) {
 double distance_of_ends(const ComparedOrbit& a, const ComparedOrbit& b, const std::vector<Index>& drifting) {
   const MatrixXd x = ends_of_segments(*a.solution), y = ends_of_segments(*b.solution);
   if (x.cols() != std::ssize(a.signature) || y.cols() != std::ssize(b.signature)) return unknown;
-  const VectorXd weight = weights(x, drifting);
+  const VectorXd weight = weights(states_of(*a.solution), drifting);
   const Index both = std::lcm(x.cols(), y.cols());
   double least = unknown;
   for (Index shift = 0; shift < y.cols(); ++shift) {

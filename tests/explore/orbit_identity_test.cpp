@@ -12,13 +12,13 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// Of segments that end in the columns of `ends` (n x m); in between states do not matter.
+/// Of segments that end in the columns of `ends` (n x m) and begin at 0.
 LabelledSolution cut_orbit(const MatrixXd& ends) {
   LabelledSolution solution;
   solution.problem_type = periodic_orbit.number;
   solution.dimension = static_cast<int>(ends.rows());
   solution.tau = {0.0, 1.0};
-  solution.states = MatrixXd::Constant(ends.size(), 2, 7.0);
+  solution.states = MatrixXd::Zero(ends.size(), 2);
   solution.states.col(1) = Eigen::Map<const VectorXd>(ends.data(), ends.size());
   return solution;
 }
