@@ -224,7 +224,7 @@ class Explorer {
     return false;
   }
 
-  /// The branch that all sections of a run are a part of, but for those of one point; "" where there is none.
+  /// The known branch that contains every section of a run with more than one point; "" if there is none.
   std::optional<std::string> known_branch(const std::vector<CataloguedSection>& sections) {
     const BranchRecognition recognition(catalogue_, commands_, loaded_.library->system(), runner_);
     std::string known;

@@ -32,7 +32,7 @@ struct CataloguedSection {
   PrimitiveWord signature;
   std::vector<double> parameter;
   std::vector<int> labels;       ///< of each point; 0 without
-  std::vector<bool> bifurcates;  ///< is it a point where branches meet or turn, as far as its type tells?
+  std::vector<bool> bifurcates;  ///< does its type say that branches meet or turn there?
   bool rests = false;
   Eigen::MatrixXd numbers;  ///< a column for each point: period of one repetition, then the other numbers;
                             ///< of an equilibrium its states

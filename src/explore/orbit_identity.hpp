@@ -1,7 +1,7 @@
 /// Are two labelled solutions at one parameter value the same orbit?
 ///
 /// Orbits cut by events are compared by their states where segments end, before the jumps: the same when these agree
-/// for some rotation of the signature, over as many turns as bring both to their beginning. A smooth orbit has no such
+/// for some rotation of the signature, compared until both orbits are back at their start. A smooth orbit has no such
 /// states; points of one are compared with the nearest ones on the curve of the other. An equilibrium has one state.
 #pragma once
 

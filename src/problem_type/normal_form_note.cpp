@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::string_view beginning = "normal form ", equals = " = ", plus_minus = " +- ", comma = ", ";
 
-/// What is in front of `end`, which goes with it; nothing where it is not there.
+/// Removes the text up to and including `end`, and returns what precedes `end`; nothing if `end` is absent.
 std::optional<std::string_view> take_until(std::string_view& text, std::string_view end) {
   const std::size_t at = text.find(end);
   if (at == std::string_view::npos) return std::nullopt;

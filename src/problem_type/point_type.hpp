@@ -96,7 +96,7 @@ const PointTypeFacts* find_point_type(int type, const UserPointKind& kind);
 bool is_among(const std::vector<PointType>& types, int type);
 /// -59 -> -9, 54 -> 4.
 int basic_type(int type);
-/// The same, but for numbers that have a tens digit of their own, which stay.
+/// The same; codimension-two numbers such as 28 are returned unchanged.
 int label_type(int type);
 /// The type of the points of the curve that a point with this number in files is on: its tens digit; 0: on none. AUTO's
 /// numbers for codimension two have a 2 for folds of periodic orbits.

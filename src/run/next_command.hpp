@@ -12,7 +12,7 @@ namespace tchat {
 /// A label that a run has written.
 struct NextStart {
   int label = 0;
-  int type = 0;  ///< type number without the tens digit of a curve, but for numbers that have one of their own
+  int type = 0;  ///< label_type() of its number in files
   UserPointKind kind;
 };
 

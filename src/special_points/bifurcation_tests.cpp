@@ -44,7 +44,7 @@ bool has_multiplier_one(const FloquetMultipliers& multipliers) {
   return std::any_of(list.begin(), list.end(), [](const auto& mu) { return std::abs(mu - 1.0) < 1e-3; });
 }
 
-/// Of each complex pair the one in the upper half plane, but for the pair nearest to `known`. Allocates nothing.
+/// Visits the upper multiplier of every complex pair except the pair nearest to `known`. Allocates nothing.
 template <class Visit>
 void for_pairs(const TestedPoint& point, const std::optional<std::complex<double>>& known, const Visit& visit) {
   const std::complex<double>* left_out = nullptr;

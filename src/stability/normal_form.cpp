@@ -104,7 +104,7 @@ double difference(const Found& a, const Found& b, Complex critical) {
   return std::abs(a.form.coefficient - (is_turned ? -1.0 : 1.0) * b.form.coefficient);
 }
 
-/// `other`, on a mesh of its own, by a small step along the tangent at x: no orbit, but for squares of the step.
+/// Moves `other`, which has another mesh, by a small step along the tangent at x. It is an orbit to first order.
 void move_along(const DefiningSystem& system, const Orbit& x, const OrbitVector& tangent, Orbit& other) {
   constexpr double small = 1e-5;
   double fastest = tangent.states.cwiseAbs().maxCoeff() / (1.0 + x.states.cwiseAbs().maxCoeff());
