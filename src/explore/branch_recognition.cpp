@@ -44,13 +44,15 @@ LabelledSolution read_label_of(const std::string& path, int label) {
   return find_solution(read_solution_file(path, wanted).solutions, wanted, path);
 }
 
-/// Where no other branch passes: at a bifurcation the branches that meet have one orbit.
-Index last_regular_label(const CataloguedSection& section) {
-  for (Index row = std::ssize(section.labels) - 1; row >= 0; --row) {
-    const auto at = static_cast<std::size_t>(row);
-    if (section.labels[at] > 0 && !section.bifurcates[at]) return row;
-  }
-  return -1;
+/// Do no two orbits come together there? They do at a bifurcation, and where the velocity of an impact passes zero and
+/// the branch turns.
+bool is_regular(const LabelledSolution& solution) {
+  if (is_bifurcation(static_cast<PointType>(basic_type(solution.type)))) return false;
+  const std::vector<UserPointKind> kinds = all_kinds(solution);
+  return std::none_of(kinds.begin(), kinds.end(), [](const UserPointKind& one) {
+    return one.kind == UserPointKind::impact_velocity ||
+           (one.kind == UserPointKind::other_type && is_bifurcation(static_cast<PointType>(one.index)));
+  });
 }
 
 Index nearest_labelled(const CataloguedSection& section, Index point) {
@@ -64,17 +66,41 @@ Index nearest_labelled(const CataloguedSection& section, Index point) {
 
 }  // namespace
 
+/// One of a section's own orbits, at one of its points.
+struct BranchRecognition::OwnOrbit {
+  const CataloguedSection* section = nullptr;
+  Index row = 0;
+  LabelledSolution solution;
+
+  double parameter() const { return section->parameter[static_cast<std::size_t>(row)]; }
+};
+
+/// Where a run along a known branch starts, and how many points it is away from the value at most.
+struct BranchRecognition::KnownStart {
+  const CataloguedSection* section = nullptr;
+  int label = 0;
+  Index points = 0;
+};
+
+std::optional<BranchRecognition::OwnOrbit> BranchRecognition::last_regular_orbit(
+    const CataloguedSection& section) const {
+  const SolutionFile file = read_solution_file(commands_.file('q', section.branch));
+  for (Index row = std::ssize(section.labels) - 1; row >= 0; --row)
+    for (const LabelledSolution& solution : file.solutions)
+      if (solution.label == section.labels[static_cast<std::size_t>(row)] && is_regular(solution))
+        return OwnOrbit{&section, row, solution};
+  return std::nullopt;
+}
+
 std::optional<std::string> BranchRecognition::branch_of(const CataloguedSection& section) const {
   const std::string by_numbers = catalogue_.branch_of(section);
-  const Point own{&section, last_regular_label(section)};
-  if (own.row < 0) return by_numbers;
   const std::vector<std::string> near = catalogue_.branches_near(section);
   if (near.empty()) return by_numbers;
-  const LabelledSolution orbit =
-      read_label_of(commands_.file('q', section.branch), section.labels[static_cast<std::size_t>(own.row)]);
+  const std::optional<OwnOrbit> own = last_regular_orbit(section);
+  if (!own) return by_numbers;
   bool is_refuted = false;
   for (const std::string& branch : near) {
-    const Verdict verdict = compare(own, orbit, branch);
+    const Verdict verdict = compare(*own, branch);
     if (verdict == Verdict::interrupted) return std::nullopt;
     if (verdict == Verdict::same) return branch;
     is_refuted = is_refuted || (verdict == Verdict::different && branch == by_numbers);
@@ -82,66 +108,70 @@ std::optional<std::string> BranchRecognition::branch_of(const CataloguedSection&
   return is_refuted ? "" : by_numbers;
 }
 
-bool BranchRecognition::is_same(const Point& own, const LabelledSolution& orbit, const CataloguedSection& known,
+bool BranchRecognition::is_same(const OwnOrbit& own, const CataloguedSection& known,
                                 const LabelledSolution& other) const {
-  return orbit_distance({&orbit, own.section->own_signature}, {&other, known.own_signature},
-                        drifting_states(system_, orbit)) <= same_orbit;
+  return orbit_distance({&own.solution, own.section->own_signature}, {&other, known.own_signature},
+                        drifting_states(system_, own.solution)) <= same_orbit;
 }
 
-BranchRecognition::Verdict BranchRecognition::compare(const Point& own, const LabelledSolution& orbit,
-                                                      const std::string& branch) const {
-  const Verdict by_labels = compare_with_labels(own, orbit, branch);
-  if (by_labels == Verdict::same) return by_labels;
-  Verdict verdict = by_labels;
-  for (const BranchPlace& place : catalogue_.places_near(branch, *own.section, own.row)) {
-    const auto is_labelled = [&](Index row) {
-      const auto at = static_cast<std::size_t>(row);
-      return place.section->labels[at] > 0 &&
-             is_at(place.section->parameter[at], own.section->parameter[static_cast<std::size_t>(own.row)]);
-    };
-    if (is_labelled(place.point) || is_labelled(place.point + 1)) continue;
-    verdict = compare_with_run(own, orbit, place);
+BranchRecognition::Verdict BranchRecognition::compare(const OwnOrbit& own, const std::string& branch) const {
+  Verdict verdict = compare_with_labels(own, branch);
+  if (verdict == Verdict::same) return verdict;
+  for (const KnownStart& start : starts_near(own, branch)) {
+    verdict = compare_with_run(own, start);
     if (verdict != Verdict::different) return verdict;
   }
   return verdict;
 }
 
 /// Unknown where no label is at this value.
-BranchRecognition::Verdict BranchRecognition::compare_with_labels(const Point& own, const LabelledSolution& orbit,
+BranchRecognition::Verdict BranchRecognition::compare_with_labels(const OwnOrbit& own,
                                                                   const std::string& branch) const {
   Verdict verdict = Verdict::unknown;
-  const double value = own.section->parameter[static_cast<std::size_t>(own.row)];
   for (const CataloguedSection& known : catalogue_.sections()) {
     if (known.branch != branch || known.rests != own.section->rests ||
         known.signature.word != own.section->signature.word)
       continue;
     for (std::size_t row = 0; row < known.parameter.size(); ++row) {
-      if (known.labels[row] == 0 || !is_at(known.parameter[row], value)) continue;
-      if (is_same(own, orbit, known, read_label_of(commands_.file('q', branch), known.labels[row])))
-        return Verdict::same;
+      if (known.labels[row] == 0 || !is_at(known.parameter[row], own.parameter())) continue;
+      if (is_same(own, known, read_label_of(commands_.file('q', branch), known.labels[row]))) return Verdict::same;
       verdict = Verdict::different;
     }
   }
   return verdict;
 }
 
-/// Both ways from the nearest label, so far that the value is passed.
-BranchRecognition::Verdict BranchRecognition::compare_with_run(const Point& own, const LabelledSolution& orbit,
-                                                               const BranchPlace& place) const {
-  const CataloguedSection& known = *place.section;
-  const Index from = nearest_labelled(known, place.point);
-  if (from < 0) return Verdict::unknown;
-  const double value = own.section->parameter[static_cast<std::size_t>(own.row)];
-  const int label = known.labels[static_cast<std::size_t>(from)];
-  const CommandJob job = commands_.correction(own.section->branch, known.branch, label, value,
-                                              2 * std::abs(static_cast<int>(from - place.point)) + 40);
+/// The nearest label of each place that has no label itself, each once.
+std::vector<BranchRecognition::KnownStart> BranchRecognition::starts_near(const OwnOrbit& own,
+                                                                          const std::string& branch) const {
+  std::vector<KnownStart> starts;
+  for (const BranchPlace& place : catalogue_.places_near(branch, *own.section, own.row)) {
+    const CataloguedSection& known = *place.section;
+    const auto is_labelled = [&](Index row) {
+      const auto at = static_cast<std::size_t>(row);
+      return known.labels[at] > 0 && is_at(known.parameter[at], own.parameter());
+    };
+    const Index from = nearest_labelled(known, place.point);
+    if (from < 0 || is_labelled(place.point) || is_labelled(place.point + 1)) continue;
+    const int label = known.labels[static_cast<std::size_t>(from)];
+    auto start = std::find_if(starts.begin(), starts.end(), [&](const KnownStart& one) { return one.label == label; });
+    if (start == starts.end()) start = starts.insert(start, KnownStart{&known, label, 0});
+    start->points = std::max(start->points, std::abs(from - place.point));
+  }
+  return starts;
+}
+
+/// Both ways from the label, so far that the value is passed.
+BranchRecognition::Verdict BranchRecognition::compare_with_run(const OwnOrbit& own, const KnownStart& start) const {
+  const CommandJob job = commands_.correction({own.section->branch, own.solution.label, start.section->branch,
+                                               start.label, own.parameter(), 2 * static_cast<int>(start.points) + 40});
   const JobResult result = runner_.run({job}).front();
   if (!result.was_run) return Verdict::interrupted;
   if (!result.succeeded) return Verdict::unknown;
   Verdict verdict = Verdict::unknown;
   for (const LabelledSolution& other : read_solution_file(commands_.file('q', job.name)).solutions) {
-    if (!is_at(stored_parameter(other, orbit.free_parameters.front()), value)) continue;
-    if (is_same(own, orbit, known, other)) return Verdict::same;
+    if (!is_at(stored_parameter(other, own.solution.free_parameters.front()), own.parameter())) continue;
+    if (is_same(own, *start.section, other)) return Verdict::same;
     verdict = Verdict::different;
   }
   return verdict;

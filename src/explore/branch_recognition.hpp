@@ -1,13 +1,15 @@
 /// Of which known branch the orbits of a run are a part.
 ///
 /// Numbers of the catalogue tell which branches are near. Among those the last labelled orbit of the run that is no
-/// bifurcation decides: the known branch's orbit at exactly the same parameter value, which it has as a label or which
-/// a further run from its nearest label corrects, is the same one or not (explore/orbit_identity.hpp). Where there is
-/// no such orbit, as when the known branch ends before, the numbers decide alone.
+/// bifurcation, and no impact of velocity zero, decides: the known branch's orbit at exactly the same parameter value,
+/// which it has as a label or which a further run from its nearest label corrects, is the same one or not
+/// (explore/orbit_identity.hpp). Where there is no such orbit, as when the known branch ends before, the numbers decide
+/// alone.
 #pragma once
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "explore/command_job.hpp"
 #include "explore/exploration_commands.hpp"
@@ -28,15 +30,14 @@ class BranchRecognition {
 
  private:
   enum class Verdict { same, different, unknown, interrupted };
-  struct Point {
-    const CataloguedSection* section = nullptr;
-    Eigen::Index row = 0;
-  };
-  Verdict compare(const Point& own, const LabelledSolution& orbit, const std::string& branch) const;
-  Verdict compare_with_labels(const Point& own, const LabelledSolution& orbit, const std::string& branch) const;
-  Verdict compare_with_run(const Point& own, const LabelledSolution& orbit, const BranchPlace& place) const;
-  bool is_same(const Point& own, const LabelledSolution& orbit, const CataloguedSection& known,
-               const LabelledSolution& other) const;
+  struct OwnOrbit;
+  struct KnownStart;
+  std::optional<OwnOrbit> last_regular_orbit(const CataloguedSection& section) const;
+  Verdict compare(const OwnOrbit& own, const std::string& branch) const;
+  Verdict compare_with_labels(const OwnOrbit& own, const std::string& branch) const;
+  std::vector<KnownStart> starts_near(const OwnOrbit& own, const std::string& branch) const;
+  Verdict compare_with_run(const OwnOrbit& own, const KnownStart& start) const;
+  bool is_same(const OwnOrbit& own, const CataloguedSection& known, const LabelledSolution& other) const;
 
   const OrbitCatalogue& catalogue_;
   const ExplorationCommands& commands_;

@@ -130,18 +130,17 @@ std::string ExplorationCommands::in_other_field(const std::string& branch, int l
                      quoted_for_shell(fmt::format("{}_BE{}", path(branch), label)));
 }
 
-CommandJob ExplorationCommands::correction(const std::string& name, const std::string& known, int label, double value,
-                                           int points) const {
-  const std::string output = fmt::format("{}_like_{}", name, known);
+CommandJob ExplorationCommands::correction(const OrbitComparison& at) const {
+  const std::string name = fmt::format("{}_{}_like_{}_{}", at.branch, at.label, at.known, at.known_label);
   const std::string words =
-      shell_words({fmt::format("IRS={}", label), "ISW=1", "ISP=0", "ILP=0",
-                   fmt::format("UZR={{{}: {}}}", range_.parameter, value), fmt::format("NMX={}", points)});
-  return {output,
+      shell_words({fmt::format("IRS={}", at.known_label), "ISW=1", "ISP=0", "ILP=0",
+                   fmt::format("UZR={{{}: {}}}", range_.parameter, at.value), fmt::format("NMX={}", at.points)});
+  return {name,
           {fmt::format("tchat run {} -c {} -s {} -o {} --both --clip{}", problem_arguments(problem_),
-                       quoted_for_shell(file('r', known)), quoted_for_shell(path(known)),
-                       quoted_for_shell(path(output)), words)},
-          {file('q', known), file('r', known)},
-          files_of(output)};
+                       quoted_for_shell(file('r', at.known)), quoted_for_shell(path(at.known)),
+                       quoted_for_shell(path(name)), words)},
+          {file('q', at.known), file('r', at.known)},
+          files_of(name)};
 }
 
 std::vector<std::string> ExplorationCommands::born_lines(const std::string& source, const std::string& label,

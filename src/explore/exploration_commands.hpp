@@ -22,6 +22,16 @@ struct SwitchPoint {
   std::string command;     ///< run/next_command.hpp
 };
 
+/// A labelled orbit of a branch, and a label of a known branch from which its orbits at the same value are corrected.
+struct OrbitComparison {
+  std::string branch;
+  int label = 0;
+  std::string known;
+  int known_label = 0;
+  double value = 0.0;  ///< of the explored parameter
+  int points = 0;      ///< at most so many from the known label
+};
+
 class ExplorationCommands {
  public:
   /// `system` must outlive this; `has_added_section`: tchat has cut it. Throws UserError where the request's range is
@@ -47,9 +57,8 @@ class ExplorationCommands {
   CommandJob start(const std::string& name, double value, const std::string& words, bool rests) const;
   /// What begins at a labelled point.
   CommandJob switching(const SwitchPoint& at) const;
-  /// Of the branch `known` the orbits at a value of the parameter, so many points on from a label at most, to compare
-  /// with one of the branch `name`.
-  CommandJob correction(const std::string& name, const std::string& known, int label, double value, int points) const;
+  /// The run along the known branch.
+  CommandJob correction(const OrbitComparison& at) const;
   /// The equilibrium of a label as that of another field.
   std::string in_other_field(const std::string& branch, int label, int field) const;
   /// Orbits with one impact in so many returns that begin at a grazing point.

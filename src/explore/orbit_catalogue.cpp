@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "explore/point_interpolation.hpp"
-#include "problem_type/point_type.hpp"
 #include "problem_type/problem_type.hpp"
 
 namespace tchat {
@@ -66,6 +66,19 @@ std::vector<Index> rows_compared(const CataloguedSection& section) {
   return rows;
 }
 
+/// Does a branch have the parameter value at which a section begins?
+bool has_beginning(const std::vector<CataloguedSection>& sections, const std::string& branch,
+                   const CataloguedSection& section) {
+  constexpr double share = 0.01;
+  const auto [low, high] = std::minmax_element(section.parameter.begin(), section.parameter.end());
+  const double slack = share * (*high - *low), first = section.parameter.front();
+  return std::any_of(sections.begin(), sections.end(), [&](const CataloguedSection& known) {
+    if (known.branch != branch) return false;
+    const auto [least, most] = std::minmax_element(known.parameter.begin(), known.parameter.end());
+    return *least - slack <= first && first <= *most + slack;
+  });
+}
+
 /// As far as the monitors are known. Where a largest value moves from one maximum to another, interpolation is coarse.
 bool about_agree(const InterpolatedPoint& orbit, const std::vector<double>& monitors) {
   constexpr double coarse = 1e-2;
@@ -115,7 +128,6 @@ std::vector<CataloguedSection> catalogued_sections(const std::string& branch, co
     for (std::size_t r = 0; r < section.rows.size(); ++r) {
       one.parameter.push_back(section.rows[r].values.front());
       one.labels.push_back(section.rows[r].label);
-      one.bifurcates.push_back(is_bifurcation(static_cast<PointType>(basic_type(section.rows[r].type))));
       for (std::size_t k = 0; k < columns.size(); ++k)
         one.numbers(static_cast<Index>(k), static_cast<Index>(r)) = section.rows[r].values[columns[k]];
       if (!rests) one.numbers(0, static_cast<Index>(r)) /= one.signature.repetitions;
@@ -125,17 +137,20 @@ std::vector<CataloguedSection> catalogued_sections(const std::string& branch, co
   return result;
 }
 
-/// All orbits but one have to agree: a largest value may have a kink, which interpolation does not see.
+/// All orbits but one have to agree: a largest value may have a kink, which interpolation does not see. A run that
+/// comes from values where the known branch is not is more than a part of it.
 std::string OrbitCatalogue::branch_of(const CataloguedSection& section) const {
-  std::string found;
+  std::vector<std::string> last;
   int missing = 0;
   for (const Index row : rows_compared(section)) {
-    const std::string branch =
-        branch_at(section, section.parameter[static_cast<std::size_t>(row)], section.numbers.col(row));
-    if (branch.empty() && ++missing > 1) return "";
-    if (!branch.empty()) found = branch;
+    std::vector<std::string> branches =
+        branches_at(section, section.parameter[static_cast<std::size_t>(row)], section.numbers.col(row));
+    if (branches.empty() && ++missing > 1) return "";
+    if (!branches.empty()) last = std::move(branches);
   }
-  return found;
+  const auto found = std::find_if(last.begin(), last.end(),
+                                  [&](const std::string& branch) { return has_beginning(sections_, branch, section); });
+  return found == last.end() ? "" : *found;
 }
 
 std::vector<std::string> OrbitCatalogue::branches_near(const CataloguedSection& section) const {
@@ -176,13 +191,18 @@ std::string OrbitCatalogue::branch_with_state(double parameter, const VectorXd& 
   return "";
 }
 
-std::string OrbitCatalogue::branch_at(const CataloguedSection& like, double parameter, const VectorXd& numbers) const {
+std::vector<std::string> OrbitCatalogue::branches_at(const CataloguedSection& like, double parameter,
+                                                     const VectorXd& numbers) const {
+  std::vector<std::string> branches;
   for (const CataloguedSection& known : sections_) {
     if (known.rests != like.rests || known.signature.word != like.signature.word) continue;
-    for (const InterpolatedPoint& orbit : orbits_at(known, parameter))
-      if (agrees(orbit, like.rests ? numbers : with_period_of(orbit, numbers))) return known.branch;
+    const std::vector<InterpolatedPoint> orbits = orbits_at(known, parameter);
+    if (std::any_of(orbits.begin(), orbits.end(), [&](const InterpolatedPoint& orbit) {
+          return agrees(orbit, like.rests ? numbers : with_period_of(orbit, numbers));
+        }))
+      branches.push_back(known.branch);
   }
-  return "";
+  return branches;
 }
 
 std::string OrbitCatalogue::branch_with(const SignatureWord& signature, double parameter, double period,

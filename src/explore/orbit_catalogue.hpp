@@ -31,8 +31,7 @@ struct CataloguedSection {
   SignatureWord own_signature;  ///< as its orbits begin
   PrimitiveWord signature;
   std::vector<double> parameter;
-  std::vector<int> labels;       ///< of each point; 0 without
-  std::vector<bool> bifurcates;  ///< does its type say that branches meet or turn there?
+  std::vector<int> labels;  ///< of each point; 0 without
   bool rests = false;
   Eigen::MatrixXd numbers;  ///< a column for each point: period of one repetition, then the other numbers;
                             ///< of an equilibrium its states
@@ -54,7 +53,8 @@ class OrbitCatalogue {
   void add(CataloguedSection section) { sections_.push_back(std::move(section)); }
   const std::vector<CataloguedSection>& sections() const { return sections_; }
 
-  /// The branch of which `section`, or all of it but its beginning, is a part by its numbers; "" where there is none.
+  /// The branch of which `section`, or all of it but its beginning, is a part by its numbers, and which has the value
+  /// at which it begins; "" where there is none.
   std::string branch_of(const CataloguedSection& section) const;
   /// Branches that it may be a part of: numbers of three of five orbits are near, to 5 errors of interpolation and
   /// 1e-4 of their size. In the order in which they were added.
@@ -70,7 +70,8 @@ class OrbitCatalogue {
   std::string branch_with_state(double parameter, const Eigen::VectorXd& state) const;
 
  private:
-  std::string branch_at(const CataloguedSection& like, double parameter, const Eigen::VectorXd& numbers) const;
+  std::vector<std::string> branches_at(const CataloguedSection& like, double parameter,
+                                       const Eigen::VectorXd& numbers) const;
 
   std::vector<CataloguedSection> sections_;
 };
