@@ -155,6 +155,10 @@ std::string why_no_curve(const NextStart& start, const RunSettings& settings) {
   const bool is_contact = kind == UserPointKind::contact || kind == UserPointKind::boundary_equilibrium;
   const bool has_one = is_contact || kind == UserPointKind::none;
   if (has_one && curve_of(is_contact ? -start.type : start.type, settings.problem_type) != nullptr) return "";
+  if (start.type == static_cast<int>(PointType::equilibrium_branch_point))
+    return "when a second parameter changes, the branches that cross at a BP of equilibria part, unless a symmetry or "
+           "an invariant set keeps the BP; exploring at another value of that parameter shows the BP, or folds, which "
+           "have curves, or neither";
   return fmt::format("ISW = 2 does not follow {} of {}", name, type.facts().solutions);
 }
 
