@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <optional>
 #include <utility>
 
@@ -27,10 +28,9 @@ constexpr long first_window = 64;   // events
 constexpr long most_events = 8192;
 constexpr double without_end = 1e300;
 
-/// A simulation of which one part after the other is looked at.
-class PushedMotion {
+class SimulationBeside : public MotionBeside {
  public:
-  PushedMotion(const HybridSimulation& motion, const VectorXd& end, SimulationSettings settings)
+  SimulationBeside(const HybridSimulation& motion, const VectorXd& end, SimulationSettings settings)
       : settings_(std::move(settings)), end_(end) {
     settings_.samples = 0;
     settings_.sections.clear();
@@ -38,13 +38,13 @@ class PushedMotion {
     at_.emplace(motion, end, settings_);
   }
 
-  /// The ranges of the states over so many events, and their exponents if `exponents` is not null. False when the
-  /// motion ends.
-  bool pass(long events, LyapunovAccumulator* exponents = nullptr) {
+  bool pass(long events, LyapunovSpectrum* spectrum) override {
     SimulationSettings settings = settings_;
-    if (exponents != nullptr) exponents->attach(settings);
+    std::optional<LyapunovAccumulator> exponents;
+    if (spectrum != nullptr) exponents.emplace(at_->system(), at_->parameters(), of_window());
+    if (exponents) exponents->attach(settings);
     HybridSimulation simulation(*at_, end_, settings);
-    if (exponents != nullptr) exponents->begin();
+    if (exponents) exponents->begin();
     for (long k = 0; k < events; ++k) {
       SimulatedSegment segment = simulation.next(without_end);
       low_ = k == 0 ? segment.low : low_.cwiseMin(segment.low);
@@ -52,29 +52,33 @@ class PushedMotion {
       was_interrupted_ = segment.ended_by == SegmentEnd::interrupted;
       message_ = segment.message;
       if (segment.ended_by != SegmentEnd::event) return false;
-      if (exponents != nullptr) exponents->pass(segment);
+      if (exponents) exponents->pass(segment);
       end_ = segment.end;
       time_ += segment.duration;
-      ++events_;
     }
     at_.emplace(simulation, end_, settings_);
+    if (exponents) *spectrum = exponents->spectrum();
     return true;
   }
 
-  VectorXd range() const { return high_ - low_; }
-  double time() const { return time_; }
-  long events() const { return events_; }
-  const SimulationSettings& settings() const { return settings_; }
-  ChaosEvidence ended() const {
+  VectorXd range() const override { return high_ - low_; }
+  double time() const override { return time_; }
+  ChaosEvidence ended() const override {
     return {false, was_interrupted_, "a motion that begins beside it has ended: " + message_};
   }
 
  private:
+  LyapunovSettings of_window() const {
+    LyapunovSettings settings;
+    settings.exponents = std::min<int>(2, at_->system().dimension());
+    settings.flow = settings_.flow;
+    return settings;
+  }
+
   SimulationSettings settings_;
   std::optional<HybridSimulation> at_;
   VectorXd end_, low_, high_;
   double time_ = 0.0;
-  long events_ = 0;
   bool was_interrupted_ = false;
   std::string message_;
 };
@@ -124,27 +128,33 @@ VectorXd push_along(const VectorXd& direction, const VectorXd& range) {
   return ChaosJudge::push * push;
 }
 
-ChaosEvidence chaos_evidence(const HybridSimulation& motion, const VectorXd& end, const VectorXd& direction,
-                             double rate, SimulationSettings settings) {
-  PushedMotion beside(motion, end, settings);
-  if (!beside.pass(first_window)) return beside.ended();
-  const double events_before = ChaosJudge::growth_before / rate * static_cast<double>(first_window) / beside.time();
+ChaosEvidence chaos_evidence(const std::function<std::unique_ptr<MotionBeside>(const VectorXd&)>& begin_beside,
+                             const VectorXd& direction, double rate) {
+  const std::unique_ptr<MotionBeside> beside = begin_beside(VectorXd::Zero(direction.size()));
+  if (!beside->pass(first_window, nullptr)) return beside->ended();
+  const double events_before = ChaosJudge::growth_before / rate * static_cast<double>(first_window) / beside->time();
   if (!(events_before <= static_cast<double>(most_events)))
     return {false, false,
             fmt::format("a distance grows {:.2g}-fold in {} events only, as where a motion leaves something unstable",
-                        std::exp(rate * beside.time() * most_events / first_window), most_events)};
-  PushedMotion pushed(motion, on_event(motion, end, push_along(direction, beside.range())), std::move(settings));
-  if (!pushed.pass(1 + static_cast<long>(events_before))) return pushed.ended();
-  LyapunovSettings of_windows;
-  of_windows.exponents = std::min<int>(2, motion.system().dimension());
-  of_windows.flow = pushed.settings().flow;
+                        std::exp(rate * beside->time() * most_events / first_window), most_events)};
+  const std::unique_ptr<MotionBeside> pushed = begin_beside(push_along(direction, beside->range()));
+  if (!pushed->pass(1 + static_cast<long>(events_before), nullptr)) return pushed->ended();
   ChaosJudge judge;
+  LyapunovSpectrum spectrum;
   for (long window = first_window; !judge.is_chaotic() && !judge.is_regular() && window < most_events; window *= 2) {
-    LyapunovAccumulator exponents(motion.system(), motion.parameters(), of_windows);
-    if (!pushed.pass(window, &exponents)) return pushed.ended();
-    judge.add(exponents.spectrum(), pushed.range());
+    if (!pushed->pass(window, &spectrum)) return pushed->ended();
+    judge.add(spectrum, pushed->range());
   }
   return {judge.is_chaotic(), false, judge.is_chaotic() ? "" : judge.doubt()};
+}
+
+ChaosEvidence chaos_evidence(const HybridSimulation& motion, const VectorXd& end, const VectorXd& direction,
+                             double rate, const SimulationSettings& settings) {
+  const auto begin_beside = [&](const VectorXd& change) -> std::unique_ptr<MotionBeside> {
+    return std::make_unique<SimulationBeside>(motion, change.isZero(0.0) ? end : on_event(motion, end, change),
+                                              settings);
+  };
+  return chaos_evidence(begin_beside, direction, rate);
 }
 
 }  // namespace tchat

@@ -10,6 +10,8 @@
 ///     has e^3 = 20 times that range.
 #pragma once
 
+#include <functional>
+#include <memory>
 #include <string>
 
 #include "attractor/growth_series.hpp"
@@ -49,9 +51,29 @@ struct ChaosEvidence {
   std::string doubt;  ///< why it is not known to be chaotic
 };
 
+/// A motion that begins beside another one, of which one part after the other is looked at. Events may be returns of a
+/// map.
+class MotionBeside {
+ public:
+  virtual ~MotionBeside() = default;
+  /// So many events on; `spectrum`, if not null, is set to their exponents. False when the motion ends.
+  virtual bool pass(long events, LyapunovSpectrum* spectrum) = 0;
+  /// Of each state in the last part, n.
+  virtual Eigen::VectorXd range() const = 0;
+  /// Of all parts.
+  virtual double time() const = 0;
+  /// What is known after it has ended.
+  virtual ChaosEvidence ended() const = 0;
+};
+
+/// `begin_beside` begins a motion at the original one's state plus a change (n). `direction` (n; zero where it is not
+/// known) grows there by `rate` > 0 per unit of time.
+ChaosEvidence chaos_evidence(const std::function<std::unique_ptr<MotionBeside>(const Eigen::VectorXd&)>& begin_beside,
+                             const Eigen::VectorXd& direction, double rate);
+
 /// `motion` stands behind its last event, met in the state `end`. `direction` grows by `rate` > 0 per unit of time
 /// (LyapunovAccumulator::growing_direction). The observer of `settings` is not called.
 ChaosEvidence chaos_evidence(const HybridSimulation& motion, const Eigen::VectorXd& end,
-                             const Eigen::VectorXd& direction, double rate, SimulationSettings settings);
+                             const Eigen::VectorXd& direction, double rate, const SimulationSettings& settings);
 
 }  // namespace tchat

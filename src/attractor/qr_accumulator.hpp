@@ -41,6 +41,8 @@ class QrAccumulator {
   void pass(const Eigen::MatrixXd& matrix, double duration = 1.0);
   /// `events` are matrices.
   LyapunovSpectrum spectrum() const;
+  /// The direction that has grown fastest, behind the last matrix: n, of unit length.
+  Eigen::VectorXd growing_direction() const { return frame_.vectors().col(0); }
 
  private:
   OrthonormalFrame frame_;

@@ -5,7 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <memory>
+#include <utility>
 
+#include "attractor/chaos_evidence.hpp"
+#include "attractor/exponent_signs.hpp"
 #include "attractor/qr_accumulator.hpp"
 #include "linear_algebra/dense_matrix.hpp"
 #include "simulation/mode_rule.hpp"
@@ -48,6 +52,43 @@ std::string trouble(const IteratedMap& map, const Iterate& iterate, const Vector
   return "";
 }
 
+/// Iterates from a point beside another one.
+class IteratesBeside : public MotionBeside {
+ public:
+  IteratesBeside(const IteratedMap& map, VectorXd x, const ParameterVector& par, const MapIteration& settings)
+      : map_(map), par_(par), settings_(settings), x_(std::move(x)) {}
+
+  bool pass(long returns, LyapunovSpectrum* spectrum) override {
+    QrAccumulator exponents(map_.coordinates(), map_.exponents());
+    for (long k = 0; k < returns; ++k) {
+      if (settings_.interrupted && k % 1024 == 0 && settings_.interrupted()) throw ComputationError("interrupted");
+      const Iterate iterate = map_.step(x_, par_);
+      message_ = trouble(map_, iterate, x_, settings_);
+      if (!message_.empty()) return false;
+      low_ = k == 0 ? x_ : low_.cwiseMin(x_);
+      high_ = k == 0 ? x_ : high_.cwiseMax(x_);
+      if (spectrum != nullptr) exponents.pass(map_.tangent(x_, par_), iterate.time);
+      time_ += iterate.time;
+      x_ = iterate.image;
+    }
+    if (spectrum != nullptr) *spectrum = exponents.spectrum();
+    return true;
+  }
+  VectorXd range() const override { return high_ - low_; }
+  double time() const override { return time_; }
+  ChaosEvidence ended() const override {
+    return {false, false, "a motion that begins beside it has ended: " + message_};
+  }
+
+ private:
+  const IteratedMap& map_;
+  const ParameterVector& par_;
+  const MapIteration& settings_;
+  VectorXd x_, low_, high_;
+  double time_ = 0.0;
+  std::string message_;
+};
+
 class Iteration {
  public:
   Iteration(const IteratedMap& map, const VectorXd& x0, const ParameterVector& par, const MapIteration& settings)
@@ -62,10 +103,10 @@ class Iteration {
     found_.last = x_;
     const std::size_t kept = found_.period > 0 ? static_cast<std::size_t>(found_.period) : points_.size();
     keep(points_.size() - kept);
-    if (found_.period > 0) found_.kind = AttractorKind::periodic;
-    if (settings_.exponents > 0 && found_.period > 0) add_multipliers();
-    if (found_.period == 0) add_exponents();
-    if (found_.period == 0) tell_kind();
+    if (found_.period > 0)
+      describe_period();
+    else
+      tell_kind();
     return found_;
   }
 
@@ -141,42 +182,60 @@ class Iteration {
     return found_.period > 0 ? static_cast<std::size_t>(found_.period) : static_cast<std::size_t>(settings_.returns);
   }
 
-  /// ln |mu| / T of the multipliers of the period.
-  void add_multipliers() {
+  void describe_period() {
+    const VectorXd logarithms = logarithms_of_multipliers();
+    if (settings_.exponents > 0) add_multipliers(logarithms);
+    if (!(logarithms(0) > least_growth * found_.period)) {
+      found_.kind = AttractorKind::periodic;
+      return;
+    }
+    found_.message = fmt::format(
+        "undecided: the iterates keep to an unstable orbit of {} returns, with a multiplier of modulus {:.6g}; start "
+        "beside it (--state)",
+        found_.period, std::exp(logarithms(0)));
+    found_.period = 0;
+    found_.time = NAN;
+  }
+
+  /// ln |mu| of the multipliers of the period, descending; NaN where the map has no derivative.
+  VectorXd logarithms_of_multipliers() const {
     MatrixXd product = MatrixXd::Identity(map_.coordinates(), map_.coordinates());
     for (Index k = 0; k < found_.points.cols(); ++k) product = map_.tangent(found_.points.col(k), par_) * product;
+    if (!product.allFinite()) return VectorXd::Constant(map_.coordinates(), NAN);
+    VectorXd moduli = eigenvalues(product).cwiseAbs();
+    std::sort(moduli.begin(), moduli.end(), std::greater<>());
+    return moduli.array().log();
+  }
+
+  void add_multipliers(const VectorXd& logarithms) {
     const Index count = std::min<Index>(settings_.exponents, map_.exponents());
     LyapunovSpectrum spectrum;
-    spectrum.exponents = VectorXd::Constant(count, NAN);
+    spectrum.exponents = logarithms.head(count) / found_.time;
     spectrum.errors = VectorXd::Zero(count);
     spectrum.time = found_.time;
     spectrum.events = found_.period;
-    if (product.allFinite()) {
-      VectorXd moduli = eigenvalues(product).cwiseAbs();
-      std::sort(moduli.begin(), moduli.end(), std::greater<>());
-      spectrum.exponents = moduli.head(count).array().log() / found_.time;
-    }
     found_.spectrum = spectrum;
   }
 
   /// Going on from the end until the largest one is told from zero or its bar is small.
-  void add_exponents() {
+  void measure_exponents() {
     const Index count = std::min<Index>(std::max(1, settings_.exponents), map_.exponents());
     QrAccumulator accumulator(map_.coordinates(), count);
     long done = 0;
-    VectorXd x = x_;
     for (long decision = std::min(settings_.most_returns, first_decision);;
          decision = std::min(2 * decision, settings_.most_returns)) {
       for (; done < decision; ++done) {
         if (settings_.interrupted && done % 1024 == 0 && settings_.interrupted()) throw ComputationError("interrupted");
-        const Iterate iterate = map_.step(x, par_);
+        const Iterate iterate = map_.step(x_, par_);
         if (!iterate.image.allFinite()) break;
-        accumulator.pass(map_.tangent(x, par_), iterate.time);
-        x = iterate.image;
+        accumulator.pass(map_.tangent(x_, par_), iterate.time);
+        x_ = iterate.image;
       }
       found_.spectrum = accumulator.spectrum();
-      if (decision >= settings_.most_returns || done < decision || is_decided(done)) return;
+      if (decision >= settings_.most_returns || done < decision || is_decided(done)) break;
     }
+    growing_ = VectorXd::Zero(x_.size());  // unknown of a reduced map, whose coordinate is no state
+    if (map_.coordinates() == x_.size()) growing_ = accumulator.growing_direction();
   }
 
   double bar(long returns) const {
@@ -190,10 +249,11 @@ class Iteration {
   }
 
   void tell_kind() {
+    measure_exponents();
     const double zero = bar(std::max<long>(1, found_.spectrum->events));
     const double largest = found_.spectrum->exponents(0);
     if (largest > zero)
-      found_.kind = AttractorKind::chaotic;
+      tell_chaos(largest);
     else if (largest >= -zero)
       found_.kind = AttractorKind::quasi_periodic;
     else
@@ -203,10 +263,23 @@ class Iteration {
           settings_.max_period, 4 * settings_.max_period);
   }
 
+  /// Chaotic, unless the exponent is that of something unstable near which the iterates are.
+  void tell_chaos(double exponent) {
+    const auto begin_beside = [&](const VectorXd& change) -> std::unique_ptr<MotionBeside> {
+      return std::make_unique<IteratesBeside>(map_, x_ + change, par_, settings_);
+    };
+    const ChaosEvidence evidence = chaos_evidence(begin_beside, growing_, exponent);
+    if (evidence.is_chaotic)
+      found_.kind = AttractorKind::chaotic;
+    else
+      found_.message = fmt::format("undecided: {} are the largest exponents; {}",
+                                   largest_exponents_text(*found_.spectrum), evidence.doubt);
+  }
+
   const IteratedMap& map_;
   const ParameterVector& par_;
   const MapIteration& settings_;
-  VectorXd x_;
+  VectorXd x_, growing_;
   long steps_ = 0;
   MapAttractor found_;
   std::vector<VectorXd> points_;

@@ -25,6 +25,8 @@ struct MapIteration {
 };
 
 struct MapAttractor {
+  /// Periodic where no multiplier of the orbit tells that it is unstable, chaotic as attractor/chaos_evidence.hpp
+  /// decides.
   AttractorKind kind = AttractorKind::none;
   std::string message;  ///< why it has escaped or not settled
   int period = 0;       ///< in returns; 0: not periodic
