@@ -82,17 +82,11 @@ std::map<AttractorKind, int> AttractorSamples::kinds() const {
   return counts;
 }
 
-/// The sweeps of an exploration record states, in the last columns, whose names have no blanks.
-const std::vector<double>* AttractorSamples::state_column(int k) const {
-  const auto n = static_cast<std::size_t>(system_->dimension());
-  if (table_.columns.size() <= n) return nullptr;
-  return &table_.columns[table_.columns.size() - n + static_cast<std::size_t>(k) - 1];
-}
-
 std::optional<Eigen::VectorXd> AttractorSamples::numbers_of(const SweptAttractor& sample) const {
-  Eigen::VectorXd state(system_->dimension());
-  for (int k = 1; k <= system_->dimension(); ++k) {
-    const std::vector<double>* column = state_column(k);
+  const auto n = static_cast<int>(state_names_.size());
+  Eigen::VectorXd state(n);
+  for (int k = 1; k <= n; ++k) {
+    const std::vector<double>* column = table_.state(k, state_names_);
     if (column == nullptr || !std::isfinite((*column)[sample.row])) return std::nullopt;
     state(k - 1) = (*column)[sample.row];
   }
@@ -108,13 +102,13 @@ std::string AttractorSamples::words_of(const SweptAttractor& sample) const {
 }
 
 std::vector<std::string> AttractorSamples::further_starts(int count) const {
-  const int n = system_->dimension();
+  const auto n = static_cast<int>(state_names_.size());
   StateBox box(n);
   for (const std::string& start : table_.starts)
     if (const std::vector<double> numbers = numbers_of_start(start); std::ssize(numbers) == n)
       for (int k = 0; k < n; ++k) box.add(k, numbers[static_cast<std::size_t>(k)]);
   for (int k = 0; k < n; ++k)
-    if (const std::vector<double>* column = state_column(k + 1))
+    if (const std::vector<double>* column = table_.state(k + 1, state_names_))
       for (const double value : *column) box.add(k, value);
   if (!box.low.allFinite()) return {};
   double base = 2.0;  // the sequence of Roberts: additive, with powers of the root of g^(n+1) = g + 1

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "explore/orbit_catalogue.hpp"
+#include "files/point_columns.hpp"
 #include "hybrid/hybrid_system.hpp"
 #include "sweep/sweep_file.hpp"
 
@@ -25,9 +26,9 @@ class AttractorSamples {
  public:
   /// Of no value.
   AttractorSamples() = default;
-  /// `system` must outlive this. Throws UserError as read_sweep_file() does.
+  /// Throws UserError as read_sweep_file() does.
   AttractorSamples(const std::string& path, const HybridSystem& system)
-      : table_(read_sweep_file(path)), system_(&system) {}
+      : table_(read_sweep_file(path)), state_names_(ProblemNames::of(system).states) {}
 
   const SweepTable& table() const { return table_; }
   void for_each(const std::function<void(const SweptAttractor&)>& use) const;
@@ -49,10 +50,9 @@ class AttractorSamples {
  private:
   /// Rows of a value and start, one of them each.
   std::vector<std::size_t> first_rows() const;
-  const std::vector<double>* state_column(int k) const;
 
   SweepTable table_;
-  const HybridSystem* system_ = nullptr;
+  std::vector<std::string> state_names_;
 };
 
 SignatureWord signature_word(const SweepAttractor& attractor);

@@ -7,6 +7,7 @@
 #include "bvp/quantity.hpp"
 #include "plugin/plugin_build.hpp"
 #include "problem_type/problem_type.hpp"
+#include "sweep/sweep_file.hpp"
 #include "text/number.hpp"
 #include "text/user_error.hpp"
 #include "text/words.hpp"
@@ -46,9 +47,11 @@ ExplorationCommands::ExplorationCommands(const ExploreRequest& request, const Hy
   find_parameter("--over", system, range_);
   for (const std::string& word : request.overrides) (sets_parameter(word) ? parameters_ : constants_).push_back(word);
   if (has_added_section) watched_ = all_events(system.count(FunctionKind::event) - 1);
-  for (int k = 1; k <= system.dimension() && monitors_.size() + 2 <= max_monitors; ++k)
-    for (const char* kind : {"mean", "max"})
-      monitors_.push_back(fmt::format("{}({})", kind, state_in_monitor(system, k)));
+  for (int k = 1; k <= system.dimension() && monitors_.size() + 2 <= max_monitors; ++k) {
+    const std::string state = state_in_monitor(system, k);
+    monitors_.push_back("mean(" + state + ")");
+    monitors_.push_back(largest_value_column(state));  // as the sweep has it
+  }
 }
 
 std::string ExplorationCommands::at_value(double value) const {

@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "files/point_columns.hpp"
 #include "map_sweep/map_model.hpp"
 #include "map_sweep/map_sampler.hpp"
 #include "setup/parameter_values.hpp"
@@ -125,7 +126,7 @@ int map_sweep_problem(const SweepRequest& request, const MapRequest& map, const 
   fill_heading(loaded, setup.over, model.par, job);
   job.columns.penetration = true;
   job.columns.exponents = setup.iteration.exponents;
-  for (int k = 1; k <= system.dimension(); ++k) job.columns.states.push_back(system.state_name(k));
+  job.columns.states = ProblemNames::of(system).states;
   add_identity(map, model, setup.iteration, job.identity);
   if (!request.simulation.quiet)
     for (const std::string& line : model.text) console.screen << line << '\n';

@@ -1,11 +1,13 @@
 #include "map_sweep/section_points.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <string_view>
 #include <vector>
 
+#include "files/point_columns.hpp"
 #include "sweep/sweep_file.hpp"
 #include "text/number.hpp"
 #include "text/text_file.hpp"
@@ -104,10 +106,12 @@ std::vector<SectionPoints> of_sweep(const HybridSystem& system, const std::strin
                     path));
   std::vector<Row> rows(table.rows());
   for (Row& row : rows) row.state.resize(system.dimension());
+  const std::vector<std::string> states = ProblemNames::of(system).states;
   for (int k = 1; k <= system.dimension(); ++k) {
-    const auto* column = table.column(system.state_name(k));
+    const auto* column = table.state(k, states);
     if (column == nullptr)
-      throw UserError(fmt::format("{}: it has no column {}; record states with --section", path, system.state_name(k)));
+      throw UserError(
+          fmt::format("{}: its last columns are not {}; record states with --section", path, fmt::join(states, ", ")));
     for (std::size_t i = 0; i < rows.size(); ++i) rows[i].state(k - 1) = (*column)[i];
   }
   if (const auto* events = table.column("event"))

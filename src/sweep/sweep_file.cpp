@@ -200,6 +200,12 @@ std::string attractor_line(const SweepAttractor& attractor) {
 
 }  // namespace
 
+std::string sweep_column(std::string name) {
+  for (char& c : name)
+    if (c == ' ' || c == '\t' || c == '#') c = '_';
+  return name;
+}
+
 std::string largest_value_column(const std::string& state) { return "max(" + state + ")"; }
 
 bool is_largest_value_column(const std::string& column) { return column.starts_with("max(") && column.ends_with(')'); }
@@ -211,9 +217,18 @@ double SweptQuantity::value(long i) const {
 }
 
 const std::vector<double>* SweepTable::column(const std::string& name) const {
+  const std::string wanted = sweep_column(name);
   for (std::size_t k = 0; k < names.size() && k < columns.size(); ++k)
-    if (names[k] == name) return &columns[k];
+    if (names[k] == wanted) return &columns[k];
   return nullptr;
+}
+
+const std::vector<double>* SweepTable::state(int k, const std::vector<std::string>& state_names) const {
+  if (columns.size() < state_names.size()) return nullptr;
+  const std::size_t before = columns.size() - state_names.size();
+  for (std::size_t i = 0; i < state_names.size(); ++i)
+    if (names[before + i] != sweep_column(state_names[i])) return nullptr;
+  return &columns[before + static_cast<std::size_t>(k) - 1];
 }
 
 std::string sweep_heading(const SweepTable& table) {

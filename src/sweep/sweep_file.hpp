@@ -27,6 +27,8 @@
 
 namespace tchat {
 
+/// The name that a column has in the file: without blanks.
+std::string sweep_column(std::string name);
 /// Column of the largest value of a state: max(x1), as p-files call it.
 std::string largest_value_column(const std::string& state);
 /// Is it the name of such a column?
@@ -68,8 +70,11 @@ struct SweepTable {
   std::vector<AttractorKind> kinds;          ///< a kind a row
 
   std::size_t rows() const { return kinds.size(); }
-  /// Nothing when there is no such column.
+  /// By a name with or without blanks. Nothing when there is no such column.
   const std::vector<double>* column(const std::string& name) const;
+  /// The recorded state k, from 1, by the names of all states: these are the last columns. Nothing when none are
+  /// recorded.
+  const std::vector<double>* state(int k, const std::vector<std::string>& state_names) const;
 };
 
 /// The heading: all lines that begin with '#'.

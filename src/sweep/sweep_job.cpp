@@ -241,14 +241,14 @@ class TableWriter {
 
   std::string names() const {
     std::string line = "index";
-    for (const SweptQuantity& quantity : job_.heading.over) line += " " + word(quantity.column());
+    for (const SweptQuantity& quantity : job_.heading.over) line += " " + sweep_column(quantity.column());
     line += " start attractor kind";
     if (job_.columns.event) line += " event";
     line += " period time impacts";
     if (job_.columns.penetration) line += " penetration";
     for (int k = 1; k <= job_.columns.exponents; ++k) line += fmt::format(" lambda{} error{}", k, k);
-    for (const std::string& state : job_.columns.largest) line += " " + word(largest_value_column(state));
-    for (const std::string& state : job_.columns.states) line += " " + word(state);
+    for (const std::string& state : job_.columns.largest) line += " " + sweep_column(largest_value_column(state));
+    for (const std::string& state : job_.columns.states) line += " " + sweep_column(state);
     return line + "\n";
   }
 
@@ -273,12 +273,6 @@ class TableWriter {
   }
 
  private:
-  static std::string word(std::string name) {
-    for (char& c : name)
-      if (c == ' ' || c == '\t' || c == '#') c = '_';
-    return name;
-  }
-
   static void add_event(const AttractorSample& sample, bool is_dot, Eigen::Index dot, std::string& text) {
     if (is_dot && dot < static_cast<Eigen::Index>(sample.section_events.size()))
       fmt::format_to(std::back_inserter(text), " {}", sample.section_events[static_cast<std::size_t>(dot)]);

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "bvp/quantity.hpp"
+#include "files/point_columns.hpp"
 #include "simulate/loaded_problem.hpp"
 #include "simulate/simulation_rule.hpp"
 #include "simulate/simulation_start.hpp"
@@ -88,11 +89,9 @@ void choose_columns(const HybridSystem& system, const Recording& recording, Swee
   columns.event = recording.states == Recording::States::all_events;
   columns.penetration = recording.penetration > 0;
   columns.exponents = recording.exponents;
-  std::vector<std::string> states;
-  for (int k = 1; k <= system.dimension(); ++k) states.push_back(system.state_name(k));
   for (int k = 1; k <= system.dimension() && recording.largest; ++k)
     columns.largest.push_back(state_in_monitor(system, k));
-  if (recording.states != Recording::States::none) columns.states = std::move(states);
+  if (recording.states != Recording::States::none) columns.states = ProblemNames::of(system).states;
 }
 
 std::string recorded_text(const Recording& recording) {

@@ -76,6 +76,24 @@ TEST_CASE("a sweep written by hand is read") {
   CHECK(sweep_heading(table) == heading);
 }
 
+TEST_CASE("recorded states are found by their place: one is called as another column, one has a blank") {
+  const test_support::TemporaryFolder folder;
+  folder.write("a.sweep",
+               "# tchat sweep of Belt\n"
+               "# over mu from 0 to 1, 2 values\n"
+               "index mu start attractor kind period time impacts frame_velocity time\n"
+               "0 0 1 0 chaotic nan 6.5 nan 0.25 -3\n");
+  const SweepTable table = read_sweep_file(folder.file("a.sweep"));
+  const std::vector<std::string> states{"frame velocity", "time"};
+  REQUIRE(table.state(1, states) != nullptr);
+  REQUIRE(table.state(2, states) != nullptr);
+  CHECK((*table.state(1, states))[0] == 0.25);
+  CHECK((*table.state(2, states))[0] == -3.0);
+  CHECK((*table.column("time"))[0] == 6.5);
+  CHECK(table.column("frame velocity") == table.state(1, states));
+  CHECK(table.state(1, {"x1", "x2"}) == nullptr);
+}
+
 TEST_CASE("files that are no sweep, or damaged, are refused with their line") {
   const test_support::TemporaryFolder folder;
   const auto message = [&](const std::string& text) {
