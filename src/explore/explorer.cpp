@@ -354,29 +354,48 @@ class Explorer {
     out.finish();
   }
 
+  /// Writes what has been found, complete or not.
   int finish() {
     if (interrupted_()) diagram_.complete = false;
+    const ExploredCurves curves = curves_ ? curves_->curves() : ExploredCurves{};
+    measure_sweeps();
+    plan_pictures(curves);
+    write_tree(curves);
+    write_makefile(curves);
+    print_warnings(std::cerr, draw_pictures(diagram_.last_jobs, commands_.folder(), interrupted_));
+    return diagram_.branches.empty() ? 1 : 0;
+  }
+
+  void measure_sweeps() {
     for (const Sweep& sweep : sweeps_) measure_coverage(sweep, catalogue_, commands_, diagram_);
     for (UnexplainedAttractor& one : diagram_.unexplained)
       if (const auto met = met_.find(one.attractor); met != met_.end()) one.leads_to = met->second;
+  }
+
+  void plan_pictures(const ExploredCurves& curves) {
     const std::string& folder = commands_.folder();
     if (!sweeps_.empty())
       add_pictures({folder, commands_.path("sweep.sweep"), commands_.monitors(), request_.quantity},
                    sweeps_.front().samples.table(), diagram_);
-    const ExploredCurves curves = curves_ ? curves_->curves() : ExploredCurves{};
-    std::vector<std::string> curve_files;
-    for (const ExploredCurve& curve : curves.curves) curve_files.push_back(curve.job.outputs.front());
-    add_curve_picture(folder, curve_files, curves.second, diagram_);
+    std::vector<std::string> files;
+    for (const ExploredCurve& curve : curves.curves) files.push_back(curve.job.outputs.front());
+    add_curve_picture(folder, files, curves.second, diagram_);
+  }
+
+  /// O.txt, which is shown as well, and O.json.
+  void write_tree(const ExploredCurves& curves) const {
     const std::string text = tree_text(diagram_) + curves_text(curves);
+    write(commands_.folder() + ".txt", text);
+    write(commands_.folder() + ".json", tree_json(diagram_, curves_json(curves)));
+    show("\n" + text);
+  }
+
+  void write_makefile(const ExploredCurves& curves) const {
+    const fs::path folder(commands_.folder());
     std::vector<CommandJob> jobs = jobs_of(diagram_);
     for (const CommandJob* const job : curve_jobs(curves)) jobs.push_back(*job);
-    write(folder + ".txt", text);
-    write(folder + ".json", tree_json(diagram_, curves_json(curves)));
-    write((fs::path(folder).parent_path() / ("Makefile." + fs::path(folder).filename().string())).string(),
-          exploration_makefile(jobs, diagram_.last_jobs, folder));
-    show("\n" + text);
-    print_warnings(std::cerr, draw_pictures(diagram_.last_jobs, folder, interrupted_));
-    return diagram_.branches.empty() ? 1 : 0;
+    write((folder.parent_path() / ("Makefile." + folder.filename().string())).string(),
+          exploration_makefile(jobs, diagram_.last_jobs, commands_.folder()));
   }
 
   ExploreRequest request_;
