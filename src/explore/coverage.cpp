@@ -24,13 +24,15 @@ bool is_followed(const SweepAttractor& attractor) {
   return attractor.kind == AttractorKind::periodic || attractor.kind == AttractorKind::rest;
 }
 
-std::string branch_of(const OrbitCatalogue& catalogue, const Sweep& sweep, const SweptAttractor& sample) {
+std::vector<std::string> branches_of(const OrbitCatalogue& catalogue, const Sweep& sweep,
+                                     const SweptAttractor& sample) {
   if (sample.attractor->kind == AttractorKind::rest) {
     const auto state = sweep.samples.numbers_of(sample);
-    return state ? catalogue.branch_with_state(sample.value, *state) : "";
+    const std::string branch = state ? catalogue.branch_with_state(sample.value, *state) : "";
+    return branch.empty() ? std::vector<std::string>{} : std::vector<std::string>{branch};
   }
   const SignatureWord word = sweep.is_cut ? SignatureWord{{1, 0, 0}} : signature_word(*sample.attractor);
-  return catalogue.branch_with(word, sample.value, sample.period, sweep.samples.values_of(sample, sweep.monitors));
+  return catalogue.branches_with(word, sample.value, sample.period, sweep.samples.values_of(sample, sweep.monitors));
 }
 
 void measure_coverage(const Sweep& sweep, const OrbitCatalogue& catalogue, const ExplorationCommands& commands,
@@ -39,7 +41,9 @@ void measure_coverage(const Sweep& sweep, const OrbitCatalogue& catalogue, const
   std::map<int, UnexplainedAttractor> missing;
   sweep.samples.for_each([&](const SweptAttractor& sample) {
     const SweepAttractor& known = *sample.attractor;
-    if (is_followed(known) && !branch_of(catalogue, sweep, sample).empty()) {
+    const std::size_t branches = is_followed(known) ? branches_of(catalogue, sweep, sample).size() : 0;
+    if (branches > 1) ++diagram.on_several;
+    if (branches > 0) {
       ++diagram.on_branches;
       return;
     }

@@ -21,8 +21,9 @@ struct Sweep {
 /// Does a branch begin at such an attractor? At periodic ones and those at rest.
 bool is_followed(const SweepAttractor& attractor);
 
-/// The branch that the attractor of a value lies on; "" where there is none.
-std::string branch_of(const OrbitCatalogue& catalogue, const Sweep& sweep, const SweptAttractor& sample);
+/// The branches that the attractor of a value lies on: by its state where it rests, else by signature, period and
+/// largest values, which several branches may share.
+std::vector<std::string> branches_of(const OrbitCatalogue& catalogue, const Sweep& sweep, const SweptAttractor& sample);
 
 /// Adds the sweep's counts to the diagram, and its attractors on no branch.
 void measure_coverage(const Sweep& sweep, const OrbitCatalogue& catalogue, const ExplorationCommands& commands,

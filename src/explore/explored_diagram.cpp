@@ -18,15 +18,24 @@ std::string json(int value) { return json_value(value); }
 
 std::string percent(int part, int whole) { return fmt::format("{:.4g} %", 100.0 * part / whole); }
 
-/// "341 of 341 periodic attractors of the sweep lie on branches (100 %)"
+/// How periodic attractors are known to lie on branches.
+std::string evidence_text(const ExploredDiagram& diagram) {
+  if (diagram.periodic == 0) return "";
+  const std::string several =
+      diagram.on_several == 0 ? "" : fmt::format("; {} match more than one branch", diagram.on_several);
+  return fmt::format(", {}by signature, period and largest values{}", diagram.at_rest > 0 ? "periodic ones " : "",
+                     several);
+}
+
+/// "341 of 341 periodic attractors of the sweep lie on branches (100 %), by signature, period and largest values"
 std::string coverage_text(const ExploredDiagram& diagram) {
   const int known = diagram.periodic + diagram.at_rest;
   if (known == 0) return "no periodic attractor, none at rest";
   const char* const kinds = diagram.at_rest == 0    ? "periodic attractors"
                             : diagram.periodic == 0 ? "equilibria"
                                                     : "periodic attractors and equilibria";
-  return fmt::format("{} of {} {} of the sweep lie on branches ({})", diagram.on_branches, known, kinds,
-                     percent(diagram.on_branches, known));
+  return fmt::format("{} of {} {} of the sweep lie on branches ({}){}", diagram.on_branches, known, kinds,
+                     percent(diagram.on_branches, known), evidence_text(diagram));
 }
 
 /// Values and starts that lead elsewhere, with their share of all.
@@ -137,11 +146,12 @@ std::string tree_json(const ExploredDiagram& diagram, const std::string& further
   });
   return fmt::format(
       "{{\"parameter\": {}, \"quantity\": {}, \"complete\": {}, \"periodic\": {}, \"at_rest\": {}, \"on_branches\": "
-      "{}, "
+      "{}, \"on_several\": {}, "
       "\"others\": {}, \"left\": {},\n\"unexplained\": {},\n\"joins\": {},\n\"failures\": {},\n\"branches\": {}{}}}\n",
       json(diagram.parameter), json(diagram.quantity), diagram.complete, json(diagram.periodic), json(diagram.at_rest),
-      json(diagram.on_branches), counts_json(diagram.others), counts_json(diagram.left), unexplained,
-      json_list(diagram.joins), json_list(diagram.failures), json_list(diagram.branches, branch_json), further);
+      json(diagram.on_branches), json(diagram.on_several), counts_json(diagram.others), counts_json(diagram.left),
+      unexplained, json_list(diagram.joins), json_list(diagram.failures), json_list(diagram.branches, branch_json),
+      further);
 }
 
 std::vector<CommandJob> jobs_of(const ExploredDiagram& diagram) {

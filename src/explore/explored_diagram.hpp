@@ -56,6 +56,7 @@ struct ExploredDiagram {
   std::vector<std::string> failures;  ///< commands that failed, with their messages
   std::vector<UnexplainedAttractor> unexplained;
   int periodic = 0, at_rest = 0, on_branches = 0;  ///< attractors over all values and starts
+  int on_several = 0;                              ///< periodic ones that more than one branch may have
   std::map<std::string, int> others;               ///< motions of other kinds: chaotic, ...
   bool complete = true;                            ///< false: interrupted
   std::map<std::string, int> left;  ///< what a budget left: how many labels and attractors were not followed

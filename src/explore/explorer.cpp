@@ -171,7 +171,8 @@ class Explorer {
       std::set<int> numbers;
       sweep.samples.for_each([&](const SweptAttractor& sample) {
         const SweepAttractor& attractor = *sample.attractor;
-        if (!is_followed(attractor) || is_too_long(attractor) || !branch_of(catalogue_, sweep, sample).empty()) return;
+        if (!is_followed(attractor) || is_too_long(attractor) || !branches_of(catalogue_, sweep, sample).empty())
+          return;
         const std::string name = fmt::format("{}{}", sweep.letter, attractor.number);
         if (!numbers.insert(attractor.number).second || !tried_.insert({name, sample.value}).second) return;
         const std::string words = sweep.samples.words_of(sample);

@@ -205,18 +205,22 @@ std::vector<std::string> OrbitCatalogue::branches_at(const CataloguedSection& li
   return branches;
 }
 
-std::string OrbitCatalogue::branch_with(const SignatureWord& signature, double parameter, double period,
-                                        const std::vector<double>& monitors) const {
+std::vector<std::string> OrbitCatalogue::branches_with(const SignatureWord& signature, double parameter, double period,
+                                                       const std::vector<double>& monitors) const {
   const PrimitiveWord wanted = primitive_word(signature);
+  std::vector<std::string> branches;
   for (const CataloguedSection& known : sections_) {
     if (known.rests || known.signature.word != wanted.word) continue;
-    for (const InterpolatedPoint& orbit : orbits_at(known, parameter)) {
+    const std::vector<InterpolatedPoint> orbits = orbits_at(known, parameter);
+    const bool has_one = std::any_of(orbits.begin(), orbits.end(), [&](const InterpolatedPoint& orbit) {
       const double time = orbit.numbers(0) * known.signature.repetitions;
       const double tolerance = 2.0 * orbit.uncertainty(0) * known.signature.repetitions + 1e-4 * std::abs(period);
-      if (std::abs(time - period) <= tolerance && about_agree(orbit, monitors)) return known.branch;
-    }
+      return std::abs(time - period) <= tolerance && about_agree(orbit, monitors);
+    });
+    if (has_one && std::find(branches.begin(), branches.end(), known.branch) == branches.end())
+      branches.push_back(known.branch);
   }
-  return "";
+  return branches;
 }
 
 }  // namespace tchat

@@ -62,10 +62,10 @@ class OrbitCatalogue {
   /// Where a branch passes the parameter value of point `row` of `like` with numbers as near as that.
   std::vector<BranchPlace> places_near(const std::string& branch, const CataloguedSection& like,
                                        Eigen::Index row) const;
-  /// The branch with an orbit of this signature and period at the parameter value, whose monitors are about these (NaN:
-  /// not known); "" where there is none.
-  std::string branch_with(const SignatureWord& signature, double parameter, double period,
-                          const std::vector<double>& monitors) const;
+  /// The branches with an orbit of this signature and period at the parameter value, whose monitors are about these
+  /// (NaN: not known), each once.
+  std::vector<std::string> branches_with(const SignatureWord& signature, double parameter, double period,
+                                         const std::vector<double>& monitors) const;
   /// The branch with this equilibrium.
   std::string branch_with_state(double parameter, const Eigen::VectorXd& state) const;
 
