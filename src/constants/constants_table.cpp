@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "hybrid/hybrid_system.hpp"
+#include "problem_type/point_type.hpp"
 #include "problem_type/problem_type.hpp"
 #include "text/near_words.hpp"
 
@@ -29,11 +30,6 @@ constexpr double largest_weight = 1e15;  // beyond it rounding of one entry hide
 constexpr double last_parameter = first_name + max_names;  // names stand there
 constexpr double max_list = 100000;                        // length of lists that nothing else bounds
 constexpr std::string_view kept = "read and kept, no effect";
-constexpr std::string_view type_with_count =
-    "a type with a count (BP, LP, HB, PD, TR, UZ, GR, BE, XI, GC, EX, EP, MX or RG, of curves CP, R1, ..., R4, GPD, "
-    "CH, "
-    "LPD, LTR, PTR, TTR, BT, ZH or GH) and a number";
-
 std::vector<int> with_zero(std::vector<int> choices) {
   choices.push_back(0);
   return choices;
@@ -41,6 +37,10 @@ std::vector<int> with_zero(std::vector<int> choices) {
 
 std::vector<Constant> make_table() {
   static const std::string families = problem_families();
+  static const std::string types = all_type_names();
+  static const std::string label =
+      fmt::format("a label number >= 0, or a type with a count (PD1: {}, and a number)", types);
+  static const std::string type_with_count = fmt::format("a type with a count ({}) and a number", types);
   const SegmentInteger segment_type{&SegmentSettings::type, nullptr};
   const SegmentInteger field{nullptr, &IndexVector::field};
   const SegmentInteger event{nullptr, &IndexVector::event, true};
@@ -48,10 +48,7 @@ std::vector<Constant> make_table() {
   return {
       {"NDIM", "number of states of one segment", 1, &R::dimension, range(1, most_states), "", "5", ""},
       {"IPS", "problem type", 1, &R::problem_type, one_of(problem_type_numbers()), families, "180", ""},
-      {"IRS", "label to start from, 0: from data", 1, &R::start, at_least(0),
-       "a label number >= 0, or a type with a count (PD1: BP, LP, HB, PD, TR, UZ, GR, BE, XI, GC, EX, EP, MX or RG, of "
-       "curves CP, R1, ..., R4, GPD, CH, LPD, LTR, PTR, TTR, BT, ZH or GH, and a number)",
-       "PD1", ""},
+      {"IRS", "label to start from, 0: from data", 1, &R::start, at_least(0), label, "PD1", ""},
       {"ILP", "detect folds; negative: and stop there", 1, &R::detect_folds, range(-1, 1), "", "1", ""},
       {"NICP", "number of free parameters listed", 2, ListCount{"ICP"}, range(1, max_segments), "", "3", ""},
       {"ICP", "free parameters, durations included", 2, &R::free_parameters, range(1, last_parameter),

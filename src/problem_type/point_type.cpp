@@ -1,6 +1,7 @@
 #include "problem_type/point_type.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -103,6 +104,15 @@ constexpr auto table = std::to_array<PointTypeFacts>({
 }  // namespace
 
 std::span<const PointTypeFacts> point_types() { return table; }
+
+std::string all_type_names() {
+  std::vector<std::string_view> names;
+  for (const PointTypeFacts& row : table)
+    if (std::find(names.begin(), names.end(), row.name) == names.end()) names.emplace_back(row.name);
+  const std::string_view last = names.back();
+  names.pop_back();
+  return fmt::format("{} or {}", fmt::join(names, ", "), last);
+}
 
 const PointTypeFacts* find_point_type(std::string_view name) {
   const auto found = std::find_if(table.begin(), table.end(), [=](const auto& row) { return row.name == name; });

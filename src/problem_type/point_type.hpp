@@ -87,6 +87,8 @@ struct PointTypeFacts {
 
 /// All types of points, in the order in which messages and pages name them.
 std::span<const PointTypeFacts> point_types();
+/// The letters of all, each once: "BP, LP, ... or TTR".
+std::string all_type_names();
 /// The first of these letters; null for others.
 const PointTypeFacts* find_point_type(std::string_view name);
 /// Of a number in files; null for unknown numbers. A UZ point whose kind is unknown has the row of kind none.
