@@ -26,10 +26,10 @@ class DefiningSystem;
 
 class HopfPair final : public OrbitCondition {
  public:
-  HopfPair(const DefiningSystem& system, const OrbitShape& shape);
+  /// `mode`: where it begins, which of the oscillations about the imaginary axis, 1 the slowest; 0: the nearest to it.
+  HopfPair(const DefiningSystem& system, const OrbitShape& shape, int mode = 0);
 
-  /// False where no plane is found near the last one. The first plane is that of the oscillation nearest to the
-  /// imaginary axis.
+  /// False where no plane is found near the last one.
   bool evaluate(CondensedSystem& condensed, const Orbit& x) override;
   double value(int = 0) const override { return pair_.trace(); }
   const OrbitVector& gradient(int = 0) const override { return gradient_; }
@@ -60,6 +60,7 @@ class HopfPair final : public OrbitCondition {
   void add_gradient(const Orbit& x, const Eigen::VectorXd& v, const Eigen::VectorXd& w);
 
   const DefiningSystem& system_;
+  int mode_;
   Eigen::MatrixXd jacobian_, by_state_, by_parameter_;
   Eigen::VectorXd field_;
   std::vector<double> direction_;  // v and no change of the parameters

@@ -155,8 +155,8 @@ std::vector<Constant> make_table() {
        "locate GPD and CH on curves of PD and TR, where the cubic coefficient of the normal form is zero: one "
        "sparse factorisation more at every point",
        extension_record, &R::cubic_terms, one_of({0, 1}), "0 (no) or 1 (yes)", "1", "of ISW = 2"},
-      {"MODE", "oscillation that a family starts with at an equilibrium, 1: the slowest", extension_record, &R::mode,
-       at_least(1), "", "2", "with CONSERVED and ISW = -1"},
+      {"MODE", "oscillation that a family or curve starts with at an equilibrium, 1: the slowest", extension_record,
+       &R::mode, at_least(1), "", "2", "with CONSERVED and ISW = -1, and at HH"},
       {"ICPMOVE", "let ICP(1) move where no orbit is found at its first value", extension_record, &R::start_may_move,
        one_of({0, 1}), "0 (refuse such a start) or 1 (take an orbit near it, with another value)", "1", ""},
       {"CLSTOP", "end the branch where it comes back to its first point", extension_record, &R::stop_when_closed,

@@ -172,12 +172,13 @@ class PageBranchWriter {
                        sibling_path(file_.path, 'r'));
   }
 
-  /// Words of a run on the branch that is born at the label, or "".
+  /// Words of a run on the branch or curve that is born at the label, or "".
   std::string birth(std::size_t s, std::size_t k) const {
     const PointSection& section = file_.sections[s];
     const std::optional<int> principal = section.parameter_of_column(0);
-    if (section.curve_type != 0 || !principal) return "";
-    return birth_words(basic_type(section.rows[k].type), section.problem_type, section.parameter_name(*principal));
+    if (!principal) return "";
+    return birth_words(label_type(section.rows[k].type), section.problem_type, section.curve_type != 0,
+                       section.parameter_name(*principal));
   }
 
   std::string kind(std::size_t s, const LabelledSolution& solution) const {

@@ -59,6 +59,9 @@ constexpr auto table = std::to_array<PointTypeFacts>({
      false, false},
     {"GH", -32, UserPointKind::none, "generalized Hopf (Bautin) point on a curve of Hopf bifurcations",
      PointSymbol::diamond, false, true, false, true},
+    {"HH", 33, UserPointKind::none,
+     "double Hopf point on a curve of Hopf bifurcations: two pairs of eigenvalues on the imaginary axis",
+     PointSymbol::reversed_triangle, false, true, false, true},
     {"R1", -5, UserPointKind::none, "1:1 resonance on a curve of folds or torus bifurcations, which ends there",
      PointSymbol::reversed_triangle, false, true, false, false},
     {"R2", -6, UserPointKind::none,
@@ -70,6 +73,9 @@ constexpr auto table = std::to_array<PointTypeFacts>({
      false, false},
     {"GPD", -71, UserPointKind::none,
      "generalised period doubling on a curve of period doublings: the coefficient c of the normal form is zero",
+     PointSymbol::triangle, false, true, false, true},
+    {"GPD", -51, UserPointKind::none,
+     "generalised period doubling, where a curve of folds of doubled orbits begins: their halves are the same",
      PointSymbol::triangle, false, true, false, true},
     {"CH", -81, UserPointKind::none,
      "Chenciner point on a torus curve: the coefficient Re d of the normal form is zero", PointSymbol::diamond, false,
@@ -176,6 +182,8 @@ std::vector<PointType> curves_through(int type) {
     case PointType::bogdanov_takens:
     case PointType::zero_hopf:
       return {PointType::equilibrium_fold, PointType::hopf};
+    case PointType::double_hopf:
+      return {PointType::hopf};
     default:
       return {};
   }

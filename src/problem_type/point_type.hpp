@@ -31,6 +31,7 @@ enum class PointType {
   cusp = -2,               ///< on fold curves
   zero_hopf = -3,          ///< on curves of folds and Hopf points of equilibria
   generalized_hopf = -32,  ///< on curves of Hopf points; with its tens digit, for -2 is the cusp
+  double_hopf = 33,        ///< on curves of Hopf points, with its tens digit
   resonance_1 = -5,        ///< 1:1, on fold and torus curves
   resonance_2 = -6,        ///< 1:2, on period-doubling and torus curves
   resonance_3 = -7,        ///< 1:3, on torus curves
@@ -44,6 +45,7 @@ enum class PointType {
   torus_and_doubling = 87,     ///< on torus curves
   two_tori = 88,               ///< on torus curves
   generalized_doubling = -71,  ///< on curves of period doublings
+  doubled_fold_end = -51,      ///< the same on curves of folds of doubled orbits, which begin there
   chenciner = -81              ///< on torus curves
 };
 

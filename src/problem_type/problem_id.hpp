@@ -8,6 +8,7 @@ struct ProblemId {
   int branch_mode;  ///< ISW
 };
 inline constexpr ProblemId periodic_orbit{180, 1};
+inline constexpr ProblemId orbit_curve{180, 2};
 inline constexpr ProblemId branch_switch{180, -1};
 inline constexpr ProblemId grazing_orbit{150, 1};
 inline constexpr ProblemId invariant_torus{182, 1};

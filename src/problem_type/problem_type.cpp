@@ -117,10 +117,10 @@ std::string curve_name(int number, int curve_type) {
 
 bool has_two_parameter_curves(int number) { return !problem_types_of(number, in_two_parameters).empty(); }
 
-std::string birth_words(int label_type, int number, const std::string& principal) {
+std::string birth_words(int label_type, int number, bool in_two_parameters, const std::string& principal) {
   const auto is_born = [&](const ProblemType* type) {
     const ProblemFacts& facts = type->facts();
-    return facts.switches_branch && type->begins_at(label_type) &&
+    return facts.switches_branch && facts.in_two_parameters == in_two_parameters && type->begins_at(label_type) &&
            number == (facts.starts_from == 0 ? facts.number : facts.starts_from);
   };
   const auto all = problem_types();

@@ -41,7 +41,7 @@ struct ProblemFacts {
   bool keeps_contact = false;    ///< a segment ends in grazing contact (GCSEGTYP = 2); GCIPSI lists n of xi_n
   bool may_double = false;       ///< the branch may have twice as many segments as its start
   bool may_conserve = false;     ///< CONSERVED has a meaning
-  bool switches_branch = false;  ///< goes on as the type that ISW = 1 names, on either side of its start
+  bool switches_branch = false;  ///< goes on as another type, that of ISW = 1 or 2, on either side of its start
   const char* starts_at = "a branch point (BP)";  ///< the labels at which such a switch starts
   const char* start_example = "BP";               ///< of types whose curve has no number, too
   int starts_from = 0;                            ///< IPS of those labels; 0: its own
@@ -117,8 +117,8 @@ std::string curve_name(int number, int curve_type);
 bool has_two_parameter_curves(int number);
 /// Words of `tchat run` that follow the branch born at a label, after IRS: " IPS=182 ISW=-1 'ICP=[a,rho]'"; "" where
 /// none is. `label_type`: its number without the tens digit of a curve; `number`: IPS of the label's branch;
-/// `principal`: the name of ICP(1).
-std::string birth_words(int label_type, int number, const std::string& principal);
+/// `in_two_parameters`: it is a curve; `principal`: the name of ICP(1).
+std::string birth_words(int label_type, int number, bool in_two_parameters, const std::string& principal);
 /// AUTO's own boundary value problems have no multipliers.
 bool has_multipliers(int number);
 /// One multiplier is critical all along, so that stability is none.

@@ -49,8 +49,10 @@ BranchCurve fold(const EquilibriumSystem& system, const RunSettings&, const Sele
   return curve_of(system, std::make_unique<EquilibriumFold>(system, start.start.orbit.shape), equilibrium_fold_tests);
 }
 
-BranchCurve hopf(const EquilibriumSystem& system, const RunSettings&, const SelectedStart& start) {
-  return curve_of(system, std::make_unique<HopfPair>(system, start.start.orbit.shape), hopf_curve_tests);
+/// Two curves cross at a double Hopf point: MODE chooses one.
+BranchCurve hopf(const EquilibriumSystem& system, const RunSettings& run, const SelectedStart& start) {
+  const int mode = start.type == static_cast<int>(PointType::double_hopf) ? run.mode : 0;
+  return curve_of(system, std::make_unique<HopfPair>(system, start.start.orbit.shape, mode), hopf_curve_tests);
 }
 
 /// The event function that is zero at a start: that of a BE label, elsewhere the monitored one nearest to zero. A BE

@@ -15,6 +15,7 @@
 #include "problem_types/problem_types.hpp"
 #include "problem_types/torus_pair.hpp"
 #include "run/branch_switch.hpp"
+#include "run/codimension_two_switch.hpp"
 #include "run/hopf_switch.hpp"
 #include "run/problem_row.hpp"
 #include "special_points/bifurcation_tests.hpp"
@@ -60,8 +61,20 @@ ProblemFacts switch_facts(const char* title, bool may_double) {
           .may_double = may_double,
           .may_conserve = true,
           .switches_branch = true,
-          .starts_at = "a period doubling (PD), a branch point (BP) or a Hopf bifurcation of equilibria (HB)",
+          .starts_at =
+              "a period doubling (PD), a branch point (BP) or a Hopf bifurcation of equilibria (HB), in two "
+              "parameters at GPD, R2, GH, ZH and HH",
           .start_example = "PD"};
+}
+
+/// Of the curve of `type` points that begins at a label of codimension two.
+ProblemFacts beginning_facts(PointType type, int starts_from, const char* title) {
+  ProblemFacts facts = curve_facts(type, orbit_curve.branch_mode, title);
+  facts.branch_mode = branch_switch.branch_mode;
+  facts.may_double = starts_from == periodic_orbit.number;
+  facts.switches_branch = true;
+  facts.starts_from = starts_from;
+  return facts;
 }
 
 std::unique_ptr<PeriodicOrbitSystem> ring(const HybridSystem& system, const RunSettings& settings,
@@ -102,7 +115,7 @@ BranchCurve fold(const PeriodicOrbitSystem& system, const RunSettings&, const Se
                   [&system](TestList& tests, const CriticalMultiplier& condition) {
                     tests.push_back(cusp_test(condition));
                     tests.push_back(double_multiplier_test(PointType::resonance_1, condition));
-                    add_meetings(tests, system, fold_curve_meetings());
+                    add_meetings(tests, system, fold_curve_meetings(system));
                   });
 }
 
@@ -194,7 +207,7 @@ std::vector<const ProblemType*> periodic_orbit_types() {
                                   {PointType::branch_point}, ring, branch_point<PeriodicOrbitSystem>,
                                   start_generic_branch_points);
   static const Ring double_events({.number = periodic_orbit.number,
-                                   .branch_mode = 2,
+                                   .branch_mode = orbit_curve.branch_mode,
                                    .curve = -static_cast<int>(PointType::user),  // GR labels are UZ in files
                                    .family = periodic_orbit_family,
                                    .solutions = "periodic orbits",
@@ -207,9 +220,24 @@ std::vector<const ProblemType*> periodic_orbit_types() {
   ProblemFacts births_at_hopf = switch_facts("the periodic orbits that are born at an HB label of equilibria", false);
   births_at_hopf.starts_from = equilibrium.number;
   static const SwitchRow births(births_at_hopf, {PointType::hopf}, begin_periodic_orbits);
-  return {&orbits,    &folds,     &doublings,     &tori,      &persistent_branch_points,
-          &extrema_2, &angles,    &branch_points, &extrema_3, &extrema_4,
-          &extrema_5, &extrema_6, &double_events, &switches,  &births};
+  static const SwitchRow folds_of_doubled(
+      beginning_facts(PointType::fold, periodic_orbit.number, "the folds of doubled orbits that begin at a GPD label"),
+      {PointType::generalized_doubling}, begin_fold_curve);
+  static const SwitchRow tori_of_doubled(
+      beginning_facts(PointType::torus, periodic_orbit.number,
+                      "the torus bifurcations of doubled orbits that begin at an R2 label"),
+      {PointType::resonance_2}, begin_torus_curve);
+  static const SwitchRow folds_of_born(
+      beginning_facts(PointType::fold, equilibrium.number, "the folds of periodic orbits that begin at a GH label"),
+      {PointType::generalized_hopf}, begin_fold_curve);
+  static const SwitchRow tori_of_born(
+      beginning_facts(PointType::torus, equilibrium.number,
+                      "the torus bifurcations of periodic orbits that begin at a ZH or HH label"),
+      {PointType::zero_hopf, PointType::double_hopf}, begin_torus_curve);
+  return {&orbits,           &folds,           &doublings,     &tori,        &persistent_branch_points,
+          &extrema_2,        &angles,          &branch_points, &extrema_3,   &extrema_4,
+          &extrema_5,        &extrema_6,       &double_events, &switches,    &births,
+          &folds_of_doubled, &tori_of_doubled, &folds_of_born, &tori_of_born};
 }
 
 }  // namespace tchat

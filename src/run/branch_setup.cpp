@@ -42,15 +42,23 @@ const ProblemType& type_of_curve(const HybridSystem& system, const RunSettings& 
                   settings.curve, settings.problem_type, settings.branch_mode, names.empty() ? "no points" : names));
 }
 
-/// The type that the start chooses, where IPS and ISW leave a choice: by the curve that a label was computed on, else
-/// by its own type, and by what its orbit is where types share such labels.
+/// The types of labels by which a start chooses what begins there: that of the curve it was computed on, else its own.
+/// A switch leaves the curve, and asks for the label's own first.
+std::vector<int> deciding_types(const SelectedStart& selected, bool switches) {
+  const int of_curve = curve_type(selected.type);
+  std::vector<int> types = of_curve > 0 ? std::vector<int>{of_curve} : selected.types;
+  if (switches) types.insert(types.begin(), label_type(selected.type));
+  return types;
+}
+
+/// The type that the start chooses, where IPS and ISW leave a choice, and by what its orbit is where types share such
+/// labels.
 const ProblemType& type_at(const HybridSystem& system, const RunSettings& settings, const SelectedStart& selected) {
   const ProblemType& first = problem_type(settings.problem_type, settings.branch_mode);
   if (!settings.curve.empty() && first.facts().in_two_parameters) return type_of_curve(system, settings, selected);
-  const int of_label = curve_type(selected.type);
-  for (const int label_type : of_label > 0 ? std::vector<int>{of_label} : selected.types)
+  for (const int of_label : deciding_types(selected, first.facts().switches_branch))
     for (const ProblemType* type : problem_types_of(settings.problem_type, settings.branch_mode))
-      if (type->begins_at(label_type) && type->accepts(system, settings, selected)) return *type;
+      if (type->begins_at(of_label) && type->accepts(system, settings, selected)) return *type;
   if (first.facts().curve == 0) return first;
   const std::string name = type_name(selected.type, selected.kind);
   std::string curves;

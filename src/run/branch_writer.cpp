@@ -134,7 +134,7 @@ void BranchWriter::point(const BranchPoint& point) {
   if (point.labelled())
     labels_.push_back({line_.label,
                        fmt::format("{}", fmt::join(type_names(line_.type, line_.kind, point.special.further), " ")),
-                       place(line_), description_of(recorded), basic_type(line_.type), line_.kind});
+                       place(line_), description_of(recorded), label_type(line_.type), line_.kind});
 }
 
 /// User functions are for output only: one that is not finite stops nothing, so it is reported, once.

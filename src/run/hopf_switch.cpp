@@ -15,6 +15,7 @@
 #include "hybrid/identity_jump.hpp"
 #include "linear_algebra/dense_matrix.hpp"
 #include "problem_type/family.hpp"
+#include "problem_type/point_type.hpp"
 #include "problem_type/problem_type.hpp"
 #include "run/unwatched_events.hpp"
 #include "setup/problem_setup.hpp"
@@ -109,8 +110,12 @@ Oscillation oscillation_at(const DefiningSystem& equilibria, const Orbit& x, con
   return oscillation_of(equilibria, x, std::abs(pair.first.imag()));
 }
 
+bool is_label(const SelectedStart& selected, PointType type) {
+  return label_type(selected.type) == static_cast<int>(type);
+}
+
 /// Where a function is conserved pairs are on the imaginary axis for all values of the parameters (Lyapunov's
-/// families): MODE chooses one.
+/// families), at a double Hopf point two are: MODE chooses one.
 Oscillation chosen_oscillation(const DefiningSystem& equilibria, const Orbit& x, const SelectedStart& selected,
                                int mode) {
   const std::vector<Complex> eigenvalues = equilibrium_eigenvalues(equilibria, x).values;
@@ -133,6 +138,14 @@ Oscillation chosen_oscillation(const DefiningSystem& equilibria, const Orbit& x,
                                 fmt::join(omegas, ", "),
                                 omegas.size() == 1 ? "1" : fmt::format("1 to {}", omegas.size())));
   return oscillation_of(equilibria, x, omegas[static_cast<std::size_t>(mode - 1)]);
+}
+
+/// The equilibrium of the label, corrected; at a zero-Hopf point, where f_x is singular, as it is stored.
+Orbit equilibrium_of(const EquilibriumSystem& equilibria, const RunSettings& settings, const SelectedStart& selected) {
+  if (is_label(selected, PointType::zero_hopf)) return selected.start.orbit;
+  PathFollower along(equilibria, selected.start.orbit.shape, weighted_norm(settings), newton_settings(settings),
+                     settings.free_parameters.front());
+  return first_point(along, equilibria, selected, settings).point.orbit;
 }
 
 /// Turns the phase so that h_x v is a positive multiple of i: h is zero at the ends of the period, and falls there.
@@ -189,11 +202,10 @@ BranchSetup begin_periodic_orbits(const HybridSystem& system, const RunSettings&
 
   const RunSettings before = of_equilibrium(settings);
   const EquilibriumSystem equilibria(system, before.signature(), free_problem_parameters(before));
-  PathFollower along(equilibria, selected.start.orbit.shape, weighted_norm(before), newton_settings(before),
-                     before.free_parameters.front());
-  const Orbit x = first_point(along, equilibria, selected, before).point.orbit;
-  Oscillation oscillation = settings.conserved.empty() ? oscillation_at(equilibria, x, selected)
-                                                       : chosen_oscillation(equilibria, x, selected, settings.mode);
+  const Orbit x = equilibrium_of(equilibria, before, selected);
+  const bool has_several = !settings.conserved.empty() || is_label(selected, PointType::double_hopf);
+  Oscillation oscillation = has_several ? chosen_oscillation(equilibria, x, selected, settings.mode)
+                                        : oscillation_at(equilibria, x, selected);
   const int event = settings.segments.front().index.event;
   if (event != no_function) begin_on_section(system, event, x, selected, oscillation.vector);
 

@@ -45,7 +45,8 @@ std::string run_words(const NextStart& start, const RunSettings& settings, const
   const int principal = principal_parameter(settings);
   if (principal == 0) return "";
   const std::string first = system.parameter_name(principal);
-  if (const std::string words = birth_words(start.type, settings.problem_type, first); !words.empty()) return words;
+  if (const std::string words = birth_words(start.type, settings.problem_type, false, first); !words.empty())
+    return words;
   const int second = other_parameter(principal, settings, system);
   if (second == 0 || curve_of(start.type, settings.problem_type) == nullptr) return "";
   return fmt::format(" ISW=2 {}", quoted_for_shell(fmt::format("ICP=[{},{}]", first, system.parameter_name(second))));
@@ -141,6 +142,14 @@ std::string crossing_curve(const NextStart& start, const RunSettings& settings) 
   return "";
 }
 
+/// Words of `tchat run` that follow from a label of a curve the one that begins there, or another one that goes through
+/// it; "" where there is none.
+std::string words_on_curve(const NextStart& start, const RunSettings& settings) {
+  if (const std::string words = birth_words(start.type, settings.problem_type, true, ""); !words.empty()) return words;
+  const std::string name = crossing_curve(start, settings);
+  return name.empty() ? "" : " CURVE=" + name;
+}
+
 /// Why ISW = 2 and two parameters do not follow the points of a label; "" where they do.
 std::string why_no_curve(const NextStart& start, const RunSettings& settings) {
   const ProblemType& type = problem_type(settings);
@@ -177,9 +186,15 @@ std::string resegmentation_target(const UserPointKind& kind, const RunSettings& 
 std::string next_command(const NextStart& start, const RunSettings& settings, const HybridSystem& system,
                          const std::string& problem, const std::string& output) {
   const ProblemType& type = problem_type(settings);
-  if (type.facts().in_two_parameters || type.facts().curve != 0) return "";
   const std::string name =
       quoted_for_shell(fmt::format("{}_{}{}", output, type_name(start.type, start.kind), start.label));
+  const auto run = [&](const std::string& words) {
+    if (words.empty()) return words;
+    return fmt::format("tchat run {} -c {} -s {} IRS={}{} -o {}", problem_arguments(problem),
+                       quoted_for_shell(output_path('r', output)), quoted_for_shell(output), start.label, words, name);
+  };
+  if (type.facts().in_two_parameters) return run(words_on_curve(start, settings));
+  if (type.facts().curve != 0) return "";
   const std::string solutions = quoted_for_shell(output_path('q', output));
   if (const std::string target = resegmentation_target(start.kind, settings, system); !target.empty()) {
     const SolutionFamily& family = type.family();
@@ -192,10 +207,7 @@ std::string next_command(const NextStart& start, const RunSettings& settings, co
   if ((start.kind.kind != UserPointKind::none && !is_extremum) || !settings.held.empty()) return "";
   const bool has_torus = start.type == static_cast<int>(PointType::torus);
   if (has_torus && settings.segments.front().index.event == no_function) return "";  // a torus needs a section
-  const std::string words = is_extremum ? extremum_words(settings, system) : run_words(start, settings, system);
-  if (words.empty()) return "";
-  return fmt::format("tchat run {} -c {} -s {} IRS={}{} -o {}", problem_arguments(problem),
-                     quoted_for_shell(output_path('r', output)), quoted_for_shell(output), start.label, words, name);
+  return run(is_extremum ? extremum_words(settings, system) : run_words(start, settings, system));
 }
 
 bool tangent_section(const UserPointKind& kind, const RunSettings& settings, const HybridSystem& system) {

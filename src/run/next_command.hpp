@@ -1,4 +1,4 @@
-/// The command that most users give next at a labelled solution of a branch in one parameter.
+/// The command that most users give next at a labelled solution.
 #pragma once
 
 #include <string>
@@ -18,8 +18,9 @@ struct NextStart {
 
 /// A line for the shell: at a bifurcation a run on the branch that is born there, at a fold the curve of folds in two
 /// parameters, at an extremum that of extrema, at a contact or an impact of velocity zero resegmentation and a run with
-/// the new signature. "" where no command suits most users, and on curves in two parameters. `settings` are those of
-/// the run that wrote the label to q.`output`; `problem` is the name or path of its problem.
+/// the new signature. On curves in two parameters, the one that begins at the label or crosses there. "" where no
+/// command suits most users. `settings` are those of the run that wrote the label to q.`output`; `problem` is the name
+/// or path of its problem.
 std::string next_command(const NextStart& start, const RunSettings& settings, const HybridSystem& system,
                          const std::string& problem, const std::string& output);
 

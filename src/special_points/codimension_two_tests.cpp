@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <memory>
@@ -9,6 +10,7 @@
 #include <string>
 
 #include "bvp/condensed_system.hpp"
+#include "bvp/orbit_accuracy.hpp"
 #include "special_points/bifurcation_tests.hpp"
 #include "special_points/label_evidence.hpp"
 #include "stability/normal_form.hpp"
@@ -104,10 +106,49 @@ class CubicTermTest final : public TestFunction {
   std::unique_ptr<NormalFormSolver> solver_;  // of any point: what it keeps is room
 };
 
+/// GPD on a curve of folds of doubled orbits: the halves of the orbits meet, and beyond they are exchanged. A sum of
+/// the differences of states at the starts of segments goes through zero there with all of them. The curve of period
+/// doublings crosses, as its orbits twice over are folds of doubled orbits too.
+class HalvesMeetTest final : public TestFunction {
+ public:
+  std::string name() const override { return type_name(static_cast<int>(PointType::doubled_fold_end)); }
+  TestValue evaluate(const TestedPoint& point) const override {
+    double sum = 0.0;
+    double weight = 1.0;
+    for_differences(point.orbit, [&](double difference) { sum += std::cos(weight++) * difference; });
+    return TestValue::of(sum / (1.0 + largest_state(point.orbit)), orbit_accuracy);
+  }
+  bool is_genuine(const TestedPoint& point) const override {
+    constexpr double met = 1e-4;
+    double largest = 0.0;
+    for_differences(point.orbit, [&](double difference) { largest = std::max(largest, std::abs(difference)); });
+    return largest <= met * (1.0 + largest_state(point.orbit));
+  }
+  SpecialPoint classify(const TestedPoint&, bool) const override {
+    return {PointType::doubled_fold_end, {}, true, "the halves of the doubled orbit meet: the curve begins there"};
+  }
+
+ private:
+  static double largest_state(const Orbit& x) { return x.states.cwiseAbs().maxCoeff(); }
+  template <class Work>
+  static void for_differences(const Orbit& x, const Work& work) {
+    const int half = x.shape.segments / 2;
+    for (int s = 0; s < half; ++s)
+      for (int a = 0; a < x.shape.dimension; ++a) work(x.node(s, 0)[a] - x.node(half + s, 0)[a]);
+  }
+};
+
+/// Is the second half of the signature the first one again?
+bool is_repeated(const Signature& signature) {
+  const auto half = static_cast<std::ptrdiff_t>(signature.size() / 2);
+  return signature.size() % 2 == 0 && std::equal(signature.begin(), signature.begin() + half, signature.begin() + half);
+}
+
 }  // namespace
 
-TestList fold_curve_meetings() {
+TestList fold_curve_meetings(const DefiningSystem& system) {
   TestList tests;
+  if (is_repeated(system.signature())) tests.push_back(std::make_unique<HalvesMeetTest>());
   tests.push_back(std::make_unique<SecondMultiplierTest>(PointType::fold_and_doubling, -1));
   tests.push_back(std::make_unique<SecondPairTest>(PointType::fold_and_torus));
   return tests;

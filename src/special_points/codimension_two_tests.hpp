@@ -3,6 +3,7 @@
 ///
 ///     curve   a multiplier 1   a multiplier -1   a pair on the circle   coefficient 0
 ///     LP      -                LPD               LTR                    cusp (curve_tests.hpp)
+///     LP of doubled orbits: GPD where their halves meet
 ///     PD      LPD              -                 PTR                    GPD: c
 ///     TR      LTR              PTR               TTR                    CH: Re d
 ///
@@ -15,8 +16,8 @@
 
 namespace tchat {
 
-/// LPD and LTR.
-TestList fold_curve_meetings();
+/// LPD and LTR; of doubled orbits GPD.
+TestList fold_curve_meetings(const DefiningSystem& system);
 /// LPD, PTR and GPD.
 TestList doubling_curve_meetings(const DefiningSystem& system, bool coefficients);
 /// LTR, PTR, TTR and CH; `pair` is evaluated at the tested point.

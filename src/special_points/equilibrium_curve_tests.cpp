@@ -22,13 +22,17 @@ namespace {
 
 using Eigenvalues = std::vector<std::complex<double>>;
 
-/// Without the one that is zero on a fold curve.
-Eigenvalues without_zero(Eigenvalues values) {
-  const auto zero = std::min_element(values.begin(), values.end(),
-                                     [](const auto& a, const auto& b) { return std::abs(a) < std::abs(b); });
-  if (zero != values.end()) values.erase(zero);
+/// Without the one that is nearest to `known`.
+Eigenvalues without_nearest(Eigenvalues values, std::complex<double> known) {
+  const auto nearest = std::min_element(values.begin(), values.end(), [known](const auto& a, const auto& b) {
+    return std::abs(a - known) < std::abs(b - known);
+  });
+  if (nearest != values.end()) values.erase(nearest);
   return values;
 }
+
+/// Without the one that is zero on a fold curve.
+Eigenvalues without_zero(const Eigenvalues& values) { return without_nearest(values, 0.0); }
 
 /// Without the pair that is on the imaginary axis on a Hopf curve.
 Eigenvalues without_pair(Eigenvalues values) {
@@ -149,25 +153,58 @@ SpecialPoint zero_hopf_point(double omega) {
   return {PointType::zero_hopf, {}, false, fmt::format("zero-Hopf point, omega = {:.10g}", omega)};
 }
 
-/// ZH on a fold curve: a pair of the other eigenvalues is on the imaginary axis.
-class FoldHopfTest final : public TestFunction {
+/// A pair of the other eigenvalues, none of which is critical along the curve, is on the imaginary axis.
+class OtherPairTest : public TestFunction {
  public:
-  std::string name() const override { return "zero-Hopf"; }
   TestValue evaluate(const TestedPoint& point) const override {
-    const Eigenvalues others = without_zero(point.multipliers.values);
-    if (!point.multipliers.valid || others.size() < 2) return TestValue::undefined();
+    if (!point.multipliers.valid) return TestValue::undefined();
+    const Eigenvalues others = other_eigenvalues(point.multipliers.values);
+    if (others.size() < 2) return TestValue::undefined();
     const HopfPairs pairs = hopf_pairs(others);
     return TestValue::of(pairs.sign * pairs.nearest.distance, orbit_accuracy);
   }
   bool is_genuine(const TestedPoint& point) const override { return nearest_pair(point).is_oscillation(); }
+
+ protected:
+  double omega(const TestedPoint& point) const { return std::abs(nearest_pair(point).first.imag()); }
+
+ private:
+  virtual Eigenvalues other_eigenvalues(const Eigenvalues& all) const = 0;
+  EigenvaluePair nearest_pair(const TestedPoint& point) const {
+    return hopf_pairs(other_eigenvalues(point.multipliers.values)).nearest;
+  }
+};
+
+/// ZH on a fold curve.
+class FoldHopfTest final : public OtherPairTest {
+ public:
+  std::string name() const override { return "zero-Hopf"; }
+  SpecialPoint classify(const TestedPoint& point, bool) const override { return zero_hopf_point(omega(point)); }
+
+ private:
+  Eigenvalues other_eigenvalues(const Eigenvalues& all) const override { return without_zero(all); }
+};
+
+/// HH on a Hopf curve.
+class DoubleHopfTest final : public OtherPairTest {
+ public:
+  explicit DoubleHopfTest(const HopfPair& pair) : pair_(pair) {}
+  std::string name() const override { return "double Hopf"; }
   SpecialPoint classify(const TestedPoint& point, bool) const override {
-    return zero_hopf_point(std::abs(nearest_pair(point).first.imag()));
+    return {PointType::double_hopf,
+            {},
+            false,
+            fmt::format("double Hopf point, omega = {:.10g} and {:.10g}", std::sqrt(std::abs(pair_.square())),
+                        omega(point))};
   }
 
  private:
-  static EigenvaluePair nearest_pair(const TestedPoint& point) {
-    return hopf_pairs(without_zero(point.multipliers.values)).nearest;
+  Eigenvalues other_eigenvalues(const Eigenvalues& all) const override {
+    const std::complex<double> own = std::sqrt(std::complex<double>(-pair_.square()));
+    return without_nearest(without_nearest(all, own), -own);
   }
+
+  const HopfPair& pair_;
 };
 
 /// ZH on a Hopf curve: one of the other eigenvalues is zero.
@@ -259,6 +296,7 @@ TestList hopf_curve_tests(const HopfPair& pair) {
   tests.push_back(std::make_unique<MirroredFrequencyTest>(pair));
   tests.push_back(std::make_unique<PassedFrequencyTest>(pair));
   tests.push_back(std::make_unique<HopfFoldTest>(pair));
+  tests.push_back(std::make_unique<DoubleHopfTest>(pair));
   tests.push_back(std::make_unique<BautinTest>(pair));
   return tests;
 }

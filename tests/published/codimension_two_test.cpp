@@ -31,6 +31,13 @@ void follow(const Workspace& workspace, const std::string& name, const std::stri
                     " DS=" + ds + " DSMAX=0.02 NMX=100 NPR=1 CUBIC=1 RL0=-0.5 RL1=0.5 " + words);
 }
 
+/// The curve in p and q that begins at a label of codimension two of FROM.
+void begin(const Workspace& workspace, const std::string& name, const std::string& from, const std::string& label,
+           const std::string& ds, const std::string& words = "") {
+  workspace.succeed("run map -q -c r." + from + " -s " + from + " -o " + name + " ISW=-1 IRS=" + label + " DS=" + ds +
+                    " DSMAX=0.02 NMX=100 NPR=1 RL0=-0.5 RL1=0.5 " + words);
+}
+
 /// The label of that type is at (p, q).
 void check_place(const Workspace& workspace, const std::string& name, const std::string& type, double p, double q) {
   INFO(name << " " << type);
@@ -129,13 +136,13 @@ TEST_CASE("generalised period doubling, and the folds of doubled orbits that beg
   check_curve(workspace, "doublings", [](double) { return 0.0; });
   workspace.succeed("run map -q -c r.up -s up -o doubled IRS=PD1 ISW=-1 DS=0.01 DSMAX=0.02 NMX=40 RL0=-0.5");
   follow(workspace, "folds", "doubled", "LP1", "0.02");
-  const std::vector<SolutionEntry> points = workspace.solutions("folds");
-  REQUIRE(points.size() > 10);
-  for (const SolutionEntry& point : points) {
-    INFO(point.parameter(2));
-    CHECK(std::abs(point.parameter(1) + 0.25 * std::pow(point.parameter(2), 2)) < accuracy);
-    CHECK(point.parameter(2) < accuracy);
-  }
+  const auto folds = [](double q) { return -0.25 * q * q; };
+  check_curve(workspace, "folds", folds);
+  check_place(workspace, "folds", "GPD", 0.0, 0.0);
+  CHECK(workspace.solutions("folds").back().type == -51);  // beyond it the curve comes back
+  begin(workspace, "born", "doublings", "GPD1", "0.01");
+  check_curve(workspace, "born", folds);
+  CHECK(workspace.solutions("born").back().parameter(2) < -0.4);
 }
 
 TEST_CASE("Chenciner point: the torus bifurcation is neither super- nor subcritical") {
@@ -210,6 +217,20 @@ TEST_CASE("coefficients of the 1:2 resonance") {
   check_curve(workspace, "tori", [](double p) { return p; });
 }
 
+TEST_CASE("torus bifurcations of doubled orbits begin at a 1:2 resonance") {
+  // (x, y) -> (-x + y, -(1 + p) y + q x + c x^3 + d x^2 y): doubled orbits, (x, 0) -> (-x, 0), have x^2 = -q / c; the
+  // derivative at both points has the determinant 1 + p + (2 + d / c) q.
+  const Workspace workspace;
+  simulate(workspace, "par q=-0.05, p=-0.3\ninit x=0, y=0\nx' = 0\ny' = 0\n",
+           "x -> -x + y, y -> -(1+p)*y + q*x - 0.3*x^3 + 0.5*x^2*y");
+  workspace.succeed("run map -d map -c map -o up ICP=[q] DS=0.01 DSMAX=0.02 NMX=60 RL1=0.5 -q");
+  workspace.succeed("run map -q -c r.up -s up -o doublings ISW=2 ICP=[p,q] IRS=PD1 DS=0.02 DSMAX=0.02 NMX=50");
+  check_place(workspace, "doublings", "R2", 0.0, 0.0);
+  begin(workspace, "born", "doublings", "R21", "0.01");
+  check_curve(workspace, "born", [](double p) { return -p / (2.0 - 0.5 / 0.3); });
+  CHECK(workspace.solutions("born").back().parameter(2) < -0.05);
+}
+
 TEST_CASE("coefficients of the 1:3 and the 1:4 resonance") {
   // z -> (1 + p) e^(i theta) z + B z*^2 + C z |z|^2 + D z*^3, B = 0.3 + 0.1 i, C = -0.5 - 0.2 i, D = 0.15 + 0.05 i;
   // with |q| = 1, z is sqrt(2) times the amplitude. At 1:4, z*^2 is removed first: C + 2 |B|^2 / (-1 + i) is left.
@@ -281,6 +302,16 @@ v' = (q + 0.4*r - s)*v + u
   follow(workspace, "tori", "cycle", "TR1", "0.02", "DSMAX=0.05 RL0=-2");
   check_curve(workspace, "tori", [](double q) { return -q / 0.4; });
   CHECK(std::abs(workspace.solutions("tori").back().parameter(2)) < accuracy);
+  // The cycle s^2 = m2 loses stability at m1 = 0.3 m2. Both Hopf curves, p = 0 and q = 0, go through the point.
+  follow(workspace, "hopf", "rest", "HB1", "0.02");
+  check_place(workspace, "hopf", "HH", 0.0, 0.0);
+  check_curve(workspace, "hopf", [](double) { return 0.0; });
+  begin(workspace, "fast", "hopf", "HH1", "0.05", "IPS=180 MODE=2");
+  check_curve(workspace, "fast", [](double q) { return -q / 0.4; });
+  begin(workspace, "slow", "hopf", "HH1", "0.05", "IPS=180 MODE=1");
+  check_curve(workspace, "slow", [](double q) { return 0.3 * q; });
+  workspace.succeed("run map -q -c r.hopf -s hopf -o other IRS=HH1 MODE=1 ICP=[p,q] DS=0.02 NMX=20 NPR=1");
+  for (const SolutionEntry& point : workspace.solutions("other")) CHECK(std::abs(point.parameter(2)) < accuracy);
 }
 
 TEST_CASE("a curve of torus bifurcations begins at a zero-Hopf point") {
@@ -299,6 +330,11 @@ y' = (p - z + z^2)*y + 1.3*x
   follow(workspace, "tori", "cycle", "TR1", "0.02", "DSMAX=0.05 CUBIC=0");
   check_curve(workspace, "tori", [](double) { return 0.0; });
   CHECK(std::abs(workspace.solutions("tori").back().parameter(2)) < accuracy);
+  follow(workspace, "hopf", "rest", "HB1", "0.02");
+  check_place(workspace, "hopf", "ZH", 0.0, 0.0);
+  begin(workspace, "born", "hopf", "ZH1", "0.05", "IPS=180");
+  check_curve(workspace, "born", [](double) { return 0.0; });
+  CHECK(workspace.solutions("born").back().parameter(2) < -0.1);
 }
 
 TEST_CASE("at a Bogdanov-Takens point the curve of Hopf points is followed") {
@@ -334,4 +370,7 @@ y' = (p + q*r - r^2)*y + 1.3*x
   follow(workspace, "folds", "cycle", "LP1", "-0.02");
   check_curve(workspace, "folds", [](double q) { return -0.25 * q * q; });
   CHECK(std::abs(workspace.solutions("folds").back().parameter(2)) < 1e-4);  // an orbit that shrinks like sqrt(q)
+  begin(workspace, "born", "hopf", "GH1", "0.05", "IPS=180");
+  check_curve(workspace, "born", [](double q) { return -0.25 * q * q; });
+  CHECK(workspace.solutions("born").back().parameter(2) > 0.4);
 }

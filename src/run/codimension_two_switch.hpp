@@ -1,0 +1,24 @@
+/// ISW = -1 at a point of codimension two: the curve in two parameters that begins there, of orbits that are born there
+/// (Kuznetsov, Elements of Applied Bifurcation Theory, sections 8.3, 8.5, 8.6, 9.4, 9.5).
+///
+///     GPD     folds of doubled orbits            GH        folds of periodic orbits
+///     R2      torus bifurcations of doubled orbits   ZH, HH    torus bifurcations of periodic orbits
+///
+/// Near the point the curve is x = x* + e d + O(e^2), parameters = those of the point + O(e^2), with d the critical
+/// direction of the period doubling or the oscillation. An orbit of amplitude e = |DS| is found first, with the other
+/// amplitudes and parameters free that one parameter leaves (branch_switch.hpp, hopf_switch.hpp); it is corrected onto
+/// the curve on the plane across d, which keeps e. The branch is then that of ISW = 2.
+#pragma once
+
+#include "run/branch_setup.hpp"
+
+namespace tchat {
+
+/// Folds. Throws UserError where the label cannot be left so (begin_periodic_orbits(), switch_branch()),
+/// ComputationError when no orbit, or none of the curve, is found near the label.
+BranchSetup begin_fold_curve(const HybridSystem& system, const RunSettings& settings, const SelectedStart& selected);
+
+/// Torus bifurcations. The same; where the orbits have no pair of multipliers that is complex, none begins.
+BranchSetup begin_torus_curve(const HybridSystem& system, const RunSettings& settings, const SelectedStart& selected);
+
+}  // namespace tchat
