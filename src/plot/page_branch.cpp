@@ -15,6 +15,7 @@
 #include "plot/page_orbits.hpp"
 #include "plot/restart_command.hpp"
 #include "problem_type/family.hpp"
+#include "problem_type/normal_form_note.hpp"
 #include "problem_type/point_type.hpp"
 #include "problem_type/problem_type.hpp"
 
@@ -146,9 +147,16 @@ class PageBranchWriter {
          {"meaning", page_text(type == nullptr ? "" : type->meaning)},
          {"border", type != nullptr && type->is_bifurcation ? "1" : "0"},
          {"kind", page_text(solution == nullptr ? "" : kind(s, *solution))},
+         {"form", page_text(normal_form(s, k))},
          {"birth", page_text(birth(s, k))},
          {"orbit", orbit == orbits_.place.end() ? "null" : integer(static_cast<long long>(orbit->second))},
          {"restarts", restarts ? "1" : "0"}});
+  }
+
+  /// Coefficient and verdict; "" where the d-file has none.
+  std::string normal_form(std::size_t s, std::size_t k) const {
+    const DiagnosticPoint* const point = file_.diagnostic_of(s, k);
+    return point == nullptr || !point->normal_form ? "" : format_normal_form(*point->normal_form, "");
   }
 
   /// "PD1", or null.

@@ -109,6 +109,7 @@ class LinearOscillator(PageTest):
         self.keep(page, "linosc_PD1")
         self.assertIn("PD1, label " + row["label"], page.text("#details h2"))
         self.assertIn("period doubling", page.text(".meaning"))
+        self.assertRegex(page.text(".form"), "^normal form c = .* (super|sub)critical$")
         self.check_values(page, row)
         self.assertEqual(self.point_values(page)["omega (fixed)"], "2.0072")
         known = [name for name in row if re.fullmatch("multiplier[0-9]+_re", name) and row[name]]

@@ -110,6 +110,7 @@ function showPoint(data, host, place, close) {
   if (facts.label && facts.label.type && facts.label.meaning)
     host.appendChild(element("p", "meaning", facts.label.type + ": " + facts.label.meaning + "."));
   if (facts.label && facts.label.kind) host.appendChild(element("p", "kind", facts.label.kind));
+  if (facts.label && facts.label.form) host.appendChild(element("p", "form", facts.label.form));
   if (facts.violation !== undefined)
     addWarning(host, "The orbit violates the model" + (facts.violation ? ": " + facts.violation : "") + ".");
   host.appendChild(valueTable(rowsOfValues(facts), "values point-values"));
