@@ -171,9 +171,9 @@ bool FrontalLu::factorize(std::span<const double> values) {
     if (!(scale > 0.0) || !std::isfinite(scale)) return false;
     scale = 1.0 / scale;
   }
-  std::fill(blocks_.begin(), blocks_.end(), 0.0);
   for (const Front& front : fronts_) {
     double* block = blocks_.data() + front.block;
+    std::fill_n(block, std::ptrdiff_t{front.rows + front.border} * front.width, 0.0);
     for (const Entry& entry : front.entries)
       block[entry.place] += values[at(entry.value)] * scales_[at(entry_rows_[at(entry.value)])];
     put_children(front, block);

@@ -16,6 +16,8 @@
 #include <utility>
 #include <vector>
 
+#include "linear_algebra/aligned_allocator.hpp"
+
 namespace tchat {
 
 class FrontalLu {
@@ -70,8 +72,9 @@ class FrontalLu {
   int size_ = 0;
   std::vector<Front> fronts_;  // each after its children
   std::vector<int> entry_rows_;
-  std::vector<double> scales_;  // of rows
-  std::vector<double> blocks_, rights_, local_, known_, column_sizes_;
+  std::vector<double> scales_;                                     // of rows
+  std::vector<double, AlignedAllocator<double>> blocks_, rights_;  // of fronts
+  std::vector<double> local_, known_, column_sizes_;
   std::vector<int> swaps_;
   int parity_without_exchanges_ = 1;
 };

@@ -23,39 +23,62 @@ using SparseMatrix = Eigen::SparseMatrix<double, Eigen::ColMajor, int>;
 /// D_r A D_c with rows and columns whose largest entries are about 1, and space for vectors.
 struct Equilibrated {
   SparseMatrix matrix;
-  Eigen::VectorXd row_scale;     // diagonal of D_r
-  Eigen::VectorXd column_scale;  // diagonal of D_c
-  Eigen::VectorXd row_size;      // while it is made
+  Eigen::VectorXd row_scale;                // diagonal of D_r
+  Eigen::VectorXd column_scale;             // diagonal of D_c
+  Eigen::VectorXd row_size, next_row_size;  // while it is made
   Eigen::VectorXd v, left, right;
 
+  /// Matrices of one pattern all.
   void equilibrate(const SparseMatrix& of);
   /// By power iteration.
   double largest_singular_value(int iterations);
+
+ private:
+  void take(const SparseMatrix& of);
 };
 
+/// Each sweep goes through the matrix once: a column is divided by the sizes of its rows, then by its own, and counts
+/// for the rows of the next sweep at once.
 void Equilibrated::equilibrate(const SparseMatrix& of) {
   constexpr int sweeps = 4;
-  matrix = of;
+  take(of);
   row_scale.setOnes(of.rows());
   column_scale.setOnes(of.cols());
+  row_size.setZero(of.rows());
+  next_row_size.resize(of.rows());
+  const int* const row = matrix.innerIndexPtr();
+  double* const value = matrix.valuePtr();
+  for (Eigen::Index k = 0; k < matrix.nonZeros(); ++k)
+    row_size(row[k]) = std::max(row_size(row[k]), std::abs(value[k]));
   for (int sweep = 0; sweep < sweeps; ++sweep) {
-    row_size.setZero(of.rows());
-    for (int c = 0; c < matrix.cols(); ++c)
-      for (SparseMatrix::InnerIterator it(matrix, c); it; ++it)
-        row_size(it.row()) = std::max(row_size(it.row()), std::abs(it.value()));
-    for (Eigen::Index r = 0; r < row_size.size(); ++r)
-      if (row_size(r) > 0.0) row_scale(r) /= row_size(r);
+    for (double& size : row_size)
+      if (!(size > 0.0)) size = 1.0;
+    row_scale.array() /= row_size.array();
+    next_row_size.setZero();
     for (int c = 0; c < matrix.cols(); ++c) {
+      const int begin = matrix.outerIndexPtr()[c], end = matrix.outerIndexPtr()[c + 1];
       double column_size = 0.0;
-      for (SparseMatrix::InnerIterator it(matrix, c); it; ++it) {
-        if (row_size(it.row()) > 0.0) it.valueRef() /= row_size(it.row());
-        column_size = std::max(column_size, std::abs(it.value()));
+      for (int k = begin; k < end; ++k) {
+        value[k] /= row_size(row[k]);
+        column_size = std::max(column_size, std::abs(value[k]));
       }
       if (column_size == 0.0) continue;
-      for (SparseMatrix::InnerIterator it(matrix, c); it; ++it) it.valueRef() /= column_size;
       column_scale(c) /= column_size;
+      for (int k = begin; k < end; ++k) {
+        value[k] /= column_size;
+        next_row_size(row[k]) = std::max(next_row_size(row[k]), std::abs(value[k]));
+      }
     }
+    row_size.swap(next_row_size);
   }
+}
+
+/// Values alone where the pattern is that of the last time.
+void Equilibrated::take(const SparseMatrix& of) {
+  if (matrix.nonZeros() == of.nonZeros() && matrix.rows() == of.rows())
+    std::copy_n(of.valuePtr(), of.nonZeros(), matrix.valuePtr());
+  else
+    matrix = of;
 }
 
 double Equilibrated::largest_singular_value(int iterations) {
