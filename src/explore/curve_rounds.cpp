@@ -151,24 +151,44 @@ void CurveRounds::add_curves(const ExploredBranch& branch, Candidates& next) {
     if (may_have_curve(label.type)) add_curve(files, label, branch.has_returns, next);
 }
 
-void CurveRounds::add_curve(const RunFiles& files, const Labelled& label, bool has_returns, Candidates& next) {
-  const ExplorationCommands& commands = context_.commands;
+/// `rests`: the curve is one of equilibria.
+CurveRounds::Candidate CurveRounds::candidate_at(const RunFiles& files, const Labelled& label, bool has_returns,
+                                                 const std::string& name, const CurveCommand& command,
+                                                 bool rests) const {
   Candidate candidate;
   ExploredCurve& curve = candidate.curve;
-  curve.name = fmt::format("{}_{}{}_curve", files.name, label.type, label.label);
+  curve.name = name;
+  curve.kind = command.kind;
   curve.has_returns = has_returns;
   curve.parent = candidate.owner = files.name;
   curve.origin = fmt::format("{} {} of {}", label.type, label.label, files.name);
   candidate.label = label.label;
   candidate.start = label.point;
-  const CurveCommand command = curve_command(label.start, files.settings, context_.system, commands.problem(),
-                                             commands.path(files.name), commands.path(curve.name));
-  curve.kind = command.kind;
   candidate.why_none = label.is_admissible ? command.why_none : "the orbit there is inadmissible";
-  if (candidate.why_none.empty())
-    curve.job =
-        commands_.curve(curve.name, command.line, files.name, files.settings.problem_type == equilibrium.number);
-  (candidate.why_none.empty() ? next : unfollowed_).push_back(std::move(candidate));
+  if (candidate.why_none.empty()) curve.job = commands_.curve(name, command.line, files.name, rests);
+  return candidate;
+}
+
+void CurveRounds::add_curve(const RunFiles& files, const Labelled& label, bool has_returns, Candidates& next) {
+  const ExplorationCommands& commands = context_.commands;
+  const std::string name = fmt::format("{}_{}{}_curve", files.name, label.type, label.label);
+  const CurveCommand command = curve_command(label.start, files.settings, context_.system, commands.problem(),
+                                             commands.path(files.name), commands.path(name));
+  const bool rests = files.settings.problem_type == equilibrium.number;
+  const Candidate candidate = candidate_at(files, label, has_returns, name, command, rests);
+  (candidate.why_none.empty() ? next : unfollowed_).push_back(candidate);
+}
+
+void CurveRounds::add_born_curves(const RunFiles& files, const Labelled& label, bool has_returns,
+                                  Candidates& next) const {
+  const ExplorationCommands& commands = context_.commands;
+  const std::string name = fmt::format("{}_{}{}_born", files.name, label.type, label.label);
+  for (const CurveCommand& command : born_curve_commands(label.start, files.settings, commands.problem(),
+                                                         commands.path(files.name), commands.path(name))) {
+    next.push_back(candidate_at(files, label, has_returns, name + command.suffix, command, false));
+    next.back().is_born = true;
+    next.back().is_alone = command.is_alone;
+  }
 }
 
 void CurveRounds::add_slices(const ExploredCurve& curve, const Labelled& label, Candidates& next) const {
@@ -186,9 +206,23 @@ void CurveRounds::add_slices(const ExploredCurve& curve, const Labelled& label, 
     }
 }
 
+/// Of the kind and at the start of a candidate, which may be at rest where orbits shrink.
+std::string CurveRounds::curve_that_ends(const Candidate& candidate) const {
+  const Eigen::Vector2d place = candidate.start.place.cwiseProduct(columns().widths);
+  const auto ends_there = [&](const ExploredCurve& curve) {
+    return curve.kind == candidate.curve.kind &&
+           std::any_of(curve.ends.begin(), curve.ends.end(), [&](const CurveEnd& end) {
+             return is_at({place(0), place(1), {}}, end.first, end.second);
+           });
+  };
+  const auto found = std::find_if(curves_.curves.begin(), curves_.curves.end(), ends_there);
+  return found == curves_.curves.end() ? "" : found->name;
+}
+
 /// Of a grazing curve the orbit at the label may be one that repeats.
 std::string CurveRounds::known_curve(const Candidate& candidate) const {
   if (candidate.is_slice) return "";
+  if (candidate.is_alone) return curve_that_ends(candidate);
   if (candidate.curve.kind != "GR") return catalogue_.curve_at(candidate.curve.kind, candidate.start);
   for (const std::string& name : catalogue_.curves_through(candidate.start))
     if (const ExploredCurve* const curve = find_named(curves_.curves, name); curve != nullptr && curve->kind == "GR")
@@ -238,7 +272,9 @@ CurveRounds::Candidates CurveRounds::run(const Candidates& round) {
       context_.diagram.complete = false;
       continue;
     }
-    if (!results[i].succeeded)
+    if (!results[i].succeeded && tried[i].is_born)
+      curves_.without[failure_text(results[i].log)].push_back(tried[i].curve.origin);
+    else if (!results[i].succeeded)
       curves_.failures.push_back(fmt::format("{} failed: {}", tried[i].name(), failure_text(results[i].log)));
     else if (tried[i].is_slice)
       take_slice(tried[i], next);
@@ -277,8 +313,9 @@ void CurveRounds::take_curve(const Candidate& candidate, const std::string& log,
   const RunFiles files = files_of(curve.name);
   for (const Labelled& label : labels_of(files)) {
     if (label.type == "XI" && !curve.has_returns) add_slices(curve, label, next);
-    if (label.is_admissible && has_further_curve(label.type, curve.kind))
-      add_curve(files, label, curve.has_returns, next);
+    if (!label.is_admissible) continue;
+    if (has_further_curve(label.type, curve.kind)) add_curve(files, label, curve.has_returns, next);
+    add_born_curves(files, label, curve.has_returns, next);
   }
 }
 

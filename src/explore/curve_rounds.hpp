@@ -53,10 +53,12 @@ class CurveRounds {
     bool is_slice = false;
     ExploredCurve curve;
     ExploredBranch slice;
-    CurvePoint start;      ///< of a curve
-    std::string owner;     ///< the branch, slice or curve that it is from
-    int label = 0;         ///< of the owner
-    std::string why_none;  ///< no command follows it
+    CurvePoint start;       ///< of a curve
+    std::string owner;      ///< the branch, slice or curve that it is from
+    int label = 0;          ///< of the owner
+    bool is_born = false;   ///< a curve that begins there, if one does
+    bool is_alone = false;  ///< then the only one of its kind that may end there
+    std::string why_none;   ///< no command follows it
     const CommandJob& job() const { return is_slice ? slice.job : curve.job; }
     const std::string& name() const { return job().name; }
   };
@@ -68,12 +70,17 @@ class CurveRounds {
   std::vector<Labelled> labels_of(const RunFiles& files) const;
   /// The curve that is there and passes through the start of a candidate; "" without one.
   std::string known_curve(const Candidate& candidate) const;
+  std::string curve_that_ends(const Candidate& candidate) const;
   std::string curve_again(const Candidate& candidate, const std::vector<CurveSection>& sections) const;
   void set_curve(const Candidate& candidate, const std::string& curve);
 
   void add_curves(const ExploredBranch& branch, Candidates& next);
-  /// To `next`, or to those without a command.
+  Candidate candidate_at(const RunFiles& files, const Labelled& label, bool has_returns, const std::string& name,
+                         const CurveCommand& command, bool rests) const;
+  /// The curve through a label, to `next`, or to those without a command.
   void add_curve(const RunFiles& files, const Labelled& label, bool has_returns, Candidates& next);
+  /// Those that begin at a label.
+  void add_born_curves(const RunFiles& files, const Labelled& label, bool has_returns, Candidates& next) const;
   void add_slices(const ExploredCurve& curve, const Labelled& label, Candidates& next) const;
   Candidates run(const Candidates& round);
   bool is_left();

@@ -117,7 +117,7 @@ std::string curve_name(int number, int curve_type) {
 
 bool has_two_parameter_curves(int number) { return !problem_types_of(number, in_two_parameters).empty(); }
 
-std::string birth_words(int label_type, int number, bool in_two_parameters, const std::string& principal) {
+const ProblemType* birth_type(int label_type, int number, bool in_two_parameters) {
   const auto is_born = [&](const ProblemType* type) {
     const ProblemFacts& facts = type->facts();
     return facts.switches_branch && facts.in_two_parameters == in_two_parameters && type->begins_at(label_type) &&
@@ -125,8 +125,13 @@ std::string birth_words(int label_type, int number, bool in_two_parameters, cons
   };
   const auto all = problem_types();
   const auto found = std::find_if(all.begin(), all.end(), is_born);
-  if (found == all.end()) return "";
-  const ProblemFacts& facts = (*found)->facts();
+  return found == all.end() ? nullptr : *found;
+}
+
+std::string birth_words(int label_type, int number, bool in_two_parameters, const std::string& principal) {
+  const ProblemType* const type = birth_type(label_type, number, in_two_parameters);
+  if (type == nullptr) return "";
+  const ProblemFacts& facts = type->facts();
   std::string words = facts.number == number ? "" : fmt::format(" IPS={}", facts.number);
   words += fmt::format(" ISW={}", facts.branch_mode);
   if (*facts.start_words != '\0') words += " " + fmt::format(fmt::runtime(facts.start_words), principal);

@@ -115,9 +115,11 @@ bool is_two_parameter_curve(int number, int branch_mode);
 std::string curve_name(int number, int curve_type);
 /// Is there a type that follows folds and the like of this one in two parameters?
 bool has_two_parameter_curves(int number);
-/// Words of `tchat run` that follow the branch born at a label, after IRS: " IPS=182 ISW=-1 'ICP=[a,rho]'"; "" where
-/// none is. `label_type`: its number without the tens digit of a curve; `number`: IPS of the label's branch;
-/// `in_two_parameters`: it is a curve; `principal`: the name of ICP(1).
+/// What is born at a label; null where nothing is. `label_type`: its number without the tens digit of a curve;
+/// `number`: IPS of the label's branch; `in_two_parameters`: it is a curve.
+const ProblemType* birth_type(int label_type, int number, bool in_two_parameters);
+/// Words of `tchat run` that follow it, after IRS: " IPS=182 ISW=-1 'ICP=[a,rho]'"; "" where nothing is born.
+/// `principal`: the name of ICP(1).
 std::string birth_words(int label_type, int number, bool in_two_parameters, const std::string& principal);
 /// AUTO's own boundary value problems have no multipliers.
 bool has_multipliers(int number);

@@ -246,4 +246,24 @@ CurveCommand curve_command(const NextStart& start, const RunSettings& settings, 
   return {"", is_grazing(start.kind) ? no_grazing : why_none, own};
 }
 
+std::vector<CurveCommand> born_curve_commands(const NextStart& start, const RunSettings& settings,
+                                              const std::string& problem, const std::string& output,
+                                              const std::string& curve) {
+  const ProblemType* const type = birth_type(start.type, settings.problem_type, true);
+  const bool begins = type != nullptr && type->facts().curve > 0;  // at a BP, a curve of the same kind crosses
+  if (!problem_type(settings).facts().in_two_parameters || !begins) return {};
+  const std::string run = fmt::format("tchat run {} -c {} -s {} IRS={}{}", problem_arguments(problem),
+                                      quoted_for_shell(output_path('r', output)), quoted_for_shell(output), start.label,
+                                      birth_words(start.type, settings.problem_type, true, ""));
+  const std::string kind = type_name(type->facts().curve);
+  const bool is_alone =
+      start.type != static_cast<int>(PointType::resonance_2);  // there that of the shorter orbits ends
+  if (start.type != static_cast<int>(PointType::double_hopf))
+    return {{fmt::format("{} -o {}", run, quoted_for_shell(curve)), "", kind, "", is_alone}};
+  std::vector<CurveCommand> both;
+  for (const char* const mode : {"1", "2"})
+    both.push_back({fmt::format("{} MODE={} -o {}", run, mode, quoted_for_shell(curve + mode)), "", kind, mode});
+  return both;
+}
+
 }  // namespace tchat

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "constants/run_settings.hpp"
 #include "hybrid/hybrid_system.hpp"
@@ -32,6 +33,8 @@ struct CurveCommand {
   std::string line;      ///< commands, joined by " && ", the last of which is a run that lacks ICP; "": there are none
   std::string why_none;  ///< why not, in words
   std::string kind;      ///< name of the points that the curve consists of
+  std::string suffix = {};  ///< behind the name of its files, where several begin
+  bool is_alone = false;    ///< the only curve of its kind that may end at the label
 };
 
 /// To files of the name `curve`. A grazing contact is cut first (tchat resegment); one that changes nothing, in
@@ -39,5 +42,11 @@ struct CurveCommand {
 /// followed: a contact's, that of BE, or the one that CURVE names.
 CurveCommand curve_command(const NextStart& start, const RunSettings& settings, const HybridSystem& system,
                            const std::string& problem, const std::string& output, const std::string& curve);
+
+/// The curves in two parameters that begin at a label of a curve, to files of the name `curve` with their suffix. Empty
+/// where none begins.
+std::vector<CurveCommand> born_curve_commands(const NextStart& start, const RunSettings& settings,
+                                              const std::string& problem, const std::string& output,
+                                              const std::string& curve);
 
 }  // namespace tchat

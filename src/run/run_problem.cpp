@@ -342,12 +342,15 @@ int run_problem(const RunRequest& request, std::ostream& screen, std::ostream& w
   report(Direction(setup, continuation, branch)
              .follow(writer, setup.start.correction, problem.library->derivative_notes()),
          0);
-  if (request.both_directions && closed && reports.table != nullptr)
-    *reports.table << "  --both: the other direction goes round the same closed branch, and is left out\n";
-  if (request.both_directions && !closed && !(interrupted && interrupted())) {
+  const bool is_other_branch = problem_type(problem.settings).facts().switches_branch;
+  const bool begins_here = is_other_branch && setup.type->facts().curve > 0;
+  const bool has_other = !closed && !begins_here;
+  if (request.both_directions && !has_other && reports.table != nullptr)
+    *reports.table << (closed ? "  --both: the other direction goes round the same closed branch, and is left out\n"
+                              : "  --both: the curve begins at the label, and has one direction\n");
+  if (request.both_directions && has_other && !(interrupted && interrupted())) {
     const std::size_t labels_before = writer.labels().size();
     BranchSetup other_side;
-    const bool is_other_branch = problem_type(problem.settings).facts().switches_branch;
     if (is_other_branch) {  // the two sides of a bifurcation are different branches
       RunSettings against = problem.settings;
       against.step = -against.step;

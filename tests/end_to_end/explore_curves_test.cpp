@@ -306,6 +306,24 @@ TEST_CASE("equilibria and cycles: cusp, zero-Hopf, generalised Hopf and boundary
   check_meeting(tree, {0.0, 1.0}, {{hopf, "GH"}, {cycles, "HB"}}, 1e-7);
 }
 
+TEST_CASE("a map: folds of doubled orbits begin at generalised period doubling") {
+  // x -> -(1 + p) x + q x^3 + x^5: doubled orbits p = q x^2 + x^4 turn where q < 0 alone, at p = -q^2 / 4.
+  const Workspace workspace;
+  workspace.write("map.tch",
+                  "par p=-0.3, q=0.3\ninit x=0.01\nx' = 0\nphi' = 1\nevent turn = 1 - phi\n"
+                  "jump back: x -> -(1+p)*x + q*x^3 + x^5, phi -> phi - 1\nafter any: turn -> back\n");
+  const Outcome outcome = workspace.tchat("explore map --over p=-0.3:0.1:21 --and q=-0.5:0.5 CUBIC=1 -o m -j 2 -q");
+  INFO(outcome.text());
+  REQUIRE(outcome.status == 0);
+  const std::string tree = workspace.read("m.txt");
+  INFO(tree);
+  CHECK(count_of(tree, "LP") == 1);
+  for (const Place& point : inner_points(workspace.file("m/p." + curve_from(tree, "LP", {"GPD"})), "q")) {
+    CHECK(point.first == Approx(-0.25 * point.second * point.second).margin(1e-8));
+    CHECK(point.second < 0.0);
+  }
+}
+
 TEST_CASE("second ranges that are none are refused with the form") {
   const Workspace workspace;
   const auto refusal = [&](const std::string& words) {
