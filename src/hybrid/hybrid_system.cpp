@@ -207,6 +207,13 @@ void HybridSystem::third(FunctionKind kind, int index, const double* x, const do
     difference_third(*this, kind, index, x, par, out);
 }
 
+void HybridSystem::third_at_points(FunctionKind kind, int index, int points, const double* x, const double* par,
+                                   double* out) const {
+  if (table_->third_at_points != nullptr && !is_identity(kind, index))
+    return table_->third_at_points(table_->self, static_cast<int>(kind), index, points, x, par, out);
+  for (int k = 0; k < points; ++k, x += 8 * dimension(), out += 8 * rows(kind)) third(kind, index, x, par, out);
+}
+
 void HybridSystem::boundary_first(const OrbitEnds& at, std::span<const int> active, double* out, double* dstarts,
                                   double* dends, double* dp) const {
   if (table_->derivative_order >= 1 && table_->boundary_first != nullptr)

@@ -119,6 +119,8 @@ class HybridSystem {
   /// squares are left out: 8 dimension() numbers to 8 rows(kind). Where the table has none they are made of second
   /// derivatives and a difference of these, good to about 1e-8; that allocates.
   void third(FunctionKind kind, int index, const double* x, const double* par, double* out) const;
+  /// The same at `points` points, their arrays one behind the other.
+  void third_at_points(FunctionKind kind, int index, int points, const double* x, const double* par, double* out) const;
   bool has_third() const { return table_->third != nullptr; }
 
   /// The boundary conditions: boundary_conditions() values.

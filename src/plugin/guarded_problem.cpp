@@ -61,8 +61,14 @@ struct GuardedProblem::Calls {
     fail_points(plugin, kind, 1, x, par, active, count, out, dx, dp);
   }
 
-  static void fail_third(const tchat_problem& plugin, std::int32_t kind, const double*, const double*, double* out) {
-    set_nan(out, 8 * rows(plugin, kind));
+  static void fail_third(const tchat_problem& plugin, std::int32_t kind, const double* x, const double* par,
+                         double* out) {
+    fail_third_at_points(plugin, kind, 1, x, par, out);
+  }
+
+  static void fail_third_at_points(const tchat_problem& plugin, std::int32_t kind, std::int32_t points, const double*,
+                                   const double*, double* out) {
+    set_nan(out, points * 8 * rows(plugin, kind));
   }
 
   static void fail_points(const tchat_problem& plugin, std::int32_t kind, std::int32_t points, const double*,
@@ -164,6 +170,8 @@ GuardedProblem::GuardedProblem(const tchat_problem& plugin, const std::string& p
   if (plugin.first != nullptr) table_.first = &Calls::evaluate<&tchat_problem::first, &Calls::fail_first>;
   if (plugin.second != nullptr) table_.second = &Calls::evaluate<&tchat_problem::second, &Calls::fail_second>;
   if (plugin.third != nullptr) table_.third = &Calls::evaluate<&tchat_problem::third, &Calls::fail_third>;
+  if (plugin.third_at_points != nullptr)
+    table_.third_at_points = &Calls::evaluate<&tchat_problem::third_at_points, &Calls::fail_third_at_points>;
   if (plugin.first_at_points != nullptr)
     table_.first_at_points = &Calls::evaluate<&tchat_problem::first_at_points, &Calls::fail_points>;
   if (plugin.first_in_lanes != nullptr)

@@ -83,6 +83,7 @@ SectionedProblem::SectionedProblem(const tchat_problem& plain) : plain_(plain), 
   table_.first = plain.derivative_order >= 1 ? &Calls::first : nullptr;
   table_.second = nullptr;
   table_.third = nullptr;
+  table_.third_at_points = nullptr;
   table_.successors = &Calls::successors;
   table_.user_values = 0;
   table_.output_parameters = nullptr;

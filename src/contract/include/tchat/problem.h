@@ -164,6 +164,11 @@ typedef struct tchat_problem {
    * out_7 is F_xxx x_1 x_2 x_4 + F_xx x_1 x_6 + F_xx x_2 x_5 + F_xx x_4 x_3 + F_x x_7. x_m (dimension) and out_m (rows)
    * stand one behind the other. NULL: tchat takes differences of `second`. */
   void (*third)(const void* self, int32_t kind, int32_t index, const double* x, const double* par, double* out);
+
+  /* The same at `points` points for one par, the arrays x and out of the points one behind the other. NULL: tchat calls
+   * `third` for each. */
+  void (*third_at_points)(const void* self, int32_t kind, int32_t index, int32_t points, const double* x,
+                          const double* par, double* out);
 } tchat_problem;
 
 /* Size of the table before the conditions of boundary value problems were added: such a table has none. */
@@ -180,6 +185,8 @@ typedef struct tchat_problem {
 #define TCHAT_PROBLEM_SIXTH_SIZE offsetof(tchat_problem, field_dimensions)
 /* And before it had third derivatives. */
 #define TCHAT_PROBLEM_SEVENTH_SIZE offsetof(tchat_problem, third)
+/* And before these could be asked for at many points. */
+#define TCHAT_PROBLEM_EIGHTH_SIZE offsetof(tchat_problem, third_at_points)
 
 typedef const tchat_problem* (*tchat_problem_entry)(void);
 #define TCHAT_PROBLEM_ENTRY "tchat_problem_table"

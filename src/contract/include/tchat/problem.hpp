@@ -509,7 +509,7 @@ class ProblemTable {
     }
   }
 
-  using Product = Dual<1, Dual<1, Dual<1>>>;
+  using Product = Dual<1, Dual<1, Dual<1, Numbers>>>;
   /// That of the product e^m.
   template <class P>
   static auto& coefficient(P& of, int m) {
@@ -518,20 +518,32 @@ class ProblemTable {
     return (m & 4) != 0 ? second.derivative[0] : second.value;
   }
 
-  __attribute__((cold)) static void third(const void* self, std::int32_t kind, std::int32_t index, const double* x,
-                                          const double* par, double* out) {
+  static void third(const void* self, std::int32_t kind, std::int32_t index, const double* x, const double* par,
+                    double* out) {
+    third_at_points(self, kind, index, 1, x, par, out);
+  }
+
+  static void third_at_points(const void* self, std::int32_t kind, std::int32_t index, std::int32_t points,
+                              const double* x, const double* par, double* out) {
+    if (points <= 0) return;
     States<Product> xs;
     Parameters<Product> ps;
     Durations<Product> ts;
     Values<Product> ys;
     load(x, par, xs, ps, ts);
-    for (int m = 1; m < 8; ++m)
-      for (int i = 0; i < n; ++i) coefficient(xs[static_cast<std::size_t>(i)], m) = x[m * n + i];
-    preset(ys);
-    evaluate<Product>(self, kind, index, xs.data(), ps.data(), ts.data(), ys.data());
     const int r = rows(kind);
-    for (int m = 0; m < 8; ++m)
-      for (int i = 0; i < r; ++i) out[m * r + i] = coefficient(ys[static_cast<std::size_t>(i)], m);
+    in_sets(points, [&](const PointSet& set) {
+      const Place<const double> states = OneByOne::place(x, 8 * n, set);
+      for (int m = 0; m < 8; ++m)
+        for (int i = 0; i < n; ++i) coefficient(xs[static_cast<std::size_t>(i)], m) = states.load(m * n + i);
+      preset(ys);
+      evaluate<Product>(self, kind, index, xs.data(), ps.data(), ts.data(), ys.data());
+      if (!set.is_of_use()) return false;
+      const Place<double> values = OneByOne::place(out, 8 * r, set);
+      for (int m = 0; m < 8; ++m)
+        for (int i = 0; i < r; ++i) values.store(m * r + i, coefficient(ys[static_cast<std::size_t>(i)], m));
+      return true;
+    });
   }
 
   /// Directions one by one: two in one dual number are slower, and every kind of dual number has to be compiled.
@@ -806,6 +818,7 @@ class ProblemTable {
     table.first = &first;
     table.second = &second;
     table.third = &third;
+    table.third_at_points = &third_at_points;
     table.first_at_points = &first_at_points;
     table.second_at_points = &second_at_points;
     if constexpr (has_lanes && !gives_derivatives) table.first_in_lanes = &first_in_lanes;
