@@ -13,11 +13,16 @@ void CondensedSystem::solve(std::span<const double> border, OrbitVector& dx) {
 }
 
 void CondensedSystem::solve(const OrbitResidual& residual, std::span<const double> border, OrbitVector& dx) {
-  segment_work_.each(shape_.segments, [&](int s, int) {
-    elimination_.condense_right_hand_side(s, &residual.collocation[index(collocation_row(s))], segment_rhs_[s]);
-  });
+  condense_right_hand_sides(residual.collocation);
   solve_ends(segment_rhs_, residual, border);
   expand(solution_, RightHandSide::condensed, dx);
+}
+
+/// Into segment_rhs_.
+void CondensedSystem::condense_right_hand_sides(const std::vector<double>& collocation) {
+  segment_work_.each(shape_.segments, [&](int s, int) {
+    elimination_.condense_right_hand_side(s, &collocation[index(collocation_row(s))], segment_rhs_[s]);
+  });
 }
 
 void CondensedSystem::null_vector(OrbitVector& v, int closing_row) {
@@ -97,19 +102,33 @@ void CondensedSystem::parameter_block(int s, int g, double* column) const {
   for (int a = 0; a < n_; ++a) column[a] = scalar_blocks_[s][a * scalars_ + 1 + g];
 }
 
-SegmentSolution CondensedSystem::beyond_ends(int s, const double* small, OrbitVector& dx) const {
-  return {RightHandSide::zero, small + s * (2 * n_ + 1), dx.globals.data(), &dx};
+SegmentSolution CondensedSystem::beyond_ends(int s, RightHandSide right, const double* small, OrbitVector& dx) const {
+  return {right, small + s * (2 * n_ + 1), dx.globals.data(), &dx};
 }
 
 void CondensedSystem::extend(const double* small, OrbitVector& dx) {
-  segment_work_.each(shape_.segments,
-                     [&](int s, int thread) { elimination_.expand(s, beyond_ends(s, small, dx), thread); });
+  segment_work_.each(shape_.segments, [&](int s, int thread) {
+    elimination_.expand(s, beyond_ends(s, RightHandSide::zero, small, dx), thread);
+  });
+}
+
+void CondensedSystem::condense_right_hand_side(const std::vector<double>& collocation, double* condensed) {
+  condense_right_hand_sides(collocation);
+  for (int s = 0; s < shape_.segments; ++s) std::copy_n(segment_rhs_[s], n_, condensed + s * n_);
+}
+
+void CondensedSystem::extend_condensed(const double* small, OrbitVector& dx) {
+  segment_work_.each(shape_.segments, [&](int s, int thread) {
+    elimination_.expand(s, beyond_ends(s, RightHandSide::condensed, small, dx), thread);
+  });
 }
 
 void CondensedSystem::extend_both(const double* small, OrbitVector& dx, const double* other_small,
                                   OrbitVector& other_dx) {
   segment_work_.each(shape_.segments, [&](int s, int thread) {
-    elimination_.expand_together(s, std::array{beyond_ends(s, small, dx), beyond_ends(s, other_small, other_dx)},
+    elimination_.expand_together(s,
+                                 std::array{beyond_ends(s, RightHandSide::zero, small, dx),
+                                            beyond_ends(s, RightHandSide::zero, other_small, other_dx)},
                                  thread);
   });
 }

@@ -215,14 +215,19 @@ void CondensedSystem::evaluate(const Orbit& x, OrbitResidual& residual) {
 
 Linearization CondensedSystem::linearize(const Orbit& x, std::span<const EndVector> closing,
                                          std::span<const OrbitVector> general, OrbitResidual& residual) {
-  adopt(x.shape);
-  residual.of_collocation = {0.0, false};
-  const Linearization condensed =
-      threads_.segments > 1 ? condense_together(x, general, residual) : condense_one_by_one(x, general, residual);
+  const Linearization condensed = condense(x, general, residual);
   if (condensed != Linearization::ready) return condensed;
-  residual.of_collocation = {elimination_.largest_residual(), true};
   if (!assemble(x, general, residual)) return Linearization::not_finite;
   return factorize(closing) ? Linearization::ready : Linearization::singular;
+}
+
+Linearization CondensedSystem::condense(const Orbit& x, std::span<const OrbitVector> general, OrbitResidual& residual) {
+  adopt(x.shape);
+  residual.of_collocation = {0.0, false};
+  const Linearization outcome =
+      threads_.segments > 1 ? condense_together(x, general, residual) : condense_one_by_one(x, general, residual);
+  if (outcome == Linearization::ready) residual.of_collocation = {elimination_.largest_residual(), true};
+  return outcome;
 }
 
 /// Orbits of one branch have equally many intervals, which may be dealt out anew.

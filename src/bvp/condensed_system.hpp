@@ -87,6 +87,10 @@ class CondensedSystem {
     return linearize(x, {}, general, residual);
   }
 
+  /// Its first part alone, for what is asked of segments below: their collocation rows eliminated, with the residual of
+  /// these.
+  Linearization condense(const Orbit& x, std::span<const OrbitVector> general, OrbitResidual& residual);
+
   /// The solution of J dx = -F, rows dx = border. `border` has b entries; the integral conditions of `residual` are not
   /// read.
   void solve(const OrbitResidual& residual, std::span<const double> border, OrbitVector& dx);
@@ -118,6 +122,11 @@ class CondensedSystem {
   void extend(const double* small, OrbitVector& dx);
   /// Two at once, to the last bit what each is alone.
   void extend_both(const double* small, OrbitVector& dx, const double* other_small, OrbitVector& other_dx);
+  /// Right-hand sides -collocation of the collocation rows (as OrbitResidual orders them) to those of the condensed
+  /// rows, m n numbers.
+  void condense_right_hand_side(const std::vector<double>& collocation, double* condensed);
+  /// As extend(), but dx satisfies the collocation rows with the right-hand sides condensed last.
+  void extend_condensed(const double* small, OrbitVector& dx);
   /// The adjoint: `weights` (m n) of the condensed rows to weights of all collocation rows (as OrbitResidual orders
   /// them), so that the weighted sum of the latter is that of the former for every vector that `extend` gives.
   void extend_adjoint(const double* weights, std::vector<double>& collocation);
@@ -169,6 +178,7 @@ class CondensedSystem {
   bool factorize(std::span<const EndVector> closing);
   bool close_along_null_vectors(bool known);
   bool factorize_with(std::span<const EndVector> closing);
+  void condense_right_hand_sides(const std::vector<double>& collocation);
   void find_null_vectors();
   double* put_general_row(int r, const OrbitVector& row, double* value) const;
   double* border_rhs() { return rhs_.data() + lu_.size() - border_; }
@@ -176,7 +186,7 @@ class CondensedSystem {
   void solve_ends(std::span<const double> border, EndVector& ends);
   SegmentSolution in_segment(int s, const EndVector& ends, RightHandSide right, OrbitVector& dx) const;
   void expand(const EndVector& ends, RightHandSide right, OrbitVector& dx);
-  SegmentSolution beyond_ends(int s, const double* small, OrbitVector& dx) const;
+  SegmentSolution beyond_ends(int s, RightHandSide right, const double* small, OrbitVector& dx) const;
   void put_globals(const EndVector& ends, OrbitVector& dx) const;
 
   const DefiningSystem& system_;

@@ -83,6 +83,13 @@ void CriticalMultiplier::follow_null_vectors() {
   normalise(row_);
 }
 
+bool CriticalMultiplier::put_critical_vectors(CriticalVectors& vectors) const {
+  vectors.multiplier = multiplier_;
+  vectors.right = Eigen::VectorXd::Map(small_v_.data(), map_.size()).cast<std::complex<double>>();
+  vectors.left = Eigen::VectorXd::Map(small_w_.data(), map_.size()).cast<std::complex<double>>();
+  return true;
+}
+
 bool CriticalMultiplier::evaluate(CondensedSystem& condensed, const Orbit& x) {
   // The border follows the null vectors; the first time it takes some rounds to find them.
   for (int round = started_ ? 3 : 0; round < 4; ++round) {

@@ -39,6 +39,7 @@ class CriticalMultiplier final : public RealMultiplierCondition {
   void recall(const std::vector<double>& memory) override;
 
   std::optional<int> kept_multiplier() const override { return multiplier_; }
+  bool put_critical_vectors(CriticalVectors& vectors) const override;
   /// The null vector v with the sigma_s as durations, of unit size at the ends of segments.
   const OrbitVector& null_vector() const { return v_; }
   double multiplicity_function() const override { return multiplicity_; }

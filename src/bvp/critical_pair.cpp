@@ -47,6 +47,8 @@ CriticalPair::CriticalPair(const DefiningSystem& system, const OrbitShape& shape
       pair_(Eigen::Matrix2d::Identity()),
       plane_(map_.size(), 2),
       border_(map_.size(), 2),
+      left_pair_(Eigen::Matrix2d::Identity()),
+      left_plane_(map_.size(), 2),
       extended_(2, OrbitVector(shape, system.free_count())),
       gradients_(static_cast<std::size_t>(CriticalPair::count()), extended_.front()) {}
 
@@ -78,6 +80,22 @@ std::complex<double> CriticalPair::multiplier() const {
   if (discriminant < 0.0) return {cosine(), std::sqrt(-discriminant)};
   const double larger = cosine() + std::copysign(std::sqrt(discriminant), cosine());
   return larger == 0.0 ? 0.0 : pair_.determinant() / larger;
+}
+
+/// The columns of V and W times eigenvectors of L and L^T.
+bool CriticalPair::put_critical_vectors(CriticalVectors& vectors) const {
+  const std::complex<double> mu = multiplier();
+  if (!(mu.imag() > 0.0)) return false;
+  vectors.multiplier = mu;
+  const auto combine = [&](const Plane& plane, double first, std::complex<double> second,
+                           Eigen::VectorXcd& combination) {
+    combination.resize(plane.rows());
+    combination.real() = first * plane.col(0) + second.real() * plane.col(1);
+    combination.imag() = second.imag() * plane.col(1);
+  };
+  combine(plane_, pair_(0, 1), mu - pair_(0, 0), vectors.right);
+  combine(left_plane_, left_pair_(1, 0), mu - left_pair_(0, 0), vectors.left);
+  return true;
 }
 
 /// The plane of the real and imaginary part of the eigenvector next to the first multiplier, by inverse iteration; real
@@ -201,6 +219,8 @@ bool CriticalPair::evaluate(CondensedSystem& condensed, const Orbit& x) {
   const Eigen::Vector4d by_determinant(pair_(1, 1), -pair_(1, 0), -pair_(0, 1), pair_(0, 0));
   const Eigen::Vector4d by_cosine(0.5, 0.0, 0.0, 0.5);
   if (!find_gradient(condensed, x, by_determinant, gradients_.front())) return false;
+  left_pair_ = pair_;
+  left_plane_ = Plane::Map(change_.data(), map_.size(), 2);
   if (kept_cosine_ && !find_gradient(condensed, x, by_cosine, gradients_.back())) return false;
   return orthonormalise();
 }

@@ -40,6 +40,8 @@ class CriticalPair final : public OrbitCondition {
   bool evaluate(CondensedSystem& condensed, const Orbit& x) override;
   double value(int k = 0) const override { return k == 0 ? pair_.determinant() - 1.0 : cosine() - *kept_cosine_; }
   const OrbitVector& gradient(int k = 0) const override { return gradients_[static_cast<std::size_t>(k)]; }
+  /// False where the pair is real.
+  bool put_critical_vectors(CriticalVectors& vectors) const override;
   /// Where the pair is real.
   std::string beyond_end() const override;
   /// L and V.
@@ -76,6 +78,9 @@ class CriticalPair final : public OrbitCondition {
   Eigen::Matrix2d pair_;  // L
   Plane plane_;           // V
   Plane border_;          // V_last
+  // of the last evaluation
+  Eigen::Matrix2d left_pair_;  // L as it was with
+  Plane left_plane_;           // W, S^T W + E^T W L^T = 0
   bool started_ = false;
   std::vector<OrbitVector> extended_;  // the columns of V
   std::vector<OrbitVector> gradients_;

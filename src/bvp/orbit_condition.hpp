@@ -1,6 +1,8 @@
 /// What a curve in two parameters adds to the equations of one solution.
 #pragma once
 
+#include <Eigen/Core>
+#include <complex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,6 +12,13 @@
 namespace tchat {
 
 class CondensedSystem;
+
+/// The vectors of a multiplier at the ends of segments, of any length: S(mu) right = 0, left S(mu) = 0
+/// (condensed_return_map.hpp).
+struct CriticalVectors {
+  std::complex<double> multiplier;
+  Eigen::VectorXcd right, left;
+};
 
 /// A function G of the orbit, durations and free parameters, of a few numbers, with its gradients.
 class OrbitCondition {
@@ -26,6 +35,9 @@ class OrbitCondition {
   virtual const OrbitVector& gradient(int k) const = 0;
   /// The multiplier that is kept exactly, where it is one number: 1 or -1.
   virtual std::optional<int> kept_multiplier() const { return std::nullopt; }
+  /// The vectors of the multiplier that is kept on the unit circle, in the closed upper half plane, at the point of the
+  /// last evaluation. False where there is no such multiplier.
+  virtual bool put_critical_vectors(CriticalVectors& /*vectors*/) const { return false; }
   /// "" on the curve, or why the last point, which solves the equations, lies beyond its end.
   virtual std::string beyond_end() const { return {}; }
 

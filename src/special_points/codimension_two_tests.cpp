@@ -27,6 +27,17 @@ std::optional<Complex> critical(const CriticalPair* pair) {
   return pair->multiplier() / std::abs(pair->multiplier());
 }
 
+/// multiplier_product() without the factors of the critical pair of a torus curve, if there is one: 2 - 2 cos theta or
+/// 2 + 2 cos theta, which touch zero where its halves meet.
+TestValue product_beside(const TestedPoint& point, int target, const CriticalPair* pair) {
+  const TestValue product = multiplier_product(point, target);
+  if (pair == nullptr || !product.value) return product;
+  const double of_pair = 2.0 - 2.0 * target * pair->cosine();
+  constexpr double halves_meet = 1e-6;
+  if (!(of_pair > halves_meet)) return TestValue::undefined();
+  return TestValue::of(*product.value / of_pair, product.zero_level / of_pair);
+}
+
 /// A real multiplier 1 or -1 besides the critical ones.
 class SecondMultiplierTest final : public TestFunction {
  public:
@@ -34,15 +45,7 @@ class SecondMultiplierTest final : public TestFunction {
   SecondMultiplierTest(PointType type, int target, const CriticalPair* pair = nullptr)
       : type_(type), target_(target), pair_(pair) {}
   std::string name() const override { return type_name(static_cast<int>(type_)); }
-  /// The pair's own factors, 2 - 2 cos theta or 2 + 2 cos theta, touch zero where its halves meet.
-  TestValue evaluate(const TestedPoint& point) const override {
-    const TestValue product = multiplier_product(point, target_);
-    if (pair_ == nullptr || !product.value) return product;
-    const double of_pair = 2.0 - 2.0 * target_ * pair_->cosine();
-    constexpr double halves_meet = 1e-6;
-    if (!(of_pair > halves_meet)) return TestValue::undefined();
-    return TestValue::of(*product.value / of_pair, product.zero_level / of_pair);
-  }
+  TestValue evaluate(const TestedPoint& point) const override { return product_beside(point, target_, pair_); }
   bool is_genuine(const TestedPoint& point) const override { return is_multiplier_at(point, target_); }
   SpecialPoint classify(const TestedPoint&, bool) const override {
     return {type_, {}, false, fmt::format("a second critical multiplier: {}", target_)};
@@ -84,12 +87,12 @@ class CubicTermTest final : public TestFunction {
       : type_(type), pair_(pair), solver_(std::make_unique<NormalFormSolver>(system)) {}
   std::string name() const override { return type_name(static_cast<int>(type_)); }
   TestValue evaluate(const TestedPoint& point) const override {
-    const TestValue product = multiplier_product(point, 1);
-    if (!product.value || touching_segment(point) >= 0) return TestValue::undefined();
-    const std::optional<NormalForm> form = solver_->find(point.orbit, critical(pair_).value_or(-1.0));
+    const TestValue product = product_beside(point, 1, pair_);
+    if (!product.value || point.condition == nullptr || touching_segment(point) >= 0) return TestValue::undefined();
+    const std::optional<Coefficient> form = solver_->find(point.condensed, point.orbit, *point.condition);
     if (!form) return TestValue::undefined();
     const double factor = *product.value / (1.0 + std::abs(*product.value));
-    return TestValue::of(form->coefficient.real() * factor, form->uncertainty * std::abs(factor));
+    return TestValue::of(form->value * factor, form->uncertainty * std::abs(factor));
   }
   /// Where the other multiplier does not act on the critical one there is no pole, and what vanishes is the factor.
   bool is_genuine(const TestedPoint& point) const override {

@@ -7,8 +7,7 @@
 ///     PD      LPD              -                 PTR                    GPD: c
 ///     TR      LTR              PTR               TTR                    CH: Re d
 ///
-/// The other curve, or curves, go on there as well. A coefficient takes a sparse factorisation at every point: it is
-/// computed only if `coefficients`.
+/// The other curve, or curves, go on there as well. Coefficients are computed only if `coefficients`.
 #pragma once
 
 #include "bvp/critical_pair.hpp"

@@ -27,7 +27,7 @@ class OrbitCondition;
 struct TestedPoint {
   const Orbit& orbit;
   const OrbitVector& tangent;
-  const CondensedSystem& condensed;
+  CondensedSystem& condensed;  ///< whose right-hand sides are scratch
   const FloquetMultipliers& multipliers;
   const std::vector<double>& transversalities;  ///< h_x f / (|h_x| |f|) at the end of each segment
   double singular_distance = 1.0;  ///< of the bordered problem to a singular one, with its determinant's sign

@@ -6,6 +6,7 @@
 #include "bvp/mesh_adaptation.hpp"
 #include "bvp/nodal_expansion.hpp"
 #include "bvp/nodal_system.hpp"
+#include "stability/condensed_orbit.hpp"
 #include "stability/multilinear.hpp"
 #include "stability/orbit_forms.hpp"
 #include "stability/shifted_orbit.hpp"
@@ -25,32 +26,13 @@ struct Found {
   Complex multiplier;
 };
 
-std::optional<Found> form_of(const DefiningSystem& system, NodalSystem& nodal, const Orbit& x, Complex critical) {
-  ShiftedOrbit orbit(nodal, x, shift_for(critical));
-  ComplexVector v, w;
-  Complex multiplier;
-  if (!orbit.is_regular() || !orbit.find_critical(critical, v, w, multiplier)) return std::nullopt;
-  const Vector q = v.head(x.shape.dimension).real();
-  const OrbitForms forms(system, x);
-  const ComplexVector vv = forms.second(v, v);
-  if (is_fold(critical)) {
-    const Product sum = product(w, vv);
-    if (!std::isfinite(sum.size)) return std::nullopt;
-    return Found{{-0.5 * sum.value, 0.5 * error_of_sums(system.system()) * sum.size}, q, multiplier};
-  }
-  ComplexVector rows = forms.third(v);
-  Complex factor = -1.0 / 6.0;
-  if (critical == Complex(-1.0, 0.0)) {
-    rows += 3.0 * forms.second(v, orbit.solve(1.0, -vv));
-  } else {
-    const ComplexVector conjugate = v.conjugate();
-    rows += 2.0 * forms.second(v, orbit.solve(1.0, -forms.second(v, conjugate)));
-    rows += forms.second(conjugate, orbit.solve(critical * critical, -vv));
-    factor = -0.5 / critical;
-  }
-  const Product sum = product(w, rows);
+std::optional<Found> form_of(const DefiningSystem& system, CondensedOrbit& orbit, const Orbit& x, Complex critical) {
+  CriticalVectors vectors;
+  if (!orbit.linearise(x) || !orbit.forms().find_critical(critical, vectors)) return std::nullopt;
+  const Product sum = orbit.forms().coefficient(vectors, critical);
   if (!std::isfinite(sum.size)) return std::nullopt;
-  return Found{{factor * sum.value, error_of_sums(system.system()) * std::abs(factor) * sum.size}, q, multiplier};
+  const Vector q = vectors.right.head(x.shape.dimension).real();
+  return Found{{sum.value, error_of_sums(system.system()) * sum.size}, q, vectors.multiplier};
 }
 
 /// M(1) with the column E q and the row q', q the start of V: what g is in branching.hpp is P(x, p) - x along q, P the
@@ -141,12 +123,12 @@ std::optional<BranchingForm> orbit_branching(const DefiningSystem& system, const
 std::optional<NormalForm> normal_form(const DefiningSystem& system, const Orbit& x, const OrbitVector& tangent,
                                       Complex critical) {
   if (x.shape.own || x.shape.intervals < 2) return std::nullopt;
-  NodalSystem fine(system, x.shape);
+  CondensedOrbit fine(system, x.shape, critical);
   const std::optional<Found> found = form_of(system, fine, x, critical);
   if (!found) return std::nullopt;
   Orbit other = on_every_second_point(x);
-  NodalSystem coarse(system, other.shape);
-  if (!correct_orbit(system, coarse, critical, found->q, other)) return std::nullopt;
+  CondensedOrbit coarse(system, other.shape, critical);
+  if (!coarse.correct(found->q, other)) return std::nullopt;
   const std::optional<Found> compared = form_of(system, coarse, other, critical);
   if (!compared) return std::nullopt;
   NormalForm form = found->form;
@@ -159,14 +141,22 @@ std::optional<NormalForm> normal_form(const DefiningSystem& system, const Orbit&
   return std::isfinite(form.uncertainty) ? std::optional(form) : std::nullopt;
 }
 
-std::optional<NormalForm> NormalFormSolver::find(const Orbit& x, Complex critical) {
-  if (x.shape.own) return std::nullopt;
-  if (!nodal_ || shape_ != x.shape) {
-    nodal_ = std::make_unique<NodalSystem>(system_, x.shape);
+std::optional<Coefficient> NormalFormSolver::find(CondensedSystem& condensed, const Orbit& x,
+                                                  const OrbitCondition& condition) {
+  if (x.shape.own || !condition.put_critical_vectors(vectors_)) return std::nullopt;
+  const Complex critical = vectors_.multiplier / std::abs(vectors_.multiplier);
+  if (!forms_ || shape_ != x.shape) {
+    forms_ = std::make_unique<ReturnMapForms>(system_, x.shape, critical.imag() != 0.0);
     shape_ = x.shape;
   }
-  const std::optional<Found> found = form_of(system_, *nodal_, x, critical);
-  return found ? std::optional(found->form) : std::nullopt;
+  // The conditions have the gradients -left (dS) right and that of |mu|^2 - 1.
+  const Eigen::Index n = x.shape.dimension;
+  const Complex overlap = (vectors_.left.tail(n).transpose() * vectors_.right.head(n)).value();
+  const double factor = critical.imag() != 0.0 ? 0.5 : 1.0 / overlap.real();
+  if (!forms_->factorize(condensed, x, 1.0) || !forms_->normalise(vectors_)) return std::nullopt;
+  const Product sum = forms_->on_curve(vectors_, critical, condition.gradient(0), factor);
+  if (!std::isfinite(sum.size)) return std::nullopt;
+  return Coefficient{sum.value.real(), error_of_sums(system_.system()) * sum.size};
 }
 
 }  // namespace tchat

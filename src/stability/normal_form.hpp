@@ -15,8 +15,8 @@
 /// positive, which fixes the sign of a.
 ///
 /// No derivative of the map is formed. With M(mu) of nodal_system.hpp the whole orbit is expanded
-/// (nodal_expansion.hpp): M(mu) V = 0 and W M(mu) = 0 are q and p on all nodes and rows, M(1) H = -(the part e_1 e_2 of
-/// V, V) is the second term, and c = -W (the part e_1 e_2 e_3 of V, V, V, H, H, H) / 6: solutions of linear problems
+/// (return_map_forms.hpp): M(mu) V = 0 and W M(mu) = 0 are q and p on all nodes and rows, M(1) H = -(the part e_1 e_2
+/// of V, V) is the second term, and c = -W (the part e_1 e_2 e_3 of V, V, V, H, H, H) / 6: solutions of linear problems
 /// that are as well posed as the orbit's own, however much it contracts or expands. One factorisation of M(mu_0) serves
 /// all: that of another mu differs in n rows. mu_0 is 1, at a fold -1.
 #pragma once
@@ -26,9 +26,11 @@
 #include <optional>
 
 #include "bvp/defining_system.hpp"
-#include "bvp/nodal_system.hpp"
 #include "bvp/orbit.hpp"
+#include "bvp/orbit_condition.hpp"
 #include "stability/branching.hpp"
+#include "stability/multilinear.hpp"
+#include "stability/return_map_forms.hpp"
 
 namespace tchat {
 
@@ -52,17 +54,22 @@ std::optional<NormalForm> normal_form(const DefiningSystem& system, const Orbit&
 /// crosses. Allocates.
 std::optional<BranchingForm> orbit_branching(const DefiningSystem& system, const Orbit& x);
 
-/// The coefficients along a curve, from orbit to orbit on meshes of one shape, without an estimate of the mesh's error:
-/// the uncertainty is that of sums and differences alone.
+/// c or Re d at points of a curve of period doublings or torus bifurcations, from the linearisation that Newton's
+/// method has left there and from the vectors of the curve's condition. Without an estimate of the mesh's error: the
+/// uncertainty is that of sums and differences alone. Allocates at the first point of a shape, and where third
+/// derivatives are differences.
 class NormalFormSolver {
  public:
   explicit NormalFormSolver(const DefiningSystem& system) : system_(system) {}
-  std::optional<NormalForm> find(const Orbit& x, std::complex<double> critical);
+  /// `condition` is evaluated at x, whose linearisation is in `condensed`. Nothing where that has segments with meshes
+  /// of their own, or equations are singular.
+  std::optional<Coefficient> find(CondensedSystem& condensed, const Orbit& x, const OrbitCondition& condition);
 
  private:
   const DefiningSystem& system_;
   std::optional<OrbitShape> shape_;
-  std::unique_ptr<NodalSystem> nodal_;  // of shape_
+  std::unique_ptr<ReturnMapForms> forms_;  // of shape_
+  CriticalVectors vectors_;
 };
 
 }  // namespace tchat

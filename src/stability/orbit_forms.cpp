@@ -1,10 +1,6 @@
 #include "stability/orbit_forms.hpp"
 
-#include <algorithm>
-#include <cmath>
-
 #include "bvp/mesh_adaptation.hpp"
-#include "stability/shifted_orbit.hpp"
 
 namespace tchat {
 
@@ -59,28 +55,6 @@ void move_orbit(const DefiningSystem& system, Orbit& x, const Vector& change, do
   x.states += Eigen::Map<const Eigen::MatrixXd>(change.data(), x.states.rows(), x.states.cols());
   for (int s = 0; s < x.shape.segments; ++s) x.duration(s) += change(of_states + s);
   x.par(system.free_parameters()[static_cast<std::size_t>(parameter)] - 1) += dp;
-}
-
-bool correct_orbit(const DefiningSystem& system, NodalSystem& nodal, Complex critical, const Vector& q, Orbit& x) {
-  const NodalExpansion expansion(system);
-  ShiftedOrbit orbit(nodal, x, shift_for(critical));
-  if (!orbit.is_regular()) return false;
-  const Eigen::Index parameter = is_fold(critical) ? orbit.parameter_across_fold() : 0;
-  constexpr int most_iterations = 10;
-  constexpr double arrived = 1e-11, near = 1e-6;
-  double last = near;
-  for (int k = 0; k < most_iterations; ++k) {
-    const Vector right = -expansion.part(x, {}, 0);
-    double dp = 0.0;
-    const Vector change = is_fold(critical) ? orbit.solve_beside(1.0, right, orbit.parameter_column(parameter), q, dp)
-                                            : orbit.solve(1.0, right).real();
-    if (!change.allFinite()) return false;
-    move_orbit(system, x, change, dp, parameter);
-    const double size = change.lpNorm<Eigen::Infinity>() / (1.0 + x.states.cwiseAbs().maxCoeff());
-    if (size < arrived || (last < near && size > 0.5 * last)) return true;
-    last = size;
-  }
-  return false;
 }
 
 }  // namespace tchat

@@ -6,7 +6,6 @@
 #include <complex>
 
 #include "bvp/nodal_expansion.hpp"
-#include "bvp/nodal_system.hpp"
 #include "stability/multilinear.hpp"
 
 namespace tchat {
@@ -39,9 +38,4 @@ Orbit on_every_second_point(const Orbit& x);
 /// By a change of the nodes and durations, and of one of the free parameters.
 void move_orbit(const DefiningSystem& system, Orbit& x, const Eigen::VectorXd& change, double dp,
                 Eigen::Index parameter = 0);
-/// Chord iteration at the same parameters, or near a fold at a start that moves across q alone, until it no longer
-/// comes nearer: rounding, which the orbit may amplify. False where it fails. `nodal` is of the orbit's shape.
-bool correct_orbit(const DefiningSystem& system, NodalSystem& nodal, std::complex<double> critical,
-                   const Eigen::VectorXd& q, Orbit& x);
-
 }  // namespace tchat

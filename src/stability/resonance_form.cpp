@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "bvp/nodal_system.hpp"
+#include "stability/condensed_orbit.hpp"
 #include "stability/orbit_forms.hpp"
 #include "stability/shifted_orbit.hpp"
 
@@ -165,7 +166,7 @@ std::vector<NamedCoefficient> codimension_two_form(const DefiningSystem& system,
   if (!found) return {};
   Orbit other = on_every_second_point(x);
   NodalSystem coarse(system, other.shape);
-  if (!correct_orbit(system, coarse, critical_multiplier(type), found->q, other)) return {};
+  if (!CondensedOrbit(system, other.shape, critical_multiplier(type)).correct(found->q, other)) return {};
   const std::optional<ResonanceCoefficients> compared = find_on(system, coarse, other, type);
   if (!compared) return {};
   const bool is_turned = type == PointType::resonance_1 && found->q.dot(compared->q) < 0.0;

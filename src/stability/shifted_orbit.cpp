@@ -1,10 +1,11 @@
 #include "stability/shifted_orbit.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <Eigen/SVD>
 #include <cmath>
 #include <utility>
+
+#include "stability/critical_start.hpp"
 
 namespace tchat {
 
@@ -82,37 +83,14 @@ ShiftedOrbit::Vector ShiftedOrbit::solve_beside(double mu, const Vector& right, 
 }
 
 bool ShiftedOrbit::find_critical(Complex mu, ComplexVector& v, ComplexVector& w, Complex& multiplier) {
-  const Eigen::ComplexEigenSolver<Eigen::MatrixXcd> right(starts_.cast<Complex>());
-  const Eigen::ComplexEigenSolver<Eigen::MatrixXcd> left(starts_.transpose().cast<Complex>());
-  if (right.info() != Eigen::Success || left.info() != Eigen::Success) return false;
-  const auto nearest = [&](const ComplexVector& values) {
-    Eigen::Index at = 0;
-    (values.array() - 1.0 / (shift_ - mu)).abs().minCoeff(&at);
-    return at;
-  };
-  const Eigen::Index at = nearest(right.eigenvalues());
-  multiplier = shift_ - 1.0 / right.eigenvalues()(at);
-  if (!(std::abs(multiplier - mu) < 1e-2)) return false;
-  ComplexVector q = right.eigenvectors().col(at);
-  Eigen::Index largest = 0;
-  q.cwiseAbs().maxCoeff(&largest);
-  q *= std::abs(q(largest)) / q(largest) / q.norm();
-  ComplexVector p = left.eigenvectors().col(nearest(left.eigenvalues()));
-  p /= (p.transpose() * q)(0);
-  if (!p.allFinite()) return false;
-  v = (shift_ - multiplier) * (closing_ * q);
+  const std::optional<CriticalStart> found = critical_start(starts_, shift_, mu);
+  if (!found) return false;
+  multiplier = found->multiplier;
+  v = (shift_ - multiplier) * (closing_ * found->right);
   ComplexVector start = ComplexVector::Zero(size());
-  start.head(n_) = p;
+  start.head(n_) = found->left;
   w = (shift_ - multiplier) * solve_real_adjoint(start);
   return true;
-}
-
-Eigen::Index ShiftedOrbit::parameter_across_fold() {
-  ComplexVector v, w;
-  Complex multiplier;
-  Eigen::Index k = 0;
-  if (find_critical(1.0, v, w, multiplier)) (w.transpose() * nodal_.parameter_columns()).cwiseAbs().maxCoeff(&k);
-  return k;
 }
 
 ShiftedOrbit::ComplexVector ShiftedOrbit::solve_singular(Complex mu, const ComplexVector& right, const ComplexVector& p,

@@ -28,8 +28,6 @@ class ShiftedOrbit {
   Vector closing_rows(const Vector& q) const;
   /// The column of a free parameter.
   Vector parameter_column(Eigen::Index k = 0) const { return nodal_.parameter_columns().col(k); }
-  /// The free parameter that moves a fold the most, as far as the columns tell.
-  Eigen::Index parameter_across_fold();
 
   ComplexVector solve(Complex mu, const ComplexVector& right);
 

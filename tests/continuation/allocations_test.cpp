@@ -7,6 +7,7 @@
 #include <atomic>
 #include <catch2/catch.hpp>
 #include <cstdlib>
+#include <functional>
 #include <new>
 
 #include "bvp/critical_multiplier.hpp"
@@ -21,6 +22,7 @@
 #include "special_points/impacting_orbits.hpp"
 #include "special_points/langford.hpp"
 #include "special_points/torus_contact_condition.hpp"
+#include "stability/normal_form.hpp"
 #include "support/branch_fixture.hpp"
 #include "support/linear_oscillator.hpp"
 #include "support/sharp_start.hpp"
@@ -106,9 +108,14 @@ struct Counts {
   int newton_iterations;
 };
 
-Counts steps_after_the_first(PathFollower& follower, PathPoint here, double ds) {
+/// Done at each point, whose linearisation the follower holds.
+using AtPoint = std::function<void(const Orbit&)>;
+
+Counts steps_after_the_first(
+    PathFollower& follower, PathPoint here, double ds, const AtPoint& at_point = [](const Orbit&) {}) {
   PathPoint next = here;
   REQUIRE(follower.step(here, ds, next).converged());
+  at_point(next.orbit);
   follower.iterations_along_tangent(here, ds, next, true);
   std::swap(here, next);
   Counts counts{0, 0, 0};
@@ -116,6 +123,7 @@ Counts steps_after_the_first(PathFollower& follower, PathPoint here, double ds) 
   for (int k = 0; k < 10; ++k) {  // one or two iterations each
     const NewtonResult result = follower.step(here, ds, next);
     if (!result.converged()) break;
+    at_point(next.orbit);
     follower.iterations_along_tangent(here, ds, next, k % 2 == 0);
     counts.newton_iterations += result.iterations;
     std::swap(here, next);
@@ -140,7 +148,14 @@ Counts steps_on_curve(const HybridSystem& hybrid, const Orbit& start, Multiplier
                         std::make_unique<Condition>(system, start.shape, multiplier));
   PathPoint here = follower.make_point(start);
   REQUIRE(follower.start_by_minimum_norm(here).converged());
-  return steps_after_the_first(follower, here, 0.02);
+  NormalFormSolver forms(system);
+  int found = 0;
+  const bool has_cubic_term = follower.condition()->kept_multiplier() != 1;
+  const Counts counts = steps_after_the_first(follower, here, 0.02, [&](const Orbit& x) {
+    found += has_cubic_term && forms.find(follower.condensed(), x, *follower.condition());
+  });
+  CHECK((found >= 5) == has_cubic_term);
+  return counts;
 }
 
 }  // namespace
@@ -288,7 +303,7 @@ TEST_CASE("no allocation with kernels of run-time size, several fields and jumps
   CHECK(counts.ours == 0);
 }
 
-TEST_CASE("no allocation of our own along fold, period-doubling and torus curves") {
+TEST_CASE("no allocation of our own along fold, period-doubling and torus curves with their cubic terms") {
   const OscillatorOrbit fold = one_impact_orbit(1.8901, fold_velocity());
   const OscillatorOrbit doubling = one_impact_orbit(2.0072, period_doubling_velocity());
   const LangfordCircle circle = LangfordCircle{}.at_torus();

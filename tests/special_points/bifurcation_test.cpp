@@ -97,7 +97,7 @@ TEST_CASE("fold: the principal parameter may be a duration") {
   tangent.durations << 0.25, -0.5;
   tangent.globals << 0.125, 0.75;
   const PeriodicOrbitSystem system(system_of<NormalForms>(), {{1, 1, 1}, {1, 1, 1}}, {1});
-  const CondensedSystem condensed(system, {3, 2, 2, 2}, {1});
+  CondensedSystem condensed(system, {3, 2, 2, 2}, {1});
   const FloquetMultipliers multipliers;
   const std::vector<double> transversalities{-1.0, -1.0};
   const TestedPoint point{x, tangent, condensed, multipliers, transversalities, 1.0};
@@ -246,7 +246,7 @@ TEST_CASE("period doubling and torus are not looked for with untrusted multiplie
   FloquetMultipliers multipliers{{{0.3, 0.9}, {0.3, -0.9}, {0.0, 0.0}}, false, 0, 0.01, true};
   const std::vector<double> transversalities{-0.5};
   const PeriodicOrbitSystem system(system_of<NormalForms>(), {{1, 1, 1}}, {1});
-  const CondensedSystem condensed(system, {3, 1, 2, 2}, {1});
+  CondensedSystem condensed(system, {3, 1, 2, 2}, {1});
   const Orbit x{};
   const OrbitVector tangent;
   const TestedPoint point{x, tangent, condensed, multipliers, transversalities, 1.0};
@@ -264,7 +264,7 @@ TEST_CASE("period doubling and torus are not looked for with untrusted multiplie
 TEST_CASE("torus: a pair that crosses is seen beside another one that stays outside, nearer to the circle") {
   const std::vector<double> transversalities{-0.5};
   const PeriodicOrbitSystem system(system_of<NormalForms>(), {{1, 1, 1}}, {1});
-  const CondensedSystem condensed(system, {3, 1, 2, 2}, {1});
+  CondensedSystem condensed(system, {3, 1, 2, 2}, {1});
   const Orbit x{};
   const OrbitVector tangent;
   const auto value = [&](double crossing, double outside) {

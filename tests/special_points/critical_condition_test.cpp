@@ -12,6 +12,7 @@
 #include "bvp/stationary_monitor.hpp"
 #include "impacting_orbits.hpp"
 #include "langford.hpp"
+#include "stability/normal_form.hpp"
 
 using namespace tchat;
 using namespace tchat::test;
@@ -241,6 +242,32 @@ TEST_CASE("critical pair: complex or just become real, its product is the contra
   CHECK(v > least);
   pair.recall(memory);
   CHECK(at.value(pair, sampled(whole(first), first, 40, 5)) == Approx(product(first) - 1.0).margin(1e-9));
+}
+
+TEST_CASE("cubic terms from the vectors of a condition are those from the vectors of the return map") {
+  const auto check = [](const HybridSystem& hybrid, const Signature& signature, const Orbit& x, auto multiplier,
+                        auto make_condition) {
+    ConditionAt at(hybrid, signature, x);
+    auto condition = make_condition(at.system, x.shape);
+    at.value(condition, x);
+    NormalFormSolver solver(at.system);
+    const std::optional<Coefficient> on_curve = solver.find(at.condensed, x, condition);
+    const OrbitVector tangent = at.random_vector(at.condensed.make_vector());
+    const std::optional<NormalForm> of_label = normal_form(at.system, x, tangent, multiplier);
+    REQUIRE(on_curve);
+    REQUIRE(of_label);
+    CHECK(on_curve->value == Approx(of_label->coefficient.real()).epsilon(1e-7));
+  };
+  const OscillatorOrbit orbit = one_impact_orbit(2.0072, period_doubling_velocity());
+  for (const CutOrbit& cut : all_cuts(orbit)) {
+    CAPTURE(cut.signature.size());
+    check(linosc(), cut.signature, sampled(cut, orbit, 40, 5), -1.0,
+          [](const DefiningSystem& system, const OrbitShape& shape) { return CriticalMultiplier(system, shape, -1); });
+  }
+  const LangfordCircle circle = LangfordCircle{}.at_torus();
+  const std::complex<double> mu = circle.multiplier() / std::abs(circle.multiplier());
+  check(system_of<Langford>(), {{1, 1, 1}}, circle.orbit(40, 5), mu,
+        [&](const DefiningSystem& system, const OrbitShape& shape) { return CriticalPair(system, shape, mu); });
 }
 
 TEST_CASE("critical pair: gradient") {

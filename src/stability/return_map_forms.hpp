@@ -1,0 +1,117 @@
+/// Coefficients of normal forms from an orbit whose segments are condensed.
+///
+/// The equations of the whole orbit, M(mu) of nodal_system.hpp, are solved by way of S(mu), what is left of them at the
+/// ends of segments (condensed_return_map.hpp): of their elimination only the last connectivity depends on mu, and
+/// S(mu) = S(mu_0) + (mu - mu_0) E F', where F picks v_1(0) and E the last n rows. K = F' S(mu_0)^-1 E has the
+/// eigenvalues 1 / (mu_0 - mu) of the multipliers mu.
+///
+/// With V and W the vectors of the multiplier, on all nodes and rows, V_1(0) = q = a + i b and u_k = cos(phi_k) a +
+/// sin(phi_k) b, phi_k = k pi / 3,
+///
+///     B(q, q*) = 2/3 sum B(u_k, u_k),                    B(q, q) = 4/3 sum e^(2 i phi_k) B(u_k, u_k)
+///     C(q, q, q*) = 8/9 sum e^(i phi_k) C(u_k, u_k, u_k)                                  k = 0, 1, 2
+///
+/// so that three passes over the orbit give all that is needed, for a real q one. What W makes of B(V, .) is found as
+/// the gradient of a curve's condition is, by weighted second derivatives.
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/LU>
+#include <complex>
+#include <vector>
+
+#include "bvp/condensed_return_map.hpp"
+#include "bvp/condensed_system.hpp"
+#include "bvp/directional_expansion.hpp"
+#include "bvp/orbit_condition.hpp"
+#include "linear_algebra/sparse_lu.hpp"
+#include "stability/multilinear.hpp"
+
+namespace tchat {
+
+class ReturnMapForms {
+ public:
+  using Complex = std::complex<double>;
+
+  /// `pair`: of complex vectors, which need more room. Segments have one mesh in common.
+  ReturnMapForms(const DefiningSystem& system, const OrbitShape& shape, bool pair);
+
+  /// S(mu_0) at x, whose segments `condensed` holds. Both stay as they are until the last call below, but for
+  /// right-hand sides. False where S is singular or not finite.
+  bool factorize(CondensedSystem& condensed, const Orbit& x, double mu_0);
+
+  /// The vectors of the multiplier nearest to mu; false where there is none near it. Allocates.
+  bool find_critical(Complex mu, CriticalVectors& found);
+
+  /// To |V_1(0)| = 1, its largest entry positive, and W_closing V_1(0) = 1. False where that cannot be.
+  bool normalise(CriticalVectors& vectors) const;
+
+  /// a, c or d (normal_form.hpp) of the critical multiplier 1, -1 or e^(i theta) of normalised vectors, mu_0 = 1 but
+  /// for a; size: of the terms of the sum.
+  Product coefficient(const CriticalVectors& vectors, Complex critical);
+
+  /// c, or the real part of d alone, where `factor` times `growth` is the derivative of the critical multiplier, or of
+  /// its modulus: the curve's condition knows it.
+  Product on_curve(const CriticalVectors& vectors, Complex critical, const OrbitVector& growth, double factor);
+
+  RowWeights make_rows() const { return expansion_.make_rows(); }
+  OrbitVector make_vector() const { return {shape_, system_.free_count()}; }
+  /// The solution of M(mu_0) h = -rows.
+  void solve(const RowWeights& rows, OrbitVector& h);
+  /// M(1) h + factor column of free parameter k = -rows with q' h_1(0) = 0, h.globals(k) = factor. Allocates.
+  void solve_across(const RowWeights& rows, const Eigen::VectorXd& q, Eigen::Index k, OrbitVector& h);
+  /// The free parameter that moves the fold of these vectors the most. Allocates.
+  Eigen::Index parameter_across(const CriticalVectors& vectors);
+
+ private:
+  using Vector = Eigen::VectorXd;
+
+  void put_closing();
+  void put_vectors(const CriticalVectors& vectors);
+  void find_rows();
+  void find_products();
+  void keep_planes(const RowWeights& weights, const OrbitVector& v, double factor, OrbitVector& row);
+  void solve_ends(const RowWeights& rows, Vector& ends);
+  void differentiate(const RowWeights& weights, const OrbitVector& v, OrbitVector& row);
+  void combine_squares();
+  void solve_twice(Complex mu);
+  Product square();
+  Product cube();
+  Product cubes_of_pair(Complex critical);
+  Product cube_of_pair(Complex critical);
+  Product real_cube_of_pair(Complex critical);
+
+  const DefiningSystem& system_;
+  OrbitShape shape_;
+  Eigen::Index n_;
+  CondensedReturnMap map_;
+  SparseLu lu_;  // of S(mu_0)
+  DirectionalExpansion expansion_;
+  CondensedSystem* condensed_ = nullptr;
+  const Orbit* x_ = nullptr;
+  double shift_ = 0.0;  // mu_0
+
+  std::vector<double> values_;                     // of S
+  std::vector<double> condensed_rows_;             // m n
+  Vector rhs_, ends_, other_ends_;                 // as S
+  Eigen::MatrixXd closing_;                        // S(mu_0)^-1 E
+  Eigen::MatrixXcd matrix_;                        // n x n
+  Eigen::PartialPivLU<Eigen::MatrixXcd> factors_;  // of it
+  Eigen::VectorXcd start_, change_;                // n
+  Vector f_;                                       // n
+  Eigen::MatrixXd fx_;
+
+  // Real and imaginary parts, or the former alone:
+  std::vector<OrbitVector> vectors_;  // V
+  std::vector<RowWeights> weights_;   // W
+  std::vector<OrbitVector> rows_;     // -w B(v, .), v and w parts of V and W: those of w one behind the other
+  // Of the directions u_k:
+  std::vector<RowWeights> second_, third_;
+  std::vector<RowWeights> turned_;  // the parts of e^(-i theta) W
+  // B(q, q*) and the parts of B(q, q), and their solutions (1 - A)^-1 and (mu^2 - A)^-1:
+  std::vector<RowWeights> squares_;
+  std::vector<OrbitVector> solutions_;
+  OrbitVector scratch_, other_scratch_;
+};
+
+}  // namespace tchat
