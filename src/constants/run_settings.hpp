@@ -126,7 +126,7 @@ struct RunSettings {
   std::vector<BoundedValue> bounds;  ///< BOUNDS
   std::string conserved;             ///< CONSERVED, a function of the state that orbits keep; empty: none
   std::string curve;                 ///< CURVE, the name of its points; empty: that of the start
-  bool cubic_terms = false;          ///< CUBIC, on curves of period doublings and of torus bifurcations
+  int cubic_terms = 1;               ///< CUBIC, on curves of period doublings and of torus bifurcations
   int mode = 1;                      ///< MODE, of the oscillations about an equilibrium, from the slowest
   std::string problem;               ///< PROBLEM, from the folder of the constants file; empty: none is named
   ParameterLayout layout;            ///< of the problem's PAR; that of few parameters until resolve_names()

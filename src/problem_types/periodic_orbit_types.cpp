@@ -110,6 +110,11 @@ void add_meetings(TestList& tests, const PeriodicOrbitSystem& system, TestList m
   std::move(meetings.begin(), meetings.end(), std::back_inserter(tests));
 }
 
+bool looks_for_cubic_terms(const PeriodicOrbitSystem& system, const RunSettings& run) {
+  constexpr int where_exact = 1;
+  return run.cubic_terms > (system.system().has_third() ? 0 : where_exact);
+}
+
 BranchCurve fold(const PeriodicOrbitSystem& system, const RunSettings&, const SelectedStart& start) {
   return curve_of(system, std::make_unique<CriticalMultiplier>(system, start.start.orbit.shape, 1),
                   [&system](TestList& tests, const CriticalMultiplier& condition) {
@@ -120,16 +125,17 @@ BranchCurve fold(const PeriodicOrbitSystem& system, const RunSettings&, const Se
 }
 
 BranchCurve period_doubling(const PeriodicOrbitSystem& system, const RunSettings& run, const SelectedStart& start) {
-  return curve_of(system, std::make_unique<CriticalMultiplier>(system, start.start.orbit.shape, -1),
-                  [&system, cubic = run.cubic_terms](TestList& tests, const CriticalMultiplier& condition) {
-                    tests.push_back(double_multiplier_test(PointType::resonance_2, condition));
-                    add_meetings(tests, system, doubling_curve_meetings(system, cubic));
-                  });
+  return curve_of(
+      system, std::make_unique<CriticalMultiplier>(system, start.start.orbit.shape, -1),
+      [&system, cubic = looks_for_cubic_terms(system, run)](TestList& tests, const CriticalMultiplier& condition) {
+        tests.push_back(double_multiplier_test(PointType::resonance_2, condition));
+        add_meetings(tests, system, doubling_curve_meetings(system, cubic));
+      });
 }
 
 BranchCurve torus(const PeriodicOrbitSystem& system, const RunSettings& run, const SelectedStart& start) {
   return curve_of(system, std::make_unique<CriticalPair>(system, start.start.orbit.shape, pair_at(system, start)),
-                  [&system, cubic = run.cubic_terms](TestList& tests, const CriticalPair& pair) {
+                  [&system, cubic = looks_for_cubic_terms(system, run)](TestList& tests, const CriticalPair& pair) {
                     for (auto& test : torus_curve_tests(pair)) tests.push_back(std::move(test));
                     add_meetings(tests, system, torus_curve_meetings(system, pair, cubic));
                   });

@@ -28,7 +28,7 @@ void simulate(const Workspace& workspace, const std::string& head, const std::st
 void follow(const Workspace& workspace, const std::string& name, const std::string& from, const std::string& label,
             const std::string& ds, const std::string& words = "") {
   workspace.succeed("run map -q -c r." + from + " -s " + from + " -o " + name + " ISW=2 ICP=[q,p] IRS=" + label +
-                    " DS=" + ds + " DSMAX=0.02 NMX=100 NPR=1 CUBIC=1 RL0=-0.5 RL1=0.5 " + words);
+                    " DS=" + ds + " DSMAX=0.02 NMX=100 NPR=1 RL0=-0.5 RL1=0.5 " + words);
 }
 
 /// The curve in p and q that begins at a label of codimension two of FROM.
@@ -198,7 +198,7 @@ TEST_CASE("coefficients of the 1:1 resonance, from which curves of folds and of 
   check_curve(workspace, "folds", folds);
   CHECK(printed(workspace, "folds", "R1", "a") == Approx(0.7).margin(coefficient_accuracy));
   CHECK(printed(workspace, "folds", "R1", "b") == Approx(0.4).margin(coefficient_accuracy));
-  follow(workspace, "tori", "folds", "R11", "-0.02", "CURVE=TR CUBIC=0");
+  follow(workspace, "tori", "folds", "R11", "-0.02", "CURVE=TR");
   check_curve(workspace, "tori", [](double q) { return -0.7 * 4.0 * q * q; });
 }
 
@@ -276,7 +276,7 @@ Y' = -k3*A*B*Y + 2*k2*X^2 - k5*Y
   workspace.succeed("simulate reaction --free k8 --dat start -o sim -q");
   workspace.succeed("run reaction -q -c start -d start -o cycle NTST=60 NMX=60 DS=0.005 DSMAX=0.05 RL1=1");
   workspace.succeed(
-      "run reaction -q -c r.cycle -s cycle -o curve IRS=TR1 ISW=2 ICP=[k7,k8] CUBIC=1 DS=0.01 DSMAX=0.1 NMX=60 "
+      "run reaction -q -c r.cycle -s cycle -o curve IRS=TR1 ISW=2 ICP=[k7,k8] DS=0.01 DSMAX=0.1 NMX=60 "
       "RL1=1.9");
   const SolutionEntry point = only(workspace, "curve", "CH");
   CHECK(std::abs(point.parameter(7) - 1.757356) < 5e-6);
@@ -327,7 +327,7 @@ y' = (p - z + z^2)*y + 1.3*x
   workspace.succeed("simulate map --free p --dat rest -o rest -q");
   workspace.succeed("run map -q -d rest -c rest -o rest DS=0.01 DSMAX=0.05 RL1=1 NMX=60");
   workspace.succeed("run map -q -c r.rest -s rest -o cycle IRS=HB1 IPS=180 ISW=-1 DS=0.01 DSMAX=0.05 NMX=60 RL1=2");
-  follow(workspace, "tori", "cycle", "TR1", "0.02", "DSMAX=0.05 CUBIC=0");
+  follow(workspace, "tori", "cycle", "TR1", "0.02", "DSMAX=0.05");
   check_curve(workspace, "tori", [](double) { return 0.0; });
   CHECK(std::abs(workspace.solutions("tori").back().parameter(2)) < accuracy);
   follow(workspace, "hopf", "rest", "HB1", "0.02");
