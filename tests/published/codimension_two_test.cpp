@@ -24,6 +24,17 @@ void simulate(const Workspace& workspace, const std::string& head, const std::st
   workspace.succeed("run map -d map -c map -o down DS=-0.01 DSMAX=0.02 NMX=60 RL0=-1 -q");
 }
 
+/// The equilibria of map.tch over p.
+void follow_rest(const Workspace& workspace) {
+  workspace.succeed("simulate map --free p --dat rest -o rest -q");
+  workspace.succeed("run map -q -d rest -c rest -o rest DS=0.01 DSMAX=0.05 RL1=1 NMX=60");
+}
+
+/// The cycles that are born at the first HB of them.
+void follow_cycle(const Workspace& workspace) {
+  workspace.succeed("run map -q -c r.rest -s rest -o cycle IRS=HB1 IPS=180 ISW=-1 DS=0.01 DSMAX=0.05 NMX=60 RL1=2");
+}
+
 /// A curve in p and q from a label of NAME, in the direction `ds` of q as long as |q| < 0.5.
 void follow(const Workspace& workspace, const std::string& name, const std::string& from, const std::string& label,
             const std::string& ds, const std::string& words = "") {
@@ -296,9 +307,8 @@ y' = (p - r - 0.3*s)*y + 1.7*x
 u' = (q + 0.4*r - s)*u - v
 v' = (q + 0.4*r - s)*v + u
 )");
-  workspace.succeed("simulate map --free p --dat rest -o rest -q");
-  workspace.succeed("run map -q -d rest -c rest -o rest DS=0.01 DSMAX=0.05 RL1=1 NMX=60");
-  workspace.succeed("run map -q -c r.rest -s rest -o cycle IRS=HB1 IPS=180 ISW=-1 DS=0.01 DSMAX=0.05 NMX=60 RL1=2");
+  follow_rest(workspace);
+  follow_cycle(workspace);
   follow(workspace, "tori", "cycle", "TR1", "0.02", "DSMAX=0.05 RL0=-2");
   check_curve(workspace, "tori", [](double q) { return -q / 0.4; });
   CHECK(std::abs(workspace.solutions("tori").back().parameter(2)) < accuracy);
@@ -324,9 +334,8 @@ z' = q + z^2 + r
 x' = (p - z + z^2)*x - 1.3*y
 y' = (p - z + z^2)*y + 1.3*x
 )");
-  workspace.succeed("simulate map --free p --dat rest -o rest -q");
-  workspace.succeed("run map -q -d rest -c rest -o rest DS=0.01 DSMAX=0.05 RL1=1 NMX=60");
-  workspace.succeed("run map -q -c r.rest -s rest -o cycle IRS=HB1 IPS=180 ISW=-1 DS=0.01 DSMAX=0.05 NMX=60 RL1=2");
+  follow_rest(workspace);
+  follow_cycle(workspace);
   follow(workspace, "tori", "cycle", "TR1", "0.02", "DSMAX=0.05");
   check_curve(workspace, "tori", [](double) { return 0.0; });
   CHECK(std::abs(workspace.solutions("tori").back().parameter(2)) < accuracy);
@@ -341,8 +350,7 @@ TEST_CASE("at a Bogdanov-Takens point the curve of Hopf points is followed") {
   // Kuznetsov's normal form: folds p = q^2 / 4, Hopf points p = 0, q < 0.
   const Workspace workspace;
   workspace.write("map.tch", "par p=0.1, q=-1\ninit x=0.11, y=0\nx' = y\ny' = p + q*x + x^2 - x*y\n");
-  workspace.succeed("simulate map --free p --dat rest -o rest -q");
-  workspace.succeed("run map -q -d rest -c rest -o rest DS=0.01 DSMAX=0.05 RL1=1 NMX=60");
+  follow_rest(workspace);
   follow(workspace, "folds", "rest", "LP1", "0.02", "RL0=-2");
   check_place(workspace, "folds", "BT", 0.0, 0.0);
   check_curve(workspace, "folds", [](double q) { return 0.25 * q * q; });
@@ -361,12 +369,11 @@ r = x^2 + y^2
 x' = (p + q*r - r^2)*x - 1.3*y
 y' = (p + q*r - r^2)*y + 1.3*x
 )");
-  workspace.succeed("simulate map --free p --dat rest -o rest -q");
-  workspace.succeed("run map -q -d rest -c rest -o rest DS=0.01 DSMAX=0.05 RL1=0.5 NMX=60");
+  follow_rest(workspace);
   follow(workspace, "hopf", "rest", "HB1", "-0.02");
   check_place(workspace, "hopf", "GH", 0.0, 0.0);
   check_curve(workspace, "hopf", [](double) { return 0.0; });
-  workspace.succeed("run map -q -c r.rest -s rest -o cycle IRS=HB1 IPS=180 ISW=-1 DS=0.01 DSMAX=0.05 NMX=60");
+  follow_cycle(workspace);
   follow(workspace, "folds", "cycle", "LP1", "-0.02");
   check_curve(workspace, "folds", [](double q) { return -0.25 * q * q; });
   CHECK(std::abs(workspace.solutions("folds").back().parameter(2)) < 1e-4);  // an orbit that shrinks like sqrt(q)
